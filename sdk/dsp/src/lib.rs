@@ -1,1 +1,14 @@
-//! 
+//! Signal processing for texture models: windows, spectra, linear prediction, mel banks, peaks,
+//! beta density, Butterworth filters, noise, oscillators, spectral shaping and resampling.
+//!
+//! This crate knows no texture asset and no file. Without the `std` feature it is `no_std + alloc`
+//! and leaves out what needs an FFT. Elementary functions come from `libm`, so that the same
+//! inputs give the same bits in a native library and in a WASM module.
+//!
+//! Frequencies are in hertz, rates in hertz, angles in radians, magnitudes in the unit of the
+//! signal unless a name says otherwise.
+#![forbid(unsafe_code)]
+#![cfg_attr(not(feature = "std"), no_std)]
+extern crate alloc;
+pub mod grid;
+pub use grid::{Band, GRID_HZ};

@@ -12,3 +12,8 @@
 extern crate alloc;
 pub mod grid;
 pub use grid::{Band, GRID_HZ};
+pub mod noise;
+pub mod resample;
+#[cfg(feature = "std")]
+pub mod shaped_noise;
+pub mod sine_bank;

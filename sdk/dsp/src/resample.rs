@@ -1,0 +1,273 @@
+//! Streaming sample-rate conversion by polyphase windowed-sinc filters.
+//!
+//! A texture voice renders at a low rate of its own; this brings it to the device's. The converter
+//! is pulled: it asks its source for just the samples it needs, never allocates while it runs, and
+//! gives the same samples for any block size.
+
+use alloc::vec::Vec;
+
+/// Stop-band attenuation of the filters, decibels.
+const ATTENUATION_DB: f64 = 70.0;
+/// Phases beyond which a table is interpolated instead of exact.
+const MAX_EXACT_PHASES: u64 = 1024;
+const INTERPOLATED_PHASES: u64 = 512;
+/// Half the width of the transition around the source's Nyquist frequency, as a part of it.
+const TRANSITION: f64 = 0.02;
+const CHUNK: usize = 256;
+/// Sides of the kernel beyond which a request is refused, to bound memory.
+const MAX_TAPS: usize = 16_384;
+
+/// Converts a stream from one rate to another.
+#[derive(Debug, Clone)]
+pub struct Resampler {
+    stages: Vec<Stage>,
+}
+
+impl Resampler {
+    /// A converter from `from_hz` to `to_hz` for a source that holds nothing of interest above
+    /// `top_hz`; `None` when the rates are the same (to a millihertz) and nothing needs doing.
+    ///
+    /// Rates lie in 1 mHz to 10 MHz and differ by at most a factor 10,000; others give `None` too.
+    pub fn new(from_hz: f64, to_hz: f64, top_hz: f64) -> Option<Self> {
+        let (from, to) = (millihertz(from_hz)?, millihertz(to_hz)?);
+        if from == to || from / to > 10_000 || to / from > 10_000 {
+            return None;
+        }
+        let nyquist = 0.5 * from_hz.min(to_hz);
+        // Wide transition where the source leaves room between its top and its first image.
+        let pass = top_hz.min(nyquist * (1.0 - TRANSITION));
+        let stop = (from_hz.min(to_hz) - pass).max(nyquist * (1.0 + TRANSITION));
+        let narrow = stop - pass < 0.5 * nyquist;
+        let stages = if narrow && to / from >= 4 {
+            let middle = 2 * from;
+            let image = 2.0 * from_hz - stop;
+            alloc::vec![
+                Stage::new(from, middle, pass, stop),
+                Stage::new(middle, to, pass.max(1e-3), image.max(stop)),
+            ]
+        } else {
+            alloc::vec![Stage::new(from, to, pass, stop)]
+        };
+        Some(Self { stages })
+    }
+
+    /// Fills `out`, pulling source samples through `source`, which must fill the whole slice it is
+    /// given. Does not allocate.
+    pub fn process(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
+        run(&mut self.stages, out, source);
+    }
+}
+
+/// Runs the last stage, which pulls from the ones before it.
+fn run(stages: &mut [Stage], out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
+    match stages.split_last_mut() {
+        None => source(out),
+        Some((last, before)) => last.process(out, &mut |block| run(before, block, source)),
+    }
+}
+
+fn millihertz(rate_hz: f64) -> Option<u64> {
+    let value = libm::round(rate_hz * 1000.0);
+    (1.0..=1e10).contains(&value).then_some(value as u64)
+}
+
+/// One polyphase filter: output k stands at input time k·M/L.
+#[derive(Debug, Clone)]
+struct Stage {
+    up: u64,
+    down: u64,
+    taps: usize,
+    /// Phase-major kernel; one row more than there are phases where rows are interpolated.
+    kernel: Vec<f32>,
+    exact: bool,
+    phase: u64,
+    /// Source samples; `kernel` rows are applied to `history[start..start + taps]`.
+    history: Vec<f32>,
+    start: usize,
+    filled: usize,
+}
+
+impl Stage {
+    fn new(from: u64, to: u64, pass_hz: f64, stop_hz: f64) -> Self {
+        let divisor = gcd(from, to);
+        let (up, down) = (to / divisor, from / divisor);
+        let from_hz = from as f64 / 1000.0;
+        let width = (stop_hz - pass_hz).max(1e-6) / from_hz;
+        let taps = kaiser_length(width).clamp(8, MAX_TAPS).next_multiple_of(8);
+        let exact = up <= MAX_EXACT_PHASES;
+        let phases = if exact { up } else { INTERPOLATED_PHASES };
+        let cutoff = 0.5 * (pass_hz + stop_hz) / from_hz;
+        Self {
+            up,
+            down,
+            taps,
+            kernel: kernel(taps, phases, exact, cutoff),
+            exact,
+            phase: 0,
+            history: alloc::vec![0.0; taps + CHUNK],
+            start: 0,
+            filled: 0,
+        }
+    }
+
+    fn process(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
+        for sample in out {
+            if self.start + self.taps > self.filled {
+                self.refill(source);
+            }
+            let window = &self.history[self.start..self.start + self.taps];
+            *sample = self.filter(window);
+            self.phase += self.down;
+            self.start += (self.phase / self.up) as usize;
+            self.phase %= self.up;
+        }
+    }
+
+    /// Moves the samples still needed to the front and pulls a few more.
+    fn refill(&mut self, source: &mut dyn FnMut(&mut [f32])) {
+        while self.start + self.taps > self.filled {
+            let keep_from = self.start.min(self.filled);
+            self.history.copy_within(keep_from..self.filled, 0);
+            self.filled -= keep_from;
+            self.start -= keep_from;
+            // Small pulls keep the latency of a change of parameters small.
+            let wanted = (self.start + self.taps - self.filled).max(8);
+            let end = (self.filled + wanted).min(self.history.len());
+            source(&mut self.history[self.filled..end]);
+            self.filled = end;
+        }
+    }
+
+    #[inline]
+    fn filter(&self, window: &[f32]) -> f32 {
+        let row = |i: usize| &self.kernel[i * self.taps..(i + 1) * self.taps];
+        if self.exact {
+            return dot(row(self.phase as usize), window);
+        }
+        let place = self.phase as f64 / self.up as f64 * INTERPOLATED_PHASES as f64;
+        let i = place as usize;
+        let t = (place - i as f64) as f32;
+        let (a, b) = (dot(row(i), window), dot(row(i + 1), window));
+        a + t * (b - a)
+    }
+}
+
+/// Dot product in eight lanes; both slices have the same length, a multiple of eight.
+#[inline]
+fn dot(a: &[f32], b: &[f32]) -> f32 {
+    let mut lanes = [0.0f32; 8];
+    for (x, y) in a.chunks_exact(8).zip(b.chunks_exact(8)) {
+        for i in 0..8 {
+            lanes[i] += x[i] * y[i];
+        }
+    }
+    (lanes[0] + lanes[4]) + (lanes[1] + lanes[5]) + ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]))
+}
+
+/// Kaiser's estimate of the taps a transition of `width` (cycles per sample) needs.
+fn kaiser_length(width: f64) -> usize {
+    let n = (ATTENUATION_DB - 7.95) / (2.285 * core::f64::consts::TAU * width);
+    libm::ceil(n).min(1e6) as usize + 1
+}
+
+fn kernel(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Vec<f32> {
+    let rows = phases + u64::from(!exact);
+    let beta = 0.1102 * (ATTENUATION_DB - 8.7);
+    let half = taps as f64 / 2.0;
+    let mut all = Vec::with_capacity(rows as usize * taps);
+    for row in 0..rows {
+        let shift = row as f64 / phases as f64;
+        let mut values: Vec<f64> = (0..taps)
+            .map(|j| {
+                // Input j of the window stands at time j - (taps/2 - 1) relative to the base.
+                let t = j as f64 - (half - 1.0) - shift;
+                sinc(2.0 * cutoff * t) * kaiser(t / half, beta)
+            })
+            .collect();
+        // Unit gain at DC in every phase, so that a constant stays one.
+        let sum: f64 = values.iter().sum();
+        values.iter_mut().for_each(|v| *v /= sum);
+        all.extend(values.iter().map(|&v| v as f32));
+    }
+    all
+}
+
+fn sinc(x: f64) -> f64 {
+    let a = core::f64::consts::PI * x;
+    if x == 0.0 { 1.0 } else { libm::sin(a) / a }
+}
+
+fn kaiser(x: f64, beta: f64) -> f64 {
+    if x.abs() > 1.0 {
+        return 0.0;
+    }
+    bessel_i0(beta * libm::sqrt(1.0 - x * x)) / bessel_i0(beta)
+}
+
+fn bessel_i0(x: f64) -> f64 {
+    let (mut sum, mut term, mut k) = (1.0, 1.0, 1.0);
+    while term > 1e-17 * sum {
+        term *= (x / (2.0 * k)) * (x / (2.0 * k));
+        sum += term;
+        k += 1.0;
+    }
+    sum
+}
+
+fn gcd(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Converts a sine and returns the largest error against the same sine at the other rate.
+    fn sine_error(from_hz: f64, to_hz: f64, f_hz: f64) -> f64 {
+        let mut resampler = Resampler::new(from_hz, to_hz, 1000.0).unwrap();
+        let offset: usize = resampler.stages.iter().map(|s| s.taps / 2 - 1).sum();
+        assert!(offset > 0);
+        let mut n = 0usize;
+        let mut source = |block: &mut [f32]| {
+            for x in block {
+                *x = libm::sin(core::f64::consts::TAU * f_hz * n as f64 / from_hz) as f32;
+                n += 1;
+            }
+        };
+        let mut out = alloc::vec![0.0f32; 4_000];
+        for block in out.chunks_mut(33) {
+            resampler.process(block, &mut source);
+        }
+        // Each stage's first output stands at its own window's centre.
+        let mut delay_s = 0.0;
+        let mut rate = from_hz;
+        for stage in &resampler.stages {
+            delay_s += (stage.taps as f64 / 2.0 - 1.0) / rate;
+            rate = rate * stage.up as f64 / stage.down as f64;
+        }
+        out.iter()
+            .enumerate()
+            .map(|(k, y)| {
+                let t = k as f64 / to_hz + delay_s;
+                (f64::from(*y) - libm::sin(core::f64::consts::TAU * f_hz * t)).abs()
+            })
+            .fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn sines_keep_their_amplitude_phase_and_frequency() {
+        for (from, to) in [
+            (2_000.0, 20_000.0),
+            (2_500.0, 20_000.0),
+            (2_000.0, 44_100.0),
+            (2_594.117_647, 44_100.0),
+            (20_000.0, 48_000.0),
+            (20_000.0, 2_400.0),
+        ] {
+            for f in [20.0, 317.0, 900.0] {
+                let error = sine_error(from, to, f);
+                assert!(error < 2e-3, "{from} -> {to} at {f}: {error}");
+            }
+        }
+    }
+}

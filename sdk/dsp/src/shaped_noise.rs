@@ -1,0 +1,277 @@
+//! Random-phase noise with a given spectrum, streamed by overlap-add.
+//!
+//! Frames of uniformly random phases are windowed with a sine and added with half overlap. Frames
+//! are independent and sine² + cos² = 1, so the power is the same at every sample, and no frame
+//! ever comes back (numeric definitions: random phase).
+
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+use realfft::{ComplexToReal, RealFftPlanner, num_complex::Complex};
+
+use crate::grid::{Band, GRID_HZ};
+use crate::noise::Uniform;
+
+/// Length of half a frame, seconds: components stand 2.5 Hz apart.
+const HOP_S: f64 = 0.2;
+/// Length of the cross-fade after a retune, seconds.
+const FADE_S: f64 = 0.010;
+
+/// An endless stream of noise of unit RMS whose spectrum follows a magnitude curve.
+pub struct ShapedNoise {
+    inverse: Arc<dyn ComplexToReal<f64>>,
+    window: Vec<f64>,
+    hop: usize,
+    fade_len: usize,
+    first: usize,
+    component_hz: Vec<f64>,
+    amplitude: Vec<f64>,
+    pending: bool,
+    pending_amplitude: Vec<f64>,
+    // The generator as it stood before the frame that ends in this hop, and before the one that
+    // begins in it: a retune makes both again with the same phases.
+    ending: Uniform,
+    beginning: Uniform,
+    next: Uniform,
+    spectrum: Vec<Complex<f64>>,
+    scratch: Vec<Complex<f64>>,
+    frame: Vec<f64>,
+    tail: Vec<f64>,
+    now: Vec<f64>,
+    faded: Vec<f64>,
+    position: usize,
+    fade_position: Option<usize>,
+}
+
+/// Rate at which a voice of [`ShapedNoise`] works when `wanted_hz` is wanted: a whole fraction of
+/// it that still holds the band with room for an easy interpolation filter.
+pub fn economical_rate_hz(wanted_hz: f64, band: Band) -> f64 {
+    let parts = libm::floor(wanted_hz / (2.5 * band.high_hz)).max(1.0);
+    wanted_hz / parts
+}
+
+impl ShapedNoise {
+    /// Starts the stream of `seed` at `rate_hz`, silent until [`Self::start`] is called.
+    ///
+    /// The rate is at least 20 Hz and at most 10 MHz (clamped).
+    pub fn new(rate_hz: f64, band: Band, seed: u64) -> Self {
+        let rate_hz = rate_hz.clamp(20.0, 1e7);
+        let hop = libm::round(rate_hz * HOP_S).max(2.0) as usize;
+        let len = 2 * hop;
+        let spacing = rate_hz / len as f64;
+        // Each bin of the texture spectrum stands for half a bin to either side.
+        let low = libm::ceil((band.low_hz - 0.5 * GRID_HZ) / spacing - 1e-9).max(1.0) as usize;
+        let high = libm::floor((band.high_hz + 0.5 * GRID_HZ) / spacing + 1e-9) as usize;
+        let high = high.min(hop - 1);
+        let component_hz: Vec<f64> = (low..=high.max(low))
+            .map(|j| (j as f64 * spacing).clamp(band.low_hz, band.high_hz))
+            .collect();
+        let inverse = RealFftPlanner::new().plan_fft_inverse(len);
+        let window = (0..len)
+            .map(|n| libm::sin(core::f64::consts::PI * (n as f64 + 0.5) / len as f64))
+            .collect();
+        let zeros = |n| alloc::vec![0.0; n];
+        let mut noise = Self {
+            spectrum: inverse.make_input_vec(),
+            scratch: inverse.make_scratch_vec(),
+            frame: inverse.make_output_vec(),
+            inverse,
+            window,
+            hop,
+            fade_len: libm::ceil(FADE_S * rate_hz).max(1.0).min(hop as f64) as usize,
+            first: low,
+            amplitude: zeros(component_hz.len()),
+            pending_amplitude: zeros(component_hz.len()),
+            component_hz,
+            pending: false,
+            ending: Uniform::new(seed),
+            beginning: Uniform::new(seed),
+            next: Uniform::new(seed),
+            tail: zeros(hop),
+            now: zeros(hop),
+            faded: zeros(hop),
+            position: 0,
+            fade_position: None,
+        };
+        noise.next_hop();
+        noise.next_hop();
+        noise
+    }
+
+    /// Frequencies, hertz, ascending, at which spectra are wanted.
+    pub fn component_hz(&self) -> &[f64] {
+        &self.component_hz
+    }
+
+    /// Sets the spectrum before the first sample: `magnitude(i, f)` at `component_hz()[i] == f`, in
+    /// any scale; negative and non-finite values count as zero.
+    pub fn start(&mut self, magnitude: impl Fn(usize, f64) -> f64) {
+        self.prepare(magnitude);
+        self.amplitude.copy_from_slice(&self.pending_amplitude);
+        self.remake_hop();
+        core::mem::swap(&mut self.now, &mut self.faded);
+    }
+
+    /// Changes to another spectrum over the next 10 ms. Does not allocate.
+    pub fn retune(&mut self, magnitude: impl Fn(usize, f64) -> f64) {
+        self.prepare(magnitude);
+        self.pending = true;
+    }
+
+    /// Turns magnitudes into component amplitudes of unit RMS together.
+    fn prepare(&mut self, magnitude: impl Fn(usize, f64) -> f64) {
+        let mut power = 0.0;
+        for (i, &f) in self.component_hz.iter().enumerate() {
+            let m = magnitude(i, f);
+            let a = if m.is_finite() && m > 0.0 { m } else { 0.0 };
+            self.pending_amplitude[i] = a;
+            power += 0.5 * a * a;
+        }
+        let gain = if power > 0.0 { 1.0 / libm::sqrt(power) } else { 0.0 };
+        self.pending_amplitude.iter_mut().for_each(|a| *a *= gain);
+    }
+
+    /// Fills `out` with the next samples. Does not allocate.
+    pub fn render(&mut self, out: &mut [f32]) {
+        for sample in out {
+            if self.position == self.hop {
+                self.next_hop();
+            }
+            if self.pending {
+                self.begin_fade();
+            }
+            *sample = self.current() as f32;
+            self.position += 1;
+        }
+    }
+
+    fn current(&mut self) -> f64 {
+        let old = self.now[self.position];
+        let Some(done) = self.fade_position else {
+            return old;
+        };
+        let weight = (done + 1) as f64 / self.fade_len as f64;
+        let value = old + weight * (self.faded[self.position] - old);
+        if done + 1 == self.fade_len {
+            core::mem::swap(&mut self.now, &mut self.faded);
+            self.fade_position = None;
+        } else {
+            self.fade_position = Some(done + 1);
+        }
+        value
+    }
+
+    /// Starts a cross-fade to the pending spectrum, unless one runs or the hop is too near its end.
+    fn begin_fade(&mut self) {
+        if self.fade_position.is_some() || self.position + self.fade_len > self.hop {
+            return;
+        }
+        self.pending = false;
+        self.amplitude.copy_from_slice(&self.pending_amplitude);
+        self.remake_hop();
+        self.fade_position = Some(0);
+    }
+
+    /// Moves on to the next half frame.
+    fn next_hop(&mut self) {
+        self.ending = self.beginning.clone();
+        self.beginning = self.next.clone();
+        let mut phases = self.next.clone();
+        self.make_frame(&mut phases);
+        self.next = phases;
+        for n in 0..self.hop {
+            self.now[n] = self.tail[n] + self.frame[n];
+        }
+        self.tail.copy_from_slice(&self.frame[self.hop..]);
+        self.position = 0;
+    }
+
+    /// Makes both frames of this hop again, with the same phases and the present amplitudes, into
+    /// `faded` and `tail`.
+    fn remake_hop(&mut self) {
+        let mut phases = self.ending.clone();
+        self.make_frame(&mut phases);
+        self.faded.copy_from_slice(&self.frame[self.hop..]);
+        let mut phases = self.beginning.clone();
+        self.make_frame(&mut phases);
+        for n in 0..self.hop {
+            self.faded[n] += self.frame[n];
+        }
+        self.tail.copy_from_slice(&self.frame[self.hop..]);
+    }
+
+    fn make_frame(&mut self, phases: &mut Uniform) {
+        self.spectrum.fill(Complex::new(0.0, 0.0));
+        for (i, &a) in self.amplitude.iter().enumerate() {
+            let (sin, cos) = libm::sincos(core::f64::consts::TAU * phases.next_unit());
+            if let Some(bin) = self.spectrum.get_mut(self.first + i) {
+                *bin = Complex::new(0.5 * a * cos, 0.5 * a * sin);
+            }
+        }
+        // The lengths are the plan's own and the edge bins are zero, so this cannot fail; a frame
+        // that did would be silence.
+        let made = self.inverse.process_with_scratch(
+            &mut self.spectrum,
+            &mut self.frame,
+            &mut self.scratch,
+        );
+        if made.is_err() {
+            self.frame.fill(0.0);
+        }
+        for (x, w) in self.frame.iter_mut().zip(&self.window) {
+            *x *= w;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn noise(seed: u64) -> ShapedNoise {
+        let mut noise = ShapedNoise::new(2_500.0, Band::TACTILE, seed);
+        noise.start(|_, f| libm::exp(-f / 200.0));
+        noise
+    }
+
+    #[test]
+    fn power_is_one_and_stationary() {
+        let mut noise = noise(3);
+        let mut out = alloc::vec![0.0f32; 2_500_000];
+        noise.render(&mut out);
+        let power = |phase: usize| {
+            let part = out.iter().skip(phase).step_by(500);
+            let n = part.clone().count() as f64;
+            part.map(|x| f64::from(*x).powi(2)).sum::<f64>() / n
+        };
+        // 5,000 independent samples a position within the hop: standard error 2 %.
+        for phase in [0, 125, 250, 499] {
+            assert!((power(phase) - 1.0).abs() < 0.1, "{phase}: {}", power(phase));
+        }
+        let total = out.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / out.len() as f64;
+        assert!((total - 1.0).abs() < 0.01, "{total}");
+    }
+
+    #[test]
+    fn blocks_do_not_matter_and_retunes_do_not_click() {
+        let render = |block: usize| {
+            let mut noise = noise(5);
+            let mut out = alloc::vec![0.0f32; 5_000];
+            for (i, part) in out.chunks_mut(block).enumerate() {
+                if (i * block).is_multiple_of(1_000) && i > 0 {
+                    noise.retune(|_, f| libm::exp(-f / (50.0 + i as f64)));
+                }
+                noise.render(part);
+            }
+            out
+        };
+        let step = |x: &[f32]| x.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f32::max);
+        let out = render(1_000);
+        // Between 1,000 and 1,025 the fade runs; it is no steeper than the noise itself.
+        assert!(step(&out[990..1_040]) < 2.0 * step(&out[..990]));
+        let mut plain = noise(5);
+        let mut singles = alloc::vec![0.0f32; 999];
+        singles.chunks_mut(7).for_each(|part| plain.render(part));
+        assert_eq!(singles, out[..999]);
+    }
+}

@@ -10,10 +10,17 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(feature = "std"), no_std)]
 extern crate alloc;
+pub mod beta;
+pub mod biquad;
+pub mod butterworth;
 pub mod grid;
-pub use grid::{Band, GRID_HZ};
+pub mod nelder_mead;
 pub mod noise;
+pub mod peaks;
 pub mod resample;
 #[cfg(feature = "std")]
 pub mod shaped_noise;
 pub mod sine_bank;
+pub mod window;
+
+pub use grid::{Band, GRID_HZ};

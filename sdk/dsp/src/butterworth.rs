@@ -1,0 +1,150 @@
+//! Butterworth low-pass and high-pass filters of order 1 to 20 (paper, Spectral slope), analogue
+//! magnitudes and digital second-order sections.
+//!
+//! The digital design is the bilinear transform with the cut-off prewarped, as
+//! `scipy.signal.butter(..., output="sos")` does it: at the cut-off the magnitude is 1/√2 exactly.
+
+use core::f64::consts::PI;
+use core::ops::Deref;
+
+use crate::biquad::Biquad;
+
+/// Highest order that can be designed: 400 dB a decade, more than a spectrum's range.
+pub const MAX_ORDER: usize = 20;
+
+/// The second-order sections of one filter, lowest Q first; derefs to a slice. Holds no heap.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sections {
+    sections: [Biquad; MAX_ORDER / 2],
+    len: usize,
+}
+
+impl Deref for Sections {
+    type Target = [Biquad];
+
+    fn deref(&self) -> &[Biquad] {
+        &self.sections[..self.len]
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    LowPass,
+    HighPass,
+}
+
+/// Low-pass sections with cut-off `fc_hz` at the sampling rate `rate_hz`.
+///
+/// `None` if the order is not 1 to [`MAX_ORDER`], or the cut-off is not strictly between 0 and
+/// the Nyquist frequency `rate_hz / 2`.
+pub fn low_pass(order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {
+    design(Kind::LowPass, order, fc_hz, rate_hz)
+}
+
+/// High-pass sections; arguments and `None` as for [`low_pass`].
+pub fn high_pass(order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {
+    design(Kind::HighPass, order, fc_hz, rate_hz)
+}
+
+/// `|H|` of the analogue low-pass: `1 / sqrt(1 + (f / fc)^(2 order))`.
+pub fn analog_low_pass_magnitude(f_hz: f64, fc_hz: f64, order: usize) -> f64 {
+    1.0 / libm::sqrt(1.0 + libm::pow(f_hz / fc_hz, 2.0 * order as f64))
+}
+
+/// `|H|` of the analogue high-pass: `1 / sqrt(1 + (fc / f)^(2 order))`, 0 at 0 Hz.
+pub fn analog_high_pass_magnitude(f_hz: f64, fc_hz: f64, order: usize) -> f64 {
+    analog_low_pass_magnitude(fc_hz, f_hz, order)
+}
+
+fn design(kind: Kind, order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {
+    let in_range = fc_hz > 0.0 && fc_hz < rate_hz / 2.0 && rate_hz.is_finite();
+    if !(1..=MAX_ORDER).contains(&order) || !in_range {
+        return None;
+    }
+    let omega = 2.0 * PI * fc_hz / rate_hz;
+    let mut sections = [Biquad::IDENTITY; MAX_ORDER / 2];
+    let mut len = 0;
+    if order % 2 == 1 {
+        sections[0] = first_order(kind, omega);
+        len = 1;
+    }
+    for pair in 0..order / 2 {
+        // Poles at angles π/2 ± (2k + 1)π/(2n) from the imaginary axis; 1/(2Q) is the cosine of a
+        // pole's angle to the negative real axis, largest Q (k = 0) last.
+        let k = order / 2 - 1 - pair;
+        let half_inverse_q = libm::sin(PI * (2 * k + 1) as f64 / (2 * order) as f64);
+        sections[len] = second_order(kind, omega, half_inverse_q);
+        len += 1;
+    }
+    Some(Sections { sections, len })
+}
+
+/// Bilinear transform of `1 / (s + 1)` or `s / (s + 1)`, written with sine and cosine of half the
+/// cut-off angle: near Nyquist the usual tangent overflows, these do not.
+fn first_order(kind: Kind, omega: f64) -> Biquad {
+    let (sine, cosine) = libm::sincos(omega / 2.0);
+    let scale = 1.0 / (sine + cosine);
+    let (b0, b1) = match kind {
+        Kind::LowPass => (sine * scale, sine * scale),
+        Kind::HighPass => (cosine * scale, -cosine * scale),
+    };
+    Biquad {
+        b0,
+        b1,
+        b2: 0.0,
+        a1: (sine - cosine) * scale,
+        a2: 0.0,
+    }
+}
+
+/// Bilinear transform of `1 / (s² + s/Q + 1)` or `s² / (s² + s/Q + 1)`.
+fn second_order(kind: Kind, omega: f64, half_inverse_q: f64) -> Biquad {
+    let alpha = libm::sin(omega) * half_inverse_q;
+    let scale = 1.0 / (1.0 + alpha);
+    let (sine, cosine) = libm::sincos(omega / 2.0);
+    let (b0, sign) = match kind {
+        Kind::LowPass => (sine * sine * scale, 1.0),
+        Kind::HighPass => (cosine * cosine * scale, -1.0),
+    };
+    Biquad {
+        b0,
+        b1: 2.0 * sign * b0,
+        b2: b0,
+        a1: -2.0 * libm::cos(omega) * scale,
+        a2: (1.0 - alpha) * scale,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::biquad::Cascade;
+
+    #[test]
+    fn half_power_at_the_cutoff_and_stable_for_every_order() {
+        for order in 1..=MAX_ORDER {
+            for fc in [1.0, 20.0, 450.0, 5000.0, 9999.0, 9999.999] {
+                for design in [low_pass, high_pass] {
+                    let sections = design(order, fc, 20_000.0).unwrap();
+                    assert_eq!(sections.len(), order.div_ceil(2));
+                    assert!(sections.iter().all(Biquad::is_stable), "{order} {fc}");
+                    let magnitude = Cascade::new(&sections).magnitude(fc, 20_000.0);
+                    let error = magnitude * core::f64::consts::SQRT_2 - 1.0;
+                    // At 9999.999 Hz f64 coefficients no longer resolve the poles.
+                    let tolerance = if fc < 9999.5 { 1e-6 } else { 1e-4 };
+                    assert!(error.abs() < tolerance, "{order} {fc} {error}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_designed_is_refused() {
+        assert!(low_pass(0, 100.0, 2000.0).is_none());
+        assert!(low_pass(21, 100.0, 2000.0).is_none());
+        assert!(low_pass(2, 1000.0, 2000.0).is_none());
+        assert!(high_pass(2, 0.0, 2000.0).is_none());
+        assert!(high_pass(2, f64::NAN, 2000.0).is_none());
+        assert!(high_pass(2, 100.0, f64::INFINITY).is_none());
+    }
+}

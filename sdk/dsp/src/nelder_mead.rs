@@ -1,0 +1,270 @@
+//! Nelder–Mead simplex minimisation with the standard coefficients, as SciPy's `fmin` and
+//! MATLAB's `fminsearch` run it (Lagarias et al. 1998).
+
+/// When to stop, and how large the first simplex is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Stop when no vertex lies farther than this from the best, along any axis (and `f_tolerance`).
+    pub x_tolerance: f64,
+    /// Stop when no vertex value lies farther than this above the best (and `x_tolerance`).
+    pub f_tolerance: f64,
+    /// The function is called at most this often.
+    pub max_evaluations: usize,
+    /// First step along each axis, as a fraction of the start's coordinate.
+    pub initial_step: f64,
+    /// First step along an axis whose start coordinate is zero.
+    pub initial_step_at_zero: f64,
+}
+
+impl Default for Options {
+    /// SciPy's first simplex; tolerances near what f64 resolves around a smooth minimum.
+    fn default() -> Self {
+        Self {
+            x_tolerance: 1e-10,
+            f_tolerance: 1e-10,
+            max_evaluations: 4000,
+            initial_step: 0.05,
+            initial_step_at_zero: 0.00025,
+        }
+    }
+}
+
+/// The best point found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Minimum<const N: usize> {
+    /// Where.
+    pub x: [f64; N],
+    /// The function there; +∞ if it was NaN everywhere it was tried.
+    pub value: f64,
+    /// How often the function was called.
+    pub evaluations: usize,
+    /// Whether both tolerances were met before the evaluations ran out.
+    pub converged: bool,
+}
+
+/// Minimises `f` from `start`. NaN counts as +∞, so `f` may refuse a region by returning either.
+///
+/// Deterministic: the same function, start and options visit the same points. Evaluations ending
+/// early is not an error: the best point so far is returned.
+///
+/// ```
+/// use htex_dsp::nelder_mead::{Options, minimize};
+/// let bowl = |x: &[f64; 2]| (x[0] - 1.0).powi(2) + 10.0 * (x[1] + 2.0).powi(2);
+/// let found = minimize(bowl, [0.0, 0.0], &Options::default());
+/// assert!((found.x[0] - 1.0).abs() < 1e-6 && (found.x[1] + 2.0).abs() < 1e-6);
+/// ```
+pub fn minimize<const N: usize>(
+    f: impl FnMut(&[f64; N]) -> f64,
+    start: [f64; N],
+    options: &Options,
+) -> Minimum<N> {
+    let mut search = Search::start(f, start, options);
+    let mut converged = search.has_converged(options);
+    while !converged && search.evaluations < options.max_evaluations {
+        search.step(options.max_evaluations);
+        search.sort();
+        converged = search.has_converged(options);
+    }
+    Minimum {
+        x: search.best.x,
+        value: search.best.value,
+        evaluations: search.evaluations,
+        converged,
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Vertex<const N: usize> {
+    x: [f64; N],
+    value: f64,
+}
+
+/// The simplex: its best vertex and the N others, sorted by value after each step.
+struct Search<F, const N: usize> {
+    f: F,
+    best: Vertex<N>,
+    others: [Vertex<N>; N],
+    evaluations: usize,
+}
+
+impl<F: FnMut(&[f64; N]) -> f64, const N: usize> Search<F, N> {
+    fn start(f: F, start: [f64; N], options: &Options) -> Self {
+        let unknown = Vertex {
+            x: start,
+            value: f64::INFINITY,
+        };
+        let mut search = Self {
+            f,
+            best: unknown,
+            others: [unknown; N],
+            evaluations: 0,
+        };
+        search.best = search.evaluate(start);
+        for axis in 0..N {
+            if search.evaluations >= options.max_evaluations {
+                break;
+            }
+            let mut x = start;
+            x[axis] = match start[axis] {
+                0.0 => options.initial_step_at_zero,
+                coordinate => coordinate * (1.0 + options.initial_step),
+            };
+            search.others[axis] = search.evaluate(x);
+        }
+        search.sort();
+        search
+    }
+
+    fn evaluate(&mut self, x: [f64; N]) -> Vertex<N> {
+        self.evaluations += 1;
+        let value = (self.f)(&x);
+        let value = if value.is_nan() { f64::INFINITY } else { value };
+        Vertex { x, value }
+    }
+
+    fn sort(&mut self) {
+        // Insertion sort: stable, so ties keep their age, and free of allocation.
+        for i in 1..N {
+            for j in (1..=i).rev() {
+                if self.others[j].value < self.others[j - 1].value {
+                    self.others.swap(j, j - 1);
+                }
+            }
+        }
+        if N > 0 && self.others[0].value < self.best.value {
+            let demoted = core::mem::replace(&mut self.best, self.others[0]);
+            self.others[0] = demoted;
+            for j in 1..N {
+                if self.others[j].value < self.others[j - 1].value {
+                    self.others.swap(j, j - 1);
+                }
+            }
+        }
+    }
+
+    fn has_converged(&self, options: &Options) -> bool {
+        self.others.iter().all(|vertex| {
+            let near = (0..N).all(|i| (vertex.x[i] - self.best.x[i]).abs() <= options.x_tolerance);
+            near && vertex.value - self.best.value <= options.f_tolerance
+        })
+    }
+
+    /// Centroid of all vertices but the worst, moved by `factor` away from the worst.
+    fn away_from_worst(&self, factor: f64) -> [f64; N] {
+        let mut x = self.best.x;
+        for vertex in &self.others[..N - 1] {
+            for i in 0..N {
+                x[i] += vertex.x[i];
+            }
+        }
+        let worst = &self.others[N - 1].x;
+        for i in 0..N {
+            let centroid = x[i] / N as f64;
+            x[i] = centroid + factor * (centroid - worst[i]);
+        }
+        x
+    }
+
+    /// One move: reflect, then expand, contract or shrink.
+    fn step(&mut self, max_evaluations: usize) {
+        let Some(worst) = self.others.last().copied() else {
+            self.evaluations = max_evaluations;
+            return;
+        };
+        let second_worst = if N > 1 {
+            self.others[N - 2].value
+        } else {
+            self.best.value
+        };
+        let reflected = self.evaluate(self.away_from_worst(1.0));
+        if self.evaluations >= max_evaluations {
+            self.keep_if_better(reflected);
+        } else if reflected.value < self.best.value {
+            let expanded = self.evaluate(self.away_from_worst(2.0));
+            self.others[N - 1] = if expanded.value < reflected.value {
+                expanded
+            } else {
+                reflected
+            };
+        } else if reflected.value < second_worst {
+            self.others[N - 1] = reflected;
+        } else {
+            self.contract(reflected, worst, max_evaluations);
+        }
+    }
+
+    fn contract(&mut self, reflected: Vertex<N>, worst: Vertex<N>, max_evaluations: usize) {
+        let outside = reflected.value < worst.value;
+        let contracted = self.evaluate(self.away_from_worst(if outside { 0.5 } else { -0.5 }));
+        let accepted = if outside {
+            contracted.value <= reflected.value
+        } else {
+            contracted.value < worst.value
+        };
+        if accepted {
+            self.others[N - 1] = contracted;
+        } else {
+            self.shrink(max_evaluations);
+        }
+    }
+
+    fn shrink(&mut self, max_evaluations: usize) {
+        for j in 0..N {
+            if self.evaluations >= max_evaluations {
+                return;
+            }
+            let mut x = self.others[j].x;
+            for i in 0..N {
+                x[i] = self.best.x[i] + 0.5 * (x[i] - self.best.x[i]);
+            }
+            self.others[j] = self.evaluate(x);
+        }
+    }
+
+    fn keep_if_better(&mut self, vertex: Vertex<N>) {
+        if let Some(worst) = self.others.last_mut()
+            && vertex.value < worst.value
+        {
+            *worst = vertex;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rosenbrock_is_found_from_the_classic_start() {
+        let valley = |x: &[f64; 2]| {
+            let (a, b) = (1.0 - x[0], x[1] - x[0] * x[0]);
+            a * a + 100.0 * b * b
+        };
+        let found = minimize(valley, [-1.2, 1.0], &Options::default());
+        assert!(found.converged && found.evaluations < 400);
+        assert!((found.x[0] - 1.0).abs() < 1e-6 && (found.x[1] - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn nan_is_a_wall_and_the_budget_is_kept() {
+        let mut calls = 0;
+        let walled = |x: &[f64; 1]| {
+            calls += 1;
+            if x[0] < 0.5 { f64::NAN } else { x[0] }
+        };
+        let found = minimize(walled, [3.0], &Options::default());
+        assert!((found.x[0] - 0.5).abs() < 1e-6);
+        assert_eq!(calls, found.evaluations);
+        for budget in 1..20 {
+            let options = Options {
+                max_evaluations: budget,
+                ..Options::default()
+            };
+            assert!(
+                minimize(|x: &[f64; 2]| x[0] * x[1], [1.0, 0.0], &options).evaluations <= budget
+            );
+        }
+        let nowhere = minimize(|_: &[f64; 2]| f64::NAN, [1.0, 1.0], &Options::default());
+        assert_eq!(nowhere.value, f64::INFINITY);
+    }
+}

@@ -1,0 +1,87 @@
+//! Spectral peaks and the selection that keeps only those a finger can tell apart (paper,
+//! Spectral peaks).
+
+use alloc::vec::Vec;
+
+/// Just noticeable difference of vibration frequency, as a fraction of the lower frequency.
+pub const FREQUENCY_JND: f64 = 0.12;
+
+/// One peak of a spectrum.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Peak {
+    /// Frequency, hertz.
+    pub frequency_hz: f64,
+    /// Magnitude, in the unit of the spectrum.
+    pub magnitude: f64,
+}
+
+/// Indices of the strict interior local maxima, ascending. A plateau counts once, at its middle
+/// (the lower of two), and only if both its sides fall; the first and last value are never maxima.
+/// Agrees with `scipy.signal.find_peaks`.
+///
+/// ```
+/// use htex_dsp::peaks::local_maxima;
+/// assert_eq!(local_maxima(&[0.0, 1.0, 0.0, 2.0, 2.0, 2.0, 1.0, 3.0]), [1, 4]);
+/// ```
+pub fn local_maxima(values: &[f64]) -> Vec<usize> {
+    let mut maxima = Vec::new();
+    let last = values.len().saturating_sub(1);
+    let mut i = 1;
+    while i < last {
+        let mut next = i + 1;
+        if values[i - 1] < values[i] {
+            while next < last && values[next] == values[i] {
+                next += 1;
+            }
+            if values[next] < values[i] {
+                maxima.push((i + next - 1) / 2);
+            }
+        }
+        i = next;
+    }
+    maxima
+}
+
+/// The strongest local maxima that stand at least `jnd` apart, ascending in frequency.
+///
+/// Taken strongest first (a tie goes to the lower frequency); a peak at f is kept if
+/// `|f - g| / min(f, g) >= jnd` for every g kept before it, until `max_count` are kept.
+/// `frequency_hz` is ascending and as long as `magnitude`; what is longer is cut.
+/// A spectrum without a local maximum gives an empty list.
+pub fn select_peaks(
+    frequency_hz: &[f64],
+    magnitude: &[f64],
+    max_count: usize,
+    jnd: f64,
+) -> Vec<Peak> {
+    let magnitude = &magnitude[..magnitude.len().min(frequency_hz.len())];
+    let mut kept: Vec<Peak> = Vec::new();
+    for candidate in strongest_first(frequency_hz, magnitude) {
+        if kept.len() == max_count {
+            break;
+        }
+        if kept.iter().all(|peak| distinct(&candidate, peak, jnd)) {
+            kept.push(candidate);
+        }
+    }
+    kept.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
+    kept
+}
+
+fn strongest_first(frequency_hz: &[f64], magnitude: &[f64]) -> Vec<Peak> {
+    let mut peaks: Vec<Peak> = local_maxima(magnitude)
+        .into_iter()
+        .map(|i| Peak {
+            frequency_hz: frequency_hz[i],
+            magnitude: magnitude[i],
+        })
+        .collect();
+    // Stable, and the maxima come in ascending frequency: a tie goes to the lower one.
+    peaks.sort_by(|a, b| b.magnitude.total_cmp(&a.magnitude));
+    peaks
+}
+
+fn distinct(a: &Peak, b: &Peak, jnd: f64) -> bool {
+    let distance = (a.frequency_hz - b.frequency_hz).abs();
+    distance / a.frequency_hz.min(b.frequency_hz) >= jnd
+}

@@ -1,0 +1,108 @@
+//! The frozen surface: numbers and signatures that cross between a host and a model.
+//!
+//! Only scalars and pointer + length cross. `usize` is the machine's own size: 8 bytes native, 4 in
+//! a WASM module. Functions that give text or parameters take the caller's buffer and answer the
+//! length needed; a caller with too small a buffer calls again. Negative answers are
+//! [`crate::Status`] codes.
+
+/// Major part of the version: a host loads only models of its own major.
+pub const ABI_MAJOR: u32 = 1;
+/// Minor part: grows with optional exports.
+pub const ABI_MINOR: u32 = 0;
+/// The marker a model answers: a fixed upper half, then major and minor in a byte each.
+pub const ABI_MARKER: u32 = 0x4854_0000 | (ABI_MAJOR << 8) | ABI_MINOR;
+
+/// Most parameters one set may have.
+pub const MAX_PARAMETERS: usize = 65_536;
+
+/// Answers [`ABI_MARKER`]. `[any thread]`
+pub type AbiVersion = extern "C" fn() -> u32;
+/// Writes the descriptor as UTF-8 JSON to `out[0..capacity]`; answers its length. `[any thread]`
+pub type DescriptorJson = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
+/// Writes the text of the calling thread's last error; answers its length. `[any thread]`
+pub type LastError = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
+/// Fits; writes parameters and the level (RMS, newtons); answers how many parameters there are.
+/// `[any thread]`
+pub type FitFn = unsafe extern "C" fn(
+    band_low_hz: f64,
+    band_high_hz: f64,
+    frequency_hz: *const f64,
+    magnitude: *const f64,
+    bins: usize,
+    signal: *const f64,
+    signal_len: usize,
+    signal_rate_hz: f64,
+    options: *const f64,
+    options_len: usize,
+    parameters: *mut f64,
+    capacity: usize,
+    level_rms: *mut f64,
+) -> i64;
+/// Writes the shape's magnitude at `bins` frequencies; answers a status. `[any thread]`
+pub type MagnitudeFn = unsafe extern "C" fn(
+    parameters: *const f64,
+    parameters_len: usize,
+    band_low_hz: f64,
+    band_high_hz: f64,
+    frequency_hz: *const f64,
+    magnitude: *mut f64,
+    bins: usize,
+) -> i64;
+/// Mixes `weights_len` sets that stand one behind the other in `sets`; answers how many parameters
+/// the mix has. `[any thread]`
+pub type InterpolateFn = unsafe extern "C" fn(
+    sets: *const f64,
+    sets_len: usize,
+    weights: *const f64,
+    weights_len: usize,
+    parameters: *mut f64,
+    capacity: usize,
+) -> i64;
+/// Answers the rate at which a voice would render, or a negative status. `[any thread]`
+pub type VoiceRateFn = unsafe extern "C" fn(
+    parameters: *const f64,
+    parameters_len: usize,
+    band_low_hz: f64,
+    band_high_hz: f64,
+    wanted_hz: f64,
+) -> f64;
+/// Makes a voice; answers its handle, greater than zero. `[any thread]`
+pub type VoiceNewFn = unsafe extern "C" fn(
+    parameters: *const f64,
+    parameters_len: usize,
+    band_low_hz: f64,
+    band_high_hz: f64,
+    rate_hz: f64,
+    seed: u64,
+) -> i64;
+/// Renders `frames` samples; answers a status. `[render thread, no allocation; one thread at a time
+/// for one voice]`
+pub type VoiceRenderFn = unsafe extern "C" fn(voice: i64, out: *mut f32, frames: usize) -> i64;
+/// Retunes; answers a status. `[render thread, no allocation; one thread at a time for one voice]`
+pub type VoiceRetuneFn =
+    unsafe extern "C" fn(voice: i64, parameters: *const f64, parameters_len: usize) -> i64;
+/// Frees a voice; answers a status. `[any thread, not while the voice renders]`
+pub type VoiceFreeFn = extern "C" fn(voice: i64) -> i64;
+/// Answers 1 if the extension named by UTF-8 `id` (`htex.NAME/REV`, `com.vendor.NAME/REV`) is
+/// there, else 0. `[any thread]`
+pub type ExtensionFn = unsafe extern "C" fn(id: *const u8, id_len: usize) -> i64;
+
+/// Everything a model exports, in one table: a static in a built-in model, filled from symbols of
+/// the same names (`htex_model_…`) in a native library.
+#[derive(Clone, Copy)]
+#[repr(C)]
+#[allow(missing_docs)] // Each type says what its function does.
+pub struct ModelTable {
+    pub abi_version: AbiVersion,
+    pub descriptor: DescriptorJson,
+    pub last_error: LastError,
+    pub fit: FitFn,
+    pub magnitude: MagnitudeFn,
+    pub interpolate: InterpolateFn,
+    pub voice_rate: VoiceRateFn,
+    pub voice_new: VoiceNewFn,
+    pub voice_render: VoiceRenderFn,
+    pub voice_retune: VoiceRetuneFn,
+    pub voice_free: VoiceFreeFn,
+    pub extension: ExtensionFn,
+}

@@ -1,0 +1,214 @@
+//! The macro that makes a model's C functions.
+
+/// Makes the table of C functions of a [`Model`](crate::Model), as `pub static TABLE`.
+///
+/// With `symbols: "FEATURE"` the functions are also exported under their C names (`htex_model_…`)
+/// when the crate is built with that Cargo feature: for a native library or a WASM module, where
+/// one binary holds one model.
+///
+/// ```
+/// # #![allow(clippy::needless_doctest_main)]
+/// # use htex_model::*;
+/// # pub struct Flat;
+/// # pub struct FlatVoice;
+/// # impl Voice for FlatVoice {
+/// #     fn render(&mut self, out: &mut [f32]) { out.fill(0.0) }
+/// #     fn retune(&mut self, _: &Values<'_>) -> Result<(), Error> { Ok(()) }
+/// # }
+/// # impl Model for Flat {
+/// #     type Voice = FlatVoice;
+/// #     fn descriptor() -> Descriptor { Descriptor::new("org.example.flat", "Flat", "1.0.0", "None.") }
+/// #     fn fit(_: &FitInput<'_>) -> Result<Fit, Error> { Err(Error::cannot_fit("never")) }
+/// #     fn magnitude(_: &Values<'_>, _: Band, _: &[f64], m: &mut [f64]) -> Result<(), Error> { m.fill(1.0); Ok(()) }
+/// #     fn interpolate(_: &[Values<'_>], _: &[f64]) -> Result<Vec<f64>, Error> { Ok(vec![]) }
+/// #     fn voice(_: &Values<'_>, _: Band, _: f64, _: u64) -> Result<FlatVoice, Error> { Ok(FlatVoice) }
+/// # }
+/// htex_model::export_model!(Flat, symbols: "plugin");
+/// fn main() {
+///     assert_eq!((TABLE.abi_version)(), htex_model::abi::ABI_MARKER);
+/// }
+/// ```
+#[macro_export]
+macro_rules! export_model {
+    ($model:ty, symbols: $feature:literal) => {
+        static HTEX_MODEL_STATE: $crate::shim::State<$model> = $crate::shim::State::new();
+
+        /// The model's C functions.
+        pub static TABLE: $crate::abi::ModelTable = $crate::abi::ModelTable {
+            abi_version: htex_model_exports::htex_model_abi_version,
+            descriptor: htex_model_exports::htex_model_descriptor,
+            last_error: htex_model_exports::htex_model_last_error,
+            fit: htex_model_exports::htex_model_fit,
+            magnitude: htex_model_exports::htex_model_magnitude,
+            interpolate: htex_model_exports::htex_model_interpolate,
+            voice_rate: htex_model_exports::htex_model_voice_rate,
+            voice_new: htex_model_exports::htex_model_voice_new,
+            voice_render: htex_model_exports::htex_model_voice_render,
+            voice_retune: htex_model_exports::htex_model_voice_retune,
+            voice_free: htex_model_exports::htex_model_voice_free,
+            extension: htex_model_exports::htex_model_extension,
+        };
+
+        /// The C functions by their ABI names; `htex_model::abi` says what each does.
+        #[allow(missing_docs, clippy::missing_safety_doc, clippy::too_many_arguments)]
+        mod htex_model_exports {
+            use super::HTEX_MODEL_STATE as STATE;
+            use $crate::shim::{self, FitCall, Input, Output};
+
+            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+            pub(super) extern "C" fn htex_model_abi_version() -> u32 {
+                $crate::abi::ABI_MARKER
+            }
+
+            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+            pub(super) unsafe extern "C" fn htex_model_descriptor(
+                out: *mut u8,
+                capacity: usize,
+            ) -> i64 {
+                // SAFETY: the caller's buffer, by the ABI.
+                STATE.descriptor(unsafe { Output::new(out, capacity) })
+            }
+
+            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+            pub(super) unsafe extern "C" fn htex_model_last_error(
+                out: *mut u8,
+                capacity: usize,
+            ) -> i64 {
+                // SAFETY: the caller's buffer, by the ABI.
+                shim::last_error(unsafe { Output::new(out, capacity) })
+            }
+
+            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+            pub(super) unsafe extern "C" fn htex_model_fit(
+                band_low_hz: f64,
+                band_high_hz: f64,
+                frequency_hz: *const f64,
+                magnitude: *const f64,
+                bins: usize,
+                signal: *const f64,
+                signal_len: usize,
+                signal_rate_hz: f64,
+                options: *const f64,
+                options_len: usize,
+                parameters: *mut f64,
+                capacity: usize,
+                level_rms: *mut f64,
+            ) -> i64 {
+                // SAFETY: the caller's arrays, by the ABI.
+                STATE.fit(unsafe {
+                    FitCall {
+                        band: (band_low_hz, band_high_hz),
+                        frequency_hz: Input::new(frequency_hz, bins),
+                        magnitude: Input::new(magnitude, bins),
+                        signal: Input::new(signal, signal_len),
+                        signal_rate_hz,
+                        options: Input::new(options, options_len),
+                        parameters: Output::new(parameters, capacity),
+                        level_rms: Output::new(level_rms, 1),
+                    }
+                })
+            }
+
+            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+            pub(super) unsafe extern "C" fn htex_model_magnitude(
+                parameters: *const f64,
+                parameters_len: usize,
+                band_low_hz: f64,
+                band_high_hz: f64,
+                frequency_hz: *const f64,
+                magnitude: *mut f64,
+                bins: usize,
+            ) -> i64 {
+                // SAFETY: the caller's arrays, by the ABI.
+                unsafe {
+                    STATE.magnitude(
+                        Input::new(parameters, parameters_len),
+                        (band_low_hz, band_high_hz),
+                        Input::new(frequency_hz, bins),
+                        Output::new(magnitude, bins),
+                    )
+                }
+            }
+
+            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+            pub(super) unsafe extern "C" fn htex_model_interpolate(
+                sets: *const f64,
+                sets_len: usize,
+                weights: *const f64,
+                weights_len: usize,
+                parameters: *mut f64,
+                capacity: usize,
+            ) -> i64 {
+                // SAFETY: the caller's arrays, by the ABI.
+                unsafe {
+                    STATE.interpolate(
+                        Input::new(sets, sets_len),
+                        Input::new(weights, weights_len),
+                        Output::new(parameters, capacity),
+                    )
+                }
+            }
+
+            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+            pub(super) unsafe extern "C" fn htex_model_voice_rate(
+                parameters: *const f64,
+                parameters_len: usize,
+                band_low_hz: f64,
+                band_high_hz: f64,
+                wanted_hz: f64,
+            ) -> f64 {
+                // SAFETY: the caller's array, by the ABI.
+                let parameters = unsafe { Input::new(parameters, parameters_len) };
+                STATE.voice_rate(parameters, (band_low_hz, band_high_hz), wanted_hz)
+            }
+
+            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+            pub(super) unsafe extern "C" fn htex_model_voice_new(
+                parameters: *const f64,
+                parameters_len: usize,
+                band_low_hz: f64,
+                band_high_hz: f64,
+                rate_hz: f64,
+                seed: u64,
+            ) -> i64 {
+                // SAFETY: the caller's array, by the ABI.
+                let parameters = unsafe { Input::new(parameters, parameters_len) };
+                STATE.voice_new(parameters, (band_low_hz, band_high_hz), rate_hz, seed)
+            }
+
+            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+            pub(super) unsafe extern "C" fn htex_model_voice_render(
+                voice: i64,
+                out: *mut f32,
+                frames: usize,
+            ) -> i64 {
+                // SAFETY: the caller's buffer, and one thread a voice, by the ABI.
+                unsafe { STATE.voice_render(voice, Output::new(out, frames)) }
+            }
+
+            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+            pub(super) unsafe extern "C" fn htex_model_voice_retune(
+                voice: i64,
+                parameters: *const f64,
+                parameters_len: usize,
+            ) -> i64 {
+                // SAFETY: the caller's array, and one thread a voice, by the ABI.
+                unsafe { STATE.voice_retune(voice, Input::new(parameters, parameters_len)) }
+            }
+
+            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+            pub(super) extern "C" fn htex_model_voice_free(voice: i64) -> i64 {
+                STATE.voice_free(voice)
+            }
+
+            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+            pub(super) unsafe extern "C" fn htex_model_extension(
+                id: *const u8,
+                id_len: usize,
+            ) -> i64 {
+                // SAFETY: the caller's text, by the ABI.
+                shim::extension(unsafe { Input::new(id, id_len) })
+            }
+        }
+    };
+}

@@ -1,0 +1,386 @@
+//! From the traits to the C functions: checks what comes in, catches what must not get out.
+//!
+//! Called by the functions that [`export_model!`](crate::export_model) makes; not by hand.
+
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+use std::cell::RefCell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::OnceLock;
+
+use crate::abi::MAX_PARAMETERS;
+use crate::voices::Voices;
+use crate::{Band, Descriptor, Error, FitInput, Model, Status, Values, Voice};
+
+std::thread_local! {
+    static LAST_ERROR: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// What one exported model keeps: its description and its voices.
+pub struct State<M: Model> {
+    described: OnceLock<(Descriptor, String)>,
+    voices: Voices<M::Voice>,
+}
+
+impl<M: Model> Default for State<M> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// A pointer and a length from the other side.
+#[derive(Clone, Copy)]
+pub struct Input<'a, T>(Option<&'a [T]>);
+
+impl<'a, T> Input<'a, T> {
+    /// Refuses null and misaligned pointers when there is something to read.
+    ///
+    /// # Safety
+    /// `pointer` is null, or `len` values can be read there for `'a`.
+    pub unsafe fn new(pointer: *const T, len: usize) -> Self {
+        if len == 0 {
+            return Self(Some(&[]));
+        }
+        let usable = !pointer.is_null() && pointer.is_aligned() && fits::<T>(len);
+        // SAFETY: not null, aligned, not longer than memory; readable by the caller's promise.
+        Self(usable.then(|| unsafe { core::slice::from_raw_parts(pointer, len) }))
+    }
+
+    fn get(self, name: &str) -> Result<&'a [T], Error> {
+        self.0
+            .ok_or_else(|| Error::argument(format!("`{name}` is not a usable array")))
+    }
+}
+
+/// A buffer to write to, from the other side.
+pub struct Output<'a, T>(Option<&'a mut [T]>);
+
+impl<'a, T> Output<'a, T> {
+    /// Refuses null and misaligned pointers when there is room to write.
+    ///
+    /// # Safety
+    /// `pointer` is null, or `len` initialised values can be written there for `'a`, by us alone.
+    pub unsafe fn new(pointer: *mut T, len: usize) -> Self {
+        if len == 0 {
+            return Self(Some(&mut []));
+        }
+        let usable = !pointer.is_null() && pointer.is_aligned() && fits::<T>(len);
+        // SAFETY: not null, aligned, not longer than memory; ours by the caller's promise.
+        Self(usable.then(|| unsafe { core::slice::from_raw_parts_mut(pointer, len) }))
+    }
+
+    fn get(self, name: &str) -> Result<&'a mut [T], Error> {
+        self.0
+            .ok_or_else(|| Error::argument(format!("`{name}` is not a usable buffer")))
+    }
+}
+
+fn fits<T>(len: usize) -> bool {
+    len <= isize::MAX as usize / size_of::<T>().max(1)
+}
+
+/// Arguments of a fit.
+#[allow(missing_docs)] // Named as in `abi::FitFn`.
+pub struct FitCall<'a> {
+    pub band: (f64, f64),
+    pub frequency_hz: Input<'a, f64>,
+    pub magnitude: Input<'a, f64>,
+    pub signal: Input<'a, f64>,
+    pub signal_rate_hz: f64,
+    pub options: Input<'a, f64>,
+    pub parameters: Output<'a, f64>,
+    pub level_rms: Output<'a, f64>,
+}
+
+impl<M: Model> State<M> {
+    /// Nothing described, no voices.
+    pub const fn new() -> Self {
+        Self {
+            described: OnceLock::new(),
+            voices: Voices::new(),
+        }
+    }
+
+    fn described(&self) -> Result<&(Descriptor, String), Error> {
+        if let Some(described) = self.described.get() {
+            return Ok(described);
+        }
+        let descriptor = M::descriptor();
+        let json = serde_json::to_string(&descriptor)
+            .map_err(|e| Error::new(Status::Failed, format!("descriptor: {e}")))?;
+        Ok(self.described.get_or_init(|| (descriptor, json)))
+    }
+
+    fn values<'a>(&self, parameters: Input<'a, f64>) -> Result<Values<'a>, Error> {
+        Values::read(&self.described()?.0, parameters.get("parameters")?)
+    }
+
+    /// See [`crate::abi::DescriptorJson`].
+    pub fn descriptor(&self, out: Output<'_, u8>) -> i64 {
+        answer(|| Ok(copy_text(&self.described()?.1, out.get("out")?)))
+    }
+
+    /// See [`crate::abi::FitFn`].
+    pub fn fit(&self, call: FitCall<'_>) -> i64 {
+        answer(|| {
+            let descriptor = &self.described()?.0;
+            let input = FitInput {
+                band: band(call.band)?,
+                frequency_hz: call.frequency_hz.get("frequency_hz")?,
+                magnitude: call.magnitude.get("magnitude")?,
+                signal: call.signal.get("signal")?,
+                signal_rate_hz: call.signal_rate_hz,
+                options: call.options.get("options")?,
+            };
+            check_fit_input(&input, descriptor)?;
+            let fit = M::fit(&input)?;
+            Values::read(descriptor, &fit.parameters)?;
+            if !fit.level_rms.is_finite() || fit.level_rms < 0.0 {
+                return Err(Error::cannot_fit("the fitted level is not a number"));
+            }
+            let level = call.level_rms.get("level_rms")?;
+            if let Some(level) = level.first_mut() {
+                *level = fit.level_rms;
+            }
+            Ok(copy_numbers(&fit.parameters, call.parameters.get("parameters")?))
+        })
+    }
+
+    /// See [`crate::abi::MagnitudeFn`].
+    pub fn magnitude(
+        &self,
+        parameters: Input<'_, f64>,
+        band_hz: (f64, f64),
+        frequency_hz: Input<'_, f64>,
+        magnitude: Output<'_, f64>,
+    ) -> i64 {
+        answer(|| {
+            let frequency_hz = frequency_hz.get("frequency_hz")?;
+            let values = self.values(parameters)?;
+            finite("frequency_hz", frequency_hz)?;
+            let magnitude = magnitude.get("magnitude")?;
+            M::magnitude(&values, band(band_hz)?, frequency_hz, magnitude)?;
+            Ok(0)
+        })
+    }
+
+    /// See [`crate::abi::InterpolateFn`].
+    pub fn interpolate(
+        &self,
+        sets: Input<'_, f64>,
+        weights: Input<'_, f64>,
+        parameters: Output<'_, f64>,
+    ) -> i64 {
+        answer(|| {
+            let descriptor = &self.described()?.0;
+            let weights = weights.get("weights")?;
+            check_weights(weights)?;
+            let sets = read_sets(descriptor, sets.get("sets")?, weights.len())?;
+            let mixed = M::interpolate(&sets, weights)?;
+            Values::read(descriptor, &mixed)?;
+            Ok(copy_numbers(&mixed, parameters.get("parameters")?))
+        })
+    }
+
+    /// See [`crate::abi::VoiceRateFn`].
+    pub fn voice_rate(&self, parameters: Input<'_, f64>, band_hz: (f64, f64), wanted: f64) -> f64 {
+        let mut rate_hz = 0.0;
+        let status = answer(|| {
+            check_rate(wanted)?;
+            rate_hz = M::voice_rate_hz(&self.values(parameters)?, band(band_hz)?, wanted);
+            check_rate(rate_hz).map(|()| 0)
+        });
+        if status < 0 { status as f64 } else { rate_hz }
+    }
+
+    /// See [`crate::abi::VoiceNewFn`].
+    pub fn voice_new(
+        &self,
+        parameters: Input<'_, f64>,
+        band_hz: (f64, f64),
+        rate_hz: f64,
+        seed: u64,
+    ) -> i64 {
+        answer(|| {
+            check_rate(rate_hz)?;
+            let voice = M::voice(&self.values(parameters)?, band(band_hz)?, rate_hz, seed)?;
+            self.voices.insert(voice).ok_or_else(|| {
+                Error::new(Status::TooManyVoices, "no more voices can be made; free some")
+            })
+        })
+    }
+
+    /// See [`crate::abi::VoiceRenderFn`].
+    ///
+    /// # Safety
+    /// No other thread uses or frees this voice meanwhile.
+    pub unsafe fn voice_render(&self, handle: i64, out: Output<'_, f32>) -> i64 {
+        answer(|| {
+            let out = out.get("out")?;
+            // SAFETY: the caller's promise.
+            let voice = unsafe { self.voices.get(handle) }.ok_or_else(bad_handle)?;
+            voice.render(out);
+            Ok(0)
+        })
+    }
+
+    /// See [`crate::abi::VoiceRetuneFn`].
+    ///
+    /// # Safety
+    /// No other thread uses or frees this voice meanwhile.
+    pub unsafe fn voice_retune(&self, handle: i64, parameters: Input<'_, f64>) -> i64 {
+        answer(|| {
+            let values = self.values(parameters)?;
+            // SAFETY: the caller's promise.
+            let voice = unsafe { self.voices.get(handle) }.ok_or_else(bad_handle)?;
+            voice.retune(&values)?;
+            Ok(0)
+        })
+    }
+
+    /// See [`crate::abi::VoiceFreeFn`].
+    pub fn voice_free(&self, handle: i64) -> i64 {
+        answer(|| {
+            self.voices.remove(handle).ok_or_else(bad_handle)?;
+            Ok(0)
+        })
+    }
+}
+
+/// See [`crate::abi::LastError`].
+pub fn last_error(out: Output<'_, u8>) -> i64 {
+    let text = LAST_ERROR.with(|last| last.try_borrow().map(|t| t.clone()).unwrap_or_default());
+    out.0.map_or(Status::InvalidArgument as i64, |out| copy_text(&text, out))
+}
+
+/// See [`crate::abi::ExtensionFn`]. No extension is defined yet.
+pub fn extension(_id: Input<'_, u8>) -> i64 {
+    0
+}
+
+/// Runs a call; an error or a panic becomes a status and the last-error text.
+fn answer(call: impl FnOnce() -> Result<i64, Error>) -> i64 {
+    let result = catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| {
+        let text = panic
+            .downcast_ref::<&str>()
+            .map(ToString::to_string)
+            .or_else(|| panic.downcast_ref::<String>().cloned())
+            .unwrap_or_default();
+        Err(Error::new(Status::Panicked, format!("the model panicked: {text}")))
+    });
+    result.unwrap_or_else(|error| {
+        LAST_ERROR.with(|last| {
+            if let Ok(mut last) = last.try_borrow_mut() {
+                *last = error.message;
+            }
+        });
+        error.status as i64
+    })
+}
+
+fn bad_handle() -> Error {
+    Error::new(Status::BadHandle, "no such voice; it may have been freed")
+}
+
+fn copy_text(text: &str, out: &mut [u8]) -> i64 {
+    let n = text.len().min(out.len());
+    out[..n].copy_from_slice(&text.as_bytes()[..n]);
+    text.len() as i64
+}
+
+fn copy_numbers(numbers: &[f64], out: &mut [f64]) -> i64 {
+    let n = numbers.len().min(out.len());
+    out[..n].copy_from_slice(&numbers[..n]);
+    numbers.len() as i64
+}
+
+fn band((low_hz, high_hz): (f64, f64)) -> Result<Band, Error> {
+    if low_hz > 0.0 && low_hz < high_hz && high_hz <= 1e6 {
+        return Ok(Band { low_hz, high_hz });
+    }
+    Err(Error::argument(format!(
+        "band {low_hz} to {high_hz} Hz: 0 < low < high <= 1 MHz is allowed"
+    )))
+}
+
+fn check_rate(rate_hz: f64) -> Result<(), Error> {
+    if (1.0..=1e7).contains(&rate_hz) {
+        return Ok(());
+    }
+    Err(Error::argument(format!(
+        "rate {rate_hz} Hz: 1 Hz to 10 MHz is allowed"
+    )))
+}
+
+fn finite(name: &str, numbers: &[f64]) -> Result<(), Error> {
+    match numbers.iter().position(|x| !x.is_finite()) {
+        None => Ok(()),
+        Some(i) => Err(Error::argument(format!("`{name}`[{i}] is not a finite number"))),
+    }
+}
+
+fn check_fit_input(input: &FitInput<'_>, descriptor: &Descriptor) -> Result<(), Error> {
+    finite("frequency_hz", input.frequency_hz)?;
+    finite("magnitude", input.magnitude)?;
+    finite("signal", input.signal)?;
+    let bins = input.frequency_hz.len();
+    if bins < 3 || input.magnitude.len() != bins {
+        return Err(Error::argument("a spectrum needs three bins or more"));
+    }
+    if !input.frequency_hz.is_sorted_by(|a, b| a < b) {
+        return Err(Error::argument("`frequency_hz` does not ascend"));
+    }
+    if input.magnitude.iter().any(|&m| m < 0.0) {
+        return Err(Error::argument("`magnitude` holds a negative number"));
+    }
+    if !input.signal.is_empty() {
+        check_rate(input.signal_rate_hz)?;
+    }
+    check_options(input.options, descriptor)
+}
+
+fn check_options(values: &[f64], descriptor: &Descriptor) -> Result<(), Error> {
+    let invalid = |message| Err(Error::new(Status::InvalidOption, message));
+    if values.len() != descriptor.options.len() {
+        let (want, got) = (descriptor.options.len(), values.len());
+        return invalid(format!("{want} option values are wanted, {got} came"));
+    }
+    for (option, &value) in descriptor.options.iter().zip(values) {
+        let whole = !option.integer || value as i64 as f64 == value;
+        if !(option.min..=option.max).contains(&value) || !whole {
+            let kind = if option.integer { "whole numbers " } else { "" };
+            return invalid(format!(
+                "option `{}` is {value}; {kind}{} to {} {} is allowed",
+                option.name, option.min, option.max, option.unit
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn check_weights(weights: &[f64]) -> Result<(), Error> {
+    let sum: f64 = weights.iter().sum();
+    let sane = weights.iter().all(|w| (0.0..=1.0).contains(w)) && (sum - 1.0).abs() < 1e-6;
+    if sane {
+        return Ok(());
+    }
+    Err(Error::argument("weights must lie in 0 to 1 and sum to 1"))
+}
+
+fn read_sets<'a>(
+    descriptor: &Descriptor,
+    mut flat: &'a [f64],
+    count: usize,
+) -> Result<Vec<Values<'a>>, Error> {
+    let mut sets = Vec::new();
+    for _ in 0..count.min(MAX_PARAMETERS) {
+        let (values, used) = Values::read_first(descriptor, flat)?;
+        sets.push(values);
+        flat = &flat[used..];
+    }
+    if !flat.is_empty() {
+        return Err(Error::argument("numbers stand behind the last parameter set"));
+    }
+    Ok(sets)
+}

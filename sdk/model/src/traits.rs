@@ -1,0 +1,107 @@
+//! What a Rust author implements.
+
+use alloc::vec::Vec;
+
+use crate::{Descriptor, Error, Values};
+
+/// The band a spectrum covers, inclusive, hertz: `0 < low_hz < high_hz`, both finite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Band {
+    /// Lower edge, hertz.
+    pub low_hz: f64,
+    /// Upper edge, hertz.
+    pub high_hz: f64,
+}
+
+/// What a fit may look at.
+#[derive(Debug, Clone, Copy)]
+pub struct FitInput<'a> {
+    /// The band.
+    pub band: Band,
+    /// Frequencies of the texture spectrum, ascending, hertz (the 5 Hz grid in the band).
+    pub frequency_hz: &'a [f64],
+    /// Magnitudes at those frequencies, newtons, finite and not negative.
+    pub magnitude: &'a [f64],
+    /// The recording's segments overlap-added to one signal, newtons, band-limited; may be empty.
+    pub signal: &'a [f64],
+    /// Rate of `signal`, hertz.
+    pub signal_rate_hz: f64,
+    /// One value for each of the descriptor's options, in range.
+    pub options: &'a [f64],
+}
+
+/// What a fit gives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fit {
+    /// The flat array of parameters.
+    pub parameters: Vec<f64>,
+    /// RMS of the fitted magnitude in the band, newtons: shape × level is the fitted spectrum.
+    pub level_rms: f64,
+}
+
+/// A texture model: a pure description of a spectrum by a few parameters.
+///
+/// The macro's functions check every argument before they call these methods: parameters fit the
+/// descriptor, options are in range, bands are sane, rates are finite and positive.
+pub trait Model: 'static {
+    /// What plays the parameters.
+    type Voice: Voice;
+
+    /// What the model says of itself. Called once.
+    fn descriptor() -> Descriptor;
+
+    /// Finds the parameters of a spectrum.
+    ///
+    /// # Errors
+    /// [`crate::Status::CannotFit`] when the spectrum holds nothing the model can describe.
+    fn fit(input: &FitInput<'_>) -> Result<Fit, Error>;
+
+    /// Writes the shape's magnitude at `frequency_hz`, of unit RMS on the 5 Hz grid in the band;
+    /// zero outside the band. Does not synthesise.
+    ///
+    /// # Errors
+    /// When the parameters describe no spectrum.
+    fn magnitude(
+        parameters: &Values<'_>,
+        band: Band,
+        frequency_hz: &[f64],
+        magnitude: &mut [f64],
+    ) -> Result<(), Error>;
+
+    /// Parameters between several sets; weights are not negative and sum to one.
+    ///
+    /// # Errors
+    /// When the sets cannot be mixed.
+    fn interpolate(sets: &[Values<'_>], weights: &[f64]) -> Result<Vec<f64>, Error>;
+
+    /// The rate at which a voice renders when `wanted_hz` is wanted: the host converts the rest.
+    fn voice_rate_hz(_parameters: &Values<'_>, _band: Band, wanted_hz: f64) -> f64 {
+        wanted_hz
+    }
+
+    /// Makes a voice that renders the shape at unit RMS at `rate_hz`, which is what
+    /// [`Self::voice_rate_hz`] answered.
+    ///
+    /// # Errors
+    /// When no voice can be made of these parameters at this rate.
+    fn voice(
+        parameters: &Values<'_>,
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Self::Voice, Error>;
+}
+
+/// An endless stream of samples. The same parameters, rate and seed give the same samples, whatever
+/// the block sizes.
+pub trait Voice: Send + 'static {
+    /// Fills `out` with the next samples. `[render thread, no allocation, no lock, no I/O]`
+    fn render(&mut self, out: &mut [f32]);
+
+    /// Changes to other parameters without a click, beginning with the next sample.
+    /// `[render thread, no allocation, no lock, no I/O]`
+    ///
+    /// # Errors
+    /// When the voice cannot change to these parameters; it then plays on as before.
+    fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error>;
+}

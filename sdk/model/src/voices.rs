@@ -1,0 +1,129 @@
+//! Voices behind handles: a stale handle is refused, a live one is found without a lock.
+
+use std::cell::UnsafeCell;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Mutex, OnceLock, PoisonError};
+
+const CHUNK: usize = 1024;
+const CHUNKS: usize = 64;
+
+/// Up to 65,536 voices. A handle holds a slot's index and the slot's generation, which changes at
+/// every birth and death.
+pub struct Voices<V> {
+    chunks: [OnceLock<Box<[Slot<V>]>>; CHUNKS],
+    free: Mutex<Free>,
+}
+
+struct Slot<V> {
+    /// Odd while a voice lives here.
+    generation: AtomicU32,
+    voice: UnsafeCell<Option<V>>,
+}
+
+struct Free {
+    freed: Vec<u32>,
+    never_used: u32,
+}
+
+// SAFETY: a slot's voice is touched only by the thread that makes or frees it, which holds the
+// `free` lock, and by `get`, whose caller promises to be alone with that voice.
+unsafe impl<V: Send> Sync for Voices<V> {}
+
+impl<V> Default for Voices<V> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<V> Voices<V> {
+    /// No voices yet.
+    pub const fn new() -> Self {
+        Self {
+            chunks: [const { OnceLock::new() }; CHUNKS],
+            free: Mutex::new(Free {
+                freed: Vec::new(),
+                never_used: 0,
+            }),
+        }
+    }
+
+    /// Takes a voice in; `None` when there are too many.
+    pub fn insert(&self, voice: V) -> Option<i64> {
+        let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
+        let index = match free.freed.pop() {
+            Some(index) => index,
+            None if (free.never_used as usize) < CHUNK * CHUNKS => {
+                free.never_used += 1;
+                free.never_used - 1
+            }
+            None => return None,
+        };
+        let chunk = self.chunks[index as usize / CHUNK].get_or_init(|| {
+            let slot = || Slot {
+                generation: AtomicU32::new(0),
+                voice: UnsafeCell::new(None),
+            };
+            (0..CHUNK).map(|_| slot()).collect()
+        });
+        let slot = &chunk[index as usize % CHUNK];
+        // SAFETY: the slot is free (its index came from the free list, whose lock is held), so no
+        // valid handle to it is out there.
+        unsafe { *slot.voice.get() = Some(voice) };
+        let generation = slot.generation.fetch_add(1, Ordering::Release) + 1;
+        Some((i64::from(generation & 0x7fff_ffff) << 32) | i64::from(index + 1))
+    }
+
+    /// The voice behind a handle; `None` if it was freed or never was.
+    ///
+    /// # Safety
+    /// No other thread uses or frees this voice meanwhile, and the caller holds one such reference
+    /// at a time.
+    #[allow(clippy::mut_from_ref)]
+    pub unsafe fn get(&self, handle: i64) -> Option<&mut V> {
+        let slot = self.live_slot(handle)?;
+        // SAFETY: the slot is live, and the caller promises to be alone with it.
+        unsafe { (*slot.voice.get()).as_mut() }
+    }
+
+    /// Takes the voice out.
+    pub fn remove(&self, handle: i64) -> Option<V> {
+        let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
+        let slot = self.live_slot(handle)?;
+        slot.generation.fetch_add(1, Ordering::Release);
+        free.freed.push((handle & 0xffff_ffff) as u32 - 1);
+        // SAFETY: the slot was live and its generation has moved on under the lock.
+        unsafe { (*slot.voice.get()).take() }
+    }
+
+    fn live_slot(&self, handle: i64) -> Option<&Slot<V>> {
+        let index = usize::try_from((handle & 0xffff_ffff) - 1).ok()?;
+        let slot = self.chunks.get(index / CHUNK)?.get()?.get(index % CHUNK)?;
+        let generation = slot.generation.load(Ordering::Acquire);
+        let wanted = (handle >> 32) as u32;
+        (generation % 2 == 1 && generation & 0x7fff_ffff == wanted).then_some(slot)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stale_and_invented_handles_are_refused() {
+        let voices = Voices::new();
+        let a = voices.insert("a").unwrap();
+        let b = voices.insert("b").unwrap();
+        assert_eq!(voices.remove(a), Some("a"));
+        let c = voices.insert("c").unwrap();
+        // SAFETY: one thread.
+        unsafe {
+            assert_eq!(voices.get(a), None);
+            assert_eq!(voices.get(b).copied(), Some("b"));
+            assert_eq!(voices.get(c).copied(), Some("c"));
+            for bad in [0, -1, i64::MIN, i64::MAX, c + 1, 1] {
+                assert_eq!(voices.get(bad), None);
+            }
+        }
+        assert_eq!(voices.remove(a), None);
+    }
+}

@@ -10,10 +10,13 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(feature = "std"), no_std)]
 extern crate alloc;
+pub mod bands;
 pub mod beta;
 pub mod biquad;
 pub mod butterworth;
+pub mod dct;
 pub mod grid;
+pub mod mel;
 pub mod nelder_mead;
 pub mod noise;
 pub mod peaks;
@@ -21,6 +24,9 @@ pub mod resample;
 #[cfg(feature = "std")]
 pub mod shaped_noise;
 pub mod sine_bank;
+#[cfg(feature = "std")]
+pub mod spectrum;
+pub mod triangles;
 pub mod window;
 
 pub use grid::{Band, GRID_HZ};

@@ -1,0 +1,169 @@
+//! Comparing two texture spectra: energies in overlapping log-spaced bands, and correlation.
+//!
+//! Nine bands over 20 to 1000 Hz are the project's measure of a model's fidelity; `energy` is
+//! the sum of weight times squared magnitude, in the squared unit of the magnitudes.
+
+use alloc::vec::Vec;
+
+use crate::beta::log_unit;
+use crate::grid::Band;
+use crate::triangles::TriangleBank;
+
+/// Bands in the standard comparison.
+pub const BAND_COUNT: usize = 9;
+
+/// Added to both energies before a ratio is taken, relative to the largest reference band: an
+/// empty band then reads a large but finite error.
+const RELATIVE_FLOOR: f64 = 1e-12;
+
+/// Triangular bands, log-spaced, overlapping by half, straight in the logarithm of frequency.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BandBank {
+    edges_hz: Vec<f64>,
+    bank: TriangleBank,
+}
+
+impl BandBank {
+    /// `count` bands over `band`, weighed at `frequencies_hz` (ascending, positive).
+    ///
+    /// ```
+    /// use htex_dsp::{Band, bands::{BAND_COUNT, BandBank}};
+    /// let band = Band::TACTILE;
+    /// let bank = BandBank::new(BAND_COUNT, band, &band.grid_hz());
+    /// assert_eq!(bank.energies(&[0.01; 197]).len(), 9);
+    /// ```
+    pub fn new(count: usize, band: Band, frequencies_hz: &[f64]) -> Self {
+        let last = count + 1;
+        // On an axis on which the edges are the whole numbers, no edge suffers from rounding.
+        let edges: Vec<f64> = (0..=last).map(|i| i as f64).collect();
+        let axis: Vec<f64> = frequencies_hz
+            .iter()
+            .map(|&f| log_unit(f, band) * last as f64)
+            .collect();
+        let ratio = band.high_hz / band.low_hz;
+        let edges_hz = (0..=last)
+            .map(|i| band.low_hz * libm::pow(ratio, i as f64 / last as f64))
+            .collect();
+        Self {
+            edges_hz,
+            bank: TriangleBank::new(&edges, &axis),
+        }
+    }
+
+    /// The `count + 2` edges, hertz: band `i` has its feet at `i` and `i + 2`, its apex at `i + 1`.
+    pub fn edges_hz(&self) -> &[f64] {
+        &self.edges_hz
+    }
+
+    /// The weights.
+    pub fn filters(&self) -> &TriangleBank {
+        &self.bank
+    }
+
+    /// Energy of a magnitude spectrum in each band: `Σ weight · magnitude²`.
+    pub fn energies(&self, magnitude: &[f64]) -> Vec<f64> {
+        let power: Vec<f64> = magnitude.iter().map(|m| m * m).collect();
+        let mut energies = alloc::vec![0.0; self.bank.rows()];
+        self.bank.apply(&power, &mut energies);
+        energies
+    }
+}
+
+/// Error of each band, `10 log10((model + tiny) / (reference + tiny))` dB, from band *energies*;
+/// `tiny` is 1e-12 of the largest reference band. All-zero energies on both sides read 0 dB; a
+/// model with energy against an all-zero reference reads +∞.
+pub fn band_error_db(reference: &[f64], model: &[f64]) -> Vec<f64> {
+    let tiny = RELATIVE_FLOOR * reference.iter().copied().fold(0.0, f64::max);
+    reference
+        .iter()
+        .zip(model)
+        .map(|(&reference, &model)| ratio_db(model + tiny, reference + tiny))
+        .collect()
+}
+
+fn ratio_db(model: f64, reference: f64) -> f64 {
+    if model == reference {
+        0.0
+    } else {
+        10.0 * libm::log10(model / reference)
+    }
+}
+
+/// The gain on the model's *magnitude* that makes its total band energy the reference's:
+/// `sqrt(Σ reference / Σ model)`. 1 if either total is zero or not finite.
+pub fn energy_matching_gain(reference: &[f64], model: &[f64]) -> f64 {
+    let total = |energies: &[f64]| energies.iter().sum::<f64>();
+    let gain = libm::sqrt(total(reference) / total(model));
+    if gain.is_finite() && gain > 0.0 {
+        gain
+    } else {
+        1.0
+    }
+}
+
+/// Root mean square; 0 for an empty slice.
+pub fn rms(values: &[f64]) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    libm::sqrt(values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64)
+}
+
+/// Pearson correlation of two equally long slices (the longer is cut), in `[-1, 1]`.
+///
+/// Never NaN for finite input: where either side does not vary there is nothing to correlate, and
+/// the result is 0, except that two slices with the same values give 1.
+///
+/// ```
+/// use htex_dsp::bands::pearson_correlation;
+/// assert_eq!(pearson_correlation(&[1.0, 2.0, 4.0], &[3.0, 5.0, 9.0]), 1.0);
+/// assert_eq!(pearson_correlation(&[1.0, 2.0, 4.0], &[3.0, 3.0, 3.0]), 0.0);
+/// ```
+pub fn pearson_correlation(a: &[f64], b: &[f64]) -> f64 {
+    let len = a.len().min(b.len());
+    let (a, b) = (&a[..len], &b[..len]);
+    if a == b {
+        return 1.0;
+    }
+    let (a, b) = (deviations(a), deviations(b));
+    // Each side is scaled by its largest deviation, so that no square under- or overflows.
+    let product: f64 = a.iter().zip(&b).map(|(x, y)| x * y).sum();
+    let norm = |values: &[f64]| libm::sqrt(values.iter().map(|v| v * v).sum());
+    let correlation = product / (norm(&a) * norm(&b));
+    if correlation.is_nan() {
+        0.0
+    } else {
+        correlation.clamp(-1.0, 1.0)
+    }
+}
+
+/// Deviations from the mean, divided by the largest; all zero where the values do not vary.
+fn deviations(values: &[f64]) -> Vec<f64> {
+    let varies = values.windows(2).any(|pair| pair[0] != pair[1]);
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let largest = values.iter().map(|v| (v - mean).abs()).fold(0.0, f64::max);
+    let scale = if varies && largest > 0.0 {
+        largest
+    } else {
+        f64::INFINITY
+    };
+    values.iter().map(|v| (v - mean) / scale).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn degenerate_comparisons_are_defined() {
+        assert_eq!(pearson_correlation(&[0.1; 7], &[0.1; 7]), 1.0);
+        assert_eq!(pearson_correlation(&[0.1; 7], &[0.3; 7]), 0.0);
+        assert_eq!(pearson_correlation(&[], &[1.0]), 1.0);
+        assert!((pearson_correlation(&[1e-200, 2e-200], &[2e200, 1e200]) + 1.0).abs() < 1e-12);
+        assert_eq!(energy_matching_gain(&[1.0], &[0.0]), 1.0);
+        assert_eq!(energy_matching_gain(&[4.0], &[1.0]), 2.0);
+        assert_eq!(band_error_db(&[0.0], &[0.0]), [0.0]);
+        assert!((band_error_db(&[1.0, 0.0], &[1.0, 0.0])[1]).abs() < 1e-12);
+        assert_eq!(rms(&[]), 0.0);
+    }
+}

@@ -1,0 +1,111 @@
+//! The mel filter bank (paper, Mel-frequency cepstral coefficients), in HTK's spelling.
+
+use alloc::vec::Vec;
+
+use crate::grid::Band;
+use crate::triangles::TriangleBank;
+
+/// Hertz to mel: `2595 log10(1 + f / 700)` (HTK book, eq. 5.13).
+pub fn hz_to_mel(f_hz: f64) -> f64 {
+    2595.0 * libm::log10(1.0 + f_hz / 700.0)
+}
+
+/// Mel to hertz.
+pub fn mel_to_hz(mel: f64) -> f64 {
+    700.0 * (libm::pow(10.0, mel / 2595.0) - 1.0)
+}
+
+/// Triangular filters with apex 1, straight in hertz, between edges equally spaced in mel.
+/// Agrees with `librosa.filters.mel(htk=True, norm=None)`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MelBank {
+    edges_hz: Vec<f64>,
+    frequencies_hz: Vec<f64>,
+    bank: TriangleBank,
+}
+
+impl MelBank {
+    /// `bands` filters over `band`, weighed at `frequencies_hz` (ascending).
+    ///
+    /// Where filters are narrower than the grid some may be empty: their energy is always 0.
+    pub fn new(bands: usize, band: Band, frequencies_hz: &[f64]) -> Self {
+        let edges_hz = mel_edges(bands, band);
+        Self {
+            bank: TriangleBank::new(&edges_hz, frequencies_hz),
+            edges_hz,
+            frequencies_hz: frequencies_hz.to_vec(),
+        }
+    }
+
+    /// The `bands + 2` edges, hertz: filter `i` has its apex at edge `i + 1`.
+    pub fn edges_hz(&self) -> &[f64] {
+        &self.edges_hz
+    }
+
+    /// The frequencies the filters are weighed at, hertz.
+    pub fn frequencies_hz(&self) -> &[f64] {
+        &self.frequencies_hz
+    }
+
+    /// The weights.
+    pub fn filters(&self) -> &TriangleBank {
+        &self.bank
+    }
+
+    /// Energy in each band of a power spectrum at the bank's frequencies, in the power's unit.
+    pub fn energies(&self, power: &[f64]) -> Vec<f64> {
+        let mut energies = alloc::vec![0.0; self.bank.rows()];
+        self.bank.apply(power, &mut energies);
+        energies
+    }
+
+    /// A power spectrum from band energies by interpolation: at each filter's apex the power is
+    /// the filter's energy over the sum of its weights; between apexes it is linear in hertz,
+    /// beyond the first and last it stays. Empty filters are passed over. `power` has as many
+    /// elements as the bank has frequencies.
+    ///
+    /// Smoother than the pseudo-inverse and never negative; `energies` of the result are not
+    /// exactly the ones given.
+    pub fn interpolate(&self, energies: &[f64], power: &mut [f64]) {
+        let apexes: Vec<(f64, f64)> = self
+            .bank
+            .row_sums()
+            .iter()
+            .zip(&self.edges_hz[1..])
+            .zip(energies)
+            .filter(|((sum, _), _)| **sum > 0.0)
+            .map(|((sum, apex_hz), energy)| (*apex_hz, energy / sum))
+            .collect();
+        for (power, &f_hz) in power.iter_mut().zip(&self.frequencies_hz) {
+            *power = interpolate_linearly(&apexes, f_hz);
+        }
+    }
+}
+
+fn mel_edges(bands: usize, band: Band) -> Vec<f64> {
+    let last = bands + 1;
+    let (low, high) = (hz_to_mel(band.low_hz), hz_to_mel(band.high_hz));
+    (0..=last)
+        .map(|i| match i {
+            0 => band.low_hz,
+            i if i == last => band.high_hz,
+            i => mel_to_hz(low + (high - low) * i as f64 / last as f64),
+        })
+        .collect()
+}
+
+/// Value at `x` of the polyline through `points` (ascending), held beyond its ends; 0 if empty.
+fn interpolate_linearly(points: &[(f64, f64)], x: f64) -> f64 {
+    let above = points.partition_point(|point| point.0 <= x);
+    match (
+        above.checked_sub(1).and_then(|i| points.get(i)),
+        points.get(above),
+    ) {
+        (Some(left), Some(right)) => {
+            let t = (x - left.0) / (right.0 - left.0);
+            left.1 * (1.0 - t) + right.1 * t
+        }
+        (Some(end), None) | (None, Some(end)) => end.1,
+        (None, None) => 0.0,
+    }
+}

@@ -1,0 +1,191 @@
+//! Complex spectra of recorded segments, and what is done to them before they become a texture
+//! spectrum.
+
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+use realfft::{RealFftPlanner, RealToComplex};
+
+pub use realfft::num_complex::Complex;
+
+use crate::window::hann_periodic;
+
+/// Buffers do not fit the analyser.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WrongLength {
+    /// What is too long or too short.
+    pub what: &'static str,
+    /// Length needed.
+    pub expected: usize,
+    /// Length given.
+    pub got: usize,
+}
+
+impl core::fmt::Display for WrongLength {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Self {
+            what,
+            expected,
+            got,
+        } = self;
+        write!(f, "{what} has {got} elements, but {expected} are needed")
+    }
+}
+
+impl core::error::Error for WrongLength {}
+
+/// Real FFT of segments of one length, with or without mean removal and the periodic Hann window.
+///
+/// ```
+/// use htex_dsp::spectrum::SegmentAnalyzer;
+/// let mut analyzer = SegmentAnalyzer::new(8);
+/// let mut bins = analyzer.make_bins();
+/// analyzer.analyze(&[1.0, 0.0, -1.0, 0.0, 1.0, 0.0, -1.0, 0.0], &mut bins)?;
+/// // A cosine of amplitude 1 on bin 2.
+/// assert!((bins[2].norm() * analyzer.amplitude_scale() - 1.0).abs() < 1e-12);
+/// # Ok::<(), htex_dsp::spectrum::WrongLength>(())
+/// ```
+pub struct SegmentAnalyzer {
+    window: Vec<f64>,
+    fft: Arc<dyn RealToComplex<f64>>,
+    input: Vec<f64>,
+    scratch: Vec<Complex<f64>>,
+}
+
+impl core::fmt::Debug for SegmentAnalyzer {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("SegmentAnalyzer")
+            .field("len", &self.window.len())
+            .finish_non_exhaustive()
+    }
+}
+
+impl SegmentAnalyzer {
+    /// An analyser for segments of `len` samples.
+    pub fn new(len: usize) -> Self {
+        let fft = RealFftPlanner::new().plan_fft_forward(len);
+        Self {
+            window: hann_periodic(len),
+            input: fft.make_input_vec(),
+            scratch: fft.make_scratch_vec(),
+            fft,
+        }
+    }
+
+    /// A buffer for one spectrum: `len / 2 + 1` bins, from 0 Hz to Nyquist.
+    pub fn make_bins(&self) -> Vec<Complex<f64>> {
+        self.fft.make_output_vec()
+    }
+
+    /// What a windowed bin's magnitude is multiplied by to read a sinusoid's amplitude:
+    /// `2 / Σw`, that is `4 / len`.
+    pub fn amplitude_scale(&self) -> f64 {
+        2.0 / self.window.iter().sum::<f64>()
+    }
+
+    /// Removes the segment's mean, applies the window and transforms. Bins are unscaled DFT sums.
+    /// Does not allocate.
+    ///
+    /// # Errors
+    /// If `segment` or `bins` has another length than the analyser's.
+    pub fn analyze(
+        &mut self,
+        segment: &[f64],
+        bins: &mut [Complex<f64>],
+    ) -> Result<(), WrongLength> {
+        self.check("segment", self.window.len(), segment.len())?;
+        let mean = segment.iter().sum::<f64>() / segment.len() as f64;
+        for ((input, sample), weight) in self.input.iter_mut().zip(segment).zip(&self.window) {
+            *input = (sample - mean) * weight;
+        }
+        self.transform_input(bins)
+    }
+
+    /// Transforms as is: no mean removal, no window. Otherwise as [`Self::analyze`].
+    ///
+    /// # Errors
+    /// If `segment` or `bins` has another length than the analyser's.
+    pub fn transform(
+        &mut self,
+        segment: &[f64],
+        bins: &mut [Complex<f64>],
+    ) -> Result<(), WrongLength> {
+        self.check("segment", self.window.len(), segment.len())?;
+        self.input.copy_from_slice(segment);
+        self.transform_input(bins)
+    }
+
+    fn transform_input(&mut self, bins: &mut [Complex<f64>]) -> Result<(), WrongLength> {
+        let (expected, got) = (self.fft.complex_len(), bins.len());
+        self.check("spectrum buffer", expected, got)?;
+        let result = self
+            .fft
+            .process_with_scratch(&mut self.input, bins, &mut self.scratch);
+        result.map_err(|_| WrongLength {
+            what: "spectrum buffer",
+            expected,
+            got,
+        })
+    }
+
+    fn check(&self, what: &'static str, expected: usize, got: usize) -> Result<(), WrongLength> {
+        if expected == got {
+            Ok(())
+        } else {
+            Err(WrongLength {
+                what,
+                expected,
+                got,
+            })
+        }
+    }
+}
+
+/// Two axes folded into one: magnitude `sqrt(|X|² + |Y|²)`, phase of `X + Y` (DFT321, Landin et
+/// al. 2010). Where `X + Y` vanishes the phase is 0. The shorter input decides the length.
+pub fn dft321(x: &[Complex<f64>], y: &[Complex<f64>]) -> Vec<Complex<f64>> {
+    x.iter().zip(y).map(|(x, y)| fold_bin(*x, *y)).collect()
+}
+
+fn fold_bin(x: Complex<f64>, y: Complex<f64>) -> Complex<f64> {
+    let norm = |z: Complex<f64>| libm::hypot(z.re, z.im);
+    let magnitude = libm::hypot(norm(x), norm(y));
+    let sum = x + y;
+    let length = norm(sum);
+    if length > 0.0 {
+        sum / length * magnitude
+    } else {
+        Complex::new(magnitude, 0.0)
+    }
+}
+
+/// Response of a force sensor's mount as a damped resonator,
+/// `1 / (1 - (f/f₀)² + 2 i ζ f/f₀)`: 1 at 0 Hz, `-i / 2ζ` at resonance (paper, Texture
+/// processing).
+pub fn resonator_response(f_hz: f64, resonance_hz: f64, damping_ratio: f64) -> Complex<f64> {
+    let r = f_hz / resonance_hz;
+    Complex::new(1.0, 0.0) / Complex::new(1.0 - r * r, 2.0 * damping_ratio * r)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrong_lengths_are_refused_and_offsets_removed() {
+        let mut analyzer = SegmentAnalyzer::new(16);
+        let mut bins = analyzer.make_bins();
+        assert!(analyzer.analyze(&[1.0; 15], &mut bins).is_err());
+        assert!(analyzer.analyze(&[1.0; 16], &mut bins[..3]).is_err());
+        assert!(analyzer.analyze(&[7.0; 16], &mut bins).is_ok());
+        assert!(bins.iter().all(|bin| bin.norm() < 1e-12));
+    }
+
+    #[test]
+    fn opposite_axes_keep_their_power() {
+        let x = [Complex::new(3.0, 4.0)];
+        let folded = dft321(&x, &[-x[0]]);
+        assert!((folded[0].norm() - 50_f64.sqrt()).abs() < 1e-12);
+        assert_eq!(folded[0].im, 0.0);
+    }
+}

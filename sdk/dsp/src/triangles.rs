@@ -1,0 +1,134 @@
+//! Banks of overlapping triangular filters over any axis; [`MelBank`](crate::mel::MelBank) and
+//! [`BandBank`](crate::bands::BandBank) are both made of one.
+
+use alloc::vec::Vec;
+
+/// The nonzero part of one filter.
+#[derive(Debug, Clone, PartialEq)]
+struct Triangle {
+    first: usize,
+    weights: Vec<f64>,
+}
+
+/// Triangular filters with apex 1; filter `i` has its feet at edges `i` and `i + 2` and its apex
+/// at edge `i + 1`. A matrix of `rows()` filters by `columns()` frequencies, stored sparsely.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TriangleBank {
+    triangles: Vec<Triangle>,
+    columns: usize,
+}
+
+impl TriangleBank {
+    /// A bank with `edges.len() - 2` filters at the places `axis`, both ascending and in the same
+    /// unit, in which the flanks are straight. A filter that falls between two places is empty.
+    pub fn new(edges: &[f64], axis: &[f64]) -> Self {
+        let triangles = edges
+            .windows(3)
+            .map(|edge| Triangle::new([edge[0], edge[1], edge[2]], axis))
+            .collect();
+        Self {
+            triangles,
+            columns: axis.len(),
+        }
+    }
+
+    /// Number of filters.
+    pub fn rows(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Number of frequencies.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// Weight of filter `row` at frequency `column`; 0 outside the bank.
+    pub fn weight(&self, row: usize, column: usize) -> f64 {
+        self.triangles.get(row).map_or(0.0, |triangle| {
+            column
+                .checked_sub(triangle.first)
+                .and_then(|i| triangle.weights.get(i))
+                .copied()
+                .unwrap_or(0.0)
+        })
+    }
+
+    /// Sum of each filter's weights, 0 for an empty filter.
+    pub fn row_sums(&self) -> Vec<f64> {
+        self.triangles
+            .iter()
+            .map(|triangle| triangle.weights.iter().sum())
+            .collect()
+    }
+
+    /// `out = bank · values`: `values` has `columns()` elements, `out` has `rows()`; what is
+    /// missing counts as zero, what is too long is left alone.
+    pub fn apply(&self, values: &[f64], out: &mut [f64]) {
+        for (sum, triangle) in out.iter_mut().zip(&self.triangles) {
+            let under = values.get(triangle.first..).unwrap_or(&[]);
+            *sum = triangle.weights.iter().zip(under).map(|(w, v)| w * v).sum();
+        }
+    }
+
+    /// `out = bankᵀ · values`: `values` has `rows()` elements, `out` has `columns()`.
+    pub fn apply_transposed(&self, values: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        for (&value, triangle) in values.iter().zip(&self.triangles) {
+            let under = out.get_mut(triangle.first..).unwrap_or(&mut []);
+            for (sum, weight) in under.iter_mut().zip(&triangle.weights) {
+                *sum += weight * value;
+            }
+        }
+    }
+
+    /// The full matrix, row after row.
+    pub fn to_dense(&self) -> Vec<f64> {
+        let mut dense = alloc::vec![0.0; self.rows() * self.columns];
+        for (row, triangle) in dense.chunks_mut(self.columns.max(1)).zip(&self.triangles) {
+            row[triangle.first..triangle.first + triangle.weights.len()]
+                .copy_from_slice(&triangle.weights);
+        }
+        dense
+    }
+}
+
+impl Triangle {
+    fn new([left, apex, right]: [f64; 3], axis: &[f64]) -> Self {
+        let first = axis.partition_point(|&x| x <= left);
+        let end = axis.partition_point(|&x| x < right).max(first);
+        let weights = axis[first..end]
+            .iter()
+            .map(|&x| {
+                if x <= apex {
+                    (x - left) / (apex - left)
+                } else {
+                    (right - x) / (right - apex)
+                }
+            })
+            .collect();
+        Self { first, weights }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sparse_and_dense_agree_and_empty_filters_are_harmless() {
+        let bank = TriangleBank::new(&[0.0, 0.2, 0.4, 2.0, 3.0], &[0.0, 1.0, 2.0, 3.0]);
+        assert_eq!(bank.row_sums()[0], 0.0);
+        let dense = bank.to_dense();
+        for row in 0..bank.rows() {
+            for column in 0..bank.columns() {
+                assert_eq!(bank.weight(row, column), dense[row * 4 + column]);
+            }
+        }
+        let mut out = [0.0; 3];
+        bank.apply(&[1.0; 4], &mut out);
+        assert_eq!(out.to_vec(), bank.row_sums());
+        let mut spread = [0.0; 4];
+        bank.apply_transposed(&[0.0, 0.0, 1.0], &mut spread);
+        assert_eq!(spread, [0.0, bank.weight(2, 1), 1.0, 0.0]);
+    }
+}

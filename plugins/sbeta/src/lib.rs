@@ -1,1 +1,154 @@
-//! 
+//! Spectral beta: the spectrum's profile as a beta density on the normalised logarithmic frequency
+//! axis, two numbers (paper, Spectral beta).
+
+mod fit;
+
+use htex_dsp::beta::{beta_pdf, log_unit};
+use htex_dsp::grid::{Band, GRID_HZ, curve_level_rms};
+use htex_dsp::shaped_noise::{ShapedNoise, economical_rate_hz};
+use htex_model::{Descriptor, Error, Fit, FitInput, Model, Values, Voice, mix};
+
+const ALPHA: usize = 0;
+const BETA: usize = 1;
+
+/// The model.
+pub struct SpectralBeta;
+
+htex_model::export_model!(SpectralBeta, symbols: "plugin");
+
+impl Model for SpectralBeta {
+    type Voice = SpectralBetaVoice;
+
+    fn descriptor() -> Descriptor {
+        Descriptor::new(
+            "org.htex.sbeta",
+            "sBeta",
+            env!("CARGO_PKG_VERSION"),
+            "The spectrum's profile as a beta density over the logarithm of frequency: two numbers.",
+        )
+        .scalar("alpha", "1", (1e-3, 1e6), "First shape parameter: the rise from the low edge.")
+        .scalar("beta", "1", (1e-3, 1e6), "Second shape parameter: the fall to the high edge.")
+        .integer_option(
+            "points",
+            (3, 64),
+            10,
+            "Spectral peaks the density is fitted to (paper: ten).",
+        )
+        .option(
+            "jnd",
+            "1",
+            (0.0, 1.0),
+            0.12,
+            "Least relative distance of two such peaks (paper: 12 %).",
+        )
+        .option(
+            "lower_bound",
+            "1",
+            (0.0, 1.0),
+            1.0,
+            "Smallest alpha and beta; below 1 the density may be infinite at an edge.",
+        )
+    }
+
+    fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
+        fit::fit(input)
+    }
+
+    fn magnitude(
+        parameters: &Values<'_>,
+        band: htex_model::Band,
+        frequency_hz: &[f64],
+        magnitude: &mut [f64],
+    ) -> Result<(), Error> {
+        let shape = Shape::new(parameters, band.edges().into())?;
+        for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
+            *m = shape.at(f) / shape.level;
+        }
+        Ok(())
+    }
+
+    fn interpolate(sets: &[Values<'_>], weights: &[f64]) -> Result<Vec<f64>, Error> {
+        mix::linear(sets, weights)
+    }
+
+    fn voice_rate_hz(_: &Values<'_>, band: htex_model::Band, wanted_hz: f64) -> f64 {
+        economical_rate_hz(wanted_hz, band.edges().into())
+    }
+
+    fn voice(
+        parameters: &Values<'_>,
+        band: htex_model::Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Self::Voice, Error> {
+        let band = band.edges().into();
+        let shape = Shape::new(parameters, band)?;
+        let mut noise = ShapedNoise::new(rate_hz, band, seed);
+        noise.start(|_, f| shape.at(f));
+        Ok(SpectralBetaVoice { band, noise })
+    }
+}
+
+/// Random-phase noise under the density.
+pub struct SpectralBetaVoice {
+    band: Band,
+    noise: ShapedNoise,
+}
+
+impl Voice for SpectralBetaVoice {
+    fn render(&mut self, out: &mut [f32]) {
+        self.noise.render(out);
+    }
+
+    fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+        let shape = Shape::new(parameters, self.band)?;
+        self.noise.retune(|_, f| shape.at(f));
+        Ok(())
+    }
+}
+
+/// The density over frequency.
+#[derive(Clone, Copy)]
+struct Shape {
+    alpha: f64,
+    beta: f64,
+    band: Band,
+    level: f64,
+}
+
+impl Shape {
+    fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
+        let mut shape = Self {
+            alpha: parameters.scalar(ALPHA),
+            beta: parameters.scalar(BETA),
+            band,
+            level: 1.0,
+        };
+        shape.level = curve_level_rms(band, |f| shape.at(f));
+        if shape.level > 0.0 && shape.level.is_finite() {
+            return Ok(shape);
+        }
+        Err(Error::parameters(format!(
+            "alpha {} and beta {} put all energy between two bins of the {GRID_HZ} Hz grid; \
+             take smaller ones",
+            shape.alpha, shape.beta
+        )))
+    }
+
+    /// The density at `frequency_hz`; zero outside the band.
+    fn at(&self, frequency_hz: f64) -> f64 {
+        if !self.band.contains(frequency_hz) {
+            return 0.0;
+        }
+        density(self.alpha, self.beta, self.band, frequency_hz)
+    }
+}
+
+/// The beta density at a frequency in the band. Where it is infinite, at an edge with a parameter
+/// below 1, the value a quarter of a bin inside stands for what a bin that wide would read.
+fn density(alpha: f64, beta: f64, band: Band, frequency_hz: f64) -> f64 {
+    let inset = 0.25 * GRID_HZ;
+    let low = if alpha < 1.0 { band.low_hz + inset } else { band.low_hz };
+    let high = if beta < 1.0 { band.high_hz - inset } else { band.high_hz };
+    beta_pdf(log_unit(frequency_hz.clamp(low, high), band), alpha, beta)
+}

@@ -1,1 +1,266 @@
-//! 
+//! Spectral peaks: the spectrum as a few sinusoids, each a just-noticeable difference from the next
+//! (paper, Spectral peak, eq. for y_sp).
+
+use htex_dsp::grid::GRID_HZ;
+use htex_dsp::noise::Uniform;
+use htex_dsp::peaks::select_peaks;
+use htex_dsp::sine_bank::{Sine, SineBank};
+use htex_model::{Band, Descriptor, Error, Fit, FitInput, Model, Store, Values, Voice, mix};
+
+const FREQUENCY: usize = 0;
+const AMPLITUDE: usize = 1;
+const PHASE: usize = 2;
+const COUNT: usize = 0;
+const JND: usize = 1;
+const PHASE_OPTION: usize = 2;
+
+/// Most sinusoids of one set of parameters.
+const MAX_PEAKS: usize = 64;
+/// Peaks this far below the level are left out: they cannot be felt, nor stored.
+const FAINTEST: f64 = 1e-7;
+
+/// The model.
+pub struct SpectralPeak;
+
+htex_model::export_model!(SpectralPeak, symbols: "plugin");
+
+impl Model for SpectralPeak {
+    type Voice = SpectralPeakVoice;
+
+    fn descriptor() -> Descriptor {
+        // Frequencies in 1/32 Hz hold the 5 Hz grid exactly; amplitudes in steps of 0.003 dB.
+        let hertz = Store::U16 {
+            scale: 0.03125,
+            offset: 0.0,
+            log: false,
+        };
+        let ratio = Store::U16 {
+            scale: 0.0003,
+            offset: -18.0,
+            log: true,
+        };
+        Descriptor::new(
+            "org.htex.speak",
+            "sPeak",
+            env!("CARGO_PKG_VERSION"),
+            "The strongest spectral peaks, each distinguishable from the next, as sinusoids.",
+        )
+        .list("frequency_hz", "Hz", (0.0, 2000.0), MAX_PEAKS as u32, "Frequencies of the sinusoids.")
+        .stored(hertz)
+        .list(
+            "amplitude",
+            "1",
+            (0.0, 4.0),
+            MAX_PEAKS as u32,
+            "Their amplitudes over the level; half their squares sum to one.",
+        )
+        .stored(ratio)
+        .scalar(
+            "random_phase",
+            "1",
+            (0.0, 1.0),
+            "0: all start at their crest (paper); 1: phases drawn by the voice's seed.",
+        )
+        .stored(Store::U8 {
+            scale: 1.0,
+            offset: 0.0,
+            log: false,
+        })
+        .integer_option("count", (1, MAX_PEAKS as u32), 10, "Most peaks kept (paper: ten).")
+        .option(
+            "jnd",
+            "1",
+            (0.0, 1.0),
+            0.12,
+            "Least relative distance of two peaks (paper: 12 %).",
+        )
+        .choice("phase", &["zero", "seed"], "Where the sinusoids start.")
+    }
+
+    fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
+        let count = input.options[COUNT] as usize;
+        let mut peaks = select_peaks(input.frequency_hz, input.magnitude, count, input.options[JND]);
+        let strongest = peaks.iter().map(|p| p.magnitude).fold(0.0, f64::max);
+        peaks.retain(|p| p.magnitude > FAINTEST * strongest);
+        if peaks.is_empty() {
+            return Err(Error::cannot_fit(
+                "the spectrum has no peak: no bin stands above both its neighbours",
+            ));
+        }
+        let amplitudes: Vec<f64> = peaks.iter().map(|p| p.magnitude / strongest).collect();
+        let unit = level(&amplitudes);
+        let frequency_hz: Vec<f64> = peaks.iter().map(|p| p.frequency_hz).collect();
+        let amplitude: Vec<f64> = amplitudes.iter().map(|a| a / unit).collect();
+        Ok(Fit {
+            parameters: flat(&frequency_hz, &amplitude, input.options[PHASE_OPTION]),
+            level_rms: unit * strongest,
+        })
+    }
+
+    fn magnitude(
+        parameters: &Values<'_>,
+        band: Band,
+        frequency_hz: &[f64],
+        magnitude: &mut [f64],
+    ) -> Result<(), Error> {
+        let lines = Lines::new(parameters)?;
+        for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
+            let inside = (band.low_hz..=band.high_hz).contains(&f);
+            *m = if inside { lines.seen_at(f) } else { 0.0 };
+        }
+        Ok(())
+    }
+
+    /// Sets of as many lines glide line by line; others fade over, line by line, at constant power.
+    fn interpolate(sets: &[Values<'_>], weights: &[f64]) -> Result<Vec<f64>, Error> {
+        let same = |s: &Values<'_>| s.list(FREQUENCY).len() == sets[0].list(FREQUENCY).len();
+        if sets.iter().all(same) {
+            return mix::linear(sets, weights);
+        }
+        let (mut frequency_hz, mut amplitude) = (Vec::new(), Vec::new());
+        for (set, &weight) in sets.iter().zip(weights).filter(|(_, w)| **w > 0.0) {
+            frequency_hz.extend_from_slice(set.list(FREQUENCY));
+            amplitude.extend(set.list(AMPLITUDE).iter().map(|a| a * libm::sqrt(weight)));
+        }
+        if frequency_hz.len() > MAX_PEAKS {
+            return Err(Error::argument(format!(
+                "the sets have {} lines together; {MAX_PEAKS} are allowed",
+                frequency_hz.len()
+            )));
+        }
+        let phase = sets.first().map_or(0.0, |s| s.scalar(PHASE));
+        Ok(flat(&frequency_hz, &amplitude, phase))
+    }
+
+    fn voice(
+        parameters: &Values<'_>,
+        _: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Self::Voice, Error> {
+        let lines = Lines::new(parameters)?;
+        let mut voice = SpectralPeakVoice {
+            phase_cycles: start_phases(parameters.scalar(PHASE), seed),
+            sines: [SILENT; MAX_PEAKS],
+            bank: SineBank::new(rate_hz, 0, &[]),
+        };
+        let count = voice.set(&lines);
+        voice.bank = SineBank::new(rate_hz, MAX_PEAKS, &voice.sines[..count]);
+        Ok(voice)
+    }
+}
+
+const SILENT: Sine = Sine {
+    frequency_hz: 0.0,
+    amplitude: 0.0,
+    phase_cycles: 0.0,
+};
+
+fn start_phases(random: f64, seed: u64) -> [f64; MAX_PEAKS] {
+    let mut phases = [0.0; MAX_PEAKS];
+    if random >= 0.5 {
+        let mut uniform = Uniform::new(seed);
+        phases.iter_mut().for_each(|p| *p = uniform.next_unit());
+    }
+    phases
+}
+
+/// A bank of sinusoids.
+pub struct SpectralPeakVoice {
+    phase_cycles: [f64; MAX_PEAKS],
+    sines: [Sine; MAX_PEAKS],
+    bank: SineBank,
+}
+
+impl SpectralPeakVoice {
+    /// Takes over the lines; says how many there are.
+    fn set(&mut self, lines: &Lines<'_>) -> usize {
+        let count = lines.frequency_hz.len().min(MAX_PEAKS);
+        for i in 0..count {
+            self.sines[i] = Sine {
+                frequency_hz: lines.frequency_hz[i],
+                amplitude: lines.amplitude[i] / lines.level,
+                phase_cycles: self.phase_cycles[i],
+            };
+        }
+        count
+    }
+}
+
+impl Voice for SpectralPeakVoice {
+    fn render(&mut self, out: &mut [f32]) {
+        self.bank.render(out);
+    }
+
+    fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+        let count = self.set(&Lines::new(parameters)?);
+        self.bank.retune(&self.sines[..count]);
+        Ok(())
+    }
+}
+
+/// The sinusoids, and their RMS together.
+struct Lines<'a> {
+    frequency_hz: &'a [f64],
+    amplitude: &'a [f64],
+    level: f64,
+}
+
+impl<'a> Lines<'a> {
+    fn new(parameters: &Values<'a>) -> Result<Self, Error> {
+        let lines = Self {
+            frequency_hz: parameters.list(FREQUENCY),
+            amplitude: parameters.list(AMPLITUDE),
+            level: level(parameters.list(AMPLITUDE)),
+        };
+        if lines.frequency_hz.len() != lines.amplitude.len() {
+            return Err(Error::parameters(format!(
+                "{} frequencies and {} amplitudes: there must be as many",
+                lines.frequency_hz.len(),
+                lines.amplitude.len()
+            )));
+        }
+        if lines.level > 0.0 {
+            return Ok(lines);
+        }
+        Err(Error::parameters("all amplitudes are zero"))
+    }
+
+    /// Unit-level magnitude as read through the Hann window at `frequency_hz`: A on a line, A/2 a
+    /// bin beside it; lines add in power.
+    fn seen_at(&self, frequency_hz: f64) -> f64 {
+        let power: f64 = self
+            .frequency_hz
+            .iter()
+            .zip(self.amplitude)
+            .map(|(f, a)| a * hann_kernel((frequency_hz - f) / GRID_HZ))
+            .map(|m| m * m)
+            .sum();
+        libm::sqrt(power) / self.level
+    }
+}
+
+fn level(amplitude: &[f64]) -> f64 {
+    libm::sqrt(amplitude.iter().map(|a| 0.5 * a * a).sum())
+}
+
+/// Main lobe of the periodic Hann window's transform, 1 at its middle, `bins` away.
+fn hann_kernel(bins: f64) -> f64 {
+    let d = bins.abs();
+    if d >= 2.0 {
+        return 0.0;
+    }
+    if d < 1e-6 {
+        return 1.0;
+    }
+    if (d - 1.0).abs() < 1e-6 {
+        return 0.5;
+    }
+    let a = core::f64::consts::PI * d;
+    libm::sin(a) / (a * (1.0 - d * d))
+}
+
+fn flat(frequency_hz: &[f64], amplitude: &[f64], phase: f64) -> Vec<f64> {
+    let count = frequency_hz.len() as f64;
+    [&[count], frequency_hz, &[count], amplitude, &[phase]].concat()
+}

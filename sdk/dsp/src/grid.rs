@@ -49,10 +49,25 @@ impl Band {
     }
 }
 
+impl From<(f64, f64)> for Band {
+    fn from((low_hz, high_hz): (f64, f64)) -> Self {
+        Self { low_hz, high_hz }
+    }
+}
+
 /// RMS of a texture spectrum given on the grid: each bin is read through the periodic Hann window,
 /// so its power is `magnitude² / (2 · 1.5)` (equivalent noise bandwidth 1.5 bins).
 ///
 /// Unit: that of the magnitudes.
 pub fn level_rms(magnitude: &[f64]) -> f64 {
     libm::sqrt(magnitude.iter().map(|m| m * m).sum::<f64>() / 3.0)
+}
+
+/// [`level_rms`] of a curve read on the band's grid, without storing it.
+pub fn curve_level_rms(band: Band, curve: impl Fn(f64) -> f64) -> f64 {
+    let power: f64 = (band.first_bin()..=band.last_bin())
+        .map(|bin| curve(bin as f64 * GRID_HZ))
+        .map(|m| m * m)
+        .sum();
+    libm::sqrt(power / 3.0)
 }

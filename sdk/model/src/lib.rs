@@ -21,6 +21,7 @@ mod error;
 mod export;
 #[cfg(feature = "std")]
 pub mod shim;
+pub mod mix;
 mod traits;
 mod values;
 #[cfg(feature = "std")]

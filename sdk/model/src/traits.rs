@@ -13,6 +13,13 @@ pub struct Band {
     pub high_hz: f64,
 }
 
+impl Band {
+    /// Both edges, hertz.
+    pub fn edges(self) -> (f64, f64) {
+        (self.low_hz, self.high_hz)
+    }
+}
+
 /// What a fit may look at.
 #[derive(Debug, Clone, Copy)]
 pub struct FitInput<'a> {

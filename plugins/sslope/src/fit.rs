@@ -1,0 +1,84 @@
+//! Slopes to either side of the dominant peak (paper: from 20 Hz to the peak, from the peak to
+//! 1 kHz), in decibels a decade.
+
+use htex_model::{Error, Fit, FitInput};
+
+use crate::{MAX_ORDER, Shape};
+
+const ROUNDING: usize = 0;
+const METHOD: usize = 1;
+/// One order of a filter, decibels a decade.
+const DB_PER_ORDER: f64 = 20.0;
+/// Bins without energy count as this far below the peak, so that a slope stays a number.
+const FLOOR_DB: f64 = -400.0;
+
+pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
+    let (peak, &top) = input
+        .magnitude
+        .iter()
+        .enumerate()
+        .reduce(|best, next| if next.1 > best.1 { next } else { best })
+        .filter(|(_, top)| **top > 0.0)
+        .ok_or_else(|| Error::cannot_fit("the spectrum is silent: there is no peak"))?;
+    let points: Vec<(f64, f64)> = input
+        .frequency_hz
+        .iter()
+        .zip(input.magnitude)
+        .map(|(&f, &m)| (libm::log10(f), decibels(m / top)))
+        .collect();
+    let order = |slope: Option<f64>| round_order(slope.unwrap_or(0.0), input.options[ROUNDING]);
+    let slope = |points: &[(f64, f64)], peak: usize| match input.options[METHOD] as u32 {
+        0 => least_squares(points),
+        1 => end_points(points),
+        _ => anchored(points, peak),
+    };
+    let shape = Shape {
+        peak_hz: input.frequency_hz[peak],
+        high_pass: order(slope(&points[..=peak], peak)),
+        low_pass: order(slope(&points[peak..], 0).map(|s| -s)),
+    };
+    let level = shape.level(input.band.edges().into())?;
+    Ok(Fit {
+        parameters: vec![shape.peak_hz, shape.high_pass, shape.low_pass],
+        // The recording's magnitude at the peak.
+        level_rms: top * (level / shape.at(shape.peak_hz)),
+    })
+}
+
+fn decibels(ratio: f64) -> f64 {
+    if ratio > 0.0 {
+        (20.0 * libm::log10(ratio)).max(FLOOR_DB)
+    } else {
+        FLOOR_DB
+    }
+}
+
+/// The order of a slope, rounded half away from zero to whole steps, at least one step.
+fn round_order(slope_db_per_decade: f64, step_db_per_decade: f64) -> f64 {
+    let steps = libm::round(slope_db_per_decade / step_db_per_decade).max(1.0);
+    (steps * step_db_per_decade / DB_PER_ORDER).min(MAX_ORDER)
+}
+
+/// Slope of the least-squares line; `None` with fewer than two points.
+fn least_squares(points: &[(f64, f64)]) -> Option<f64> {
+    let n = points.len() as f64;
+    let mean_x = points.iter().map(|p| p.0).sum::<f64>() / n;
+    let mean_y = points.iter().map(|p| p.1).sum::<f64>() / n;
+    through(points, (mean_x, mean_y))
+}
+
+fn end_points(points: &[(f64, f64)]) -> Option<f64> {
+    let (first, last) = (points.first()?, points.last()?);
+    (last.0 > first.0).then(|| (last.1 - first.1) / (last.0 - first.0))
+}
+
+fn anchored(points: &[(f64, f64)], peak: usize) -> Option<f64> {
+    through(points, *points.get(peak)?)
+}
+
+/// Least-squares slope of a line through a fixed point.
+fn through(points: &[(f64, f64)], (x0, y0): (f64, f64)) -> Option<f64> {
+    let xy: f64 = points.iter().map(|(x, y)| (x - x0) * (y - y0)).sum();
+    let xx: f64 = points.iter().map(|(x, _)| (x - x0) * (x - x0)).sum();
+    (xx > 0.0).then(|| xy / xx)
+}

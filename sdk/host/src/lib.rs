@@ -1,1 +1,32 @@
-//! 
+//! Finds texture models and calls them: one registry and one way of calling, wherever a model's
+//! code comes from.
+//!
+//! Every model is called through the flat functions of the model ABI, the built-in ones too. What
+//! a model answers is checked here, so that a wrong model is an error of that call and of nothing
+//! else.
+//!
+//! ```
+//! use htex_host::{Band, Registry};
+//! let registry = Registry::builtin();
+//! let model = registry.find("sbeta")?;
+//! let magnitude = model.magnitude(&[2.0, 5.0], Band::TACTILE, &[50.0, 100.0])?;
+//! assert!(magnitude[0] > 0.0);
+//! # Ok::<(), htex_host::HostError>(())
+//! ```
+
+mod builtin;
+mod error;
+mod model;
+mod options;
+mod raw;
+mod registry;
+mod stream;
+mod voice;
+
+pub use error::HostError;
+pub use htex_dsp::grid::{Band, GRID_HZ};
+pub use htex_model::{Descriptor, Field, Fit, FitOption, Kind, Status, Store};
+pub use model::{FitRequest, LoadedModel};
+pub use registry::Registry;
+pub use stream::Stream;
+pub use voice::ModelVoice;

@@ -1,0 +1,46 @@
+//! What can go wrong between a host and a model.
+
+use htex_model::Status;
+
+/// An error of one call, or of finding a model.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum HostError {
+    /// No model of this name is known.
+    #[error("no model `{wanted}`; there are {known}")]
+    UnknownModel {
+        /// What was asked for.
+        wanted: String,
+        /// What there is.
+        known: String,
+    },
+    /// The model answered with a status.
+    #[error("model {model}: {call}: {message}")]
+    Call {
+        /// The model's id.
+        model: String,
+        /// The function that was called.
+        call: &'static str,
+        /// The status it answered.
+        status: Status,
+        /// Its last-error text.
+        message: String,
+    },
+    /// The model answered something that no model may answer.
+    #[error("model {model}: {call} broke the model ABI: {what}; report this to the model's author")]
+    Broken {
+        /// The model's id, or where it came from.
+        model: String,
+        /// The function that was called.
+        call: &'static str,
+        /// What was wrong.
+        what: String,
+    },
+    /// A fit option that the model does not have, or a value it does not take.
+    #[error("model {model}: option {what}")]
+    Option {
+        /// The model's id.
+        model: String,
+        /// Which option, and what is allowed.
+        what: String,
+    },
+}

@@ -1,0 +1,37 @@
+//! The flat calls of the model ABI over slices: what a loader provides.
+
+use htex_model::Band;
+
+/// Arguments of a fit, as they cross the ABI.
+pub(crate) struct RawFit<'a> {
+    pub(crate) band: Band,
+    pub(crate) frequency_hz: &'a [f64],
+    pub(crate) magnitude: &'a [f64],
+    pub(crate) signal: &'a [f64],
+    pub(crate) signal_rate_hz: f64,
+    pub(crate) options: &'a [f64],
+}
+
+/// One model's functions, wherever they live. Answers are those of `htex_model::abi`: a length or
+/// a status.
+pub(crate) trait RawModel: Send + Sync {
+    fn abi_version(&self) -> u32;
+    fn descriptor(&self, out: &mut [u8]) -> i64;
+    fn last_error(&self, out: &mut [u8]) -> i64;
+    fn fit(&self, call: &RawFit<'_>, parameters: &mut [f64], level_rms: &mut f64) -> i64;
+    fn magnitude(
+        &self,
+        parameters: &[f64],
+        band: Band,
+        frequency_hz: &[f64],
+        magnitude: &mut [f64],
+    ) -> i64;
+    fn interpolate(&self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64;
+    fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64;
+    fn voice_new(&self, parameters: &[f64], band: Band, rate_hz: f64, seed: u64) -> i64;
+    /// The handle is this model's own, live, and used by one thread at a time.
+    fn voice_render(&self, voice: i64, out: &mut [f32]) -> i64;
+    /// As [`Self::voice_render`].
+    fn voice_retune(&self, voice: i64, parameters: &[f64]) -> i64;
+    fn voice_free(&self, voice: i64) -> i64;
+}

@@ -1,0 +1,66 @@
+//! A voice brought to the rate its listener wants.
+
+use htex_dsp::grid::Band;
+use htex_dsp::resample::Resampler;
+
+use crate::{HostError, LoadedModel, ModelVoice};
+
+/// Samples of unit RMS at a wanted rate: the voice at its own rate, and a resampler if the two
+/// differ.
+#[derive(Debug)]
+pub struct Stream {
+    voice: ModelVoice,
+    resampler: Option<Resampler>,
+    voice_rate_hz: f64,
+}
+
+impl Stream {
+    /// Makes a voice of `model` and what is needed to hear it at `rate_hz`.
+    ///
+    /// # Errors
+    /// When the model refuses the parameters or the rate.
+    pub fn new(
+        model: &LoadedModel,
+        parameters: &[f64],
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Self, HostError> {
+        let voice_rate_hz = model.voice_rate_hz(parameters, band, rate_hz)?;
+        Ok(Self {
+            voice: model.voice(parameters, band, voice_rate_hz, seed)?,
+            resampler: Resampler::new(voice_rate_hz, rate_hz, band.high_hz),
+            voice_rate_hz,
+        })
+    }
+
+    /// The rate at which the model itself renders, hertz.
+    pub fn voice_rate_hz(&self) -> f64 {
+        self.voice_rate_hz
+    }
+
+    /// Fills `out` with the next samples. Does not allocate.
+    ///
+    /// # Errors
+    /// When the model fails; what it should have rendered is silent.
+    pub fn render(&mut self, out: &mut [f32]) -> Result<(), HostError> {
+        let Some(resampler) = &mut self.resampler else {
+            return self.voice.render(out);
+        };
+        let mut result = Ok(());
+        resampler.process(out, &mut |block| {
+            if let Err(error) = self.voice.render(block) {
+                result = Err(error);
+            }
+        });
+        result
+    }
+
+    /// Changes to other parameters without a click.
+    ///
+    /// # Errors
+    /// When the model refuses them; the stream then plays on as before.
+    pub fn retune(&mut self, parameters: &[f64]) -> Result<(), HostError> {
+        self.voice.retune(parameters)
+    }
+}

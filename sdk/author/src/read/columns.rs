@@ -1,0 +1,224 @@
+//! What a column's name says: its role and its unit.
+
+use super::map::Role;
+
+/// What the name says of the unit.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Unit {
+    /// Factor to the role's own unit (N, mm/s, s, mm).
+    Scale(f64),
+    /// No unit in the name.
+    Unsaid,
+    /// Volts: the factor is the sensor's, and nothing here knows it.
+    Volts,
+    /// Some other text.
+    Unknown(String),
+}
+
+const NAMES: [(Role, &[&str]); 8] = [
+    (
+        Role::Lateral,
+        &[
+            "lateral",
+            "lateral_force",
+            "force_lateral",
+            "f_lateral",
+            "fl",
+            "f_l",
+            "friction",
+            "friction_force",
+            "force_friction",
+            "f_friction",
+            "tangential",
+            "tangential_force",
+            "force_tangential",
+            "ft",
+            "f_t",
+            "shear",
+            "shear_force",
+        ],
+    ),
+    (
+        Role::LateralX,
+        &["fx", "f_x", "force_x", "x_force", "lateral_x", "friction_x"],
+    ),
+    (
+        Role::LateralY,
+        &["fy", "f_y", "force_y", "y_force", "lateral_y", "friction_y"],
+    ),
+    (
+        Role::Normal,
+        &[
+            "fz",
+            "f_z",
+            "force_z",
+            "z_force",
+            "fn",
+            "f_n",
+            "normal",
+            "normal_force",
+            "force_normal",
+            "f_normal",
+            "force",
+            "load",
+        ],
+    ),
+    (
+        Role::Speed,
+        &[
+            "speed",
+            "velocity",
+            "vel",
+            "finger_speed",
+            "sliding_speed",
+            "scan_speed",
+        ],
+    ),
+    (Role::Time, &["t", "time", "timestamp", "elapsed"]),
+    (
+        Role::X,
+        &[
+            "x",
+            "pos_x",
+            "x_pos",
+            "position_x",
+            "x_position",
+            "finger_x",
+        ],
+    ),
+    (
+        Role::Y,
+        &[
+            "y",
+            "pos_y",
+            "y_pos",
+            "position_y",
+            "y_position",
+            "finger_y",
+        ],
+    ),
+];
+
+/// Unit suffixes after an underscore, the longer before the shorter that ends it.
+const SUFFIXES: [&str; 16] = [
+    "mm_s", "cm_s", "m_s", "mm/s", "cm/s", "m/s", "mn", "un", "kn", "n", "mv", "v", "ms", "us",
+    "s", "mm",
+];
+/// Lengths, apart from the list above because `_m` also ends other words' units.
+const LENGTHS: [&str; 3] = ["cm", "um", "m"];
+
+/// The role that a column's name is known for, and its unit.
+pub(crate) fn recognise(name: &str) -> Option<(Role, Unit)> {
+    let name = normalise(name);
+    if let Some(role) = known_role(&name) {
+        return Some((role, Unit::Unsaid));
+    }
+    let (base, unit) = split_unit(&name)?;
+    let role = known_role(base)?;
+    Some((role, unit_of(role, unit)))
+}
+
+/// The unit that a column's name gives when the column is used in this role.
+pub(crate) fn unit_in(name: &str, role: Role) -> Unit {
+    match split_unit(&normalise(name)) {
+        Some((_, unit)) => unit_of(role, unit),
+        None => Unit::Unsaid,
+    }
+}
+
+/// The unit that a role is kept in.
+pub(crate) fn base_unit(role: Role) -> &'static str {
+    match role {
+        Role::Lateral | Role::LateralX | Role::LateralY | Role::Normal => "N",
+        Role::Speed => "mm/s",
+        Role::Time => "s",
+        Role::X | Role::Y => "mm",
+    }
+}
+
+fn normalise(name: &str) -> String {
+    name.trim()
+        .to_lowercase()
+        .replace(['µ', 'μ'], "u")
+        .replace([' ', '-'], "_")
+}
+
+fn known_role(name: &str) -> Option<Role> {
+    NAMES
+        .iter()
+        .find(|(_, names)| names.contains(&name))
+        .map(|(role, _)| *role)
+}
+
+/// `fx_[n]`, `fx(n)` and `fx_n` into `fx` and `n`.
+fn split_unit(name: &str) -> Option<(&str, &str)> {
+    for (open, close) in [('[', ']'), ('(', ')')] {
+        if let Some((base, unit)) = name
+            .strip_suffix(close)
+            .and_then(|name| name.rsplit_once(open))
+        {
+            return Some((base.trim_end_matches('_'), unit.trim_matches('_')));
+        }
+    }
+    SUFFIXES.iter().chain(&LENGTHS).find_map(|unit| {
+        let base = name.strip_suffix(unit)?.strip_suffix('_')?;
+        Some((base, *unit))
+    })
+}
+
+fn unit_of(role: Role, unit: &str) -> Unit {
+    let scale = match (base_unit(role), unit) {
+        ("N", "n" | "newton" | "newtons") => 1.0,
+        ("N", "mn") => 1e-3,
+        ("N", "un") => 1e-6,
+        ("N", "kn") => 1e3,
+        ("mm/s", "mm_s" | "mm/s" | "mm/sec") => 1.0,
+        ("mm/s", "cm_s" | "cm/s") => 10.0,
+        ("mm/s", "m_s" | "m/s") => 1e3,
+        ("s", "s" | "sec" | "seconds") => 1.0,
+        ("s", "ms") => 1e-3,
+        ("s", "us") => 1e-6,
+        ("mm", "mm") => 1.0,
+        ("mm", "cm") => 10.0,
+        ("mm", "m") => 1e3,
+        ("mm", "um") => 1e-3,
+        (_, "v" | "mv" | "volt" | "volts") => return Unit::Volts,
+        (_, unit) => return Unit::Unknown(unit.to_owned()),
+    };
+    Unit::Scale(scale)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_give_role_and_unit() {
+        let cases = [
+            ("t_s", Role::Time, Unit::Scale(1.0)),
+            ("t_ms", Role::Time, Unit::Scale(1e-3)),
+            ("Fx [mN]", Role::LateralX, Unit::Scale(1e-3)),
+            ("fy_n", Role::LateralY, Unit::Scale(1.0)),
+            ("F_n", Role::Normal, Unit::Unsaid),
+            ("Fn_N", Role::Normal, Unit::Scale(1.0)),
+            ("Lateral Force (N)", Role::Lateral, Unit::Scale(1.0)),
+            ("lateral_V", Role::Lateral, Unit::Volts),
+            (
+                "normal [counts]",
+                Role::Normal,
+                Unit::Unknown("counts".into()),
+            ),
+            ("speed_mm_s", Role::Speed, Unit::Scale(1.0)),
+            ("Velocity (m/s)", Role::Speed, Unit::Scale(1e3)),
+            ("speed_cm_s", Role::Speed, Unit::Scale(10.0)),
+            ("x_mm", Role::X, Unit::Scale(1.0)),
+            ("y_m", Role::Y, Unit::Scale(1e3)),
+        ];
+        for (name, role, unit) in cases {
+            assert_eq!(recognise(name), Some((role, unit)), "{name}");
+        }
+        for name in ["accel", "temperature_C", "", "n", "torque_n"] {
+            assert_eq!(recognise(name), None, "{name}");
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! Recordings as delimited text.
+
+use super::clock;
+use super::map::Role;
+use super::motion;
+use super::select::{Selection, select};
+use super::table::Table;
+use super::text::as_text;
+use super::{ReadError, ReadOptions};
+use crate::recording::{Recording, RecordingError};
+
+/// Reads a CSV's bytes; `file` is its name.
+pub(crate) fn read(
+    file: &str,
+    bytes: &[u8],
+    options: &ReadOptions,
+) -> Result<Recording, ReadError> {
+    if options.newtons_per_unit.is_some() {
+        return Err(ReadError::Option {
+            file: file.to_owned(),
+            problem: "--newtons-per-unit is for WAV and NPY; scale a CSV's columns with --map lateral=COLUMN:SCALE".into(),
+        });
+    }
+    let table = Table::new(file, as_text(file, bytes)?)?;
+    let mut selection = select(&table, options.map.as_ref())?;
+    let wanted: Vec<usize> = selection
+        .chosen
+        .iter()
+        .map(|chosen| chosen.column)
+        .collect();
+    let mut numbers = table.numbers(&wanted)?;
+    for (values, chosen) in numbers.columns.iter_mut().zip(&selection.chosen) {
+        if chosen.scale != 1.0 {
+            values.iter_mut().for_each(|value| *value *= chosen.scale);
+        }
+    }
+    let mut warnings = std::mem::take(&mut selection.warnings);
+    let mut signals = Signals {
+        selection,
+        columns: numbers.columns,
+    };
+    let time_s = signals.take(Role::Time);
+    let rate_hz = clock::rate(&table, time_s.as_deref(), options.rate_hz, &mut warnings)?;
+    let mut recording =
+        signals
+            .into_recording(file, rate_hz)
+            .map_err(|source| ReadError::Recording {
+                file: file.to_owned(),
+                source,
+            })?;
+    recording.simulated = numbers.simulated;
+    recording.warnings = warnings;
+    Ok(recording)
+}
+
+/// The columns that were read, in the order of the selection; each is taken out once.
+struct Signals {
+    selection: Selection,
+    columns: Vec<Vec<f64>>,
+}
+
+impl Signals {
+    fn take(&mut self, role: Role) -> Option<Vec<f64>> {
+        let position = self.selection.position(role)?;
+        self.columns.get_mut(position).map(std::mem::take)
+    }
+
+    fn take_all(&mut self, roles: &[Role]) -> Vec<Vec<f64>> {
+        roles.iter().filter_map(|role| self.take(*role)).collect()
+    }
+
+    fn into_recording(mut self, file: &str, rate_hz: f64) -> Result<Recording, RecordingError> {
+        let lateral = self.take_all(&[Role::Lateral, Role::LateralX, Role::LateralY]);
+        let mut recording = Recording::new(file, rate_hz, lateral)?;
+        if let Some(normal) = self.take(Role::Normal) {
+            recording = recording.with_normal(normal)?;
+        }
+        if let Some(speed) = self.take(Role::Speed) {
+            return recording.with_speed(speed);
+        }
+        let position = self.take_all(&[Role::X, Role::Y]);
+        if position.is_empty() {
+            return Ok(recording);
+        }
+        let coordinates: Vec<&[f64]> = position.iter().map(Vec::as_slice).collect();
+        recording.with_speed(motion::speed_mm_s(&coordinates, rate_hz))
+    }
+}

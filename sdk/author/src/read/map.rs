@@ -1,0 +1,199 @@
+//! The user's word on which column is what: `lateral=lateral_V:0.4444,normal=#3`.
+
+use std::fmt;
+use std::str::FromStr;
+
+use super::ReadError;
+
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Role {
+    /// Lateral force along the only axis, newtons.
+    Lateral,
+    /// First lateral axis, newtons.
+    LateralX,
+    /// Second lateral axis, newtons.
+    LateralY,
+    /// Normal force, newtons.
+    Normal,
+    /// Sliding speed, mm/s.
+    Speed,
+    /// Time, seconds.
+    Time,
+    /// Finger position, mm.
+    X,
+    /// Finger position across the first, mm.
+    Y,
+}
+
+impl Role {
+    /// Every role, in the order in which columns are claimed.
+    pub const ALL: [Self; 8] = [
+        Self::Lateral,
+        Self::LateralX,
+        Self::LateralY,
+        Self::Normal,
+        Self::Speed,
+        Self::Time,
+        Self::X,
+        Self::Y,
+    ];
+
+    /// The role's name in a column map.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Lateral => "lateral",
+            Self::LateralX => "lateral_x",
+            Self::LateralY => "lateral_y",
+            Self::Normal => "normal",
+            Self::Speed => "speed",
+            Self::Time => "time",
+            Self::X => "x",
+            Self::Y => "y",
+        }
+    }
+}
+
+impl fmt::Display for Role {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A column, by name or by place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ColumnRef {
+    /// The name in the header, compared without case.
+    Name(String),
+    /// The place counted from 1, written `#3`.
+    Number(usize),
+}
+
+impl fmt::Display for ColumnRef {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Name(name) => write!(f, "{name:?}"),
+            Self::Number(number) => write!(f, "#{number}"),
+        }
+    }
+}
+
+/// One `ROLE=COLUMN[:SCALE]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapEntry {
+    /// What the column holds.
+    pub role: Role,
+    /// Which column.
+    pub column: ColumnRef,
+    /// Factor from the column's unit to the role's (N, mm/s, s, mm); `None`: by the unit in its name.
+    pub scale: Option<f64>,
+}
+
+/// Which columns hold what, in the user's words.
+///
+/// ```
+/// # use htex_author::read::ColumnMap;
+/// let map: ColumnMap = "lateral=lateral_V:0.4444,normal=#3".parse()?;
+/// assert_eq!(map.entries().len(), 2);
+/// # Ok::<(), htex_author::read::ReadError>(())
+/// ```
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ColumnMap {
+    entries: Vec<MapEntry>,
+}
+
+impl ColumnMap {
+    /// The entries as they were written.
+    #[must_use]
+    pub fn entries(&self) -> &[MapEntry] {
+        &self.entries
+    }
+
+    fn add(&mut self, entry: MapEntry) -> Result<(), ReadError> {
+        for other in &self.entries {
+            if other.role == entry.role {
+                return Err(problem(format!("role {} is given twice", entry.role)));
+            }
+            if other.column == entry.column {
+                return Err(problem(format!("column {} is given twice", entry.column)));
+            }
+        }
+        self.entries.push(entry);
+        Ok(())
+    }
+}
+
+impl FromStr for ColumnMap {
+    type Err = ReadError;
+
+    fn from_str(text: &str) -> Result<Self, ReadError> {
+        let mut map = Self::default();
+        for part in text.split(',') {
+            map.add(parse_entry(part.trim())?)?;
+        }
+        let has = |role| map.entries.iter().any(|entry| entry.role == role);
+        if has(Role::Lateral) && (has(Role::LateralX) || has(Role::LateralY)) {
+            return Err(problem(
+                "lateral is one axis, lateral_x and lateral_y are two: give one or the other"
+                    .into(),
+            ));
+        }
+        Ok(map)
+    }
+}
+
+fn parse_entry(text: &str) -> Result<MapEntry, ReadError> {
+    let Some((role, column)) = text.split_once('=') else {
+        return Err(problem(format!("{text:?} has no '='")));
+    };
+    let (column, scale) = split_scale(column.trim())?;
+    Ok(MapEntry {
+        role: parse_role(role.trim())?,
+        column: parse_column(column)?,
+        scale,
+    })
+}
+
+fn parse_role(text: &str) -> Result<Role, ReadError> {
+    Role::ALL
+        .into_iter()
+        .find(|role| role.name() == text)
+        .ok_or_else(|| {
+            let names: Vec<_> = Role::ALL.iter().map(|role| role.name()).collect();
+            problem(format!(
+                "unknown role {text:?}; the roles are {}",
+                names.join(", ")
+            ))
+        })
+}
+
+fn parse_column(text: &str) -> Result<ColumnRef, ReadError> {
+    match text.strip_prefix('#') {
+        None if text.is_empty() => Err(problem("a column name is missing after '='".into())),
+        None => Ok(ColumnRef::Name(text.to_owned())),
+        Some(number) => match number.parse() {
+            Ok(number) if number > 0 => Ok(ColumnRef::Number(number)),
+            _ => Err(problem(format!(
+                "{text:?} is no column number; the first column is #1"
+            ))),
+        },
+    }
+}
+
+/// Splits at the last colon; a colon in a column's name needs a scale after it.
+fn split_scale(text: &str) -> Result<(&str, Option<f64>), ReadError> {
+    let Some((column, scale)) = text.rsplit_once(':') else {
+        return Ok((text, None));
+    };
+    match scale.trim().parse::<f64>() {
+        Ok(scale) if scale.is_finite() && scale != 0.0 => Ok((column.trim_end(), Some(scale))),
+        _ => Err(problem(format!(
+            "{scale:?} is no scale; it must be a finite number other than 0"
+        ))),
+    }
+}
+
+fn problem(problem: String) -> ReadError {
+    ReadError::Map { problem }
+}

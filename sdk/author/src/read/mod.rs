@@ -1,0 +1,148 @@
+//! Reads recordings: CSV with named columns, WAV, and NPY.
+//!
+//! ```no_run
+//! # use std::path::Path;
+//! use htex_author::read::{ReadOptions, read_recording};
+//!
+//! // Columns in volts: the map says what is what, and the sensor's newtons per volt.
+//! let options = ReadOptions {
+//!     rate_hz: Some(10_000.0),
+//!     map: Some("lateral=lateral_V:0.4444,normal=normal_V:0.31".parse()?),
+//!     ..ReadOptions::default()
+//! };
+//! let recording = read_recording(Path::new("finger.csv"), &options)?;
+//! println!("{} s at {} Hz", recording.duration_s(), recording.rate_hz);
+//! # Ok::<(), htex_author::read::ReadError>(())
+//! ```
+
+mod clock;
+mod columns;
+mod csv;
+mod error;
+mod map;
+mod motion;
+mod npy;
+mod number;
+mod select;
+pub(crate) mod table;
+pub(crate) mod text;
+mod wav;
+
+use std::path::Path;
+
+pub use error::ReadError;
+pub use map::{ColumnMap, ColumnRef, MapEntry, Role};
+
+use crate::recording::Recording;
+
+/// What a file may leave unsaid.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ReadOptions {
+    /// Sample rate, hertz. Needed by NPY and by a CSV without time column; it wins over a time
+    /// column, and must equal a WAV's own.
+    pub rate_hz: Option<f64>,
+    /// Which CSV columns hold what; columns that it leaves out are known by their names.
+    pub map: Option<ColumnMap>,
+    /// Newtons of a full-scale (1.0) sample in WAV and NPY; 1 when absent, with a warning.
+    pub newtons_per_unit: Option<f64>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Csv,
+    Wav,
+    Npy,
+}
+
+/// Reads one recording; the kind of file is told by its first bytes, and its extension must agree.
+///
+/// The recording's warnings say what was assumed: units, gaps in time, columns not used.
+///
+/// # Errors
+/// See [`ReadError`]: each names the file, and the line and column where there is one.
+pub fn read_recording(path: &Path, options: &ReadOptions) -> Result<Recording, ReadError> {
+    let file = text::file_name(path);
+    check_options(&file, options)?;
+    let bytes = text::read_bytes(path)?;
+    match kind(path, &bytes) {
+        Kind::Csv => csv::read(&file, &bytes, options),
+        Kind::Wav => wav::read(&file, &bytes, options),
+        Kind::Npy => npy::read(&file, &bytes, options),
+    }
+}
+
+/// By magic where there is one, else by extension, else text.
+fn kind(path: &Path, bytes: &[u8]) -> Kind {
+    if bytes.starts_with(b"RIFF") {
+        return Kind::Wav;
+    }
+    if bytes.starts_with(b"\x93NUMPY") {
+        return Kind::Npy;
+    }
+    let extension = path
+        .extension()
+        .map(|extension| extension.to_ascii_lowercase());
+    match extension.as_deref().and_then(std::ffi::OsStr::to_str) {
+        Some("wav" | "wave") => Kind::Wav,
+        Some("npy") => Kind::Npy,
+        _ => Kind::Csv,
+    }
+}
+
+fn check_options(file: &str, options: &ReadOptions) -> Result<(), ReadError> {
+    let refuse = |problem| {
+        Err(ReadError::Option {
+            file: file.to_owned(),
+            problem,
+        })
+    };
+    match (options.rate_hz, options.newtons_per_unit) {
+        (Some(rate), _) if !(rate.is_finite() && rate > 0.0) => refuse(format!(
+            "--rate is {rate}; it must be a positive number of hertz"
+        )),
+        (_, Some(scale)) if !scale.is_finite() || scale == 0.0 => refuse(format!(
+            "--newtons-per-unit is {scale}; it must be finite and not 0"
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses a column map where there are no named columns.
+fn refuse_map(file: &str, options: &ReadOptions) -> Result<(), ReadError> {
+    match options.map {
+        None => Ok(()),
+        Some(_) => Err(ReadError::Option {
+            file: file.to_owned(),
+            problem: "--map is for CSV; in WAV and NPY the channels are lateral, or lateral x, y, or x, y, normal".into(),
+        }),
+    }
+}
+
+/// One channel: lateral; two: lateral x, y; three: x, y, normal. Scaled to newtons.
+fn from_channels(
+    file: &str,
+    rate_hz: f64,
+    mut channels: Vec<Vec<f64>>,
+    newtons_per_unit: f64,
+) -> Result<Recording, ReadError> {
+    if newtons_per_unit != 1.0 {
+        channels
+            .iter_mut()
+            .flatten()
+            .for_each(|value| *value *= newtons_per_unit);
+    }
+    let normal = if channels.len() == 3 {
+        channels.pop()
+    } else {
+        None
+    };
+    let recording = Recording::new(file, rate_hz, channels);
+    match normal {
+        None => recording,
+        Some(normal) => recording.and_then(|recording| recording.with_normal(normal)),
+    }
+    .map_err(|source| ReadError::Recording {
+        file: file.to_owned(),
+        source,
+    })
+}

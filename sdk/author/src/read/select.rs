@@ -1,0 +1,271 @@
+//! Which columns of a table are used, for what, and in which unit.
+
+use super::ReadError;
+use super::columns::{Unit, base_unit, recognise, unit_in};
+use super::map::{ColumnMap, ColumnRef, MapEntry, Role};
+use super::table::Table;
+
+/// One column in use.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Chosen {
+    pub(crate) role: Role,
+    /// From 0.
+    pub(crate) column: usize,
+    /// Factor to the role's unit.
+    pub(crate) scale: f64,
+}
+
+/// The columns in use, and what had to be assumed.
+#[derive(Debug, Default)]
+pub(crate) struct Selection {
+    pub(crate) chosen: Vec<Chosen>,
+    pub(crate) warnings: Vec<String>,
+}
+
+/// Takes what the map says, then what the names say, and insists on a lateral force.
+pub(crate) fn select(table: &Table<'_>, map: Option<&ColumnMap>) -> Result<Selection, ReadError> {
+    let mut selection = Selection::default();
+    for entry in map.map_or(&[][..], ColumnMap::entries) {
+        selection.take_mapped(table, entry)?;
+    }
+    let refused = if table.header.is_some() {
+        selection.take_named(table)?
+    } else {
+        selection.take_single(table);
+        Vec::new()
+    };
+    selection.insist_on_lateral(table, &refused)?;
+    selection.warnings.extend(
+        refused
+            .into_iter()
+            .map(|refused| format!("{refused}; it is not used.")),
+    );
+    selection.warn_of_unused(table);
+    Ok(selection)
+}
+
+impl Selection {
+    /// The column in a role, if any.
+    pub(crate) fn position(&self, role: Role) -> Option<usize> {
+        self.chosen.iter().position(|chosen| chosen.role == role)
+    }
+
+    fn has(&self, role: Role) -> bool {
+        self.position(role).is_some()
+    }
+
+    fn claims(&self, column: usize) -> bool {
+        self.chosen.iter().any(|chosen| chosen.column == column)
+    }
+
+    fn has_lateral(&self) -> bool {
+        [Role::Lateral, Role::LateralX, Role::LateralY]
+            .into_iter()
+            .any(|role| self.has(role))
+    }
+
+    fn take_mapped(&mut self, table: &Table<'_>, entry: &MapEntry) -> Result<(), ReadError> {
+        let column = find(table, &entry.column)?;
+        if self.claims(column) {
+            return Err(columns_error(
+                table,
+                format!("the map uses column {} twice", entry.column),
+            ));
+        }
+        let role = entry.role;
+        let scale = match (entry.scale, unit_in(&table.name(column), role)) {
+            (Some(scale), _) | (None, Unit::Scale(scale)) => scale,
+            (None, Unit::Unsaid) => self.assume_unit(table, column, role),
+            (None, unit) => {
+                return Err(columns_error(
+                    table,
+                    no_scale(&table.name(column), role, &unit),
+                ));
+            }
+        };
+        self.chosen.push(Chosen {
+            role,
+            column,
+            scale,
+        });
+        Ok(())
+    }
+
+    /// Takes columns by their names; returns why some with a known name cannot be used.
+    fn take_named(&mut self, table: &Table<'_>) -> Result<Vec<String>, ReadError> {
+        let mut refused = Vec::new();
+        for role in self.open_roles(table) {
+            let mut found = None;
+            for column in self.candidates(table, role) {
+                let name = table.name(column);
+                match recognise(&name) {
+                    // A bare x or y is as often a force or an acceleration.
+                    Some((Role::X | Role::Y, Unit::Unsaid)) => {}
+                    Some((_, unit @ (Unit::Volts | Unit::Unknown(_)))) => {
+                        refused.push(no_scale(&name, role, &unit))
+                    }
+                    Some((_, unit)) => match found.replace((column, unit)) {
+                        None => {}
+                        Some((other, _)) => return Err(two_columns(table, role, other, column)),
+                    },
+                    None => {}
+                }
+            }
+            if let Some((column, unit)) = found {
+                let scale = match unit {
+                    Unit::Scale(scale) => scale,
+                    _ => self.assume_unit(table, column, role),
+                };
+                self.chosen.push(Chosen {
+                    role,
+                    column,
+                    scale,
+                });
+            }
+        }
+        Ok(refused)
+    }
+
+    fn candidates(&self, table: &Table<'_>, role: Role) -> Vec<usize> {
+        let is_candidate = |column: &usize| {
+            !self.claims(*column)
+                && recognise(&table.name(*column)).is_some_and(|(named, _)| named == role)
+        };
+        (0..table.width).filter(is_candidate).collect()
+    }
+
+    /// Roles that names may fill: two lateral axes before one; position only where no speed is.
+    fn open_roles(&self, table: &Table<'_>) -> Vec<Role> {
+        let named = |role| !self.candidates(table, role).is_empty();
+        let mut roles = Vec::new();
+        if !self.has_lateral() {
+            let (x, y) = (named(Role::LateralX), named(Role::LateralY));
+            if (x && y) || !named(Role::Lateral) {
+                roles.extend([Role::LateralX, Role::LateralY]);
+            } else {
+                roles.push(Role::Lateral);
+            }
+        }
+        roles.extend(
+            [Role::Normal, Role::Time]
+                .into_iter()
+                .filter(|role| !self.has(*role)),
+        );
+        if !self.has(Role::Speed) && !self.has(Role::X) && !self.has(Role::Y) {
+            let speed = named(Role::Speed);
+            roles.extend(if speed {
+                &[Role::Speed][..]
+            } else {
+                &[Role::X, Role::Y]
+            });
+        }
+        roles
+    }
+
+    /// One column without a name can only be the lateral force.
+    fn take_single(&mut self, table: &Table<'_>) {
+        if table.width == 1 && self.chosen.is_empty() {
+            let scale = self.assume_unit(table, 0, Role::Lateral);
+            self.chosen.push(Chosen {
+                role: Role::Lateral,
+                column: 0,
+                scale,
+            });
+        }
+    }
+
+    fn assume_unit(&mut self, table: &Table<'_>, column: usize, role: Role) -> f64 {
+        let (name, unit) = (table.name(column), base_unit(role));
+        self.warnings.push(format!(
+            "Column {name:?} ({role}) names no unit: taken as {unit}."
+        ));
+        1.0
+    }
+
+    fn insist_on_lateral(&self, table: &Table<'_>, refused: &[String]) -> Result<(), ReadError> {
+        if self.has_lateral() {
+            return Ok(());
+        }
+        let problem = if let Some(refused) = refused.first() {
+            refused.clone()
+        } else if table.header.is_none() {
+            "there is no header row; say which column is which by number, as in --map lateral=#2,normal=#3".to_owned()
+        } else {
+            "no column is known as the lateral force; name it with --map lateral=COLUMN (and :SCALE to newtons)".to_owned()
+        };
+        Err(columns_error(table, problem))
+    }
+
+    fn warn_of_unused(&mut self, table: &Table<'_>) {
+        let unused = |column: &usize| !self.claims(*column);
+        let names: Vec<_> = (0..table.width)
+            .filter(unused)
+            .map(|column| table.name(column))
+            .collect();
+        if !names.is_empty() {
+            self.warnings
+                .push(format!("Columns not used: {}.", names.join(", ")));
+        }
+    }
+}
+
+fn find(table: &Table<'_>, column: &ColumnRef) -> Result<usize, ReadError> {
+    let found: Vec<usize> = match column {
+        ColumnRef::Number(number) => (0..table.width)
+            .filter(|column| column + 1 == *number)
+            .collect(),
+        ColumnRef::Name(name) => by_name(table, name),
+    };
+    match found.as_slice() {
+        [column] => Ok(*column),
+        [] => Err(columns_error(
+            table,
+            format!("the map names column {column}, which is not there"),
+        )),
+        _ => Err(columns_error(
+            table,
+            format!("several columns are called {column}; give its number, as in #2"),
+        )),
+    }
+}
+
+/// Columns of exactly this name, or else those that differ in case only.
+fn by_name(table: &Table<'_>, name: &str) -> Vec<usize> {
+    let names = table.header.as_deref().unwrap_or_default();
+    let matching = |same: fn(&str, &str) -> bool| -> Vec<usize> {
+        (0..names.len())
+            .filter(|column| same(names[*column], name))
+            .collect()
+    };
+    match matching(|a, b| a == b) {
+        exact if !exact.is_empty() => exact,
+        _ => matching(str::eq_ignore_ascii_case),
+    }
+}
+
+fn no_scale(name: &str, role: Role, unit: &Unit) -> String {
+    let (unit, target) = match unit {
+        Unit::Volts => ("volts", base_unit(role)),
+        Unit::Unknown(unit) => (unit.as_str(), base_unit(role)),
+        Unit::Scale(_) | Unit::Unsaid => ("no unit", base_unit(role)),
+    };
+    format!(
+        "Column {name:?} is in {unit}, not {target}; give its scale to {target}: --map {role}={name}:SCALE"
+    )
+}
+
+fn two_columns(table: &Table<'_>, role: Role, a: usize, b: usize) -> ReadError {
+    let (a, b) = (table.name(a), table.name(b));
+    columns_error(
+        table,
+        format!("both {a:?} and {b:?} could be {role}; choose with --map {role}=COLUMN"),
+    )
+}
+
+fn columns_error(table: &Table<'_>, problem: String) -> ReadError {
+    ReadError::Columns {
+        file: table.file.to_owned(),
+        problem,
+        columns: table.names(),
+    }
+}

@@ -1,0 +1,117 @@
+//! A text file in memory, and its lines with their numbers.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use super::ReadError;
+
+/// The largest file that is read, bytes: about 20 hours of four columns at 1 kHz.
+pub(crate) const MAX_BYTES: u64 = 4 << 30;
+/// The longest line, bytes; a row of forces has some tens.
+const MAX_LINE: usize = 64 << 10;
+
+/// The file's name without its directory.
+pub(crate) fn file_name(path: &Path) -> String {
+    path.file_name()
+        .unwrap_or(path.as_os_str())
+        .to_string_lossy()
+        .into_owned()
+}
+
+/// All bytes of a file of bounded size.
+pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
+    let io = |source| ReadError::Io {
+        file: file_name(path),
+        source,
+    };
+    let file = File::open(path).map_err(io)?;
+    let bytes = file.metadata().map_err(io)?.len();
+    if bytes > MAX_BYTES {
+        return Err(ReadError::TooLarge {
+            file: file_name(path),
+            bytes,
+            limit: MAX_BYTES,
+        });
+    }
+    let mut content = Vec::with_capacity(bytes as usize);
+    // A pipe or a growing file tells no size before it ends.
+    file.take(MAX_BYTES).read_to_end(&mut content).map_err(io)?;
+    Ok(content)
+}
+
+/// The bytes as text without a byte order mark; refuses NUL and what is not UTF-8.
+pub(crate) fn as_text<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, ReadError> {
+    let refuse = |position: usize, what| {
+        let line = 1 + bytes[..position]
+            .iter()
+            .filter(|byte| **byte == b'\n')
+            .count();
+        ReadError::NotText {
+            file: file.to_owned(),
+            line,
+            what,
+        }
+    };
+    if bytes.contains(&0) {
+        let position = bytes.iter().position(|byte| *byte == 0).unwrap_or(0);
+        return Err(refuse(position, "a NUL byte"));
+    }
+    let text = std::str::from_utf8(bytes)
+        .map_err(|error| refuse(error.valid_up_to(), "a byte sequence that is not UTF-8"))?;
+    Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
+}
+
+/// The lines that hold cells: blank lines and `#` comments are passed over.
+#[derive(Debug, Clone)]
+pub(crate) struct Lines<'a> {
+    file: &'a str,
+    rest: &'a str,
+    /// Number of the last line handed out or passed over, from 1.
+    pub(crate) number: usize,
+    /// The last comment passed over, without its `#`.
+    pub(crate) comment: Option<&'a str>,
+    /// Whether a comment said "simulated".
+    pub(crate) simulated: bool,
+}
+
+impl<'a> Lines<'a> {
+    pub(crate) fn new(file: &'a str, text: &'a str) -> Self {
+        Self {
+            file,
+            rest: text,
+            number: 0,
+            comment: None,
+            simulated: false,
+        }
+    }
+
+    /// The next line with cells, without its line end; `None` at the end of the file.
+    pub(crate) fn next_row(&mut self) -> Result<Option<&'a str>, ReadError> {
+        while !self.rest.is_empty() {
+            let line = self.take_line()?;
+            if let Some(comment) = line.trim_start().strip_prefix('#') {
+                self.simulated |= comment.to_ascii_lowercase().contains("simulated");
+                self.comment = Some(comment.trim());
+            } else if !line.trim_ascii().is_empty() {
+                return Ok(Some(line));
+            }
+        }
+        Ok(None)
+    }
+
+    fn take_line(&mut self) -> Result<&'a str, ReadError> {
+        let (line, rest) = self.rest.split_once('\n').unwrap_or((self.rest, ""));
+        self.rest = rest;
+        self.number += 1;
+        if line.len() > MAX_LINE {
+            return Err(ReadError::LongLine {
+                file: self.file.to_owned(),
+                line: self.number,
+                bytes: line.len(),
+                limit: MAX_LINE,
+            });
+        }
+        Ok(line.strip_suffix('\r').unwrap_or(line))
+    }
+}

@@ -1,0 +1,108 @@
+//! Recordings as WAV: one to three channels, integer or float.
+
+use std::io::Cursor;
+
+use hound::{SampleFormat, WavReader, WavSpec};
+
+use super::{ReadError, ReadOptions, from_channels, refuse_map};
+use crate::recording::Recording;
+
+/// Reads a WAV's bytes; `file` is its name.
+pub(crate) fn read(
+    file: &str,
+    bytes: &[u8],
+    options: &ReadOptions,
+) -> Result<Recording, ReadError> {
+    refuse_map(file, options)?;
+    let reader = WavReader::new(Cursor::new(bytes))
+        .map_err(|error| broken(file, format!("not a WAV file that can be read: {error}")))?;
+    let spec = reader.spec();
+    check(file, spec, options)?;
+    let channels = match spec.sample_format {
+        SampleFormat::Float => collect(
+            file,
+            spec,
+            reader.into_samples::<f32>().map(|s| s.map(f64::from)),
+        ),
+        SampleFormat::Int => {
+            let full_scale = libm::exp2(f64::from(spec.bits_per_sample) - 1.0);
+            collect(
+                file,
+                spec,
+                reader
+                    .into_samples::<i32>()
+                    .map(|s| s.map(|s| f64::from(s) / full_scale)),
+            )
+        }
+    }?;
+    let mut recording = from_channels(
+        file,
+        f64::from(spec.sample_rate),
+        channels,
+        options.newtons_per_unit.unwrap_or(1.0),
+    )?;
+    if options.newtons_per_unit.is_none() {
+        recording
+            .warnings
+            .push(assumption(spec.sample_format).to_owned());
+    }
+    Ok(recording)
+}
+
+fn assumption(format: SampleFormat) -> &'static str {
+    match format {
+        SampleFormat::Float => {
+            "Samples are taken as newtons; give --newtons-per-unit if they are not."
+        }
+        SampleFormat::Int => {
+            "Integer full scale is taken as 1 N; give --newtons-per-unit if it is not."
+        }
+    }
+}
+
+fn check(file: &str, spec: WavSpec, options: &ReadOptions) -> Result<(), ReadError> {
+    if !(1..=3).contains(&spec.channels) {
+        return Err(broken(
+            file,
+            format!(
+                "{} channels; give 1 (lateral), 2 (lateral x, y) or 3 (x, y, normal)",
+                spec.channels
+            ),
+        ));
+    }
+    let own = f64::from(spec.sample_rate);
+    match options.rate_hz {
+        Some(rate) if rate != own => Err(ReadError::Option {
+            file: file.to_owned(),
+            problem: format!(
+                "the file says {own} Hz, --rate says {rate} Hz; leave --rate out or mend the file's header"
+            ),
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Deals the interleaved samples out to their channels.
+fn collect(
+    file: &str,
+    spec: WavSpec,
+    samples: impl Iterator<Item = hound::Result<f64>>,
+) -> Result<Vec<Vec<f64>>, ReadError> {
+    let count = usize::from(spec.channels);
+    let mut channels = vec![Vec::new(); count];
+    for (position, sample) in samples.enumerate() {
+        let frame = position / count;
+        let sample = sample.map_err(|error| {
+            broken(file, format!("the file ends or breaks at sample {frame} (counted from 0): {error}; copy it again"))
+        })?;
+        channels[position % count].push(sample);
+    }
+    Ok(channels)
+}
+
+fn broken(file: &str, problem: String) -> ReadError {
+    ReadError::Wav {
+        file: file.to_owned(),
+        problem,
+    }
+}

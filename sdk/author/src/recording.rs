@@ -1,0 +1,171 @@
+//! One recording of a finger sliding on a surface, in physical units.
+
+use thiserror::Error;
+
+/// Why a set of columns is not a recording.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum RecordingError {
+    /// The rate is zero, negative, NaN or infinite.
+    #[error("the sample rate is {rate_hz} Hz; it must be a positive finite number of hertz")]
+    Rate {
+        /// The rate that was given.
+        rate_hz: f64,
+    },
+    /// Not one or two lateral axes.
+    #[error("a recording has one or two lateral axes, this one has {axes}")]
+    Axes {
+        /// How many axes were given.
+        axes: usize,
+    },
+    /// Fewer than two samples.
+    #[error("a recording needs at least 2 samples, this one has {samples}")]
+    TooShort {
+        /// How many samples were given.
+        samples: usize,
+    },
+    /// A signal is not as long as the first lateral axis.
+    #[error(
+        "{signal} has {got} samples, the lateral force has {expected}; all signals must be equally long"
+    )]
+    Lengths {
+        /// Which signal.
+        signal: &'static str,
+        /// Samples of the first lateral axis.
+        expected: usize,
+        /// Samples of this signal.
+        got: usize,
+    },
+    /// A sample is NaN or infinite.
+    #[error(
+        "{signal} is {value} at sample {sample} (counted from 0); repair or cut the recording there"
+    )]
+    NotFinite {
+        /// Which signal.
+        signal: &'static str,
+        /// Index from 0.
+        sample: usize,
+        /// NaN or an infinity.
+        value: f64,
+    },
+}
+
+/// A recording: the lateral force, and what is known about how the finger pressed and moved.
+///
+/// All signals are equally long, at least two samples, and finite.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// File name without its directory, for messages and provenance.
+    pub source: String,
+    /// Samples per second of every signal, hertz.
+    pub rate_hz: f64,
+    /// Lateral force, newtons: one axis, or two perpendicular ones.
+    pub lateral_n: Vec<Vec<f64>>,
+    /// Normal force, newtons, positive on the whole when the finger presses.
+    pub normal_n: Option<Vec<f64>>,
+    /// Sliding speed of each sample, mm/s.
+    pub speed_mm_s: Option<Vec<f64>>,
+    /// True when the file says that it comes from a simulator and not from a finger.
+    pub simulated: bool,
+    /// What the reader had to assume or noticed; each a full sentence.
+    pub warnings: Vec<String>,
+}
+
+impl Recording {
+    /// A checked recording without normal force, speed or warnings.
+    ///
+    /// `lateral_n` holds one or two axes in newtons.
+    ///
+    /// # Errors
+    /// When the rate is not positive and finite, the axes are not one or two, are shorter than two
+    /// samples, differ in length, or hold NaN or an infinity.
+    ///
+    /// ```
+    /// # use htex_author::recording::Recording;
+    /// let recording = Recording::new("tap.csv", 1000.0, vec![vec![0.1, 0.2, 0.1]])?;
+    /// assert_eq!(recording.samples(), 3);
+    /// assert_eq!(recording.duration_s(), 0.003);
+    /// # Ok::<(), htex_author::recording::RecordingError>(())
+    /// ```
+    pub fn new(
+        source: impl Into<String>,
+        rate_hz: f64,
+        lateral_n: Vec<Vec<f64>>,
+    ) -> Result<Self, RecordingError> {
+        if !(rate_hz.is_finite() && rate_hz > 0.0) {
+            return Err(RecordingError::Rate { rate_hz });
+        }
+        let samples = match lateral_n.as_slice() {
+            [axis] | [axis, _] => axis.len(),
+            axes => return Err(RecordingError::Axes { axes: axes.len() }),
+        };
+        if samples < 2 {
+            return Err(RecordingError::TooShort { samples });
+        }
+        for axis in &lateral_n {
+            check("the lateral force", axis, samples)?;
+        }
+        Ok(Self {
+            source: source.into(),
+            rate_hz,
+            lateral_n,
+            normal_n: None,
+            speed_mm_s: None,
+            simulated: false,
+            warnings: Vec::new(),
+        })
+    }
+
+    /// Adds the normal force, newtons; a force that is negative on average is turned round, so that
+    /// pressing reads positive whichever way the sensor counts.
+    ///
+    /// # Errors
+    /// When it differs in length from the lateral force or is not finite.
+    pub fn with_normal(mut self, mut normal_n: Vec<f64>) -> Result<Self, RecordingError> {
+        check("the normal force", &normal_n, self.samples())?;
+        if normal_n.iter().sum::<f64>() < 0.0 {
+            normal_n.iter_mut().for_each(|force| *force = -*force);
+        }
+        self.normal_n = Some(normal_n);
+        Ok(self)
+    }
+
+    /// Adds the sliding speed of each sample, mm/s.
+    ///
+    /// # Errors
+    /// When it differs in length from the lateral force or is not finite.
+    pub fn with_speed(mut self, speed_mm_s: Vec<f64>) -> Result<Self, RecordingError> {
+        check("the speed", &speed_mm_s, self.samples())?;
+        self.speed_mm_s = Some(speed_mm_s);
+        Ok(self)
+    }
+
+    /// Samples in each signal, at least 2.
+    #[must_use]
+    pub fn samples(&self) -> usize {
+        self.lateral_n.first().map_or(0, Vec::len)
+    }
+
+    /// Length in seconds: samples over rate.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        self.samples() as f64 / self.rate_hz
+    }
+}
+
+fn check(signal: &'static str, values: &[f64], expected: usize) -> Result<(), RecordingError> {
+    if values.len() != expected {
+        return Err(RecordingError::Lengths {
+            signal,
+            expected,
+            got: values.len(),
+        });
+    }
+    match values.iter().position(|value| !value.is_finite()) {
+        Some(sample) => Err(RecordingError::NotFinite {
+            signal,
+            sample,
+            value: values[sample],
+        }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,130 @@
+//! The setup's frequency response: what the recording rig does to a lateral force.
+
+use std::path::Path;
+
+use crate::read::ReadError;
+use crate::read::table::Table;
+use crate::read::text::{as_text, file_name, read_bytes};
+
+/// A frequency response, sampled.
+///
+/// The three vectors are equally long (at least 2), the frequencies ascend strictly.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SetupResponse {
+    /// Frequencies, hertz, strictly ascending, not negative.
+    pub frequency_hz: Vec<f64>,
+    /// Output over input at each frequency, without unit, not negative.
+    pub magnitude: Vec<f64>,
+    /// Phase at each frequency, radians, unwrapped.
+    pub phase_rad: Vec<f64>,
+}
+
+impl SetupResponse {
+    /// Real and imaginary part at a frequency in hertz: magnitude and unwrapped phase interpolated
+    /// linearly in frequency, held below the first and above the last.
+    ///
+    /// ```
+    /// # use htex_author::response::SetupResponse;
+    /// let response = SetupResponse {
+    ///     frequency_hz: vec![20.0, 1000.0],
+    ///     magnitude: vec![1.0, 2.0],
+    ///     phase_rad: vec![0.0, 0.0],
+    /// };
+    /// assert_eq!(response.at(510.0), (1.5, 0.0));
+    /// assert_eq!(response.at(5000.0), (2.0, 0.0));
+    /// ```
+    #[must_use]
+    pub fn at(&self, frequency_hz: f64) -> (f64, f64) {
+        let above = self.frequency_hz.partition_point(|f| *f <= frequency_hz);
+        let last = self.frequency_hz.len().saturating_sub(1);
+        let (low, high) = (above.saturating_sub(1), above.min(last));
+        let weight = if low == high {
+            0.0
+        } else {
+            let (f0, f1) = (self.frequency_hz[low], self.frequency_hz[high]);
+            (frequency_hz - f0) / (f1 - f0)
+        };
+        let between = |values: &[f64]| values[low] + weight * (values[high] - values[low]);
+        let (magnitude, phase) = (between(&self.magnitude), between(&self.phase_rad));
+        (magnitude * libm::cos(phase), magnitude * libm::sin(phase))
+    }
+}
+
+/// Reads a setup response from a CSV with the columns `frequency_hz`, `magnitude` and, if known,
+/// `phase_rad` (else zero).
+///
+/// # Errors
+/// What [`read_recording`](crate::read::read_recording) reports of a CSV; and, with the line, a
+/// frequency that is negative or does not ascend, or a negative magnitude.
+pub fn read_response(path: &Path) -> Result<SetupResponse, ReadError> {
+    let (file, bytes) = (file_name(path), read_bytes(path)?);
+    let table = Table::new(&file, as_text(&file, &bytes)?)?;
+    let mut wanted = vec![
+        column(&table, "frequency_hz")?,
+        column(&table, "magnitude")?,
+    ];
+    wanted.extend(column(&table, "phase_rad").ok());
+    let mut columns = table.numbers(&wanted)?.columns.into_iter();
+    let frequency_hz = columns.next().unwrap_or_default();
+    let magnitude = columns.next().unwrap_or_default();
+    check(&table, &frequency_hz, &magnitude)?;
+    let phase_rad = columns
+        .next()
+        .map_or_else(|| vec![0.0; frequency_hz.len()], unwrapped);
+    Ok(SetupResponse {
+        frequency_hz,
+        magnitude,
+        phase_rad,
+    })
+}
+
+fn column(table: &Table<'_>, name: &str) -> Result<usize, ReadError> {
+    let header = table.header.as_deref().unwrap_or_default();
+    header.iter().position(|cell| cell.eq_ignore_ascii_case(name)).ok_or_else(|| ReadError::Columns {
+        file: table.file.to_owned(),
+        problem: format!("a setup response needs a column {name:?}; its header is frequency_hz,magnitude[,phase_rad]"),
+        columns: table.names(),
+    })
+}
+
+fn check(table: &Table<'_>, frequency_hz: &[f64], magnitude: &[f64]) -> Result<(), ReadError> {
+    let refuse = |row: usize, problem: String| {
+        Err(ReadError::Response {
+            file: table.file.to_owned(),
+            line: table.line_of_row(row),
+            problem,
+        })
+    };
+    for (row, (frequency, magnitude)) in frequency_hz.iter().zip(magnitude).enumerate() {
+        if *frequency < 0.0 {
+            return refuse(row, format!("the frequency {frequency} Hz is negative"));
+        }
+        if row > 0 && *frequency <= frequency_hz[row - 1] {
+            return refuse(
+                row,
+                format!(
+                    "the frequency {frequency} Hz follows {} Hz; frequencies must ascend on every row",
+                    frequency_hz[row - 1]
+                ),
+            );
+        }
+        if *magnitude < 0.0 {
+            return refuse(
+                row,
+                format!("the magnitude {magnitude} is negative; put the sign into phase_rad"),
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Takes out jumps of more than half a turn.
+fn unwrapped(mut phase_rad: Vec<f64>) -> Vec<f64> {
+    let turn = 2.0 * std::f64::consts::PI;
+    let mut previous = phase_rad.first().copied().unwrap_or(0.0);
+    for phase in &mut phase_rad {
+        *phase -= turn * libm::round((*phase - previous) / turn);
+        previous = *phase;
+    }
+    phase_rad
+}

@@ -109,7 +109,7 @@ impl Section {
 }
 
 #[inline]
-fn without_denormals(state: f64) -> f64 {
+pub(crate) fn without_denormals(state: f64) -> f64 {
     if state.abs() < SMALLEST_STATE {
         0.0
     } else {

@@ -1,0 +1,99 @@
+//! Line spectral frequencies: the angles at which a stable all-pole model, made symmetric or
+//! antisymmetric, has its zeros (Itakura 1975). They interlace, so any weighted mean of two
+//! models' frequencies is again a stable model: the safe way to interpolate.
+
+use alloc::vec::Vec;
+use core::f64::consts::PI;
+
+use crate::linear_prediction::coefficients_to_reflection;
+
+/// Halvings of `[0, π]`: the last is below the spacing of f64 there.
+const BISECTIONS: usize = 56;
+
+/// The p line spectral frequencies, radians, ascending inside (0, π); `None` if the model is
+/// unstable.
+///
+/// They are where the phase of the lattice's all-pass, which falls steadily from 0 at ω = 0 to
+/// -(p + 1)π at ω = π, passes a multiple of π. That phase is a sum over the reflection coefficients
+/// with no ambiguity, so that each is found by plain bisection at any order.
+///
+/// ```
+/// use htex_dsp::line_spectrum::{from_line_spectral_frequencies, line_spectral_frequencies};
+/// let model = [1.5, -0.8];
+/// let lsf = line_spectral_frequencies(&model).ok_or("unstable")?;
+/// let back = from_line_spectral_frequencies(&lsf).ok_or("out of order")?;
+/// assert!((back[0] - 1.5).abs() < 1e-12 && (back[1] + 0.8).abs() < 1e-12);
+/// # Ok::<(), &str>(())
+/// ```
+pub fn line_spectral_frequencies(coefficients: &[f64]) -> Option<Vec<f64>> {
+    coefficients_to_reflection(coefficients).map(|k| line_spectral_frequencies_of_reflection(&k))
+}
+
+/// As [`line_spectral_frequencies`], from reflection coefficients, each inside (-1, 1).
+pub fn line_spectral_frequencies_of_reflection(reflection: &[f64]) -> Vec<f64> {
+    let mut from = 0.0;
+    (1..=reflection.len())
+        .map(|i| {
+            from = angle_of_phase(reflection, i as f64 * PI, from);
+            from
+        })
+        .collect()
+}
+
+/// The ω in `[from, π]` at which the phase reaches `target`.
+fn angle_of_phase(reflection: &[f64], target: f64, from: f64) -> f64 {
+    let (mut low, mut high) = (from, PI);
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        if all_pass_lag(reflection, middle) < target {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// Phase lag of `z⁻¹ B_p(z) / A_p(z)` at ω, where `B` is `A` reversed. One stage maps the lag θ to
+/// `ω + θ + 2 arg(1 - k e^{-iθ})`; for |k| < 1 that argument stays within ±π/2.
+fn all_pass_lag(reflection: &[f64], omega: f64) -> f64 {
+    reflection.iter().fold(omega, |theta, k| {
+        let (sine, cosine) = libm::sincos(theta);
+        omega + theta + 2.0 * libm::atan2(k * sine, 1.0 - k * cosine)
+    })
+}
+
+/// Prediction coefficients from line spectral frequencies in radians; `None` unless they ascend
+/// strictly inside (0, π), which is what makes the model stable.
+pub fn from_line_spectral_frequencies(lsf: &[f64]) -> Option<Vec<f64>> {
+    let inside = lsf.iter().all(|&w| w > 0.0 && w < PI);
+    if !inside || lsf.windows(2).any(|pair| pair[0] >= pair[1]) {
+        return None;
+    }
+    let fixed: [&[f64]; 2] = if lsf.len().is_multiple_of(2) {
+        [&[1.0, 1.0], &[1.0, -1.0]]
+    } else {
+        [&[1.0], &[1.0, 0.0, -1.0]]
+    };
+    let symmetric = with_zeros_at(fixed[0], lsf.iter().step_by(2));
+    let antisymmetric = with_zeros_at(fixed[1], lsf.iter().skip(1).step_by(2));
+    let mean = symmetric
+        .iter()
+        .zip(&antisymmetric)
+        .map(|(p, q)| -0.5 * (p + q));
+    Some(mean.skip(1).take(lsf.len()).collect())
+}
+
+/// `fixed(z) Π (1 - 2 cos ω z⁻¹ + z⁻²)`.
+fn with_zeros_at<'a>(fixed: &[f64], angles: impl Iterator<Item = &'a f64>) -> Vec<f64> {
+    angles.fold(fixed.to_vec(), |polynomial, &omega| {
+        let middle = -2.0 * libm::cos(omega);
+        let mut product = alloc::vec![0.0; polynomial.len() + 2];
+        for (i, c) in polynomial.iter().enumerate() {
+            product[i] += c;
+            product[i + 1] += middle * c;
+            product[i + 2] += c;
+        }
+        product
+    })
+}

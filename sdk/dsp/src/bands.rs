@@ -89,11 +89,13 @@ fn ratio_db(model: f64, reference: f64) -> f64 {
     }
 }
 
-/// The gain on the model's *magnitude* that makes its total band energy the reference's:
-/// `sqrt(Σ reference / Σ model)`. 1 if either total is zero or not finite.
-pub fn energy_matching_gain(reference: &[f64], model: &[f64]) -> f64 {
-    let total = |energies: &[f64]| energies.iter().sum::<f64>();
-    let gain = libm::sqrt(total(reference) / total(model));
+/// The gain that gives a model's *magnitudes* the reference's total energy in the band:
+/// `sqrt(Σ reference² / Σ model²)`. 1 if either is zero or not finite.
+///
+/// Times its square, the model's band energies compare by shape alone.
+pub fn energy_matching_gain(reference_magnitude: &[f64], model_magnitude: &[f64]) -> f64 {
+    let total = |magnitude: &[f64]| magnitude.iter().map(|m| m * m).sum::<f64>();
+    let gain = libm::sqrt(total(reference_magnitude) / total(model_magnitude));
     if gain.is_finite() && gain > 0.0 {
         gain
     } else {
@@ -161,7 +163,7 @@ mod tests {
         assert_eq!(pearson_correlation(&[], &[1.0]), 1.0);
         assert!((pearson_correlation(&[1e-200, 2e-200], &[2e200, 1e200]) + 1.0).abs() < 1e-12);
         assert_eq!(energy_matching_gain(&[1.0], &[0.0]), 1.0);
-        assert_eq!(energy_matching_gain(&[4.0], &[1.0]), 2.0);
+        assert_eq!(energy_matching_gain(&[4.0], &[2.0]), 2.0);
         assert_eq!(band_error_db(&[0.0], &[0.0]), [0.0]);
         assert!((band_error_db(&[1.0, 0.0], &[1.0, 0.0])[1]).abs() < 1e-12);
         assert_eq!(rms(&[]), 0.0);

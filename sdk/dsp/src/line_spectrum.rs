@@ -75,8 +75,14 @@ pub fn from_line_spectral_frequencies(lsf: &[f64]) -> Option<Vec<f64>> {
     } else {
         [&[1.0], &[1.0, 0.0, -1.0]]
     };
-    let symmetric = with_zeros_at(fixed[0], lsf.iter().step_by(2));
-    let antisymmetric = with_zeros_at(fixed[1], lsf.iter().skip(1).step_by(2));
+    let symmetric = with_zeros_at(
+        fixed[0],
+        &lsf.iter().copied().step_by(2).collect::<Vec<_>>(),
+    );
+    let antisymmetric = with_zeros_at(
+        fixed[1],
+        &lsf.iter().copied().skip(1).step_by(2).collect::<Vec<_>>(),
+    );
     let mean = symmetric
         .iter()
         .zip(&antisymmetric)
@@ -85,9 +91,9 @@ pub fn from_line_spectral_frequencies(lsf: &[f64]) -> Option<Vec<f64>> {
 }
 
 /// `fixed(z) Π (1 - 2 cos ω z⁻¹ + z⁻²)`.
-fn with_zeros_at<'a>(fixed: &[f64], angles: impl Iterator<Item = &'a f64>) -> Vec<f64> {
-    angles.fold(fixed.to_vec(), |polynomial, &omega| {
-        let middle = -2.0 * libm::cos(omega);
+fn with_zeros_at(fixed: &[f64], angles: &[f64]) -> Vec<f64> {
+    let factors = spread_order(angles.len()).map(|i| -2.0 * libm::cos(angles[i]));
+    factors.fold(fixed.to_vec(), |polynomial, middle| {
         let mut product = alloc::vec![0.0; polynomial.len() + 2];
         for (i, c) in polynomial.iter().enumerate() {
             product[i] += c;
@@ -96,4 +102,16 @@ fn with_zeros_at<'a>(fixed: &[f64], angles: impl Iterator<Item = &'a f64>) -> Ve
         }
         product
     })
+}
+
+/// `0..n` with its bits reversed: neighbours come far apart. Multiplied in ascending order, the
+/// first factors would pile up binomial coefficients that the last ones must cancel.
+fn spread_order(n: usize) -> impl Iterator<Item = usize> {
+    let bits = n.next_power_of_two().trailing_zeros();
+    let reversed = move |i: usize| {
+        i.reverse_bits()
+            .checked_shr(usize::BITS - bits)
+            .unwrap_or(0)
+    };
+    (0..1 << bits).map(reversed).filter(move |&i| i < n)
 }

@@ -1,1 +1,154 @@
-//! 
+//! Autoregression: the spectrum as that of white noise through an all-pole filter (paper,
+//! Auto-regression; after Culbertson et al. 2014).
+
+mod fit;
+mod voice;
+
+use htex_dsp::grid::{Band, curve_level_rms};
+use htex_dsp::line_spectrum::{from_line_spectral_frequencies, line_spectral_frequencies};
+use htex_dsp::linear_prediction::{ar_magnitude, is_stable};
+use htex_model::{Descriptor, Error, Fit, FitInput, Model, Store, Values, mix};
+
+pub use voice::AutoregressionVoice;
+
+const COEFFICIENTS: usize = 0;
+const MODEL_RATE: usize = 1;
+
+/// Highest filter order.
+pub(crate) const MAX_ORDER: usize = 64;
+
+/// The model.
+pub struct Autoregression;
+
+htex_model::export_model!(Autoregression, symbols: "plugin");
+
+impl Model for Autoregression {
+    type Voice = AutoregressionVoice;
+
+    fn descriptor() -> Descriptor {
+        Descriptor::new(
+            "org.htex.ar",
+            "AR",
+            env!("CARGO_PKG_VERSION"),
+            "White noise through an all-pole filter: the filter's coefficients.",
+        )
+        .list(
+            "coefficients",
+            "1",
+            (-1e6, 1e6),
+            MAX_ORDER as u32,
+            "A_1 to A_p of x[t] = sum A_i x[t-i] + e[t], at the model rate.",
+        )
+        .stored(Store::F64)
+        .scalar("model_rate_hz", "Hz", (50.0, 1e6), "Rate at which the filter runs.")
+        .integer_option("order", (1, MAX_ORDER as u32), 6, "Filter order p (paper: six).")
+        .option(
+            "rate_hz",
+            "Hz",
+            (50.0, 1e6),
+            2000.0,
+            "Model rate; at most twice the band's upper edge is used by a narrower band.",
+        )
+        .choice(
+            "method",
+            &["yule-walker", "burg", "covariance"],
+            "Estimated from the averaged power spectrum, or from the overlap-added segments.",
+        )
+    }
+
+    fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
+        fit::fit(input)
+    }
+
+    fn magnitude(
+        parameters: &Values<'_>,
+        band: htex_model::Band,
+        frequency_hz: &[f64],
+        magnitude: &mut [f64],
+    ) -> Result<(), Error> {
+        let band: Band = band.edges().into();
+        let filter = Filter::new(parameters)?;
+        let level = filter.level(band)?;
+        for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
+            *m = if band.contains(f) { filter.at(f) / level } else { 0.0 };
+        }
+        Ok(())
+    }
+
+    /// Mixes line spectral frequencies, between which the filter is always stable.
+    fn interpolate(sets: &[Values<'_>], weights: &[f64]) -> Result<Vec<f64>, Error> {
+        if let Some(set) = mix::sole(sets, weights) {
+            return Ok(set.flat().to_vec());
+        }
+        let rate_hz = sets[0].scalar(MODEL_RATE);
+        if sets.iter().any(|set| set.scalar(MODEL_RATE) != rate_hz) {
+            return Err(Error::argument("filters of different model rates cannot be mixed"));
+        }
+        let order = sets.iter().map(|s| s.list(COEFFICIENTS).len()).max().unwrap_or(0);
+        let mut mixed = vec![0.0; order];
+        for (set, &weight) in sets.iter().zip(weights) {
+            let mut padded = set.list(COEFFICIENTS).to_vec();
+            padded.resize(order, 0.0);
+            let frequencies = line_spectral_frequencies(&padded).ok_or_else(unstable)?;
+            for (sum, w) in mixed.iter_mut().zip(frequencies) {
+                *sum += weight * w;
+            }
+        }
+        let coefficients = from_line_spectral_frequencies(&mixed).ok_or_else(unstable)?;
+        Ok(flat(&coefficients, rate_hz))
+    }
+
+    fn voice_rate_hz(parameters: &Values<'_>, _: htex_model::Band, _: f64) -> f64 {
+        parameters.scalar(MODEL_RATE)
+    }
+
+    fn voice(
+        parameters: &Values<'_>,
+        band: htex_model::Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Self::Voice, Error> {
+        AutoregressionVoice::new(parameters, band.edges().into(), rate_hz, seed)
+    }
+}
+
+fn unstable() -> Error {
+    Error::parameters("the filter is not stable: a pole lies on or outside the unit circle")
+}
+
+fn flat(coefficients: &[f64], rate_hz: f64) -> Vec<f64> {
+    [&[coefficients.len() as f64], coefficients, &[rate_hz]].concat()
+}
+
+/// The all-pole filter.
+#[derive(Clone, Copy)]
+pub(crate) struct Filter<'a> {
+    pub(crate) coefficients: &'a [f64],
+    pub(crate) rate_hz: f64,
+}
+
+impl<'a> Filter<'a> {
+    fn new(parameters: &Values<'a>) -> Result<Self, Error> {
+        let filter = Self {
+            coefficients: parameters.list(COEFFICIENTS),
+            rate_hz: parameters.scalar(MODEL_RATE),
+        };
+        if is_stable(filter.coefficients) { Ok(filter) } else { Err(unstable()) }
+    }
+
+    /// Magnitude `|H|`; zero above the Nyquist frequency of the model rate.
+    pub(crate) fn at(&self, frequency_hz: f64) -> f64 {
+        if frequency_hz > 0.5 * self.rate_hz {
+            return 0.0;
+        }
+        ar_magnitude(self.coefficients, frequency_hz, self.rate_hz)
+    }
+
+    pub(crate) fn level(&self, band: Band) -> Result<f64, Error> {
+        let level = curve_level_rms(band, |f| self.at(f));
+        if level > 0.0 && level.is_finite() {
+            return Ok(level);
+        }
+        Err(Error::parameters("the filter has no finite energy in the band"))
+    }
+}

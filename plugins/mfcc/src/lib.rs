@@ -1,1 +1,210 @@
-//! 
+//! Mel-frequency cepstral coefficients: the logarithm of the energies in mel bands, smoothed by
+//! keeping the first terms of its cosine transform (paper, Mel Frequency Cepstral Coefficients).
+
+mod inverse;
+
+use std::sync::Arc;
+
+use htex_dsp::dct::dct_ii;
+use htex_dsp::grid::{Band, GRID_HZ, level_rms};
+use htex_dsp::mel::MelBank;
+use htex_dsp::shaped_noise::{ShapedNoise, economical_rate_hz};
+use htex_model::{Descriptor, Error, Fit, FitInput, Model, Store, Values, Voice, mix};
+
+use inverse::Inverse;
+
+const CEPSTRUM: usize = 0;
+const BANDS: usize = 1;
+const INVERSE: usize = 2;
+
+const COEFFICIENTS_OPTION: usize = 0;
+const BANDS_OPTION: usize = 1;
+const INVERSE_OPTION: usize = 2;
+
+const MAX_BANDS: u32 = 128;
+/// Band energies count as at least this, newtons squared (numeric definitions: MFCC).
+const FLOOR: f64 = 1e-20;
+
+/// The model.
+pub struct MelCepstrum;
+
+htex_model::export_model!(MelCepstrum, symbols: "plugin");
+
+impl Model for MelCepstrum {
+    type Voice = MelCepstrumVoice;
+
+    fn descriptor() -> Descriptor {
+        let whole = Store::U8 {
+            scale: 1.0,
+            offset: 0.0,
+            log: false,
+        };
+        Descriptor::new(
+            "org.htex.mfcc",
+            "MFCC",
+            env!("CARGO_PKG_VERSION"),
+            "Log energies in mel bands, kept as the first terms of their cosine transform.",
+        )
+        .list(
+            "cepstrum",
+            "1",
+            (-1e5, 1e5),
+            MAX_BANDS,
+            "c_0 to c_(n-1) of the orthonormal DCT-II of the natural log energies.",
+        )
+        .scalar("bands", "1", (2.0, f64::from(MAX_BANDS)), "Number of mel bands.")
+        .stored(whole)
+        .scalar(
+            "inverse",
+            "1",
+            (0.0, 2.0),
+            "Way back to a spectrum: 0 pseudo-inverse, 1 non-negative least squares, 2 triangles.",
+        )
+        .stored(whole)
+        .integer_option("coefficients", (1, MAX_BANDS), 10, "Coefficients kept (paper: ten).")
+        .integer_option("bands", (2, MAX_BANDS), 26, "Mel bands between the edges of the band.")
+        .choice(
+            "inverse",
+            &["pinv", "nnls", "interpolate"],
+            "Pseudo-inverse of the bank clipped at zero, non-negative least squares, or \
+             interpolation between the bands' apexes.",
+        )
+    }
+
+    fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
+        if input.magnitude.iter().all(|&m| m == 0.0) {
+            return Err(Error::cannot_fit("the spectrum is silent: all band energies are zero"));
+        }
+        let band: Band = input.band.edges().into();
+        let bands = input.options[BANDS_OPTION] as usize;
+        let kept = (input.options[COEFFICIENTS_OPTION] as usize).min(bands);
+        let inverse = Inverse::shared(bands, input.options[INVERSE_OPTION] as u8, band);
+        let power: Vec<f64> = input.magnitude.iter().map(|m| m * m).collect();
+        let bank = MelBank::new(bands, band, input.frequency_hz);
+        let mut log_energy = bank.energies(&power);
+        log_energy.iter_mut().for_each(|e| *e = libm::log(e.max(FLOOR)));
+        let mut cepstrum = vec![0.0; kept];
+        dct_ii(&log_energy, &mut cepstrum);
+        let mut spectrum = Spectrum::new(inverse, band);
+        spectrum.set(&cepstrum)?;
+        let count = [cepstrum.len() as f64];
+        let rest = [bands as f64, input.options[INVERSE_OPTION]];
+        Ok(Fit {
+            parameters: [&count[..], &cepstrum, &rest].concat(),
+            level_rms: spectrum.level,
+        })
+    }
+
+    fn magnitude(
+        parameters: &Values<'_>,
+        band: htex_model::Band,
+        frequency_hz: &[f64],
+        magnitude: &mut [f64],
+    ) -> Result<(), Error> {
+        let band = band.edges().into();
+        let spectrum = Spectrum::read(parameters, band)?;
+        for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
+            *m = if band.contains(f) { spectrum.at(f) / spectrum.level } else { 0.0 };
+        }
+        Ok(())
+    }
+
+    /// Mixes cepstra, that is, log energies.
+    fn interpolate(sets: &[Values<'_>], weights: &[f64]) -> Result<Vec<f64>, Error> {
+        let kind = |set: &Values<'_>| (set.scalar(BANDS), set.scalar(INVERSE));
+        if sets.iter().any(|set| kind(set) != kind(&sets[0])) {
+            return Err(Error::argument(
+                "cepstra of different mel banks or inverses cannot be mixed",
+            ));
+        }
+        mix::linear(sets, weights)
+    }
+
+    fn voice_rate_hz(_: &Values<'_>, band: htex_model::Band, wanted_hz: f64) -> f64 {
+        economical_rate_hz(wanted_hz, band.edges().into())
+    }
+
+    fn voice(
+        parameters: &Values<'_>,
+        band: htex_model::Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Self::Voice, Error> {
+        let band = band.edges().into();
+        let spectrum = Spectrum::read(parameters, band)?;
+        let mut noise = ShapedNoise::new(rate_hz, band, seed);
+        noise.start(|_, f| spectrum.at(f));
+        Ok(MelCepstrumVoice { spectrum, noise })
+    }
+}
+
+/// Random-phase noise under the spectrum.
+pub struct MelCepstrumVoice {
+    spectrum: Spectrum,
+    noise: ShapedNoise,
+}
+
+impl Voice for MelCepstrumVoice {
+    fn render(&mut self, out: &mut [f32]) {
+        self.noise.render(out);
+    }
+
+    fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+        if !self.spectrum.inverse.is(parameters) {
+            return Err(Error::argument("a voice keeps its mel bank and inverse"));
+        }
+        self.spectrum.set(parameters.list(CEPSTRUM))?;
+        self.noise.retune(|_, f| self.spectrum.at(f));
+        Ok(())
+    }
+}
+
+/// The magnitude a cepstrum stands for, on the grid.
+struct Spectrum {
+    inverse: Arc<Inverse>,
+    energy: Vec<f64>,
+    magnitude: Vec<f64>,
+    /// RMS of `magnitude`.
+    level: f64,
+    first_bin: usize,
+}
+
+impl Spectrum {
+    fn new(inverse: Arc<Inverse>, band: Band) -> Self {
+        Self {
+            energy: vec![0.0; inverse.bands()],
+            magnitude: vec![0.0; band.bins()],
+            level: 0.0,
+            first_bin: band.first_bin(),
+            inverse,
+        }
+    }
+
+    fn read(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
+        let bands = parameters.scalar(BANDS) as usize;
+        let inverse = Inverse::shared(bands, parameters.scalar(INVERSE) as u8, band);
+        let mut spectrum = Self::new(inverse, band);
+        spectrum.set(parameters.list(CEPSTRUM))?;
+        Ok(spectrum)
+    }
+
+    /// Makes the magnitudes of a cepstrum. Does not allocate.
+    fn set(&mut self, cepstrum: &[f64]) -> Result<(), Error> {
+        self.inverse.magnitude(cepstrum, &mut self.energy, &mut self.magnitude);
+        self.level = level_rms(&self.magnitude);
+        if self.level > 0.0 && self.level.is_finite() {
+            return Ok(());
+        }
+        Err(Error::parameters("the cepstrum's band energies are not finite, or all zero"))
+    }
+
+    /// Magnitude between bins: on the straight line between them.
+    fn at(&self, frequency_hz: f64) -> f64 {
+        let last = self.magnitude.len() - 1;
+        let place = (frequency_hz / GRID_HZ - self.first_bin as f64).clamp(0.0, last as f64);
+        let below = place as usize;
+        let above = (below + 1).min(last);
+        let (a, b) = (self.magnitude[below], self.magnitude[above]);
+        a + (place - below as f64) * (b - a)
+    }
+}

@@ -10,6 +10,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(feature = "std"), no_std)]
 extern crate alloc;
+pub mod band_limit;
 pub mod bands;
 pub mod beta;
 pub mod biquad;

@@ -154,15 +154,21 @@ pub fn reflection_to_coefficients(reflection: &[f64]) -> Vec<f64> {
 /// Each stage divides by `1 - k²`: with poles very near the unit circle digits are lost.
 pub fn coefficients_to_reflection(coefficients: &[f64]) -> Option<Vec<f64>> {
     let mut a = coefficients.to_vec();
+    step_down_in_place(&mut a).then_some(a)
+}
+
+/// As [`coefficients_to_reflection`], in place and without allocating; `false` if the model is
+/// unstable or not finite, and `a` is then of no use.
+pub fn step_down_in_place(a: &mut [f64]) -> bool {
     for m in (0..a.len()).rev() {
         let k = a[m];
         if k.is_nan() || k.abs() >= 1.0 {
-            return None;
+            return false;
         }
+        // Each stage leaves its own reflection coefficient at its place.
         step_down(&mut a[..m], k);
     }
-    // Each stage has left its own reflection coefficient at its place.
-    Some(a)
+    true
 }
 
 /// Whether all poles lie inside the unit circle.

@@ -127,7 +127,11 @@ impl ShapedNoise {
             self.pending_amplitude[i] = a;
             power += 0.5 * a * a;
         }
-        let gain = if power > 0.0 { 1.0 / libm::sqrt(power) } else { 0.0 };
+        let gain = if power > 0.0 {
+            1.0 / libm::sqrt(power)
+        } else {
+            0.0
+        };
         self.pending_amplitude.iter_mut().for_each(|a| *a *= gain);
     }
 
@@ -246,7 +250,11 @@ mod tests {
         };
         // 5,000 independent samples a position within the hop: standard error 2 %.
         for phase in [0, 125, 250, 499] {
-            assert!((power(phase) - 1.0).abs() < 0.1, "{phase}: {}", power(phase));
+            assert!(
+                (power(phase) - 1.0).abs() < 0.1,
+                "{phase}: {}",
+                power(phase)
+            );
         }
         let total = out.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / out.len() as f64;
         assert!((total - 1.0).abs() < 0.01, "{total}");
@@ -265,7 +273,11 @@ mod tests {
             }
             out
         };
-        let step = |x: &[f32]| x.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f32::max);
+        let step = |x: &[f32]| {
+            x.windows(2)
+                .map(|w| (w[1] - w[0]).abs())
+                .fold(0.0, f32::max)
+        };
         let out = render(1_000);
         // Between 1,000 and 1,025 the fade runs; it is no steeper than the noise itself.
         assert!(step(&out[990..1_040]) < 2.0 * step(&out[..990]));

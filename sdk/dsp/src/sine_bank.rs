@@ -248,7 +248,10 @@ mod tests {
         }]);
         bank.render(&mut out[1_000..]);
         // Steepest slope: 2π (70·1 + 333.3·0.5) / 20 kHz, plus the ramp's own.
-        let step = out.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f32::max);
+        let step = out
+            .windows(2)
+            .map(|w| (w[1] - w[0]).abs())
+            .fold(0.0, f32::max);
         assert!(step < 0.09, "{step}");
     }
 }

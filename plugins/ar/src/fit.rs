@@ -1,0 +1,112 @@
+//! Estimation of the coefficients.
+
+use htex_dsp::estimation::{burg, covariance};
+use htex_dsp::grid::{Band, GRID_HZ, level_rms};
+use htex_dsp::linear_prediction::{LinearPrediction, levinson_durbin};
+use htex_dsp::resample::Resampler;
+use htex_model::{Error, Fit, FitInput};
+
+use crate::{Filter, flat};
+
+const ORDER: usize = 0;
+const RATE: usize = 1;
+const METHOD: usize = 2;
+/// Equivalent noise bandwidth of a bin, hertz: magnitude² = 2 · P · this.
+const BIN_ENBW_HZ: f64 = 1.5 * GRID_HZ;
+
+pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
+    if input.magnitude.iter().all(|&m| m == 0.0) {
+        return Err(Error::cannot_fit("the spectrum is silent: there is no filter to find"));
+    }
+    let order = input.options[ORDER] as usize;
+    // A band that ends below the tactile one was recorded at twice its end.
+    let rate_hz = if input.band.high_hz < Band::TACTILE.high_hz {
+        input.options[RATE].min(2.0 * input.band.high_hz)
+    } else {
+        input.options[RATE]
+    };
+    match input.options[METHOD] as u32 {
+        0 => from_spectrum(input, order, rate_hz),
+        1 => from_signal(input, rate_hz, |signal| burg(&[signal], order)),
+        _ => from_signal(input, rate_hz, |signal| covariance(&[signal], order)),
+    }
+}
+
+/// Yule–Walker on the power spectrum; the prediction error gives the level.
+fn from_spectrum(input: &FitInput<'_>, order: usize, rate_hz: f64) -> Result<Fit, Error> {
+    // Relative to the largest bin, so that no power over- or underflows.
+    let largest = input.magnitude.iter().fold(0.0f64, |a, &m| a.max(m));
+    let lags: Vec<f64> = (0..=order)
+        .map(|lag| autocorrelation(input, largest, lag as f64 / rate_hz, rate_hz))
+        .collect();
+    let model = levinson_durbin(&lags, order);
+    let filter = Filter {
+        coefficients: &model.coefficients,
+        rate_hz,
+    };
+    // One-sided P = 2 E |H|² / rate, magnitude² = 2 P ENBW.
+    let gain = libm::sqrt(4.0 * model.error * BIN_ENBW_HZ / rate_hz);
+    let level = filter.level(input.band.edges().into())?;
+    Ok(Fit {
+        parameters: flat(&model.coefficients, rate_hz),
+        level_rms: largest * gain * level,
+    })
+}
+
+/// Autocorrelation at `lag_s` of the power in the bins below the Nyquist frequency.
+fn autocorrelation(input: &FitInput<'_>, largest: f64, lag_s: f64, rate_hz: f64) -> f64 {
+    let bins = input.frequency_hz.iter().zip(input.magnitude);
+    bins.filter(|(f, _)| **f <= 0.5 * rate_hz)
+        .map(|(f, m)| {
+            let power = (m / largest) * (m / largest) / 3.0;
+            power * libm::cos(core::f64::consts::TAU * f * lag_s)
+        })
+        .sum()
+}
+
+/// Estimates on the signal at the model rate. Overlap-adding windowed segments changes their power,
+/// so the level is the recording's own in the band.
+fn from_signal(
+    input: &FitInput<'_>,
+    rate_hz: f64,
+    estimate: impl Fn(&[f64]) -> LinearPrediction,
+) -> Result<Fit, Error> {
+    if input.signal.len() < 2 {
+        return Err(Error::cannot_fit(
+            "this method needs the recording's segments; only its spectrum was given",
+        ));
+    }
+    let scale = input.signal.iter().fold(0.0f64, |a, x| a.max(x.abs()));
+    if scale == 0.0 {
+        return Err(Error::cannot_fit("the recording's segments are silent"));
+    }
+    let model = estimate(&resampled(input, rate_hz, scale));
+    let filter = Filter {
+        coefficients: &model.coefficients,
+        rate_hz,
+    };
+    filter.level(input.band.edges().into())?;
+    Ok(Fit {
+        parameters: flat(&model.coefficients, rate_hz),
+        level_rms: level_rms(input.magnitude),
+    })
+}
+
+/// The signal over `scale`, at the model rate.
+fn resampled(input: &FitInput<'_>, rate_hz: f64, scale: f64) -> Vec<f64> {
+    let from_hz = input.signal_rate_hz;
+    let Some(mut resampler) = Resampler::new(from_hz, rate_hz, input.band.high_hz) else {
+        return input.signal.iter().map(|x| x / scale).collect();
+    };
+    let mut at = 0;
+    let mut source = |block: &mut [f32]| {
+        for x in block {
+            *x = input.signal.get(at).map_or(0.0, |s| (s / scale) as f32);
+            at += 1;
+        }
+    };
+    let len = (input.signal.len() as f64 * rate_hz / from_hz) as usize;
+    let mut out = vec![0.0f32; len.max(2)];
+    resampler.process(&mut out, &mut source);
+    out.into_iter().map(f64::from).collect()
+}

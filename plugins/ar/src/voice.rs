@@ -1,0 +1,140 @@
+//! White noise through the filter, as a lattice, which stays stable while it changes.
+
+use htex_dsp::band_limit::band_limit;
+use htex_dsp::biquad::Cascade;
+use htex_dsp::grid::{Band, GRID_HZ};
+use htex_dsp::lattice::AllPoleLattice;
+use htex_dsp::linear_prediction::step_down_in_place;
+use htex_dsp::noise::GaussianNoise;
+use htex_model::{Error, Values, Voice};
+
+use crate::{COEFFICIENTS, Filter, MAX_ORDER, MODEL_RATE, unstable};
+
+/// Length of a change of parameters, seconds.
+const RAMP_S: f64 = 0.010;
+/// Rendered before the first sample, seconds and samples at most: the filter starts in its stride.
+const SETTLE_S: f64 = 0.5;
+const SETTLE_SAMPLES: f64 = 4096.0;
+
+/// An endless stream of filtered noise.
+pub struct AutoregressionVoice {
+    band: Band,
+    rate_hz: f64,
+    noise: GaussianNoise,
+    lattice: AllPoleLattice,
+    edges: Cascade,
+    gain: f64,
+    target: Target,
+    step: Target,
+    ramp_len: u32,
+    ramp_left: u32,
+}
+
+/// Reflection coefficients and the gain of the noise.
+#[derive(Clone, Copy)]
+struct Target {
+    reflection: [f64; MAX_ORDER],
+    gain: f64,
+}
+
+impl AutoregressionVoice {
+    pub(crate) fn new(
+        parameters: &Values<'_>,
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Self, Error> {
+        if rate_hz != parameters.scalar(MODEL_RATE) {
+            return Err(Error::argument(format!(
+                "the filter runs at its model rate of {} Hz, not at {rate_hz} Hz",
+                parameters.scalar(MODEL_RATE)
+            )));
+        }
+        let target = Target::new(parameters, band)?;
+        let mut voice = Self {
+            band,
+            rate_hz,
+            noise: GaussianNoise::new(seed),
+            lattice: AllPoleLattice::new(&target.reflection[..parameters.list(COEFFICIENTS).len()]),
+            edges: band_limit(band, rate_hz),
+            gain: target.gain,
+            target,
+            step: target,
+            ramp_len: libm::ceil(RAMP_S * rate_hz).max(1.0) as u32,
+            ramp_left: 0,
+        };
+        for _ in 0..libm::ceil((SETTLE_S * rate_hz).min(SETTLE_SAMPLES)) as usize {
+            voice.next_sample();
+        }
+        Ok(voice)
+    }
+
+    fn next_sample(&mut self) -> f64 {
+        let filtered = self.lattice.tick(self.gain * self.noise.next_sample());
+        self.edges.tick(filtered)
+    }
+
+    /// Moves one step towards the target.
+    fn ramp(&mut self) {
+        self.ramp_left -= 1;
+        let done = self.ramp_left == 0;
+        for (i, k) in self.lattice.reflection_mut().iter_mut().enumerate() {
+            *k = if done {
+                self.target.reflection[i]
+            } else {
+                *k + self.step.reflection[i]
+            };
+        }
+        self.gain = if done { self.target.gain } else { self.gain + self.step.gain };
+    }
+}
+
+impl Voice for AutoregressionVoice {
+    fn render(&mut self, out: &mut [f32]) {
+        for sample in out {
+            if self.ramp_left > 0 {
+                self.ramp();
+            }
+            *sample = self.next_sample() as f32;
+        }
+    }
+
+    fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+        let order = parameters.list(COEFFICIENTS).len();
+        if parameters.scalar(MODEL_RATE) != self.rate_hz || order > self.lattice.order() {
+            return Err(Error::argument(format!(
+                "a voice of order {} at {} Hz keeps its model rate, and its order or a smaller one",
+                self.lattice.order(),
+                self.rate_hz
+            )));
+        }
+        self.target = Target::new(parameters, self.band)?;
+        self.ramp_left = self.ramp_len;
+        let scale = 1.0 / f64::from(self.ramp_len);
+        self.step.gain = (self.target.gain - self.gain) * scale;
+        for (i, k) in self.lattice.reflection_mut().iter().enumerate() {
+            self.step.reflection[i] = (self.target.reflection[i] - k) * scale;
+        }
+        Ok(())
+    }
+}
+
+impl Target {
+    fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
+        let coefficients = parameters.list(COEFFICIENTS);
+        let rate_hz = parameters.scalar(MODEL_RATE);
+        let mut reflection = [0.0; MAX_ORDER];
+        let used = &mut reflection[..coefficients.len()];
+        used.copy_from_slice(coefficients);
+        if !step_down_in_place(used) {
+            return Err(unstable());
+        }
+        let filter = Filter {
+            coefficients,
+            rate_hz,
+        };
+        // Noise of variance s² has one-sided density 2 s² / rate, read as magnitude² = 2 P ENBW.
+        let gain = libm::sqrt(rate_hz / (4.0 * 1.5 * GRID_HZ)) / filter.level(band)?;
+        Ok(Self { reflection, gain })
+    }
+}

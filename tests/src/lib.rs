@@ -1,1 +1,82 @@
-//! 
+//! What several suites need: golden vectors and their rule of agreement.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+/// The workspace's folder.
+pub fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// One golden case: an input, what must come out, and how nearly.
+pub struct Golden(Value);
+
+impl Golden {
+    /// The case `name` of `golden/FILE.json`.
+    pub fn case(file: &str, name: &str) -> Self {
+        Self::all(file)
+            .into_iter()
+            .find(|case| case.name() == name)
+            .unwrap_or_else(|| panic!("no case {name} in {file}"))
+    }
+
+    /// All cases of a file.
+    pub fn all(file: &str) -> Vec<Self> {
+        let path = workspace().join("tests/golden").join(file).with_extension("json");
+        let text = std::fs::read_to_string(&path).unwrap();
+        let json: Value = serde_json::from_str(&text).unwrap();
+        json["cases"].as_array().unwrap().iter().cloned().map(Golden).collect()
+    }
+
+    /// The case's name.
+    pub fn name(&self) -> &str {
+        self.0["name"].as_str().unwrap()
+    }
+
+    /// A number or numbers of the input.
+    pub fn input(&self, key: &str) -> Vec<f64> {
+        numbers(&self.0["input"][key])
+    }
+
+    /// Whether the input has this key.
+    pub fn has_input(&self, key: &str) -> bool {
+        !self.0["input"][key].is_null()
+    }
+
+    /// The expected values at a JSON pointer below `expected`; null is NaN.
+    pub fn expected(&self, pointer: &str) -> Vec<f64> {
+        numbers(self.0["expected"].pointer(pointer).unwrap_or(&Value::Null))
+    }
+
+    /// Holds `got` to the expected values: `|got - expected| <= atol + rtol·|expected|`.
+    pub fn hold(&self, pointer: &str, got: &[f64]) {
+        let expected = self.expected(pointer);
+        let tolerance = |key: &str| self.0[key].as_f64().unwrap();
+        let (rtol, atol) = (tolerance("rtol"), tolerance("atol"));
+        assert_eq!(got.len(), expected.len(), "{} {pointer}: length", self.name());
+        for (i, (g, e)) in got.iter().zip(&expected).enumerate() {
+            assert!(
+                (g - e).abs() <= atol + rtol * e.abs(),
+                "{} {pointer}[{i}]: got {g}, expected {e}",
+                self.name()
+            );
+        }
+    }
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    match value {
+        Value::Array(items) => items.iter().flat_map(numbers).collect(),
+        Value::Null => vec![f64::NAN],
+        number => vec![number.as_f64().unwrap()],
+    }
+}
+
+/// The smooth test spectrum of the golden vectors, 20 to 1000 Hz in steps of 5 Hz.
+pub fn smooth_spectrum(frequency_hz: &[f64]) -> Vec<f64> {
+    let curve = |f: f64| {
+        0.01 * (-(f / 150.0).ln().powi(2)).exp() + 0.002 * (-((f - 600.0) / 120.0).powi(2)).exp()
+    };
+    frequency_hz.iter().map(|&f| curve(f)).collect()
+}

@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 
 /// Samples between two anchors.
 const ANCHOR_INTERVAL: u32 = 512;
-/// Time constant-like length of an amplitude change, seconds.
+/// Length of a change of amplitudes and frequencies, seconds.
 const RAMP_S: f64 = 0.010;
 const CYCLE: f64 = 18_446_744_073_709_551_616.0; // 2^64
 
@@ -31,6 +31,11 @@ struct Oscillators {
     sin: Vec<f64>,
     turn_cos: Vec<f64>,
     turn_sin: Vec<f64>,
+    /// Change of `increment` a sample, while frequencies glide (two's complement).
+    bend: Vec<u64>,
+    bend_cos: Vec<f64>,
+    bend_sin: Vec<f64>,
+    goal: Vec<u64>,
     amplitude: Vec<f64>,
     step: Vec<f64>,
     target: Vec<f64>,
@@ -64,6 +69,10 @@ impl SineBank {
                 sin: zeros(),
                 turn_cos: zeros(),
                 turn_sin: zeros(),
+                bend: alloc::vec![0; capacity],
+                bend_cos: alloc::vec![1.0; capacity],
+                bend_sin: zeros(),
+                goal: alloc::vec![0; capacity],
                 amplitude: zeros(),
                 step: zeros(),
                 target: zeros(),
@@ -73,30 +82,33 @@ impl SineBank {
             bank.osc.phase[i] = cycles_to_fixed(sine.phase_cycles);
             bank.set(i, Some(sine));
             bank.osc.amplitude[i] = bank.osc.target[i];
+            bank.osc.increment[i] = bank.osc.goal[i];
         }
         bank.anchor();
         bank
     }
 
-    /// Changes to `sines` from the next sample on: phases go on, amplitudes ramp over 10 ms.
-    /// Oscillators are matched by index. Does not allocate.
+    /// Changes to `sines` from the next sample on: over 10 ms amplitudes ramp and frequencies
+    /// glide, phases go on. Oscillators are matched by index. Does not allocate.
     pub fn retune(&mut self, sines: &[Sine]) {
-        self.advance_phases();
+        self.advance();
         for i in 0..self.osc.phase.len() {
-            if let Some(sine) = sines.get(i)
-                && self.osc.target[i] == 0.0
-                && self.osc.amplitude[i] == 0.0
-            {
-                self.osc.phase[i] = cycles_to_fixed(sine.phase_cycles);
-            }
+            let silent = self.osc.amplitude[i] == 0.0;
             self.set(i, sines.get(i));
+            if silent {
+                // Nothing is heard: it may start anywhere.
+                self.osc.increment[i] = self.osc.goal[i];
+                self.osc.phase[i] = sines.get(i).map_or(0, |s| cycles_to_fixed(s.phase_cycles));
+            }
         }
-        self.anchor();
         self.ramp_left = self.ramp_len;
         let scale = 1.0 / f64::from(self.ramp_len);
         for i in 0..self.osc.phase.len() {
             self.osc.step[i] = (self.osc.target[i] - self.osc.amplitude[i]) * scale;
+            let change = self.osc.goal[i].wrapping_sub(self.osc.increment[i]) as i64;
+            self.osc.bend[i] = (change / i64::from(self.ramp_len)) as u64;
         }
+        self.anchor();
     }
 
     /// Fills `out` with the next samples. Does not allocate.
@@ -104,7 +116,7 @@ impl SineBank {
         let mut done = 0;
         while done < out.len() {
             if self.since_anchor == ANCHOR_INTERVAL {
-                self.advance_phases();
+                self.advance();
                 self.anchor();
             }
             let left = (ANCHOR_INTERVAL - self.since_anchor) as usize;
@@ -122,24 +134,45 @@ impl SineBank {
             }
             self.since_anchor += run as u32;
             done += run;
+            self.end_ramp_if_due(run);
         }
     }
 
     fn set(&mut self, i: usize, sine: Option<&Sine>) {
         let heard = sine.filter(|s| s.frequency_hz < 0.5 * self.rate_hz);
         self.osc.target[i] = heard.map_or(0.0, |s| s.amplitude);
-        if let Some(s) = heard {
-            self.osc.increment[i] = cycles_to_fixed(s.frequency_hz / self.rate_hz);
-        }
+        // An oscillator that fades out keeps its frequency.
+        self.osc.goal[i] = heard.map_or(self.osc.increment[i], |s| {
+            cycles_to_fixed(s.frequency_hz / self.rate_hz)
+        });
     }
 
-    /// Brings the counted phases up to the current sample.
-    fn advance_phases(&mut self) {
+    /// Brings the counted phases and increments up to the current sample.
+    fn advance(&mut self) {
         let n = u64::from(self.since_anchor);
-        for (phase, increment) in self.osc.phase.iter_mut().zip(&self.osc.increment) {
-            *phase = phase.wrapping_add(increment.wrapping_mul(n));
+        for i in 0..self.osc.phase.len() {
+            let bend = self.osc.bend[i];
+            let turned = self.osc.increment[i]
+                .wrapping_mul(n)
+                .wrapping_add(bend.wrapping_mul(n * (n + 1) / 2));
+            self.osc.phase[i] = self.osc.phase[i].wrapping_add(turned);
+            self.osc.increment[i] = self.osc.increment[i].wrapping_add(bend.wrapping_mul(n));
         }
         self.since_anchor = 0;
+    }
+
+    fn end_ramp_if_due(&mut self, run: usize) {
+        if self.ramp_left == 0 {
+            return;
+        }
+        self.ramp_left -= run as u32;
+        if self.ramp_left == 0 {
+            self.advance();
+            self.osc.amplitude.copy_from_slice(&self.osc.target);
+            self.osc.increment.copy_from_slice(&self.osc.goal);
+            self.osc.bend.fill(0);
+            self.anchor();
+        }
     }
 
     /// Restarts the rotations from the counted phases.
@@ -151,6 +184,9 @@ impl SineBank {
             self.osc.sin[i] = sin;
             self.osc.turn_cos[i] = turn_cos;
             self.osc.turn_sin[i] = turn_sin;
+            let (bend_sin, bend_cos) = libm::sincos(fixed_to_radians(self.osc.bend[i]));
+            self.osc.bend_cos[i] = bend_cos;
+            self.osc.bend_sin[i] = bend_sin;
         }
     }
 
@@ -165,10 +201,7 @@ impl SineBank {
             for (a, step) in self.osc.amplitude.iter_mut().zip(&self.osc.step) {
                 *a += step;
             }
-            self.ramp_left -= 1;
-            if self.ramp_left == 0 {
-                self.osc.amplitude.copy_from_slice(&self.osc.target);
-            }
+            self.osc.bend_turns();
             *sample = self.osc.sum_and_turn() as f32;
         }
     }
@@ -189,6 +222,15 @@ impl Oscillators {
             cos[i] = next;
         }
         sum
+    }
+
+    /// Changes each oscillator's frequency by its bend.
+    fn bend_turns(&mut self) {
+        for i in 0..self.turn_cos.len() {
+            let (c, s) = (self.turn_cos[i], self.turn_sin[i]);
+            self.turn_cos[i] = c * self.bend_cos[i] - s * self.bend_sin[i];
+            self.turn_sin[i] = s * self.bend_cos[i] + c * self.bend_sin[i];
+        }
     }
 }
 

@@ -1,0 +1,145 @@
+//! What every voice must do, whatever the model: match its own magnitude and level, ignore block
+//! sizes, follow its seed, and change without a click.
+
+use htex_dsp::spectrum::SegmentAnalyzer;
+use htex_host::{Band, FitRequest, LoadedModel, Registry, Stream};
+use htex_tests::smooth_spectrum;
+
+const RATE_HZ: f64 = 20_000.0;
+
+/// Every built-in model with parameters fitted to a spectrum with some life in it.
+fn fitted() -> Vec<(LoadedModel, Vec<f64>)> {
+    let band = Band::TACTILE;
+    let grid = band.grid_hz();
+    let ripple = |(i, m): (usize, &f64)| m * (1.0 + 0.3 * (i as f64 * 0.9).sin());
+    let magnitude: Vec<f64> = smooth_spectrum(&grid).iter().enumerate().map(ripple).collect();
+    let models = Registry::builtin();
+    assert_eq!(models.models().len(), 5);
+    let fit = |model: &LoadedModel| {
+        let request = FitRequest {
+            band,
+            frequency_hz: &grid,
+            magnitude: &magnitude,
+            signal: &[],
+            signal_rate_hz: RATE_HZ,
+            options: &model.options(&[]).unwrap(),
+        };
+        (model.clone(), model.fit(&request).unwrap().parameters)
+    };
+    models.models().iter().map(fit).collect()
+}
+
+fn stream(model: &LoadedModel, parameters: &[f64], seed: u64) -> Stream {
+    Stream::new(model, parameters, Band::TACTILE, RATE_HZ, seed).unwrap()
+}
+
+/// RMS-averaged texture spectrum of a stream.
+fn measured_spectrum(samples: &[f32]) -> Vec<f64> {
+    let mut analyzer = SegmentAnalyzer::new(4_000);
+    let mut bins = analyzer.make_bins();
+    let mut power = vec![0.0; Band::TACTILE.bins()];
+    let mut count = 0.0;
+    for start in (0..samples.len() - 4_000).step_by(2_000) {
+        let segment: Vec<f64> = samples[start..start + 4_000].iter().map(|&x| x.into()).collect();
+        analyzer.analyze(&segment, &mut bins).unwrap();
+        power.iter_mut().zip(&bins[4..]).for_each(|(p, x)| *p += x.norm_sqr());
+        count += 1.0;
+    }
+    power.iter().map(|p| (p / count).sqrt() * analyzer.amplitude_scale()).collect()
+}
+
+/// RMS of the decibels between two spectra over the reference's strongest bins that hold 99 % of
+/// its energy.
+fn distance_db(measured: &[f64], reference: &[f64]) -> f64 {
+    let mut order: Vec<usize> = (0..reference.len()).collect();
+    order.sort_by(|&a, &b| reference[b].total_cmp(&reference[a]));
+    let total: f64 = reference.iter().map(|m| m * m).sum();
+    let (mut held, mut sum, mut n) = (0.0, 0.0, 0.0);
+    for i in order {
+        if held >= 0.99 * total {
+            break;
+        }
+        held += reference[i] * reference[i];
+        let db = 20.0 * (measured[i] / reference[i]).log10();
+        sum += db * db;
+        n += 1.0;
+    }
+    (sum / n).sqrt()
+}
+
+#[test]
+fn a_minute_of_each_voice_has_its_magnitude_and_level() {
+    for (model, parameters) in fitted() {
+        let mut out = vec![0.0f32; 60 * RATE_HZ as usize];
+        stream(&model, &parameters, 11).render(&mut out).unwrap();
+        let rms = (out.iter().map(|&x| f64::from(x).powi(2)).sum::<f64>() / out.len() as f64).sqrt();
+        let grid = Band::TACTILE.grid_hz();
+        let magnitude = model.magnitude(&parameters, Band::TACTILE, &grid).unwrap();
+        let distance = distance_db(&measured_spectrum(&out), &magnitude);
+        println!("{:16} RMS {rms:.4}  spectrum within {distance:.3} dB RMS", model.id());
+        assert!((rms - 1.0).abs() < 0.02, "{}: RMS {rms}", model.id());
+        assert!(distance < 1.0, "{}: {distance} dB", model.id());
+    }
+}
+
+#[test]
+fn blocks_and_seeds() {
+    for (model, parameters) in fitted() {
+        let render = |block: usize, seed: u64| {
+            let mut stream = stream(&model, &parameters, seed);
+            let mut out = vec![0.0f32; 9_000];
+            out.chunks_mut(block).for_each(|part| stream.render(part).unwrap());
+            out
+        };
+        let whole = render(9_000, 5);
+        for block in [1, 7, 64, 1_000] {
+            assert_eq!(render(block, 5), whole, "{} in blocks of {block}", model.id());
+        }
+        // sPeak starts all its sinusoids at their crests unless asked otherwise.
+        if model.short_name() != "speak" {
+            assert_ne!(render(64, 6), whole, "{}", model.id());
+        }
+    }
+}
+
+#[test]
+fn retunes_do_not_click() {
+    let models = fitted();
+    for (model, parameters) in models {
+        let other = louder_at_one_end(&model);
+        let half = model.interpolate(&[&parameters, &other], &[0.5, 0.5]).unwrap();
+        let mut stream = stream(&model, &parameters, 3);
+        let mut out = vec![0.0f32; 40_000];
+        for (i, block) in out.chunks_mut(500).enumerate() {
+            stream.retune([&parameters, &half, &other][i % 3]).unwrap();
+            stream.render(block).unwrap();
+        }
+        let second_difference = |x: &[f32]| (x[2] - 2.0 * x[1] + x[0]).abs();
+        let largest = |x: &[f32]| x.windows(3).map(second_difference).fold(0.0, f32::max);
+        let steady = |p: &[f64]| {
+            let mut out = vec![0.0f32; 40_000];
+            Stream::new(&model, p, Band::TACTILE, RATE_HZ, 3).unwrap().render(&mut out).unwrap();
+            largest(&out)
+        };
+        // A click would show as a bend far sharper than any the steady signals have.
+        let bound = 2.0 * steady(&parameters).max(steady(&other)).max(steady(&half));
+        assert!(largest(&out) < bound, "{}: {} {bound}", model.id(), largest(&out));
+    }
+}
+
+/// Parameters fitted to a falling spectrum with two bumps.
+fn louder_at_one_end(model: &LoadedModel) -> Vec<f64> {
+    let band = Band::TACTILE;
+    let grid = band.grid_hz();
+    let curve = |f: &f64| (-f / 90.0).exp() * (1.2 + (f / 25.0).sin());
+    let magnitude: Vec<f64> = grid.iter().map(curve).collect();
+    let request = FitRequest {
+        band,
+        frequency_hz: &grid,
+        magnitude: &magnitude,
+        signal: &[],
+        signal_rate_hz: RATE_HZ,
+        options: &model.options(&[]).unwrap(),
+    };
+    model.fit(&request).unwrap().parameters
+}

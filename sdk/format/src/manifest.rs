@@ -1,0 +1,233 @@
+//! `manifest.json`: everything an asset says in words and single numbers.
+//!
+//! Keys that are absent or empty are left out when written. Keys this version does not know are
+//! kept and written back ([`Manifest::other`]).
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// The version of the format this crate writes.
+pub const VERSION: &str = "1.0";
+/// `quantity` of version 1.
+pub const LATERAL_FORCE: &str = "lateral_force";
+/// `unit` of version 1.
+pub const NEWTON: &str = "N";
+
+/// The asset: one surface.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Manifest {
+    /// Version of the format, `MAJOR.MINOR`.
+    pub htex: String,
+    /// Name of the texture.
+    pub name: String,
+    /// SPDX licence expression of the asset.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub license: Option<String>,
+    /// Who made it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub author: Option<String>,
+    /// Words to find it by.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tags: Vec<String>,
+    /// What the samples mean: `lateral_force`.
+    pub quantity: String,
+    /// Their unit: `N`.
+    pub unit: String,
+    /// The band the spectra cover.
+    pub band: Band,
+    /// Where the asset comes from.
+    #[serde(default, skip_serializing_if = "Provenance::is_empty")]
+    pub provenance: Provenance,
+    /// The exploration conditions the texture is known at.
+    pub conditions: Vec<Condition>,
+    /// The texture's spectrum, once for each model.
+    pub representations: Vec<Representation>,
+    /// The recorded spectra themselves.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reference: Option<Reference>,
+    /// Extensions by name (`com.vendor.NAME/REV`).
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub extensions: BTreeMap<String, Value>,
+    /// Extensions without which the asset cannot be used.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub extensions_required: Vec<String>,
+    /// Keys of a newer minor version.
+    #[serde(flatten)]
+    #[schemars(skip)]
+    pub other: BTreeMap<String, Value>,
+}
+
+/// A frequency band, inclusive.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Band {
+    /// Lower edge, hertz, above 0.
+    pub low_hz: f64,
+    /// Upper edge, hertz, above the lower.
+    pub high_hz: f64,
+}
+
+/// Where an asset comes from.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+pub struct Provenance {
+    /// Program and version that wrote it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub tool: String,
+    /// True when a recording comes from a simulator and not from a finger.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub simulated: bool,
+    /// The recordings it was made from.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub recordings: Vec<Source>,
+    /// Options that were not left at their defaults.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub options: BTreeMap<String, String>,
+    /// What its author was warned of.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
+}
+
+impl Provenance {
+    fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// A recording.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Source {
+    /// File name without its folder.
+    pub file: String,
+    /// Sampling rate, hertz.
+    pub rate_hz: f64,
+    /// How many segments of it were averaged.
+    pub segments: u64,
+}
+
+/// An exploration condition; what is absent is not known.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+pub struct Condition {
+    /// Scanning speed, mm/s, not negative.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_mm_s: Option<f64>,
+    /// Normal force, newtons, not negative.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force_n: Option<f64>,
+    /// Nine-band RMS difference between odd and even segments, decibels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub repeatability_rms_db: Option<f64>,
+}
+
+/// One model's account of the texture.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Representation {
+    /// Reverse-DNS id of the model.
+    pub model: String,
+    /// Semantic version of the model that fitted it.
+    pub model_version: String,
+    /// Parameter fields, in the order of the flat array.
+    pub fields: Vec<Field>,
+    /// The conditions it is fitted at, in the order of the parameter block.
+    pub at: Vec<AtCondition>,
+    /// Archive entry that holds the parameter block.
+    pub parameters: String,
+}
+
+/// A parameter field and the way it is stored.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Field {
+    /// Name, as in the model's descriptor.
+    pub name: String,
+    /// Unit symbol; a pure number has none.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub unit: String,
+    /// A list of numbers instead of one.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub list: bool,
+    /// How each number is stored.
+    #[serde(default, skip_serializing_if = "Store::is_f64")]
+    pub store: Store,
+}
+
+/// How a number is stored. The integer kinds stand for `offset + scale·q`, or with `log` for
+/// `exp(offset + scale·q)`.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Store {
+    /// IEEE 754 binary64.
+    #[default]
+    F64,
+    /// IEEE 754 binary32.
+    F32,
+    /// 16-bit steps.
+    U16(Steps),
+    /// 8-bit steps.
+    U8(Steps),
+}
+
+/// Steps of an integer store.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Steps {
+    /// Size of a step, above 0.
+    pub scale: f64,
+    /// Value at `q = 0`.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub offset: f64,
+    /// Steps in the natural logarithm.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub log: bool,
+}
+
+impl Store {
+    fn is_f64(&self) -> bool {
+        *self == Self::F64
+    }
+}
+
+fn is_zero(x: &f64) -> bool {
+    *x == 0.0
+}
+
+/// A representation at one condition.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct AtCondition {
+    /// Index into the asset's conditions.
+    pub condition: usize,
+    /// RMS of the fitted spectrum in the band, newtons; the parameters are a shape of unit RMS.
+    pub level_n_rms: f64,
+    /// How near it comes to the recording.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub quality: Option<Quality>,
+}
+
+/// Agreement with the recorded spectrum, from the model's magnitudes unless said otherwise.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Quality {
+    /// Pearson correlation of the linear magnitudes, -1 to 1.
+    pub spectral_correlation: f64,
+    /// Energy over the recording's in nine bands, decibels.
+    pub band_error_db: Vec<f64>,
+    /// RMS of the nine.
+    pub band_error_rms_db: f64,
+    /// RMS of the nine after one gain that equalises the total energy.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub band_error_matched_rms_db: Option<f64>,
+    /// Spectral correlation of rendered samples.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples_spectral_correlation: Option<f64>,
+    /// Nine-band RMS of rendered samples.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples_band_error_rms_db: Option<f64>,
+    /// Nine-band RMS between the spectra of the fitted and of the stored parameters.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rounding_error_db: Option<f64>,
+}
+
+/// Where the recorded spectra are kept.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Reference {
+    /// Archive entry: one array of 32-bit floats a condition, on the band's 5 Hz grid, newtons.
+    pub file: String,
+}

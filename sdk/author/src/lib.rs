@@ -1,1 +1,34 @@
-//! 
+//! Recordings in, fitted and measured texture assets out.
+//!
+//! The way of a recording: [`read::read_recording`], [`segment_spectra`],
+//! [`TextureSpectrum::average`], [`fit_asset`]. Definitions follow the paper's Texture processing;
+//! where it is silent, the option's own documentation says what is done.
+#![forbid(unsafe_code)]
+
+mod conditions;
+mod error;
+mod exploration;
+mod fit;
+mod metrics;
+pub mod read;
+pub mod recording;
+mod rendered;
+pub mod response;
+mod segments;
+pub mod simulate;
+mod spectrum;
+mod stored;
+
+pub use conditions::Take;
+pub use error::AuthorError;
+pub use exploration::{Exploration, exploration};
+pub use fit::{AssetRequest, FittedAsset, Level, ModelRequest, fit_asset, measure};
+pub use metrics::{Agreement, agreement};
+pub use recording::Recording;
+pub use rendered::rendered_spectrum;
+pub use response::SetupResponse;
+pub use segments::{SegmentChoice, Segments, Sweep, choose_segments, segment_len};
+pub use spectrum::{
+    Averaging, SegmentSpectra, SpectrumOptions, SpectrumRef, TextureSpectrum, segment_spectra,
+};
+pub use stored::stored_fields;

@@ -1,1 +1,25 @@
-//! 
+//! Open a texture asset and play it.
+//!
+//! ```no_run
+//! use htex::{Asset, VoiceOptions};
+//! let asset = Asset::open("sandpaper.htex")?;
+//! let mut voice = asset.voice(&VoiceOptions::default())?;
+//! let mut block = [0.0f32; 256];
+//! voice.set_motion(80.0, 0.4)?; // mm/s, newtons
+//! voice.render(&mut block)?; // newtons
+//! # Ok::<(), htex::Error>(())
+//! ```
+//!
+//! [`Voice::render`] does not allocate, lock or touch files: it may run in an audio thread.
+#![forbid(unsafe_code)]
+
+mod asset;
+mod error;
+mod mesh;
+mod voice;
+
+pub use asset::{Asset, VoiceOptions};
+pub use error::Error;
+pub use htex_format::{Finding, Limits, Manifest, Severity};
+pub use htex_host::{Band, Registry};
+pub use voice::Voice;

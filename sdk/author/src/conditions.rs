@@ -1,0 +1,110 @@
+//! Which recordings belong to one exploration condition.
+
+use htex_format::{Condition, Source};
+
+use crate::fit::source_of;
+use crate::spectrum::{SegmentSpectra, segment_spectra};
+use crate::{AuthorError, Exploration, Recording, SpectrumOptions, TextureSpectrum, exploration};
+
+/// Recordings whose speeds and forces differ by less than this part are of one condition.
+const SAME: f64 = 0.05;
+
+/// A recording and what is known of its condition beforehand.
+#[derive(Debug, Clone)]
+pub struct Take {
+    /// The recording.
+    pub recording: Recording,
+    /// Speed and force as given; wins over what was measured.
+    pub given: Exploration,
+}
+
+/// One condition's spectrum.
+pub(crate) struct Group {
+    pub(crate) spectrum: TextureSpectrum,
+}
+
+/// All conditions.
+pub(crate) struct Grouped {
+    pub(crate) groups: Vec<Group>,
+    pub(crate) conditions: Vec<Condition>,
+    pub(crate) sources: Vec<Source>,
+    pub(crate) warnings: Vec<String>,
+}
+
+struct Gathering {
+    condition: Exploration,
+    parts: Vec<SegmentSpectra>,
+}
+
+/// Takes the recordings' spectra and averages those of one condition.
+pub(crate) fn group_takes(
+    takes: &[Take],
+    options: &SpectrumOptions,
+    strict: bool,
+) -> Result<Grouped, AuthorError> {
+    let (mut gatherings, mut sources, mut warnings) = (Vec::<Gathering>::new(), Vec::new(), vec![]);
+    for take in takes {
+        warnings.extend(take.recording.warnings.iter().cloned());
+        let part = segment_spectra(&take.recording, options)?;
+        warnings.extend(part.warnings.iter().cloned());
+        sources.push(source_of(take, part.spectra.len()));
+        let (recording, segments) = (&take.recording, &part.segments);
+        let condition = exploration(recording, segments, take.given, strict, &mut warnings)?;
+        match gatherings.iter_mut().find(|g| same(g.condition, condition)) {
+            Some(gathering) => gathering.parts.push(part),
+            None => gatherings.push(Gathering {
+                condition,
+                parts: vec![part],
+            }),
+        }
+    }
+    check_known(&gatherings)?;
+    let (mut groups, mut conditions) = (Vec::new(), Vec::new());
+    for gathering in gatherings {
+        let spectrum = TextureSpectrum::average(&gathering.parts, options.averaging)?;
+        conditions.push(Condition {
+            speed_mm_s: gathering.condition.speed_mm_s.map(four_digits),
+            force_n: gathering.condition.force_n.map(four_digits),
+            repeatability_rms_db: spectrum.repeatability_rms_db,
+        });
+        groups.push(Group { spectrum });
+    }
+    if groups.windows(2).any(|pair| pair[0].spectrum.band != pair[1].spectrum.band) {
+        return Err(AuthorError::BandsDiffer);
+    }
+    Ok(Grouped {
+        groups,
+        conditions,
+        sources,
+        warnings,
+    })
+}
+
+fn same(a: Exploration, b: Exploration) -> bool {
+    let near = |a: Option<f64>, b: Option<f64>| match (a, b) {
+        (Some(a), Some(b)) => (a - b).abs() <= SAME * a.max(b),
+        (None, None) => true,
+        _ => false,
+    };
+    near(a.speed_mm_s, b.speed_mm_s) && near(a.force_n, b.force_n)
+}
+
+/// Several conditions can only be told apart by what is known of all of them.
+fn check_known(gatherings: &[Gathering]) -> Result<(), AuthorError> {
+    let known = gatherings
+        .iter()
+        .filter(|g| g.condition.speed_mm_s.is_some() && g.condition.force_n.is_some())
+        .count();
+    if gatherings.len() < 2 || known == gatherings.len() {
+        return Ok(());
+    }
+    Err(AuthorError::UnknownConditions {
+        known,
+        all: gatherings.len(),
+    })
+}
+
+/// Measured speeds and forces mean nothing beyond four digits.
+fn four_digits(x: f64) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(x)
+}

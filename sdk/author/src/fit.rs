@@ -1,0 +1,269 @@
+//! From recordings to a fitted and measured asset.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
+use htex_dsp::grid::level_rms;
+use htex_format::{
+    AtCondition, Asset, Condition, LATERAL_FORCE, Manifest, NEWTON, Provenance, Quality, Reference,
+    Representation, Source, VERSION, round_parameters,
+};
+use htex_host::{FitRequest, HostError, LoadedModel};
+
+use crate::conditions::{Group, Take, group_takes};
+use crate::spectrum::SpectrumRef;
+use crate::stored::stored_fields;
+use crate::{AuthorError, SpectrumOptions, TextureSpectrum, agreement, rendered_spectrum};
+
+/// A model to fit, with one value for each of its options.
+#[derive(Debug, Clone)]
+pub struct ModelRequest {
+    /// The model.
+    pub model: LoadedModel,
+    /// Its option values ([`LoadedModel::options`]).
+    pub options: Vec<f64>,
+}
+
+/// Which level a representation gets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Level {
+    /// The RMS of its own fitted magnitude: shape times level is what was fitted.
+    #[default]
+    Fitted,
+    /// The recording's RMS in the band.
+    Recording,
+}
+
+/// What an asset is to be made of.
+#[derive(Debug, Clone, Default)]
+pub struct AssetRequest {
+    /// Name of the texture.
+    pub name: String,
+    /// SPDX licence expression.
+    pub license: Option<String>,
+    /// Who made it.
+    pub author: Option<String>,
+    /// Words to find it by.
+    pub tags: Vec<String>,
+    /// Models, in the order of the representations.
+    pub models: Vec<ModelRequest>,
+    /// The recording pipeline.
+    pub spectrum: SpectrumOptions,
+    /// Which level representations get.
+    pub level: Level,
+    /// Refuse recordings that leave their condition by more than 10 %.
+    pub strict: bool,
+    /// Keep the recorded spectra in the asset.
+    pub keep_reference: bool,
+    /// Options that were not left at their defaults, for the record.
+    pub recorded_options: BTreeMap<String, String>,
+    /// Program and version, for the record.
+    pub tool: String,
+}
+
+/// A fitted asset, and what a file does not say.
+#[derive(Debug, Clone)]
+pub struct FittedAsset {
+    /// The asset.
+    pub asset: Asset,
+    /// Milliseconds each representation's fits took.
+    pub fit_ms: Vec<f64>,
+    /// Models that could not be fitted, and why.
+    pub skipped: Vec<(String, String)>,
+    /// The texture spectrum of each condition.
+    pub spectra: Vec<TextureSpectrum>,
+}
+
+/// Fits every model to every condition, measures what will be stored, and makes the asset.
+///
+/// A model that cannot be fitted is left out and named in `skipped`.
+///
+/// # Errors
+/// When a recording is not usable, or no model could be fitted.
+pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, AuthorError> {
+    let grouped = group_takes(takes, &request.spectrum, request.strict)?;
+    let mut warnings = grouped.warnings;
+    let mut fitted = Vec::new();
+    let mut skipped = Vec::new();
+    for choice in &request.models {
+        match fit_model(choice, &grouped.groups, request.level) {
+            Ok(representation) => fitted.push(representation),
+            Err(AuthorError::Model(HostError::Call { message, .. })) => {
+                warnings.push(format!("{} left out: {message}", choice.model.id()));
+                skipped.push((choice.model.id().to_owned(), message));
+            }
+            Err(other) => return Err(other),
+        }
+    }
+    if fitted.is_empty() {
+        let reasons = skipped.iter().map(|(id, why)| format!("{id}: {why}"));
+        return Err(AuthorError::NothingFitted {
+            reasons: reasons.collect::<Vec<_>>().join("; "),
+        });
+    }
+    let spectra: Vec<TextureSpectrum> = grouped.groups.into_iter().map(|g| g.spectrum).collect();
+    let provenance = Provenance {
+        tool: request.tool.clone(),
+        simulated: takes.iter().any(|take| take.recording.simulated),
+        recordings: grouped.sources,
+        options: request.recorded_options.clone(),
+        warnings,
+    };
+    let fit_ms = fitted.iter().map(|f| f.fit_ms).collect();
+    let asset = assemble(request, provenance, grouped.conditions, &spectra, fitted);
+    Ok(FittedAsset {
+        asset,
+        fit_ms,
+        skipped,
+        spectra,
+    })
+}
+
+struct FittedModel {
+    representation: Representation,
+    parameters: Vec<Vec<f64>>,
+    fit_ms: f64,
+}
+
+fn fit_model(
+    choice: &ModelRequest,
+    groups: &[Group],
+    level: Level,
+) -> Result<FittedModel, AuthorError> {
+    let model = &choice.model;
+    let fields = stored_fields(model.descriptor());
+    let (mut at, mut parameters, mut fit_ms) = (Vec::new(), Vec::new(), 0.0);
+    for (condition, group) in groups.iter().enumerate() {
+        let spectrum = &group.spectrum;
+        let request = FitRequest {
+            band: spectrum.band,
+            frequency_hz: &spectrum.frequency_hz,
+            magnitude: &spectrum.magnitude_n,
+            signal: &spectrum.signal_n,
+            signal_rate_hz: spectrum.signal_rate_hz,
+            options: &choice.options,
+        };
+        let start = Instant::now();
+        let fit = model.fit(&request)?;
+        fit_ms += start.elapsed().as_secs_f64() * 1e3;
+        let stored = round_parameters(&fields, &fit.parameters)?;
+        let level_n_rms = match level {
+            Level::Fitted => fit.level_rms,
+            Level::Recording => level_rms(&spectrum.magnitude_n),
+        };
+        let reference = spectrum.as_ref();
+        let mut quality = measure(model, &stored, level_n_rms, reference)?;
+        let rounding = rounding_error_db(model, &fit.parameters, &stored, reference)?;
+        quality.rounding_error_db = Some(rounding);
+        at.push(AtCondition {
+            condition,
+            level_n_rms,
+            quality: Some(quality),
+        });
+        parameters.push(stored);
+    }
+    let representation = Representation {
+        model: model.id().to_owned(),
+        model_version: model.descriptor().version.clone(),
+        fields,
+        at,
+        parameters: format!("parameters/{}.bin", model.short_name()),
+    };
+    Ok(FittedModel {
+        representation,
+        parameters,
+        fit_ms,
+    })
+}
+
+/// Agreement of parameters and level with a recorded spectrum, by magnitude and by samples.
+///
+/// # Errors
+/// When the model refuses the parameters.
+pub fn measure(
+    model: &LoadedModel,
+    parameters: &[f64],
+    level_n_rms: f64,
+    reference: SpectrumRef<'_>,
+) -> Result<Quality, AuthorError> {
+    let shape = model.magnitude(parameters, reference.band, reference.frequency_hz)?;
+    let magnitude: Vec<f64> = shape.iter().map(|m| m * level_n_rms).collect();
+    let by_magnitude = agreement(reference, &magnitude);
+    let rendered = rendered_spectrum(model, parameters, level_n_rms, reference)?;
+    let by_samples = agreement(reference, &rendered);
+    Ok(Quality {
+        spectral_correlation: by_magnitude.spectral_correlation,
+        band_error_db: by_magnitude.band_error_db,
+        band_error_rms_db: by_magnitude.band_error_rms_db,
+        band_error_matched_rms_db: Some(by_magnitude.band_error_matched_rms_db),
+        samples_spectral_correlation: Some(by_samples.spectral_correlation),
+        samples_band_error_rms_db: Some(by_samples.band_error_rms_db),
+        rounding_error_db: None,
+    })
+}
+
+/// Nine-band RMS between the shapes of the fitted and of the stored parameters, decibels.
+fn rounding_error_db(
+    model: &LoadedModel,
+    fitted: &[f64],
+    stored: &[f64],
+    reference: SpectrumRef<'_>,
+) -> Result<f64, AuthorError> {
+    let bank = BandBank::new(BAND_COUNT, reference.band, reference.frequency_hz);
+    let energies = |parameters: &[f64]| {
+        let shape = model.magnitude(parameters, reference.band, reference.frequency_hz)?;
+        Ok::<_, HostError>(bank.energies(&shape))
+    };
+    Ok(rms(&band_error_db(&energies(fitted)?, &energies(stored)?)))
+}
+
+fn assemble(
+    request: &AssetRequest,
+    provenance: Provenance,
+    conditions: Vec<Condition>,
+    spectra: &[TextureSpectrum],
+    fitted: Vec<FittedModel>,
+) -> Asset {
+    // There is a spectrum a condition, all of one band: `group_takes` sees to it.
+    let band = spectra.first().map_or((20.0, 1000.0), |s| (s.band.low_hz, s.band.high_hz));
+    let (representations, parameters) =
+        fitted.into_iter().map(|f| (f.representation, f.parameters)).unzip();
+    let to_f32 = |s: &TextureSpectrum| s.magnitude_n.iter().map(|&m| m as f32).collect();
+    Asset {
+        manifest: Manifest {
+            htex: VERSION.to_owned(),
+            name: request.name.clone(),
+            license: request.license.clone(),
+            author: request.author.clone(),
+            tags: request.tags.clone(),
+            quantity: LATERAL_FORCE.to_owned(),
+            unit: NEWTON.to_owned(),
+            band: htex_format::Band {
+                low_hz: band.0,
+                high_hz: band.1,
+            },
+            provenance,
+            conditions,
+            representations,
+            reference: request.keep_reference.then(|| Reference {
+                file: "reference.bin".to_owned(),
+            }),
+            extensions: BTreeMap::new(),
+            extensions_required: Vec::new(),
+            other: BTreeMap::new(),
+        },
+        parameters,
+        reference: request.keep_reference.then(|| spectra.iter().map(to_f32).collect()),
+        notes: Vec::new(),
+    }
+}
+
+/// The record of a recording.
+pub(crate) fn source_of(take: &Take, segments: usize) -> Source {
+    Source {
+        file: take.recording.source.clone(),
+        rate_hz: take.recording.rate_hz,
+        segments: segments as u64,
+    }
+}

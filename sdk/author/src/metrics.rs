@@ -1,0 +1,38 @@
+//! How near a spectrum comes to a reference.
+
+use htex_dsp::bands::{
+    BAND_COUNT, BandBank, band_error_db, energy_matching_gain, pearson_correlation, rms,
+};
+
+use crate::spectrum::SpectrumRef;
+
+/// Agreement of one spectrum with a reference (paper: spectral correlation; nine critical bands).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Agreement {
+    /// Pearson correlation of the linear magnitudes.
+    pub spectral_correlation: f64,
+    /// Energy over the reference's in each of the nine bands, decibels.
+    pub band_error_db: Vec<f64>,
+    /// RMS of those.
+    pub band_error_rms_db: f64,
+    /// The gain that equalises total energy, decibels.
+    pub matching_gain_db: f64,
+    /// RMS of the nine after that gain.
+    pub band_error_matched_rms_db: f64,
+}
+
+/// Compares magnitudes on the reference's grid with the reference.
+pub fn agreement(reference: SpectrumRef<'_>, magnitude_n: &[f64]) -> Agreement {
+    let bank = BandBank::new(BAND_COUNT, reference.band, reference.frequency_hz);
+    let expected = bank.energies(reference.magnitude_n);
+    let gain = energy_matching_gain(reference.magnitude_n, magnitude_n);
+    let matched: Vec<f64> = magnitude_n.iter().map(|m| m * gain).collect();
+    let error_db = band_error_db(&expected, &bank.energies(magnitude_n));
+    Agreement {
+        spectral_correlation: pearson_correlation(reference.magnitude_n, magnitude_n),
+        band_error_rms_db: rms(&error_db),
+        band_error_db: error_db,
+        matching_gain_db: 20.0 * gain.log10(),
+        band_error_matched_rms_db: rms(&band_error_db(&expected, &bank.energies(&matched))),
+    }
+}

@@ -1,0 +1,40 @@
+//! The spectrum of what a voice really plays.
+
+use htex_dsp::grid::GRID_HZ;
+use htex_host::{LoadedModel, Stream};
+
+use crate::spectrum::SpectrumRef;
+use crate::{
+    AuthorError, Averaging, Recording, SegmentChoice, SpectrumOptions, TextureSpectrum,
+    segment_spectra,
+};
+
+/// Length of the rendering that is measured, seconds: its band energies scatter by about 0.2 dB.
+const SECONDS: f64 = 20.0;
+const SEED: u64 = 1;
+
+/// Renders parameters at a level and measures the samples as a recording, RMS-averaged: the
+/// magnitudes a model states are those of its power.
+///
+/// # Errors
+/// When the model cannot render, or renders what is no number.
+pub fn rendered_spectrum(
+    model: &LoadedModel,
+    parameters: &[f64],
+    level_n_rms: f64,
+    reference: SpectrumRef<'_>,
+) -> Result<Vec<f64>, AuthorError> {
+    // Four times the band's top, a whole number of samples a segment.
+    let rate_hz = 4.0 * reference.band.last_bin() as f64 * GRID_HZ;
+    let mut samples = vec![0.0f32; (SECONDS * rate_hz) as usize];
+    Stream::new(model, parameters, reference.band, rate_hz, SEED)?.render(&mut samples)?;
+    let newtons = samples.iter().map(|&x| f64::from(x) * level_n_rms).collect();
+    let recording = Recording::new(model.id(), rate_hz, vec![newtons])?;
+    let options = SpectrumOptions {
+        segments: SegmentChoice::Windows,
+        averaging: Averaging::Rms,
+        response: None,
+    };
+    let part = segment_spectra(&recording, &options)?;
+    Ok(TextureSpectrum::average(&[part], options.averaging)?.magnitude_n)
+}

@@ -1,0 +1,316 @@
+//! The texture spectrum of a recording (paper, Texture processing).
+
+use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
+use htex_dsp::grid::{Band, GRID_HZ};
+use htex_dsp::spectrum::{Complex, SegmentAnalyzer, dft321};
+use realfft::RealFftPlanner;
+
+use crate::segments::{SegmentChoice, Segments, choose_segments};
+use crate::{AuthorError, Recording, SetupResponse};
+
+/// The setup's response is held to at least this part of its largest value in the band: -40 dB.
+const RESPONSE_FLOOR: f64 = 0.01;
+/// A spectrum of fewer bins than this says nothing of a texture.
+const FEWEST_BINS: usize = 3;
+/// Relative error of the grid's frequencies that is worth a warning.
+const GRID_TOLERANCE: f64 = 1e-3;
+
+/// How segments are averaged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Averaging {
+    /// Mean of the magnitudes. Reads noise 1.05 dB below its RMS (a Rayleigh distribution's mean).
+    #[default]
+    Magnitude,
+    /// Root of the mean power: what the level of noise really is.
+    Rms,
+    /// Magnitude of the mean of the complex spectra: keeps only what is in step in all segments.
+    Complex,
+}
+
+/// Options of the pipeline.
+#[derive(Debug, Clone, Default)]
+pub struct SpectrumOptions {
+    /// How segments are chosen.
+    pub segments: SegmentChoice,
+    /// How they are averaged.
+    pub averaging: Averaging,
+    /// Response of the recording setup, divided out.
+    pub response: Option<SetupResponse>,
+}
+
+/// The compensated spectra of a recording's segments, one axis, in the band.
+#[derive(Debug, Clone)]
+pub struct SegmentSpectra {
+    /// The band: 20 to 1000 Hz, or up to half the rate.
+    pub band: Band,
+    /// A spectrum a segment on the band's grid; a sinusoid of A newtons on the grid reads A.
+    pub spectra: Vec<Vec<Complex<f64>>>,
+    /// Where the segments lie.
+    pub segments: Segments,
+    /// What a user should know.
+    pub warnings: Vec<String>,
+}
+
+/// An averaged texture spectrum.
+#[derive(Debug, Clone)]
+pub struct TextureSpectrum {
+    /// The band.
+    pub band: Band,
+    /// The band's grid, hertz.
+    pub frequency_hz: Vec<f64>,
+    /// Magnitude at the grid, newtons.
+    pub magnitude_n: Vec<f64>,
+    /// How many segments were averaged.
+    pub segments: usize,
+    /// Nine-band RMS difference between the odd and the even segments, decibels: what the
+    /// recording itself varies by. None with fewer than two segments.
+    pub repeatability_rms_db: Option<f64>,
+    /// The segments, windowed and overlap-added to one signal in the band, newtons.
+    pub signal_n: Vec<f64>,
+    /// Rate of that signal, hertz.
+    pub signal_rate_hz: f64,
+}
+
+/// Band and magnitudes: what models are fitted to and measured against.
+#[derive(Debug, Clone, Copy)]
+#[allow(missing_docs)]
+pub struct SpectrumRef<'a> {
+    pub band: Band,
+    pub frequency_hz: &'a [f64],
+    pub magnitude_n: &'a [f64],
+}
+
+impl TextureSpectrum {
+    /// Averages segment spectra of one texture at one condition, of one or more recordings.
+    ///
+    /// # Errors
+    /// When there are no segments, or the bands differ.
+    pub fn average(parts: &[SegmentSpectra], averaging: Averaging) -> Result<Self, AuthorError> {
+        let first = parts.first().ok_or(AuthorError::NoSegments {
+            source_name: String::new(),
+        })?;
+        if parts.iter().any(|part| part.band != first.band) {
+            return Err(AuthorError::BandsDiffer);
+        }
+        let all: Vec<&[Complex<f64>]> =
+            parts.iter().flat_map(|part| part.spectra.iter().map(Vec::as_slice)).collect();
+        let frequency_hz = first.band.grid_hz();
+        let (signal_n, signal_rate_hz) = overlap_add(first.band, &all);
+        Ok(Self {
+            band: first.band,
+            magnitude_n: average(&all, frequency_hz.len(), averaging),
+            segments: all.len(),
+            repeatability_rms_db: repeatability(first.band, &all, averaging),
+            frequency_hz,
+            signal_n,
+            signal_rate_hz,
+        })
+    }
+
+    /// Band and magnitudes.
+    pub fn as_ref(&self) -> SpectrumRef<'_> {
+        SpectrumRef {
+            band: self.band,
+            frequency_hz: &self.frequency_hz,
+            magnitude_n: &self.magnitude_n,
+        }
+    }
+}
+
+/// Cuts a recording into segments and takes their spectra.
+///
+/// # Errors
+/// When the rate leaves no useful band, or no segment is found.
+pub fn segment_spectra(
+    recording: &Recording,
+    options: &SpectrumOptions,
+) -> Result<SegmentSpectra, AuthorError> {
+    let mut warnings = Vec::new();
+    let band = usable_band(recording, &mut warnings)?;
+    let segments = choose_segments(recording, options.segments);
+    check_segments(recording, &segments, &mut warnings)?;
+    let inverse = options.response.as_ref().map(|r| inverse_response(r, band, &mut warnings));
+    let mut spectra = Vec::with_capacity(segments.starts.len());
+    let mut reader = SegmentReader::new(segments.len, band);
+    for &start in &segments.starts {
+        let mut bins = reader.read(&recording.lateral_n, start)?;
+        if let Some(inverse) = &inverse {
+            bins.iter_mut().zip(inverse).for_each(|(bin, h)| *bin *= h);
+        }
+        spectra.push(bins);
+    }
+    Ok(SegmentSpectra {
+        band,
+        spectra,
+        segments,
+        warnings,
+    })
+}
+
+fn usable_band(recording: &Recording, warnings: &mut Vec<String>) -> Result<Band, AuthorError> {
+    let (source, rate_hz) = (&recording.source, recording.rate_hz);
+    let nyquist_hz = 0.5 * rate_hz;
+    let band = Band {
+        high_hz: Band::TACTILE.high_hz.min(nyquist_hz),
+        ..Band::TACTILE
+    };
+    if nyquist_hz <= band.low_hz || band.bins() < FEWEST_BINS {
+        return Err(AuthorError::RateTooLow {
+            source_name: source.clone(),
+            rate_hz,
+            nyquist_hz,
+        });
+    }
+    if band.high_hz < Band::TACTILE.high_hz {
+        warnings.push(format!(
+            "{source}: sampled at {rate_hz} Hz, so the spectrum ends at {nyquist_hz} Hz instead of \
+             1000 Hz; what a finger feels above that is not in the recording"
+        ));
+    }
+    let spacing_hz = rate_hz / crate::segments::segment_len(rate_hz) as f64;
+    if (spacing_hz / GRID_HZ - 1.0).abs() > GRID_TOLERANCE {
+        warnings.push(format!(
+            "{source}: {rate_hz} Hz is no multiple of 5 Hz: bins are {spacing_hz:.3} Hz apart and \
+             read as if they were 5 Hz apart"
+        ));
+    }
+    Ok(band)
+}
+
+fn check_segments(
+    recording: &Recording,
+    segments: &Segments,
+    warnings: &mut Vec<String>,
+) -> Result<(), AuthorError> {
+    let source = &recording.source;
+    if recording.samples() < segments.len {
+        return Err(AuthorError::TooShort {
+            source_name: source.clone(),
+            samples: recording.samples(),
+            needed: segments.len,
+        });
+    }
+    match segments.starts.len() {
+        0 => Err(AuthorError::NoSegments {
+            source_name: source.clone(),
+        }),
+        n @ 1..=2 => {
+            warnings.push(format!(
+                "{source}: {n} segment{} of 0.2 s: the spectrum keeps the noise of a single \
+                 reading; record for 10 s",
+                if n == 1 { "" } else { "s" }
+            ));
+            Ok(())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// `1 / H` on the band's grid, with `|H|` held to the floor.
+fn inverse_response(
+    response: &SetupResponse,
+    band: Band,
+    warnings: &mut Vec<String>,
+) -> Vec<Complex<f64>> {
+    let values: Vec<Complex<f64>> = band
+        .grid_hz()
+        .iter()
+        .map(|&f| response.at(f))
+        .map(|(re, im)| Complex::new(re, im))
+        .collect();
+    let floor = RESPONSE_FLOOR * values.iter().map(|h| h.norm()).fold(0.0, f64::max);
+    let floored = values.iter().filter(|h| h.norm() < floor).count();
+    if floored > 0 {
+        warnings.push(format!(
+            "setup response: {floored} of {} bins lie more than 40 dB below its maximum in the \
+             band and were held there; what they amplify is mostly noise",
+            values.len()
+        ));
+    }
+    let invert = |h: &Complex<f64>| match h.norm() {
+        norm if norm == 0.0 => Complex::new(1.0 / floor.max(f64::MIN_POSITIVE), 0.0),
+        norm => h.conj() / (norm * norm.max(floor)),
+    };
+    values.iter().map(invert).collect()
+}
+
+/// Reads segments: mean removed, Hann window, FFT; two axes folded into one (Landin 2010).
+struct SegmentReader {
+    analyzer: SegmentAnalyzer,
+    len: usize,
+    band: Band,
+}
+
+impl SegmentReader {
+    fn new(len: usize, band: Band) -> Self {
+        Self {
+            analyzer: SegmentAnalyzer::new(len),
+            len,
+            band,
+        }
+    }
+
+    fn read(&mut self, axes: &[Vec<f64>], start: usize) -> Result<Vec<Complex<f64>>, AuthorError> {
+        let mut spectra = Vec::with_capacity(axes.len());
+        for axis in axes {
+            let mut bins = self.analyzer.make_bins();
+            let segment = axis.get(start..start + self.len).unwrap_or_default();
+            self.analyzer.analyze(segment, &mut bins).map_err(|_| AuthorError::BandsDiffer)?;
+            spectra.push(bins);
+        }
+        let folded = match &spectra[..] {
+            [x, y] => dft321(x, y),
+            _ => spectra.concat(),
+        };
+        let scale = self.analyzer.amplitude_scale();
+        let in_band = self.band.first_bin()..=self.band.last_bin();
+        Ok(in_band.map(|k| folded.get(k).copied().unwrap_or_default() * scale).collect())
+    }
+}
+
+fn average(all: &[&[Complex<f64>]], bins: usize, averaging: Averaging) -> Vec<f64> {
+    let n = all.len() as f64;
+    (0..bins)
+        .map(|k| {
+            let column = all.iter().map(|spectrum| spectrum[k]);
+            match averaging {
+                Averaging::Magnitude => column.map(|x| x.norm()).sum::<f64>() / n,
+                Averaging::Rms => (column.map(|x| x.norm_sqr()).sum::<f64>() / n).sqrt(),
+                Averaging::Complex => (column.sum::<Complex<f64>>() / n).norm(),
+            }
+        })
+        .collect()
+}
+
+fn repeatability(band: Band, all: &[&[Complex<f64>]], averaging: Averaging) -> Option<f64> {
+    if all.len() < 2 {
+        return None;
+    }
+    let grid = band.grid_hz();
+    let bank = BandBank::new(BAND_COUNT, band, &grid);
+    let energies = |first: usize| {
+        let half: Vec<&[Complex<f64>]> = all.iter().skip(first).step_by(2).copied().collect();
+        bank.energies(&average(&half, grid.len(), averaging))
+    };
+    Some(rms(&band_error_db(&energies(0), &energies(1))))
+}
+
+/// The windowed segments, half overlapping, as one signal at four times the band's top.
+fn overlap_add(band: Band, all: &[&[Complex<f64>]]) -> (Vec<f64>, f64) {
+    let len = 4 * band.last_bin();
+    let inverse = RealFftPlanner::new().plan_fft_inverse(len);
+    let (mut bins, mut frame) = (inverse.make_input_vec(), inverse.make_output_vec());
+    let mut signal = vec![0.0; (all.len() + 1) * (len / 2)];
+    for (i, spectrum) in all.iter().enumerate() {
+        bins.fill(Complex::new(0.0, 0.0));
+        for (bin, x) in bins[band.first_bin()..].iter_mut().zip(*spectrum) {
+            // The windowed sinusoid of amplitude A reads A; its window's mean is a half.
+            *bin = x * 0.25;
+        }
+        if inverse.process(&mut bins, &mut frame).is_ok() {
+            let place = &mut signal[i * (len / 2)..];
+            place.iter_mut().zip(&frame).for_each(|(s, x)| *s += x);
+        }
+    }
+    (signal, len as f64 * GRID_HZ)
+}

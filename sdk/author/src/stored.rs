@@ -1,0 +1,25 @@
+//! A model's parameter fields, as an asset stores them.
+
+use htex_format::{Field, Steps, Store};
+use htex_host::{Descriptor, Kind};
+
+/// The asset's fields for a model.
+pub fn stored_fields(descriptor: &Descriptor) -> Vec<Field> {
+    let field = |f: &htex_host::Field| Field {
+        name: f.name.clone(),
+        unit: if f.unit == "1" { String::new() } else { f.unit.clone() },
+        list: matches!(f.kind, Kind::List { .. }),
+        store: store(f.store),
+    };
+    descriptor.fields.iter().map(field).collect()
+}
+
+fn store(store: htex_host::Store) -> Store {
+    let steps = |scale, offset, log| Steps { scale, offset, log };
+    match store {
+        htex_host::Store::F64 => Store::F64,
+        htex_host::Store::F32 => Store::F32,
+        htex_host::Store::U16 { scale, offset, log } => Store::U16(steps(scale, offset, log)),
+        htex_host::Store::U8 { scale, offset, log } => Store::U8(steps(scale, offset, log)),
+    }
+}

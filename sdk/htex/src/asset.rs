@@ -1,0 +1,215 @@
+//! An asset with the models that can play it.
+
+use std::path::Path;
+
+use htex_format::{Manifest, Representation};
+use htex_host::{Band, LoadedModel, Registry};
+
+use crate::mesh::Mesh;
+use crate::{Error, Voice};
+
+/// An opened texture.
+#[derive(Debug, Clone)]
+pub struct Asset {
+    data: htex_format::Asset,
+    registry: Registry,
+}
+
+/// How a voice is to be made.
+#[derive(Debug, Clone)]
+pub struct VoiceOptions<'a> {
+    /// The representation, by its model's id or short name; else the one that comes nearest to the
+    /// recording by its nine-band error.
+    pub model: Option<&'a str>,
+    /// Rate of the samples, hertz.
+    pub rate_hz: f64,
+    /// The same seed gives the same samples.
+    pub seed: u64,
+    /// Scanning speed, mm/s, and normal force, newtons, at the start; else the first condition.
+    pub motion: Option<(f64, f64)>,
+}
+
+impl Default for VoiceOptions<'_> {
+    /// 20 kHz (the paper's rate), seed 0, the first condition.
+    fn default() -> Self {
+        Self {
+            model: None,
+            rate_hz: 20_000.0,
+            seed: 0,
+            motion: None,
+        }
+    }
+}
+
+impl Asset {
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// When the file cannot be read or is not a valid asset.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
+        Ok(Self::new(htex_format::Asset::open(path.as_ref())?))
+    }
+
+    /// Opens an asset in memory.
+    ///
+    /// # Errors
+    /// When the bytes are not a valid asset.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
+        Ok(Self::new(htex_format::Asset::from_bytes(bytes)?))
+    }
+
+    /// Takes an asset that is already read, to be played by the built-in models.
+    pub fn new(data: htex_format::Asset) -> Self {
+        Self {
+            data,
+            registry: Registry::builtin(),
+        }
+    }
+
+    /// What the asset says of itself.
+    pub fn manifest(&self) -> &Manifest {
+        &self.data.manifest
+    }
+
+    /// The asset's band.
+    pub fn band(&self) -> Band {
+        let band = self.data.manifest.band;
+        Band {
+            low_hz: band.low_hz,
+            high_hz: band.high_hz,
+        }
+    }
+
+    /// Makes a voice.
+    ///
+    /// # Errors
+    /// When there is no such representation, its model is not there or not compatible, or it
+    /// refuses the parameters or the rate.
+    pub fn voice(&self, options: &VoiceOptions<'_>) -> Result<Voice, Error> {
+        let r = self.representation(options.model)?;
+        let motion = match options.motion {
+            Some(motion) => motion,
+            None => self.first_condition(r),
+        };
+        let model = self.model(r)?;
+        Voice::new(self.known(r), model, self.band(), options.rate_hz, options.seed, motion)
+    }
+
+    /// Magnitudes of a representation at a motion (else its first condition) and frequencies in
+    /// hertz; newtons, in the measure of the texture spectrum.
+    ///
+    /// # Errors
+    /// As [`Self::voice`].
+    pub fn magnitude_n(
+        &self,
+        model: Option<&str>,
+        motion: Option<(f64, f64)>,
+        frequency_hz: &[f64],
+    ) -> Result<Vec<f64>, Error> {
+        let r = self.representation(model)?;
+        let (speed, force) = motion.unwrap_or_else(|| self.first_condition(r));
+        crate::voice::check_motion(speed, force)?;
+        let model = self.model(r)?;
+        let (parameters, level_n) = self.known(r).at(&model, speed, force)?;
+        let shape = model.magnitude(&parameters, self.band(), frequency_hz)?;
+        Ok(shape.iter().map(|m| m * level_n).collect())
+    }
+
+    /// The index of a representation by its model's id or short name, else of the best.
+    fn representation(&self, model: Option<&str>) -> Result<usize, Error> {
+        let all = &self.data.manifest.representations;
+        let found = match model {
+            Some(name) => all.iter().position(|r| is_named(r, name)),
+            None => nearest(all),
+        };
+        found.ok_or_else(|| Error::NoRepresentation {
+            wanted: model.unwrap_or("any").to_owned(),
+            there: all.iter().map(|r| r.model.as_str()).collect::<Vec<_>>().join(", "),
+        })
+    }
+
+    /// The model of a representation, if it is of a compatible version.
+    fn model(&self, representation: usize) -> Result<LoadedModel, Error> {
+        let representation = &self.data.manifest.representations[representation];
+        let model = self.registry.find(&representation.model)?;
+        let installed = &model.descriptor().version;
+        let major = |version: &str| semver::Version::parse(version).map(|v| v.major);
+        let compatible = match (major(&representation.model_version), major(installed)) {
+            (Ok(wanted), Ok(installed)) => wanted == installed,
+            _ => false,
+        };
+        if compatible {
+            return Ok(model.clone());
+        }
+        Err(Error::ModelVersion {
+            model: representation.model.clone(),
+            asset: representation.model_version.clone(),
+            installed: installed.clone(),
+        })
+    }
+
+    fn known(&self, representation: usize) -> Known {
+        let manifest = &self.data.manifest;
+        let at = &manifest.representations[representation].at;
+        let point = |condition: usize| {
+            let condition = &manifest.conditions[condition];
+            [condition.speed_mm_s.unwrap_or(0.0), condition.force_n.unwrap_or(0.0)]
+        };
+        let points: Vec<[f64; 2]> = at.iter().map(|a| point(a.condition)).collect();
+        Known {
+            mesh: Mesh::new(&points),
+            level_n: at.iter().map(|a| a.level_n_rms).collect(),
+            parameters: self.data.parameters[representation].clone(),
+        }
+    }
+
+    fn first_condition(&self, representation: usize) -> (f64, f64) {
+        let manifest = &self.data.manifest;
+        let first = manifest.representations[representation].at.first();
+        let condition = first.and_then(|at| manifest.conditions.get(at.condition));
+        condition.map_or((0.0, 0.0), |c| {
+            (c.speed_mm_s.unwrap_or(0.0), c.force_n.unwrap_or(0.0))
+        })
+    }
+}
+
+fn is_named(representation: &Representation, name: &str) -> bool {
+    let id = &representation.model;
+    id == name || id.rsplit('.').next().is_some_and(|short| short.eq_ignore_ascii_case(name))
+}
+
+/// The representation of least nine-band error at its first condition; unmeasured ones come last.
+fn nearest(all: &[Representation]) -> Option<usize> {
+    let error = |r: &Representation| {
+        let quality = r.at.first().and_then(|at| at.quality.as_ref());
+        quality.map_or(f64::INFINITY, |q| q.band_error_rms_db)
+    };
+    (0..all.len()).min_by(|&a, &b| error(&all[a]).total_cmp(&error(&all[b])))
+}
+
+/// What is known of a representation: parameters and level at each condition.
+#[derive(Debug, Clone)]
+pub(crate) struct Known {
+    pub(crate) mesh: Mesh,
+    pub(crate) level_n: Vec<f64>,
+    pub(crate) parameters: Vec<Vec<f64>>,
+}
+
+impl Known {
+    /// Parameters and level (newtons) at a motion; the model decides in which space to mix.
+    pub(crate) fn at(
+        &self,
+        model: &LoadedModel,
+        speed_mm_s: f64,
+        force_n: f64,
+    ) -> Result<(Vec<f64>, f64), Error> {
+        let weights = self.mesh.weights(speed_mm_s, force_n);
+        let level_n = weights.iter().map(|(i, w)| w * self.level_n[i]).sum();
+        let sets: Vec<&[f64]> = weights.iter().map(|(i, _)| &self.parameters[i][..]).collect();
+        if let [only] = sets[..] {
+            return Ok((only.to_vec(), level_n));
+        }
+        let parameters = model.interpolate(&sets, &weights.weight[..weights.count])?;
+        Ok((parameters, level_n))
+    }
+}

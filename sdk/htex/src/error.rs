@@ -1,0 +1,41 @@
+//! What can go wrong between a file and a sound.
+
+/// An error of opening or playing an asset.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The file is not a usable asset.
+    #[error(transparent)]
+    Read(#[from] htex_format::ReadError),
+    /// A model is missing, or refused a call.
+    #[error(transparent)]
+    Model(#[from] htex_host::HostError),
+    /// The asset has no representation of this model.
+    #[error("the asset has no representation `{wanted}`; it has {there}")]
+    NoRepresentation {
+        /// What was asked for.
+        wanted: String,
+        /// What there is.
+        there: String,
+    },
+    /// The asset was made by a model of another major version.
+    #[error(
+        "the asset was fitted by {model} {asset}, and version {installed} is installed, which is \
+         not compatible; install a {model} of the same major version"
+    )]
+    ModelVersion {
+        /// The model's id.
+        model: String,
+        /// The version in the asset.
+        asset: String,
+        /// The version of the model.
+        installed: String,
+    },
+    /// A speed or force that is negative or not a number.
+    #[error("motion of {speed_mm_s} mm/s at {force_n} N; both must be finite and not negative")]
+    Motion {
+        /// Scanning speed, mm/s.
+        speed_mm_s: f64,
+        /// Normal force, newtons.
+        force_n: f64,
+    },
+}

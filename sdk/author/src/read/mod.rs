@@ -20,7 +20,7 @@ mod columns;
 mod csv;
 mod error;
 mod map;
-mod motion;
+pub(crate) mod motion;
 mod npy;
 mod number;
 mod select;

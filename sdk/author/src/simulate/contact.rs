@@ -1,0 +1,153 @@
+//! From the finger's motion to the forces that the rig's sensor gives.
+
+use super::filters::Biquad;
+use super::hand::Finger;
+use super::random::Random;
+use super::relief::Relief;
+use super::surface::Parameters;
+use crate::response::SetupResponse;
+
+/// Speed over which Coulomb friction turns round, mm/s: the fingertip shears before it slides.
+const TURN_MM_S: f64 = 5.0;
+/// Extra friction near standstill (Stribeck): as a share, and the speed over which it is lost, mm/s.
+const STRIBECK: (f64, f64) = (0.15, 15.0);
+/// The skin passes texture on up to here, Hz; second order, quality factor beside it.
+const SKIN: (f64, f64) = (900.0, 0.6);
+/// Share of the texture that acts across the sweep, and where along it that part is read, mm.
+const ACROSS: (f64, f64) = (0.25, 7.3);
+/// The rig's lateral mode: frequency in Hz, damping ratio, share of the force that goes through it.
+/// The gain is about 5 dB at the peak and 1 far below.
+const MODE: (f64, f64, f64) = (620.0, 0.08, 0.25);
+/// White noise of each force channel at 20 kHz, newtons rms.
+const NOISE_N: f64 = 0.2e-3;
+/// Step of the converter, newtons: 16 bits over 5 N.
+const STEP_N: f64 = 5.0 / 65_536.0;
+
+/// One sample of force on the surface, newtons.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Force {
+    pub(super) x: f64,
+    pub(super) y: f64,
+    pub(super) z: f64,
+}
+
+/// Skin on relief: friction of the finger before the rig.
+pub(super) struct Contact {
+    friction: f64,
+    relief: Relief,
+    skin: [Biquad; 2],
+}
+
+impl Contact {
+    pub(super) fn new(parameters: &Parameters, rate_hz: f64, random: &mut Random) -> Self {
+        let skin = Biquad::low_pass(SKIN.1, SKIN.0, rate_hz);
+        Self {
+            friction: parameters.friction,
+            relief: Relief::new(parameters, random),
+            skin: [skin.clone(), skin],
+        }
+    }
+
+    /// Coulomb friction against the motion, and the texture's modulation of it.
+    pub(super) fn tick(&mut self, finger: &Finger) -> Force {
+        let speed = libm::hypot(finger.along_mm_s, finger.across_mm_s);
+        let sliding = libm::tanh(finger.along_mm_s / TURN_MM_S);
+        let slope = if speed > 0.0 {
+            finger.across_mm_s / speed
+        } else {
+            0.0
+        };
+        let slowness = speed / STRIBECK.1;
+        let friction = self.friction * (1.0 + STRIBECK.0 * libm::exp(-slowness * slowness));
+        let texture = |along_mm: f64| finger.contact * self.relief.at(along_mm, finger.across_mm);
+        let along = sliding * finger.normal_n * texture(finger.along_mm);
+        let across = sliding * finger.normal_n * ACROSS.0 * texture(finger.along_mm + ACROSS.1);
+        let steady = finger.normal_n * friction;
+        Force {
+            x: steady * slope * sliding.abs() + self.skin[0].tick(across),
+            y: steady * sliding + self.skin[1].tick(along),
+            z: finger.normal_n,
+        }
+    }
+}
+
+/// The recording rig: a resonance in both lateral axes, and an anti-aliasing filter for low rates.
+pub(super) struct Rig {
+    mode: [Biquad; 2],
+    anti_alias: Option<[[Biquad; 2]; 3]>,
+}
+
+impl Rig {
+    /// `inner_hz` is the rate of the physics, `rate_hz` the recording's, not above it.
+    pub(super) fn new(inner_hz: f64, rate_hz: f64) -> Self {
+        let (hz, damping, share) = MODE;
+        let mode = Biquad::mode(share, damping, hz, inner_hz);
+        // Butterworth of fourth order.
+        let low_pass =
+            [0.541_196_1, 1.306_563].map(|q| Biquad::low_pass(q, 0.4 * rate_hz, inner_hz));
+        let anti_alias =
+            (inner_hz > rate_hz).then(|| [low_pass.clone(), low_pass.clone(), low_pass]);
+        Self {
+            mode: [mode.clone(), mode],
+            anti_alias,
+        }
+    }
+
+    pub(super) fn tick(&mut self, force: Force) -> Force {
+        let [x, y] = &mut self.mode;
+        let force = Force {
+            x: x.tick(force.x),
+            y: y.tick(force.y),
+            z: force.z,
+        };
+        match &mut self.anti_alias {
+            None => force,
+            Some([x, y, z]) => Force {
+                x: chain(x, force.x),
+                y: chain(y, force.y),
+                z: chain(z, force.z),
+            },
+        }
+    }
+}
+
+fn chain(filters: &mut [Biquad], x: f64) -> f64 {
+    filters.iter_mut().fold(x, |x, filter| filter.tick(x))
+}
+
+/// What the sensor makes of a force: noise and the converter's steps.
+pub(super) fn sense(force: Force, rate_hz: f64, random: &mut Random) -> Force {
+    let noise = NOISE_N * libm::sqrt(rate_hz / 20_000.0);
+    let mut read = |force: f64| STEP_N * libm::round((force + noise * random.normal()) / STEP_N);
+    Force {
+        x: read(force.x),
+        y: read(force.y),
+        z: read(force.z),
+    }
+}
+
+/// The frequency response that every simulated recording has gone through, at the given frequencies
+/// in hertz (strictly ascending, at least 2): `1 - s + s / (1 - r^2 + 2 i d r)` with `r = f / 620 Hz`,
+/// damping ratio `d = 0.08` and modal share `s = 0.25`.
+#[must_use]
+pub fn setup_response(frequency_hz: &[f64]) -> SetupResponse {
+    let (hz, damping, share) = MODE;
+    let at = |frequency: &f64| {
+        let r = frequency / hz;
+        let (re, im) = (1.0 - r * r, 2.0 * damping * r);
+        let square = re * re + im * im;
+        (1.0 - share + share * re / square, -share * im / square)
+    };
+    let values: Vec<(f64, f64)> = frequency_hz.iter().map(at).collect();
+    SetupResponse {
+        frequency_hz: frequency_hz.to_vec(),
+        magnitude: values
+            .iter()
+            .map(|(re, im)| libm::hypot(*re, *im))
+            .collect(),
+        phase_rad: values
+            .iter()
+            .map(|(re, im)| libm::atan2(*im, *re))
+            .collect(),
+    }
+}

@@ -1,0 +1,200 @@
+//! The hand: sweeps to and fro over the surface, not quite evenly, pressing not quite evenly.
+
+use std::f64::consts::PI;
+
+use super::filters::{Biquad, OnePole};
+use super::random::Random;
+
+/// Length of a sweep, mm; the surface is 100 mm.
+const SWEEP_MM: f64 = 83.0;
+/// Scatter of a sweep's end, mm (standard deviation).
+const END_SCATTER_MM: f64 = 0.8;
+/// Time to reach the speed, and to stop, s.
+const RAMP_S: f64 = 0.1;
+/// Rest at each end, s, shortest and longest.
+const REST_S: [f64; 2] = [0.06, 0.11];
+/// Scatter of the speed from sweep to sweep, and within a sweep, as shares.
+const SPEED_SCATTER: [f64; 2] = [0.015, 0.02];
+/// Slow drift of the force, and physiological tremor (8–12 Hz), as shares; together kept within 10 %.
+const FORCE_SCATTER: [f64; 2] = [0.03, 0.012];
+const FORCE_BOUND: f64 = 0.1;
+const TREMOR_HZ: f64 = 10.0;
+const TREMOR_Q: f64 = 4.0;
+/// Wander of the heading, radians, and how strongly the finger is drawn back to the middle, 1/mm.
+const HEADING: f64 = 0.03;
+const DRAW_BACK: f64 = 0.02;
+/// Scatter of how strongly the texture is felt, from sweep to sweep and within a sweep, as shares.
+const CONTACT_SCATTER: [f64; 2] = [0.07, 0.08];
+
+/// Where the finger is, and what it does there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Finger {
+    /// Position along and across the sweep, mm; 0 is the middle of the surface.
+    pub(super) along_mm: f64,
+    pub(super) across_mm: f64,
+    /// Velocity, mm/s.
+    pub(super) along_mm_s: f64,
+    pub(super) across_mm_s: f64,
+    /// Normal force, newtons.
+    pub(super) normal_n: f64,
+    /// How strongly the contact takes up the texture; 1 on average.
+    pub(super) contact: f64,
+}
+
+/// One rest and the sweep after it.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sweep {
+    rest_s: f64,
+    ramp_s: f64,
+    /// From the end of the rest to standing still again.
+    moving_s: f64,
+    /// Signed speed between the ramps, mm/s.
+    speed_mm_s: f64,
+    contact: f64,
+}
+
+/// The hand's state from sample to sample.
+pub(super) struct Hand {
+    speed_mm_s: f64,
+    force_n: f64,
+    step_s: f64,
+    random: Random,
+    sweep: Sweep,
+    /// Time since the sweep's rest began, s.
+    time_s: f64,
+    direction: f64,
+    finger: Finger,
+    drift: SlowNoise,
+    tremor: Tremor,
+    unevenness: SlowNoise,
+    heading: SlowNoise,
+    grip: SlowNoise,
+}
+
+impl Hand {
+    pub(super) fn new(speed_mm_s: f64, force_n: f64, rate_hz: f64, random: Random) -> Self {
+        let finger = Finger {
+            along_mm: -SWEEP_MM / 2.0,
+            across_mm: 0.0,
+            along_mm_s: 0.0,
+            across_mm_s: 0.0,
+            normal_n: force_n,
+            contact: 1.0,
+        };
+        Self {
+            speed_mm_s,
+            force_n,
+            step_s: 1.0 / rate_hz,
+            random,
+            sweep: Sweep::default(),
+            time_s: 0.0,
+            direction: -1.0,
+            finger,
+            drift: SlowNoise::new(1.0, rate_hz),
+            tremor: Tremor::new(rate_hz),
+            unevenness: SlowNoise::new(3.0, rate_hz),
+            heading: SlowNoise::new(1.5, rate_hz),
+            grip: SlowNoise::new(2.0, rate_hz),
+        }
+    }
+
+    /// The finger one sample later.
+    pub(super) fn tick(&mut self) -> Finger {
+        if self.time_s >= self.sweep.rest_s + self.sweep.moving_s {
+            self.turn_round();
+        }
+        self.time_s += self.step_s;
+        self.steer();
+        self.press();
+        self.finger
+    }
+
+    fn turn_round(&mut self) {
+        self.direction = -self.direction;
+        let scatter = 1.0 + SPEED_SCATTER[0] * self.random.normal();
+        let speed = self.speed_mm_s * scatter;
+        let end = self.direction * SWEEP_MM / 2.0 + END_SCATTER_MM * self.random.normal();
+        let length = (end - self.finger.along_mm).abs();
+        let ramp_s = RAMP_S.min(0.25 * length / speed);
+        self.time_s = 0.0;
+        self.sweep = Sweep {
+            rest_s: REST_S[0] + (REST_S[1] - REST_S[0]) * self.random.uniform(),
+            ramp_s,
+            moving_s: length / speed + ramp_s,
+            speed_mm_s: self.direction * speed,
+            contact: 1.0 + CONTACT_SCATTER[0] * self.random.normal(),
+        };
+    }
+
+    fn steer(&mut self) {
+        let uneven = 1.0 + SPEED_SCATTER[1] * self.unevenness.tick(&mut self.random);
+        let finger = &mut self.finger;
+        finger.along_mm_s = self.sweep.speed_mm_s * self.sweep.envelope(self.time_s) * uneven;
+        let heading = HEADING * self.heading.tick(&mut self.random) - DRAW_BACK * finger.across_mm;
+        finger.across_mm_s = finger.along_mm_s.abs() * heading;
+        finger.along_mm += finger.along_mm_s * self.step_s;
+        finger.across_mm += finger.across_mm_s * self.step_s;
+    }
+
+    fn press(&mut self) {
+        let scatter = FORCE_SCATTER[0] * self.drift.tick(&mut self.random)
+            + FORCE_SCATTER[1] * self.tremor.tick(&mut self.random);
+        self.finger.normal_n =
+            self.force_n * (1.0 + FORCE_BOUND * libm::tanh(scatter / FORCE_BOUND));
+        self.finger.contact =
+            self.sweep.contact + CONTACT_SCATTER[1] * self.grip.tick(&mut self.random);
+    }
+}
+
+impl Sweep {
+    /// Share of the full speed: 0 at rest, 1 between raised-cosine ramps.
+    fn envelope(&self, time_s: f64) -> f64 {
+        let from_start = time_s - self.rest_s;
+        let to_end = self.moving_s - from_start;
+        let ramp = (from_start.min(to_end) / self.ramp_s).clamp(0.0, 1.0);
+        0.5 - 0.5 * libm::cos(PI * ramp)
+    }
+}
+
+/// Noise of unit variance below some hertz.
+struct SlowNoise {
+    filters: [OnePole; 2],
+    gain: f64,
+}
+
+impl SlowNoise {
+    fn new(hz: f64, rate_hz: f64) -> Self {
+        let keep = libm::exp(-2.0 * PI * hz / rate_hz);
+        let power =
+            (1.0 - keep) * (1.0 + keep * keep) / ((1.0 + keep) * (1.0 + keep) * (1.0 + keep));
+        Self {
+            filters: [OnePole::new(hz, rate_hz), OnePole::new(hz, rate_hz)],
+            gain: 1.0 / libm::sqrt(power),
+        }
+    }
+
+    fn tick(&mut self, random: &mut Random) -> f64 {
+        let x = self.gain * random.normal();
+        self.filters.iter_mut().fold(x, |x, filter| filter.tick(x))
+    }
+}
+
+/// Physiological tremor: noise of unit variance about 10 Hz.
+struct Tremor {
+    filter: Biquad,
+    gain: f64,
+}
+
+impl Tremor {
+    fn new(rate_hz: f64) -> Self {
+        let power = PI * TREMOR_HZ / TREMOR_Q / rate_hz;
+        Self {
+            filter: Biquad::band_pass(TREMOR_Q, TREMOR_HZ, rate_hz),
+            gain: 1.0 / libm::sqrt(power),
+        }
+    }
+
+    fn tick(&mut self, random: &mut Random) -> f64 {
+        self.gain * self.filter.tick(random.normal())
+    }
+}

@@ -1,0 +1,215 @@
+//! Simulated recordings: a finger that sweeps to and fro over one of five surfaces.
+//!
+//! For tests, examples and first steps without a rig. The surfaces resemble the five of the paper in
+//! level and in where their energy lies; they are no measurement, and every file says so.
+//!
+//! A hand moves and presses unevenly; the friction coefficient varies along the surface
+//! as a fixed relief that the finger reads at its position, so its spectrum moves with the speed and
+//! grows with the force; skin, rig and sensor follow.
+//!
+//! ```
+//! use htex_author::simulate::{SimulationOptions, Surface, simulate};
+//!
+//! let options = SimulationOptions { duration_s: 1.0, ..SimulationOptions::new(Surface::Vinyl) };
+//! let simulation = simulate(&options)?;
+//! let mut csv = Vec::new();
+//! simulation.write_csv(&mut csv)?;
+//! assert!(csv.starts_with(b"# simulated recording"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod contact;
+mod filters;
+mod hand;
+mod random;
+mod relief;
+mod surface;
+mod write;
+
+use thiserror::Error;
+
+pub use contact::setup_response;
+pub use surface::Surface;
+
+use crate::read::motion::speed_mm_s;
+use crate::recording::{Recording, RecordingError};
+use contact::{Contact, Force, Rig, sense};
+use hand::{Finger, Hand};
+use random::Random;
+use write::{FORCE_DECIMALS, POSITION_DECIMALS, rounded};
+
+/// The physics runs at least at this rate, Hz.
+const INNER_HZ: f64 = 20_000.0;
+/// Most samples of one simulation.
+const MAX_SAMPLES: f64 = 2e7;
+
+/// Why there is no simulation.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum SimulationError {
+    /// No surface of this name.
+    #[error(
+        "unknown surface {text:?}; the surfaces are sandpaper, fine-fabric, coarse-fabric, corrugated-paper and vinyl"
+    )]
+    Surface {
+        /// What was given, at most 40 characters.
+        text: String,
+    },
+    /// An option out of its range.
+    #[error("{option} is {value}; it must lie in {low}..={high}")]
+    Range {
+        /// Name of the option, with its unit.
+        option: &'static str,
+        /// What was given.
+        value: f64,
+        /// Least allowed.
+        low: f64,
+        /// Most allowed.
+        high: f64,
+    },
+}
+
+/// What to simulate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimulationOptions {
+    /// The surface.
+    pub surface: Surface,
+    /// Same seed and options, same samples; another seed, another piece of the same material and
+    /// another go of the hand.
+    pub seed: u64,
+    /// Sample rate, 200 to 200 000 Hz.
+    pub rate_hz: f64,
+    /// Length, 0.1 to 600 s.
+    pub duration_s: f64,
+    /// Speed between the turns, 1 to 500 mm/s.
+    pub speed_mm_s: f64,
+    /// Normal force, 0.01 to 10 N.
+    pub force_n: f64,
+}
+
+impl SimulationOptions {
+    /// The paper's conditions: 10 s at 20 kHz, 80 mm/s, 0.4 N; seed 1.
+    #[must_use]
+    pub fn new(surface: Surface) -> Self {
+        Self {
+            surface,
+            seed: 1,
+            rate_hz: 20_000.0,
+            duration_s: 10.0,
+            speed_mm_s: 80.0,
+            force_n: 0.4,
+        }
+    }
+
+    fn check(&self) -> Result<(), SimulationError> {
+        let ranges = [
+            ("rate_hz", self.rate_hz, 200.0, 200_000.0),
+            ("duration_s", self.duration_s, 0.1, 600.0),
+            ("speed_mm_s", self.speed_mm_s, 1.0, 500.0),
+            ("force_n", self.force_n, 0.01, 10.0),
+            (
+                "rate_hz x duration_s",
+                self.rate_hz * self.duration_s,
+                2.0,
+                MAX_SAMPLES,
+            ),
+        ];
+        match ranges
+            .into_iter()
+            .find(|(_, value, low, high)| !(*low..=*high).contains(value))
+        {
+            None => Ok(()),
+            Some((option, value, low, high)) => Err(SimulationError::Range {
+                option,
+                value,
+                low,
+                high,
+            }),
+        }
+    }
+}
+
+/// A simulated recording; all signals are equally long.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Simulation {
+    /// What was simulated.
+    pub options: SimulationOptions,
+    /// Time, seconds, from 0.
+    pub t_s: Vec<f64>,
+    /// Force across the sweeps, newtons.
+    pub fx_n: Vec<f64>,
+    /// Force along the sweeps, newtons.
+    pub fy_n: Vec<f64>,
+    /// Normal force, newtons, positive.
+    pub fz_n: Vec<f64>,
+    /// Finger position across the sweeps, mm; 0 is the middle.
+    pub x_mm: Vec<f64>,
+    /// Finger position along the sweeps, mm; 0 is the middle.
+    pub y_mm: Vec<f64>,
+    /// Sample rate, hertz.
+    pub rate_hz: f64,
+}
+
+impl Simulation {
+    fn new(options: &SimulationOptions, samples: usize) -> Self {
+        let signal = || Vec::with_capacity(samples);
+        Self {
+            options: options.clone(),
+            t_s: signal(),
+            fx_n: signal(),
+            fy_n: signal(),
+            fz_n: signal(),
+            x_mm: signal(),
+            y_mm: signal(),
+            rate_hz: options.rate_hz,
+        }
+    }
+
+    fn push(&mut self, force: Force, finger: &Finger) {
+        self.t_s.push(self.t_s.len() as f64 / self.rate_hz);
+        self.fx_n.push(rounded(force.x, FORCE_DECIMALS));
+        self.fy_n.push(rounded(force.y, FORCE_DECIMALS));
+        self.fz_n.push(rounded(force.z, FORCE_DECIMALS));
+        self.x_mm.push(rounded(finger.across_mm, POSITION_DECIMALS));
+        self.y_mm.push(rounded(finger.along_mm, POSITION_DECIMALS));
+    }
+
+    /// The recording that reading the written CSV gives; `source` stands for its file name.
+    ///
+    /// # Errors
+    /// None that the options' ranges let through.
+    pub fn to_recording(&self, source: &str) -> Result<Recording, RecordingError> {
+        let lateral = vec![self.fx_n.clone(), self.fy_n.clone()];
+        let speed = speed_mm_s(&[&self.x_mm, &self.y_mm], self.rate_hz);
+        let mut recording = Recording::new(source, self.rate_hz, lateral)?
+            .with_normal(self.fz_n.clone())?
+            .with_speed(speed)?;
+        recording.simulated = true;
+        Ok(recording)
+    }
+}
+
+/// Simulates a recording; same options, same samples on every machine.
+///
+/// # Errors
+/// When an option is out of its range.
+pub fn simulate(options: &SimulationOptions) -> Result<Simulation, SimulationError> {
+    options.check()?;
+    let parameters = options.surface.parameters();
+    let samples = libm::round(options.rate_hz * options.duration_s) as usize;
+    let inner_steps = libm::ceil(INNER_HZ / options.rate_hz) as usize;
+    let inner_hz = options.rate_hz * inner_steps as f64;
+    let stream = |part: u64| Random::new(options.seed, 16 * parameters.label + part);
+    let mut hand = Hand::new(options.speed_mm_s, options.force_n, inner_hz, stream(0));
+    let mut contact = Contact::new(parameters, inner_hz, &mut stream(1));
+    let mut rig = Rig::new(inner_hz, options.rate_hz);
+    let mut noise = stream(2);
+    let mut simulation = Simulation::new(options, samples);
+    for step in 0..samples * inner_steps {
+        let finger = hand.tick();
+        let force = rig.tick(contact.tick(&finger));
+        if step % inner_steps == 0 {
+            simulation.push(sense(force, options.rate_hz, &mut noise), &finger);
+        }
+    }
+    Ok(simulation)
+}

@@ -1,0 +1,43 @@
+//! Normal deviates that are the same on every machine.
+
+use rand_core::{Rng, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+/// One stream of random numbers; streams of one seed with different labels are independent.
+#[derive(Debug, Clone)]
+pub(super) struct Random {
+    generator: Xoshiro256PlusPlus,
+    spare: Option<f64>,
+}
+
+impl Random {
+    pub(super) fn new(seed: u64, label: u64) -> Self {
+        // The odd factor spreads small labels over all bits; the generator's own seeding mixes on.
+        let mixed = seed ^ label.wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        Self {
+            generator: Xoshiro256PlusPlus::seed_from_u64(mixed),
+            spare: None,
+        }
+    }
+
+    /// Uniform on [0, 1).
+    pub(super) fn uniform(&mut self) -> f64 {
+        (self.generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Zero mean, unit variance (Marsaglia's polar method).
+    pub(super) fn normal(&mut self) -> f64 {
+        if let Some(spare) = self.spare.take() {
+            return spare;
+        }
+        loop {
+            let (a, b) = (2.0 * self.uniform() - 1.0, 2.0 * self.uniform() - 1.0);
+            let square = a * a + b * b;
+            if square < 1.0 && square > 0.0 {
+                let scale = libm::sqrt(-2.0 * libm::log(square) / square);
+                self.spare = Some(b * scale);
+                return a * scale;
+            }
+        }
+    }
+}

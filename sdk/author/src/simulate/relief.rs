@@ -1,0 +1,130 @@
+//! The friction coefficient's ups and downs along the surface, as the finger's ridges read them.
+
+use std::f64::consts::PI;
+
+use super::filters::OnePole;
+use super::random::Random;
+use super::surface::{Grain, Line, Parameters};
+
+/// Points in a millimetre: 1000 Hz at 80 mm/s is a period of 8 points, and faster sweeps have longer ones.
+const POINTS_PER_MM: f64 = 100.0;
+/// The surface's length with a margin, mm, centred on 0.
+const LENGTH_MM: f64 = 120.0;
+/// Standard deviation of the Gaussian that one ridge's contact averages over, mm: -3 dB at 6.6 periods
+/// in a millimetre (530 Hz at 80 mm/s).
+const CONTACT_MM: f64 = 0.02;
+/// Distance across the sweep over which the grain changes wholly, mm.
+const TRACK_MM: f64 = 3.0;
+
+/// The relief of one surface: a fixed field, read at the finger's position.
+pub(super) struct Relief {
+    lines: Vec<f64>,
+    /// Two independent fields; their mix turns with the position across the sweep.
+    grains: [Vec<f64>; 2],
+}
+
+impl Relief {
+    /// A field whose standard deviation is `parameters.relief` before the contact smooths it.
+    pub(super) fn new(parameters: &Parameters, random: &mut Random) -> Self {
+        let power = parameters
+            .lines
+            .iter()
+            .map(|line| line.weight * line.weight)
+            .sum::<f64>()
+            + parameters
+                .grains
+                .iter()
+                .map(|grain| grain.weight * grain.weight)
+                .sum::<f64>();
+        let unit = parameters.relief / libm::sqrt(power);
+        let mut field = |add: &mut dyn FnMut(&mut [f64], &mut Random)| {
+            let mut values = vec![0.0; (LENGTH_MM * POINTS_PER_MM) as usize];
+            add(&mut values, random);
+            smooth(&values)
+        };
+        let mut grains = |values: &mut [f64], random: &mut Random| {
+            parameters
+                .grains
+                .iter()
+                .for_each(|grain| add_grain(values, grain, unit, random));
+        };
+        Self {
+            lines: field(&mut |values, random| {
+                parameters
+                    .lines
+                    .iter()
+                    .for_each(|line| add_line(values, line, unit, random));
+            }),
+            grains: [field(&mut grains), field(&mut grains)],
+        }
+    }
+
+    /// The change of the friction coefficient `along_mm` the sweep (0 is the middle) and `across_mm` it.
+    pub(super) fn at(&self, along_mm: f64, across_mm: f64) -> f64 {
+        let point = (along_mm + LENGTH_MM / 2.0) * POINTS_PER_MM;
+        let turn = PI * across_mm / (2.0 * TRACK_MM);
+        let [a, b] = &self.grains;
+        cubic(&self.lines, point)
+            + libm::cos(turn) * cubic(a, point)
+            + libm::sin(turn) * cubic(b, point)
+    }
+}
+
+fn add_line(values: &mut [f64], line: &Line, unit: f64, random: &mut Random) {
+    let amplitude = unit * line.weight * libm::sqrt(2.0);
+    let step = 2.0 * PI * line.per_mm / POINTS_PER_MM;
+    let wander = line.wander / libm::sqrt(POINTS_PER_MM);
+    let mut phase = 2.0 * PI * random.uniform();
+    for value in values {
+        *value += amplitude * libm::cos(phase);
+        phase += step + wander * random.normal();
+    }
+}
+
+fn add_grain(values: &mut [f64], grain: &Grain, unit: f64, random: &mut Random) {
+    let mut slow = OnePole::new(grain.from_per_mm, POINTS_PER_MM);
+    let mut fast = [0; 2].map(|_| OnePole::new(grain.to_per_mm, POINTS_PER_MM));
+    let mut noise: Vec<f64> = Vec::with_capacity(values.len());
+    for _ in 0..values.len() {
+        let white = random.normal();
+        let high = white - slow.tick(white);
+        noise.push(fast.iter_mut().fold(high, |x, filter| filter.tick(x)));
+    }
+    let power = noise.iter().map(|x| x * x).sum::<f64>() / noise.len() as f64;
+    let scale = unit * grain.weight / libm::sqrt(power);
+    values
+        .iter_mut()
+        .zip(noise)
+        .for_each(|(value, x)| *value += scale * x);
+}
+
+/// Convolution with the contact's Gaussian.
+fn smooth(values: &[f64]) -> Vec<f64> {
+    let sigma = CONTACT_MM * POINTS_PER_MM;
+    let reach = libm::ceil(4.0 * sigma) as usize;
+    let weight = |offset: usize| {
+        let x = offset as f64 - reach as f64;
+        libm::exp(-0.5 * (x / sigma) * (x / sigma))
+    };
+    let kernel: Vec<f64> = (0..=2 * reach).map(weight).collect();
+    let total: f64 = kernel.iter().sum();
+    let at = |point: usize| {
+        let sum: f64 = kernel
+            .iter()
+            .enumerate()
+            .filter_map(|(k, weight)| Some(weight * values.get((point + k).checked_sub(reach)?)?))
+            .sum();
+        sum / total
+    };
+    (0..values.len()).map(at).collect()
+}
+
+/// Catmull–Rom interpolation; held at the ends.
+fn cubic(values: &[f64], point: f64) -> f64 {
+    let last = values.len() - 3;
+    let whole = libm::floor(point).clamp(1.0, last as f64);
+    let t = (point - whole).clamp(0.0, 1.0);
+    let at = whole as usize;
+    let [a, b, c, d] = [values[at - 1], values[at], values[at + 1], values[at + 2]];
+    b + 0.5 * t * (c - a + t * (2.0 * a - 5.0 * b + 4.0 * c - d + t * (3.0 * (b - c) + d - a)))
+}

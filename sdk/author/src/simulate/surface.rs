@@ -1,0 +1,232 @@
+//! The five surfaces: one table of what sets them apart.
+
+use std::fmt;
+use std::str::FromStr;
+
+use super::SimulationError;
+
+/// A surface that can be simulated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Surface {
+    /// Strong and broad: grains of many sizes, energy up to several hundred hertz.
+    Sandpaper,
+    /// Weak and broad: a weave of a quarter millimetre.
+    FineFabric,
+    /// Weak and low: a weave of a millimetre.
+    CoarseFabric,
+    /// Strong and low: flutes two millimetres apart.
+    CorrugatedPaper,
+    /// Weak and low: shallow embossing.
+    Vinyl,
+}
+
+impl Surface {
+    /// All surfaces.
+    pub const ALL: [Self; 5] = [
+        Self::Sandpaper,
+        Self::FineFabric,
+        Self::CoarseFabric,
+        Self::CorrugatedPaper,
+        Self::Vinyl,
+    ];
+
+    /// The surface's name, kebab-case.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Sandpaper => "sandpaper",
+            Self::FineFabric => "fine-fabric",
+            Self::CoarseFabric => "coarse-fabric",
+            Self::CorrugatedPaper => "corrugated-paper",
+            Self::Vinyl => "vinyl",
+        }
+    }
+
+    pub(super) const fn parameters(self) -> &'static Parameters {
+        match self {
+            Self::Sandpaper => &SANDPAPER,
+            Self::FineFabric => &FINE_FABRIC,
+            Self::CoarseFabric => &COARSE_FABRIC,
+            Self::CorrugatedPaper => &CORRUGATED_PAPER,
+            Self::Vinyl => &VINYL,
+        }
+    }
+}
+
+impl fmt::Display for Surface {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Surface {
+    type Err = SimulationError;
+
+    fn from_str(text: &str) -> Result<Self, SimulationError> {
+        Self::ALL
+            .into_iter()
+            .find(|surface| surface.name() == text)
+            .ok_or_else(|| SimulationError::Surface {
+                text: text.chars().take(40).collect(),
+            })
+    }
+}
+
+/// A periodic part of the relief: a weave's thread or a flute, and its harmonics.
+#[derive(Debug)]
+pub(super) struct Line {
+    /// Periods in a millimetre; at 80 mm/s, times 80 hertz.
+    pub(super) per_mm: f64,
+    /// Standard deviation against the other parts of the surface.
+    pub(super) weight: f64,
+    /// Random walk of the phase, radians over the root of a millimetre: how wide the line is.
+    pub(super) wander: f64,
+}
+
+/// An irregular part of the relief: noise with most of its power between two spatial frequencies.
+#[derive(Debug)]
+pub(super) struct Grain {
+    /// Below this the spectrum falls by 6 dB an octave; periods in a millimetre.
+    pub(super) from_per_mm: f64,
+    /// Above this it falls by 12 dB an octave; periods in a millimetre.
+    pub(super) to_per_mm: f64,
+    /// Standard deviation against the other parts of the surface.
+    pub(super) weight: f64,
+}
+
+/// What sets one surface apart.
+#[derive(Debug)]
+pub(super) struct Parameters {
+    /// Keeps the random relief of two surfaces with one seed apart.
+    pub(super) label: u64,
+    /// Coefficient of kinetic friction, without unit.
+    pub(super) friction: f64,
+    /// Standard deviation of the friction coefficient along the surface, before the finger smooths it.
+    pub(super) relief: f64,
+    /// Periodic parts.
+    pub(super) lines: &'static [Line],
+    /// Irregular parts.
+    pub(super) grains: &'static [Grain],
+}
+
+const SANDPAPER: Parameters = Parameters {
+    label: 1,
+    friction: 0.75,
+    relief: 0.042,
+    lines: &[],
+    grains: &[
+        Grain {
+            from_per_mm: 2.0,
+            to_per_mm: 6.0,
+            weight: 1.0,
+        },
+        Grain {
+            from_per_mm: 0.4,
+            to_per_mm: 2.0,
+            weight: 0.4,
+        },
+    ],
+};
+
+const FINE_FABRIC: Parameters = Parameters {
+    label: 2,
+    friction: 0.60,
+    relief: 0.018,
+    lines: &[
+        Line {
+            per_mm: 3.9,
+            weight: 0.65,
+            wander: 1.5,
+        },
+        Line {
+            per_mm: 1.95,
+            weight: 0.3,
+            wander: 1.2,
+        },
+    ],
+    grains: &[Grain {
+        from_per_mm: 2.0,
+        to_per_mm: 7.0,
+        weight: 1.0,
+    }],
+};
+
+const COARSE_FABRIC: Parameters = Parameters {
+    label: 3,
+    friction: 0.55,
+    relief: 0.016,
+    lines: &[
+        Line {
+            per_mm: 1.05,
+            weight: 0.9,
+            wander: 0.8,
+        },
+        Line {
+            per_mm: 2.1,
+            weight: 0.4,
+            wander: 1.2,
+        },
+        Line {
+            per_mm: 0.52,
+            weight: 0.4,
+            wander: 0.5,
+        },
+    ],
+    grains: &[Grain {
+        from_per_mm: 0.3,
+        to_per_mm: 1.5,
+        weight: 0.7,
+    }],
+};
+
+const CORRUGATED_PAPER: Parameters = Parameters {
+    label: 4,
+    friction: 0.50,
+    relief: 0.055,
+    lines: &[
+        Line {
+            per_mm: 0.5,
+            weight: 1.0,
+            wander: 0.35,
+        },
+        Line {
+            per_mm: 1.0,
+            weight: 0.5,
+            wander: 0.5,
+        },
+        Line {
+            per_mm: 1.5,
+            weight: 0.25,
+            wander: 0.6,
+        },
+        Line {
+            per_mm: 2.0,
+            weight: 0.12,
+            wander: 0.7,
+        },
+    ],
+    grains: &[Grain {
+        from_per_mm: 0.4,
+        to_per_mm: 2.0,
+        weight: 0.35,
+    }],
+};
+
+const VINYL: Parameters = Parameters {
+    label: 5,
+    friction: 0.85,
+    relief: 0.014,
+    lines: &[],
+    grains: &[
+        Grain {
+            from_per_mm: 0.25,
+            to_per_mm: 0.9,
+            weight: 1.0,
+        },
+        Grain {
+            from_per_mm: 0.8,
+            to_per_mm: 3.0,
+            weight: 0.25,
+        },
+    ],
+};

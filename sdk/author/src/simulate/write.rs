@@ -1,0 +1,111 @@
+//! A simulation as CSV: fixed decimals, the same bytes on every machine.
+
+use std::io::{self, Write};
+
+use super::Simulation;
+
+/// Decimals of each kind of column: 1 us, 0.1 uN (0.2 mN is noise), 0.1 um.
+const TIME_DECIMALS: u32 = 6;
+pub(super) const FORCE_DECIMALS: u32 = 7;
+pub(super) const POSITION_DECIMALS: u32 = 4;
+/// Bytes gathered before they are written.
+const CHUNK: usize = 1 << 16;
+
+/// The nearest number of so many decimals, as reading it back gives it.
+pub(super) fn rounded(value: f64, decimals: u32) -> f64 {
+    let scale = 10_u32.pow(decimals) as f64;
+    libm::round(value * scale) / scale
+}
+
+impl Simulation {
+    /// Writes `t_s,fx_n,fy_n,fz_n,x_mm,y_mm` after a comment that says that this is simulated, of which
+    /// surface, with which seed, and by which version.
+    ///
+    /// Reading it back gives the same forces, bit for bit.
+    ///
+    /// # Errors
+    /// What the writer reports.
+    pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
+        let options = &self.options;
+        writeln!(
+            out,
+            "# simulated recording, no finger and no sensor: surface {}, seed {}, {} mm/s, {} N, {} Hz, htex {}",
+            options.surface,
+            options.seed,
+            options.speed_mm_s,
+            options.force_n,
+            options.rate_hz,
+            env!("CARGO_PKG_VERSION")
+        )?;
+        writeln!(out, "t_s,fx_n,fy_n,fz_n,x_mm,y_mm")?;
+        let mut chunk = Vec::with_capacity(CHUNK + 256);
+        for sample in 0..self.t_s.len() {
+            self.push_row(&mut chunk, sample);
+            if chunk.len() >= CHUNK {
+                out.write_all(&chunk)?;
+                chunk.clear();
+            }
+        }
+        out.write_all(&chunk)
+    }
+
+    fn push_row(&self, row: &mut Vec<u8>, sample: usize) {
+        let columns = [
+            (&self.t_s, TIME_DECIMALS),
+            (&self.fx_n, FORCE_DECIMALS),
+            (&self.fy_n, FORCE_DECIMALS),
+            (&self.fz_n, FORCE_DECIMALS),
+            (&self.x_mm, POSITION_DECIMALS),
+            (&self.y_mm, POSITION_DECIMALS),
+        ];
+        for (values, decimals) in columns {
+            push_decimal(row, values[sample], decimals);
+            row.push(b',');
+        }
+        if let Some(last) = row.last_mut() {
+            *last = b'\n';
+        }
+    }
+}
+
+/// Appends `value` with exactly so many decimals, at most 9.
+fn push_decimal(row: &mut Vec<u8>, value: f64, decimals: u32) {
+    let scale = 10_u64.pow(decimals);
+    let units = libm::round(value.abs() * scale as f64) as u64;
+    if value < 0.0 && units > 0 {
+        row.push(b'-');
+    }
+    push_digits(row, units / scale, 1);
+    row.push(b'.');
+    push_digits(row, units % scale, decimals as usize);
+}
+
+/// Appends an integer, padded with zeros to so many digits.
+fn push_digits(row: &mut Vec<u8>, mut value: u64, width: usize) {
+    let mut digits = [b'0'; 20];
+    let mut first = digits.len();
+    while value > 0 || digits.len() - first < width {
+        first -= 1;
+        digits[first] = b'0' + (value % 10) as u8;
+        value /= 10;
+    }
+    row.extend_from_slice(&digits[first..]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn decimals_are_what_the_standard_library_prints(value in -1e4..1e4_f64) {
+            let value = rounded(value, 4);
+            let mut text = Vec::new();
+            push_decimal(&mut text, value, 4);
+            let text = String::from_utf8(text).unwrap();
+            prop_assert_eq!(&text, &format!("{:.4}", value + 0.0));
+            prop_assert_eq!(text.parse::<f64>().unwrap(), value);
+        }
+    }
+}

@@ -1,0 +1,464 @@
+//! Reading recordings: what must work, and what must be refused with file, line and column.
+
+use std::fs;
+use std::path::PathBuf;
+
+use htex_author::read::{ColumnMap, ReadOptions, read_recording};
+use htex_author::recording::Recording;
+use htex_author::response::read_response;
+use proptest::prelude::*;
+use tempfile::TempDir;
+
+struct Folder(TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn put(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.0.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        path
+    }
+}
+
+fn at(rate_hz: f64) -> ReadOptions {
+    ReadOptions {
+        rate_hz: Some(rate_hz),
+        ..ReadOptions::default()
+    }
+}
+
+fn mapped(map: &str, rate_hz: Option<f64>) -> ReadOptions {
+    ReadOptions {
+        rate_hz,
+        map: Some(map.parse().unwrap()),
+        ..ReadOptions::default()
+    }
+}
+
+fn read(name: &str, bytes: impl AsRef<[u8]>, options: &ReadOptions) -> Result<Recording, String> {
+    let folder = Folder::new();
+    read_recording(&folder.put(name, bytes), options).map_err(|error| error.to_string())
+}
+
+fn has_warning(recording: &Recording, words: &str) -> bool {
+    recording
+        .warnings
+        .iter()
+        .any(|warning| warning.contains(words))
+}
+
+#[test]
+fn two_axes_time_and_position_by_name() {
+    let mut text = String::from("\u{feff}# Simulated\r\nt_s,fx_n,fy_mN,fz_n,x_mm,y_mm\r\n");
+    for sample in 0..200 {
+        let t = f64::from(sample) / 1000.0;
+        text += &format!(
+            "{t:.3},0.1,200,-0.4,{:.4},{:.4}\r\n",
+            3.0 * t,
+            4.0 - 4.0 * t
+        );
+    }
+    let recording = read("a.csv", text, &ReadOptions::default()).unwrap();
+    assert_eq!(
+        (recording.source.as_str(), recording.rate_hz),
+        ("a.csv", 1000.0)
+    );
+    assert_eq!((recording.samples(), recording.duration_s()), (200, 0.2));
+    assert_eq!(recording.lateral_n, [[0.1; 200], [0.2; 200]]);
+    assert_eq!(
+        recording.normal_n,
+        Some(vec![0.4; 200]),
+        "pressing reads positive"
+    );
+    assert!(
+        recording
+            .speed_mm_s
+            .unwrap()
+            .iter()
+            .all(|speed| (speed - 5.0).abs() < 0.2)
+    );
+    assert!(recording.simulated);
+    assert_eq!(recording.warnings, [""; 0]);
+}
+
+#[test]
+fn volts_need_a_map_and_the_message_gives_it() {
+    let text = "lateral_V,normal_V\n1,2\n3,4\n";
+    let error = read("v.csv", text, &at(10_000.0)).unwrap_err();
+    assert!(error.contains("--map lateral=lateral_V:SCALE"), "{error}");
+    let options = mapped("lateral=lateral_V:0.4444,normal=#2:0.31", Some(10_000.0));
+    let recording = read("v.csv", text, &options).unwrap();
+    assert_eq!(recording.lateral_n, [[0.4444, 3.0 * 0.4444]]);
+    assert_eq!(recording.normal_n, Some(vec![2.0 * 0.31, 4.0 * 0.31]));
+    let half = read("v.csv", text, &mapped("lateral=LATERAL_v:1", Some(1e4))).unwrap();
+    assert_eq!(half.normal_n, None);
+    assert!(has_warning(&half, "normal=normal_V:SCALE"));
+}
+
+#[test]
+fn units_left_unsaid_are_assumed_aloud() {
+    let text = "speed,force,accel,friction\n80,0.4,9,0.1\n81,0.5,9,0.2\n";
+    let recording = read("k.csv", text, &at(1000.0)).unwrap();
+    assert_eq!(recording.lateral_n, [[0.1, 0.2]]);
+    assert_eq!(recording.speed_mm_s, Some(vec![80.0, 81.0]));
+    assert!(has_warning(
+        &recording,
+        "\"speed\" (speed) names no unit: taken as mm/s"
+    ));
+    assert!(has_warning(&recording, "Columns not used: accel."));
+    assert!(
+        read("k.csv", text, &ReadOptions::default())
+            .unwrap_err()
+            .contains("--rate")
+    );
+    let in_metres = text.replace("speed", "speed [m/s]");
+    let recording = read("k.csv", in_metres, &at(1000.0)).unwrap();
+    assert_eq!(recording.speed_mm_s, Some(vec![80_000.0, 81_000.0]));
+}
+
+#[test]
+fn delimiters_comments_quotes_and_headerless_files() {
+    let same = [1.0, -2.5e-3];
+    for text in [
+        "fy_n;note\n1;x\n\n# rest\n-2.5e-3;y",
+        "\"fy_n\"\t\"a\tb\"\n\"1\"\t\"p\tq\"\n -2.5e-3\t\n",
+        "fy_n  z\n1  2\n  -2.5e-3 3\n",
+        "# fy_n, z\n1,2\n-2.5e-3,3\n",
+        "1\n-2.5e-3\n",
+    ] {
+        let recording =
+            read("d.csv", text, &at(100.0)).unwrap_or_else(|error| panic!("{text:?}: {error}"));
+        assert_eq!(recording.lateral_n, [same], "{text:?}");
+    }
+    assert!(
+        read("h.csv", "1,2\n3,4\n", &at(100.0))
+            .unwrap_err()
+            .contains("--map lateral=#2")
+    );
+    let by_number = read("h.csv", "1,2\n3,4\n", &mapped("lateral=#2:2", Some(100.0))).unwrap();
+    assert_eq!(by_number.lateral_n, [[4.0, 8.0]]);
+}
+
+#[test]
+fn broken_text_is_refused_where_it_breaks() {
+    let long = format!("fy_n,z\n1,2\n{}\n", "1".repeat(70_000));
+    let cases: [(&[u8], &str); 16] = [
+        (b"", "holds no data"),
+        (b"\n# only a comment\n", "holds no data"),
+        (b"fy_n,z\n", "0 row(s)"),
+        (b"fy_n,z\n1,2\n", "1 row(s)"),
+        (
+            b"fy_n,z\n1,2\n\n#\nabc,2\n",
+            "line 5, column \"fy_n\": \"abc\" is not a number",
+        ),
+        (
+            b"fy_n,z\n1,2\nNaN,2\n",
+            "line 3, column \"fy_n\": \"NaN\" is not finite",
+        ),
+        (b"fy_n,z\n1,2\n1e999,2\n", "is not finite"),
+        (
+            b"fy_n,z\n1,2\n,2\n",
+            "line 3, column \"fy_n\": the cell is empty",
+        ),
+        (b"fy_n;z\n1;2\n0,5;2\n", "decimal comma"),
+        (
+            b"fy_n,z\n1,2\n1\n1,2\n",
+            "line 3: 1 cells where the first row has 2",
+        ),
+        (b"fy_n,z\n1,2\n1,2,3\n", "line 3: 3 cells"),
+        (b"fy_n,z\n1,2\n1,2\n1", "line 4: the file seems cut off"),
+        (b"fy_n,z\n1,2\n1,\0\n", "line 3: a NUL byte"),
+        (
+            b"fy_n,z\n1,2\n1,\xff\n",
+            "line 3: a byte sequence that is not UTF-8",
+        ),
+        (b"a,b\n1,2\n1,2\n", "the columns are: a, b"),
+        (long.as_bytes(), "line 3: 70000 bytes in one line"),
+    ];
+    for (bytes, words) in cases {
+        let error = read("bad.csv", bytes, &at(100.0)).unwrap_err();
+        assert!(
+            error.starts_with("bad.csv") && error.contains(words),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn columns_that_could_be_either_are_asked_for() {
+    let twice = "force,fz_n,fy_n\n1,2,3\n1,2,3\n";
+    assert!(
+        read("m.csv", twice, &at(9.0))
+            .unwrap_err()
+            .contains("--map normal=COLUMN")
+    );
+    let chosen = read("m.csv", twice, &mapped("normal=force:2", Some(9.0))).unwrap();
+    assert_eq!(chosen.normal_n, Some(vec![2.0, 2.0]));
+    let absent = read("m.csv", twice, &mapped("lateral=nix", Some(9.0))).unwrap_err();
+    assert!(
+        absent.contains("\"nix\"") && absent.contains("force, fz_n, fy_n"),
+        "{absent}"
+    );
+    let same = read("m.csv", twice, &mapped("lateral=fy_n,normal=#3", Some(9.0))).unwrap_err();
+    assert!(same.contains("twice"), "{same}");
+    for map in [
+        "",
+        "lateral",
+        "drag=a",
+        "lateral=",
+        "lateral=#0",
+        "lateral=a:0",
+        "lateral=a:x",
+        "lateral=a,lateral=b",
+        "lateral=a,normal=a",
+        "lateral=a,lateral_x=b",
+    ] {
+        assert!(map.parse::<ColumnMap>().is_err(), "{map}");
+    }
+}
+
+#[test]
+fn the_time_column_gives_the_rate_or_says_why_not() {
+    let table = |times: &[&str]| {
+        times
+            .iter()
+            .fold(String::from("t_ms,fy_n\n"), |text, time| {
+                text + time + ",0.1\n"
+            })
+    };
+    let even = table(&["0", "0.5", "1.0", "1.5"]);
+    assert_eq!(
+        read("t.csv", &even, &ReadOptions::default())
+            .unwrap()
+            .rate_hz,
+        2000.0
+    );
+    let other = read("t.csv", &even, &at(1000.0)).unwrap();
+    assert_eq!(other.rate_hz, 1000.0);
+    assert!(has_warning(&other, "2000.000000 Hz, --rate says 1000 Hz"));
+    let gap = read(
+        "t.csv",
+        table(&["0", "1", "2", "3", "7", "8"]),
+        &ReadOptions::default(),
+    )
+    .unwrap();
+    assert_eq!(gap.rate_hz, 1000.0);
+    assert!(has_warning(&gap, "ends on line 6"));
+    let jitter = read(
+        "t.csv",
+        table(&["0", "1", "2.1", "3", "4"]),
+        &ReadOptions::default(),
+    )
+    .unwrap();
+    assert!(has_warning(&jitter, "uneven"));
+    let back = table(&["0", "1", "1", "2"]);
+    assert!(
+        read("t.csv", &back, &ReadOptions::default())
+            .unwrap_err()
+            .contains("line 4: time")
+    );
+    assert!(has_warning(
+        &read("t.csv", &back, &at(1000.0)).unwrap(),
+        "not used"
+    ));
+}
+
+fn wav(spec: hound::WavSpec, samples: &[f64]) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let mut writer = hound::WavWriter::new(&mut bytes, spec).unwrap();
+    for sample in samples {
+        match spec.sample_format {
+            hound::SampleFormat::Float => writer.write_sample(*sample as f32).unwrap(),
+            hound::SampleFormat::Int => {
+                let full_scale = 2_f64.powi(i32::from(spec.bits_per_sample) - 1);
+                writer.write_sample((sample * full_scale) as i32).unwrap();
+            }
+        }
+    }
+    writer.finalize().unwrap();
+    bytes.into_inner()
+}
+
+fn spec(channels: u16, bits_per_sample: u16) -> hound::WavSpec {
+    let sample_format = if bits_per_sample == 32 {
+        hound::SampleFormat::Float
+    } else {
+        hound::SampleFormat::Int
+    };
+    hound::WavSpec {
+        channels,
+        sample_rate: 44_100,
+        bits_per_sample,
+        sample_format,
+    }
+}
+
+#[test]
+fn wav_of_one_to_three_channels_and_all_depths() {
+    for bits in [8, 16, 24, 32] {
+        let bytes = wav(spec(3, bits), &[0.5, -0.25, -0.75, -0.5, 0.25, -0.5]);
+        let plain = read("w.wav", &bytes, &ReadOptions::default()).unwrap();
+        assert_eq!(plain.lateral_n, [[0.5, -0.5], [-0.25, 0.25]]);
+        assert_eq!(plain.normal_n, Some(vec![0.75, 0.5]));
+        assert!(plain.rate_hz == 44_100.0 && has_warning(&plain, "--newtons-per-unit"));
+        let options = ReadOptions {
+            newtons_per_unit: Some(4.0),
+            ..ReadOptions::default()
+        };
+        let scaled = read("w.dat", &bytes, &options).unwrap();
+        assert_eq!((scaled.lateral_n[0][0], scaled.warnings.len()), (2.0, 0));
+    }
+    let bytes = wav(spec(1, 16), &[0.1; 100]);
+    let cut = read("w.wav", &bytes[..bytes.len() - 41], &ReadOptions::default()).unwrap_err();
+    assert!(cut.contains("sample 79"), "{cut}");
+    for (bytes, options, words) in [
+        (
+            wav(spec(4, 16), &[0.0; 8]),
+            ReadOptions::default(),
+            "4 channels",
+        ),
+        (
+            wav(spec(1, 32), &[0.0, f64::NAN]),
+            ReadOptions::default(),
+            "NaN at sample 1",
+        ),
+        (
+            wav(spec(1, 16), &[0.0]),
+            ReadOptions::default(),
+            "at least 2 samples",
+        ),
+        (bytes[..30].to_vec(), ReadOptions::default(), "not a WAV"),
+        (b"nonsense".to_vec(), ReadOptions::default(), "not a WAV"),
+        (
+            bytes.clone(),
+            mapped("lateral=#1", None),
+            "--map is for CSV",
+        ),
+        (bytes.clone(), at(48_000.0), "44100 Hz"),
+    ] {
+        let error = read("w.wav", bytes, &options).unwrap_err();
+        assert!(error.contains(words), "{error}");
+    }
+}
+
+fn npy(header: &str, data: &[u8]) -> Vec<u8> {
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    bytes.extend(data);
+    bytes
+}
+
+fn npy_header(kind: &str, fortran: &str, shape: &str) -> String {
+    format!("{{'descr': '{kind}', 'fortran_order': {fortran}, 'shape': {shape}, }}\n")
+}
+
+#[test]
+fn npy_in_either_order_and_endianness() {
+    let rows = [0.5_f32, 0.25, -0.5, -0.25];
+    let c: Vec<u8> = rows.iter().flat_map(|x| x.to_le_bytes()).collect();
+    let fortran: Vec<u8> = [0.5_f64, -0.5, 0.25, -0.25]
+        .iter()
+        .flat_map(|x| x.to_be_bytes())
+        .collect();
+    let integer: Vec<u8> = rows
+        .iter()
+        .flat_map(|x| ((x * 32_768.0) as i16).to_le_bytes())
+        .collect();
+    for bytes in [
+        npy(&npy_header("<f4", "False", "(2, 2)"), &c),
+        npy(&npy_header(">f8", "True", "(2, 2)"), &fortran),
+        npy(&npy_header("<i2", "False", "(2, 2)"), &integer),
+    ] {
+        let recording = read("n.npy", &bytes, &at(20_000.0)).unwrap();
+        assert_eq!(recording.lateral_n, [[0.5, -0.5], [0.25, -0.25]]);
+        assert!(
+            read("n.npy", &bytes, &ReadOptions::default())
+                .unwrap_err()
+                .contains("--rate")
+        );
+    }
+    let deep = format!("{}1{}", "(".repeat(3000), ")".repeat(3000));
+    for (header, words) in [
+        (npy_header("<f4", "False", "(9,)"), "after 4 of 9 values"),
+        (
+            npy_header("<f4", "False", "(4000000000,)"),
+            "after 4 of 4000000000",
+        ),
+        (
+            npy_header("<f4", "False", "(4294967296, 4294967296)"),
+            "no plain array",
+        ),
+        (npy_header("<f4", "False", "(1, 4)"), "shape is [1, 4]"),
+        (npy_header("<f4", "False", "()"), "shape is []"),
+        (npy_header("<c8", "False", "(2,)"), "f4, f8, i2 or i4"),
+        (npy_header("|O", "False", "(2,)"), "f4, f8, i2 or i4"),
+        (npy_header("<f4", "False", &deep), "longer"),
+        ("{}".into(), "not an NPY"),
+    ] {
+        let error = read("n.npy", npy(&header, &c), &at(1.0)).unwrap_err();
+        assert!(
+            error.contains(words) || words == "longer" && error.contains("limit"),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn setup_response_is_read_unwrapped_and_held_at_its_ends() {
+    let folder = Folder::new();
+    let path = folder.put(
+        "h.csv",
+        "frequency_hz,magnitude,phase_rad\n10,1,3\n20,2,-3\n40,1,-3\n",
+    );
+    let response = read_response(&path).unwrap();
+    let (re, im) = response.at(15.0);
+    let middle = 1.5_f64;
+    assert!((re.hypot(im) - middle).abs() < 1e-12);
+    assert!(
+        (re + middle).abs() < 1e-12,
+        "half way from 3 to 2 pi - 3 is pi"
+    );
+    assert_eq!(response.at(1.0), response.at(10.0));
+    assert_eq!(response.at(99.0), response.at(40.0));
+    for (text, words) in [
+        (
+            "frequency_hz,magnitude\n10,1\n10,1\n",
+            "line 3: the frequency 10 Hz follows 10 Hz",
+        ),
+        (
+            "frequency_hz,magnitude\n10,1\n20,-1\n",
+            "line 3: the magnitude -1 is negative",
+        ),
+        ("frequency_hz,magnitude\n10,1\n", "1 row(s)"),
+        ("f,magnitude\n10,1\n20,1\n", "\"frequency_hz\""),
+    ] {
+        let error = read_response(&folder.put("bad.csv", text))
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains(words), "{error}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    /// Damaged files of every kind end in a recording or an error, never in a panic.
+    #[test]
+    fn damage_never_panics(kind in 0..3_usize, cut in 0..200_usize, edits in prop::collection::vec((0..200_usize, any::<u8>()), 0..6)) {
+        let (name, mut bytes) = [
+            ("x.csv", b"t_s,fx_n,fy_n\n0.000,1,2\n0.001,3,4\n0.002,5,\"6\"\n".to_vec()),
+            ("x.wav", wav(spec(2, 24), &[0.25; 20])),
+            ("x.npy", npy(&npy_header("<f4", "True", "(2, 2)"), &[0; 16])),
+        ][kind].clone();
+        for (place, byte) in edits {
+            let length = bytes.len();
+            bytes[place % length] = byte;
+        }
+        bytes.truncate(cut.max(8));
+        let _ = read(name, bytes, &at(44_100.0));
+    }
+}

@@ -1,0 +1,235 @@
+//! The simulator: repeatable, readable, and like the surfaces it is named after.
+
+use std::path::Path;
+
+use htex_author::read::{ReadOptions, read_recording};
+use htex_author::simulate::{Simulation, SimulationOptions, Surface, setup_response, simulate};
+
+fn paper(surface: Surface) -> Simulation {
+    simulate(&SimulationOptions::new(surface)).unwrap()
+}
+
+fn csv(simulation: &Simulation) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    simulation.write_csv(&mut bytes).unwrap();
+    bytes
+}
+
+/// FNV-1a, so that one number holds a whole file.
+fn hash(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+#[test]
+fn written_and_read_back_it_is_the_same_recording() {
+    let simulation = paper(Surface::CoarseFabric);
+    let bytes = csv(&simulation);
+    assert!(
+        (10_500_000..11_500_000).contains(&bytes.len()),
+        "{} bytes",
+        bytes.len()
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("coarse.csv");
+    std::fs::write(&path, bytes).unwrap();
+    let read = read_recording(Path::new(&path), &ReadOptions::default()).unwrap();
+    assert!(read.simulated);
+    assert_eq!(read, simulation.to_recording("coarse.csv").unwrap());
+}
+
+#[test]
+fn same_options_give_the_same_bytes_everywhere() {
+    let short = |seed| {
+        let options = SimulationOptions {
+            seed,
+            duration_s: 0.5,
+            ..SimulationOptions::new(Surface::Sandpaper)
+        };
+        csv(&simulate(&options).unwrap())
+    };
+    assert_eq!(short(7), short(7));
+    assert_ne!(short(7), short(8));
+    // The rows, without the first line, which names the version: another machine or compiler that
+    // computes otherwise is noticed.
+    let bytes = short(7);
+    let first_row = bytes.iter().position(|byte| *byte == b'\n').unwrap();
+    assert_eq!(hash(&bytes[first_row..]), HASH);
+}
+
+const HASH: u64 = 0x75f2_fa7d_cfcc_8f48;
+
+#[test]
+fn the_hand_keeps_within_the_papers_tolerance() {
+    for surface in Surface::ALL {
+        let simulation = paper(surface);
+        let turns = simulation
+            .fy_n
+            .windows(2)
+            .filter(|pair| pair[0] < 0.1 && pair[1] >= 0.1)
+            .count()
+            + simulation
+                .fy_n
+                .windows(2)
+                .filter(|pair| pair[0] > -0.1 && pair[1] <= -0.1)
+                .count();
+        assert!((8..=9).contains(&turns), "{surface}: {turns} sweeps");
+        assert!(
+            simulation
+                .fz_n
+                .iter()
+                .all(|force| (force / 0.4 - 1.0).abs() < 0.1),
+            "{surface}"
+        );
+        assert!(
+            simulation
+                .y_mm
+                .iter()
+                .chain(&simulation.x_mm)
+                .all(|place| place.abs() < 50.0)
+        );
+        let speeds = simulation.to_recording("").unwrap().speed_mm_s.unwrap();
+        let sliding: Vec<f64> = speeds.into_iter().filter(|speed| *speed > 60.0).collect();
+        let mean = sliding.iter().sum::<f64>() / sliding.len() as f64;
+        assert!((mean - 80.0).abs() < 4.0, "{surface}: {mean} mm/s");
+    }
+}
+
+/// Power of the lateral force in the middle of each sweep, at a frequency, by Goertzel's sums.
+fn amplitude_n(simulation: &Simulation, frequency_hz: f64) -> f64 {
+    let n = 4000;
+    let mut sum = 0.0;
+    let mut count = 0.0;
+    for start in (0..simulation.y_mm.len() - n).step_by(n / 2) {
+        let end = start + n;
+        let middle = simulation.y_mm[start].abs().max(simulation.y_mm[end].abs()) < 30.0;
+        if !middle {
+            continue;
+        }
+        let (mut re, mut im) = (0.0, 0.0);
+        for (k, force) in simulation.fy_n[start..end].iter().enumerate() {
+            let window = 1.0 - (std::f64::consts::TAU * k as f64 / n as f64).cos();
+            let angle = std::f64::consts::TAU * frequency_hz * k as f64 / simulation.rate_hz;
+            re += window * force * angle.cos();
+            im += window * force * angle.sin();
+        }
+        sum += (re * re + im * im) * 4.0 / (n * n) as f64;
+        count += 1.0;
+    }
+    (sum / count).sqrt()
+}
+
+/// RMS amplitude over a band, newtons.
+fn band_n(simulation: &Simulation, from_hz: usize, to_hz: usize) -> f64 {
+    let power = |hz| amplitude_n(simulation, f64::from(hz as u32)).powi(2);
+    (from_hz..to_hz).step_by(20).map(power).sum::<f64>().sqrt()
+}
+
+#[test]
+fn spectra_lie_as_in_the_paper() {
+    let [sandpaper, fine, coarse, corrugated, vinyl] = Surface::ALL.map(|surface| {
+        let simulation = paper(surface);
+        (band_n(&simulation, 20, 200), band_n(&simulation, 300, 600))
+    });
+    let level = |(low, high): (f64, f64)| low.hypot(high);
+    for weak in [fine, coarse, vinyl] {
+        assert!(level(weak) < 0.6 * level(sandpaper) && level(weak) < 0.6 * level(corrugated));
+    }
+    for (low, high) in [coarse, corrugated, vinyl] {
+        assert!(low > 4.0 * high, "mostly low: {low} against {high} N");
+    }
+    for (low, high) in [sandpaper, fine] {
+        assert!(high > 0.4 * low, "broad: {low} against {high} N");
+    }
+}
+
+#[test]
+fn texture_follows_speed_and_force() {
+    let paper_conditions = SimulationOptions::new(Surface::CorrugatedPaper);
+    let slow = simulate(&SimulationOptions {
+        speed_mm_s: 40.0,
+        ..paper_conditions.clone()
+    })
+    .unwrap();
+    let light = simulate(&SimulationOptions {
+        force_n: 0.2,
+        ..paper_conditions.clone()
+    })
+    .unwrap();
+    let normal = simulate(&paper_conditions).unwrap();
+    // Flutes 2 mm apart.
+    assert!(amplitude_n(&normal, 40.0) > 3.0 * amplitude_n(&normal, 20.0));
+    assert!(amplitude_n(&slow, 20.0) > 3.0 * amplitude_n(&slow, 30.0));
+    let ratio = amplitude_n(&normal, 40.0) / amplitude_n(&light, 40.0);
+    assert!((1.6..2.4).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn low_rates_are_not_aliased() {
+    let options = SimulationOptions {
+        rate_hz: 1000.0,
+        ..SimulationOptions::new(Surface::CorrugatedPaper)
+    };
+    let simulation = simulate(&options).unwrap();
+    assert_eq!(simulation.t_s.len(), 10_000);
+    assert!(simulation.to_recording("low").is_ok());
+    let rms = |range: std::ops::Range<usize>| {
+        let still = &simulation.fy_n[range];
+        (still.iter().map(|x| x * x).sum::<f64>() / still.len() as f64).sqrt()
+    };
+    assert!(rms(0..40) < 1e-3, "at rest there is only noise");
+}
+
+#[test]
+fn options_out_of_range_are_refused_and_names_go_round() {
+    let good = SimulationOptions::new(Surface::Vinyl);
+    for bad in [
+        SimulationOptions {
+            rate_hz: f64::NAN,
+            ..good.clone()
+        },
+        SimulationOptions {
+            rate_hz: 0.0,
+            ..good.clone()
+        },
+        SimulationOptions {
+            duration_s: f64::INFINITY,
+            ..good.clone()
+        },
+        SimulationOptions {
+            speed_mm_s: -80.0,
+            ..good.clone()
+        },
+        SimulationOptions {
+            force_n: 0.0,
+            ..good.clone()
+        },
+        SimulationOptions {
+            rate_hz: 200_000.0,
+            duration_s: 600.0,
+            ..good
+        },
+    ] {
+        assert!(simulate(&bad).is_err(), "{bad:?}");
+    }
+    for surface in Surface::ALL {
+        assert_eq!(surface.to_string().parse(), Ok(surface));
+    }
+    assert!(
+        "velvet"
+            .parse::<Surface>()
+            .unwrap_err()
+            .to_string()
+            .contains("fine-fabric")
+    );
+}
+
+#[test]
+fn the_rig_is_mild_and_known() {
+    let response = setup_response(&[0.0, 20.0, 620.0, 1000.0]);
+    assert_eq!(response.magnitude[0], 1.0);
+    assert!((response.magnitude[1] - 1.0).abs() < 1e-3);
+    assert!((1.5..2.0).contains(&response.magnitude[2]));
+    assert!((0.3..1.0).contains(&response.magnitude[3]));
+}

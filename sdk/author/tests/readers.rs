@@ -1,5 +1,7 @@
 //! Reading recordings: what must work, and what must be refused with file, line and column.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
+
 use std::fs;
 use std::path::PathBuf;
 

@@ -1,5 +1,7 @@
 //! The simulator: repeatable, readable, and like the surfaces it is named after.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
+
 use std::path::Path;
 
 use htex_author::read::{ReadOptions, read_recording};

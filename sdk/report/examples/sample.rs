@@ -1,0 +1,109 @@
+//! Writes a texture report on made-up data to the path given.
+//!
+//! `cargo run -p htex-report --example sample -- report.html`
+
+use htex_report::{ModelResult, Texture, TextureReport, texture_report};
+
+/// Name, where the spectrum is strongest (hertz), how wide it is (natural log units), height (newtons).
+const TEXTURES: [(&str, f64, f64, f64); 5] = [
+    ("Vinyl", 60.0, 0.9, 0.0021),
+    ("Denim", 130.0, 0.5, 0.0124),
+    ("Sandpaper, P80 (coarse)", 240.0, 0.8, 0.0262),
+    ("Oak", 90.0, 1.1, 0.0048),
+    ("Ribbed silicone", 180.0, 0.25, 0.0410),
+];
+
+fn main() -> std::io::Result<()> {
+    let path = std::env::args().nth(1);
+    let path = path.unwrap_or_else(|| "report.html".to_owned());
+    std::fs::write(path, texture_report(&report()))
+}
+
+fn report() -> TextureReport {
+    TextureReport {
+        title: "Sample report: five made-up textures".to_owned(),
+        intro: vec![
+            "Every number on this page is made up, to show what a report looks like.".to_owned(),
+        ],
+        textures: (0..TEXTURES.len()).map(texture).collect(),
+        command: "cargo run -p htex-report --example sample -- report.html".to_owned(),
+    }
+}
+
+fn texture(index: usize) -> Texture {
+    let (name, peak_hz, width, height_n) = TEXTURES[index];
+    let frequency_hz: Vec<f64> = (4..=200).map(|bin| 5.0 * f64::from(bin)).collect();
+    let envelope =
+        |f: f64| height_n * (-((f / peak_hz).ln() / width).powi(2) / 2.0).exp() + 0.04 * height_n;
+    let ripple = |f: f64| 1.0 + 0.35 * (f * 0.71 + index as f64).sin() * (f * 0.113).cos();
+    let recorded_n: Vec<f64> = frequency_hz
+        .iter()
+        .map(|f| envelope(*f) * ripple(*f))
+        .collect();
+    let model = |spec: &Spec| model(spec, &frequency_hz, &recorded_n, envelope, peak_hz, index);
+    Texture {
+        name: name.to_owned(),
+        simulated: true,
+        condition: "80 mm/s, 0.40 N".to_owned(),
+        recording_bytes: 1_600_044 + 40_000 * index as u64,
+        asset_bytes: 2_810 + 7 * index as u64,
+        repeatability_rms_db: (index != 3).then_some(1.1 + 0.2 * index as f64),
+        models: SPECS.iter().map(model).collect(),
+        warnings: match index {
+            0 => vec!["the level is 6 dB above the sensor's noise".to_owned()],
+            _ => Vec::new(),
+        },
+        frequency_hz,
+        recorded_n,
+    }
+}
+
+/// Name, sharpness against the envelope, correlation, error (dB), bytes.
+struct Spec(&'static str, f64, f64, f64, usize);
+
+const SPECS: [Spec; 5] = [
+    Spec("AR", 1.15, 0.94, 0.9, 56),
+    Spec("MFCC", 0.9, 0.68, 1.9, 80),
+    Spec("sPeak", 1.0, 0.75, 8.4, 160),
+    Spec("sBeta", 0.75, 0.71, 3.2, 16),
+    Spec("sSlope", 0.5, 0.42, 5.9, 24),
+];
+
+fn model(
+    spec: &Spec,
+    frequency_hz: &[f64],
+    recorded_n: &[f64],
+    envelope: impl Fn(f64) -> f64,
+    peak_hz: f64,
+    index: usize,
+) -> ModelResult {
+    let Spec(name, sharpness, correlation, error_db, bytes) = *spec;
+    let top = envelope(peak_hz);
+    let shape = |f: &f64| top * (envelope(*f) / top).powf(sharpness);
+    let band_error = |band: i32| error_db * (f64::from(band) * 1.7 + index as f64).sin() * 1.4;
+    ModelResult {
+        model: name.to_owned(),
+        short_name: name.to_ascii_lowercase(),
+        magnitude_n: frequency_hz.iter().map(shape).collect(),
+        spectral_correlation: correlation - 0.03 * index as f64,
+        band_error_db: (0..9).map(band_error).collect(),
+        band_error_rms_db: error_db,
+        samples_band_error_rms_db: Some(error_db + 0.2),
+        payload_bytes: bytes,
+        lines: (name == "sPeak").then(|| strongest(frequency_hz, recorded_n)),
+    }
+}
+
+/// Up to ten local maxima, (hertz, newtons).
+fn strongest(frequency_hz: &[f64], recorded_n: &[f64]) -> Vec<(f64, f64)> {
+    let inner = 1..recorded_n.len() - 1;
+    let is_peak =
+        |i: &usize| recorded_n[*i] > recorded_n[*i - 1] && recorded_n[*i] > recorded_n[*i + 1];
+    let mut peaks: Vec<_> = inner
+        .filter(is_peak)
+        .map(|i| (frequency_hz[i], recorded_n[i]))
+        .collect();
+    peaks.sort_by(|a, b| b.1.total_cmp(&a.1));
+    peaks.truncate(10);
+    peaks
+}

@@ -1,0 +1,128 @@
+//! Colours: one for each model, everywhere, and the scales of the heat tables.
+//!
+//! The hues follow Okabe and Ito's set, told apart with the common forms of colour blindness;
+//! the light ones are darkened until a line stands at 3 : 1 or better on white.
+
+/// The recording: dark grey, behind or beside any model's colour.
+pub const RECORDING_COLOR: &str = "#4d4d4d";
+
+const MODELS: [(&str, &str); 5] = [
+    ("ar", "#0072b2"),
+    ("mfcc", "#00875f"),
+    ("speak", "#d55e00"),
+    ("sbeta", "#aa3377"),
+    ("sslope", "#b37a00"),
+];
+
+/// For models this crate has never heard of.
+const OTHERS: [&str; 4] = ["#5b4fc4", "#7a4b1e", "#2a7f8e", "#5f7a1f"];
+
+/// The colour of the model called `short_name` (`"sbeta"`), the same in every picture. A model
+/// that is not one of the five gets a colour of its own kind, chosen by its name.
+pub fn model_color(short_name: &str) -> &'static str {
+    let name = short_name.to_ascii_lowercase();
+    let known = MODELS.iter().find(|(model, _)| *model == name);
+    let sum = name.bytes().map(usize::from).sum::<usize>();
+    known.map_or(OTHERS[sum % OTHERS.len()], |(_, color)| color)
+}
+
+/// The colour of the `index`-th of some series that are not models.
+pub fn series_color(index: usize) -> &'static str {
+    MODELS[index % MODELS.len()].1
+}
+
+/// Red, green and blue, each 0 to 255.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Rgb(pub(crate) [f64; 3]);
+
+const WHITE: Rgb = Rgb([255.0, 255.0, 255.0]);
+const BLACK: Rgb = Rgb([0.0, 0.0, 0.0]);
+const PALE: Rgb = Rgb([243.0, 248.0, 252.0]);
+const BLUE: Rgb = Rgb([8.0, 81.0, 146.0]);
+const ORANGE: Rgb = Rgb([191.0, 84.0, 0.0]);
+
+impl Rgb {
+    /// `#rrggbb`.
+    pub(crate) fn hex(self) -> String {
+        let [r, g, b] = self.0.map(|part| part.round() as u8);
+        format!("#{r:02x}{g:02x}{b:02x}")
+    }
+
+    /// Black or white, whichever reads better on this: never below 4.5 : 1.
+    pub(crate) fn ink(self) -> &'static str {
+        if self.contrast(BLACK) >= self.contrast(WHITE) {
+            "#000"
+        } else {
+            "#fff"
+        }
+    }
+
+    fn mix(self, other: Self, amount: f64) -> Self {
+        let part = |i: usize| self.0[i] + (other.0[i] - self.0[i]) * amount;
+        Self([part(0), part(1), part(2)])
+    }
+
+    /// WCAG 2.1 contrast ratio, 1 to 21.
+    fn contrast(self, other: Self) -> f64 {
+        let (a, b) = (self.luminance(), other.luminance());
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    /// WCAG 2.1 relative luminance, 0 to 1.
+    fn luminance(self) -> f64 {
+        let linear = self.0.map(|part| {
+            let part = part / 255.0;
+            if part <= 0.04045 {
+                part / 12.92
+            } else {
+                ((part + 0.055) / 1.055).powf(2.4)
+            }
+        });
+        0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+    }
+}
+
+/// Light to dark blue over 0 to 1.
+pub(crate) fn sequential(amount: f64) -> Rgb {
+    PALE.mix(BLUE, amount.clamp(0.0, 1.0))
+}
+
+/// Blue, white, orange over -1 to 1.
+pub(crate) fn diverging(amount: f64) -> Rgb {
+    let end = if amount < 0.0 { BLUE } else { ORANGE };
+    WHITE.mix(end, amount.abs().min(1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(hex: &str) -> Rgb {
+        let part = |i: usize| f64::from(u8::from_str_radix(&hex[i..i + 2], 16).unwrap());
+        Rgb([part(1), part(3), part(5)])
+    }
+
+    #[test]
+    fn every_line_stands_out_from_white_and_no_two_models_share_a_colour() {
+        let mut all: Vec<&str> = MODELS.iter().map(|m| m.1).chain(OTHERS).collect();
+        all.push(RECORDING_COLOR);
+        for color in &all {
+            assert!(parse(color).contrast(WHITE) >= 3.0, "{color}");
+        }
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), MODELS.len() + OTHERS.len() + 1);
+        assert_eq!(model_color("sBeta"), model_color("sbeta"));
+    }
+
+    #[test]
+    fn text_is_legible_on_every_shade() {
+        for step in -100..=100 {
+            let amount = f64::from(step) / 100.0;
+            for shade in [sequential(amount), diverging(amount)] {
+                let ink = if shade.ink() == "#000" { BLACK } else { WHITE };
+                assert!(shade.contrast(ink) >= 4.5, "{}", shade.hex());
+            }
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! Pictures and pages: SVG plots, heat tables and self-contained HTML reports.
+//!
+//! Data in, text out. This crate knows no texture file and no signal processing, reads no clock
+//! and writes no file: the same data gives the same bytes. Pages carry their own style, need no
+//! script and fetch nothing.
+//!
+//! ```
+//! use htex_report::{Axis, Plot, Series};
+//! let mut plot = Plot::new("Vinyl", Axis::log("frequency / Hz"), Axis::linear("magnitude / mN"));
+//! plot.series.push(Series::line("recording", vec![(20.0, 1.5), (200.0, 4.0), (1000.0, 0.2)]));
+//! assert!(plot.to_svg().starts_with("<svg "));
+//! ```
+#![forbid(unsafe_code)]
+
+mod axis;
+mod color;
+mod markup;
+mod number;
+mod page;
+mod plot;
+mod projection;
+mod series;
+mod svg;
+mod table;
+mod textures;
+mod ticks;
+
+pub use axis::{Axis, Scale};
+pub use color::{RECORDING_COLOR, model_color, series_color};
+pub use page::{Page, code_block, list, paragraph};
+pub use plot::Plot;
+pub use series::{Line, Series};
+pub use table::{Cell, HeatScale, Row, Table};
+pub use textures::{ModelResult, Texture, TextureReport, texture_report};
+pub use ticks::{Tick, ticks};

@@ -1,0 +1,66 @@
+//! A self-contained page: one file, its own style, no script, nothing fetched.
+
+use crate::markup::{Element, escape};
+
+const STYLE: &str = include_str!("page.css");
+
+/// An HTML page, filled from the top.
+#[derive(Debug, Clone)]
+pub struct Page {
+    title: String,
+    body: String,
+}
+
+impl Page {
+    /// A page with `title` as its heading.
+    pub fn new(title: &str) -> Self {
+        let heading = Element::new("h1").text(title);
+        Self {
+            title: title.to_owned(),
+            body: heading.render(),
+        }
+    }
+
+    /// Starts a section.
+    pub fn heading(&mut self, text: &str) {
+        self.html(&Element::new("h2").text(text).render());
+    }
+
+    /// Appends finished HTML as it is, such as [`Plot::to_svg`](crate::Plot::to_svg),
+    /// [`Table::to_html`](crate::Table::to_html) or [`paragraph`] give.
+    pub fn html(&mut self, html: &str) {
+        self.body.push('\n');
+        self.body.push_str(html);
+    }
+
+    /// The page as text, to be stored as UTF-8.
+    pub fn render(&self) -> String {
+        let (title, body) = (escape(&self.title), &self.body);
+        format!(
+            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             <meta name=\"color-scheme\" content=\"light\">\n<title>{title}</title>\n\
+             <style>\n{STYLE}</style>\n</head>\n<body>\n{body}\n</body>\n</html>\n"
+        )
+    }
+}
+
+/// `text` as a paragraph.
+pub fn paragraph(text: &str) -> String {
+    Element::new("p").text(text).render()
+}
+
+/// `items` as a list; nothing when there are none.
+pub fn list(items: &[String]) -> String {
+    if items.is_empty() {
+        return String::new();
+    }
+    let items = items.iter().map(|item| Element::new("li").text(item));
+    Element::new("ul").children(items).render()
+}
+
+/// `text` set as it was typed.
+pub fn code_block(text: &str) -> String {
+    let code = Element::new("code").text(text);
+    Element::new("pre").child(&code).render()
+}

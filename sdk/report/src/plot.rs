@@ -1,0 +1,383 @@
+//! A small line or scatter plot as one SVG element.
+
+use crate::axis::Axis;
+use crate::markup::Element;
+use crate::number::{brief, px};
+use crate::projection::Projection;
+use crate::series::{Line, Series};
+use crate::svg::{self, TEXT_PX, fit_text, text_width};
+use crate::ticks::Tick;
+
+const TITLE_PX: f64 = 12.0;
+const FONT: &str = "system-ui, -apple-system, 'Segoe UI', 'DejaVu Sans', sans-serif";
+const INK: &str = "#222";
+const GRID: &str = "#e3e3e3";
+const MINOR_GRID: &str = "#f2f2f2";
+
+/// A plot: axes, series, a title.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plot {
+    /// Above the plot; also its name for screen readers.
+    pub title: String,
+    /// The horizontal axis.
+    pub x: Axis,
+    /// The vertical axis.
+    pub y: Axis,
+    /// Drawn in this order, the last on top.
+    pub series: Vec<Series>,
+    /// Width of the whole picture, pixels.
+    pub width: f64,
+    /// Height of the whole picture, pixels.
+    pub height: f64,
+    /// Whether to name the series above the plot.
+    pub legend: bool,
+}
+
+impl Plot {
+    /// An empty plot of 480 by 300 pixels with a legend.
+    pub fn new(title: &str, x: Axis, y: Axis) -> Self {
+        Self {
+            title: title.to_owned(),
+            x,
+            y,
+            series: Vec::new(),
+            width: 480.0,
+            height: 300.0,
+            legend: true,
+        }
+    }
+
+    /// The plot as an `<svg>` element: a picture by itself, or a part of a page.
+    pub fn to_svg(&self) -> String {
+        let drawing = Drawing::new(self);
+        let (width, height) = (drawing.width, drawing.height);
+        Element::new("svg")
+            .set("xmlns", "http://www.w3.org/2000/svg")
+            .set("viewBox", &format!("0 0 {} {}", px(width), px(height)))
+            .set("width", &px(width))
+            .set("height", &px(height))
+            .set("role", "img")
+            .set("aria-label", &self.title)
+            .set("font-family", FONT)
+            .set("font-size", &px(TEXT_PX))
+            .set("fill", INK)
+            .set("style", "color-scheme:light")
+            .child(&svg::rect(0.0, 0.0, width, height).set("fill", "#fff"))
+            .children(drawing.heading())
+            .children(drawing.x_axis())
+            .children(drawing.y_axis())
+            .child(&drawing.data())
+            .child(&drawing.border())
+            .render()
+    }
+}
+
+/// A plot with every place decided.
+struct Drawing<'a> {
+    plot: &'a Plot,
+    width: f64,
+    height: f64,
+    x: Projection,
+    y: Projection,
+    x_ticks: Vec<(f64, Tick)>,
+    y_ticks: Vec<(f64, Tick)>,
+    legend: Vec<(f64, f64, &'a Series)>,
+    area: Area,
+}
+
+/// Where the data goes, pixels.
+struct Area {
+    left: f64,
+    top: f64,
+    width: f64,
+    height: f64,
+}
+
+impl<'a> Drawing<'a> {
+    fn new(plot: &'a Plot) -> Self {
+        let (width, height) = (size(plot.width, 480.0), size(plot.height, 300.0));
+        let points = || plot.series.iter().flat_map(|series| &series.points);
+        let x = Projection::new(&plot.x, points().map(|p| p.0));
+        let y = Projection::new(&plot.y, points().map(|p| p.1));
+        let legend = if plot.legend {
+            legend_places(&plot.series, width)
+        } else {
+            Vec::new()
+        };
+        let legend_bottom = legend.last().map_or(0.0, |(_, y, _)| y + 6.0);
+        let top = legend_bottom.max(if plot.title.is_empty() { 10.0 } else { 24.0 });
+        let area_height = (height - top - 38.0).max(30.0);
+        let y_ticks = y.ticks((area_height / 34.0) as usize);
+        let widest = y_ticks
+            .iter()
+            .map(|(_, t)| text_width(&t.label, TEXT_PX))
+            .fold(0.0, f64::max);
+        let left = 24.0 + widest;
+        let area_width = (width - left - 14.0).max(30.0);
+        let x_ticks = x.ticks((area_width / 45.0) as usize);
+        let area = Area {
+            left,
+            top,
+            width: area_width,
+            height: area_height,
+        };
+        Self {
+            plot,
+            width,
+            height,
+            x,
+            y,
+            x_ticks,
+            y_ticks,
+            legend,
+            area,
+        }
+    }
+
+    /// Where a point stands inside the data area, pixels from its top left.
+    fn place(&self, (x, y): (f64, f64)) -> Option<(f64, f64)> {
+        let across = self.x.fraction(x)? * self.area.width;
+        let down = (1.0 - self.y.fraction(y)?) * self.area.height;
+        Some((across, down))
+    }
+
+    fn inside(&self, (x, y): (f64, f64)) -> bool {
+        (-0.5..=self.area.width + 0.5).contains(&x) && (-0.5..=self.area.height + 0.5).contains(&y)
+    }
+
+    fn heading(&self) -> Vec<Element> {
+        let title = fit_text(&self.plot.title, TITLE_PX * 1.1, self.width - 16.0);
+        let title = svg::label(self.width / 2.0, 15.0, "middle", &title)
+            .set("font-size", &px(TITLE_PX))
+            .set("font-weight", "600");
+        let shown = (!self.plot.title.is_empty()).then_some(title);
+        let names = self
+            .legend
+            .iter()
+            .map(|(x, y, series)| legend_entry(*x, *y, series));
+        shown.into_iter().chain(names).collect()
+    }
+
+    fn x_axis(&self) -> Vec<Element> {
+        let area = &self.area;
+        let bottom = area.top + area.height;
+        let mut out = Vec::new();
+        for (fraction, tick) in &self.x_ticks {
+            let x = area.left + fraction * area.width;
+            out.push(grid_line(tick, svg::line(x, area.top, x, bottom)));
+        }
+        for (x, text) in spaced_labels(&self.x_ticks, area) {
+            out.push(svg::label(x, bottom + 14.0, "middle", text));
+        }
+        let middle = area.left + area.width / 2.0;
+        let text = fit_text(&self.plot.x.label, TEXT_PX, self.width);
+        out.push(svg::label(middle, bottom + 30.0, "middle", &text));
+        out
+    }
+
+    fn y_axis(&self) -> Vec<Element> {
+        let area = &self.area;
+        let mut out = Vec::new();
+        for (fraction, tick) in &self.y_ticks {
+            let y = area.top + (1.0 - fraction) * area.height;
+            out.push(grid_line(
+                tick,
+                svg::line(area.left, y, area.left + area.width, y),
+            ));
+            if !tick.label.is_empty() {
+                out.push(svg::label(area.left - 5.0, y + 4.0, "end", &tick.label));
+            }
+        }
+        let middle = px(area.top + area.height / 2.0);
+        let text = fit_text(&self.plot.y.label, TEXT_PX, self.height);
+        let turned = format!("rotate(-90 12 {middle})");
+        out.push(
+            svg::label(12.0, area.top + area.height / 2.0, "middle", &text)
+                .set("transform", &turned),
+        );
+        out
+    }
+
+    /// The series, in an inner picture that cuts off whatever leaves the data area.
+    fn data(&self) -> Element {
+        let area = &self.area;
+        Element::new("svg")
+            .set("x", &px(area.left))
+            .set("y", &px(area.top))
+            .set("width", &px(area.width))
+            .set("height", &px(area.height))
+            .set("overflow", "hidden")
+            .children(self.plot.series.iter().map(|series| self.series(series)))
+    }
+
+    fn series(&self, series: &Series) -> Element {
+        let group = stroke(Element::new("g"), series)
+            .children(self.strokes(series))
+            .children(self.markers(series));
+        if series.hover {
+            group.child(&self.hover(series))
+        } else {
+            group
+        }
+    }
+
+    fn strokes(&self, series: &Series) -> Vec<Element> {
+        match series.line {
+            Line::None => Vec::new(),
+            Line::Stems => self.stems(series),
+            Line::Solid | Line::Dashed => self.lines(series),
+        }
+    }
+
+    fn lines(&self, series: &Series) -> Vec<Element> {
+        let places: Vec<_> = series.points.iter().map(|p| self.place(*p)).collect();
+        let runs = places.split(Option::is_none).filter(|run| !run.is_empty());
+        let runs = runs.map(|run| run.iter().flatten().copied().collect::<Vec<_>>());
+        runs.map(|run| svg::polyline(&run)).collect()
+    }
+
+    fn stems(&self, series: &Series) -> Vec<Element> {
+        let stem = |point: &(f64, f64)| {
+            let (x, top) = self.place(*point)?;
+            let (_, base) = self.place((point.0, self.y.base()))?;
+            Some(svg::line(x, base, x, top))
+        };
+        series.points.iter().filter_map(stem).collect()
+    }
+
+    fn markers(&self, series: &Series) -> Vec<Element> {
+        let Some(radius) = series.marker_radius_px else {
+            return Vec::new();
+        };
+        let places = series.points.iter().filter_map(|p| self.place(*p));
+        let shown = places.filter(|place| self.inside(*place));
+        shown
+            .map(|(x, y)| svg::circle(x, y, radius).set("fill", &series.color))
+            .collect()
+    }
+
+    /// Invisible dots that answer to the pointer, no closer together than it can be held.
+    fn hover(&self, series: &Series) -> Element {
+        let mut last = f64::NEG_INFINITY;
+        let mut dots = Element::new("g")
+            .set("fill", "transparent")
+            .set("stroke", "none");
+        for point in &series.points {
+            let Some((x, y)) = self.place(*point).filter(|place| self.inside(*place)) else {
+                continue;
+            };
+            if (x - last).abs() < 3.0 && series.marker_radius_px.is_none() {
+                continue;
+            }
+            last = x;
+            let title = Element::new("title").text(&self.describe(series, *point));
+            dots = dots.child(&svg::circle(x, y, 4.0).child(&title));
+        }
+        dots
+    }
+
+    fn describe(&self, series: &Series, (x, y): (f64, f64)) -> String {
+        let (x_unit, y_unit) = (self.plot.x.unit(), self.plot.y.unit());
+        let value = |v: f64, unit: &str| format!("{} {unit}", brief(v)).trim_end().to_owned();
+        format!(
+            "{}: {}, {}",
+            series.name,
+            value(x, x_unit),
+            value(y, y_unit)
+        )
+    }
+
+    fn border(&self) -> Element {
+        let Area {
+            left,
+            top,
+            width,
+            height,
+        } = self.area;
+        let border = svg::rect(left, top, width, height);
+        border
+            .set("fill", "none")
+            .set("stroke", "#8a8a8a")
+            .set("pointer-events", "none")
+    }
+}
+
+/// A width or height that a plot fits in.
+fn size(given: f64, otherwise: f64) -> f64 {
+    if given.is_finite() {
+        given.clamp(120.0, 10_000.0)
+    } else {
+        otherwise
+    }
+}
+
+fn stroke(element: Element, series: &Series) -> Element {
+    let element = element
+        .set("fill", "none")
+        .set("stroke", &series.color)
+        .set("stroke-width", &px(series.line_width_px))
+        .set("stroke-linejoin", "round");
+    match series.line {
+        Line::Dashed => element.set("stroke-dasharray", "5 3"),
+        _ => element,
+    }
+}
+
+fn grid_line(tick: &Tick, line: Element) -> Element {
+    line.set(
+        "stroke",
+        if tick.label.is_empty() {
+            MINOR_GRID
+        } else {
+            GRID
+        },
+    )
+}
+
+/// The labels of `ticks` that fit beside one another, most important first.
+fn spaced_labels<'t>(ticks: &'t [(f64, Tick)], area: &Area) -> Vec<(f64, &'t str)> {
+    let mut order: Vec<&(f64, Tick)> = ticks.iter().filter(|(_, t)| !t.label.is_empty()).collect();
+    order.sort_by_key(|(_, tick)| tick.rank);
+    let mut kept: Vec<(f64, &str)> = Vec::new();
+    for (fraction, tick) in order {
+        let x = area.left + fraction * area.width;
+        let room = |other: &str| {
+            (text_width(&tick.label, TEXT_PX) + text_width(other, TEXT_PX)) / 2.0 + 4.0
+        };
+        if kept.iter().all(|(at, other)| (x - at).abs() >= room(other)) {
+            kept.push((x, &tick.label));
+        }
+    }
+    kept
+}
+
+/// Where each series' name goes: left to right below the title, wrapped to `width`.
+fn legend_places(series: &[Series], width: f64) -> Vec<(f64, f64, &Series)> {
+    let (mut x, mut y) = (12.0, 33.0);
+    let mut out = Vec::new();
+    for one in series {
+        let needed = 26.0 + text_width(&one.name, TEXT_PX) + 12.0;
+        if x > 12.0 && x + needed > width {
+            (x, y) = (12.0, y + 16.0);
+        }
+        out.push((x, y, one));
+        x += needed;
+    }
+    out
+}
+
+fn legend_entry(x: f64, y: f64, series: &Series) -> Element {
+    let sample = match series.line {
+        Line::None => None,
+        _ => Some(svg::line(x, y - 4.0, x + 20.0, y - 4.0)),
+    };
+    let dot = series
+        .marker_radius_px
+        .map(|r| svg::circle(x + 10.0, y - 4.0, r).set("fill", &series.color));
+    let look = stroke(Element::new("g"), series)
+        .children(sample)
+        .children(dot);
+    Element::new("g")
+        .child(&look)
+        .child(&svg::label(x + 26.0, y, "start", &series.name))
+}

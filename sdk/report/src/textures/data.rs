@@ -1,0 +1,97 @@
+//! What the report is about.
+
+/// Everything on the page.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TextureReport {
+    /// The page's title.
+    pub title: String,
+    /// Paragraphs below the title.
+    pub intro: Vec<String>,
+    /// The textures, in the order of the page.
+    pub textures: Vec<Texture>,
+    /// The command that makes this page again.
+    pub command: String,
+}
+
+/// One texture at one exploration condition.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Texture {
+    /// The texture's name.
+    pub name: String,
+    /// Whether it was computed and not recorded; the page says so wherever it is named.
+    pub simulated: bool,
+    /// Speed and force: `"80 mm/s, 0.40 N"`.
+    pub condition: String,
+    /// Size of the recording's file, bytes.
+    pub recording_bytes: u64,
+    /// Size of the asset's file, bytes.
+    pub asset_bytes: u64,
+    /// RMS nine-band difference between two parts of the recording, decibels.
+    pub repeatability_rms_db: Option<f64>,
+    /// The frequencies of every magnitude below, ascending, hertz.
+    pub frequency_hz: Vec<f64>,
+    /// The recording's magnitude, newtons.
+    pub recorded_n: Vec<f64>,
+    /// The models fitted to it.
+    pub models: Vec<ModelResult>,
+    /// What the reader should know about this texture.
+    pub warnings: Vec<String>,
+}
+
+/// How one model did on one texture.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ModelResult {
+    /// The model's name as written in text: `"sBeta"`.
+    pub model: String,
+    /// The model's name as written in files: `"sbeta"`. Decides its colour and column.
+    pub short_name: String,
+    /// The model's magnitude at the texture's frequencies, newtons.
+    pub magnitude_n: Vec<f64>,
+    /// Pearson's correlation with the recording's magnitude.
+    pub spectral_correlation: f64,
+    /// Model over recording in each of the nine bands, decibels.
+    pub band_error_db: Vec<f64>,
+    /// Root mean square of the nine, decibels.
+    pub band_error_rms_db: f64,
+    /// The same of rendered samples and not of the magnitude, decibels.
+    pub samples_band_error_rms_db: Option<f64>,
+    /// Size of the parameters, bytes.
+    pub payload_bytes: usize,
+    /// Frequency (hertz) and amplitude (newtons) of each sinusoid, for a model that is made of
+    /// them; drawn instead of the magnitude.
+    pub lines: Option<Vec<(f64, f64)>>,
+}
+
+impl TextureReport {
+    /// Short name and name of each model, in the order they first appear.
+    pub(crate) fn models(&self) -> Vec<(&str, &str)> {
+        let mut found: Vec<(&str, &str)> = Vec::new();
+        for model in self.textures.iter().flat_map(|texture| &texture.models) {
+            if found
+                .iter()
+                .all(|(short_name, _)| *short_name != model.short_name)
+            {
+                found.push((&model.short_name, &model.model));
+            }
+        }
+        found
+    }
+}
+
+impl Texture {
+    /// The name, with a word where it is simulated.
+    pub(crate) fn header(&self) -> String {
+        if self.simulated {
+            format!("{} (simulated)", self.name)
+        } else {
+            self.name.clone()
+        }
+    }
+
+    /// What the model called `short_name` made of this texture.
+    pub(crate) fn model(&self, short_name: &str) -> Option<&ModelResult> {
+        self.models
+            .iter()
+            .find(|model| model.short_name == short_name)
+    }
+}

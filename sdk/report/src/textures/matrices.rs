@@ -1,0 +1,157 @@
+//! The figures of merit: textures against models, and bands against models.
+
+use super::data::{ModelResult, Texture, TextureReport};
+use crate::markup::Element;
+use crate::number::fixed;
+use crate::page::paragraph;
+use crate::table::{Cell, HeatScale, Row, Table};
+
+/// Behind an error that is no larger than the recording's own variation.
+const WITHIN: &str = "\u{a0}*";
+
+/// Errors of this size and more have the darkest shade, decibels.
+const DARKEST_DB: f64 = 12.0;
+
+/// Correlation, error, and the error of rendered samples where it was measured.
+pub(super) fn summary(report: &TextureReport) -> String {
+    let mut out = Element::new("div").set("class", "tables");
+    let correlation = correlation(report).to_html();
+    out = out
+        .raw(&correlation)
+        .raw(&error(report, "fitted magnitude", |m| {
+            Some(m.band_error_rms_db)
+        }));
+    let rendered = |m: &ModelResult| m.samples_band_error_rms_db;
+    if report
+        .textures
+        .iter()
+        .flat_map(|t| &t.models)
+        .any(|m| rendered(m).is_some())
+    {
+        out = out.raw(&error(report, "rendered samples", rendered));
+    }
+    let note = paragraph(
+        "* at or below the recording's own repeatability: the recording itself varies by as much \
+         from one part to another, so a smaller error says nothing more about the model.",
+    );
+    out.render() + "\n" + &note
+}
+
+fn correlation(report: &TextureReport) -> Table {
+    let cell = |_: &Texture, model: &ModelResult| Cell::Shaded(model.spectral_correlation, "");
+    Table {
+        caption: "Spectral correlation with the recording (no unit; 1 is the best, dark)"
+            .to_owned(),
+        scale: HeatScale::Sequential {
+            low: 0.0,
+            high: 1.0,
+        },
+        decimals: 2,
+        ..by_model(report, cell)
+    }
+}
+
+fn error(report: &TextureReport, of: &str, value: impl Fn(&ModelResult) -> Option<f64>) -> String {
+    let cell = |texture: &Texture, model: &ModelResult| match value(model) {
+        Some(db) if texture.repeatability_rms_db.is_some_and(|own| db <= own) => {
+            Cell::Shaded(db, WITHIN)
+        }
+        Some(db) => Cell::Shaded(db, ""),
+        None => Cell::Missing,
+    };
+    let mut table = by_model(report, cell);
+    table.columns.push("recording itself".to_owned());
+    for (row, texture) in table.rows.iter_mut().zip(&report.textures) {
+        row.cells.push(
+            texture
+                .repeatability_rms_db
+                .map_or(Cell::Missing, Cell::Plain),
+        );
+    }
+    table.caption = format!("Nine-band error of the {of}, RMS in dB (0 is the best, light)");
+    table.to_html()
+}
+
+/// A table of textures against models.
+fn by_model(report: &TextureReport, cell: impl Fn(&Texture, &ModelResult) -> Cell) -> Table {
+    let models = report.models();
+    let row = |texture: &Texture| {
+        let found = models
+            .iter()
+            .map(|(short_name, _)| texture.model(short_name));
+        let cells = found.map(|model| model.map_or(Cell::Missing, |m| cell(texture, m)));
+        Row {
+            header: texture.header(),
+            cells: cells.collect(),
+        }
+    };
+    Table {
+        caption: String::new(),
+        corner: "texture".to_owned(),
+        columns: models.iter().map(|(_, name)| (*name).to_owned()).collect(),
+        rows: report.textures.iter().map(row).collect(),
+        scale: HeatScale::Sequential {
+            low: 0.0,
+            high: DARKEST_DB,
+        },
+        decimals: 1,
+    }
+}
+
+/// The nine errors of each model, a table for each texture.
+pub(super) fn bands(report: &TextureReport) -> String {
+    let note = paragraph(
+        "Model over recording in dB: orange is too much vibration in a band, blue is too little. \
+         The columns are the bands' centre frequencies in Hz; each band reaches to the centres \
+         of its neighbours.",
+    );
+    let tables = report
+        .textures
+        .iter()
+        .map(|texture| band_table(texture).to_html());
+    let tables: String = tables.collect();
+    note + "\n"
+        + &Element::new("div")
+            .set("class", "tables")
+            .raw(&tables)
+            .render()
+}
+
+fn band_table(texture: &Texture) -> Table {
+    let row = |model: &ModelResult| Row {
+        header: model.model.clone(),
+        cells: model
+            .band_error_db
+            .iter()
+            .map(|db| Cell::Shaded(*db, ""))
+            .collect(),
+    };
+    Table {
+        caption: format!("{}, {}: error / dB", texture.header(), texture.condition),
+        corner: "band centre / Hz".to_owned(),
+        columns: band_centres_hz().map(|hz| fixed(hz, 0)).collect(),
+        rows: texture.models.iter().map(row).collect(),
+        scale: HeatScale::Diverging { extent: DARKEST_DB },
+        decimals: 1,
+    }
+}
+
+/// The centres of the nine bands: the inner nine of eleven points evenly spaced in log frequency
+/// from 20 to 1000 Hz.
+fn band_centres_hz() -> impl Iterator<Item = f64> {
+    (1..=9).map(|i| 20.0 * 50f64.powf(f64::from(i) / 10.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_fifth_band_is_centred_in_the_tactile_band() {
+        let centres: Vec<String> = band_centres_hz().map(|hz| fixed(hz, 0)).collect();
+        assert_eq!(
+            centres,
+            ["30", "44", "65", "96", "141", "209", "309", "457", "676"]
+        );
+    }
+}

@@ -1,0 +1,89 @@
+//! The report on some fitted textures: spectra, errors, sizes.
+
+mod data;
+mod matrices;
+mod sizes;
+mod spectra;
+
+pub use data::{ModelResult, Texture, TextureReport};
+
+use crate::markup::Element;
+use crate::page::{Page, code_block, list, paragraph};
+
+/// The report as a self-contained HTML page.
+pub fn texture_report(report: &TextureReport) -> String {
+    let mut page = Page::new(&report.title);
+    for text in &report.intro {
+        page.html(&paragraph(text));
+    }
+    page.html(&simulation_notice(report));
+    how_to_read(&mut page);
+    page.heading("Spectra");
+    page.html(&spectra::section(report));
+    page.heading("How close the models come");
+    page.html(&matrices::summary(report));
+    page.heading("Error in each band");
+    page.html(&matrices::bands(report));
+    page.heading("Sizes");
+    page.html(&sizes::table(report));
+    warnings(&mut page, report);
+    if !report.command.is_empty() {
+        page.heading("How this page was made");
+        page.html(&code_block(&report.command));
+    }
+    page.render()
+}
+
+fn simulation_notice(report: &TextureReport) -> String {
+    let all = &report.textures;
+    let names: Vec<&str> = all
+        .iter()
+        .filter(|t| t.simulated)
+        .map(|t| t.name.as_str())
+        .collect();
+    let text = match (names.len(), names.len() == all.len()) {
+        (0, _) => return String::new(),
+        (_, true) => "All textures on this page are simulated: computed, not recorded from a finger on a surface.".to_owned(),
+        _ => format!("Simulated, not recorded from a finger on a surface: {}.", names.join(", ")),
+    };
+    Element::new("p")
+        .set("class", "notice")
+        .text(&text)
+        .render()
+}
+
+fn how_to_read(page: &mut Page) {
+    page.heading("How to read this page");
+    page.html(&paragraph(
+        "Each row of spectra is one texture: first the recording (dark grey), then each model in \
+         its own colour over the same recording (light grey). The horizontal axis is frequency \
+         from 20 to 1000 Hz, logarithmic; the vertical axis is the magnitude of friction in \
+         millinewtons, from zero and the same along a row, not between rows. A model that is a \
+         set of sinusoids is drawn as uprights, one for each. Point at a curve for its values.",
+    ));
+    page.html(&paragraph(
+        "Spectral correlation (r) is Pearson's correlation of the model's and the recording's \
+         magnitudes, bin by bin: it rewards matching every ripple, and 1 is the best. The \
+         nine-band error compares the energy in nine overlapping bands, evenly spaced in log \
+         frequency, in decibels: it asks only for the right amount of vibration in the right \
+         region, and 0 is the best. The two can disagree; neither is a rating by a person.",
+    ));
+}
+
+fn warnings(page: &mut Page, report: &TextureReport) {
+    page.heading("Warnings");
+    let named = |texture: &Texture| {
+        let name = texture.header();
+        let all = texture
+            .warnings
+            .iter()
+            .map(|text| format!("{name}: {text}"));
+        all.collect::<Vec<_>>()
+    };
+    let all: Vec<String> = report.textures.iter().flat_map(named).collect();
+    page.html(&if all.is_empty() {
+        paragraph("None.")
+    } else {
+        list(&all)
+    });
+}

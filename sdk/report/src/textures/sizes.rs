@@ -1,0 +1,49 @@
+//! What a texture costs in bytes: as recorded, as an asset, as each model's parameters.
+
+use super::data::{Texture, TextureReport};
+use crate::number::{bytes, ratio};
+use crate::table::{Cell, HeatScale, Row, Table};
+
+/// The table of sizes.
+pub(super) fn table(report: &TextureReport) -> String {
+    let models = report.models();
+    let fixed = ["recording file", "asset file"]
+        .map(str::to_owned)
+        .into_iter();
+    let parameters = models.iter().map(|(_, name)| format!("{name} parameters"));
+    let table = Table {
+        caption:
+            "Bytes (1 kB = 1000 B); below each, how many times smaller than the recording file"
+                .to_owned(),
+        corner: "texture".to_owned(),
+        columns: fixed.chain(parameters).collect(),
+        rows: report
+            .textures
+            .iter()
+            .map(|texture| row(texture, &models))
+            .collect(),
+        scale: HeatScale::None,
+        decimals: 0,
+    };
+    table.to_html()
+}
+
+fn row(texture: &Texture, models: &[(&str, &str)]) -> Row {
+    let recording = Cell::Text(bytes(texture.recording_bytes), String::new());
+    let asset = size(texture, texture.asset_bytes);
+    let payload = |short_name: &str| {
+        texture
+            .model(short_name)
+            .map(|model| model.payload_bytes as u64)
+    };
+    let sizes = models.iter().map(|(short_name, _)| payload(short_name));
+    let sizes = sizes.map(|found| found.map_or(Cell::Missing, |count| size(texture, count)));
+    Row {
+        header: texture.header(),
+        cells: [recording, asset].into_iter().chain(sizes).collect(),
+    }
+}
+
+fn size(texture: &Texture, count: u64) -> Cell {
+    Cell::Text(bytes(count), ratio(texture.recording_bytes, count))
+}

@@ -1,0 +1,180 @@
+//! A row of spectra for each texture: the recording, then each model over it.
+
+use super::data::{ModelResult, Texture, TextureReport};
+use crate::axis::Axis;
+use crate::color::{RECORDING_COLOR, model_color};
+use crate::markup::Element;
+use crate::number::{brief, fixed, px};
+use crate::plot::Plot;
+use crate::series::Series;
+use crate::svg;
+
+/// Size of one panel, pixels. Panels are never drawn narrower, so that text keeps its size.
+const PANEL: (f64, f64) = (210.0, 190.0);
+
+/// The recording where it stands behind a model.
+const BACKDROP: &str = "#a3a3a3";
+
+/// A model may rise this far above the recording before it is cut off: past that, the recording
+/// would be too flat to read.
+const OVERSHOOT: f64 = 2.0;
+
+/// The colour key and all rows.
+pub(super) fn section(report: &TextureReport) -> String {
+    let rows = report.textures.iter().map(row);
+    let all: String = rows.map(|row| row.render() + "\n").collect();
+    key(report).render() + "\n" + &all
+}
+
+fn key(report: &TextureReport) -> Element {
+    let models = report.models();
+    let models = models
+        .iter()
+        .map(|(short_name, name)| key_entry(model_color(short_name), name));
+    let recording = key_entry(RECORDING_COLOR, "recording");
+    let behind = key_entry(BACKDROP, "recording, behind a model");
+    let list = Element::new("ul").set("class", "key");
+    list.child(&recording).child(&behind).children(models)
+}
+
+fn key_entry(color: &str, name: &str) -> Element {
+    let swatch = svg::line(0.0, 5.0, 24.0, 5.0)
+        .set("stroke", color)
+        .set("stroke-width", "3");
+    let swatch = Element::new("svg")
+        .set("width", "24")
+        .set("height", "10")
+        .set("aria-hidden", "true")
+        .child(&swatch);
+    Element::new("li").child(&swatch).text(name)
+}
+
+fn row(texture: &Texture) -> Element {
+    let top_mn = top_mn(texture);
+    let models = texture
+        .models
+        .iter()
+        .map(|model| model_panel(texture, model, top_mn));
+    let panels = Element::new("div").set("class", "panels");
+    let panels = panels
+        .child(&recording_panel(texture, top_mn))
+        .children(models);
+    Element::new("section")
+        .set("class", "row")
+        .child(&row_heading(texture))
+        .child(&panels)
+}
+
+fn row_heading(texture: &Texture) -> Element {
+    let heading = Element::new("h3").text(&texture.name);
+    let heading = if texture.simulated {
+        heading.child(&Element::new("span").set("class", "badge").text("simulated"))
+    } else {
+        heading
+    };
+    heading.child(
+        &Element::new("span")
+            .set("class", "detail")
+            .text(&texture.condition),
+    )
+}
+
+fn recording_panel(texture: &Texture, top_mn: f64) -> Element {
+    let title = if texture.simulated {
+        "simulated recording"
+    } else {
+        "recording"
+    };
+    let series = Series::line(title, curve(texture, &texture.recorded_n));
+    let note = texture
+        .repeatability_rms_db
+        .map(|db| format!("varies by {} dB RMS", fixed(db, 1)));
+    panel(plot(title, vec![series], top_mn), &note.unwrap_or_default())
+}
+
+fn model_panel(texture: &Texture, model: &ModelResult, top_mn: f64) -> Element {
+    let backdrop = Series::line("recording", curve(texture, &texture.recorded_n));
+    let front = match &model.lines {
+        Some(lines) => Series::stems(
+            &model.model,
+            lines.iter().map(|(f, a)| (*f, a * 1e3)).collect(),
+        ),
+        None => Series::line(&model.model, curve(texture, &model.magnitude_n)),
+    };
+    let front = front.colored(model_color(&model.short_name));
+    let series = vec![backdrop.behind().colored(BACKDROP), front];
+    panel(
+        plot(&model.model, series, top_mn),
+        &model_note(model, top_mn),
+    )
+}
+
+fn model_note(model: &ModelResult, top_mn: f64) -> String {
+    let correlation = fixed(model.spectral_correlation, 2);
+    let error = fixed(model.band_error_rms_db, 1);
+    let note = format!("r = {correlation}, error {error} dB RMS");
+    match highest_mn(drawn(model)) {
+        Some(highest) if highest > top_mn => {
+            format!("{note}; rises to {} mN, cut off", brief(highest))
+        }
+        _ => note,
+    }
+}
+
+fn plot(title: &str, series: Vec<Series>, top_mn: f64) -> Plot {
+    let x = Axis::log("frequency / Hz").with_range(20.0, 1000.0);
+    let y = Axis::linear("magnitude / mN").with_range(0.0, top_mn);
+    Plot {
+        series,
+        width: PANEL.0,
+        height: PANEL.1,
+        legend: false,
+        ..Plot::new(title, x, y)
+    }
+}
+
+fn panel(plot: Plot, note: &str) -> Element {
+    let width = format!("max-width:{}px", px(2.0 * plot.width));
+    let figure = Element::new("figure")
+        .set("style", &width)
+        .raw(&plot.to_svg());
+    figure.child(&Element::new("figcaption").text(note))
+}
+
+/// (hertz, millinewtons) pairs.
+fn curve(texture: &Texture, magnitude_n: &[f64]) -> Vec<(f64, f64)> {
+    let pairs = texture.frequency_hz.iter().zip(magnitude_n);
+    pairs.map(|(f, n)| (*f, n * 1e3)).collect()
+}
+
+/// The top of the row's vertical axis, millinewtons.
+fn top_mn(texture: &Texture) -> f64 {
+    let recorded = highest_mn(texture.recorded_n.iter().copied());
+    let models = texture
+        .models
+        .iter()
+        .filter_map(|model| highest_mn(drawn(model)));
+    let models = models.fold(0.0, f64::max);
+    let highest = recorded.map_or(models, |r| models.min(OVERSHOOT * r).max(r));
+    if highest > 0.0 { 1.05 * highest } else { 1.0 }
+}
+
+/// What a panel draws of a model, newtons.
+fn drawn(model: &ModelResult) -> impl Iterator<Item = f64> + '_ {
+    let lines = model
+        .lines
+        .iter()
+        .flatten()
+        .map(|(_, amplitude)| *amplitude);
+    let curve = if model.lines.is_some() {
+        &[]
+    } else {
+        model.magnitude_n.as_slice()
+    };
+    lines.chain(curve.iter().copied())
+}
+
+fn highest_mn(values_n: impl Iterator<Item = f64>) -> Option<f64> {
+    let positive = values_n.filter(|v| v.is_finite() && *v > 0.0);
+    positive.reduce(f64::max).map(|highest| highest * 1e3)
+}

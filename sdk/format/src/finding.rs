@@ -1,5 +1,7 @@
 //! What validation has to say.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 /// How bad a finding is.
@@ -25,4 +27,23 @@ pub struct Finding {
     pub pointer: String,
     /// What, where, and what to do.
     pub message: String,
+}
+
+impl fmt::Display for Severity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Error => "error",
+            Self::Warning => "warning",
+            Self::Info => "info",
+        })
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.pointer.as_str() {
+            "" => write!(f, "{}: {}", self.code, self.message),
+            pointer => write!(f, "{} at {pointer}: {}", self.code, self.message),
+        }
+    }
 }

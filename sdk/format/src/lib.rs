@@ -3,13 +3,34 @@
 //! `spec/htex-1.md` is the normative text. This crate knows no signal processing and no model.
 #![forbid(unsafe_code)]
 
+mod archive;
 mod asset;
+mod block;
+mod check_manifest;
+mod check_representation;
+mod container;
+mod error;
 mod finding;
+mod limits;
 mod manifest;
+mod manifest_json;
+mod replace;
+mod report;
+mod rounding;
+mod rules;
+mod validate;
+mod zip_records;
 
 pub use asset::Asset;
+pub use block::round_parameters;
+pub use error::{ReadError, WriteError};
 pub use finding::{Finding, Severity};
+pub use limits::Limits;
 pub use manifest::{
     AtCondition, Band, Condition, Field, LATERAL_FORCE, Manifest, NEWTON, Provenance, Quality,
     Reference, Representation, Source, Steps, Store, VERSION,
 };
+pub use replace::{replace_file, write_file};
+pub use report::Report;
+pub use rules::{RULES, Rule, explain};
+pub use validate::validate;

@@ -1,0 +1,286 @@
+//! A strict look at the archive before anything of it is unpacked.
+//!
+//! The ZIP format lets two programs see two archives in one file. An asset's archive has one
+//! reading only: entries back to back from byte 0, then the directory in the same order, then the
+//! end record, with sizes stated twice and alike.
+
+use std::collections::BTreeSet;
+use std::io::{Cursor, Read};
+
+use zip::ZipArchive;
+
+use crate::limits::Limits;
+use crate::report::Findings;
+use crate::rules as rule;
+use crate::zip_records::{self, Central, END_BYTES, End, Local};
+
+pub(crate) const STORED: u16 = 0;
+pub(crate) const DEFLATED: u16 = 8;
+const ENCRYPTED: u16 = 1 | 1 << 6 | 1 << 13;
+const DATA_DESCRIPTOR: u16 = 1 << 3;
+const ZIP64_16: u16 = u16::MAX;
+const ZIP64_32: u32 = u32::MAX;
+
+/// An entry that may be unpacked.
+pub(crate) struct Entry {
+    pub name: String,
+    pub method: u16,
+    pub size: u32,
+}
+
+/// An archive whose structure is sound.
+pub(crate) struct Archive<'a> {
+    zip: ZipArchive<Cursor<&'a [u8]>>,
+    pub entries: Vec<Entry>,
+}
+
+impl<'a> Archive<'a> {
+    /// Scans the archive; none when a finding is an error.
+    pub(crate) fn scan(bytes: &'a [u8], limits: &Limits, findings: &mut Findings) -> Option<Self> {
+        if bytes.len() as u64 > limits.file_bytes {
+            findings.add(
+                rule::FILE_TOO_LARGE,
+                "",
+                too_large(bytes.len() as u64, limits),
+            );
+            return None;
+        }
+        let end = end_record(bytes, limits, findings)?;
+        let entries = directory(bytes, &end, limits, findings)?;
+        if findings.has_errors() {
+            return None;
+        }
+        let zip = ZipArchive::new(Cursor::new(bytes))
+            .ok()
+            .filter(|zip| zip.len() == entries.len());
+        if zip.is_none() {
+            findings.add(
+                rule::ARCHIVE_INVALID,
+                "",
+                "the directory cannot be read; get the file again".to_owned(),
+            );
+        }
+        Some(Self { zip: zip?, entries })
+    }
+
+    pub(crate) fn index(&self, name: &str) -> Option<usize> {
+        self.entries.iter().position(|entry| entry.name == name)
+    }
+
+    /// The bytes of an entry; its size was held to the limits by the scan.
+    pub(crate) fn read(&mut self, index: usize, findings: &mut Findings) -> Option<Vec<u8>> {
+        let entry = self.entries.get(index)?;
+        let size = entry.size as usize;
+        let mut bytes = Vec::new();
+        let read = self
+            .zip
+            .by_index(index)
+            .map_err(|e| e.to_string())
+            .and_then(|file| {
+                // One byte more than stated: the checksum is compared at the end of the data.
+                let taken = file.take(size as u64 + 1).read_to_end(&mut bytes);
+                taken.map_err(|e| e.to_string())
+            });
+        let problem = match read {
+            Ok(length) if length == size => return Some(bytes),
+            Ok(length) => format!("it unpacks to {length} bytes or more, not to {size}"),
+            Err(problem) => problem,
+        };
+        let name = &entry.name;
+        let message = format!("{name} is damaged: {problem}; get the file again");
+        findings.add(rule::ENTRY_CORRUPT, "", message);
+        None
+    }
+}
+
+pub(crate) fn too_large(bytes: u64, limits: &Limits) -> String {
+    let limit = limits.file_bytes;
+    format!("the file has {bytes} bytes and the limit is {limit}; raise it if you trust the file")
+}
+
+/// The end record, when there is exactly one archive in the file and all of it.
+fn end_record(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<End> {
+    let Some(end) = zip_records::find_end(bytes) else {
+        let message = "there is no end record: this is no ZIP archive, or the file is cut off";
+        findings.add(rule::ARCHIVE_INVALID, "", message.to_owned());
+        return None;
+    };
+    if end.zip64
+        || end.entries == ZIP64_16
+        || end.directory_bytes == ZIP64_32
+        || end.directory_at == ZIP64_32
+    {
+        let message = "the end record is of ZIP64; write the archive without";
+        findings.add(rule::ARCHIVE_ZIP64, "", message.to_owned());
+        return None;
+    }
+    let after = bytes.len() - end.at - END_BYTES;
+    if after > 0 {
+        let message = format!("{after} bytes follow the end record; remove them or the comment");
+        findings.add(rule::ARCHIVE_EXTRA_DATA, "", message);
+        return None;
+    }
+    let whole = end.disks == [0, 0] && end.entries_here == end.entries && end.comment_bytes == 0;
+    let directory_end = u64::from(end.directory_at) + u64::from(end.directory_bytes);
+    if !whole || directory_end > end.at as u64 {
+        let message = "the end record does not add up: the file is cut off or of several parts";
+        findings.add(rule::ARCHIVE_INVALID, "", message.to_owned());
+        return None;
+    }
+    if directory_end < end.at as u64 {
+        let gap = end.at as u64 - directory_end;
+        let message =
+            format!("{gap} bytes stand before the archive or its end record; remove them");
+        findings.add(rule::ARCHIVE_EXTRA_DATA, "", message);
+        return None;
+    }
+    let (entries, limit) = (usize::from(end.entries), limits.entries);
+    if entries > limit {
+        let message = format!("there are {entries} entries and the limit is {limit}");
+        findings.add(rule::ARCHIVE_TOO_MANY_ENTRIES, "", message);
+        return None;
+    }
+    Some(end)
+}
+
+fn directory(
+    bytes: &[u8],
+    end: &End,
+    limits: &Limits,
+    findings: &mut Findings,
+) -> Option<Vec<Entry>> {
+    let mut entries = Vec::new();
+    let mut names = BTreeSet::new();
+    let (mut at, mut expected_local, mut total) = (end.directory_at as usize, 0usize, 0u64);
+    for index in 0..usize::from(end.entries) {
+        let record = zip_records::central(bytes.get(..end.at)?, at);
+        let Some((central, next)) = record else {
+            let message = format!("the directory is damaged at record {index}");
+            findings.add(rule::ARCHIVE_INVALID, "", message);
+            return None;
+        };
+        at = next;
+        let name = String::from_utf8_lossy(central.name).into_owned();
+        check_name(central.name, &name, findings);
+        if !names.insert(name.to_ascii_lowercase()) {
+            let message = format!("{name:?} is the name of two entries; keep one");
+            findings.add(rule::ENTRY_NAME_DUPLICATE, "", message);
+        }
+        check_record(&central, &name, findings);
+        check_sizes(&central, &name, limits, findings);
+        total += u64::from(central.common.size);
+        expected_local = check_local(bytes, &central, &name, expected_local, findings)?;
+        entries.push(Entry {
+            name,
+            method: central.common.method,
+            size: central.common.size,
+        });
+    }
+    check_ends(end, at, expected_local, findings);
+    if total > limits.total_bytes {
+        let limit = limits.total_bytes;
+        let message = format!("the entries unpack to {total} bytes and the limit is {limit}");
+        findings.add(rule::ARCHIVE_TOO_LARGE, "", message);
+    }
+    Some(entries)
+}
+
+/// The entries end where the directory starts, and the directory where the end record does.
+fn check_ends(end: &End, directory_end: usize, entries_end: usize, findings: &mut Findings) {
+    if directory_end != end.at {
+        let message = "the directory is longer or shorter than the end record says".to_owned();
+        findings.add(rule::ARCHIVE_INVALID, "", message);
+    } else if entries_end != end.directory_at as usize {
+        let message = "there are bytes between the last entry and the directory; remove them";
+        findings.add(rule::ARCHIVE_EXTRA_DATA, "", message.to_owned());
+    }
+}
+
+fn check_name(raw: &[u8], name: &str, findings: &mut Findings) {
+    let plain = raw
+        .iter()
+        .all(|&b| (b' '..=b'~').contains(&b) && b != b'\\' && b != b':');
+    let parts = name.split('/').all(|part| !matches!(part, "" | "." | ".."));
+    if !plain || !parts {
+        let message = format!("{name:?} is no safe name; use relative names of ASCII characters");
+        findings.add(rule::ENTRY_NAME_UNSAFE, "", message);
+    }
+}
+
+fn check_record(central: &Central<'_>, name: &str, findings: &mut Findings) {
+    let common = &central.common;
+    if common.flags & ENCRYPTED != 0 {
+        let message = format!("{name} is encrypted; write it without a password");
+        findings.add(rule::ENTRY_ENCRYPTED, "", message);
+    } else if !matches!(common.method, STORED | DEFLATED) {
+        let method = common.method;
+        let message = format!("{name} is compressed by method {method}; store or deflate it");
+        findings.add(rule::ENTRY_COMPRESSION_UNKNOWN, "", message);
+    }
+    if common.flags & DATA_DESCRIPTOR != 0 {
+        let message = format!("{name} has its sizes behind its data; write them before");
+        findings.add(rule::ENTRY_DATA_DESCRIPTOR, "", message);
+    }
+    if [common.packed, common.size, central.local_at].contains(&ZIP64_32) {
+        let message = format!("{name} has sizes of ZIP64; write the archive without");
+        findings.add(rule::ARCHIVE_ZIP64, "", message);
+    }
+    if !central.extra.is_empty() || !central.comment.is_empty() {
+        let message = format!("{name} has an extra field or a comment; write it without");
+        findings.add(rule::ENTRY_EXTRA_FIELD, "", message);
+    }
+}
+
+fn check_sizes(central: &Central<'_>, name: &str, limits: &Limits, findings: &mut Findings) {
+    let (size, packed) = (
+        u64::from(central.common.size),
+        u64::from(central.common.packed),
+    );
+    let (most, ratio) = (limits.entry_bytes, limits.ratio);
+    if size > most {
+        let message = format!("{name} unpacks to {size} bytes and the limit is {most}");
+        findings.add(rule::ENTRY_TOO_LARGE, "", message);
+    }
+    if size > packed.saturating_mul(ratio) {
+        let message = format!("{name} unpacks from {packed} bytes to {size}: above 1 to {ratio}");
+        findings.add(rule::ENTRY_RATIO, "", message);
+    }
+}
+
+/// Compares the local header; gives where the next one must start, none when there is none here.
+fn check_local(
+    bytes: &[u8],
+    central: &Central<'_>,
+    name: &str,
+    expected: usize,
+    findings: &mut Findings,
+) -> Option<usize> {
+    if central.local_at as usize != expected {
+        let message = format!(
+            "{name} starts at byte {} and the entry before it ends at {expected}; \
+             write entries one behind the other in directory order",
+            central.local_at
+        );
+        findings.add(rule::ARCHIVE_EXTRA_DATA, "", message);
+        return None;
+    }
+    let Some(local) = zip_records::local(bytes, expected, central.common.packed) else {
+        let message = format!("{name} has no local header at byte {expected}, or is cut off");
+        findings.add(rule::ARCHIVE_INVALID, "", message);
+        return None;
+    };
+    let stated = central.common.method == STORED && central.common.packed != central.common.size;
+    if !agrees(central, &local) || stated || central.disk != 0 {
+        let message = format!("{name} is described in two ways; write the archive anew");
+        findings.add(rule::ENTRY_HEADER_MISMATCH, "", message);
+    }
+    if !local.extra.is_empty() && central.extra.is_empty() {
+        let message = format!("{name} has an extra field in its local header; write it without");
+        findings.add(rule::ENTRY_EXTRA_FIELD, "", message);
+    }
+    Some(local.data.end)
+}
+
+fn agrees(central: &Central<'_>, local: &Local<'_>) -> bool {
+    central.common == local.common && central.name == local.name
+}

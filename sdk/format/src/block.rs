@@ -1,0 +1,311 @@
+//! The bytes of a parameter block.
+//!
+//! For each condition, for each field, the stored values: fixed width, little endian; a list has
+//! its length before it, as bincode's variable-length integer. Nothing else: the manifest's fields
+//! say what stands where. This is the only module that knows bincode.
+
+use bincode::config::{Configuration, standard};
+use bincode::{Decode, Encode};
+
+use crate::{Field, Steps, Store, WriteError};
+
+const CONFIGURATION: Configuration = standard();
+
+/// Why a block does not decode.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum BlockError {
+    #[error("the block ends inside field {field} of condition {condition}")]
+    Truncated { field: String, condition: usize },
+    #[error("the length of list {field} of condition {condition} is not in its shortest form")]
+    Length { field: String, condition: usize },
+    #[error("{0} bytes follow the last value")]
+    Trailing(usize),
+    #[error("{field}[{index}] of condition {condition} is not a finite number")]
+    NotFinite {
+        field: String,
+        condition: usize,
+        index: usize,
+    },
+    #[error("there are more numbers than the limit of {0}")]
+    TooMany(usize),
+}
+
+/// The block of a representation from one flat array a condition.
+pub(crate) fn encode(fields: &[Field], conditions: &[Vec<f64>]) -> Result<Vec<u8>, WriteError> {
+    let mut out = Vec::new();
+    for flat in conditions {
+        for (field, values) in split(fields, flat)? {
+            if field.list {
+                put(&mut out, values.len() as u64)?;
+            }
+            for (index, &value) in values.iter().enumerate() {
+                put_number(&mut out, quantise(field, index, value)?)?;
+            }
+        }
+    }
+    Ok(out)
+}
+
+/// Flat arrays from a block; `values` is how many numbers may still be read, and is used up.
+pub(crate) fn decode(
+    fields: &[Field],
+    conditions: usize,
+    bytes: &[u8],
+    values: &mut usize,
+) -> Result<Vec<Vec<f64>>, BlockError> {
+    let mut reader = Reader {
+        bytes,
+        limit: *values,
+        left: *values,
+    };
+    let flats = (0..conditions)
+        .map(|condition| reader.condition(fields, condition))
+        .collect::<Result<_, _>>()?;
+    if !reader.bytes.is_empty() {
+        return Err(BlockError::Trailing(reader.bytes.len()));
+    }
+    *values = reader.left;
+    Ok(flats)
+}
+
+/// The values of a flat array as they will be read back from an asset.
+///
+/// `flat` holds the fields in order: a scalar's value, or a list's length and then its values.
+///
+/// # Errors
+/// [`WriteError::OutOfRange`] for a value its field's store cannot hold or that is not finite,
+/// [`WriteError::Layout`] when `flat` does not follow `fields`.
+pub fn round_parameters(fields: &[Field], flat: &[f64]) -> Result<Vec<f64>, WriteError> {
+    let mut rounded = Vec::with_capacity(flat.len());
+    for (field, values) in split(fields, flat)? {
+        if field.list {
+            rounded.push(values.len() as f64);
+        }
+        for (index, &value) in values.iter().enumerate() {
+            rounded.push(value_of(quantise(field, index, value)?, field.store));
+        }
+    }
+    Ok(rounded)
+}
+
+/// The values of each field, without the lengths of lists.
+fn split<'a>(
+    fields: &'a [Field],
+    flat: &'a [f64],
+) -> Result<Vec<(&'a Field, &'a [f64])>, WriteError> {
+    let layout = |problem: String| Err(WriteError::Layout { problem });
+    let mut rest = flat;
+    let mut parts = Vec::with_capacity(fields.len());
+    for field in fields {
+        let Some((&first, after)) = rest.split_first() else {
+            return layout(format!("they end before field {}", field.name));
+        };
+        let (values, after) = if !field.list {
+            rest.split_at(1)
+        } else if first.fract() == 0.0 && first >= 0.0 && first <= after.len() as f64 {
+            after.split_at(first as usize)
+        } else {
+            let left = after.len();
+            return layout(format!(
+                "list {} says its length is {first}, and {left} values follow",
+                field.name
+            ));
+        };
+        parts.push((field, values));
+        rest = after;
+    }
+    if rest.is_empty() {
+        return Ok(parts);
+    }
+    layout(format!("{} values follow the last field", rest.len()))
+}
+
+/// A number as it is stored.
+#[derive(Clone, Copy)]
+enum Number {
+    F64(f64),
+    F32(f32),
+    U16(u16),
+    U8(u8),
+}
+
+fn quantise(field: &Field, index: usize, value: f64) -> Result<Number, WriteError> {
+    let (number, low, high) = match field.store {
+        Store::F64 => (Some(Number::F64(value)), f64::MIN, f64::MAX),
+        Store::F32 => {
+            let inside = (value as f32)
+                .is_finite()
+                .then_some(Number::F32(value as f32));
+            (inside, f64::from(f32::MIN), f64::from(f32::MAX))
+        }
+        Store::U16(steps) => {
+            let q = step(steps, value, f64::from(u16::MAX)).map(|q| Number::U16(q as u16));
+            (q, steps.value(0), steps.value(u16::MAX))
+        }
+        Store::U8(steps) => {
+            let q = step(steps, value, f64::from(u8::MAX)).map(|q| Number::U8(q as u8));
+            (q, steps.value(0), steps.value(u8::MAX.into()))
+        }
+    };
+    match number {
+        Some(number) if value.is_finite() && value_of(number, field.store).is_finite() => {
+            Ok(number)
+        }
+        _ => Err(WriteError::OutOfRange {
+            field: field.name.clone(),
+            index,
+            value,
+            low,
+            high,
+        }),
+    }
+}
+
+/// The nearest step, halves away from zero; none when it is below 0 or above `last`.
+fn step(steps: Steps, value: f64, last: f64) -> Option<f64> {
+    let x = if steps.log { libm::log(value) } else { value };
+    let q = libm::round((x - steps.offset) / steps.scale);
+    (0.0..=last).contains(&q).then_some(q)
+}
+
+impl Steps {
+    /// The value that step `q` stands for.
+    pub(crate) fn value(&self, q: u16) -> f64 {
+        let x = self.offset + self.scale * f64::from(q);
+        if self.log { libm::exp(x) } else { x }
+    }
+}
+
+fn value_of(number: Number, store: Store) -> f64 {
+    match (number, store) {
+        (Number::F64(x), _) => x,
+        (Number::F32(x), _) => f64::from(x),
+        (Number::U16(q), Store::U16(steps)) => steps.value(q),
+        (Number::U8(q), Store::U8(steps)) => steps.value(q.into()),
+        (Number::U16(q), _) => f64::from(q),
+        (Number::U8(q), _) => f64::from(q),
+    }
+}
+
+/// Integers go as bytes: bincode would spend three on a `u16` above 250.
+fn put_number(out: &mut Vec<u8>, number: Number) -> Result<(), WriteError> {
+    match number {
+        Number::F64(x) => put(out, x),
+        Number::F32(x) => put(out, x),
+        Number::U16(q) => put(out, q.to_le_bytes()),
+        Number::U8(q) => put(out, q),
+    }
+}
+
+fn put(out: &mut Vec<u8>, value: impl Encode) -> Result<(), WriteError> {
+    match bincode::encode_into_std_write(value, out, CONFIGURATION) {
+        Ok(_) => Ok(()),
+        Err(error) => Err(WriteError::Archive {
+            problem: error.to_string(),
+        }),
+    }
+}
+
+struct Reader<'a> {
+    bytes: &'a [u8],
+    limit: usize,
+    left: usize,
+}
+
+impl Reader<'_> {
+    fn condition(&mut self, fields: &[Field], condition: usize) -> Result<Vec<f64>, BlockError> {
+        let mut flat = Vec::new();
+        for field in fields {
+            let count = if field.list {
+                self.length(field, condition)?
+            } else {
+                1
+            };
+            if field.list {
+                flat.push(count as f64);
+            }
+            self.left = self
+                .left
+                .checked_sub(count)
+                .ok_or(BlockError::TooMany(self.limit))?;
+            for index in 0..count {
+                let value = self
+                    .number(field.store)
+                    .ok_or_else(|| truncated(field, condition))?;
+                if !value.is_finite() {
+                    return Err(BlockError::NotFinite {
+                        field: field.name.clone(),
+                        condition,
+                        index,
+                    });
+                }
+                flat.push(value);
+            }
+        }
+        Ok(flat)
+    }
+
+    /// A list's length, no more than the bytes that follow can hold.
+    fn length(&mut self, field: &Field, condition: usize) -> Result<usize, BlockError> {
+        let before = self.bytes.len();
+        let length = self
+            .take::<u64>()
+            .ok_or_else(|| truncated(field, condition))?;
+        if before - self.bytes.len() != shortest(length) {
+            return Err(BlockError::Length {
+                field: field.name.clone(),
+                condition,
+            });
+        }
+        let room = self.bytes.len() / field.store.bytes();
+        match usize::try_from(length) {
+            Ok(length) if length <= room => Ok(length),
+            _ => Err(truncated(field, condition)),
+        }
+    }
+
+    fn number(&mut self, store: Store) -> Option<f64> {
+        let number = match store {
+            Store::F64 => Number::F64(self.take()?),
+            Store::F32 => Number::F32(self.take()?),
+            Store::U16(_) => Number::U16(u16::from_le_bytes(self.take()?)),
+            Store::U8(_) => Number::U8(self.take()?),
+        };
+        Some(value_of(number, store))
+    }
+
+    fn take<T: Decode<()>>(&mut self) -> Option<T> {
+        let (value, used) = bincode::decode_from_slice(self.bytes, CONFIGURATION).ok()?;
+        self.bytes = self.bytes.get(used..)?;
+        Some(value)
+    }
+}
+
+impl Store {
+    /// Bytes of a stored number.
+    fn bytes(self) -> usize {
+        match self {
+            Self::F64 => 8,
+            Self::F32 => 4,
+            Self::U16(_) => 2,
+            Self::U8(_) => 1,
+        }
+    }
+}
+
+/// Bytes of bincode's variable-length integer.
+fn shortest(length: u64) -> usize {
+    match length {
+        0..=250 => 1,
+        251..=0xFFFF => 3,
+        0x1_0000..=0xFFFF_FFFF => 5,
+        _ => 9,
+    }
+}
+
+fn truncated(field: &Field, condition: usize) -> BlockError {
+    BlockError::Truncated {
+        field: field.name.clone(),
+        condition,
+    }
+}

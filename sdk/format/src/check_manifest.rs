@@ -1,0 +1,157 @@
+//! What the manifest's words and numbers must be.
+
+use std::collections::BTreeSet;
+
+use crate::check_representation::check_representations;
+use crate::manifest::{Band, Condition, LATERAL_FORCE, Manifest, NEWTON};
+use crate::manifest_json::escape;
+use crate::report::Findings;
+use crate::rules as rule;
+
+/// Spacing of the grid spectra stand on, hertz.
+const GRID_HZ: f64 = 5.0;
+/// A multiple of 5 Hz counts as in the band when it misses the edge by no more than this many steps.
+const EDGE: f64 = 1e-9;
+/// Highest frequency an asset speaks of, hertz.
+const HIGHEST_HZ: f64 = 20_000.0;
+
+impl Band {
+    /// Multiples of 5 Hz in the band, edges included: 197 for 20 to 1000 Hz. None when the band
+    /// breaks its rule.
+    pub(crate) fn grid_points(&self) -> Option<usize> {
+        let sane = 0.0 < self.low_hz && self.low_hz < self.high_hz && self.high_hz <= HIGHEST_HZ;
+        let first = (self.low_hz / GRID_HZ - EDGE).ceil();
+        let last = (self.high_hz / GRID_HZ + EDGE).floor();
+        (sane && first <= last).then_some((last - first) as usize + 1)
+    }
+}
+
+/// Adds a finding for each rule a manifest breaks by itself.
+pub(crate) fn check_manifest(manifest: &Manifest, findings: &mut Findings) {
+    check_words(manifest, findings);
+    let band = manifest.band;
+    findings.require(
+        band.grid_points().is_some(),
+        rule::BAND_INVALID,
+        "/band",
+        || {
+            format!(
+                "{} to {} Hz is no band; take 20 to 1000",
+                band.low_hz, band.high_hz
+            )
+        },
+    );
+    check_sources(manifest, findings);
+    check_conditions(&manifest.conditions, findings);
+    check_representations(manifest, findings);
+    check_extensions(manifest, findings);
+}
+
+fn check_words(manifest: &Manifest, findings: &mut Findings) {
+    let named = !manifest.name.trim().is_empty();
+    findings.require(named, rule::NAME_EMPTY, "/name", || {
+        "the name is empty; give one".to_owned()
+    });
+    findings.require(
+        manifest.license.is_some(),
+        rule::LICENSE_MISSING,
+        "",
+        || "there is no license; add an SPDX expression".to_owned(),
+    );
+    let (quantity, unit) = (&manifest.quantity, &manifest.unit);
+    findings.require(
+        quantity == LATERAL_FORCE,
+        rule::QUANTITY_UNKNOWN,
+        "/quantity",
+        || format!("{quantity:?} is no quantity of version 1; it has {LATERAL_FORCE}"),
+    );
+    findings.require(unit == NEWTON, rule::UNIT_UNKNOWN, "/unit", || {
+        format!("{unit:?} is not the unit of {LATERAL_FORCE}; write {NEWTON}")
+    });
+}
+
+fn check_sources(manifest: &Manifest, findings: &mut Findings) {
+    for (i, source) in manifest.provenance.recordings.iter().enumerate() {
+        let at = format!("/provenance/recordings/{i}");
+        let rate = source.rate_hz;
+        let positive = rate.is_finite() && rate > 0.0;
+        findings.require(
+            positive,
+            rule::SOURCE_INVALID,
+            format!("{at}/rate_hz"),
+            || format!("{rate} Hz is no sampling rate; write the recording's"),
+        );
+        let plain = !source.file.contains(['/', '\\']);
+        findings.require(plain, rule::SOURCE_PATH, format!("{at}/file"), || {
+            format!("{:?} has a folder; write the file name alone", source.file)
+        });
+    }
+}
+
+fn check_conditions(conditions: &[Condition], findings: &mut Findings) {
+    findings.require(
+        !conditions.is_empty(),
+        rule::CONDITIONS_EMPTY,
+        "/conditions",
+        || "there is no condition; add one, {} when nothing is known".to_owned(),
+    );
+    let mut seen = BTreeSet::new();
+    for (i, condition) in conditions.iter().enumerate() {
+        let at = format!("/conditions/{i}");
+        let numbers = [
+            ("speed_mm_s", condition.speed_mm_s),
+            ("force_n", condition.force_n),
+            ("repeatability_rms_db", condition.repeatability_rms_db),
+        ];
+        for (key, number) in numbers {
+            let possible = number.is_none_or(is_size);
+            findings.require(
+                possible,
+                rule::CONDITION_INVALID,
+                format!("{at}/{key}"),
+                || format!("{number:?} is negative or not finite; leave out what is not known"),
+            );
+        }
+        // Adding zero makes -0 the same as 0.
+        let bits = |number: Option<f64>| number.map(|x| (x + 0.0).to_bits());
+        let new = seen.insert((bits(condition.speed_mm_s), bits(condition.force_n)));
+        findings.require(new, rule::CONDITION_DUPLICATE, at, || {
+            "an earlier condition has the same speed and force; keep one".to_owned()
+        });
+    }
+}
+
+fn check_extensions(manifest: &Manifest, findings: &mut Findings) {
+    for name in manifest.extensions.keys() {
+        let pointer = format!("/extensions/{}", escape(name));
+        findings.require(
+            is_extension(name),
+            rule::EXTENSION_NAME_INVALID,
+            pointer,
+            || format!("{name:?} is not of the form com.vendor.NAME/REVISION"),
+        );
+    }
+    for (i, name) in manifest.extensions_required.iter().enumerate() {
+        let pointer = format!("/extensions_required/{i}");
+        let message = format!("the asset needs {name:?}, which this reader does not know");
+        findings.add(rule::EXTENSION_REQUIRED_UNKNOWN, pointer, message);
+    }
+}
+
+fn is_extension(name: &str) -> bool {
+    let Some((id, revision)) = name.split_once('/') else {
+        return false;
+    };
+    let parts = || id.split('.');
+    let word = |part: &str| {
+        let allowed = |b: u8| b.is_ascii_alphanumeric() || b == b'-' || b == b'_';
+        !part.is_empty() && part.bytes().all(allowed)
+    };
+    let number = revision.bytes().all(|b| b.is_ascii_digit()) && !revision.starts_with('0');
+    parts().count() >= 3 && parts().all(word) && number && !revision.is_empty()
+}
+
+/// Finite and not negative.
+pub(crate) fn is_size(number: f64) -> bool {
+    number.is_finite() && number >= 0.0
+}

@@ -1,0 +1,186 @@
+//! What a representation's words and numbers must be.
+
+use std::collections::BTreeSet;
+
+use crate::check_manifest::is_size;
+use crate::manifest::{AtCondition, Manifest, Quality, Representation, Steps, Store};
+use crate::report::Findings;
+use crate::rules as rule;
+
+/// Bands that agreement is measured in.
+const BANDS: usize = 9;
+
+pub(crate) fn check_representations(manifest: &Manifest, findings: &mut Findings) {
+    let some = !manifest.representations.is_empty();
+    findings.require(
+        some,
+        rule::REPRESENTATIONS_EMPTY,
+        "/representations",
+        || "there is no representation; fit a model".to_owned(),
+    );
+    let mut models = BTreeSet::new();
+    for (i, representation) in manifest.representations.iter().enumerate() {
+        let at = format!("/representations/{i}");
+        let model = &representation.model;
+        findings.require(
+            models.insert(model),
+            rule::MODEL_DUPLICATE,
+            format!("{at}/model"),
+            || format!("{model:?} has an earlier representation; merge them"),
+        );
+        check_model(representation, &at, findings);
+        check_fields(representation, &at, findings);
+        check_conditions(representation, manifest.conditions.len(), &at, findings);
+    }
+}
+
+fn check_model(representation: &Representation, at: &str, findings: &mut Findings) {
+    let Representation {
+        model,
+        model_version,
+        ..
+    } = representation;
+    findings.require(
+        is_model_id(model),
+        rule::MODEL_ID_INVALID,
+        format!("{at}/model"),
+        || format!("{model:?} is no model id; write one like org.example.mymodel"),
+    );
+    let semantic = semver::Version::parse(model_version).is_ok();
+    let pointer = format!("{at}/model_version");
+    findings.require(semantic, rule::MODEL_VERSION_INVALID, pointer, || {
+        format!("{model_version:?} is no semantic version; write one like 1.0.0")
+    });
+}
+
+fn is_model_id(id: &str) -> bool {
+    let allowed = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-' || b == b'_';
+    let word = |part: &str| !part.is_empty() && part.bytes().all(allowed);
+    id.split('.').count() >= 3 && id.split('.').all(word)
+}
+
+fn check_fields(representation: &Representation, at: &str, findings: &mut Findings) {
+    let mut names = BTreeSet::new();
+    for (i, field) in representation.fields.iter().enumerate() {
+        let at = format!("{at}/fields/{i}");
+        let name = &field.name;
+        findings.require(
+            !name.is_empty(),
+            rule::FIELD_NAME_EMPTY,
+            format!("{at}/name"),
+            || "the field has no name; write the model's".to_owned(),
+        );
+        findings.require(
+            names.insert(name),
+            rule::FIELD_DUPLICATE,
+            format!("{at}/name"),
+            || format!("{name:?} is the name of an earlier field"),
+        );
+        let works = match field.store {
+            Store::F64 | Store::F32 => true,
+            Store::U16(steps) => steps.work(u16::MAX),
+            Store::U8(steps) => steps.work(u8::MAX.into()),
+        };
+        findings.require(works, rule::STORE_INVALID, format!("{at}/store"), || {
+            "scale is not above 0, or a step's value is not finite".to_owned()
+        });
+    }
+}
+
+impl Steps {
+    fn work(&self, last: u16) -> bool {
+        let positive = self.scale > 0.0 && self.scale.is_finite() && self.offset.is_finite();
+        positive && self.value(last).is_finite()
+    }
+}
+
+fn check_conditions(
+    representation: &Representation,
+    conditions: usize,
+    at: &str,
+    findings: &mut Findings,
+) {
+    findings.require(
+        !representation.at.is_empty(),
+        rule::AT_EMPTY,
+        format!("{at}/at"),
+        || "the model is fitted at no condition; fit it or leave it out".to_owned(),
+    );
+    let mut seen = BTreeSet::new();
+    for (i, fitted) in representation.at.iter().enumerate() {
+        let at = format!("{at}/at/{i}");
+        let index = fitted.condition;
+        let pointer = format!("{at}/condition");
+        findings.require(
+            index < conditions,
+            rule::CONDITION_INDEX_INVALID,
+            &*pointer,
+            || format!("there is no condition {index}; there are {conditions}, counted from 0"),
+        );
+        findings.require(
+            seen.insert(index),
+            rule::CONDITION_INDEX_DUPLICATE,
+            pointer,
+            || format!("condition {index} stands here twice; keep one"),
+        );
+        check_fit(fitted, &at, findings);
+    }
+}
+
+fn check_fit(fitted: &AtCondition, at: &str, findings: &mut Findings) {
+    let level = fitted.level_n_rms;
+    findings.require(
+        is_size(level),
+        rule::LEVEL_INVALID,
+        format!("{at}/level_n_rms"),
+        || format!("{level} N is no level; it is finite and not negative"),
+    );
+    if let Some(quality) = &fitted.quality {
+        check_quality(quality, &format!("{at}/quality"), findings);
+    }
+}
+
+fn check_quality(quality: &Quality, at: &str, findings: &mut Findings) {
+    let errors = &quality.band_error_db;
+    let nine = errors.len() == BANDS && errors.iter().all(|e| e.is_finite());
+    let pointer = format!("{at}/band_error_db");
+    findings.require(nine, rule::QUALITY_INVALID, pointer, || {
+        format!(
+            "there are {} band errors; write {BANDS} finite numbers",
+            errors.len()
+        )
+    });
+    let correlations = [
+        ("spectral_correlation", Some(quality.spectral_correlation)),
+        (
+            "samples_spectral_correlation",
+            quality.samples_spectral_correlation,
+        ),
+    ];
+    for (key, number) in correlations {
+        let holds = number.is_none_or(|x| (-1.0..=1.0).contains(&x));
+        findings.require(holds, rule::QUALITY_INVALID, format!("{at}/{key}"), || {
+            format!("{number:?} is no correlation; it lies in -1 to 1")
+        });
+    }
+    let sizes = [
+        ("band_error_rms_db", Some(quality.band_error_rms_db)),
+        (
+            "band_error_matched_rms_db",
+            quality.band_error_matched_rms_db,
+        ),
+        (
+            "samples_band_error_rms_db",
+            quality.samples_band_error_rms_db,
+        ),
+        ("rounding_error_db", quality.rounding_error_db),
+    ];
+    for (key, number) in sizes {
+        findings.require(
+            number.is_none_or(is_size),
+            rule::QUALITY_INVALID,
+            format!("{at}/{key}"),
+            || format!("{number:?} is no RMS; it is finite and not negative"),
+        );
+    }
+}

@@ -1,0 +1,220 @@
+//! Assets as `.htex` files.
+
+use std::fs::File;
+use std::io::{Cursor, Read, Write};
+use std::path::Path;
+
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, DateTime, System, ZipWriter};
+
+use crate::archive::too_large;
+use crate::check_manifest::check_manifest;
+use crate::limits::Limits;
+use crate::report::Findings;
+use crate::rules::FILE_TOO_LARGE;
+use crate::validate::{MANIFEST, MEDIA_TYPE, MIMETYPE, inspect};
+use crate::{Asset, ReadError, WriteError, block, write_file};
+
+/// The highest level of plain deflate is 9. Above it zopfli works this many rounds more: smaller,
+/// and the same bytes on every processor, which no accelerated deflate promises.
+const DEFLATE_LEVEL: i64 = 9 + 15;
+
+impl Asset {
+    /// Reads an asset within the default [`Limits`].
+    ///
+    /// # Errors
+    /// [`ReadError::Invalid`] with every finding when one of them is an error.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, ReadError> {
+        Self::from_bytes_with(bytes, &Limits::default())
+    }
+
+    /// Reads an asset within limits of your own.
+    ///
+    /// # Errors
+    /// As [`Self::from_bytes`].
+    pub fn from_bytes_with(bytes: &[u8], limits: &Limits) -> Result<Self, ReadError> {
+        let (asset, findings) = inspect(bytes, limits);
+        asset.ok_or(ReadError::Invalid { findings })
+    }
+
+    /// Reads an asset from a file within the default [`Limits`].
+    ///
+    /// # Errors
+    /// [`ReadError::Io`] when the file cannot be read, else as [`Self::from_bytes`].
+    pub fn open(path: &Path) -> Result<Self, ReadError> {
+        let limits = Limits::default();
+        Self::from_bytes_with(&read_capped(path, &limits)?, &limits)
+    }
+
+    /// The asset as the bytes of a `.htex` file; the same asset gives the same bytes everywhere.
+    ///
+    /// Levels keep nine significant digits, agreement four decimals
+    /// ([`crate::Manifest::rounded`]), and parameters what their store keeps
+    /// ([`crate::round_parameters`]).
+    ///
+    /// # Errors
+    /// When the asset breaks a rule of the format, exceeds the default [`Limits`], or has
+    /// parameters that its fields cannot hold.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, WriteError> {
+        let manifest = self.manifest.rounded();
+        let mut findings = Findings::default();
+        check_manifest(&manifest, &mut findings);
+        if findings.has_errors() {
+            let findings = findings.into_list();
+            return Err(WriteError::Invalid { findings });
+        }
+        let json = serde_json::to_vec(&manifest).map_err(archive_error)?;
+        let mut archive = Writer::new();
+        archive.add(MIMETYPE, MEDIA_TYPE.as_bytes(), CompressionMethod::Stored)?;
+        archive.add(MANIFEST, &json, CompressionMethod::Deflated)?;
+        for (name, bytes) in self.blocks()? {
+            archive.add(name, &bytes, CompressionMethod::Stored)?;
+        }
+        if let Some((name, bytes)) = self.reference_entry()? {
+            archive.add(name, &bytes, CompressionMethod::Stored)?;
+        }
+        readable(archive.finish()?)
+    }
+
+    /// Bytes of a representation's parameter block as it is stored, 0 when there is none.
+    pub fn payload_bytes(&self, representation: usize) -> usize {
+        let stored = self.manifest.representations.get(representation);
+        let block = stored.zip(self.parameters.get(representation));
+        let bytes = block.and_then(|(stored, flats)| block::encode(&stored.fields, flats).ok());
+        bytes.map_or(0, |bytes| bytes.len())
+    }
+
+    /// Writes the asset to a file, whole or not at all.
+    ///
+    /// # Errors
+    /// [`WriteError::Io`] when the file cannot be written, else as [`Self::to_bytes`].
+    pub fn write(&self, path: &Path) -> Result<(), WriteError> {
+        write_file(path, &self.to_bytes()?).map_err(|error| WriteError::Io {
+            path: path.to_owned(),
+            error,
+        })
+    }
+
+    fn blocks(&self) -> Result<Vec<(&str, Vec<u8>)>, WriteError> {
+        let stored = &self.manifest.representations;
+        count(
+            "parameters by representation",
+            stored.len(),
+            self.parameters.len(),
+        )?;
+        let pairs = stored.iter().zip(&self.parameters);
+        pairs
+            .map(|(stored, flats)| {
+                let what = format!("parameters of {} by condition", stored.model);
+                count(&what, stored.at.len(), flats.len())?;
+                Ok((
+                    stored.parameters.as_str(),
+                    block::encode(&stored.fields, flats)?,
+                ))
+            })
+            .collect()
+    }
+
+    fn reference_entry(&self) -> Result<Option<(&str, Vec<u8>)>, WriteError> {
+        let named = self.manifest.reference.as_ref();
+        let given = self.reference.as_ref();
+        count("references", named.iter().len(), given.iter().len())?;
+        let Some((named, spectra)) = named.zip(given) else {
+            return Ok(None);
+        };
+        count(
+            "reference spectra by condition",
+            self.manifest.conditions.len(),
+            spectra.len(),
+        )?;
+        let points = self.manifest.band.grid_points().unwrap_or(0);
+        for spectrum in spectra {
+            count("magnitudes of a reference spectrum", points, spectrum.len())?;
+        }
+        let bytes = spectra
+            .iter()
+            .flatten()
+            .flat_map(|m| m.to_le_bytes())
+            .collect();
+        Ok(Some((&named.file, bytes)))
+    }
+}
+
+/// The bytes of a file, no more of them than the limit.
+fn read_capped(path: &Path, limits: &Limits) -> Result<Vec<u8>, ReadError> {
+    let failed = |error| ReadError::Io {
+        path: path.to_owned(),
+        error,
+    };
+    let file = File::open(path).map_err(failed)?;
+    let stated = file.metadata().map_err(failed)?.len();
+    let mut bytes = Vec::new();
+    if stated <= limits.file_bytes {
+        // A file may grow while it is read, and a pipe states no length.
+        let most = limits.file_bytes.saturating_add(1);
+        file.take(most).read_to_end(&mut bytes).map_err(failed)?;
+    }
+    let length = stated.max(bytes.len() as u64);
+    if length <= limits.file_bytes {
+        return Ok(bytes);
+    }
+    let mut findings = Findings::default();
+    findings.add(FILE_TOO_LARGE, "", too_large(length, limits));
+    let findings = findings.into_list();
+    Err(ReadError::Invalid { findings })
+}
+
+/// The bytes, when they can be read back: what is written is always valid.
+fn readable(bytes: Vec<u8>) -> Result<Vec<u8>, WriteError> {
+    match inspect(&bytes, &Limits::default()) {
+        (Some(_), _) => Ok(bytes),
+        (None, findings) => Err(WriteError::Invalid { findings }),
+    }
+}
+
+fn count(what: &str, expected: usize, got: usize) -> Result<(), WriteError> {
+    if expected == got {
+        return Ok(());
+    }
+    Err(WriteError::Count {
+        what: what.to_owned(),
+        expected,
+        got,
+    })
+}
+
+fn archive_error(error: impl std::fmt::Display) -> WriteError {
+    WriteError::Archive {
+        problem: error.to_string(),
+    }
+}
+
+/// An archive while it is written.
+struct Writer(ZipWriter<Cursor<Vec<u8>>>);
+
+impl Writer {
+    fn new() -> Self {
+        Self(ZipWriter::new(Cursor::new(Vec::new())))
+    }
+
+    fn add(
+        &mut self,
+        name: &str,
+        bytes: &[u8],
+        method: CompressionMethod,
+    ) -> Result<(), WriteError> {
+        let level = (method == CompressionMethod::Deflated).then_some(DEFLATE_LEVEL);
+        let options = SimpleFileOptions::default()
+            .compression_method(method)
+            .compression_level(level)
+            .last_modified_time(DateTime::default())
+            .system(System::Unix)
+            .unix_permissions(0o644);
+        self.0.start_file(name, options).map_err(archive_error)?;
+        self.0.write_all(bytes).map_err(archive_error)
+    }
+
+    fn finish(self) -> Result<Vec<u8>, WriteError> {
+        Ok(self.0.finish().map_err(archive_error)?.into_inner())
+    }
+}

@@ -1,0 +1,72 @@
+//! What validation finds in a file.
+
+use serde::{Deserialize, Serialize};
+
+use crate::rules::{FINDINGS_TRUNCATED, Rule};
+use crate::{Finding, Severity};
+
+/// Findings that are kept; a hostile file could raise millions.
+const KEPT: usize = 100;
+
+/// The outcome of validation.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Report {
+    /// Whether the asset can be used: no finding is an error.
+    pub valid: bool,
+    /// Everything found, in the order the file is read.
+    pub findings: Vec<Finding>,
+}
+
+/// Findings while they are collected.
+#[derive(Debug, Default)]
+pub(crate) struct Findings {
+    kept: Vec<Finding>,
+    dropped: usize,
+    errors: bool,
+}
+
+impl Findings {
+    pub(crate) fn add(&mut self, rule: &Rule, pointer: impl Into<String>, message: String) {
+        self.errors |= rule.severity == Severity::Error;
+        if self.kept.len() < KEPT {
+            self.kept.push(finding(rule, pointer.into(), message));
+        } else {
+            self.dropped += 1;
+        }
+    }
+
+    /// Adds the finding unless `holds`.
+    pub(crate) fn require(
+        &mut self,
+        holds: bool,
+        rule: &Rule,
+        pointer: impl Into<String>,
+        message: impl FnOnce() -> String,
+    ) {
+        if !holds {
+            self.add(rule, pointer, message());
+        }
+    }
+
+    pub(crate) fn has_errors(&self) -> bool {
+        self.errors
+    }
+
+    pub(crate) fn into_list(mut self) -> Vec<Finding> {
+        if self.dropped > 0 {
+            let message = format!("{} more findings are not shown", self.dropped);
+            self.kept
+                .push(finding(FINDINGS_TRUNCATED, String::new(), message));
+        }
+        self.kept
+    }
+}
+
+fn finding(rule: &Rule, pointer: String, message: String) -> Finding {
+    Finding {
+        code: rule.code.to_owned(),
+        severity: rule.severity,
+        pointer,
+        message,
+    }
+}

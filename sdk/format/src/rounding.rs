@@ -1,0 +1,61 @@
+//! How the manifest's numbers are shortened when an asset is written.
+
+use crate::Manifest;
+use crate::manifest::{AtCondition, Quality};
+
+impl Manifest {
+    /// The manifest as it will be read back: agreement and repeatability to four decimals, levels to
+    /// nine significant digits. What is rounded once does not change again.
+    pub fn rounded(&self) -> Self {
+        let mut rounded = self.clone();
+        for condition in &mut rounded.conditions {
+            four_decimals(condition.repeatability_rms_db.iter_mut());
+        }
+        for representation in &mut rounded.representations {
+            representation.at.iter_mut().for_each(round_at);
+        }
+        rounded
+    }
+}
+
+fn round_at(at: &mut AtCondition) {
+    at.level_n_rms = reread(&format!("{:.8e}", at.level_n_rms), at.level_n_rms);
+    if let Some(quality) = &mut at.quality {
+        round_quality(quality);
+    }
+}
+
+fn round_quality(quality: &mut Quality) {
+    let Quality {
+        spectral_correlation,
+        band_error_db,
+        band_error_rms_db,
+        band_error_matched_rms_db,
+        samples_spectral_correlation,
+        samples_band_error_rms_db,
+        rounding_error_db,
+    } = quality;
+    four_decimals([spectral_correlation, band_error_rms_db].into_iter());
+    four_decimals(band_error_db.iter_mut());
+    let optional = [
+        band_error_matched_rms_db,
+        samples_spectral_correlation,
+        samples_band_error_rms_db,
+        rounding_error_db,
+    ];
+    four_decimals(optional.into_iter().flatten());
+}
+
+fn four_decimals<'a>(numbers: impl Iterator<Item = &'a mut f64>) {
+    for number in numbers {
+        *number = reread(&format!("{number:.4}"), *number);
+    }
+}
+
+/// The number a text stands for, without a negative zero; `otherwise` when it is not finite.
+fn reread(text: &str, otherwise: f64) -> f64 {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() => number + 0.0,
+        _ => otherwise,
+    }
+}

@@ -1,0 +1,204 @@
+//! From bytes to an asset, or to the reasons why not. Reading and validating are this one path.
+
+use std::collections::BTreeSet;
+
+use crate::archive::{Archive, STORED};
+use crate::block::{self, BlockError};
+use crate::check_manifest::check_manifest;
+use crate::limits::Limits;
+use crate::manifest_json;
+use crate::report::{Findings, Report};
+use crate::rules as rule;
+use crate::{Asset, Finding, Manifest, Representation, Severity};
+
+/// Name of the entry that says what the archive is.
+pub(crate) const MIMETYPE: &str = "mimetype";
+/// What it says.
+pub(crate) const MEDIA_TYPE: &str = "application/vnd.htex+zip";
+/// Name of the entry everything else is found through.
+pub(crate) const MANIFEST: &str = "manifest.json";
+
+/// Validates the bytes of a `.htex` file: every broken rule that can be told apart from the ones
+/// before it. Never panics, and takes no more than `limits` allow.
+pub fn validate(bytes: &[u8], limits: &Limits) -> Report {
+    let (asset, findings) = inspect(bytes, limits);
+    Report {
+        valid: asset.is_some(),
+        findings,
+    }
+}
+
+/// The asset, when no finding is an error.
+pub(crate) fn inspect(bytes: &[u8], limits: &Limits) -> (Option<Asset>, Vec<Finding>) {
+    let mut findings = Findings::default();
+    let asset = read(bytes, limits, &mut findings).filter(|_| !findings.has_errors());
+    let findings = findings.into_list();
+    let notes = findings
+        .iter()
+        .filter(|f| f.severity == Severity::Info)
+        .cloned()
+        .collect();
+    let asset = asset.map(|asset| Asset { notes, ..asset });
+    (asset, findings)
+}
+
+fn read(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<Asset> {
+    let mut archive = Archive::scan(bytes, limits, findings)?;
+    check_mimetype(&mut archive, findings);
+    let Some(index) = archive.index(MANIFEST) else {
+        let message = format!("there is no entry {MANIFEST}; write the asset anew");
+        findings.add(rule::MANIFEST_MISSING, "", message);
+        return None;
+    };
+    let json = archive.read(index, findings)?;
+    let manifest = manifest_json::parse(&json, limits, findings)?;
+    check_manifest(&manifest, findings);
+    let mut payload = Payload {
+        archive,
+        claimed: BTreeSet::from([MIMETYPE.to_owned(), MANIFEST.to_owned()]),
+        values_left: limits.values,
+        findings,
+    };
+    let parameters = payload.parameters(&manifest);
+    let reference = payload.reference(&manifest);
+    payload.check_unreferenced();
+    Some(Asset {
+        manifest,
+        parameters,
+        reference,
+        notes: Vec::new(),
+    })
+}
+
+fn check_mimetype(archive: &mut Archive<'_>, findings: &mut Findings) {
+    let Some(index) = archive.index(MIMETYPE) else {
+        let message = format!("there is no entry {MIMETYPE}; write it first: {MEDIA_TYPE}");
+        findings.add(rule::MIMETYPE_MISSING, "", message);
+        return;
+    };
+    findings.require(index == 0, rule::MIMETYPE_NOT_FIRST, "", || {
+        format!("{MIMETYPE} is entry {index}, counted from 0; write it first")
+    });
+    let stored = archive
+        .entries
+        .get(index)
+        .is_some_and(|entry| entry.method == STORED);
+    findings.require(stored, rule::MIMETYPE_COMPRESSED, "", || {
+        format!("{MIMETYPE} is compressed; store it")
+    });
+    if let Some(text) = archive.read(index, findings) {
+        findings.require(
+            text == MEDIA_TYPE.as_bytes(),
+            rule::MIMETYPE_WRONG,
+            "",
+            || format!("{MIMETYPE} is not {MEDIA_TYPE}, byte for byte"),
+        );
+    }
+}
+
+/// The entries the manifest names, while they are read.
+struct Payload<'a, 'f> {
+    archive: Archive<'a>,
+    claimed: BTreeSet<String>,
+    values_left: usize,
+    findings: &'f mut Findings,
+}
+
+impl Payload<'_, '_> {
+    fn parameters(&mut self, manifest: &Manifest) -> Vec<Vec<Vec<f64>>> {
+        let all = manifest.representations.iter().enumerate();
+        all.map(|(i, representation)| {
+            self.block(representation, &format!("/representations/{i}"))
+                .unwrap_or_default()
+        })
+        .collect()
+    }
+
+    fn block(&mut self, representation: &Representation, at: &str) -> Option<Vec<Vec<f64>>> {
+        let bytes = self.entry(&representation.parameters, format!("{at}/parameters"))?;
+        let (fields, conditions) = (&representation.fields, representation.at.len());
+        match block::decode(fields, conditions, &bytes, &mut self.values_left) {
+            Ok(parameters) => Some(parameters),
+            Err(error) => {
+                let rule = match error {
+                    BlockError::NotFinite { .. } => rule::PARAMETERS_NOT_FINITE,
+                    BlockError::TooMany(_) => rule::VALUES_TOO_MANY,
+                    _ => rule::PARAMETERS_INVALID,
+                };
+                let message = format!(
+                    "{}: {error}; write the asset anew",
+                    representation.parameters
+                );
+                self.findings.add(rule, format!("{at}/parameters"), message);
+                None
+            }
+        }
+    }
+
+    /// The bytes of an entry that nothing else has named.
+    fn entry(&mut self, name: &str, pointer: String) -> Option<Vec<u8>> {
+        let Some(index) = self.archive.index(name) else {
+            let message = format!("there is no entry {name:?}; add it or remove what names it");
+            self.findings.add(rule::ENTRY_MISSING, pointer, message);
+            return None;
+        };
+        if !self.claimed.insert(name.to_owned()) {
+            let message = format!("{name} has another use already; take an entry of its own");
+            self.findings
+                .add(rule::PARAMETERS_ENTRY_INVALID, pointer, message);
+            return None;
+        }
+        self.archive.read(index, self.findings)
+    }
+
+    fn reference(&mut self, manifest: &Manifest) -> Option<Vec<Vec<f32>>> {
+        let reference = manifest.reference.as_ref()?;
+        let bytes = self.entry(&reference.file, "/reference/file".to_owned())?;
+        let points = manifest.band.grid_points()?;
+        let conditions = manifest.conditions.len();
+        let values = points.saturating_mul(conditions);
+        if values.saturating_mul(size_of::<f32>()) != bytes.len() {
+            let message = format!(
+                "{} has {} bytes; {points} magnitudes at {conditions} conditions take four each",
+                reference.file,
+                bytes.len()
+            );
+            self.findings
+                .add(rule::REFERENCE_LENGTH, "/reference/file", message);
+            return None;
+        }
+        if values > self.values_left {
+            let message = format!("the reference's {values} numbers exceed the limit");
+            self.findings
+                .add(rule::VALUES_TOO_MANY, "/reference/file", message);
+            return None;
+        }
+        let magnitudes: Vec<f32> = bytes
+            .chunks_exact(size_of::<f32>())
+            .map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]]))
+            .collect();
+        let bad = magnitudes
+            .iter()
+            .position(|m| !(m.is_finite() && *m >= 0.0));
+        if let Some(bad) = bad {
+            let message = format!(
+                "magnitude {bad} is {}; write a size in newtons",
+                magnitudes[bad]
+            );
+            self.findings
+                .add(rule::REFERENCE_INVALID, "/reference/file", message);
+        }
+        Some(magnitudes.chunks(points).map(<[f32]>::to_vec).collect())
+    }
+
+    fn check_unreferenced(&mut self) {
+        for entry in &self.archive.entries {
+            self.findings.require(
+                self.claimed.contains(&entry.name),
+                rule::ENTRY_UNREFERENCED,
+                "",
+                || format!("nothing names the entry {}; remove it", entry.name),
+            );
+        }
+    }
+}

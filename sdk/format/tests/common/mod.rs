@@ -1,0 +1,188 @@
+//! Assets to test with.
+#![allow(dead_code, reason = "each test file takes what it needs")]
+
+use htex_format::*;
+
+/// A representation, with one flat array a condition.
+pub type Fitted = (Representation, Vec<Vec<f64>>);
+
+/// An asset with the given representations at `conditions` conditions.
+pub fn asset(conditions: usize, fitted: Vec<Fitted>) -> Asset {
+    let (representations, parameters) = fitted.into_iter().unzip();
+    Asset {
+        manifest: Manifest {
+            htex: VERSION.to_owned(),
+            name: "Cotton, coarse weave".to_owned(),
+            license: Some("CC-BY-4.0".to_owned()),
+            author: Some("Haptics Laboratory, Example University".to_owned()),
+            tags: ["cotton", "textile", "rough"].map(str::to_owned).to_vec(),
+            quantity: LATERAL_FORCE.to_owned(),
+            unit: NEWTON.to_owned(),
+            band: Band {
+                low_hz: 20.0,
+                high_hz: 1000.0,
+            },
+            provenance: Provenance {
+                tool: "htex 0.1.0".to_owned(),
+                recordings: vec![Source {
+                    file: "cotton_take_1.csv".to_owned(),
+                    rate_hz: 20_000.0,
+                    segments: 48,
+                }],
+                ..Provenance::default()
+            },
+            conditions: (0..conditions).map(condition).collect(),
+            representations,
+            reference: None,
+            extensions: Default::default(),
+            extensions_required: Vec::new(),
+            other: Default::default(),
+        },
+        parameters,
+        reference: None,
+        notes: Vec::new(),
+    }
+}
+
+fn condition(i: usize) -> Condition {
+    Condition {
+        speed_mm_s: Some(40.0 + 20.0 * i as f64),
+        force_n: Some(0.5),
+        repeatability_rms_db: Some(0.8137),
+    }
+}
+
+/// A representation whose fields are (name, unit, list length, store); 0 stands for a scalar.
+pub fn fitted(model: &str, conditions: usize, fields: &[(&str, &str, usize, Store)]) -> Fitted {
+    let stored: Vec<Field> = fields.iter().map(field).collect();
+    let representation = Representation {
+        model: format!("org.htex.{model}"),
+        model_version: "1.0.0".to_owned(),
+        fields: stored.clone(),
+        at: (0..conditions).map(at).collect(),
+        parameters: format!("parameters/{model}.bin"),
+    };
+    let parameters = (0..conditions).map(|c| flat(c, fields, &stored)).collect();
+    (representation, parameters)
+}
+
+fn field(&(name, unit, length, store): &(&str, &str, usize, Store)) -> Field {
+    Field {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        list: length > 0,
+        store,
+    }
+}
+
+fn flat(condition: usize, fields: &[(&str, &str, usize, Store)], stored: &[Field]) -> Vec<f64> {
+    let mut flat = Vec::new();
+    for &(_, _, length, store) in fields {
+        if length > 0 {
+            flat.push(length as f64);
+        }
+        for i in 0..length.max(1) {
+            let x = 0.5 + 0.37 * (i as f64 + 1.0).sqrt() + 0.1 * condition as f64;
+            flat.push(if matches!(store, Store::U8(_)) {
+                x.round()
+            } else {
+                x
+            });
+        }
+    }
+    round_parameters(stored, &flat).expect("the values fit their stores")
+}
+
+fn at(i: usize) -> AtCondition {
+    let errors = [
+        -0.8123, 1.2456, -0.1034, 0.5678, -2.3091, 0.0412, 1.0897, -0.6543, 0.3216,
+    ];
+    AtCondition {
+        condition: i,
+        level_n_rms: 0.0731529846 + 0.01 * i as f64,
+        quality: Some(Quality {
+            spectral_correlation: 0.9412,
+            band_error_db: errors.to_vec(),
+            band_error_rms_db: 1.0538,
+            band_error_matched_rms_db: Some(1.0421),
+            samples_spectral_correlation: Some(0.9376),
+            samples_band_error_rms_db: Some(1.1243),
+            rounding_error_db: Some(0.0003),
+        }),
+    }
+}
+
+/// Steps without a logarithm.
+pub fn steps(scale: f64) -> Steps {
+    Steps {
+        scale,
+        offset: 0.0,
+        log: false,
+    }
+}
+
+/// Two 32-bit floats.
+pub fn sbeta(conditions: usize) -> Fitted {
+    let fields = [("alpha", "", 0, Store::F32), ("beta", "", 0, Store::F32)];
+    fitted("sbeta", conditions, &fields)
+}
+
+/// The five models, stored as their descriptors say.
+pub fn five(conditions: usize) -> Vec<Fitted> {
+    let hertz = Store::U16(steps(0.03125));
+    let order = Store::U16(steps(0.001));
+    let amplitude = Store::U16(Steps {
+        scale: 0.0002,
+        offset: -10.0,
+        log: true,
+    });
+    let whole = Store::U8(steps(1.0));
+    vec![
+        fitted(
+            "ar",
+            conditions,
+            &[
+                ("coefficients", "", 6, Store::F64),
+                ("model_rate_hz", "Hz", 0, Store::F32),
+            ],
+        ),
+        fitted(
+            "mfcc",
+            conditions,
+            &[
+                ("cepstrum", "", 10, Store::F32),
+                ("bands", "", 0, whole),
+                ("inverse", "", 0, whole),
+            ],
+        ),
+        fitted(
+            "speak",
+            conditions,
+            &[
+                ("frequency_hz", "Hz", 10, hertz),
+                ("amplitude", "", 10, amplitude),
+                ("random_phase", "", 0, whole),
+            ],
+        ),
+        sbeta(conditions),
+        fitted(
+            "sslope",
+            conditions,
+            &[
+                ("peak_hz", "Hz", 0, hertz),
+                ("order_high_pass", "", 0, order),
+                ("order_low_pass", "", 0, order),
+            ],
+        ),
+    ]
+}
+
+/// A reference for as many conditions, newtons.
+pub fn reference(conditions: usize) -> Vec<Vec<f32>> {
+    let spectrum = |c: usize| {
+        (0..197)
+            .map(move |i| 0.01 / (1.0 + (i + c) as f32))
+            .collect()
+    };
+    (0..conditions).map(spectrum).collect()
+}

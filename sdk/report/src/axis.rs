@@ -21,8 +21,8 @@ pub struct Axis {
 }
 
 /// Values beyond these are treated as these: spans and ratios of the rest stay finite.
-const LARGEST: f64 = 1e150;
-const SMALLEST: f64 = 1e-150;
+const LARGEST: f64 = 1e140;
+const SMALLEST: f64 = 1e-140;
 
 impl Axis {
     /// A linear axis over the data.
@@ -63,8 +63,29 @@ impl Axis {
     /// positive on a log axis.
     pub(crate) fn resolve(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
         let given = self.range.filter(|(a, b)| self.shows(*a) && self.shows(*b));
-        let range = given.or_else(|| extremes(values.filter(|v| self.shows(*v))));
-        sound_range(range, self.scale)
+        match given {
+            Some(range) => sound_range(Some(range), self.scale),
+            None => {
+                let found = extremes(values.filter(|v| self.shows(*v)));
+                roomy(sound_range(found, self.scale), self.scale)
+            }
+        }
+    }
+}
+
+/// A sound range with room for a marker at either end, not reaching across zero for it.
+fn roomy((low, high): (f64, f64), scale: Scale) -> (f64, f64) {
+    const ROOM: f64 = 0.03;
+    match scale {
+        Scale::Linear => {
+            let room = ROOM * (high - low);
+            let floor = if low >= 0.0 { 0.0 } else { f64::NEG_INFINITY };
+            ((low - room).max(floor), high + room)
+        }
+        Scale::Log => {
+            let room = (high / low).powf(ROOM);
+            (low / room, high * room)
+        }
     }
 }
 

@@ -1,21 +1,22 @@
 //! Colours: one for each model, everywhere, and the scales of the heat tables.
 //!
-//! The hues follow Okabe and Ito's set, told apart with the common forms of colour blindness;
-//! the light ones are darkened until a line stands at 3 : 1 or better on white.
+//! The hues start from Okabe and Ito's set. The light ones are replaced by dark ones, so that every
+//! line stands at 3 : 1 or better on white, and any two models stay apart in normal, protan, deutan
+//! and tritan vision (simulated after Machado et al. 2009: CIE76 difference of 17 or more).
 
 /// The recording: dark grey, behind or beside any model's colour.
 pub const RECORDING_COLOR: &str = "#4d4d4d";
 
 const MODELS: [(&str, &str); 5] = [
     ("ar", "#0072b2"),
-    ("mfcc", "#00875f"),
+    ("mfcc", "#009e73"),
     ("speak", "#d55e00"),
-    ("sbeta", "#aa3377"),
-    ("sslope", "#b37a00"),
+    ("sbeta", "#7d1f6b"),
+    ("sslope", "#5b2c00"),
 ];
 
 /// For models this crate has never heard of.
-const OTHERS: [&str; 4] = ["#5b4fc4", "#7a4b1e", "#2a7f8e", "#5f7a1f"];
+const OTHERS: [&str; 4] = ["#5b4fc4", "#8a8000", "#2a7f8e", "#5f7a1f"];
 
 /// The colour of the model called `short_name` (`"sbeta"`), the same in every picture. A model
 /// that is not one of the five gets a colour of its own kind, chosen by its name.

@@ -14,6 +14,8 @@
 
 mod axis;
 mod color;
+mod curves;
+mod legend;
 mod markup;
 mod number;
 mod page;

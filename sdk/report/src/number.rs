@@ -52,14 +52,25 @@ pub(crate) fn bytes(count: u64) -> String {
     }
 }
 
-/// How many times `part` goes into `whole`, as `570 : 1`; an en dash when `part` is zero.
+/// How many times `part` goes into `whole`, to three digits, as `570 : 1`; an en dash when `part`
+/// is zero.
 pub(crate) fn ratio(whole: u64, part: u64) -> String {
     if part == 0 {
         return MISSING.to_owned();
     }
     let value = whole as f64 / part as f64;
     let decimals = if value < 10.0 { 1 } else { 0 };
-    format!("{} : 1", thousands(&fixed(value, decimals)))
+    format!("{} : 1", thousands(&fixed(three_digits(value), decimals)))
+}
+
+/// `value` rounded to three digits where it has more before the decimal point.
+fn three_digits(value: f64) -> f64 {
+    let unit = 10f64.powi(value.max(100.0).log10().floor() as i32 - 2);
+    if value < 100.0 {
+        value
+    } else {
+        (value / unit).round() * unit
+    }
 }
 
 /// Digits grouped in threes by narrow no-break spaces, where there are more than four.
@@ -105,6 +116,7 @@ mod tests {
         assert_eq!(bytes(2_120), "2.1 kB");
         assert_eq!(bytes(1_200_000), "1.20 MB");
         assert_eq!(ratio(1_200_000, 16), "75\u{202f}000 : 1");
+        assert_eq!(ratio(1_600_044, 56), "28\u{202f}600 : 1");
         assert_eq!(ratio(1, 0), MISSING);
     }
 }

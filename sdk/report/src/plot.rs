@@ -1,10 +1,11 @@
 //! A small line or scatter plot as one SVG element.
 
 use crate::axis::Axis;
+use crate::legend;
 use crate::markup::Element;
-use crate::number::{brief, px};
+use crate::number::px;
 use crate::projection::Projection;
-use crate::series::{Line, Series};
+use crate::series::Series;
 use crate::svg::{self, TEXT_PX, fit_text, text_width};
 use crate::ticks::Tick;
 
@@ -73,24 +74,24 @@ impl Plot {
 }
 
 /// A plot with every place decided.
-struct Drawing<'a> {
-    plot: &'a Plot,
+pub(crate) struct Drawing<'a> {
+    pub(crate) plot: &'a Plot,
     width: f64,
     height: f64,
-    x: Projection,
-    y: Projection,
+    pub(crate) x: Projection,
+    pub(crate) y: Projection,
     x_ticks: Vec<(f64, Tick)>,
     y_ticks: Vec<(f64, Tick)>,
     legend: Vec<(f64, f64, &'a Series)>,
-    area: Area,
+    pub(crate) area: Area,
 }
 
 /// Where the data goes, pixels.
-struct Area {
-    left: f64,
-    top: f64,
-    width: f64,
-    height: f64,
+pub(crate) struct Area {
+    pub(crate) left: f64,
+    pub(crate) top: f64,
+    pub(crate) width: f64,
+    pub(crate) height: f64,
 }
 
 impl<'a> Drawing<'a> {
@@ -100,14 +101,14 @@ impl<'a> Drawing<'a> {
         let x = Projection::new(&plot.x, points().map(|p| p.0));
         let y = Projection::new(&plot.y, points().map(|p| p.1));
         let legend = if plot.legend {
-            legend_places(&plot.series, width)
+            legend::places(&plot.series, width)
         } else {
             Vec::new()
         };
-        let legend_bottom = legend.last().map_or(0.0, |(_, y, _)| y + 6.0);
+        let legend_bottom = legend.last().map_or(0.0, |(_, y, _)| y + 12.0);
         let top = legend_bottom.max(if plot.title.is_empty() { 10.0 } else { 24.0 });
         let area_height = (height - top - 38.0).max(30.0);
-        let y_ticks = y.ticks((area_height / 34.0) as usize);
+        let y_ticks = y.ticks((area_height / 26.0) as usize);
         let widest = y_ticks
             .iter()
             .map(|(_, t)| text_width(&t.label, TEXT_PX))
@@ -134,17 +135,6 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Where a point stands inside the data area, pixels from its top left.
-    fn place(&self, (x, y): (f64, f64)) -> Option<(f64, f64)> {
-        let across = self.x.fraction(x)? * self.area.width;
-        let down = (1.0 - self.y.fraction(y)?) * self.area.height;
-        Some((across, down))
-    }
-
-    fn inside(&self, (x, y): (f64, f64)) -> bool {
-        (-0.5..=self.area.width + 0.5).contains(&x) && (-0.5..=self.area.height + 0.5).contains(&y)
-    }
-
     fn heading(&self) -> Vec<Element> {
         let title = fit_text(&self.plot.title, TITLE_PX * 1.1, self.width - 16.0);
         let title = svg::label(self.width / 2.0, 15.0, "middle", &title)
@@ -154,7 +144,7 @@ impl<'a> Drawing<'a> {
         let names = self
             .legend
             .iter()
-            .map(|(x, y, series)| legend_entry(*x, *y, series));
+            .map(|(x, y, series)| legend::entry(*x, *y, series));
         shown.into_iter().chain(names).collect()
     }
 
@@ -198,95 +188,6 @@ impl<'a> Drawing<'a> {
         out
     }
 
-    /// The series, in an inner picture that cuts off whatever leaves the data area.
-    fn data(&self) -> Element {
-        let area = &self.area;
-        Element::new("svg")
-            .set("x", &px(area.left))
-            .set("y", &px(area.top))
-            .set("width", &px(area.width))
-            .set("height", &px(area.height))
-            .set("overflow", "hidden")
-            .children(self.plot.series.iter().map(|series| self.series(series)))
-    }
-
-    fn series(&self, series: &Series) -> Element {
-        let group = stroke(Element::new("g"), series)
-            .children(self.strokes(series))
-            .children(self.markers(series));
-        if series.hover {
-            group.child(&self.hover(series))
-        } else {
-            group
-        }
-    }
-
-    fn strokes(&self, series: &Series) -> Vec<Element> {
-        match series.line {
-            Line::None => Vec::new(),
-            Line::Stems => self.stems(series),
-            Line::Solid | Line::Dashed => self.lines(series),
-        }
-    }
-
-    fn lines(&self, series: &Series) -> Vec<Element> {
-        let places: Vec<_> = series.points.iter().map(|p| self.place(*p)).collect();
-        let runs = places.split(Option::is_none).filter(|run| !run.is_empty());
-        let runs = runs.map(|run| run.iter().flatten().copied().collect::<Vec<_>>());
-        runs.map(|run| svg::polyline(&run)).collect()
-    }
-
-    fn stems(&self, series: &Series) -> Vec<Element> {
-        let stem = |point: &(f64, f64)| {
-            let (x, top) = self.place(*point)?;
-            let (_, base) = self.place((point.0, self.y.base()))?;
-            Some(svg::line(x, base, x, top))
-        };
-        series.points.iter().filter_map(stem).collect()
-    }
-
-    fn markers(&self, series: &Series) -> Vec<Element> {
-        let Some(radius) = series.marker_radius_px else {
-            return Vec::new();
-        };
-        let places = series.points.iter().filter_map(|p| self.place(*p));
-        let shown = places.filter(|place| self.inside(*place));
-        shown
-            .map(|(x, y)| svg::circle(x, y, radius).set("fill", &series.color))
-            .collect()
-    }
-
-    /// Invisible dots that answer to the pointer, no closer together than it can be held.
-    fn hover(&self, series: &Series) -> Element {
-        let mut last = f64::NEG_INFINITY;
-        let mut dots = Element::new("g")
-            .set("fill", "transparent")
-            .set("stroke", "none");
-        for point in &series.points {
-            let Some((x, y)) = self.place(*point).filter(|place| self.inside(*place)) else {
-                continue;
-            };
-            if (x - last).abs() < 3.0 && series.marker_radius_px.is_none() {
-                continue;
-            }
-            last = x;
-            let title = Element::new("title").text(&self.describe(series, *point));
-            dots = dots.child(&svg::circle(x, y, 4.0).child(&title));
-        }
-        dots
-    }
-
-    fn describe(&self, series: &Series, (x, y): (f64, f64)) -> String {
-        let (x_unit, y_unit) = (self.plot.x.unit(), self.plot.y.unit());
-        let value = |v: f64, unit: &str| format!("{} {unit}", brief(v)).trim_end().to_owned();
-        format!(
-            "{}: {}, {}",
-            series.name,
-            value(x, x_unit),
-            value(y, y_unit)
-        )
-    }
-
     fn border(&self) -> Element {
         let Area {
             left,
@@ -308,18 +209,6 @@ fn size(given: f64, otherwise: f64) -> f64 {
         given.clamp(120.0, 10_000.0)
     } else {
         otherwise
-    }
-}
-
-fn stroke(element: Element, series: &Series) -> Element {
-    let element = element
-        .set("fill", "none")
-        .set("stroke", &series.color)
-        .set("stroke-width", &px(series.line_width_px))
-        .set("stroke-linejoin", "round");
-    match series.line {
-        Line::Dashed => element.set("stroke-dasharray", "5 3"),
-        _ => element,
     }
 }
 
@@ -349,35 +238,4 @@ fn spaced_labels<'t>(ticks: &'t [(f64, Tick)], area: &Area) -> Vec<(f64, &'t str
         }
     }
     kept
-}
-
-/// Where each series' name goes: left to right below the title, wrapped to `width`.
-fn legend_places(series: &[Series], width: f64) -> Vec<(f64, f64, &Series)> {
-    let (mut x, mut y) = (12.0, 33.0);
-    let mut out = Vec::new();
-    for one in series {
-        let needed = 26.0 + text_width(&one.name, TEXT_PX) + 12.0;
-        if x > 12.0 && x + needed > width {
-            (x, y) = (12.0, y + 16.0);
-        }
-        out.push((x, y, one));
-        x += needed;
-    }
-    out
-}
-
-fn legend_entry(x: f64, y: f64, series: &Series) -> Element {
-    let sample = match series.line {
-        Line::None => None,
-        _ => Some(svg::line(x, y - 4.0, x + 20.0, y - 4.0)),
-    };
-    let dot = series
-        .marker_radius_px
-        .map(|r| svg::circle(x + 10.0, y - 4.0, r).set("fill", &series.color));
-    let look = stroke(Element::new("g"), series)
-        .children(sample)
-        .children(dot);
-    Element::new("g")
-        .child(&look)
-        .child(&svg::label(x + 26.0, y, "start", &series.name))
 }

@@ -88,6 +88,14 @@ impl Texture {
         }
     }
 
+    /// The name and the condition, where one is given.
+    pub(crate) fn title(&self) -> String {
+        match self.condition.as_str() {
+            "" => self.header(),
+            condition => format!("{}, {condition}", self.header()),
+        }
+    }
+
     /// What the model called `short_name` made of this texture.
     pub(crate) fn model(&self, short_name: &str) -> Option<&ModelResult> {
         self.models

@@ -105,11 +105,8 @@ pub(super) fn bands(report: &TextureReport) -> String {
          The columns are the bands' centre frequencies in Hz; each band reaches to the centres \
          of its neighbours.",
     );
-    let tables = report
-        .textures
-        .iter()
-        .map(|texture| band_table(texture).to_html());
-    let tables: String = tables.collect();
+    let fitted = report.textures.iter().filter(|t| !t.models.is_empty());
+    let tables: String = fitted.map(|t| band_table(t).to_html()).collect();
     note + "\n"
         + &Element::new("div")
             .set("class", "tables")
@@ -127,7 +124,7 @@ fn band_table(texture: &Texture) -> Table {
             .collect(),
     };
     Table {
-        caption: format!("{}, {}: error / dB", texture.header(), texture.condition),
+        caption: format!("{}: error / dB", texture.title()),
         corner: "band centre / Hz".to_owned(),
         columns: band_centres_hz().map(|hz| fixed(hz, 0)).collect(),
         rows: texture.models.iter().map(row).collect(),

@@ -4,24 +4,20 @@ use super::data::{Texture, TextureReport};
 use crate::number::{bytes, ratio};
 use crate::table::{Cell, HeatScale, Row, Table};
 
+const CAPTION: &str = "Bytes (1 kB = 1000 B); under a model, its parameters alone. \
+                       Below each, how many times it goes into the recording file";
+
 /// The table of sizes.
 pub(super) fn table(report: &TextureReport) -> String {
     let models = report.models();
-    let fixed = ["recording file", "asset file"]
-        .map(str::to_owned)
-        .into_iter();
-    let parameters = models.iter().map(|(_, name)| format!("{name} parameters"));
+    let files = ["recording file", "asset file"].map(str::to_owned);
+    let names = models.iter().map(|(_, name)| (*name).to_owned());
+    let rows = report.textures.iter().map(|texture| row(texture, &models));
     let table = Table {
-        caption:
-            "Bytes (1 kB = 1000 B); below each, how many times smaller than the recording file"
-                .to_owned(),
+        caption: CAPTION.to_owned(),
         corner: "texture".to_owned(),
-        columns: fixed.chain(parameters).collect(),
-        rows: report
-            .textures
-            .iter()
-            .map(|texture| row(texture, &models))
-            .collect(),
+        columns: files.into_iter().chain(names).collect(),
+        rows: rows.collect(),
         scale: HeatScale::None,
         decimals: 0,
     };

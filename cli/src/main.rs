@@ -1,1 +1,47 @@
-fn main(){}
+//! The `htex` command: parses, calls the SDK, prints.
+#![forbid(unsafe_code)]
+
+mod assets;
+mod commands;
+mod failure;
+mod models;
+mod output;
+mod progress;
+mod recordings;
+mod wav;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use commands::Command;
+
+/// Texture assets for touch: fit, inspect, measure and play them.
+///
+/// A recording of a finger sliding over a surface goes in; a `.htex` file of a few hundred bytes
+/// comes out, with up to five models of its spectrum and the measure of how near each comes.
+#[derive(Parser)]
+#[command(name = "htex", version, max_term_width = 100, after_help = FIRST_STEPS)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const FIRST_STEPS: &str = "\
+First steps:
+  htex demo out                       simulate five surfaces, fit all models, write out/report.html
+  htex fit rec.csv -o cloth.htex      fit all models to a recording of yours
+  htex info cloth.htex                what the file holds, and how good it is
+  htex synth cloth.htex -o cloth.wav  play it to a file
+
+Exit status: 0 ok, 1 findings or failure, 2 wrong usage.";
+
+fn main() -> ExitCode {
+    match Cli::parse().command.run() {
+        Ok(code) => code,
+        Err(failure) => {
+            eprintln!("htex: {failure}");
+            failure.exit_code()
+        }
+    }
+}

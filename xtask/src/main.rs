@@ -1,1 +1,35 @@
-fn main(){}
+//! What a person would otherwise have to remember.
+
+use std::process::{Command, ExitCode};
+
+const TASKS: &str = "\
+cargo xtask ci        all that continuous integration runs
+cargo xtask generate  makes spec/schemas, spec/validation.md and spec/conformance again";
+
+fn main() -> ExitCode {
+    let tasks: Vec<String> = std::env::args().skip(1).collect();
+    match tasks.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["ci"] => run("bash", &[".ci/run"]),
+        ["generate"] => {
+            let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
+            run(&cargo, &["run", "--package", "htex-format", "--example", "conformance"])
+        }
+        _ => {
+            eprintln!("{TASKS}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Runs a program in the workspace's folder.
+fn run(program: &str, arguments: &[&str]) -> ExitCode {
+    let workspace = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+    match Command::new(program).args(arguments).current_dir(workspace).status() {
+        Ok(status) if status.success() => ExitCode::SUCCESS,
+        Ok(_) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("xtask: cannot run {program}: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -106,13 +106,35 @@ impl Asset {
         motion: Option<(f64, f64)>,
         frequency_hz: &[f64],
     ) -> Result<Vec<f64>, Error> {
+        let (parameters, level_n) = self.parameters(model, motion)?;
+        let model = self.model(self.representation(model)?)?;
+        let shape = model.magnitude(&parameters, self.band(), frequency_hz)?;
+        Ok(shape.iter().map(|m| m * level_n).collect())
+    }
+
+    /// The name, for people, of a model that the asset can be played by.
+    ///
+    /// # Errors
+    /// As [`Self::voice`].
+    pub fn model_name(&self, model: &str) -> Result<String, Error> {
+        let model = self.model(self.representation(Some(model))?)?;
+        Ok(model.descriptor().name.clone())
+    }
+
+    /// Parameters (the flat array) and level (RMS, newtons) of a representation at a motion, else
+    /// at its first condition.
+    ///
+    /// # Errors
+    /// As [`Self::voice`].
+    pub fn parameters(
+        &self,
+        model: Option<&str>,
+        motion: Option<(f64, f64)>,
+    ) -> Result<(Vec<f64>, f64), Error> {
         let r = self.representation(model)?;
         let (speed, force) = motion.unwrap_or_else(|| self.first_condition(r));
         crate::voice::check_motion(speed, force)?;
-        let model = self.model(r)?;
-        let (parameters, level_n) = self.known(r).at(&model, speed, force)?;
-        let shape = model.magnitude(&parameters, self.band(), frequency_hz)?;
-        Ok(shape.iter().map(|m| m * level_n).collect())
+        self.known(r).at(&self.model(r)?, speed, force)
     }
 
     /// The index of a representation by its model's id or short name, else of the best.

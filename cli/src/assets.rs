@@ -1,0 +1,222 @@
+//! What the commands say of an asset, in JSON and as a table.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use htex_format::{AtCondition, Condition, Field, Quality, Representation};
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+/// An asset, as `fit` and `info` tell it.
+#[derive(Serialize)]
+pub(crate) struct AssetSummary {
+    pub(crate) asset: String,
+    pub(crate) bytes: u64,
+    name: String,
+    htex: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    license: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    author: Option<String>,
+    tags: Vec<String>,
+    simulated: bool,
+    band_hz: [f64; 2],
+    conditions: Vec<Condition>,
+    pub(crate) representations: Vec<RepresentationSummary>,
+    pub(crate) repeatability_rms_db: Option<f64>,
+    pub(crate) warnings: Vec<String>,
+    notes: Vec<String>,
+}
+
+/// One representation; the keys of its first condition stand at its own level.
+#[derive(Serialize)]
+pub(crate) struct RepresentationSummary {
+    pub(crate) model: String,
+    model_version: String,
+    pub(crate) payload_bytes: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) fit_ms: Option<f64>,
+    #[serde(flatten)]
+    pub(crate) first: AtSummary,
+    /// All conditions, where there are several.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    at: Vec<AtSummary>,
+}
+
+/// A representation at one condition.
+#[derive(Clone, Serialize)]
+pub(crate) struct AtSummary {
+    condition: usize,
+    parameters: Map<String, Value>,
+    level_n_rms: f64,
+    #[serde(flatten)]
+    pub(crate) quality: Option<Quality>,
+}
+
+impl AssetSummary {
+    /// Tells of the asset in `file`, of `bytes` bytes.
+    pub(crate) fn new(file: &Path, bytes: u64, asset: &htex_format::Asset) -> Self {
+        let manifest = &asset.manifest;
+        let representations = manifest
+            .representations
+            .iter()
+            .zip(&asset.parameters)
+            .enumerate()
+            .filter_map(|(i, (r, sets))| {
+                RepresentationSummary::new(r, sets, asset.payload_bytes(i))
+            })
+            .collect();
+        Self {
+            asset: file.display().to_string(),
+            bytes,
+            name: manifest.name.clone(),
+            htex: manifest.htex.clone(),
+            license: manifest.license.clone(),
+            author: manifest.author.clone(),
+            tags: manifest.tags.clone(),
+            simulated: manifest.provenance.simulated,
+            band_hz: [manifest.band.low_hz, manifest.band.high_hz],
+            conditions: manifest.conditions.clone(),
+            representations,
+            repeatability_rms_db: manifest.conditions.first().and_then(|c| c.repeatability_rms_db),
+            warnings: manifest.provenance.warnings.clone(),
+            notes: asset.notes.iter().map(|note| note.message.clone()).collect(),
+        }
+    }
+
+    /// The summary as a person reads it.
+    pub(crate) fn to_text(&self) -> String {
+        let mut text = format!("{}: {} bytes\n", self.asset, self.bytes);
+        let kind = if self.simulated { " (simulated)" } else { "" };
+        let _ = writeln!(
+            text,
+            "{}{kind}, {} to {} Hz{}{}",
+            self.name,
+            self.band_hz[0],
+            self.band_hz[1],
+            self.author.as_ref().map(|a| format!(", by {a}")).unwrap_or_default(),
+            self.license.as_ref().map(|l| format!(", licence {l}")).unwrap_or_default(),
+        );
+        for (i, condition) in self.conditions.iter().enumerate() {
+            let _ = writeln!(text, "condition {i}: {}", condition_text(condition));
+        }
+        text += "\n  model    cond.  level/mN   corr.  bands/dB  played/dB  bytes  parameters\n";
+        for r in &self.representations {
+            let all = if r.at.is_empty() { std::slice::from_ref(&r.first) } else { &r.at[..] };
+            for at in all {
+                text += &row(r, at);
+            }
+        }
+        for line in self.warnings.iter().chain(&self.notes) {
+            let _ = writeln!(text, "note: {line}");
+        }
+        text
+    }
+}
+
+fn row(r: &RepresentationSummary, at: &AtSummary) -> String {
+    let number = |x: Option<f64>, digits: usize| x.map_or("-".into(), |x| format!("{x:.digits$}"));
+    let quality = at.quality.as_ref();
+    let parameters: Vec<String> = at.parameters.iter().map(|(k, v)| parameter_text(k, v)).collect();
+    format!(
+        "  {:8} {:>5}  {:>8.3}  {:>6}  {:>8}  {:>9}  {:>5}  {}\n",
+        short_name(&r.model),
+        at.condition,
+        at.level_n_rms * 1e3,
+        number(quality.map(|q| q.spectral_correlation), 3),
+        number(quality.map(|q| q.band_error_rms_db), 2),
+        number(quality.and_then(|q| q.samples_band_error_rms_db), 2),
+        r.payload_bytes,
+        parameters.join(" ")
+    )
+}
+
+fn parameter_text(name: &str, value: &Value) -> String {
+    match value {
+        Value::Array(list) => format!("{name}[{}]", list.len()),
+        other => format!("{name}={}", short_number(other.as_f64().unwrap_or(f64::NAN))),
+    }
+}
+
+fn short_number(x: f64) -> String {
+    let text = format!("{x:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Speed, force and repeatability of a condition, as far as they are known.
+pub(crate) fn condition_text(condition: &Condition) -> String {
+    let part = |value: Option<f64>, unit: &str, what: &str| {
+        value.map_or(format!("{what} unknown"), |v| format!("{} {unit}", short_number(v)))
+    };
+    let mut text = format!(
+        "{}, {}",
+        part(condition.speed_mm_s, "mm/s", "speed"),
+        part(condition.force_n, "N", "force")
+    );
+    if let Some(db) = condition.repeatability_rms_db {
+        let _ = write!(text, ", the recording itself repeats within {db:.2} dB");
+    }
+    text
+}
+
+/// The last part of a model's id.
+pub(crate) fn short_name(id: &str) -> &str {
+    id.rsplit('.').next().unwrap_or(id)
+}
+
+impl RepresentationSummary {
+    /// None for a representation at no condition, which no valid asset has.
+    fn new(r: &Representation, sets: &[Vec<f64>], payload_bytes: usize) -> Option<Self> {
+        let at: Vec<AtSummary> =
+            r.at.iter().zip(sets).map(|(at, set)| AtSummary::new(at, &r.fields, set)).collect();
+        Some(Self {
+            model: r.model.clone(),
+            model_version: r.model_version.clone(),
+            payload_bytes,
+            fit_ms: None,
+            first: at.first()?.clone(),
+            at: if at.len() > 1 { at } else { Vec::new() },
+        })
+    }
+}
+
+impl AtSummary {
+    fn new(at: &AtCondition, fields: &[Field], flat: &[f64]) -> Self {
+        Self {
+            condition: at.condition,
+            parameters: named_parameters(fields, flat),
+            level_n_rms: at.level_n_rms,
+            quality: at.quality.clone(),
+        }
+    }
+}
+
+/// A flat array of parameters by the names of its fields.
+pub(crate) fn named_parameters(fields: &[Field], mut flat: &[f64]) -> Map<String, Value> {
+    let mut named = Map::new();
+    for field in fields {
+        let value = if field.list {
+            let len = flat.first().map_or(0, |n| *n as usize);
+            let list = flat.get(1..=len).unwrap_or_default();
+            flat = flat.get(len + 1..).unwrap_or_default();
+            Value::from(list)
+        } else {
+            let value = flat.first().copied().unwrap_or(f64::NAN);
+            flat = flat.get(1..).unwrap_or_default();
+            Value::from(value)
+        };
+        named.insert(field.name.clone(), value);
+    }
+    named
+}
+
+impl AtSummary {
+    /// The lines of a representation that stores `frequency_hz` and `amplitude`: hertz, newtons.
+    pub(crate) fn lines(&self) -> Vec<(f64, f64)> {
+        let list = |name: &str| {
+            let values = self.parameters.get(name).and_then(Value::as_array);
+            values.into_iter().flatten().filter_map(Value::as_f64)
+        };
+        list("frequency_hz").zip(list("amplitude").map(|a| a * self.level_n_rms)).collect()
+    }
+}

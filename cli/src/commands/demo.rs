@@ -1,0 +1,248 @@
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Args;
+use htex::VoiceOptions;
+use htex_author::read::{ReadOptions, read_recording};
+use htex_author::simulate::{SimulationOptions, Surface, simulate};
+use htex_author::{
+    AssetRequest, AuthorError, Exploration, FittedAsset, Take, fit_asset,
+};
+use htex_report::{ModelResult, Texture, TextureReport, texture_report};
+use serde::Serialize;
+
+use crate::assets::{AssetSummary, RepresentationSummary, condition_text, short_name};
+use crate::failure::Failure;
+use crate::models::{model_requests, tool};
+use crate::output::{print, print_json, write_file};
+use crate::progress::bar;
+use crate::wav::write_wav;
+
+const WAV_RATE_HZ: u32 = 20_000;
+const WAV_SECONDS: u64 = 5;
+/// The condition the surfaces are explored at (paper, Texture recording).
+const CONDITION: Exploration = Exploration {
+    speed_mm_s: Some(80.0),
+    force_n: Some(0.4),
+};
+
+/// Run the whole way on five simulated surfaces: recordings, assets, sounds and a report.
+///
+/// Needs nothing but this program. Writes NAME.csv (the simulated recording), NAME.htex,
+/// NAME-MODEL.wav and report.html into DIR.
+#[derive(Args)]
+pub(crate) struct Demo {
+    /// Where to write; made if it is not there
+    dir: PathBuf,
+
+    /// Seed of the simulated recordings
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+
+    /// Print JSON instead of the table
+    #[arg(long)]
+    json: bool,
+}
+
+impl Demo {
+    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        std::fs::create_dir_all(&self.dir).map_err(|error| Failure::write(&self.dir, error))?;
+        let bar = bar(Surface::ALL.len() as u64);
+        let mut done = Vec::new();
+        for surface in Surface::ALL {
+            bar.set_message(surface.to_string());
+            done.push(self.texture(surface)?);
+            bar.inc(1);
+        }
+        bar.finish_and_clear();
+        let report = self.dir.join("report.html");
+        let rows: Vec<Row> = done.iter().flat_map(DemoTexture::rows).collect();
+        let textures = done.into_iter().map(|d| d.texture).collect();
+        write_file(&report, texture_report(&self.page(textures)).as_bytes())?;
+        if self.json {
+            print_json(&rows)?;
+        } else {
+            print(&table(&rows))?;
+            print(&format!("\nThe report, with the spectra: {}\n", report.display()))?;
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+
+    /// Simulates, fits, validates and plays one surface.
+    fn texture(&self, surface: Surface) -> Result<DemoTexture, Failure> {
+        let name = surface.to_string();
+        let csv = self.dir.join(format!("{name}.csv"));
+        self.write_recording(surface, &csv)?;
+        let recording = read_recording(&csv, &ReadOptions::default())?;
+        let take = Take {
+            recording,
+            given: CONDITION,
+        };
+        let fitted = fit_asset(&[take], &request(&name)?)?;
+        let path = self.dir.join(format!("{name}.htex"));
+        let bytes = fitted.asset.to_bytes().map_err(AuthorError::from)?;
+        write_file(&path, &bytes)?;
+        let asset = htex::Asset::open(&path).map_err(|error| Failure::asset(&path, error))?;
+        for representation in &asset.manifest().representations {
+            let wav = self.dir.join(format!("{name}-{}.wav", short_name(&representation.model)));
+            play(&asset, &representation.model, &path, &wav)?;
+        }
+        let summary = AssetSummary::new(&path, bytes.len() as u64, &fitted.asset);
+        let recording_bytes = std::fs::metadata(&csv).map_or(0, |m| m.len());
+        let texture = picture(&name, recording_bytes, &fitted, &asset, &summary)
+            .map_err(|error| Failure::asset(&path, error))?;
+        Ok(DemoTexture { texture, summary })
+    }
+
+    fn write_recording(&self, surface: Surface, csv: &Path) -> Result<(), Failure> {
+        let options = SimulationOptions {
+            seed: self.seed,
+            ..SimulationOptions::new(surface)
+        };
+        let simulation = simulate(&options).map_err(|error| Failure::Other(error.to_string()))?;
+        let write = |file: &mut std::fs::File| {
+            simulation.write_csv(&mut std::io::BufWriter::new(file))
+        };
+        htex_format::replace_file(csv, write).map_err(|error| Failure::write(csv, error))
+    }
+
+    fn page(&self, textures: Vec<Texture>) -> TextureReport {
+        TextureReport {
+            title: "Five simulated surfaces, five models".to_owned(),
+            intro: vec![
+                "Recordings come from a simulator of a finger sliding to and fro, not from a \
+                 finger: they show the way of the data, not the quality of the models on real \
+                 surfaces."
+                    .to_owned(),
+            ],
+            textures,
+            command: format!("htex demo {} --seed {}", self.dir.display(), self.seed),
+        }
+    }
+}
+
+struct DemoTexture {
+    texture: Texture,
+    summary: AssetSummary,
+}
+
+#[derive(Serialize)]
+struct Row {
+    texture: String,
+    model: String,
+    spectral_correlation: f64,
+    band_error_rms_db: f64,
+    samples_band_error_rms_db: Option<f64>,
+    repeatability_rms_db: Option<f64>,
+    payload_bytes: usize,
+    asset_bytes: u64,
+    recording_bytes: u64,
+}
+
+impl DemoTexture {
+    fn rows(&self) -> Vec<Row> {
+        let row = |r: &RepresentationSummary| {
+            let quality = r.first.quality.as_ref();
+            Row {
+                texture: self.texture.name.clone(),
+                model: short_name(&r.model).to_owned(),
+                spectral_correlation: quality.map_or(f64::NAN, |q| q.spectral_correlation),
+                band_error_rms_db: quality.map_or(f64::NAN, |q| q.band_error_rms_db),
+                samples_band_error_rms_db: quality.and_then(|q| q.samples_band_error_rms_db),
+                repeatability_rms_db: self.summary.repeatability_rms_db,
+                payload_bytes: r.payload_bytes,
+                asset_bytes: self.summary.bytes,
+                recording_bytes: self.texture.recording_bytes,
+            }
+        };
+        self.summary.representations.iter().map(row).collect()
+    }
+}
+
+fn request(name: &str) -> Result<AssetRequest, Failure> {
+    Ok(AssetRequest {
+        name: name.to_owned(),
+        license: Some("CC0-1.0".to_owned()),
+        author: Some("htex demo".to_owned()),
+        tags: vec!["simulated".to_owned()],
+        models: model_requests(&["all".to_owned()], &[])?,
+        tool: tool(),
+        ..AssetRequest::default()
+    })
+}
+
+fn play(asset: &htex::Asset, model: &str, file: &Path, wav: &Path) -> Result<(), Failure> {
+    let failure = |error| Failure::asset(file, error);
+    let options = VoiceOptions {
+        model: Some(model),
+        rate_hz: f64::from(WAV_RATE_HZ),
+        ..VoiceOptions::default()
+    };
+    let mut voice = asset.voice(&options).map_err(failure)?;
+    let frames = WAV_SECONDS * u64::from(WAV_RATE_HZ);
+    write_wav(wav, WAV_RATE_HZ, frames, |block| voice.render(block).map_err(failure))
+}
+
+/// What the report shows of a texture.
+fn picture(
+    name: &str,
+    recording_bytes: u64,
+    fitted: &FittedAsset,
+    asset: &htex::Asset,
+    summary: &AssetSummary,
+) -> Result<Texture, htex::Error> {
+    let spectrum = &fitted.spectra[0];
+    let mut models = Vec::new();
+    for r in &summary.representations {
+        let magnitude_n = asset.magnitude_n(Some(&r.model), None, &spectrum.frequency_hz)?;
+        let short = short_name(&r.model).to_owned();
+        let quality = r.first.quality.clone();
+        models.push(ModelResult {
+            model: asset.model_name(&r.model)?,
+            lines: (short == "speak").then(|| r.first.lines()),
+            short_name: short,
+            magnitude_n,
+            spectral_correlation: quality.as_ref().map_or(f64::NAN, |q| q.spectral_correlation),
+            band_error_rms_db: quality.as_ref().map_or(f64::NAN, |q| q.band_error_rms_db),
+            samples_band_error_rms_db: quality.as_ref().and_then(|q| q.samples_band_error_rms_db),
+            band_error_db: quality.map(|q| q.band_error_db).unwrap_or_default(),
+            payload_bytes: r.payload_bytes,
+        });
+    }
+    let manifest = asset.manifest();
+    Ok(Texture {
+        name: name.to_owned(),
+        simulated: manifest.provenance.simulated,
+        condition: manifest.conditions.first().map(condition_text).unwrap_or_default(),
+        recording_bytes,
+        asset_bytes: summary.bytes,
+        repeatability_rms_db: summary.repeatability_rms_db,
+        frequency_hz: spectrum.frequency_hz.clone(),
+        recorded_n: spectrum.magnitude_n.clone(),
+        models,
+        warnings: summary.warnings.clone(),
+    })
+}
+
+fn table(rows: &[Row]) -> String {
+    let mut text = String::from(
+        "texture           model   corr.  bands/dB  played/dB  repeats/dB  parameters/B  asset/B  \
+         recording/B\n",
+    );
+    for r in rows {
+        let db = |x: Option<f64>| x.map_or("-".to_owned(), |x| format!("{x:.2}"));
+        text += &format!(
+            "{:16}  {:6}  {:>5.3}  {:>8.2}  {:>9}  {:>10}  {:>12}  {:>7}  {:>11}\n",
+            r.texture,
+            r.model,
+            r.spectral_correlation,
+            r.band_error_rms_db,
+            db(r.samples_band_error_rms_db),
+            db(r.repeatability_rms_db),
+            r.payload_bytes,
+            r.asset_bytes,
+            r.recording_bytes
+        );
+    }
+    text
+}

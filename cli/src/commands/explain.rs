@@ -1,0 +1,32 @@
+use std::process::ExitCode;
+
+use clap::Args;
+use htex_format::{RULES, explain};
+
+use crate::failure::Failure;
+use crate::output::print;
+
+/// Explain a finding's code: what it means and what to do.
+#[derive(Args)]
+pub(crate) struct Explain {
+    /// The code, as `htex validate` prints it; without one, all codes are listed
+    code: Option<String>,
+}
+
+impl Explain {
+    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        let Some(code) = self.code else {
+            let lines = RULES.iter().map(|rule| format!("{:36} {}\n", rule.code, rule.summary));
+            print(&lines.collect::<String>())?;
+            return Ok(ExitCode::SUCCESS);
+        };
+        let rule = explain(&code.to_uppercase()).ok_or_else(|| {
+            Failure::Usage(format!("no code `{code}`; `htex explain` lists them all"))
+        })?;
+        print(&format!(
+            "{}: {}\n\n{}\n\nWhat to do: {}\n",
+            rule.code, rule.summary, rule.explanation, rule.fix
+        ))?;
+        Ok(ExitCode::SUCCESS)
+    }
+}

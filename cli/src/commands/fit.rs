@@ -1,0 +1,122 @@
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+use htex_author::{AssetRequest, Level, fit_asset};
+
+use crate::assets::AssetSummary;
+use crate::failure::Failure;
+use crate::models::{model_requests, tool};
+use crate::output::{print, print_json, warn, write_file};
+use crate::recordings::RecordingArgs;
+
+/// Fit models to recordings of one texture and write the asset.
+///
+/// Recordings whose speed and force differ by less than 5 % are averaged as one exploration
+/// condition; others become further conditions of the same texture.
+#[derive(Args)]
+pub(crate) struct Fit {
+    /// Recordings of one texture: CSV, WAV or NPY
+    #[arg(required = true)]
+    recordings: Vec<PathBuf>,
+
+    /// Models by short name or id, comma-separated, or `all`
+    #[arg(long, default_value = "all", value_delimiter = ',', value_name = "ID,…")]
+    model: Vec<String>,
+
+    /// A fit option of a model, e.g. ar.order=6 or mfcc.inverse=nnls; may be given several times
+    #[arg(long, value_name = "MODEL.NAME=VALUE")]
+    option: Vec<String>,
+
+    /// Level of a representation: that of its own fit, or the recording's RMS in the band
+    #[arg(long, value_enum, default_value = "fitted")]
+    level: LevelArg,
+
+    /// The asset to write
+    #[arg(short, long, value_name = "HTEX")]
+    output: PathBuf,
+
+    /// Name of the texture [default: the output's file name]
+    #[arg(long)]
+    name: Option<String>,
+
+    /// Licence of the asset, as an SPDX expression, e.g. CC-BY-4.0
+    #[arg(long)]
+    license: Option<String>,
+
+    /// Who made it
+    #[arg(long)]
+    author: Option<String>,
+
+    /// Words to find it by, comma-separated
+    #[arg(long, value_delimiter = ',')]
+    tags: Vec<String>,
+
+    /// Keep the recorded spectrum in the asset (788 bytes a condition, before compression)
+    #[arg(long)]
+    keep_reference: bool,
+
+    #[command(flatten)]
+    reading: RecordingArgs,
+
+    /// Print JSON instead of a table
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
+enum LevelArg {
+    Fitted,
+    Recording,
+}
+
+impl Fit {
+    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        let request = self.request()?;
+        let takes = self.reading.read(&self.recordings)?;
+        let fitted = fit_asset(&takes, &request)?;
+        let bytes = fitted.asset.to_bytes().map_err(htex_author::AuthorError::from)?;
+        write_file(&self.output, &bytes)?;
+        let mut summary = AssetSummary::new(&self.output, bytes.len() as u64, &fitted.asset);
+        for (r, ms) in summary.representations.iter_mut().zip(&fitted.fit_ms) {
+            r.fit_ms = Some(*ms);
+        }
+        if self.json {
+            print_json(&summary)?;
+        } else {
+            warn(&summary.warnings);
+            summary.warnings.clear();
+            print(&summary.to_text())?;
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+
+    fn request(&self) -> Result<AssetRequest, Failure> {
+        let mut recorded_options = self.reading.recorded_options();
+        for option in &self.option {
+            if let Some((name, value)) = option.split_once('=') {
+                recorded_options.insert(name.to_owned(), value.to_owned());
+            }
+        }
+        if self.level == LevelArg::Recording {
+            recorded_options.insert("level".to_owned(), "recording".to_owned());
+        }
+        let stem = self.output.file_stem().map(|s| s.to_string_lossy().into_owned());
+        Ok(AssetRequest {
+            name: self.name.clone().or(stem).unwrap_or_default(),
+            license: self.license.clone(),
+            author: self.author.clone(),
+            tags: self.tags.clone(),
+            models: model_requests(&self.model, &self.option)?,
+            spectrum: self.reading.spectrum_options()?,
+            level: match self.level {
+                LevelArg::Fitted => Level::Fitted,
+                LevelArg::Recording => Level::Recording,
+            },
+            strict: self.reading.strict(),
+            keep_reference: self.keep_reference,
+            recorded_options,
+            tool: tool(),
+        })
+    }
+}

@@ -1,0 +1,38 @@
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+
+use crate::assets::AssetSummary;
+use crate::failure::Failure;
+use crate::output::{print, print_json};
+
+/// Show what an asset holds and how near each model comes to the recording.
+///
+/// Columns: level (RMS, mN); Pearson correlation with the recorded spectrum; RMS over nine critical
+/// bands of the energy difference, from the model's magnitudes and from samples it played; bytes of
+/// parameters.
+#[derive(Args)]
+pub(crate) struct Info {
+    /// The asset
+    asset: PathBuf,
+
+    /// Print JSON instead of a table
+    #[arg(long)]
+    json: bool,
+}
+
+impl Info {
+    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        let asset = htex_format::Asset::open(&self.asset)
+            .map_err(|error| Failure::asset(&self.asset, error))?;
+        let bytes = std::fs::metadata(&self.asset).map_or(0, |m| m.len());
+        let summary = AssetSummary::new(&self.asset, bytes, &asset);
+        if self.json {
+            print_json(&summary)?;
+        } else {
+            print(&summary.to_text())?;
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}

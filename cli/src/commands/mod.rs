@@ -1,0 +1,51 @@
+//! One file a subcommand: its arguments and what it does with them.
+
+mod compare;
+mod demo;
+mod explain;
+mod fit;
+mod info;
+mod process;
+mod schema;
+mod simulate;
+mod spectrum;
+mod synth;
+mod validate;
+
+use std::process::ExitCode;
+
+use crate::failure::Failure;
+
+/// All subcommands.
+#[derive(clap::Subcommand)]
+pub(crate) enum Command {
+    Demo(demo::Demo),
+    Simulate(simulate::Simulate),
+    Process(process::Process),
+    Fit(fit::Fit),
+    Info(info::Info),
+    Validate(validate::Validate),
+    Explain(explain::Explain),
+    Spectrum(spectrum::Spectrum),
+    Synth(synth::Synth),
+    Compare(compare::Compare),
+    Schema(schema::Schema),
+}
+
+impl Command {
+    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        match self {
+            Self::Demo(args) => args.run(),
+            Self::Simulate(args) => args.run(),
+            Self::Process(args) => args.run(),
+            Self::Fit(args) => args.run(),
+            Self::Info(args) => args.run(),
+            Self::Validate(args) => args.run(),
+            Self::Explain(args) => args.run(),
+            Self::Spectrum(args) => args.run(),
+            Self::Synth(args) => args.run(),
+            Self::Compare(args) => args.run(),
+            Self::Schema(args) => args.run(),
+        }
+    }
+}

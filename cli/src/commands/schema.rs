@@ -1,0 +1,40 @@
+use std::process::ExitCode;
+
+use clap::{Args, ValueEnum};
+use htex_host::Registry;
+
+use crate::failure::Failure;
+use crate::output::print;
+
+/// Print a JSON Schema of the manifest, or the descriptors of the models.
+#[derive(Args)]
+pub(crate) struct Schema {
+    /// What to print
+    #[arg(value_enum, default_value = "manifest")]
+    what: What,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum What {
+    /// JSON Schema of `manifest.json`
+    Manifest,
+    /// Each model's parameters and fit options, with units and ranges
+    Models,
+}
+
+impl Schema {
+    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        let value = match self.what {
+            What::Manifest => Ok(htex_format::manifest_schema()),
+            What::Models => {
+                let registry = Registry::builtin();
+                let all: Vec<_> = registry.models().iter().map(|m| m.descriptor()).collect();
+                serde_json::to_value(all)
+            }
+        };
+        let text = value.and_then(|value| serde_json::to_string_pretty(&value));
+        let text = text.map_err(|error| Failure::Other(format!("cannot write JSON: {error}")))?;
+        print(&(text + "\n"))?;
+        Ok(ExitCode::SUCCESS)
+    }
+}

@@ -1,0 +1,62 @@
+use std::io::BufWriter;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+use htex_author::simulate::{SimulationOptions, Surface, simulate};
+
+use crate::failure::Failure;
+
+/// Write a simulated recording of a finger sliding over a surface.
+///
+/// A physically motivated signal for trying things out: to-and-fro sweeps, friction, a texture read
+/// at the finger's position, setup resonance, sensor noise. It is no measurement, and says so.
+#[derive(Args)]
+pub(crate) struct Simulate {
+    /// The surface: sandpaper, fine-fabric, coarse-fabric, corrugated-paper or vinyl
+    #[arg(long)]
+    surface: Surface,
+
+    /// The same seed gives the same recording
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+
+    /// Where to write it: CSV with columns t_s,fx_n,fy_n,fz_n,x_mm,y_mm
+    #[arg(short, long, value_name = "CSV")]
+    output: PathBuf,
+
+    /// Length, s
+    #[arg(long, default_value_t = 10.0, value_name = "S")]
+    seconds: f64,
+
+    /// Sampling rate, Hz
+    #[arg(long, default_value_t = 20_000.0, value_name = "HZ")]
+    rate: f64,
+
+    /// Scanning speed, mm/s
+    #[arg(long, default_value_t = 80.0, value_name = "MM_S")]
+    speed: f64,
+
+    /// Normal force, N
+    #[arg(long, default_value_t = 0.4, value_name = "N")]
+    force: f64,
+}
+
+impl Simulate {
+    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        let options = SimulationOptions {
+            seed: self.seed,
+            rate_hz: self.rate,
+            duration_s: self.seconds,
+            speed_mm_s: self.speed,
+            force_n: self.force,
+            ..SimulationOptions::new(self.surface)
+        };
+        let simulation =
+            simulate(&options).map_err(|error| Failure::Usage(error.to_string()))?;
+        let write = |file: &mut std::fs::File| simulation.write_csv(&mut BufWriter::new(file));
+        htex_format::replace_file(&self.output, write)
+            .map_err(|error| Failure::write(&self.output, error))?;
+        Ok(ExitCode::SUCCESS)
+    }
+}

@@ -1,0 +1,72 @@
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+use serde_json::json;
+
+use crate::failure::Failure;
+use crate::output::{print, print_json};
+
+/// Show the spectrum of one representation of an asset, 20 to 1000 Hz in steps of 5 Hz.
+///
+/// Magnitudes are in the measure of `htex process`: what a long recording of the voice reads when
+/// segments are averaged by power.
+#[derive(Args)]
+pub(crate) struct Spectrum {
+    /// The asset
+    asset: PathBuf,
+
+    #[command(flatten)]
+    choice: ChoiceArgs,
+
+    /// Print JSON instead of CSV
+    #[arg(long)]
+    json: bool,
+}
+
+/// Which representation, and at which motion.
+#[derive(Args)]
+pub(crate) struct ChoiceArgs {
+    /// The representation, by its model's short name or id [default: least nine-band error]
+    #[arg(long, value_name = "ID")]
+    pub(crate) model: Option<String>,
+
+    /// Scanning speed, mm/s [default: that of the first condition]
+    #[arg(long, value_name = "MM_S")]
+    speed: Option<f64>,
+
+    /// Normal force, N [default: that of the first condition]
+    #[arg(long, value_name = "N")]
+    force: Option<f64>,
+}
+
+impl ChoiceArgs {
+    /// The motion asked for; what was not said comes from the asset's first condition.
+    pub(crate) fn motion(&self, asset: &htex::Asset) -> Option<(f64, f64)> {
+        let first = asset.manifest().conditions.first();
+        let speed = self.speed.or(first.and_then(|c| c.speed_mm_s));
+        let force = self.force.or(first.and_then(|c| c.force_n));
+        (self.speed.is_some() || self.force.is_some())
+            .then(|| (speed.unwrap_or(0.0), force.unwrap_or(0.0)))
+    }
+}
+
+impl Spectrum {
+    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        let failure = |error| Failure::asset(&self.asset, error);
+        let asset = htex::Asset::open(&self.asset).map_err(failure)?;
+        let grid = htex::Band::TACTILE.grid_hz();
+        let motion = self.choice.motion(&asset);
+        let magnitude = asset
+            .magnitude_n(self.choice.model.as_deref(), motion, &grid)
+            .map_err(failure)?;
+        if self.json {
+            print_json(&json!({ "frequency_hz": grid, "magnitude_n": magnitude }))?;
+        } else {
+            let rows = grid.iter().zip(&magnitude);
+            let rows: String = rows.map(|(f, m)| format!("{f},{m:.9}\n")).collect();
+            print(&format!("frequency_hz,magnitude_n\n{rows}"))?;
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}

@@ -1,0 +1,57 @@
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+use htex::VoiceOptions;
+
+use crate::commands::spectrum::ChoiceArgs;
+use crate::failure::Failure;
+use crate::wav::write_wav;
+
+/// Play an asset to a WAV file: 32-bit float samples, newtons of lateral force.
+#[derive(Args)]
+pub(crate) struct Synth {
+    /// The asset
+    asset: PathBuf,
+
+    #[command(flatten)]
+    choice: ChoiceArgs,
+
+    /// Length, s
+    #[arg(long, default_value_t = 10.0, value_name = "S")]
+    seconds: f64,
+
+    /// Sampling rate, Hz
+    #[arg(long, default_value_t = 20_000, value_name = "HZ",
+          value_parser = clap::value_parser!(u32).range(100..=1_000_000))]
+    rate: u32,
+
+    /// The same seed gives the same samples
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+
+    /// The WAV file to write
+    #[arg(short, long, value_name = "WAV")]
+    output: PathBuf,
+}
+
+impl Synth {
+    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        if !(self.seconds > 0.0 && self.seconds <= 1e9) {
+            let sentence = format!("--seconds {}: more than 0, at most 1e9", self.seconds);
+            return Err(Failure::Usage(sentence));
+        }
+        let failure = |error| Failure::asset(&self.asset, error);
+        let asset = htex::Asset::open(&self.asset).map_err(failure)?;
+        let options = VoiceOptions {
+            model: self.choice.model.as_deref(),
+            rate_hz: f64::from(self.rate),
+            seed: self.seed,
+            motion: self.choice.motion(&asset),
+        };
+        let mut voice = asset.voice(&options).map_err(failure)?;
+        let frames = (self.seconds * f64::from(self.rate)).round().max(1.0) as u64;
+        write_wav(&self.output, self.rate, frames, |block| voice.render(block).map_err(failure))?;
+        Ok(ExitCode::SUCCESS)
+    }
+}

@@ -1,0 +1,190 @@
+//! Arguments that say how recordings are read, shared by the commands that read them.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use htex_author::read::{ColumnMap, ReadOptions, read_recording};
+use htex_author::response::read_response;
+use htex_author::{Averaging, Exploration, SegmentChoice, SpectrumOptions, Take};
+
+use crate::failure::Failure;
+
+/// How a recording is read.
+#[derive(Args)]
+#[command(next_help_heading = "Reading recordings")]
+pub(crate) struct RecordingArgs {
+    /// Sampling rate; needed where the file does not say (NPY, CSV without a time column)
+    #[arg(long, value_name = "HZ")]
+    rate: Option<f64>,
+
+    /// Names and scales other people's CSV columns: ROLE=COLUMN[:SCALE], comma-separated; e.g.
+    /// lateral=lateral_V:0.4444,normal=normal_V:0.31. Roles: lateral, lateral_x, lateral_y, normal,
+    /// speed, time, x, y; columns by name or number (#3); scales lead to N, mm/s, s, mm
+    #[arg(long, value_name = "MAP")]
+    map: Option<String>,
+
+    /// Newtons of a full-scale sample in WAV and NPY files
+    #[arg(long, value_name = "N")]
+    newtons_per_unit: Option<f64>,
+
+    /// Response of the recording setup to divide out: CSV frequency_hz,magnitude[,phase_rad]
+    #[arg(long, value_name = "CSV")]
+    frf: Option<PathBuf>,
+
+    /// Where the texture is read: in sweeps, in evenly spaced windows, or sweeps if there are any
+    #[arg(long, value_enum, default_value = "auto")]
+    segments: SegmentsArg,
+
+    /// How segments are averaged; `magnitude` is the paper's, `rms` reads noise 1.05 dB higher
+    #[arg(long, value_enum, default_value = "magnitude")]
+    averaging: AveragingArg,
+
+    /// Scanning speed, mm/s, where the recording does not say, or instead of what it says
+    #[arg(long, value_name = "MM_S")]
+    speed: Option<f64>,
+
+    /// Normal force, N, where the recording does not say, or instead of what it says
+    #[arg(long, value_name = "N")]
+    force: Option<f64>,
+
+    /// Exploration condition of each recording, in their order, or one for all: speed=80,force=0.4
+    #[arg(long, value_name = "CONDITION")]
+    at: Vec<String>,
+
+    /// Refuse a recording whose speed or force leaves its target by more than 10 % (else: warn)
+    #[arg(long)]
+    strict: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum SegmentsArg {
+    Auto,
+    Sweeps,
+    Windows,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum AveragingArg {
+    Magnitude,
+    Rms,
+    Complex,
+}
+
+impl RecordingArgs {
+    pub(crate) fn strict(&self) -> bool {
+        self.strict
+    }
+
+    /// Reads recordings and puts each beside what was said of its condition.
+    pub(crate) fn read(&self, files: &[PathBuf]) -> Result<Vec<Take>, Failure> {
+        let options = self.read_options()?;
+        let given = self.conditions(files.len())?;
+        files
+            .iter()
+            .zip(given)
+            .map(|(file, given)| {
+                let recording = read_recording(file, &options)?;
+                Ok(Take { recording, given })
+            })
+            .collect()
+    }
+
+    /// Reads one recording, with its condition.
+    pub(crate) fn read_one(&self, file: &Path) -> Result<Take, Failure> {
+        let recording = read_recording(file, &self.read_options()?)?;
+        let given = self.conditions(1)?.pop().unwrap_or_default();
+        Ok(Take { recording, given })
+    }
+
+    fn read_options(&self) -> Result<ReadOptions, Failure> {
+        let map = match &self.map {
+            None => None,
+            Some(text) => {
+                let map = text.parse::<ColumnMap>();
+                Some(map.map_err(|error| Failure::Usage(format!("--map {text}: {error}")))?)
+            }
+        };
+        Ok(ReadOptions {
+            rate_hz: self.rate,
+            map,
+            newtons_per_unit: self.newtons_per_unit,
+        })
+    }
+
+    pub(crate) fn spectrum_options(&self) -> Result<SpectrumOptions, Failure> {
+        Ok(SpectrumOptions {
+            segments: match self.segments {
+                SegmentsArg::Auto => SegmentChoice::Auto,
+                SegmentsArg::Sweeps => SegmentChoice::Sweeps,
+                SegmentsArg::Windows => SegmentChoice::Windows,
+            },
+            averaging: match self.averaging {
+                AveragingArg::Magnitude => Averaging::Magnitude,
+                AveragingArg::Rms => Averaging::Rms,
+                AveragingArg::Complex => Averaging::Complex,
+            },
+            response: self.frf.as_deref().map(read_response).transpose()?,
+        })
+    }
+
+    /// What was not left at its default, for the asset's provenance.
+    pub(crate) fn recorded_options(&self) -> BTreeMap<String, String> {
+        let name = |value: &dyn std::fmt::Display| Some(value.to_string());
+        let file = |path: &PathBuf| path.file_name().map(|f| f.to_string_lossy().into_owned());
+        let entries = [
+            ("rate", self.rate.as_ref().and_then(|v| name(v))),
+            ("map", self.map.clone()),
+            ("newtons_per_unit", self.newtons_per_unit.as_ref().and_then(|v| name(v))),
+            ("frf", self.frf.as_ref().and_then(file)),
+            ("segments", value_name(self.segments, SegmentsArg::Auto)),
+            ("averaging", value_name(self.averaging, AveragingArg::Magnitude)),
+        ];
+        let said = entries.into_iter().filter_map(|(key, value)| Some((key.to_owned(), value?)));
+        said.collect()
+    }
+
+    /// A condition for each of `count` recordings.
+    fn conditions(&self, count: usize) -> Result<Vec<Exploration>, Failure> {
+        let common = Exploration {
+            speed_mm_s: self.speed,
+            force_n: self.force,
+        };
+        let given: Vec<Exploration> = self
+            .at
+            .iter()
+            .map(|text| parse_condition(text, common))
+            .collect::<Result<_, _>>()?;
+        match given.len() {
+            0 => Ok(vec![common; count]),
+            1 => Ok(vec![given[0]; count]),
+            n if n == count => Ok(given),
+            n => Err(Failure::Usage(format!(
+                "{n} conditions (--at) for {count} recordings; give one for each, or one for all"
+            ))),
+        }
+    }
+}
+
+/// The name of a choice that is not the default.
+fn value_name<T: ValueEnum + PartialEq>(value: T, default: T) -> Option<String> {
+    let chosen = (value != default).then_some(value)?;
+    chosen.to_possible_value().map(|v| v.get_name().to_owned())
+}
+
+/// Reads `speed=80,force=0.4`; what it leaves out stays as it was.
+fn parse_condition(text: &str, mut condition: Exploration) -> Result<Exploration, Failure> {
+    let wrong = |what: &str| {
+        Failure::Usage(format!("--at {text}: {what}; it looks like speed=80,force=0.4 (mm/s, N)"))
+    };
+    for part in text.split(',') {
+        let (key, value) = part.split_once('=').ok_or_else(|| wrong("`=` is missing"))?;
+        let value: f64 = value.trim().parse().map_err(|_| wrong("a value is no number"))?;
+        match key.trim() {
+            "speed" | "speed_mm_s" => condition.speed_mm_s = Some(value),
+            "force" | "force_n" => condition.force_n = Some(value),
+            other => return Err(wrong(&format!("`{other}` is neither speed nor force"))),
+        }
+    }
+    Ok(condition)
+}

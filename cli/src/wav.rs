@@ -1,0 +1,57 @@
+//! WAV files of 32-bit floats.
+
+use std::fs::File;
+use std::io::{BufWriter, Error};
+use std::path::Path;
+
+use hound::{SampleFormat, WavSpec, WavWriter};
+
+use crate::failure::Failure;
+
+/// Most bytes of samples a WAV file can hold.
+const MAX_FRAMES: u64 = (u32::MAX as u64 - 64) / 4;
+
+/// Writes `frames` samples of one channel, which `render` makes block by block.
+pub(crate) fn write_wav(
+    path: &Path,
+    rate_hz: u32,
+    frames: u64,
+    mut render: impl FnMut(&mut [f32]) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    if frames > MAX_FRAMES {
+        let hours = MAX_FRAMES as f64 / f64::from(rate_hz) / 3600.0;
+        return Err(Failure::Other(format!(
+            "{}: a WAV file holds at most 4 GiB, {hours:.1} h at this rate; take fewer seconds",
+            path.display()
+        )));
+    }
+    let spec = WavSpec {
+        channels: 1,
+        sample_rate: rate_hz,
+        bits_per_sample: 32,
+        sample_format: SampleFormat::Float,
+    };
+    let mut failed = None;
+    let written = htex_format::replace_file(path, |file: &mut File| {
+        let mut wav = WavWriter::new(BufWriter::new(file), spec).map_err(Error::other)?;
+        let mut block = [0.0f32; 4096];
+        let mut left = frames;
+        while left > 0 {
+            let block = &mut block[..left.min(4096) as usize];
+            if let Err(failure) = render(block) {
+                failed = Some(failure);
+                return Err(Error::other("rendering failed"));
+            }
+            for &sample in &*block {
+                wav.write_sample(sample).map_err(Error::other)?;
+            }
+            left -= block.len() as u64;
+        }
+        wav.finalize().map_err(Error::other)
+    });
+    match (failed, written) {
+        (Some(failure), _) => Err(failure),
+        (None, Err(error)) => Err(Failure::write(path, error)),
+        (None, Ok(())) => Ok(()),
+    }
+}

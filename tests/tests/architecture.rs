@@ -1,0 +1,50 @@
+//! Which crate may point at which: the arrows of ARCHITECTURE.md.
+
+use std::collections::BTreeSet;
+
+use cargo_metadata::{DependencyKind, MetadataCommand};
+use htex_tests::workspace;
+
+/// A crate of ours, and the crates of ours that it may use. The models are `plugin`.
+const ARROWS: &[(&str, &[&str])] = &[
+    ("htex-dsp", &[]),
+    ("htex-model", &[]),
+    ("htex-format", &[]),
+    ("htex-report", &[]),
+    ("plugin", &["htex-dsp", "htex-model"]),
+    ("htex-host", &["htex-dsp", "htex-model", "plugin"]),
+    ("htex-author", &["htex-dsp", "htex-format", "htex-host"]),
+    ("htex", &["htex-dsp", "htex-format", "htex-host"]),
+    (
+        "htex-cli",
+        &["htex", "htex-author", "htex-dsp", "htex-format", "htex-host", "htex-report"],
+    ),
+    ("xtask", &[]),
+];
+
+#[test]
+fn dependencies_follow_the_arrows() {
+    let metadata = MetadataCommand::new()
+        .manifest_path(workspace().join("Cargo.toml"))
+        .no_deps()
+        .exec()
+        .unwrap();
+    let ours: BTreeSet<&str> = metadata.packages.iter().map(|p| p.name.as_str()).collect();
+    let role = |package: &cargo_metadata::Package| {
+        let plugin = package.manifest_path.as_str().contains("/plugins/");
+        if plugin { "plugin".to_owned() } else { package.name.to_string() }
+    };
+    for package in metadata.packages.iter().filter(|p| p.name.as_str() != "htex-tests") {
+        let name = role(package);
+        let (_, allowed) = ARROWS
+            .iter()
+            .find(|(from, _)| *from == name)
+            .unwrap_or_else(|| panic!("{name} has no place in the arrows; see ARCHITECTURE.md"));
+        let used = package.dependencies.iter().filter(|d| d.kind == DependencyKind::Normal);
+        for used in used.filter(|d| ours.contains(d.name.as_str())) {
+            let target = metadata.packages.iter().find(|p| *p.name == used.name).unwrap();
+            let target = role(target);
+            assert!(allowed.contains(&target.as_str()), "{name} must not point at {target}");
+        }
+    }
+}

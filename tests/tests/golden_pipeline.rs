@@ -1,0 +1,108 @@
+//! The recording pipeline against the closed-form recording of the golden vectors.
+
+use htex_author::{
+    Averaging, Recording, SegmentChoice, SetupResponse, SpectrumOptions, TextureSpectrum,
+    choose_segments, segment_spectra,
+};
+use htex_dsp::spectrum::resonator_response;
+use htex_tests::Golden;
+
+const RATE_HZ: f64 = 20_000.0;
+
+/// Back-and-forth sweeps with four sinusoids, as the case's formula says.
+fn closed_form() -> Recording {
+    let lines = [
+        (50.0, 0.01, 0.3),
+        (137.5, 0.006, 1.1),
+        (400.0, 0.004, 2.0),
+        (905.0, 0.002, 0.7),
+    ];
+    let raised_cosine = |t: f64| 0.5 * (1.0 - (std::f64::consts::PI * t).cos());
+    let force = |n: usize| {
+        let tau = n % 25_000;
+        let sign = if (n / 25_000) % 2 == 0 { 1.0 } else { -1.0 };
+        let envelope = match tau {
+            0..2_000 => raised_cosine(tau as f64 / 2_000.0),
+            2_000..21_000 => 1.0,
+            21_000..23_000 => raised_cosine(1.0 - (tau - 21_000) as f64 / 2_000.0),
+            _ => 0.0,
+        };
+        let t = n as f64 / RATE_HZ;
+        let texture: f64 = lines
+            .iter()
+            .map(|(f, a, p)| a * (std::f64::consts::TAU * f * t + p).cos())
+            .sum();
+        sign * 0.2 * envelope + envelope * texture
+    };
+    let all: Vec<f64> = (0..200_000).map(force).collect();
+    let axis = |part: f64| all.iter().map(|f| part * f).collect();
+    Recording::new("closed form", RATE_HZ, vec![axis(0.05), axis(0.998_749_217_771_908_95)]).unwrap()
+}
+
+/// The case's setup response, on a grid fine enough to be read back at the bins.
+fn response() -> SetupResponse {
+    let frequency_hz: Vec<f64> = (0..=200).map(|k| f64::from(k) * 5.0).collect();
+    let values: Vec<_> =
+        frequency_hz.iter().map(|&f| resonator_response(f, 620.0, 0.06)).collect();
+    SetupResponse {
+        magnitude: values.iter().map(|h| h.norm()).collect(),
+        phase_rad: values.iter().map(|h| h.arg()).collect(),
+        frequency_hz,
+    }
+}
+
+fn hold(name: &str, response: Option<SetupResponse>) {
+    let case = Golden::case("pipeline", name);
+    let recording = closed_form();
+    let segments = choose_segments(&recording, SegmentChoice::Auto);
+    assert!(segments.from_sweeps);
+    assert_eq!(segments.sweeps.len() as f64, case.expected("/n_sweeps")[0]);
+    case.hold("/threshold_n", &[segments.threshold_n]);
+    let near = |got: Vec<usize>, pointer: &str| {
+        for (got, expected) in got.iter().zip(case.expected(pointer)) {
+            assert!((*got as f64 - expected).abs() <= 2.0, "{pointer}: {got} {expected}");
+        }
+    };
+    near(segments.sweeps.iter().map(|s| s.start).collect(), "/starts");
+    near(segments.sweeps.iter().map(|s| s.end).collect(), "/ends_exclusive");
+    near(segments.starts.clone(), "/segment_starts");
+
+    let options = SpectrumOptions {
+        response,
+        ..SpectrumOptions::default()
+    };
+    let part = segment_spectra(&recording, &options).unwrap();
+    assert_eq!(part.warnings, [""; 0]);
+    let spectrum = TextureSpectrum::average(&[part], Averaging::Magnitude).unwrap();
+    assert_eq!(spectrum.magnitude_n.len(), 197);
+    let at = |f: &f64| spectrum.magnitude_n[(f / 5.0) as usize - 4];
+    let picked: Vec<f64> = case.expected("/mag_f_hz").iter().map(at).collect();
+    case.hold("/mag_n", &picked);
+    case.hold("/mag_sum", &[spectrum.magnitude_n.iter().sum()]);
+    case.hold("/mag_sum_sq", &[spectrum.magnitude_n.iter().map(|m| m * m).sum()]);
+}
+
+#[test]
+fn raw() {
+    hold("closed_form_raw", None);
+}
+
+#[test]
+fn compensated() {
+    hold("closed_form_compensated", Some(response()));
+}
+
+#[test]
+fn overlap_added_segments_keep_the_spectrum() {
+    // What the segments' signal reads at the lines, relative to the texture spectrum: windowed
+    // segments added with half overlap are the segments in step, up to their differing phases.
+    let part = segment_spectra(&closed_form(), &SpectrumOptions::default()).unwrap();
+    let spectrum = TextureSpectrum::average(&[part], Averaging::Magnitude).unwrap();
+    let rms = |x: &[f64]| (x.iter().map(|x| x * x).sum::<f64>() / x.len() as f64).sqrt();
+    let lines = [0.01f64, 0.006, 0.004, 0.002];
+    let expected = lines.iter().map(|a| a * a / 2.0).sum::<f64>().sqrt();
+    // Windowed power is 3/8 of the whole and two windows overlap: 0.87 of the RMS if phases differ.
+    let ratio = rms(&spectrum.signal_n) / expected;
+    assert!((0.7..1.05).contains(&ratio), "{ratio}");
+    assert_eq!(spectrum.signal_rate_hz, 4_000.0);
+}

@@ -2,7 +2,7 @@
 //!
 //! The hues start from Okabe and Ito's set. The light ones are replaced by dark ones, so that every
 //! line stands at 3 : 1 or better on white, and any two models stay apart in normal, protan, deutan
-//! and tritan vision (simulated after Machado et al. 2009: CIE76 difference of 17 or more).
+//! and tritan vision (simulated after Machado et al. 2009: CIE76 difference of about 17 or more).
 
 /// The recording: dark grey, behind or beside any model's colour.
 pub const RECORDING_COLOR: &str = "#4d4d4d";

@@ -14,6 +14,7 @@ mod finding;
 mod limits;
 mod manifest;
 mod manifest_json;
+mod page;
 mod replace;
 mod report;
 mod rounding;
@@ -30,6 +31,7 @@ pub use manifest::{
     AtCondition, Band, Condition, Field, LATERAL_FORCE, Manifest, NEWTON, Provenance, Quality,
     Reference, Representation, Source, Steps, Store, VERSION,
 };
+pub use page::{manifest_schema, validation_page};
 pub use replace::{replace_file, write_file};
 pub use report::Report;
 pub use rules::{RULES, Rule, explain};

@@ -1,5 +1,14 @@
 //! Assets to test with.
-#![allow(dead_code, reason = "each test file takes what it needs")]
+#![allow(
+    dead_code,
+    clippy::expect_used,
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "each test file takes what it needs"
+)]
+
+pub mod cases;
+pub mod raw_zip;
 
 use htex_format::*;
 

@@ -1,0 +1,464 @@
+//! The conformance files: sound assets, and one for each way to break a rule.
+
+use std::collections::BTreeMap;
+
+use htex_format::*;
+use serde_json::{Value, json};
+
+use super::raw_zip::{Entry, archive};
+use super::{asset, five, reference, sbeta};
+
+/// A conformance file.
+pub struct Case {
+    pub name: String,
+    pub bytes: Vec<u8>,
+    pub limits: Limits,
+}
+
+impl Case {
+    /// The report the file must get, as pretty JSON.
+    pub fn golden(&self) -> String {
+        let report = validate(&self.bytes, &self.limits);
+        let mut golden = BTreeMap::from([
+            ("file", json!(format!("{}.htex", self.name))),
+            ("valid", json!(report.valid)),
+            ("findings", json!(report.findings)),
+        ]);
+        let limits = overrides(&self.limits);
+        if !limits.is_empty() {
+            golden.insert("limits", json!(limits));
+        }
+        serde_json::to_string_pretty(&golden).unwrap() + "\n"
+    }
+}
+
+fn overrides(limits: &Limits) -> BTreeMap<&'static str, u64> {
+    let pairs = |l: &Limits| {
+        [
+            ("file_bytes", l.file_bytes),
+            ("entries", l.entries as u64),
+            ("entry_bytes", l.entry_bytes),
+            ("total_bytes", l.total_bytes),
+            ("ratio", l.ratio),
+            ("json_depth", l.json_depth as u64),
+            ("values", l.values as u64),
+        ]
+    };
+    let all = pairs(limits).into_iter().zip(pairs(&Limits::default()));
+    all.filter(|(ours, default)| ours != default)
+        .map(|(ours, _)| ours)
+        .collect()
+}
+
+/// All files.
+pub fn cases() -> Vec<Case> {
+    let mut all: Vec<Case> = valid().into_iter().map(|(n, b)| case(n, b)).collect();
+    let broken = archives()
+        .into_iter()
+        .chain(entries())
+        .chain(texts())
+        .chain(manifests());
+    all.extend(broken.map(|(n, b)| case(n, b)));
+    all.extend(limited());
+    all
+}
+
+type Named = (&'static str, Vec<u8>);
+
+fn case(name: &str, bytes: Vec<u8>) -> Case {
+    Case {
+        name: name.to_owned(),
+        bytes,
+        limits: Limits::default(),
+    }
+}
+
+fn valid() -> Vec<Named> {
+    let mut with_reference = asset(2, vec![sbeta(2)]);
+    with_reference.manifest.reference = Some(Reference {
+        file: "reference.bin".to_owned(),
+    });
+    with_reference.reference = Some(reference(2));
+    let mut extended = asset(1, vec![sbeta(1)]);
+    let colour = json!({ "colour": "#a08060" });
+    extended
+        .manifest
+        .extensions
+        .insert("com.example.LOOK/1".to_owned(), colour);
+    vec![
+        (
+            "valid_minimal",
+            asset(1, vec![sbeta(1)]).to_bytes().unwrap(),
+        ),
+        ("valid_five_models", asset(1, five(1)).to_bytes().unwrap()),
+        ("valid_conditions", asset(3, five(3)).to_bytes().unwrap()),
+        ("valid_reference", with_reference.to_bytes().unwrap()),
+        ("valid_extension", extended.to_bytes().unwrap()),
+        (
+            "valid_newer_minor",
+            with_manifest(|m| {
+                m["htex"] = json!("1.7");
+                m["friction"] = json!({ "static": 0.4 });
+            }),
+        ),
+    ]
+}
+
+/// The manifest of a small asset.
+pub fn manifest() -> Value {
+    serde_json::to_value(asset(1, vec![sbeta(1)]).manifest).unwrap()
+}
+
+fn block() -> Vec<u8> {
+    [1.5f32, 2.5].iter().flat_map(|x| x.to_le_bytes()).collect()
+}
+
+/// The entries of a small asset.
+pub fn parts(manifest: &[u8], block: &[u8]) -> Vec<Entry> {
+    vec![
+        Entry::stored("mimetype", b"application/vnd.htex+zip"),
+        Entry::stored("manifest.json", manifest),
+        Entry::stored("parameters/sbeta.bin", block),
+    ]
+}
+
+fn with_text(manifest: &[u8]) -> Vec<u8> {
+    archive(&parts(manifest, &block()))
+}
+
+fn with_manifest(change: impl Fn(&mut Value)) -> Vec<u8> {
+    let mut manifest = manifest();
+    change(&mut manifest);
+    with_text(manifest.to_string().as_bytes())
+}
+
+fn with_block(block: &[u8]) -> Vec<u8> {
+    archive(&parts(manifest().to_string().as_bytes(), block))
+}
+
+fn with_parts(change: impl Fn(&mut Vec<Entry>)) -> Vec<u8> {
+    let mut parts = parts(manifest().to_string().as_bytes(), &block());
+    change(&mut parts);
+    archive(&parts)
+}
+
+fn with_bytes(change: impl Fn(&mut Vec<u8>)) -> Vec<u8> {
+    let mut bytes = with_manifest(|_| ());
+    change(&mut bytes);
+    bytes
+}
+
+fn archives() -> Vec<Named> {
+    vec![
+        (
+            "archive_invalid",
+            b"This is no archive, but a text.".to_vec(),
+        ),
+        (
+            "archive_invalid_cut_off",
+            with_bytes(|b| b.truncate(b.len() - 9)),
+        ),
+        (
+            "archive_invalid_directory",
+            with_bytes(|b| {
+                let directory = b.windows(4).position(|w| w == b"PK\x01\x02").unwrap();
+                b[directory] = b'Q';
+            }),
+        ),
+        (
+            "archive_extra_data_after",
+            with_bytes(|b| b.extend(b"more")),
+        ),
+        (
+            "archive_extra_data_before",
+            with_bytes(|b| {
+                b.splice(0..0, *b"#!/bin/sh\n");
+            }),
+        ),
+        (
+            "archive_zip64",
+            with_bytes(|b| {
+                let end = b.len() - 22;
+                b[end + 16..end + 20].fill(0xFF);
+            }),
+        ),
+    ]
+}
+
+fn entries() -> Vec<Named> {
+    let named = |name: &'static [u8]| {
+        with_parts(move |p| p.push(Entry::stored("", b"x").with(|h| h.name = name.to_vec())))
+    };
+    let changed = |change: fn(&mut Entry)| with_parts(move |p| change(&mut p[2]));
+    vec![
+        ("entry_name_unsafe", named(b"../outside.bin")),
+        ("entry_name_unsafe_absolute", named(b"/etc/passwd")),
+        ("entry_name_unsafe_backslash", named(b"..\\outside.bin")),
+        ("entry_name_unsafe_drive", named(b"C:outside.bin")),
+        ("entry_name_unsafe_nul", named(b"a.bin\0.txt")),
+        ("entry_name_duplicate", named(b"Manifest.JSON")),
+        ("entry_unreferenced", named(b"notes.txt")),
+        (
+            "entry_encrypted",
+            changed(|e| *e = e.clone().with(|h| h.flags = 1)),
+        ),
+        (
+            "entry_compression_unknown",
+            changed(|e| *e = e.clone().with(|h| h.method = 93)),
+        ),
+        (
+            "entry_data_descriptor",
+            changed(|e| *e = e.clone().with(|h| h.flags = 8)),
+        ),
+        (
+            "entry_extra_field",
+            changed(|e| e.central.extra = vec![0x55, 0x54, 0, 0]),
+        ),
+        ("entry_header_mismatch", changed(|e| e.local.name[0] = b'P')),
+        ("entry_header_mismatch_size", changed(|e| e.local.size += 1)),
+        ("entry_corrupt", changed(|e| e.data[3] ^= 1)),
+        ("mimetype_missing", with_parts(|p| p.truncate_front(1))),
+        ("mimetype_not_first", with_parts(|p| p.swap(0, 1))),
+        (
+            "mimetype_compressed",
+            with_parts(|p| p[0] = deflated(&p[0])),
+        ),
+        (
+            "mimetype_wrong",
+            with_parts(|p| p[0] = Entry::stored("mimetype", b"application/zip")),
+        ),
+        (
+            "manifest_missing",
+            with_parts(|p| {
+                p.remove(1);
+            }),
+        ),
+        ("entry_missing", with_parts(|p| p.truncate(2))),
+    ]
+}
+
+trait TruncateFront {
+    fn truncate_front(&mut self, count: usize);
+}
+
+impl TruncateFront for Vec<Entry> {
+    fn truncate_front(&mut self, count: usize) {
+        self.drain(..count);
+    }
+}
+
+/// The entry as a deflate stream of one stored block (RFC 1951, section 3.2.4).
+fn deflated(entry: &Entry) -> Entry {
+    let length = entry.data.len() as u16;
+    let mut data = vec![1];
+    data.extend(length.to_le_bytes());
+    data.extend((!length).to_le_bytes());
+    data.extend(&entry.data);
+    let packed = data.len() as u32;
+    let headers = entry.clone().with(|h| {
+        h.method = 8;
+        h.packed = packed;
+    });
+    Entry { data, ..headers }
+}
+
+fn texts() -> Vec<Named> {
+    let text = manifest().to_string();
+    let twice = text.replacen('{', "{\"name\":\"Twice\",", 1);
+    let deep = format!("{}{}", "[".repeat(40), "]".repeat(40));
+    vec![
+        ("json_syntax", with_text(b"{\"htex\": \"1.0\",}")),
+        (
+            "json_syntax_utf8",
+            with_text(b"{\"htex\": \"1.0\", \"name\": \"\xFF\"}"),
+        ),
+        (
+            "json_syntax_not_finite",
+            with_text(text.replacen("20.0", "1e999", 1).as_bytes()),
+        ),
+        ("json_too_deep", with_text(deep.as_bytes())),
+        ("json_type_twice", with_text(twice.as_bytes())),
+        ("parameters_invalid_short", with_block(&block()[..7])),
+        ("parameters_invalid_long", with_block(&[0; 9])),
+        (
+            "parameters_not_finite",
+            with_block(&[0, 0, 0xC0, 0x7F, 0, 0, 0, 0]),
+        ),
+    ]
+}
+
+fn manifests() -> Vec<Named> {
+    type Change = fn(&mut Value);
+    let changes: Vec<(&'static str, Change)> = vec![
+        ("json_type", |m| m["band"]["low_hz"] = json!("20")),
+        ("json_type_missing", |m| {
+            drop(m.as_object_mut().unwrap().remove("band"))
+        }),
+        ("json_unknown_key", |m| m["licence"] = json!("CC0-1.0")),
+        ("json_unknown_key_inside", |m| {
+            m["band"]["lo_hz"] = json!(20)
+        }),
+        ("version_missing", |m| {
+            drop(m.as_object_mut().unwrap().remove("htex"))
+        }),
+        ("version_invalid", |m| m["htex"] = json!("1")),
+        ("version_unsupported", |m| m["htex"] = json!("2.0")),
+        ("name_empty", |m| m["name"] = json!(" ")),
+        ("license_missing", |m| {
+            drop(m.as_object_mut().unwrap().remove("license"))
+        }),
+        ("quantity_unknown", |m| {
+            m["quantity"] = json!("acceleration")
+        }),
+        ("unit_unknown", |m| m["unit"] = json!("mN")),
+        ("band_invalid", |m| {
+            m["band"] = json!({ "low_hz": 1000, "high_hz": 20 })
+        }),
+        ("source_invalid", |m| {
+            m["provenance"]["recordings"][0]["rate_hz"] = json!(0)
+        }),
+        ("source_path", |m| {
+            m["provenance"]["recordings"][0]["file"] = json!("/home/me/a.csv")
+        }),
+        ("conditions_empty", |m| m["conditions"] = json!([])),
+        ("condition_invalid", |m| {
+            m["conditions"][0]["speed_mm_s"] = json!(-40)
+        }),
+        ("condition_duplicate", |m| m["conditions"] = json!([{}, {}])),
+        ("representations_empty", |m| {
+            m["representations"] = json!([])
+        }),
+        ("model_id_invalid", |m| {
+            m["representations"][0]["model"] = json!("sBeta")
+        }),
+        ("model_duplicate", |m| {
+            let twin = m["representations"][0].clone();
+            m["representations"].as_array_mut().unwrap().push(twin);
+        }),
+        ("model_version_invalid", |m| {
+            m["representations"][0]["model_version"] = json!("1")
+        }),
+        ("field_name_empty", |m| {
+            m["representations"][0]["fields"][0]["name"] = json!("")
+        }),
+        ("field_duplicate", |m| {
+            m["representations"][0]["fields"][0]["name"] = json!("beta")
+        }),
+        ("store_invalid", |m| {
+            m["representations"][0]["fields"][0]["store"] = json!({ "u16": { "scale": 0 } });
+        }),
+        ("at_empty", |m| m["representations"][0]["at"] = json!([])),
+        ("condition_index_invalid", |m| {
+            m["representations"][0]["at"][0]["condition"] = json!(1)
+        }),
+        ("condition_index_duplicate", |m| {
+            let twin = m["representations"][0]["at"][0].clone();
+            m["representations"][0]["at"]
+                .as_array_mut()
+                .unwrap()
+                .push(twin);
+        }),
+        ("level_invalid", |m| {
+            m["representations"][0]["at"][0]["level_n_rms"] = json!(-0.1)
+        }),
+        ("quality_invalid", |m| {
+            m["representations"][0]["at"][0]["quality"]["band_error_db"] = json!([0.5, 1.5]);
+        }),
+        ("parameters_entry_invalid", |m| {
+            m["representations"][0]["parameters"] = json!("manifest.json");
+        }),
+        ("parameters_invalid_length", |m| {
+            m["representations"][0]["fields"][0]["list"] = json!(true)
+        }),
+        ("reference_length", |m| {
+            m["reference"] = json!({ "file": "parameters/sbeta.bin" });
+            m["representations"][0]["parameters"] = json!("absent.bin");
+        }),
+        ("extension_name_invalid", |m| {
+            m["extensions"] = json!({ "LOOK": {} })
+        }),
+        ("extension_required_unknown", |m| {
+            m["extensions_required"] = json!(["com.example.X/1"])
+        }),
+        ("findings_truncated", |m| {
+            m["conditions"] = (0..120).map(|i| json!({ "force_n": -1 - i })).collect();
+        }),
+    ];
+    let mut files: Vec<Named> = changes
+        .into_iter()
+        .map(|(n, c)| (n, with_manifest(c)))
+        .collect();
+    files.push(("reference_invalid", with_reference_of(-1.0)));
+    files
+}
+
+fn with_reference_of(magnitude: f32) -> Vec<u8> {
+    let mut manifest = manifest();
+    manifest["band"] = json!({ "low_hz": 20, "high_hz": 21 });
+    manifest["reference"] = json!({ "file": "reference.bin" });
+    let mut parts = parts(manifest.to_string().as_bytes(), &block());
+    parts.push(Entry::stored("reference.bin", &magnitude.to_le_bytes()));
+    archive(&parts)
+}
+
+/// Sound files, and limits below what they take.
+fn limited() -> Vec<Case> {
+    let sound = asset(1, vec![sbeta(1)]).to_bytes().unwrap();
+    let default = Limits::default();
+    let case = |name: &str, limits| Case {
+        name: name.to_owned(),
+        bytes: sound.clone(),
+        limits,
+    };
+    vec![
+        case(
+            "file_too_large",
+            Limits {
+                file_bytes: 400,
+                ..default
+            },
+        ),
+        case(
+            "archive_too_many_entries",
+            Limits {
+                entries: 2,
+                ..default
+            },
+        ),
+        case(
+            "archive_too_large",
+            Limits {
+                total_bytes: 500,
+                ..default
+            },
+        ),
+        case(
+            "entry_too_large",
+            Limits {
+                entry_bytes: 500,
+                ..default
+            },
+        ),
+        case(
+            "entry_ratio",
+            Limits {
+                ratio: 1,
+                ..default
+            },
+        ),
+        case(
+            "json_too_deep_limit",
+            Limits {
+                json_depth: 4,
+                ..default
+            },
+        ),
+        case(
+            "values_too_many",
+            Limits {
+                values: 1,
+                ..default
+            },
+        ),
+    ]
+}

@@ -1,0 +1,88 @@
+//! The files under `spec/` are what the code makes of them.
+#![allow(clippy::expect_used, clippy::unwrap_used)]
+
+mod common;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use common::cases::cases;
+use htex_format::{Asset, RULES, explain, manifest_schema, validate, validation_page};
+
+const RENEW: &str = "stale: cargo run -p htex-format --example conformance";
+
+fn spec() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../spec")
+}
+
+#[test]
+fn every_file_gets_its_report() {
+    let folder = spec().join("conformance");
+    let mut expected = BTreeSet::new();
+    for case in cases() {
+        let [asset, report] = ["htex", "report.json"].map(|e| format!("{}.{e}", case.name));
+        assert_eq!(
+            fs::read(folder.join(&asset)).expect(&asset),
+            case.bytes,
+            "{asset} {RENEW}"
+        );
+        let golden = fs::read_to_string(folder.join(&report)).expect(&report);
+        assert_eq!(golden, case.golden(), "{report} {RENEW}");
+        expected.extend([asset, report]);
+    }
+    let names = fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().file_name());
+    let found: BTreeSet<String> = names.map(|n| n.into_string().unwrap()).collect();
+    assert_eq!(found, expected, "{RENEW}");
+}
+
+#[test]
+fn a_file_is_named_after_the_rule_it_breaks_and_every_rule_has_one() {
+    let mut raised = BTreeSet::new();
+    for case in cases() {
+        let report = validate(&case.bytes, &case.limits);
+        let codes: BTreeSet<String> = report.findings.iter().map(|f| f.code.clone()).collect();
+        let name = case.name.to_uppercase();
+        let named = codes.iter().any(|code| name.starts_with(code.as_str()));
+        assert!(named || name.starts_with("VALID"), "{name} gets {codes:?}");
+        assert!(
+            report.valid || !name.starts_with("VALID"),
+            "{name}: {:?}",
+            report.findings
+        );
+        assert_eq!(
+            Asset::from_bytes_with(&case.bytes, &case.limits).is_ok(),
+            report.valid
+        );
+        raised.extend(codes);
+    }
+    let rules: BTreeSet<String> = RULES.iter().map(|rule| rule.code.to_owned()).collect();
+    assert_eq!(raised, rules);
+    assert!(explain("BAND_INVALID").is_some() && explain("BAND").is_none());
+}
+
+#[test]
+fn page_and_schema_are_fresh() {
+    let page = fs::read_to_string(spec().join("validation.md")).expect("the page is there");
+    assert_eq!(page, validation_page(), "{RENEW}");
+    let schema = fs::read_to_string(spec().join("schemas/manifest-1.json")).expect("it is there");
+    let schema: serde_json::Value = serde_json::from_str(&schema).expect("it is JSON");
+    assert_eq!(schema, manifest_schema(), "{RENEW}");
+}
+
+#[test]
+fn a_newer_minor_version_is_noted_and_kept() {
+    let newer = cases()
+        .into_iter()
+        .find(|c| c.name == "valid_newer_minor")
+        .unwrap();
+    let asset = Asset::from_bytes(&newer.bytes).unwrap();
+    assert_eq!(asset.notes[0].code, "VERSION_NEWER");
+    assert!(asset.manifest.other.contains_key("friction"));
+    assert_eq!(
+        Asset::from_bytes(&asset.to_bytes().unwrap()).unwrap(),
+        asset
+    );
+}

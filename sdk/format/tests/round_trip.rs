@@ -1,0 +1,193 @@
+//! What is written is read back, and written again is the same bytes.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{Fitted, asset, fitted, reference, steps};
+use htex_format::{Asset, Reference, Steps, Store, WriteError, round_parameters};
+use proptest::prelude::*;
+
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        -1e3..1e3,
+        any::<f64>().prop_filter("finite", |x| x.is_finite())
+    ]
+}
+
+fn store() -> impl Strategy<Value = Store> {
+    let steps = (1e-6..1e3, -1e3..1e3).prop_map(|(scale, offset)| Steps {
+        scale,
+        offset,
+        log: false,
+    });
+    let log = (1e-6..1e-3, -5.0..5.0).prop_map(|(scale, offset)| Steps {
+        scale,
+        offset,
+        log: true,
+    });
+    prop_oneof![
+        Just(Store::F64),
+        Just(Store::F32),
+        steps.clone().prop_map(Store::U16),
+        steps.prop_map(Store::U8),
+        log.clone().prop_map(Store::U16),
+        log.prop_map(Store::U8),
+    ]
+}
+
+/// A representation with values spread over what its stores hold.
+fn representation(i: usize, conditions: usize) -> impl Strategy<Value = Fitted> {
+    let field = (store(), 0usize..300, 0.0..1.0f64);
+    prop::collection::vec(field, 0..4).prop_map(move |fields| {
+        let names = ["a", "b", "c", "d"];
+        let numbered = fields.iter().zip(names);
+        let shapes: Vec<_> = numbered
+            .map(|(&(_, length, _), name)| (name, "Hz", length, Store::F64))
+            .collect();
+        let (mut representation, mut flats) = fitted(&format!("m{i}"), conditions, &shapes);
+        for (field, (store, ..)) in representation.fields.iter_mut().zip(&fields) {
+            field.store = *store;
+        }
+        for flat in &mut flats {
+            let mut at = 0;
+            for &(store, length, place) in &fields {
+                at += usize::from(length > 0);
+                for value in flat.iter_mut().skip(at).take(length.max(1)) {
+                    *value = inside(store, place, *value);
+                }
+                at += length.max(1);
+            }
+            *flat = round_parameters(&representation.fields, flat).unwrap();
+        }
+        (representation, flats)
+    })
+}
+
+fn inside(store: Store, place: f64, otherwise: f64) -> f64 {
+    let (steps, last) = match store {
+        Store::U16(steps) => (steps, f64::from(u16::MAX)),
+        Store::U8(steps) => (steps, f64::from(u8::MAX)),
+        Store::F64 | Store::F32 => return otherwise * place,
+    };
+    let x = steps.offset + steps.scale * (place * last);
+    if steps.log { x.exp() } else { x }
+}
+
+fn any_asset() -> impl Strategy<Value = Asset> {
+    let words = (
+        "\\PC{1,40}",
+        prop::option::of("\\PC{0,40}"),
+        "\\PC{0,20}",
+        "[a-z]{1,9}",
+    );
+    let numbers = (0.0..1e4f64, number(), any::<u64>(), any::<bool>());
+    let parts =
+        (1usize..4).prop_flat_map(|c| (Just(c), representation(0, c), representation(1, c)));
+    (parts, words, numbers).prop_map(|((conditions, first, second), words, numbers)| {
+        let mut asset = asset(conditions, vec![first, second]);
+        let (name, author, tag, key) = words;
+        let (level, error, segments, extra) = numbers;
+        let manifest = &mut asset.manifest;
+        manifest.name = format!("n{name}");
+        manifest.author = author;
+        manifest.tags = vec![tag.clone()];
+        manifest.provenance.simulated = extra;
+        manifest.provenance.recordings[0].segments = segments;
+        manifest.provenance.options.insert(key.clone(), tag);
+        manifest.extensions.insert(
+            format!("com.example.{key}/2"),
+            serde_json::json!([error, null]),
+        );
+        let at = &mut manifest.representations[0].at[0];
+        at.level_n_rms = level;
+        at.quality.as_mut().unwrap().band_error_db[3] = error;
+        if extra {
+            manifest.reference = Some(Reference {
+                file: "reference.bin".to_owned(),
+            });
+            asset.reference = Some(reference(conditions));
+        }
+        asset.manifest = asset.manifest.rounded();
+        asset
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..Default::default() })]
+
+    #[test]
+    fn an_asset_comes_back_and_its_bytes_do_too(asset in any_asset()) {
+        let bytes = asset.to_bytes().unwrap();
+        let read = Asset::from_bytes(&bytes).unwrap();
+        prop_assert_eq!(&read, &asset);
+        prop_assert_eq!(read.to_bytes().unwrap(), bytes);
+    }
+
+    #[test]
+    fn rounding_is_to_the_nearest_step_and_done_once(
+        scale in 1e-3..1e2f64, offset in -10.0..10.0f64, place in 0.0..255.0f64,
+    ) {
+        let (mut fields, _) = (fitted("m", 1, &[("a", "", 0, Store::F64)]).0.fields, ());
+        fields[0].store = Store::U8(Steps { scale, offset, log: false });
+        let value = offset + scale * place;
+        let once = round_parameters(&fields, &[value]).unwrap();
+        prop_assert!((once[0] - value).abs() <= scale * 0.500001);
+        prop_assert_eq!(&round_parameters(&fields, &once).unwrap(), &once);
+    }
+}
+
+#[test]
+fn a_value_outside_its_store_is_named_with_its_range() {
+    let fields = fitted("m", 1, &[("peak_hz", "Hz", 2, Store::F64)]).0.fields;
+    let stored = |store| {
+        vec![htex_format::Field {
+            store,
+            ..fields[0].clone()
+        }]
+    };
+    let message = |store, value| match round_parameters(&stored(store), &[2.0, 1.0, value]) {
+        Err(error @ WriteError::OutOfRange { .. }) => error.to_string(),
+        other => format!("{other:?}"),
+    };
+    let text = message(Store::U8(steps(0.5)), 128.0);
+    assert!(
+        text.contains("peak_hz[1] is 128") && text.contains("0 to 127.5"),
+        "{text}"
+    );
+    assert!(message(Store::U16(steps(1.0)), -1.0).contains("0 to 65535"));
+    assert!(message(Store::F32, 1e300).contains("peak_hz[1]"));
+    assert!(message(Store::F64, f64::NAN).contains("is NaN"));
+    assert!(matches!(
+        round_parameters(&fields, &[3.0, 1.0, 2.0]),
+        Err(WriteError::Layout { .. })
+    ));
+}
+
+#[test]
+fn a_broken_asset_is_not_written() {
+    let mut broken = asset(1, common::five(1));
+    broken.manifest.band.low_hz = f64::NAN;
+    assert!(matches!(broken.to_bytes(), Err(WriteError::Invalid { .. })));
+    let mut short = asset(1, common::five(1));
+    short.parameters.pop();
+    let text = short.to_bytes().unwrap_err().to_string();
+    assert!(
+        text.contains("parameters by representation: 4 given"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_file_is_written_whole_and_opened_within_the_limit() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cotton.htex");
+    let asset = asset(1, common::five(1));
+    asset.write(&path).unwrap();
+    assert_eq!(Asset::open(&path).unwrap(), asset);
+    std::fs::File::create(&path)
+        .unwrap()
+        .set_len(17 << 20)
+        .unwrap();
+    let text = Asset::open(&path).unwrap_err().to_string();
+    assert!(text.contains("FILE_TOO_LARGE"), "{text}");
+}

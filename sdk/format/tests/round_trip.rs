@@ -113,7 +113,7 @@ fn any_asset() -> impl Strategy<Value = Asset> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(ProptestConfig { cases: 512, failure_persistence: None, ..Default::default() })]
 
     #[test]
     fn an_asset_comes_back_and_its_bytes_do_too(asset in any_asset()) {

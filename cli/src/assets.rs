@@ -78,9 +78,16 @@ impl AssetSummary {
             band_hz: [manifest.band.low_hz, manifest.band.high_hz],
             conditions: manifest.conditions.clone(),
             representations,
-            repeatability_rms_db: manifest.conditions.first().and_then(|c| c.repeatability_rms_db),
+            repeatability_rms_db: manifest
+                .conditions
+                .first()
+                .and_then(|c| c.repeatability_rms_db),
             warnings: manifest.provenance.warnings.clone(),
-            notes: asset.notes.iter().map(|note| note.message.clone()).collect(),
+            notes: asset
+                .notes
+                .iter()
+                .map(|note| note.message.clone())
+                .collect(),
         }
     }
 
@@ -94,15 +101,25 @@ impl AssetSummary {
             self.name,
             self.band_hz[0],
             self.band_hz[1],
-            self.author.as_ref().map(|a| format!(", by {a}")).unwrap_or_default(),
-            self.license.as_ref().map(|l| format!(", licence {l}")).unwrap_or_default(),
+            self.author
+                .as_ref()
+                .map(|a| format!(", by {a}"))
+                .unwrap_or_default(),
+            self.license
+                .as_ref()
+                .map(|l| format!(", licence {l}"))
+                .unwrap_or_default(),
         );
         for (i, condition) in self.conditions.iter().enumerate() {
             let _ = writeln!(text, "condition {i}: {}", condition_text(condition));
         }
         text += "\n  model    cond.  level/mN   corr.  bands/dB  played/dB  bytes  parameters\n";
         for r in &self.representations {
-            let all = if r.at.is_empty() { std::slice::from_ref(&r.first) } else { &r.at[..] };
+            let all = if r.at.is_empty() {
+                std::slice::from_ref(&r.first)
+            } else {
+                &r.at[..]
+            };
             for at in all {
                 text += &row(r, at);
             }
@@ -117,7 +134,11 @@ impl AssetSummary {
 fn row(r: &RepresentationSummary, at: &AtSummary) -> String {
     let number = |x: Option<f64>, digits: usize| x.map_or("-".into(), |x| format!("{x:.digits$}"));
     let quality = at.quality.as_ref();
-    let parameters: Vec<String> = at.parameters.iter().map(|(k, v)| parameter_text(k, v)).collect();
+    let parameters: Vec<String> = at
+        .parameters
+        .iter()
+        .map(|(k, v)| parameter_text(k, v))
+        .collect();
     format!(
         "  {:8} {:>5}  {:>8.3}  {:>6}  {:>8}  {:>9}  {:>5}  {}\n",
         short_name(&r.model),
@@ -134,7 +155,10 @@ fn row(r: &RepresentationSummary, at: &AtSummary) -> String {
 fn parameter_text(name: &str, value: &Value) -> String {
     match value {
         Value::Array(list) => format!("{name}[{}]", list.len()),
-        other => format!("{name}={}", short_number(other.as_f64().unwrap_or(f64::NAN))),
+        other => format!(
+            "{name}={}",
+            short_number(other.as_f64().unwrap_or(f64::NAN))
+        ),
     }
 }
 
@@ -144,19 +168,23 @@ fn short_number(x: f64) -> String {
 }
 
 /// Speed, force and repeatability of a condition, as far as they are known.
-pub(crate) fn condition_text(condition: &Condition) -> String {
-    let part = |value: Option<f64>, unit: &str, what: &str| {
-        value.map_or(format!("{what} unknown"), |v| format!("{} {unit}", short_number(v)))
-    };
-    let mut text = format!(
-        "{}, {}",
-        part(condition.speed_mm_s, "mm/s", "speed"),
-        part(condition.force_n, "N", "force")
-    );
+fn condition_text(condition: &Condition) -> String {
+    let mut text = motion_text(condition);
     if let Some(db) = condition.repeatability_rms_db {
         let _ = write!(text, ", the recording itself repeats within {db:.2} dB");
     }
     text
+}
+
+/// Speed and force of a condition, as far as they are known.
+pub(crate) fn motion_text(condition: &Condition) -> String {
+    let part = |value: Option<f64>, unit: &str, what: &str| {
+        value.map_or(format!("{what} unknown"), |v| {
+            format!("{} {unit}", short_number(v))
+        })
+    };
+    let speed = part(condition.speed_mm_s, "mm/s", "speed");
+    format!("{speed}, {}", part(condition.force_n, "N", "force"))
 }
 
 /// The last part of a model's id.
@@ -168,7 +196,10 @@ impl RepresentationSummary {
     /// None for a representation at no condition, which no valid asset has.
     fn new(r: &Representation, sets: &[Vec<f64>], payload_bytes: usize) -> Option<Self> {
         let at: Vec<AtSummary> =
-            r.at.iter().zip(sets).map(|(at, set)| AtSummary::new(at, &r.fields, set)).collect();
+            r.at.iter()
+                .zip(sets)
+                .map(|(at, set)| AtSummary::new(at, &r.fields, set))
+                .collect();
         Some(Self {
             model: r.model.clone(),
             model_version: r.model_version.clone(),
@@ -217,6 +248,8 @@ impl AtSummary {
             let values = self.parameters.get(name).and_then(Value::as_array);
             values.into_iter().flatten().filter_map(Value::as_f64)
         };
-        list("frequency_hz").zip(list("amplitude").map(|a| a * self.level_n_rms)).collect()
+        list("frequency_hz")
+            .zip(list("amplitude").map(|a| a * self.level_n_rms))
+            .collect()
     }
 }

@@ -16,13 +16,21 @@ pub(crate) fn model_requests(
     options: &[String],
 ) -> Result<Vec<ModelRequest>, Failure> {
     let models = named_models(names)?;
-    let options: Vec<(&str, &str, &str)> =
-        options.iter().map(|text| split_option(text)).collect::<Result<_, _>>()?;
-    if let Some((owner, ..)) = options.iter().find(|(owner, ..)| !models.iter().any(|m| is(m, owner)))
+    let options: Vec<(&str, &str, &str)> = options
+        .iter()
+        .map(|text| split_option(text))
+        .collect::<Result<_, _>>()?;
+    if let Some((owner, ..)) = options
+        .iter()
+        .find(|(owner, ..)| !models.iter().any(|m| is(m, owner)))
     {
         return Err(Failure::Usage(format!(
             "--option {owner}.…: no such model is fitted; there are {}",
-            models.iter().map(LoadedModel::short_name).collect::<Vec<_>>().join(", ")
+            models
+                .iter()
+                .map(LoadedModel::short_name)
+                .collect::<Vec<_>>()
+                .join(", ")
         )));
     }
     let request = |model: LoadedModel| {
@@ -61,6 +69,8 @@ fn split_option(text: &str) -> Result<(&str, &str, &str), Failure> {
         Some((model, name, value))
     });
     split.ok_or_else(|| {
-        Failure::Usage(format!("--option {text}: it looks like MODEL.NAME=VALUE, e.g. ar.order=6"))
+        Failure::Usage(format!(
+            "--option {text}: it looks like MODEL.NAME=VALUE, e.g. ar.order=6"
+        ))
     })
 }

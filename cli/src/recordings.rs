@@ -135,12 +135,20 @@ impl RecordingArgs {
         let entries = [
             ("rate", self.rate.as_ref().and_then(|v| name(v))),
             ("map", self.map.clone()),
-            ("newtons_per_unit", self.newtons_per_unit.as_ref().and_then(|v| name(v))),
+            (
+                "newtons_per_unit",
+                self.newtons_per_unit.as_ref().and_then(|v| name(v)),
+            ),
             ("frf", self.frf.as_ref().and_then(file)),
             ("segments", value_name(self.segments, SegmentsArg::Auto)),
-            ("averaging", value_name(self.averaging, AveragingArg::Magnitude)),
+            (
+                "averaging",
+                value_name(self.averaging, AveragingArg::Magnitude),
+            ),
         ];
-        let said = entries.into_iter().filter_map(|(key, value)| Some((key.to_owned(), value?)));
+        let said = entries
+            .into_iter()
+            .filter_map(|(key, value)| Some((key.to_owned(), value?)));
         said.collect()
     }
 
@@ -175,11 +183,18 @@ fn value_name<T: ValueEnum + PartialEq>(value: T, default: T) -> Option<String> 
 /// Reads `speed=80,force=0.4`; what it leaves out stays as it was.
 fn parse_condition(text: &str, mut condition: Exploration) -> Result<Exploration, Failure> {
     let wrong = |what: &str| {
-        Failure::Usage(format!("--at {text}: {what}; it looks like speed=80,force=0.4 (mm/s, N)"))
+        Failure::Usage(format!(
+            "--at {text}: {what}; it looks like speed=80,force=0.4 (mm/s, N)"
+        ))
     };
     for part in text.split(',') {
-        let (key, value) = part.split_once('=').ok_or_else(|| wrong("`=` is missing"))?;
-        let value: f64 = value.trim().parse().map_err(|_| wrong("a value is no number"))?;
+        let (key, value) = part
+            .split_once('=')
+            .ok_or_else(|| wrong("`=` is missing"))?;
+        let value: f64 = value
+            .trim()
+            .parse()
+            .map_err(|_| wrong("a value is no number"))?;
         match key.trim() {
             "speed" | "speed_mm_s" => condition.speed_mm_s = Some(value),
             "force" | "force_n" => condition.force_n = Some(value),

@@ -17,7 +17,14 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("htex", &["htex-dsp", "htex-format", "htex-host"]),
     (
         "htex-cli",
-        &["htex", "htex-author", "htex-dsp", "htex-format", "htex-host", "htex-report"],
+        &[
+            "htex",
+            "htex-author",
+            "htex-dsp",
+            "htex-format",
+            "htex-host",
+            "htex-report",
+        ],
     ),
     ("xtask", &[]),
 ];
@@ -32,19 +39,37 @@ fn dependencies_follow_the_arrows() {
     let ours: BTreeSet<&str> = metadata.packages.iter().map(|p| p.name.as_str()).collect();
     let role = |package: &cargo_metadata::Package| {
         let plugin = package.manifest_path.as_str().contains("/plugins/");
-        if plugin { "plugin".to_owned() } else { package.name.to_string() }
+        if plugin {
+            "plugin".to_owned()
+        } else {
+            package.name.to_string()
+        }
     };
-    for package in metadata.packages.iter().filter(|p| p.name.as_str() != "htex-tests") {
+    for package in metadata
+        .packages
+        .iter()
+        .filter(|p| p.name.as_str() != "htex-tests")
+    {
         let name = role(package);
         let (_, allowed) = ARROWS
             .iter()
             .find(|(from, _)| *from == name)
             .unwrap_or_else(|| panic!("{name} has no place in the arrows; see ARCHITECTURE.md"));
-        let used = package.dependencies.iter().filter(|d| d.kind == DependencyKind::Normal);
+        let used = package
+            .dependencies
+            .iter()
+            .filter(|d| d.kind == DependencyKind::Normal);
         for used in used.filter(|d| ours.contains(d.name.as_str())) {
-            let target = metadata.packages.iter().find(|p| *p.name == used.name).unwrap();
+            let target = metadata
+                .packages
+                .iter()
+                .find(|p| *p.name == used.name)
+                .unwrap();
             let target = role(target);
-            assert!(allowed.contains(&target.as_str()), "{name} must not point at {target}");
+            assert!(
+                allowed.contains(&target.as_str()),
+                "{name} must not point at {target}"
+            );
         }
     }
 }

@@ -36,14 +36,21 @@ fn closed_form() -> Recording {
     };
     let all: Vec<f64> = (0..200_000).map(force).collect();
     let axis = |part: f64| all.iter().map(|f| part * f).collect();
-    Recording::new("closed form", RATE_HZ, vec![axis(0.05), axis(0.998_749_217_771_908_95)]).unwrap()
+    Recording::new(
+        "closed form",
+        RATE_HZ,
+        vec![axis(0.05), axis(0.998_749_217_771_908_95)],
+    )
+    .unwrap()
 }
 
 /// The case's setup response, on a grid fine enough to be read back at the bins.
 fn response() -> SetupResponse {
     let frequency_hz: Vec<f64> = (0..=200).map(|k| f64::from(k) * 5.0).collect();
-    let values: Vec<_> =
-        frequency_hz.iter().map(|&f| resonator_response(f, 620.0, 0.06)).collect();
+    let values: Vec<_> = frequency_hz
+        .iter()
+        .map(|&f| resonator_response(f, 620.0, 0.06))
+        .collect();
     SetupResponse {
         magnitude: values.iter().map(|h| h.norm()).collect(),
         phase_rad: values.iter().map(|h| h.arg()).collect(),
@@ -60,11 +67,17 @@ fn hold(name: &str, response: Option<SetupResponse>) {
     case.hold("/threshold_n", &[segments.threshold_n]);
     let near = |got: Vec<usize>, pointer: &str| {
         for (got, expected) in got.iter().zip(case.expected(pointer)) {
-            assert!((*got as f64 - expected).abs() <= 2.0, "{pointer}: {got} {expected}");
+            assert!(
+                (*got as f64 - expected).abs() <= 2.0,
+                "{pointer}: {got} {expected}"
+            );
         }
     };
     near(segments.sweeps.iter().map(|s| s.start).collect(), "/starts");
-    near(segments.sweeps.iter().map(|s| s.end).collect(), "/ends_exclusive");
+    near(
+        segments.sweeps.iter().map(|s| s.end).collect(),
+        "/ends_exclusive",
+    );
     near(segments.starts.clone(), "/segment_starts");
 
     let options = SpectrumOptions {
@@ -79,7 +92,10 @@ fn hold(name: &str, response: Option<SetupResponse>) {
     let picked: Vec<f64> = case.expected("/mag_f_hz").iter().map(at).collect();
     case.hold("/mag_n", &picked);
     case.hold("/mag_sum", &[spectrum.magnitude_n.iter().sum()]);
-    case.hold("/mag_sum_sq", &[spectrum.magnitude_n.iter().map(|m| m * m).sum()]);
+    case.hold(
+        "/mag_sum_sq",
+        &[spectrum.magnitude_n.iter().map(|m| m * m).sum()],
+    );
 }
 
 #[test]

@@ -12,7 +12,11 @@ fn fitted() -> Vec<(LoadedModel, Vec<f64>)> {
     let band = Band::TACTILE;
     let grid = band.grid_hz();
     let ripple = |(i, m): (usize, &f64)| m * (1.0 + 0.3 * (i as f64 * 0.9).sin());
-    let magnitude: Vec<f64> = smooth_spectrum(&grid).iter().enumerate().map(ripple).collect();
+    let magnitude: Vec<f64> = smooth_spectrum(&grid)
+        .iter()
+        .enumerate()
+        .map(ripple)
+        .collect();
     let models = Registry::builtin();
     assert_eq!(models.models().len(), 5);
     let fit = |model: &LoadedModel| {
@@ -40,12 +44,21 @@ fn measured_spectrum(samples: &[f32]) -> Vec<f64> {
     let mut power = vec![0.0; Band::TACTILE.bins()];
     let mut count = 0.0;
     for start in (0..samples.len() - 4_000).step_by(2_000) {
-        let segment: Vec<f64> = samples[start..start + 4_000].iter().map(|&x| x.into()).collect();
+        let segment: Vec<f64> = samples[start..start + 4_000]
+            .iter()
+            .map(|&x| x.into())
+            .collect();
         analyzer.analyze(&segment, &mut bins).unwrap();
-        power.iter_mut().zip(&bins[4..]).for_each(|(p, x)| *p += x.norm_sqr());
+        power
+            .iter_mut()
+            .zip(&bins[4..])
+            .for_each(|(p, x)| *p += x.norm_sqr());
         count += 1.0;
     }
-    power.iter().map(|p| (p / count).sqrt() * analyzer.amplitude_scale()).collect()
+    power
+        .iter()
+        .map(|p| (p / count).sqrt() * analyzer.amplitude_scale())
+        .collect()
 }
 
 /// RMS of the decibels between two spectra over the reference's strongest bins that hold 99 % of
@@ -72,11 +85,15 @@ fn a_minute_of_each_voice_has_its_magnitude_and_level() {
     for (model, parameters) in fitted() {
         let mut out = vec![0.0f32; 60 * RATE_HZ as usize];
         stream(&model, &parameters, 11).render(&mut out).unwrap();
-        let rms = (out.iter().map(|&x| f64::from(x).powi(2)).sum::<f64>() / out.len() as f64).sqrt();
+        let rms =
+            (out.iter().map(|&x| f64::from(x).powi(2)).sum::<f64>() / out.len() as f64).sqrt();
         let grid = Band::TACTILE.grid_hz();
         let magnitude = model.magnitude(&parameters, Band::TACTILE, &grid).unwrap();
         let distance = distance_db(&measured_spectrum(&out), &magnitude);
-        println!("{:16} RMS {rms:.4}  spectrum within {distance:.3} dB RMS", model.id());
+        println!(
+            "{:16} RMS {rms:.4}  spectrum within {distance:.3} dB RMS",
+            model.id()
+        );
         assert!((rms - 1.0).abs() < 0.02, "{}: RMS {rms}", model.id());
         assert!(distance < 1.0, "{}: {distance} dB", model.id());
     }
@@ -88,12 +105,18 @@ fn blocks_and_seeds() {
         let render = |block: usize, seed: u64| {
             let mut stream = stream(&model, &parameters, seed);
             let mut out = vec![0.0f32; 9_000];
-            out.chunks_mut(block).for_each(|part| stream.render(part).unwrap());
+            out.chunks_mut(block)
+                .for_each(|part| stream.render(part).unwrap());
             out
         };
         let whole = render(9_000, 5);
         for block in [1, 7, 64, 1_000] {
-            assert_eq!(render(block, 5), whole, "{} in blocks of {block}", model.id());
+            assert_eq!(
+                render(block, 5),
+                whole,
+                "{} in blocks of {block}",
+                model.id()
+            );
         }
         // sPeak starts all its sinusoids at their crests unless asked otherwise.
         if model.short_name() != "speak" {
@@ -107,7 +130,9 @@ fn retunes_do_not_click() {
     let models = fitted();
     for (model, parameters) in models {
         let other = louder_at_one_end(&model);
-        let half = model.interpolate(&[&parameters, &other], &[0.5, 0.5]).unwrap();
+        let half = model
+            .interpolate(&[&parameters, &other], &[0.5, 0.5])
+            .unwrap();
         let mut stream = stream(&model, &parameters, 3);
         let mut out = vec![0.0f32; 40_000];
         for (i, block) in out.chunks_mut(500).enumerate() {
@@ -118,12 +143,20 @@ fn retunes_do_not_click() {
         let largest = |x: &[f32]| x.windows(3).map(second_difference).fold(0.0, f32::max);
         let steady = |p: &[f64]| {
             let mut out = vec![0.0f32; 40_000];
-            Stream::new(&model, p, Band::TACTILE, RATE_HZ, 3).unwrap().render(&mut out).unwrap();
+            Stream::new(&model, p, Band::TACTILE, RATE_HZ, 3)
+                .unwrap()
+                .render(&mut out)
+                .unwrap();
             largest(&out)
         };
         // A click would show as a bend far sharper than any the steady signals have.
         let bound = 2.0 * steady(&parameters).max(steady(&other)).max(steady(&half));
-        assert!(largest(&out) < bound, "{}: {} {bound}", model.id(), largest(&out));
+        assert!(
+            largest(&out) < bound,
+            "{}: {} {bound}",
+            model.id(),
+            largest(&out)
+        );
     }
 }
 

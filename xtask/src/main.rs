@@ -12,7 +12,16 @@ fn main() -> ExitCode {
         ["ci"] => run("bash", &[".ci/run"]),
         ["generate"] => {
             let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
-            run(&cargo, &["run", "--package", "htex-format", "--example", "conformance"])
+            run(
+                &cargo,
+                &[
+                    "run",
+                    "--package",
+                    "htex-format",
+                    "--example",
+                    "conformance",
+                ],
+            )
         }
         _ => {
             eprintln!("{TASKS}");
@@ -24,7 +33,11 @@ fn main() -> ExitCode {
 /// Runs a program in the workspace's folder.
 fn run(program: &str, arguments: &[&str]) -> ExitCode {
     let workspace = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
-    match Command::new(program).args(arguments).current_dir(workspace).status() {
+    match Command::new(program)
+        .args(arguments)
+        .current_dir(workspace)
+        .status()
+    {
         Ok(status) if status.success() => ExitCode::SUCCESS,
         Ok(_) => ExitCode::FAILURE,
         Err(error) => {

@@ -53,8 +53,8 @@ struct Compared {
 impl Compare {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         let (spectrum, found, warnings) = self.spectrum()?;
-        let asset = htex::Asset::open(&self.asset)
-            .map_err(|error| Failure::asset(&self.asset, error))?;
+        let asset =
+            htex::Asset::open(&self.asset).map_err(|error| Failure::asset(&self.asset, error))?;
         let representations = self.compare(&asset, &spectrum, found)?;
         let comparison = Comparison {
             recording: self.recording.display().to_string(),
@@ -83,7 +83,11 @@ impl Compare {
         let strict = self.reading.strict();
         let segments = &part.segments;
         let found = exploration(&take.recording, segments, take.given, strict, &mut warnings)?;
-        Ok((TextureSpectrum::average(&[part], options.averaging)?, found, warnings))
+        Ok((
+            TextureSpectrum::average(&[part], options.averaging)?,
+            found,
+            warnings,
+        ))
     }
 
     fn compare(

@@ -5,13 +5,11 @@ use clap::Args;
 use htex::VoiceOptions;
 use htex_author::read::{ReadOptions, read_recording};
 use htex_author::simulate::{SimulationOptions, Surface, simulate};
-use htex_author::{
-    AssetRequest, AuthorError, Exploration, FittedAsset, Take, fit_asset,
-};
+use htex_author::{AssetRequest, AuthorError, Exploration, FittedAsset, Take, fit_asset};
 use htex_report::{ModelResult, Texture, TextureReport, texture_report};
 use serde::Serialize;
 
-use crate::assets::{AssetSummary, RepresentationSummary, condition_text, short_name};
+use crate::assets::{AssetSummary, RepresentationSummary, motion_text, short_name};
 use crate::failure::Failure;
 use crate::models::{model_requests, tool};
 use crate::output::{print, print_json, write_file};
@@ -63,7 +61,10 @@ impl Demo {
             print_json(&rows)?;
         } else {
             print(&table(&rows))?;
-            print(&format!("\nThe report, with the spectra: {}\n", report.display()))?;
+            print(&format!(
+                "\nThe report, with the spectra: {}\n",
+                report.display()
+            ))?;
         }
         Ok(ExitCode::SUCCESS)
     }
@@ -84,7 +85,9 @@ impl Demo {
         write_file(&path, &bytes)?;
         let asset = htex::Asset::open(&path).map_err(|error| Failure::asset(&path, error))?;
         for representation in &asset.manifest().representations {
-            let wav = self.dir.join(format!("{name}-{}.wav", short_name(&representation.model)));
+            let wav = self
+                .dir
+                .join(format!("{name}-{}.wav", short_name(&representation.model)));
             play(&asset, &representation.model, &path, &wav)?;
         }
         let summary = AssetSummary::new(&path, bytes.len() as u64, &fitted.asset);
@@ -100,9 +103,8 @@ impl Demo {
             ..SimulationOptions::new(surface)
         };
         let simulation = simulate(&options).map_err(|error| Failure::Other(error.to_string()))?;
-        let write = |file: &mut std::fs::File| {
-            simulation.write_csv(&mut std::io::BufWriter::new(file))
-        };
+        let write =
+            |file: &mut std::fs::File| simulation.write_csv(&mut std::io::BufWriter::new(file));
         htex_format::replace_file(csv, write).map_err(|error| Failure::write(csv, error))
     }
 
@@ -180,7 +182,9 @@ fn play(asset: &htex::Asset, model: &str, file: &Path, wav: &Path) -> Result<(),
     };
     let mut voice = asset.voice(&options).map_err(failure)?;
     let frames = WAV_SECONDS * u64::from(WAV_RATE_HZ);
-    write_wav(wav, WAV_RATE_HZ, frames, |block| voice.render(block).map_err(failure))
+    write_wav(wav, WAV_RATE_HZ, frames, |block| {
+        voice.render(block).map_err(failure)
+    })
 }
 
 /// What the report shows of a texture.
@@ -202,7 +206,9 @@ fn picture(
             lines: (short == "speak").then(|| r.first.lines()),
             short_name: short,
             magnitude_n,
-            spectral_correlation: quality.as_ref().map_or(f64::NAN, |q| q.spectral_correlation),
+            spectral_correlation: quality
+                .as_ref()
+                .map_or(f64::NAN, |q| q.spectral_correlation),
             band_error_rms_db: quality.as_ref().map_or(f64::NAN, |q| q.band_error_rms_db),
             samples_band_error_rms_db: quality.as_ref().and_then(|q| q.samples_band_error_rms_db),
             band_error_db: quality.map(|q| q.band_error_db).unwrap_or_default(),
@@ -213,7 +219,11 @@ fn picture(
     Ok(Texture {
         name: name.to_owned(),
         simulated: manifest.provenance.simulated,
-        condition: manifest.conditions.first().map(condition_text).unwrap_or_default(),
+        condition: manifest
+            .conditions
+            .first()
+            .map(motion_text)
+            .unwrap_or_default(),
         recording_bytes,
         asset_bytes: summary.bytes,
         repeatability_rms_db: summary.repeatability_rms_db,

@@ -16,7 +16,9 @@ pub(crate) struct Explain {
 impl Explain {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         let Some(code) = self.code else {
-            let lines = RULES.iter().map(|rule| format!("{:36} {}\n", rule.code, rule.summary));
+            let lines = RULES
+                .iter()
+                .map(|rule| format!("{:36} {}\n", rule.code, rule.summary));
             print(&lines.collect::<String>())?;
             return Ok(ExitCode::SUCCESS);
         };

@@ -21,7 +21,12 @@ pub(crate) struct Fit {
     recordings: Vec<PathBuf>,
 
     /// Models by short name or id, comma-separated, or `all`
-    #[arg(long, default_value = "all", value_delimiter = ',', value_name = "ID,…")]
+    #[arg(
+        long,
+        default_value = "all",
+        value_delimiter = ',',
+        value_name = "ID,…"
+    )]
     model: Vec<String>,
 
     /// A fit option of a model, e.g. ar.order=6 or mfcc.inverse=nnls; may be given several times
@@ -75,7 +80,10 @@ impl Fit {
         let request = self.request()?;
         let takes = self.reading.read(&self.recordings)?;
         let fitted = fit_asset(&takes, &request)?;
-        let bytes = fitted.asset.to_bytes().map_err(htex_author::AuthorError::from)?;
+        let bytes = fitted
+            .asset
+            .to_bytes()
+            .map_err(htex_author::AuthorError::from)?;
         write_file(&self.output, &bytes)?;
         let mut summary = AssetSummary::new(&self.output, bytes.len() as u64, &fitted.asset);
         for (r, ms) in summary.representations.iter_mut().zip(&fitted.fit_ms) {
@@ -101,7 +109,10 @@ impl Fit {
         if self.level == LevelArg::Recording {
             recorded_options.insert("level".to_owned(), "recording".to_owned());
         }
-        let stem = self.output.file_stem().map(|s| s.to_string_lossy().into_owned());
+        let stem = self
+            .output
+            .file_stem()
+            .map(|s| s.to_string_lossy().into_owned());
         Ok(AssetRequest {
             name: self.name.clone().or(stem).unwrap_or_default(),
             license: self.license.clone(),

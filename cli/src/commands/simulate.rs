@@ -52,8 +52,7 @@ impl Simulate {
             force_n: self.force,
             ..SimulationOptions::new(self.surface)
         };
-        let simulation =
-            simulate(&options).map_err(|error| Failure::Usage(error.to_string()))?;
+        let simulation = simulate(&options).map_err(|error| Failure::Usage(error.to_string()))?;
         let write = |file: &mut std::fs::File| simulation.write_csv(&mut BufWriter::new(file));
         htex_format::replace_file(&self.output, write)
             .map_err(|error| Failure::write(&self.output, error))?;

@@ -51,7 +51,9 @@ impl Synth {
         };
         let mut voice = asset.voice(&options).map_err(failure)?;
         let frames = (self.seconds * f64::from(self.rate)).round().max(1.0) as u64;
-        write_wav(&self.output, self.rate, frames, |block| voice.render(block).map_err(failure))?;
+        write_wav(&self.output, self.rate, frames, |block| {
+            voice.render(block).map_err(failure)
+        })?;
         Ok(ExitCode::SUCCESS)
     }
 }

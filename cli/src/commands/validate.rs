@@ -1,8 +1,10 @@
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use htex_format::{Limits, Report, Severity};
+use htex_format::{Limits, Report, Severity, validate};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
@@ -43,13 +45,24 @@ impl Validate {
         if self.json {
             print_json(&answers)?;
         }
-        Ok(if all_valid { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+        Ok(if all_valid {
+            ExitCode::SUCCESS
+        } else {
+            ExitCode::FAILURE
+        })
     }
 }
 
+/// Validates a file; of one that is too large, no more is read than shows it.
 fn validate_file(path: &Path) -> Result<Report, Failure> {
-    htex_format::validate_file(path, &Limits::default())
-        .map_err(|error| Failure::Other(format!("{}: {error}", path.display())))
+    let limits = Limits::default();
+    let mut bytes = Vec::new();
+    let read =
+        File::open(path).and_then(|file| file.take(limits.file_bytes + 1).read_to_end(&mut bytes));
+    match read {
+        Ok(_) => Ok(validate(&bytes, &limits)),
+        Err(error) => Err(Failure::Other(format!("{}: {error}", path.display()))),
+    }
 }
 
 fn text(path: &Path, report: &Report) -> String {
@@ -61,7 +74,11 @@ fn text(path: &Path, report: &Report) -> String {
             Severity::Warning => "warning",
             Severity::Info => "info",
         };
-        let place = if finding.pointer.is_empty() { "" } else { " at " };
+        let place = if finding.pointer.is_empty() {
+            ""
+        } else {
+            " at "
+        };
         text += &format!(
             "  {severity} {}{place}{}: {}\n",
             finding.code, finding.pointer, finding.message

@@ -16,7 +16,9 @@ const BIN_ENBW_HZ: f64 = 1.5 * GRID_HZ;
 
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     if input.magnitude.iter().all(|&m| m == 0.0) {
-        return Err(Error::cannot_fit("the spectrum is silent: there is no filter to find"));
+        return Err(Error::cannot_fit(
+            "the spectrum is silent: there is no filter to find",
+        ));
     }
     let order = input.options[ORDER] as usize;
     // A band that ends below the tactile one was recorded at twice its end.

@@ -85,7 +85,11 @@ impl AutoregressionVoice {
                 *k + self.step.reflection[i]
             };
         }
-        self.gain = if done { self.target.gain } else { self.gain + self.step.gain };
+        self.gain = if done {
+            self.target.gain
+        } else {
+            self.gain + self.step.gain
+        };
     }
 }
 

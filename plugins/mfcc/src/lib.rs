@@ -52,7 +52,12 @@ impl Model for MelCepstrum {
             MAX_BANDS,
             "c_0 to c_(n-1) of the orthonormal DCT-II of the natural log energies.",
         )
-        .scalar("bands", "1", (2.0, f64::from(MAX_BANDS)), "Number of mel bands.")
+        .scalar(
+            "bands",
+            "1",
+            (2.0, f64::from(MAX_BANDS)),
+            "Number of mel bands.",
+        )
         .stored(whole)
         .scalar(
             "inverse",
@@ -61,8 +66,18 @@ impl Model for MelCepstrum {
             "Way back to a spectrum: 0 pseudo-inverse, 1 non-negative least squares, 2 triangles.",
         )
         .stored(whole)
-        .integer_option("coefficients", (1, MAX_BANDS), 10, "Coefficients kept (paper: ten).")
-        .integer_option("bands", (2, MAX_BANDS), 26, "Mel bands between the edges of the band.")
+        .integer_option(
+            "coefficients",
+            (1, MAX_BANDS),
+            10,
+            "Coefficients kept (paper: ten).",
+        )
+        .integer_option(
+            "bands",
+            (2, MAX_BANDS),
+            26,
+            "Mel bands between the edges of the band.",
+        )
         .choice(
             "inverse",
             &["pinv", "nnls", "interpolate"],
@@ -73,7 +88,9 @@ impl Model for MelCepstrum {
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         if input.magnitude.iter().all(|&m| m == 0.0) {
-            return Err(Error::cannot_fit("the spectrum is silent: all band energies are zero"));
+            return Err(Error::cannot_fit(
+                "the spectrum is silent: all band energies are zero",
+            ));
         }
         let band: Band = input.band.edges().into();
         let bands = input.options[BANDS_OPTION] as usize;
@@ -82,7 +99,9 @@ impl Model for MelCepstrum {
         let power: Vec<f64> = input.magnitude.iter().map(|m| m * m).collect();
         let bank = MelBank::new(bands, band, input.frequency_hz);
         let mut log_energy = bank.energies(&power);
-        log_energy.iter_mut().for_each(|e| *e = libm::log(e.max(FLOOR)));
+        log_energy
+            .iter_mut()
+            .for_each(|e| *e = libm::log(e.max(FLOOR)));
         let mut cepstrum = vec![0.0; kept];
         dct_ii(&log_energy, &mut cepstrum);
         let mut spectrum = Spectrum::new(inverse, band);
@@ -104,7 +123,11 @@ impl Model for MelCepstrum {
         let band = band.edges().into();
         let spectrum = Spectrum::read(parameters, band)?;
         for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
-            *m = if band.contains(f) { spectrum.at(f) / spectrum.level } else { 0.0 };
+            *m = if band.contains(f) {
+                spectrum.at(f) / spectrum.level
+            } else {
+                0.0
+            };
         }
         Ok(())
     }
@@ -190,12 +213,15 @@ impl Spectrum {
 
     /// Makes the magnitudes of a cepstrum. Does not allocate.
     fn set(&mut self, cepstrum: &[f64]) -> Result<(), Error> {
-        self.inverse.magnitude(cepstrum, &mut self.energy, &mut self.magnitude);
+        self.inverse
+            .magnitude(cepstrum, &mut self.energy, &mut self.magnitude);
         self.level = level_rms(&self.magnitude);
         if self.level > 0.0 && self.level.is_finite() {
             return Ok(());
         }
-        Err(Error::parameters("the cepstrum's band energies are not finite, or all zero"))
+        Err(Error::parameters(
+            "the cepstrum's band energies are not finite, or all zero",
+        ))
     }
 
     /// Magnitude between bins: on the straight line between them.

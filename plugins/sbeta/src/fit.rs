@@ -25,7 +25,9 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     let points = reference_points(input);
     let largest = points.iter().map(|p| p.magnitude).fold(0.0, f64::max);
     if largest <= 0.0 {
-        return Err(Error::cannot_fit("the spectrum is silent: there is no profile to fit"));
+        return Err(Error::cannot_fit(
+            "the spectrum is silent: there is no profile to fit",
+        ));
     }
     // Relative magnitudes, so that the tolerances mean the same for a whisper and a blow.
     let points: Vec<Peak> = points
@@ -48,7 +50,12 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
 /// The spectrum's peaks; where there are too few, as many bins evenly spaced in log frequency.
 fn reference_points(input: &FitInput<'_>) -> Vec<Peak> {
     let count = input.options[POINTS] as usize;
-    let peaks = select_peaks(input.frequency_hz, input.magnitude, count, input.options[JND]);
+    let peaks = select_peaks(
+        input.frequency_hz,
+        input.magnitude,
+        count,
+        input.options[JND],
+    );
     if peaks.len() >= FEWEST_PEAKS {
         return peaks;
     }

@@ -148,7 +148,15 @@ impl Shape {
 /// below 1, the value a quarter of a bin inside stands for what a bin that wide would read.
 fn density(alpha: f64, beta: f64, band: Band, frequency_hz: f64) -> f64 {
     let inset = 0.25 * GRID_HZ;
-    let low = if alpha < 1.0 { band.low_hz + inset } else { band.low_hz };
-    let high = if beta < 1.0 { band.high_hz - inset } else { band.high_hz };
+    let low = if alpha < 1.0 {
+        band.low_hz + inset
+    } else {
+        band.low_hz
+    };
+    let high = if beta < 1.0 {
+        band.high_hz - inset
+    } else {
+        band.high_hz
+    };
     beta_pdf(log_unit(frequency_hz.clamp(low, high), band), alpha, beta)
 }

@@ -45,7 +45,13 @@ impl Model for SpectralPeak {
             env!("CARGO_PKG_VERSION"),
             "The strongest spectral peaks, each distinguishable from the next, as sinusoids.",
         )
-        .list("frequency_hz", "Hz", (0.0, 2000.0), MAX_PEAKS as u32, "Frequencies of the sinusoids.")
+        .list(
+            "frequency_hz",
+            "Hz",
+            (0.0, 2000.0),
+            MAX_PEAKS as u32,
+            "Frequencies of the sinusoids.",
+        )
         .stored(hertz)
         .list(
             "amplitude",
@@ -66,7 +72,12 @@ impl Model for SpectralPeak {
             offset: 0.0,
             log: false,
         })
-        .integer_option("count", (1, MAX_PEAKS as u32), 10, "Most peaks kept (paper: ten).")
+        .integer_option(
+            "count",
+            (1, MAX_PEAKS as u32),
+            10,
+            "Most peaks kept (paper: ten).",
+        )
         .option(
             "jnd",
             "1",
@@ -79,7 +90,12 @@ impl Model for SpectralPeak {
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         let count = input.options[COUNT] as usize;
-        let mut peaks = select_peaks(input.frequency_hz, input.magnitude, count, input.options[JND]);
+        let mut peaks = select_peaks(
+            input.frequency_hz,
+            input.magnitude,
+            count,
+            input.options[JND],
+        );
         let strongest = peaks.iter().map(|p| p.magnitude).fold(0.0, f64::max);
         peaks.retain(|p| p.magnitude > FAINTEST * strongest);
         if peaks.is_empty() {

@@ -79,7 +79,11 @@ impl Model for SpectralSlope {
         let shape = Shape::new(parameters);
         let level = shape.level(band)?;
         for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
-            *m = if band.contains(f) { shape.at(f) / level } else { 0.0 };
+            *m = if band.contains(f) {
+                shape.at(f) / level
+            } else {
+                0.0
+            };
         }
         Ok(())
     }

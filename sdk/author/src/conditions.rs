@@ -69,7 +69,10 @@ pub(crate) fn group_takes(
         });
         groups.push(Group { spectrum });
     }
-    if groups.windows(2).any(|pair| pair[0].spectrum.band != pair[1].spectrum.band) {
+    if groups
+        .windows(2)
+        .any(|pair| pair[0].spectrum.band != pair[1].spectrum.band)
+    {
         return Err(AuthorError::BandsDiffer);
     }
     Ok(Grouped {

@@ -72,7 +72,12 @@ pub fn exploration(
         }
         Ok(target.or(Some(range.mean)))
     };
-    let force_n = judge("normal force", "N", recording.normal_n.as_ref(), given.force_n)?;
+    let force_n = judge(
+        "normal force",
+        "N",
+        recording.normal_n.as_ref(),
+        given.force_n,
+    )?;
     let speed = recording.speed_mm_s.as_ref();
     let found = Exploration {
         speed_mm_s: judge("scanning speed", "mm/s", speed, given.speed_mm_s)?,
@@ -91,7 +96,10 @@ struct Range {
 impl Range {
     fn over(values: &[f64], rate_hz: f64, segments: &Segments) -> Option<Self> {
         let smooth = moving_average(values, (HALF_AVERAGE_S * rate_hz).round() as usize);
-        let parts = segments.starts.iter().filter_map(|&s| smooth.get(s..s + segments.len));
+        let parts = segments
+            .starts
+            .iter()
+            .filter_map(|&s| smooth.get(s..s + segments.len));
         let all: Vec<f64> = parts.flatten().copied().collect();
         (!all.is_empty()).then(|| Self {
             mean: all.iter().sum::<f64>() / all.len() as f64,
@@ -106,7 +114,11 @@ impl Range {
         if ![self.mean, self.min, self.max].into_iter().any(off) {
             return None;
         }
-        let name = if target.is_some() { "its target" } else { "its mean" };
+        let name = if target.is_some() {
+            "its target"
+        } else {
+            "its mean"
+        };
         Some(format!(
             "{what} leaves {name} of {aim:.4} {unit} by more than 10 %: mean {:.4}, from {:.4} to \
              {:.4} {unit}",

@@ -6,7 +6,7 @@ use std::time::Instant;
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
 use htex_dsp::grid::level_rms;
 use htex_format::{
-    AtCondition, Asset, Condition, LATERAL_FORCE, Manifest, NEWTON, Provenance, Quality, Reference,
+    Asset, AtCondition, Condition, LATERAL_FORCE, Manifest, NEWTON, Provenance, Quality, Reference,
     Representation, Source, VERSION, round_parameters,
 };
 use htex_host::{FitRequest, HostError, LoadedModel};
@@ -226,9 +226,13 @@ fn assemble(
     fitted: Vec<FittedModel>,
 ) -> Asset {
     // There is a spectrum a condition, all of one band: `group_takes` sees to it.
-    let band = spectra.first().map_or((20.0, 1000.0), |s| (s.band.low_hz, s.band.high_hz));
-    let (representations, parameters) =
-        fitted.into_iter().map(|f| (f.representation, f.parameters)).unzip();
+    let band = spectra
+        .first()
+        .map_or((20.0, 1000.0), |s| (s.band.low_hz, s.band.high_hz));
+    let (representations, parameters) = fitted
+        .into_iter()
+        .map(|f| (f.representation, f.parameters))
+        .unzip();
     let to_f32 = |s: &TextureSpectrum| s.magnitude_n.iter().map(|&m| m as f32).collect();
     Asset {
         manifest: Manifest {
@@ -254,7 +258,9 @@ fn assemble(
             other: BTreeMap::new(),
         },
         parameters,
-        reference: request.keep_reference.then(|| spectra.iter().map(to_f32).collect()),
+        reference: request
+            .keep_reference
+            .then(|| spectra.iter().map(to_f32).collect()),
         notes: Vec::new(),
     }
 }

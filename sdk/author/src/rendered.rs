@@ -28,7 +28,10 @@ pub fn rendered_spectrum(
     let rate_hz = 4.0 * reference.band.last_bin() as f64 * GRID_HZ;
     let mut samples = vec![0.0f32; (SECONDS * rate_hz) as usize];
     Stream::new(model, parameters, reference.band, rate_hz, SEED)?.render(&mut samples)?;
-    let newtons = samples.iter().map(|&x| f64::from(x) * level_n_rms).collect();
+    let newtons = samples
+        .iter()
+        .map(|&x| f64::from(x) * level_n_rms)
+        .collect();
     let recording = Recording::new(model.id(), rate_hz, vec![newtons])?;
     let options = SpectrumOptions {
         segments: SegmentChoice::Windows,

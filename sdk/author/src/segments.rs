@@ -61,7 +61,10 @@ pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments
     };
     let samples = recording.samples();
     let starts = if from_sweeps {
-        sweeps.iter().filter_map(|sweep| middle(*sweep, len, samples)).collect()
+        sweeps
+            .iter()
+            .filter_map(|sweep| middle(*sweep, len, samples))
+            .collect()
     } else {
         (0..samples / len).map(|i| i * len).collect()
     };

@@ -92,8 +92,10 @@ impl TextureSpectrum {
         if parts.iter().any(|part| part.band != first.band) {
             return Err(AuthorError::BandsDiffer);
         }
-        let all: Vec<&[Complex<f64>]> =
-            parts.iter().flat_map(|part| part.spectra.iter().map(Vec::as_slice)).collect();
+        let all: Vec<&[Complex<f64>]> = parts
+            .iter()
+            .flat_map(|part| part.spectra.iter().map(Vec::as_slice))
+            .collect();
         let frequency_hz = first.band.grid_hz();
         let (signal_n, signal_rate_hz) = overlap_add(first.band, &all);
         Ok(Self {
@@ -129,7 +131,10 @@ pub fn segment_spectra(
     let band = usable_band(recording, &mut warnings)?;
     let segments = choose_segments(recording, options.segments);
     check_segments(recording, &segments, &mut warnings)?;
-    let inverse = options.response.as_ref().map(|r| inverse_response(r, band, &mut warnings));
+    let inverse = options
+        .response
+        .as_ref()
+        .map(|r| inverse_response(r, band, &mut warnings));
     let mut spectra = Vec::with_capacity(segments.starts.len());
     let mut reader = SegmentReader::new(segments.len, band);
     for &start in &segments.starts {
@@ -255,7 +260,9 @@ impl SegmentReader {
         for axis in axes {
             let mut bins = self.analyzer.make_bins();
             let segment = axis.get(start..start + self.len).unwrap_or_default();
-            self.analyzer.analyze(segment, &mut bins).map_err(|_| AuthorError::BandsDiffer)?;
+            self.analyzer
+                .analyze(segment, &mut bins)
+                .map_err(|_| AuthorError::BandsDiffer)?;
             spectra.push(bins);
         }
         let folded = match &spectra[..] {
@@ -264,7 +271,9 @@ impl SegmentReader {
         };
         let scale = self.analyzer.amplitude_scale();
         let in_band = self.band.first_bin()..=self.band.last_bin();
-        Ok(in_band.map(|k| folded.get(k).copied().unwrap_or_default() * scale).collect())
+        Ok(in_band
+            .map(|k| folded.get(k).copied().unwrap_or_default() * scale)
+            .collect())
     }
 }
 

@@ -7,7 +7,11 @@ use htex_host::{Descriptor, Kind};
 pub fn stored_fields(descriptor: &Descriptor) -> Vec<Field> {
     let field = |f: &htex_host::Field| Field {
         name: f.name.clone(),
-        unit: if f.unit == "1" { String::new() } else { f.unit.clone() },
+        unit: if f.unit == "1" {
+            String::new()
+        } else {
+            f.unit.clone()
+        },
         list: matches!(f.kind, Kind::List { .. }),
         store: store(f.store),
     };

@@ -13,7 +13,11 @@ const ORDER: usize = 8;
 /// above the Nyquist frequency needs no filter and gets none.
 pub fn band_limit(band: Band, rate_hz: f64) -> Cascade {
     let half_bin = 0.5 * GRID_HZ;
-    let low = high_pass(ORDER, (band.low_hz - half_bin).max(0.5 * band.low_hz), rate_hz);
+    let low = high_pass(
+        ORDER,
+        (band.low_hz - half_bin).max(0.5 * band.low_hz),
+        rate_hz,
+    );
     let high = low_pass(ORDER, band.high_hz + half_bin, rate_hz);
     let sections: Vec<_> = [low, high]
         .iter()

@@ -1,9 +1,6 @@
 //! Models linked into this program, called through their tables.
 
-use htex_model::Band;
 use htex_model::abi::ModelTable;
-
-use crate::raw::{RawFit, RawModel};
 
 /// The tables of the built-in models, in the order in which they are shown.
 pub(crate) fn tables() -> [&'static ModelTable; 5] {
@@ -14,109 +11,4 @@ pub(crate) fn tables() -> [&'static ModelTable; 5] {
         &htex_sbeta::TABLE,
         &htex_sslope::TABLE,
     ]
-}
-
-/// A model behind a table of native functions.
-pub(crate) struct TableModel(pub(crate) &'static ModelTable);
-
-// Each call below passes slices of this program, readable or writable for its whole length during
-// the call, as the ABI asks; voices are kept to one thread by `ModelVoice`, which owns the handle.
-impl RawModel for TableModel {
-    fn abi_version(&self) -> u32 {
-        (self.0.abi_version)()
-    }
-
-    fn descriptor(&self, out: &mut [u8]) -> i64 {
-        // SAFETY: a live slice.
-        unsafe { (self.0.descriptor)(out.as_mut_ptr(), out.len()) }
-    }
-
-    fn last_error(&self, out: &mut [u8]) -> i64 {
-        // SAFETY: a live slice.
-        unsafe { (self.0.last_error)(out.as_mut_ptr(), out.len()) }
-    }
-
-    fn fit(&self, call: &RawFit<'_>, parameters: &mut [f64], level_rms: &mut f64) -> i64 {
-        // SAFETY: live slices; `magnitude` is as long as `frequency_hz`, which `LoadedModel` checks.
-        unsafe {
-            (self.0.fit)(
-                call.band.low_hz,
-                call.band.high_hz,
-                call.frequency_hz.as_ptr(),
-                call.magnitude.as_ptr(),
-                call.frequency_hz.len().min(call.magnitude.len()),
-                call.signal.as_ptr(),
-                call.signal.len(),
-                call.signal_rate_hz,
-                call.options.as_ptr(),
-                call.options.len(),
-                parameters.as_mut_ptr(),
-                parameters.len(),
-                level_rms,
-            )
-        }
-    }
-
-    fn magnitude(
-        &self,
-        parameters: &[f64],
-        band: Band,
-        frequency_hz: &[f64],
-        magnitude: &mut [f64],
-    ) -> i64 {
-        // SAFETY: live slices; the shorter of the two lengths is used for both.
-        unsafe {
-            (self.0.magnitude)(
-                parameters.as_ptr(),
-                parameters.len(),
-                band.low_hz,
-                band.high_hz,
-                frequency_hz.as_ptr(),
-                magnitude.as_mut_ptr(),
-                frequency_hz.len().min(magnitude.len()),
-            )
-        }
-    }
-
-    fn interpolate(&self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64 {
-        // SAFETY: live slices.
-        unsafe {
-            (self.0.interpolate)(
-                sets.as_ptr(),
-                sets.len(),
-                weights.as_ptr(),
-                weights.len(),
-                parameters.as_mut_ptr(),
-                parameters.len(),
-            )
-        }
-    }
-
-    fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64 {
-        let (low, high) = band.edges();
-        // SAFETY: a live slice.
-        unsafe { (self.0.voice_rate)(parameters.as_ptr(), parameters.len(), low, high, wanted_hz) }
-    }
-
-    fn voice_new(&self, parameters: &[f64], band: Band, rate_hz: f64, seed: u64) -> i64 {
-        let (low, high) = band.edges();
-        // SAFETY: a live slice.
-        unsafe {
-            (self.0.voice_new)(parameters.as_ptr(), parameters.len(), low, high, rate_hz, seed)
-        }
-    }
-
-    fn voice_render(&self, voice: i64, out: &mut [f32]) -> i64 {
-        // SAFETY: a live slice; the handle is used by one thread at a time.
-        unsafe { (self.0.voice_render)(voice, out.as_mut_ptr(), out.len()) }
-    }
-
-    fn voice_retune(&self, voice: i64, parameters: &[f64]) -> i64 {
-        // SAFETY: a live slice; the handle is used by one thread at a time.
-        unsafe { (self.0.voice_retune)(voice, parameters.as_ptr(), parameters.len()) }
-    }
-
-    fn voice_free(&self, voice: i64) -> i64 {
-        (self.0.voice_free)(voice)
-    }
 }

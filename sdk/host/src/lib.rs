@@ -21,6 +21,7 @@ mod options;
 mod raw;
 mod registry;
 mod stream;
+mod table;
 mod voice;
 
 pub use error::HostError;

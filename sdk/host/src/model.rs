@@ -36,7 +36,9 @@ pub struct LoadedModel {
 
 impl std::fmt::Debug for LoadedModel {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_tuple("LoadedModel").field(&self.descriptor.id).finish()
+        f.debug_tuple("LoadedModel")
+            .field(&self.descriptor.id)
+            .finish()
     }
 }
 
@@ -124,7 +126,10 @@ impl LoadedModel {
         let call = "magnitude";
         let mut magnitude = vec![f64::NAN; frequency_hz.len()];
         let (raw, band) = (&self.raw, abi_band(band));
-        self.check(call, raw.magnitude(parameters, band, frequency_hz, &mut magnitude))?;
+        self.check(
+            call,
+            raw.magnitude(parameters, band, frequency_hz, &mut magnitude),
+        )?;
         match magnitude.iter().position(|m| !m.is_finite() || *m < 0.0) {
             None => Ok(magnitude),
             Some(i) => {
@@ -199,23 +204,29 @@ impl LoadedModel {
         seed: u64,
     ) -> Result<ModelVoice, HostError> {
         let band = abi_band(band);
-        let handle = self.raw.voice_new(parameters, band, rate_hz, seed);
-        self.check("voice_new", handle)?;
-        Ok(ModelVoice::new(self.clone(), handle))
+        match self.raw.voice_new(parameters, band, rate_hz, seed) {
+            Ok(voice) => Ok(ModelVoice::new(self.clone(), voice)),
+            Err(status) => Err(self.told("voice_new", status, |out| self.raw.last_error(out))),
+        }
     }
 
-    pub(crate) fn raw(&self) -> &dyn RawModel {
-        &*self.raw
-    }
-
-    /// A length or handle, or the error that a negative answer stands for.
-    pub(crate) fn check(&self, call: &'static str, answer: i64) -> Result<usize, HostError> {
+    /// A length, or the error that a negative answer stands for.
+    fn check(&self, call: &'static str, answer: i64) -> Result<usize, HostError> {
         if answer >= 0 {
             return Ok(answer as usize);
         }
-        let text = text(|out| self.raw.last_error(out));
-        let message = text.unwrap_or_else(|| "no reason given".to_owned());
-        Err(self.error(call, Status::from_code(answer), message))
+        Err(self.told(call, answer, |out| self.raw.last_error(out)))
+    }
+
+    /// The error of a negative answer, in the words of the model.
+    pub(crate) fn told(
+        &self,
+        call: &'static str,
+        answer: i64,
+        last_error: impl FnMut(&mut [u8]) -> i64,
+    ) -> HostError {
+        let message = text(last_error).unwrap_or_else(|| "no reason given".to_owned());
+        self.error(call, Status::from_code(answer), message)
     }
 
     /// Calls with a buffer of the usual size, and once more if that was too small; the answer must
@@ -279,11 +290,19 @@ fn text(mut call: impl FnMut(&mut [u8]) -> i64) -> Option<String> {
 fn check_descriptor(descriptor: &Descriptor) -> Result<(), String> {
     let dotted = descriptor.id.split('.').count() >= 3
         && descriptor.id.split('.').all(|part| !part.is_empty());
-    if !dotted || !descriptor.id.bytes().all(|b| b.is_ascii_alphanumeric() || b"._-".contains(&b)) {
+    if !dotted
+        || !descriptor
+            .id
+            .bytes()
+            .all(|b| b.is_ascii_alphanumeric() || b"._-".contains(&b))
+    {
         return Err(format!("`{}` is not a reverse-DNS id", descriptor.id));
     }
     if semver::Version::parse(&descriptor.version).is_err() {
-        return Err(format!("`{}` is not a semantic version", descriptor.version));
+        return Err(format!(
+            "`{}` is not a semantic version",
+            descriptor.version
+        ));
     }
     if descriptor.fields.is_empty() || descriptor.fields.len() > 32 {
         return Err("1 to 32 parameter fields are allowed".to_owned());

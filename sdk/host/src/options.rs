@@ -20,7 +20,10 @@ impl LoadedModel {
         for (name, text) in given {
             let Some(i) = options.iter().position(|o| o.name == *name) else {
                 let known: Vec<&str> = options.iter().map(|o| o.name.as_str()).collect();
-                return Err(error(format!("`{name}` is unknown; there are {}", known.join(", "))));
+                return Err(error(format!(
+                    "`{name}` is unknown; there are {}",
+                    known.join(", ")
+                )));
             };
             values[i] = parse(&options[i], text).map_err(error)?;
         }
@@ -41,7 +44,11 @@ fn parse(option: &FitOption, text: &str) -> Result<f64, String> {
         .filter(|v| (option.min..=option.max).contains(v))
         .filter(|v| !option.integer || v.fract() == 0.0)
         .ok_or_else(|| {
-            let kind = if option.integer { "a whole number" } else { "a number" };
+            let kind = if option.integer {
+                "a whole number"
+            } else {
+                "a number"
+            };
             format!(
                 "`{}` is `{text}`; it takes {kind} from {} to {} {}",
                 option.name, option.min, option.max, option.unit

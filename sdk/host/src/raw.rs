@@ -28,10 +28,19 @@ pub(crate) trait RawModel: Send + Sync {
     ) -> i64;
     fn interpolate(&self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64;
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64;
-    fn voice_new(&self, parameters: &[f64], band: Band, rate_hz: f64, seed: u64) -> i64;
-    /// The handle is this model's own, live, and used by one thread at a time.
-    fn voice_render(&self, voice: i64, out: &mut [f32]) -> i64;
-    /// As [`Self::voice_render`].
-    fn voice_retune(&self, voice: i64, parameters: &[f64]) -> i64;
-    fn voice_free(&self, voice: i64) -> i64;
+    /// Makes a voice, or answers a status.
+    fn voice_new(
+        &self,
+        parameters: &[f64],
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Box<dyn RawVoice>, i64>;
+}
+
+/// One voice of a model; freed when it is dropped.
+pub(crate) trait RawVoice: Send {
+    fn render(&mut self, out: &mut [f32]) -> i64;
+    fn retune(&mut self, parameters: &[f64]) -> i64;
+    fn last_error(&self, out: &mut [u8]) -> i64;
 }

@@ -1,17 +1,25 @@
-//! A voice of a model, freed when it is dropped.
+//! A voice of a model.
 
+use crate::raw::RawVoice;
 use crate::{HostError, LoadedModel};
 
 /// An endless stream of samples of unit RMS at the model's own rate.
-#[derive(Debug)]
 pub struct ModelVoice {
     model: LoadedModel,
-    handle: i64,
+    raw: Box<dyn RawVoice>,
+}
+
+impl std::fmt::Debug for ModelVoice {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ModelVoice")
+            .field("model", &self.model)
+            .finish_non_exhaustive()
+    }
 }
 
 impl ModelVoice {
-    pub(crate) fn new(model: LoadedModel, handle: i64) -> Self {
-        Self { model, handle }
+    pub(crate) fn new(model: LoadedModel, raw: Box<dyn RawVoice>) -> Self {
+        Self { model, raw }
     }
 
     /// Fills `out` with the next samples. Does not allocate, lock or block for a well-made model.
@@ -19,8 +27,9 @@ impl ModelVoice {
     /// # Errors
     /// When the model fails; `out` is then silent.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), HostError> {
-        let answer = self.model.raw().voice_render(self.handle, out);
-        self.model.check("voice_render", answer).map(|_| ()).inspect_err(|_| out.fill(0.0))
+        let answer = self.raw.render(out);
+        self.check("voice_render", answer)
+            .inspect_err(|_| out.fill(0.0))
     }
 
     /// Changes to other parameters without a click.
@@ -28,14 +37,16 @@ impl ModelVoice {
     /// # Errors
     /// When the model refuses them; the voice then plays on as before.
     pub fn retune(&mut self, parameters: &[f64]) -> Result<(), HostError> {
-        let answer = self.model.raw().voice_retune(self.handle, parameters);
-        self.model.check("voice_retune", answer).map(|_| ())
+        let answer = self.raw.retune(parameters);
+        self.check("voice_retune", answer)
     }
-}
 
-impl Drop for ModelVoice {
-    fn drop(&mut self) {
-        // The handle is live and ours; there is nobody to tell if a model cannot free it.
-        self.model.raw().voice_free(self.handle);
+    fn check(&self, call: &'static str, answer: i64) -> Result<(), HostError> {
+        if answer >= 0 {
+            return Ok(());
+        }
+        Err(self
+            .model
+            .told(call, answer, |out| self.raw.last_error(out)))
     }
 }

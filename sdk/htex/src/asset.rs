@@ -92,7 +92,14 @@ impl Asset {
             None => self.first_condition(r),
         };
         let model = self.model(r)?;
-        Voice::new(self.known(r), model, self.band(), options.rate_hz, options.seed, motion)
+        Voice::new(
+            self.known(r),
+            model,
+            self.band(),
+            options.rate_hz,
+            options.seed,
+            motion,
+        )
     }
 
     /// Magnitudes of a representation at a motion (else its first condition) and frequencies in
@@ -146,7 +153,11 @@ impl Asset {
         };
         found.ok_or_else(|| Error::NoRepresentation {
             wanted: model.unwrap_or("any").to_owned(),
-            there: all.iter().map(|r| r.model.as_str()).collect::<Vec<_>>().join(", "),
+            there: all
+                .iter()
+                .map(|r| r.model.as_str())
+                .collect::<Vec<_>>()
+                .join(", "),
         })
     }
 
@@ -175,7 +186,10 @@ impl Asset {
         let at = &manifest.representations[representation].at;
         let point = |condition: usize| {
             let condition = &manifest.conditions[condition];
-            [condition.speed_mm_s.unwrap_or(0.0), condition.force_n.unwrap_or(0.0)]
+            [
+                condition.speed_mm_s.unwrap_or(0.0),
+                condition.force_n.unwrap_or(0.0),
+            ]
         };
         let points: Vec<[f64; 2]> = at.iter().map(|a| point(a.condition)).collect();
         Known {
@@ -197,7 +211,11 @@ impl Asset {
 
 fn is_named(representation: &Representation, name: &str) -> bool {
     let id = &representation.model;
-    id == name || id.rsplit('.').next().is_some_and(|short| short.eq_ignore_ascii_case(name))
+    id == name
+        || id
+            .rsplit('.')
+            .next()
+            .is_some_and(|short| short.eq_ignore_ascii_case(name))
 }
 
 /// The representation of least nine-band error at its first condition; unmeasured ones come last.
@@ -227,7 +245,10 @@ impl Known {
     ) -> Result<(Vec<f64>, f64), Error> {
         let weights = self.mesh.weights(speed_mm_s, force_n);
         let level_n = weights.iter().map(|(i, w)| w * self.level_n[i]).sum();
-        let sets: Vec<&[f64]> = weights.iter().map(|(i, _)| &self.parameters[i][..]).collect();
+        let sets: Vec<&[f64]> = weights
+            .iter()
+            .map(|(i, _)| &self.parameters[i][..])
+            .collect();
         if let [only] = sets[..] {
             return Ok((only.to_vec(), level_n));
         }

@@ -55,8 +55,10 @@ impl Mesh {
             let largest = conditions.iter().map(|c| c[axis].abs()).fold(0.0, f64::max);
             if largest > 0.0 { 1.0 / largest } else { 1.0 }
         });
-        let points: Vec<[f64; 2]> =
-            conditions.iter().map(|c| [c[0] * scale[0], c[1] * scale[1]]).collect();
+        let points: Vec<[f64; 2]> = conditions
+            .iter()
+            .map(|c| [c[0] * scale[0], c[1] * scale[1]])
+            .collect();
         let (triangles, edges) = triangulate(&points).unwrap_or_else(|| (vec![], chain(&points)));
         Self {
             points,
@@ -76,7 +78,11 @@ impl Mesh {
     fn in_triangle(&self, corners: [usize; 3], q: [f64; 2]) -> Option<Weights> {
         let [a, b, c] = corners.map(|i| self.points[i]);
         let area = cross(a, b, c);
-        let weight = [cross(q, b, c) / area, cross(a, q, c) / area, cross(a, b, q) / area];
+        let weight = [
+            cross(q, b, c) / area,
+            cross(a, q, c) / area,
+            cross(a, b, q) / area,
+        ];
         let inside = weight.iter().all(|w| *w >= 0.0);
         inside.then_some(Weights {
             condition: corners,
@@ -169,11 +175,20 @@ mod tests {
         assert_eq!(at(&mesh, 1e9, 100.0), [(3, 1.0)]);
         let beside = at(&mesh, 100.0, 0.0);
         assert_eq!(beside.len(), 2);
-        assert!(beside.iter().all(|(i, w)| *i < 2 && (w - 0.5).abs() < 1e-12));
+        assert!(
+            beside
+                .iter()
+                .all(|(i, w)| *i < 2 && (w - 0.5).abs() < 1e-12)
+        );
         // Anywhere inside: weights that give back the point.
         for (speed, force) in [(60.0, 0.3), (100.0, 0.5), (149.0, 0.79)] {
             let weights = at(&mesh, speed, force);
-            let mean = |axis: usize| weights.iter().map(|(i, w)| square[*i][axis] * w).sum::<f64>();
+            let mean = |axis: usize| {
+                weights
+                    .iter()
+                    .map(|(i, w)| square[*i][axis] * w)
+                    .sum::<f64>()
+            };
             assert!((mean(0) - speed).abs() < 1e-9 && (mean(1) - force).abs() < 1e-12);
         }
     }

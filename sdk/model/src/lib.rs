@@ -19,9 +19,9 @@ mod descriptor;
 mod error;
 #[cfg(feature = "std")]
 mod export;
+pub mod mix;
 #[cfg(feature = "std")]
 pub mod shim;
-pub mod mix;
 mod traits;
 mod values;
 #[cfg(feature = "std")]

@@ -143,7 +143,10 @@ impl<M: Model> State<M> {
             if let Some(level) = level.first_mut() {
                 *level = fit.level_rms;
             }
-            Ok(copy_numbers(&fit.parameters, call.parameters.get("parameters")?))
+            Ok(copy_numbers(
+                &fit.parameters,
+                call.parameters.get("parameters")?,
+            ))
         })
     }
 
@@ -206,7 +209,10 @@ impl<M: Model> State<M> {
             check_rate(rate_hz)?;
             let voice = M::voice(&self.values(parameters)?, band(band_hz)?, rate_hz, seed)?;
             self.voices.insert(voice).ok_or_else(|| {
-                Error::new(Status::TooManyVoices, "no more voices can be made; free some")
+                Error::new(
+                    Status::TooManyVoices,
+                    "no more voices can be made; free some",
+                )
             })
         })
     }
@@ -251,7 +257,8 @@ impl<M: Model> State<M> {
 /// See [`crate::abi::LastError`].
 pub fn last_error(out: Output<'_, u8>) -> i64 {
     let text = LAST_ERROR.with(|last| last.try_borrow().map(|t| t.clone()).unwrap_or_default());
-    out.0.map_or(Status::InvalidArgument as i64, |out| copy_text(&text, out))
+    out.0
+        .map_or(Status::InvalidArgument as i64, |out| copy_text(&text, out))
 }
 
 /// See [`crate::abi::ExtensionFn`]. No extension is defined yet.
@@ -267,7 +274,10 @@ fn answer(call: impl FnOnce() -> Result<i64, Error>) -> i64 {
             .map(ToString::to_string)
             .or_else(|| panic.downcast_ref::<String>().cloned())
             .unwrap_or_default();
-        Err(Error::new(Status::Panicked, format!("the model panicked: {text}")))
+        Err(Error::new(
+            Status::Panicked,
+            format!("the model panicked: {text}"),
+        ))
     });
     result.unwrap_or_else(|error| {
         LAST_ERROR.with(|last| {
@@ -316,7 +326,9 @@ fn check_rate(rate_hz: f64) -> Result<(), Error> {
 fn finite(name: &str, numbers: &[f64]) -> Result<(), Error> {
     match numbers.iter().position(|x| !x.is_finite()) {
         None => Ok(()),
-        Some(i) => Err(Error::argument(format!("`{name}`[{i}] is not a finite number"))),
+        Some(i) => Err(Error::argument(format!(
+            "`{name}`[{i}] is not a finite number"
+        ))),
     }
 }
 
@@ -380,7 +392,9 @@ fn read_sets<'a>(
         flat = &flat[used..];
     }
     if !flat.is_empty() {
-        return Err(Error::argument("numbers stand behind the last parameter set"));
+        return Err(Error::argument(
+            "numbers stand behind the last parameter set",
+        ));
     }
     Ok(sets)
 }

@@ -1,0 +1,148 @@
+//! A model behind a table of native functions: built in, or of a native library.
+
+use htex_model::Band;
+use htex_model::abi::ModelTable;
+
+use crate::raw::{RawFit, RawModel, RawVoice};
+
+/// A model behind a table of native functions.
+pub(crate) struct TableModel(pub(crate) &'static ModelTable);
+
+// Each call below passes slices of this program, readable or writable for its whole length during
+// the call, as the ABI asks; a voice's handle is
+// held by its `TableVoice` alone.
+impl RawModel for TableModel {
+    fn abi_version(&self) -> u32 {
+        (self.0.abi_version)()
+    }
+
+    fn descriptor(&self, out: &mut [u8]) -> i64 {
+        // SAFETY: a live slice.
+        unsafe { (self.0.descriptor)(out.as_mut_ptr(), out.len()) }
+    }
+
+    fn last_error(&self, out: &mut [u8]) -> i64 {
+        // SAFETY: a live slice.
+        unsafe { (self.0.last_error)(out.as_mut_ptr(), out.len()) }
+    }
+
+    fn fit(&self, call: &RawFit<'_>, parameters: &mut [f64], level_rms: &mut f64) -> i64 {
+        // SAFETY: live slices; `magnitude` is as long as `frequency_hz`, which `LoadedModel` checks.
+        unsafe {
+            (self.0.fit)(
+                call.band.low_hz,
+                call.band.high_hz,
+                call.frequency_hz.as_ptr(),
+                call.magnitude.as_ptr(),
+                call.frequency_hz.len().min(call.magnitude.len()),
+                call.signal.as_ptr(),
+                call.signal.len(),
+                call.signal_rate_hz,
+                call.options.as_ptr(),
+                call.options.len(),
+                parameters.as_mut_ptr(),
+                parameters.len(),
+                level_rms,
+            )
+        }
+    }
+
+    fn magnitude(
+        &self,
+        parameters: &[f64],
+        band: Band,
+        frequency_hz: &[f64],
+        magnitude: &mut [f64],
+    ) -> i64 {
+        // SAFETY: live slices; the shorter of the two lengths is used for both.
+        unsafe {
+            (self.0.magnitude)(
+                parameters.as_ptr(),
+                parameters.len(),
+                band.low_hz,
+                band.high_hz,
+                frequency_hz.as_ptr(),
+                magnitude.as_mut_ptr(),
+                frequency_hz.len().min(magnitude.len()),
+            )
+        }
+    }
+
+    fn interpolate(&self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64 {
+        // SAFETY: live slices.
+        unsafe {
+            (self.0.interpolate)(
+                sets.as_ptr(),
+                sets.len(),
+                weights.as_ptr(),
+                weights.len(),
+                parameters.as_mut_ptr(),
+                parameters.len(),
+            )
+        }
+    }
+
+    fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64 {
+        let (low, high) = band.edges();
+        // SAFETY: a live slice.
+        unsafe { (self.0.voice_rate)(parameters.as_ptr(), parameters.len(), low, high, wanted_hz) }
+    }
+
+    fn voice_new(
+        &self,
+        parameters: &[f64],
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Box<dyn RawVoice>, i64> {
+        let (low, high) = band.edges();
+        // SAFETY: a live slice.
+        let handle = unsafe {
+            (self.0.voice_new)(
+                parameters.as_ptr(),
+                parameters.len(),
+                low,
+                high,
+                rate_hz,
+                seed,
+            )
+        };
+        if handle < 0 {
+            return Err(handle);
+        }
+        Ok(Box::new(TableVoice {
+            table: self.0,
+            handle,
+        }))
+    }
+}
+
+/// A voice behind a handle, which it alone holds.
+struct TableVoice {
+    table: &'static ModelTable,
+    handle: i64,
+}
+
+impl RawVoice for TableVoice {
+    fn render(&mut self, out: &mut [f32]) -> i64 {
+        // SAFETY: a live slice; `&mut self` keeps the handle to one thread at a time.
+        unsafe { (self.table.voice_render)(self.handle, out.as_mut_ptr(), out.len()) }
+    }
+
+    fn retune(&mut self, parameters: &[f64]) -> i64 {
+        // SAFETY: a live slice; `&mut self` keeps the handle to one thread at a time.
+        unsafe { (self.table.voice_retune)(self.handle, parameters.as_ptr(), parameters.len()) }
+    }
+
+    fn last_error(&self, out: &mut [u8]) -> i64 {
+        // SAFETY: a live slice.
+        unsafe { (self.table.last_error)(out.as_mut_ptr(), out.len()) }
+    }
+}
+
+impl Drop for TableVoice {
+    fn drop(&mut self) {
+        // There is nobody to tell if a model cannot free what it made.
+        (self.table.voice_free)(self.handle);
+    }
+}

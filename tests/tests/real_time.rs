@@ -1,0 +1,95 @@
+//! What runs in the audio or haptic thread neither allocates nor frees.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use htex::{Asset, VoiceOptions};
+use htex_author::simulate::{SimulationOptions, Surface, simulate};
+use htex_author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
+use htex_host::Registry;
+
+thread_local! {
+    static CALLS: Cell<usize> = const { Cell::new(0) };
+}
+
+/// Counts what a thread asks of the system's allocator.
+struct Counting;
+
+// SAFETY: every call goes to the system's allocator as it came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        CALLS.with(|calls| calls.set(calls.get() + 1));
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        CALLS.with(|calls| calls.set(calls.get() + 1));
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+fn count(run: impl FnOnce()) -> usize {
+    let before = CALLS.with(Cell::get);
+    run();
+    CALLS.with(Cell::get) - before
+}
+
+fn asset() -> Asset {
+    let take = |speed_mm_s: f64| {
+        let options = SimulationOptions {
+            speed_mm_s,
+            duration_s: 4.0,
+            ..SimulationOptions::new(Surface::Sandpaper)
+        };
+        Take {
+            recording: simulate(&options)
+                .unwrap()
+                .to_recording("simulated")
+                .unwrap(),
+            given: Exploration {
+                speed_mm_s: Some(speed_mm_s),
+                force_n: Some(0.4),
+            },
+        }
+    };
+    let model = |model: &htex_host::LoadedModel| ModelRequest {
+        options: model.descriptor().default_options(),
+        model: model.clone(),
+    };
+    let request = AssetRequest {
+        name: "sandpaper".to_owned(),
+        models: Registry::builtin().models().iter().map(model).collect(),
+        ..AssetRequest::default()
+    };
+    let fitted = fit_asset(&[take(60.0), take(120.0)], &request).unwrap();
+    Asset::from_bytes(&fitted.asset.to_bytes().unwrap()).unwrap()
+}
+
+#[test]
+fn render_does_not_allocate() {
+    assert!(
+        count(|| drop(std::hint::black_box(vec![1u8]))) >= 2,
+        "the counter counts"
+    );
+    let asset = asset();
+    for model in ["ar", "mfcc", "speak", "sbeta", "sslope"] {
+        for rate_hz in [20_000.0, 44_100.0] {
+            let options = VoiceOptions {
+                model: Some(model),
+                rate_hz,
+                ..VoiceOptions::default()
+            };
+            let mut voice = asset.voice(&options).unwrap();
+            let mut block = [0.0f32; 64];
+            for i in 0..400 {
+                // A new motion may mix parameters on the heap; what follows it may not.
+                voice.set_motion(60.0 + f64::from(i % 50), 0.4).unwrap();
+                let calls = count(|| voice.render(&mut block).unwrap());
+                assert_eq!(calls, 0, "{model} at {rate_hz} Hz, block {i}");
+            }
+        }
+    }
+}

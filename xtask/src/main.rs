@@ -1,14 +1,18 @@
 //! What a person would otherwise have to remember.
 
+mod plugins;
+
 use std::process::{Command, ExitCode};
 
 const TASKS: &str = "\
 cargo xtask ci        all that continuous integration runs
+cargo xtask plugins   builds the models as plugins into target/htex-plugins
 cargo xtask generate  makes spec/schemas, spec/validation.md and spec/conformance again";
 
 fn main() -> ExitCode {
     let tasks: Vec<String> = std::env::args().skip(1).collect();
     match tasks.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["plugins"] => plugins::build(),
         ["ci"] => run("bash", &[".ci/run"]),
         ["generate"] => {
             let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
@@ -31,7 +35,7 @@ fn main() -> ExitCode {
 }
 
 /// Runs a program in the workspace's folder.
-fn run(program: &str, arguments: &[&str]) -> ExitCode {
+pub(crate) fn run(program: &str, arguments: &[&str]) -> ExitCode {
     let workspace = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
     match Command::new(program)
         .args(arguments)

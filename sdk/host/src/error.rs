@@ -13,6 +13,14 @@ pub enum HostError {
         /// What there is.
         known: String,
     },
+    /// A file is no model.
+    #[error("cannot load {path}: {what}")]
+    Load {
+        /// The file.
+        path: String,
+        /// Why not.
+        what: String,
+    },
     /// The model answered with a status.
     #[error("model {model}: {call}: {message}")]
     Call {

@@ -17,6 +17,7 @@
 mod builtin;
 mod error;
 mod model;
+mod native;
 mod options;
 mod raw;
 mod registry;

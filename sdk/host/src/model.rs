@@ -1,5 +1,6 @@
 //! A loaded model: safe calls, checked answers.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use htex_dsp::grid::Band;
@@ -44,17 +45,13 @@ impl std::fmt::Debug for LoadedModel {
 
 impl LoadedModel {
     /// Checks the marker and reads the descriptor of a model from `origin` (for messages).
-    pub(crate) fn load(origin: &str, raw: Arc<dyn RawModel>) -> Result<Self, HostError> {
+    pub(crate) fn new(origin: &str, raw: Arc<dyn RawModel>) -> Result<Self, HostError> {
         let broken = |call, what| HostError::Broken {
             model: origin.to_owned(),
             call,
             what,
         };
-        let marker = raw.abi_version();
-        if marker >> 8 != ABI_MARKER >> 8 {
-            let what = format!("marker {marker:#x}; this host loads models of ABI {ABI_MAJOR}.x");
-            return Err(broken("htex_model_abi_version", what));
-        }
+        check_marker(origin, raw.abi_version())?;
         let call = "htex_model_descriptor";
         let json = text(|out| raw.descriptor(out))
             .ok_or_else(|| broken(call, "no UTF-8 text of at most 1 MiB".to_owned()))?;
@@ -65,6 +62,15 @@ impl LoadedModel {
             descriptor: Arc::new(descriptor),
             raw,
         })
+    }
+
+    /// Loads a model from a native library.
+    ///
+    /// # Errors
+    /// When the file is no such library, or its model breaks the ABI.
+    pub fn from_file(path: &Path) -> Result<Self, HostError> {
+        let raw = crate::native::load(path)?;
+        Self::new(&path.display().to_string(), Arc::new(raw))
     }
 
     /// What the model says of itself.
@@ -267,6 +273,18 @@ impl LoadedModel {
             what,
         }
     }
+}
+
+/// Refuses a model of another major version of the ABI.
+pub(crate) fn check_marker(origin: &str, marker: u32) -> Result<(), HostError> {
+    if marker >> 8 == ABI_MARKER >> 8 {
+        return Ok(());
+    }
+    Err(HostError::Broken {
+        model: origin.to_owned(),
+        call: "htex_model_abi_version",
+        what: format!("its marker is {marker:#x}; this host loads models of ABI {ABI_MAJOR}.x"),
+    })
 }
 
 fn abi_band(band: Band) -> htex_model::Band {

@@ -15,7 +15,7 @@ pub struct Registry {
 impl Registry {
     /// The models linked into this program.
     pub fn builtin() -> Self {
-        let load = |table| LoadedModel::load("built in", Arc::new(TableModel(table)));
+        let load = |table| LoadedModel::new("built in", Arc::new(TableModel(table)));
         // A built-in model that cannot be loaded is not there; the tests count them.
         let models = tables()
             .into_iter()

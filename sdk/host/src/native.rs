@@ -1,0 +1,68 @@
+//! Models in native libraries (`.so`, `.dylib`, `.dll`).
+//!
+//! A native library runs with all the rights of this program: which ones to load is the user's
+//! decision. Libraries are loaded once and never unloaded, since voices and tables point into them.
+
+use std::path::Path;
+
+use htex_model::abi::{
+    AbiVersion, DescriptorJson, ExtensionFn, FitFn, InterpolateFn, LastError, MagnitudeFn,
+    ModelTable, VoiceFreeFn, VoiceNewFn, VoiceRateFn, VoiceRenderFn, VoiceRetuneFn,
+};
+use libloading::Library;
+
+use crate::HostError;
+use crate::table::TableModel;
+
+/// Loads a library and fills a table from its symbols.
+///
+/// # Errors
+/// When the file is no library of this machine, or lacks a symbol of the model ABI.
+pub(crate) fn load(path: &Path) -> Result<TableModel, HostError> {
+    let origin = path.display().to_string();
+    let error = |what: String| HostError::Load {
+        path: origin.clone(),
+        what,
+    };
+    // SAFETY: running a library's initialisers is what the user asked for by naming it.
+    let library = unsafe { Library::new(path) }.map_err(|e| error(e.to_string()))?;
+    // Never unloaded: see above.
+    let library: &'static Library = Box::leak(Box::new(library));
+    // SAFETY: the marker comes first, and says that the other symbols have these types.
+    let abi_version: AbiVersion = unsafe { symbol(library, "htex_model_abi_version", &error)? };
+    crate::model::check_marker(&origin, abi_version())?;
+    // SAFETY: a library with this marker exports these names with these types.
+    let table = unsafe {
+        ModelTable {
+            abi_version,
+            descriptor: symbol::<DescriptorJson>(library, "htex_model_descriptor", &error)?,
+            last_error: symbol::<LastError>(library, "htex_model_last_error", &error)?,
+            fit: symbol::<FitFn>(library, "htex_model_fit", &error)?,
+            magnitude: symbol::<MagnitudeFn>(library, "htex_model_magnitude", &error)?,
+            interpolate: symbol::<InterpolateFn>(library, "htex_model_interpolate", &error)?,
+            voice_rate: symbol::<VoiceRateFn>(library, "htex_model_voice_rate", &error)?,
+            voice_new: symbol::<VoiceNewFn>(library, "htex_model_voice_new", &error)?,
+            voice_render: symbol::<VoiceRenderFn>(library, "htex_model_voice_render", &error)?,
+            voice_retune: symbol::<VoiceRetuneFn>(library, "htex_model_voice_retune", &error)?,
+            voice_free: symbol::<VoiceFreeFn>(library, "htex_model_voice_free", &error)?,
+            extension: symbol::<ExtensionFn>(library, "htex_model_extension", &error)?,
+        }
+    };
+    Ok(TableModel(Box::leak(Box::new(table))))
+}
+
+/// The address of a symbol.
+///
+/// # Safety
+/// The symbol has the type `T`.
+unsafe fn symbol<T: Copy>(
+    library: &'static Library,
+    name: &str,
+    error: &impl Fn(String) -> HostError,
+) -> Result<T, HostError> {
+    // SAFETY: the caller's promise.
+    let found = unsafe { library.get::<T>(name) };
+    found
+        .map(|symbol| *symbol)
+        .map_err(|_| error(format!("the library has no `{name}`; it is no htex model")))
+}

@@ -18,7 +18,7 @@ pub(crate) struct RecordingArgs {
     #[arg(long, value_name = "HZ")]
     rate: Option<f64>,
 
-    /// Names and scales other people's CSV columns: ROLE=COLUMN[:SCALE], comma-separated; e.g.
+    /// Names and scales other people's CSV columns: ROLE=COLUMN or ROLE=COLUMN:SCALE, e.g.
     /// lateral=lateral_V:0.4444,normal=normal_V:0.31. Roles: lateral, lateral_x, lateral_y, normal,
     /// speed, time, x, y; columns by name or number (#3); scales lead to N, mm/s, s, mm
     #[arg(long, value_name = "MAP")]
@@ -28,7 +28,8 @@ pub(crate) struct RecordingArgs {
     #[arg(long, value_name = "N")]
     newtons_per_unit: Option<f64>,
 
-    /// Response of the recording setup to divide out: CSV frequency_hz,magnitude[,phase_rad]
+    /// Response of the recording setup to divide out: CSV with columns frequency_hz,
+    /// magnitude and, if known, phase_rad
     #[arg(long, value_name = "CSV")]
     frf: Option<PathBuf>,
 

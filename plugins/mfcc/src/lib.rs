@@ -8,8 +8,8 @@ use std::sync::Arc;
 use htex_dsp::dct::dct_ii;
 use htex_dsp::grid::{Band, GRID_HZ, level_rms};
 use htex_dsp::mel::MelBank;
-use htex_dsp::shaped_noise::{ShapedNoise, economical_rate_hz};
-use htex_model::{Descriptor, Error, Fit, FitInput, Model, Store, Values, Voice, mix};
+use htex_model::{Descriptor, Error, Fit, FitInput, Model, Store, Values, mix};
+use htex_shaped::{Curve, ShapedVoice};
 
 use inverse::Inverse;
 
@@ -31,7 +31,7 @@ pub struct MelCepstrum;
 htex_model::export_model!(MelCepstrum, symbols: "plugin");
 
 impl Model for MelCepstrum {
-    type Voice = MelCepstrumVoice;
+    type Voice = ShapedVoice<Spectrum>;
 
     fn descriptor() -> Descriptor {
         let whole = Store::U8 {
@@ -104,8 +104,7 @@ impl Model for MelCepstrum {
             .for_each(|e| *e = libm::log(e.max(FLOOR)));
         let mut cepstrum = vec![0.0; kept];
         dct_ii(&log_energy, &mut cepstrum);
-        let mut spectrum = Spectrum::new(inverse, band);
-        spectrum.set(&cepstrum)?;
+        let spectrum = Spectrum::of(inverse, band, &cepstrum)?;
         let count = [cepstrum.len() as f64];
         let rest = [bands as f64, input.options[INVERSE_OPTION]];
         Ok(Fit {
@@ -120,16 +119,7 @@ impl Model for MelCepstrum {
         frequency_hz: &[f64],
         magnitude: &mut [f64],
     ) -> Result<(), Error> {
-        let band = band.edges().into();
-        let spectrum = Spectrum::read(parameters, band)?;
-        for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
-            *m = if band.contains(f) {
-                spectrum.at(f) / spectrum.level
-            } else {
-                0.0
-            };
-        }
-        Ok(())
+        htex_shaped::magnitude::<Spectrum>(parameters, band, frequency_hz, magnitude)
     }
 
     /// Mixes cepstra, that is, log energies.
@@ -144,7 +134,7 @@ impl Model for MelCepstrum {
     }
 
     fn voice_rate_hz(_: &Values<'_>, band: htex_model::Band, wanted_hz: f64) -> f64 {
-        economical_rate_hz(wanted_hz, band.edges().into())
+        htex_shaped::voice_rate_hz(band, wanted_hz)
     }
 
     fn voice(
@@ -153,37 +143,12 @@ impl Model for MelCepstrum {
         rate_hz: f64,
         seed: u64,
     ) -> Result<Self::Voice, Error> {
-        let band = band.edges().into();
-        let spectrum = Spectrum::read(parameters, band)?;
-        let mut noise = ShapedNoise::new(rate_hz, band, seed);
-        noise.start(|_, f| spectrum.at(f));
-        Ok(MelCepstrumVoice { spectrum, noise })
-    }
-}
-
-/// Random-phase noise under the spectrum.
-pub struct MelCepstrumVoice {
-    spectrum: Spectrum,
-    noise: ShapedNoise,
-}
-
-impl Voice for MelCepstrumVoice {
-    fn render(&mut self, out: &mut [f32]) {
-        self.noise.render(out);
-    }
-
-    fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
-        if !self.spectrum.inverse.is(parameters) {
-            return Err(Error::argument("a voice keeps its mel bank and inverse"));
-        }
-        self.spectrum.set(parameters.list(CEPSTRUM))?;
-        self.noise.retune(|_, f| self.spectrum.at(f));
-        Ok(())
+        ShapedVoice::new(parameters, band, rate_hz, seed)
     }
 }
 
 /// The magnitude a cepstrum stands for, on the grid.
-struct Spectrum {
+pub struct Spectrum {
     inverse: Arc<Inverse>,
     energy: Vec<f64>,
     magnitude: Vec<f64>,
@@ -193,26 +158,19 @@ struct Spectrum {
 }
 
 impl Spectrum {
-    fn new(inverse: Arc<Inverse>, band: Band) -> Self {
-        Self {
+    fn of(inverse: Arc<Inverse>, band: Band, cepstrum: &[f64]) -> Result<Self, Error> {
+        let mut spectrum = Self {
             energy: vec![0.0; inverse.bands()],
             magnitude: vec![0.0; band.bins()],
             level: 0.0,
             first_bin: band.first_bin(),
             inverse,
-        }
-    }
-
-    fn read(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
-        let bands = parameters.scalar(BANDS) as usize;
-        let inverse = Inverse::shared(bands, parameters.scalar(INVERSE) as u8, band);
-        let mut spectrum = Self::new(inverse, band);
-        spectrum.set(parameters.list(CEPSTRUM))?;
+        };
+        spectrum.make(cepstrum)?;
         Ok(spectrum)
     }
 
-    /// Makes the magnitudes of a cepstrum. Does not allocate.
-    fn set(&mut self, cepstrum: &[f64]) -> Result<(), Error> {
+    fn make(&mut self, cepstrum: &[f64]) -> Result<(), Error> {
         self.inverse
             .magnitude(cepstrum, &mut self.energy, &mut self.magnitude);
         self.level = level_rms(&self.magnitude);
@@ -223,8 +181,23 @@ impl Spectrum {
             "the cepstrum's band energies are not finite, or all zero",
         ))
     }
+}
 
-    /// Magnitude between bins: on the straight line between them.
+impl Curve for Spectrum {
+    fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
+        let bands = parameters.scalar(BANDS) as usize;
+        let inverse = Inverse::shared(bands, parameters.scalar(INVERSE) as u8, band);
+        Self::of(inverse, band, parameters.list(CEPSTRUM))
+    }
+
+    fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+        if !self.inverse.is(parameters) {
+            return Err(Error::argument("a voice keeps its mel bank and inverse"));
+        }
+        self.make(parameters.list(CEPSTRUM))
+    }
+
+    /// Between bins: on the straight line between them.
     fn at(&self, frequency_hz: f64) -> f64 {
         let last = self.magnitude.len() - 1;
         let place = (frequency_hz / GRID_HZ - self.first_bin as f64).clamp(0.0, last as f64);
@@ -232,5 +205,9 @@ impl Spectrum {
         let above = (below + 1).min(last);
         let (a, b) = (self.magnitude[below], self.magnitude[above]);
         a + (place - below as f64) * (b - a)
+    }
+
+    fn level(&self) -> f64 {
+        self.level
     }
 }

@@ -5,8 +5,8 @@ mod fit;
 
 use htex_dsp::beta::{beta_pdf, log_unit};
 use htex_dsp::grid::{Band, GRID_HZ, curve_level_rms};
-use htex_dsp::shaped_noise::{ShapedNoise, economical_rate_hz};
-use htex_model::{Descriptor, Error, Fit, FitInput, Model, Values, Voice, mix};
+use htex_model::{Descriptor, Error, Fit, FitInput, Model, Values, mix};
+use htex_shaped::{Curve, ShapedVoice};
 
 const ALPHA: usize = 0;
 const BETA: usize = 1;
@@ -17,7 +17,7 @@ pub struct SpectralBeta;
 htex_model::export_model!(SpectralBeta, symbols: "plugin");
 
 impl Model for SpectralBeta {
-    type Voice = SpectralBetaVoice;
+    type Voice = ShapedVoice<Shape>;
 
     fn descriptor() -> Descriptor {
         Descriptor::new(
@@ -60,11 +60,7 @@ impl Model for SpectralBeta {
         frequency_hz: &[f64],
         magnitude: &mut [f64],
     ) -> Result<(), Error> {
-        let shape = Shape::new(parameters, band.edges().into())?;
-        for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
-            *m = shape.at(f) / shape.level;
-        }
-        Ok(())
+        htex_shaped::magnitude::<Shape>(parameters, band, frequency_hz, magnitude)
     }
 
     fn interpolate(sets: &[Values<'_>], weights: &[f64]) -> Result<Vec<f64>, Error> {
@@ -72,7 +68,7 @@ impl Model for SpectralBeta {
     }
 
     fn voice_rate_hz(_: &Values<'_>, band: htex_model::Band, wanted_hz: f64) -> f64 {
-        economical_rate_hz(wanted_hz, band.edges().into())
+        htex_shaped::voice_rate_hz(band, wanted_hz)
     }
 
     fn voice(
@@ -81,66 +77,51 @@ impl Model for SpectralBeta {
         rate_hz: f64,
         seed: u64,
     ) -> Result<Self::Voice, Error> {
-        let band = band.edges().into();
-        let shape = Shape::new(parameters, band)?;
-        let mut noise = ShapedNoise::new(rate_hz, band, seed);
-        noise.start(|_, f| shape.at(f));
-        Ok(SpectralBetaVoice { band, noise })
-    }
-}
-
-/// Random-phase noise under the density.
-pub struct SpectralBetaVoice {
-    band: Band,
-    noise: ShapedNoise,
-}
-
-impl Voice for SpectralBetaVoice {
-    fn render(&mut self, out: &mut [f32]) {
-        self.noise.render(out);
-    }
-
-    fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
-        let shape = Shape::new(parameters, self.band)?;
-        self.noise.retune(|_, f| shape.at(f));
-        Ok(())
+        ShapedVoice::new(parameters, band, rate_hz, seed)
     }
 }
 
 /// The density over frequency.
 #[derive(Clone, Copy)]
-struct Shape {
+pub struct Shape {
     alpha: f64,
     beta: f64,
     band: Band,
     level: f64,
 }
 
-impl Shape {
+impl Curve for Shape {
     fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
         let mut shape = Self {
-            alpha: parameters.scalar(ALPHA),
-            beta: parameters.scalar(BETA),
+            alpha: 1.0,
+            beta: 1.0,
             band,
             level: 1.0,
         };
-        shape.level = curve_level_rms(band, |f| shape.at(f));
-        if shape.level > 0.0 && shape.level.is_finite() {
-            return Ok(shape);
+        shape.set(parameters)?;
+        Ok(shape)
+    }
+
+    fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+        self.alpha = parameters.scalar(ALPHA);
+        self.beta = parameters.scalar(BETA);
+        self.level = curve_level_rms(self.band, |f| self.at(f));
+        if self.level > 0.0 && self.level.is_finite() {
+            return Ok(());
         }
         Err(Error::parameters(format!(
             "alpha {} and beta {} put all energy between two bins of the {GRID_HZ} Hz grid; \
              take smaller ones",
-            shape.alpha, shape.beta
+            self.alpha, self.beta
         )))
     }
 
-    /// The density at `frequency_hz`; zero outside the band.
     fn at(&self, frequency_hz: f64) -> f64 {
-        if !self.band.contains(frequency_hz) {
-            return 0.0;
-        }
         density(self.alpha, self.beta, self.band, frequency_hz)
+    }
+
+    fn level(&self) -> f64 {
+        self.level
     }
 }
 

@@ -2,6 +2,7 @@
 //! 1 kHz), in decibels a decade.
 
 use htex_model::{Error, Fit, FitInput};
+use htex_shaped::Curve;
 
 use crate::{MAX_ORDER, Shape};
 
@@ -32,16 +33,16 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         1 => end_points(points),
         _ => anchored(points, peak),
     };
-    let shape = Shape {
-        peak_hz: input.frequency_hz[peak],
-        high_pass: order(slope(&points[..=peak], peak)),
-        low_pass: order(slope(&points[peak..], 0).map(|s| -s)),
-    };
-    let level = shape.level(input.band.edges().into())?;
+    let orders = (
+        order(slope(&points[..=peak], peak)),
+        order(slope(&points[peak..], 0).map(|s| -s)),
+    );
+    let peak_hz = input.frequency_hz[peak];
+    let shape = Shape::of(peak_hz, orders, input.band.edges().into())?;
     Ok(Fit {
-        parameters: vec![shape.peak_hz, shape.high_pass, shape.low_pass],
+        parameters: vec![peak_hz, orders.0, orders.1],
         // The recording's magnitude at the peak.
-        level_rms: top * (level / shape.at(shape.peak_hz)),
+        level_rms: top * (shape.level() / shape.at(peak_hz)),
     })
 }
 

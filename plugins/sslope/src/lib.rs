@@ -8,8 +8,8 @@
 mod fit;
 
 use htex_dsp::grid::{Band, curve_level_rms};
-use htex_dsp::shaped_noise::{ShapedNoise, economical_rate_hz};
-use htex_model::{Descriptor, Error, Fit, FitInput, Model, Store, Values, Voice, mix};
+use htex_model::{Descriptor, Error, Fit, FitInput, Model, Store, Values, mix};
+use htex_shaped::{Curve, ShapedVoice};
 
 const PEAK: usize = 0;
 const HIGH_PASS: usize = 1;
@@ -24,7 +24,7 @@ pub struct SpectralSlope;
 htex_model::export_model!(SpectralSlope, symbols: "plugin");
 
 impl Model for SpectralSlope {
-    type Voice = SpectralSlopeVoice;
+    type Voice = ShapedVoice<Shape>;
 
     fn descriptor() -> Descriptor {
         let steps = |scale| Store::U16 {
@@ -75,17 +75,7 @@ impl Model for SpectralSlope {
         frequency_hz: &[f64],
         magnitude: &mut [f64],
     ) -> Result<(), Error> {
-        let band: Band = band.edges().into();
-        let shape = Shape::new(parameters);
-        let level = shape.level(band)?;
-        for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
-            *m = if band.contains(f) {
-                shape.at(f) / level
-            } else {
-                0.0
-            };
-        }
-        Ok(())
+        htex_shaped::magnitude::<Shape>(parameters, band, frequency_hz, magnitude)
     }
 
     fn interpolate(sets: &[Values<'_>], weights: &[f64]) -> Result<Vec<f64>, Error> {
@@ -93,7 +83,7 @@ impl Model for SpectralSlope {
     }
 
     fn voice_rate_hz(_: &Values<'_>, band: htex_model::Band, wanted_hz: f64) -> f64 {
-        economical_rate_hz(wanted_hz, band.edges().into())
+        htex_shaped::voice_rate_hz(band, wanted_hz)
     }
 
     fn voice(
@@ -102,66 +92,63 @@ impl Model for SpectralSlope {
         rate_hz: f64,
         seed: u64,
     ) -> Result<Self::Voice, Error> {
-        let band = band.edges().into();
-        let shape = Shape::new(parameters);
-        shape.level(band)?;
-        let mut noise = ShapedNoise::new(rate_hz, band, seed);
-        noise.start(|_, f| shape.at(f));
-        Ok(SpectralSlopeVoice { band, noise })
-    }
-}
-
-/// White noise through the band-pass.
-pub struct SpectralSlopeVoice {
-    band: Band,
-    noise: ShapedNoise,
-}
-
-impl Voice for SpectralSlopeVoice {
-    fn render(&mut self, out: &mut [f32]) {
-        self.noise.render(out);
-    }
-
-    fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
-        let shape = Shape::new(parameters);
-        shape.level(self.band)?;
-        self.noise.retune(|_, f| shape.at(f));
-        Ok(())
+        ShapedVoice::new(parameters, band, rate_hz, seed)
     }
 }
 
 /// Butterworth high-pass times low-pass with one cut-off.
-#[derive(Clone, Copy)]
-pub(crate) struct Shape {
-    pub(crate) peak_hz: f64,
-    pub(crate) high_pass: f64,
-    pub(crate) low_pass: f64,
+pub struct Shape {
+    peak_hz: f64,
+    high_pass: f64,
+    low_pass: f64,
+    band: Band,
+    level: f64,
 }
 
 impl Shape {
-    fn new(parameters: &Values<'_>) -> Self {
-        Self {
-            peak_hz: parameters.scalar(PEAK),
-            high_pass: parameters.scalar(HIGH_PASS),
-            low_pass: parameters.scalar(LOW_PASS),
-        }
+    fn of(peak_hz: f64, orders: (f64, f64), band: Band) -> Result<Self, Error> {
+        let mut shape = Self {
+            peak_hz,
+            high_pass: orders.0,
+            low_pass: orders.1,
+            band,
+            level: 1.0,
+        };
+        shape.measure()?;
+        Ok(shape)
     }
 
-    /// Magnitude; one half at the peak.
-    pub(crate) fn at(&self, frequency_hz: f64) -> f64 {
+    fn measure(&mut self) -> Result<(), Error> {
+        self.level = curve_level_rms(self.band, |f| self.at(f));
+        if self.level > 0.0 && self.level.is_finite() {
+            return Ok(());
+        }
+        Err(Error::parameters(format!(
+            "a peak at {} Hz leaves nothing in the band {} to {} Hz",
+            self.peak_hz, self.band.low_hz, self.band.high_hz
+        )))
+    }
+}
+
+impl Curve for Shape {
+    fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
+        let orders = (parameters.scalar(HIGH_PASS), parameters.scalar(LOW_PASS));
+        Self::of(parameters.scalar(PEAK), orders, band)
+    }
+
+    fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+        *self = Self::new(parameters, self.band)?;
+        Ok(())
+    }
+
+    /// One half at the peak.
+    fn at(&self, frequency_hz: f64) -> f64 {
         let above = frequency_hz / self.peak_hz;
         butterworth(above, self.low_pass) * butterworth(1.0 / above, self.high_pass)
     }
 
-    pub(crate) fn level(&self, band: Band) -> Result<f64, Error> {
-        let level = curve_level_rms(band, |f| self.at(f));
-        if level > 0.0 && level.is_finite() {
-            return Ok(level);
-        }
-        Err(Error::parameters(format!(
-            "a peak at {} Hz leaves nothing in the band {} to {} Hz",
-            self.peak_hz, band.low_hz, band.high_hz
-        )))
+    fn level(&self) -> f64 {
+        self.level
     }
 }
 

@@ -232,9 +232,12 @@ fn inverse_response(
             values.len()
         ));
     }
-    let invert = |h: &Complex<f64>| match h.norm() {
-        norm if norm == 0.0 => Complex::new(1.0 / floor.max(f64::MIN_POSITIVE), 0.0),
-        norm => h.conj() / (norm * norm.max(floor)),
+    let invert = |h: &Complex<f64>| {
+        let norm = h.norm();
+        if norm == 0.0 {
+            return Complex::new(1.0 / floor.max(f64::MIN_POSITIVE), 0.0);
+        }
+        h.conj() / (norm * norm.max(floor))
     };
     values.iter().map(invert).collect()
 }

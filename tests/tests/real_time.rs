@@ -56,7 +56,11 @@ fn asset() -> Asset {
         }
     };
     let model = |model: &htex_host::LoadedModel| ModelRequest {
-        options: model.descriptor().default_options(),
+        // The inverse with most work in it.
+        options: match model.short_name() {
+            "mfcc" => model.options(&[("inverse", "nnls")]).unwrap(),
+            _ => model.descriptor().default_options(),
+        },
         model: model.clone(),
     };
     let request = AssetRequest {
@@ -66,6 +70,33 @@ fn asset() -> Asset {
     };
     let fitted = fit_asset(&[take(60.0), take(120.0)], &request).unwrap();
     Asset::from_bytes(&fitted.asset.to_bytes().unwrap()).unwrap()
+}
+
+/// Parameters of a model, of both conditions, as its own voice is retuned between them.
+#[test]
+fn retuning_does_not_allocate() {
+    let asset = asset();
+    for model in Registry::builtin().models() {
+        let band = asset.band();
+        let parameters = |speed: f64| {
+            asset
+                .parameters(Some(model.id()), Some((speed, 0.4)))
+                .unwrap()
+                .0
+        };
+        let (slow, fast) = (parameters(60.0), parameters(120.0));
+        let rate_hz = model.voice_rate_hz(&slow, band, 20_000.0).unwrap();
+        let mut voice = model.voice(&slow, band, rate_hz, 1).unwrap();
+        let mut block = [0.0f32; 64];
+        for i in 0..50 {
+            let to = if i % 2 == 0 { &fast } else { &slow };
+            let calls = count(|| {
+                voice.retune(to).unwrap();
+                voice.render(&mut block).unwrap();
+            });
+            assert_eq!(calls, 0, "{}, block {i}", model.id());
+        }
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use htex_dsp::dct::inverse_dct_ii;
 use htex_dsp::grid::Band;
-use htex_dsp::least_squares::{PseudoInverse, nonnegative_least_squares};
+use htex_dsp::least_squares::{NonNegative, PseudoInverse};
 use htex_dsp::mel::MelBank;
 use htex_model::Values;
 
@@ -26,8 +26,8 @@ pub(crate) struct Inverse {
     band: Band,
     /// Power = `matrix` · energies, a row a bin.
     matrix: Vec<f64>,
-    /// The bank itself, a row a band, for least squares.
-    bank: Vec<f64>,
+    /// The bank itself, where the power is refined.
+    refine: Option<NonNegative>,
 }
 
 impl Inverse {
@@ -69,7 +69,7 @@ impl Inverse {
             kind,
             band,
             matrix,
-            bank: dense,
+            refine: (kind == NNLS).then(|| NonNegative::new(&dense, grid.len())),
         }
     }
 
@@ -91,8 +91,8 @@ impl Inverse {
             let sum: f64 = row.iter().zip(&*energy).map(|(w, e)| w * e).sum();
             *power = sum.max(0.0);
         }
-        if self.kind == NNLS {
-            nonnegative_least_squares(&self.bank, energy, magnitude, NNLS_SWEEPS, NNLS_TOLERANCE);
+        if let Some(refine) = &self.refine {
+            refine.improve(magnitude, energy, NNLS_SWEEPS, NNLS_TOLERANCE);
         }
         magnitude.iter_mut().for_each(|m| *m = libm::sqrt(*m));
     }

@@ -144,57 +144,75 @@ fn norm(a: &[f64]) -> f64 {
     libm::sqrt(dot(a, a))
 }
 
-/// Improves `x >= 0` so that `|matrix · x - rhs|²` falls, by cyclic coordinate descent, until no
-/// element moves by more than `tolerance` times the largest, or `max_sweeps` are done. Returns
-/// the sweeps made.
+/// Least squares over `x >= 0`, by cyclic coordinate descent.
 ///
-/// `matrix` has `rhs.len()` rows and `x.len()` columns. With more unknowns than equations there are
-/// many solutions, and the start decides: from a smooth start the result is smooth.
+/// With more unknowns than equations there are many solutions, and the start decides: from a
+/// smooth start the result is smooth.
 ///
 /// ```
-/// use htex_dsp::least_squares::nonnegative_least_squares;
+/// use htex_dsp::least_squares::NonNegative;
 /// let mut x = [1.0, 1.0];
-/// nonnegative_least_squares(&[1.0, 0.0, 0.0, 1.0], &[3.0, -2.0], &mut x, 100, 1e-12);
+/// NonNegative::new(&[1.0, 0.0, 0.0, 1.0], 2).improve(&mut x, &mut [3.0, -2.0], 100, 1e-12);
 /// assert_eq!(x, [3.0, 0.0]);
 /// ```
-pub fn nonnegative_least_squares(
-    matrix: &[f64],
-    rhs: &[f64],
-    x: &mut [f64],
-    max_sweeps: usize,
-    tolerance: f64,
-) -> usize {
-    let columns = columns_of(matrix, x.len());
-    x.iter_mut().for_each(|x| *x = x.max(0.0));
-    let mut residual = rhs.to_vec();
-    for (column, &x) in columns.iter().zip(x.iter()) {
-        subtract(&mut residual, column, x);
+#[derive(Debug, Clone, PartialEq)]
+pub struct NonNegative {
+    /// The matrix, column after column.
+    columns: Vec<f64>,
+    rows: usize,
+}
+
+impl NonNegative {
+    /// Takes a matrix of `columns` columns.
+    pub fn new(matrix: &[f64], columns: usize) -> Self {
+        let column = |c| matrix.iter().skip(c).step_by(columns.max(1)).copied();
+        Self {
+            columns: (0..columns).flat_map(column).collect(),
+            rows: matrix.len() / columns.max(1),
+        }
     }
-    for sweep in 1..=max_sweeps {
+
+    /// Improves `x` (one value a column) so that `|matrix · x - rhs|²` falls, until no element
+    /// moves by more than `tolerance` times the largest, or `max_sweeps` are done. Returns the
+    /// sweeps made; `rhs` (one value a row) is left as the residual. Does not allocate.
+    pub fn improve(
+        &self,
+        x: &mut [f64],
+        rhs: &mut [f64],
+        max_sweeps: usize,
+        tolerance: f64,
+    ) -> usize {
+        let residual = rhs;
+        x.iter_mut().for_each(|x| *x = x.max(0.0));
+        for (column, &x) in self.columns.chunks(self.rows.max(1)).zip(x.iter()) {
+            subtract(residual, column, x);
+        }
+        for sweep in 1..=max_sweeps {
+            let (moved, largest) = self.sweep(x, residual);
+            if moved <= tolerance * largest {
+                return sweep;
+            }
+        }
+        max_sweeps
+    }
+
+    /// Moves every element once; the largest move, and the largest element.
+    fn sweep(&self, x: &mut [f64], residual: &mut [f64]) -> (f64, f64) {
         let (mut moved, mut largest) = (0.0_f64, 0.0_f64);
-        for (column, x) in columns.iter().zip(x.iter_mut()) {
-            let step = dot(column, &residual) / dot(column, column);
+        for (column, x) in self.columns.chunks(self.rows.max(1)).zip(x.iter_mut()) {
+            let step = dot(column, residual) / dot(column, column);
             let target = if step.is_finite() {
                 (*x + step).max(0.0)
             } else {
                 *x
             };
-            subtract(&mut residual, column, target - *x);
+            subtract(residual, column, target - *x);
             moved = moved.max((target - *x).abs());
             *x = target;
             largest = largest.max(target);
         }
-        if moved <= tolerance * largest {
-            return sweep;
-        }
+        (moved, largest)
     }
-    max_sweeps
-}
-
-fn columns_of(matrix: &[f64], columns: usize) -> Vec<Vec<f64>> {
-    (0..columns)
-        .map(|c| matrix.iter().skip(c).step_by(columns).copied().collect())
-        .collect()
 }
 
 fn subtract(residual: &mut [f64], column: &[f64], factor: f64) {
@@ -238,7 +256,7 @@ mod tests {
     fn a_wide_nonnegative_fit_meets_reachable_energies() {
         let matrix = [1.0, 0.5, 0.0, 0.0, 0.0, 0.5, 1.0, 0.5];
         let mut x = [0.0; 4];
-        nonnegative_least_squares(&matrix, &[1.0, 3.0], &mut x, 10_000, 1e-14);
+        NonNegative::new(&matrix, 4).improve(&mut x, &mut [1.0, 3.0], 10_000, 1e-14);
         let reached = product(&matrix, 4, &x);
         assert!((reached[0] - 1.0).abs() < 1e-9 && (reached[1] - 3.0).abs() < 1e-9);
         assert!(x.iter().all(|&x| x >= 0.0));

@@ -1,0 +1,21 @@
+//! Plays an asset while the finger slows down: prints the RMS of each tenth of a second.
+//!
+//! `cargo run --release -p htex --example play -- cloth.htex`
+
+use htex::{Asset, VoiceOptions};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let path = std::env::args().nth(1).ok_or("give an asset: play FILE.htex")?;
+    let asset = Asset::open(&path)?;
+    let options = VoiceOptions::default();
+    let mut voice = asset.voice(&options)?;
+    let mut block = vec![0.0f32; (options.rate_hz / 10.0) as usize];
+    for tenth in 0..20 {
+        let (speed_mm_s, force_n) = (160.0 - 5.0 * f64::from(tenth), 0.4);
+        voice.set_motion(speed_mm_s, force_n)?;
+        voice.render(&mut block)?;
+        let power: f32 = block.iter().map(|x| x * x).sum::<f32>() / block.len() as f32;
+        println!("{speed_mm_s:5.0} mm/s  {:7.3} mN RMS", power.sqrt() * 1e3);
+    }
+    Ok(())
+}

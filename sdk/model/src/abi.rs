@@ -4,6 +4,10 @@
 //! a WASM module. Functions that give text or parameters take the caller's buffer and answer the
 //! length needed; a caller with too small a buffer calls again. Negative answers are
 //! [`crate::Status`] codes.
+//!
+//! A native library exports the functions of [`ModelTable`]. A WASM module exports these, its
+//! `memory`, and two more by which the host gets room in that memory for what it passes:
+//! `htex_model_alloc` ([`AllocFn`]) and `htex_model_free` ([`FreeFn`]). It imports nothing.
 
 /// Major part of the version: a host loads only models of its own major.
 pub const ABI_MAJOR: u32 = 1;
@@ -86,6 +90,17 @@ pub type VoiceFreeFn = extern "C" fn(voice: i64) -> i64;
 /// Answers 1 if the extension named by UTF-8 `id` (`htex.NAME/REV`, `com.vendor.NAME/REV`) is
 /// there, else 0. `[any thread]`
 pub type ExtensionFn = unsafe extern "C" fn(id: *const u8, id_len: usize) -> i64;
+
+/// Of a WASM module only, `htex_model_alloc`: makes room for `len` bytes, zeroed and aligned to
+/// [`ALLOC_ALIGN`]; answers null when there is none, or when `len` is 0. The host owns the room
+/// until it passes it to `htex_model_free`. `[not while another call is in flight]`
+pub type AllocFn = extern "C" fn(len: usize) -> *mut u8;
+/// Of a WASM module only, `htex_model_free`: takes back what `htex_model_alloc` answered to the
+/// same `len`; null is allowed and does nothing. `[not while another call is in flight]`
+pub type FreeFn = unsafe extern "C" fn(pointer: *mut u8, len: usize);
+
+/// Alignment, bytes, of what `htex_model_alloc` answers: enough for every number that crosses.
+pub const ALLOC_ALIGN: usize = 16;
 
 /// Everything a model exports, in one table: a static in a built-in model, filled from symbols of
 /// the same names (`htex_model_…`) in a native library.

@@ -4,7 +4,7 @@
 ///
 /// With `symbols: "FEATURE"` the functions are also exported under their C names (`htex_model_…`)
 /// when the crate is built with that Cargo feature: for a native library or a WASM module, where
-/// one binary holds one model.
+/// one binary holds one model. A WASM module also gets the two memory functions of the ABI.
 ///
 /// ```
 /// # #![allow(clippy::needless_doctest_main)]
@@ -208,6 +208,19 @@ macro_rules! export_model {
             ) -> i64 {
                 // SAFETY: the caller's text, by the ABI.
                 shim::extension(unsafe { Input::new(id, id_len) })
+            }
+
+            #[cfg(target_family = "wasm")]
+            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+            pub(super) extern "C" fn htex_model_alloc(len: usize) -> *mut u8 {
+                shim::alloc(len)
+            }
+
+            #[cfg(target_family = "wasm")]
+            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+            pub(super) unsafe extern "C" fn htex_model_free(pointer: *mut u8, len: usize) {
+                // SAFETY: what `htex_model_alloc` answered to this length, by the ABI.
+                unsafe { shim::free(pointer, len) }
             }
         }
     };

@@ -2,6 +2,7 @@
 //!
 //! Called by the functions that [`export_model!`](crate::export_model) makes; not by hand.
 
+use alloc::alloc::Layout;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -9,7 +10,7 @@ use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::OnceLock;
 
-use crate::abi::MAX_PARAMETERS;
+use crate::abi::{ALLOC_ALIGN, MAX_PARAMETERS};
 use crate::voices::Voices;
 use crate::{Band, Descriptor, Error, FitInput, Model, Status, Values, Voice};
 
@@ -254,6 +255,31 @@ impl<M: Model> State<M> {
     }
 }
 
+/// See [`crate::abi::AllocFn`].
+pub fn alloc(len: usize) -> *mut u8 {
+    match room(len) {
+        // SAFETY: the layout's size is not zero.
+        Some(layout) => unsafe { alloc::alloc::alloc_zeroed(layout) },
+        None => core::ptr::null_mut(),
+    }
+}
+
+/// See [`crate::abi::FreeFn`].
+///
+/// # Safety
+/// `pointer` is null, or what [`alloc`] answered to the same `len` and not yet freed.
+pub unsafe fn free(pointer: *mut u8, len: usize) {
+    if let (false, Some(layout)) = (pointer.is_null(), room(len)) {
+        // SAFETY: the caller's promise; the layout is that of the allocation.
+        unsafe { alloc::alloc::dealloc(pointer, layout) }
+    }
+}
+
+fn room(len: usize) -> Option<Layout> {
+    let layout = Layout::from_size_align(len, ALLOC_ALIGN).ok()?;
+    (len > 0).then_some(layout)
+}
+
 /// See [`crate::abi::LastError`].
 pub fn last_error(out: Output<'_, u8>) -> i64 {
     let text = LAST_ERROR.with(|last| last.try_borrow().map(|t| t.clone()).unwrap_or_default());
@@ -397,4 +423,28 @@ fn read_sets<'a>(
         ));
     }
     Ok(sets)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_is_given_and_taken_back() {
+        for len in [1, 8, 12_345] {
+            let pointer = alloc(len);
+            assert!(!pointer.is_null() && (pointer as usize).is_multiple_of(ALLOC_ALIGN));
+            // SAFETY: `len` zeroed bytes of our own.
+            let bytes = unsafe { core::slice::from_raw_parts_mut(pointer, len) };
+            assert!(bytes.iter().all(|&b| b == 0));
+            bytes.fill(0xff);
+            // SAFETY: as it was answered.
+            unsafe { free(pointer, len) };
+        }
+        for impossible in [0, usize::MAX, isize::MAX as usize] {
+            assert!(alloc(impossible).is_null());
+        }
+        // SAFETY: null is allowed.
+        unsafe { free(core::ptr::null_mut(), 8) };
+    }
 }

@@ -1,4 +1,5 @@
 //! From recordings to assets, as a user runs it.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
 

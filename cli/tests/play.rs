@@ -1,4 +1,5 @@
 //! What is played agrees with what is said of it.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
 

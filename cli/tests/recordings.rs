@@ -1,4 +1,5 @@
 //! Recordings made by others, and files that are none.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
 

@@ -1,4 +1,5 @@
 //! What several suites need: golden vectors and their rule of agreement.
+#![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
 
 use std::path::{Path, PathBuf};
 

@@ -1,5 +1,6 @@
 //! What every voice must do, whatever the model: match its own magnitude and level, ignore block
 //! sizes, follow its seed, and change without a click.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_dsp::spectrum::SegmentAnalyzer;
 use htex_host::{Band, FitRequest, LoadedModel, Registry, Stream};

@@ -216,6 +216,18 @@ impl LoadedModel {
         }
     }
 
+    /// Whether the model has the extension `id` (`htex.NAME/REV`, `com.vendor.NAME/REV`).
+    ///
+    /// # Errors
+    /// [`HostError::Broken`] if the answer is neither yes nor no.
+    pub fn has_extension(&self, id: &str) -> Result<bool, HostError> {
+        match self.raw.extension(id.as_bytes()) {
+            0 => Ok(false),
+            1 => Ok(true),
+            other => Err(self.broken("extension", format!("it answers {other} to `{id}`"))),
+        }
+    }
+
     /// A length, or the error that a negative answer stands for.
     fn check(&self, call: &'static str, answer: i64) -> Result<usize, HostError> {
         if answer >= 0 {

@@ -27,6 +27,7 @@ pub(crate) trait RawModel: Send + Sync {
         magnitude: &mut [f64],
     ) -> i64;
     fn interpolate(&self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64;
+    fn extension(&self, id: &[u8]) -> i64;
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64;
     /// Makes a voice, or answers a status.
     fn voice_new(
@@ -42,5 +43,8 @@ pub(crate) trait RawModel: Send + Sync {
 pub(crate) trait RawVoice: Send {
     fn render(&mut self, out: &mut [f32]) -> i64;
     fn retune(&mut self, parameters: &[f64]) -> i64;
+    /// Asks the model to free the voice. The handle is kept: calls after this one reach the model,
+    /// which answers `BadHandle`, and dropping frees nothing again.
+    fn free(&mut self) -> i64;
     fn last_error(&self, out: &mut [u8]) -> i64;
 }

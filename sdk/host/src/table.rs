@@ -82,6 +82,11 @@ impl RawModel for TableModel {
         }
     }
 
+    fn extension(&self, id: &[u8]) -> i64 {
+        // SAFETY: a live slice.
+        unsafe { (self.0.extension)(id.as_ptr(), id.len()) }
+    }
+
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64 {
         let (low, high) = band.edges();
         // SAFETY: a live slice.
@@ -113,6 +118,7 @@ impl RawModel for TableModel {
         Ok(Box::new(TableVoice {
             table: self.0,
             handle,
+            freed: false,
         }))
     }
 }
@@ -121,6 +127,7 @@ impl RawModel for TableModel {
 struct TableVoice {
     table: &'static ModelTable,
     handle: i64,
+    freed: bool,
 }
 
 impl RawVoice for TableVoice {
@@ -134,6 +141,11 @@ impl RawVoice for TableVoice {
         unsafe { (self.table.voice_retune)(self.handle, parameters.as_ptr(), parameters.len()) }
     }
 
+    fn free(&mut self) -> i64 {
+        self.freed = true;
+        (self.table.voice_free)(self.handle)
+    }
+
     fn last_error(&self, out: &mut [u8]) -> i64 {
         // SAFETY: a live slice.
         unsafe { (self.table.last_error)(out.as_mut_ptr(), out.len()) }
@@ -142,7 +154,9 @@ impl RawVoice for TableVoice {
 
 impl Drop for TableVoice {
     fn drop(&mut self) {
-        // There is nobody to tell if a model cannot free what it made.
-        (self.table.voice_free)(self.handle);
+        if !self.freed {
+            // There is nobody to tell if a model cannot free what it made.
+            (self.table.voice_free)(self.handle);
+        }
     }
 }

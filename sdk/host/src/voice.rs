@@ -41,6 +41,16 @@ impl ModelVoice {
         self.check("voice_retune", answer)
     }
 
+    /// For checkers of models: frees the voice early and keeps its handle, so that later calls show
+    /// whether the model refuses a handle that was freed. An app drops the voice instead.
+    ///
+    /// # Errors
+    /// What the model answers; that the handle is unknown, when called a second time.
+    pub fn free_and_keep_handle(&mut self) -> Result<(), HostError> {
+        let answer = self.raw.free();
+        self.check("voice_free", answer)
+    }
+
     fn check(&self, call: &'static str, answer: i64) -> Result<(), HostError> {
         if answer >= 0 {
             return Ok(());

@@ -267,7 +267,7 @@ pub fn alloc(len: usize) -> *mut u8 {
 /// See [`crate::abi::FreeFn`].
 ///
 /// # Safety
-/// `pointer` is null, or what [`alloc`] answered to the same `len` and not yet freed.
+/// `pointer` is null, or what [`alloc`](alloc()) answered to the same `len` and not yet freed.
 pub unsafe fn free(pointer: *mut u8, len: usize) {
     if let (false, Some(layout)) = (pointer.is_null(), room(len)) {
         // SAFETY: the caller's promise; the layout is that of the allocation.

@@ -1,6 +1,8 @@
 //! What several suites need: golden vectors and their rule of agreement.
 #![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
 
+pub mod surface;
+
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;

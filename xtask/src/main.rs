@@ -14,24 +14,31 @@ fn main() -> ExitCode {
     match tasks.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["plugins"] => plugins::build(),
         ["ci"] => run("bash", &[".ci/run"]),
-        ["generate"] => {
-            let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
-            run(
-                &cargo,
-                &[
-                    "run",
-                    "--package",
-                    "htex-format",
-                    "--example",
-                    "conformance",
-                ],
-            )
-        }
+        ["generate"] => generate(),
         _ => {
             eprintln!("{TASKS}");
             ExitCode::from(2)
         }
     }
+}
+
+/// Makes what the specification has from the code.
+fn generate() -> ExitCode {
+    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
+    let assets = [
+        "run",
+        "--package",
+        "htex-format",
+        "--example",
+        "conformance",
+    ];
+    let models = ["run", "--package", "htex-model", "--features", "schemars"];
+    let schema = ["--example", "descriptor_schema"];
+    let code = run(&cargo, &assets);
+    if code != ExitCode::SUCCESS {
+        return code;
+    }
+    run(&cargo, &[&models[..], &schema].concat())
 }
 
 /// Runs a program in the workspace's folder.

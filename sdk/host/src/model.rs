@@ -4,14 +4,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use htex_dsp::grid::Band;
-use htex_model::abi::{ABI_MAJOR, ABI_MARKER, MAX_PARAMETERS};
+use htex_model::abi::{
+    ABI_MAJOR, ABI_MARKER, MAX_FIELDS, MAX_PARAMETERS, MAX_RATE_HZ, MAX_TEXT_BYTES, MIN_RATE_HZ,
+};
 use htex_model::{Descriptor, Fit, Status, Values};
 
 use crate::raw::{RawFit, RawModel};
 use crate::{HostError, ModelVoice};
 
-/// Largest descriptor that is read, bytes.
-const MAX_DESCRIPTOR: usize = 1 << 20;
 /// Parameters for which there is room at the first call.
 const USUAL_PARAMETERS: usize = 256;
 
@@ -192,7 +192,7 @@ impl LoadedModel {
         if rate_hz < 0.0 {
             self.check("voice_rate", rate_hz as i64)?;
         }
-        if (1.0..=1e7).contains(&rate_hz) {
+        if (MIN_RATE_HZ..=MAX_RATE_HZ).contains(&rate_hz) {
             return Ok(rate_hz);
         }
         Err(self.broken("voice_rate", format!("a rate of {rate_hz} Hz")))
@@ -309,7 +309,7 @@ fn abi_band(band: Band) -> htex_model::Band {
 /// Reads a text of a length not known beforehand.
 fn text(mut call: impl FnMut(&mut [u8]) -> i64) -> Option<String> {
     let len = usize::try_from(call(&mut [])).ok()?;
-    if len > MAX_DESCRIPTOR {
+    if len > MAX_TEXT_BYTES {
         return None;
     }
     let mut bytes = vec![0; len];
@@ -334,8 +334,8 @@ fn check_descriptor(descriptor: &Descriptor) -> Result<(), String> {
             descriptor.version
         ));
     }
-    if descriptor.fields.is_empty() || descriptor.fields.len() > 32 {
-        return Err("1 to 32 parameter fields are allowed".to_owned());
+    if descriptor.fields.is_empty() || descriptor.fields.len() > MAX_FIELDS {
+        return Err(format!("1 to {MAX_FIELDS} parameter fields are allowed"));
     }
     let fields = descriptor.fields.iter().map(|f| (&f.name, f.min, f.max));
     let options = descriptor.options.iter().map(|o| (&o.name, o.min, o.max));

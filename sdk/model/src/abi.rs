@@ -16,8 +16,26 @@ pub const ABI_MINOR: u32 = 0;
 /// The marker a model answers: a fixed upper half, then major and minor in a byte each.
 pub const ABI_MARKER: u32 = 0x4854_0000 | (ABI_MAJOR << 8) | ABI_MINOR;
 
-/// Most parameters one set may have.
+/// Most parameters one set may have, lengths of lists included.
 pub const MAX_PARAMETERS: usize = 65_536;
+/// Most fields a descriptor may have; the least is one.
+pub const MAX_FIELDS: usize = 32;
+/// Most numbers one list may have.
+pub const MAX_LIST_LEN: u32 = 65_535;
+/// Most bytes a descriptor or an error text may have.
+pub const MAX_TEXT_BYTES: usize = 1_048_576;
+/// Fewest bins of a spectrum that is fitted.
+pub const MIN_BINS: usize = 3;
+/// Highest band edge, hertz.
+pub const MAX_BAND_HZ: f64 = 1_000_000.0;
+/// Lowest rate of a signal or a voice, hertz.
+pub const MIN_RATE_HZ: f64 = 1.0;
+/// Highest rate of a signal or a voice, hertz.
+pub const MAX_RATE_HZ: f64 = 10_000_000.0;
+/// Spacing of the grid on which spectra are fitted and a shape has unit RMS, hertz.
+pub const GRID_HZ: f64 = 5.0;
+/// Alignment, bytes, of what `htex_model_alloc` answers: enough for every number that crosses.
+pub const ALLOC_ALIGN: usize = 16;
 
 /// Answers [`ABI_MARKER`]. `[any thread]`
 pub type AbiVersion = extern "C" fn() -> u32;
@@ -98,9 +116,6 @@ pub type AllocFn = extern "C" fn(len: usize) -> *mut u8;
 /// Of a WASM module only, `htex_model_free`: takes back what `htex_model_alloc` answered to the
 /// same `len`; null is allowed and does nothing. `[not while another call is in flight]`
 pub type FreeFn = unsafe extern "C" fn(pointer: *mut u8, len: usize);
-
-/// Alignment, bytes, of what `htex_model_alloc` answers: enough for every number that crosses.
-pub const ALLOC_ALIGN: usize = 16;
 
 /// Everything a model exports, in one table: a static in a built-in model, filled from symbols of
 /// the same names (`htex_model_…`) in a native library.

@@ -227,3 +227,14 @@ impl Descriptor {
         self.options.iter().map(|o| o.default).collect()
     }
 }
+
+/// The JSON Schema of a descriptor: `spec/schemas/descriptor-1.json`.
+#[cfg(feature = "schemars")]
+pub fn descriptor_schema() -> serde_json::Value {
+    let mut schema = schemars::schema_for!(Descriptor).to_value();
+    if let Some(object) = schema.as_object_mut() {
+        let title = "descriptor of a texture model, ABI 1";
+        object.insert("title".to_string(), title.into());
+    }
+    schema
+}

@@ -27,6 +27,8 @@ mod values;
 #[cfg(feature = "std")]
 mod voices;
 
+#[cfg(feature = "schemars")]
+pub use descriptor::descriptor_schema;
 pub use descriptor::{Descriptor, Field, FitOption, Kind, Store};
 pub use error::{Error, Status};
 pub use traits::{Band, Fit, FitInput, Model, Voice};

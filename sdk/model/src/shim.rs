@@ -10,7 +10,7 @@ use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::OnceLock;
 
-use crate::abi::{ALLOC_ALIGN, MAX_PARAMETERS};
+use crate::abi::{ALLOC_ALIGN, MAX_BAND_HZ, MAX_PARAMETERS, MAX_RATE_HZ, MIN_BINS, MIN_RATE_HZ};
 use crate::voices::Voices;
 use crate::{Band, Descriptor, Error, FitInput, Model, Status, Values, Voice};
 
@@ -332,7 +332,7 @@ fn copy_numbers(numbers: &[f64], out: &mut [f64]) -> i64 {
 }
 
 fn band((low_hz, high_hz): (f64, f64)) -> Result<Band, Error> {
-    if low_hz > 0.0 && low_hz < high_hz && high_hz <= 1e6 {
+    if low_hz > 0.0 && low_hz < high_hz && high_hz <= MAX_BAND_HZ {
         return Ok(Band { low_hz, high_hz });
     }
     Err(Error::argument(format!(
@@ -341,7 +341,7 @@ fn band((low_hz, high_hz): (f64, f64)) -> Result<Band, Error> {
 }
 
 fn check_rate(rate_hz: f64) -> Result<(), Error> {
-    if (1.0..=1e7).contains(&rate_hz) {
+    if (MIN_RATE_HZ..=MAX_RATE_HZ).contains(&rate_hz) {
         return Ok(());
     }
     Err(Error::argument(format!(
@@ -363,7 +363,7 @@ fn check_fit_input(input: &FitInput<'_>, descriptor: &Descriptor) -> Result<(), 
     finite("magnitude", input.magnitude)?;
     finite("signal", input.signal)?;
     let bins = input.frequency_hz.len();
-    if bins < 3 || input.magnitude.len() != bins {
+    if bins < MIN_BINS || input.magnitude.len() != bins {
         return Err(Error::argument("a spectrum needs three bins or more"));
     }
     if !input.frequency_hz.is_sorted_by(|a, b| a < b) {

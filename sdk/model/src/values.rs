@@ -3,10 +3,8 @@
 use alloc::format;
 use alloc::vec::Vec;
 
+use crate::abi::{MAX_FIELDS, MAX_LIST_LEN};
 use crate::{Descriptor, Error, Field, Kind};
-
-/// Most fields a descriptor may have.
-const MAX_FIELDS: usize = 32;
 
 /// Parameters, checked against a descriptor, without a copy.
 ///
@@ -110,7 +108,7 @@ pub fn flatten(descriptor: &Descriptor, fields: &[&[f64]]) -> Vec<f64> {
 }
 
 fn list_length(field: &Field, value: Option<f64>, max_len: u32) -> Result<usize, Error> {
-    let max = f64::from(max_len.min(65_535));
+    let max = f64::from(max_len.min(MAX_LIST_LEN));
     match value {
         Some(n) if (0.0..=max).contains(&n) && whole_part(n) == n => Ok(n as usize),
         Some(n) => Err(Error::parameters(format!(

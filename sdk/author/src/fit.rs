@@ -253,6 +253,7 @@ fn assemble(
             reference: request.keep_reference.then(|| Reference {
                 file: "reference.bin".to_owned(),
             }),
+            plugins: Vec::new(),
             extensions: BTreeMap::new(),
             extensions_required: Vec::new(),
             other: BTreeMap::new(),
@@ -261,6 +262,7 @@ fn assemble(
         reference: request
             .keep_reference
             .then(|| spectra.iter().map(to_f32).collect()),
+        plugins: Vec::new(),
         notes: Vec::new(),
     }
 }

@@ -12,6 +12,8 @@ pub struct Asset {
     pub parameters: Vec<Vec<Vec<f64>>>,
     /// Recorded spectra by condition: magnitudes on the band's 5 Hz grid, newtons.
     pub reference: Option<Vec<Vec<f32>>>,
+    /// WASM modules, in the order of [`crate::Manifest::plugins`].
+    pub plugins: Vec<Vec<u8>>,
     /// What a reader should tell, such as a newer minor version.
     pub notes: Vec<Finding>,
 }

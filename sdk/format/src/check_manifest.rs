@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use crate::check_plugins::check_plugins;
 use crate::check_representation::check_representations;
 use crate::manifest::{Band, Condition, LATERAL_FORCE, Manifest, NEWTON};
 use crate::manifest_json::escape;
@@ -44,6 +45,7 @@ pub(crate) fn check_manifest(manifest: &Manifest, findings: &mut Findings) {
     check_sources(manifest, findings);
     check_conditions(&manifest.conditions, findings);
     check_representations(manifest, findings);
+    check_plugins(manifest, findings);
     check_extensions(manifest, findings);
 }
 

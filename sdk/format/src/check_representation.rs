@@ -53,7 +53,7 @@ fn check_model(representation: &Representation, at: &str, findings: &mut Finding
     });
 }
 
-fn is_model_id(id: &str) -> bool {
+pub(crate) fn is_model_id(id: &str) -> bool {
     let allowed = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-' || b == b'_';
     let word = |part: &str| !part.is_empty() && part.bytes().all(allowed);
     id.split('.').count() >= 3 && id.split('.').all(word)

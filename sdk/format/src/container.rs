@@ -73,6 +73,10 @@ impl Asset {
         if let Some((name, bytes)) = self.reference_entry()? {
             archive.add(name, &bytes, CompressionMethod::Stored)?;
         }
+        count("plugins", manifest.plugins.len(), self.plugins.len())?;
+        for (plugin, module) in manifest.plugins.iter().zip(&self.plugins) {
+            archive.add(&plugin.file, module, CompressionMethod::Deflated)?;
+        }
         readable(archive.finish()?)
     }
 

@@ -7,6 +7,7 @@ mod archive;
 mod asset;
 mod block;
 mod check_manifest;
+mod check_plugins;
 mod check_representation;
 mod container;
 mod error;
@@ -15,6 +16,7 @@ mod limits;
 mod manifest;
 mod manifest_json;
 mod page;
+mod plugin;
 mod replace;
 mod report;
 mod rounding;
@@ -28,8 +30,8 @@ pub use error::{ReadError, WriteError};
 pub use finding::{Finding, Severity};
 pub use limits::Limits;
 pub use manifest::{
-    AtCondition, Band, Condition, Field, LATERAL_FORCE, Manifest, NEWTON, Provenance, Quality,
-    Reference, Representation, Source, Steps, Store, VERSION,
+    AtCondition, Band, Condition, Field, LATERAL_FORCE, Manifest, NEWTON, Plugin, Provenance,
+    Quality, Reference, Representation, Signature, Source, Steps, Store, VERSION,
 };
 pub use page::{manifest_schema, validation_page};
 pub use replace::{replace_file, write_file};

@@ -48,6 +48,9 @@ pub struct Manifest {
     /// The recorded spectra themselves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reference: Option<Reference>,
+    /// Models the asset brings along, for players that do not have them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub plugins: Vec<Plugin>,
     /// Extensions by name (`com.vendor.NAME/REV`).
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub extensions: BTreeMap<String, Value>,
@@ -230,4 +233,29 @@ pub struct Quality {
 pub struct Reference {
     /// Archive entry: one array of 32-bit floats a condition, on the band's 5 Hz grid, newtons.
     pub file: String,
+}
+
+/// A model's WASM module inside the asset.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Plugin {
+    /// Reverse-DNS id of the model.
+    pub model: String,
+    /// Semantic version of the module's model.
+    pub version: String,
+    /// Archive entry that holds the module: `plugins/ID.wasm`.
+    pub file: String,
+    /// BLAKE3 of the module, 64 lower-case hexadecimal digits.
+    pub blake3: String,
+    /// Who vouches for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub signature: Option<Signature>,
+}
+
+/// An ed25519 signature over a plugin's model, version and hash.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Signature {
+    /// The signer's public key, 64 hexadecimal digits.
+    pub public_key: String,
+    /// The signature, 128 hexadecimal digits.
+    pub ed25519: String,
 }

@@ -275,6 +275,30 @@ rules! {
         "A magnitude of the reference is negative or not finite.",
         "A magnitude is a size in newtons.",
         "Write the asset anew, or leave `reference` out.";
+    PLUGIN_INVALID Error:
+        "A plugin's model, version, file or hash is not of its form.",
+        "Players find an embedded model by these words.",
+        "Embed the module anew.";
+    PLUGIN_DUPLICATE Error:
+        "Two plugins are of one model.",
+        "Players could not tell which to use.",
+        "Keep one of them.";
+    PLUGIN_UNUSED Warning:
+        "A plugin's model has no representation in the asset.",
+        "It takes room and is never played.",
+        "Leave the module out.";
+    PLUGIN_NOT_WASM Error:
+        "A plugin's entry is not a WASM module.",
+        "Only sandboxed modules may come out of an asset, never native libraries.",
+        "Embed the model's `.wasm` file.";
+    PLUGIN_HASH_MISMATCH Error:
+        "A plugin's module does not have the hash the manifest gives.",
+        "The module is another than the one that was embedded.",
+        "Get the asset again from where it came from, or embed the module anew.";
+    PLUGIN_SIGNATURE_INVALID Error:
+        "A plugin's signature does not hold.",
+        "The module, its version or its id is not what the holder of the key signed.",
+        "Do not trust the module; get the asset again from its maker.";
     EXTENSION_NAME_INVALID Warning:
         "An extension's name is not of the form `com.vendor.NAME/REVISION`.",
         "Names of another form may clash with someone else's.",

@@ -7,9 +7,10 @@ use crate::block::{self, BlockError};
 use crate::check_manifest::check_manifest;
 use crate::limits::Limits;
 use crate::manifest_json;
+use crate::plugin::WASM_MAGIC;
 use crate::report::{Findings, Report};
 use crate::rules as rule;
-use crate::{Asset, Finding, Manifest, Representation, Severity};
+use crate::{Asset, Finding, Manifest, Plugin, Representation, Severity};
 
 /// Name of the entry that says what the archive is.
 pub(crate) const MIMETYPE: &str = "mimetype";
@@ -61,11 +62,13 @@ fn read(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<Asset>
     };
     let parameters = payload.parameters(&manifest);
     let reference = payload.reference(&manifest);
+    let plugins = payload.plugins(&manifest);
     payload.check_unreferenced();
     Some(Asset {
         manifest,
         parameters,
         reference,
+        plugins,
         notes: Vec::new(),
     })
 }
@@ -189,6 +192,34 @@ impl Payload<'_, '_> {
                 .add(rule::REFERENCE_INVALID, "/reference/file", message);
         }
         Some(magnitudes.chunks(points).map(<[f32]>::to_vec).collect())
+    }
+
+    fn plugins(&mut self, manifest: &Manifest) -> Vec<Vec<u8>> {
+        let all = manifest.plugins.iter().enumerate();
+        all.map(|(i, plugin)| {
+            self.module(plugin, &format!("/plugins/{i}"))
+                .unwrap_or_default()
+        })
+        .collect()
+    }
+
+    fn module(&mut self, plugin: &Plugin, at: &str) -> Option<Vec<u8>> {
+        let bytes = self.entry(&plugin.file, format!("{at}/file"))?;
+        let is_wasm = bytes.starts_with(WASM_MAGIC);
+        let pointer = format!("{at}/file");
+        self.findings
+            .require(is_wasm, rule::PLUGIN_NOT_WASM, pointer, || {
+                format!("{} is no WASM module; embed the model's .wasm", plugin.file)
+            });
+        let hash = blake3::hash(&bytes).to_hex();
+        let pointer = format!("{at}/blake3");
+        self.findings.require(
+            hash.as_str() == plugin.blake3,
+            rule::PLUGIN_HASH_MISMATCH,
+            pointer,
+            || format!("{} has the hash {hash}; embed the module anew", plugin.file),
+        );
+        Some(bytes)
     }
 
     fn check_unreferenced(&mut self) {

@@ -57,7 +57,8 @@ pub fn cases() -> Vec<Case> {
         .into_iter()
         .chain(entries())
         .chain(texts())
-        .chain(manifests());
+        .chain(manifests())
+        .chain(plugins());
     all.extend(broken.map(|(n, b)| case(n, b)));
     all.extend(limited());
     all
@@ -93,6 +94,7 @@ fn valid() -> Vec<Named> {
         ("valid_five_models", asset(1, five(1)).to_bytes().unwrap()),
         ("valid_conditions", asset(3, five(3)).to_bytes().unwrap()),
         ("valid_reference", with_reference.to_bytes().unwrap()),
+        ("valid_plugin", with_plugin(|_| ())),
         ("valid_extension", extended.to_bytes().unwrap()),
         (
             "valid_newer_minor",
@@ -100,6 +102,57 @@ fn valid() -> Vec<Named> {
                 m["htex"] = json!("1.7");
                 m["friction"] = json!({ "static": 0.4 });
             }),
+        ),
+    ]
+}
+
+/// An asset that brings the (empty) module of its model, signed; `change` comes after signing.
+fn with_plugin(change: impl Fn(&mut Asset)) -> Vec<u8> {
+    let mut asset = asset(1, vec![sbeta(1)]);
+    let module = b"\0asm\x01\0\0\0".to_vec();
+    let plugin = Plugin::new("org.htex.sbeta", "1.0.0", &module).signed(&[7; 32]);
+    asset.manifest.plugins.push(plugin);
+    asset.plugins.push(module);
+    change(&mut asset);
+    let manifest = serde_json::to_vec(&asset.manifest).unwrap();
+    let mut parts = parts(&manifest, &block());
+    for (plugin, module) in asset.manifest.plugins.iter().zip(&asset.plugins) {
+        parts.push(Entry::stored(&plugin.file, module));
+    }
+    archive(&parts)
+}
+
+fn plugins() -> Vec<Named> {
+    vec![
+        (
+            "plugin_invalid",
+            with_plugin(|a| a.manifest.plugins[0].blake3.make_ascii_uppercase()),
+        ),
+        (
+            "plugin_duplicate",
+            with_plugin(|a| a.manifest.plugins.extend_from_within(..)),
+        ),
+        (
+            "plugin_unused",
+            with_plugin(|a| {
+                let module = &a.plugins[0];
+                a.manifest.plugins[0] = Plugin::new("com.example.other", "1.0.0", module);
+            }),
+        ),
+        (
+            "plugin_not_wasm",
+            with_plugin(|a| {
+                a.plugins[0] = b"\x7fELF".to_vec();
+                a.manifest.plugins[0] = Plugin::new("org.htex.sbeta", "1.0.0", &a.plugins[0]);
+            }),
+        ),
+        (
+            "plugin_hash_mismatch",
+            with_plugin(|a| a.plugins[0].push(0)),
+        ),
+        (
+            "plugin_signature_invalid",
+            with_plugin(|a| a.manifest.plugins[0].version = "1.0.1".to_owned()),
         ),
     ]
 }

@@ -43,12 +43,14 @@ pub fn asset(conditions: usize, fitted: Vec<Fitted>) -> Asset {
             conditions: (0..conditions).map(condition).collect(),
             representations,
             reference: None,
+            plugins: Vec::new(),
             extensions: Default::default(),
             extensions_required: Vec::new(),
             other: Default::default(),
         },
         parameters,
         reference: None,
+        plugins: Vec::new(),
         notes: Vec::new(),
     }
 }

@@ -1,0 +1,61 @@
+//! What the manifest's words on plugins must be.
+
+use std::collections::BTreeSet;
+
+use crate::check_representation::is_model_id;
+use crate::report::Findings;
+use crate::rules as rule;
+use crate::{Manifest, Plugin};
+
+/// Adds a finding for each rule the manifest's plugins break by themselves.
+pub(crate) fn check_plugins(manifest: &Manifest, findings: &mut Findings) {
+    let mut seen = BTreeSet::new();
+    for (i, plugin) in manifest.plugins.iter().enumerate() {
+        let at = format!("/plugins/{i}");
+        check_words(plugin, &at, findings);
+        let model = || format!("{at}/model");
+        let new = seen.insert(plugin.model.as_str());
+        findings.require(new, rule::PLUGIN_DUPLICATE, model(), || {
+            format!("{} is here already; keep one module", plugin.model)
+        });
+        let used = manifest
+            .representations
+            .iter()
+            .any(|r| r.model == plugin.model);
+        findings.require(used, rule::PLUGIN_UNUSED, model(), || {
+            format!(
+                "no representation is of {}; leave its module out",
+                plugin.model
+            )
+        });
+        let valid = plugin.is_signature_valid();
+        let pointer = format!("{at}/signature");
+        findings.require(valid, rule::PLUGIN_SIGNATURE_INVALID, pointer, || {
+            "the signature is not that of its key over this plugin; do not trust it".to_owned()
+        });
+    }
+}
+
+fn check_words(plugin: &Plugin, at: &str, findings: &mut Findings) {
+    let digit = |b: u8| b.is_ascii_digit() || (b'a'..=b'f').contains(&b);
+    let hash = plugin.blake3.len() == 64 && plugin.blake3.bytes().all(digit);
+    let words = [
+        ("model", is_model_id(&plugin.model), "a reverse-DNS id"),
+        (
+            "version",
+            semver::Version::parse(&plugin.version).is_ok(),
+            "a semantic version",
+        ),
+        (
+            "file",
+            plugin.file == Plugin::file_of(&plugin.model),
+            "plugins/ID.wasm of its model",
+        ),
+        ("blake3", hash, "64 lower-case hexadecimal digits"),
+    ];
+    for (key, holds, form) in words {
+        findings.require(holds, rule::PLUGIN_INVALID, format!("{at}/{key}"), || {
+            format!("`{key}` is not {form}; embed the module anew")
+        });
+    }
+}

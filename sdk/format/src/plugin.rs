@@ -1,0 +1,75 @@
+//! Models inside an asset: their hash, and who vouches for them.
+
+use ed25519_dalek::{Signature as Ed25519, Signer, SigningKey, VerifyingKey};
+
+use crate::{Plugin, Signature};
+
+/// What every signed text begins with, so that a signature means nothing elsewhere.
+const DOMAIN: &[u8] = b"htex plugin 1\0";
+/// What every WASM module begins with.
+pub(crate) const WASM_MAGIC: &[u8] = b"\0asm";
+
+impl Plugin {
+    /// The entry of a model's module, unsigned. `version` is the model's.
+    pub fn new(model: &str, version: &str, module: &[u8]) -> Self {
+        Self {
+            model: model.to_owned(),
+            version: version.to_owned(),
+            file: Self::file_of(model),
+            blake3: blake3::hash(module).to_hex().to_string(),
+            signature: None,
+        }
+    }
+
+    /// Name of the archive entry of a model's module.
+    pub(crate) fn file_of(model: &str) -> String {
+        format!("plugins/{model}.wasm")
+    }
+
+    /// Signs with an ed25519 secret key of 32 bytes.
+    #[must_use]
+    pub fn signed(mut self, secret_key: &[u8; 32]) -> Self {
+        let key = SigningKey::from_bytes(secret_key);
+        self.signature = Some(Signature {
+            public_key: to_hex(key.verifying_key().as_bytes()),
+            ed25519: to_hex(&key.sign(&self.signed_text()).to_bytes()),
+        });
+        self
+    }
+
+    /// Whether the signature is that of its public key over this plugin; true without one.
+    pub fn is_signature_valid(&self) -> bool {
+        let Some(signature) = &self.signature else {
+            return true;
+        };
+        let key = from_hex(&signature.public_key).and_then(|k| VerifyingKey::from_bytes(&k).ok());
+        let made = from_hex(&signature.ed25519).map(|bytes| Ed25519::from_bytes(&bytes));
+        key.zip(made)
+            .is_some_and(|(key, made)| key.verify_strict(&self.signed_text(), &made).is_ok())
+    }
+
+    /// `htex plugin 1`, the model, the version and the hash, each ended by a zero byte.
+    fn signed_text(&self) -> Vec<u8> {
+        let mut text = DOMAIN.to_vec();
+        for part in [&self.model, &self.version, &self.blake3] {
+            text.extend_from_slice(part.as_bytes());
+            text.push(0);
+        }
+        text
+    }
+}
+
+fn to_hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+fn from_hex<const N: usize>(text: &str) -> Option<[u8; N]> {
+    let mut bytes = [0; N];
+    if text.len() != 2 * N || !text.is_ascii() {
+        return None;
+    }
+    for (i, byte) in bytes.iter_mut().enumerate() {
+        *byte = u8::from_str_radix(&text[2 * i..2 * i + 2], 16).ok()?;
+    }
+    Some(bytes)
+}

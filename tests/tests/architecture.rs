@@ -15,12 +15,14 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("plugin", &["htex-dsp", "htex-model", "htex-shaped"]),
     ("htex-host", &["htex-dsp", "htex-model", "plugin"]),
     ("htex-author", &["htex-dsp", "htex-format", "htex-host"]),
+    ("htex-check", &["htex-dsp", "htex-host", "htex-model"]),
     ("htex", &["htex-dsp", "htex-format", "htex-host"]),
     (
         "htex-cli",
         &[
             "htex",
             "htex-author",
+            "htex-check",
             "htex-dsp",
             "htex-format",
             "htex-host",

@@ -5,6 +5,7 @@ mod demo;
 mod explain;
 mod fit;
 mod info;
+mod plugin;
 mod process;
 mod schema;
 mod simulate;
@@ -30,6 +31,7 @@ pub(crate) enum Command {
     Synth(synth::Synth),
     Compare(compare::Compare),
     Schema(schema::Schema),
+    Plugin(plugin::Plugin),
 }
 
 impl Command {
@@ -46,6 +48,7 @@ impl Command {
             Self::Synth(args) => args.run(),
             Self::Compare(args) => args.run(),
             Self::Schema(args) => args.run(),
+            Self::Plugin(args) => args.run(),
         }
     }
 }

@@ -1,0 +1,152 @@
+//! The model under test, and what several checks ask of it.
+
+use std::path::{Path, PathBuf};
+
+use htex_host::{Band, FitRequest, HostError, LoadedModel, Status, Stream};
+use htex_model::Fit;
+
+use crate::finding::Finding;
+use crate::spectra::{REFERENCES, Reference};
+
+/// Rate at which sounds are judged, hertz: that of the recordings.
+pub(crate) const RATE_HZ: f64 = 20_000.0;
+
+/// A loaded model and what the checker was told.
+pub(crate) struct Case {
+    pub(crate) file: PathBuf,
+    pub(crate) model: LoadedModel,
+    pub(crate) seed: u64,
+    pub(crate) against: Option<PathBuf>,
+}
+
+/// Parameters that came out of a fit to a reference spectrum.
+pub(crate) struct Fitted {
+    pub(crate) reference: &'static str,
+    pub(crate) parameters: Vec<f64>,
+}
+
+/// Two sets of parameters.
+pub(crate) type Pair = (Vec<f64>, Vec<f64>);
+
+impl Case {
+    /// Loads the model.
+    pub(crate) fn load(file: &Path, seed: u64, against: Option<&Path>) -> Result<Self, HostError> {
+        Ok(Self {
+            file: file.to_owned(),
+            model: LoadedModel::from_file(file)?,
+            seed,
+            against: against.map(Path::to_owned),
+        })
+    }
+
+    /// Fits a spectrum on the tactile grid with the options' defaults.
+    pub(crate) fn fit(&self, magnitude: &[f64]) -> Result<Fit, HostError> {
+        self.fit_in(Band::TACTILE, &Band::TACTILE.grid_hz(), magnitude)
+    }
+
+    /// Fits a spectrum on a grid of its own.
+    pub(crate) fn fit_in(&self, band: Band, grid: &[f64], m: &[f64]) -> Result<Fit, HostError> {
+        self.model.fit(&FitRequest {
+            band,
+            frequency_hz: grid,
+            magnitude: m,
+            signal: &[],
+            signal_rate_hz: RATE_HZ,
+            options: &self.model.descriptor().default_options(),
+        })
+    }
+
+    /// Parameters of every reference spectrum that the model can describe; at least one.
+    pub(crate) fn fitted(&self) -> Result<Vec<Fitted>, Finding> {
+        let mut fitted = Vec::new();
+        for Reference { name, curve } in REFERENCES {
+            let spectrum: Vec<f64> = Band::TACTILE.grid_hz().into_iter().map(curve).collect();
+            match self.fit(&spectrum) {
+                Ok(fit) => fitted.push(Fitted {
+                    reference: name,
+                    parameters: fit.parameters,
+                }),
+                Err(error) if is_cannot_fit(&error) => {}
+                Err(error) => return Err(Finding::failed(format!("spectrum `{name}`: {error}"))),
+            }
+        }
+        if fitted.is_empty() {
+            return Err(Finding::failed(
+                "the model can be fitted to none of the reference spectra",
+            ));
+        }
+        Ok(fitted)
+    }
+
+    /// Parameters of the first reference spectrum that can be fitted.
+    pub(crate) fn parameters(&self) -> Result<Vec<f64>, Finding> {
+        let first = self.fitted()?.into_iter().next();
+        first
+            .map(|fitted| fitted.parameters)
+            .ok_or_else(|| Finding::failed("there are no parameters"))
+    }
+
+    /// Two sets of parameters that are not the same; `None` when all fits came out alike.
+    pub(crate) fn two_sets(&self) -> Result<Option<Pair>, Finding> {
+        let mut fitted = self.fitted()?.into_iter().map(|f| f.parameters);
+        let Some(first) = fitted.next() else {
+            return Ok(None);
+        };
+        let other = fitted.find(|set| *set != first);
+        Ok(other.map(|other| (first, other)))
+    }
+
+    /// A stream at [`RATE_HZ`].
+    pub(crate) fn stream(&self, parameters: &[f64], seed: u64) -> Result<Stream, HostError> {
+        Stream::new(&self.model, parameters, Band::TACTILE, RATE_HZ, seed)
+    }
+
+    /// Samples of a fresh voice at the model's own rate, rendered in blocks.
+    pub(crate) fn samples(
+        &self,
+        parameters: &[f64],
+        seed: u64,
+        len: usize,
+        block: usize,
+    ) -> Result<Vec<f32>, HostError> {
+        let mut voice = self.voice(parameters, seed)?;
+        let mut out = vec![0.0; len];
+        for part in out.chunks_mut(block) {
+            voice.render(part)?;
+        }
+        Ok(out)
+    }
+
+    /// A voice at the rate the model wants to render at.
+    pub(crate) fn voice(
+        &self,
+        parameters: &[f64],
+        seed: u64,
+    ) -> Result<htex_host::ModelVoice, HostError> {
+        let band = Band::TACTILE;
+        let rate_hz = self.model.voice_rate_hz(parameters, band, RATE_HZ)?;
+        self.model.voice(parameters, band, rate_hz, seed)
+    }
+
+    /// The magnitude on the tactile grid.
+    pub(crate) fn magnitude(&self, parameters: &[f64]) -> Result<Vec<f64>, HostError> {
+        let grid = Band::TACTILE.grid_hz();
+        self.model.magnitude(parameters, Band::TACTILE, &grid)
+    }
+}
+
+/// Whether the model said that this spectrum holds nothing for it.
+pub(crate) fn is_cannot_fit(error: &HostError) -> bool {
+    matches!(
+        error,
+        HostError::Call {
+            status: Status::CannotFit,
+            ..
+        }
+    )
+}
+
+/// Whether the model answered a status other than that it panicked.
+pub(crate) fn is_refusal(error: &HostError) -> bool {
+    matches!(error, HostError::Call { status, .. } if *status != Status::Panicked)
+}

@@ -1,0 +1,114 @@
+//! The marker, the exports, the descriptor and extensions.
+
+use htex_host::{Descriptor, FitOption, HostError, Store};
+
+use crate::case::Case;
+use crate::finding::{Finding, Found};
+
+/// The check that a loading error belongs to.
+pub(crate) fn owner(error: &HostError) -> &'static str {
+    match error {
+        HostError::Broken { call, .. } if *call == "htex_model_abi_version" => "marker",
+        HostError::Broken { call, .. } if *call == "htex_model_descriptor" => "descriptor",
+        _ => "exports",
+    }
+}
+
+/// A model that was loaded has the marker and the exports.
+pub(crate) fn loaded(case: &Case) -> Found {
+    let file = case.file.display();
+    Ok(Finding::passed(format!("{file} was loaded")))
+}
+
+/// What loading does not already look at.
+pub(crate) fn descriptor(case: &Case) -> Found {
+    let descriptor = case.model.descriptor();
+    if let Some(wrong) = wrong_in(descriptor) {
+        return Err(Finding::failed(wrong));
+    }
+    let (fields, options) = (descriptor.fields.len(), descriptor.options.len());
+    let identity = format!("{} {}", descriptor.id, descriptor.version);
+    Ok(Finding::passed(format!(
+        "{identity}: {fields} fields, {options} fit options"
+    ))
+    .with("fields", fields as f64)
+    .with("options", options as f64))
+}
+
+fn wrong_in(descriptor: &Descriptor) -> Option<String> {
+    if descriptor.name.trim().is_empty() || descriptor.summary.trim().is_empty() {
+        return Some("`name` and `summary` must say something".to_owned());
+    }
+    let fields = descriptor.fields.iter().map(|f| (&f.name, &f.unit));
+    let options = descriptor.options.iter().map(|o| (&o.name, &o.unit));
+    for (name, unit) in fields.chain(options) {
+        let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_';
+        if name.is_empty() || !name.bytes().all(plain) {
+            return Some(format!("`{name}`: names are of a-z, 0-9 and _"));
+        }
+        if unit.is_empty() {
+            return Some(format!(
+                "`{name}` has no unit; `1` stands for a pure number"
+            ));
+        }
+    }
+    let field = descriptor.fields.iter();
+    field
+        .clone()
+        .find(|f| !store_works(&f.store))
+        .map(|f| format!("`{}`: the store needs a finite, positive step", f.name))
+        .or_else(|| twice(descriptor.options.iter().map(|o| o.name.as_str())))
+        .or_else(|| descriptor.options.iter().find_map(wrong_default))
+}
+
+fn store_works(store: &Store) -> bool {
+    match *store {
+        Store::F64 | Store::F32 => true,
+        Store::U16 { scale, offset, .. } | Store::U8 { scale, offset, .. } => {
+            scale.is_finite() && scale > 0.0 && offset.is_finite()
+        }
+    }
+}
+
+fn twice<'a>(names: impl Iterator<Item = &'a str>) -> Option<String> {
+    let mut names: Vec<&str> = names.collect();
+    names.sort_unstable();
+    let pair = names.windows(2).find(|pair| pair[0] == pair[1])?;
+    Some(format!("two options are named `{}`", pair[0]))
+}
+
+fn wrong_default(option: &FitOption) -> Option<String> {
+    let FitOption { name, default, .. } = option;
+    if !(option.min..=option.max).contains(default) {
+        let (min, max) = (option.min, option.max);
+        return Some(format!(
+            "`{name}`: the default {default} is not in {min} to {max}"
+        ));
+    }
+    if option.integer && default.fract() != 0.0 {
+        return Some(format!("`{name}`: the default {default} is not whole"));
+    }
+    let last = option.choices.len().saturating_sub(1) as f64;
+    let counted = option.choices.is_empty() || (option.min == 0.0 && option.max == last);
+    (!counted).then(|| format!("`{name}`: choices are counted from 0 to {last}"))
+}
+
+/// Made-up extensions are not there.
+pub(crate) fn extensions(case: &Case) -> Found {
+    let long = "x".repeat(100_000);
+    for id in [
+        "htex.no-such-thing/1",
+        "com.example.unheard-of/7",
+        "",
+        "\u{1f}é",
+        &long,
+    ] {
+        if case.model.has_extension(id)? {
+            let id: String = id.chars().take(40).collect();
+            return Err(Finding::failed(format!(
+                "it says yes to the extension `{id}`"
+            )));
+        }
+    }
+    Ok(Finding::passed("five made-up extensions are answered by no").with("asked", 5.0))
+}

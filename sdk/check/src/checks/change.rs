@@ -1,0 +1,117 @@
+//! Changing from one set of parameters to another.
+
+use htex_host::Band;
+
+use crate::case::Case;
+use crate::checks::magnitude::fine_grid;
+use crate::finding::{Finding, Found};
+use crate::signal::sharpest_bend;
+
+/// Samples at the rate of the recordings: two seconds.
+const SAMPLES: usize = 40_000;
+/// Samples between two retunes.
+const BETWEEN: usize = 500;
+/// How much sharper than the steady sounds a retune may bend.
+const SHARPER: f32 = 2.0;
+/// Distance of a mixture's magnitude at its ends, relative to the largest.
+const AT_ENDS: f64 = 1e-6;
+/// Largest sample of a sound of unit RMS.
+const LOUDEST: f32 = 100.0;
+
+/// Retunes bend no sharper than the sounds themselves.
+pub(crate) fn retune(case: &Case) -> Found {
+    let Some((a, b)) = case.two_sets()? else {
+        return Ok(Finding::skipped(
+            "all reference spectra have the same parameters",
+        ));
+    };
+    let middle = case.model.interpolate(&[&a, &b], &[0.5, 0.5]);
+    let sets = [a.clone(), middle.unwrap_or(a), b];
+    let mut steady: f32 = 0.0;
+    for set in &sets {
+        let mut out = vec![0.0; SAMPLES];
+        case.stream(set, case.seed)?.render(&mut out)?;
+        steady = steady.max(sharpest_bend(&out));
+    }
+    let mut stream = case.stream(&sets[0], case.seed)?;
+    let mut out = vec![0.0; SAMPLES];
+    for (i, block) in out.chunks_mut(BETWEEN).enumerate() {
+        stream.retune(&sets[i % sets.len()])?;
+        stream.render(block)?;
+    }
+    let ratio = sharpest_bend(&out) / steady;
+    let finding = if ratio <= SHARPER {
+        Finding::passed(format!(
+            "retunes bend {ratio:.2} times as sharply as the steady sounds"
+        ))
+    } else {
+        Finding::failed(format!(
+            "retunes click: they bend {ratio:.1} times as sharply as the steady sounds; \
+             {SHARPER} times is allowed"
+        ))
+    };
+    Ok(finding.with("bend_ratio", f64::from(ratio)))
+}
+
+/// Mixtures meet their ends and can be played.
+pub(crate) fn interpolate(case: &Case) -> Found {
+    let sets = case.fitted()?;
+    if sets.len() < 2 {
+        return Ok(Finding::skipped("one set of parameters cannot be mixed"));
+    }
+    let mut worst: f64 = 0.0;
+    for pair in sets.windows(2) {
+        let (a, b) = (&pair[0].parameters[..], &pair[1].parameters[..]);
+        let between = format!(
+            "between `{}` and `{}`",
+            pair[0].reference, pair[1].reference
+        );
+        for step in 0..=10 {
+            let weight = f64::from(step) / 10.0;
+            let say = |what: String| {
+                Finding::failed(format!("{between}, {weight} of the second: {what}"))
+            };
+            let mix = case.model.interpolate(&[a, b], &[1.0 - weight, weight]);
+            let mix = mix.map_err(|error| say(error.to_string()))?;
+            playable(case, &mix).map_err(&say)?;
+            let end = match step {
+                0 => a,
+                10 => b,
+                _ => continue,
+            };
+            let distance = relative_distance(case, &mix, end)?;
+            if distance > AT_ENDS {
+                let what = format!("the magnitude misses that of the set by {distance:.1e}");
+                return Err(say(what).with("end_distance", distance));
+            }
+            worst = worst.max(distance);
+        }
+    }
+    let pairs = sets.len() - 1;
+    Ok(
+        Finding::passed(format!("eleven mixtures of {pairs} pairs can be played"))
+            .with("end_distance", worst),
+    )
+}
+
+fn playable(case: &Case, mix: &[f64]) -> Result<(), String> {
+    case.magnitude(mix).map_err(|error| error.to_string())?;
+    let mut out = vec![0.0f32; SAMPLES];
+    let rendered = case.stream(mix, case.seed);
+    let rendered = rendered.and_then(|mut stream| stream.render(&mut out));
+    rendered.map_err(|error| error.to_string())?;
+    match out.iter().find(|x| !x.is_finite() || x.abs() > LOUDEST) {
+        None => Ok(()),
+        Some(x) => Err(format!("a sample is {x}")),
+    }
+}
+
+/// Largest difference of two sets' magnitudes, relative to the largest magnitude.
+fn relative_distance(case: &Case, a: &[f64], b: &[f64]) -> Result<f64, Finding> {
+    let grid = fine_grid();
+    let ask = |set: &[f64]| case.model.magnitude(set, Band::TACTILE, &grid);
+    let (a, b) = (ask(a)?, ask(b)?);
+    let largest = b.iter().copied().fold(0.0, f64::max);
+    let difference = a.iter().zip(&b).map(|(a, b)| (a - b).abs());
+    Ok(difference.fold(0.0, f64::max) / largest)
+}

@@ -1,0 +1,11 @@
+//! The checks, grouped by what they look at.
+
+pub(crate) mod abi;
+pub(crate) mod change;
+pub(crate) mod fit;
+pub(crate) mod magnitude;
+pub(crate) mod refusal;
+pub(crate) mod repeat;
+pub(crate) mod resources;
+pub(crate) mod sound;
+pub(crate) mod twin;

@@ -1,0 +1,151 @@
+//! Seeds, blocks, several voices, handles.
+
+use htex_host::{Band, HostError, Status};
+
+use crate::case::Case;
+use crate::checks::magnitude::fine_grid;
+use crate::finding::{Finding, Found};
+use crate::signal::{first_difference, is_line_spectrum};
+
+/// Samples that are compared.
+const SAMPLES: usize = 9_000;
+
+fn differ(what: &str, at: usize) -> Finding {
+    Finding::failed(format!("{what}: sample {at} differs")).with("sample", at as f64)
+}
+
+/// Twice the same.
+pub(crate) fn reproducible(case: &Case) -> Found {
+    for fitted in case.fitted()? {
+        let render = || case.samples(&fitted.parameters, case.seed, SAMPLES, 256);
+        if let Some(at) = first_difference(&render()?, &render()?) {
+            let what = format!("spectrum `{}`, the same seed twice", fitted.reference);
+            return Err(differ(&what, at));
+        }
+    }
+    Ok(Finding::passed(format!(
+        "{SAMPLES} samples come out the same twice"
+    )))
+}
+
+/// The same in any blocks.
+pub(crate) fn blocks(case: &Case) -> Found {
+    let parameters = case.parameters()?;
+    let whole = case.samples(&parameters, case.seed, SAMPLES, SAMPLES)?;
+    for block in [1, 7, 64, 1_000] {
+        let other = case.samples(&parameters, case.seed, SAMPLES, block)?;
+        if let Some(at) = first_difference(&whole, &other) {
+            return Err(differ(
+                &format!("blocks of {block} against one of {SAMPLES}"),
+                at,
+            ));
+        }
+    }
+    let mut voice = case.voice(&parameters, case.seed)?;
+    voice
+        .render(&mut [])
+        .map_err(|error| Finding::failed(format!("a block of no samples: {error}")))?;
+    Ok(Finding::passed(
+        "the same samples in blocks of 1, 7, 64, 1000 and 9000",
+    ))
+}
+
+/// Other seeds, other samples.
+pub(crate) fn seeds(case: &Case) -> Found {
+    let parameters = case.parameters()?;
+    let render = |seed| case.samples(&parameters, seed, SAMPLES, 256);
+    let same = first_difference(&render(case.seed)?, &render(case.seed.wrapping_add(1))?).is_none();
+    if !same {
+        return Ok(Finding::passed("two seeds give different samples"));
+    }
+    let fine = case
+        .model
+        .magnitude(&parameters, Band::TACTILE, &fine_grid())?;
+    if is_line_spectrum(&fine) {
+        return Ok(Finding::warning(
+            "two seeds give the same samples; the spectrum is made of lines, which need no chance",
+        ));
+    }
+    Err(Finding::failed(
+        "two seeds give the same samples: the seed is ignored",
+    ))
+}
+
+/// Several voices at a time sound as each does alone.
+pub(crate) fn voices_apart(case: &Case) -> Found {
+    let sets = case.two_sets()?;
+    let (a, b) = match sets {
+        Some(sets) => sets,
+        None => (case.parameters()?, case.parameters()?),
+    };
+    let alone = |set: &[f64], seed| case.samples(set, seed, SAMPLES, 64);
+    let (seed, other) = (case.seed, case.seed.wrapping_add(7));
+    let (alone_a, alone_b) = (alone(&a, seed)?, alone(&b, other)?);
+
+    let (mut first, mut second) = (case.voice(&a, seed)?, case.voice(&b, other)?);
+    let mut turns = (vec![0.0; SAMPLES], vec![0.0; SAMPLES]);
+    for (x, y) in turns.0.chunks_mut(64).zip(turns.1.chunks_mut(64)) {
+        first.render(x)?;
+        second.render(y)?;
+    }
+    let threads = std::thread::scope(|scope| {
+        let first = scope.spawn(|| alone(&a, seed));
+        let second = scope.spawn(|| alone(&b, other));
+        (first.join(), second.join())
+    });
+    let (Ok(thread_a), Ok(thread_b)) = threads else {
+        return Err(Finding::failed("a voice on a thread of its own panicked"));
+    };
+    for (way, together, alone) in [
+        ("the first of two voices in turns", &turns.0, &alone_a),
+        ("the second of two voices in turns", &turns.1, &alone_b),
+        ("the first of two voices on threads", &thread_a?, &alone_a),
+        ("the second of two voices on threads", &thread_b?, &alone_b),
+    ] {
+        if let Some(at) = first_difference(together, alone) {
+            return Err(differ(&format!("{way}, against it alone"), at));
+        }
+    }
+    Ok(Finding::passed(
+        "two voices sound as each does alone, in turns and on threads",
+    ))
+}
+
+/// What was freed is refused.
+pub(crate) fn handles(case: &Case) -> Found {
+    let parameters = case.parameters()?;
+    let mut voice = case.voice(&parameters, case.seed)?;
+    voice.render(&mut [0.0; 64])?;
+    voice
+        .free_and_keep_handle()
+        .map_err(|error| Finding::failed(format!("a voice cannot be freed: {error}")))?;
+    let mut others = 0.0;
+    for when in ["after it was freed", "after the next voice was made"] {
+        let calls = [
+            ("voice_render", voice.render(&mut [0.0; 64])),
+            ("voice_retune", voice.retune(&parameters)),
+            ("voice_free", voice.free_and_keep_handle()),
+        ];
+        for (call, answer) in calls {
+            match answer {
+                Err(HostError::Call {
+                    status: Status::BadHandle,
+                    ..
+                }) => {}
+                Err(HostError::Call { .. }) => others += 1.0,
+                Err(error) => return Err(error.into()),
+                Ok(()) => {
+                    let message = format!("`{call}` takes the handle of a voice {when}");
+                    return Err(Finding::failed(message));
+                }
+            }
+        }
+        // Takes the place of the freed voice, and must not be reached by its handle.
+        std::mem::forget(case.voice(&parameters, case.seed)?);
+    }
+    if others > 0.0 {
+        let message = "freed handles are refused, by another status than BAD_HANDLE";
+        return Ok(Finding::warning(message).with("other_status", others));
+    }
+    Ok(Finding::passed("freed handles are refused"))
+}

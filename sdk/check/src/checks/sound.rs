@@ -1,0 +1,116 @@
+//! What a voice sounds like, against what the magnitude says.
+
+use htex_dsp::grid::level_rms;
+use htex_host::Band;
+
+use crate::case::{Case, Fitted, RATE_HZ};
+use crate::checks::magnitude::fine_grid;
+use crate::finding::{Finding, Found};
+use crate::signal::{distance_db, is_line_spectrum, measured_spectrum, rms, rms_spread};
+
+/// How long sounds are judged, seconds.
+const SECONDS: f64 = 20.0;
+/// Relative error of an RMS that is always allowed.
+const LEVEL: f64 = 0.02;
+/// Standard deviations of noise that are allowed.
+const SPREADS: f64 = 4.0;
+/// Distance of the sound's spectrum from the magnitude that is allowed, dB RMS.
+const SPECTRUM_DB: f64 = 1.0;
+
+fn about(fitted: &Fitted, what: &str) -> Finding {
+    Finding::failed(format!("spectrum `{}`: {what}", fitted.reference))
+}
+
+/// One second of every reference.
+pub(crate) fn renders(case: &Case) -> Found {
+    let mut voices = 0.0;
+    for fitted in case.fitted()? {
+        let mut out = vec![0.0; RATE_HZ as usize];
+        let rendered = case.stream(&fitted.parameters, case.seed);
+        let rendered = rendered.and_then(|mut stream| stream.render(&mut out));
+        rendered.map_err(|error| about(&fitted, &error.to_string()))?;
+        if out.iter().all(|&x| x == 0.0) {
+            return Err(about(&fitted, "a second of nothing but zeros"));
+        }
+        voices += 1.0;
+    }
+    Ok(Finding::passed(format!("{voices} voices render a second each")).with("voices", voices))
+}
+
+/// No infinite, undefined or subnormal sample, also after retunes.
+pub(crate) fn clean(case: &Case) -> Found {
+    let sets = case.fitted()?;
+    let mut samples = 0.0;
+    for fitted in &sets {
+        let mut voice = case.voice(&fitted.parameters, case.seed)?;
+        let rate_hz = case
+            .model
+            .voice_rate_hz(&fitted.parameters, Band::TACTILE, RATE_HZ)?;
+        let mut out = vec![0.0f32; rate_hz as usize];
+        for second in 0..SECONDS as usize {
+            voice.render(&mut out)?;
+            let ill = out.iter().position(|x| !x.is_finite() || x.is_subnormal());
+            if let Some(i) = ill {
+                let what = format!("sample {i} of second {second} is {:e}", out[i]);
+                return Err(about(fitted, &what));
+            }
+            samples += out.len() as f64;
+            voice.retune(&sets[second % sets.len()].parameters)?;
+        }
+    }
+    Ok(Finding::passed(format!("{samples} samples are clean")).with("samples", samples))
+}
+
+/// Twenty seconds at the rate of the recordings.
+fn listen(case: &Case, fitted: &Fitted) -> Result<Vec<f32>, Finding> {
+    let mut out = vec![0.0; (SECONDS * RATE_HZ) as usize];
+    case.stream(&fitted.parameters, case.seed)?
+        .render(&mut out)?;
+    Ok(out)
+}
+
+/// Unit RMS, of the magnitude and of the sound.
+pub(crate) fn level(case: &Case) -> Found {
+    let mut worst: f64 = 0.0;
+    for fitted in case.fitted()? {
+        let magnitude = case.magnitude(&fitted.parameters)?;
+        let (told, heard) = (level_rms(&magnitude), rms(&listen(case, &fitted)?));
+        let fine = fine_grid();
+        let fine = case
+            .model
+            .magnitude(&fitted.parameters, Band::TACTILE, &fine)?;
+        let lines = is_line_spectrum(&fine);
+        let allowed = LEVEL.max(SPREADS * rms_spread(&magnitude, SECONDS));
+        if !lines && (told - 1.0).abs() > LEVEL {
+            let what = format!("the magnitude's RMS is {told:.4}; it must be 1 within {LEVEL}");
+            return Err(about(&fitted, &what).with("magnitude_rms", told));
+        }
+        if (heard - 1.0).abs() > allowed {
+            let what = format!("the sound's RMS is {heard:.4}; it must be 1 within {allowed:.3}");
+            return Err(about(&fitted, &what).with("sound_rms", heard));
+        }
+        worst = worst.max((heard - 1.0).abs());
+    }
+    let message = format!("RMS within {:.2} % of 1", 100.0 * worst);
+    Ok(Finding::passed(message).with("sound_rms_error", worst))
+}
+
+/// The sound's spectrum against the magnitude.
+pub(crate) fn spectrum(case: &Case) -> Found {
+    let mut worst: f64 = 0.0;
+    for fitted in case.fitted()? {
+        let magnitude = case.magnitude(&fitted.parameters)?;
+        let heard = measured_spectrum(&listen(case, &fitted)?);
+        let distance = distance_db(&heard, &magnitude);
+        // Written so that a distance that is no number fails.
+        if !matches!(distance.partial_cmp(&SPECTRUM_DB), Some(o) if o.is_le()) {
+            let what = format!(
+                "the sound is {distance:.2} dB RMS from the magnitude; {SPECTRUM_DB} dB is allowed"
+            );
+            return Err(about(&fitted, &what).with("distance_db", distance));
+        }
+        worst = worst.max(distance);
+    }
+    let message = format!("the sound is within {worst:.2} dB RMS of the magnitude");
+    Ok(Finding::passed(message).with("distance_db", worst))
+}

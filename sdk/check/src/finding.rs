@@ -1,0 +1,98 @@
+//! What a check found.
+
+use std::collections::BTreeMap;
+
+use htex_host::HostError;
+use serde::{Deserialize, Serialize};
+
+/// How a check ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Outcome {
+    /// The promise is kept.
+    Passed,
+    /// The promise is kept, but something deserves a look.
+    Warning,
+    /// The check has nothing to look at, or needs another one that did not pass.
+    Skipped,
+    /// The promise is broken.
+    Failed,
+    /// The process that ran the check died.
+    Crashed,
+    /// The check did not end in time.
+    TimedOut,
+}
+
+impl Outcome {
+    /// Whether the model is at fault.
+    pub fn is_bad(self) -> bool {
+        matches!(self, Self::Failed | Self::Crashed | Self::TimedOut)
+    }
+
+    /// The word for it, as in the JSON report.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Passed => "passed",
+            Self::Warning => "warning",
+            Self::Skipped => "skipped",
+            Self::Failed => "failed",
+            Self::Crashed => "crashed",
+            Self::TimedOut => "timed-out",
+        }
+    }
+}
+
+/// An outcome, a sentence, and the numbers behind it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Finding {
+    /// How the check ended.
+    pub outcome: Outcome,
+    /// What was found.
+    pub message: String,
+    /// What was measured, by name; the unit stands in the name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub numbers: BTreeMap<String, f64>,
+}
+
+/// What a check answers: both arms are findings, so that `?` ends a check.
+pub(crate) type Found = Result<Finding, Finding>;
+
+impl Finding {
+    pub(crate) fn new(outcome: Outcome, message: impl Into<String>) -> Self {
+        Self {
+            outcome,
+            message: message.into(),
+            numbers: BTreeMap::new(),
+        }
+    }
+
+    pub(crate) fn passed(message: impl Into<String>) -> Self {
+        Self::new(Outcome::Passed, message)
+    }
+
+    pub(crate) fn warning(message: impl Into<String>) -> Self {
+        Self::new(Outcome::Warning, message)
+    }
+
+    pub(crate) fn skipped(message: impl Into<String>) -> Self {
+        Self::new(Outcome::Skipped, message)
+    }
+
+    pub(crate) fn failed(message: impl Into<String>) -> Self {
+        Self::new(Outcome::Failed, message)
+    }
+
+    /// Adds a measured number. One that JSON cannot hold is left out; the sentence tells it.
+    pub(crate) fn with(mut self, name: &str, value: f64) -> Self {
+        if value.is_finite() {
+            self.numbers.insert(name.to_owned(), value);
+        }
+        self
+    }
+}
+
+impl From<HostError> for Finding {
+    fn from(error: HostError) -> Self {
+        Self::failed(error.to_string())
+    }
+}

@@ -1,0 +1,28 @@
+//! A checker that model authors can trust: every promise of the model ABI is one check, and each
+//! check runs in a process of its own, so that a crash or an endless loop is an answer too.
+//!
+//! [`CHECKS`] is the list; [`check`] runs it over a model file; [`run_one`] runs one of them in
+//! this process, which is what a debugger wants.
+//!
+//! ```
+//! use htex_check::{CHECKS, model_checks_page};
+//! assert!(CHECKS.iter().any(|check| check.name == "level"));
+//! assert!(model_checks_page().contains("| level |"));
+//! ```
+#![forbid(unsafe_code)]
+
+mod case;
+mod checks;
+mod finding;
+mod page;
+mod report;
+mod runner;
+mod signal;
+mod spectra;
+mod table;
+
+pub use finding::{Finding, Outcome};
+pub use page::model_checks_page;
+pub use report::{CheckReport, Report};
+pub use runner::{Options, Runner, check, run_one};
+pub use table::{CHECKS, Check};

@@ -1,0 +1,40 @@
+//! `spec/model-checks.md`, made from the table.
+
+use std::fmt::Write;
+
+use crate::CHECKS;
+
+const HEAD: &str = "\
+# Checks of a model
+
+Generated from the table of checks in `sdk/check/src/table.rs` by
+`cargo run -p htex-check --example model_checks`.
+
+`htex plugin check FILE` runs these over a native library or a WASM module, each in a process of its
+own. A check *passes*, ends with a *warning*, is *skipped* (it has nothing to look at, or a check that
+it needs did not pass), *fails*, *crashes* or is *timed-out*; the last three make the exit status 1.
+`--reproduce NAME --seed N` runs one in a single process, for a debugger.
+
+| check | what is promised |
+|---|---|
+";
+
+/// The page that explains every check: `spec/model-checks.md`.
+pub fn model_checks_page() -> String {
+    let mut page = HEAD.to_owned();
+    // Writing to a string cannot fail.
+    for check in CHECKS {
+        let _ = writeln!(page, "| {} | {} |", check.name, check.summary);
+    }
+    for check in CHECKS {
+        let _ = write!(
+            page,
+            "\n## {}\n\n{}\n\n{}\n",
+            check.name, check.summary, check.method
+        );
+        if !check.needs.is_empty() {
+            let _ = writeln!(page, "\nNeeds: {}.", check.needs.join(", "));
+        }
+    }
+    page
+}

@@ -1,0 +1,89 @@
+//! What is measured on samples and spectra.
+
+use htex_dsp::spectrum::SegmentAnalyzer;
+use htex_host::{Band, GRID_HZ};
+
+use crate::case::RATE_HZ;
+
+/// Share of a spectrum's energy that the judged bins hold.
+const JUDGED: f64 = 0.99;
+
+/// Root of the mean square.
+pub(crate) fn rms(samples: &[f32]) -> f64 {
+    let power: f64 = samples.iter().map(|&x| f64::from(x).powi(2)).sum();
+    (power / samples.len().max(1) as f64).sqrt()
+}
+
+/// RMS-averaged texture spectrum of samples at [`RATE_HZ`] on the tactile grid: segments of 0.2 s,
+/// half overlapping, periodic Hann window.
+pub(crate) fn measured_spectrum(samples: &[f32]) -> Vec<f64> {
+    let len = (RATE_HZ / GRID_HZ) as usize;
+    let mut analyzer = SegmentAnalyzer::new(len);
+    let mut bins = analyzer.make_bins();
+    let mut power = vec![0.0; Band::TACTILE.bins()];
+    let mut count = 0.0;
+    for segment in samples.windows(len).step_by(len / 2) {
+        let segment: Vec<f64> = segment.iter().map(|&x| x.into()).collect();
+        // The lengths are the analyser's own.
+        if analyzer.analyze(&segment, &mut bins).is_err() {
+            continue;
+        }
+        let inside = &bins[Band::TACTILE.first_bin()..];
+        for (p, x) in power.iter_mut().zip(inside) {
+            *p += x.norm_sqr();
+        }
+        count += 1.0;
+    }
+    let scale = analyzer.amplitude_scale();
+    power.iter().map(|p| (p / count).sqrt() * scale).collect()
+}
+
+/// RMS of the decibels between two spectra, their levels matched, over the reference's strongest
+/// bins that hold 99 % of its energy.
+pub(crate) fn distance_db(measured: &[f64], reference: &[f64]) -> f64 {
+    let energy = |m: &[f64]| m.iter().map(|m| m * m).sum::<f64>();
+    let total = energy(reference);
+    let gain = (total / energy(measured)).sqrt();
+    let mut order: Vec<usize> = (0..reference.len()).collect();
+    order.sort_by(|&a, &b| reference[b].total_cmp(&reference[a]));
+    let (mut held, mut sum, mut n) = (0.0, 0.0, 0.0);
+    for i in order {
+        if held >= JUDGED * total {
+            break;
+        }
+        held += reference[i] * reference[i];
+        let db = 20.0 * (gain * measured[i] / reference[i]).log10();
+        sum += db * db;
+        n += 1.0;
+    }
+    (sum / n).sqrt()
+}
+
+/// Standard deviation of the RMS, relative, of `seconds` of noise with this spectrum: half that of
+/// its power, `1 / sqrt(B T)` with the equivalent bandwidth `B = (Σ m²)² Δf / Σ m⁴`.
+pub(crate) fn rms_spread(magnitude: &[f64], seconds: f64) -> f64 {
+    let moment = |n: i32| magnitude.iter().map(|m| m.powi(n)).sum::<f64>();
+    let bandwidth_hz = moment(2).powi(2) / moment(4) * GRID_HZ;
+    0.5 / (bandwidth_hz * seconds).sqrt()
+}
+
+/// Sharpest bend of a signal: the largest second difference.
+pub(crate) fn sharpest_bend(samples: &[f32]) -> f32 {
+    let bend = |x: &[f32]| (x[2] - 2.0 * x[1] + x[0]).abs();
+    samples.windows(3).map(bend).fold(0.0, f32::max)
+}
+
+/// Where two signals first differ, bit by bit.
+pub(crate) fn first_difference(a: &[f32], b: &[f32]) -> Option<usize> {
+    a.iter()
+        .zip(b)
+        .position(|(a, b)| a.to_bits() != b.to_bits())
+}
+
+/// Whether a spectrum of the tactile band is made of lines: a fine reading finds nothing over most
+/// of it.
+pub(crate) fn is_line_spectrum(fine: &[f64]) -> bool {
+    let largest = fine.iter().copied().fold(0.0, f64::max);
+    let empty = fine.iter().filter(|m| **m <= 1e-9 * largest).count();
+    2 * empty > fine.len()
+}

@@ -1,0 +1,142 @@
+//! Every check, in one table.
+
+use crate::case::Case;
+use crate::checks::{abi, change, fit, magnitude, refusal, repeat, resources, sound, twin};
+use crate::finding::Found;
+
+/// One check.
+pub struct Check {
+    /// Stable name, as `--only` and `--reproduce` take it.
+    pub name: &'static str,
+    /// What is promised, in a sentence.
+    pub summary: &'static str,
+    /// How it is tested, with the tolerances.
+    pub method: &'static str,
+    /// Checks that must have passed for this one to mean something.
+    pub needs: &'static [&'static str],
+    pub(crate) run: fn(&Case) -> Found,
+}
+
+macro_rules! checks {
+    ($($name:literal needs [$($need:literal),*] $run:path: $summary:literal, $method:literal;)*) => {
+        /// All checks, in the order in which they run: what others need comes first.
+        pub const CHECKS: &[Check] = &[$(Check {
+            name: $name,
+            summary: $summary,
+            method: $method,
+            needs: &[$($need),*],
+            run: $run,
+        }),*];
+    };
+}
+
+checks! {
+    "marker" needs [] abi::loaded:
+        "The marker names this ABI's major version.",
+        "`htex_model_abi_version` is called before anything else.";
+    "exports" needs ["marker"] abi::loaded:
+        "The file loads, and exports every function of the ABI.",
+        "The file is loaded as a host loads it; each function is looked up by name.";
+    "descriptor" needs ["exports"] abi::descriptor:
+        "The descriptor is JSON of the schema, and makes sense.",
+        "Reverse-DNS id, semantic version, name and summary present; 1 to 32 fields; names not empty \
+         and no two alike; finite ranges the right way round; stores with positive, finite steps; \
+         option defaults in range, whole where they must be.";
+    "extensions" needs ["exports"] abi::extensions:
+        "An extension nobody has heard of is not there.",
+        "Made-up ids, an empty one and a very long one are asked for; the answer must be 0.";
+    "fit" needs ["descriptor"] fit::reference:
+        "Reference spectra are fitted.",
+        "Five spectra: two smooth bumps, falling, rising, broad with ripple, few peaks. Each is \
+         fitted or answered by CANNOT_FIT, and at least one is fitted; parameters obey the \
+         descriptor; the level is above 0; fitting again gives the same numbers.";
+    "fit-hard" needs ["fit"] fit::hard:
+        "Hard spectra are fitted or answered by a status.",
+        "Silence, one line, flat, 1e-200 and 1e100 times the usual, all energy in the lowest bin, and \
+         a grid of two bins. A panic is no answer.";
+    "parameters" needs ["fit", "magnitude"] fit::round_trip:
+        "Parameters survive being taken apart, put together and stored.",
+        "Fitted parameters are read by field and flattened again: the same magnitudes. They are \
+         stored by the descriptor's stores and read back: still accepted. A warning when storing \
+         moves the spectrum by more than 0.5 dB.";
+    "magnitude" needs ["fit"] magnitude::sane:
+        "Magnitudes are finite and not negative.",
+        "On the 5 Hz grid, every 0.5 Hz, at the band's edges and outside of it, for every reference.";
+    "magnitude-grid" needs ["magnitude"] magnitude::grid:
+        "The magnitude at a frequency does not depend on which others are asked for.",
+        "The 5 Hz grid as a whole, frequency by frequency, in reversed chunks of ten, and within a \
+         0.5 Hz grid; agreement within 1e-9 of the largest magnitude.";
+    "render" needs ["fit"] sound::renders:
+        "A voice renders.",
+        "One second of every fitted reference; no error, not silent.";
+    "samples" needs ["render"] sound::clean:
+        "No sample is infinite, not a number or subnormal.",
+        "Twenty seconds of every fitted reference, with a retune each second.";
+    "level" needs ["magnitude", "render"] sound::level:
+        "Magnitude and sound have unit RMS.",
+        "The magnitude's RMS on the 5 Hz grid within 2 %, and the RMS of 20 s of sound within 2 %, or \
+         within four standard deviations of what noise of this spectrum has in 20 s, where that is \
+         more. A magnitude of separate lines adds power where lines share a bin: it is judged by its \
+         sound alone.";
+    "spectrum" needs ["magnitude", "render"] sound::spectrum:
+        "The sound has the spectrum that the magnitude says.",
+        "Twenty seconds, segments of 0.2 s averaged by power, levels matched: within 1 dB RMS over the \
+         bins that hold 99 % of the energy. A line spectrum is thereby judged at its lines.";
+    "reproducible" needs ["render"] repeat::reproducible:
+        "The same parameters, rate and seed give the same samples.",
+        "Two voices, one after the other, 9000 samples, bit by bit.";
+    "blocks" needs ["reproducible"] repeat::blocks:
+        "Block sizes do not change the samples.",
+        "Blocks of 1, 7, 64 and 1000, and the whole, bit by bit; a block of no samples is allowed.";
+    "seeds" needs ["reproducible"] repeat::seeds:
+        "Different seeds give different samples.",
+        "Two seeds. The same samples are a warning for a line spectrum, which may have nothing random \
+         in it, else a failure.";
+    "voices-apart" needs ["reproducible"] repeat::voices_apart:
+        "Voices do not disturb each other.",
+        "Two voices in turns of 64 samples, and two on threads of their own, against each one alone, \
+         bit by bit.";
+    "handles" needs ["render"] repeat::handles:
+        "A freed handle is refused.",
+        "Rendering, retuning and freeing by a handle that was freed answer a status; so it is after \
+         the next voice was made.";
+    "retune" needs ["render"] change::retune:
+        "A retune does not click.",
+        "Three sets of parameters in turn, every 500 samples at 20 kHz: no second difference is more \
+         than twice the sharpest of the steady sounds.";
+    "interpolate" needs ["magnitude", "render"] change::interpolate:
+        "Mixing meets its ends, and everything between can be played.",
+        "Weights 1 and 0 give the magnitudes of the sets themselves within 1e-6 of the largest. Eleven \
+         mixtures of each pair of neighbouring references: a finite magnitude, and two seconds of \
+         finite samples below 100 times unit RMS.";
+    "bad-parameters" needs ["magnitude", "reproducible"] refusal::parameters:
+        "Parameters that break the descriptor are refused.",
+        "For each field a value below and above its range, NaN, infinity, and for lists impossible \
+         lengths; too few numbers, too many, none. `magnitude`, `voice_rate`, `voice_new` and \
+         `voice_retune` answer a status; a voice whose retune was refused plays on as before.";
+    "bad-band" needs ["magnitude", "render"] refusal::band:
+        "Bands that are none are refused.",
+        "Upside down, empty, from 0, negative, NaN, infinite, beyond 1 MHz, in `fit`, `magnitude`, \
+         `voice_rate` and `voice_new`.";
+    "bad-rate" needs ["render"] refusal::rate:
+        "Rates that are none are refused.",
+        "NaN, 0, -1, infinity and 1e12 Hz in `voice_rate` and `voice_new`.";
+    "memory" needs ["render"] resources::memory:
+        "Memory does not grow.",
+        "Resident memory of the process over 10,000 blocks of 256 samples with retunes, and over 2,000 \
+         voices made and freed: at most 2 MiB more after than before. On Linux.";
+    "cost" needs ["render"] resources::cost:
+        "What a sample costs.",
+        "Nanoseconds a sample in blocks of 256, at the model's own rate: the median of 21 runs. A \
+         warning from a tenth of one processor on.";
+    "twin" needs ["render"] twin::agrees:
+        "The native library and the WASM module of a model agree.",
+        "The file named by `--against`, or one of the same name beside it: same id and version; same \
+         parameters from every reference within 1e-6; samples within 1e-4 of unit RMS. A warning when \
+         they are not the same bits.";
+}
+
+/// The check of a name.
+pub(crate) fn find(name: &str) -> Option<&'static Check> {
+    CHECKS.iter().find(|check| check.name == name)
+}

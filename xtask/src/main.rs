@@ -7,7 +7,7 @@ use std::process::{Command, ExitCode};
 const TASKS: &str = "\
 cargo xtask ci        all that continuous integration runs
 cargo xtask plugins   builds the models as plugins into target/htex-plugins
-cargo xtask generate  makes spec/schemas, spec/validation.md and spec/conformance again";
+cargo xtask generate  makes what spec/ has from the code again: schemas, pages, conformance files";
 
 fn main() -> ExitCode {
     let tasks: Vec<String> = std::env::args().skip(1).collect();
@@ -38,7 +38,12 @@ fn generate() -> ExitCode {
     if code != ExitCode::SUCCESS {
         return code;
     }
-    run(&cargo, &[&models[..], &schema].concat())
+    let code = run(&cargo, &[&models[..], &schema].concat());
+    if code != ExitCode::SUCCESS {
+        return code;
+    }
+    let checks = ["run", "--package", "htex-check", "--example"];
+    run(&cargo, &[&checks[..], &["model_checks"]].concat())
 }
 
 /// Runs a program in the workspace's folder.

@@ -11,6 +11,7 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod bench;
 mod case;
 mod checks;
 mod finding;
@@ -21,6 +22,7 @@ mod signal;
 mod spectra;
 mod table;
 
+pub use bench::{BLOCKS, Cost, Timing, bench};
 pub use finding::{Finding, Outcome};
 pub use page::model_checks_page;
 pub use report::{CheckReport, Report};

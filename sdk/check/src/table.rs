@@ -54,14 +54,14 @@ checks! {
         "Hard spectra are fitted or answered by a status.",
         "Silence, one line, flat, 1e-200 and 1e100 times the usual, all energy in the lowest bin, and \
          a grid of two bins. A panic is no answer.";
+    "magnitude" needs ["fit"] magnitude::sane:
+        "Magnitudes are finite and not negative.",
+        "On the 5 Hz grid, every 0.5 Hz, at the band's edges and outside of it, for every reference.";
     "parameters" needs ["fit", "magnitude"] fit::round_trip:
         "Parameters survive being taken apart, put together and stored.",
         "Fitted parameters are read by field and flattened again: the same magnitudes. They are \
          stored by the descriptor's stores and read back: still accepted. A warning when storing \
          moves the spectrum by more than 0.5 dB.";
-    "magnitude" needs ["fit"] magnitude::sane:
-        "Magnitudes are finite and not negative.",
-        "On the 5 Hz grid, every 0.5 Hz, at the band's edges and outside of it, for every reference.";
     "magnitude-grid" needs ["magnitude"] magnitude::grid:
         "The magnitude at a frequency does not depend on which others are asked for.",
         "The 5 Hz grid as a whole, frequency by frequency, in reversed chunks of ten, and within a \
@@ -74,14 +74,14 @@ checks! {
         "Twenty seconds of every fitted reference, with a retune each second.";
     "level" needs ["magnitude", "render"] sound::level:
         "Magnitude and sound have unit RMS.",
-        "The magnitude's RMS on the 5 Hz grid within 2 %, and the RMS of 20 s of sound within 2 %, or \
-         within four standard deviations of what noise of this spectrum has in 20 s, where that is \
-         more. A magnitude of separate lines adds power where lines share a bin: it is judged by its \
-         sound alone.";
+        "The magnitude's RMS on the 5 Hz grid within 2 %, and the RMS of a minute of sound within 2 %, \
+         or within four standard deviations of what noise of this spectrum has in a minute, where \
+         that is more. A magnitude of separate lines adds power where lines share a bin: it is judged \
+         by its sound alone.";
     "spectrum" needs ["magnitude", "render"] sound::spectrum:
         "The sound has the spectrum that the magnitude says.",
-        "Twenty seconds, segments of 0.2 s averaged by power, levels matched: within 1 dB RMS over the \
-         bins that hold 99 % of the energy. A line spectrum is thereby judged at its lines.";
+        "A minute, segments of 0.2 s averaged by power, levels matched: within 1 dB RMS over the bins \
+         that hold 99 % of the energy. A line spectrum is thereby judged at its lines.";
     "reproducible" needs ["render"] repeat::reproducible:
         "The same parameters, rate and seed give the same samples.",
         "Two voices, one after the other, 9000 samples, bit by bit.";

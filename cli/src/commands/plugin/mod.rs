@@ -1,6 +1,9 @@
 //! `htex plugin`: what model authors and their users need.
 
+mod bench;
 mod check;
+mod info;
+mod named;
 
 use std::process::ExitCode;
 
@@ -8,7 +11,7 @@ use clap::{Args, Subcommand};
 
 use crate::failure::Failure;
 
-/// Check texture models.
+/// Inspect, check and time texture models.
 #[derive(Args)]
 pub(crate) struct Plugin {
     #[command(subcommand)]
@@ -17,7 +20,9 @@ pub(crate) struct Plugin {
 
 #[derive(Subcommand)]
 enum Command {
+    Info(info::Info),
     Check(check::Check),
+    Bench(bench::Bench),
     #[command(hide = true)]
     CheckOne(check::CheckOne),
 }
@@ -25,7 +30,9 @@ enum Command {
 impl Plugin {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         match self.command {
+            Command::Info(args) => args.run(),
             Command::Check(args) => args.run(),
+            Command::Bench(args) => args.run(),
             Command::CheckOne(args) => args.run(),
         }
     }

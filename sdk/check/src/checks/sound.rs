@@ -8,8 +8,10 @@ use crate::checks::magnitude::fine_grid;
 use crate::finding::{Finding, Found};
 use crate::signal::{distance_db, is_line_spectrum, measured_spectrum, rms, rms_spread};
 
-/// How long sounds are judged, seconds.
-const SECONDS: f64 = 20.0;
+/// How long sounds are judged, seconds: a minute of noise reads each bin within 0.2 dB.
+const SECONDS: f64 = 60.0;
+/// How long sounds are searched for ill samples, seconds.
+const SEARCHED: usize = 20;
 /// Relative error of an RMS that is always allowed.
 const LEVEL: f64 = 0.02;
 /// Standard deviations of noise that are allowed.
@@ -47,7 +49,7 @@ pub(crate) fn clean(case: &Case) -> Found {
             .model
             .voice_rate_hz(&fitted.parameters, Band::TACTILE, RATE_HZ)?;
         let mut out = vec![0.0f32; rate_hz as usize];
-        for second in 0..SECONDS as usize {
+        for second in 0..SEARCHED {
             voice.render(&mut out)?;
             let ill = out.iter().position(|x| !x.is_finite() || x.is_subnormal());
             if let Some(i) = ill {
@@ -61,7 +63,7 @@ pub(crate) fn clean(case: &Case) -> Found {
     Ok(Finding::passed(format!("{samples} samples are clean")).with("samples", samples))
 }
 
-/// Twenty seconds at the rate of the recordings.
+/// A minute at the rate of the recordings.
 fn listen(case: &Case, fitted: &Fitted) -> Result<Vec<f32>, Finding> {
     let mut out = vec![0.0; (SECONDS * RATE_HZ) as usize];
     case.stream(&fitted.parameters, case.seed)?

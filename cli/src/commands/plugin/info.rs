@@ -1,0 +1,80 @@
+use std::process::ExitCode;
+
+use clap::Args;
+use htex_host::{Descriptor, Field, FitOption, Kind};
+
+use crate::commands::plugin::named::named;
+use crate::failure::Failure;
+use crate::output::{print, print_json};
+
+/// Show what a model says of itself: parameters and fit options, with units and ranges.
+#[derive(Args)]
+pub(crate) struct Info {
+    /// The model, by short name, id or file
+    #[arg(value_name = "FILE|ID")]
+    model: String,
+
+    /// Print the descriptor as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+impl Info {
+    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        let model = named(&self.model)?;
+        if self.json {
+            print_json(model.descriptor())?;
+        } else {
+            print(&text(model.descriptor()))?;
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+fn text(descriptor: &Descriptor) -> String {
+    let Descriptor {
+        id,
+        name,
+        version,
+        summary,
+        ..
+    } = descriptor;
+    let fields: String = descriptor.fields.iter().map(field).collect();
+    let options: String = descriptor.options.iter().map(option).collect();
+    let options = if options.is_empty() {
+        "  none\n".to_owned()
+    } else {
+        options
+    };
+    format!("{name} ({id} {version})\n{summary}\n\nparameters\n{fields}\nfit options\n{options}")
+}
+
+fn field(field: &Field) -> String {
+    let many = match field.kind {
+        Kind::Scalar => String::new(),
+        Kind::List { max_len } => format!(", up to {max_len}"),
+    };
+    let (range, name) = (range(field.min, field.max, &field.unit), &field.name);
+    format!("  {name}: {range}{many}\n      {}\n", field.description)
+}
+
+fn option(option: &FitOption) -> String {
+    let FitOption { name, default, .. } = option;
+    let values = if option.choices.is_empty() {
+        let range = range(option.min, option.max, &option.unit);
+        format!("{range} [{default}]")
+    } else {
+        let first = option.choices.get(*default as usize);
+        let first = first.map(String::as_str).unwrap_or_default();
+        format!("{} [{first}]", option.choices.join(" or "))
+    };
+    format!("  {name}: {values}\n      {}\n", option.description)
+}
+
+/// A range with its unit, which a pure number has none of.
+fn range(min: f64, max: f64, unit: &str) -> String {
+    match unit {
+        "1" => format!("{min} to {max}"),
+        unit => format!("{min} to {max} {unit}"),
+    }
+}

@@ -1,0 +1,192 @@
+//! The checker itself: sound models pass, and of each bad one the right check complains.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+
+use htex_check::{CHECKS, Options, Outcome, Report, Runner, check, model_checks_page, run_one};
+
+const MODELS: [&str; 5] = ["ar", "mfcc", "speak", "sbeta", "sslope"];
+
+/// A fault of `tests/bad-plugins/bad.c`, and the check that must complain of it.
+const FAULTS: &[(&str, &str, Outcome)] = &[
+    ("MARKER", "marker", Outcome::Failed),
+    ("EXPORT_MISSING", "exports", Outcome::Failed),
+    ("DESCRIPTOR_JSON", "descriptor", Outcome::Failed),
+    ("DESCRIPTOR_DEFAULT", "descriptor", Outcome::Failed),
+    ("EXTENSIONS", "extensions", Outcome::Failed),
+    ("FIT_CRASHES", "fit", Outcome::Crashed),
+    ("FIT_RANGE", "fit", Outcome::Failed),
+    ("FIT_HARD", "fit-hard", Outcome::Crashed),
+    ("STORE", "parameters", Outcome::Failed),
+    ("MAGNITUDE_NAN", "magnitude", Outcome::Failed),
+    ("MAGNITUDE_NEGATIVE", "magnitude", Outcome::Failed),
+    ("MAGNITUDE_OUTSIDE", "magnitude", Outcome::Failed),
+    ("MAGNITUDE_GRID", "magnitude-grid", Outcome::Failed),
+    ("RENDER_LOOPS", "render", Outcome::TimedOut),
+    ("RENDER_CRASHES", "render", Outcome::Crashed),
+    ("SUBNORMAL", "samples", Outcome::Failed),
+    ("LEVEL", "level", Outcome::Failed),
+    ("MAGNITUDE_LEVEL", "level", Outcome::Failed),
+    ("SPECTRUM", "spectrum", Outcome::Failed),
+    ("NOT_REPRODUCIBLE", "reproducible", Outcome::Failed),
+    ("BLOCKS", "blocks", Outcome::Failed),
+    ("SEED_IGNORED", "seeds", Outcome::Failed),
+    ("SHARED_STATE", "voices-apart", Outcome::Failed),
+    ("FREED_HANDLE", "handles", Outcome::Failed),
+    ("CLICK", "retune", Outcome::Failed),
+    ("INTERPOLATE_ENDS", "interpolate", Outcome::Failed),
+    ("ACCEPTS_NAN", "bad-parameters", Outcome::Failed),
+    ("ACCEPTS_BAND", "bad-band", Outcome::Failed),
+    ("ACCEPTS_RATE", "bad-rate", Outcome::Failed),
+    ("LEAK", "memory", Outcome::Failed),
+    ("VOICES_LEAK", "memory", Outcome::Failed),
+];
+
+fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// The folder in which Cargo puts what it builds for these tests.
+fn built() -> &'static Path {
+    Path::new(env!("CARGO_BIN_EXE_htex")).parent().unwrap()
+}
+
+/// A model as a native library, built where these tests are built.
+fn library(model: &str) -> PathBuf {
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo
+        .args(["rustc", "--quiet", "--lib", "--features", "plugin"])
+        .args(["--crate-type", "cdylib", "--package"])
+        .arg(format!("htex-{model}"))
+        .arg("--target-dir")
+        .arg(built().parent().unwrap())
+        .current_dir(workspace());
+    if built().ends_with("release") {
+        cargo.arg("--release");
+    }
+    assert!(cargo.status().unwrap().success(), "{model} does not build");
+    let suffix = std::env::consts::DLL_SUFFIX;
+    built().join(format!("libhtex_{model}{suffix}"))
+}
+
+/// Compiles the bad model with a fault, or with none, around a sound library.
+fn bad(folder: &Path, good: &Path, fault: &str) -> PathBuf {
+    let out = folder.join(format!("bad-{fault}{}", std::env::consts::DLL_SUFFIX));
+    let status = Command::new("cc")
+        .args([
+            "-std=gnu11",
+            "-O1",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            "-shared",
+            "-fPIC",
+        ])
+        .args(["-Wno-unused-parameter", "-Wno-unused-variable"])
+        .arg(format!("-DFAULT_{fault}"))
+        .arg(format!("-DGOOD_LIBRARY=\"{}\"", good.display()))
+        .arg("-I")
+        .arg(workspace().join("spec/include"))
+        .arg(workspace().join("tests/bad-plugins/bad.c"))
+        .args(["-o".as_ref(), out.as_os_str()])
+        .args(["-ldl", "-lm"])
+        .status();
+    assert!(status.unwrap().success(), "{fault} does not compile");
+    out
+}
+
+fn checked(file: &Path, timeout_s: u64) -> Report {
+    let options = Options {
+        runner: Runner {
+            program: env!("CARGO_BIN_EXE_htex").into(),
+            arguments: vec!["plugin".into(), "check-one".into()],
+        },
+        seed: 3,
+        timeout: Duration::from_secs(timeout_s),
+        only: None,
+        against: None,
+    };
+    check(file, &options).unwrap()
+}
+
+#[test]
+fn sound_models_pass() {
+    for model in MODELS {
+        let report = checked(&library(model), 120);
+        println!("{}", report.to_text());
+        assert!(report.ok, "{}", report.to_text());
+        // What may be skipped for a sound model lying alone: its twin.
+        assert_eq!(report.count(Outcome::Skipped), 1, "{}", report.to_text());
+    }
+}
+
+#[test]
+fn each_fault_is_found_by_its_own_check() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = library("sbeta");
+    let sound = checked(&bad(folder.path(), &good, "NONE"), 120);
+    assert!(sound.ok, "without a fault: {}", sound.to_text());
+    for (fault, name, outcome) in FAULTS {
+        let file = bad(folder.path(), &good, fault);
+        let timeout_s = if *outcome == Outcome::TimedOut {
+            5
+        } else {
+            120
+        };
+        let report = checked(&file, timeout_s);
+        assert_eq!(report.bad(), [*name], "{fault}: {}", report.to_text());
+        let found = report.checks.iter().find(|c| c.check == *name).unwrap();
+        println!("{fault:20} {name:15} {}", found.finding.message);
+        assert_eq!(found.finding.outcome, *outcome, "{fault}");
+    }
+    let unbroken = CHECKS
+        .iter()
+        .filter(|c| !FAULTS.iter().any(|(_, name, _)| name == &c.name));
+    let unbroken: Vec<&str> = unbroken.map(|check| check.name).collect();
+    // A twin needs two models; a cost is only ever a warning.
+    assert_eq!(unbroken, ["cost", "twin"]);
+}
+
+#[test]
+fn samples_that_are_no_numbers_are_found_wherever_they_are_looked_at() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = bad(folder.path(), &library("sbeta"), "NOT_FINITE");
+    assert!(checked(&file, 120).bad().contains(&"samples"));
+}
+
+#[test]
+fn twins_must_agree() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = library("sbeta");
+    let seeded = bad(folder.path(), &good, "SEED_IGNORED");
+    let twin = |other: &Path| run_one(&good, "twin", 3, Some(other)).unwrap();
+    assert_eq!(
+        twin(&bad(folder.path(), &good, "NONE")).outcome,
+        Outcome::Passed
+    );
+    assert_eq!(twin(&seeded).outcome, Outcome::Failed);
+    assert_eq!(twin(Path::new("no-such-file.so")).outcome, Outcome::Failed);
+}
+
+#[test]
+fn the_page_of_checks_is_fresh() {
+    let page = std::fs::read_to_string(workspace().join("spec/model-checks.md"));
+    assert_eq!(
+        page.unwrap_or_default(),
+        model_checks_page(),
+        "stale: cargo run -p htex-check --example model_checks"
+    );
+}
+
+#[test]
+fn what_a_check_needs_comes_before_it() {
+    for (i, check) in CHECKS.iter().enumerate() {
+        for need in check.needs {
+            let earlier = CHECKS[..i].iter().any(|other| other.name == *need);
+            assert!(earlier, "{} needs {need}", check.name);
+        }
+    }
+}

@@ -1,0 +1,254 @@
+/* A sound model with one fault in it.
+ *
+ * Every call is passed on to the library GOOD_LIBRARY (a native build of a model), but for what one
+ * -DFAULT_… changes. The checker must blame just the check that is the fault's own; the table of
+ * faults and checks stands in cli/tests/checker.rs.
+ */
+#include <dlfcn.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "htex_model.h"
+
+static void *good_symbol(const char *name) {
+    static void *library;
+    if (!library) library = dlopen(GOOD_LIBRARY, RTLD_NOW | RTLD_LOCAL);
+    void *symbol = library ? dlsym(library, name) : NULL;
+    if (!symbol) abort();
+    return symbol;
+}
+
+/* The good model's function of the same name and type. */
+#define GOOD(function) ((__typeof__(&function))good_symbol(#function))
+
+/* Voices of the good model, and what a fault needs to remember of each. Handles count up from 1 and
+ * are never used twice. */
+struct voice {
+    int64_t good;
+    uint64_t rendered;
+    int click;
+};
+#define VOICES 65536
+static struct voice voices[VOICES];
+static int64_t voices_made;
+
+static struct voice *live(int64_t handle) {
+    int known = handle > 0 && handle <= voices_made;
+    return known && voices[handle - 1].good ? &voices[handle - 1] : NULL;
+}
+
+uint32_t htex_model_abi_version(void) {
+#ifdef FAULT_MARKER
+    return 0x48540900;
+#else
+    return GOOD(htex_model_abi_version)();
+#endif
+}
+
+int64_t htex_model_descriptor(uint8_t *out, size_t capacity) {
+#ifdef FAULT_DESCRIPTOR_JSON
+    static const char text[] = "{\"id\": \"org.example.bad\", \"fields\": [";
+#elif defined FAULT_DESCRIPTOR_DEFAULT
+    static const char text[] =
+        "{\"id\":\"org.example.bad\",\"name\":\"Bad\",\"version\":\"1.0.0\",\"summary\":\"Bad.\","
+        "\"fields\":[{\"name\":\"a\",\"unit\":\"1\",\"kind\":{\"type\":\"scalar\"},\"min\":0,"
+        "\"max\":1,\"store\":{\"type\":\"f32\"},\"description\":\"A.\"}],"
+        "\"options\":[{\"name\":\"o\",\"unit\":\"1\",\"min\":0,\"max\":1,\"default\":2,"
+        "\"description\":\"O.\"}]}";
+#elif defined FAULT_STORE
+    /* That of the good model, with a store that holds 0 to 255 millionths, below the least alpha. */
+#define SHAPE(name)                                                                              \
+    "{\"name\":\"" name "\",\"unit\":\"1\",\"kind\":{\"type\":\"scalar\"},\"min\":0.001,"        \
+    "\"max\":1000000,\"store\":{\"type\":\"u8\",\"scale\":1e-6,\"offset\":0},"                   \
+    "\"description\":\"Shape.\"}"
+#define OPTION(name, min, max, value)                                                            \
+    "{\"name\":\"" name "\",\"unit\":\"1\",\"min\":" min ",\"max\":" max ",\"default\":" value   \
+    ",\"description\":\"Option.\"}"
+    static const char text[] =
+        "{\"id\":\"org.example.bad\",\"name\":\"Bad\",\"version\":\"1.0.0\",\"summary\":\"Bad.\","
+        "\"fields\":[" SHAPE("alpha") "," SHAPE("beta") "],\"options\":["
+        OPTION("points", "3", "64", "10") "," OPTION("jnd", "0", "1", "0.12") ","
+        OPTION("lower_bound", "0", "1", "1") "]}";
+#endif
+#if defined FAULT_DESCRIPTOR_JSON || defined FAULT_DESCRIPTOR_DEFAULT || defined FAULT_STORE
+    size_t len = sizeof text - 1;
+    memcpy(out, text, capacity < len ? capacity : len);
+    return (int64_t)len;
+#else
+    return GOOD(htex_model_descriptor)(out, capacity);
+#endif
+}
+
+int64_t htex_model_last_error(uint8_t *out, size_t capacity) {
+    return GOOD(htex_model_last_error)(out, capacity);
+}
+
+int64_t htex_model_fit(double band_low_hz, double band_high_hz, const double *frequency_hz,
+                       const double *magnitude, size_t bins, const double *signal,
+                       size_t signal_len, double signal_rate_hz, const double *options,
+                       size_t options_len, double *parameters, size_t capacity, double *level_rms) {
+#ifdef FAULT_FIT_CRASHES
+    abort();
+#endif
+    int64_t answer = GOOD(htex_model_fit)(band_low_hz, band_high_hz, frequency_hz, magnitude, bins,
+                                          signal, signal_len, signal_rate_hz, options, options_len,
+                                          parameters, capacity, level_rms);
+#ifdef FAULT_FIT_RANGE
+    if (answer > 0 && capacity) parameters[0] = -1;
+#endif
+#ifdef FAULT_FIT_HARD
+    if (answer == HTEX_CANNOT_FIT) abort();
+#endif
+    return answer;
+}
+
+/* Replaces parameters that are no numbers, where the fault is to do so. */
+static const double *tolerant(const double *parameters, size_t len) {
+#ifdef FAULT_ACCEPTS_NAN
+    static const double usual[] = {2, 5};
+    for (size_t i = 0; i < len; i++)
+        if (isnan(parameters[i])) return usual;
+#endif
+    (void)len;
+    return parameters;
+}
+
+int64_t htex_model_magnitude(const double *parameters, size_t parameters_len, double band_low_hz,
+                             double band_high_hz, const double *frequency_hz, double *magnitude,
+                             size_t bins) {
+    parameters = tolerant(parameters, parameters_len);
+#ifdef FAULT_ACCEPTS_BAND
+    if (!(band_low_hz < band_high_hz)) band_low_hz = 20, band_high_hz = 1000;
+#endif
+#ifdef FAULT_SPECTRUM
+    /* The shape of other parameters than those that are played. */
+    double other[] = {parameters_len ? parameters[0] + 2 : 0, parameters_len > 1 ? parameters[1] : 0};
+    if (parameters_len == 2) parameters = other;
+#endif
+    int64_t answer = GOOD(htex_model_magnitude)(parameters, parameters_len, band_low_hz,
+                                                band_high_hz, frequency_hz, magnitude, bins);
+    for (size_t i = 0; answer == 0 && i < bins; i++) {
+#ifdef FAULT_MAGNITUDE_NAN
+        if (i == bins / 2) magnitude[i] = NAN;
+#elif defined FAULT_MAGNITUDE_NEGATIVE
+        if (i == bins / 2) magnitude[i] = -magnitude[i] - 1e-3;
+#elif defined FAULT_MAGNITUDE_OUTSIDE
+        if (frequency_hz[i] > band_high_hz) magnitude[i] = 1e-3;
+#elif defined FAULT_MAGNITUDE_GRID
+        if (bins == 1) magnitude[i] *= 1.5;
+#elif defined FAULT_MAGNITUDE_LEVEL
+        magnitude[i] *= 2;
+#endif
+    }
+    return answer;
+}
+
+int64_t htex_model_interpolate(const double *sets, size_t sets_len, const double *weights,
+                               size_t weights_len, double *parameters, size_t capacity) {
+#ifdef FAULT_INTERPOLATE_ENDS
+    double even[] = {0.5, 0.5};
+    if (weights_len == 2 && weights[0] + weights[1] == 1) weights = even;
+#endif
+    return GOOD(htex_model_interpolate)(sets, sets_len, weights, weights_len, parameters, capacity);
+}
+
+double htex_model_voice_rate(const double *parameters, size_t parameters_len, double band_low_hz,
+                             double band_high_hz, double wanted_hz) {
+#ifdef FAULT_ACCEPTS_RATE
+    if (wanted_hz > 1e7) wanted_hz = 20000;
+#endif
+    return GOOD(htex_model_voice_rate)(tolerant(parameters, parameters_len), parameters_len,
+                                       band_low_hz, band_high_hz, wanted_hz);
+}
+
+/* Where a leak points last, so that a compiler does not leave it out. */
+static void *volatile kept;
+
+#ifdef FAULT_SHARED_STATE
+static uint64_t shared;
+#endif
+
+int64_t htex_model_voice_new(const double *parameters, size_t parameters_len, double band_low_hz,
+                             double band_high_hz, double rate_hz, uint64_t seed) {
+#ifdef FAULT_SEED_IGNORED
+    seed = 1;
+#elif defined FAULT_NOT_REPRODUCIBLE
+    static uint64_t calls;
+    seed += calls++;
+#elif defined FAULT_SHARED_STATE
+    shared = 0;
+#endif
+    if (voices_made >= VOICES) return HTEX_TOO_MANY_VOICES;
+    int64_t good = GOOD(htex_model_voice_new)(tolerant(parameters, parameters_len), parameters_len,
+                                              band_low_hz, band_high_hz, rate_hz, seed);
+    if (good < 0) return good;
+#ifdef FAULT_VOICES_LEAK
+    kept = memset(malloc(65536), 1, 65536);
+#endif
+    int64_t handle = __atomic_add_fetch(&voices_made, 1, __ATOMIC_SEQ_CST);
+    voices[handle - 1] = (struct voice){.good = good};
+    return handle;
+}
+
+int64_t htex_model_voice_render(int64_t handle, float *out, size_t frames) {
+    struct voice *voice = live(handle);
+#ifdef FAULT_FREED_HANDLE
+    if (!voice && handle > 0 && handle <= voices_made) return HTEX_OK;
+#endif
+    if (!voice) return HTEX_BAD_HANDLE;
+#ifdef FAULT_RENDER_LOOPS
+    for (volatile int forever = 1; forever;) {}
+#elif defined FAULT_RENDER_CRASHES
+    abort();
+#endif
+    int64_t answer = GOOD(htex_model_voice_render)(voice->good, out, frames);
+    if (answer < 0) return answer;
+    for (size_t i = 0; i < frames; i++, voice->rendered++) {
+#ifdef FAULT_LEVEL
+        out[i] *= 2;
+#elif defined FAULT_SUBNORMAL
+        if (voice->rendered % 997 == 0) out[i] = 1e-40f;
+#elif defined FAULT_NOT_FINITE
+        if (voice->rendered % 997 == 0) out[i] = NAN;
+#elif defined FAULT_BLOCKS
+        if (i == 0) out[i] += 1e-3f;
+#elif defined FAULT_SHARED_STATE
+        out[i] += 1e-3f * (float)(__atomic_fetch_add(&shared, 1, __ATOMIC_SEQ_CST) % 97);
+#endif
+        if (voice->click) out[i] += 30, voice->click = 0;
+    }
+#ifdef FAULT_LEAK
+    kept = memset(malloc(1024), 1, 1024);
+#endif
+    return answer;
+}
+
+#ifndef FAULT_EXPORT_MISSING
+int64_t htex_model_voice_retune(int64_t handle, const double *parameters, size_t parameters_len) {
+    struct voice *voice = live(handle);
+    if (!voice) return HTEX_BAD_HANDLE;
+    int64_t answer = GOOD(htex_model_voice_retune)(voice->good, tolerant(parameters, parameters_len),
+                                                   parameters_len);
+#ifdef FAULT_CLICK
+    if (answer == 0) voice->click = 1;
+#endif
+    return answer;
+}
+#endif
+
+int64_t htex_model_voice_free(int64_t handle) {
+    struct voice *voice = live(handle);
+    if (!voice) return HTEX_BAD_HANDLE;
+    int64_t good = voice->good;
+    voice->good = 0;
+    return GOOD(htex_model_voice_free)(good);
+}
+
+int64_t htex_model_extension(const uint8_t *id, size_t id_len) {
+#ifdef FAULT_EXTENSIONS
+    return 1;
+#else
+    return GOOD(htex_model_extension)(id, id_len);
+#endif
+}

@@ -1,0 +1,166 @@
+//! {{ID}}: one resonance. The spectrum is that of a two-pole band-pass filter,
+//! `1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)²)`, played as noise of that shape.
+//!
+//! `cargo build --release` makes the native library; with `--target wasm32-unknown-unknown`, the
+//! WASM module.
+
+use htex_dsp::grid::{Band, curve_level_rms};
+use htex_dsp::nelder_mead::{Options, minimize};
+use htex_model::{Descriptor, Error, Fit, FitInput, Model, Values, mix};
+use htex_shaped::{Curve, ShapedVoice};
+
+const CENTRE: usize = 0;
+const BANDWIDTH: usize = 1;
+const CENTRE_HZ: (f64, f64) = (5.0, 2000.0);
+const BANDWIDTH_HZ: (f64, f64) = (20.0, 2000.0);
+
+/// The model.
+pub struct Resonance;
+
+htex_model::export_model!(Resonance, symbols: "plugin");
+
+impl Model for Resonance {
+    type Voice = ShapedVoice<Shape>;
+
+    fn descriptor() -> Descriptor {
+        Descriptor::new(
+            "{{ID}}",
+            "{{NAME}}",
+            env!("CARGO_PKG_VERSION"),
+            "One resonance: where it lies and how wide it is.",
+        )
+        .scalar("centre_hz", "Hz", CENTRE_HZ, "Frequency of the resonance.")
+        .scalar(
+            "bandwidth_hz",
+            "Hz",
+            BANDWIDTH_HZ,
+            "Width between the points 3 dB below it.",
+        )
+    }
+
+    fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
+        let largest = input.magnitude.iter().copied().fold(0.0, f64::max);
+        if largest <= 0.0 {
+            return Err(Error::cannot_fit(
+                "the spectrum is silent: there is nothing to fit",
+            ));
+        }
+        let band: Band = input.band.edges().into();
+        let relative: Vec<f64> = input.magnitude.iter().map(|m| m / largest).collect();
+        let shape = best_shape(input.frequency_hz, &relative, band);
+        let scale = scale(input.frequency_hz, &relative, &shape);
+        let level = curve_level_rms(band, |f| shape.at(f));
+        Ok(Fit {
+            parameters: vec![shape.centre_hz, shape.bandwidth_hz],
+            level_rms: largest * scale * level,
+        })
+    }
+
+    fn magnitude(
+        parameters: &Values<'_>,
+        band: htex_model::Band,
+        frequency_hz: &[f64],
+        magnitude: &mut [f64],
+    ) -> Result<(), Error> {
+        htex_shaped::magnitude::<Shape>(parameters, band, frequency_hz, magnitude)
+    }
+
+    fn interpolate(sets: &[Values<'_>], weights: &[f64]) -> Result<Vec<f64>, Error> {
+        let mut mixed = mix::linear(sets, weights)?;
+        // Weights sum to one but for rounding, which must not leave the ranges.
+        mixed[CENTRE] = mixed[CENTRE].clamp(CENTRE_HZ.0, CENTRE_HZ.1);
+        mixed[BANDWIDTH] = mixed[BANDWIDTH].clamp(BANDWIDTH_HZ.0, BANDWIDTH_HZ.1);
+        Ok(mixed)
+    }
+
+    fn voice_rate_hz(_: &Values<'_>, band: htex_model::Band, wanted_hz: f64) -> f64 {
+        htex_shaped::voice_rate_hz(band, wanted_hz)
+    }
+
+    fn voice(
+        parameters: &Values<'_>,
+        band: htex_model::Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Self::Voice, Error> {
+        ShapedVoice::new(parameters, band, rate_hz, seed)
+    }
+}
+
+/// The curve of some parameters in a band.
+pub struct Shape {
+    centre_hz: f64,
+    bandwidth_hz: f64,
+    band: Band,
+    level: f64,
+}
+
+impl Curve for Shape {
+    fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
+        let mut shape = Self {
+            centre_hz: 0.0,
+            bandwidth_hz: 0.0,
+            band,
+            level: 0.0,
+        };
+        shape.set(parameters)?;
+        Ok(shape)
+    }
+
+    fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+        self.centre_hz = parameters.scalar(CENTRE);
+        self.bandwidth_hz = parameters.scalar(BANDWIDTH);
+        self.level = curve_level_rms(self.band, |f| self.at(f));
+        if self.level > 0.0 {
+            return Ok(());
+        }
+        Err(Error::argument("no multiple of 5 Hz lies in the band"))
+    }
+
+    fn at(&self, frequency_hz: f64) -> f64 {
+        let f = frequency_hz / self.centre_hz;
+        let detuned = (f - 1.0 / f) * self.centre_hz / self.bandwidth_hz;
+        1.0 / (1.0 + detuned * detuned).sqrt()
+    }
+
+    fn level(&self) -> f64 {
+        self.level
+    }
+}
+
+/// The resonance of least squared distance: searched from several centres, in the logarithms.
+fn best_shape(frequency_hz: &[f64], magnitude: &[f64], band: Band) -> Shape {
+    let shape = |x: &[f64; 2]| Shape {
+        centre_hz: libm::exp(x[0]).clamp(CENTRE_HZ.0, CENTRE_HZ.1),
+        bandwidth_hz: libm::exp(x[1]).clamp(BANDWIDTH_HZ.0, BANDWIDTH_HZ.1),
+        band,
+        level: 1.0,
+    };
+    let distance = |x: &[f64; 2]| {
+        let shape = shape(x);
+        let scale = scale(frequency_hz, magnitude, &shape);
+        let pairs = frequency_hz.iter().zip(magnitude);
+        pairs.map(|(&f, m)| (scale * shape.at(f) - m).powi(2)).sum()
+    };
+    let (low, high) = (libm::log(band.low_hz), libm::log(band.high_hz));
+    let starts = [0.2, 0.4, 0.6, 0.8].map(|part| [low + part * (high - low), libm::log(100.0)]);
+    let found = starts.map(|start| minimize(distance, start, &Options::default()));
+    let [first, others @ ..] = found;
+    let best = |a: [f64; 3], b: [f64; 3]| if b[2] < a[2] { b } else { a };
+    let [x, y, _] = others
+        .iter()
+        .map(|m| [m.x[0], m.x[1], m.value])
+        .fold([first.x[0], first.x[1], first.value], best);
+    shape(&[x, y])
+}
+
+/// The factor that brings a shape nearest to a spectrum.
+fn scale(frequency_hz: &[f64], magnitude: &[f64], shape: &Shape) -> f64 {
+    let (mut hm, mut hh) = (0.0, 0.0);
+    for (&f, m) in frequency_hz.iter().zip(magnitude) {
+        let h = shape.at(f);
+        hm += h * m;
+        hh += h * h;
+    }
+    if hh > 0.0 { hm / hh } else { 0.0 }
+}

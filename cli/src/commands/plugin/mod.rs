@@ -4,6 +4,7 @@ mod bench;
 mod check;
 mod info;
 mod named;
+mod new;
 
 use std::process::ExitCode;
 
@@ -22,6 +23,7 @@ pub(crate) struct Plugin {
 enum Command {
     Info(info::Info),
     Check(check::Check),
+    New(new::New),
     Bench(bench::Bench),
     #[command(hide = true)]
     CheckOne(check::CheckOne),
@@ -32,6 +34,7 @@ impl Plugin {
         match self.command {
             Command::Info(args) => args.run(),
             Command::Check(args) => args.run(),
+            Command::New(args) => args.run(),
             Command::Bench(args) => args.run(),
             Command::CheckOne(args) => args.run(),
         }

@@ -1,0 +1,69 @@
+//! What `htex plugin new` writes builds with one command and passes the checker.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn htex(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_htex"));
+    command.args(arguments).output().unwrap()
+}
+
+fn written(lang: &str, dir: &Path) -> String {
+    let dir = dir.to_str().unwrap().to_owned();
+    let new = htex(&["plugin", "new", "my-model", "--lang", lang, "--dir", &dir]);
+    assert!(
+        new.status.success(),
+        "{}",
+        String::from_utf8_lossy(&new.stderr)
+    );
+    dir
+}
+
+fn passes(file: &str) {
+    let checked = htex(&["plugin", "check", file]);
+    let text = String::from_utf8_lossy(&checked.stdout);
+    println!("{text}");
+    assert!(checked.status.success(), "{text}");
+}
+
+#[test]
+fn a_new_model_in_c() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = written("c", &folder.path().join("c"));
+    let built = Command::new("sh").arg(format!("{dir}/build.sh")).status();
+    assert!(built.unwrap().success());
+    passes(&format!("{dir}/my-model{}", std::env::consts::DLL_SUFFIX));
+}
+
+#[test]
+fn a_new_model_in_rust() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = written("rust", &folder.path().join("rust"));
+    let built = Command::new(env!("CARGO"))
+        .args(["build", "--quiet", "--release"])
+        .current_dir(&dir)
+        .env("CARGO_TARGET_DIR", format!("{dir}/target"))
+        .status();
+    assert!(built.unwrap().success());
+    passes(&format!(
+        "{dir}/target/release/libmy_model{}",
+        std::env::consts::DLL_SUFFIX
+    ));
+}
+
+#[test]
+fn a_folder_that_is_there_is_left_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path().to_str().unwrap();
+    for (name, dir) in [
+        ("my-model", dir),
+        ("My Model", "/nowhere"),
+        ("1st", "/nowhere"),
+    ] {
+        let new = htex(&["plugin", "new", name, "--lang", "c", "--dir", dir]);
+        assert_eq!(new.status.code(), Some(2));
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}

@@ -1,6 +1,7 @@
 //! What several suites need: golden vectors and their rule of agreement.
 #![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
 
+pub mod measure;
 pub mod surface;
 
 use std::path::{Path, PathBuf};

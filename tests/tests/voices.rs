@@ -2,11 +2,9 @@
 //! sizes, follow its seed, and change without a click.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
-use htex_dsp::spectrum::SegmentAnalyzer;
 use htex_host::{Band, FitRequest, LoadedModel, Registry, Stream};
+use htex_tests::measure::{RATE_HZ, distance_db, measured_spectrum, rms};
 use htex_tests::smooth_spectrum;
-
-const RATE_HZ: f64 = 20_000.0;
 
 /// Every built-in model with parameters fitted to a spectrum with some life in it.
 fn fitted() -> Vec<(LoadedModel, Vec<f64>)> {
@@ -38,56 +36,12 @@ fn stream(model: &LoadedModel, parameters: &[f64], seed: u64) -> Stream {
     Stream::new(model, parameters, Band::TACTILE, RATE_HZ, seed).unwrap()
 }
 
-/// RMS-averaged texture spectrum of a stream.
-fn measured_spectrum(samples: &[f32]) -> Vec<f64> {
-    let mut analyzer = SegmentAnalyzer::new(4_000);
-    let mut bins = analyzer.make_bins();
-    let mut power = vec![0.0; Band::TACTILE.bins()];
-    let mut count = 0.0;
-    for start in (0..samples.len() - 4_000).step_by(2_000) {
-        let segment: Vec<f64> = samples[start..start + 4_000]
-            .iter()
-            .map(|&x| x.into())
-            .collect();
-        analyzer.analyze(&segment, &mut bins).unwrap();
-        power
-            .iter_mut()
-            .zip(&bins[4..])
-            .for_each(|(p, x)| *p += x.norm_sqr());
-        count += 1.0;
-    }
-    power
-        .iter()
-        .map(|p| (p / count).sqrt() * analyzer.amplitude_scale())
-        .collect()
-}
-
-/// RMS of the decibels between two spectra over the reference's strongest bins that hold 99 % of
-/// its energy.
-fn distance_db(measured: &[f64], reference: &[f64]) -> f64 {
-    let mut order: Vec<usize> = (0..reference.len()).collect();
-    order.sort_by(|&a, &b| reference[b].total_cmp(&reference[a]));
-    let total: f64 = reference.iter().map(|m| m * m).sum();
-    let (mut held, mut sum, mut n) = (0.0, 0.0, 0.0);
-    for i in order {
-        if held >= 0.99 * total {
-            break;
-        }
-        held += reference[i] * reference[i];
-        let db = 20.0 * (measured[i] / reference[i]).log10();
-        sum += db * db;
-        n += 1.0;
-    }
-    (sum / n).sqrt()
-}
-
 #[test]
 fn a_minute_of_each_voice_has_its_magnitude_and_level() {
     for (model, parameters) in fitted() {
         let mut out = vec![0.0f32; 60 * RATE_HZ as usize];
         stream(&model, &parameters, 11).render(&mut out).unwrap();
-        let rms =
-            (out.iter().map(|&x| f64::from(x).powi(2)).sum::<f64>() / out.len() as f64).sqrt();
+        let rms = rms(&out);
         let grid = Band::TACTILE.grid_hz();
         let magnitude = model.magnitude(&parameters, Band::TACTILE, &grid).unwrap();
         let distance = distance_db(&measured_spectrum(&out), &magnitude);

@@ -1,0 +1,700 @@
+/* org.example.bursts: filtered noise bursts, as a fingertip makes that catches and slips. White
+ * noise is switched on and off and then runs through a two-pole band-pass filter. Switched white
+ * noise is still white, so the spectrum is the filter's own, whatever the bursts:
+ * 1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)^2).
+ *
+ * Against htex_model.h alone: no C library, so that the same file is a native library and a WASM
+ * module, of the same samples. See build.sh.
+ */
+#include <stdatomic.h>
+
+#include "htex_model.h"
+#include "htex_model_wasm.h"
+
+/* ---- what the model says of itself ---- */
+
+enum { CENTRE, BANDWIDTH, RATE, DUTY, JITTER, PARAMETERS };
+
+static const double MIN[PARAMETERS] = {5.0, 20.0, 2.0, 0.05, 0.0};
+static const double MAX[PARAMETERS] = {2000.0, 2000.0, 100.0, 1.0, 1.0};
+
+static const char DESCRIPTOR[] =
+    "{\"id\":\"org.example.bursts\",\"name\":\"Filtered noise bursts\",\"version\":\"1.0.0\","
+    "\"summary\":\"Noise of one resonance, in bursts: where it lies, and when they come.\","
+    "\"fields\":["
+    "{\"name\":\"centre_hz\",\"unit\":\"Hz\",\"kind\":{\"type\":\"scalar\"},"
+    "\"min\":5,\"max\":2000,\"store\":{\"type\":\"f32\"},"
+    "\"description\":\"Frequency of the resonance; lies in the band.\"},"
+    "{\"name\":\"bandwidth_hz\",\"unit\":\"Hz\",\"kind\":{\"type\":\"scalar\"},"
+    "\"min\":20,\"max\":2000,\"store\":{\"type\":\"f32\"},"
+    "\"description\":\"Width between the points 3 dB below it.\"},"
+    "{\"name\":\"bursts_per_s\",\"unit\":\"Hz\",\"kind\":{\"type\":\"scalar\"},"
+    "\"min\":2,\"max\":100,\"store\":{\"type\":\"f32\"},"
+    "\"description\":\"Bursts a second, in the mean.\"},"
+    "{\"name\":\"duty\",\"unit\":\"1\",\"kind\":{\"type\":\"scalar\"},"
+    "\"min\":0.05,\"max\":1,\"store\":{\"type\":\"f32\"},"
+    "\"description\":\"Part of the time that bursts take; 1 is steady noise.\"},"
+    "{\"name\":\"jitter\",\"unit\":\"1\",\"kind\":{\"type\":\"scalar\"},"
+    "\"min\":0,\"max\":1,\"store\":{\"type\":\"f32\"},"
+    "\"description\":\"Pauses vary by this part of their length; 0 is periodic.\"}],"
+    "\"options\":[]}";
+
+/* ---- errors ---- */
+
+static _Thread_local const char *last_error = "";
+
+static int64_t fail(int64_t status, const char *text)
+{
+    last_error = text;
+    return status;
+}
+
+static int64_t copy_text(const char *text, uint8_t *out, size_t capacity)
+{
+    size_t len = 0;
+    for (; text[len] != 0; len++)
+        if (len < capacity)
+            out[len] = (uint8_t)text[len];
+    return (int64_t)len;
+}
+
+/* ---- checks ---- */
+
+/* Whether `len` numbers of `size` bytes can stand at `pointer`. */
+static int usable(const void *pointer, size_t len, size_t size)
+{
+    return len == 0 || (pointer != NULL && (uintptr_t)pointer % size == 0 && len <= PTRDIFF_MAX / size);
+}
+
+static int within(double x, double low, double high)
+{
+    return x >= low && x <= high; /* NaN is not */
+}
+
+static int64_t check_band(double low_hz, double high_hz)
+{
+    if (low_hz > 0.0 && low_hz < high_hz && high_hz <= HTEX_MAX_BAND_HZ)
+        return HTEX_OK;
+    return fail(HTEX_INVALID_ARGUMENT, "band: 0 < low < high <= 1 MHz is allowed");
+}
+
+static int64_t check_rate(double rate_hz)
+{
+    if (within(rate_hz, HTEX_MIN_RATE_HZ, HTEX_MAX_RATE_HZ))
+        return HTEX_OK;
+    return fail(HTEX_INVALID_ARGUMENT, "rate: 1 Hz to 10 MHz is allowed");
+}
+
+/* Whether one set of parameters stands at `p`. */
+static int64_t check_set(const double *p)
+{
+    static const char *const text[PARAMETERS] = {
+        "centre_hz: 5 to 2000 Hz is allowed", "bandwidth_hz: 20 to 2000 Hz is allowed",
+        "bursts_per_s: 2 to 100 is allowed", "duty: 0.05 to 1 is allowed",
+        "jitter: 0 to 1 is allowed"};
+    for (int i = 0; i < PARAMETERS; i++)
+        if (!within(p[i], MIN[i], MAX[i]))
+            return fail(HTEX_INVALID_PARAMETERS, text[i]);
+    return HTEX_OK;
+}
+
+static int64_t check_parameters(const double *p, size_t len)
+{
+    if (!usable(p, len, sizeof *p))
+        return fail(HTEX_INVALID_ARGUMENT, "`parameters` is not a usable array");
+    if (len != PARAMETERS)
+        return fail(HTEX_INVALID_PARAMETERS, "five parameters are wanted, from centre_hz to jitter");
+    return check_set(p);
+}
+
+/* Parameters, and that they have a spectrum in the band. */
+static int64_t check_shape(const double *p, size_t len, double low_hz, double high_hz)
+{
+    int64_t status = check_parameters(p, len);
+    if (status == HTEX_OK)
+        status = check_band(low_hz, high_hz);
+    if (status == HTEX_OK && !within(p[CENTRE], low_hz, high_hz))
+        status = fail(HTEX_INVALID_PARAMETERS, "centre_hz lies outside the band: move it in");
+    return status;
+}
+
+/* ---- the spectrum ---- */
+
+struct band { double low_hz, high_hz, pass_low_hz, pass_high_hz; };
+
+/* Noise is cut off half a bin below the band, as each bin stands for so much, and from 13 % inside
+ * its upper edge: so that less than 2 % of the power of the widest resonance lies outside. */
+static struct band band_of(double low_hz, double high_hz)
+{
+    double cut = low_hz - 0.5 * HTEX_GRID_HZ;
+    struct band band = {low_hz, high_hz, cut, 0.87 * high_hz};
+    if (cut < 0.5 * low_hz)
+        band.pass_low_hz = 0.5 * low_hz;
+    return band;
+}
+
+static double power_16(double x)
+{
+    for (int i = 0; i < 4; i++)
+        x *= x;
+    return x;
+}
+
+/* The filters' magnitude at a frequency, in any scale; 0 outside the band. */
+static double shape_at(const double *p, struct band band, double f)
+{
+    if (!within(f, band.low_hz, band.high_hz))
+        return 0.0;
+    double detuned = (f / p[CENTRE] - p[CENTRE] / f) * p[CENTRE] / p[BANDWIDTH];
+    double edges = (1.0 + power_16(band.pass_low_hz / f)) * (1.0 + power_16(f / band.pass_high_hz));
+    return 1.0 / __builtin_sqrt((1.0 + detuned * detuned) * edges);
+}
+
+/* RMS of the shape on the grid; 0 if no multiple of 5 Hz lies in the band. */
+static double shape_rms(const double *p, struct band band)
+{
+    double power = 0.0;
+    uint64_t first = (uint64_t)(band.low_hz / HTEX_GRID_HZ);
+    uint64_t last = (uint64_t)(band.high_hz / HTEX_GRID_HZ);
+    for (uint64_t bin = first; bin <= last; bin++) {
+        double m = shape_at(p, band, (double)bin * HTEX_GRID_HZ);
+        power += m * m;
+    }
+    return __builtin_sqrt(power / 3.0);
+}
+
+/* ---- filters ---- */
+
+struct biquad { double b0, b1, b2, a1, a2, s1, s2; };
+
+/* tan of an angle from 0 to 0.45 pi, by the series of sine and cosine. */
+static double tangent(double x)
+{
+    double sine = 0.0, cosine = 0.0, term = 1.0;
+    for (int n = 0; n < 26; n += 2) {
+        cosine += term;
+        term *= x / (n + 1);
+        sine += term;
+        term *= -x / (n + 2);
+    }
+    return sine / cosine;
+}
+
+/* A section by the bilinear transform; `numerator` weighs 1, s and s^2 over the corner. */
+static struct biquad section(double corner_hz, double q, double rate_hz, const double numerator[3])
+{
+    double t = tangent(3.14159265358979323846 * corner_hz / rate_hz);
+    double norm = 1.0 / (1.0 + t / q + t * t);
+    double low = numerator[0] * t * t, mid = numerator[1] * t / q, high = numerator[2];
+    struct biquad s = {
+        .b0 = (low + mid + high) * norm,
+        .b1 = 2.0 * (low - high) * norm,
+        .b2 = (low - mid + high) * norm,
+        .a1 = 2.0 * (t * t - 1.0) * norm,
+        .a2 = (1.0 - t / q + t * t) * norm,
+    };
+    return s;
+}
+
+/* Smaller state is set to zero, so that no processor meets slow subnormal numbers. */
+static double without_subnormals(double x)
+{
+    return within(x, -1e-30, 1e-30) ? 0.0 : x;
+}
+
+static double tick(struct biquad *f, double x)
+{
+    double y = f->b0 * x + f->s1;
+    f->s1 = without_subnormals(f->b1 * x - f->a1 * y + f->s2);
+    f->s2 = without_subnormals(f->b2 * x - f->a2 * y);
+    return y;
+}
+
+/* ---- voices ---- */
+
+enum { EDGE_SECTIONS = 4, VOICES = 256 };
+
+/* The resonance, its noise scaled so that what comes out has unit RMS. */
+struct tone { struct biquad filter; double gain; };
+
+/* Frames that a burst and a pause take, and how much pauses vary. */
+struct timing { double burst, pause, jitter; };
+
+struct voice {
+    struct band band;
+    double rate_hz;
+    uint64_t random, random_timing;
+    struct timing timing;
+    double switch_in;
+    int sounding;
+    struct tone now, next, pending;
+    int fading, waiting;
+    double faded, fade_frames;
+    struct biquad low_cut[EDGE_SECTIONS], high_cut[EDGE_SECTIONS];
+};
+
+/* `generation` is odd while a voice lives here; a handle holds it and the slot's number. */
+struct slot { atomic_flag taken; atomic_uint generation; struct voice voice; };
+
+static struct slot slots[VOICES];
+
+static struct slot *find(int64_t handle)
+{
+    uint64_t number = ((uint64_t)handle & 0xffffffff) - 1;
+    if (handle <= 0 || number >= VOICES)
+        return NULL;
+    unsigned generation = atomic_load(&slots[number].generation);
+    int live = generation % 2 == 1 && (generation & 0x7fffffff) == (uint64_t)handle >> 32;
+    return live ? &slots[number] : NULL;
+}
+
+/* White noise of unit variance (splitmix64; uniform, which filters make Gaussian). */
+static double noise(uint64_t *state)
+{
+    uint64_t z = *state += 0x9e3779b97f4a7c15u;
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+    z ^= z >> 31;
+    return ((double)(z >> 11) * 0x1p-53 - 0.5) * 3.4641016151377544; /* sqrt(12) */
+}
+
+/* A bin of magnitude m has power m^2 / 3; white noise of unit variance has 2 * 5 Hz / rate in each:
+ * so the noise is scaled by sqrt(rate / 30) over the shape's RMS, and more where it is seldom on. */
+static struct tone tone_of(const double *p, const struct voice *v)
+{
+    static const double band_pass[3] = {0.0, 1.0, 0.0};
+    double w = 6.28318530717958647692 * p[CENTRE] / v->rate_hz, t = tangent(0.5 * w);
+    /* The transform narrows bandwidths by sin(w)/w; sin(w) = 2t / (1 + t^2). */
+    double q = p[CENTRE] / p[BANDWIDTH] * 2.0 * t / (1.0 + t * t) / w;
+    struct tone tone = {
+        .filter = section(p[CENTRE], q, v->rate_hz, band_pass),
+        .gain = __builtin_sqrt(v->rate_hz / 30.0 / p[DUTY]) / shape_rms(p, v->band),
+    };
+    return tone;
+}
+
+static struct timing timing_of(const double *p, double rate_hz)
+{
+    double period = rate_hz / p[RATE];
+    struct timing timing = {period * p[DUTY], period * (1.0 - p[DUTY]), p[JITTER]};
+    return timing;
+}
+
+/* Whether noise is on at this frame. A change of the timing counts from the next switch on. */
+static int sounding(struct voice *v)
+{
+    while (v->switch_in <= 0.0) {
+        v->sounding = !v->sounding;
+        if (v->sounding)
+            v->switch_in += v->timing.burst;
+        else
+            v->switch_in += v->timing.pause
+                            * (1.0 + v->timing.jitter * noise(&v->random_timing) / 1.7320508075688772);
+    }
+    v->switch_in -= 1.0;
+    return v->sounding;
+}
+
+static void make_edges(struct voice *v)
+{
+    /* Butterworth, order 8: q = 1 / (2 sin((2k + 1) pi / 16)). */
+    static const double q[EDGE_SECTIONS] = {2.5629154477415055, 0.89997622313641557,
+                                            0.60134488693504529, 0.50979557910415918};
+    static const double low_pass[3] = {1.0, 0.0, 0.0}, high_pass[3] = {0.0, 0.0, 1.0};
+    for (int i = 0; i < EDGE_SECTIONS; i++) {
+        v->low_cut[i] = section(v->band.pass_low_hz, q[i], v->rate_hz, high_pass);
+        v->high_cut[i] = section(v->band.pass_high_hz, q[i], v->rate_hz, low_pass);
+    }
+}
+
+/* Begins to fade to the waiting resonance, which takes over the state: no click, and no gap. */
+static void begin_fade(struct voice *v)
+{
+    v->next = v->pending;
+    v->next.filter.s1 = v->now.filter.s1;
+    v->next.filter.s2 = v->now.filter.s2;
+    v->waiting = 0;
+    v->fading = 1;
+    v->faded = 0.0;
+}
+
+static float next_sample(struct voice *v)
+{
+    if (v->waiting && !v->fading)
+        begin_fade(v);
+    double x = noise(&v->random) * sounding(v), y = tick(&v->now.filter, x * v->now.gain);
+    if (v->fading) {
+        v->faded += 1.0;
+        y += (tick(&v->next.filter, x * v->next.gain) - y) * v->faded / v->fade_frames;
+        if (v->faded >= v->fade_frames) {
+            v->now = v->next;
+            v->fading = 0;
+        }
+    }
+    for (int i = 0; i < EDGE_SECTIONS; i++)
+        y = tick(&v->high_cut[i], tick(&v->low_cut[i], y));
+    return (float)without_subnormals(y);
+}
+
+static void start(struct voice *v, const double *p, uint64_t seed)
+{
+    v->random = seed * 0xd1342543de82ef95u + 1; /* apart from the step of noise() */
+    v->fade_frames = 0.010 * v->rate_hz > 1.0 ? 0.010 * v->rate_hz : 1.0;
+    v->fading = v->waiting = 0;
+    v->random_timing = ~v->random;
+    v->timing = timing_of(p, v->rate_hz);
+    v->sounding = 1;
+    v->switch_in = v->timing.burst * (0.5 + noise(&v->random_timing) / 3.4641016151377544);
+    v->now = tone_of(p, v);
+    make_edges(v);
+    /* The filters settle before the first sample is heard. */
+    double settle = 4.0 * v->rate_hz / v->band.pass_low_hz;
+    for (double n = settle < 65536.0 ? settle : 65536.0; n > 0.0; n -= 1.0)
+        next_sample(v);
+}
+
+/* ---- fit ---- */
+
+enum { SHAPE = 2 /* parameters of the filter */ };
+
+struct spectrum { const double *hz, *magnitude; size_t bins; double largest; };
+
+/* Squared distance of the best scaled shape to the spectrum, over the spectrum's own square. */
+static double misfit(const double *p, struct band band, struct spectrum s)
+{
+    double hm = 0.0, hh = 0.0, mm = 0.0;
+    for (size_t i = 0; i < s.bins; i++) {
+        double h = shape_at(p, band, s.hz[i]), m = s.magnitude[i] / s.largest;
+        hm += h * m;
+        hh += h * h;
+        mm += m * m;
+    }
+    return hh > 0.0 && mm > 0.0 ? 1.0 - hm * hm / (hh * mm) : 1.0;
+}
+
+static double clamp(double x, double low, double high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+/* Tries one step from `p`; keeps it if it is better. */
+static int try_step(double *p, double *best, int field, double factor, struct band band,
+                    struct spectrum s)
+{
+    double at[SHAPE] = {p[CENTRE], p[BANDWIDTH]};
+    at[field] = clamp(at[field] * factor, MIN[field], MAX[field]);
+    /* Inside the band: an asset rounds what it stores, and a resonance at the upper edge has half of
+     * its power outside. */
+    at[CENTRE] = clamp(at[CENTRE], band.low_hz * 1.0001, band.high_hz * 0.9);
+    double value = misfit(at, band, s);
+    if (!(value < *best))
+        return 0;
+    *best = value;
+    p[CENTRE] = at[CENTRE];
+    p[BANDWIDTH] = at[BANDWIDTH];
+    return 1;
+}
+
+/* From the best of a coarse grid, by steps that halve until they are 0.01 %. */
+static void search(double *p, struct band band, struct spectrum s)
+{
+    double best = 2.0;
+    double middle = __builtin_sqrt(band.low_hz * band.high_hz);
+    p[CENTRE] = clamp(middle, MIN[CENTRE], MAX[CENTRE]);
+    p[BANDWIDTH] = 100.0;
+    for (double hz = band.low_hz; hz < band.high_hz; hz *= 1.2)
+        for (double width = 20.0; width < 2000.0; width *= 2.0) {
+            double at[SHAPE] = {clamp(hz, MIN[CENTRE], MAX[CENTRE]), width};
+            double value = 2.0;
+            if (try_step(at, &value, CENTRE, 1.0, band, s) && value < best) {
+                best = value;
+                p[CENTRE] = at[CENTRE];
+                p[BANDWIDTH] = at[BANDWIDTH];
+            }
+        }
+    for (double step = 1.2; step > 1.0001;) {
+        int better = 0;
+        for (int field = 0; field < SHAPE; field++)
+            better |= try_step(p, &best, field, step, band, s)
+                      || try_step(p, &best, field, 1.0 / step, band, s);
+        if (!better)
+            step = __builtin_sqrt(step);
+    }
+}
+
+/* Power of the signal in blocks of 2 ms, less its mean; answers the mean. */
+static double envelope(const double *signal, size_t blocks, size_t frames, double *out)
+{
+    double mean = 0.0;
+    for (size_t n = 0; n < blocks; n++) {
+        out[n] = 0.0;
+        for (size_t i = 0; i < frames; i++)
+            out[n] += signal[n * frames + i] * signal[n * frames + i];
+        mean += out[n] / (double)blocks;
+    }
+    for (size_t n = 0; n < blocks; n++)
+        out[n] -= mean;
+    return mean;
+}
+
+static double covariance(const double *x, size_t len, size_t lag)
+{
+    double sum = 0.0;
+    for (size_t n = 0; n + lag < len; n++)
+        sum += x[n] * x[n + lag];
+    return sum / (double)(len - lag);
+}
+
+/* The rhythm of the signal: where the covariance of its envelope comes back. At one period it is
+ * (1/duty - 1) mean^2, without what the noise itself adds at lag 0. Steady noise if none stands out,
+ * or if there is less than half a second to tell from. */
+static void find_bursts(double *p, const double *signal, size_t len, double rate_hz)
+{
+    enum { BLOCKS = 2048, LEAST = 250, SHORTEST = 5, LONGEST = 250 };
+    double power[BLOCKS], lags[LONGEST + 2], largest = 0.0;
+    size_t frames = (size_t)(0.002 * rate_hz), blocks = frames > 0 ? len / frames : 0;
+    p[RATE] = 20.0;
+    p[DUTY] = 1.0;
+    p[JITTER] = 0.0;
+    if (blocks < LEAST)
+        return;
+    if (blocks > BLOCKS)
+        blocks = BLOCKS;
+    size_t longest = blocks / 3 < LONGEST ? blocks / 3 : LONGEST;
+    double mean = envelope(signal, blocks, frames, power);
+    for (size_t lag = SHORTEST - 1; lag <= longest + 1; lag++)
+        lags[lag] = covariance(power, blocks, lag);
+    size_t period = 0;
+    for (size_t lag = SHORTEST; lag <= longest; lag++)
+        if (lags[lag] > lags[lag - 1] && lags[lag] >= lags[lag + 1] && lags[lag] > largest)
+            largest = lags[lag];
+    /* The first that is nearly as high: later ones are multiples. */
+    for (size_t lag = longest; lag >= SHORTEST; lag--)
+        if (lags[lag] > lags[lag - 1] && lags[lag] >= lags[lag + 1] && lags[lag] >= 0.8 * largest)
+            period = lag;
+    double threshold = 8.0 / __builtin_sqrt((double)blocks);
+    if (period == 0 || !(largest > clamp(threshold, 0.15, 1.0) * covariance(power, blocks, 0)))
+        return;
+    double before = lags[period - 1], at = lags[period], after = lags[period + 1];
+    double exact = (double)period + 0.5 * (before - after) / (before - 2.0 * at + after);
+    p[RATE] = clamp(rate_hz / ((double)frames * exact), MIN[RATE], MAX[RATE]);
+    p[DUTY] = clamp(1.0 / (1.0 + largest / (mean * mean)), MIN[DUTY], MAX[DUTY]);
+}
+
+static int64_t check_spectrum(const double *hz, const double *magnitude, size_t bins)
+{
+    if (!usable(hz, bins, sizeof *hz) || !usable(magnitude, bins, sizeof *magnitude))
+        return fail(HTEX_INVALID_ARGUMENT, "`frequency_hz` or `magnitude` is not a usable array");
+    if (bins < HTEX_MIN_BINS)
+        return fail(HTEX_INVALID_ARGUMENT, "a spectrum needs three bins or more");
+    for (size_t i = 0; i < bins; i++) {
+        if (!within(hz[i], -1e300, 1e300) || (i > 0 && hz[i] <= hz[i - 1]))
+            return fail(HTEX_INVALID_ARGUMENT, "`frequency_hz` does not ascend");
+        if (!within(magnitude[i], 0.0, 1e300))
+            return fail(HTEX_INVALID_ARGUMENT, "`magnitude` is negative or not finite");
+    }
+    return HTEX_OK;
+}
+
+static int64_t check_signal(const double *signal, size_t len, double rate_hz)
+{
+    if (!usable(signal, len, sizeof *signal))
+        return fail(HTEX_INVALID_ARGUMENT, "`signal` is not a usable array");
+    for (size_t i = 0; i < len; i++)
+        if (!within(signal[i], -1e300, 1e300))
+            return fail(HTEX_INVALID_ARGUMENT, "`signal` is not finite");
+    return len == 0 ? HTEX_OK : check_rate(rate_hz);
+}
+
+/* ---- the functions of the ABI ---- */
+
+uint32_t htex_model_abi_version(void)
+{
+    return HTEX_ABI_MARKER;
+}
+
+int64_t htex_model_descriptor(uint8_t *out, size_t capacity)
+{
+    if (!usable(out, capacity, 1))
+        return fail(HTEX_INVALID_ARGUMENT, "`out` is not a usable buffer");
+    return copy_text(DESCRIPTOR, out, capacity);
+}
+
+int64_t htex_model_last_error(uint8_t *out, size_t capacity)
+{
+    return usable(out, capacity, 1) ? copy_text(last_error, out, capacity) : HTEX_INVALID_ARGUMENT;
+}
+
+int64_t htex_model_fit(double band_low_hz, double band_high_hz, const double *frequency_hz,
+                       const double *magnitude, size_t bins, const double *signal,
+                       size_t signal_len, double signal_rate_hz, const double *options,
+                       size_t options_len, double *parameters, size_t capacity, double *level_rms)
+{
+    (void)options;
+    int64_t status = check_band(band_low_hz, band_high_hz);
+    if (status == HTEX_OK)
+        status = check_spectrum(frequency_hz, magnitude, bins);
+    if (status == HTEX_OK)
+        status = check_signal(signal, signal_len, signal_rate_hz);
+    if (status != HTEX_OK)
+        return status;
+    if (options_len != 0)
+        return fail(HTEX_INVALID_OPTION, "this model has no fit options");
+    if (!usable(parameters, capacity, sizeof *parameters) || !usable(level_rms, 1, sizeof *level_rms))
+        return fail(HTEX_INVALID_ARGUMENT, "`parameters` or `level_rms` is not a usable buffer");
+    struct band band = band_of(band_low_hz, band_high_hz);
+    if (band_high_hz < MIN[CENTRE] || band_low_hz > MAX[CENTRE])
+        return fail(HTEX_CANNOT_FIT, "the band lies outside 5 to 2000 Hz");
+    struct spectrum s = {frequency_hz, magnitude, bins, 0.0};
+    for (size_t i = 0; i < bins; i++)
+        if (within(frequency_hz[i], band_low_hz, band_high_hz) && magnitude[i] > s.largest)
+            s.largest = magnitude[i];
+    if (s.largest == 0.0)
+        return fail(HTEX_CANNOT_FIT, "the spectrum is silent: there is nothing to fit");
+    double p[PARAMETERS], power = 0.0;
+    search(p, band, s);
+    find_bursts(p, signal, signal_len, signal_rate_hz);
+    for (size_t i = 0; i < bins; i++)
+        if (within(frequency_hz[i], band_low_hz, band_high_hz))
+            power += magnitude[i] / s.largest * (magnitude[i] / s.largest) / 3.0;
+    *level_rms = s.largest * __builtin_sqrt(power);
+    for (size_t i = 0; i < PARAMETERS && i < capacity; i++)
+        parameters[i] = p[i];
+    return PARAMETERS;
+}
+
+int64_t htex_model_magnitude(const double *parameters, size_t parameters_len, double band_low_hz,
+                             double band_high_hz, const double *frequency_hz, double *magnitude,
+                             size_t bins)
+{
+    int64_t status = check_shape(parameters, parameters_len, band_low_hz, band_high_hz);
+    if (status != HTEX_OK)
+        return status;
+    if (!usable(frequency_hz, bins, sizeof *frequency_hz) || !usable(magnitude, bins, sizeof *magnitude))
+        return fail(HTEX_INVALID_ARGUMENT, "`frequency_hz` or `magnitude` is not a usable array");
+    struct band band = band_of(band_low_hz, band_high_hz);
+    double rms = shape_rms(parameters, band);
+    if (!(rms > 0.0))
+        return fail(HTEX_INVALID_ARGUMENT, "band: no multiple of 5 Hz lies in it");
+    for (size_t i = 0; i < bins; i++) {
+        if (!within(frequency_hz[i], -1e300, 1e300))
+            return fail(HTEX_INVALID_ARGUMENT, "`frequency_hz` is not finite");
+        magnitude[i] = shape_at(parameters, band, frequency_hz[i]) / rms;
+    }
+    return HTEX_OK;
+}
+
+int64_t htex_model_interpolate(const double *sets, size_t sets_len, const double *weights,
+                               size_t weights_len, double *parameters, size_t capacity)
+{
+    double sum = 0.0, mix[PARAMETERS] = {0.0};
+    if (!usable(sets, sets_len, sizeof *sets) || !usable(weights, weights_len, sizeof *weights)
+        || !usable(parameters, capacity, sizeof *parameters))
+        return fail(HTEX_INVALID_ARGUMENT, "`sets`, `weights` or `parameters` is not usable");
+    if (sets_len / PARAMETERS != weights_len || sets_len % PARAMETERS != 0)
+        return fail(HTEX_INVALID_PARAMETERS, "five parameters are wanted for each weight");
+    for (size_t n = 0; n < weights_len; n++) {
+        const double *set = sets + n * PARAMETERS;
+        if (!within(weights[n], 0.0, 1.0))
+            return fail(HTEX_INVALID_ARGUMENT, "a weight lies outside 0 to 1");
+        int64_t status = check_set(set);
+        if (status != HTEX_OK)
+            return status;
+        sum += weights[n];
+        for (int i = 0; i < PARAMETERS; i++)
+            mix[i] += weights[n] * set[i];
+    }
+    if (!within(sum, 1.0 - 1e-6, 1.0 + 1e-6))
+        return fail(HTEX_INVALID_ARGUMENT, "weights do not sum to 1");
+    for (size_t i = 0; i < PARAMETERS && i < capacity; i++)
+        parameters[i] = clamp(mix[i], MIN[i], MAX[i]);
+    return PARAMETERS;
+}
+
+double htex_model_voice_rate(const double *parameters, size_t parameters_len, double band_low_hz,
+                             double band_high_hz, double wanted_hz)
+{
+    int64_t status = check_shape(parameters, parameters_len, band_low_hz, band_high_hz);
+    if (status == HTEX_OK)
+        status = check_rate(wanted_hz);
+    if (status != HTEX_OK)
+        return (double)status;
+    /* Ten times the band, where the filters are near their analogue models, in whole steps. */
+    double least = clamp(10.0 * band_high_hz, HTEX_MIN_RATE_HZ, HTEX_MAX_RATE_HZ);
+    if (wanted_hz >= least)
+        return wanted_hz / (double)(uint64_t)(wanted_hz / least);
+    return clamp(wanted_hz * (double)(1 + (uint64_t)(least / wanted_hz)), least, HTEX_MAX_RATE_HZ);
+}
+
+int64_t htex_model_voice_new(const double *parameters, size_t parameters_len, double band_low_hz,
+                             double band_high_hz, double rate_hz, uint64_t seed)
+{
+    int64_t status = check_shape(parameters, parameters_len, band_low_hz, band_high_hz);
+    if (status == HTEX_OK)
+        status = check_rate(rate_hz);
+    if (status != HTEX_OK)
+        return status;
+    struct band band = band_of(band_low_hz, band_high_hz);
+    if (rate_hz < 2.3 * band.high_hz)
+        return fail(HTEX_INVALID_ARGUMENT, "rate: too low for the band; ask htex_model_voice_rate");
+    if (!(shape_rms(parameters, band) > 0.0))
+        return fail(HTEX_INVALID_ARGUMENT, "band: no multiple of 5 Hz lies in it");
+    for (int64_t i = 0; i < VOICES; i++) {
+        struct slot *slot = &slots[i];
+        if (atomic_flag_test_and_set(&slot->taken))
+            continue;
+        slot->voice.band = band;
+        slot->voice.rate_hz = rate_hz;
+        start(&slot->voice, parameters, seed);
+        int64_t generation = (atomic_fetch_add(&slot->generation, 1) + 1) & 0x7fffffff;
+        return generation << 32 | (i + 1);
+    }
+    return fail(HTEX_TOO_MANY_VOICES, "256 voices are in use; free some");
+}
+
+int64_t htex_model_voice_render(int64_t voice, float *out, size_t frames)
+{
+    struct slot *slot = find(voice);
+    if (slot == NULL)
+        return fail(HTEX_BAD_HANDLE, "no such voice; it may have been freed");
+    if (!usable(out, frames, sizeof *out))
+        return fail(HTEX_INVALID_ARGUMENT, "`out` is not a usable buffer");
+    for (size_t i = 0; i < frames; i++)
+        out[i] = next_sample(&slot->voice);
+    return HTEX_OK;
+}
+
+int64_t htex_model_voice_retune(int64_t voice, const double *parameters, size_t parameters_len)
+{
+    struct slot *slot = find(voice);
+    if (slot == NULL)
+        return fail(HTEX_BAD_HANDLE, "no such voice; it may have been freed");
+    struct voice *v = &slot->voice;
+    int64_t status = check_shape(parameters, parameters_len, v->band.low_hz, v->band.high_hz);
+    if (status != HTEX_OK)
+        return status;
+    v->pending = tone_of(parameters, v);
+    v->timing = timing_of(parameters, v->rate_hz);
+    v->waiting = 1;
+    return HTEX_OK;
+}
+
+int64_t htex_model_voice_free(int64_t voice)
+{
+    struct slot *slot = find(voice);
+    unsigned live = (unsigned)((uint64_t)voice >> 32);
+    if (slot == NULL)
+        return fail(HTEX_BAD_HANDLE, "no such voice; it may have been freed");
+    unsigned generation = live | (atomic_load(&slot->generation) & 0x80000000u);
+    if (!atomic_compare_exchange_strong(&slot->generation, &generation, generation + 1))
+        return fail(HTEX_BAD_HANDLE, "no such voice; it may have been freed");
+    atomic_flag_clear(&slot->taken);
+    return HTEX_OK;
+}
+
+int64_t htex_model_extension(const uint8_t *id, size_t id_len)
+{
+    (void)id;
+    (void)id_len;
+    return 0;
+}

@@ -1,0 +1,106 @@
+//! The comb of lines that parameters stand for: what is seen of it, and what plays it.
+
+use htex_dsp::GRID_HZ;
+use htex_dsp::sine_bank::Sine;
+use htex_model::{Band, Error, Values};
+
+use crate::{AMPLITUDE, JITTER, PITCH, SPEED};
+
+/// Most harmonics.
+pub(crate) const HARMONICS: usize = 48;
+/// Lines of one harmonic, at the 10, 30, 50, 70 and 90 % quantiles of the normal law: irregular, so
+/// that their sum does not come back.
+const QUANTILES: [f64; 5] = [
+    -1.281_551_565_544_6,
+    -0.524_400_512_708_04,
+    0.0,
+    0.524_400_512_708_04,
+    1.281_551_565_544_6,
+];
+/// Lines altogether.
+pub(crate) const LINES: usize = HARMONICS * QUANTILES.len();
+/// Least spread, hertz: nearer lines would beat so slowly that a minute has no steady level.
+const LEAST_SPREAD_HZ: f64 = 1.0;
+
+/// The comb in a band. Lines nearer than a bin to an edge are silent: they would be read outside.
+pub(crate) struct Comb<'a> {
+    fundamental_hz: f64,
+    jitter: f64,
+    amplitude: &'a [f64],
+    band: Band,
+    rms: f64,
+}
+
+impl<'a> Comb<'a> {
+    pub(crate) fn new(parameters: &Values<'a>, band: Band) -> Result<Self, Error> {
+        let mut comb = Self {
+            fundamental_hz: parameters.scalar(SPEED) / parameters.scalar(PITCH),
+            jitter: parameters.scalar(JITTER),
+            amplitude: parameters.list(AMPLITUDE),
+            band,
+            rms: 1.0,
+        };
+        let mut power = 0.0;
+        comb.for_each_line(|_, _, amplitude| power += 0.5 * amplitude * amplitude);
+        comb.rms = libm::sqrt(power);
+        // Fainter amplitudes have squares that fade into nothing.
+        if comb.rms > 1e-100 {
+            return Ok(comb);
+        }
+        Err(Error::parameters(format!(
+            "no harmonic of {} Hz with an amplitude lies between {} and {} Hz",
+            comb.fundamental_hz, band.low_hz, band.high_hz
+        )))
+    }
+
+    /// Calls `line(index, frequency_hz, amplitude)` for each line that sounds.
+    fn for_each_line(&self, mut line: impl FnMut(usize, f64, f64)) {
+        let share = 1.0 / libm::sqrt(QUANTILES.len() as f64);
+        for (i, &amplitude) in self.amplitude.iter().take(HARMONICS).enumerate() {
+            let centre_hz = (i + 1) as f64 * self.fundamental_hz;
+            let spread_hz = (self.jitter * centre_hz).max(LEAST_SPREAD_HZ);
+            for (j, z) in QUANTILES.iter().enumerate() {
+                let f = centre_hz + spread_hz * z;
+                let low_hz = self.band.low_hz + GRID_HZ;
+                if (low_hz..=self.band.high_hz - GRID_HZ).contains(&f) {
+                    line(i * QUANTILES.len() + j, f, share * amplitude);
+                }
+            }
+        }
+    }
+
+    /// Unit-RMS magnitude as read through the Hann window; lines add in power.
+    pub(crate) fn seen_at(&self, frequency_hz: f64) -> f64 {
+        let mut power = 0.0;
+        self.for_each_line(|_, f, amplitude| {
+            let m = amplitude * hann_kernel((frequency_hz - f) / GRID_HZ);
+            power += m * m;
+        });
+        libm::sqrt(power) / self.rms
+    }
+
+    /// Sets frequencies and amplitudes, of unit RMS together; phases stay.
+    pub(crate) fn write_sines(&self, sines: &mut [Sine; LINES]) {
+        sines.iter_mut().for_each(|sine| sine.amplitude = 0.0);
+        self.for_each_line(|i, f, amplitude| {
+            sines[i].frequency_hz = f;
+            sines[i].amplitude = amplitude / self.rms;
+        });
+    }
+}
+
+/// Main lobe of the periodic Hann window's transform, 1 at its middle, `bins` away.
+fn hann_kernel(bins: f64) -> f64 {
+    let d = bins.abs();
+    if d >= 2.0 {
+        return 0.0;
+    }
+    if d < 1e-6 {
+        return 1.0;
+    }
+    if (d - 1.0).abs() < 1e-6 {
+        return 0.5;
+    }
+    let a = core::f64::consts::PI * d;
+    libm::sin(a) / (a * (1.0 - d * d))
+}

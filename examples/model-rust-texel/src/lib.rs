@@ -1,0 +1,156 @@
+//! Single-pitch texel: a surface of one repeating element, such as a grating or a weave. Sliding over
+//! a pitch of `pitch_mm` at `speed_mm_s` shakes the finger at the fundamental `speed/pitch` and at its
+//! multiples.
+//!
+//! Neither pitch nor speed is ever quite even: each harmonic is a small cluster of sinusoids, as wide
+//! as `jitter` says, so that no two strokes sound the same.
+
+mod comb;
+mod fit;
+
+use comb::{Comb, HARMONICS, LINES};
+use htex_dsp::noise::Uniform;
+use htex_dsp::shaped_noise::economical_rate_hz;
+use htex_dsp::sine_bank::{Sine, SineBank};
+use htex_model::{Band, Descriptor, Error, Fit, FitInput, Model, Values, Voice, mix};
+
+const PITCH: usize = 0;
+const SPEED: usize = 1;
+const JITTER: usize = 2;
+const AMPLITUDE: usize = 3;
+
+const PITCH_MM: (f64, f64) = (0.0009765625, 1024.0); // 32-bit floats, as assets store them
+const SPEED_MM_S: (f64, f64) = (1.0, 2000.0);
+const JITTERS: (f64, f64) = (0.0, 0.0625);
+
+/// The model.
+pub struct Texel;
+
+htex_model::export_model!(Texel, symbols: "plugin");
+
+impl Model for Texel {
+    type Voice = TexelVoice;
+
+    fn descriptor() -> Descriptor {
+        Descriptor::new(
+            "org.example.texel",
+            "Single-pitch texel",
+            env!("CARGO_PKG_VERSION"),
+            "One repeating element of the surface: its pitch, and how strong each harmonic is.",
+        )
+        .scalar("pitch_mm", "mm", PITCH_MM, "Length of the element.")
+        .scalar("speed_mm_s", "mm/s", SPEED_MM_S, "Speed of the finger.")
+        .scalar(
+            "jitter",
+            "1",
+            JITTERS,
+            "Spread of the frequencies, as a part of each; never less than 1 Hz.",
+        )
+        .list(
+            "amplitude",
+            "1",
+            (0.0, 1.0),
+            HARMONICS as u32,
+            "Harmonics from the fundamental on, over the strongest.",
+        )
+        .option(
+            "speed_mm_s",
+            "mm/s",
+            SPEED_MM_S,
+            100.0,
+            "Speed of the recording: what turns its fundamental into a pitch.",
+        )
+    }
+
+    fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
+        fit::fit(input)
+    }
+
+    fn magnitude(
+        parameters: &Values<'_>,
+        band: Band,
+        frequency_hz: &[f64],
+        magnitude: &mut [f64],
+    ) -> Result<(), Error> {
+        let comb = Comb::new(parameters, band)?;
+        for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
+            let inside = (band.low_hz..=band.high_hz).contains(&f);
+            *m = if inside { comb.seen_at(f) } else { 0.0 };
+        }
+        Ok(())
+    }
+
+    /// Pitch, speed and harmonics move in a straight line; a harmonic that one set lacks is silent
+    /// there.
+    fn interpolate(sets: &[Values<'_>], weights: &[f64]) -> Result<Vec<f64>, Error> {
+        if let Some(set) = mix::sole(sets, weights) {
+            return Ok(set.flat().to_vec());
+        }
+        let longest = sets.iter().map(|s| s.list(AMPLITUDE).len()).max();
+        let mut mixed = vec![0.0; AMPLITUDE + 1 + longest.unwrap_or(0)];
+        for (set, weight) in sets.iter().zip(weights) {
+            for field in [PITCH, SPEED, JITTER] {
+                mixed[field] += weight * set.scalar(field);
+            }
+            let amplitudes = mixed[AMPLITUDE + 1..].iter_mut();
+            amplitudes
+                .zip(set.list(AMPLITUDE))
+                .for_each(|(sum, a)| *sum += weight * a);
+        }
+        mixed[AMPLITUDE] = longest.unwrap_or(0) as f64;
+        // Weights sum to one but for rounding, which must not leave the ranges.
+        let amplitudes = mixed[AMPLITUDE + 1..].iter_mut();
+        amplitudes.for_each(|a| *a = a.min(1.0));
+        mixed[PITCH] = mixed[PITCH].clamp(PITCH_MM.0, PITCH_MM.1);
+        mixed[SPEED] = mixed[SPEED].clamp(SPEED_MM_S.0, SPEED_MM_S.1);
+        mixed[JITTER] = mixed[JITTER].clamp(JITTERS.0, JITTERS.1);
+        Ok(mixed)
+    }
+
+    fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
+        economical_rate_hz(wanted_hz, band.edges().into())
+    }
+
+    fn voice(
+        parameters: &Values<'_>,
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Self::Voice, Error> {
+        let comb = Comb::new(parameters, band)?;
+        let mut phases = Uniform::new(seed);
+        let mut sines = [SILENT; LINES];
+        for sine in &mut sines {
+            sine.phase_cycles = phases.next_unit();
+        }
+        comb.write_sines(&mut sines);
+        let bank = SineBank::new(rate_hz, LINES, &sines);
+        Ok(TexelVoice { band, sines, bank })
+    }
+}
+
+const SILENT: Sine = Sine {
+    frequency_hz: 0.0,
+    amplitude: 0.0,
+    phase_cycles: 0.0,
+};
+
+/// A bank of sinusoids, one for each line of each harmonic.
+pub struct TexelVoice {
+    band: Band,
+    sines: [Sine; LINES],
+    bank: SineBank,
+}
+
+impl Voice for TexelVoice {
+    fn render(&mut self, out: &mut [f32]) {
+        self.bank.render(out);
+    }
+
+    /// Frequencies glide and amplitudes ramp over 10 ms; phases go on.
+    fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+        Comb::new(parameters, self.band)?.write_sines(&mut self.sines);
+        self.bank.retune(&self.sines);
+        Ok(())
+    }
+}

@@ -1,0 +1,324 @@
+//! Models as third parties write them, from source to sound: the examples and the templates are
+//! built, loaded, fitted and played.
+#![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use htex_host::{Band, Fit, FitRequest, HostError, LoadedModel, Status, Stream};
+use htex_tests::measure::{RATE_HZ, distance_db, measured_spectrum, rms};
+use htex_tests::{smooth_spectrum, workspace};
+
+/// Where what these tests build is kept between runs.
+const BUILDS: &str = env!("CARGO_TARGET_TMPDIR");
+
+#[test]
+fn the_example_in_c() {
+    let project = folder("model-c-bursts");
+    for file in ["bursts.c", "build.sh"] {
+        let from = workspace().join("examples/model-c-bursts").join(file);
+        let text = fs::read_to_string(from).unwrap();
+        let include = workspace().join("spec/include").canonicalize().unwrap();
+        let text = text.replace("../../spec/include", include.to_str().unwrap());
+        fs::write(project.join(file), text).unwrap();
+    }
+    let model = load(&build_c(&project));
+    assert_eq!(model.id(), "org.example.bursts");
+    holds(&model, 0.03);
+    the_rhythm_is_found(&model);
+}
+
+#[test]
+fn the_template_in_c() {
+    let project = folder("template-c");
+    for file in ["model.c", "build.sh"] {
+        let text = fs::read_to_string(templates().join("c").join(file)).unwrap();
+        fs::write(project.join(file), filled_in(&text)).unwrap();
+    }
+    for header in ["htex_model.h", "htex_model_wasm.h"] {
+        let from = workspace().join("spec/include").join(header);
+        fs::copy(from, project.join(header)).unwrap();
+    }
+    let model = load(&build_c(&project));
+    assert_eq!(model.id(), "com.example.trial");
+    holds(&model, 0.03);
+}
+
+#[test]
+fn the_example_in_rust() {
+    let model = load(&build_rust(&workspace().join("examples/model-rust-texel")));
+    assert_eq!(model.id(), "org.example.texel");
+    holds(&model, 0.02);
+    the_pitch_is_found(&model);
+}
+
+#[test]
+fn the_template_in_rust() {
+    let project = folder("template-rust");
+    fs::create_dir_all(project.join("src")).unwrap();
+    for (from, to) in [
+        ("Cargo.toml.in", "Cargo.toml"),
+        ("src/lib.rs", "src/lib.rs"),
+    ] {
+        let text = fs::read_to_string(templates().join("rust").join(from)).unwrap();
+        fs::write(project.join(to), filled_in(&text)).unwrap();
+    }
+    // The versions that are at hand.
+    fs::copy(workspace().join("Cargo.lock"), project.join("Cargo.lock")).unwrap();
+    let model = load(&build_rust(&project));
+    assert_eq!(model.id(), "com.example.trial");
+    holds(&model, 0.02);
+}
+
+// ---- what each must do ----
+
+/// Five kinds of spectra on the grid of the tactile band, newtons.
+fn spectra() -> [(&'static str, Vec<f64>); 5] {
+    let grid = Band::TACTILE.grid_hz();
+    let curve = |f: &dyn Fn(f64) -> f64| grid.iter().map(|&hz| f(hz)).collect();
+    let smooth = smooth_spectrum(&grid);
+    let ripple = |(i, m): (usize, &f64)| m * (1.0 + 0.3 * (i as f64 * 0.9).sin());
+    [
+        ("rippled", smooth.iter().enumerate().map(ripple).collect()),
+        ("smooth", smooth),
+        (
+            "falling",
+            curve(&|f| (-f / 90.0).exp() * (1.2 + (f / 25.0).sin())),
+        ),
+        (
+            "resonant",
+            curve(&|f| 0.02 / (1.0 + ((f - 300.0) / 30.0).powi(2))),
+        ),
+        ("comb", comb_spectrum(&grid)),
+    ]
+}
+
+/// Lines at the multiples of 65 Hz, as the Hann window shows them.
+fn comb_spectrum(grid: &[f64]) -> Vec<f64> {
+    let line = |f: f64| match (f % 65.0).min(65.0 - f % 65.0) {
+        d if d < 1.0 => 1.0,
+        d if d < 6.0 => 0.5,
+        _ => 1e-3,
+    };
+    grid.iter()
+        .map(|&f| 0.01 * line(f) * (-f / 300.0).exp())
+        .collect()
+}
+
+/// All that is asked of a model: its voice has its magnitude and level, follows its seed and no
+/// block size, changes without a click; spectra of nothing, and wrong parameters, are answered.
+fn holds(model: &LoadedModel, level_tolerance: f64) {
+    for (name, magnitude) in spectra() {
+        let fit = fit(model, &magnitude, &[]).unwrap();
+        let p = &fit.parameters;
+        let reference = model
+            .magnitude(p, Band::TACTILE, &Band::TACTILE.grid_hz())
+            .unwrap();
+        let unit = htex_dsp::grid::level_rms(&reference);
+        let samples = rendered(model, p, 11, 4_096, 60.0);
+        let (rms, db) = (
+            rms(&samples),
+            distance_db(&measured_spectrum(&samples), &reference),
+        );
+        let id = model.id();
+        println!("{id:20} {name:9} unit {unit:.5}  RMS {rms:.4}  voice within {db:.3} dB RMS");
+        assert!((unit - 1.0).abs() < 1e-3, "{id} {name}: unit RMS is {unit}");
+        assert!(
+            (rms - 1.0).abs() < level_tolerance,
+            "{id} {name}: RMS {rms}"
+        );
+        assert!(db < 1.0, "{id} {name}: {db} dB");
+    }
+    samples_follow_the_seed_alone(model);
+    retunes_do_not_click(model);
+    edges_are_answered(model);
+}
+
+fn samples_follow_the_seed_alone(model: &LoadedModel) {
+    let p = fit(model, &spectra()[0].1, &[]).unwrap().parameters;
+    let whole = rendered(model, &p, 5, usize::MAX, 0.3);
+    for block in [1, 7, 64] {
+        assert_eq!(
+            rendered(model, &p, 5, block, 0.3),
+            whole,
+            "{} in {block}",
+            model.id()
+        );
+    }
+    assert_ne!(rendered(model, &p, 6, 64, 0.3), whole, "{}", model.id());
+    let subnormal = |x: &f32| x.is_subnormal() || !x.is_finite();
+    assert!(!whole.iter().any(subnormal), "{}", model.id());
+}
+
+fn retunes_do_not_click(model: &LoadedModel) {
+    let all = spectra();
+    let [a, b] = [&all[0].1, &all[2].1].map(|m| fit(model, m, &[]).unwrap().parameters);
+    let half = model.interpolate(&[&a, &b], &[0.5, 0.5]).unwrap();
+    assert_eq!(model.interpolate(&[&a, &b], &[0.0, 1.0]).unwrap(), b);
+    let mut stream = Stream::new(model, &a, Band::TACTILE, RATE_HZ, 3).unwrap();
+    let mut out = vec![0.0f32; 40_000];
+    for (i, block) in out.chunks_mut(500).enumerate() {
+        stream.retune([&a, &half, &b][i % 3]).unwrap();
+        stream.render(block).unwrap();
+    }
+    let bend = |x: &[f32]| (x[2] - 2.0 * x[1] + x[0]).abs();
+    let sharpest = |x: &[f32]| x.windows(3).map(bend).fold(0.0, f32::max);
+    let steady = [&a, &half, &b].map(|p| sharpest(&rendered(model, p, 3, 500, 2.0)));
+    let bound = 2.0 * steady.into_iter().fold(0.0, f32::max);
+    assert!(
+        sharpest(&out) < bound,
+        "{}: {} {bound}",
+        model.id(),
+        sharpest(&out)
+    );
+}
+
+fn edges_are_answered(model: &LoadedModel) {
+    let grid = Band::TACTILE.grid_hz();
+    let at = |hz: &[f64]| -> Vec<f64> {
+        grid.iter()
+            .map(|f| f64::from(u8::from(hz.contains(f))))
+            .collect()
+    };
+    let hard = [
+        vec![0.0; grid.len()],
+        vec![1.0; grid.len()],
+        at(&[20.0]),
+        at(&[400.0, 405.0]),
+    ];
+    for magnitude in hard {
+        match fit(model, &magnitude, &[]) {
+            Ok(fit) => assert!(
+                rendered(model, &fit.parameters, 1, 64, 0.1)
+                    .iter()
+                    .all(|x| x.is_finite())
+            ),
+            Err(error) => assert_eq!(status(&error), Status::CannotFit, "{error}"),
+        }
+    }
+    let good = fit(model, &spectra()[1].1, &[]).unwrap().parameters;
+    let mut wrong = vec![vec![], good[1..].to_vec(), [&good[..], &[1.0]].concat()];
+    for i in 0..good.len() {
+        for value in [f64::NAN, f64::INFINITY, -1e9, 1e9] {
+            wrong.push(good.clone());
+            wrong.last_mut().unwrap()[i] = value;
+        }
+    }
+    let mut stream = Stream::new(model, &good, Band::TACTILE, RATE_HZ, 3).unwrap();
+    for p in wrong {
+        let error = model.magnitude(&p, Band::TACTILE, &grid).unwrap_err();
+        assert_eq!(status(&error), Status::InvalidParameters, "{p:?}: {error}");
+        assert_eq!(
+            status(&stream.retune(&p).unwrap_err()),
+            Status::InvalidParameters
+        );
+        assert!(Stream::new(model, &p, Band::TACTILE, RATE_HZ, 3).is_err());
+    }
+}
+
+/// Bursts that the model itself played are found again in the signal.
+fn the_rhythm_is_found(model: &LoadedModel) {
+    let played = [150.0, 100.0, 10.0, 0.3, 0.0];
+    let grid = Band::TACTILE.grid_hz();
+    let magnitude = model.magnitude(&played, Band::TACTILE, &grid).unwrap();
+    let signal = rendered(model, &played, 4, 512, 4.0);
+    let signal: Vec<f64> = signal.into_iter().map(f64::from).collect();
+    let found = fit(model, &magnitude, &signal).unwrap().parameters;
+    println!("{:20} played {played:?}, found {found:.2?}", model.id());
+    assert!((found[0] - 150.0).abs() < 1.0 && (found[1] - 100.0).abs() < 2.0);
+    assert!((found[2] - 10.0).abs() < 0.3 && (found[3] - 0.3).abs() < 0.1);
+}
+
+/// The fundamental of a comb is found, not its half or its double.
+fn the_pitch_is_found(model: &LoadedModel) {
+    let comb = comb_spectrum(&Band::TACTILE.grid_hz());
+    let found = fit(model, &comb, &[]).unwrap().parameters;
+    println!(
+        "{:20} 65 Hz: found {:.3} Hz",
+        model.id(),
+        found[1] / found[0]
+    );
+    assert!((found[1] / found[0] - 65.0).abs() < 0.1);
+}
+
+// ---- ways and means ----
+
+fn fit(model: &LoadedModel, magnitude: &[f64], signal: &[f64]) -> Result<Fit, HostError> {
+    model.fit(&FitRequest {
+        band: Band::TACTILE,
+        frequency_hz: &Band::TACTILE.grid_hz(),
+        magnitude,
+        signal,
+        signal_rate_hz: RATE_HZ,
+        options: &model.options(&[]).unwrap(),
+    })
+}
+
+fn rendered(model: &LoadedModel, p: &[f64], seed: u64, block: usize, seconds: f64) -> Vec<f32> {
+    let mut stream = Stream::new(model, p, Band::TACTILE, RATE_HZ, seed).unwrap();
+    let mut out = vec![0.0f32; (seconds * RATE_HZ) as usize];
+    let block = block.min(out.len());
+    out.chunks_mut(block)
+        .for_each(|part| stream.render(part).unwrap());
+    out
+}
+
+fn status(error: &HostError) -> Status {
+    match error {
+        HostError::Call { status, .. } => *status,
+        other => panic!("{other}"),
+    }
+}
+
+fn load(path: &Path) -> LoadedModel {
+    LoadedModel::from_file(path).unwrap()
+}
+
+fn templates() -> PathBuf {
+    workspace().join("sdk/check/templates")
+}
+
+fn filled_in(text: &str) -> String {
+    let sdk = workspace().join("sdk").canonicalize().unwrap();
+    text.replace("{{NAME}}", "trial")
+        .replace("{{ID}}", "com.example.trial")
+        .replace("{{SDK_PATH}}", sdk.to_str().unwrap())
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(BUILDS).join(name);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// Runs a C project's `build.sh`; answers what it built.
+fn build_c(project: &Path) -> PathBuf {
+    let built = run(Command::new("sh").arg(project.join("build.sh")));
+    project.join(built.trim())
+}
+
+/// Builds a Rust project; answers its library.
+fn build_rust(project: &Path) -> PathBuf {
+    let target = folder("third-party-target");
+    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
+    run(Command::new(cargo)
+        .args(["build", "--release", "--quiet", "--manifest-path"])
+        .arg(project.join("Cargo.toml"))
+        .arg("--target-dir")
+        .arg(&target));
+    let manifest = fs::read_to_string(project.join("Cargo.toml")).unwrap();
+    let name = manifest.split('"').nth(1).unwrap().replace('-', "_");
+    let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    target
+        .join("release")
+        .join(format!("{prefix}{name}{suffix}"))
+}
+
+/// What a program prints; its errors if it fails.
+fn run(command: &mut Command) -> String {
+    let output = command.output().unwrap();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{command:?}: {errors}");
+    String::from_utf8(output.stdout).unwrap()
+}

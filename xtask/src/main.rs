@@ -1,18 +1,22 @@
 //! What a person would otherwise have to remember.
 
-mod plugins;
-
+use std::path::PathBuf;
 use std::process::{Command, ExitCode};
+
+use xtask::plugins;
 
 const TASKS: &str = "\
 cargo xtask ci        all that continuous integration runs
-cargo xtask plugins   builds the models as plugins into target/htex-plugins
+cargo xtask plugins   builds the models as plugins into target/htex-plugins, native and WASM;
+                      --native-only or --wasm-only builds the one kind
 cargo xtask generate  makes what spec/ has from the code again: schemas, pages, conformance files";
 
 fn main() -> ExitCode {
     let tasks: Vec<String> = std::env::args().skip(1).collect();
     match tasks.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["plugins"] => plugins::build(),
+        ["plugins"] => built(&[plugins::native, plugins::wasm]),
+        ["plugins", "--native-only"] => built(&[plugins::native]),
+        ["plugins", "--wasm-only"] => built(&[plugins::wasm]),
         ["ci"] => run("bash", &[".ci/run"]),
         ["generate"] => generate(),
         _ => {
@@ -46,8 +50,24 @@ fn generate() -> ExitCode {
     run(&cargo, &[&checks[..], &["model_checks"]].concat())
 }
 
+/// Builds, and prints where what was built is.
+fn built(builds: &[fn() -> Result<PathBuf, String>]) -> ExitCode {
+    let mut folder = PathBuf::new();
+    for build in builds {
+        match build() {
+            Ok(path) => folder = path,
+            Err(error) => {
+                eprintln!("xtask: {error}");
+                return ExitCode::FAILURE;
+            }
+        }
+    }
+    println!("{}", folder.display());
+    ExitCode::SUCCESS
+}
+
 /// Runs a program in the workspace's folder.
-pub(crate) fn run(program: &str, arguments: &[&str]) -> ExitCode {
+fn run(program: &str, arguments: &[&str]) -> ExitCode {
     let workspace = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
     match Command::new(program)
         .args(arguments)

@@ -1,37 +1,90 @@
-//! The five models as native libraries.
+//! The five models as plugins: native libraries and WASM modules.
 
-use std::path::Path;
-use std::process::ExitCode;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
-use crate::run;
+use crate::wasm::{TARGET, Toolchain};
 
-const MODELS: [&str; 5] = ["ar", "mfcc", "speak", "sbeta", "sslope"];
+/// The models' short names.
+pub const MODELS: [&str; 5] = ["ar", "mfcc", "speak", "sbeta", "sslope"];
 
-/// Builds every model and copies what came out to `target/htex-plugins`.
-pub(crate) fn build() -> ExitCode {
-    let target = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../target"));
-    let out = target.join("htex-plugins");
+/// Builds every model as a native library; answers the folder they are in, `htex-plugins` in the
+/// target folder. What is built and newer than its sources is not built again.
+///
+/// # Errors
+/// Which model could not be built; the compiler has printed why.
+pub fn native() -> Result<PathBuf, String> {
+    let target = target();
+    let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     for model in MODELS {
-        let package = format!("htex-{model}");
-        let arguments = ["rustc", "--release", "--lib", "--package", &package];
-        let kind = ["--features", "plugin", "--crate-type", "cdylib"];
-        let code = run("cargo", &[&arguments[..], &kind].concat());
-        if code != ExitCode::SUCCESS {
-            return code;
-        }
-        let library = format!(
-            "{}htex_{model}{}",
-            std::env::consts::DLL_PREFIX,
-            std::env::consts::DLL_SUFFIX
-        );
-        let copied = std::fs::create_dir_all(&out).and_then(|()| {
-            std::fs::copy(target.join("release").join(&library), out.join(&library))
-        });
-        if let Err(error) = copied {
-            eprintln!("xtask: cannot copy {library}: {error}");
-            return ExitCode::FAILURE;
-        }
+        build(Command::new(cargo()), &target, model, &[])?;
+        let file = format!("{prefix}htex_{model}{suffix}");
+        place(&target.join("release").join(&file), &file)?;
     }
-    println!("{}", out.display());
-    ExitCode::SUCCESS
+    Ok(folder())
+}
+
+/// Builds every model as a WASM module; answers the folder they are in, as [`native`] does.
+///
+/// # Errors
+/// That no toolchain can be had, and what to do; or which model could not be built.
+pub fn wasm() -> Result<PathBuf, String> {
+    let toolchain = Toolchain::find()?;
+    for model in MODELS {
+        let (cargo, target) = toolchain.cargo(&target());
+        build(cargo, &target, model, toolchain.arguments())?;
+        let file = format!("htex_{model}.wasm");
+        place(&target.join(TARGET).join("release").join(&file), &file)?;
+    }
+    Ok(folder())
+}
+
+fn build(mut cargo: Command, target: &Path, model: &str, more: &[&str]) -> Result<(), String> {
+    let package = format!("htex-{model}");
+    let status = cargo
+        .args([
+            "rustc",
+            "--quiet",
+            "--release",
+            "--lib",
+            "--package",
+            &package,
+        ])
+        .args(more)
+        .args(["--features", "plugin", "--crate-type", "cdylib"])
+        .env("CARGO_TARGET_DIR", target)
+        .current_dir(workspace())
+        .status();
+    match status {
+        Ok(status) if status.success() => Ok(()),
+        Ok(_) => Err(format!("{package} could not be built")),
+        Err(error) => Err(format!("cannot run cargo: {error}")),
+    }
+}
+
+/// Copies a built file to where plugins are kept, beside and renamed into place.
+fn place(built: &Path, name: &str) -> Result<(), String> {
+    let (folder, beside) = (folder(), format!("{name}.{}", std::process::id()));
+    std::fs::create_dir_all(&folder)
+        .and_then(|()| std::fs::copy(built, folder.join(&beside)))
+        .and_then(|_| std::fs::rename(folder.join(&beside), folder.join(name)))
+        .map_err(|error| format!("cannot copy {}: {error}", built.display()))
+}
+
+/// The cargo that runs this, else the one on the path.
+pub(crate) fn cargo() -> std::ffi::OsString {
+    std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
+}
+
+fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn target() -> PathBuf {
+    let own = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
+    workspace().join(own.unwrap_or_else(|| "target".into()))
+}
+
+fn folder() -> PathBuf {
+    target().join("htex-plugins")
 }

@@ -1,7 +1,8 @@
 //! Finds texture models and calls them: one registry and one way of calling, wherever a model's
 //! code comes from.
 //!
-//! Every model is called through the flat functions of the model ABI, the built-in ones too. What
+//! A model is built in, a native library, or a WASM module in a sandbox ([`Origin`]); [`Search`] says
+//! where to look. Every model is called through the flat functions of the model ABI, the built-in ones too. What
 //! a model answers is checked here, so that a wrong model is an error of that call and of nothing
 //! else.
 //!
@@ -16,19 +17,30 @@
 
 mod builtin;
 mod error;
+mod folders;
+mod limits;
 mod model;
 mod native;
+mod note;
 mod options;
+mod origin;
 mod raw;
 mod registry;
+mod search;
 mod stream;
 mod table;
 mod voice;
+#[cfg(feature = "wasm")]
+mod wasm;
 
 pub use error::HostError;
 pub use htex_dsp::grid::{Band, GRID_HZ};
 pub use htex_model::{Descriptor, Field, Fit, FitOption, Kind, Status, Store};
+pub use limits::{WasmCache, WasmLimits};
 pub use model::{FitRequest, LoadedModel};
+pub use note::Note;
+pub use origin::Origin;
 pub use registry::Registry;
+pub use search::Search;
 pub use stream::Stream;
 pub use voice::ModelVoice;

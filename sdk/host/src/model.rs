@@ -10,7 +10,7 @@ use htex_model::abi::{
 use htex_model::{Descriptor, Fit, Status, Values};
 
 use crate::raw::{RawFit, RawModel};
-use crate::{HostError, ModelVoice};
+use crate::{HostError, ModelVoice, Origin, WasmLimits};
 
 /// Parameters for which there is room at the first call.
 const USUAL_PARAMETERS: usize = 256;
@@ -32,6 +32,7 @@ pub struct FitRequest<'a> {
 #[derive(Clone)]
 pub struct LoadedModel {
     descriptor: Arc<Descriptor>,
+    origin: Arc<Origin>,
     raw: Arc<dyn RawModel>,
 }
 
@@ -44,33 +45,97 @@ impl std::fmt::Debug for LoadedModel {
 }
 
 impl LoadedModel {
-    /// Checks the marker and reads the descriptor of a model from `origin` (for messages).
-    pub(crate) fn new(origin: &str, raw: Arc<dyn RawModel>) -> Result<Self, HostError> {
+    /// Checks the marker and reads the descriptor of a model.
+    pub(crate) fn new(origin: Origin, raw: Arc<dyn RawModel>) -> Result<Self, HostError> {
+        let name = origin.to_string();
         let broken = |call, what| HostError::Broken {
-            model: origin.to_owned(),
+            model: name.clone(),
             call,
             what,
         };
-        check_marker(origin, raw.abi_version())?;
+        check_marker(&name, raw.abi_version())?;
         let call = "htex_model_descriptor";
-        let json = text(|out| raw.descriptor(out))
-            .ok_or_else(|| broken(call, "no UTF-8 text of at most 1 MiB".to_owned()))?;
+        let json = text(|out| raw.descriptor(out)).map_err(|no_text| match no_text {
+            NoText::Status(status) => HostError::Call {
+                model: name.clone(),
+                call,
+                status: Status::from_code(status),
+                message: reason(|out| raw.last_error(out)),
+            },
+            NoText::Broken(what) => broken(call, what),
+        })?;
         let descriptor: Descriptor =
             serde_json::from_str(&json).map_err(|e| broken(call, e.to_string()))?;
         check_descriptor(&descriptor).map_err(|what| broken(call, what))?;
         Ok(Self {
             descriptor: Arc::new(descriptor),
+            origin: Arc::new(origin),
             raw,
         })
     }
 
-    /// Loads a model from a native library.
+    /// Loads a model from a file: a WASM module (`.wasm`), which runs in a sandbox under the default
+    /// limits, or a native library, which runs with all rights of this program.
     ///
     /// # Errors
-    /// When the file is no such library, or its model breaks the ABI.
+    /// When the file is neither, or its model breaks the ABI.
     pub fn from_file(path: &Path) -> Result<Self, HostError> {
+        Self::from_file_within(path, &WasmLimits::default())
+    }
+
+    /// As [`Self::from_file`], under other limits if it is a WASM module.
+    ///
+    /// # Errors
+    /// As [`Self::from_file`].
+    pub fn from_file_within(path: &Path, limits: &WasmLimits) -> Result<Self, HostError> {
+        if path
+            .extension()
+            .is_some_and(|extension| extension == "wasm")
+        {
+            return Self::from_wasm_file(path, limits);
+        }
         let raw = crate::native::load(path)?;
-        Self::new(&path.display().to_string(), Arc::new(raw))
+        Self::new(Origin::Native(path.to_owned()), Arc::new(raw))
+    }
+
+    #[cfg(feature = "wasm")]
+    fn from_wasm_file(path: &Path, limits: &WasmLimits) -> Result<Self, HostError> {
+        let raw = crate::wasm::load_file(path, limits)?;
+        Self::new(Origin::Wasm(path.to_owned()), Arc::new(raw))
+    }
+
+    #[cfg(not(feature = "wasm"))]
+    fn from_wasm_file(path: &Path, _: &WasmLimits) -> Result<Self, HostError> {
+        Err(no_wasm(&path.display().to_string()))
+    }
+
+    /// Loads a model from the bytes of a WASM module that came with `name`.
+    ///
+    /// # Errors
+    /// When the bytes are no such module, or its model breaks the ABI.
+    #[cfg(feature = "wasm")]
+    pub fn from_wasm_bytes(
+        name: &str,
+        bytes: &[u8],
+        limits: &WasmLimits,
+    ) -> Result<Self, HostError> {
+        let origin = Origin::Embedded(name.to_owned());
+        let raw = crate::wasm::load(&origin.to_string(), bytes, limits)?;
+        Self::new(origin, Arc::new(raw))
+    }
+
+    /// Says that this program was built without the WASM loader.
+    ///
+    /// # Errors
+    /// Always.
+    #[cfg(not(feature = "wasm"))]
+    pub fn from_wasm_bytes(name: &str, _: &[u8], _: &WasmLimits) -> Result<Self, HostError> {
+        Err(no_wasm(name))
+    }
+
+    /// Where the model's code comes from.
+    pub fn origin(&self) -> &Origin {
+        &self.origin
     }
 
     /// What the model says of itself.
@@ -243,8 +308,7 @@ impl LoadedModel {
         answer: i64,
         last_error: impl FnMut(&mut [u8]) -> i64,
     ) -> HostError {
-        let message = text(last_error).unwrap_or_else(|| "no reason given".to_owned());
-        self.error(call, Status::from_code(answer), message)
+        self.error(call, Status::from_code(answer), reason(last_error))
     }
 
     /// Calls with a buffer of the usual size, and once more if that was too small; the answer must
@@ -278,7 +342,7 @@ impl LoadedModel {
         }
     }
 
-    fn broken(&self, call: &'static str, what: String) -> HostError {
+    pub(crate) fn broken(&self, call: &'static str, what: String) -> HostError {
         HostError::Broken {
             model: self.id().to_owned(),
             call,
@@ -306,15 +370,43 @@ fn abi_band(band: Band) -> htex_model::Band {
     }
 }
 
+/// Why there is no text.
+enum NoText {
+    /// The model answered with this status.
+    Status(i64),
+    /// The answer is not one the ABI allows.
+    Broken(String),
+}
+
 /// Reads a text of a length not known beforehand.
-fn text(mut call: impl FnMut(&mut [u8]) -> i64) -> Option<String> {
-    let len = usize::try_from(call(&mut [])).ok()?;
+fn text(mut call: impl FnMut(&mut [u8]) -> i64) -> Result<String, NoText> {
+    let answer = call(&mut []);
+    let len = usize::try_from(answer).map_err(|_| NoText::Status(answer))?;
     if len > MAX_TEXT_BYTES {
-        return None;
+        let what = format!("it says its text has {len} bytes; {MAX_TEXT_BYTES} are allowed");
+        return Err(NoText::Broken(what));
     }
     let mut bytes = vec![0; len];
-    (call(&mut bytes) == len as i64).then_some(())?;
-    String::from_utf8(bytes).ok()
+    match call(&mut bytes) {
+        status if status < 0 => Err(NoText::Status(status)),
+        again if again != answer => Err(NoText::Broken(format!(
+            "it says its text has {answer} bytes, and then {again}"
+        ))),
+        _ => String::from_utf8(bytes).map_err(|e| NoText::Broken(e.to_string())),
+    }
+}
+
+/// The model's last-error text.
+fn reason(last_error: impl FnMut(&mut [u8]) -> i64) -> String {
+    text(last_error).unwrap_or_else(|_| "no reason given".to_owned())
+}
+
+#[cfg(not(feature = "wasm"))]
+fn no_wasm(origin: &str) -> HostError {
+    HostError::Load {
+        path: origin.to_owned(),
+        what: "this program was built without its `wasm` feature".to_owned(),
+    }
 }
 
 fn check_descriptor(descriptor: &Descriptor) -> Result<(), String> {

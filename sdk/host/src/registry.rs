@@ -2,31 +2,137 @@
 
 use std::sync::Arc;
 
+use semver::{Version, VersionReq};
+
 use crate::builtin::tables;
 use crate::table::TableModel;
-use crate::{HostError, LoadedModel};
+use crate::{HostError, LoadedModel, Note, Origin, Search, WasmLimits};
 
-/// Models by id, in the order in which they are shown.
+/// Models by id. Of several with one id, the one that [`Search`] puts first is used; the others are
+/// there for those who ask for their version.
 #[derive(Debug, Clone)]
 pub struct Registry {
+    /// In the order in which they are shown.
     models: Vec<LoadedModel>,
+    /// Models whose id one of `models` has.
+    shadowed: Vec<LoadedModel>,
+    /// The ranks of `models`, one each, ascending.
+    ranks: Vec<Rank>,
+    notes: Vec<Note>,
+    limits: WasmLimits,
+}
+
+/// What goes before what.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Rank {
+    File,
+    Embedded,
+    Folder,
+    User,
+    Builtin,
 }
 
 impl Registry {
     /// The models linked into this program.
     pub fn builtin() -> Self {
-        let load = |table| LoadedModel::new("built in", Arc::new(TableModel(table)));
-        // A built-in model that cannot be loaded is not there; the tests count them.
-        let models = tables()
-            .into_iter()
-            .filter_map(|table| load(table).ok())
-            .collect();
-        Self { models }
+        let mut registry = Self::empty(&WasmLimits::default());
+        registry.add_builtin();
+        registry
     }
 
-    /// All models.
+    /// The models that a search finds.
+    ///
+    /// # Errors
+    /// When one of the search's `files` cannot be loaded, or one of its `dirs` cannot be read.
+    pub fn search(search: &Search) -> Result<Self, HostError> {
+        search.run()
+    }
+
+    pub(crate) fn empty(limits: &WasmLimits) -> Self {
+        Self {
+            models: Vec::new(),
+            shadowed: Vec::new(),
+            ranks: Vec::new(),
+            notes: Vec::new(),
+            limits: limits.clone(),
+        }
+    }
+
+    pub(crate) fn add_builtin(&mut self) {
+        for table in tables() {
+            // A built-in model that cannot be loaded is not there; the tests count them.
+            if let Ok(model) = LoadedModel::new(Origin::Builtin, Arc::new(TableModel(table))) {
+                self.add(Rank::Builtin, model);
+            }
+        }
+    }
+
+    /// Adds a WASM model that came with `name` (an asset's, say), behind plugins named by their
+    /// files and before all others. There is no such way for a native library.
+    ///
+    /// # Errors
+    /// When the bytes are no module, or its model breaks the ABI.
+    pub fn add_wasm_bytes(&mut self, name: &str, bytes: &[u8]) -> Result<(), HostError> {
+        let model = LoadedModel::from_wasm_bytes(name, bytes, &self.limits)?;
+        self.add(Rank::Embedded, model);
+        Ok(())
+    }
+
+    /// Adds a model behind those of its rank, and notes what it shadows, or what shadows it.
+    pub(crate) fn add(&mut self, rank: Rank, model: LoadedModel) {
+        let at = self.ranks.partition_point(|other| *other <= rank);
+        let same = self.models.iter().position(|m| m.id() == model.id());
+        match same {
+            Some(used) if used < at => {
+                self.note_shadow(used, &model);
+                self.shadowed.push(model);
+                return;
+            }
+            Some(later) => {
+                let old = std::mem::replace(&mut self.models[later], model.clone());
+                self.note_shadow(later, &old);
+                self.shadowed.insert(0, old);
+                self.models.remove(later);
+                self.ranks.remove(later);
+            }
+            None => self.note_same_name(at, &model),
+        }
+        self.models.insert(at, model);
+        self.ranks.insert(at, rank);
+    }
+
+    pub(crate) fn note(&mut self, note: Note) {
+        self.notes.push(note);
+    }
+
+    fn note_shadow(&mut self, used: usize, shadowed: &LoadedModel) {
+        let named = |m: &LoadedModel| (m.descriptor().version.clone(), m.origin().clone());
+        self.notes.push(Note::Shadowed {
+            id: shadowed.id().to_owned(),
+            used: named(&self.models[used]),
+            shadowed: named(shadowed),
+        });
+    }
+
+    fn note_same_name(&mut self, at: usize, model: &LoadedModel) {
+        let name = model.short_name();
+        let same = |m: &LoadedModel| m.short_name().eq_ignore_ascii_case(name);
+        if let Some(other) = self.models.iter().position(same) {
+            let ids = (self.models[other].id().to_owned(), model.id().to_owned());
+            let (means, other) = if other < at { ids } else { (ids.1, ids.0) };
+            let name = name.to_owned();
+            self.notes.push(Note::SameName { name, means, other });
+        }
+    }
+
+    /// All models that are used, each id once.
     pub fn models(&self) -> &[LoadedModel] {
         &self.models
+    }
+
+    /// What the user should know: models that shadow others, and plugins that could not be loaded.
+    pub fn notes(&self) -> &[Note] {
+        &self.notes
     }
 
     /// A model by its id or by its short name (`org.htex.sbeta` or `sbeta`, in any case).
@@ -44,12 +150,30 @@ impl Registry {
             .or_else(by_name)
             .ok_or_else(|| HostError::UnknownModel {
                 wanted: name.to_owned(),
-                known: self
-                    .models
-                    .iter()
-                    .map(|m| m.short_name())
-                    .collect::<Vec<_>>()
-                    .join(", "),
+                known: self.known(|m| m.short_name().to_owned()),
             })
+    }
+
+    /// The first model of this id whose version is one of those wanted, shadowed ones included.
+    ///
+    /// # Errors
+    /// [`HostError::UnknownModel`] with the ids and versions there are.
+    pub fn find_version(&self, id: &str, wanted: &VersionReq) -> Result<&LoadedModel, HostError> {
+        let matches = |m: &&LoadedModel| {
+            let version = Version::parse(&m.descriptor().version);
+            m.id() == id && version.is_ok_and(|version| wanted.matches(&version))
+        };
+        let mut all = self.models.iter().chain(&self.shadowed);
+        all.find(matches).ok_or_else(|| HostError::UnknownModel {
+            wanted: format!("{id} {wanted}"),
+            known: self.known(|m| format!("{} {}", m.id(), m.descriptor().version)),
+        })
+    }
+
+    fn known(&self, name: impl Fn(&LoadedModel) -> String) -> String {
+        let all = self.models.iter().chain(&self.shadowed);
+        let mut names: Vec<String> = all.map(name).collect();
+        names.dedup();
+        names.join(", ")
     }
 }

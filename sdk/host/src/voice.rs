@@ -29,7 +29,19 @@ impl ModelVoice {
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), HostError> {
         let answer = self.raw.render(out);
         self.check("voice_render", answer)
+            .and_then(|()| self.check_finite(out))
             .inspect_err(|_| out.fill(0.0))
+    }
+
+    /// A sample that is no number would stay in every filter behind this voice.
+    fn check_finite(&self, out: &[f32]) -> Result<(), HostError> {
+        // No early end: the loop is then one of vectors.
+        if out.iter().fold(true, |finite, x| finite & x.is_finite()) {
+            return Ok(());
+        }
+        let first = out.iter().position(|x| !x.is_finite()).unwrap_or_default();
+        let what = format!("sample {first} of the block is {}", out[first]);
+        Err(self.model.broken("voice_render", what))
     }
 
     /// Changes to other parameters without a click.

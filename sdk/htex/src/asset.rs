@@ -4,6 +4,7 @@ use std::path::Path;
 
 use htex_format::{Manifest, Representation};
 use htex_host::{Band, LoadedModel, Registry};
+use semver::{Version, VersionReq};
 
 use crate::mesh::Mesh;
 use crate::{Error, Voice};
@@ -60,10 +61,21 @@ impl Asset {
 
     /// Takes an asset that is already read, to be played by the built-in models.
     pub fn new(data: htex_format::Asset) -> Self {
-        Self {
-            data,
-            registry: Registry::builtin(),
-        }
+        Self::with_registry(data, Registry::builtin())
+    }
+
+    /// Takes an asset that is already read, to be played by the models of `registry`.
+    pub fn with_registry(data: htex_format::Asset, registry: Registry) -> Self {
+        Self { data, registry }
+    }
+
+    /// Opens a file, to be played by the models of `registry`.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub fn open_with(path: impl AsRef<Path>, registry: Registry) -> Result<Self, Error> {
+        let data = htex_format::Asset::open(path.as_ref())?;
+        Ok(Self::with_registry(data, registry))
     }
 
     /// What the asset says of itself.
@@ -166,15 +178,15 @@ impl Asset {
         let representation = &self.data.manifest.representations[representation];
         let model = self.registry.find(&representation.model)?;
         let installed = &model.descriptor().version;
-        let major = |version: &str| semver::Version::parse(version).map(|v| v.major);
-        let compatible = match (major(&representation.model_version), major(installed)) {
-            (Ok(wanted), Ok(installed)) => wanted == installed,
-            _ => false,
-        };
-        if compatible {
+        let wanted = major(&representation.model_version);
+        if wanted.is_some() && wanted == major(installed) {
             return Ok(model.clone());
         }
-        Err(Error::ModelVersion {
+        // One that is shadowed by a newer one may still do.
+        let other = wanted
+            .and_then(|major| VersionReq::parse(&format!("={major}")).ok())
+            .and_then(|wanted| self.registry.find_version(model.id(), &wanted).ok());
+        other.cloned().ok_or_else(|| Error::ModelVersion {
             model: representation.model.clone(),
             asset: representation.model_version.clone(),
             installed: installed.clone(),
@@ -207,6 +219,10 @@ impl Asset {
             (c.speed_mm_s.unwrap_or(0.0), c.force_n.unwrap_or(0.0))
         })
     }
+}
+
+fn major(version: &str) -> Option<u64> {
+    Version::parse(version).ok().map(|version| version.major)
 }
 
 fn is_named(representation: &Representation, name: &str) -> bool {

@@ -21,5 +21,5 @@ mod voice;
 pub use asset::{Asset, VoiceOptions};
 pub use error::Error;
 pub use htex_format::{Finding, Limits, Manifest, Severity};
-pub use htex_host::{Band, Registry};
+pub use htex_host::{Band, Registry, Search, WasmLimits};
 pub use voice::Voice;

@@ -1,0 +1,32 @@
+//! The user's own folders.
+
+use std::env::var_os;
+use std::path::PathBuf;
+
+/// Where what can be made again is kept: `$HTEX_CACHE_DIR`, else `htex` in the user's cache folder.
+#[cfg(feature = "wasm")]
+pub(crate) fn cache() -> Option<PathBuf> {
+    if let Some(own) = absolute("HTEX_CACHE_DIR") {
+        return Some(own);
+    }
+    base("XDG_CACHE_HOME", ".cache").map(|base| base.join("htex"))
+}
+
+/// Where a user's plugins are: `htex/plugins` in the user's data folder.
+pub(crate) fn plugins() -> Option<PathBuf> {
+    base("XDG_DATA_HOME", ".local/share").map(|base| base.join("htex/plugins"))
+}
+
+/// A folder of the XDG base directory specification: that of the variable, else one of the home
+/// folder; on Windows the local application data.
+fn base(variable: &str, in_home: &str) -> Option<PathBuf> {
+    let home = || absolute("HOME").map(|home| home.join(in_home));
+    let windows = || absolute("LOCALAPPDATA").filter(|_| cfg!(windows));
+    absolute(variable).or_else(windows).or_else(home)
+}
+
+/// A variable's path; relative ones are ignored, as the specification asks.
+fn absolute(variable: &str) -> Option<PathBuf> {
+    let path = PathBuf::from(var_os(variable)?);
+    path.is_absolute().then_some(path)
+}

@@ -1,0 +1,191 @@
+//! The calls of the model ABI on an instance: arrays go into its room, answers come out of it.
+
+use htex_model::Band;
+
+use super::fault::Fault;
+use super::instance::{Deadline, Instance};
+use crate::raw::RawFit;
+
+/// Longest last-error text that is read, bytes.
+const LONGEST_ERROR: usize = 4096;
+/// Longest block that is rendered at once; longer ones are rendered in parts.
+pub(super) const BLOCK: usize = 8192;
+
+impl Instance {
+    pub(super) fn abi_version(&mut self) -> Result<u32, Fault> {
+        self.call(Deadline::Call, |f| &f.abi_version, ())
+    }
+
+    pub(super) fn descriptor(&mut self, out: &mut [u8]) -> Result<i64, Fault> {
+        let at = self.room(out.len().max(8))?;
+        let len = self.call(Deadline::Call, |f| &f.descriptor, (at, out.len() as u32))?;
+        out.copy_from_slice(self.bytes(at, out.len())?);
+        Ok(len)
+    }
+
+    /// The text behind the last negative answer.
+    pub(super) fn last_error(&mut self) -> Result<String, Fault> {
+        let at = self.room(LONGEST_ERROR)?;
+        let room = (at, LONGEST_ERROR as u32);
+        let len = self.call(Deadline::Call, |f| &f.last_error, room)?;
+        let len = usize::try_from(len).unwrap_or(0).min(LONGEST_ERROR);
+        Ok(String::from_utf8_lossy(self.bytes(at, len)?).into_owned())
+    }
+
+    pub(super) fn fit(
+        &mut self,
+        call: &RawFit<'_>,
+        parameters: &mut [f64],
+        level_rms: &mut f64,
+    ) -> Result<i64, Fault> {
+        let bins = call.frequency_hz.len().min(call.magnitude.len());
+        let numbers = 2 * bins + call.signal.len() + call.options.len() + parameters.len() + 1;
+        let frequency = self.room(numbers * 8)?;
+        let magnitude = self.write(frequency, &call.frequency_hz[..bins])?;
+        let signal = self.write(magnitude, &call.magnitude[..bins])?;
+        let options = self.write(signal, call.signal)?;
+        let level = self.write(options, call.options)?;
+        let out = self.write(level, &[f64::NAN])?;
+        let (low, high) = call.band.edges();
+        let answer = self.call(
+            Deadline::Call,
+            |f| &f.fit,
+            (
+                low,
+                high,
+                frequency,
+                magnitude,
+                bins as u32,
+                signal,
+                call.signal.len() as u32,
+                call.signal_rate_hz,
+                options,
+                call.options.len() as u32,
+                out,
+                parameters.len() as u32,
+                level,
+            ),
+        )?;
+        self.read(level, std::slice::from_mut(level_rms))?;
+        self.read(out, parameters)?;
+        Ok(answer)
+    }
+
+    pub(super) fn magnitude(
+        &mut self,
+        parameters: &[f64],
+        band: Band,
+        frequency_hz: &[f64],
+        magnitude: &mut [f64],
+    ) -> Result<i64, Fault> {
+        let bins = frequency_hz.len().min(magnitude.len());
+        let at = self.room((parameters.len() + 2 * bins) * 8)?;
+        let frequency = self.write(at, parameters)?;
+        let out = self.write(frequency, &frequency_hz[..bins])?;
+        let (low, high) = band.edges();
+        let answer = self.call(
+            Deadline::Call,
+            |f| &f.magnitude,
+            (
+                at,
+                parameters.len() as u32,
+                low,
+                high,
+                frequency,
+                out,
+                bins as u32,
+            ),
+        )?;
+        self.read(out, &mut magnitude[..bins])?;
+        Ok(answer)
+    }
+
+    pub(super) fn interpolate(
+        &mut self,
+        sets: &[f64],
+        weights: &[f64],
+        parameters: &mut [f64],
+    ) -> Result<i64, Fault> {
+        let at = self.room((sets.len() + weights.len() + parameters.len()) * 8)?;
+        let behind = self.write(at, sets)?;
+        let out = self.write(behind, weights)?;
+        let (sets, weights) = ((at, sets.len() as u32), (behind, weights.len() as u32));
+        let answer = self.call(
+            Deadline::Call,
+            |f| &f.interpolate,
+            (
+                sets.0,
+                sets.1,
+                weights.0,
+                weights.1,
+                out,
+                parameters.len() as u32,
+            ),
+        )?;
+        self.read(out, parameters)?;
+        Ok(answer)
+    }
+
+    pub(super) fn voice_rate(
+        &mut self,
+        parameters: &[f64],
+        band: Band,
+        wanted_hz: f64,
+    ) -> Result<f64, Fault> {
+        let (at, len) = self.pass(parameters)?;
+        let (low, high) = band.edges();
+        self.call(
+            Deadline::Call,
+            |f| &f.voice_rate,
+            (at, len, low, high, wanted_hz),
+        )
+    }
+
+    pub(super) fn voice_new(
+        &mut self,
+        parameters: &[f64],
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<i64, Fault> {
+        // The voice's room for good, unless it is retuned to far more parameters.
+        self.room(4 * BLOCK)?;
+        let (at, len) = self.pass(parameters)?;
+        let (low, high) = band.edges();
+        self.call(
+            Deadline::Call,
+            |f| &f.voice_new,
+            (at, len, low, high, rate_hz, seed),
+        )
+    }
+
+    /// Renders at most [`BLOCK`] samples.
+    pub(super) fn voice_render(&mut self, voice: i64, out: &mut [f32]) -> Result<i64, Fault> {
+        let at = self.room(4 * BLOCK)?;
+        let room = (voice, at, out.len() as u32);
+        let answer = self.call(Deadline::Render, |f| &f.voice_render, room)?;
+        self.read_samples(at, out)?;
+        Ok(answer)
+    }
+
+    pub(super) fn voice_retune(&mut self, voice: i64, parameters: &[f64]) -> Result<i64, Fault> {
+        let (at, len) = self.pass(parameters)?;
+        self.call(Deadline::Render, |f| &f.voice_retune, (voice, at, len))
+    }
+
+    pub(super) fn voice_free(&mut self, voice: i64) -> Result<i64, Fault> {
+        self.call(Deadline::Call, |f| &f.voice_free, voice)
+    }
+
+    pub(super) fn extension(&mut self, id: &[u8]) -> Result<i64, Fault> {
+        let at = self.room(id.len())?;
+        self.write_text(at, id)?;
+        self.call(Deadline::Call, |f| &f.extension, (at, id.len() as u32))
+    }
+
+    fn pass(&mut self, numbers: &[f64]) -> Result<(u32, u32), Fault> {
+        let at = self.room(numbers.len() * 8)?;
+        self.write(at, numbers)?;
+        Ok((at, numbers.len() as u32))
+    }
+}

@@ -1,0 +1,56 @@
+//! Models in WASM modules, in a sandbox.
+//!
+//! A module imports nothing, so it can do nothing but compute: no file, no clock, no thread. What
+//! it may use of memory, stack and time is limited ([`WasmLimits`]). Each voice is an instance of
+//! its own, with its own memory: one that traps leaves the others alone, and rendering takes no
+//! lock. All other calls share one instance, made again after a trap.
+
+mod cache;
+mod calls;
+mod engine;
+mod fault;
+mod instance;
+mod model;
+mod module;
+mod voice;
+
+use std::path::Path;
+use std::sync::Arc;
+
+pub(crate) use model::WasmModel;
+use module::WasmModule;
+
+use crate::{HostError, WasmLimits};
+
+/// Loads a model from the bytes of a module that came from `origin` (for messages).
+pub(crate) fn load(
+    origin: &str,
+    bytes: &[u8],
+    limits: &WasmLimits,
+) -> Result<WasmModel, HostError> {
+    let error = |what| HostError::Load {
+        path: origin.to_owned(),
+        what,
+    };
+    let module = WasmModule::new(bytes, limits).map_err(error)?;
+    WasmModel::new(origin, Arc::new(module))
+}
+
+/// Loads a model from a file.
+pub(crate) fn load_file(path: &Path, limits: &WasmLimits) -> Result<WasmModel, HostError> {
+    let origin = path.display().to_string();
+    let bytes = read(path, limits.module_bytes).map_err(|error| HostError::Load {
+        path: origin.clone(),
+        what: error.to_string(),
+    })?;
+    load(&origin, &bytes, limits)
+}
+
+/// Reads a file, and one byte more than a module may have at most.
+fn read(path: &Path, most: usize) -> std::io::Result<Vec<u8>> {
+    use std::io::Read;
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path)?;
+    file.take(most as u64 + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}

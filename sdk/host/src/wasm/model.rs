@@ -1,0 +1,150 @@
+//! A model in a module: the calls that are no voice's.
+
+use std::cell::RefCell;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use htex_model::{Band, Status};
+
+use super::fault::Fault;
+use super::instance::Instance;
+use super::module::WasmModule;
+use super::voice::{WasmVoice, copy_text};
+use crate::HostError;
+use crate::raw::{RawFit, RawModel, RawVoice};
+
+std::thread_local! {
+    /// What stands behind the last negative answer on this thread, as in a native model.
+    static LAST_ERROR: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// A model in a module.
+pub(crate) struct WasmModel {
+    module: Arc<WasmModule>,
+    marker: u32,
+    /// The instance of the calls that are no voice's; none after a trap.
+    shared: Mutex<Option<Instance>>,
+}
+
+impl WasmModel {
+    /// Makes the first instance and checks the marker.
+    pub(super) fn new(origin: &str, module: Arc<WasmModule>) -> Result<Self, HostError> {
+        let load = |fault: Fault| HostError::Load {
+            path: origin.to_owned(),
+            what: fault.0,
+        };
+        let mut instance = Instance::new(&module).map_err(load)?;
+        let marker = instance.abi_version().map_err(|fault| HostError::Call {
+            model: origin.to_owned(),
+            call: "htex_model_abi_version",
+            status: Status::Failed,
+            message: fault.0,
+        })?;
+        crate::model::check_marker(origin, marker)?;
+        Ok(Self {
+            module,
+            marker,
+            shared: Mutex::new(Some(instance)),
+        })
+    }
+
+    /// Calls the shared instance; `failed` makes an answer of a status.
+    fn call<T: Copy>(
+        &self,
+        failed: impl Fn(i64) -> T,
+        is_negative: impl Fn(T) -> bool,
+        call: impl FnOnce(&mut Instance) -> Result<T, Fault>,
+    ) -> T {
+        let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+        // Taken out: a fault drops the instance.
+        let result = shared
+            .take()
+            .map_or_else(|| Instance::new(&self.module), Ok)
+            .and_then(|mut instance| {
+                let answer = call(&mut instance)?;
+                if is_negative(answer) {
+                    remember(instance.last_error()?);
+                }
+                *shared = Some(instance);
+                Ok(answer)
+            });
+        result.unwrap_or_else(|fault| {
+            remember(fault.0);
+            failed(Fault::STATUS)
+        })
+    }
+
+    fn status(&self, call: impl FnOnce(&mut Instance) -> Result<i64, Fault>) -> i64 {
+        self.call(|status| status, |answer| answer < 0, call)
+    }
+}
+
+fn remember(text: String) {
+    LAST_ERROR.with(|last| *last.borrow_mut() = text);
+}
+
+impl RawModel for WasmModel {
+    fn abi_version(&self) -> u32 {
+        self.marker
+    }
+
+    fn descriptor(&self, out: &mut [u8]) -> i64 {
+        self.status(|instance| instance.descriptor(out))
+    }
+
+    fn last_error(&self, out: &mut [u8]) -> i64 {
+        LAST_ERROR.with(|last| copy_text(&last.borrow(), out))
+    }
+
+    fn fit(&self, call: &RawFit<'_>, parameters: &mut [f64], level_rms: &mut f64) -> i64 {
+        self.status(|instance| instance.fit(call, parameters, level_rms))
+    }
+
+    fn magnitude(
+        &self,
+        parameters: &[f64],
+        band: Band,
+        frequency_hz: &[f64],
+        magnitude: &mut [f64],
+    ) -> i64 {
+        self.status(|instance| instance.magnitude(parameters, band, frequency_hz, magnitude))
+    }
+
+    fn interpolate(&self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64 {
+        self.status(|instance| instance.interpolate(sets, weights, parameters))
+    }
+
+    fn extension(&self, id: &[u8]) -> i64 {
+        self.status(|instance| instance.extension(id))
+    }
+
+    fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64 {
+        self.call(
+            |status| status as f64,
+            |answer| answer < 0.0,
+            |instance| instance.voice_rate(parameters, band, wanted_hz),
+        )
+    }
+
+    fn voice_new(
+        &self,
+        parameters: &[f64],
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Box<dyn RawVoice>, i64> {
+        let Some(place) = self.module.place() else {
+            let most = self.module.limits.voices;
+            remember(format!(
+                "a WASM model may have {most} voices at a time; free some"
+            ));
+            return Err(Status::TooManyVoices as i64);
+        };
+        match WasmVoice::new(&self.module, place, (parameters, band), rate_hz, seed) {
+            Ok(voice) => Ok(Box::new(voice)),
+            Err((status, message)) => {
+                remember(message);
+                Err(status)
+            }
+        }
+    }
+}

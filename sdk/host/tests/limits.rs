@@ -1,0 +1,142 @@
+//! Each limit of a WASM model, in a test in which it bites, and one in which it does not.
+#![cfg(feature = "wasm")]
+
+mod common;
+
+use std::time::Duration;
+
+use common::{limits, load_within, text};
+use htex_host::{Band, HostError, LoadedModel, WasmLimits};
+
+fn magnitude(model: &LoadedModel) -> Result<(), HostError> {
+    model.magnitude(&[0.5], Band::TACTILE, &[50.0]).map(drop)
+}
+
+/// Loads a model whose magnitude has this body, and calls that.
+fn run(body: &str, more: &str, limits: &WasmLimits) -> Result<(), String> {
+    let wat = text("1.0.0", &[("magnitude", body)], more);
+    let model = load_within(&wat, limits).map_err(|e| e.to_string())?;
+    magnitude(&model).map_err(|e| e.to_string())
+}
+
+/// What is fine within one limit is refused under a smaller one, with this reason.
+fn bites(body: &str, more: &str, smaller: &WasmLimits, reason: &str) {
+    run(body, more, &limits()).unwrap();
+    let error = run(body, more, smaller).unwrap_err();
+    assert!(error.contains(reason), "{error}");
+}
+
+const NOTHING: &str = "(i64.const 0)";
+
+#[test]
+fn size_of_the_module() {
+    let smaller = WasmLimits {
+        module_bytes: 500,
+        ..limits()
+    };
+    bites(NOTHING, "", &smaller, "500 bytes");
+}
+
+#[test]
+fn memory_at_the_start_and_grown() {
+    let smaller = WasmLimits {
+        memory_bytes: 1 << 20,
+        ..limits()
+    };
+    bites(
+        "(drop (memory.grow (i32.const 9))) (i64.const 0)",
+        "",
+        &smaller,
+        "1048576 bytes",
+    );
+    let tiny = WasmLimits {
+        memory_bytes: 100_000,
+        ..limits()
+    };
+    bites(NOTHING, "", &tiny, "100000 bytes");
+    // What the host itself would pass counts too.
+    let model = load_within(&text("1.0.0", &[], ""), &smaller).unwrap();
+    let many = vec![50.0; 200_000];
+    let error = model
+        .magnitude(&[0.5], Band::TACTILE, &many)
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("limited to 1048576"), "{error}");
+    magnitude(&model).unwrap();
+}
+
+#[test]
+fn tables() {
+    let smaller = WasmLimits {
+        table_elements: 50,
+        ..limits()
+    };
+    bites(NOTHING, "(table 100 funcref)", &smaller, "50 elements");
+}
+
+#[test]
+fn stack() {
+    let smaller = WasmLimits {
+        stack_bytes: 16 << 10,
+        ..limits()
+    };
+    let body = "(drop (call $deep (i32.const 1000))) (i64.const 0)";
+    bites(body, "", &smaller, "16384 bytes of stack");
+}
+
+#[test]
+fn instructions() {
+    let smaller = WasmLimits {
+        fuel: Some(10_000),
+        ..limits()
+    };
+    bites(
+        "(call $count (i32.const 100000)) (i64.const 0)",
+        "",
+        &smaller,
+        "10000 instructions",
+    );
+    // They are counted a call, not a model.
+    let counting = WasmLimits {
+        fuel: Some(1_000_000),
+        ..limits()
+    };
+    let body = "(call $count (i32.const 100000)) (i64.const 0)";
+    let model = load_within(&text("1.0.0", &[("magnitude", body)], ""), &counting).unwrap();
+    (0..10).for_each(|_| magnitude(&model).unwrap());
+}
+
+#[test]
+fn time() {
+    let shorter = WasmLimits {
+        call: Duration::from_millis(20),
+        ..limits()
+    };
+    let longer = WasmLimits {
+        call: Duration::from_secs(60),
+        ..limits()
+    };
+    // Some seconds of counting at most, and never as little as 20 ms.
+    let body = "(call $count (i32.const 400000000)) (i64.const 0)";
+    run(body, "", &longer).unwrap();
+    let error = run(body, "", &shorter).unwrap_err();
+    assert!(error.contains("longer than 20 ms"), "{error}");
+}
+
+#[test]
+fn voices() {
+    let two = WasmLimits {
+        voices: 2,
+        ..limits()
+    };
+    let model = load_within(&text("1.0.0", &[], ""), &two).unwrap();
+    let voice = || model.voice(&[0.5], Band::TACTILE, 2000.0, 1);
+    let (first, second) = (voice().unwrap(), voice().unwrap());
+    let error = voice().unwrap_err().to_string();
+    assert!(error.contains("2 voices"), "{error}");
+    drop(first);
+    let third = voice().unwrap();
+    assert!(voice().is_err());
+    drop((second, third));
+    (0..5).for_each(|_| drop(voice().unwrap()));
+}

@@ -1,0 +1,4 @@
+//! Tasks that tests use too.
+
+pub mod plugins;
+mod wasm;

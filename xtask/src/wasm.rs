@@ -1,0 +1,106 @@
+//! Finding a way to build for `wasm32-unknown-unknown`.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What modules are built for.
+pub(crate) const TARGET: &str = "wasm32-unknown-unknown";
+
+const NO_TOOLCHAIN: &str = "no way to build WASM modules was found: `rustup target add \
+    wasm32-unknown-unknown`, or on Debian install rustc-web, cargo-web and rust-web-src";
+
+/// A way to build WASM modules.
+pub(crate) enum Toolchain {
+    /// The toolchain in use has the target's standard library.
+    Ready,
+    /// Debian's own compiler, which builds the standard library first; with this linker.
+    Debian { linker: PathBuf },
+}
+
+impl Toolchain {
+    /// Finds a way, and installs what it needs if this machine allows that.
+    pub(crate) fn find() -> Result<Self, String> {
+        if has_target() {
+            return Ok(Self::Ready);
+        }
+        if succeeds("rustup", &["target", "add", TARGET]) && has_target() {
+            return Ok(Self::Ready);
+        }
+        if !is_debian_ready() {
+            let packages = ["rustc-web", "cargo-web", "rust-web-src"];
+            let install = ["install", "-y", "--no-install-recommends"];
+            succeeds("apt-get", &[&install[..], &packages].concat());
+        }
+        match linker().filter(|_| is_debian_ready()) {
+            Some(linker) => Ok(Self::Debian { linker }),
+            None => Err(NO_TOOLCHAIN.to_owned()),
+        }
+    }
+
+    /// The command to which `rustc --release …` can be added, and the folder to build in.
+    pub(crate) fn cargo(&self, target: &Path) -> (Command, PathBuf) {
+        match self {
+            Self::Ready => (Command::new(super::plugins::cargo()), target.to_owned()),
+            Self::Debian { linker } => {
+                let mut command = Command::new("/usr/bin/cargo");
+                command
+                    .env("RUSTC", "/usr/bin/rustc")
+                    .env("RUSTC_BOOTSTRAP", "1")
+                    .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker)
+                    .env_remove("RUSTUP_TOOLCHAIN");
+                // Another compiler's files would only displace those of the one in use.
+                (command, target.join("debian"))
+            }
+        }
+    }
+
+    /// What must stand behind `rustc --release`.
+    pub(crate) fn arguments(&self) -> &'static [&'static str] {
+        match self {
+            Self::Ready => &["--target", TARGET],
+            Self::Debian { .. } => &[
+                "-Z",
+                "build-std=std,panic_abort",
+                "--ignore-rust-version",
+                "--target",
+                TARGET,
+            ],
+        }
+    }
+}
+
+/// Whether the compiler in use has the target's standard library.
+fn has_target() -> bool {
+    let answer = answer("rustc", &["--print", "target-libdir", "--target", TARGET]);
+    answer.is_some_and(|libraries| Path::new(&libraries).is_dir())
+}
+
+fn is_debian_ready() -> bool {
+    let std = Path::new("/usr/lib/rustlib/src/rust/library/std");
+    Path::new("/usr/bin/cargo").exists() && Path::new("/usr/bin/rustc").exists() && std.exists()
+}
+
+/// The linker of the compiler in use, which comes with every one from rustup.
+fn linker() -> Option<PathBuf> {
+    let sysroot = answer("rustc", &["--print", "sysroot"])?;
+    let host = answer("rustc", &["--print", "host-tuple"])?;
+    let own = Path::new(&sysroot)
+        .join("lib/rustlib")
+        .join(host)
+        .join("bin/rust-lld");
+    [own, PathBuf::from("/usr/bin/wasm-ld")]
+        .into_iter()
+        .find(|linker| linker.exists())
+}
+
+fn succeeds(program: &str, arguments: &[&str]) -> bool {
+    let status = Command::new(program).args(arguments).status();
+    status.is_ok_and(|status| status.success())
+}
+
+/// What a program prints, if it succeeds.
+fn answer(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    output.status.success().then(|| text.trim().to_owned())
+}

@@ -286,7 +286,7 @@ impl LoadedModel {
     /// # Errors
     /// [`HostError::Broken`] if the answer is neither yes nor no.
     pub fn has_extension(&self, id: &str) -> Result<bool, HostError> {
-        match self.raw.extension(id.as_bytes()) {
+        match self.check("extension", self.raw.extension(id.as_bytes()))? {
             0 => Ok(false),
             1 => Ok(true),
             other => Err(self.broken("extension", format!("it answers {other} to `{id}`"))),
@@ -398,7 +398,8 @@ fn text(mut call: impl FnMut(&mut [u8]) -> i64) -> Result<String, NoText> {
 
 /// The model's last-error text.
 fn reason(last_error: impl FnMut(&mut [u8]) -> i64) -> String {
-    text(last_error).unwrap_or_else(|_| "no reason given".to_owned())
+    let text = text(last_error).ok().filter(|text| !text.is_empty());
+    text.unwrap_or_else(|| "no reason given".to_owned())
 }
 
 #[cfg(not(feature = "wasm"))]

@@ -1,4 +1,5 @@
 //! The same model built in, as a native library and as a WASM module: the same samples.
+#![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;

@@ -1,6 +1,7 @@
 //! WASM models that mean harm: each is an error of its call that names model, call and reason, in
 //! time; the host, the model's other voices and its later calls go on.
 #![cfg(feature = "wasm")]
+#![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
 mod common;
 

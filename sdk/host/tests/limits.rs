@@ -1,5 +1,6 @@
 //! Each limit of a WASM model, in a test in which it bites, and one in which it does not.
 #![cfg(feature = "wasm")]
+#![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
 mod common;
 

@@ -1,5 +1,6 @@
 //! Which of several models is used, and what is said of the others.
 #![cfg(feature = "wasm")]
+#![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
 mod common;
 

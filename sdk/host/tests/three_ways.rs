@@ -1,11 +1,11 @@
 //! The same model built in, as a native library and as a WASM module: the same samples.
+#![cfg(feature = "wasm")]
 #![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use htex_host::{Band, FitRequest, LoadedModel, Origin, Registry, WasmCache, WasmLimits};
-use htex_tests::smooth_spectrum;
 use xtask::plugins;
 
 const RATE_HZ: f64 = 20_000.0;
@@ -53,6 +53,14 @@ fn fitted(model: &LoadedModel) -> Vec<f64> {
         options: &model.options(&[]).unwrap(),
     };
     model.fit(&request).unwrap().parameters
+}
+
+/// A smooth spectrum with two bumps.
+fn smooth_spectrum(frequency_hz: &[f64]) -> Vec<f64> {
+    let curve = |f: f64| {
+        0.01 * (-(f / 150.0).ln().powi(2)).exp() + 0.002 * (-((f - 600.0) / 120.0).powi(2)).exp()
+    };
+    frequency_hz.iter().map(|&f| curve(f)).collect()
 }
 
 /// A second of a voice in blocks of several sizes, with a retune in the middle.

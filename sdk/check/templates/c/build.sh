@@ -1,6 +1,6 @@
 #!/bin/sh
-# ./build.sh       builds {{NAME}} as a native library
-# ./build.sh wasm  builds {{NAME}}.wasm (wants clang and lld)
+# sh build.sh       builds {{NAME}} as a native library
+# sh build.sh wasm  builds {{NAME}}.wasm (wants clang and lld)
 set -eu
 cd "$(dirname "$0")"
 # The same samples everywhere: no fused multiply-add. No call into a C library for square roots.
@@ -14,6 +14,6 @@ native)
     ${CC:-cc} $flags -shared -fPIC -o "{{NAME}}.$suffix" model.c
     echo "{{NAME}}.$suffix" ;;
 *)
-    echo "usage: ./build.sh [native|wasm]" >&2
+    echo "usage: sh build.sh [native|wasm]" >&2
     exit 2 ;;
 esac

@@ -23,10 +23,13 @@ fn the_example_in_c() {
         let text = text.replace("../../spec/include", include.to_str().unwrap());
         fs::write(project.join(file), text).unwrap();
     }
-    let model = load(&build_c(&project));
+    let model = load(&build_c(&project, "native"));
     assert_eq!(model.id(), "org.example.bursts");
     holds(&model, 0.03);
     the_rhythm_is_found(&model);
+    if has_clang() {
+        is_the_same(&model, &load(&build_c(&project, "wasm")));
+    }
 }
 
 #[test]
@@ -40,17 +43,24 @@ fn the_template_in_c() {
         let from = workspace().join("spec/include").join(header);
         fs::copy(from, project.join(header)).unwrap();
     }
-    let model = load(&build_c(&project));
+    let model = load(&build_c(&project, "native"));
     assert_eq!(model.id(), "com.example.trial");
     holds(&model, 0.03);
+    if has_clang() {
+        is_the_same(&model, &load(&build_c(&project, "wasm")));
+    }
 }
 
 #[test]
 fn the_example_in_rust() {
-    let model = load(&build_rust(&workspace().join("examples/model-rust-texel")));
+    let project = workspace().join("examples/model-rust-texel");
+    let model = load(&build_rust(&project, None));
     assert_eq!(model.id(), "org.example.texel");
     holds(&model, 0.02);
     the_pitch_is_found(&model);
+    if has_wasm_target() {
+        is_the_same(&model, &load(&build_rust(&project, Some(WASM))));
+    }
 }
 
 #[test]
@@ -66,7 +76,7 @@ fn the_template_in_rust() {
     }
     // The versions that are at hand.
     fs::copy(workspace().join("Cargo.lock"), project.join("Cargo.lock")).unwrap();
-    let model = load(&build_rust(&project));
+    let model = load(&build_rust(&project, None));
     assert_eq!(model.id(), "com.example.trial");
     holds(&model, 0.02);
 }
@@ -242,7 +252,38 @@ fn the_pitch_is_found(model: &LoadedModel) {
     assert!((found[1] / found[0] - 65.0).abs() < 0.1);
 }
 
+/// A WASM module fits and plays to the bit what the library of the same source does.
+fn is_the_same(native: &LoadedModel, wasm: &LoadedModel) {
+    for (name, magnitude) in spectra() {
+        let [a, b] = [native, wasm].map(|model| fit(model, &magnitude, &[]).unwrap());
+        assert_eq!(a, b, "{} {name}", native.id());
+        let [x, y] = [native, wasm].map(|model| rendered(model, &a.parameters, 9, 333, 1.0));
+        assert_eq!(x, y, "{} {name}", native.id());
+    }
+    edges_are_answered(wasm);
+    println!("{:20} the same as a WASM module", native.id());
+}
+
 // ---- ways and means ----
+
+const WASM: &str = "wasm32-unknown-unknown";
+
+fn has_clang() -> bool {
+    let runs = |program| Command::new(program).arg("--version").output().is_ok();
+    says(runs("clang") && runs("wasm-ld"), "clang and lld")
+}
+
+fn has_wasm_target() -> bool {
+    let libraries = run(Command::new("rustc").args(["--print", "target-libdir", "--target", WASM]));
+    says(Path::new(libraries.trim()).exists(), WASM)
+}
+
+fn says(there: bool, what: &str) -> bool {
+    if !there {
+        println!("{what} is not installed: no WASM module is built");
+    }
+    there
+}
 
 fn fit(model: &LoadedModel, magnitude: &[f64], signal: &[f64]) -> Result<Fit, HostError> {
     model.fit(&FitRequest {
@@ -293,26 +334,32 @@ fn folder(name: &str) -> PathBuf {
 }
 
 /// Runs a C project's `build.sh`; answers what it built.
-fn build_c(project: &Path) -> PathBuf {
-    let built = run(Command::new("sh").arg(project.join("build.sh")));
+fn build_c(project: &Path, kind: &str) -> PathBuf {
+    let built = run(Command::new("sh").arg(project.join("build.sh")).arg(kind));
     project.join(built.trim())
 }
 
-/// Builds a Rust project; answers its library.
-fn build_rust(project: &Path) -> PathBuf {
-    let target = folder("third-party-target");
+/// Builds a Rust project, for this machine or another target; answers its library.
+fn build_rust(project: &Path, target: Option<&str>) -> PathBuf {
+    let folder = folder("third-party-target");
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
     run(Command::new(cargo)
         .args(["build", "--release", "--quiet", "--manifest-path"])
         .arg(project.join("Cargo.toml"))
         .arg("--target-dir")
-        .arg(&target));
+        .arg(&folder)
+        .args(target.iter().flat_map(|target| ["--target", target])));
     let manifest = fs::read_to_string(project.join("Cargo.toml")).unwrap();
     let name = manifest.split('"').nth(1).unwrap().replace('-', "_");
-    let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-    target
+    let (prefix, suffix) = match target {
+        Some(_) => ("", ".wasm"),
+        None => (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX),
+    };
+    let library = format!("{prefix}{name}{suffix}");
+    folder
+        .join(target.unwrap_or_default())
         .join("release")
-        .join(format!("{prefix}{name}{suffix}"))
+        .join(library)
 }
 
 /// What a program prints; its errors if it fails.

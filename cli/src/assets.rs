@@ -22,10 +22,23 @@ pub(crate) struct AssetSummary {
     simulated: bool,
     band_hz: [f64; 2],
     conditions: Vec<Condition>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    plugins: Vec<PluginSummary>,
     pub(crate) representations: Vec<RepresentationSummary>,
     pub(crate) repeatability_rms_db: Option<f64>,
     pub(crate) warnings: Vec<String>,
     notes: Vec<String>,
+}
+
+/// A model that the asset brings along.
+#[derive(Serialize)]
+struct PluginSummary {
+    model: String,
+    version: String,
+    bytes: usize,
+    blake3: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    signed_by: Option<String>,
 }
 
 /// One representation; the keys of its first condition stand at its own level.
@@ -77,6 +90,7 @@ impl AssetSummary {
             simulated: manifest.provenance.simulated,
             band_hz: [manifest.band.low_hz, manifest.band.high_hz],
             conditions: manifest.conditions.clone(),
+            plugins: plugins(asset),
             representations,
             repeatability_rms_db: manifest
                 .conditions
@@ -113,6 +127,17 @@ impl AssetSummary {
         for (i, condition) in self.conditions.iter().enumerate() {
             let _ = writeln!(text, "condition {i}: {}", condition_text(condition));
         }
+        for plugin in &self.plugins {
+            let signer = plugin.signed_by.as_ref();
+            let _ = writeln!(
+                text,
+                "brings along {} {}, a sandboxed module of {} bytes, {}",
+                plugin.model,
+                plugin.version,
+                plugin.bytes,
+                signer.map_or("not signed".to_owned(), |key| format!("signed by {key}"))
+            );
+        }
         text += "\n  model    cond.  level/mN   corr.  bands/dB  played/dB  bytes  parameters\n";
         for r in &self.representations {
             let all = if r.at.is_empty() {
@@ -129,6 +154,19 @@ impl AssetSummary {
         }
         text
     }
+}
+
+/// The models an asset brings along; signatures of a valid asset hold.
+fn plugins(asset: &htex_format::Asset) -> Vec<PluginSummary> {
+    let both = asset.manifest.plugins.iter().zip(&asset.plugins);
+    both.map(|(plugin, module)| PluginSummary {
+        model: plugin.model.clone(),
+        version: plugin.version.clone(),
+        bytes: module.len(),
+        blake3: plugin.blake3.clone(),
+        signed_by: plugin.signature.as_ref().map(|s| s.public_key.clone()),
+    })
+    .collect()
 }
 
 fn row(r: &RepresentationSummary, at: &AtSummary) -> String {

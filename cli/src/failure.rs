@@ -14,6 +14,8 @@ pub(crate) enum Failure {
     Model(#[from] htex_host::HostError),
     #[error("{file}: {error}")]
     Asset { file: String, error: htex::Error },
+    #[error("cannot read {file}: {error}")]
+    Read { file: String, error: std::io::Error },
     #[error("cannot write {file}: {error}")]
     Write { file: String, error: std::io::Error },
     /// The command line asks for something that cannot be asked for.
@@ -37,6 +39,13 @@ impl Failure {
         Self::Asset {
             file: file.display().to_string(),
             error: error.into(),
+        }
+    }
+
+    pub(crate) fn read(file: &Path, error: std::io::Error) -> Self {
+        Self::Read {
+            file: file.display().to_string(),
+            error,
         }
     }
 

@@ -6,6 +6,7 @@ mod commands;
 mod failure;
 mod models;
 mod output;
+mod plugins;
 mod progress;
 mod recordings;
 mod wav;

@@ -12,10 +12,11 @@ pub(crate) fn tool() -> String {
 
 /// The models named, each with its options.
 pub(crate) fn model_requests(
+    registry: &Registry,
     names: &[String],
     options: &[String],
 ) -> Result<Vec<ModelRequest>, Failure> {
-    let models = named_models(names)?;
+    let models = named_models(registry, names)?;
     let options: Vec<(&str, &str, &str)> = options
         .iter()
         .map(|text| split_option(text))
@@ -43,8 +44,7 @@ pub(crate) fn model_requests(
 }
 
 /// All models, or those named, each once.
-fn named_models(names: &[String]) -> Result<Vec<LoadedModel>, Failure> {
-    let registry = Registry::builtin();
+fn named_models(registry: &Registry, names: &[String]) -> Result<Vec<LoadedModel>, Failure> {
     if names.iter().any(|name| name == "all") {
         return Ok(registry.models().to_vec());
     }

@@ -3,12 +3,12 @@ use std::process::ExitCode;
 
 use clap::Args;
 use htex_author::{Exploration, TextureSpectrum, exploration, measure, segment_spectra};
-use htex_host::Registry;
 use serde::Serialize;
 
 use crate::assets::short_name;
 use crate::failure::Failure;
 use crate::output::{print, print_json, warn};
+use crate::plugins::PlayerArgs;
 use crate::recordings::RecordingArgs;
 
 /// Measure each representation of an asset against a recording.
@@ -25,6 +25,9 @@ pub(crate) struct Compare {
 
     #[command(flatten)]
     reading: RecordingArgs,
+
+    #[command(flatten)]
+    player: PlayerArgs,
 
     /// Print JSON instead of a table
     #[arg(long)]
@@ -53,8 +56,7 @@ struct Compared {
 impl Compare {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         let (spectrum, found, warnings) = self.spectrum()?;
-        let asset =
-            htex::Asset::open(&self.asset).map_err(|error| Failure::asset(&self.asset, error))?;
+        let asset = self.player.open(&self.asset)?;
         let representations = self.compare(&asset, &spectrum, found)?;
         let comparison = Comparison {
             recording: self.recording.display().to_string(),
@@ -96,14 +98,13 @@ impl Compare {
         spectrum: &TextureSpectrum,
         found: Exploration,
     ) -> Result<Vec<Compared>, Failure> {
-        let registry = Registry::builtin();
         let motion = found.speed_mm_s.zip(found.force_n);
         let mut compared = Vec::new();
         for representation in &asset.manifest().representations {
             let (parameters, level_n_rms) = asset
                 .parameters(Some(&representation.model), motion)
                 .map_err(|error| Failure::asset(&self.asset, error))?;
-            let model = registry.find(&representation.model)?;
+            let model = asset.registry().find(&representation.model)?;
             compared.push(Compared {
                 model: representation.model.clone(),
                 level_n_rms,

@@ -6,6 +6,7 @@ use htex::VoiceOptions;
 use htex_author::read::{ReadOptions, read_recording};
 use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_author::{AssetRequest, AuthorError, Exploration, FittedAsset, Take, fit_asset};
+use htex_host::Registry;
 use htex_report::{ModelResult, Texture, TextureReport, texture_report};
 use serde::Serialize;
 
@@ -167,7 +168,7 @@ fn request(name: &str) -> Result<AssetRequest, Failure> {
         license: Some("CC0-1.0".to_owned()),
         author: Some("htex demo".to_owned()),
         tags: vec!["simulated".to_owned()],
-        models: model_requests(&["all".to_owned()], &[])?,
+        models: model_requests(&Registry::builtin(), &["all".to_owned()], &[])?,
         tool: tool(),
         ..AssetRequest::default()
     })

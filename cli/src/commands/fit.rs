@@ -1,13 +1,16 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
 use htex_author::{AssetRequest, Level, fit_asset};
+use htex_format::Plugin;
+use htex_host::{LoadedModel, Origin, Registry};
 
 use crate::assets::AssetSummary;
 use crate::failure::Failure;
 use crate::models::{model_requests, tool};
 use crate::output::{print, print_json, warn, write_file};
+use crate::plugins::PluginArgs;
 use crate::recordings::RecordingArgs;
 
 /// Fit models to recordings of one texture and write the asset.
@@ -61,6 +64,18 @@ pub(crate) struct Fit {
     #[arg(long)]
     keep_reference: bool,
 
+    /// A model's WASM module to fit with and to bring along in the asset, so that any player can
+    /// play it; may be given several times
+    #[arg(long, value_name = "WASM")]
+    embed_plugin: Vec<PathBuf>,
+
+    /// Sign embedded modules with this ed25519 secret key: a file of 32 bytes
+    #[arg(long, value_name = "FILE", requires = "embed_plugin")]
+    sign_with: Option<PathBuf>,
+
+    #[command(flatten)]
+    plugins: PluginArgs,
+
     #[command(flatten)]
     reading: RecordingArgs,
 
@@ -77,9 +92,11 @@ enum LevelArg {
 
 impl Fit {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
-        let request = self.request()?;
+        let registry = self.plugins.registry_with(&self.embed_plugin)?;
+        let request = self.request(&registry)?;
         let takes = self.reading.read(&self.recordings)?;
-        let fitted = fit_asset(&takes, &request)?;
+        let mut fitted = fit_asset(&takes, &request)?;
+        self.embed(&mut fitted.asset, &registry)?;
         let bytes = fitted
             .asset
             .to_bytes()
@@ -99,7 +116,41 @@ impl Fit {
         Ok(ExitCode::SUCCESS)
     }
 
-    fn request(&self) -> Result<AssetRequest, Failure> {
+    /// Puts the modules of fitted models into the asset.
+    fn embed(&self, asset: &mut htex_format::Asset, registry: &Registry) -> Result<(), Failure> {
+        let secret_key = self.sign_with.as_deref().map(secret_key).transpose()?;
+        for file in &self.embed_plugin {
+            let of_file =
+                |m: &&LoadedModel| matches!(m.origin(), Origin::Wasm(path) if path == file);
+            let model = registry.models().iter().find(of_file).ok_or_else(|| {
+                let file = file.display();
+                Failure::Usage(format!(
+                    "--embed-plugin {file}: only WASM modules can be embedded"
+                ))
+            })?;
+            if !asset
+                .manifest
+                .representations
+                .iter()
+                .any(|r| r.model == model.id())
+            {
+                let (file, id) = (file.display(), model.id());
+                let sentence =
+                    format!("--embed-plugin {file}: {id} was not fitted; add it to --model");
+                return Err(Failure::Usage(sentence));
+            }
+            let module = std::fs::read(file).map_err(|error| Failure::read(file, error))?;
+            let mut plugin = Plugin::new(model.id(), &model.descriptor().version, &module);
+            if let Some(key) = &secret_key {
+                plugin = plugin.signed(key);
+            }
+            asset.manifest.plugins.push(plugin);
+            asset.plugins.push(module);
+        }
+        Ok(())
+    }
+
+    fn request(&self, registry: &Registry) -> Result<AssetRequest, Failure> {
         let mut recorded_options = self.reading.recorded_options();
         for option in &self.option {
             if let Some((name, value)) = option.split_once('=') {
@@ -118,7 +169,7 @@ impl Fit {
             license: self.license.clone(),
             author: self.author.clone(),
             tags: self.tags.clone(),
-            models: model_requests(&self.model, &self.option)?,
+            models: model_requests(registry, &self.model, &self.option)?,
             spectrum: self.reading.spectrum_options()?,
             level: match self.level {
                 LevelArg::Fitted => Level::Fitted,
@@ -130,4 +181,16 @@ impl Fit {
             tool: tool(),
         })
     }
+}
+
+/// Reads an ed25519 secret key.
+fn secret_key(file: &Path) -> Result<[u8; 32], Failure> {
+    let bytes = std::fs::read(file).map_err(|error| Failure::read(file, error))?;
+    let len = bytes.len();
+    bytes.try_into().map_err(|_| {
+        let file = file.display();
+        Failure::Usage(format!(
+            "--sign-with {file}: {len} bytes; an ed25519 secret key has 32"
+        ))
+    })
 }

@@ -6,6 +6,7 @@ use serde_json::json;
 
 use crate::failure::Failure;
 use crate::output::{print, print_json};
+use crate::plugins::PlayerArgs;
 
 /// Show the spectrum of one representation of an asset, 20 to 1000 Hz in steps of 5 Hz.
 ///
@@ -18,6 +19,9 @@ pub(crate) struct Spectrum {
 
     #[command(flatten)]
     choice: ChoiceArgs,
+
+    #[command(flatten)]
+    player: PlayerArgs,
 
     /// Print JSON instead of CSV
     #[arg(long)]
@@ -54,7 +58,7 @@ impl ChoiceArgs {
 impl Spectrum {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         let failure = |error| Failure::asset(&self.asset, error);
-        let asset = htex::Asset::open(&self.asset).map_err(failure)?;
+        let asset = self.player.open(&self.asset)?;
         let grid = htex::Band::TACTILE.grid_hz();
         let motion = self.choice.motion(&asset);
         let magnitude = asset

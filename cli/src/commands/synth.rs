@@ -6,6 +6,7 @@ use htex::VoiceOptions;
 
 use crate::commands::spectrum::ChoiceArgs;
 use crate::failure::Failure;
+use crate::plugins::PlayerArgs;
 use crate::wav::write_wav;
 
 /// Play an asset to a WAV file: 32-bit float samples, newtons of lateral force.
@@ -16,6 +17,9 @@ pub(crate) struct Synth {
 
     #[command(flatten)]
     choice: ChoiceArgs,
+
+    #[command(flatten)]
+    player: PlayerArgs,
 
     /// Length, s
     #[arg(long, default_value_t = 10.0, value_name = "S")]
@@ -42,7 +46,7 @@ impl Synth {
             return Err(Failure::Usage(sentence));
         }
         let failure = |error| Failure::asset(&self.asset, error);
-        let asset = htex::Asset::open(&self.asset).map_err(failure)?;
+        let asset = self.player.open(&self.asset)?;
         let options = VoiceOptions {
             model: self.choice.model.as_deref(),
             rate_hz: f64::from(self.rate),

@@ -43,20 +43,20 @@ impl Default for VoiceOptions<'_> {
 }
 
 impl Asset {
-    /// Opens a file.
+    /// Opens a file, to be played by the models it brings along and the built-in ones.
     ///
     /// # Errors
-    /// When the file cannot be read or is not a valid asset.
+    /// When the file cannot be read, is not a valid asset, or brings a model that cannot be loaded.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
-        Ok(Self::new(htex_format::Asset::open(path.as_ref())?))
+        Self::new(htex_format::Asset::open(path.as_ref())?).with_embedded()
     }
 
     /// Opens an asset in memory.
     ///
     /// # Errors
-    /// When the bytes are not a valid asset.
+    /// When the bytes are not a valid asset, or bring a model that cannot be loaded.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
-        Ok(Self::new(htex_format::Asset::from_bytes(bytes)?))
+        Self::new(htex_format::Asset::from_bytes(bytes)?).with_embedded()
     }
 
     /// Takes an asset that is already read, to be played by the built-in models.
@@ -69,18 +69,41 @@ impl Asset {
         Self { data, registry }
     }
 
-    /// Opens a file, to be played by the models of `registry`.
+    /// Opens a file, to be played by the models it brings along and those of `registry`.
     ///
     /// # Errors
     /// As [`Self::open`].
     pub fn open_with(path: impl AsRef<Path>, registry: Registry) -> Result<Self, Error> {
         let data = htex_format::Asset::open(path.as_ref())?;
-        Ok(Self::with_registry(data, registry))
+        Self::with_registry(data, registry).with_embedded()
+    }
+
+    /// Adds the models the asset brings along, in their sandbox, before those of its registry (but
+    /// behind plugins named by their files). Without this call they are not run.
+    ///
+    /// # Errors
+    /// When a module cannot be loaded, or is of another model than the asset says.
+    pub fn with_embedded(mut self) -> Result<Self, Error> {
+        for (plugin, module) in self.data.manifest.plugins.iter().zip(&self.data.plugins) {
+            self.registry.add_wasm_bytes(&plugin.file, module)?;
+            if self.registry.find(&plugin.model).is_err() {
+                return Err(Error::WrongPlugin {
+                    file: plugin.file.clone(),
+                    model: plugin.model.clone(),
+                });
+            }
+        }
+        Ok(self)
     }
 
     /// What the asset says of itself.
     pub fn manifest(&self) -> &Manifest {
         &self.data.manifest
+    }
+
+    /// The models that can play it.
+    pub fn registry(&self) -> &Registry {
+        &self.registry
     }
 
     /// The asset's band.

@@ -1,0 +1,68 @@
+//! Arguments that say where models come from, shared by the commands that use them.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use htex_host::{Registry, Search};
+
+use crate::failure::Failure;
+use crate::output::warn;
+
+/// Where models come from.
+#[derive(Args)]
+#[command(next_help_heading = "Models")]
+pub(crate) struct PluginArgs {
+    /// A model's plugin: a WASM module (sandboxed) or a native library (it runs with all your
+    /// rights: load only what you trust); may be given several times
+    #[arg(long, value_name = "FILE")]
+    plugin: Vec<PathBuf>,
+
+    /// A folder of plugins, searched before HTEX_PLUGIN_PATH and the user's own folder
+    #[arg(long, value_name = "DIR")]
+    plugin_dir: Vec<PathBuf>,
+}
+
+impl PluginArgs {
+    /// The models there are; what shadows what is told on standard error.
+    pub(crate) fn registry(&self) -> Result<Registry, Failure> {
+        self.registry_with(&[])
+    }
+
+    /// As [`Self::registry`], with further plugins by their files.
+    pub(crate) fn registry_with(&self, files: &[PathBuf]) -> Result<Registry, Failure> {
+        let registry = Registry::search(&Search {
+            files: [&self.plugin[..], files].concat(),
+            dirs: self.plugin_dir.clone(),
+            ..Search::default()
+        })?;
+        let notes: Vec<String> = registry.notes().iter().map(ToString::to_string).collect();
+        warn(&notes);
+        Ok(registry)
+    }
+}
+
+/// Where models come from when an asset is played, which may bring its own.
+#[derive(Args)]
+pub(crate) struct PlayerArgs {
+    #[command(flatten)]
+    plugins: PluginArgs,
+
+    /// Do not run models that the asset brings along (they run in a sandbox)
+    #[arg(long)]
+    no_embedded_plugins: bool,
+}
+
+impl PlayerArgs {
+    /// Opens an asset.
+    pub(crate) fn open(&self, path: &Path) -> Result<htex::Asset, Failure> {
+        let registry = self.plugins.registry()?;
+        let data = htex_format::Asset::open(path).map_err(|error| Failure::asset(path, error))?;
+        let asset = htex::Asset::with_registry(data, registry);
+        if self.no_embedded_plugins {
+            return Ok(asset);
+        }
+        asset
+            .with_embedded()
+            .map_err(|error| Failure::asset(path, error))
+    }
+}

@@ -30,7 +30,12 @@ impl Failure {
     pub(crate) fn exit_code(&self) -> ExitCode {
         use htex_host::HostError::{Option, UnknownModel};
         match self {
-            Self::Usage(_) | Self::Model(Option { .. } | UnknownModel { .. }) => ExitCode::from(2),
+            Self::Usage(_)
+            | Self::Model(Option { .. } | UnknownModel { .. })
+            | Self::Asset {
+                error: htex::Error::Model(UnknownModel { .. }),
+                ..
+            } => ExitCode::from(2),
             _ => ExitCode::FAILURE,
         }
     }

@@ -1,0 +1,116 @@
+//! An asset that brings its model along plays where that model was never installed.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+mod common;
+
+use std::path::Path;
+use std::process::Command;
+
+use common::Place;
+
+/// Builds the third-party example in C to `bursts.wasm`; false without a compiler for it.
+fn build_bursts(place: &Place) -> bool {
+    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let flags = [
+        "--target=wasm32",
+        "-std=c11",
+        "-O2",
+        "-ffp-contract=off",
+        "-fno-math-errno",
+    ];
+    let link = [
+        "-fvisibility=hidden",
+        "-ffreestanding",
+        "-nostdlib",
+        "-Wl,--no-entry",
+    ];
+    let built = Command::new("clang")
+        .args(flags)
+        .args(link)
+        .arg("-I")
+        .arg(workspace.join("spec/include"))
+        .arg("-o")
+        .arg(place.path("bursts.wasm"))
+        .arg(workspace.join("examples/model-c-bursts/bursts.c"))
+        .status();
+    let built = built.is_ok_and(|status| status.success());
+    let required = std::env::var_os("HTEX_REQUIRE_WASM").is_some();
+    assert!(
+        built || !required,
+        "clang and lld are needed to build C to WASM"
+    );
+    built
+}
+
+#[test]
+fn a_third_party_model_travels_with_its_asset() {
+    let place = Place::new();
+    if !build_bursts(&place) {
+        println!("skipped: no clang with lld to build C to WASM");
+        return;
+    }
+    std::fs::write(place.path("key"), [9u8; 32]).unwrap();
+    let csv = place.recording("sandpaper");
+    let fit = [
+        "fit",
+        &csv,
+        "--model",
+        "bursts,sbeta",
+        "--embed-plugin",
+        "bursts.wasm",
+    ];
+    let fit = [&fit[..], &["--sign-with", "key", "-o", "b.htex", "--json"]].concat();
+    let fitted = place.json(&fit);
+    assert_eq!(fitted["representations"][0]["model"], "org.example.bursts");
+    std::fs::remove_file(place.path("bursts.wasm")).unwrap();
+
+    let info = place.json(&["info", "b.htex", "--json"]);
+    assert_eq!(info["plugins"][0]["model"], "org.example.bursts");
+    assert_eq!(info["plugins"][0]["signed_by"].as_str().unwrap().len(), 64);
+    let validated = place.json(&["validate", "b.htex", "--json"]);
+    assert_eq!(validated[0]["valid"], true);
+
+    let synth = [
+        "synth",
+        "b.htex",
+        "--model",
+        "bursts",
+        "--seconds",
+        "2",
+        "-o",
+        "b.wav",
+    ];
+    let run = place.run(&synth);
+    assert_eq!(run.code(), 0, "{}", run.error());
+    let mut wav = hound::WavReader::open(place.path("b.wav")).unwrap();
+    let power: f64 = wav
+        .samples::<f32>()
+        .map(|x| f64::from(x.unwrap()).powi(2))
+        .sum();
+    let level = fitted["representations"][0]["level_n_rms"]
+        .as_f64()
+        .unwrap();
+    let ratio = (power / 40_000.0).sqrt() / level;
+    assert!(
+        (0.8..1.2).contains(&ratio),
+        "two seconds of bursts: {ratio}"
+    );
+
+    let forbidden = place.run(&[&synth[..], &["--no-embedded-plugins"]].concat());
+    assert_eq!(forbidden.code(), 2);
+    assert!(
+        forbidden.error().contains("org.example.bursts"),
+        "{}",
+        forbidden.error()
+    );
+}
+
+#[test]
+fn a_changed_module_is_refused() {
+    let place = Place::new();
+    let conformance = concat!(env!("CARGO_MANIFEST_DIR"), "/../spec/conformance");
+    let file = format!("{conformance}/plugin_hash_mismatch.htex");
+    let run = place.run(&["spectrum", &file, "--model", "sbeta"]);
+    assert_eq!(run.code(), 1);
+    assert!(run.error().contains("hash"), "{}", run.error());
+}

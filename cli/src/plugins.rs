@@ -30,14 +30,23 @@ impl PluginArgs {
 
     /// As [`Self::registry`], with further plugins by their files.
     pub(crate) fn registry_with(&self, files: &[PathBuf]) -> Result<Registry, Failure> {
-        let registry = Registry::search(&Search {
-            files: [&self.plugin[..], files].concat(),
-            dirs: self.plugin_dir.clone(),
-            ..Search::default()
-        })?;
+        let registry = self.search(files)?;
         let notes: Vec<String> = registry.notes().iter().map(ToString::to_string).collect();
         warn(&notes);
         Ok(registry)
+    }
+
+    /// As [`Self::registry`], without telling.
+    pub(crate) fn registry_quietly(&self) -> Result<Registry, Failure> {
+        self.search(&[])
+    }
+
+    fn search(&self, files: &[PathBuf]) -> Result<Registry, Failure> {
+        Ok(Registry::search(&Search {
+            files: [&self.plugin[..], files].concat(),
+            dirs: self.plugin_dir.clone(),
+            ..Search::default()
+        })?)
     }
 }
 

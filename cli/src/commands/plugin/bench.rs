@@ -6,6 +6,7 @@ use htex_check::{BLOCKS, Cost, Timing, bench};
 use crate::commands::plugin::named::named;
 use crate::failure::Failure;
 use crate::output::{print, print_json};
+use crate::plugins::PluginArgs;
 
 /// Measure what models cost: nanoseconds a sample, median and spread.
 ///
@@ -17,6 +18,9 @@ pub(crate) struct Bench {
     #[arg(required = true, value_name = "FILE|ID")]
     models: Vec<String>,
 
+    #[command(flatten)]
+    plugins: PluginArgs,
+
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -26,7 +30,7 @@ impl Bench {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         let mut models = Vec::new();
         for name in self.models {
-            let model = named(&name)?;
+            let model = named(&name, &self.plugins)?;
             models.push((name, model));
         }
         let costs = bench(&models).map_err(Failure::Other)?;

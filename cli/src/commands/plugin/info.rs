@@ -6,6 +6,7 @@ use htex_host::{Descriptor, Field, FitOption, Kind};
 use crate::commands::plugin::named::named;
 use crate::failure::Failure;
 use crate::output::{print, print_json};
+use crate::plugins::PluginArgs;
 
 /// Show what a model says of itself: parameters and fit options, with units and ranges.
 #[derive(Args)]
@@ -14,6 +15,9 @@ pub(crate) struct Info {
     #[arg(value_name = "FILE|ID")]
     model: String,
 
+    #[command(flatten)]
+    plugins: PluginArgs,
+
     /// Print the descriptor as JSON
     #[arg(long)]
     json: bool,
@@ -21,7 +25,7 @@ pub(crate) struct Info {
 
 impl Info {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
-        let model = named(&self.model)?;
+        let model = named(&self.model, &self.plugins)?;
         if self.json {
             print_json(model.descriptor())?;
         } else {

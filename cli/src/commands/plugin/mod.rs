@@ -3,6 +3,7 @@
 mod bench;
 mod check;
 mod info;
+mod list;
 mod named;
 mod new;
 
@@ -21,6 +22,7 @@ pub(crate) struct Plugin {
 
 #[derive(Subcommand)]
 enum Command {
+    List(list::List),
     Info(info::Info),
     Check(check::Check),
     New(new::New),
@@ -32,6 +34,7 @@ enum Command {
 impl Plugin {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         match self.command {
+            Command::List(args) => args.run(),
             Command::Info(args) => args.run(),
             Command::Check(args) => args.run(),
             Command::New(args) => args.run(),

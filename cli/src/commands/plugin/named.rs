@@ -2,15 +2,16 @@
 
 use std::path::Path;
 
-use htex_host::{LoadedModel, Registry};
+use htex_host::LoadedModel;
 
 use crate::failure::Failure;
+use crate::plugins::PluginArgs;
 
 /// The model in a file, when there is one of this name; else the model of this short name or id.
-pub(crate) fn named(name: &str) -> Result<LoadedModel, Failure> {
+pub(crate) fn named(name: &str, plugins: &PluginArgs) -> Result<LoadedModel, Failure> {
     let file = Path::new(name);
     if file.is_file() {
         return Ok(LoadedModel::from_file(file)?);
     }
-    Ok(Registry::builtin().find(name)?.clone())
+    Ok(plugins.registry()?.find(name)?.clone())
 }

@@ -23,7 +23,7 @@ pub struct WasmLimits {
     /// device waits for, and short enough to get an application back from an endless loop.
     pub render: Duration,
     /// Most WASM instructions of one call, if given: unlike time, the same on every machine.
-    /// Default none, since counting costs about as much as the rest of the sandbox.
+    /// Default none: the deadlines hold already, and counting costs up to a tenth more.
     pub fuel: Option<u64>,
     /// Where compiled modules are kept. Default [`WasmCache::User`].
     pub cache: WasmCache,

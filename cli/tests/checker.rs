@@ -126,6 +126,24 @@ fn sound_models_pass() {
 }
 
 #[test]
+fn sound_modules_pass_too() {
+    let folder = match xtask::plugins::wasm() {
+        Ok(folder) => folder,
+        Err(reason) => {
+            let required = std::env::var_os("HTEX_REQUIRE_WASM").is_some();
+            assert!(!required, "{reason}");
+            println!("skipped: {reason}");
+            return;
+        }
+    };
+    for model in MODELS {
+        let report = checked(&folder.join(format!("htex_{model}.wasm")), 120);
+        println!("{}", report.to_text());
+        assert!(report.ok, "{}", report.to_text());
+    }
+}
+
+#[test]
 fn each_fault_is_found_by_its_own_check() {
     let folder = tempfile::tempdir().unwrap();
     let good = library("sbeta");

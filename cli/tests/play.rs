@@ -114,7 +114,7 @@ fn the_demo_goes_the_whole_way() {
     }
     let report = std::fs::read_to_string(place.path("out/report.html")).unwrap();
     assert!(report.contains("<svg") && report.contains("simulated"));
-    assert!(!report.contains("http:") || !report.contains("src=\"http"));
+    assert!(!report.contains("src=\"http") && !report.contains("href=\"http"));
     assert!(place.path("out/vinyl-sbeta.wav").exists());
 }
 

@@ -54,7 +54,7 @@ fn table(costs: &[Cost]) -> String {
     for block in BLOCKS {
         text += &format!("  {:>15}", format!("blocks of {block}"));
     }
-    text += &format!("  {:>15}\n", "empty call");
+    text += &format!("  {:>15}\n", "call for one");
     for cost in costs {
         text += &format!("  {:width$}  {:>7.0}", cost.model, cost.rate_hz);
         for timing in cost.per_sample.iter().chain([&cost.per_call]) {

@@ -5,12 +5,15 @@ use std::collections::BTreeSet;
 use cargo_metadata::{DependencyKind, MetadataCommand};
 use htex_tests::workspace;
 
-/// A crate of ours, and the crates of ours that it may use. The models are `plugin`.
+/// A crate of ours, and the crates of ours that it may use. The models are `plugin`, the
+/// device families `adapter`.
 const ARROWS: &[(&str, &[&str])] = &[
     ("htex-dsp", &[]),
     ("htex-model", &[]),
     ("htex-format", &[]),
     ("htex-report", &[]),
+    ("htex-device", &[]),
+    ("adapter", &["htex-device"]),
     ("htex-shaped", &["htex-dsp", "htex-model"]),
     ("plugin", &["htex-dsp", "htex-model", "htex-shaped"]),
     ("htex-host", &["htex-dsp", "htex-model", "plugin"]),
@@ -41,11 +44,12 @@ fn dependencies_follow_the_arrows() {
         .unwrap();
     let ours: BTreeSet<&str> = metadata.packages.iter().map(|p| p.name.as_str()).collect();
     let role = |package: &cargo_metadata::Package| {
-        let plugin = package.manifest_path.as_str().contains("/plugins/");
-        if plugin {
-            "plugin".to_owned()
-        } else {
-            package.name.to_string()
+        let path = package.manifest_path.as_str();
+        match package.name.as_str() {
+            "htex-device" => "htex-device".to_owned(),
+            _ if path.contains("/plugins/") => "plugin".to_owned(),
+            _ if path.contains("/renderer-adapters/") => "adapter".to_owned(),
+            name => name.to_owned(),
         }
     };
     for package in metadata

@@ -1,0 +1,80 @@
+//! The two traits.
+
+use std::time::Duration;
+
+use crate::{Capabilities, Descriptor, DeviceError, Endpoint, Settings};
+
+/// A family of devices.
+pub trait Adapter: Send + Sync {
+    /// What the adapter says of itself; the same at each call. `[any thread]`
+    fn descriptor(&self) -> &Descriptor;
+
+    /// The devices that are there now; none is no error. `[any thread]`
+    ///
+    /// # Errors
+    /// When a driver is missing: the message says what to install.
+    fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError>;
+
+    /// What a device opened with these settings can do. Opens nothing. `[any thread]`
+    ///
+    /// # Errors
+    /// When a setting is not usable, or the device is not there.
+    fn capabilities(&self, settings: &Settings) -> Result<Capabilities, DeviceError>;
+
+    /// Opens a device, silent and at zero. `[any thread]`
+    ///
+    /// # Errors
+    /// As [`Self::capabilities`], and when the rate is none of its rates.
+    fn open(
+        &self,
+        settings: &Settings,
+        format: &StreamFormat,
+    ) -> Result<Box<dyn Device>, DeviceError>;
+}
+
+/// An open device. Dropping it without [`Device::finish`] aborts: the output goes to zero, and a
+/// file that was being written is not left behind.
+pub trait Device: Send {
+    /// Takes samples of the device's quantity, as many as there is room for within `timeout` (zero:
+    /// those that fit now); answers how many. The first samples start the device.
+    /// `[one thread at a time; may wait]`
+    ///
+    /// # Errors
+    /// When a sample is over the limit or not a number, when the device ran dry or is gone. The
+    /// output is then at zero, and stays there.
+    fn write(&mut self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError>;
+
+    /// What happened so far. `[one thread at a time]`
+    fn status(&self) -> Status;
+
+    /// Plays what was written to its end, goes to zero, and keeps the result (a file appears under
+    /// its name). Nothing can be written afterwards. `[one thread at a time; may wait]`
+    ///
+    /// # Errors
+    /// When that could not be done; the output is at zero all the same.
+    fn finish(&mut self) -> Result<(), DeviceError>;
+}
+
+/// The stream a device is opened for: one channel; a device of several plays it on all it drives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StreamFormat {
+    /// Samples a second.
+    pub rate_hz: f64,
+    /// The size of the blocks that will be written, frames.
+    pub block_frames: u32,
+}
+
+/// What happened to a device since it was opened.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Status {
+    /// Frames taken.
+    pub frames_written: u64,
+    /// Frames that came out.
+    pub frames_played: u64,
+    /// Times the device ran dry.
+    pub underruns: u64,
+    /// From writing a sample to its coming out, seconds.
+    pub latency_s: f64,
+    /// Largest magnitude written, in the device's unit.
+    pub peak: f64,
+}

@@ -1,0 +1,78 @@
+//! What can go wrong with a device.
+
+/// An error of an adapter or an open device.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum DeviceError {
+    /// A setting is not known, missing, or not usable.
+    #[error("setting `{name}`: {what}")]
+    Setting {
+        /// The setting.
+        name: String,
+        /// What is wrong, and what would be right.
+        what: String,
+    },
+    /// The device does not run at this rate.
+    #[error("{device} does not run at {rate_hz} Hz; it runs at {rates}")]
+    Rate {
+        /// The device.
+        device: String,
+        /// The rate that was asked for.
+        rate_hz: f64,
+        /// The rates it has.
+        rates: String,
+    },
+    /// A driver is not installed, or no such device is connected.
+    #[error("{0}")]
+    Missing(String),
+    /// A sample is beyond the device's limit or not a number; the output is at zero.
+    #[error(
+        "sample {frame} is {value} {unit}, and the limit is {limit} {unit}; the output is at zero"
+    )]
+    OverLimit {
+        /// Index of the sample since the device was opened.
+        frame: u64,
+        /// The sample.
+        value: f64,
+        /// The limit.
+        limit: f64,
+        /// Symbol of the unit.
+        unit: &'static str,
+    },
+    /// The device ran dry: samples came too late. The output is at zero.
+    #[error("{device} ran dry after {frames} frames; {advice}")]
+    Underflow {
+        /// The device.
+        device: String,
+        /// Frames that came out before.
+        frames: u64,
+        /// What to do.
+        advice: String,
+    },
+    /// The device was there and is gone, or its driver failed.
+    #[error("{device} failed: {what}")]
+    Failed {
+        /// The device.
+        device: String,
+        /// What happened, in the driver's words.
+        what: String,
+    },
+    /// A call came after the end or after an error.
+    #[error("{0} is closed")]
+    Closed(String),
+    /// A file could not be written.
+    #[error("{path}: {what}")]
+    File {
+        /// The file.
+        path: String,
+        /// What the system said.
+        what: String,
+    },
+    /// A library is no device of this ABI, or breaks it.
+    #[error("{library}: {what}")]
+    Abi {
+        /// The library.
+        library: String,
+        /// What is wrong.
+        what: String,
+    },
+}

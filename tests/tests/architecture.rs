@@ -21,11 +21,25 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("htex-check", &["htex-dsp", "htex-host", "htex-model"]),
     ("htex", &["htex-dsp", "htex-format", "htex-host"]),
     (
+        "htex-scene",
+        &[
+            "htex",
+            "htex-author",
+            "htex-device",
+            "htex-dsp",
+            "htex-format",
+            "htex-host",
+        ],
+    ),
+    (
         "htex-cli",
         &[
             "htex",
             "htex-author",
             "htex-check",
+            "adapter",
+            "htex-device",
+            "htex-scene",
             "htex-dsp",
             "htex-format",
             "htex-host",

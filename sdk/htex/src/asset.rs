@@ -7,7 +7,7 @@ use htex_host::{Band, LoadedModel, Registry};
 use semver::{Version, VersionReq};
 
 use crate::mesh::Mesh;
-use crate::{Error, Voice};
+use crate::{Error, Source, Voice};
 
 /// An opened texture.
 #[derive(Debug, Clone)]
@@ -121,14 +121,20 @@ impl Asset {
     /// When there is no such representation, its model is not there or not compatible, or it
     /// refuses the parameters or the rate.
     pub fn voice(&self, options: &VoiceOptions<'_>) -> Result<Voice, Error> {
+        Ok(Voice::new(self.source(options)?, options.rate_hz))
+    }
+
+    /// Makes the source of a voice: the shape alone, at the model's own rate for a listener at
+    /// `options.rate_hz`.
+    ///
+    /// # Errors
+    /// As [`Self::voice`].
+    pub fn source(&self, options: &VoiceOptions<'_>) -> Result<Source, Error> {
         let r = self.representation(options.model)?;
-        let motion = match options.motion {
-            Some(motion) => motion,
-            None => self.first_condition(r),
-        };
-        let model = self.model(r)?;
-        Voice::new(
-            self.known(r),
+        let motion = options.motion.unwrap_or_else(|| self.first_condition(r));
+        let (known, model) = (self.known(r), self.model(r)?);
+        Source::new(
+            known,
             model,
             self.band(),
             options.rate_hz,
@@ -175,7 +181,7 @@ impl Asset {
     ) -> Result<(Vec<f64>, f64), Error> {
         let r = self.representation(model)?;
         let (speed, force) = motion.unwrap_or_else(|| self.first_condition(r));
-        crate::voice::check_motion(speed, force)?;
+        crate::source::check_motion(speed, force)?;
         self.known(r).at(&self.model(r)?, speed, force)
     }
 

@@ -16,10 +16,12 @@
 mod asset;
 mod error;
 mod mesh;
+mod source;
 mod voice;
 
 pub use asset::{Asset, VoiceOptions};
 pub use error::Error;
 pub use htex_format::{Finding, Limits, Manifest, Severity};
 pub use htex_host::{Band, Registry, Search, WasmLimits};
+pub use source::Source;
 pub use voice::Voice;

@@ -1,0 +1,97 @@
+//! What a voice is made of: a texture's shape at the model's own rate, and its level.
+
+use htex_host::{Band, LoadedModel, ModelVoice};
+
+use crate::Error;
+use crate::asset::Known;
+
+/// Samples of unit RMS at the rate the model itself renders at, and the level they stand for. A
+/// renderer that brings many textures together resamples them once, behind their sum; [`crate::Voice`]
+/// does it for a single one.
+#[derive(Debug)]
+pub struct Source {
+    known: Known,
+    model: LoadedModel,
+    voice: ModelVoice,
+    rate_hz: f64,
+    top_hz: f64,
+    motion: (f64, f64),
+    level_n: f64,
+}
+
+impl Source {
+    pub(crate) fn new(
+        known: Known,
+        model: LoadedModel,
+        band: Band,
+        wanted_hz: f64,
+        seed: u64,
+        motion: (f64, f64),
+    ) -> Result<Self, Error> {
+        check_motion(motion.0, motion.1)?;
+        let (parameters, level_n) = known.at(&model, motion.0, motion.1)?;
+        let rate_hz = model.voice_rate_hz(&parameters, band, wanted_hz)?;
+        Ok(Self {
+            voice: model.voice(&parameters, band, rate_hz, seed)?,
+            known,
+            model,
+            rate_hz,
+            top_hz: band.high_hz,
+            motion,
+            level_n,
+        })
+    }
+
+    /// The rate the model renders at, hertz.
+    pub fn rate_hz(&self) -> f64 {
+        self.rate_hz
+    }
+
+    /// The frequency above which there is nothing, hertz.
+    pub fn top_hz(&self) -> f64 {
+        self.top_hz
+    }
+
+    /// RMS of the texture at the present motion, newtons.
+    pub fn level_n(&self) -> f64 {
+        self.level_n
+    }
+
+    /// Glides to the spectrum at this scanning speed (mm/s) and normal force (newtons), clamped to
+    /// the conditions the asset knows, and answers its level, newtons. A motion that is not new
+    /// costs nothing; a new one between conditions mixes parameters, which may allocate.
+    ///
+    /// # Errors
+    /// When a value is negative or not a number, or the model cannot mix; the source then plays on
+    /// as before.
+    pub fn set_motion(&mut self, speed_mm_s: f64, force_n: f64) -> Result<f64, Error> {
+        check_motion(speed_mm_s, force_n)?;
+        if self.motion == (speed_mm_s, force_n) || self.known.parameters.len() < 2 {
+            return Ok(self.level_n);
+        }
+        let (parameters, level_n) = self.known.at(&self.model, speed_mm_s, force_n)?;
+        self.voice.retune(&parameters)?;
+        self.motion = (speed_mm_s, force_n);
+        self.level_n = level_n;
+        Ok(level_n)
+    }
+
+    /// Fills `out` with the next samples, of unit RMS. Does not allocate, lock or do I/O.
+    ///
+    /// # Errors
+    /// When the model fails; `out` is then silent.
+    pub fn render(&mut self, out: &mut [f32]) -> Result<(), Error> {
+        Ok(self.voice.render(out)?)
+    }
+}
+
+pub(crate) fn check_motion(speed_mm_s: f64, force_n: f64) -> Result<(), Error> {
+    let sane = |x: f64| x.is_finite() && x >= 0.0;
+    if sane(speed_mm_s) && sane(force_n) {
+        return Ok(());
+    }
+    Err(Error::Motion {
+        speed_mm_s,
+        force_n,
+    })
+}

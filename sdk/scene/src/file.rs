@@ -1,0 +1,233 @@
+//! `*.scene.json`: what a scene says. `spec/scene-1.md` is the normative text.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// The version of the format this crate reads and writes.
+pub const VERSION: &str = "1.0";
+
+/// A scene: surfaces, how the finger moves over them, and the device it is felt on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Scene {
+    /// Version of the format, `MAJOR.MINOR`.
+    pub htex_scene: String,
+    /// What can be touched.
+    pub surfaces: Vec<Surface>,
+    /// How the finger moves.
+    pub motion: Motion,
+    /// What it is felt on; a file of newtons when nothing is said.
+    #[serde(default)]
+    pub device: DeviceChoice,
+    /// Length, seconds; absent: the trace's, or without end when the motion is live.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub duration_s: Option<f64>,
+    /// The same seed gives the same samples.
+    #[serde(default)]
+    pub seed: u64,
+    /// What chooses the representation of surfaces that leave it to the scene.
+    #[serde(default, skip_serializing_if = "Budget::is_empty")]
+    pub budget: Budget,
+    /// Effects that are not left to the planner.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub effects: BTreeMap<Effect, Switch>,
+}
+
+/// A texture, and where it lies.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Surface {
+    /// The asset; a relative path starts at the scene's folder.
+    pub asset: PathBuf,
+    /// Where it lies; absent: everywhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub region: Option<Region>,
+    /// Which of two overlapping surfaces is felt: the higher one.
+    #[serde(default)]
+    pub layer: i32,
+    /// Factor on its level, 0 to 1000.
+    #[serde(default = "one")]
+    pub gain: f64,
+    /// A model by its id or short name, or `auto`.
+    #[serde(default = "auto")]
+    pub representation: String,
+}
+
+/// A rectangle, edges included at the lower end and excluded at the upper.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Region {
+    /// From and to along x, mm.
+    pub x_mm: [f64; 2],
+    /// From and to along y, mm.
+    pub y_mm: [f64; 2],
+}
+
+/// How the finger moves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Motion {
+    /// Always alike.
+    Constant(Constant),
+    /// As in a CSV with the columns `t_s`, `x_mm`, `y_mm`, `force_n`; a relative path starts at the
+    /// scene's folder.
+    Trace(PathBuf),
+    /// As a person moves it, while the scene plays.
+    Live,
+}
+
+/// A motion that is always alike.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Constant {
+    /// Scanning speed, mm/s.
+    pub speed_mm_s: f64,
+    /// Normal force, newtons.
+    pub force_n: f64,
+    /// Where it starts, x and y; absent: on the only surface there is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from_mm: Option<[f64; 2]>,
+    /// Whither it goes, degrees from the x axis towards the y axis.
+    #[serde(default)]
+    pub direction_deg: f64,
+}
+
+/// The device, and how the scene is brought to it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct DeviceChoice {
+    /// The adapter by its id or short name.
+    #[serde(default = "file_adapter")]
+    pub adapter: String,
+    /// One of the adapter's profiles.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub profile: Option<String>,
+    /// Settings of the adapter: text, numbers, or true and false.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub settings: BTreeMap<String, Value>,
+    /// Rate of the samples, hertz; absent: the device's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate_hz: Option<f64>,
+    /// Gain on the force that a device of newtons gets, decibels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain_db: Option<f64>,
+    /// Largest voltage of an electrovibration drive, volts: V_g of the paper is this over sqrt(2).
+    /// Absent: half of the device's limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drive_v: Option<f64>,
+    /// RMS of a preview by ear, decibels below full scale (so not above 0); absent: -18.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub level_dbfs: Option<f64>,
+    /// Factor on all frequencies of a preview by ear.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pitch: Option<f64>,
+    /// Response of finger and display, to be compensated: a CSV with the columns `frequency_hz`,
+    /// `magnitude`; a relative path starts at the scene's folder.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub response: Option<PathBuf>,
+    /// How far below its maximum the response is compensated at most, decibels.
+    #[serde(default = "depth", skip_serializing_if = "is_depth")]
+    pub response_depth_db: f64,
+}
+
+/// What chooses representations. With both, the nearest within the time must be near enough.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+pub struct Budget {
+    /// Most time a sample of the whole chain may take, nanoseconds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ns_per_sample: Option<f64>,
+    /// Largest nine-band RMS error of a representation, decibels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_band_error_db: Option<f64>,
+}
+
+/// What a scene may call for, in the order in which a chain has it.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum Effect {
+    /// Parameters and level between exploration conditions, as speed and force change.
+    Interpolation,
+    /// Temporal frequencies in proportion to the speed, where an asset knows only one speed.
+    SpeedScaling,
+    /// Level in proportion to the normal force, where an asset knows only one force.
+    ForceScaling,
+    /// From one surface to the next, and off and on.
+    Crossfade,
+    /// The response of finger and display, inverted.
+    Compensation,
+    /// From the rate of the models to the rate of the device.
+    Resampling,
+    /// The sign of the force, against the stroke.
+    Direction,
+    /// From newtons to what the device wants.
+    Gain,
+    /// Shift and square root, for friction that goes with the square of a voltage.
+    SquareRoot,
+    /// Silence without contact or slip, and at both ends.
+    Contact,
+    /// Amplitude modulation on a carrier.
+    Carrier,
+    /// Never above the device's limit.
+    Limiter,
+    /// Noise that hides the steps of an integer file.
+    Dither,
+    /// Rounding to the steps of the device.
+    Quantisation,
+}
+
+/// Whether an effect is in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Switch {
+    /// When the scene calls for it.
+    #[default]
+    Auto,
+    /// In any case; without a call for it, it changes nothing.
+    On,
+    /// In no case.
+    Off,
+}
+
+impl Default for DeviceChoice {
+    fn default() -> Self {
+        Self {
+            adapter: file_adapter(),
+            profile: None,
+            settings: BTreeMap::new(),
+            rate_hz: None,
+            gain_db: None,
+            drive_v: None,
+            level_dbfs: None,
+            pitch: None,
+            response: None,
+            response_depth_db: depth(),
+        }
+    }
+}
+
+impl Budget {
+    fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn auto() -> String {
+    "auto".to_owned()
+}
+
+fn file_adapter() -> String {
+    "file".to_owned()
+}
+
+fn depth() -> f64 {
+    40.0
+}
+
+fn is_depth(x: &f64) -> bool {
+    *x == depth()
+}

@@ -1,0 +1,88 @@
+//! NI-DAQmx, loaded when it is asked for.
+
+mod table;
+mod task;
+
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
+use htex_device::DeviceError;
+
+use crate::fault::Fault;
+use table::Table;
+
+pub(crate) use task::Task;
+
+/// The library's names, tried in turn.
+#[cfg(windows)]
+const NAMES: &[&str] = &["nicaiu.dll"];
+#[cfg(not(windows))]
+const NAMES: &[&str] = &["libnidaqmx.so.1", "libnidaqmx.so"];
+
+/// Loaded libraries by the setting that named them. A driver has threads of its own, so none is
+/// ever unloaded.
+static LOADED: Mutex<BTreeMap<String, &'static Driver>> = Mutex::new(BTreeMap::new());
+
+pub(crate) struct Driver {
+    table: Table,
+}
+
+impl Driver {
+    /// Loads the library at `path`, or the installed one when it is empty.
+    pub(crate) fn load(path: &str) -> Result<&'static Self, DeviceError> {
+        let mut loaded = LOADED.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(driver) = loaded.get(path) {
+            return Ok(driver);
+        }
+        let table = match path {
+            "" => NAMES.iter().find_map(|name| Table::load(name).ok()),
+            _ => Some(Table::load(path).map_err(|what| not_loaded(path, what))?),
+        };
+        let table = table.ok_or_else(|| DeviceError::Missing(not_installed()))?;
+        let driver: &'static Self = Box::leak(Box::new(Self { table }));
+        loaded.insert(path.to_owned(), driver);
+        Ok(driver)
+    }
+
+    /// Every analog output, and the product it is part of.
+    pub(crate) fn outputs(&self) -> Result<Vec<(String, String)>, Fault> {
+        let mut outputs = Vec::new();
+        for card in list(&self.table.device_names()?) {
+            let product = self.table.product(card)?;
+            let channels = self.table.outputs(card)?;
+            outputs.extend(list(&channels).map(|c| (c.to_owned(), product.clone())));
+        }
+        Ok(outputs)
+    }
+
+    /// Lowest and highest rate of a card's analog output, hertz.
+    pub(crate) fn rates(&self, card: &str) -> Result<(f64, f64), Fault> {
+        Ok((self.table.min_rate(card)?, self.table.max_rate(card)?))
+    }
+}
+
+/// What is listed between commas.
+fn list(text: &str) -> impl Iterator<Item = &str> {
+    text.split(',')
+        .map(str::trim)
+        .filter(|name| !name.is_empty())
+}
+
+fn not_loaded(path: &str, what: String) -> DeviceError {
+    DeviceError::Setting {
+        name: "driver".to_owned(),
+        what: format!("{path} is no NI-DAQmx library: {what}"),
+    }
+}
+
+fn not_installed() -> String {
+    let package = match cfg!(target_os = "linux") {
+        true => "the package `ni-daqmx` from ni.com/linux",
+        false => "NI-DAQmx from ni.com/downloads",
+    };
+    format!(
+        "NI-DAQmx is not installed: there is no {}. Install {package}, or name the library by the \
+         setting `driver`",
+        NAMES[0]
+    )
+}

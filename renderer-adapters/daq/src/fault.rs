@@ -1,0 +1,53 @@
+//! Errors of NI-DAQmx, and what they mean here. The codes are those of `NIDAQmx.h`.
+
+use htex_device::DeviceError;
+
+/// No device, or no longer: not present (-88705), removed, absent, powered off, not accessible.
+const GONE: [i32; 8] = [
+    -88705, -200045, -200170, -200194, -200220, -200324, -200175, -201003,
+];
+/// Samples came too late: the buffer, or the memory on the card, ran dry.
+const DRY: [i32; 5] = [-200290, -200291, -200016, -200018, -200621];
+
+/// An error code of the driver and the driver's words.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Fault {
+    pub(crate) code: i32,
+    pub(crate) words: String,
+}
+
+impl Fault {
+    pub(crate) fn is_dry(&self) -> bool {
+        DRY.contains(&self.code)
+    }
+
+    /// The error of a device that was running.
+    pub(crate) fn failed(&self, device: &str) -> DeviceError {
+        DeviceError::Failed {
+            device: device.to_owned(),
+            what: format!("NI-DAQmx {}: {}", self.code, self.words),
+        }
+    }
+
+    /// The error of a device that was running and no longer answers.
+    pub(crate) fn failed_and_not_zero(&self, device: &str) -> DeviceError {
+        DeviceError::Failed {
+            device: device.to_owned(),
+            what: format!(
+                "NI-DAQmx {}: {}; the output could not be set to zero: switch the amplifier off",
+                self.code, self.words
+            ),
+        }
+    }
+
+    /// The error of a device that was to be opened.
+    pub(crate) fn missing(&self, device: &str) -> DeviceError {
+        match GONE.contains(&self.code) {
+            true => DeviceError::Missing(format!(
+                "{device} is not there (NI-DAQmx {}: {}); see NI MAX or `nilsdev`",
+                self.code, self.words
+            )),
+            false => self.failed(device),
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! The analog output of a National Instruments card, and the amplifier behind it: electrovibration.
+//!
+//! Samples are volts *at the display*, the carrier included; this adapter divides by the amplifier's
+//! gain and streams through NI-DAQmx, which is loaded when it is asked for and not linked.
+//!
+//! What holds the voltage down:
+//! - a sample beyond `limit_v` is never put out, and the driver's own channel limits say the same;
+//! - the output goes to zero before a stream, after it, on every error, and when the device is
+//!   dropped; a stream that runs dry is noticed by a thread of the device's own, whether or not
+//!   anybody writes again;
+//! - a stream that does not begin or end at zero is led there by a ramp of `ramp_ms` *before its
+//!   first and after its last* sample. Samples themselves are never changed.
+#![deny(unsafe_code)]
+
+mod descriptor;
+mod driver;
+mod fault;
+mod rig;
+mod session;
+mod stream;
+mod watchdog;
+
+use htex_device::{
+    Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, Settings, StreamFormat,
+};
+
+use driver::Driver;
+use rig::Rig;
+
+/// The adapter; see the crate's documentation.
+pub struct Daq {
+    descriptor: Descriptor,
+}
+
+impl Daq {
+    /// The adapter. Nothing is loaded until a device is asked for.
+    pub fn new() -> Self {
+        Self {
+            descriptor: descriptor::descriptor(),
+        }
+    }
+}
+
+impl Default for Daq {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Adapter for Daq {
+    fn descriptor(&self) -> &Descriptor {
+        &self.descriptor
+    }
+
+    /// The analog outputs of all cards that the installed driver knows.
+    fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
+        let driver = Driver::load("")?;
+        let outputs = driver.outputs().map_err(|f| f.failed("NI-DAQmx"))?;
+        let endpoint = |(name, product)| Endpoint {
+            name,
+            setting: "device".to_owned(),
+            summary: format!("analog output of NI {product}"),
+        };
+        Ok(outputs.into_iter().map(endpoint).collect())
+    }
+
+    fn capabilities(&self, settings: &Settings) -> Result<Capabilities, DeviceError> {
+        let rig = Rig::new(settings)?;
+        rig.capabilities(Driver::load(&rig.driver)?)
+    }
+
+    fn open(
+        &self,
+        settings: &Settings,
+        format: &StreamFormat,
+    ) -> Result<Box<dyn Device>, DeviceError> {
+        let rig = Rig::new(settings)?;
+        let driver = Driver::load(&rig.driver)?;
+        let rates = rig.capabilities(driver)?.rates;
+        if !rates.has(format.rate_hz) {
+            return Err(DeviceError::Rate {
+                device: rig.device,
+                rate_hz: format.rate_hz,
+                rates: rates.to_string(),
+            });
+        }
+        Ok(Box::new(stream::Stream::open(rig, driver, format)?))
+    }
+}

@@ -1,0 +1,97 @@
+//! Card, amplifier and limits, as the settings state them.
+
+use htex_device::{Capabilities, DeviceError, Quantity, Rates, Settings};
+
+use crate::driver::Driver;
+
+/// The rate of the paper's signals, hertz.
+const DEFAULT_RATE_HZ: f64 = 20_000.0;
+/// Frames a block is best made of.
+const BLOCK_FRAMES: u32 = 256;
+/// How far above the limit a sample still counts as the limit, relative: rounding to f32.
+const ROUNDING: f64 = 1e-6;
+
+#[derive(Debug, Clone)]
+pub(crate) struct Rig {
+    /// `Dev1/ao0`
+    pub(crate) device: String,
+    pub(crate) driver: String,
+    /// Volts at the display for one volt of the card.
+    pub(crate) gain: f64,
+    /// At the display, volts.
+    pub(crate) limit_v: f64,
+    /// Distance of two neighbouring voltages at the display, volts.
+    pub(crate) step_v: f64,
+    carrier_hz: f64,
+    pub(crate) buffer_s: f64,
+    pub(crate) ramp_s: f64,
+}
+
+impl Rig {
+    pub(crate) fn new(settings: &Settings) -> Result<Self, DeviceError> {
+        let gain = settings.number("amplifier_gain");
+        let full_scale_v = settings.number("dac_full_scale_v");
+        let codes = settings.number("dac_bits").floor().exp2();
+        let rig = Self {
+            device: settings.text("device").to_owned(),
+            driver: settings.text("driver").to_owned(),
+            gain,
+            limit_v: settings.number("limit_v").min(gain * full_scale_v),
+            step_v: 2.0 * full_scale_v * gain / codes,
+            carrier_hz: settings.number("carrier_hz"),
+            buffer_s: settings.number("buffer_ms") / 1e3,
+            ramp_s: settings.number("ramp_ms") / 1e3,
+        };
+        match rig.ramp_s > rig.buffer_s / 2.0 {
+            true => Err(refuse("ramp_ms", "it is at most half of `buffer_ms`")),
+            false if !rig.device.contains('/') => {
+                Err(refuse("device", "an output is wanted, such as `Dev1/ao0`"))
+            }
+            false if rig.limit_v <= 0.0 => Err(refuse("limit_v", "it is above zero")),
+            false => Ok(rig),
+        }
+    }
+
+    /// What card and amplifier can do together.
+    pub(crate) fn capabilities(&self, driver: &Driver) -> Result<Capabilities, DeviceError> {
+        let card = self.device.split('/').next().unwrap_or_default();
+        let outputs = driver.outputs().map_err(|f| f.failed(&self.device))?;
+        if !outputs.iter().any(|(name, _)| *name == self.device) {
+            let there: Vec<&str> = outputs.iter().map(|(name, _)| &name[..]).collect();
+            return Err(DeviceError::Missing(not_there(&self.device, &there)));
+        }
+        let rates = driver.rates(card).map_err(|f| f.missing(&self.device))?;
+        let (min_hz, max_hz) = rates;
+        Ok(Capabilities {
+            quantity: Quantity::DisplayVoltage,
+            rates: Rates::Range { min_hz, max_hz },
+            default_rate_hz: DEFAULT_RATE_HZ.clamp(min_hz, max_hz.max(min_hz)),
+            limit: Some(self.limit_v),
+            step: Some(self.step_v),
+            carrier_hz: (self.carrier_hz > 0.0).then_some(self.carrier_hz),
+            paced: true,
+            block_frames: BLOCK_FRAMES,
+        })
+    }
+
+    /// The card's voltage for a voltage at the display; nothing when it is over the limit or not a
+    /// number.
+    pub(crate) fn card_v(&self, display_v: f64) -> Option<f64> {
+        let within = display_v.abs() <= self.limit_v * (1.0 + ROUNDING);
+        within.then(|| display_v.clamp(-self.limit_v, self.limit_v) / self.gain)
+    }
+}
+
+fn not_there(device: &str, there: &[&str]) -> String {
+    match there.is_empty() {
+        true => format!("`{device}` is not there: NI-DAQmx knows no card; see NI MAX or `nilsdev`"),
+        false => format!("`{device}` is not there; there is {}", there.join(", ")),
+    }
+}
+
+fn refuse(name: &str, what: &str) -> DeviceError {
+    DeviceError::Setting {
+        name: name.to_owned(),
+        what: what.to_owned(),
+    }
+}

@@ -1,0 +1,245 @@
+//! What writer and watchdog share of an open device: the running task, and the way to zero.
+
+use htex_device::{DeviceError, Status, StreamFormat};
+
+use crate::driver::{Driver, Task};
+use crate::fault::Fault;
+use crate::rig::Rig;
+
+pub(crate) struct Session {
+    rig: Rig,
+    driver: &'static Driver,
+    rate_hz: f64,
+    /// Frames the driver's buffer holds.
+    capacity: usize,
+    /// None before the first sample and after the end.
+    task: Option<Task>,
+    /// Said once, by the next call.
+    error: Option<DeviceError>,
+    closed: bool,
+    /// Frames put before the stream: zeros, and a ramp if there is one.
+    lead: u64,
+    /// Frames given to the driver, the lead included.
+    given: u64,
+    /// Frames that came out, the lead included.
+    generated: u64,
+    /// The stream's last sample, volts of the card.
+    last_v: f64,
+    status: Status,
+}
+
+impl Session {
+    /// Sets the output to zero.
+    pub(crate) fn open(
+        rig: Rig,
+        driver: &'static Driver,
+        format: &StreamFormat,
+    ) -> Result<Self, DeviceError> {
+        let buffered = (rig.buffer_s * format.rate_hz).ceil() as usize;
+        let session = Self {
+            capacity: buffered.max(2 * format.block_frames as usize).max(2),
+            rate_hz: format.rate_hz,
+            rig,
+            driver,
+            task: None,
+            error: None,
+            closed: false,
+            lead: 0,
+            given: 0,
+            generated: 0,
+            last_v: 0.0,
+            status: Status::default(),
+        };
+        let zero = session.put_zero();
+        zero.map_err(|fault| fault.missing(&session.rig.device))?;
+        Ok(session)
+    }
+
+    /// Takes the samples that fit now.
+    pub(crate) fn write(&mut self, samples: &[f32]) -> Result<usize, DeviceError> {
+        self.usable()?;
+        let volts = self.checked(samples)?;
+        let Some(first_v) = volts.first() else {
+            return Ok(0);
+        };
+        if self.task.is_none() {
+            self.start(*first_v)?;
+        }
+        let taken = self.give(&volts)?;
+        for sample in &samples[..taken] {
+            self.status.peak = self.status.peak.max(f64::from(sample.abs()));
+        }
+        self.last_v = volts[..taken].last().copied().unwrap_or(self.last_v);
+        self.status.frames_written += taken as u64;
+        Ok(taken)
+    }
+
+    /// The ramp from the stream's last sample to zero, volts.
+    pub(crate) fn tail(&self) -> Vec<f64> {
+        let mut tail = self.ramp(self.last_v);
+        tail.reverse();
+        tail.push(0.0);
+        tail
+    }
+
+    /// Gives the driver what fits of volts that are no part of the stream.
+    pub(crate) fn give(&mut self, volts: &[f64]) -> Result<usize, DeviceError> {
+        self.usable()?;
+        let task = self.task.as_ref();
+        let given = task.map_or(Ok(0), |task| {
+            let space = task.space()?;
+            match space.min(volts.len()) {
+                0 => Ok(0),
+                fitting => task.write(&volts[..fitting], false),
+            }
+        });
+        let given = given.map_err(|fault| self.fail(&fault))?;
+        self.given += given as u64;
+        Ok(given)
+    }
+
+    /// Asks the driver how it is; an error puts the output to zero.
+    pub(crate) fn watch(&mut self) {
+        let Some(task) = &self.task else { return };
+        match task
+            .is_done()
+            .and_then(|done| Ok((done, task.generated()?)))
+        {
+            Ok((false, generated)) => self.generated = generated,
+            Ok((true, _)) => {
+                let words = "the task ended by itself".to_owned();
+                self.error = Some(self.fail(&Fault { code: 0, words }));
+            }
+            Err(fault) => self.error = Some(self.fail(&fault)),
+        }
+    }
+
+    /// Frames given to the driver, and frames that came out; both with the lead.
+    pub(crate) fn progress(&self) -> (u64, u64) {
+        (self.given, self.generated)
+    }
+
+    pub(crate) fn is_running(&self) -> bool {
+        self.task.is_some()
+    }
+
+    pub(crate) fn status(&self) -> Status {
+        let played = self.generated.saturating_sub(self.lead);
+        Status {
+            frames_played: played.min(self.status.frames_written),
+            latency_s: self.given.saturating_sub(self.generated) as f64 / self.rate_hz,
+            ..self.status
+        }
+    }
+
+    /// Stops, puts zero out and takes nothing more; what went wrong before is said here.
+    pub(crate) fn close(&mut self) -> Result<(), DeviceError> {
+        if self.closed {
+            return self.error.take().map_or(Ok(()), Err);
+        }
+        let zero = self.end();
+        zero.map_err(|fault| fault.failed(&self.rig.device))
+    }
+
+    pub(crate) fn usable(&mut self) -> Result<(), DeviceError> {
+        match self.error.take() {
+            Some(error) => Err(error),
+            None if self.closed => Err(DeviceError::Closed(self.rig.device.clone())),
+            None => Ok(()),
+        }
+    }
+
+    /// Starts the clock on zeros (half a buffer, so that the first write is not late) that end in
+    /// a ramp to the first sample if that is not zero.
+    fn start(&mut self, first_v: f64) -> Result<(), DeviceError> {
+        let ramp = self.ramp(first_v);
+        let mut lead = vec![0.0; (self.capacity / 2).saturating_sub(ramp.len())];
+        lead.extend(ramp);
+        let started = self.started(&lead);
+        self.task = Some(started.map_err(|fault| self.fail(&fault))?);
+        self.lead = lead.len() as u64;
+        self.given = self.lead;
+        Ok(())
+    }
+
+    /// A task whose clock runs.
+    fn started(&self, lead: &[f64]) -> Result<Task, Fault> {
+        let limit_v = self.rig.limit_v / self.rig.gain;
+        let task = Task::new(self.driver, &self.rig.device, limit_v)?;
+        let capacity = u32::try_from(self.capacity).unwrap_or(u32::MAX);
+        task.set_clock(self.rate_hz, capacity)?;
+        task.write(lead, false)?;
+        task.start()?;
+        Ok(task)
+    }
+
+    /// From zero towards `to_v`, both left out; nothing if that is zero within the card's step.
+    fn ramp(&self, to_v: f64) -> Vec<f64> {
+        if to_v.abs() * self.rig.gain < self.rig.step_v {
+            return Vec::new();
+        }
+        let frames = (self.rig.ramp_s * self.rate_hz) as usize;
+        let at = |i: usize| to_v * (i + 1) as f64 / (frames + 1) as f64;
+        (0..frames).map(at).collect()
+    }
+
+    /// The card's voltages for samples that are all within the limit.
+    fn checked(&mut self, samples: &[f32]) -> Result<Vec<f64>, DeviceError> {
+        let mut volts = Vec::with_capacity(samples.len());
+        for (i, &sample) in samples.iter().enumerate() {
+            let display_v = f64::from(sample);
+            let Some(card_v) = self.rig.card_v(display_v) else {
+                return Err(self.refuse(self.status.frames_written + i as u64, display_v));
+            };
+            volts.push(card_v);
+        }
+        Ok(volts)
+    }
+
+    /// Puts the output to zero and answers what to say of it.
+    fn fail(&mut self, fault: &Fault) -> DeviceError {
+        let zero = self.end();
+        if fault.is_dry() {
+            self.status.underruns += 1;
+            self.generated = self.given;
+        }
+        match zero {
+            Err(_) => fault.failed_and_not_zero(&self.rig.device),
+            Ok(()) if fault.is_dry() => DeviceError::Underflow {
+                device: self.rig.device.clone(),
+                frames: self.status().frames_played,
+                advice: "write sooner, or set a larger `buffer_ms`".to_owned(),
+            },
+            Ok(()) => fault.failed(&self.rig.device),
+        }
+    }
+
+    /// Puts the output to zero because of a sample.
+    fn refuse(&mut self, frame: u64, value: f64) -> DeviceError {
+        match self.end() {
+            Err(fault) => fault.failed_and_not_zero(&self.rig.device),
+            Ok(()) => DeviceError::OverLimit {
+                frame,
+                value,
+                limit: self.rig.limit_v,
+                unit: "V",
+            },
+        }
+    }
+
+    /// Ends the task, if one runs, and puts the output to zero, for good.
+    fn end(&mut self) -> Result<(), Fault> {
+        self.closed = true;
+        if let Some(task) = self.task.take() {
+            self.generated = task.generated().unwrap_or(self.generated);
+        }
+        self.put_zero()
+    }
+
+    /// Zero by a task of its own, without a clock.
+    fn put_zero(&self) -> Result<(), Fault> {
+        let limit_v = self.rig.limit_v / self.rig.gain;
+        let task = Task::new(self.driver, &self.rig.device, limit_v)?;
+        task.write(&[0.0], true).map(|_| ())
+    }
+}

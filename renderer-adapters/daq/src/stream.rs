@@ -1,0 +1,119 @@
+//! An open device: waits for room, and for the end.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use htex_device::{Device, DeviceError, Status, StreamFormat};
+
+use crate::driver::Driver;
+use crate::rig::Rig;
+use crate::session::Session;
+use crate::watchdog::Watchdog;
+
+/// Between two looks for room.
+const LOOK: Duration = Duration::from_millis(2);
+/// After this long without a sample coming out, the clock is taken to stand still.
+const STILL: Duration = Duration::from_secs(2);
+
+/// Zeros kept ready behind the end of a stream.
+const ZEROS: usize = 16_384;
+
+pub(crate) struct Stream {
+    session: Arc<Mutex<Session>>,
+    device: String,
+    _watchdog: Watchdog,
+}
+
+impl Stream {
+    pub(crate) fn open(
+        rig: Rig,
+        driver: &'static Driver,
+        format: &StreamFormat,
+    ) -> Result<Self, DeviceError> {
+        let (device, buffer_s) = (rig.device.clone(), rig.buffer_s);
+        let session = Arc::new(Mutex::new(Session::open(rig, driver, format)?));
+        let period = Duration::from_secs_f64((buffer_s / 4.0).min(0.1));
+        let watchdog = Watchdog::start(&session, period).map_err(|error| DeviceError::Failed {
+            device: device.clone(),
+            what: format!("no thread to watch over it: {error}"),
+        })?;
+        Ok(Self {
+            session,
+            device,
+            _watchdog: watchdog,
+        })
+    }
+
+    fn session(&self) -> MutexGuard<'_, Session> {
+        self.session.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Gives the tail, and then zeros, until the tail has come out: the clock never finds the
+    /// buffer empty.
+    fn drain(&self) -> Result<(), DeviceError> {
+        let mut tail = self.session().tail();
+        let (mut last, mut since) = (0, Instant::now());
+        let end = self.session().progress().0 + tail.len() as u64;
+        loop {
+            let mut session = self.session();
+            session.watch();
+            session.usable()?;
+            let (_, generated) = session.progress();
+            if generated >= end {
+                return Ok(());
+            }
+            let given = session.give(&tail)?;
+            drop(session);
+            tail.drain(..given);
+            tail.resize(tail.len().max(ZEROS), 0.0);
+            if generated > last {
+                (last, since) = (generated, Instant::now());
+            } else if since.elapsed() > STILL {
+                return Err(self.stands_still());
+            }
+            sleep(LOOK);
+        }
+    }
+
+    fn stands_still(&self) -> DeviceError {
+        DeviceError::Failed {
+            device: self.device.clone(),
+            what: "its sample clock stands still".to_owned(),
+        }
+    }
+}
+
+impl Device for Stream {
+    fn write(&mut self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError> {
+        let since = Instant::now();
+        let mut taken = 0;
+        loop {
+            taken += self.session().write(&samples[taken..])?;
+            let left = timeout.saturating_sub(since.elapsed());
+            if taken == samples.len() || left.is_zero() {
+                return Ok(taken);
+            }
+            sleep(LOOK.min(left));
+        }
+    }
+
+    fn status(&self) -> Status {
+        let mut session = self.session();
+        session.watch();
+        session.status()
+    }
+
+    fn finish(&mut self) -> Result<(), DeviceError> {
+        self.session().usable()?;
+        let running = self.session().is_running();
+        let drained = if running { self.drain() } else { Ok(()) };
+        drained.and(self.session().close())
+    }
+}
+
+impl Drop for Stream {
+    fn drop(&mut self) {
+        let _ = self.session().close();
+    }
+}

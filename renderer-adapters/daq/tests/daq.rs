@@ -1,0 +1,242 @@
+//! Playback through the simulated card: what comes out, to the bit, and what comes out when
+//! something is wrong.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+mod simulated;
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use std::time::Duration;
+
+use htex_device::{Adapter, Device, DeviceError, Quantity, Rates, Settings};
+use htex_device_daq::Daq;
+use simulated::{Card, GAIN, PAPER, RATE_HZ};
+
+const LONG: Duration = Duration::from_secs(20);
+
+#[test]
+fn what_comes_out_is_what_was_written() {
+    let card = Card::new();
+    let samples = burst(9_000);
+    let mut device = card.open(&[]).unwrap();
+    assert_eq!(card.recorded(), [0.0], "an open device is at zero");
+    for block in samples.chunks(700) {
+        assert_eq!(device.write(block, LONG).unwrap(), block.len());
+        let latency_s = device.status().latency_s;
+        assert!(latency_s > 0.0 && latency_s <= 0.2, "{latency_s}");
+    }
+    device.finish().unwrap();
+    let status = device.status();
+    assert_eq!(
+        (status.frames_written, status.frames_played),
+        (9_000, 9_000)
+    );
+    assert_eq!(
+        (status.underruns, status.peak),
+        (0, f64::from(peak(&samples)))
+    );
+    drop(device);
+    // One zero when it was opened, half a buffer (200 ms) of zeros, the samples, zeros.
+    let recorded = card.recorded();
+    let (before, rest) = recorded.split_at(1 + 2_000);
+    let (played, after) = rest.split_at(samples.len());
+    let volts: Vec<f64> = samples.iter().map(|v| f64::from(*v) / GAIN).collect();
+    assert!(played == volts);
+    assert!(!after.is_empty() && before.iter().chain(after).all(|v| *v == 0.0));
+}
+
+#[test]
+fn a_wall_clock_takes_samples_at_its_pace() {
+    let card = Card::new();
+    card.set("clock", "wall");
+    let samples = burst(2_000);
+    let mut device = card.open(&[("buffer_ms", "2000")]).unwrap();
+    assert_eq!(device.write(&samples, LONG).unwrap(), samples.len());
+    assert!(
+        device.status().frames_played == 0,
+        "the zeros before are 1 s long"
+    );
+    device.finish().unwrap();
+    let volts: Vec<f64> = samples.iter().map(|v| f64::from(*v) / GAIN).collect();
+    assert!(card.recorded()[1 + 20_000..].starts_with(&volts));
+}
+
+#[test]
+fn a_stream_that_is_not_zero_at_its_ends_is_led_there() {
+    let card = Card::new();
+    let mut device = card.open(&[("ramp_ms", "50")]).unwrap();
+    device.write(&[100.0; 500], LONG).unwrap();
+    device.finish().unwrap();
+    let recorded = card.recorded();
+    let high = recorded.iter().filter(|v| **v == 2.0).count();
+    assert_eq!(
+        high, 500,
+        "samples are as they were, and none is held longer"
+    );
+    let steepest = recorded
+        .windows(2)
+        .map(|v| (v[1] - v[0]).abs())
+        .fold(0.0, f64::max);
+    assert!(
+        steepest <= 2.0 / 1_000.0 + 1e-12,
+        "2 V in 50 ms: {steepest} V a sample"
+    );
+    assert_eq!((recorded[0], recorded[recorded.len() - 1]), (0.0, 0.0));
+}
+
+#[test]
+fn no_sample_beyond_the_limit_comes_out() {
+    for wrong in [150.01, -151.0, f32::NAN, f32::INFINITY] {
+        let card = Card::new();
+        let mut device = card.open(&[]).unwrap();
+        device.write(&[150.0; 3_000], LONG).unwrap();
+        let error = device.write(&[1.0, wrong, 1.0], LONG).unwrap_err();
+        let DeviceError::OverLimit { frame, limit, .. } = error else {
+            unreachable!("{error}")
+        };
+        assert_eq!((frame, limit), (3_001, 150.0));
+        goes_to_zero(&card);
+        is_closed(&mut *device);
+        assert!(card.recorded().iter().all(|v| (0.0..=3.0).contains(v)));
+    }
+}
+
+#[test]
+fn a_hung_writer_ends_at_zero() {
+    let card = Card::new();
+    let mut device = card.open(&[("buffer_ms", "50")]).unwrap();
+    device.write(&[100.0; 800], LONG).unwrap();
+    // Nobody calls; the device's own thread sees the buffer run dry.
+    let waited = (0..2_000).any(|_| {
+        std::thread::sleep(Duration::from_millis(10));
+        card.recorded().ends_with(&[2.0, 0.0])
+    });
+    assert!(waited);
+    let error = device.write(&[100.0], LONG).unwrap_err();
+    let DeviceError::Underflow { frames, .. } = error else {
+        unreachable!("{error}")
+    };
+    assert_eq!((frames, device.status().underruns), (800, 1));
+    is_closed(&mut *device);
+    assert!(device.finish().is_err());
+}
+
+#[test]
+fn a_device_dropped_in_the_middle_goes_to_zero() {
+    let card = Card::new();
+    let mut device = card.open(&[]).unwrap();
+    device.write(&[100.0; 9_000], LONG).unwrap();
+    drop(device);
+    let recorded = card.recorded();
+    assert!(
+        recorded.ends_with(&[2.0, 0.0]),
+        "at once, without what was buffered"
+    );
+    assert!(recorded.len() < 9_000 + 2_000);
+}
+
+#[test]
+fn a_card_pulled_out_is_an_error_that_says_so() {
+    let card = Card::new();
+    card.set("unplug_after", "4000");
+    let mut device = card.open(&[]).unwrap();
+    let error = (0..100).find_map(|_| device.write(&[100.0; 500], LONG).err());
+    let error = error.unwrap().to_string();
+    assert!(
+        error.contains("-88705") && error.contains("could not be set to zero"),
+        "{error}"
+    );
+    is_closed(&mut *device);
+    assert_eq!(card.recorded().len(), 4_000);
+    let gone = card.open(&[]).err().unwrap();
+    assert!(matches!(gone, DeviceError::Missing(_)), "{gone}");
+}
+
+#[test]
+fn what_the_rig_can_do() {
+    let card = Card::new();
+    let can = |given| Daq::new().capabilities(&card.settings(given));
+    let paper = can(&[]).unwrap();
+    assert_eq!(paper.quantity, Quantity::DisplayVoltage);
+    assert_eq!(
+        (paper.limit, paper.carrier_hz, paper.paced),
+        (Some(150.0), Some(7_000.0), true)
+    );
+    assert_eq!(paper.step, Some(20.0 / 65_536.0 * GAIN));
+    let Rates::Range { max_hz, .. } = paper.rates else {
+        unreachable!()
+    };
+    assert_eq!((max_hz, paper.default_rate_hz), (900_000.0, RATE_HZ));
+    let weak = can(&[("amplifier_gain", "10"), ("carrier_hz", "0")]).unwrap();
+    assert_eq!(
+        (weak.limit, weak.carrier_hz),
+        (Some(100.0), None),
+        "what the card can reach"
+    );
+}
+
+#[test]
+fn what_is_missing_is_named() {
+    let card = Card::new();
+    let fast = card.open_at(1e6, &[]).err().unwrap();
+    assert!(matches!(fast, DeviceError::Rate { .. }) && fast.to_string().contains("900000"));
+    let other = card
+        .open(&[("device", "Dev2/ao0")])
+        .err()
+        .unwrap()
+        .to_string();
+    assert!(
+        other.contains("`Dev2/ao0` is not there; there is Dev1/ao0, Dev1/ao1"),
+        "{other}"
+    );
+    let ramp = card.open(&[("ramp_ms", "101")]).err().unwrap();
+    assert!(matches!(ramp, DeviceError::Setting { .. }), "{ramp}");
+    let none = card
+        .open(&[("driver", "/no/such/library")])
+        .err()
+        .unwrap()
+        .to_string();
+    assert!(
+        none.starts_with("setting `driver`: /no/such/library is no NI-DAQmx"),
+        "{none}"
+    );
+    if let Err(error) = Daq::new().endpoints() {
+        assert!(error.to_string().contains("ni.com"), "{error}");
+    }
+}
+
+#[test]
+fn gain_and_limit_have_no_default() {
+    let none = BTreeMap::new();
+    let descriptor = Daq::new();
+    let descriptor = descriptor.descriptor();
+    assert!(Settings::resolve(descriptor, None, &none).is_err());
+    for profile in [PAPER, "generic"] {
+        assert!(Settings::resolve(descriptor, Some(profile), &none).is_ok());
+    }
+}
+
+/// Volts at the display: a carrier of 7 kHz under an envelope that begins and ends at zero.
+fn burst(frames: usize) -> Vec<f32> {
+    let at = |i: usize| {
+        let envelope = (0.5 * TAU * i as f64 / (frames - 1) as f64).sin().max(0.0);
+        let carrier = (TAU * 7_000.0 * i as f64 / RATE_HZ).cos();
+        (120.0 * envelope.sqrt() * carrier) as f32
+    };
+    let mut samples: Vec<f32> = (0..frames).map(at).collect();
+    samples[frames - 1] = 0.0;
+    samples
+}
+
+fn peak(samples: &[f32]) -> f32 {
+    samples.iter().fold(0.0, |peak, v| v.abs().max(peak))
+}
+
+fn goes_to_zero(card: &Card) {
+    assert_eq!(card.recorded().last(), Some(&0.0));
+}
+
+fn is_closed(device: &mut dyn Device) {
+    let closed = device.write(&[0.0], LONG).unwrap_err();
+    assert!(matches!(closed, DeviceError::Closed(_)), "{closed}");
+}

@@ -1,0 +1,106 @@
+//! The simulated card of `examples/nidaqmx-simulated`: built, and each test given one of its own.
+
+use std::collections::BTreeMap;
+use std::ffi::{CString, c_char};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+use htex_device::{Adapter, Device, DeviceError, Settings, StreamFormat};
+use htex_device_daq::Daq;
+use tempfile::TempDir;
+
+pub const PAPER: &str = "pcie-6321_tabor-9200a_sct3250";
+pub const GAIN: f64 = 50.0;
+pub const RATE_HZ: f64 = 20_000.0;
+
+/// One card, whose library is a copy of its own. Its clock goes by calls: no test hangs on time.
+pub struct Card {
+    folder: TempDir,
+    library: PathBuf,
+}
+
+impl Card {
+    pub fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let library = folder.path().join(built().file_name().unwrap());
+        fs::copy(built(), &library).unwrap();
+        let card = Self { folder, library };
+        card.set("record", card.folder.path().to_str().unwrap());
+        card.set("clock", "calls");
+        card
+    }
+
+    /// Changes a setting of the simulation.
+    pub fn set(&self, name: &str, value: &str) {
+        type Set = unsafe extern "system" fn(*const c_char, *const c_char);
+        let [name, value] = [name, value].map(|text| CString::new(text).unwrap());
+        // SAFETY: the function has this type; the library stays loaded, as the adapter keeps it.
+        unsafe {
+            let library = libloading::Library::new(&self.library).unwrap();
+            let set = library.get::<Set>("nidaqmx_simulated_set").unwrap();
+            set(name.as_ptr(), value.as_ptr());
+            std::mem::forget(library);
+        }
+    }
+
+    pub fn settings(&self, given: &[(&str, &str)]) -> Settings {
+        let driver = ("driver", self.library.to_str().unwrap());
+        let given = [&[driver], given].concat();
+        let given: BTreeMap<String, String> = given
+            .iter()
+            .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
+            .collect();
+        Settings::resolve(Daq::new().descriptor(), Some(PAPER), &given).unwrap()
+    }
+
+    pub fn open(&self, given: &[(&str, &str)]) -> Result<Box<dyn Device>, DeviceError> {
+        self.open_at(RATE_HZ, given)
+    }
+
+    pub fn open_at(
+        &self,
+        rate_hz: f64,
+        given: &[(&str, &str)],
+    ) -> Result<Box<dyn Device>, DeviceError> {
+        let format = StreamFormat {
+            rate_hz,
+            block_frames: 256,
+        };
+        Daq::new().open(&self.settings(given), &format)
+    }
+
+    /// All that came out of `Dev1/ao0` so far, volts of the card.
+    pub fn recorded(&self) -> Vec<f64> {
+        let lines = fs::read_to_string(self.folder.path().join("Dev1_ao0.txt")).unwrap();
+        lines.lines().map(|line| line.parse().unwrap()).collect()
+    }
+}
+
+/// Builds the library, once a run.
+fn built() -> &'static Path {
+    static BUILT: OnceLock<PathBuf> = OnceLock::new();
+    BUILT.get_or_init(|| {
+        let project =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/nidaqmx-simulated");
+        let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("nidaqmx-simulated");
+        let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
+        let built = Command::new(cargo)
+            .args([
+                "build",
+                "--release",
+                "--quiet",
+                "--locked",
+                "--manifest-path",
+            ])
+            .arg(project.join("Cargo.toml"))
+            .arg("--target-dir")
+            .arg(&target)
+            .status()
+            .unwrap();
+        assert!(built.success());
+        let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+        target.join(format!("release/{prefix}nidaqmx_simulated{suffix}"))
+    })
+}

@@ -55,9 +55,12 @@ impl Driver {
         Ok(outputs)
     }
 
-    /// Lowest and highest rate of a card's analog output, hertz.
+    /// Lowest (1 Hz and above) and highest rate of a card's analog output, hertz.
     pub(crate) fn rates(&self, card: &str) -> Result<(f64, f64), Fault> {
-        Ok((self.table.min_rate(card)?, self.table.max_rate(card)?))
+        Ok((
+            self.table.min_rate(card)?.max(1.0),
+            self.table.max_rate(card)?,
+        ))
     }
 }
 

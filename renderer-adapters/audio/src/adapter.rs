@@ -1,0 +1,110 @@
+//! The adapter: what it says of itself, and the way to a card.
+
+use cpal::traits::DeviceTrait;
+use htex_device::{
+    Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, Quantity, Setting,
+    SettingKind, Settings, StreamFormat,
+};
+
+use crate::card::{self, Card, DEFAULT};
+use crate::sound::Sound;
+
+/// Frames a block is best made of.
+const BLOCK_FRAMES: u32 = 256;
+
+/// The adapter; see the crate's documentation.
+pub struct Audio {
+    descriptor: Descriptor,
+}
+
+impl Audio {
+    /// The adapter. Nothing is opened until a device is asked for.
+    pub fn new() -> Self {
+        Self {
+            descriptor: descriptor(),
+        }
+    }
+}
+
+impl Default for Audio {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Adapter for Audio {
+    fn descriptor(&self) -> &Descriptor {
+        &self.descriptor
+    }
+
+    fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
+        let endpoint = |name: String, summary: String| Endpoint {
+            name,
+            setting: "device".to_owned(),
+            summary,
+        };
+        let default = Card::find(DEFAULT).ok();
+        let default =
+            default.map(|_| endpoint(DEFAULT.to_owned(), "what the system prefers".into()));
+        let named = card::outputs()?.into_iter().map(|device| {
+            let description = device.description().map(|d| d.to_string());
+            endpoint(
+                card::id(&device),
+                description.unwrap_or_default().replace('\n', ", "),
+            )
+        });
+        Ok(default.into_iter().chain(named).collect())
+    }
+
+    fn capabilities(&self, settings: &Settings) -> Result<Capabilities, DeviceError> {
+        let card = Card::find(settings.text("device"))?;
+        Ok(Capabilities {
+            quantity: Quantity::Sound,
+            rates: card.rates(),
+            default_rate_hz: card.default_rate_hz()?,
+            limit: Some(1.0),
+            step: None,
+            carrier_hz: None,
+            paced: true,
+            block_frames: BLOCK_FRAMES,
+        })
+    }
+
+    fn open(
+        &self,
+        settings: &Settings,
+        format: &StreamFormat,
+    ) -> Result<Box<dyn Device>, DeviceError> {
+        let card = Card::find(settings.text("device"))?;
+        let buffer_s = settings.number("buffer_ms") / 1e3;
+        Ok(Box::new(Sound::open(&card, buffer_s, format)?))
+    }
+}
+
+fn descriptor() -> Descriptor {
+    let device = Setting {
+        name: "device".to_owned(),
+        kind: SettingKind::Text,
+        default: Some(DEFAULT.to_owned()),
+        description: "Sound output, as the list of devices names it.".to_owned(),
+    };
+    let buffer = Setting {
+        name: "buffer_ms".to_owned(),
+        kind: SettingKind::Number {
+            min: 5.0,
+            max: 10_000.0,
+        },
+        default: Some("60".to_owned()),
+        description: "Samples kept ready for the card, milliseconds: more is safer, less is \
+                      quicker."
+            .to_owned(),
+    };
+    Descriptor {
+        id: "org.htex.audio".to_owned(),
+        name: "Sound".to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        summary: "Sound through a sound card, the same on all its channels.".to_owned(),
+        settings: vec![device, buffer],
+        profiles: Vec::new(),
+    }
+}

@@ -1,0 +1,182 @@
+//! What runs in the sound card's thread.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
+
+use rtrb::Consumer;
+
+/// How long a fade is when samples are missing, seconds.
+const FADE_S: f64 = 0.005;
+
+/// What is wanted of the player.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Wish {
+    /// Play; a missing sample is an underrun.
+    Play = 0,
+    /// Play what is there, then be silent.
+    Drain = 1,
+    /// Fade out now.
+    Stop = 2,
+}
+
+/// What the sound card's thread and the writer tell each other.
+#[derive(Debug, Default)]
+pub(crate) struct Shared {
+    wish: AtomicU8,
+    /// Frames taken from the ring.
+    pub(crate) taken: AtomicU64,
+    /// Times the ring was found empty.
+    pub(crate) underruns: AtomicU64,
+    /// From a frame's being handed over to its coming out, frames.
+    pub(crate) delay: AtomicU64,
+    /// After [`Wish::Drain`] or [`Wish::Stop`]: the last sound has left the card.
+    pub(crate) silent: AtomicBool,
+    /// Times the card asked for samples.
+    pub(crate) calls: AtomicU64,
+}
+
+impl Shared {
+    pub(crate) fn wish(&self, wish: Wish) {
+        self.wish.store(wish as u8, Ordering::Release);
+    }
+}
+
+/// Takes samples from the ring. Allocates nothing and waits for nothing.
+pub(crate) struct Player {
+    ring: Consumer<f32>,
+    shared: Arc<Shared>,
+    last: f32,
+    gain: f32,
+    step: f32,
+    dry: bool,
+    /// Frames of silence at the end.
+    quiet: u64,
+}
+
+impl Player {
+    pub(crate) fn new(ring: Consumer<f32>, shared: Arc<Shared>, rate_hz: f64) -> Self {
+        Self {
+            ring,
+            shared,
+            last: 0.0,
+            gain: 1.0,
+            step: (1.0 / (FADE_S * rate_hz)) as f32,
+            dry: false,
+            quiet: 0,
+        }
+    }
+
+    /// Fills interleaved frames, the same sample on all channels. `delay` frames are still to come
+    /// out before these.
+    pub(crate) fn fill<T: Copy>(
+        &mut self,
+        out: &mut [T],
+        channels: usize,
+        delay: u64,
+        convert: impl Fn(f32) -> T,
+    ) {
+        let wish = self.shared.wish.load(Ordering::Acquire);
+        let silent = self.quiet > delay;
+        for frame in out.chunks_mut(channels.max(1)) {
+            frame.fill(convert(self.next(wish)));
+        }
+        self.shared.delay.store(delay, Ordering::Relaxed);
+        self.shared.silent.store(silent, Ordering::Release);
+        self.shared.calls.fetch_add(1, Ordering::Release);
+    }
+
+    fn next(&mut self, wish: u8) -> f32 {
+        let wanted = wish != Wish::Stop as u8;
+        match self.ring.pop().ok().filter(|_| wanted) {
+            Some(sample) => {
+                self.shared.taken.fetch_add(1, Ordering::Relaxed);
+                (self.last, self.dry) = (sample, false);
+                self.gain = (self.gain + self.step).min(1.0);
+            }
+            None => {
+                if !self.dry && wish == Wish::Play as u8 {
+                    self.shared.underruns.fetch_add(1, Ordering::Relaxed);
+                }
+                self.dry = true;
+                self.gain = (self.gain - self.step).max(0.0);
+            }
+        }
+        let ended = self.gain == 0.0 && wish != Wish::Play as u8;
+        self.quiet = if ended { self.quiet + 1 } else { 0 };
+        self.last * self.gain
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rtrb::{Producer, RingBuffer};
+
+    /// At 1 kHz a fade is five frames.
+    fn player() -> (Producer<f32>, Arc<Shared>, Player) {
+        let (writer, ring) = RingBuffer::new(64);
+        let shared = Arc::new(Shared::default());
+        let player = Player::new(ring, Arc::clone(&shared), 1_000.0);
+        (writer, shared, player)
+    }
+
+    fn played(player: &mut Player, frames: usize, delay: u64) -> Vec<f32> {
+        let mut out = vec![9.0; 2 * frames];
+        player.fill(&mut out, 2, delay, |x| x);
+        assert!(out.chunks(2).all(|frame| frame[0] == frame[1]));
+        out.into_iter().step_by(2).collect()
+    }
+
+    fn near(played: &[f32], wanted: &[f32]) {
+        let close = |(a, b): (&f32, &f32)| (a - b).abs() < 1e-6;
+        assert!(played.iter().zip(wanted).all(close), "{played:?}");
+    }
+
+    #[test]
+    fn a_gap_fades_and_is_counted_once() {
+        let (mut writer, shared, mut player) = player();
+        writer.push_entire_slice(&[0.5, 1.0]).unwrap();
+        let faded = [0.5, 1.0, 0.8, 0.6, 0.4, 0.2, 0.0, 0.0];
+        near(&played(&mut player, 8, 0), &faded);
+        writer.push_entire_slice(&[1.0; 7]).unwrap();
+        near(
+            &played(&mut player, 7, 0),
+            &[0.2, 0.4, 0.6, 0.8, 1.0, 1.0, 1.0],
+        );
+        let counts = (
+            shared.underruns.load(Ordering::Relaxed),
+            shared.taken.load(Ordering::Relaxed),
+        );
+        assert_eq!(counts, (1, 9));
+    }
+
+    #[test]
+    fn the_end_is_no_gap_and_is_silent_when_it_has_come_out() {
+        let (mut writer, shared, mut player) = player();
+        writer.push_entire_slice(&[0.25, 0.0]).unwrap();
+        shared.wish(Wish::Drain);
+        near(&played(&mut player, 10, 3), &[0.25, 0.0, 0.0]);
+        assert!(!shared.silent.load(Ordering::Relaxed));
+        played(&mut player, 1, 9);
+        assert!(
+            !shared.silent.load(Ordering::Relaxed),
+            "nine frames are under way"
+        );
+        played(&mut player, 1, 3);
+        assert!(shared.silent.load(Ordering::Relaxed));
+        assert_eq!(shared.underruns.load(Ordering::Relaxed), 0);
+    }
+
+    #[test]
+    fn a_stop_fades_without_what_waits() {
+        let (mut writer, shared, mut player) = player();
+        writer.push_entire_slice(&[1.0; 40]).unwrap();
+        near(&played(&mut player, 1, 0), &[1.0]);
+        shared.wish(Wish::Stop);
+        near(
+            &played(&mut player, 7, 0),
+            &[0.8, 0.6, 0.4, 0.2, 0.0, 0.0, 0.0],
+        );
+        assert_eq!(shared.taken.load(Ordering::Relaxed), 1);
+    }
+}

@@ -1,0 +1,226 @@
+//! An open sound card: the writer's side.
+
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use cpal::traits::{DeviceTrait, StreamTrait};
+use cpal::{ErrorKind, FromSample, OutputCallbackInfo, SampleFormat, SizedSample, StreamConfig};
+use htex_device::{Device, DeviceError, Status, StreamFormat};
+use rtrb::{Producer, RingBuffer};
+
+use crate::card::Card;
+use crate::player::{Player, Shared, Wish};
+
+/// Between two looks for room.
+const LOOK: Duration = Duration::from_millis(2);
+/// After this long without a call from the card, it is taken to stand still.
+const STILL: Duration = Duration::from_secs(2);
+/// How far above full scale a sample still counts as full scale: rounding to f32.
+const ROUNDING: f32 = 1e-6;
+
+pub(crate) struct Sound {
+    name: String,
+    rate_hz: f64,
+    ring: Producer<f32>,
+    shared: Arc<Shared>,
+    /// None after the end.
+    stream: Option<cpal::Stream>,
+    playing: bool,
+    /// What the card's thread says went wrong.
+    failure: Arc<Mutex<Option<String>>>,
+    written: u64,
+    peak: f64,
+}
+
+impl Sound {
+    pub(crate) fn open(
+        card: &Card,
+        buffer_s: f64,
+        format: &StreamFormat,
+    ) -> Result<Self, DeviceError> {
+        let (config, sample_format) = card.config(format.rate_hz)?;
+        let buffered = (buffer_s * format.rate_hz) as usize;
+        let (ring, samples) =
+            RingBuffer::new(buffered.max(2 * format.block_frames as usize).max(2));
+        let shared = Arc::new(Shared::default());
+        let player = Player::new(samples, Arc::clone(&shared), format.rate_hz);
+        let failure = Arc::new(Mutex::new(None));
+        let report = reporter(Arc::clone(&shared), Arc::clone(&failure));
+        let build = match sample_format {
+            SampleFormat::I32 => build::<i32>,
+            SampleFormat::I16 => build::<i16>,
+            SampleFormat::U8 => build::<u8>,
+            _ => build::<f32>,
+        };
+        let stream = build(&card.device, config, player, Box::new(report));
+        Ok(Self {
+            name: card.name.clone(),
+            rate_hz: format.rate_hz,
+            ring,
+            shared,
+            stream: Some(stream.map_err(|error| failed(&card.name, error.to_string()))?),
+            playing: false,
+            failure,
+            written: 0,
+            peak: 0.0,
+        })
+    }
+
+    /// Lets the card's thread run.
+    fn play(&mut self) -> Result<(), DeviceError> {
+        if let (false, Some(stream)) = (self.playing, &self.stream) {
+            let played = stream.play();
+            played.map_err(|error| failed(&self.name, error.to_string()))?;
+            self.playing = true;
+        }
+        Ok(())
+    }
+
+    fn usable(&self) -> Result<(), DeviceError> {
+        let mut failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
+        match failure.take() {
+            Some(what) => Err(failed(&self.name, what)),
+            None if self.stream.is_none() => Err(DeviceError::Closed(self.name.clone())),
+            None => Ok(()),
+        }
+    }
+
+    fn check(&mut self, samples: &[f32]) -> Result<(), DeviceError> {
+        let within = |x: &f32| x.abs() <= 1.0 + ROUNDING;
+        let Some(at) = samples.iter().position(|x| !within(x)) else {
+            return Ok(());
+        };
+        let frame = self.written + at as u64;
+        self.end(Wish::Stop)?;
+        Err(DeviceError::OverLimit {
+            frame,
+            value: f64::from(samples[at]),
+            limit: 1.0,
+            unit: "FS",
+        })
+    }
+
+    /// Ends playback, and closes the card when the last sound has left it.
+    fn end(&mut self, wish: Wish) -> Result<(), DeviceError> {
+        self.shared.wish(wish);
+        let ended = self.wait_for_silence();
+        self.stream = None;
+        ended
+    }
+
+    fn wait_for_silence(&self) -> Result<(), DeviceError> {
+        let (mut calls, mut since) = (0, Instant::now());
+        while self.playing && !self.shared.silent.load(Ordering::Acquire) {
+            self.usable()?;
+            let now = self.shared.calls.load(Ordering::Acquire);
+            if now != calls {
+                (calls, since) = (now, Instant::now());
+            } else if since.elapsed() > STILL {
+                return Err(failed(&self.name, "it asks for no samples".to_owned()));
+            }
+            sleep(LOOK);
+        }
+        Ok(())
+    }
+}
+
+impl Device for Sound {
+    fn write(&mut self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError> {
+        let since = Instant::now();
+        self.usable()?;
+        self.check(samples)?;
+        let mut left = samples;
+        loop {
+            self.usable()?;
+            let (pushed, rest) = self.ring.push_partial_slice(left);
+            let peak = pushed.iter().fold(0.0f32, |peak, x| peak.max(x.abs()));
+            self.peak = self.peak.max(f64::from(peak));
+            self.written += pushed.len() as u64;
+            left = rest;
+            // Half a buffer is kept, however the writer is paced.
+            if 2 * self.ring.slots() <= self.ring.buffer().capacity() {
+                self.play()?;
+            }
+            let time = timeout.saturating_sub(since.elapsed());
+            if left.is_empty() || time.is_zero() {
+                return Ok(samples.len() - left.len());
+            }
+            sleep(LOOK.min(time));
+        }
+    }
+
+    fn status(&self) -> Status {
+        let taken = self.shared.taken.load(Ordering::Relaxed);
+        let delay = match &self.stream {
+            Some(_) => self.shared.delay.load(Ordering::Relaxed),
+            None => 0,
+        };
+        Status {
+            frames_written: self.written,
+            frames_played: taken.saturating_sub(delay),
+            underruns: self.shared.underruns.load(Ordering::Relaxed),
+            latency_s: (self.written.saturating_sub(taken) + delay) as f64 / self.rate_hz,
+            peak: self.peak,
+        }
+    }
+
+    fn finish(&mut self) -> Result<(), DeviceError> {
+        self.usable()?;
+        // The end is known before the card's thread may find the ring empty.
+        self.shared.wish(Wish::Drain);
+        if self.written > 0 {
+            self.play()?;
+        }
+        self.end(Wish::Drain)
+    }
+}
+
+impl Drop for Sound {
+    fn drop(&mut self) {
+        if self.stream.is_some() {
+            let _ = self.end(Wish::Stop);
+        }
+    }
+}
+
+/// What is done with the errors of the card's thread: gaps are counted, what it goes on after is
+/// left alone, the rest is told.
+fn reporter(
+    shared: Arc<Shared>,
+    failure: Arc<Mutex<Option<String>>>,
+) -> impl FnMut(cpal::Error) + Send + 'static {
+    move |error| match error.kind() {
+        ErrorKind::Xrun => {
+            shared.underruns.fetch_add(1, Ordering::Relaxed);
+        }
+        ErrorKind::DeviceChanged | ErrorKind::RealtimeDenied => {}
+        _ => {
+            let mut failure = failure.lock().unwrap_or_else(PoisonError::into_inner);
+            *failure = Some(error.to_string());
+        }
+    }
+}
+
+fn build<T: SizedSample + FromSample<f32>>(
+    device: &cpal::Device,
+    config: StreamConfig,
+    mut player: Player,
+    report: Box<dyn FnMut(cpal::Error) + Send>,
+) -> Result<cpal::Stream, cpal::Error> {
+    let (channels, rate_hz) = (usize::from(config.channels), f64::from(config.sample_rate));
+    let fill = move |out: &mut [T], info: &OutputCallbackInfo| {
+        let at = info.timestamp();
+        let delay = at.playback.duration_since(at.callback).as_secs_f64() * rate_hz;
+        player.fill(out, channels, delay as u64, T::from_sample);
+    };
+    device.build_output_stream(config, fill, report, None)
+}
+
+fn failed(name: &str, what: String) -> DeviceError {
+    DeviceError::Failed {
+        device: name.to_owned(),
+        what,
+    }
+}

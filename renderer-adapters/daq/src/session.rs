@@ -58,6 +58,7 @@ impl Session {
     /// Takes the samples that fit now.
     pub(crate) fn write(&mut self, samples: &[f32]) -> Result<usize, DeviceError> {
         self.usable()?;
+        let samples = &samples[..samples.len().min(self.capacity)];
         let volts = self.checked(samples)?;
         let Some(first_v) = volts.first() else {
             return Ok(0);

@@ -12,6 +12,8 @@ pub(crate) enum Failure {
     Recording(#[from] htex_author::read::ReadError),
     #[error(transparent)]
     Model(#[from] htex_host::HostError),
+    #[error(transparent)]
+    Device(#[from] htex_device::DeviceError),
     #[error("{file}: {error}")]
     Asset { file: String, error: htex::Error },
     #[error("cannot read {file}: {error}")]
@@ -28,10 +30,12 @@ pub(crate) enum Failure {
 impl Failure {
     /// 2 for wrong usage, else 1.
     pub(crate) fn exit_code(&self) -> ExitCode {
+        use htex_device::DeviceError::{Rate, Setting, Unknown};
         use htex_host::HostError::{Option, UnknownModel};
         match self {
             Self::Usage(_)
             | Self::Model(Option { .. } | UnknownModel { .. })
+            | Self::Device(Setting { .. } | Rate { .. } | Unknown { .. })
             | Self::Asset {
                 error: htex::Error::Model(UnknownModel { .. }),
                 ..

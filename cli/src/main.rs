@@ -3,6 +3,7 @@
 
 mod assets;
 mod commands;
+mod devices;
 mod failure;
 mod models;
 mod output;

@@ -2,6 +2,7 @@
 
 mod compare;
 mod demo;
+mod device;
 mod explain;
 mod fit;
 mod info;
@@ -32,6 +33,7 @@ pub(crate) enum Command {
     Compare(compare::Compare),
     Schema(schema::Schema),
     Plugin(plugin::Plugin),
+    Device(device::Device),
 }
 
 impl Command {
@@ -49,6 +51,7 @@ impl Command {
             Self::Compare(args) => args.run(),
             Self::Schema(args) => args.run(),
             Self::Plugin(args) => args.run(),
+            Self::Device(args) => args.run(),
         }
     }
 }

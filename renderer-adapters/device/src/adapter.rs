@@ -2,6 +2,10 @@
 
 use std::time::Duration;
 
+use crate::abi::{
+    STATUS_FRAMES_PLAYED, STATUS_FRAMES_WRITTEN, STATUS_LATENCY_S, STATUS_NUMBERS, STATUS_PEAK,
+    STATUS_UNDERRUNS,
+};
 use crate::{Capabilities, Descriptor, DeviceError, Endpoint, Settings};
 
 /// A family of devices.
@@ -77,4 +81,29 @@ pub struct Status {
     pub latency_s: f64,
     /// Largest magnitude written, in the device's unit.
     pub peak: f64,
+}
+
+/// As the numbers cross the ABI; counts are exact below 2⁵³.
+impl From<Status> for [f64; STATUS_NUMBERS] {
+    fn from(status: Status) -> Self {
+        let mut numbers = [0.0; STATUS_NUMBERS];
+        numbers[STATUS_FRAMES_WRITTEN] = status.frames_written as f64;
+        numbers[STATUS_FRAMES_PLAYED] = status.frames_played as f64;
+        numbers[STATUS_UNDERRUNS] = status.underruns as f64;
+        numbers[STATUS_LATENCY_S] = status.latency_s;
+        numbers[STATUS_PEAK] = status.peak;
+        numbers
+    }
+}
+
+impl From<[f64; STATUS_NUMBERS]> for Status {
+    fn from(numbers: [f64; STATUS_NUMBERS]) -> Self {
+        Self {
+            frames_written: numbers[STATUS_FRAMES_WRITTEN] as u64,
+            frames_played: numbers[STATUS_FRAMES_PLAYED] as u64,
+            underruns: numbers[STATUS_UNDERRUNS] as u64,
+            latency_s: numbers[STATUS_LATENCY_S],
+            peak: numbers[STATUS_PEAK],
+        }
+    }
 }

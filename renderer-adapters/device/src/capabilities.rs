@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::DeviceError;
+use crate::abi::{MAX_BLOCK_FRAMES, MAX_RATE_HZ, MIN_RATE_HZ};
+
 /// What a device can do; crosses the ABI as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Capabilities {
@@ -25,6 +28,60 @@ pub struct Capabilities {
     pub paced: bool,
     /// Frames a block is best made of.
     pub block_frames: u32,
+}
+
+impl Capabilities {
+    /// Whether these are numbers a device can have, and agree with each other.
+    ///
+    /// # Errors
+    /// A sentence that says what is wrong.
+    pub fn check(&self) -> Result<(), String> {
+        self.rates.check()?;
+        if !self.rates.has(self.default_rate_hz) {
+            let rate_hz = self.default_rate_hz;
+            return Err(format!(
+                "the default rate of {rate_hz} Hz is none of its rates"
+            ));
+        }
+        if self.quantity == Quantity::DisplayVoltage && self.limit.is_none() {
+            return Err("a voltage without a limit".to_owned());
+        }
+        let numbers = [
+            ("limit", self.limit),
+            ("step", self.step),
+            ("carrier_hz", self.carrier_hz),
+        ];
+        for (name, number) in numbers {
+            if number.is_some_and(|x| !(x.is_finite() && x > 0.0)) {
+                return Err(format!("`{name}` must be finite and greater than 0"));
+            }
+        }
+        if !(1..=MAX_BLOCK_FRAMES).contains(&self.block_frames) {
+            return Err(format!("`block_frames` must be 1 to {MAX_BLOCK_FRAMES}"));
+        }
+        Ok(())
+    }
+
+    /// The error of the first sample that is over the limit or not a number; `first_frame` is the
+    /// index of the first of `samples`. The limit is compared as the `f32` nearest to it.
+    ///
+    /// # Errors
+    /// [`DeviceError::OverLimit`].
+    pub fn check_samples(&self, samples: &[f32], first_frame: u64) -> Result<(), DeviceError> {
+        let limit = self.limit.map_or(f32::MAX, |limit| limit as f32);
+        let over = |sample: &f32| !(0.0..=limit).contains(&sample.abs());
+        // No early end: the loop is then one of vectors.
+        if !samples.iter().fold(false, |any, sample| any | over(sample)) {
+            return Ok(());
+        }
+        let at = samples.iter().position(over).unwrap_or_default();
+        Err(DeviceError::OverLimit {
+            frame: first_frame + at as u64,
+            value: f64::from(samples[at]),
+            limit: self.limit.unwrap_or(f64::from(f32::MAX)),
+            unit: self.quantity.unit(),
+        })
+    }
 }
 
 /// What a device's samples mean.
@@ -73,6 +130,20 @@ impl Rates {
             Self::Range { min_hz, max_hz } => (*min_hz..=*max_hz).contains(&rate_hz),
         }
     }
+
+    fn check(&self) -> Result<(), String> {
+        let (all, ascending) = match self {
+            Self::List(all) => (all.clone(), all.is_sorted_by(|a, b| a < b)),
+            Self::Range { min_hz, max_hz } => (vec![*min_hz, *max_hz], min_hz <= max_hz),
+        };
+        let sane = |hz: &f64| (MIN_RATE_HZ..=MAX_RATE_HZ).contains(hz);
+        if all.is_empty() || !ascending || !all.iter().all(sane) {
+            return Err(format!(
+                "rates must ascend, from {MIN_RATE_HZ} to {MAX_RATE_HZ} Hz, and there must be one"
+            ));
+        }
+        Ok(())
+    }
 }
 
 impl std::fmt::Display for Rates {
@@ -84,5 +155,67 @@ impl std::fmt::Display for Rates {
             }
             Self::Range { min_hz, max_hz } => write!(f, "{min_hz} to {max_hz} Hz"),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sane() -> Capabilities {
+        Capabilities {
+            quantity: Quantity::LateralForce,
+            rates: Rates::List(vec![8000.0, 48_000.0]),
+            default_rate_hz: 8000.0,
+            limit: Some(0.1),
+            step: None,
+            carrier_hz: None,
+            paced: false,
+            block_frames: 64,
+        }
+    }
+
+    #[test]
+    fn contradictions_are_found() {
+        assert_eq!(sane().check(), Ok(()));
+        let wrong: [fn(&mut Capabilities); 8] = [
+            |c| c.default_rate_hz = 9000.0,
+            |c| c.rates = Rates::List(vec![]),
+            |c| c.rates = Rates::List(vec![8000.0, 8000.0]),
+            |c| {
+                c.rates = Rates::Range {
+                    min_hz: f64::NAN,
+                    max_hz: 1e4,
+                }
+            },
+            |c| (c.quantity, c.limit) = (Quantity::DisplayVoltage, None),
+            |c| c.limit = Some(f64::INFINITY),
+            |c| c.step = Some(0.0),
+            |c| c.block_frames = 0,
+        ];
+        for (i, break_it) in wrong.iter().enumerate() {
+            let mut broken = sane();
+            break_it(&mut broken);
+            assert!(broken.check().is_err(), "{i}");
+        }
+    }
+
+    #[test]
+    fn the_first_sample_over_the_limit_is_named() {
+        // 0.1 as f32 is a little more than 0.1, and is allowed.
+        assert_eq!(sane().check_samples(&[0.1, -0.1], 7), Ok(()));
+        for bad in [0.1001, -0.2, f32::NAN, f32::INFINITY] {
+            let error = sane().check_samples(&[0.0, bad, bad], 7);
+            assert!(matches!(
+                error,
+                Err(DeviceError::OverLimit { frame: 8, .. })
+            ));
+        }
+        let unlimited = Capabilities {
+            limit: None,
+            ..sane()
+        };
+        assert_eq!(unlimited.check_samples(&[1e30], 0), Ok(()));
+        assert!(unlimited.check_samples(&[f32::NAN], 0).is_err());
     }
 }

@@ -4,6 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::Settings;
+use crate::abi::MAX_SETTINGS;
+
 /// An adapter's description; crosses the ABI as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Descriptor {
@@ -84,5 +87,91 @@ impl Descriptor {
     /// The last part of the id: the name used on command lines and in scenes.
     pub fn short_name(&self) -> &str {
         self.id.rsplit('.').next().unwrap_or(&self.id)
+    }
+
+    /// Whether the description makes sense: names, ranges, defaults and profiles.
+    ///
+    /// # Errors
+    /// A sentence that says what is wrong.
+    pub fn check(&self) -> Result<(), String> {
+        check_id(&self.id)?;
+        semver::Version::parse(&self.version)
+            .map_err(|_| format!("`{}` is not a semantic version", self.version))?;
+        if self.name.trim().is_empty() || self.summary.trim().is_empty() {
+            return Err("`name` and `summary` must say something".to_owned());
+        }
+        if self.settings.len().max(self.profiles.len()) > MAX_SETTINGS {
+            return Err(format!(
+                "at most {MAX_SETTINGS} settings and profiles are allowed"
+            ));
+        }
+        self.settings.iter().try_for_each(Setting::check)?;
+        let profiles = self.profiles.iter().map(|p| p.name.as_str());
+        no_two_alike("settings", self.settings.iter().map(|s| s.name.as_str()))?;
+        no_two_alike("profiles", profiles)?;
+        self.profiles.iter().try_for_each(|p| self.check_profile(p))
+    }
+
+    /// What a profile leaves open must be given beside it; what it fixes must be allowed.
+    fn check_profile(&self, profile: &Profile) -> Result<(), String> {
+        let wrong = |what: String| Err(format!("profile `{}`: {what}", profile.name));
+        for (name, value) in &profile.settings {
+            let Some(setting) = self.settings.iter().find(|s| s.name == *name) else {
+                return wrong(format!("there is no setting `{name}`"));
+            };
+            if let Err(error) = crate::settings::check(setting, value) {
+                return wrong(error.to_string());
+            }
+        }
+        Ok(())
+    }
+
+    /// The settings of a profile, or of none, where nothing else must be given.
+    pub fn settings(&self, profile: Option<&str>) -> Option<Settings> {
+        Settings::resolve(self, profile, &BTreeMap::new()).ok()
+    }
+}
+
+impl Setting {
+    fn check(&self) -> Result<(), String> {
+        let Self { name, kind, .. } = self;
+        let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_';
+        if name.is_empty() || !name.bytes().all(plain) {
+            return Err(format!("setting `{name}`: names are of a-z, 0-9 and _"));
+        }
+        match kind {
+            SettingKind::Number { min, max }
+                if !(min.is_finite() && max.is_finite() && min <= max) =>
+            {
+                return Err(format!("setting `{name}` has the range {min} to {max}"));
+            }
+            SettingKind::Choice { values } if values.is_empty() => {
+                return Err(format!("setting `{name}` has nothing to choose from"));
+            }
+            _ => {}
+        }
+        let default = self.default.as_deref();
+        let checked = default.map_or(Ok(()), |value| crate::settings::check(self, value));
+        checked.map_err(|error| format!("the default: {error}"))
+    }
+}
+
+fn check_id(id: &str) -> Result<(), String> {
+    let part = |part: &str| {
+        let allowed = |b: u8| b.is_ascii_alphanumeric() || b == b'_' || b == b'-';
+        !part.is_empty() && part.bytes().all(allowed)
+    };
+    if id.split('.').count() >= 3 && id.split('.').all(part) {
+        return Ok(());
+    }
+    Err(format!("`{id}` is not a reverse-DNS id"))
+}
+
+fn no_two_alike<'a>(what: &str, names: impl Iterator<Item = &'a str>) -> Result<(), String> {
+    let mut names: Vec<&str> = names.collect();
+    names.sort_unstable();
+    match names.windows(2).find(|pair| pair[0] == pair[1]) {
+        Some(pair) => Err(format!("two {what} are named `{}`", pair[0])),
+        None => Ok(()),
     }
 }

@@ -24,6 +24,9 @@ pub enum DeviceError {
     /// A driver is not installed, or no such device is connected.
     #[error("{0}")]
     Missing(String),
+    /// The device is there, and somebody has it already.
+    #[error("{0}")]
+    Busy(String),
     /// A sample is beyond the device's limit or not a number; the output is at zero.
     #[error(
         "sample {frame} is {value} {unit}, and the limit is {limit} {unit}; the output is at zero"
@@ -66,6 +69,14 @@ pub enum DeviceError {
         path: String,
         /// What the system said.
         what: String,
+    },
+    /// No device of this name is known.
+    #[error("no device `{wanted}`; there are {known}")]
+    Unknown {
+        /// What was asked for.
+        wanted: String,
+        /// What there is.
+        known: String,
     },
     /// A library is no device of this ABI, or breaks it.
     #[error("{library}: {what}")]

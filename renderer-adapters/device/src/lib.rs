@@ -3,15 +3,29 @@
 //! An [`Adapter`] is a family of devices; [`Adapter::open`] makes a [`Device`]. A device says what
 //! it can do ([`Capabilities`]) and refuses what would harm: its limits hold whatever is asked.
 //! Nothing here knows what a texture is.
+//!
+//! An adapter is built in, or a native library behind the flat C functions of [`abi`]
+//! ([`NativeAdapter`]); [`Devices`] finds both. A Rust author implements the traits and says
+//! [`export_device!`].
 
+pub mod abi;
 mod adapter;
 mod capabilities;
+mod crossing;
 mod descriptor;
+mod devices;
 mod error;
+mod export;
+mod handles;
+mod library;
+mod native;
 mod settings;
+pub mod shim;
 
 pub use adapter::{Adapter, Device, Status, StreamFormat};
 pub use capabilities::{Capabilities, Quantity, Rates};
 pub use descriptor::{Descriptor, Endpoint, Profile, Setting, SettingKind};
+pub use devices::{DeviceNote, DeviceOrigin, DeviceSearch, Devices, KnownDevice};
 pub use error::DeviceError;
+pub use native::{NativeAdapter, NativeDevice};
 pub use settings::Settings;

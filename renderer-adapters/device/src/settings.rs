@@ -56,6 +56,33 @@ impl Settings {
     }
 }
 
+/// How settings cross the ABI.
+impl Settings {
+    /// One line a setting, `name=value`, in the order of the descriptor.
+    pub fn to_lines(&self, descriptor: &Descriptor) -> String {
+        let settings = descriptor.settings.iter();
+        let line = |s: &Setting| format!("{}={}\n", s.name, self.text(&s.name));
+        settings.map(line).collect()
+    }
+
+    /// Reads the lines of [`Self::to_lines`]. A setting without a line has its default.
+    ///
+    /// # Errors
+    /// When a line is none or comes twice, and as [`Self::resolve`].
+    pub fn from_lines(descriptor: &Descriptor, lines: &str) -> Result<Self, DeviceError> {
+        let mut given = BTreeMap::new();
+        for line in lines.lines() {
+            let Some((name, value)) = line.split_once('=') else {
+                return Err(error(line, "a line is NAME=VALUE".to_owned()));
+            };
+            if given.insert(name.to_owned(), value.to_owned()).is_some() {
+                return Err(error(name, "it is given twice".to_owned()));
+            }
+        }
+        Self::resolve(descriptor, None, &given)
+    }
+}
+
 fn find<'a>(descriptor: &'a Descriptor, name: &str) -> Option<&'a Setting> {
     descriptor.settings.iter().find(|s| s.name == name)
 }
@@ -75,7 +102,8 @@ fn profile_settings(
     })
 }
 
-fn check(setting: &Setting, value: &str) -> Result<(), DeviceError> {
+/// Whether a setting may have this value.
+pub(crate) fn check(setting: &Setting, value: &str) -> Result<(), DeviceError> {
     let refuse = |what: String| Err(error(&setting.name, what));
     if value.contains(['\n', '\r']) {
         return refuse("a value is one line".to_owned());
@@ -147,6 +175,18 @@ mod tests {
             assert!(limit(None, &refused).is_err(), "{refused:?}");
         }
         assert!(limit(Some("large"), &none).is_err());
+        Ok(())
+    }
+
+    #[test]
+    fn lines_are_read_as_they_were_written() -> Result<(), DeviceError> {
+        let settings = Settings::from_lines(&descriptor(), "limit_v=12.5\n")?;
+        assert_eq!(settings.to_lines(&descriptor()), "limit_v=12.5\n");
+        let defaults = Settings::from_lines(&descriptor(), "")?;
+        assert_eq!(defaults.to_lines(&descriptor()), "limit_v=100\n");
+        for refused in ["limit_v", "limit_v=1\nlimit_v=1\n", "x=1\n", "limit_v=\n"] {
+            assert!(Settings::from_lines(&descriptor(), refused).is_err());
+        }
         Ok(())
     }
 }

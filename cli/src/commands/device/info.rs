@@ -1,0 +1,118 @@
+use std::process::ExitCode;
+
+use clap::Args;
+use htex_device::{Capabilities, Descriptor, Profile, Setting, SettingKind};
+use serde_json::json;
+
+use crate::devices::{DeviceArgs, SettingArgs};
+use crate::failure::Failure;
+use crate::output::{print, print_json};
+
+/// Show a device's settings and profiles, and what it can do when it is set so.
+#[derive(Args)]
+pub(crate) struct Info {
+    /// The device, by short name, id or library file
+    #[arg(value_name = "FILE|ID")]
+    device: String,
+
+    #[command(flatten)]
+    devices: DeviceArgs,
+
+    #[command(flatten)]
+    settings: SettingArgs,
+
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+impl Info {
+    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        let known = self.devices.named(&self.device)?;
+        let descriptor = known.descriptor();
+        let resolved = self.settings.resolve(known.adapter.as_ref());
+        let capabilities = resolved.and_then(|s| Ok(known.adapter.capabilities(&s)?));
+        if self.json {
+            let (can, problem) = match capabilities {
+                Ok(capabilities) => (Some(capabilities), None),
+                Err(problem) => (None, Some(problem.to_string())),
+            };
+            let origin = known.origin.to_string();
+            print_json(&json!({ "descriptor": descriptor, "origin": origin,
+                "capabilities": can, "problem": problem }))?;
+        } else {
+            let can = match capabilities {
+                Ok(capabilities) => can_text(&capabilities),
+                Err(problem) => format!("  not known, set so: {problem}\n"),
+            };
+            print(&format!("{}\ncan do\n{can}", descriptor_text(descriptor)))?;
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+fn descriptor_text(descriptor: &Descriptor) -> String {
+    let Descriptor {
+        id,
+        name,
+        version,
+        summary,
+        ..
+    } = descriptor;
+    let settings: String = descriptor.settings.iter().map(setting).collect();
+    let profiles: String = descriptor.profiles.iter().map(profile).collect();
+    let none = |text: String| match text.is_empty() {
+        true => "  none\n".to_owned(),
+        false => text,
+    };
+    let (settings, profiles) = (none(settings), none(profiles));
+    format!("{name} ({id} {version})\n{summary}\n\nsettings\n{settings}\nprofiles\n{profiles}")
+}
+
+fn setting(setting: &Setting) -> String {
+    let values = match &setting.kind {
+        SettingKind::Number { min, max } => format!("{min} to {max}"),
+        SettingKind::Choice { values } => values.join(" or "),
+        SettingKind::Path => "a file".to_owned(),
+        SettingKind::Text => "text".to_owned(),
+    };
+    let default = match &setting.default {
+        Some(default) => format!("[{default}]"),
+        None => "(must be given)".to_owned(),
+    };
+    let (name, description) = (&setting.name, &setting.description);
+    format!("  {name}: {values} {default}\n      {description}\n")
+}
+
+fn profile(profile: &Profile) -> String {
+    let fixed = profile.settings.iter();
+    let fixed: Vec<String> = fixed
+        .map(|(name, value)| format!("{name}={value}"))
+        .collect();
+    let (name, summary) = (&profile.name, &profile.summary);
+    format!("  {name}: {summary}\n      {}\n", fixed.join(" "))
+}
+
+fn can_text(can: &Capabilities) -> String {
+    let unit = can.quantity.unit();
+    let with_unit = |number: Option<f64>, unit: &str, none: &str| match number {
+        Some(number) => format!("{number} {unit}"),
+        None => none.to_owned(),
+    };
+    let quantity = serde_json::to_value(can.quantity).unwrap_or_default();
+    let clock = match can.paced {
+        true => "a clock takes the samples",
+        false => "as fast as samples are made",
+    };
+    format!(
+        "  quantity: {}, {unit}\n  rates: {}; best {} Hz\n  limit: {}\n  step: {}\n  carrier: {}\n  \
+         pace: {clock}\n  block: {} frames\n",
+        quantity.as_str().unwrap_or_default(),
+        can.rates,
+        can.default_rate_hz,
+        with_unit(can.limit, unit, "none"),
+        with_unit(can.step, unit, "none, floats"),
+        with_unit(can.carrier_hz, "Hz", "none"),
+        can.block_frames,
+    )
+}

@@ -1,0 +1,32 @@
+//! `htex device`: what there is to play on.
+
+mod info;
+mod list;
+
+use std::process::ExitCode;
+
+use clap::{Args, Subcommand};
+
+use crate::failure::Failure;
+
+/// List, inspect and check devices.
+#[derive(Args)]
+pub(crate) struct Device {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    List(list::List),
+    Info(info::Info),
+}
+
+impl Device {
+    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        match self.command {
+            Command::List(args) => args.run(),
+            Command::Info(args) => args.run(),
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! Arguments that say where devices come from and how they are set, shared by the commands that use
+//! them.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::Args;
+use htex_device::{
+    Adapter, DeviceOrigin, DeviceSearch, Devices, KnownDevice, NativeAdapter, Settings,
+};
+
+use crate::failure::Failure;
+use crate::output::warn;
+
+/// The adapters linked into this program, in the order in which they are shown.
+fn builtin() -> Vec<Arc<dyn Adapter>> {
+    vec![Arc::new(htex_device_file::FileAdapter)]
+}
+
+/// Where devices come from.
+#[derive(Args)]
+#[command(next_help_heading = "Devices")]
+pub(crate) struct DeviceArgs {
+    /// A device's native library (it runs with all your rights: load only what you trust); may be
+    /// given several times
+    #[arg(long, value_name = "FILE")]
+    device_file: Vec<PathBuf>,
+
+    /// A folder of such libraries, searched before HTEX_DEVICE_PATH and the user's own folder
+    #[arg(long, value_name = "DIR")]
+    device_dir: Vec<PathBuf>,
+}
+
+impl DeviceArgs {
+    /// The devices there are; what shadows what is told on standard error.
+    pub(crate) fn devices(&self) -> Result<Devices, Failure> {
+        let devices = self.devices_quietly()?;
+        let notes: Vec<String> = devices.notes().iter().map(ToString::to_string).collect();
+        warn(&notes);
+        Ok(devices)
+    }
+
+    /// As [`Self::devices`], without telling.
+    pub(crate) fn devices_quietly(&self) -> Result<Devices, Failure> {
+        let search = DeviceSearch {
+            files: self.device_file.clone(),
+            dirs: self.device_dir.clone(),
+            ..DeviceSearch::default()
+        };
+        Ok(Devices::search(builtin(), &search)?)
+    }
+
+    /// The device in a file, when there is one of this name; else that of this short name or id.
+    pub(crate) fn named(&self, name: &str) -> Result<KnownDevice, Failure> {
+        let file = Path::new(name);
+        if !file.is_file() {
+            return Ok(self.devices()?.find(name)?.clone());
+        }
+        Ok(KnownDevice {
+            adapter: Arc::new(NativeAdapter::load(file)?),
+            origin: DeviceOrigin::Library(file.to_owned()),
+        })
+    }
+}
+
+/// How a device is set.
+#[derive(Args)]
+#[command(next_help_heading = "Devices")]
+pub(crate) struct SettingArgs {
+    /// Settings that belong together, by their profile's name
+    #[arg(long, value_name = "NAME")]
+    profile: Option<String>,
+
+    /// A setting of the device, over its profile; may be given several times
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    settings: Vec<String>,
+}
+
+impl SettingArgs {
+    /// The profile's name.
+    pub(crate) fn profile(&self) -> Option<&str> {
+        self.profile.as_deref()
+    }
+
+    /// What was given.
+    pub(crate) fn given(&self) -> Result<BTreeMap<String, String>, Failure> {
+        let pair = |text: &String| {
+            let (name, value) = text
+                .split_once('=')
+                .ok_or_else(|| Failure::Usage(format!("--set {text}: it looks like NAME=VALUE")))?;
+            Ok((name.to_owned(), value.to_owned()))
+        };
+        self.settings.iter().map(pair).collect()
+    }
+
+    /// All settings of an adapter.
+    pub(crate) fn resolve(&self, adapter: &dyn Adapter) -> Result<Settings, Failure> {
+        let given = self.given()?;
+        let settings = Settings::resolve(adapter.descriptor(), self.profile(), &given)?;
+        Ok(settings)
+    }
+}

@@ -1,0 +1,94 @@
+//! Errors as they cross the ABI: a code and a text one way, an error again the other way.
+
+use crate::DeviceError;
+use crate::abi::Code;
+
+/// The code and the last-error text of an error.
+pub(crate) fn outgoing(error: &DeviceError) -> (Code, String) {
+    use DeviceError as E;
+    let text = match error {
+        E::Setting { name, what } => format!("{name}: {what}"),
+        E::Underflow { advice, .. } => advice.clone(),
+        E::File { path, what } => format!("{path}: {what}"),
+        E::Failed { what, .. } => what.clone(),
+        other => other.to_string(),
+    };
+    let code = match error {
+        E::Setting { .. } => Code::InvalidSetting,
+        E::Rate { .. } => Code::InvalidRate,
+        E::Missing(_) => Code::Missing,
+        E::Busy(_) => Code::Busy,
+        E::OverLimit { .. } => Code::OverLimit,
+        E::Underflow { .. } => Code::Underflow,
+        E::Closed(_) => Code::Closed,
+        E::File { .. } => Code::File,
+        E::Failed { .. } | E::Unknown { .. } | E::Abi { .. } => Code::Failed,
+    };
+    (code, text)
+}
+
+/// The error of a code and a text, but for what the caller alone knows: `OverLimit`, `Underflow`
+/// and `InvalidRate` are failures here.
+pub(crate) fn incoming(code: Code, text: String, device: &str, library: &str) -> DeviceError {
+    match code {
+        Code::InvalidSetting => {
+            let (name, what) = parted(text);
+            DeviceError::Setting { name, what }
+        }
+        Code::File => {
+            let (path, what) = parted(text);
+            DeviceError::File { path, what }
+        }
+        Code::Missing => DeviceError::Missing(text),
+        Code::Busy => DeviceError::Busy(text),
+        Code::Closed => DeviceError::Closed(device.to_owned()),
+        Code::InvalidArgument | Code::BadHandle => DeviceError::Abi {
+            library: library.to_owned(),
+            what: text,
+        },
+        _ => DeviceError::Failed {
+            device: device.to_owned(),
+            what: text,
+        },
+    }
+}
+
+/// What stands before the first `: ` and behind it.
+fn parted(text: String) -> (String, String) {
+    match text.split_once(": ") {
+        Some((before, behind)) => (before.to_owned(), behind.to_owned()),
+        None => (String::new(), text),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_come_out_as_they_went_in() {
+        let text = || "it is so".to_owned();
+        let errors = [
+            DeviceError::Setting {
+                name: "limit_v".to_owned(),
+                what: text(),
+            },
+            DeviceError::Missing(text()),
+            DeviceError::Busy(text()),
+            DeviceError::Closed("Rig".to_owned()),
+            DeviceError::File {
+                path: "a/b.wav".to_owned(),
+                what: "disk full: 3 bytes left".to_owned(),
+            },
+            DeviceError::Failed {
+                device: "Rig".to_owned(),
+                what: text(),
+            },
+        ];
+        for error in errors {
+            let (code, text) = outgoing(&error);
+            assert_eq!(Code::from_answer(code as i64), code);
+            assert_eq!(incoming(code, text, "Rig", "rig.so"), error);
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! Native libraries: loaded once, never unloaded, called through their table.
+//!
+//! A native library runs with all the rights of this program: which ones to load is the user's
+//! decision. None is ever unloaded, since open devices point into them.
+
+use std::path::Path;
+
+use crate::DeviceError;
+use crate::abi::{
+    ABI_MAJOR, ABI_MARKER, AbiVersion, CapabilitiesJson, CloseFn, Code, DescriptorJson,
+    DeviceTable, EndpointsJson, ExtensionFn, FinishFn, LastError, MAX_TEXT_BYTES, OpenFn, StatusFn,
+    WriteFn,
+};
+
+/// Room for a text at the first call, bytes.
+const USUAL_TEXT: usize = 16_384;
+/// Calls until a text that changes its length must have kept it.
+const TRIES: usize = 8;
+
+/// A library's name and its functions.
+#[derive(Clone)]
+pub(crate) struct Library {
+    pub(crate) name: String,
+    pub(crate) table: &'static DeviceTable,
+}
+
+/// What a call answered in place of a result.
+pub(crate) enum Trouble {
+    /// A code, and the text behind it.
+    Told(Code, String),
+    /// Something that no device may answer.
+    Broken(String),
+}
+
+impl Library {
+    /// Loads a library and fills a table from its symbols.
+    pub(crate) fn load(path: &Path) -> Result<Self, DeviceError> {
+        let name = path.display().to_string();
+        let error = |what: String| DeviceError::Abi {
+            library: name.clone(),
+            what,
+        };
+        // SAFETY: running a library's initialisers is what the user asked for by naming it.
+        let library =
+            unsafe { libloading::Library::new(path) }.map_err(|e| error(e.to_string()))?;
+        // Never unloaded: see above.
+        let library: &'static libloading::Library = Box::leak(Box::new(library));
+        // SAFETY: the marker comes first, and says that the other symbols have these types.
+        let abi_version: AbiVersion =
+            unsafe { symbol(library, "htex_device_abi_version", &error)? };
+        check_marker(abi_version()).map_err(&error)?;
+        // SAFETY: a library with this marker exports these names with these types.
+        let table = unsafe {
+            DeviceTable {
+                abi_version,
+                descriptor: symbol::<DescriptorJson>(library, "htex_device_descriptor", &error)?,
+                last_error: symbol::<LastError>(library, "htex_device_last_error", &error)?,
+                endpoints: symbol::<EndpointsJson>(library, "htex_device_endpoints", &error)?,
+                capabilities: symbol::<CapabilitiesJson>(
+                    library,
+                    "htex_device_capabilities",
+                    &error,
+                )?,
+                open: symbol::<OpenFn>(library, "htex_device_open", &error)?,
+                write: symbol::<WriteFn>(library, "htex_device_write", &error)?,
+                status: symbol::<StatusFn>(library, "htex_device_status", &error)?,
+                finish: symbol::<FinishFn>(library, "htex_device_finish", &error)?,
+                close: symbol::<CloseFn>(library, "htex_device_close", &error)?,
+                extension: symbol::<ExtensionFn>(library, "htex_device_extension", &error)?,
+            }
+        };
+        let table: &'static DeviceTable = Box::leak(Box::new(table));
+        Ok(Self { name, table })
+    }
+
+    /// Takes a table of this program.
+    pub(crate) fn of_table(name: &str, table: &'static DeviceTable) -> Result<Self, DeviceError> {
+        let library = Self {
+            name: name.to_owned(),
+            table,
+        };
+        check_marker((table.abi_version)()).map_err(|what| library.broken(what))?;
+        Ok(library)
+    }
+
+    /// Reads a text of a length not known beforehand, which may change between two calls.
+    pub(crate) fn text(
+        &self,
+        mut call: impl FnMut(*mut u8, usize) -> i64,
+    ) -> Result<String, Trouble> {
+        let mut bytes = vec![0; USUAL_TEXT];
+        for _ in 0..TRIES {
+            let len = self.count(call(bytes.as_mut_ptr(), bytes.len()))?;
+            if len > MAX_TEXT_BYTES {
+                let what = format!("a text of {len} bytes; {MAX_TEXT_BYTES} are allowed");
+                return Err(Trouble::Broken(what));
+            }
+            if len <= bytes.len() {
+                bytes.truncate(len);
+                return String::from_utf8(bytes).map_err(|e| Trouble::Broken(e.to_string()));
+            }
+            bytes.resize(len, 0);
+        }
+        Err(Trouble::Broken("a text that grows at each call".to_owned()))
+    }
+
+    /// A count, or the trouble that a negative answer stands for.
+    pub(crate) fn count(&self, answer: i64) -> Result<usize, Trouble> {
+        if answer < 0 {
+            return Err(Trouble::Told(Code::from_answer(answer), self.last_error()));
+        }
+        usize::try_from(answer).map_err(|_| Trouble::Broken(format!("it answered {answer}")))
+    }
+
+    /// The text of this thread's last error.
+    fn last_error(&self) -> String {
+        let mut bytes = vec![0; USUAL_TEXT];
+        // SAFETY: a live buffer of this length.
+        let len = unsafe { (self.table.last_error)(bytes.as_mut_ptr(), bytes.len()) };
+        bytes.truncate(usize::try_from(len).unwrap_or(0));
+        match String::from_utf8_lossy(&bytes) {
+            text if text.is_empty() => "no reason given".to_owned(),
+            text => text.into_owned(),
+        }
+    }
+
+    /// The error of an answer that no device may give.
+    pub(crate) fn broken(&self, what: impl Into<String>) -> DeviceError {
+        DeviceError::Abi {
+            library: self.name.clone(),
+            what: what.into(),
+        }
+    }
+}
+
+/// Refuses a library of another major version of the ABI, or of another ABI.
+fn check_marker(marker: u32) -> Result<(), String> {
+    if marker >> 8 == ABI_MARKER >> 8 {
+        return Ok(());
+    }
+    Err(format!(
+        "the marker {marker:#x} is none of device ABI {ABI_MAJOR}.x, which this host loads"
+    ))
+}
+
+/// The address of a symbol.
+///
+/// # Safety
+/// The symbol has the type `T`.
+unsafe fn symbol<T: Copy>(
+    library: &'static libloading::Library,
+    name: &str,
+    error: &impl Fn(String) -> DeviceError,
+) -> Result<T, DeviceError> {
+    // SAFETY: the caller's promise.
+    let found = unsafe { library.get::<T>(name) };
+    found
+        .map(|symbol| *symbol)
+        .map_err(|_| error(format!("the library has no `{name}`; it is no htex device")))
+}

@@ -1,0 +1,48 @@
+//! A device that is a file: what a finger would feel, or what a display would be driven with, as
+//! WAV, CSV, NPY or raw samples.
+//!
+//! Samples go as fast as they are made, through a buffer of fixed size, into a file beside the
+//! wanted one, which gets its name when the device is finished. A device that is dropped before
+//! leaves nothing behind.
+
+mod beside;
+mod describe;
+mod device;
+mod encoding;
+mod plan;
+mod sink;
+
+use htex_device::{Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint};
+use htex_device::{Settings, StreamFormat};
+
+use device::FileDevice;
+use plan::Plan;
+
+htex_device::export_device!(FileAdapter, symbols: "plugin");
+
+/// The adapter `org.htex.file`.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FileAdapter;
+
+impl Adapter for FileAdapter {
+    fn descriptor(&self) -> &Descriptor {
+        &describe::DESCRIPTOR
+    }
+
+    fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
+        Ok(Vec::new())
+    }
+
+    fn capabilities(&self, settings: &Settings) -> Result<Capabilities, DeviceError> {
+        Ok(Plan::new(settings)?.capabilities())
+    }
+
+    fn open(
+        &self,
+        settings: &Settings,
+        format: &StreamFormat,
+    ) -> Result<Box<dyn Device>, DeviceError> {
+        let device = FileDevice::create(&Plan::new(settings)?, format.rate_hz)?;
+        Ok(Box::new(device))
+    }
+}

@@ -1,0 +1,152 @@
+//! What the settings ask for, and whether that can be had.
+
+use std::path::{Path, PathBuf};
+
+use htex_device::{Capabilities, DeviceError, Quantity, Rates, Settings};
+
+use crate::encoding::Encoding;
+
+/// Lowest and highest rate, hertz.
+const RATES_HZ: (f64, f64) = (100.0, 1_000_000.0);
+/// The rate of friction recordings, hertz.
+const USUAL_RATE_HZ: f64 = 10_000.0;
+/// Samples a period of a carrier.
+const PER_PERIOD: f64 = 10.0;
+const BLOCK_FRAMES: u32 = 4_096;
+
+/// Kinds of file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Form {
+    Wav,
+    Csv,
+    Npy,
+    Raw,
+}
+
+/// A file to be written.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Plan {
+    pub(crate) path: PathBuf,
+    pub(crate) form: Form,
+    pub(crate) encoding: Encoding,
+    pub(crate) quantity: Quantity,
+    limit_v: Option<f64>,
+    carrier_hz: Option<f64>,
+}
+
+impl Plan {
+    pub(crate) fn new(settings: &Settings) -> Result<Self, DeviceError> {
+        let path = PathBuf::from(settings.text("path"));
+        let form = form(settings.text("format"), &path)?;
+        let quantity = match settings.text("quantity") {
+            "display_voltage" => Quantity::DisplayVoltage,
+            "sound" => Quantity::Sound,
+            _ => Quantity::LateralForce,
+        };
+        let plan = Self {
+            encoding: encoding(settings, form)?,
+            path,
+            form,
+            quantity,
+            limit_v: of_voltage(settings, quantity, "limit_v")?,
+            carrier_hz: of_voltage(settings, quantity, "carrier_hz")?,
+        };
+        if quantity == Quantity::DisplayVoltage && plan.limit_v.is_none() {
+            return refuse("limit_v", "a display_voltage must have a limit above 0 V");
+        }
+        Ok(plan)
+    }
+
+    pub(crate) fn capabilities(&self) -> Capabilities {
+        let integer = self.encoding.step_and_limit();
+        let limits = [integer.map(|(_, limit)| limit), self.limit_v];
+        let carried = self.carrier_hz.map_or(0.0, |hz| PER_PERIOD * hz);
+        Capabilities {
+            quantity: self.quantity,
+            rates: Rates::Range {
+                min_hz: RATES_HZ.0,
+                max_hz: RATES_HZ.1,
+            },
+            default_rate_hz: carried.clamp(USUAL_RATE_HZ, RATES_HZ.1),
+            limit: limits.into_iter().flatten().reduce(f64::min),
+            step: integer.map(|(step, _)| step),
+            carrier_hz: self.carrier_hz,
+            paced: false,
+            block_frames: BLOCK_FRAMES,
+        }
+    }
+
+    /// The rate, if files of this kind can have it.
+    pub(crate) fn check_rate(&self, rate_hz: f64) -> Result<(), DeviceError> {
+        let rates = self.capabilities().rates;
+        if !rates.has(rate_hz) {
+            return Err(DeviceError::Rate {
+                device: "File".to_owned(),
+                rate_hz,
+                rates: rates.to_string(),
+            });
+        }
+        if self.form == Form::Wav && rate_hz.fract() != 0.0 {
+            let what = format!("a WAV file has a whole rate, and {rate_hz} Hz is none");
+            return refuse("format", &what);
+        }
+        Ok(())
+    }
+}
+
+fn form(format: &str, path: &Path) -> Result<Form, DeviceError> {
+    let extension = path
+        .extension()
+        .and_then(|e| e.to_str())
+        .unwrap_or_default();
+    let extension = extension.to_ascii_lowercase();
+    let wanted = if format == "auto" { &extension } else { format };
+    match wanted {
+        "wav" => Ok(Form::Wav),
+        "csv" => Ok(Form::Csv),
+        "npy" => Ok(Form::Npy),
+        "raw" => Ok(Form::Raw),
+        _ => refuse(
+            "format",
+            "the file's extension is none of wav, csv, npy, raw; say which it is",
+        ),
+    }
+}
+
+fn encoding(settings: &Settings, form: Form) -> Result<Encoding, DeviceError> {
+    let full_scale = settings.number("full_scale");
+    match (settings.text("encoding"), form) {
+        (_, Form::Csv) if settings.text("encoding") != "f32" => refuse(
+            "encoding",
+            "a CSV holds the quantity in its unit: f32 it is",
+        ),
+        ("i24", Form::Npy) => refuse("encoding", "NPY has no i24; there are f32 and i16"),
+        ("i24", _) => Ok(Encoding::integer(24, full_scale)),
+        ("i16", _) => Ok(Encoding::integer(16, full_scale)),
+        _ if full_scale != 1.0 => refuse(
+            "full_scale",
+            "f32 holds the quantity in its unit; only i24 and i16 have another scale",
+        ),
+        _ => Ok(Encoding::F32),
+    }
+}
+
+/// A number that only a voltage has; 0 is none.
+fn of_voltage(
+    settings: &Settings,
+    quantity: Quantity,
+    name: &str,
+) -> Result<Option<f64>, DeviceError> {
+    let number = Some(settings.number(name)).filter(|number| *number > 0.0);
+    if number.is_some() && quantity != Quantity::DisplayVoltage {
+        return refuse(name, "only the quantity display_voltage has one");
+    }
+    Ok(number)
+}
+
+fn refuse<T>(name: &str, what: &str) -> Result<T, DeviceError> {
+    Err(DeviceError::Setting {
+        name: name.to_owned(),
+        what: what.to_owned(),
+    })
+}

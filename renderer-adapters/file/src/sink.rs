@@ -1,0 +1,203 @@
+//! The four kinds of file, each written as the samples come.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+
+use hound::{SampleFormat, WavSpec, WavWriter};
+use htex_device::Quantity;
+use npyz::WriterBuilder;
+
+use crate::encoding::{Encoding, code};
+use crate::plan::{Form, Plan};
+
+/// Bytes gathered before they are written.
+const BUFFER: usize = 1 << 16;
+/// Most bytes of samples a WAV file can hold: its sizes have 32 bits, and headers take some.
+const MAX_WAV_BYTES: u64 = u32::MAX as u64 - 128;
+
+/// A file that is being written.
+pub(crate) struct Sink {
+    form: Form,
+    encoding: Encoding,
+    rate_hz: f64,
+    frames: u64,
+    out: Out,
+}
+
+enum Out {
+    Wav(WavWriter<BufWriter<File>>),
+    Plain(BufWriter<File>),
+}
+
+impl Sink {
+    /// Writes what stands before the samples.
+    pub(crate) fn new(file: File, plan: &Plan, rate_hz: f64) -> io::Result<Self> {
+        let mut file = BufWriter::with_capacity(BUFFER, file);
+        let out = match plan.form {
+            Form::Wav => {
+                let spec = wav_spec(plan.encoding, rate_hz);
+                Out::Wav(WavWriter::new(file, spec).map_err(wav_error)?)
+            }
+            Form::Csv => {
+                writeln!(file, "t_s,{}", column(plan.quantity))?;
+                Out::Plain(file)
+            }
+            Form::Npy => {
+                file.write_all(&npy_header(plan.encoding, 0)?)?;
+                Out::Plain(file)
+            }
+            Form::Raw => Out::Plain(file),
+        };
+        Ok(Self {
+            form: plan.form,
+            encoding: plan.encoding,
+            rate_hz,
+            frames: 0,
+            out,
+        })
+    }
+
+    /// Writes samples, which the caller has checked.
+    pub(crate) fn write(&mut self, samples: &[f32]) -> io::Result<()> {
+        let after = self.frames + samples.len() as u64;
+        let (form, encoding, rate_hz) = (self.form, self.encoding, self.rate_hz);
+        match &mut self.out {
+            Out::Wav(wav) => {
+                check_wav_size(after, encoding, rate_hz)?;
+                write_wav(wav, encoding, samples).map_err(wav_error)?;
+            }
+            Out::Plain(out) if form == Form::Csv => {
+                for (i, sample) in samples.iter().enumerate() {
+                    let t_s = (self.frames + i as u64) as f64 / rate_hz;
+                    writeln!(out, "{t_s},{sample}")?;
+                }
+            }
+            Out::Plain(out) => write_bytes(out, encoding, samples)?,
+        }
+        self.frames = after;
+        Ok(())
+    }
+
+    /// Writes what is known at the end only, and all that was gathered.
+    pub(crate) fn end(self) -> io::Result<()> {
+        match self.out {
+            Out::Wav(wav) => wav.finalize().map_err(wav_error),
+            Out::Plain(mut out) => {
+                if self.form == Form::Npy {
+                    let header = npy_header(self.encoding, self.frames)?;
+                    out.seek(SeekFrom::Start(0))?;
+                    out.write_all(&header)?;
+                }
+                out.flush()
+            }
+        }
+    }
+}
+
+fn wav_spec(encoding: Encoding, rate_hz: f64) -> WavSpec {
+    WavSpec {
+        channels: 1,
+        // Whole, and at most a million: `Plan::check_rate`.
+        sample_rate: rate_hz as u32,
+        bits_per_sample: 8 * encoding.bytes(),
+        sample_format: match encoding {
+            Encoding::F32 => SampleFormat::Float,
+            Encoding::Integer { .. } => SampleFormat::Int,
+        },
+    }
+}
+
+fn write_wav(
+    wav: &mut WavWriter<BufWriter<File>>,
+    encoding: Encoding,
+    samples: &[f32],
+) -> hound::Result<()> {
+    let mut all = samples.iter();
+    match encoding {
+        Encoding::F32 => all.try_for_each(|&sample| wav.write_sample(sample)),
+        Encoding::Integer { step, .. } => {
+            all.try_for_each(|&sample| wav.write_sample(code(sample, step)))
+        }
+    }
+}
+
+fn check_wav_size(frames: u64, encoding: Encoding, rate_hz: f64) -> io::Result<()> {
+    let most = MAX_WAV_BYTES / u64::from(encoding.bytes());
+    if frames <= most {
+        return Ok(());
+    }
+    let hours = most as f64 / rate_hz / 3600.0;
+    Err(io::Error::other(format!(
+        "a WAV file holds at most 4 GiB, {hours:.1} h at this rate; write npy or raw"
+    )))
+}
+
+/// Little-endian, one behind the other.
+fn write_bytes(out: &mut impl Write, encoding: Encoding, samples: &[f32]) -> io::Result<()> {
+    let mut all = samples.iter();
+    match encoding {
+        Encoding::F32 => all.try_for_each(|sample| out.write_all(&sample.to_le_bytes())),
+        Encoding::Integer { step, .. } => {
+            let bytes = usize::from(encoding.bytes());
+            all.try_for_each(|&sample| out.write_all(&code(sample, step).to_le_bytes()[..bytes]))
+        }
+    }
+}
+
+/// A header for so many samples; it has the same length for any number.
+fn npy_header(encoding: Encoding, frames: u64) -> io::Result<Vec<u8>> {
+    let mut header = Vec::new();
+    let shape = [frames];
+    match encoding {
+        Encoding::F32 => npyz::WriteOptions::<f32>::new()
+            .default_dtype()
+            .shape(&shape)
+            .writer(&mut header)
+            .write_header_only()?,
+        Encoding::Integer { .. } => npyz::WriteOptions::<i16>::new()
+            .default_dtype()
+            .shape(&shape)
+            .writer(&mut header)
+            .write_header_only()?,
+    };
+    Ok(header)
+}
+
+fn column(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::LateralForce => "lateral_force_n",
+        Quantity::DisplayVoltage => "display_voltage_v",
+        Quantity::Sound => "sound",
+    }
+}
+
+fn wav_error(error: hound::Error) -> io::Error {
+    match error {
+        hound::Error::IoError(error) => error,
+        other => io::Error::other(other),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn npy_headers_have_one_length() -> io::Result<()> {
+        for encoding in [Encoding::F32, Encoding::integer(16, 1.0)] {
+            let lengths = [0, 1, 1 << 40, u64::MAX].map(|n| npy_header(encoding, n));
+            for header in lengths {
+                assert_eq!(header?.len(), 128);
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn a_wav_file_ends_before_four_gibibytes() {
+        let i16 = Encoding::integer(16, 1.0);
+        assert!(check_wav_size(2_147_483_583, i16, 1e4).is_ok());
+        assert!(check_wav_size(2_147_483_584, i16, 1e4).is_err());
+        assert!(check_wav_size(1 << 30, Encoding::F32, 1e4).is_err());
+    }
+}

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use crate::check_plugins::check_plugins;
 use crate::check_representation::check_representations;
+use crate::document::escape;
 use crate::manifest::{Band, Condition, LATERAL_FORCE, Manifest, NEWTON};
-use crate::manifest_json::escape;
 use crate::report::Findings;
 use crate::rules as rule;
 

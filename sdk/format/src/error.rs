@@ -91,7 +91,7 @@ pub enum WriteError {
 }
 
 /// The first errors of a list, in words.
-fn summary(findings: &[Finding]) -> String {
+pub fn summary(findings: &[Finding]) -> String {
     let errors = || findings.iter().filter(|f| f.severity == Severity::Error);
     let mut text: Vec<String> = errors().take(SHOWN).map(ToString::to_string).collect();
     let rest = errors().count().saturating_sub(SHOWN);

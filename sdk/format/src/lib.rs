@@ -10,6 +10,7 @@ mod check_manifest;
 mod check_plugins;
 mod check_representation;
 mod container;
+mod document;
 mod error;
 mod finding;
 mod limits;
@@ -26,15 +27,16 @@ mod zip_records;
 
 pub use asset::Asset;
 pub use block::round_parameters;
-pub use error::{ReadError, WriteError};
+pub use document::{Document, DocumentRules, Opened, escape};
+pub use error::{ReadError, WriteError, summary};
 pub use finding::{Finding, Severity};
 pub use limits::Limits;
 pub use manifest::{
     AtCondition, Band, Condition, Field, LATERAL_FORCE, Manifest, NEWTON, Plugin, Provenance,
     Quality, Reference, Representation, Signature, Source, Steps, Store, VERSION,
 };
-pub use page::{manifest_schema, validation_page};
+pub use page::{manifest_schema, rules_page, validation_page};
 pub use replace::{replace_file, write_file};
-pub use report::Report;
+pub use report::{Findings, Report};
 pub use rules::{RULES, Rule, explain};
 pub use validate::validate;

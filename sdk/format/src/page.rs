@@ -14,15 +14,17 @@ Generated from the table of rules in `sdk/format/src/rules.rs` by
 
 A finding has a code, a severity, a JSON pointer into the manifest (empty for the file as a whole)
 and a message. An asset is valid when no finding is an error. Codes never change their meaning.
-
-| code | severity | what was found |
-|---|---|---|
 ";
 
 /// The page that explains every rule: `spec/validation.md`.
 pub fn validation_page() -> String {
-    let mut page = HEAD.to_owned();
-    for rule in RULES {
+    rules_page(HEAD, RULES)
+}
+
+/// A page that explains rules: `head`, a table of all codes, then each rule.
+pub fn rules_page(head: &str, rules: &[Rule]) -> String {
+    let mut page = format!("{head}\n| code | severity | what was found |\n|---|---|---|\n");
+    for rule in rules {
         let anchor = rule.code.to_ascii_lowercase();
         let Rule {
             code,
@@ -35,7 +37,7 @@ pub fn validation_page() -> String {
             format_args!("| [{code}](#{anchor}) | {severity} | {summary} |\n"),
         );
     }
-    for rule in RULES {
+    for rule in rules {
         push(
             &mut page,
             format_args!(

@@ -17,16 +17,18 @@ pub struct Report {
     pub findings: Vec<Finding>,
 }
 
-/// Findings while they are collected.
+/// Findings while they are collected; the first hundred are kept.
 #[derive(Debug, Default)]
-pub(crate) struct Findings {
+pub struct Findings {
     kept: Vec<Finding>,
     dropped: usize,
     errors: bool,
 }
 
 impl Findings {
-    pub(crate) fn add(&mut self, rule: &Rule, pointer: impl Into<String>, message: String) {
+    /// Adds a finding: the rule that is broken, where (a JSON pointer; empty for the whole), and
+    /// what, where, and what to do.
+    pub fn add(&mut self, rule: &Rule, pointer: impl Into<String>, message: String) {
         self.errors |= rule.severity == Severity::Error;
         if self.kept.len() < KEPT {
             self.kept.push(finding(rule, pointer.into(), message));
@@ -36,7 +38,7 @@ impl Findings {
     }
 
     /// Adds the finding unless `holds`.
-    pub(crate) fn require(
+    pub fn require(
         &mut self,
         holds: bool,
         rule: &Rule,
@@ -48,11 +50,13 @@ impl Findings {
         }
     }
 
-    pub(crate) fn has_errors(&self) -> bool {
+    /// Whether one of them is an error.
+    pub fn has_errors(&self) -> bool {
         self.errors
     }
 
-    pub(crate) fn into_list(mut self) -> Vec<Finding> {
+    /// All that were kept, and how many were not.
+    pub fn into_list(mut self) -> Vec<Finding> {
         if self.dropped > 0 {
             let message = format!("{} more findings are not shown", self.dropped);
             self.kept

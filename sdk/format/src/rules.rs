@@ -22,22 +22,32 @@ pub fn explain(code: &str) -> Option<&'static Rule> {
     RULES.iter().find(|rule| rule.code == code)
 }
 
-macro_rules! rules {
+/// Makes a table of rules: a constant for each, and `RULES` with all of them in their order.
+///
+/// ```
+/// htex_format::rule_table! {
+///     CLOTH_TORN Error: "The cloth is torn.", "Torn cloth snags.", "Mend it.";
+/// }
+/// assert_eq!(RULES[0].code, "CLOTH_TORN");
+/// assert_eq!(*CLOTH_TORN, RULES[0]);
+/// ```
+#[macro_export]
+macro_rules! rule_table {
     ($($name:ident $severity:ident: $summary:literal, $explanation:literal, $fix:literal;)*) => {
-        $(pub(crate) const $name: &Rule = &Rule {
+        $(pub(crate) const $name: &$crate::Rule = &$crate::Rule {
             code: stringify!($name),
-            severity: Severity::$severity,
+            severity: $crate::Severity::$severity,
             summary: $summary,
             explanation: $explanation,
             fix: $fix,
         };)*
 
         /// All rules, in the order validation comes to them.
-        pub const RULES: &[Rule] = &[$(*$name),*];
+        pub const RULES: &[$crate::Rule] = &[$(*$name),*];
     };
 }
 
-rules! {
+rule_table! {
     FILE_TOO_LARGE Error:
         "The file is larger than the limit.",
         "A reader caps what it takes from a file it does not trust, before it reads it.",

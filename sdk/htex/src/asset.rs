@@ -1,6 +1,7 @@
 //! An asset with the models that can play it.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use htex_format::{Manifest, Representation};
 use htex_host::{Band, LoadedModel, Registry};
@@ -9,10 +10,10 @@ use semver::{Version, VersionReq};
 use crate::mesh::Mesh;
 use crate::{Error, Source, Voice};
 
-/// An opened texture.
+/// An opened texture. A clone shares what the file holds.
 #[derive(Debug, Clone)]
 pub struct Asset {
-    data: htex_format::Asset,
+    data: Arc<htex_format::Asset>,
     registry: Registry,
 }
 
@@ -66,6 +67,7 @@ impl Asset {
 
     /// Takes an asset that is already read, to be played by the models of `registry`.
     pub fn with_registry(data: htex_format::Asset, registry: Registry) -> Self {
+        let data = Arc::new(data);
         Self { data, registry }
     }
 

@@ -1,7 +1,7 @@
 //! `*.scene.json`: what a scene says. `spec/scene-1.md` is the normative text.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -22,7 +22,7 @@ pub struct Scene {
     /// What it is felt on; a file of newtons when nothing is said.
     #[serde(default)]
     pub device: DeviceChoice,
-    /// Length, seconds; absent: the trace's, or without end when the motion is live.
+    /// Length, seconds; absent: the trace's, and without end for other motions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duration_s: Option<f64>,
     /// The same seed gives the same samples.
@@ -55,6 +55,19 @@ pub struct Surface {
     pub representation: String,
 }
 
+impl Surface {
+    /// A surface that lies everywhere, as it was recorded.
+    pub fn everywhere(asset: &Path) -> Self {
+        Self {
+            asset: asset.to_owned(),
+            region: None,
+            layer: 0,
+            gain: one(),
+            representation: auto(),
+        }
+    }
+}
+
 /// A rectangle, edges included at the lower end and excluded at the upper.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Region {
@@ -84,7 +97,7 @@ pub struct Constant {
     pub speed_mm_s: f64,
     /// Normal force, newtons.
     pub force_n: f64,
-    /// Where it starts, x and y; absent: on the only surface there is.
+    /// Where it starts, x and y, mm; only a single surface without a region goes without it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from_mm: Option<[f64; 2]>,
     /// Whither it goes, degrees from the x axis towards the y axis.
@@ -174,6 +187,46 @@ pub enum Effect {
     Dither,
     /// Rounding to the steps of the device.
     Quantisation,
+}
+
+impl Effect {
+    /// All effects, in the order in which a chain has them.
+    pub const ALL: [Self; 14] = [
+        Self::Interpolation,
+        Self::SpeedScaling,
+        Self::ForceScaling,
+        Self::Crossfade,
+        Self::Compensation,
+        Self::Resampling,
+        Self::Direction,
+        Self::Gain,
+        Self::SquareRoot,
+        Self::Contact,
+        Self::Carrier,
+        Self::Limiter,
+        Self::Dither,
+        Self::Quantisation,
+    ];
+
+    /// The name in a scene, such as `speed_scaling`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Interpolation => "interpolation",
+            Self::SpeedScaling => "speed_scaling",
+            Self::ForceScaling => "force_scaling",
+            Self::Crossfade => "crossfade",
+            Self::Compensation => "compensation",
+            Self::Resampling => "resampling",
+            Self::Direction => "direction",
+            Self::Gain => "gain",
+            Self::SquareRoot => "square_root",
+            Self::Contact => "contact",
+            Self::Carrier => "carrier",
+            Self::Limiter => "limiter",
+            Self::Dither => "dither",
+            Self::Quantisation => "quantisation",
+        }
+    }
 }
 
 /// Whether an effect is in.

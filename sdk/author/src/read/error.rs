@@ -193,4 +193,14 @@ pub enum ReadError {
         /// What, and what is expected.
         problem: String,
     },
+    /// A motion trace that makes no sense.
+    #[error("{file}, line {line}: {problem}")]
+    Trace {
+        /// File name.
+        file: String,
+        /// The line.
+        line: usize,
+        /// What, and what is expected.
+        problem: String,
+    },
 }

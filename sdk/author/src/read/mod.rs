@@ -26,12 +26,14 @@ mod number;
 mod select;
 pub(crate) mod table;
 pub(crate) mod text;
+mod trace;
 mod wav;
 
 use std::path::Path;
 
 pub use error::ReadError;
 pub use map::{ColumnMap, ColumnRef, MapEntry, Role};
+pub use trace::{TraceColumns, read_trace};
 
 use crate::recording::Recording;
 

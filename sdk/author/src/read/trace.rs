@@ -1,0 +1,146 @@
+//! Motion traces as CSV: where the finger was, and how hard it pressed.
+
+use std::path::Path;
+
+use super::ReadError;
+use super::columns::{Unit, base_unit, recognise};
+use super::map::Role;
+use super::table::Table;
+use super::text::{as_text, file_name, read_bytes};
+
+/// The columns of a trace, equally long, at least two rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TraceColumns {
+    /// Time, seconds, strictly ascending.
+    pub t_s: Vec<f64>,
+    /// Position along x, mm.
+    pub x_mm: Vec<f64>,
+    /// Position along y, mm.
+    pub y_mm: Vec<f64>,
+    /// Normal force, newtons.
+    pub force_n: Vec<f64>,
+    /// Sliding speed, mm/s, where the trace has it.
+    pub speed_mm_s: Option<Vec<f64>>,
+    /// What was assumed: units that no name gives, columns not used.
+    pub warnings: Vec<String>,
+}
+
+/// Reads a trace from a CSV with the columns `t_s`, `x_mm`, `y_mm`, `force_n` and, if known,
+/// `speed_mm_s`. Other names and units are known as in a recording (`time [ms]`, `fz_n`).
+///
+/// # Errors
+/// What [`read_recording`](super::read_recording) reports of a CSV; and, with the line, a time that
+/// does not ascend.
+pub fn read_trace(path: &Path) -> Result<TraceColumns, ReadError> {
+    let (file, bytes) = (file_name(path), read_bytes(path)?);
+    let table = Table::new(&file, as_text(&file, &bytes)?)?;
+    let mut warnings = Vec::new();
+    let mut found = Vec::new();
+    for role in [Role::Time, Role::X, Role::Y, Role::Normal] {
+        found.push(find(&table, role, &mut warnings)?.ok_or_else(|| missing(&table, role))?);
+    }
+    let speed = find(&table, Role::Speed, &mut warnings)?;
+    found.extend(speed);
+    warn_of_unused(&table, &found, &mut warnings);
+    let wanted: Vec<usize> = found.iter().map(|(column, _)| *column).collect();
+    let columns = table.numbers(&wanted)?.columns.into_iter().zip(&found);
+    let mut columns = columns.map(|(values, (_, scale))| scaled(values, *scale));
+    let mut next = || columns.next().unwrap_or_default();
+    let trace = TraceColumns {
+        t_s: next(),
+        x_mm: next(),
+        y_mm: next(),
+        force_n: next(),
+        speed_mm_s: speed.map(|_| next()),
+        warnings,
+    };
+    check_time(&table, &trace.t_s)?;
+    Ok(trace)
+}
+
+/// The column in a role and the factor to its unit.
+fn find(
+    table: &Table<'_>,
+    role: Role,
+    warnings: &mut Vec<String>,
+) -> Result<Option<(usize, f64)>, ReadError> {
+    let named = |column: usize| match recognise(&table.name(column)) {
+        Some((known, unit)) if known == role => Some((column, unit)),
+        _ => None,
+    };
+    let all: Vec<(usize, Unit)> = (0..table.width).filter_map(named).collect();
+    let (column, unit) = match &all[..] {
+        [] => return Ok(None),
+        [one] => one,
+        [one, other, ..] => {
+            let (one, other) = (table.name(one.0), table.name(other.0));
+            let problem = format!("both {one:?} and {other:?} could be {role}; keep one of them");
+            return Err(refuse(table, problem));
+        }
+    };
+    let (name, wanted) = (table.name(*column), base_unit(role));
+    let scale = match unit {
+        Unit::Scale(scale) => *scale,
+        Unit::Unsaid => {
+            warnings.push(format!(
+                "Column {name:?} ({role}) names no unit: taken as {wanted}."
+            ));
+            1.0
+        }
+        Unit::Volts | Unit::Unknown(_) => {
+            let problem =
+                format!("column {name:?} is not in a unit known for {role}; write it in {wanted}");
+            return Err(refuse(table, problem));
+        }
+    };
+    Ok(Some((*column, scale)))
+}
+
+fn missing(table: &Table<'_>, role: Role) -> ReadError {
+    let problem = match table.header {
+        None => "there is no header row; a trace's is t_s,x_mm,y_mm,force_n".to_owned(),
+        Some(_) => format!("no column is the {role}; a trace's header is t_s,x_mm,y_mm,force_n"),
+    };
+    refuse(table, problem)
+}
+
+fn refuse(table: &Table<'_>, problem: String) -> ReadError {
+    ReadError::Columns {
+        file: table.file.to_owned(),
+        problem,
+        columns: table.names(),
+    }
+}
+
+fn warn_of_unused(table: &Table<'_>, found: &[(usize, f64)], warnings: &mut Vec<String>) {
+    let unused = |column: &usize| found.iter().all(|(used, _)| used != column);
+    let names: Vec<String> = (0..table.width)
+        .filter(unused)
+        .map(|column| table.name(column))
+        .collect();
+    if !names.is_empty() {
+        warnings.push(format!("Columns not used: {}.", names.join(", ")));
+    }
+}
+
+fn scaled(mut values: Vec<f64>, scale: f64) -> Vec<f64> {
+    if scale != 1.0 {
+        values.iter_mut().for_each(|value| *value *= scale);
+    }
+    values
+}
+
+fn check_time(table: &Table<'_>, t_s: &[f64]) -> Result<(), ReadError> {
+    let Some(row) = t_s.windows(2).position(|pair| pair[1] <= pair[0]) else {
+        return Ok(());
+    };
+    let (before, after) = (t_s[row], t_s[row + 1]);
+    Err(ReadError::Trace {
+        file: table.file.to_owned(),
+        line: table.line_of_row(row + 1),
+        problem: format!(
+            "time goes from {before} s to {after} s; it must grow on every row (a column with too \
+             few decimals repeats itself)"
+        ),
+    })
+}

@@ -1,0 +1,164 @@
+//! The rules for a scene's device, and what may be chosen instead of it.
+
+use std::collections::BTreeMap;
+use std::path::{Component, Path};
+
+use htex_device::{
+    Capabilities, Descriptor, DeviceError, Devices, Quantity, SettingKind, Settings,
+};
+use htex_format::{Findings, escape};
+use serde_json::Value;
+
+use crate::file::DeviceChoice;
+use crate::rules as rule;
+
+/// What is said of the device when a scene is loaded; it goes before what the scene says.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct DeviceOverride {
+    /// Another adapter; nothing of the scene's `device` is then left.
+    pub adapter: Option<String>,
+    /// Another profile.
+    pub profile: Option<String>,
+    /// Settings as the adapter reads them; relative paths are left as they are.
+    pub settings: BTreeMap<String, String>,
+}
+
+impl DeviceOverride {
+    /// Puts adapter and profile into a scene's choice.
+    pub(crate) fn apply(&self, choice: &mut DeviceChoice) {
+        if let Some(adapter) = &self.adapter {
+            *choice = DeviceChoice {
+                adapter: adapter.clone(),
+                ..DeviceChoice::default()
+            };
+        }
+        if self.profile.is_some() {
+            choice.profile.clone_from(&self.profile);
+        }
+    }
+}
+
+/// Checks the choice of a device; the settings that it comes to, when they can be used.
+pub(crate) fn check_device(
+    choice: &DeviceChoice,
+    change: &DeviceOverride,
+    folder: &Path,
+    devices: &Devices,
+    findings: &mut Findings,
+) -> Option<Settings> {
+    let adapter = match devices.find(&choice.adapter) {
+        Ok(known) => &known.adapter,
+        Err(error) => {
+            findings.add(rule::DEVICE_UNKNOWN, "/device/adapter", error.to_string());
+            return None;
+        }
+    };
+    let descriptor = adapter.descriptor();
+    let mut given = texts(choice, descriptor, folder, findings)?;
+    given.extend(change.settings.clone());
+    let settled = Settings::resolve(descriptor, choice.profile.as_deref(), &given);
+    let settings = settled.map_err(|error| add_error(error, findings)).ok()?;
+    match adapter.capabilities(&settings) {
+        Ok(able) => check_fit(choice, &able, findings),
+        Err(error @ DeviceError::Setting { .. }) => {
+            add_error(error, findings);
+            return None;
+        }
+        Err(error) => findings.add(rule::DEVICE_ABSENT, "/device/adapter", error.to_string()),
+    }
+    Some(settings)
+}
+
+fn add_error(error: DeviceError, findings: &mut Findings) {
+    let pointer = match &error {
+        DeviceError::Setting { name, .. } if name == "profile" => "/device/profile".to_owned(),
+        DeviceError::Setting { name, .. } => format!("/device/settings/{}", escape(name)),
+        _ => "/device".to_owned(),
+    };
+    findings.add(rule::DEVICE_SETTING, pointer, error.to_string());
+}
+
+/// The scene's settings as text, paths joined to its folder; none when one of them is not usable.
+fn texts(
+    choice: &DeviceChoice,
+    descriptor: &Descriptor,
+    folder: &Path,
+    findings: &mut Findings,
+) -> Option<BTreeMap<String, String>> {
+    let mut texts = BTreeMap::new();
+    for (name, value) in &choice.settings {
+        let pointer = format!("/device/settings/{}", escape(name));
+        let Some(text) = text(value) else {
+            let message = "a setting is text, a number, true or false; write one of these";
+            findings.add(rule::DEVICE_SETTING, pointer, message.to_owned());
+            continue;
+        };
+        if !is_path(descriptor, name) {
+            texts.insert(name.clone(), text);
+        } else if is_inside(&text) {
+            texts.insert(name.clone(), folder.join(text).display().to_string());
+        } else {
+            let message = format!("{text} lies outside the scene's folder; use a path inside it");
+            findings.add(rule::DEVICE_PATH_UNSAFE, pointer, message);
+        }
+    }
+    (texts.len() == choice.settings.len()).then_some(texts)
+}
+
+fn text(value: &Value) -> Option<String> {
+    match value {
+        Value::String(text) => Some(text.clone()),
+        Value::Number(_) | Value::Bool(_) => Some(value.to_string()),
+        _ => None,
+    }
+}
+
+fn is_path(descriptor: &Descriptor, name: &str) -> bool {
+    let mut settings = descriptor.settings.iter();
+    settings.any(|s| s.name == name && s.kind == SettingKind::Path)
+}
+
+fn is_inside(path: &str) -> bool {
+    let mut parts = Path::new(path).components();
+    parts.all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
+}
+
+fn check_fit(choice: &DeviceChoice, able: &Capabilities, findings: &mut Findings) {
+    if let Some(rate_hz) = choice.rate_hz {
+        findings.require(
+            able.rates.has(rate_hz),
+            rule::DEVICE_RATE,
+            "/device/rate_hz",
+            || {
+                format!(
+                    "the device does not run at {rate_hz} Hz; it runs at {}",
+                    able.rates
+                )
+            },
+        );
+    }
+    let keys = [
+        ("gain_db", choice.gain_db, Quantity::LateralForce),
+        ("drive_v", choice.drive_v, Quantity::DisplayVoltage),
+        ("level_dbfs", choice.level_dbfs, Quantity::Sound),
+        ("pitch", choice.pitch, Quantity::Sound),
+    ];
+    for (key, value, of) in keys {
+        let fits = value.is_none() || able.quantity == of;
+        let pointer = format!("/device/{key}");
+        findings.require(fits, rule::DEVICE_FIELD_UNFIT, pointer, || {
+            let (unit, takes) = (of.unit(), able.quantity.unit());
+            format!("{key} is for a device of {unit}, and this one takes {takes}; leave it out")
+        });
+    }
+    let (drive_v, limit_v) = (
+        choice.drive_v.unwrap_or(0.0),
+        able.limit.unwrap_or(f64::MAX),
+    );
+    findings.require(
+        drive_v <= limit_v,
+        rule::DEVICE_DRIVE_TOO_HIGH,
+        "/device/drive_v",
+        || format!("{drive_v} V is above the device's limit of {limit_v} V; lower it"),
+    );
+}

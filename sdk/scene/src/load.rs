@@ -1,0 +1,316 @@
+//! A scene with the files it names, ready to be planned.
+
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use htex::{Asset, Registry, VoiceOptions};
+use htex_author::read::ReadError;
+use htex_device::{Devices, Settings};
+use htex_format::{Finding, Findings, Report, Rule};
+
+use crate::check::check;
+use crate::device::{DeviceOverride, check_device};
+use crate::file::{DeviceChoice, Motion, Scene, Surface, VERSION};
+use crate::response::{self, Response};
+use crate::rules as rule;
+use crate::trace::Trace;
+use crate::validate::{Limits, read_scene};
+
+/// What a scene is loaded with.
+#[derive(Clone, Copy)]
+pub struct Surroundings<'a> {
+    /// The models that play its assets.
+    pub models: &'a Registry,
+    /// Whether models that assets bring along may run (in their sandbox).
+    pub embedded: bool,
+    /// The devices there are.
+    pub devices: &'a Devices,
+}
+
+/// A scene and all that it names.
+#[derive(Debug, Clone)]
+pub struct LoadedScene {
+    /// What the file says; its device with what was overridden.
+    pub scene: Scene,
+    /// Where relative paths start.
+    pub folder: PathBuf,
+    /// The surfaces' assets, one for each surface.
+    pub assets: Vec<Asset>,
+    /// The motion, when it is a trace.
+    pub trace: Option<Trace>,
+    /// The response to compensate.
+    pub response: Option<Response>,
+    /// The device's settings, to ask and to open it with.
+    pub settings: Settings,
+    /// Findings that are no errors.
+    pub notes: Vec<Finding>,
+}
+
+/// A scene could not be loaded.
+#[derive(Debug, thiserror::Error)]
+pub enum LoadError {
+    /// The file could not be read at all.
+    #[error("cannot read {}: {error}", .path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        #[source]
+        error: io::Error,
+    },
+    /// It is not a scene that can be played.
+    #[error("not a scene that can be played: {}", htex_format::summary(.findings))]
+    Invalid {
+        /// Everything that was found, errors and others.
+        findings: Vec<Finding>,
+    },
+}
+
+impl LoadedScene {
+    /// Opens a scene file and all that it names.
+    ///
+    /// # Errors
+    /// [`LoadError::Invalid`] with every finding when one of them is an error.
+    pub fn open(
+        path: &Path,
+        around: &Surroundings<'_>,
+        device: &DeviceOverride,
+    ) -> Result<Self, LoadError> {
+        let mut findings = Findings::default();
+        let scene = read_file(path, &mut findings)?;
+        let loaded =
+            scene.and_then(|scene| load(scene, folder(path), around, device, &mut findings));
+        finish(loaded, findings)
+    }
+
+    /// Makes a scene of one surface, everywhere, without a file.
+    ///
+    /// # Errors
+    /// As [`Self::open`]; pointers are those of the scene file that would say the same.
+    pub fn of_asset(
+        asset: &Path,
+        motion: Motion,
+        duration_s: Option<f64>,
+        around: &Surroundings<'_>,
+        device: &DeviceOverride,
+    ) -> Result<Self, LoadError> {
+        let scene = Scene {
+            htex_scene: VERSION.to_owned(),
+            surfaces: vec![Surface::everywhere(asset)],
+            motion,
+            device: DeviceChoice::default(),
+            duration_s,
+            seed: 0,
+            budget: Default::default(),
+            effects: Default::default(),
+        };
+        let mut findings = Findings::default();
+        check(&scene, &Limits::default(), &mut findings);
+        let loaded = load(scene, PathBuf::new(), around, device, &mut findings);
+        finish(loaded, findings)
+    }
+}
+
+/// Validates a scene file with all that it names.
+///
+/// # Errors
+/// When the file cannot be read.
+pub fn validate(path: &Path, around: &Surroundings<'_>) -> Result<Report, LoadError> {
+    let findings = match LoadedScene::open(path, around, &DeviceOverride::default()) {
+        Ok(loaded) => return Ok(report(true, loaded.notes)),
+        Err(LoadError::Invalid { findings }) => findings,
+        Err(error) => return Err(error),
+    };
+    Ok(report(false, findings))
+}
+
+fn report(valid: bool, findings: Vec<Finding>) -> Report {
+    Report { valid, findings }
+}
+
+fn finish(loaded: Option<LoadedScene>, findings: Findings) -> Result<LoadedScene, LoadError> {
+    let has_errors = findings.has_errors();
+    let findings = findings.into_list();
+    match loaded {
+        Some(loaded) if !has_errors => Ok(LoadedScene {
+            notes: findings,
+            ..loaded
+        }),
+        _ => Err(LoadError::Invalid { findings }),
+    }
+}
+
+/// The scene in a file; of one that is too large, no more is read than shows it.
+fn read_file(path: &Path, findings: &mut Findings) -> Result<Option<Scene>, LoadError> {
+    let limits = Limits::default();
+    let mut bytes = Vec::new();
+    let read =
+        File::open(path).and_then(|file| file.take(limits.file_bytes + 1).read_to_end(&mut bytes));
+    match read {
+        Ok(_) => Ok(read_scene(&bytes, &limits, findings)),
+        Err(error) => Err(LoadError::Io {
+            path: path.to_owned(),
+            error,
+        }),
+    }
+}
+
+fn folder(path: &Path) -> PathBuf {
+    path.parent().unwrap_or(Path::new("")).to_owned()
+}
+
+/// Opens all that a scene names; none when something is missing, and findings say what.
+fn load(
+    mut scene: Scene,
+    folder: PathBuf,
+    around: &Surroundings<'_>,
+    device: &DeviceOverride,
+    findings: &mut Findings,
+) -> Option<LoadedScene> {
+    let assets = open_assets(&scene, &folder, around, findings);
+    let trace = open_trace(&scene, &folder, findings);
+    device.apply(&mut scene.device);
+    let response = open_response(&scene, &folder, findings);
+    let settings = check_device(&scene.device, device, &folder, around.devices, findings);
+    Some(LoadedScene {
+        assets: assets?,
+        trace,
+        response,
+        settings: settings?,
+        scene,
+        folder,
+        notes: Vec::new(),
+    })
+}
+
+/// The assets of all surfaces, each file opened once.
+fn open_assets(
+    scene: &Scene,
+    folder: &Path,
+    around: &Surroundings<'_>,
+    findings: &mut Findings,
+) -> Option<Vec<Asset>> {
+    type Opened = Result<Asset, (&'static Rule, String)>;
+    let mut opened: HashMap<&Path, Opened> = HashMap::new();
+    let mut assets = Vec::new();
+    for (i, surface) in scene.surfaces.iter().enumerate() {
+        let open = || open_asset(&folder.join(&surface.asset), around);
+        match opened.entry(&surface.asset).or_insert_with(open) {
+            Ok(asset) => {
+                check_representation(asset, surface, i, findings);
+                assets.push(asset.clone());
+            }
+            Err((rule, message)) => {
+                findings.add(rule, format!("/surfaces/{i}/asset"), message.clone());
+            }
+        }
+    }
+    (assets.len() == scene.surfaces.len()).then_some(assets)
+}
+
+fn open_asset(path: &Path, around: &Surroundings<'_>) -> Result<Asset, (&'static Rule, String)> {
+    let opened = htex_format::Asset::open(path)
+        .map_err(htex::Error::from)
+        .map(|data| Asset::with_registry(data, around.models.clone()))
+        .and_then(|asset| match around.embedded {
+            true => asset.with_embedded(),
+            false => Ok(asset),
+        });
+    opened.map_err(|error| {
+        let rule = match &error {
+            htex::Error::Read(htex_format::ReadError::Io { error, .. }) => {
+                of_io(error, rule::ASSET_MISSING, rule::ASSET_INVALID)
+            }
+            _ => rule::ASSET_INVALID,
+        };
+        (rule, format!("{}: {error}", path.display()))
+    })
+}
+
+fn of_io(error: &io::Error, missing: &'static Rule, invalid: &'static Rule) -> &'static Rule {
+    match error.kind() {
+        io::ErrorKind::NotFound => missing,
+        _ => invalid,
+    }
+}
+
+fn check_representation(asset: &Asset, surface: &Surface, i: usize, findings: &mut Findings) {
+    let source = |model: &str| {
+        let options = VoiceOptions {
+            model: Some(model),
+            ..VoiceOptions::default()
+        };
+        asset.source(&options).map(|_| ())
+    };
+    let playable = match surface.representation.as_str() {
+        "auto" => {
+            let all = asset.manifest().representations.iter();
+            let mut tried = all.map(|r| source(&r.model));
+            let first = tried.next().unwrap_or(Ok(()));
+            first.or_else(|error| tried.find(Result::is_ok).unwrap_or(Err(error)))
+        }
+        name => source(name),
+    };
+    if let Err(error) = playable {
+        let rule = match error {
+            htex::Error::NoRepresentation { .. } => rule::REPRESENTATION_MISSING,
+            _ => rule::REPRESENTATION_UNPLAYABLE,
+        };
+        let message = format!("{}: {error}", surface.asset.display());
+        findings.add(rule, format!("/surfaces/{i}/representation"), message);
+    }
+}
+
+fn open_trace(scene: &Scene, folder: &Path, findings: &mut Findings) -> Option<Trace> {
+    let Motion::Trace(path) = &scene.motion else {
+        return None;
+    };
+    let rules = [rule::TRACE_MISSING, rule::TRACE_INVALID];
+    let trace = opened(
+        Trace::open(&folder.join(path)),
+        rules,
+        "/motion/trace",
+        findings,
+    )?;
+    for warning in &trace.warnings {
+        findings.add(rule::TRACE_ASSUMED, "/motion/trace", warning.clone());
+    }
+    let (wanted, there) = (scene.duration_s.unwrap_or(0.0), trace.duration_s());
+    findings.require(
+        wanted <= there,
+        rule::DURATION_BEYOND_TRACE,
+        "/duration_s",
+        || {
+            format!(
+                "{wanted} s are asked for and the trace ends after {there} s; the rest is silent"
+            )
+        },
+    );
+    Some(trace)
+}
+
+fn open_response(scene: &Scene, folder: &Path, findings: &mut Findings) -> Option<Response> {
+    let path = folder.join(scene.device.response.as_ref()?);
+    let rules = [rule::RESPONSE_MISSING, rule::RESPONSE_INVALID];
+    opened(response::open(&path), rules, "/device/response", findings)
+}
+
+/// What was opened; else the finding of a missing or an invalid file.
+fn opened<T>(
+    result: Result<T, ReadError>,
+    [missing, invalid]: [&'static Rule; 2],
+    pointer: &str,
+    findings: &mut Findings,
+) -> Option<T> {
+    result
+        .map_err(|error| {
+            let rule = match &error {
+                ReadError::Io { source, .. } => of_io(source, missing, invalid),
+                _ => invalid,
+            };
+            findings.add(rule, pointer, error.to_string());
+        })
+        .ok()
+}

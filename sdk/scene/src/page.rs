@@ -1,0 +1,30 @@
+//! `spec/scene-findings.md` and `spec/schemas/scene-1.json`, made from the code.
+
+use htex_format::rules_page;
+use serde_json::{Value, json};
+
+use crate::{RULES, Scene};
+
+const HEAD: &str = "\
+# Findings in scenes
+
+Generated from the table of rules in `sdk/scene/src/rules.rs` by
+`cargo run -p htex-scene --example scene_pages`.
+
+A finding has a code, a severity, a JSON pointer into the scene (empty for the file as a whole) and a
+message. A scene can be played when no finding is an error. Codes never change their meaning.
+";
+
+/// The page that explains every rule: `spec/scene-findings.md`.
+pub fn findings_page() -> String {
+    rules_page(HEAD, RULES)
+}
+
+/// The JSON Schema of a scene: `spec/schemas/scene-1.json`.
+pub fn scene_schema() -> Value {
+    let mut schema = schemars::schema_for!(Scene).to_value();
+    if let Some(object) = schema.as_object_mut() {
+        object.insert("title".to_owned(), json!("Scene of htex 1"));
+    }
+    schema
+}

@@ -1,0 +1,287 @@
+//! A recorded motion, looked up at any time.
+
+use std::path::Path;
+
+use htex_author::read::{ReadError, TraceColumns, read_trace};
+
+/// Half the support of the triangle that the velocity is averaged over, seconds. Trackers are slow
+/// and quantised (60 Hz, 0.1 mm): a shorter one shows their steps and not the finger.
+const REACH_S: f64 = 0.05;
+
+/// A motion over time. The vectors are equally long, at least 2; time 0 is the first row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trace {
+    /// Time, seconds, strictly ascending from 0.
+    pub t_s: Vec<f64>,
+    /// Position along x, mm.
+    pub x_mm: Vec<f64>,
+    /// Position along y, mm.
+    pub y_mm: Vec<f64>,
+    /// Normal force, newtons, not negative.
+    pub force_n: Vec<f64>,
+    /// Sliding speed, mm/s, not negative: the trace's own, else the velocity's.
+    pub speed_mm_s: Vec<f64>,
+    /// Velocity along x and y, mm/s, from the positions.
+    pub velocity_mm_s: Vec<[f64; 2]>,
+    /// What was assumed when it was read.
+    pub warnings: Vec<String>,
+}
+
+/// The motion at one time.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct TracePoint {
+    /// Position along x, mm.
+    pub x_mm: f64,
+    /// Position along y, mm.
+    pub y_mm: f64,
+    /// Sliding speed, mm/s, not negative.
+    pub speed_mm_s: f64,
+    /// Normal force, newtons, not negative.
+    pub force_n: f64,
+    /// Velocity along x, mm/s.
+    pub vx_mm_s: f64,
+    /// Velocity along y, mm/s.
+    pub vy_mm_s: f64,
+}
+
+impl Trace {
+    /// Reads a trace from a CSV with the columns `t_s`, `x_mm`, `y_mm`, `force_n` and, if known,
+    /// `speed_mm_s`.
+    ///
+    /// # Errors
+    /// As [`read_trace`].
+    pub fn open(path: &Path) -> Result<Self, ReadError> {
+        Ok(Self::new(read_trace(path)?))
+    }
+
+    /// A trace from columns.
+    ///
+    /// The velocity is the second difference, over 50 ms, of the position's integral: the slope of
+    /// the position (straight between rows) averaged under a triangle of 100 ms. It is exact where
+    /// the velocity is steady, and blind to a tracker of 60 Hz that repeats its last value. Nearer
+    /// to the ends than 50 ms it is held. Negative forces, which a sensor's offset makes, are 0.
+    pub fn new(columns: TraceColumns) -> Self {
+        let start_s = columns.t_s.first().copied().unwrap_or(0.0);
+        let t_s: Vec<f64> = columns.t_s.iter().map(|t| t - start_s).collect();
+        let (vx, vy) = (velocity(&t_s, &columns.x_mm), velocity(&t_s, &columns.y_mm));
+        let velocity_mm_s: Vec<[f64; 2]> = vx.iter().zip(vy).map(|(x, y)| [*x, y]).collect();
+        let speed_mm_s = match columns.speed_mm_s {
+            Some(speed) => speed.iter().map(|v| v.abs()).collect(),
+            None => velocity_mm_s.iter().map(|[x, y]| x.hypot(*y)).collect(),
+        };
+        Self {
+            t_s,
+            x_mm: columns.x_mm,
+            y_mm: columns.y_mm,
+            force_n: columns.force_n.iter().map(|f| f.max(0.0)).collect(),
+            speed_mm_s,
+            velocity_mm_s,
+            warnings: columns.warnings,
+        }
+    }
+
+    /// The motion at `t_s` seconds, straight between rows. Before the first row and behind the last
+    /// one the finger rests there without touching: speed and force are 0. Does not allocate.
+    pub fn at(&self, t_s: f64) -> TracePoint {
+        let last = self.t_s.len().saturating_sub(1);
+        let above = self.t_s.partition_point(|t| *t <= t_s);
+        if above == 0 || t_s > self.duration_s() || t_s.is_nan() {
+            return self.resting(if above == 0 { 0 } else { last });
+        }
+        let (low, high) = (above - 1, above.min(last));
+        let weight = match low == high {
+            true => 0.0,
+            false => (t_s - self.t_s[low]) / (self.t_s[high] - self.t_s[low]),
+        };
+        let between = |a: f64, b: f64| a + weight * (b - a);
+        let of = |values: &[f64]| between(values[low], values[high]);
+        let (v0, v1) = (self.velocity_mm_s[low], self.velocity_mm_s[high]);
+        TracePoint {
+            x_mm: of(&self.x_mm),
+            y_mm: of(&self.y_mm),
+            speed_mm_s: of(&self.speed_mm_s),
+            force_n: of(&self.force_n),
+            vx_mm_s: between(v0[0], v1[0]),
+            vy_mm_s: between(v0[1], v1[1]),
+        }
+    }
+
+    fn resting(&self, row: usize) -> TracePoint {
+        let place = |values: &[f64]| values.get(row).copied().unwrap_or(0.0);
+        TracePoint {
+            x_mm: place(&self.x_mm),
+            y_mm: place(&self.y_mm),
+            ..TracePoint::default()
+        }
+    }
+
+    /// Length from the first row to the last, seconds.
+    pub fn duration_s(&self) -> f64 {
+        self.t_s.last().copied().unwrap_or(0.0)
+    }
+
+    /// Slowest and fastest speed, mm/s.
+    pub fn speed_range(&self) -> (f64, f64) {
+        range(&self.speed_mm_s)
+    }
+
+    /// Least and greatest force, newtons.
+    pub fn force_range(&self) -> (f64, f64) {
+        range(&self.force_n)
+    }
+}
+
+fn range(values: &[f64]) -> (f64, f64) {
+    let all = values.iter().copied();
+    (
+        all.clone().fold(f64::INFINITY, f64::min),
+        all.fold(0.0, f64::max),
+    )
+}
+
+/// Velocity at each row, mm/s.
+fn velocity(t_s: &[f64], x_mm: &[f64]) -> Vec<f64> {
+    let end_s = t_s.last().copied().unwrap_or(0.0);
+    let reach_s = REACH_S.min(end_s / 2.0);
+    if reach_s <= 0.0 {
+        return vec![0.0; t_s.len()];
+    }
+    let mut before = Integral::new(t_s, x_mm);
+    let (mut here, mut after) = (before.clone(), before.clone());
+    let mut at = |t: f64| {
+        let t = t.clamp(reach_s, end_s - reach_s);
+        let outer = before.at(t - reach_s) + after.at(t + reach_s);
+        (outer - 2.0 * here.at(t)) / (reach_s * reach_s)
+    };
+    t_s.iter().map(|t| at(*t)).collect()
+}
+
+/// The integral of the position (less the first one) from the first row on, asked for at times that
+/// do not go back.
+#[derive(Clone)]
+struct Integral<'a> {
+    t_s: &'a [f64],
+    x_mm: &'a [f64],
+    row: usize,
+    sum: f64,
+}
+
+impl<'a> Integral<'a> {
+    fn new(t_s: &'a [f64], x_mm: &'a [f64]) -> Self {
+        Self {
+            t_s,
+            x_mm,
+            row: 0,
+            sum: 0.0,
+        }
+    }
+
+    /// Time and position of a row.
+    fn point(&self, row: usize) -> (f64, f64) {
+        (self.t_s[row], self.x_mm[row] - self.x_mm[0])
+    }
+
+    fn at(&mut self, t_s: f64) -> f64 {
+        let last = self.t_s.len() - 1;
+        while self.row + 1 < last && self.t_s[self.row + 1] <= t_s {
+            let ((t0, x0), (t1, x1)) = (self.point(self.row), self.point(self.row + 1));
+            self.sum += 0.5 * (x0 + x1) * (t1 - t0);
+            self.row += 1;
+        }
+        let ((t0, x0), (t1, x1)) = (self.point(self.row), self.point(self.row + 1));
+        let ahead = t_s - t0;
+        let slope = (x1 - x0) / (t1 - t0);
+        self.sum + ahead * (x0 + 0.5 * slope * ahead)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// A trace along x, sampled at `rate_hz`, rounded to `step_mm`.
+    fn trace(rate_hz: f64, seconds: f64, step_mm: f64, x_mm: impl Fn(f64) -> f64) -> Trace {
+        let rows = (rate_hz * seconds) as usize + 1;
+        let t_s: Vec<f64> = (0..rows).map(|i| 3.0 + i as f64 / rate_hz).collect();
+        let round = |x: f64| match step_mm > 0.0 {
+            true => (x / step_mm).round() * step_mm,
+            false => x,
+        };
+        Trace::new(TraceColumns {
+            x_mm: t_s.iter().map(|t| round(x_mm(t - 3.0))).collect(),
+            y_mm: vec![1.0; rows],
+            force_n: vec![0.4; rows],
+            speed_mm_s: None,
+            warnings: Vec::new(),
+            t_s,
+        })
+    }
+
+    #[test]
+    fn a_coarse_tracker_gives_a_steady_speed() {
+        // 60 Hz and 0.1 mm, as read by a recorder of 1 kHz that repeats the last value.
+        let held = |t: f64| 80.0 * (t * 60.0 + 1e-9).floor() / 60.0;
+        for (rate_hz, x_mm) in [
+            (60.0, &(|t: f64| 80.0 * t) as &dyn Fn(f64) -> f64),
+            (1000.0, &held),
+        ] {
+            let trace = trace(rate_hz, 2.0, 0.1, x_mm);
+            for step in 0..200 {
+                let speed = trace.at(f64::from(step) / 100.0).speed_mm_s;
+                assert!((speed - 80.0).abs() < 2.5, "{rate_hz} Hz: {speed} mm/s");
+            }
+        }
+    }
+
+    #[test]
+    fn turns_are_followed_and_the_ends_are_silent() {
+        let (amplitude, omega) = (40.0, 2.0 * std::f64::consts::PI);
+        let trace = trace(200.0, 3.0, 0.0, |t| amplitude * (omega * t).sin());
+        for step in 10..290 {
+            let t = f64::from(step) / 100.0;
+            let expected = amplitude * omega * (omega * t).cos();
+            let point = trace.at(t);
+            let error = (point.vx_mm_s - expected).abs() / (amplitude * omega);
+            assert!(error < 0.01, "{t} s: {} mm/s", point.vx_mm_s);
+            assert!((point.speed_mm_s - point.vx_mm_s.abs()).abs() < 6.0);
+        }
+        assert_eq!(trace.duration_s(), 3.0);
+        assert_eq!(trace.at(3.0).force_n, 0.4);
+        for t in [-0.001, 3.001, f64::INFINITY, f64::NAN] {
+            let point = trace.at(t);
+            assert_eq!(
+                (point.speed_mm_s, point.force_n, point.y_mm),
+                (0.0, 0.0, 1.0)
+            );
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn a_steady_velocity_is_exact_however_the_rows_lie(
+            steps in prop::collection::vec(1e-4..0.2f64, 1..200),
+            v in -300.0..300.0f64,
+        ) {
+            let mut t_s = vec![-5.0];
+            for step in steps {
+                t_s.push(t_s[t_s.len() - 1] + step);
+            }
+            let rows = t_s.len();
+            let trace = Trace::new(TraceColumns {
+                x_mm: t_s.iter().map(|t| 7.0 + v * t).collect(),
+                y_mm: t_s.iter().map(|t| -0.5 * v * t).collect(),
+                force_n: vec![-0.01; rows],
+                speed_mm_s: Some(vec![-3.0; rows]),
+                warnings: Vec::new(),
+                t_s,
+            });
+            for row in 0..rows {
+                let point = trace.at(trace.t_s[row]);
+                prop_assert!((point.vx_mm_s - v).abs() < 1e-6 * (1.0 + v.abs()), "{}", point.vx_mm_s);
+                prop_assert!((point.vy_mm_s + 0.5 * v).abs() < 1e-6 * (1.0 + v.abs()));
+                prop_assert_eq!((point.speed_mm_s, point.force_n), (3.0, 0.0));
+            }
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! From the bytes of a scene file to a scene, and what is wrong with it in itself.
+
+use htex_format::{Document, DocumentRules, Findings, escape};
+use serde_json::Value;
+
+use crate::check::check;
+use crate::file::{Effect, Scene};
+use crate::rules as rule;
+
+/// How much a reader takes from a scene it does not trust.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Limits {
+    /// Bytes of the file: 1 MiB.
+    pub file_bytes: u64,
+    /// Depth of arrays and objects within one another: 16.
+    pub json_depth: usize,
+    /// Surfaces: 256.
+    pub surfaces: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            file_bytes: 1 << 20,
+            json_depth: 16,
+            surfaces: 256,
+        }
+    }
+}
+
+const DOCUMENT: Document = Document {
+    text: "scene",
+    file: "the scene",
+    thing: "scene",
+    version_key: "htex_scene",
+    major: 1,
+    minor: 0,
+    rules: DocumentRules {
+        too_deep: rule::SCENE_JSON_TOO_DEEP,
+        syntax: rule::SCENE_JSON_SYNTAX,
+        wrong_type: rule::SCENE_JSON_TYPE,
+        version_missing: rule::SCENE_VERSION_MISSING,
+        version_invalid: rule::SCENE_VERSION_INVALID,
+        version_unsupported: rule::SCENE_VERSION_UNSUPPORTED,
+        version_newer: rule::SCENE_VERSION_NEWER,
+    },
+};
+
+/// Reads a scene and checks what can be checked without its files and its device; none when a
+/// finding says why not. Never panics.
+pub fn read_scene(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<Scene> {
+    if bytes.len() as u64 > limits.file_bytes {
+        let message = format!("the scene has more than {} bytes", limits.file_bytes);
+        findings.add(rule::SCENE_FILE_TOO_LARGE, "", message);
+        return None;
+    }
+    let opened = DOCUMENT.open(bytes, limits.json_depth, findings)?;
+    if !opened.newer {
+        check_effect_names(&opened.value, findings)?;
+    }
+    let (scene, unknown) = DOCUMENT.typed::<Scene>(bytes, &opened, findings)?;
+    if !opened.newer {
+        for pointer in unknown {
+            let message = "version 1.0 has no such key; correct it or take it out".to_owned();
+            findings.add(rule::SCENE_UNKNOWN_KEY, pointer, message);
+        }
+    }
+    check(&scene, limits, findings);
+    Some(scene)
+}
+
+/// None when there is an effect that is not known.
+fn check_effect_names(scene: &Value, findings: &mut Findings) -> Option<()> {
+    let effects = scene.get("effects").and_then(Value::as_object);
+    let known = |name: &String| Effect::ALL.iter().any(|effect| effect.name() == name);
+    let mut all_known = Some(());
+    for name in effects.into_iter().flat_map(|map| map.keys()) {
+        if !known(name) {
+            let names: Vec<&str> = Effect::ALL.iter().map(|effect| effect.name()).collect();
+            let message = format!("there is no effect {name}; there are {}", names.join(", "));
+            findings.add(
+                rule::EFFECT_UNKNOWN,
+                format!("/effects/{}", escape(name)),
+                message,
+            );
+            all_known = None;
+        }
+    }
+    all_known
+}

@@ -29,25 +29,25 @@ fn main() -> ExitCode {
 /// Makes what the specification has from the code.
 fn generate() -> ExitCode {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
-    let assets = [
-        "run",
-        "--package",
-        "htex-format",
-        "--example",
-        "conformance",
+    let made: [&[&str]; 4] = [
+        &["htex-format", "--example", "conformance"],
+        &[
+            "htex-model",
+            "--features",
+            "schemars",
+            "--example",
+            "descriptor_schema",
+        ],
+        &["htex-check", "--example", "model_checks"],
+        &["htex-scene", "--example", "scene_pages"],
     ];
-    let models = ["run", "--package", "htex-model", "--features", "schemars"];
-    let schema = ["--example", "descriptor_schema"];
-    let code = run(&cargo, &assets);
-    if code != ExitCode::SUCCESS {
-        return code;
+    for what in made {
+        let code = run(&cargo, &[&["run", "--package"], what].concat());
+        if code != ExitCode::SUCCESS {
+            return code;
+        }
     }
-    let code = run(&cargo, &[&models[..], &schema].concat());
-    if code != ExitCode::SUCCESS {
-        return code;
-    }
-    let checks = ["run", "--package", "htex-check", "--example"];
-    run(&cargo, &[&checks[..], &["model_checks"]].concat())
+    ExitCode::SUCCESS
 }
 
 /// Builds, and prints where what was built is.

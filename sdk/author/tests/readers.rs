@@ -5,7 +5,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use htex_author::read::{ColumnMap, ReadOptions, read_recording};
+use htex_author::read::{ColumnMap, ReadOptions, read_recording, read_trace};
 use htex_author::recording::Recording;
 use htex_author::response::read_response;
 use proptest::prelude::*;
@@ -462,5 +462,42 @@ proptest! {
         }
         bytes.truncate(cut.max(8));
         let _ = read(name, bytes, &at(44_100.0));
+    }
+}
+
+#[test]
+fn a_trace_is_known_by_names_and_units_and_refused_with_its_line() {
+    let folder = Folder::new();
+    let trace = |text: &str| read_trace(&folder.put("hand.csv", text));
+    let text = "time [ms];Y_mm;x_mm;fz_mN;speed_cm_s;mood\n10;1;2;400;8;0\n20;3;4;500;9;0\n";
+    let read = trace(text).unwrap();
+    assert_eq!(read.t_s, [0.01, 0.02]);
+    assert_eq!((read.x_mm, read.y_mm), (vec![2.0, 4.0], vec![1.0, 3.0]));
+    assert_eq!(read.force_n, [0.4, 0.5]);
+    assert_eq!(read.speed_mm_s, Some(vec![80.0, 90.0]));
+    assert_eq!(read.warnings, ["Columns not used: mood."]);
+    let refusals = [
+        ("t_s,x_mm,y_mm\n0,0,0\n1,1,1\n", "no column is the normal"),
+        (
+            "t_s,x_mm,y_mm,fz_V\n0,0,0,1\n1,1,1,1\n",
+            "not in a unit known for normal",
+        ),
+        (
+            "t_s,x_mm,y_mm,fz_n\n0,0,0,1\n1,1,1,1\n1,1,1,1\n",
+            "line 4: time goes from 1 s to 1 s",
+        ),
+        (
+            "t_s,x_mm,x_cm,y_mm,fz_n\n0,0,0,0,1\n1,1,1,1,1\n",
+            "could be x; keep one",
+        ),
+        ("0,0,0,1\n1,1,1,1\n", "no header row"),
+        (
+            "t_s,x_mm,y_mm,fz_n\n0,0,0,1\n1,one,1,1\n",
+            "line 3, column \"x_mm\"",
+        ),
+    ];
+    for (text, expected) in refusals {
+        let error = trace(text).unwrap_err().to_string();
+        assert!(error.contains(expected), "{text:?}: {error}");
     }
 }

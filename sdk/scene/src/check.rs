@@ -121,7 +121,7 @@ fn check_constant(motion: &Constant, surfaces: &[Surface], findings: &mut Findin
 
 fn check_device(device: &DeviceChoice, findings: &mut Findings) {
     let numbers = [
-        ("rate_hz", device.rate_hz, Range(100.0, 1e6)),
+        ("rate_hz", device.rate_hz, Range(f64::MIN_POSITIVE, 1e7)),
         ("gain_db", device.gain_db, Range(-120.0, 120.0)),
         ("drive_v", device.drive_v, Range(f64::MIN_POSITIVE, 1e4)),
         ("level_dbfs", device.level_dbfs, Range(-120.0, 0.0)),

@@ -12,6 +12,9 @@ use serde_json::Value;
 use crate::file::DeviceChoice;
 use crate::rules as rule;
 
+/// The setting that names a library of code; a scene, which may come from anyone, must not have it.
+const DRIVER: &str = "driver";
+
 /// What is said of the device when a scene is loaded; it goes before what the scene says.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DeviceOverride {
@@ -21,9 +24,25 @@ pub struct DeviceOverride {
     pub profile: Option<String>,
     /// Settings as the adapter reads them; relative paths are left as they are.
     pub settings: BTreeMap<String, String>,
+    /// What a setting that names a file is when nobody says; absent: the scene's name with `.wav`,
+    /// in the current folder.
+    pub output: Option<String>,
 }
 
 impl DeviceOverride {
+    /// With an output for the scene or asset in `path`.
+    pub(crate) fn with_output(&self, path: &Path) -> Self {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let stem = [".scene.json", ".json", ".htex"]
+            .iter()
+            .find_map(|ending| name.strip_suffix(ending));
+        let output = format!("{}.wav", stem.unwrap_or(&name));
+        Self {
+            output: Some(self.output.clone().unwrap_or(output)),
+            ..self.clone()
+        }
+    }
+
     /// Puts adapter and profile into a scene's choice.
     pub(crate) fn apply(&self, choice: &mut DeviceChoice) {
         if let Some(adapter) = &self.adapter {
@@ -56,6 +75,11 @@ pub(crate) fn check_device(
     let descriptor = adapter.descriptor();
     let mut given = texts(choice, descriptor, folder, findings)?;
     given.extend(change.settings.clone());
+    for setting in descriptor.settings.iter().filter(|s| s.default.is_none()) {
+        if let (SettingKind::Path, Some(output)) = (&setting.kind, &change.output) {
+            given.entry(setting.name.clone()).or_insert(output.clone());
+        }
+    }
     let settled = Settings::resolve(descriptor, choice.profile.as_deref(), &given);
     let settings = settled.map_err(|error| add_error(error, findings)).ok()?;
     match adapter.capabilities(&settings) {
@@ -93,7 +117,10 @@ fn texts(
             findings.add(rule::DEVICE_SETTING, pointer, message.to_owned());
             continue;
         };
-        if !is_path(descriptor, name) {
+        if name == DRIVER {
+            let message = format!("{text} is code to be loaded; name it by --set {DRIVER}={text}");
+            findings.add(rule::DEVICE_PATH_UNSAFE, pointer, message);
+        } else if !is_path(descriptor, name) {
             texts.insert(name.clone(), text);
         } else if is_inside(&text) {
             texts.insert(name.clone(), folder.join(text).display().to_string());

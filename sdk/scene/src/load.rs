@@ -80,6 +80,7 @@ impl LoadedScene {
     ) -> Result<Self, LoadError> {
         let mut findings = Findings::default();
         let scene = read_file(path, &mut findings)?;
+        let device = &device.with_output(path);
         let loaded =
             scene.and_then(|scene| load(scene, folder(path), around, device, &mut findings));
         finish(loaded, findings)
@@ -108,6 +109,7 @@ impl LoadedScene {
         };
         let mut findings = Findings::default();
         check(&scene, &Limits::default(), &mut findings);
+        let device = &device.with_output(asset);
         let loaded = load(scene, PathBuf::new(), around, device, &mut findings);
         finish(loaded, findings)
     }
@@ -196,7 +198,7 @@ fn open_assets(
     let mut opened: HashMap<&Path, Opened> = HashMap::new();
     let mut assets = Vec::new();
     for (i, surface) in scene.surfaces.iter().enumerate() {
-        let open = || open_asset(&folder.join(&surface.asset), around);
+        let open = || open_asset(&surface.asset, folder, around);
         match opened.entry(&surface.asset).or_insert_with(open) {
             Ok(asset) => {
                 check_representation(asset, surface, i, findings);
@@ -210,30 +212,35 @@ fn open_assets(
     (assets.len() == scene.surfaces.len()).then_some(assets)
 }
 
-fn open_asset(path: &Path, around: &Surroundings<'_>) -> Result<Asset, (&'static Rule, String)> {
-    let opened = htex_format::Asset::open(path)
+fn open_asset(
+    asset: &Path,
+    folder: &Path,
+    around: &Surroundings<'_>,
+) -> Result<Asset, (&'static Rule, String)> {
+    let opened = htex_format::Asset::open(&folder.join(asset))
         .map_err(htex::Error::from)
         .map(|data| Asset::with_registry(data, around.models.clone()))
         .and_then(|asset| match around.embedded {
             true => asset.with_embedded(),
             false => Ok(asset),
         });
-    opened.map_err(|error| {
-        let rule = match &error {
-            htex::Error::Read(htex_format::ReadError::Io { error, .. }) => {
-                of_io(error, rule::ASSET_MISSING, rule::ASSET_INVALID)
-            }
-            _ => rule::ASSET_INVALID,
-        };
-        (rule, format!("{}: {error}", path.display()))
+    opened.map_err(|error| match &error {
+        htex::Error::Read(htex_format::ReadError::Io { error, .. }) if is_missing(error) => {
+            (rule::ASSET_MISSING, missing(asset))
+        }
+        _ => (rule::ASSET_INVALID, format!("{}: {error}", asset.display())),
     })
 }
 
-fn of_io(error: &io::Error, missing: &'static Rule, invalid: &'static Rule) -> &'static Rule {
-    match error.kind() {
-        io::ErrorKind::NotFound => missing,
-        _ => invalid,
-    }
+fn is_missing(error: &io::Error) -> bool {
+    error.kind() == io::ErrorKind::NotFound
+}
+
+fn missing(path: &Path) -> String {
+    format!(
+        "there is no file {}; correct the path, or put it there",
+        path.display()
+    )
 }
 
 fn check_representation(asset: &Asset, surface: &Surface, i: usize, findings: &mut Findings) {
@@ -251,6 +258,8 @@ fn check_representation(asset: &Asset, surface: &Surface, i: usize, findings: &m
             let first = tried.next().unwrap_or(Ok(()));
             first.or_else(|error| tried.find(Result::is_ok).unwrap_or(Err(error)))
         }
+        // It has its finding already.
+        name if name.trim().is_empty() => Ok(()),
         name => source(name),
     };
     if let Err(error) = playable {
@@ -268,12 +277,8 @@ fn open_trace(scene: &Scene, folder: &Path, findings: &mut Findings) -> Option<T
         return None;
     };
     let rules = [rule::TRACE_MISSING, rule::TRACE_INVALID];
-    let trace = opened(
-        Trace::open(&folder.join(path)),
-        rules,
-        "/motion/trace",
-        findings,
-    )?;
+    let result = Trace::open(&folder.join(path));
+    let trace = opened(result, path, rules, "/motion/trace", findings)?;
     for warning in &trace.warnings {
         findings.add(rule::TRACE_ASSUMED, "/motion/trace", warning.clone());
     }
@@ -292,25 +297,26 @@ fn open_trace(scene: &Scene, folder: &Path, findings: &mut Findings) -> Option<T
 }
 
 fn open_response(scene: &Scene, folder: &Path, findings: &mut Findings) -> Option<Response> {
-    let path = folder.join(scene.device.response.as_ref()?);
+    let path = scene.device.response.as_ref()?;
     let rules = [rule::RESPONSE_MISSING, rule::RESPONSE_INVALID];
-    opened(response::open(&path), rules, "/device/response", findings)
+    let result = response::open(&folder.join(path));
+    opened(result, path, rules, "/device/response", findings)
 }
 
-/// What was opened; else the finding of a missing or an invalid file.
+/// What was opened; else the finding of a file that is not there or not valid.
 fn opened<T>(
     result: Result<T, ReadError>,
-    [missing, invalid]: [&'static Rule; 2],
+    path: &Path,
+    [gone, invalid]: [&Rule; 2],
     pointer: &str,
     findings: &mut Findings,
 ) -> Option<T> {
-    result
-        .map_err(|error| {
-            let rule = match &error {
-                ReadError::Io { source, .. } => of_io(source, missing, invalid),
-                _ => invalid,
-            };
-            findings.add(rule, pointer, error.to_string());
-        })
-        .ok()
+    match result {
+        Ok(value) => return Some(value),
+        Err(ReadError::Io { source, .. }) if is_missing(&source) => {
+            findings.add(gone, pointer, missing(path));
+        }
+        Err(error) => findings.add(invalid, pointer, error.to_string()),
+    }
+    None
 }

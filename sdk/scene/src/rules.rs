@@ -137,8 +137,8 @@ htex_format::rule_table! {
         "What the samples mean depends on the device.",
         "Correct the name; `htex device list` shows what there is.";
     DEVICE_PATH_UNSAFE Error:
-        "A setting of the scene names a file outside the scene's folder.",
-        "A scene may come from anyone, and playing it must not reach into other folders.",
+        "A setting of the scene names a file outside the scene's folder, or a driver.",
+        "A scene may come from anyone: playing it must not reach into other folders or load code.",
         "Use a relative path without `..`, or give the setting on the command line (`--set`).";
     DEVICE_SETTING Error:
         "A profile or a setting of the device cannot be used.",

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use clap::Args;
 use htex_device::{
-    Adapter, DeviceOrigin, DeviceSearch, Devices, KnownDevice, NativeAdapter, Settings,
+    Adapter, DeviceError, DeviceOrigin, DeviceSearch, Devices, KnownDevice, NativeAdapter, Settings,
 };
 
 use crate::failure::Failure;
@@ -15,7 +15,20 @@ use crate::output::warn;
 
 /// The adapters linked into this program, in the order in which they are shown.
 fn builtin() -> Vec<Arc<dyn Adapter>> {
-    vec![Arc::new(htex_device_file::FileAdapter)]
+    vec![
+        Arc::new(htex_device_file::FileAdapter),
+        Arc::new(htex_device_daq::Daq::new()),
+        #[cfg(feature = "audio")]
+        Arc::new(htex_device_audio::Audio::new()),
+    ]
+}
+
+/// Why there is no sound where none was built in; of no other device.
+fn no_sound(name: &str) -> Option<DeviceError> {
+    let sound = cfg!(not(feature = "audio")) && matches!(name, "audio" | "org.htex.audio");
+    let why = "this htex is built without sound; build it with `--features audio`, which on Linux \
+               wants libasound2-dev";
+    sound.then(|| DeviceError::Missing(why.to_owned()))
 }
 
 /// Where devices come from.
@@ -55,7 +68,9 @@ impl DeviceArgs {
     pub(crate) fn named(&self, name: &str) -> Result<KnownDevice, Failure> {
         let file = Path::new(name);
         if !file.is_file() {
-            return Ok(self.devices()?.find(name)?.clone());
+            let devices = self.devices()?;
+            let found = devices.find(name).cloned();
+            return found.map_err(|error| no_sound(name).unwrap_or(error).into());
         }
         Ok(KnownDevice {
             adapter: Arc::new(NativeAdapter::load(file)?),

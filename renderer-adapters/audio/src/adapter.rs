@@ -2,15 +2,12 @@
 
 use cpal::traits::DeviceTrait;
 use htex_device::{
-    Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, Quantity, Setting,
-    SettingKind, Settings, StreamFormat,
+    Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, Setting, SettingKind,
+    Settings, StreamFormat,
 };
 
 use crate::card::{self, Card, DEFAULT};
 use crate::sound::Sound;
-
-/// Frames a block is best made of.
-const BLOCK_FRAMES: u32 = 256;
 
 /// The adapter; see the crate's documentation.
 pub struct Audio {
@@ -57,17 +54,7 @@ impl Adapter for Audio {
     }
 
     fn capabilities(&self, settings: &Settings) -> Result<Capabilities, DeviceError> {
-        let card = Card::find(settings.text("device"))?;
-        Ok(Capabilities {
-            quantity: Quantity::Sound,
-            rates: card.rates(),
-            default_rate_hz: card.default_rate_hz()?,
-            limit: Some(1.0),
-            step: None,
-            carrier_hz: None,
-            paced: true,
-            block_frames: BLOCK_FRAMES,
-        })
+        Card::find(settings.text("device"))?.capabilities()
     }
 
     fn open(

@@ -2,7 +2,7 @@
 
 use cpal::traits::{DeviceTrait, HostTrait};
 use cpal::{SampleFormat, StreamConfig, SupportedStreamConfigRange};
-use htex_device::{DeviceError, Rates};
+use htex_device::{Capabilities, DeviceError, Quantity, Rates};
 
 /// Formats a stream may have, the best first.
 const FORMATS: [SampleFormat; 4] = [
@@ -11,6 +11,8 @@ const FORMATS: [SampleFormat; 4] = [
     SampleFormat::I16,
     SampleFormat::U8,
 ];
+/// Frames a block is best made of.
+const BLOCK_FRAMES: u32 = 256;
 /// Highest rate that is told of, hertz: plugins of ALSA claim any.
 const MAX_RATE_HZ: f64 = 768_000.0;
 /// The name of the card that the system prefers.
@@ -46,7 +48,22 @@ impl Card {
         }
     }
 
-    pub(crate) fn rates(&self) -> Rates {
+    pub(crate) fn capabilities(&self) -> Result<Capabilities, DeviceError> {
+        let preferred = self.device.default_output_config();
+        let preferred = preferred.map_err(|error| missing(&self.name, &error.to_string()))?;
+        Ok(Capabilities {
+            quantity: Quantity::Sound,
+            rates: self.rates(),
+            default_rate_hz: f64::from(preferred.sample_rate()),
+            limit: Some(1.0),
+            step: None,
+            carrier_hz: None,
+            paced: true,
+            block_frames: BLOCK_FRAMES,
+        })
+    }
+
+    fn rates(&self) -> Rates {
         let ends = |c: &SupportedStreamConfigRange| {
             (
                 f64::from(c.min_sample_rate()),
@@ -62,13 +79,6 @@ impl Card {
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         all.dedup();
         Rates::List(all.into_iter().map(|r| r.0).collect())
-    }
-
-    /// The rate the card prefers, hertz.
-    pub(crate) fn default_rate_hz(&self) -> Result<f64, DeviceError> {
-        let config = self.device.default_output_config();
-        let config = config.map_err(|error| missing(&self.name, &error.to_string()))?;
-        Ok(f64::from(config.sample_rate()))
     }
 
     /// The best format at this rate, on two channels or as near to two as there are.

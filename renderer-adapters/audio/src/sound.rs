@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use cpal::traits::{DeviceTrait, StreamTrait};
 use cpal::{ErrorKind, FromSample, OutputCallbackInfo, SampleFormat, SizedSample, StreamConfig};
-use htex_device::{Device, DeviceError, Status, StreamFormat};
+use htex_device::{Capabilities, Device, DeviceError, Status, StreamFormat};
 use rtrb::{Producer, RingBuffer};
 
 use crate::card::Card;
@@ -17,11 +17,10 @@ use crate::player::{Player, Shared, Wish};
 const LOOK: Duration = Duration::from_millis(2);
 /// After this long without a call from the card, it is taken to stand still.
 const STILL: Duration = Duration::from_secs(2);
-/// How far above full scale a sample still counts as full scale: rounding to f32.
-const ROUNDING: f32 = 1e-6;
 
 pub(crate) struct Sound {
     name: String,
+    can: Capabilities,
     rate_hz: f64,
     ring: Producer<f32>,
     shared: Arc<Shared>,
@@ -57,6 +56,7 @@ impl Sound {
         let stream = build(&card.device, config, player, Box::new(report));
         Ok(Self {
             name: card.name.clone(),
+            can: card.capabilities()?,
             rate_hz: format.rate_hz,
             ring,
             shared,
@@ -88,18 +88,11 @@ impl Sound {
     }
 
     fn check(&mut self, samples: &[f32]) -> Result<(), DeviceError> {
-        let within = |x: &f32| x.abs() <= 1.0 + ROUNDING;
-        let Some(at) = samples.iter().position(|x| !within(x)) else {
-            return Ok(());
-        };
-        let frame = self.written + at as u64;
-        self.end(Wish::Stop)?;
-        Err(DeviceError::OverLimit {
-            frame,
-            value: f64::from(samples[at]),
-            limit: 1.0,
-            unit: "FS",
-        })
+        let checked = self.can.check_samples(samples, self.written);
+        if checked.is_err() {
+            self.end(Wish::Stop)?;
+        }
+        checked
     }
 
     /// Ends playback, and closes the card when the last sound has left it.

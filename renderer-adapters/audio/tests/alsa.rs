@@ -104,6 +104,8 @@ fn a_card_says_what_it_can_do() {
         "{there:?}"
     );
     let card: Capabilities = audio.capabilities(&settings("alsa:float", "60")).unwrap();
+    card.check().unwrap();
+    audio.descriptor().check().unwrap();
     assert_eq!((card.quantity, card.limit), (Quantity::Sound, Some(1.0)));
     assert!(card.paced && card.rates.has(RATE_HZ) && card.rates.has(card.default_rate_hz));
 }

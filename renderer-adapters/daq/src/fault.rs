@@ -6,6 +6,8 @@ use htex_device::DeviceError;
 const GONE: [i32; 8] = [
     -88705, -200045, -200170, -200194, -200220, -200324, -200175, -201003,
 ];
+/// Another task, or another program, has the output.
+const RESERVED: i32 = -50103;
 /// Samples came too late: the buffer, or the memory on the card, ran dry.
 const DRY: [i32; 5] = [-200290, -200291, -200016, -200018, -200621];
 
@@ -42,12 +44,15 @@ impl Fault {
 
     /// The error of a device that was to be opened.
     pub(crate) fn missing(&self, device: &str) -> DeviceError {
-        match GONE.contains(&self.code) {
-            true => DeviceError::Missing(format!(
-                "{device} is not there (NI-DAQmx {}: {}); see NI MAX or `nilsdev`",
-                self.code, self.words
+        let Self { code, words } = self;
+        match *code {
+            RESERVED => DeviceError::Busy(format!(
+                "{device} is in use by another program or device (NI-DAQmx {code}: {words})"
             )),
-            false => self.failed(device),
+            code if GONE.contains(&code) => DeviceError::Missing(format!(
+                "{device} is not there (NI-DAQmx {code}: {words}); see NI MAX or `nilsdev`"
+            )),
+            _ => self.failed(device),
         }
     }
 }

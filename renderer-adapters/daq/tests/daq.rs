@@ -136,6 +136,18 @@ fn a_device_dropped_in_the_middle_goes_to_zero() {
 }
 
 #[test]
+fn an_output_in_use_is_left_to_its_user() {
+    let card = Card::new();
+    let mut first = card.open(&[]).unwrap();
+    first.write(&[100.0; 3_000], LONG).unwrap();
+    let second = card.open(&[]).err().unwrap();
+    assert!(matches!(second, DeviceError::Busy(_)), "{second}");
+    first.finish().unwrap();
+    assert_eq!(first.status().frames_played, 3_000);
+    assert!(card.open(&[]).is_ok());
+}
+
+#[test]
 fn a_card_pulled_out_is_an_error_that_says_so() {
     let card = Card::new();
     card.set("unplug_after", "4000");
@@ -157,6 +169,7 @@ fn what_the_rig_can_do() {
     let card = Card::new();
     let can = |given| Daq::new().capabilities(&card.settings(given));
     let paper = can(&[]).unwrap();
+    paper.check().unwrap();
     assert_eq!(paper.quantity, Quantity::DisplayVoltage);
     assert_eq!(
         (paper.limit, paper.carrier_hz, paper.paced),
@@ -208,8 +221,9 @@ fn what_is_missing_is_named() {
 #[test]
 fn gain_and_limit_have_no_default() {
     let none = BTreeMap::new();
-    let descriptor = Daq::new();
-    let descriptor = descriptor.descriptor();
+    let adapter = Daq::new();
+    let descriptor = adapter.descriptor();
+    descriptor.check().unwrap();
     assert!(Settings::resolve(descriptor, None, &none).is_err());
     for profile in [PAPER, "generic"] {
         assert!(Settings::resolve(descriptor, Some(profile), &none).is_ok());

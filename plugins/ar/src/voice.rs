@@ -15,6 +15,8 @@ const RAMP_S: f64 = 0.010;
 /// Rendered before the first sample, seconds and samples at most: the filter starts in its stride.
 const SETTLE_S: f64 = 0.5;
 const SETTLE_SAMPLES: f64 = 4096.0;
+/// Samples made at once.
+const BLOCK: usize = 64;
 
 /// An endless stream of filtered noise.
 pub struct AutoregressionVoice {
@@ -63,15 +65,25 @@ impl AutoregressionVoice {
             ramp_len: libm::ceil(RAMP_S * rate_hz).max(1.0) as u32,
             ramp_left: 0,
         };
-        for _ in 0..libm::ceil((SETTLE_S * rate_hz).min(SETTLE_SAMPLES)) as usize {
-            voice.next_sample();
-        }
+        let settle = libm::ceil((SETTLE_S * rate_hz).min(SETTLE_SAMPLES)) as usize;
+        voice.render(&mut vec![0.0; settle]);
         Ok(voice)
     }
 
-    fn next_sample(&mut self) -> f64 {
-        let filtered = self.lattice.tick(self.gain * self.noise.next_sample());
-        self.edges.tick(filtered)
+    /// The next samples of parameters that do not change meanwhile.
+    fn steady(&mut self, out: &mut [f32]) {
+        let mut block = [0.0; BLOCK];
+        for out in out.chunks_mut(BLOCK) {
+            let block = &mut block[..out.len()];
+            for x in block.iter_mut() {
+                *x = self.gain * self.noise.next_sample();
+            }
+            self.lattice.process(block);
+            self.edges.process(block);
+            for (sample, x) in out.iter_mut().zip(block) {
+                *sample = *x as f32;
+            }
+        }
     }
 
     /// Moves one step towards the target.
@@ -95,12 +107,13 @@ impl AutoregressionVoice {
 
 impl Voice for AutoregressionVoice {
     fn render(&mut self, out: &mut [f32]) {
-        for sample in out {
-            if self.ramp_left > 0 {
-                self.ramp();
-            }
-            *sample = self.next_sample() as f32;
+        let changing = out.len().min(self.ramp_left as usize);
+        let (changing, steady) = out.split_at_mut(changing);
+        for sample in changing {
+            self.ramp();
+            self.steady(core::slice::from_mut(sample));
         }
+        self.steady(steady);
     }
 
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {

@@ -60,6 +60,15 @@ fn squared_magnitude(c0: f64, c1: f64, c2: f64, phi: f64) -> f64 {
     (sum * sum - 4.0 * linear * phi + 16.0 * c0 * c2 * phi * phi).max(0.0)
 }
 
+/// A block through `N` sections, whose state meanwhile stays in registers.
+fn run<const N: usize>(sections: &mut [Section; N], block: &mut [f64]) {
+    let mut own = *sections;
+    for sample in block {
+        *sample = own.iter_mut().fold(*sample, |x, section| section.tick(x));
+    }
+    *sections = own;
+}
+
 /// More sections were given than a [`Cascade`] was made for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TooManySections {
@@ -186,10 +195,18 @@ impl Cascade {
 
     /// Filters a block in place.
     pub fn process(&mut self, block: &mut [f64]) {
-        for section in &mut self.sections {
-            for sample in block.iter_mut() {
-                *sample = section.tick(*sample);
-            }
+        // Several sections at a time, sample by sample: while one waits for its own last answer,
+        // the others go on.
+        let (fours, rest) = self.sections.as_chunks_mut::<4>();
+        for four in fours {
+            run(four, block);
+        }
+        let (twos, rest) = rest.as_chunks_mut::<2>();
+        for two in twos {
+            run(two, block);
+        }
+        for one in rest {
+            run(core::array::from_mut(one), block);
         }
     }
 

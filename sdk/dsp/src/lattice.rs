@@ -39,26 +39,42 @@ impl AllPoleLattice {
     }
 
     /// Filters one sample.
-    #[inline]
     pub fn tick(&mut self, input: f64) -> f64 {
-        let mut forward = input;
-        for stage in (0..self.reflection.len()).rev() {
-            let (k, delayed) = (self.reflection[stage], self.delayed[stage]);
-            forward += k * delayed;
-            if let Some(above) = self.delayed.get_mut(stage + 1) {
-                *above = without_denormals(delayed - k * forward);
-            }
-        }
-        if let Some(first) = self.delayed.first_mut() {
-            *first = without_denormals(forward);
-        }
-        forward
+        let mut block = [input];
+        self.process(&mut block);
+        block[0]
     }
 
     /// Filters a block in place.
     pub fn process(&mut self, block: &mut [f64]) {
+        // Stages whose coefficient is zero, above the others, change nothing: so a few lengths, with
+        // all state in registers, do for every order.
+        match self.order() {
+            0..=2 => self.run::<2>(block),
+            3..=4 => self.run::<4>(block),
+            5..=6 => self.run::<6>(block),
+            7..=8 => self.run::<8>(block),
+            9..=12 => self.run::<12>(block),
+            13..=16 => self.run::<16>(block),
+            _ => self.run_any(block),
+        }
+    }
+
+    /// As [`Self::run_any`] in `N` stages or fewer.
+    fn run<const N: usize>(&mut self, block: &mut [f64]) {
+        let order = self.order();
+        let (mut k, mut delayed) = ([0.0; N], [0.0; N]);
+        k[..order].copy_from_slice(&self.reflection);
+        delayed[..order].copy_from_slice(&self.delayed);
         for sample in block {
-            *sample = self.tick(*sample);
+            *sample = stages(*sample, &k, &mut delayed);
+        }
+        self.delayed.copy_from_slice(&delayed[..order]);
+    }
+
+    fn run_any(&mut self, block: &mut [f64]) {
+        for sample in block {
+            *sample = stages(*sample, &self.reflection, &mut self.delayed);
         }
     }
 
@@ -66,4 +82,21 @@ impl AllPoleLattice {
     pub fn reset(&mut self) {
         self.delayed.fill(0.0);
     }
+}
+
+/// One sample through all stages, from the last to the first.
+#[inline(always)]
+fn stages(input: f64, k: &[f64], delayed: &mut [f64]) -> f64 {
+    let mut forward = input;
+    for stage in (0..k.len()).rev() {
+        let before = delayed[stage];
+        forward += k[stage] * before;
+        if stage + 1 < k.len() {
+            delayed[stage + 1] = without_denormals(before - k[stage] * forward);
+        }
+    }
+    if let Some(first) = delayed.first_mut() {
+        *first = without_denormals(forward);
+    }
+    forward
 }

@@ -18,6 +18,8 @@ pub mod butterworth;
 pub mod dct;
 pub mod estimation;
 pub mod grid;
+pub mod inverse_fft;
+mod lanes;
 pub mod lattice;
 pub mod least_squares;
 pub mod line_spectrum;
@@ -27,12 +29,12 @@ pub mod nelder_mead;
 pub mod noise;
 pub mod peaks;
 pub mod resample;
-#[cfg(feature = "std")]
 pub mod shaped_noise;
 pub mod sine_bank;
 #[cfg(feature = "std")]
 pub mod spectrum;
 pub mod triangles;
 pub mod window;
+mod ziggurat;
 
 pub use grid::{Band, GRID_HZ};

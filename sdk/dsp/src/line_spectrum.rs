@@ -31,13 +31,16 @@ pub fn line_spectral_frequencies(coefficients: &[f64]) -> Option<Vec<f64>> {
 
 /// As [`line_spectral_frequencies`], from reflection coefficients, each inside (-1, 1).
 pub fn line_spectral_frequencies_of_reflection(reflection: &[f64]) -> Vec<f64> {
+    lines_of_reflection(reflection).collect()
+}
+
+/// As [`line_spectral_frequencies_of_reflection`], one after the other. Does not allocate.
+pub fn lines_of_reflection(reflection: &[f64]) -> impl Iterator<Item = f64> {
     let mut from = 0.0;
-    (1..=reflection.len())
-        .map(|i| {
-            from = angle_of_phase(reflection, i as f64 * PI, from);
-            from
-        })
-        .collect()
+    (1..=reflection.len()).map(move |i| {
+        from = angle_of_phase(reflection, i as f64 * PI, from);
+        from
+    })
 }
 
 /// The ω in `[from, π]` at which the phase reaches `target`.
@@ -64,44 +67,52 @@ fn all_pass_lag(reflection: &[f64], omega: f64) -> f64 {
 }
 
 /// Prediction coefficients from line spectral frequencies in radians; `None` unless they ascend
-/// strictly inside (0, π), which is what makes the model stable.
+/// strictly inside (0, π), which is what makes the model stable, or if there are more than
+/// [`MOST_LINES`].
 pub fn from_line_spectral_frequencies(lsf: &[f64]) -> Option<Vec<f64>> {
+    let mut coefficients = alloc::vec![0.0; lsf.len()];
+    coefficients_of_lines(lsf, &mut coefficients).then_some(coefficients)
+}
+
+/// As [`from_line_spectral_frequencies`], into an array of the same length; false instead of `None`.
+/// Does not allocate.
+pub fn coefficients_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
     let inside = lsf.iter().all(|&w| w > 0.0 && w < PI);
-    if !inside || lsf.windows(2).any(|pair| pair[0] >= pair[1]) {
-        return None;
+    let ascend = lsf.windows(2).all(|pair| pair[0] < pair[1]);
+    if !inside || !ascend || lsf.len() > MOST_LINES {
+        return false;
     }
     let fixed: [&[f64]; 2] = if lsf.len().is_multiple_of(2) {
         [&[1.0, 1.0], &[1.0, -1.0]]
     } else {
         [&[1.0], &[1.0, 0.0, -1.0]]
     };
-    let symmetric = with_zeros_at(
-        fixed[0],
-        &lsf.iter().copied().step_by(2).collect::<Vec<_>>(),
-    );
-    let antisymmetric = with_zeros_at(
-        fixed[1],
-        &lsf.iter().copied().skip(1).step_by(2).collect::<Vec<_>>(),
-    );
-    let mean = symmetric
-        .iter()
-        .zip(&antisymmetric)
-        .map(|(p, q)| -0.5 * (p + q));
-    Some(mean.skip(1).take(lsf.len()).collect())
+    let symmetric = with_zeros_at(fixed[0], lsf, 0);
+    let antisymmetric = with_zeros_at(fixed[1], lsf, 1);
+    let sums = symmetric.iter().zip(&antisymmetric).skip(1);
+    for (a, (p, q)) in coefficients.iter_mut().zip(sums) {
+        *a = -0.5 * (p + q);
+    }
+    true
 }
 
-/// `fixed(z) Π (1 - 2 cos ω z⁻¹ + z⁻²)`.
-fn with_zeros_at(fixed: &[f64], angles: &[f64]) -> Vec<f64> {
-    let factors = spread_order(angles.len()).map(|i| -2.0 * libm::cos(angles[i]));
-    factors.fold(fixed.to_vec(), |polynomial, middle| {
-        let mut product = alloc::vec![0.0; polynomial.len() + 2];
-        for (i, c) in polynomial.iter().enumerate() {
-            product[i] += c;
-            product[i + 1] += middle * c;
-            product[i + 2] += c;
+/// Most line spectral frequencies that are turned back into a model.
+pub const MOST_LINES: usize = 128;
+
+/// `fixed(z) Π (1 - 2 cos ω z⁻¹ + z⁻²)` over every second line from `first` on.
+fn with_zeros_at(fixed: &[f64], lsf: &[f64], first: usize) -> [f64; MOST_LINES + 3] {
+    let mut product = [0.0; MOST_LINES + 3];
+    product[..fixed.len()].copy_from_slice(fixed);
+    let (mut len, count) = (fixed.len(), (lsf.len() + 1 - first) / 2);
+    for i in spread_order(count) {
+        let middle = -2.0 * libm::cos(lsf[first + 2 * i]);
+        len += 2;
+        for j in (1..len).rev() {
+            let two_below = if j > 1 { product[j - 2] } else { 0.0 };
+            product[j] += two_below + middle * product[j - 1];
         }
-        product
-    })
+    }
+    product
 }
 
 /// `0..n` with its bits reversed: neighbours come far apart. Multiplied in ascending order, the

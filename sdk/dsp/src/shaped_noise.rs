@@ -4,22 +4,20 @@
 //! are independent and sine² + cos² = 1, so the power is the same at every sample, and no frame
 //! ever comes back (numeric definitions: random phase).
 
-use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use realfft::{ComplexToReal, RealFftPlanner, num_complex::Complex};
-
 use crate::grid::{Band, GRID_HZ};
+use crate::inverse_fft::{InverseRealFft, smooth_length};
 use crate::noise::Uniform;
 
-/// Length of half a frame, seconds: components stand 2.5 Hz apart.
+/// Length of half a frame at least, seconds: components stand 2.5 Hz apart, or a little less.
 const HOP_S: f64 = 0.2;
 /// Length of the cross-fade after a retune, seconds.
 const FADE_S: f64 = 0.010;
 
 /// An endless stream of noise of unit RMS whose spectrum follows a magnitude curve.
 pub struct ShapedNoise {
-    inverse: Arc<dyn ComplexToReal<f64>>,
+    inverse: InverseRealFft,
     window: Vec<f64>,
     hop: usize,
     fade_len: usize,
@@ -33,8 +31,7 @@ pub struct ShapedNoise {
     ending: Uniform,
     beginning: Uniform,
     next: Uniform,
-    spectrum: Vec<Complex<f64>>,
-    scratch: Vec<Complex<f64>>,
+    spectrum: Vec<(f64, f64)>,
     frame: Vec<f64>,
     tail: Vec<f64>,
     now: Vec<f64>,
@@ -56,7 +53,7 @@ impl ShapedNoise {
     /// The rate is at least 20 Hz and at most 10 MHz (clamped).
     pub fn new(rate_hz: f64, band: Band, seed: u64) -> Self {
         let rate_hz = rate_hz.clamp(20.0, 1e7);
-        let hop = libm::round(rate_hz * HOP_S).max(2.0) as usize;
+        let hop = smooth_length(libm::round(rate_hz * HOP_S).max(2.0) as usize);
         let len = 2 * hop;
         let spacing = rate_hz / len as f64;
         // Each bin of the texture spectrum stands for half a bin to either side.
@@ -66,16 +63,14 @@ impl ShapedNoise {
         let component_hz: Vec<f64> = (low..=high.max(low))
             .map(|j| (j as f64 * spacing).clamp(band.low_hz, band.high_hz))
             .collect();
-        let inverse = RealFftPlanner::new().plan_fft_inverse(len);
         let window = (0..len)
             .map(|n| libm::sin(core::f64::consts::PI * (n as f64 + 0.5) / len as f64))
             .collect();
         let zeros = |n| alloc::vec![0.0; n];
         let mut noise = Self {
-            spectrum: inverse.make_input_vec(),
-            scratch: inverse.make_scratch_vec(),
-            frame: inverse.make_output_vec(),
-            inverse,
+            spectrum: alloc::vec![(0.0, 0.0); component_hz.len()],
+            frame: zeros(len),
+            inverse: InverseRealFft::new(hop),
             window,
             hop,
             fade_len: libm::ceil(FADE_S * rate_hz).max(1.0).min(hop as f64) as usize,
@@ -137,16 +132,43 @@ impl ShapedNoise {
 
     /// Fills `out` with the next samples. Does not allocate.
     pub fn render(&mut self, out: &mut [f32]) {
-        for sample in out {
+        let mut rest = out;
+        while !rest.is_empty() {
             if self.position == self.hop {
                 self.next_hop();
             }
             if self.pending {
                 self.begin_fade();
             }
-            *sample = self.current() as f32;
-            self.position += 1;
+            let run = match self.fade_position {
+                Some(_) => self.run_fade(rest),
+                None => self.run_steady(rest),
+            };
+            rest = &mut rest[run..];
         }
+    }
+
+    /// Samples of this hop as it is, up to its end; answers how many. While a change waits for the
+    /// next hop this may be asked for sample by sample, or at once.
+    fn run_steady(&mut self, out: &mut [f32]) -> usize {
+        let run = out.len().min(self.hop - self.position);
+        let now = &self.now[self.position..self.position + run];
+        for (sample, x) in out.iter_mut().zip(now) {
+            *sample = *x as f32;
+        }
+        self.position += run;
+        run
+    }
+
+    /// Samples of a cross-fade; answers how many.
+    fn run_fade(&mut self, out: &mut [f32]) -> usize {
+        let mut run = 0;
+        while run < out.len() && self.fade_position.is_some() {
+            out[run] = self.current() as f32;
+            self.position += 1;
+            run += 1;
+        }
+        run
     }
 
     fn current(&mut self) -> f64 {
@@ -205,23 +227,12 @@ impl ShapedNoise {
     }
 
     fn make_frame(&mut self, phases: &mut Uniform) {
-        self.spectrum.fill(Complex::new(0.0, 0.0));
-        for (i, &a) in self.amplitude.iter().enumerate() {
-            let (sin, cos) = libm::sincos(core::f64::consts::TAU * phases.next_unit());
-            if let Some(bin) = self.spectrum.get_mut(self.first + i) {
-                *bin = Complex::new(0.5 * a * cos, 0.5 * a * sin);
-            }
+        for (bin, &a) in self.spectrum.iter_mut().zip(&self.amplitude) {
+            let (cos, sin) = phases.next_direction();
+            *bin = (0.5 * a * cos, 0.5 * a * sin);
         }
-        // The lengths are the plan's own and the edge bins are zero, so this cannot fail; a frame
-        // that did would be silence.
-        let made = self.inverse.process_with_scratch(
-            &mut self.spectrum,
-            &mut self.frame,
-            &mut self.scratch,
-        );
-        if made.is_err() {
-            self.frame.fill(0.0);
-        }
+        self.inverse
+            .run(self.first, &self.spectrum, &mut self.frame);
         for (x, w) in self.frame.iter_mut().zip(&self.window) {
             *x *= w;
         }

@@ -1,0 +1,294 @@
+//! From a half spectrum to a real signal, the same bits on every machine.
+//!
+//! A library's transform picks the instructions of the processor it finds, and so its rounding. This
+//! one (Stockham, radices 2 to 5) is plain arithmetic on arrays that compilers turn into vector
+//! instructions, in a native library as in a WASM module.
+
+use alloc::vec::Vec;
+use core::f64::consts::TAU;
+
+use crate::lanes::{LANES, Lanes, Number};
+
+/// Real signals of one even length out of their spectra.
+#[derive(Debug, Clone)]
+pub struct InverseRealFft {
+    half: usize,
+    stages: Vec<Stage>,
+    /// `exp(2πi k / len)`, one for each `k` below `half`.
+    fold: Twiddles,
+    from: Complexes,
+    to: Complexes,
+}
+
+/// One radix: `length` points, `stride` of them at a time.
+#[derive(Debug, Clone)]
+struct Stage {
+    radix: usize,
+    length: usize,
+    stride: usize,
+    /// `exp(2πi p k / length)` for each `p`, and `k` in 0 to `radix - 1`.
+    twiddles: Twiddles,
+}
+
+/// Real and imaginary parts apart, as vector instructions want them.
+#[derive(Debug, Clone, Default)]
+struct Complexes {
+    re: Vec<f64>,
+    im: Vec<f64>,
+}
+
+type Twiddles = Vec<(f64, f64)>;
+
+/// The least length from `least` on that has no prime factor above 5.
+///
+/// ```
+/// assert_eq!(htex_dsp::inverse_fft::smooth_length(519), 540);
+/// ```
+pub fn smooth_length(least: usize) -> usize {
+    let is_smooth = |n: &usize| factors(*n).is_some();
+    (least.max(1)..).find(is_smooth).unwrap_or(least)
+}
+
+impl InverseRealFft {
+    /// A transform to `2 * half` samples; `half` is a [`smooth_length`], else the next one is taken.
+    pub fn new(half: usize) -> Self {
+        let half = smooth_length(half);
+        let (mut length, mut stride) = (half, 1);
+        let stages = factors(half).unwrap_or_default().into_iter().map(|radix| {
+            let stage = Stage::new(radix, length, stride);
+            (length, stride) = (length / radix, stride * radix);
+            stage
+        });
+        Self {
+            stages: stages.collect(),
+            fold: (0..half).map(|k| unit(k, 2 * half)).collect(),
+            from: Complexes::zeros(half),
+            to: Complexes::zeros(half),
+            half,
+        }
+    }
+
+    /// Writes `Σ 2 Re(X_k exp(2πi k n / len))` over `n`, for the bins `X` from `first` on (real and
+    /// imaginary parts), in 1 to `half - 1`. What does not fit counts as zero. Does not allocate.
+    pub fn run(&mut self, first: usize, bins: &[(f64, f64)], out: &mut [f64]) {
+        self.fold(first, bins);
+        for stage in &self.stages {
+            stage.run(&self.from, &mut self.to);
+            core::mem::swap(&mut self.from, &mut self.to);
+        }
+        let parts = self.from.re.iter().zip(&self.from.im);
+        for (pair, (re, im)) in out.as_chunks_mut::<2>().0.iter_mut().zip(parts) {
+            *pair = [*re, *im];
+        }
+    }
+
+    /// Makes of the real signal's spectrum that of the complex one whose parts are its even and odd
+    /// samples.
+    fn fold(&mut self, first: usize, bins: &[(f64, f64)]) {
+        self.from.re.fill(0.0);
+        self.from.im.fill(0.0);
+        for (k, &(re, im)) in (first.max(1)..self.half).zip(bins) {
+            // X_k adds X + i w X at k, and conj(X) - i w' conj(X) at half - k, where w' = -conj(w).
+            let (c, s) = self.fold[k];
+            let (turned_re, turned_im) = (-(re * s + im * c), re * c - im * s);
+            self.from.re[k] += re + turned_re;
+            self.from.im[k] += im + turned_im;
+            self.from.re[self.half - k] += re - turned_re;
+            self.from.im[self.half - k] += turned_im - im;
+        }
+    }
+}
+
+impl Complexes {
+    fn zeros(len: usize) -> Self {
+        let zeros = || alloc::vec![0.0; len];
+        Self {
+            re: zeros(),
+            im: zeros(),
+        }
+    }
+}
+
+impl Stage {
+    fn new(radix: usize, length: usize, stride: usize) -> Self {
+        let twiddle = |i: usize| unit(i / radix * (i % radix), length);
+        Self {
+            radix,
+            length,
+            stride,
+            twiddles: (0..length).map(twiddle).collect(),
+        }
+    }
+
+    fn run(&self, from: &Complexes, to: &mut Complexes) {
+        if self.stride.is_multiple_of(LANES) {
+            self.run_on::<Lanes>(from, to);
+        } else {
+            self.run_on::<f64>(from, to);
+        }
+    }
+
+    fn run_on<T: Number>(&self, from: &Complexes, to: &mut Complexes) {
+        match self.radix {
+            2 => self.run_by::<2, T>(from, to, two),
+            3 => self.run_by::<3, T>(from, to, three),
+            4 => self.run_by::<4, T>(from, to, four),
+            _ => self.run_by::<5, T>(from, to, five),
+        }
+    }
+
+    #[inline(always)]
+    fn run_by<const R: usize, T: Number>(
+        &self,
+        from: &Complexes,
+        to: &mut Complexes,
+        butterfly: impl Fn([T; R], [T; R]) -> ([T; R], [T; R]),
+    ) {
+        let (s, parts) = (self.stride, self.length / R);
+        let twiddles = self.twiddles.as_chunks::<R>().0;
+        let out_re = to.re.chunks_exact_mut(R * s);
+        let out = out_re.zip(to.im.chunks_exact_mut(R * s));
+        for ((p, twiddle), (out_re, out_im)) in twiddles.iter().enumerate().zip(out) {
+            for q in (0..s).step_by(T::LEN) {
+                let place = |j: usize| s * (p + parts * j) + q;
+                let re = core::array::from_fn(|j| T::load(&from.re[place(j)..]));
+                let im = core::array::from_fn(|j| T::load(&from.im[place(j)..]));
+                let (re, im) = butterfly(re, im);
+                for k in 0..R {
+                    let (cos, sin) = twiddle[k];
+                    (re[k] * cos - im[k] * sin).store(&mut out_re[s * k + q..]);
+                    (im[k] * cos + re[k] * sin).store(&mut out_im[s * k + q..]);
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn two<T: Number>([a, b]: [T; 2], [ai, bi]: [T; 2]) -> ([T; 2], [T; 2]) {
+    ([a + b, a - b], [ai + bi, ai - bi])
+}
+
+#[inline(always)]
+fn three<T: Number>(re: [T; 3], im: [T; 3]) -> ([T; 3], [T; 3]) {
+    const SIN: f64 = 0.866_025_403_784_438_6;
+    let (sum, sum_i) = (re[1] + re[2], im[1] + im[2]);
+    let (turned, turned_i) = ((im[2] - im[1]) * SIN, (re[1] - re[2]) * SIN);
+    let (mean, mean_i) = (re[0] - sum * 0.5, im[0] - sum_i * 0.5);
+    (
+        [re[0] + sum, mean + turned, mean - turned],
+        [im[0] + sum_i, mean_i + turned_i, mean_i - turned_i],
+    )
+}
+
+#[inline(always)]
+fn four<T: Number>(re: [T; 4], im: [T; 4]) -> ([T; 4], [T; 4]) {
+    let (even, even_i) = two([re[0], re[2]], [im[0], im[2]]);
+    let (odd, odd_i) = two([re[1], re[3]], [im[1], im[3]]);
+    (
+        [
+            even[0] + odd[0],
+            even[1] - odd_i[1],
+            even[0] - odd[0],
+            even[1] + odd_i[1],
+        ],
+        [
+            even_i[0] + odd_i[0],
+            even_i[1] + odd[1],
+            even_i[0] - odd_i[0],
+            even_i[1] - odd[1],
+        ],
+    )
+}
+
+#[inline(always)]
+fn five<T: Number>(re: [T; 5], im: [T; 5]) -> ([T; 5], [T; 5]) {
+    let (sum, sum_i) = (sums(re), sums(im));
+    let (mean, mean_i) = (fifths(re[0], sum), fifths(im[0], sum_i));
+    let (t, t_i) = (turned(im), turned(re));
+    (
+        [
+            re[0] + (sum[0] + sum[1]),
+            mean[0] - t[0],
+            mean[1] - t[1],
+            mean[1] + t[1],
+            mean[0] + t[0],
+        ],
+        [
+            im[0] + (sum_i[0] + sum_i[1]),
+            mean_i[0] + t_i[0],
+            mean_i[1] + t_i[1],
+            mean_i[1] - t_i[1],
+            mean_i[0] - t_i[0],
+        ],
+    )
+}
+
+#[inline(always)]
+fn sums<T: Number>(x: [T; 5]) -> [T; 2] {
+    [x[1] + x[4], x[2] + x[3]]
+}
+
+/// By the cosines of one and of two fifths of a turn.
+#[inline(always)]
+fn fifths<T: Number>(first: T, [a, b]: [T; 2]) -> [T; 2] {
+    const COS: [f64; 2] = [0.309_016_994_374_947_45, -0.809_016_994_374_947_5];
+    [
+        first + (a * COS[0] + b * COS[1]),
+        first + (a * COS[1] + b * COS[0]),
+    ]
+}
+
+/// By the sines of one and of two fifths of a turn.
+#[inline(always)]
+fn turned<T: Number>(x: [T; 5]) -> [T; 2] {
+    const SIN: [f64; 2] = [0.951_056_516_295_153_5, 0.587_785_252_292_473_1];
+    let [a, b] = [x[1] - x[4], x[2] - x[3]];
+    [a * SIN[0] + b * SIN[1], a * SIN[1] - b * SIN[0]]
+}
+
+/// `exp(2πi k / length)` as cosine and sine.
+fn unit(k: usize, length: usize) -> (f64, f64) {
+    let (sin, cos) = libm::sincos(TAU * (k % length) as f64 / length as f64);
+    (cos, sin)
+}
+
+/// The radices whose product is `n`; `None` if there is a prime above 5. Fours come first: later
+/// strides are then even.
+fn factors(mut n: usize) -> Option<Vec<usize>> {
+    let mut factors = Vec::new();
+    for radix in [4, 2, 3, 5] {
+        while n.is_multiple_of(radix) {
+            factors.push(radix);
+            n /= radix;
+        }
+    }
+    (n == 1).then_some(factors)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn is_the_sum_it_stands_for() {
+        for half in [4, 6, 10, 15, 16, 45, 48, 120, 500] {
+            let bins: Vec<(f64, f64)> = (2..half)
+                .map(|k| (1.0 / k as f64, 0.3 - 0.01 * k as f64))
+                .collect();
+            let mut out = alloc::vec![0.0; 2 * half];
+            InverseRealFft::new(half).run(2, &bins, &mut out);
+            for (n, y) in out.iter().enumerate() {
+                let term = |(k, (re, im)): (usize, &(f64, f64))| {
+                    let (c, s) = unit((k + 2) * n, 2 * half);
+                    2.0 * (re * c - im * s)
+                };
+                let expected: f64 = bins.iter().enumerate().map(term).sum();
+                assert!(
+                    (y - expected).abs() < 1e-10,
+                    "{half}, sample {n}: {y}, not {expected}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Numbers side by side, of which compilers make vector instructions.
+
+use core::ops::{Add, Mul, Sub};
+
+/// One number, or several side by side.
+pub(crate) trait Number:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
+{
+    const LEN: usize;
+    /// From the front of a slice that is long enough.
+    fn load(from: &[f64]) -> Self;
+    fn store(self, to: &mut [f64]);
+}
+
+impl Number for f64 {
+    const LEN: usize = 1;
+
+    #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        from[0]
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        to[0] = self;
+    }
+}
+
+pub(crate) const LANES: usize = 4;
+
+/// What compilers make vector registers of.
+#[derive(Clone, Copy)]
+pub(crate) struct Lanes([f64; LANES]);
+
+impl Number for Lanes {
+    const LEN: usize = LANES;
+
+    #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        let mut lanes = [0.0; LANES];
+        lanes.copy_from_slice(&from[..LANES]);
+        Self(lanes)
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        to[..LANES].copy_from_slice(&self.0);
+    }
+}
+
+impl Add for Lanes {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(core::array::from_fn(|i| self.0[i] + other.0[i]))
+    }
+}
+
+impl Sub for Lanes {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self(core::array::from_fn(|i| self.0[i] - other.0[i]))
+    }
+}
+
+impl Mul<f64> for Lanes {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, factor: f64) -> Self {
+        Self(self.0.map(|x| x * factor))
+    }
+}

@@ -7,7 +7,8 @@ use std::cell::Cell;
 use htex::{Asset, VoiceOptions};
 use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
-use htex_host::Registry;
+use htex_host::{Registry, Search};
+use xtask::plugins;
 
 thread_local! {
     static CALLS: Cell<usize> = const { Cell::new(0) };
@@ -38,7 +39,14 @@ fn count(run: impl FnOnce()) -> usize {
     CALLS.with(Cell::get) - before
 }
 
+const MODELS: [&str; 5] = ["ar", "mfcc", "speak", "sbeta", "sslope"];
+
 fn asset() -> Asset {
+    Asset::from_bytes(&bytes()).unwrap()
+}
+
+/// A texture of two conditions, in all models.
+fn bytes() -> Vec<u8> {
     let take = |speed_mm_s: f64| {
         let options = SimulationOptions {
             speed_mm_s,
@@ -70,7 +78,7 @@ fn asset() -> Asset {
         ..AssetRequest::default()
     };
     let fitted = fit_asset(&[take(60.0), take(120.0)], &request).unwrap();
-    Asset::from_bytes(&fitted.asset.to_bytes().unwrap()).unwrap()
+    fitted.asset.to_bytes().unwrap()
 }
 
 /// Parameters of a model, of both conditions, as its own voice is retuned between them.
@@ -100,28 +108,74 @@ fn retuning_does_not_allocate() {
     }
 }
 
+/// Blocks of a voice, before each of which the finger changes its speed.
+fn follow(voice: &mut htex::Voice, what: &str) {
+    let mut block = [0.0f32; 64];
+    for i in 0..400 {
+        let calls = count(|| {
+            voice.set_motion(60.0 + f64::from(i % 61), 0.4).unwrap();
+            voice.render(&mut block).unwrap();
+        });
+        assert_eq!(calls, 0, "{what}, block {i}");
+    }
+}
+
 #[test]
-fn render_does_not_allocate() {
+fn following_the_finger_does_not_allocate() {
     assert!(
         count(|| drop(std::hint::black_box(vec![1u8]))) >= 2,
         "the counter counts"
     );
     let asset = asset();
-    for model in ["ar", "mfcc", "speak", "sbeta", "sslope"] {
+    for model in MODELS {
         for rate_hz in [20_000.0, 44_100.0] {
             let options = VoiceOptions {
                 model: Some(model),
                 rate_hz,
                 ..VoiceOptions::default()
             };
-            let mut voice = asset.voice(&options).unwrap();
-            let mut block = [0.0f32; 64];
-            for i in 0..400 {
-                // A new motion may mix parameters on the heap; what follows it may not.
-                voice.set_motion(60.0 + f64::from(i % 50), 0.4).unwrap();
-                let calls = count(|| voice.render(&mut block).unwrap());
-                assert_eq!(calls, 0, "{model} at {rate_hz} Hz, block {i}");
-            }
+            follow(
+                &mut asset.voice(&options).unwrap(),
+                &format!("{model} at {rate_hz} Hz"),
+            );
         }
+    }
+}
+
+#[test]
+fn following_the_finger_does_not_allocate_in_a_sandbox() {
+    let modules = match plugins::wasm() {
+        Ok(folder) => folder,
+        Err(reason) if std::env::var_os("HTEX_REQUIRE_WASM").is_none_or(|v| v != "1") => {
+            println!("skipped: {reason}");
+            return;
+        }
+        Err(reason) => unreachable!("{reason}"),
+    };
+    let files = MODELS.map(|model| modules.join(format!("htex_{model}.wasm")));
+    let search = Search {
+        files: files.to_vec(),
+        ..Search::builtin()
+    };
+    let data = htex_format::Asset::from_bytes(&bytes()).unwrap();
+    let asset = Asset::with_registry(data, Registry::search(&search).unwrap());
+    for model in MODELS {
+        assert!(
+            asset
+                .registry()
+                .find(model)
+                .unwrap()
+                .origin()
+                .to_string()
+                .contains("wasm")
+        );
+        let options = VoiceOptions {
+            model: Some(model),
+            ..VoiceOptions::default()
+        };
+        follow(
+            &mut asset.voice(&options).unwrap(),
+            &format!("{model} as WASM"),
+        );
     }
 }

@@ -12,7 +12,7 @@ use comb::{Comb, HARMONICS, LINES};
 use htex_dsp::noise::Uniform;
 use htex_dsp::shaped_noise::economical_rate_hz;
 use htex_dsp::sine_bank::{Sine, SineBank};
-use htex_model::{Band, Descriptor, Error, Fit, FitInput, Model, Values, Voice, mix};
+use htex_model::{Band, Descriptor, Error, Fit, FitInput, Model, Numbers, Values, Voice, mix};
 
 const PITCH: usize = 0;
 const SPEED: usize = 1;
@@ -82,12 +82,18 @@ impl Model for Texel {
 
     /// Pitch, speed and harmonics move in a straight line; a harmonic that one set lacks is silent
     /// there.
-    fn interpolate(sets: &[Values<'_>], weights: &[f64]) -> Result<Vec<f64>, Error> {
+    fn interpolate(
+        sets: &[Values<'_>],
+        weights: &[f64],
+        out: &mut Numbers<'_>,
+    ) -> Result<(), Error> {
         if let Some(set) = mix::sole(sets, weights) {
-            return Ok(set.flat().to_vec());
+            out.extend(set.flat());
+            return Ok(());
         }
         let longest = sets.iter().map(|s| s.list(AMPLITUDE).len()).max();
-        let mut mixed = vec![0.0; AMPLITUDE + 1 + longest.unwrap_or(0)];
+        let mut room = [0.0; AMPLITUDE + 1 + LINES];
+        let mixed = &mut room[..AMPLITUDE + 1 + longest.unwrap_or(0)];
         for (set, weight) in sets.iter().zip(weights) {
             for field in [PITCH, SPEED, JITTER] {
                 mixed[field] += weight * set.scalar(field);
@@ -104,7 +110,8 @@ impl Model for Texel {
         mixed[PITCH] = mixed[PITCH].clamp(PITCH_MM.0, PITCH_MM.1);
         mixed[SPEED] = mixed[SPEED].clamp(SPEED_MM_S.0, SPEED_MM_S.1);
         mixed[JITTER] = mixed[JITTER].clamp(JITTERS.0, JITTERS.1);
-        Ok(mixed)
+        out.extend(mixed);
+        Ok(())
     }
 
     fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {

@@ -5,9 +5,9 @@ mod fit;
 mod voice;
 
 use htex_dsp::grid::{Band, curve_level_rms};
-use htex_dsp::line_spectrum::{from_line_spectral_frequencies, line_spectral_frequencies};
-use htex_dsp::linear_prediction::{ar_magnitude, is_stable};
-use htex_model::{Descriptor, Error, Fit, FitInput, Model, Store, Values, mix};
+use htex_dsp::line_spectrum::{coefficients_of_lines, lines_of_reflection};
+use htex_dsp::linear_prediction::{ar_magnitude, is_stable, step_down_in_place};
+use htex_model::{Descriptor, Error, Fit, FitInput, Model, Numbers, Store, Values, mix};
 
 pub use voice::AutoregressionVoice;
 
@@ -90,9 +90,14 @@ impl Model for Autoregression {
     }
 
     /// Mixes line spectral frequencies, between which the filter is always stable.
-    fn interpolate(sets: &[Values<'_>], weights: &[f64]) -> Result<Vec<f64>, Error> {
+    fn interpolate(
+        sets: &[Values<'_>],
+        weights: &[f64],
+        out: &mut Numbers<'_>,
+    ) -> Result<(), Error> {
         if let Some(set) = mix::sole(sets, weights) {
-            return Ok(set.flat().to_vec());
+            out.extend(set.flat());
+            return Ok(());
         }
         let rate_hz = sets[0].scalar(MODEL_RATE);
         if sets.iter().any(|set| set.scalar(MODEL_RATE) != rate_hz) {
@@ -105,17 +110,29 @@ impl Model for Autoregression {
             .map(|s| s.list(COEFFICIENTS).len())
             .max()
             .unwrap_or(0);
-        let mut mixed = vec![0.0; order];
+        let (mut mixed, mut reflection, mut coefficients) =
+            ([0.0; MAX_ORDER], [0.0; MAX_ORDER], [0.0; MAX_ORDER]);
+        let mixed = &mut mixed[..order];
         for (set, &weight) in sets.iter().zip(weights) {
-            let mut padded = set.list(COEFFICIENTS).to_vec();
-            padded.resize(order, 0.0);
-            let frequencies = line_spectral_frequencies(&padded).ok_or_else(unstable)?;
-            for (sum, w) in mixed.iter_mut().zip(frequencies) {
+            let own = set.list(COEFFICIENTS);
+            let reflection = &mut reflection[..order];
+            reflection.fill(0.0);
+            reflection[..own.len()].copy_from_slice(own);
+            if !step_down_in_place(reflection) {
+                return Err(unstable());
+            }
+            for (sum, w) in mixed.iter_mut().zip(lines_of_reflection(reflection)) {
                 *sum += weight * w;
             }
         }
-        let coefficients = from_line_spectral_frequencies(&mixed).ok_or_else(unstable)?;
-        Ok(flat(&coefficients, rate_hz))
+        let coefficients = &mut coefficients[..order];
+        if !coefficients_of_lines(mixed, coefficients) {
+            return Err(unstable());
+        }
+        out.push(order as f64);
+        out.extend(coefficients);
+        out.push(rate_hz);
+        Ok(())
     }
 
     fn voice_rate_hz(parameters: &Values<'_>, _: htex_model::Band, _: f64) -> f64 {

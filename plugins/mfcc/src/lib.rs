@@ -8,7 +8,7 @@ use std::sync::Arc;
 use htex_dsp::dct::dct_ii;
 use htex_dsp::grid::{Band, GRID_HZ, level_rms};
 use htex_dsp::mel::MelBank;
-use htex_model::{Descriptor, Error, Fit, FitInput, Model, Store, Values, mix};
+use htex_model::{Descriptor, Error, Fit, FitInput, Model, Numbers, Store, Values, mix};
 use htex_shaped::{Curve, ShapedVoice};
 
 use inverse::Inverse;
@@ -123,14 +123,18 @@ impl Model for MelCepstrum {
     }
 
     /// Mixes cepstra, that is, log energies.
-    fn interpolate(sets: &[Values<'_>], weights: &[f64]) -> Result<Vec<f64>, Error> {
+    fn interpolate(
+        sets: &[Values<'_>],
+        weights: &[f64],
+        out: &mut Numbers<'_>,
+    ) -> Result<(), Error> {
         let kind = |set: &Values<'_>| (set.scalar(BANDS), set.scalar(INVERSE));
         if sets.iter().any(|set| kind(set) != kind(&sets[0])) {
             return Err(Error::argument(
                 "cepstra of different mel banks or inverses cannot be mixed",
             ));
         }
-        mix::linear(sets, weights)
+        mix::linear(sets, weights, out)
     }
 
     fn voice_rate_hz(_: &Values<'_>, band: htex_model::Band, wanted_hz: f64) -> f64 {

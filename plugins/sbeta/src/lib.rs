@@ -5,7 +5,7 @@ mod fit;
 
 use htex_dsp::beta::{beta_pdf, log_unit};
 use htex_dsp::grid::{Band, GRID_HZ, curve_level_rms};
-use htex_model::{Descriptor, Error, Fit, FitInput, Model, Values, mix};
+use htex_model::{Descriptor, Error, Fit, FitInput, Model, Numbers, Values, mix};
 use htex_shaped::{Curve, ShapedVoice};
 
 const ALPHA: usize = 0;
@@ -63,8 +63,12 @@ impl Model for SpectralBeta {
         htex_shaped::magnitude::<Shape>(parameters, band, frequency_hz, magnitude)
     }
 
-    fn interpolate(sets: &[Values<'_>], weights: &[f64]) -> Result<Vec<f64>, Error> {
-        mix::linear(sets, weights)
+    fn interpolate(
+        sets: &[Values<'_>],
+        weights: &[f64],
+        out: &mut Numbers<'_>,
+    ) -> Result<(), Error> {
+        mix::linear(sets, weights, out)
     }
 
     fn voice_rate_hz(_: &Values<'_>, band: htex_model::Band, wanted_hz: f64) -> f64 {

@@ -5,7 +5,9 @@ use htex_dsp::grid::GRID_HZ;
 use htex_dsp::noise::Uniform;
 use htex_dsp::peaks::select_peaks;
 use htex_dsp::sine_bank::{Sine, SineBank};
-use htex_model::{Band, Descriptor, Error, Fit, FitInput, Model, Store, Values, Voice, mix};
+use htex_model::{
+    Band, Descriptor, Error, Fit, FitInput, Model, Numbers, Store, Values, Voice, mix,
+};
 
 const FREQUENCY: usize = 0;
 const AMPLITUDE: usize = 1;
@@ -128,24 +130,31 @@ impl Model for SpectralPeak {
     }
 
     /// Sets of as many lines glide line by line; others fade over, line by line, at constant power.
-    fn interpolate(sets: &[Values<'_>], weights: &[f64]) -> Result<Vec<f64>, Error> {
+    fn interpolate(
+        sets: &[Values<'_>],
+        weights: &[f64],
+        out: &mut Numbers<'_>,
+    ) -> Result<(), Error> {
         let same = |s: &Values<'_>| s.list(FREQUENCY).len() == sets[0].list(FREQUENCY).len();
         if sets.iter().all(same) {
-            return mix::linear(sets, weights);
+            return mix::linear(sets, weights, out);
         }
-        let (mut frequency_hz, mut amplitude) = (Vec::new(), Vec::new());
-        for (set, &weight) in sets.iter().zip(weights).filter(|(_, w)| **w > 0.0) {
-            frequency_hz.extend_from_slice(set.list(FREQUENCY));
-            amplitude.extend(set.list(AMPLITUDE).iter().map(|a| a * libm::sqrt(weight)));
-        }
-        if frequency_hz.len() > MAX_PEAKS {
+        let heard = || sets.iter().zip(weights).filter(|(_, w)| **w > 0.0);
+        let count: usize = heard().map(|(set, _)| set.list(FREQUENCY).len()).sum();
+        if count > MAX_PEAKS {
             return Err(Error::argument(format!(
-                "the sets have {} lines together; {MAX_PEAKS} are allowed",
-                frequency_hz.len()
+                "the sets have {count} lines together; {MAX_PEAKS} are allowed"
             )));
         }
-        let phase = sets.first().map_or(0.0, |s| s.scalar(PHASE));
-        Ok(flat(&frequency_hz, &amplitude, phase))
+        out.push(count as f64);
+        heard().for_each(|(set, _)| out.extend(set.list(FREQUENCY)));
+        out.push(count as f64);
+        for (set, weight) in heard() {
+            let fade = libm::sqrt(*weight);
+            set.list(AMPLITUDE).iter().for_each(|a| out.push(a * fade));
+        }
+        out.push(sets.first().map_or(0.0, |s| s.scalar(PHASE)));
+        Ok(())
     }
 
     fn voice(

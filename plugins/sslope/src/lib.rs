@@ -8,7 +8,7 @@
 mod fit;
 
 use htex_dsp::grid::{Band, curve_level_rms};
-use htex_model::{Descriptor, Error, Fit, FitInput, Model, Store, Values, mix};
+use htex_model::{Descriptor, Error, Fit, FitInput, Model, Numbers, Store, Values, mix};
 use htex_shaped::{Curve, ShapedVoice};
 
 const PEAK: usize = 0;
@@ -78,8 +78,12 @@ impl Model for SpectralSlope {
         htex_shaped::magnitude::<Shape>(parameters, band, frequency_hz, magnitude)
     }
 
-    fn interpolate(sets: &[Values<'_>], weights: &[f64]) -> Result<Vec<f64>, Error> {
-        mix::linear(sets, weights)
+    fn interpolate(
+        sets: &[Values<'_>],
+        weights: &[f64],
+        out: &mut Numbers<'_>,
+    ) -> Result<(), Error> {
+        mix::linear(sets, weights, out)
     }
 
     fn voice_rate_hz(_: &Values<'_>, band: htex_model::Band, wanted_hz: f64) -> f64 {

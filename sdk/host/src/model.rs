@@ -7,7 +7,7 @@ use htex_dsp::grid::Band;
 use htex_model::abi::{
     ABI_MAJOR, ABI_MARKER, MAX_FIELDS, MAX_PARAMETERS, MAX_RATE_HZ, MAX_TEXT_BYTES, MIN_RATE_HZ,
 };
-use htex_model::{Descriptor, Fit, Status, Values};
+use htex_model::{Descriptor, Fit, Kind, Status, Values};
 
 use crate::raw::{RawFit, RawModel};
 use crate::{HostError, ModelVoice, Origin, WasmLimits};
@@ -224,23 +224,13 @@ impl LoadedModel {
         self.numbers(call, |out| self.raw.interpolate(&flat, weights, out))
     }
 
-    /// Parameters between several sets, into the caller's buffer, without allocating on this side;
-    /// answers how many there are.
-    ///
-    /// # Errors
-    /// As [`Self::interpolate`], and when `out` is too small.
-    pub fn interpolate_into(
-        &self,
-        sets: &[f64],
-        weights: &[f64],
-        out: &mut [f64],
-    ) -> Result<usize, HostError> {
-        let call = "interpolate";
-        let len = self.check(call, self.raw.interpolate(sets, weights, out))?;
-        if len > out.len() {
-            return Err(self.broken(call, format!("{len} parameters where {} fit", out.len())));
-        }
-        Ok(len)
+    /// The longest set of parameters that the descriptor allows.
+    pub fn most_parameters(&self) -> usize {
+        let most = self.descriptor.fields.iter().map(|field| match field.kind {
+            Kind::Scalar => 1,
+            Kind::List { max_len } => 1 + max_len as usize,
+        });
+        most.sum::<usize>().min(MAX_PARAMETERS)
     }
 
     /// The rate at which a voice renders when `wanted_hz` is wanted, hertz.

@@ -43,6 +43,8 @@ pub(crate) trait RawModel: Send + Sync {
 pub(crate) trait RawVoice: Send {
     fn render(&mut self, out: &mut [f32]) -> i64;
     fn retune(&mut self, parameters: &[f64]) -> i64;
+    /// The model's `interpolate`, in this voice's thread: without a lock.
+    fn interpolate(&mut self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64;
     /// Asks the model to free the voice. The handle is kept: calls after this one reach the model,
     /// which answers `BadHandle`, and dropping frees nothing again.
     fn free(&mut self) -> i64;

@@ -141,6 +141,10 @@ impl RawVoice for TableVoice {
         unsafe { (self.table.voice_retune)(self.handle, parameters.as_ptr(), parameters.len()) }
     }
 
+    fn interpolate(&mut self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64 {
+        TableModel(self.table).interpolate(sets, weights, parameters)
+    }
+
     fn free(&mut self) -> i64 {
         self.freed = true;
         (self.table.voice_free)(self.handle)

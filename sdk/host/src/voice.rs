@@ -53,6 +53,29 @@ impl ModelVoice {
         self.check("voice_retune", answer)
     }
 
+    /// Changes to parameters between several sets, which stand one behind the other; `room` is for
+    /// the mix, [`LoadedModel::most_parameters`] at most. Mixing is this voice's own: no lock, and
+    /// no allocation for a well-made model.
+    ///
+    /// # Errors
+    /// When the model cannot mix, or there is no room; the voice then plays on as before.
+    pub fn retune_mix(
+        &mut self,
+        sets: &[f64],
+        weights: &[f64],
+        room: &mut [f64],
+    ) -> Result<(), HostError> {
+        let answer = self.raw.interpolate(sets, weights, room);
+        self.check("interpolate", answer)?;
+        match room.get(..answer as usize) {
+            Some(mixed) => self.retune(mixed),
+            None => {
+                let what = format!("{answer} parameters where {} fit", room.len());
+                Err(self.model.broken("interpolate", what))
+            }
+        }
+    }
+
     /// For checkers of models: frees the voice early and keeps its handle, so that later calls show
     /// whether the model refuses a handle that was freed. An app drops the voice instead.
     ///

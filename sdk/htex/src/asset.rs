@@ -283,6 +283,11 @@ pub(crate) struct Known {
 }
 
 impl Known {
+    /// Numbers in the longest set of parameters.
+    pub(crate) fn longest(&self) -> usize {
+        self.parameters.iter().map(Vec::len).max().unwrap_or(0)
+    }
+
     /// Parameters and level (newtons) at a motion; the model decides in which space to mix.
     pub(crate) fn at(
         &self,

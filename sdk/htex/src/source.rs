@@ -4,6 +4,10 @@ use htex_host::{Band, LoadedModel, ModelVoice};
 
 use crate::Error;
 use crate::asset::Known;
+use crate::mesh::Weights;
+
+/// Most conditions that are mixed.
+const MIXED: usize = 3;
 
 /// Samples of unit RMS at the rate the model itself renders at, and the level they stand for. A
 /// renderer that brings many textures together resamples them once, behind their sum; [`crate::Voice`]
@@ -11,8 +15,10 @@ use crate::asset::Known;
 #[derive(Debug)]
 pub struct Source {
     known: Known,
-    model: LoadedModel,
     voice: ModelVoice,
+    /// Room for the sets to mix, and for the mix.
+    sets: Vec<f64>,
+    mixed: Vec<f64>,
     rate_hz: f64,
     top_hz: f64,
     motion: (f64, f64),
@@ -33,8 +39,9 @@ impl Source {
         let rate_hz = model.voice_rate_hz(&parameters, band, wanted_hz)?;
         Ok(Self {
             voice: model.voice(&parameters, band, rate_hz, seed)?,
+            sets: Vec::with_capacity(MIXED * known.longest()),
+            mixed: vec![0.0; model.most_parameters()],
             known,
-            model,
             rate_hz,
             top_hz: band.high_hz,
             motion,
@@ -59,7 +66,8 @@ impl Source {
 
     /// Glides to the spectrum at this scanning speed (mm/s) and normal force (newtons), clamped to
     /// the conditions the asset knows, and answers its level, newtons. A motion that is not new
-    /// costs nothing; a new one between conditions mixes parameters, which may allocate.
+    /// costs nothing; a new one mixes parameters in the voice's own room. Does not allocate, lock or
+    /// do I/O for the models of this project and others that keep to the ABI.
     ///
     /// # Errors
     /// When a value is negative or not a number, or the model cannot mix; the source then plays on
@@ -69,11 +77,28 @@ impl Source {
         if self.motion == (speed_mm_s, force_n) || self.known.parameters.len() < 2 {
             return Ok(self.level_n);
         }
-        let (parameters, level_n) = self.known.at(&self.model, speed_mm_s, force_n)?;
-        self.voice.retune(&parameters)?;
+        let weights = self.known.mesh.weights(speed_mm_s, force_n);
+        self.retune(&weights)?;
         self.motion = (speed_mm_s, force_n);
-        self.level_n = level_n;
-        Ok(level_n)
+        let level_n = |(i, weight): (usize, f64)| weight * self.known.level_n[i];
+        self.level_n = weights.iter().map(level_n).sum();
+        Ok(self.level_n)
+    }
+
+    /// Changes the spectrum to the mix of some conditions.
+    fn retune(&mut self, weights: &Weights) -> Result<(), Error> {
+        let known = &self.known.parameters;
+        if weights.count == 1 {
+            return Ok(self.voice.retune(&known[weights.condition[0]])?);
+        }
+        self.sets.clear();
+        for (i, _) in weights.iter() {
+            self.sets.extend_from_slice(&known[i]);
+        }
+        let weights = &weights.weight[..weights.count];
+        Ok(self
+            .voice
+            .retune_mix(&self.sets, weights, &mut self.mixed)?)
     }
 
     /// Fills `out` with the next samples, of unit RMS. Does not allocate, lock or do I/O.

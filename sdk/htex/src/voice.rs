@@ -36,7 +36,8 @@ impl Voice {
 
     /// Follows the finger: spectrum and level glide to those at this scanning speed (mm/s) and
     /// normal force (newtons), clamped to the conditions the asset knows. A motion that is not new
-    /// costs nothing; a new one between conditions mixes parameters, which may allocate.
+    /// costs nothing; a new one mixes parameters in the voice's own room. Does not allocate, lock or
+    /// do I/O for the models of this project and others that keep to the ABI.
     ///
     /// # Errors
     /// When a value is negative or not a number, or the model cannot mix; the voice then plays on

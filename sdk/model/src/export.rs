@@ -20,7 +20,7 @@
 /// #     fn descriptor() -> Descriptor { Descriptor::new("org.example.flat", "Flat", "1.0.0", "None.") }
 /// #     fn fit(_: &FitInput<'_>) -> Result<Fit, Error> { Err(Error::cannot_fit("never")) }
 /// #     fn magnitude(_: &Values<'_>, _: Band, _: &[f64], m: &mut [f64]) -> Result<(), Error> { m.fill(1.0); Ok(()) }
-/// #     fn interpolate(_: &[Values<'_>], _: &[f64]) -> Result<Vec<f64>, Error> { Ok(vec![]) }
+/// #     fn interpolate(_: &[Values<'_>], _: &[f64], _: &mut Numbers<'_>) -> Result<(), Error> { Ok(()) }
 /// #     fn voice(_: &Values<'_>, _: Band, _: f64, _: u64) -> Result<FlatVoice, Error> { Ok(FlatVoice) }
 /// # }
 /// htex_model::export_model!(Flat, symbols: "plugin");

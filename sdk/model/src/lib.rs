@@ -20,6 +20,7 @@ mod error;
 #[cfg(feature = "std")]
 mod export;
 pub mod mix;
+mod numbers;
 #[cfg(feature = "std")]
 pub mod shim;
 mod traits;
@@ -31,5 +32,6 @@ mod voices;
 pub use descriptor::descriptor_schema;
 pub use descriptor::{Descriptor, Field, FitOption, Kind, Store};
 pub use error::{Error, Status};
+pub use numbers::Numbers;
 pub use traits::{Band, Fit, FitInput, Model, Voice};
 pub use values::{Values, flatten};

@@ -1,8 +1,6 @@
 //! Interpolation that most models share.
 
-use alloc::vec::Vec;
-
-use crate::{Error, Values};
+use crate::{Error, Numbers, Values};
 
 /// The set that has all the weight, if one has.
 pub fn sole<'a, 'v>(sets: &'a [Values<'v>], weights: &[f64]) -> Option<&'a Values<'v>> {
@@ -10,25 +8,55 @@ pub fn sole<'a, 'v>(sets: &'a [Values<'v>], weights: &[f64]) -> Option<&'a Value
     sets.get(i)
 }
 
-/// The weighted mean of sets whose fields have the same lengths; a set with all the weight comes
-/// back to the bit.
+/// Writes the weighted mean of sets whose fields have the same lengths, never outside what the sets
+/// span; a set with all the weight comes back to the bit. Does not allocate.
 ///
 /// # Errors
 /// When the sets differ in length.
-pub fn linear(sets: &[Values<'_>], weights: &[f64]) -> Result<Vec<f64>, Error> {
+pub fn linear(sets: &[Values<'_>], weights: &[f64], out: &mut Numbers<'_>) -> Result<(), Error> {
     if let Some(set) = sole(sets, weights) {
-        return Ok(set.flat().to_vec());
+        out.extend(set.flat());
+        return Ok(());
     }
-    let mut mixed = alloc::vec![0.0; sets.first().map_or(0, |set| set.flat().len())];
-    for (set, &weight) in sets.iter().zip(weights) {
-        if set.flat().len() != mixed.len() {
-            return Err(Error::argument(
-                "parameter sets of different lengths cannot be mixed",
-            ));
-        }
-        for (sum, &x) in mixed.iter_mut().zip(set.flat()) {
-            *sum += weight * x;
+    let len = sets.first().map_or(0, |set| set.flat().len());
+    if sets.iter().any(|set| set.flat().len() != len) {
+        return Err(Error::argument(
+            "parameter sets of different lengths cannot be mixed",
+        ));
+    }
+    for i in 0..len {
+        let values = || sets.iter().map(|set| set.flat()[i]);
+        let sum: f64 = values().zip(weights).map(|(x, weight)| weight * x).sum();
+        // Weights sum to one but for rounding, which would take a parameter out of its range.
+        let low = values().fold(f64::INFINITY, f64::min);
+        out.push(sum.max(low).min(values().fold(f64::NEG_INFINITY, f64::max)));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Descriptor;
+
+    #[test]
+    fn rounding_stays_inside_the_range() {
+        let descriptor = Descriptor::new("org.example.x", "X", "1.0.0", "An example.").scalar(
+            "x",
+            "1",
+            (0.0, 0.7),
+            "Something.",
+        );
+        let flat = [0.7];
+        let set = || Values::read(&descriptor, &flat).unwrap();
+        let sets = [set(), set(), set()];
+        for i in 1..1000 {
+            let first = f64::from(i) / 1001.0;
+            let second = (1.0 - first) / 3.0;
+            let weights = [first, second, 1.0 - first - second];
+            let mut room = [0.0];
+            linear(&sets, &weights, &mut Numbers::new(&mut room)).unwrap();
+            assert_eq!(room, [0.7], "{weights:?}");
         }
     }
-    Ok(mixed)
 }

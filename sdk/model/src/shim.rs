@@ -10,9 +10,12 @@ use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::OnceLock;
 
-use crate::abi::{ALLOC_ALIGN, MAX_BAND_HZ, MAX_PARAMETERS, MAX_RATE_HZ, MIN_BINS, MIN_RATE_HZ};
+use crate::abi::{ALLOC_ALIGN, MAX_BAND_HZ, MAX_RATE_HZ, MIN_BINS, MIN_RATE_HZ};
 use crate::voices::Voices;
-use crate::{Band, Descriptor, Error, FitInput, Model, Status, Values, Voice};
+use crate::{Band, Descriptor, Error, FitInput, Model, Numbers, Status, Values, Voice};
+
+/// Sets that can be mixed without allocating.
+const FEW_SETS: usize = 8;
 
 std::thread_local! {
     static LAST_ERROR: RefCell<String> = const { RefCell::new(String::new()) };
@@ -180,10 +183,23 @@ impl<M: Model> State<M> {
             let descriptor = &self.described()?.0;
             let weights = weights.get("weights")?;
             check_weights(weights)?;
-            let sets = read_sets(descriptor, sets.get("sets")?, weights.len())?;
-            let mixed = M::interpolate(&sets, weights)?;
-            Values::read(descriptor, &mixed)?;
-            Ok(copy_numbers(&mixed, parameters.get("parameters")?))
+            let flat = sets.get("sets")?;
+            // Hosts mix two or three sets, and may do so while they render: nothing is allocated.
+            let (mut few, mut many) = ([Values::NONE; FEW_SETS], Vec::new());
+            let sets = match few.get_mut(..weights.len()) {
+                Some(few) => few,
+                None => {
+                    many.resize(weights.len().min(flat.len()), Values::NONE);
+                    &mut many[..]
+                }
+            };
+            read_sets(descriptor, flat, sets)?;
+            let mut mixed = Numbers::new(parameters.get("parameters")?);
+            M::interpolate(sets, weights, &mut mixed)?;
+            if mixed.count() == mixed.written().len() {
+                Values::read(descriptor, mixed.written())?;
+            }
+            Ok(mixed.count() as i64)
         })
     }
 
@@ -409,12 +425,11 @@ fn check_weights(weights: &[f64]) -> Result<(), Error> {
 fn read_sets<'a>(
     descriptor: &Descriptor,
     mut flat: &'a [f64],
-    count: usize,
-) -> Result<Vec<Values<'a>>, Error> {
-    let mut sets = Vec::new();
-    for _ in 0..count.min(MAX_PARAMETERS) {
-        let (values, used) = Values::read_first(descriptor, flat)?;
-        sets.push(values);
+    sets: &mut [Values<'a>],
+) -> Result<(), Error> {
+    for set in sets {
+        let used;
+        (*set, used) = Values::read_first(descriptor, flat)?;
         flat = &flat[used..];
     }
     if !flat.is_empty() {
@@ -422,7 +437,7 @@ fn read_sets<'a>(
             "numbers stand behind the last parameter set",
         ));
     }
-    Ok(sets)
+    Ok(())
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use crate::{Descriptor, Error, Values};
+use crate::{Descriptor, Error, Numbers, Values};
 
 /// The band a spectrum covers, inclusive, hertz: `0 < low_hz < high_hz`, both finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,11 +75,16 @@ pub trait Model: 'static {
         magnitude: &mut [f64],
     ) -> Result<(), Error>;
 
-    /// Parameters between several sets; weights are not negative and sum to one.
+    /// Writes parameters between several sets; weights are not negative and sum to one.
+    /// `[render thread, no allocation, no lock, no I/O]`
     ///
     /// # Errors
     /// When the sets cannot be mixed.
-    fn interpolate(sets: &[Values<'_>], weights: &[f64]) -> Result<Vec<f64>, Error>;
+    fn interpolate(
+        sets: &[Values<'_>],
+        weights: &[f64],
+        out: &mut Numbers<'_>,
+    ) -> Result<(), Error>;
 
     /// The rate at which a voice renders when `wanted_hz` is wanted: the host converts the rest.
     fn voice_rate_hz(_parameters: &Values<'_>, _band: Band, wanted_hz: f64) -> f64 {

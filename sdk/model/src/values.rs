@@ -25,6 +25,13 @@ pub struct Values<'a> {
 }
 
 impl<'a> Values<'a> {
+    /// No parameters: a place for some.
+    #[cfg(feature = "std")]
+    pub(crate) const NONE: Self = Self {
+        flat: &[],
+        spans: [(0, 0); MAX_FIELDS],
+    };
+
     /// Reads an array that holds just one set of parameters.
     ///
     /// # Errors

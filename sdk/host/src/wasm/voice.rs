@@ -88,6 +88,14 @@ impl RawVoice for WasmVoice {
         self.answer(result)
     }
 
+    fn interpolate(&mut self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64 {
+        if self.faulted {
+            return Fault::STATUS;
+        }
+        let result = self.instance.interpolate(sets, weights, parameters);
+        self.answer(result)
+    }
+
     fn free(&mut self) -> i64 {
         if self.faulted {
             return Fault::STATUS;

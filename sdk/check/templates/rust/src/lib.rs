@@ -6,7 +6,7 @@
 
 use htex_dsp::grid::{Band, curve_level_rms};
 use htex_dsp::nelder_mead::{Options, minimize};
-use htex_model::{Descriptor, Error, Fit, FitInput, Model, Values, mix};
+use htex_model::{Descriptor, Error, Fit, FitInput, Model, Numbers, Values, mix};
 use htex_shaped::{Curve, ShapedVoice};
 
 const CENTRE: usize = 0;
@@ -65,12 +65,12 @@ impl Model for Resonance {
         htex_shaped::magnitude::<Shape>(parameters, band, frequency_hz, magnitude)
     }
 
-    fn interpolate(sets: &[Values<'_>], weights: &[f64]) -> Result<Vec<f64>, Error> {
-        let mut mixed = mix::linear(sets, weights)?;
-        // Weights sum to one but for rounding, which must not leave the ranges.
-        mixed[CENTRE] = mixed[CENTRE].clamp(CENTRE_HZ.0, CENTRE_HZ.1);
-        mixed[BANDWIDTH] = mixed[BANDWIDTH].clamp(BANDWIDTH_HZ.0, BANDWIDTH_HZ.1);
-        Ok(mixed)
+    fn interpolate(
+        sets: &[Values<'_>],
+        weights: &[f64],
+        out: &mut Numbers<'_>,
+    ) -> Result<(), Error> {
+        mix::linear(sets, weights, out)
     }
 
     fn voice_rate_hz(_: &Values<'_>, band: htex_model::Band, wanted_hz: f64) -> f64 {

@@ -1,6 +1,5 @@
 //! What a person would otherwise have to remember.
 
-use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
 use xtask::plugins;
@@ -8,22 +7,24 @@ use xtask::plugins;
 const TASKS: &str = "\
 cargo xtask ci        all that continuous integration runs
 cargo xtask plugins   builds the models as plugins into target/htex-plugins, native and WASM;
-                      --native-only or --wasm-only builds the one kind
+                      --native-only or --wasm-only builds the one kind; --wasm-toolchain WAY (or
+                      HTEX_WASM_TOOLCHAIN) builds modules with the toolchain that is installed, by
+                      rustup, by debian (its own compiler), or auto: the first that works
 cargo xtask generate  makes what spec/ has from the code again: schemas, pages, conformance files";
 
 fn main() -> ExitCode {
     let tasks: Vec<String> = std::env::args().skip(1).collect();
     match tasks.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["plugins"] => built(&[plugins::native, plugins::wasm]),
-        ["plugins", "--native-only"] => built(&[plugins::native]),
-        ["plugins", "--wasm-only"] => built(&[plugins::wasm]),
+        ["plugins", ref options @ ..] => build_plugins(options),
         ["ci"] => run("bash", &[".ci/run"]),
         ["generate"] => generate(),
-        _ => {
-            eprintln!("{TASKS}");
-            ExitCode::from(2)
-        }
+        _ => usage(),
     }
+}
+
+fn usage() -> ExitCode {
+    eprintln!("{TASKS}");
+    ExitCode::from(2)
 }
 
 /// Makes what the specification has from the code.
@@ -50,20 +51,30 @@ fn generate() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Builds, and prints where what was built is.
-fn built(builds: &[fn() -> Result<PathBuf, String>]) -> ExitCode {
-    let mut folder = PathBuf::new();
-    for build in builds {
-        match build() {
-            Ok(path) => folder = path,
-            Err(error) => {
-                eprintln!("xtask: {error}");
-                return ExitCode::FAILURE;
-            }
+/// Builds what the options ask for, and prints where it is.
+fn build_plugins(options: &[&str]) -> ExitCode {
+    let (options, way) = match options {
+        [rest @ .., "--wasm-toolchain", way] => (rest, Some(*way)),
+        ["--wasm-toolchain", way, rest @ ..] => (rest, Some(*way)),
+        all => (all, None),
+    };
+    let wasm = || way.map_or_else(plugins::wasm, plugins::wasm_by);
+    let built = match options {
+        [] => plugins::native().and_then(|_| wasm()),
+        ["--native-only"] => plugins::native(),
+        ["--wasm-only"] => wasm(),
+        _ => return usage(),
+    };
+    match built {
+        Ok(folder) => {
+            println!("{}", folder.display());
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            eprintln!("xtask: {error}");
+            ExitCode::FAILURE
         }
     }
-    println!("{}", folder.display());
-    ExitCode::SUCCESS
 }
 
 /// Runs a program in the workspace's folder.

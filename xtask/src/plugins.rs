@@ -24,12 +24,22 @@ pub fn native() -> Result<PathBuf, String> {
     Ok(folder())
 }
 
-/// Builds every model as a WASM module; answers the folder they are in, as [`native`] does.
+/// Builds every model as a WASM module, with the toolchain that `HTEX_WASM_TOOLCHAIN` names;
+/// answers the folder they are in, as [`native`] does.
 ///
 /// # Errors
 /// That no toolchain can be had, and what to do; or which model could not be built.
 pub fn wasm() -> Result<PathBuf, String> {
-    let toolchain = Toolchain::find()?;
+    let way = std::env::var("HTEX_WASM_TOOLCHAIN").unwrap_or_default();
+    wasm_by(if way.is_empty() { "auto" } else { &way })
+}
+
+/// As [`wasm`], with the toolchain of the name: `installed`, `rustup`, `debian`, or `auto`.
+///
+/// # Errors
+/// As [`wasm`], and when there is no way of this name.
+pub fn wasm_by(way: &str) -> Result<PathBuf, String> {
+    let toolchain = Toolchain::find(way)?;
     for model in MODELS {
         let (cargo, target) = toolchain.cargo(&target());
         build(cargo, &target, model, toolchain.arguments())?;
@@ -37,6 +47,11 @@ pub fn wasm() -> Result<PathBuf, String> {
         place(&target.join(TARGET).join("release").join(&file), &file)?;
     }
     Ok(folder())
+}
+
+/// Whether the compiler in use builds WASM modules as it is.
+pub fn wasm_is_installed() -> bool {
+    Toolchain::find("installed").is_ok()
 }
 
 fn build(mut cargo: Command, target: &Path, model: &str, more: &[&str]) -> Result<(), String> {

@@ -7,42 +7,73 @@ use serde::Serialize;
 
 use crate::case::{Case, RATE_HZ};
 use crate::finding::Finding;
+use crate::start::{Start, start};
 
 /// Block sizes that are timed, samples.
 pub const BLOCKS: [usize; 4] = [16, 64, 256, 1024];
 /// Rounds of all models and block sizes; the first warms up and is left out.
-const ROUNDS: usize = 32;
+const ROUNDS: usize = 64;
 /// Samples rendered a round, model and block size.
 const SAMPLES: usize = 8_192;
-/// Calls timed a round for the cost of a call.
-const CALLS: usize = 2_000;
 
-/// Median and spread of the rounds.
+/// One model, loaded in one way.
+#[derive(Debug, Clone)]
+pub struct Subject {
+    /// The model's short name; the first subject of a name is what the others are compared with.
+    pub model: String,
+    /// How it was loaded.
+    pub way: String,
+    /// The model.
+    pub loaded: LoadedModel,
+}
+
+/// Least, median and spread of the rounds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Timing {
+    /// The fastest round, ns: what it costs when nothing else runs.
+    pub min_ns: f64,
     /// Median, ns.
     pub median_ns: f64,
     /// Half the distance between the quartiles, ns.
     pub spread_ns: f64,
 }
 
-/// What one model costs.
+/// The cost of a sample in blocks of one size.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct BlockCost {
+    /// Samples a block.
+    pub block: usize,
+    /// Cost of a sample.
+    pub per_sample: Timing,
+    /// Its least over that of the first subject of the same model.
+    pub ratio: f64,
+}
+
+/// What one subject costs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Cost {
-    /// What was asked for: an id or a file.
+    /// The model.
     pub model: String,
+    /// How it was loaded.
+    pub way: String,
+    /// Where it came from.
+    pub origin: String,
     /// Rate at which the model renders, hertz.
     pub rate_hz: f64,
-    /// Cost of a sample in blocks of [`BLOCKS`].
-    pub per_sample: [Timing; 4],
-    /// Cost of a call that renders one sample: an empty one need not reach the model.
-    pub per_call: Timing,
+    /// Cost in blocks of [`BLOCKS`].
+    pub blocks: Vec<BlockCost>,
+    /// Cost of a call, ns: what a call for one sample takes more than a sample in a large block,
+    /// both at their least.
+    pub per_call_ns: f64,
+    /// How soon the first sample comes, for a WASM module.
+    pub start: Option<Start>,
 }
 
 struct Runner {
     voice: ModelVoice,
     rate_hz: f64,
-    /// Nanoseconds of each round: a sample in each block size, and a call.
+    start: Option<Start>,
+    /// Nanoseconds a sample of each round: in each block size, and one by one.
     rounds: [Vec<f64>; 5],
 }
 
@@ -51,20 +82,33 @@ struct Runner {
 ///
 /// # Errors
 /// When a model cannot be fitted or fails to render.
-pub fn bench(models: &[(String, LoadedModel)]) -> Result<Vec<Cost>, String> {
+pub fn bench(subjects: &[Subject]) -> Result<Vec<Cost>, String> {
     let mut runners = Vec::new();
-    for (name, model) in models {
+    for subject in subjects {
         let runner =
-            Runner::new(model).map_err(|finding| format!("{name}: {}", finding.message))?;
+            Runner::new(&subject.loaded).map_err(|finding| subject.failed(finding.message))?;
         runners.push(runner);
     }
     for _ in 0..ROUNDS {
-        for ((name, _), runner) in models.iter().zip(&mut runners) {
-            runner.round().map_err(|error| format!("{name}: {error}"))?;
+        for (subject, runner) in subjects.iter().zip(&mut runners) {
+            runner.round().map_err(|error| subject.failed(error))?;
         }
     }
-    let named = models.iter().zip(runners);
-    Ok(named.map(|((name, _), runner)| runner.cost(name)).collect())
+    let mut costs: Vec<Cost> = Vec::new();
+    for (subject, runner) in subjects.iter().zip(runners) {
+        let mut cost = runner.cost(subject);
+        if let Some(first) = costs.iter().find(|c| c.model == cost.model) {
+            cost.compare(first);
+        }
+        costs.push(cost);
+    }
+    Ok(costs)
+}
+
+impl Subject {
+    fn failed(&self, what: impl std::fmt::Display) -> String {
+        format!("{} ({}): {what}", self.model, self.way)
+    }
 }
 
 impl Runner {
@@ -79,34 +123,47 @@ impl Runner {
         Ok(Self {
             voice: case.voice(&parameters, case.seed)?,
             rate_hz: model.voice_rate_hz(&parameters, Band::TACTILE, RATE_HZ)?,
+            start: start(model, &parameters)?,
             rounds: Default::default(),
         })
     }
 
     fn round(&mut self) -> Result<(), HostError> {
         let mut out = [0.0; 1024];
-        for (block, times) in BLOCKS.into_iter().zip(&mut self.rounds) {
+        for (block, times) in BLOCKS.into_iter().chain([1]).zip(&mut self.rounds) {
             let start = Instant::now();
             for _ in 0..SAMPLES / block {
                 self.voice.render(&mut out[..block])?;
             }
             times.push(start.elapsed().as_secs_f64() * 1e9 / SAMPLES as f64);
         }
-        let start = Instant::now();
-        for _ in 0..CALLS {
-            self.voice.render(&mut out[..1])?;
-        }
-        self.rounds[4].push(start.elapsed().as_secs_f64() * 1e9 / CALLS as f64);
         Ok(())
     }
 
-    fn cost(self, name: &str) -> Cost {
-        let [a, b, c, d, call] = self.rounds.map(timing);
+    fn cost(self, subject: &Subject) -> Cost {
+        let timings = self.rounds.map(timing);
+        let [.., large, single] = timings;
+        let block = |(block, per_sample)| BlockCost {
+            block,
+            per_sample,
+            ratio: 1.0,
+        };
         Cost {
-            model: name.to_owned(),
+            model: subject.model.clone(),
+            way: subject.way.clone(),
+            origin: subject.loaded.origin().to_string(),
             rate_hz: self.rate_hz,
-            per_sample: [a, b, c, d],
-            per_call: call,
+            blocks: BLOCKS.into_iter().zip(timings).map(block).collect(),
+            per_call_ns: single.min_ns - large.min_ns,
+            start: self.start,
+        }
+    }
+}
+
+impl Cost {
+    fn compare(&mut self, first: &Self) {
+        for (own, other) in self.blocks.iter_mut().zip(&first.blocks) {
+            own.ratio = own.per_sample.min_ns / other.per_sample.min_ns;
         }
     }
 }
@@ -116,6 +173,7 @@ fn timing(mut rounds: Vec<f64>) -> Timing {
     warm.sort_by(f64::total_cmp);
     let at = |share: f64| warm[(share * (warm.len() - 1) as f64) as usize];
     Timing {
+        min_ns: at(0.0),
         median_ns: at(0.5),
         spread_ns: 0.5 * (at(0.75) - at(0.25)),
     }

@@ -20,11 +20,13 @@ mod report;
 mod runner;
 mod signal;
 mod spectra;
+mod start;
 mod table;
 
-pub use bench::{BLOCKS, Cost, Timing, bench};
+pub use bench::{BLOCKS, BlockCost, Cost, Subject, Timing, bench};
 pub use finding::{Finding, Outcome};
 pub use page::model_checks_page;
 pub use report::{CheckReport, Report};
 pub use runner::{Options, Runner, check, run_one};
+pub use start::Start;
 pub use table::{CHECKS, Check};

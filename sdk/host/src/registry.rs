@@ -101,6 +101,12 @@ impl Registry {
         self.ranks.insert(at, rank);
     }
 
+    /// All models of one id: the one that is used, and those it shadows.
+    pub fn all<'a>(&'a self, id: &'a str) -> impl Iterator<Item = &'a LoadedModel> {
+        let models = self.models.iter().chain(&self.shadowed);
+        models.filter(move |model| model.id() == id)
+    }
+
     pub(crate) fn note(&mut self, note: Note) {
         self.notes.push(note);
     }

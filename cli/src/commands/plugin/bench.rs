@@ -1,21 +1,24 @@
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Args;
-use htex_check::{BLOCKS, Cost, Timing, bench};
+use htex_check::{BLOCKS, Cost, Subject, bench};
+use htex_host::{LoadedModel, Origin, Registry, WasmLimits};
 
 use crate::commands::plugin::named::named;
 use crate::failure::Failure;
 use crate::output::{print, print_json};
 use crate::plugins::PluginArgs;
 
-/// Measure what models cost: nanoseconds a sample, median and spread.
+/// Measure what models cost: nanoseconds a sample, built in, as native plugins and as WASM.
 ///
-/// All models are timed in one interleaved run, at their own rates, in blocks of 16 to 1024 samples.
-/// Name a model and its files to see what a loader costs: `htex plugin bench sbeta libhtex_sbeta.so`.
+/// Of each model all ways to load it that are found are timed, at its own rate, in one interleaved
+/// run: what else the machine does falls on all alike. WASM modules are timed under the default
+/// limits, which hold time by deadlines, and with instructions counted too.
 #[derive(Args)]
 pub(crate) struct Bench {
-    /// Models by short name, id or file
-    #[arg(required = true, value_name = "FILE|ID")]
+    /// Models by short name, id or file [default: all that are built in]
+    #[arg(value_name = "FILE|ID")]
     models: Vec<String>,
 
     #[command(flatten)]
@@ -28,12 +31,7 @@ pub(crate) struct Bench {
 
 impl Bench {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
-        let mut models = Vec::new();
-        for name in self.models {
-            let model = named(&name, &self.plugins)?;
-            models.push((name, model));
-        }
-        let costs = bench(&models).map_err(Failure::Other)?;
+        let costs = bench(&self.subjects()?).map_err(Failure::Other)?;
         if self.json {
             print_json(&costs)?;
         } else {
@@ -41,30 +39,90 @@ impl Bench {
         }
         Ok(ExitCode::SUCCESS)
     }
+
+    fn subjects(&self) -> Result<Vec<Subject>, Failure> {
+        let registry = self.plugins.registry_quietly()?;
+        let builtin = Registry::builtin();
+        let mut names = self.models.clone();
+        if names.is_empty() {
+            let all = builtin.models().iter();
+            names.extend(all.map(|model| model.short_name().to_owned()));
+        }
+        let mut subjects = Vec::new();
+        for name in &names {
+            let mut models = vec![];
+            if Path::new(name).is_file() {
+                models.push(named(name, &self.plugins)?);
+            } else {
+                let id = registry.find(name)?.id().to_owned();
+                models.extend(registry.all(&id).cloned());
+                models.sort_by_key(|model| order(model.origin()));
+            }
+            for model in models {
+                add(&mut subjects, &model, &self.plugins.limits())?;
+            }
+        }
+        Ok(subjects)
+    }
+}
+
+/// The built-in model first, with which the others are compared.
+fn order(origin: &Origin) -> u8 {
+    match origin {
+        Origin::Builtin => 0,
+        Origin::Native(_) => 1,
+        _ => 2,
+    }
+}
+
+/// Adds a model, and if it is a WASM module once more with its instructions counted.
+fn add(
+    subjects: &mut Vec<Subject>,
+    loaded: &LoadedModel,
+    limits: &WasmLimits,
+) -> Result<(), Failure> {
+    let subject = |way: &str, loaded: &LoadedModel| Subject {
+        model: loaded.short_name().to_owned(),
+        way: way.to_owned(),
+        loaded: loaded.clone(),
+    };
+    match loaded.origin() {
+        Origin::Wasm(file) => {
+            subjects.push(subject("wasm", loaded));
+            let counted = WasmLimits {
+                fuel: Some(limits.fuel.unwrap_or(u64::MAX / 2)),
+                ..limits.clone()
+            };
+            let counted = LoadedModel::from_file_within(file, &counted)?;
+            subjects.push(subject("wasm, counted", &counted));
+        }
+        Origin::Builtin => subjects.push(subject("built in", loaded)),
+        _ => subjects.push(subject("native", loaded)),
+    }
+    Ok(())
 }
 
 fn table(costs: &[Cost]) -> String {
-    let width = costs
-        .iter()
-        .map(|c| c.model.len())
-        .max()
-        .unwrap_or(0)
-        .max(5);
-    let mut text = format!("  {:width$}  rate/Hz", "model");
+    let width = costs.iter().map(|c| c.model.len()).max().unwrap_or(0);
+    let width = width.max(5);
+    let mut text = format!("  {:width$}  {:13}", "model", "way");
     for block in BLOCKS {
-        text += &format!("  {:>15}", format!("blocks of {block}"));
+        text += &format!("  {:>22}", format!("blocks of {block}"));
     }
-    text += &format!("  {:>15}\n", "call for one");
+    text += &format!("  {:>7}  {:>13}\n", "a call", "start/ms");
     for cost in costs {
-        text += &format!("  {:width$}  {:>7.0}", cost.model, cost.rate_hz);
-        for timing in cost.per_sample.iter().chain([&cost.per_call]) {
-            let Timing {
-                median_ns,
-                spread_ns,
-            } = timing;
-            text += &format!("  {:>15}", format!("{median_ns:.1} ± {spread_ns:.1}"));
+        text += &format!("  {:width$}  {:13}", cost.model, cost.way);
+        for block in &cost.blocks {
+            let t = block.per_sample;
+            let times = format!("{:.1} {:.1}±{:.1}", t.min_ns, t.median_ns, t.spread_ns);
+            text += &format!("  {times:>16} {:4.2}x", block.ratio);
         }
-        text += "\n";
+        let start = cost.start.map_or(String::new(), |start| {
+            format!("{:.0} -> {:.1}", start.cold_ms, start.warm_ms)
+        });
+        text += &format!("  {:>7.0}  {start:>13}\n", cost.per_call_ns);
     }
-    text + "ns a sample, and ns a call: median ± half the distance between the quartiles\n"
+    text + "ns a sample: least, median ± half the distance between the quartiles, and the least over \
+            that of the first line of the model; ns a call; from the file to the first sample, \
+            compiled and from the cache\n"
 }

@@ -1,0 +1,60 @@
+//! How soon the first sample of a WASM module comes.
+
+use std::path::Path;
+use std::time::Instant;
+
+use htex_host::{Band, HostError, LoadedModel, Origin, WasmCache, WasmLimits};
+use serde::Serialize;
+
+use crate::case::RATE_HZ;
+use crate::finding::Finding;
+
+/// Times without and with the compiled module; the least of them counts.
+const COLD: usize = 3;
+const WARM: usize = 10;
+
+/// Times from a file to the first sample, milliseconds.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Start {
+    /// The module is compiled.
+    pub cold_ms: f64,
+    /// The compiled module lies in the cache.
+    pub warm_ms: f64,
+}
+
+/// Measures a module in a cache folder of its own; `None` for what is no module in a file.
+pub(crate) fn start(model: &LoadedModel, parameters: &[f64]) -> Result<Option<Start>, Finding> {
+    let Origin::Wasm(file) = model.origin() else {
+        return Ok(None);
+    };
+    let mut best = Start {
+        cold_ms: f64::INFINITY,
+        warm_ms: f64::INFINITY,
+    };
+    for _ in 0..COLD {
+        let folder = tempfile::tempdir()
+            .map_err(|e| Finding::failed(format!("cannot make a folder for the cache: {e}")))?;
+        let limits = WasmLimits {
+            cache: WasmCache::Dir(folder.path().join("wasm")),
+            ..WasmLimits::default()
+        };
+        best.cold_ms = best
+            .cold_ms
+            .min(first_sample_ms(file, &limits, parameters)?);
+        for _ in 0..WARM {
+            best.warm_ms = best
+                .warm_ms
+                .min(first_sample_ms(file, &limits, parameters)?);
+        }
+    }
+    Ok(Some(best))
+}
+
+fn first_sample_ms(file: &Path, limits: &WasmLimits, parameters: &[f64]) -> Result<f64, HostError> {
+    let begun = Instant::now();
+    let model = LoadedModel::from_file_within(file, limits)?;
+    let rate_hz = model.voice_rate_hz(parameters, Band::TACTILE, RATE_HZ)?;
+    let mut voice = model.voice(parameters, Band::TACTILE, rate_hz, 1)?;
+    voice.render(&mut [0.0])?;
+    Ok(begun.elapsed().as_secs_f64() * 1e3)
+}

@@ -10,6 +10,7 @@ mod output;
 mod plugins;
 mod progress;
 mod recordings;
+mod wasm_limits;
 mod wav;
 
 use std::process::ExitCode;

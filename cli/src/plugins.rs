@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_host::{Registry, Search};
+use htex_host::{Registry, Search, WasmLimits};
 
 use crate::failure::Failure;
 use crate::output::warn;
+use crate::wasm_limits::WasmLimit;
 
 /// Where models come from.
 #[derive(Args)]
@@ -20,6 +21,13 @@ pub(crate) struct PluginArgs {
     /// A folder of plugins, searched before HTEX_PLUGIN_PATH and the user's own folder
     #[arg(long, value_name = "DIR")]
     plugin_dir: Vec<PathBuf>,
+
+    /// What a WASM model may use, by name: memory-mib (of an instance) [64], stack-kib [256],
+    /// call-ms (longest call) [5000], render-ms (of 8192 samples, or a retune) [500], voices [256],
+    /// table-elements [10000], module-mib [16], fuel (instructions of a call) [not counted]; may be
+    /// given several times
+    #[arg(long, value_name = "NAME=N", value_parser = WasmLimit::parse)]
+    wasm_limit: Vec<WasmLimit>,
 }
 
 impl PluginArgs {
@@ -41,10 +49,16 @@ impl PluginArgs {
         self.search(&[])
     }
 
+    /// What a WASM model may use.
+    pub(crate) fn limits(&self) -> WasmLimits {
+        WasmLimit::all(&self.wasm_limit)
+    }
+
     fn search(&self, files: &[PathBuf]) -> Result<Registry, Failure> {
         Ok(Registry::search(&Search {
             files: [&self.plugin[..], files].concat(),
             dirs: self.plugin_dir.clone(),
+            limits: self.limits(),
             ..Search::default()
         })?)
     }

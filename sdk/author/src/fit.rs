@@ -89,7 +89,11 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
     for choice in &request.models {
         match fit_model(choice, &grouped.groups, request.level) {
             Ok(representation) => fitted.push(representation),
-            Err(AuthorError::Model(HostError::Call { message, .. })) => {
+            Err(AuthorError::Model(HostError::Call { call, message, .. })) => {
+                let message = match call {
+                    "fit" => message,
+                    other => format!("{other}: {message}"),
+                };
                 warnings.push(format!("{} left out: {message}", choice.model.id()));
                 skipped.push((choice.model.id().to_owned(), message));
             }

@@ -11,7 +11,7 @@ use crate::plugins::PluginArgs;
 pub(crate) fn named(name: &str, plugins: &PluginArgs) -> Result<LoadedModel, Failure> {
     let file = Path::new(name);
     if file.is_file() {
-        return Ok(LoadedModel::from_file(file)?);
+        return Ok(LoadedModel::from_file_within(file, &plugins.limits())?);
     }
     Ok(plugins.registry()?.find(name)?.clone())
 }

@@ -18,9 +18,11 @@ impl Fault {
         let Some(trap) = error.downcast_ref::<Trap>() else {
             // Growing memory or a table over its limit is no trap but an error with its own words.
             return Self(format!(
-                "the module was stopped: {error:#} (memory is limited to {} bytes, tables to {} \
-                 elements)",
-                limits.memory_bytes, limits.table_elements
+                "the module was stopped: {} (memory is limited to {} bytes, tables to {} elements)",
+                // Around it stand the functions that were running, a line each.
+                error.root_cause(),
+                limits.memory_bytes,
+                limits.table_elements
             ));
         };
         Self(match trap {

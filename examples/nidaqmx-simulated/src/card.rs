@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use crate::codes;
 
-/// As the data sheet of the PCIe-6321 states it.
+/// Of one channel of a PCIe-6321.
 pub const FULL_SCALE_V: f64 = 10.0;
 pub const MAX_RATE_HZ: f64 = 900_000.0;
 pub const MIN_RATE_HZ: f64 = 100e6 / u32::MAX as f64;

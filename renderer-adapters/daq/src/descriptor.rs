@@ -92,8 +92,8 @@ fn paper() -> Profile {
     profile(
         "pcie-6321_tabor-9200a_sct3250",
         "The rig of Balasubramanian & Vardar (2026). From the paper: NI PCIe-6321, Tabor 9200A, 3M \
-         SCT3250, carrier 7 kHz, at most 150 V peak at the display. From the maker of the card: 16 \
-         bits, -10 to 10 V. Nominal gain of the amplifier: 50; measure yours.",
+         SCT3250, carrier 7 kHz, at most 150 V peak at the display. Of the card: 16 bits, -10 to 10 \
+         V. Assumed, as the paper does not say: an amplifier gain of 50; measure yours.",
         &[
             ("amplifier_gain", "50"),
             ("limit_v", "150"),

@@ -17,6 +17,8 @@ pub mod biquad;
 pub mod butterworth;
 pub mod dct;
 pub mod estimation;
+pub mod fir;
+pub mod glide;
 pub mod grid;
 pub mod inverse_fft;
 mod lanes;
@@ -34,6 +36,7 @@ pub mod sine_bank;
 #[cfg(feature = "std")]
 pub mod spectrum;
 pub mod triangles;
+pub mod warp;
 pub mod window;
 mod ziggurat;
 

@@ -101,7 +101,7 @@ impl Stage {
             up,
             down,
             taps,
-            kernel: kernel(taps, phases, exact, cutoff),
+            kernel: windowed_sinc(taps, phases, exact, cutoff),
             exact,
             phase: 0,
             history: alloc::vec![0.0; taps + CHUNK],
@@ -154,7 +154,7 @@ impl Stage {
 
 /// Dot product in eight lanes; both slices have the same length, a multiple of eight.
 #[inline]
-fn dot(a: &[f32], b: &[f32]) -> f32 {
+pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
     let mut lanes = [0.0f32; 8];
     for (x, y) in a.chunks_exact(8).zip(b.chunks_exact(8)) {
         for i in 0..8 {
@@ -170,7 +170,9 @@ fn kaiser_length(width: f64) -> usize {
     libm::ceil(n).min(1e6) as usize + 1
 }
 
-fn kernel(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Vec<f32> {
+/// Rows of a windowed sinc, one a phase, and one more where rows are interpolated; `cutoff` in
+/// cycles per sample.
+pub(crate) fn windowed_sinc(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Vec<f32> {
     let rows = phases + u64::from(!exact);
     let beta = 0.1102 * (ATTENUATION_DB - 8.7);
     let half = taps as f64 / 2.0;

@@ -1,5 +1,6 @@
 //! A playing texture.
 
+use htex_dsp::glide::Glide;
 use htex_dsp::resample::Resampler;
 
 use crate::{Error, Source};
@@ -12,25 +13,17 @@ const RAMP_S: f64 = 0.010;
 pub struct Voice {
     source: Source,
     resampler: Option<Resampler>,
-    level_n: f32,
-    target_n: f32,
-    step_n: f32,
-    ramp_len: u32,
-    ramp_left: u32,
+    level_n: Glide,
 }
 
 impl Voice {
     /// A voice at `rate_hz`: the source, and the resampler it needs.
     pub(crate) fn new(source: Source, rate_hz: f64) -> Self {
-        let level_n = source.level_n() as f32;
+        let ramp = (RAMP_S * rate_hz).ceil().max(1.0) as u32;
         Self {
             resampler: Resampler::new(source.rate_hz(), rate_hz, source.top_hz()),
+            level_n: Glide::new(source.level_n() as f32, ramp),
             source,
-            level_n,
-            target_n: level_n,
-            step_n: 0.0,
-            ramp_len: (RAMP_S * rate_hz).ceil().max(1.0) as u32,
-            ramp_left: 0,
         }
     }
 
@@ -43,12 +36,8 @@ impl Voice {
     /// When a value is negative or not a number, or the model cannot mix; the voice then plays on
     /// as before.
     pub fn set_motion(&mut self, speed_mm_s: f64, force_n: f64) -> Result<(), Error> {
-        let target_n = self.source.set_motion(speed_mm_s, force_n)? as f32;
-        if target_n != self.target_n {
-            self.target_n = target_n;
-            self.step_n = (self.target_n - self.level_n) / self.ramp_len as f32;
-            self.ramp_left = self.ramp_len;
-        }
+        let level_n = self.source.set_motion(speed_mm_s, force_n)?;
+        self.level_n.set(level_n as f32);
         Ok(())
     }
 
@@ -57,22 +46,9 @@ impl Voice {
     /// # Errors
     /// When the model fails; what it should have rendered is silent.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), Error> {
-        self.render_shape(out)?;
-        let ramp = out.len().min(self.ramp_left as usize);
-        let (moving, steady) = out.split_at_mut(ramp);
-        for sample in moving {
-            self.ramp_left -= 1;
-            self.level_n = if self.ramp_left == 0 {
-                self.target_n
-            } else {
-                self.level_n + self.step_n
-            };
-            *sample *= self.level_n;
-        }
-        for sample in steady {
-            *sample *= self.level_n;
-        }
-        Ok(())
+        let result = self.render_shape(out);
+        self.level_n.apply(out);
+        result
     }
 
     /// Samples of unit RMS at the voice's rate.

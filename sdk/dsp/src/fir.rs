@@ -1,0 +1,106 @@
+//! Filters of finite impulse response, of linear phase, with a wanted magnitude.
+
+use alloc::vec::Vec;
+
+use crate::resample::dot;
+
+const CHUNK: usize = 256;
+
+/// A streaming filter of linear phase.
+#[derive(Debug, Clone)]
+pub struct Fir {
+    /// Symmetric, padded with zeros to a multiple of eight.
+    kernel: Vec<f32>,
+    /// The last `kernel.len() - 1` samples, and room for a chunk behind them.
+    history: Vec<f32>,
+}
+
+impl Fir {
+    /// A filter of `taps` coefficients (made odd) whose magnitude comes near `magnitude(hertz)`, which
+    /// is asked for from 0 to half of `rate_hz`. Sampled in frequency and smoothed by a Hann window:
+    /// it resolves about `4 · rate_hz / taps` hertz. It delays by half its length.
+    pub fn with_magnitude(taps: usize, rate_hz: f64, magnitude: impl Fn(f64) -> f64) -> Self {
+        let taps = taps.max(1) | 1;
+        let half = taps / 2;
+        // A fine grid, so that the truncated series does not fold.
+        let bins = (4 * taps).max(64);
+        let sampled: Vec<f64> = (0..=bins)
+            .map(|k| magnitude(0.5 * rate_hz * k as f64 / bins as f64))
+            .collect();
+        let at = |lag: usize| {
+            let cosine = |k: usize| {
+                let angle = core::f64::consts::PI * (k * lag % (2 * bins)) as f64 / bins as f64;
+                sampled[k] * libm::cos(angle)
+            };
+            let ends = 0.5 * (cosine(0) + cosine(bins));
+            (ends + (1..bins).map(cosine).sum::<f64>()) / bins as f64
+        };
+        let window = |lag: usize| {
+            let x = core::f64::consts::PI * lag as f64 / (half + 1) as f64;
+            0.5 + 0.5 * libm::cos(x)
+        };
+        let side: Vec<f64> = (0..=half).map(|lag| at(lag) * window(lag)).collect();
+        let kernel = (0..taps).map(|i| side[i.abs_diff(half)] as f32).collect();
+        Self::new(kernel)
+    }
+
+    /// A filter that changes nothing and delays by nothing.
+    pub fn through() -> Self {
+        Self::new(alloc::vec![1.0])
+    }
+
+    fn new(mut kernel: Vec<f32>) -> Self {
+        // The newest sample meets the last coefficient.
+        kernel.reverse();
+        let padded = kernel.len().next_multiple_of(8);
+        let mut front = alloc::vec![0.0; padded - kernel.len()];
+        front.append(&mut kernel);
+        Self {
+            history: alloc::vec![0.0; padded - 1 + CHUNK],
+            kernel: front,
+        }
+    }
+
+    /// Filters in place. Does not allocate.
+    pub fn process(&mut self, block: &mut [f32]) {
+        let before = self.kernel.len() - 1;
+        for chunk in block.chunks_mut(CHUNK) {
+            self.history[before..before + chunk.len()].copy_from_slice(chunk);
+            for (i, sample) in chunk.iter_mut().enumerate() {
+                *sample = dot(&self.kernel, &self.history[i..i + self.kernel.len()]);
+            }
+            self.history
+                .copy_within(chunk.len()..chunk.len() + before, 0);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sines_get_the_wanted_gain() {
+        let rate_hz = 2_000.0;
+        let wanted = |f: f64| 1.0 / (0.1 + f / 500.0);
+        for f in [60.0, 200.0, 555.0, 900.0] {
+            let mut fir = Fir::with_magnitude(251, rate_hz, wanted);
+            let mut signal: Vec<f32> = (0..4_000)
+                .map(|n| libm::sin(core::f64::consts::TAU * f * n as f64 / rate_hz) as f32)
+                .collect();
+            signal.chunks_mut(33).for_each(|block| fir.process(block));
+            let power: f64 = signal[1_000..].iter().map(|x| f64::from(x * x)).sum();
+            let gain = libm::sqrt(2.0 * power / 3_000.0);
+            let error_db = 20.0 * libm::log10(gain / wanted(f));
+            assert!(error_db.abs() < 0.1, "{f} Hz: {error_db} dB");
+        }
+    }
+
+    #[test]
+    fn through_is_through() {
+        let mut block: Vec<f32> = (0..600).map(|n| n as f32).collect();
+        let before = block.clone();
+        Fir::through().process(&mut block);
+        assert_eq!(block, before);
+    }
+}

@@ -1,0 +1,153 @@
+//! Reading a stream faster or slower, by a ratio that may change all the time.
+
+use alloc::vec::Vec;
+
+use crate::resample::{dot, windowed_sinc};
+
+/// Samples of the source that one output looks at: stop band of about 60 dB.
+const TAPS: usize = 32;
+/// Rows of the kernel's table; between two rows it is interpolated.
+const PHASES: usize = 256;
+const CHUNK: usize = 64;
+
+/// Reads its source at a changing ratio, by windowed-sinc interpolation. Pulled like
+/// [`crate::resample::Resampler`]; gives the same samples for any block size.
+#[derive(Debug, Clone)]
+pub struct Warp {
+    taps: usize,
+    /// `PHASES + 1` rows of `taps`.
+    kernel: Vec<f32>,
+    /// Place of the next output behind `start`, samples of the source, 0 to 1.
+    place: f64,
+    history: Vec<f32>,
+    start: usize,
+    filled: usize,
+}
+
+impl Warp {
+    /// Reads by interpolation; a change of ratio is heard half a kernel (16 source samples) late.
+    pub fn new() -> Self {
+        Self::of(TAPS)
+    }
+
+    /// Reads at a ratio of 1 only, without any delay: what goes in comes out.
+    pub fn through() -> Self {
+        Self::of(1)
+    }
+
+    fn of(taps: usize) -> Self {
+        let kernel = match taps {
+            1 => alloc::vec![1.0; PHASES + 1],
+            _ => windowed_sinc(taps, PHASES as u64, false, 0.5),
+        };
+        Self {
+            taps,
+            kernel,
+            place: 0.0,
+            history: alloc::vec![0.0; taps + CHUNK],
+            start: 0,
+            filled: 0,
+        }
+    }
+
+    /// Fills `out`; each sample stands `ratio` source samples (0 to 1,000) after the one before.
+    /// Aliases where `ratio` is above 1, unless the source has nothing there. Does not allocate.
+    pub fn process(&mut self, ratio: f64, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
+        for sample in out {
+            while self.start + self.taps > self.filled {
+                self.refill(source);
+            }
+            *sample = self.read();
+            self.place += ratio;
+            let whole = self.place as usize;
+            self.place -= whole as f64;
+            self.start += whole;
+        }
+    }
+
+    fn read(&self) -> f32 {
+        let window = &self.history[self.start..self.start + self.taps];
+        if self.taps == 1 {
+            return window[0];
+        }
+        let place = self.place * PHASES as f64;
+        let i = (place as usize).min(PHASES - 1);
+        let t = (place - i as f64) as f32;
+        let row = |i: usize| &self.kernel[i * self.taps..(i + 1) * self.taps];
+        let (a, b) = (dot(row(i), window), dot(row(i + 1), window));
+        a + t * (b - a)
+    }
+
+    /// Drops what is behind, and pulls a few samples.
+    fn refill(&mut self, source: &mut dyn FnMut(&mut [f32])) {
+        let keep_from = self.start.min(self.filled);
+        self.history.copy_within(keep_from..self.filled, 0);
+        self.filled -= keep_from;
+        self.start -= keep_from;
+        // A source that is far ahead is read and thrown away in pieces.
+        if self.start >= self.filled && self.filled > 0 {
+            self.start -= self.filled;
+            self.filled = 0;
+        }
+        let wanted = (self.start + self.taps - self.filled).max(8);
+        let end = (self.filled + wanted).min(self.history.len());
+        source(&mut self.history[self.filled..end]);
+        self.filled = end;
+    }
+}
+
+impl Default for Warp {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sine(f: f64) -> impl FnMut(&mut [f32]) {
+        let mut n = 0.0;
+        move |block: &mut [f32]| {
+            for x in block {
+                *x = libm::sin(core::f64::consts::TAU * f * n) as f32;
+                n += 1.0;
+            }
+        }
+    }
+
+    #[test]
+    fn a_sine_keeps_its_amplitude_and_follows_the_ratio() {
+        let mut warp = Warp::new();
+        let mut source = sine(0.05);
+        let (mut place, mut worst) = (TAPS as f64 / 2.0 - 1.0, 0.0f64);
+        for i in 0..4_000 {
+            let ratio = 0.2 + 1.3 * f64::from(i % 700) / 700.0;
+            let mut out = [0.0f32];
+            warp.process(ratio, &mut out, &mut source);
+            let expected = libm::sin(core::f64::consts::TAU * 0.05 * place);
+            worst = worst.max((f64::from(out[0]) - expected).abs());
+            place += ratio;
+        }
+        assert!(worst < 1e-3, "{worst}");
+    }
+
+    #[test]
+    fn at_ratio_one_it_can_be_no_change_at_all() {
+        let (mut direct, mut through) = ([0.0f32; 100], [0.0f32; 100]);
+        sine(0.123)(&mut direct);
+        let (mut warp, mut source) = (Warp::through(), sine(0.123));
+        for block in through.chunks_mut(7) {
+            warp.process(1.0, block, &mut source);
+        }
+        assert_eq!(direct, through);
+    }
+
+    #[test]
+    fn it_may_skip_far_ahead() {
+        let mut warp = Warp::new();
+        let mut out = [0.0f32; 8];
+        warp.process(1_000.0, &mut out, &mut sine(0.001));
+        assert!(out.iter().all(|x| x.is_finite()));
+    }
+}

@@ -51,6 +51,18 @@ impl Resampler {
         Some(Self { stages })
     }
 
+    /// Multiplications and additions an output sample takes, on average.
+    pub fn macs_per_output(&self) -> f64 {
+        let mut rate = 1.0;
+        let mut macs = 0.0;
+        for stage in self.stages.iter().rev() {
+            let passes = if stage.exact { 1.0 } else { 2.0 };
+            macs += rate * passes * stage.taps as f64;
+            rate *= stage.down as f64 / stage.up as f64;
+        }
+        macs
+    }
+
     /// Fills `out`, pulling source samples through `source`, which must fill the whole slice it is
     /// given. Does not allocate.
     pub fn process(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {

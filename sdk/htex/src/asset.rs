@@ -171,6 +171,16 @@ impl Asset {
         Ok(model.descriptor().name.clone())
     }
 
+    /// The full id of the model of a representation named by it or by its short name, else of the
+    /// best.
+    ///
+    /// # Errors
+    /// When there is no such representation.
+    pub fn representation_id(&self, model: Option<&str>) -> Result<&str, Error> {
+        let r = self.representation(model)?;
+        Ok(&self.data.manifest.representations[r].model)
+    }
+
     /// Parameters (the flat array) and level (RMS, newtons) of a representation at a motion, else
     /// at its first condition.
     ///

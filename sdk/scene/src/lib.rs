@@ -2,21 +2,36 @@
 //! scene calls for and says why each is in or out; the renderer runs just that chain.
 #![forbid(unsafe_code)]
 
+mod call;
 mod check;
+mod cost;
 mod device;
+mod error;
 pub mod file;
 mod load;
+mod measure;
+mod motion;
 mod page;
+mod plan;
+mod render;
+mod representation;
 mod response;
 mod rules;
+mod stages;
 mod trace;
 mod validate;
 
+pub use cost::Costs;
 pub use device::DeviceOverride;
+pub use error::SceneError;
 pub use file::Scene;
 pub use load::{LoadError, LoadedScene, Surroundings, validate};
+pub use motion::{Finger, MIN_SLIDING_MM_S};
 pub use page::{findings_page, scene_schema};
+pub use plan::{Chosen, LeftOut, Plan, PlannedStage, plan};
+pub use render::Renderer;
 pub use response::Response;
 pub use rules::{RULES, explain};
+pub use stages::StageRun;
 pub use trace::{Trace, TracePoint};
 pub use validate::{Limits, read_scene};

@@ -1,0 +1,448 @@
+//! What a scene calls for: gathered once, from the scene, its assets and its device, before anything is
+//! built.
+
+use htex::{Source, VoiceOptions};
+use htex_author::response::SetupResponse;
+use htex_device::{Capabilities, Quantity};
+
+use crate::SceneError;
+use crate::file::{Effect, Surface, Switch};
+use crate::load::LoadedScene;
+use crate::motion::{Course, Finger};
+use crate::stages::CONTACT_RAMP_S;
+
+/// Slowest and fastest reading of a texture, in its recorded speed.
+pub(crate) const MIN_RATIO: f64 = 1.0 / 16.0;
+pub(crate) const MAX_RATIO: f64 = 8.0;
+/// Fastest reading that a live motion is prepared for.
+const LIVE_RATIO: f64 = 4.0;
+/// Largest force that a live motion is prepared for, in the recorded one.
+const LIVE_FORCE: f64 = 3.0;
+/// How often the finger is looked at, seconds.
+const CONTROL_S: f64 = 0.0032;
+/// Level of a preview by ear, decibels of full scale.
+const PREVIEW_DBFS: f64 = -18.0;
+
+/// From the smallest to the largest value that comes up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Span {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+}
+
+impl Span {
+    const NONE: Self = Self {
+        low: f64::INFINITY,
+        high: f64::NEG_INFINITY,
+    };
+    pub(crate) const ANY: Self = Self {
+        low: 0.0,
+        high: f64::INFINITY,
+    };
+
+    fn take(&mut self, x: f64) {
+        self.low = self.low.min(x);
+        self.high = self.high.max(x);
+    }
+
+    /// One value or none.
+    pub(crate) fn is_point(&self) -> bool {
+        self.low >= self.high
+    }
+
+    pub(crate) fn text(&self, unit: &str) -> String {
+        match self {
+            _ if self.high == f64::INFINITY => format!("live {unit}"),
+            _ if self.low == self.high => format!("{} {unit}", self.low),
+            _ => format!("{:.3} to {:.3} {unit}", self.low, self.high),
+        }
+    }
+}
+
+/// What holds for the scene as a whole.
+#[derive(Debug)]
+pub(crate) struct Call {
+    pub(crate) device: Capabilities,
+    pub(crate) rate_hz: f64,
+    /// Frames between two looks at the finger.
+    pub(crate) control: usize,
+    /// Length; none: without end.
+    pub(crate) frames: Option<u64>,
+    pub(crate) live: bool,
+    pub(crate) turns_round: bool,
+    pub(crate) breaks_contact: bool,
+    /// RMS of the loudest surface as it reaches the device's stages, newtons.
+    pub(crate) level_n: f64,
+    pub(crate) drive_v: f64,
+    pub(crate) gain_db: f64,
+    pub(crate) level_dbfs: f64,
+    pub(crate) pitch: f64,
+    pub(crate) seed: u64,
+    pub(crate) compensation: Option<Inverse>,
+    /// How each surface is touched.
+    pub(crate) touches: Vec<Touch>,
+}
+
+/// How a surface is touched.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Touch {
+    /// Part of the time, 0 to 1.
+    pub(crate) share: f64,
+    pub(crate) always: bool,
+    pub(crate) speed_mm_s: Span,
+    pub(crate) force_n: Span,
+    /// How it is first touched.
+    pub(crate) first: Option<Finger>,
+}
+
+/// A response, to be divided out.
+#[derive(Debug, Clone)]
+pub(crate) struct Inverse {
+    response: SetupResponse,
+    floor: f64,
+}
+
+impl Inverse {
+    fn new(response: &SetupResponse, depth_db: f64) -> Self {
+        let largest = response.magnitude.iter().copied().fold(0.0, f64::max);
+        Self {
+            response: response.clone(),
+            floor: largest * 10f64.powf(-depth_db / 20.0),
+        }
+    }
+
+    /// 1/|H|, and no more than 1/(2 floor): |H| / (|H|² + floor²).
+    pub(crate) fn at(&self, frequency_hz: f64) -> f64 {
+        let (re, im) = self.response.at(frequency_hz);
+        let power = re * re + im * im;
+        let below = power + self.floor * self.floor;
+        if below > 0.0 {
+            power.sqrt() / below
+        } else {
+            0.0
+        }
+    }
+}
+
+impl Call {
+    /// Gathers what does not depend on the choice of representations.
+    pub(crate) fn gather(scene: &LoadedScene, device: &Capabilities) -> Result<Self, SceneError> {
+        let (file, choice) = (&scene.scene, &scene.scene.device);
+        let rate_hz = choice.rate_hz.unwrap_or(device.default_rate_hz);
+        if !device.rates.has(rate_hz) {
+            return Err(SceneError::Rate {
+                rate_hz,
+                rates: device.rates.to_string(),
+            });
+        }
+        let course = Course::of(scene);
+        let duration_s = file
+            .duration_s
+            .or(scene.trace.as_ref().map(|t| t.duration_s()));
+        let limit = device.limit.unwrap_or(f64::INFINITY);
+        let mut call = Self {
+            rate_hz,
+            control: ((CONTROL_S * rate_hz / 8.0).round() as usize * 8).clamp(8, 4096),
+            frames: duration_s.map(|s| (s * rate_hz).round().max(1.0) as u64),
+            live: matches!(course, Course::Live),
+            turns_round: false,
+            breaks_contact: false,
+            level_n: 0.0,
+            drive_v: choice.drive_v.unwrap_or(0.5 * limit),
+            gain_db: choice.gain_db.unwrap_or(0.0),
+            level_dbfs: choice.level_dbfs.unwrap_or(PREVIEW_DBFS),
+            pitch: match device.quantity {
+                Quantity::Sound => choice.pitch.unwrap_or(1.0),
+                _ => 1.0,
+            },
+            seed: file.seed,
+            compensation: scene
+                .response
+                .as_ref()
+                .map(|r| Inverse::new(r, choice.response_depth_db)),
+            touches: Vec::new(),
+            device: device.clone(),
+        };
+        call.follow(&course, &file.surfaces);
+        Ok(call)
+    }
+
+    /// Goes through the scene as the renderer will.
+    fn follow(&mut self, course: &Course, surfaces: &[Surface]) {
+        let untouched = Touch {
+            share: 0.0,
+            always: true,
+            speed_mm_s: Span::NONE,
+            force_n: Span::NONE,
+            first: None,
+        };
+        self.touches = vec![untouched; surfaces.len()];
+        if self.live {
+            for (touch, surface) in self.touches.iter_mut().zip(surfaces) {
+                touch.share = 1.0;
+                touch.always = surfaces.len() == 1 && surface.region.is_none();
+                touch.speed_mm_s = Span::ANY;
+                touch.force_n = Span::ANY;
+            }
+            return;
+        }
+        // Where nothing changes, one look is enough.
+        let still = course.is_constant() && surfaces.len() == 1 && surfaces[0].region.is_none();
+        let frames = self.frames.unwrap_or(1);
+        let looks = if still {
+            1
+        } else {
+            frames.div_ceil(self.control as u64).max(1)
+        };
+        for look in 0..looks {
+            let finger = course.at(look as f64 * self.control as f64 / self.rate_hz);
+            self.look(finger, surfaces);
+        }
+        for touch in &mut self.touches {
+            touch.share /= looks as f64;
+        }
+    }
+
+    fn look(&mut self, finger: Finger, surfaces: &[Surface]) {
+        let touched = topmost(surfaces, &finger);
+        self.breaks_contact |= !finger.slides();
+        self.turns_round |= finger.slides() && finger.speed_mm_s < 0.0;
+        for (i, touch) in self.touches.iter_mut().enumerate() {
+            if touched != Some(i) {
+                touch.always = false;
+            } else if finger.slides() {
+                touch.share += 1.0;
+                touch.speed_mm_s.take(finger.speed_mm_s.abs());
+                touch.force_n.take(finger.force_n);
+                touch.first.get_or_insert(finger);
+            }
+        }
+    }
+
+    /// Frames of the ramp at a scene's end.
+    pub(crate) fn ramp_frames(&self) -> u64 {
+        (CONTACT_RAMP_S * self.rate_hz).ceil() as u64
+    }
+}
+
+/// The surface under the finger: the highest of those it is on.
+pub(crate) fn topmost(surfaces: &[Surface], finger: &Finger) -> Option<usize> {
+    let under = |i: &usize| finger.is_in(surfaces[*i].region.as_ref());
+    (0..surfaces.len())
+        .filter(under)
+        .max_by_key(|&i| surfaces[i].layer)
+}
+
+/// A surface, played by one of its representations.
+#[derive(Debug, Clone)]
+pub(crate) struct Part {
+    pub(crate) surface: usize,
+    /// Id of the model.
+    pub(crate) model: String,
+    /// Nine-band RMS error, decibels; infinite when it was not measured.
+    pub(crate) band_error_db: f64,
+    /// Known speeds (mm/s) and forces (newtons).
+    pub(crate) conditions: Vec<[Option<f64>; 2]>,
+    pub(crate) speed_mm_s: Span,
+    pub(crate) force_n: Span,
+    pub(crate) always_touched: bool,
+    pub(crate) share: f64,
+    /// The motion the voice starts with; none: the first condition.
+    pub(crate) start: Option<(f64, f64)>,
+    /// Rate of the model, hertz.
+    pub(crate) rate_hz: f64,
+    /// Rate behind speed scaling, in the rate of the model.
+    pub(crate) oversampling: f64,
+    pub(crate) mix_rate_hz: f64,
+    /// Highest frequency at the rate of the mix, hertz.
+    pub(crate) top_hz: f64,
+    /// How much faster than recorded all of it is read.
+    pub(crate) fixed_ratio: f64,
+    pub(crate) fixed_force_gain: f64,
+    /// Factor on the asset's level.
+    pub(crate) gain: f64,
+    /// Largest RMS, newtons, compensated.
+    pub(crate) level_n: f64,
+}
+
+impl Part {
+    /// One surface by the representation of `model`.
+    pub(crate) fn new(
+        scene: &LoadedScene,
+        call: &Call,
+        surface: usize,
+        model: &str,
+    ) -> Result<Self, SceneError> {
+        let (asset, touch) = (&scene.assets[surface], &call.touches[surface]);
+        let (conditions, band_error_db) = known(asset, model);
+        let mut part = Self {
+            surface,
+            model: model.to_owned(),
+            band_error_db,
+            conditions,
+            speed_mm_s: touch.speed_mm_s,
+            force_n: touch.force_n,
+            always_touched: touch.always,
+            share: touch.share,
+            start: touch.first.map(|f| (f.speed_mm_s.abs(), f.force_n)),
+            rate_hz: 0.0,
+            oversampling: 1.0,
+            mix_rate_hz: 0.0,
+            top_hz: asset.band().high_hz,
+            fixed_ratio: call.pitch,
+            fixed_force_gain: 1.0,
+            gain: scene.scene.surfaces[surface].gain,
+            level_n: 0.0,
+        };
+        part.scale_speed(scene);
+        let force_gain = part.scale_force(scene);
+        let failed = |source| SceneError::Surface {
+            surface,
+            asset: scene.scene.surfaces[surface].asset.clone(),
+            source,
+        };
+        let source = part.source(scene, call).map_err(failed)?;
+        part.rate_hz = source.rate_hz();
+        part.mix_rate_hz = part.rate_hz * part.oversampling;
+        let shape = part.compensated(call, asset).map_err(failed)?;
+        part.level_n = loudest(asset, model, source.level_n()) * part.gain * force_gain * shape;
+        Ok(part)
+    }
+
+    /// The surface's voice. A model that renders at any rate is asked for the one that needs no
+    /// conversion behind the scaling of the speed.
+    pub(crate) fn source(&self, scene: &LoadedScene, call: &Call) -> Result<Source, htex::Error> {
+        scene.assets[self.surface].source(&VoiceOptions {
+            model: Some(&self.model),
+            rate_hz: call.rate_hz / (self.fixed_ratio * self.oversampling),
+            seed: call.seed.wrapping_add(self.surface as u64),
+            motion: self.start,
+        })
+    }
+
+    /// The speed in the rates: a constant one in the resampler's, a changing one in the warp's.
+    fn scale_speed(&mut self, scene: &LoadedScene) {
+        let off = scene.scene.effects.get(&Effect::SpeedScaling) == Some(&Switch::Off);
+        let Some(known) = self.one_speed_mm_s().filter(|_| !off) else {
+            return;
+        };
+        let ratio = |speed: f64| (speed / known).clamp(MIN_RATIO, MAX_RATIO);
+        if self.speed_mm_s.is_point() {
+            if self.speed_mm_s.low.is_finite() {
+                self.fixed_ratio *= ratio(self.speed_mm_s.low);
+            }
+            return;
+        }
+        let fastest = match self.speed_mm_s.high.is_finite() {
+            true => ratio(self.speed_mm_s.high),
+            false => LIVE_RATIO,
+        };
+        self.oversampling = fastest.ceil().max(1.0);
+        self.top_hz *= fastest.max(1.0);
+    }
+
+    /// A constant force in the gain; answers the largest gain that forces make.
+    fn scale_force(&mut self, scene: &LoadedScene) -> f64 {
+        let off = scene.scene.effects.get(&Effect::ForceScaling) == Some(&Switch::Off);
+        let Some(known) = self.one_force_n().filter(|_| !off) else {
+            return 1.0;
+        };
+        match self.force_n {
+            point if point.is_point() && point.low.is_finite() => {
+                self.fixed_force_gain = point.low / known;
+                self.gain *= self.fixed_force_gain;
+                1.0
+            }
+            span if span.is_point() => 1.0,
+            span if span.high.is_finite() => span.high / known,
+            _ => LIVE_FORCE,
+        }
+    }
+
+    /// RMS behind the compensation over RMS before it.
+    fn compensated(&self, call: &Call, asset: &htex::Asset) -> Result<f64, htex::Error> {
+        let Some(inverse) = &call.compensation else {
+            return Ok(1.0);
+        };
+        let band = asset.band();
+        let grid = band.grid_hz();
+        let magnitude = asset.magnitude_n(Some(&self.model), self.start, &grid)?;
+        let sum = |gain: &dyn Fn(f64) -> f64| {
+            let one = |(m, f): (&f64, &f64)| (m * gain(*f)).powi(2);
+            magnitude.iter().zip(&grid).map(one).sum::<f64>()
+        };
+        let before = sum(&|_| 1.0);
+        let behind = sum(&|hz| inverse.at(hz * self.fixed_ratio));
+        Ok(if before > 0.0 {
+            (behind / before).sqrt()
+        } else {
+            1.0
+        })
+    }
+
+    /// The speeds that are known; an empty span if one is not.
+    pub(crate) fn speeds(&self) -> Span {
+        span(&self.conditions, 0)
+    }
+
+    /// The forces that are known; an empty span if one is not.
+    pub(crate) fn forces(&self) -> Span {
+        span(&self.conditions, 1)
+    }
+
+    /// The recorded speed, if there is just one.
+    pub(crate) fn one_speed_mm_s(&self) -> Option<f64> {
+        only(self.speeds())
+    }
+
+    /// The recorded force, if there is just one.
+    pub(crate) fn one_force_n(&self) -> Option<f64> {
+        only(self.forces())
+    }
+}
+
+fn span(conditions: &[[Option<f64>; 2]], axis: usize) -> Span {
+    let mut span = Span::NONE;
+    for condition in conditions {
+        match condition[axis] {
+            Some(x) => span.take(x),
+            None => return Span::NONE,
+        }
+    }
+    span
+}
+
+fn only(span: Span) -> Option<f64> {
+    (span.low == span.high && span.low > 0.0).then_some(span.low)
+}
+
+/// Conditions and band error of a representation.
+fn known(asset: &htex::Asset, model: &str) -> (Vec<[Option<f64>; 2]>, f64) {
+    let manifest = asset.manifest();
+    let found = manifest.representations.iter().find(|r| r.model == model);
+    let at = found.map_or(&[][..], |r| &r.at);
+    let conditions = at
+        .iter()
+        .filter_map(|at| manifest.conditions.get(at.condition));
+    let error = |at: &htex_format::AtCondition| {
+        at.quality
+            .as_ref()
+            .map_or(f64::INFINITY, |q| q.band_error_rms_db)
+    };
+    let worst = at.iter().map(error).fold(0.0, f64::max);
+    (
+        conditions.map(|c| [c.speed_mm_s, c.force_n]).collect(),
+        worst,
+    )
+}
+
+/// The largest level of a representation, newtons.
+fn loudest(asset: &htex::Asset, model: &str, level_n: f64) -> f64 {
+    let manifest = asset.manifest();
+    let found = manifest.representations.iter().find(|r| r.model == model);
+    let levels = found
+        .into_iter()
+        .flat_map(|r| &r.at)
+        .map(|at| at.level_n_rms);
+    levels.fold(level_n, f64::max)
+}

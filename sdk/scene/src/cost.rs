@@ -1,0 +1,74 @@
+//! What stages cost in time: measured on a machine, kept for the next plan.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+/// Costs of models and stages on one machine.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Costs {
+    /// Where and how they were measured.
+    pub machine: String,
+    /// A sample of a model's voice at the model's own rate, nanoseconds.
+    pub model_ns: BTreeMap<String, f64>,
+    /// Changing a voice to other parameters, nanoseconds.
+    pub retune_ns: BTreeMap<String, f64>,
+    /// A sample through a stage at the stage's rate, nanoseconds; without its multiplications, for
+    /// stages that filter.
+    pub stage_ns: BTreeMap<String, f64>,
+    /// A multiplication and addition of a filter, nanoseconds.
+    pub mac_ns: f64,
+}
+
+impl Costs {
+    /// The costs this crate brings along, measured on its authors' machine.
+    pub fn embedded() -> Self {
+        serde_json::from_str(include_str!("costs.json")).unwrap_or_else(|_| Self::nothing())
+    }
+
+    /// Costs that were kept; none when there are none of this version.
+    pub fn load(path: &Path) -> Option<Self> {
+        serde_json::from_slice(&std::fs::read(path).ok()?).ok()
+    }
+
+    /// Keeps the costs for later plans.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub fn save(&self, path: &Path) -> std::io::Result<()> {
+        let text = serde_json::to_string_pretty(self)?;
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder)?;
+        }
+        htex_format::write_file(path, text.as_bytes())
+    }
+
+    /// The cost of a model that was never measured: the dearest known.
+    pub(crate) fn model(&self, id: &str) -> f64 {
+        or_largest(&self.model_ns, id)
+    }
+
+    pub(crate) fn retune(&self, id: &str) -> f64 {
+        or_largest(&self.retune_ns, id)
+    }
+
+    pub(crate) fn stage(&self, name: &str) -> f64 {
+        self.stage_ns.get(name).copied().unwrap_or(0.0)
+    }
+
+    pub(crate) fn nothing() -> Self {
+        Self {
+            machine: "not measured".to_owned(),
+            model_ns: BTreeMap::new(),
+            retune_ns: BTreeMap::new(),
+            stage_ns: BTreeMap::new(),
+            mac_ns: 0.0,
+        }
+    }
+}
+
+fn or_largest(costs: &BTreeMap<String, f64>, id: &str) -> f64 {
+    let largest = || costs.values().copied().fold(0.0, f64::max);
+    costs.get(id).copied().unwrap_or_else(largest)
+}

@@ -1,0 +1,196 @@
+//! Measures what models and stages cost on this machine.
+
+use std::collections::BTreeMap;
+use std::hint::black_box;
+use std::time::Instant;
+
+use htex_device::{Capabilities, Quantity, Rates};
+use htex_dsp::fir::Fir;
+use htex_host::{Band, FitRequest, HostError, LoadedModel, Registry};
+
+use crate::call::{Call, Part, Span};
+use crate::cost::Costs;
+use crate::motion::Finger;
+use crate::stages::{EFFECTS, Level, Now, Place, Stage, resampler};
+
+const BLOCK: usize = 64;
+/// Samples timed at a stretch: short enough to fall between two interruptions now and then.
+const STRETCH: usize = 2_048;
+const ROUNDS: usize = 60;
+
+impl Costs {
+    /// Measures all models of a registry, and all stages; takes about a second.
+    ///
+    /// # Errors
+    /// When a model cannot be fitted or played.
+    pub fn measure(models: &Registry, machine: &str) -> Result<Self, HostError> {
+        let mut costs = Self {
+            machine: machine.to_owned(),
+            ..Self::nothing()
+        };
+        for model in models.models() {
+            let (sample_ns, retune_ns) = measure_model(model)?;
+            costs.model_ns.insert(model.id().to_owned(), sample_ns);
+            costs.retune_ns.insert(model.id().to_owned(), retune_ns);
+        }
+        costs.mac_ns = mac_ns();
+        costs.stage_ns = stages(costs.mac_ns);
+        Ok(costs)
+    }
+}
+
+/// The least time of many stretches, nanoseconds a sample: what is above it is the machine's.
+fn least(mut run: impl FnMut(&mut [f32])) -> f64 {
+    let mut block = [0.0f32; BLOCK];
+    let mut stretch = || {
+        let start = Instant::now();
+        for _ in 0..STRETCH / BLOCK {
+            run(black_box(&mut block));
+        }
+        start.elapsed().as_nanos() as f64 / STRETCH as f64
+    };
+    (0..ROUNDS).map(|_| stretch()).fold(f64::INFINITY, f64::min)
+}
+
+/// Nanoseconds a sample at the model's own rate, and a change of parameters.
+fn measure_model(model: &LoadedModel) -> Result<(f64, f64), HostError> {
+    let (one, other) = (fitted(model, 200.0)?, fitted(model, 300.0)?);
+    let rate_hz = model.voice_rate_hz(&one, Band::TACTILE, 20_000.0)?;
+    let mut voice = model.voice(&one, Band::TACTILE, rate_hz, 1)?;
+    let mut failed = Ok(());
+    let steady = least(|block| failed = voice.render(block));
+    failed?;
+    let mut failed = Ok(());
+    let mut turn = false;
+    let retuned = least(|block| {
+        turn = !turn;
+        let to = if turn { &other } else { &one };
+        failed = voice.retune(to).and_then(|()| voice.render(block));
+    });
+    failed?;
+    Ok((steady, (retuned - steady).max(0.0) * BLOCK as f64))
+}
+
+/// Parameters for a textured spectrum that falls above `corner_hz`.
+fn fitted(model: &LoadedModel, corner_hz: f64) -> Result<Vec<f64>, HostError> {
+    let band = Band::TACTILE;
+    let grid = band.grid_hz();
+    let shape = |f: &f64| (1.2 + (f / 17.0).sin()) / (1.0 + (f / corner_hz).powi(2));
+    let magnitude: Vec<f64> = grid.iter().map(shape).collect();
+    let request = FitRequest {
+        band,
+        frequency_hz: &grid,
+        magnitude: &magnitude,
+        signal: &[],
+        signal_rate_hz: 20_000.0,
+        options: &model.descriptor().default_options(),
+    };
+    Ok(model.fit(&request)?.parameters)
+}
+
+fn mac_ns() -> f64 {
+    let taps = 400;
+    let mut fir = Fir::with_magnitude(taps, 2_000.0, |hz| 1.0 / (1.0 + hz));
+    least(|block| fir.process(block)) / taps as f64
+}
+
+/// What each stage costs at its own rate, multiplications of filters aside.
+fn stages(mac_ns: f64) -> BTreeMap<String, f64> {
+    let (call, part) = (example_call(), example_part());
+    let mut costs = BTreeMap::new();
+    let mut note = |name: &str, mut stage: Box<dyn Stage>, macs: f64| {
+        let ns = measure_stage(&mut *stage) - macs * mac_ns;
+        costs.insert(name.to_owned(), ns.max(0.0));
+    };
+    note("level", Box::new(Level::new(&part, 0.1)), 0.0);
+    for entry in EFFECTS {
+        match &entry.place {
+            Place::Surface { build: None, .. } => {}
+            Place::Surface {
+                build: Some(build), ..
+            } => note(entry.name, build(&call, &part, false), 0.0),
+            Place::Mix { build, .. } => {
+                let macs = resampler(&call, &part).map_or(0.0, |r| r.macs_per_output());
+                note(entry.name, build(&call, &part, false), macs);
+            }
+            Place::Device { build, .. } => note(entry.name, build(&call, false), 0.0),
+        }
+    }
+    costs
+}
+
+fn measure_stage(stage: &mut dyn Stage) -> f64 {
+    let mut at = 0;
+    let input: Vec<f32> = (0..4 * BLOCK)
+        .map(|n| (n as f32 * 0.7).sin() * 0.1)
+        .collect();
+    let mut source = move |block: &mut [f32]| {
+        for piece in block.chunks_mut(BLOCK) {
+            at = (at + BLOCK) % (3 * BLOCK);
+            piece.copy_from_slice(&input[at..at + piece.len()]);
+        }
+    };
+    stage.follow(&Now {
+        finger: Finger {
+            speed_mm_s: 100.0,
+            force_n: 0.5,
+            at_mm: None,
+        },
+        level_n: 0.1,
+        ends_in: None,
+    });
+    let alone = least(&mut source);
+    (least(|block| stage.render(block, &mut source)) - alone).max(0.0)
+}
+
+/// A scene on an electrovibration display, for which every stage has something to do.
+fn example_call() -> Call {
+    Call {
+        device: Capabilities {
+            quantity: Quantity::DisplayVoltage,
+            rates: Rates::List(vec![20_000.0]),
+            default_rate_hz: 20_000.0,
+            limit: Some(150.0),
+            step: Some(0.015),
+            carrier_hz: Some(7_000.0),
+            paced: true,
+            block_frames: 256,
+        },
+        rate_hz: 20_000.0,
+        control: BLOCK,
+        frames: None,
+        live: true,
+        turns_round: true,
+        breaks_contact: true,
+        level_n: 0.1,
+        drive_v: 100.0,
+        gain_db: 0.0,
+        level_dbfs: -18.0,
+        pitch: 1.0,
+        seed: 0,
+        compensation: None,
+        touches: Vec::new(),
+    }
+}
+
+fn example_part() -> Part {
+    Part {
+        surface: 0,
+        model: String::new(),
+        band_error_db: 0.0,
+        conditions: vec![[Some(80.0), Some(0.4)]],
+        speed_mm_s: Span::ANY,
+        force_n: Span::ANY,
+        always_touched: false,
+        share: 1.0,
+        start: None,
+        rate_hz: 2_000.0,
+        oversampling: 2.0,
+        mix_rate_hz: 4_000.0,
+        top_hz: 2_000.0,
+        fixed_ratio: 1.0,
+        fixed_force_gain: 1.0,
+        gain: 1.0,
+        level_n: 0.1,
+    }
+}

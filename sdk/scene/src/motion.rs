@@ -1,0 +1,106 @@
+//! Where the finger is, and how it moves, at any time of a scene.
+
+use crate::file::{Constant, Motion, Region};
+use crate::load::LoadedScene;
+use crate::trace::Trace;
+
+/// Below this speed the finger does not slide, and there is no texture to feel.
+pub const MIN_SLIDING_MM_S: f64 = 0.5;
+
+/// A finger at one moment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Finger {
+    /// Scanning speed, mm/s; negative on the back stroke.
+    pub speed_mm_s: f64,
+    /// Normal force, newtons.
+    pub force_n: f64,
+    /// Where it is, mm; none: on every surface that lies everywhere.
+    pub at_mm: Option<[f64; 2]>,
+}
+
+impl Finger {
+    /// A finger that touches nothing.
+    pub const AWAY: Self = Self {
+        speed_mm_s: 0.0,
+        force_n: 0.0,
+        at_mm: None,
+    };
+
+    /// Whether it slides over something.
+    pub fn slides(&self) -> bool {
+        self.speed_mm_s.abs() >= MIN_SLIDING_MM_S && self.force_n > 0.0
+    }
+
+    /// Whether it is in a region; none lies everywhere.
+    pub(crate) fn is_in(&self, region: Option<&Region>) -> bool {
+        match (region, self.at_mm) {
+            (None, _) => true,
+            (Some(region), Some([x, y])) => {
+                let within = |range: [f64; 2], at: f64| (range[0]..range[1]).contains(&at);
+                within(region.x_mm, x) && within(region.y_mm, y)
+            }
+            (Some(_), None) => false,
+        }
+    }
+}
+
+/// The finger over time.
+#[derive(Debug, Clone)]
+pub(crate) enum Course {
+    Constant(Constant),
+    Trace(Trace, [f64; 2]),
+    Live,
+}
+
+impl Course {
+    pub(crate) fn of(scene: &LoadedScene) -> Self {
+        match (&scene.scene.motion, &scene.trace) {
+            (Motion::Constant(constant), _) => Self::Constant(*constant),
+            (Motion::Trace(_), Some(trace)) => Self::Trace(trace.clone(), first_way(trace)),
+            _ => Self::Live,
+        }
+    }
+
+    /// The finger at a time, seconds; away when the motion is live. Does not allocate.
+    pub(crate) fn at(&self, t_s: f64) -> Finger {
+        match self {
+            Self::Constant(constant) => Finger {
+                speed_mm_s: constant.speed_mm_s,
+                force_n: constant.force_n,
+                at_mm: constant.from_mm.map(|[x, y]| {
+                    let way = constant.speed_mm_s * t_s;
+                    let (sin, cos) = constant.direction_deg.to_radians().sin_cos();
+                    [x + way * cos, y + way * sin]
+                }),
+            },
+            Self::Trace(trace, way) => {
+                let point = trace.at(t_s);
+                let forward = point.vx_mm_s * way[0] + point.vy_mm_s * way[1] >= 0.0;
+                Finger {
+                    speed_mm_s: if forward {
+                        point.speed_mm_s
+                    } else {
+                        -point.speed_mm_s
+                    },
+                    force_n: point.force_n,
+                    at_mm: Some([point.x_mm, point.y_mm]),
+                }
+            }
+            Self::Live => Finger::AWAY,
+        }
+    }
+
+    /// Whether the finger does the same all the time; its place aside.
+    pub(crate) fn is_constant(&self) -> bool {
+        matches!(self, Self::Constant(_))
+    }
+}
+
+/// The direction of the first stroke: where the finger first slides.
+fn first_way(trace: &Trace) -> [f64; 2] {
+    let moving = trace.t_s.iter().map(|t| trace.at(*t));
+    let mut sliding = moving.filter(|point| point.speed_mm_s >= MIN_SLIDING_MM_S);
+    sliding
+        .next()
+        .map_or([1.0, 0.0], |point| [point.vx_mm_s, point.vy_mm_s])
+}

@@ -1,0 +1,416 @@
+//! The plan: which stages a scene needs, in which order, at which rate, at which cost, and why.
+
+use std::collections::BTreeMap;
+
+use htex_device::{Capabilities, Quantity};
+use serde::Serialize;
+
+use crate::SceneError;
+use crate::call::{Call, Part};
+use crate::cost::Costs;
+use crate::file::{Effect, Switch};
+use crate::load::LoadedScene;
+use crate::representation::{self, Choice};
+use crate::stages::{EFFECTS, Entry, HEADROOM, Need, Place, resampler};
+
+/// What will run, what will not, and why.
+#[derive(Debug, Serialize)]
+pub struct Plan {
+    /// The stages, in the order in which samples come through them.
+    pub stages: Vec<PlannedStage>,
+    /// What is not built.
+    pub left_out: Vec<LeftOut>,
+    /// What plays each surface that is touched.
+    pub representation: Vec<Chosen>,
+    /// The sum of the stages' costs.
+    pub ns_per_sample_total: f64,
+    /// Nothing changes while the scene plays: nothing is looked at between blocks.
+    pub constant: bool,
+    /// Rate of the device, hertz.
+    pub rate_hz: f64,
+    /// Frames between two looks at the finger.
+    pub block_frames: usize,
+    /// Length, frames; none: without end.
+    pub frames: Option<u64>,
+    /// Where the costs come from.
+    pub costs: String,
+    /// What is worth knowing.
+    pub notes: Vec<String>,
+    #[serde(skip)]
+    pub(crate) call: Call,
+    #[serde(skip)]
+    pub(crate) parts: Vec<PlannedPart>,
+    #[serde(skip)]
+    pub(crate) mixes: Vec<Mix>,
+    #[serde(skip)]
+    pub(crate) device: Vec<(&'static Entry, bool)>,
+}
+
+/// A stage that runs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PlannedStage {
+    /// The stage.
+    pub name: &'static str,
+    /// The surface it is for; none: for all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub surface: Option<usize>,
+    /// Why it is in.
+    pub reason: String,
+    /// Rate of the samples it gives, hertz.
+    pub rate_hz: f64,
+    /// Its time, nanoseconds a sample of the device, averaged over the scene.
+    pub ns_per_sample: f64,
+}
+
+/// An effect that is not built.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LeftOut {
+    /// The effect.
+    pub name: &'static str,
+    /// The surface it would be for; none: for all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub surface: Option<usize>,
+    /// Why it is out.
+    pub reason: String,
+}
+
+/// What plays a surface.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Chosen {
+    /// Index of the surface.
+    pub surface: usize,
+    /// Id of the model.
+    pub model: String,
+    /// Why it.
+    pub why: String,
+}
+
+/// A surface with the effects that are its own; true: neutral.
+#[derive(Debug)]
+pub(crate) struct PlannedPart {
+    pub(crate) part: Part,
+    pub(crate) effects: BTreeMap<Effect, bool>,
+}
+
+/// Parts that are mixed at one rate, and what comes behind.
+#[derive(Debug)]
+pub(crate) struct Mix {
+    /// Indices of the parts.
+    pub(crate) parts: Vec<usize>,
+    pub(crate) entries: Vec<(&'static Entry, bool)>,
+}
+
+/// Plans a scene for a device.
+///
+/// # Errors
+/// See [`SceneError`].
+pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result<Plan, SceneError> {
+    let mut call = Call::gather(scene, device)?;
+    let choices = {
+        let cost = |parts: &[Part]| {
+            let mut draft = Draft::new(scene, &call, costs);
+            draft.all(parts).map_or(f64::INFINITY, |()| draft.total())
+        };
+        representation::choose(scene, &call, &cost)?
+    };
+    call.level_n = choices.iter().map(|c| c.part.level_n).fold(0.0, f64::max);
+    let parts: Vec<Part> = choices.iter().map(|c| c.part.clone()).collect();
+    let mut draft = Draft::new(scene, &call, costs);
+    draft.all(&parts)?;
+    let Draft {
+        stages,
+        left_out,
+        parts,
+        mixes,
+        device,
+        ..
+    } = draft;
+    let constant = is_constant(&call, &parts);
+    Ok(Plan {
+        ns_per_sample_total: stages.iter().map(|s| s.ns_per_sample).sum(),
+        stages,
+        left_out,
+        representation: choices.iter().map(chosen).collect(),
+        constant,
+        rate_hz: call.rate_hz,
+        block_frames: call.control,
+        frames: call.frames,
+        costs: costs.machine.clone(),
+        notes: notes(&call, constant),
+        call,
+        parts,
+        mixes,
+        device,
+    })
+}
+
+fn chosen(choice: &Choice) -> Chosen {
+    Chosen {
+        surface: choice.part.surface,
+        model: choice.part.model.clone(),
+        why: choice.why.clone(),
+    }
+}
+
+/// Whether the finger does the same from the first sample to the last.
+fn is_constant(call: &Call, parts: &[PlannedPart]) -> bool {
+    let steady = |p: &PlannedPart| {
+        p.part.always_touched && p.part.speed_mm_s.is_point() && p.part.force_n.is_point()
+    };
+    !call.live && !call.breaks_contact && !call.turns_round && parts.iter().all(steady)
+}
+
+fn notes(call: &Call, constant: bool) -> Vec<String> {
+    let mut notes = Vec::new();
+    if constant {
+        notes.push("nothing changes over the scene: the constant path is taken".to_owned());
+    }
+    match call.device.quantity {
+        Quantity::DisplayVoltage => notes.push(format!(
+            "the drive's shift is {HEADROOM} times the RMS, since a stream's minimum is not known: \
+             against a shift by the minimum of ten seconds of noise (about 4 times the RMS) the texture \
+             is {:.1} dB weaker at the same largest voltage",
+            20.0 * (HEADROOM / 4.0).log10()
+        )),
+        Quantity::Sound => notes.push(format!(
+            "a preview by ear: the level is set to {} dB of full scale whatever the texture's is{}",
+            call.level_dbfs,
+            match call.pitch == 1.0 {
+                true => String::new(),
+                false => format!(", and frequencies are multiplied by {}", call.pitch),
+            }
+        )),
+        Quantity::LateralForce => {}
+    }
+    notes
+}
+
+/// A plan in the making.
+struct Draft<'a> {
+    scene: &'a LoadedScene,
+    call: &'a Call,
+    costs: &'a Costs,
+    stages: Vec<PlannedStage>,
+    left_out: Vec<LeftOut>,
+    parts: Vec<PlannedPart>,
+    mixes: Vec<Mix>,
+    device: Vec<(&'static Entry, bool)>,
+}
+
+impl<'a> Draft<'a> {
+    fn new(scene: &'a LoadedScene, call: &'a Call, costs: &'a Costs) -> Self {
+        Self {
+            scene,
+            call,
+            costs,
+            stages: Vec::new(),
+            left_out: Vec::new(),
+            parts: Vec::new(),
+            mixes: Vec::new(),
+            device: Vec::new(),
+        }
+    }
+
+    fn total(&self) -> f64 {
+        self.stages.iter().map(|s| s.ns_per_sample).sum()
+    }
+
+    fn all(&mut self, parts: &[Part]) -> Result<(), SceneError> {
+        for part in parts {
+            self.surface(part)?;
+        }
+        self.untouched(parts);
+        for group in groups(parts) {
+            self.mix(parts, group)?;
+        }
+        let call = self.call;
+        for entry in EFFECTS {
+            if let Place::Device { need, .. } = &entry.place {
+                let ns = self.costs.stage(entry.name);
+                if let Some(neutral) = self.decide(entry, None, need(call), call.rate_hz, ns)? {
+                    self.device.push((entry, neutral));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The stages of one surface, at its model's rate.
+    fn surface(&mut self, part: &Part) -> Result<(), SceneError> {
+        let surface = Some(part.surface);
+        let per_frame = part.share * part.rate_hz * part.fixed_ratio / self.call.rate_hz;
+        let model_ns = self.costs.model(&part.model) * per_frame;
+        self.push("synthesis", surface, always(part), part.rate_hz, model_ns);
+        let mut effects = BTreeMap::new();
+        for entry in EFFECTS {
+            let Place::Surface { need, .. } = &entry.place else {
+                continue;
+            };
+            let ns = match entry.effect {
+                Effect::Interpolation => {
+                    self.costs.retune(&part.model) * part.share / self.call.control as f64
+                }
+                _ => self.costs.stage(entry.name) * per_frame * part.oversampling,
+            };
+            let need = need(self.call, part);
+            let decided = self.decide(entry, surface, need, part.mix_rate_hz, ns)?;
+            effects.extend(decided.map(|neutral| (entry.effect, neutral)));
+            if entry.effect == Effect::SpeedScaling {
+                let level_ns = self.costs.stage("level") * per_frame * part.oversampling;
+                let reason = "the model's samples are of unit RMS; the asset has its level";
+                self.push("level", surface, reason.into(), part.mix_rate_hz, level_ns);
+            }
+        }
+        self.parts.push(PlannedPart {
+            part: part.clone(),
+            effects,
+        });
+        Ok(())
+    }
+
+    /// Surfaces that nobody touches are not built.
+    fn untouched(&mut self, parts: &[Part]) {
+        let touched = |i: &usize| parts.iter().any(|p| p.surface == *i);
+        let all = 0..self.call.touches.len();
+        let out = all.filter(|i| self.call.touches[*i].share == 0.0 && !touched(i));
+        self.left_out.extend(out.map(|surface| LeftOut {
+            name: "synthesis",
+            surface: Some(surface),
+            reason: "the finger never slides over this surface".to_owned(),
+        }));
+    }
+
+    /// The stages behind the surfaces of one rate.
+    fn mix(&mut self, parts: &[Part], group: Vec<usize>) -> Result<(), SceneError> {
+        let first = &parts[group[0]];
+        let surface = (group.len() == 1 && parts.len() > 1).then_some(first.surface);
+        let mut entries = Vec::new();
+        for entry in EFFECTS {
+            let Place::Mix { need, .. } = &entry.place else {
+                continue;
+            };
+            let (rate_hz, ns) = self.mix_cost(entry, first);
+            if let Some(neutral) =
+                self.decide(entry, surface, need(self.call, first), rate_hz, ns)?
+            {
+                entries.push((entry, neutral));
+            }
+        }
+        self.mixes.push(Mix {
+            parts: group,
+            entries,
+        });
+        Ok(())
+    }
+
+    /// Rate of what a mix's stage gives, and its cost a frame of the device.
+    fn mix_cost(&self, entry: &Entry, part: &Part) -> (f64, f64) {
+        let own = self.costs.stage(entry.name);
+        match entry.effect {
+            Effect::Resampling => {
+                let macs = resampler(self.call, part).map_or(0.0, |r| r.macs_per_output());
+                (self.call.rate_hz, own + macs * self.costs.mac_ns)
+            }
+            _ => {
+                let taps = crate::stages::compensation_taps(part) as f64;
+                let per_frame = part.mix_rate_hz * part.fixed_ratio / self.call.rate_hz;
+                (
+                    part.mix_rate_hz,
+                    (own + taps * self.costs.mac_ns) * per_frame,
+                )
+            }
+        }
+    }
+
+    /// Takes an effect in (and answers whether it is neutral) or leaves it out.
+    fn decide(
+        &mut self,
+        entry: &'static Entry,
+        surface: Option<usize>,
+        need: Need,
+        rate_hz: f64,
+        ns: f64,
+    ) -> Result<Option<bool>, SceneError> {
+        let switch = self.scene.scene.effects.get(&entry.effect);
+        match (switch.copied().unwrap_or_default(), need) {
+            (Switch::Off, Need::In(reason)) if self.is_needed(entry) => Err(SceneError::Needed {
+                effect: entry.name.to_owned(),
+                reason,
+            }),
+            (Switch::Off, Need::In(reason)) => {
+                let reason = format!("the scene switches it off, though {reason}");
+                self.leave_out(entry, surface, reason);
+                Ok(None)
+            }
+            (Switch::Auto | Switch::Off, Need::Out(reason)) => {
+                self.leave_out(entry, surface, reason);
+                Ok(None)
+            }
+            (_, Need::In(reason)) => {
+                self.push(entry.name, surface, reason, rate_hz, ns);
+                Ok(Some(false))
+            }
+            (Switch::On, Need::Out(reason)) => {
+                let reason = format!("the scene switches it on; neutral, since {reason}");
+                self.push(entry.name, surface, reason, rate_hz, ns);
+                Ok(Some(true))
+            }
+        }
+    }
+
+    /// Without these, what reaches the device is not what it takes.
+    fn is_needed(&self, entry: &Entry) -> bool {
+        match entry.effect {
+            Effect::Resampling => true,
+            Effect::Gain | Effect::SquareRoot => {
+                self.call.device.quantity != Quantity::LateralForce
+            }
+            _ => false,
+        }
+    }
+
+    fn push(
+        &mut self,
+        name: &'static str,
+        surface: Option<usize>,
+        reason: String,
+        rate_hz: f64,
+        ns_per_sample: f64,
+    ) {
+        self.stages.push(PlannedStage {
+            name,
+            surface,
+            reason,
+            rate_hz,
+            ns_per_sample,
+        });
+    }
+
+    fn leave_out(&mut self, entry: &Entry, surface: Option<usize>, reason: String) {
+        self.left_out.push(LeftOut {
+            name: entry.name,
+            surface,
+            reason,
+        });
+    }
+}
+
+fn always(part: &Part) -> String {
+    match part.share < 1.0 {
+        true => format!("touched {:.0} % of the time", 100.0 * part.share),
+        false => "the texture itself".to_owned(),
+    }
+}
+
+/// Indices of parts that one converter can serve.
+fn groups(parts: &[Part]) -> Vec<Vec<usize>> {
+    let key = |p: &Part| [p.mix_rate_hz, p.fixed_ratio, p.top_hz];
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for (i, part) in parts.iter().enumerate() {
+        match groups.iter_mut().find(|g| key(&parts[g[0]]) == key(part)) {
+            Some(group) => group.push(i),
+            None => groups.push(vec![i]),
+        }
+    }
+    groups
+}

@@ -1,0 +1,445 @@
+//! The chain of a plan, running.
+
+use crate::SceneError;
+use crate::call::{Call, topmost};
+use crate::file::{Effect, Surface};
+use crate::load::LoadedScene;
+use crate::motion::{Course, Finger};
+use crate::plan::{Mix, Plan, PlannedPart};
+use crate::stages::{
+    Chain, Crossfade, EFFECTS, Level, Now, Place, Slot, Stage, StageRun, Synthesis, Told,
+};
+
+/// Samples that surfaces are mixed in at a time.
+const PIECE: usize = 256;
+
+/// Plays a scene. [`Renderer::render`] runs where sound is made: it does not allocate, lock or wait.
+pub struct Renderer {
+    surfaces: Vec<Surface>,
+    course: Course,
+    call: Timing,
+    mixes: Vec<MixChain>,
+    device: Chain,
+    sum: Vec<f32>,
+    live: Finger,
+    frame: u64,
+    /// Frames until the finger is looked at again.
+    left: usize,
+    /// The finger is looked at.
+    follows: bool,
+    timed: bool,
+    peak: f32,
+}
+
+/// What of the call the renderer needs.
+struct Timing {
+    rate_hz: f64,
+    control: usize,
+    frames: Option<u64>,
+    ramp: u64,
+}
+
+/// Surfaces of one rate, and what comes behind their sum.
+struct MixChain {
+    lanes: Vec<Lane>,
+    chain: Chain,
+    piece: Vec<f32>,
+}
+
+/// One surface.
+struct Lane {
+    surface: usize,
+    asset: std::path::PathBuf,
+    synthesis: Synthesis,
+    synthesis_run: Count,
+    /// True: neutral.
+    interpolation: Option<(Count, bool)>,
+    chain: Chain,
+    crossfade: Option<(Crossfade, Count)>,
+    /// It is touched, or still fading.
+    sounds: bool,
+}
+
+/// How often a stage without samples of its own ran, and its time.
+#[derive(Default)]
+struct Count {
+    blocks: u64,
+    ns: u64,
+}
+
+impl Renderer {
+    /// Builds what the plan has, and nothing else.
+    ///
+    /// # Errors
+    /// When a model refuses to make a voice.
+    pub fn new(scene: &LoadedScene, plan: &Plan) -> Result<Self, SceneError> {
+        let call = &plan.call;
+        let mixes = plan
+            .mixes
+            .iter()
+            .map(|mix| MixChain::new(scene, call, &plan.parts, mix))
+            .collect::<Result<_, _>>()?;
+        let mut device = Chain::default();
+        for (entry, neutral) in &plan.device {
+            if let Place::Device { build, .. } = &entry.place {
+                let stage = build(call, *neutral);
+                device.slots.push(Slot::new(entry.name, None, stage));
+            }
+        }
+        let ends = plan
+            .device
+            .iter()
+            .any(|(entry, _)| entry.effect == Effect::Contact);
+        Ok(Self {
+            surfaces: scene.scene.surfaces.clone(),
+            course: Course::of(scene),
+            call: Timing {
+                rate_hz: call.rate_hz,
+                control: call.control,
+                frames: call.frames,
+                ramp: call.ramp_frames(),
+            },
+            mixes,
+            device,
+            sum: vec![0.0; PIECE],
+            live: Finger::AWAY,
+            frame: 0,
+            left: 0,
+            follows: !plan.constant || ends,
+            timed: false,
+            peak: 0.0,
+        })
+    }
+
+    /// Measures the time each stage takes; it costs some.
+    #[must_use]
+    pub fn timed(mut self) -> Self {
+        self.timed = true;
+        self
+    }
+
+    /// Rate of the samples, hertz.
+    pub fn rate_hz(&self) -> f64 {
+        self.call.rate_hz
+    }
+
+    /// Moves the finger of a live scene.
+    ///
+    /// # Errors
+    /// When a number is not finite, or the force negative.
+    pub fn set_motion(&mut self, finger: Finger) -> Result<(), SceneError> {
+        let place = finger.at_mm.unwrap_or_default();
+        let finite = finger.speed_mm_s.is_finite() && place.iter().all(|x| x.is_finite());
+        if !finite || !finger.force_n.is_finite() || finger.force_n < 0.0 {
+            return Err(SceneError::Motion {
+                speed_mm_s: finger.speed_mm_s,
+                force_n: finger.force_n,
+            });
+        }
+        self.live = finger;
+        Ok(())
+    }
+
+    /// Ends the scene as soon as it can go to silence.
+    pub fn stop(&mut self) {
+        let end = self.frame + self.call.ramp + self.call.control as u64;
+        self.call.frames = Some(self.call.frames.map_or(end, |frames| frames.min(end)));
+    }
+
+    /// Frames until the end; none: without end.
+    pub fn frames_left(&self) -> Option<u64> {
+        self.call
+            .frames
+            .map(|frames| frames.saturating_sub(self.frame))
+    }
+
+    /// Fills `out` with the next samples, in the unit of the device; answers how many there are: fewer
+    /// at the end of the scene. Gives the same samples for all sizes of `out`. A surface whose model
+    /// fails is silent, and the others play on; [`Self::take_failure`] tells.
+    pub fn render(&mut self, out: &mut [f32]) -> usize {
+        let mut done = 0;
+        while done < out.len() {
+            if self.left == 0 {
+                self.look();
+            }
+            let wanted = (out.len() - done).min(self.left).min(PIECE);
+            let left = self.frames_left().unwrap_or(u64::MAX);
+            let frames = (wanted as u64).min(left) as usize;
+            if frames == 0 {
+                break;
+            }
+            self.piece(&mut out[done..done + frames]);
+            self.left -= frames;
+            self.frame += frames as u64;
+            done += frames;
+        }
+        out[done..].fill(0.0);
+        done
+    }
+
+    fn piece(&mut self, out: &mut [f32]) {
+        let Self {
+            mixes,
+            device,
+            sum,
+            timed,
+            ..
+        } = self;
+        device.render(*timed, out, &mut |block| mix(mixes, sum, *timed, block));
+        let peak = out.iter().fold(self.peak, |peak, x| peak.max(x.abs()));
+        self.peak = peak;
+    }
+
+    /// Looks at the finger, and tells the stages.
+    fn look(&mut self) {
+        self.left = self.call.control;
+        if !self.follows {
+            return;
+        }
+        let finger = match self.course {
+            Course::Live => self.live,
+            ref course => course.at(self.frame as f64 / self.call.rate_hz),
+        };
+        let now = Now {
+            finger,
+            level_n: 0.0,
+            ends_in: self.frames_left(),
+        };
+        let touched = topmost(&self.surfaces, &finger);
+        for mix in &mut self.mixes {
+            mix.chain.follow(&now);
+            for lane in &mut mix.lanes {
+                lane.follow(&now, touched == Some(lane.surface), self.timed);
+            }
+        }
+        self.device.follow(&now);
+    }
+
+    /// What each stage did so far, in the order of the plan.
+    pub fn stages_run(&self) -> Vec<StageRun> {
+        let frames = self.timed.then_some(self.frame);
+        let mut lanes: Vec<&Lane> = self.mixes.iter().flat_map(|mix| &mix.lanes).collect();
+        lanes.sort_by_key(|lane| lane.surface);
+        let lanes = lanes.into_iter().flat_map(|lane| lane.runs(frames));
+        let mixes = self.mixes.iter().flat_map(|mix| &mix.chain.slots);
+        let behind = mixes.chain(&self.device.slots).map(|slot| slot.run(frames));
+        lanes.chain(behind).collect()
+    }
+
+    /// Largest magnitude so far, in the unit of the device.
+    pub fn peak(&self) -> f64 {
+        f64::from(self.peak)
+    }
+
+    /// Samples that were held at the device's limit.
+    pub fn limited_samples(&self) -> u64 {
+        self.told().limited
+    }
+
+    /// Samples whose radicand was held at zero.
+    pub fn rooted_samples(&self) -> u64 {
+        self.told().rooted
+    }
+
+    fn told(&self) -> Told {
+        let mut told = Told::default();
+        self.device
+            .slots
+            .iter()
+            .for_each(|slot| slot.tell(&mut told));
+        told
+    }
+
+    /// The first failure of a model since this was last asked.
+    pub fn take_failure(&mut self) -> Option<SceneError> {
+        let mut lanes = self.mixes.iter_mut().flat_map(|mix| &mut mix.lanes);
+        lanes.find_map(|lane| {
+            let source = lane.synthesis.take_failure()?;
+            Some(SceneError::Surface {
+                surface: lane.surface,
+                asset: lane.asset.clone(),
+                source,
+            })
+        })
+    }
+}
+
+/// The sum of all mixes, at the device's rate.
+fn mix(mixes: &mut [MixChain], sum: &mut [f32], timed: bool, out: &mut [f32]) {
+    match mixes.split_first_mut() {
+        None => out.fill(0.0),
+        Some((first, others)) => {
+            first.render(timed, out);
+            for other in others {
+                for piece in out.chunks_mut(PIECE) {
+                    let more = &mut sum[..piece.len()];
+                    other.render(timed, more);
+                    piece.iter_mut().zip(more).for_each(|(x, more)| *x += *more);
+                }
+            }
+        }
+    }
+}
+
+impl MixChain {
+    fn new(
+        scene: &LoadedScene,
+        call: &Call,
+        parts: &[PlannedPart],
+        mix: &Mix,
+    ) -> Result<Self, SceneError> {
+        let lanes = mix.parts.iter().map(|&i| Lane::new(scene, call, &parts[i]));
+        let mut chain = Chain::default();
+        let first = &parts[mix.parts[0]].part;
+        let surface = (mix.parts.len() == 1 && parts.len() > 1).then_some(first.surface);
+        for (entry, neutral) in &mix.entries {
+            if let Place::Mix { build, .. } = &entry.place {
+                let stage = build(call, first, *neutral);
+                chain.slots.push(Slot::new(entry.name, surface, stage));
+            }
+        }
+        Ok(Self {
+            lanes: lanes.collect::<Result<_, _>>()?,
+            chain,
+            piece: vec![0.0; PIECE],
+        })
+    }
+
+    fn render(&mut self, timed: bool, out: &mut [f32]) {
+        let (lanes, piece) = (&mut self.lanes, &mut self.piece);
+        self.chain.render(timed, out, &mut |block| {
+            for block in block.chunks_mut(PIECE) {
+                sum_of(lanes, piece, timed, block);
+            }
+        });
+    }
+}
+
+/// The sum of the lanes that are to be felt.
+fn sum_of(lanes: &mut [Lane], piece: &mut [f32], timed: bool, out: &mut [f32]) {
+    let mut first = true;
+    for lane in lanes.iter_mut().filter(|lane| lane.sounds) {
+        if first {
+            lane.render(timed, out);
+            first = false;
+            continue;
+        }
+        let more = &mut piece[..out.len()];
+        lane.render(timed, more);
+        out.iter_mut().zip(more).for_each(|(x, more)| *x += *more);
+    }
+    if first {
+        out.fill(0.0);
+    }
+}
+
+impl Lane {
+    fn new(scene: &LoadedScene, call: &Call, planned: &PlannedPart) -> Result<Self, SceneError> {
+        let part = &planned.part;
+        let asset = &scene.scene.surfaces[part.surface].asset;
+        let source = part.source(scene, call);
+        let source = source.map_err(|source| SceneError::Surface {
+            surface: part.surface,
+            asset: asset.clone(),
+            source,
+        })?;
+        let synthesis = Synthesis::new(source);
+        let mut chain = Chain::default();
+        for entry in EFFECTS {
+            let Some(&neutral) = planned.effects.get(&entry.effect) else {
+                continue;
+            };
+            if let Place::Surface {
+                build: Some(build), ..
+            } = &entry.place
+            {
+                let stage = build(call, part, neutral);
+                chain
+                    .slots
+                    .push(Slot::new(entry.name, Some(part.surface), stage));
+            }
+        }
+        // The level comes behind what changes the rate, and before what changes the level.
+        let scaled = planned.effects.contains_key(&Effect::SpeedScaling);
+        let level = Level::new(part, synthesis.level_n());
+        let level = Slot::new("level", Some(part.surface), Box::new(level));
+        chain.slots.insert(usize::from(scaled), level);
+        let crossfade = planned.effects.get(&Effect::Crossfade).map(|neutral| {
+            let fade = Crossfade::new(part.mix_rate_hz, *neutral);
+            (fade, Count::default())
+        });
+        Ok(Self {
+            surface: part.surface,
+            asset: asset.clone(),
+            synthesis,
+            synthesis_run: Count::default(),
+            interpolation: planned
+                .effects
+                .get(&Effect::Interpolation)
+                .map(|neutral| (Count::default(), *neutral)),
+            chain,
+            crossfade,
+            sounds: true,
+        })
+    }
+
+    fn follow(&mut self, now: &Now, touched: bool, timed: bool) {
+        if let Some((crossfade, _)) = &mut self.crossfade {
+            crossfade.set(touched);
+            // Decided here alone: the samples do not depend on the sizes of blocks.
+            self.sounds = touched || !crossfade.is_silent();
+        }
+        if let (Some((count, neutral)), true) = (&mut self.interpolation, touched) {
+            let (speed, force) = (now.finger.speed_mm_s.abs(), now.finger.force_n);
+            let moves = !*neutral && now.finger.slides();
+            count.run(timed, || {
+                if moves {
+                    self.synthesis.set_motion(speed, force);
+                }
+            });
+        }
+        self.chain.follow(&Now {
+            level_n: self.synthesis.level_n(),
+            ..*now
+        });
+    }
+
+    fn render(&mut self, timed: bool, out: &mut [f32]) {
+        let (synthesis, count) = (&mut self.synthesis, &mut self.synthesis_run);
+        self.chain.render(timed, out, &mut |block| {
+            count.run(timed, || synthesis.render(block, &mut |_| {}));
+        });
+        if let Some((fade, count)) = &mut self.crossfade {
+            count.run(timed, || fade.apply(out));
+        }
+    }
+
+    fn runs(&self, frames: Option<u64>) -> Vec<StageRun> {
+        let run = |name, count: &Count| StageRun {
+            name,
+            surface: Some(self.surface),
+            blocks: count.blocks,
+            ns_per_sample: frames.map(|frames| count.ns as f64 / frames.max(1) as f64),
+        };
+        let synthesis = run("synthesis", &self.synthesis_run);
+        let interpolation = self.interpolation.as_ref();
+        let crossfade = self.crossfade.as_ref();
+        std::iter::once(synthesis)
+            .chain(interpolation.map(|(count, _)| run("interpolation", count)))
+            .chain(self.chain.slots.iter().map(|slot| slot.run(frames)))
+            .chain(crossfade.map(|(_, count)| run("crossfade", count)))
+            .collect()
+    }
+}
+
+impl Count {
+    fn run(&mut self, timed: bool, what: impl FnOnce()) {
+        self.blocks += 1;
+        if !timed {
+            return what();
+        }
+        let start = std::time::Instant::now();
+        what();
+        self.ns += start.elapsed().as_nanos() as u64;
+    }
+}

@@ -1,0 +1,179 @@
+//! Which representation plays each surface.
+
+use crate::SceneError;
+use crate::call::{Call, Part};
+use crate::file::Budget;
+use crate::load::LoadedScene;
+
+/// A representation, and why it was chosen.
+#[derive(Debug, Clone)]
+pub(crate) struct Choice {
+    pub(crate) part: Part,
+    pub(crate) why: String,
+}
+
+/// The representations that may play a surface.
+struct Candidates {
+    surface: usize,
+    parts: Vec<Part>,
+    /// The scene names the model.
+    named: bool,
+}
+
+/// Chooses for each surface that is touched. `cost` is what a choice of parts takes, nanoseconds a
+/// sample.
+pub(crate) fn choose(
+    scene: &LoadedScene,
+    call: &Call,
+    cost: &dyn Fn(&[Part]) -> f64,
+) -> Result<Vec<Choice>, SceneError> {
+    let touched = (0..scene.assets.len()).filter(|&i| call.touches[i].share > 0.0);
+    let all: Vec<Candidates> = touched
+        .map(|surface| candidates(scene, call, surface))
+        .collect::<Result<_, _>>()?;
+    let budget = scene.scene.budget;
+    let parts = within(&all, &budget, cost)?;
+    let why = |(part, from): (Part, &Candidates)| Choice {
+        why: reason(&part, from, &budget),
+        part,
+    };
+    Ok(parts.into_iter().zip(&all).map(why).collect())
+}
+
+fn candidates(scene: &LoadedScene, call: &Call, surface: usize) -> Result<Candidates, SceneError> {
+    let (asset, wanted) = (
+        &scene.assets[surface],
+        &scene.scene.surfaces[surface].representation,
+    );
+    let failed = |source| SceneError::Surface {
+        surface,
+        asset: scene.scene.surfaces[surface].asset.clone(),
+        source,
+    };
+    let models = asset
+        .manifest()
+        .representations
+        .iter()
+        .map(|r| &r.model[..]);
+    if wanted != "auto" {
+        let id = asset.representation_id(Some(wanted)).map_err(failed)?;
+        return Ok(Candidates {
+            surface,
+            parts: vec![Part::new(scene, call, surface, id)?],
+            named: true,
+        });
+    }
+    let known = models
+        .clone()
+        .filter(|id| asset.registry().find(id).is_ok());
+    let mut parts = known
+        .map(|id| Part::new(scene, call, surface, id))
+        .collect::<Result<Vec<_>, _>>()?;
+    if parts.is_empty() {
+        return Err(SceneError::NoModel {
+            surface,
+            there: models.collect::<Vec<_>>().join(", "),
+        });
+    }
+    parts.sort_by(|a, b| a.band_error_db.total_cmp(&b.band_error_db));
+    Ok(Candidates {
+        surface,
+        parts,
+        named: false,
+    })
+}
+
+/// One part a surface, within the budget.
+fn within(
+    all: &[Candidates],
+    budget: &Budget,
+    cost: &dyn Fn(&[Part]) -> f64,
+) -> Result<Vec<Part>, SceneError> {
+    if let Some(error_db) = budget.max_band_error_db {
+        check_error(all, error_db)?;
+    }
+    match (budget.max_band_error_db, budget.ns_per_sample) {
+        (None, None) => Ok(all.iter().map(|c| c.parts[0].clone()).collect()),
+        (Some(error_db), None) => Ok(quickest(all, error_db, cost)),
+        (error_db, Some(ns)) => nearest_within(all, error_db, ns, cost),
+    }
+}
+
+/// The least error bound whose quickest parts are quick enough.
+fn nearest_within(
+    all: &[Candidates],
+    error_db: Option<f64>,
+    ns: f64,
+    cost: &dyn Fn(&[Part]) -> f64,
+) -> Result<Vec<Part>, SceneError> {
+    let mut bounds: Vec<f64> = all
+        .iter()
+        .flat_map(|c| c.parts.iter().map(|p| p.band_error_db))
+        .filter(|bound| error_db.is_none_or(|most| *bound <= most))
+        .collect();
+    bounds.sort_by(f64::total_cmp);
+    // Below this, a surface has no representation at all.
+    let least = all.iter().filter(|c| !c.named);
+    let least = least.map(|c| c.parts[0].band_error_db).fold(0.0, f64::max);
+    let mut quickest_ns = f64::INFINITY;
+    for bound in bounds.into_iter().filter(|bound| *bound >= least) {
+        let parts = quickest(all, bound, cost);
+        let takes = cost(&parts);
+        if takes <= ns {
+            return Ok(parts);
+        }
+        quickest_ns = quickest_ns.min(takes);
+    }
+    if all.is_empty() {
+        return Ok(Vec::new());
+    }
+    Err(match error_db {
+        None => SceneError::TooSlow {
+            wanted_ns: ns,
+            quickest_ns,
+        },
+        Some(wanted_db) => SceneError::Budgets {
+            wanted_db,
+            wanted_ns: ns,
+            quickest_ns,
+        },
+    })
+}
+
+/// The quickest part of each surface with an error of at most `error_db`.
+fn quickest(all: &[Candidates], error_db: f64, cost: &dyn Fn(&[Part]) -> f64) -> Vec<Part> {
+    let one = |c: &Candidates| {
+        let near = c
+            .parts
+            .iter()
+            .filter(|p| c.named || p.band_error_db <= error_db);
+        let alone = |part: &&Part| cost(std::slice::from_ref(*part));
+        let best = near.min_by(|a, b| alone(a).total_cmp(&alone(b)));
+        best.unwrap_or(&c.parts[0]).clone()
+    };
+    all.iter().map(one).collect()
+}
+
+fn check_error(all: &[Candidates], wanted_db: f64) -> Result<(), SceneError> {
+    let far = |c: &&Candidates| c.parts[0].band_error_db > wanted_db;
+    match all.iter().find(far) {
+        None => Ok(()),
+        Some(c) => Err(SceneError::NotNearEnough {
+            surface: c.surface,
+            wanted_db,
+            model: c.parts[0].model.clone(),
+            nearest_db: c.parts[0].band_error_db,
+        }),
+    }
+}
+
+fn reason(part: &Part, from: &Candidates, budget: &Budget) -> String {
+    let error = format!("nine-band error {:.2} dB", part.band_error_db);
+    let of = from.parts.len();
+    match (from.named, budget.max_band_error_db, budget.ns_per_sample) {
+        (true, _, _) => format!("the scene names it; {error}"),
+        (_, None, None) => format!("the nearest of {of}: {error}"),
+        (_, Some(most), None) => format!("the quickest of {of} within {most} dB: {error}"),
+        (_, _, Some(ns)) => format!("the nearest of {of} within {ns} ns a sample: {error}"),
+    }
+}

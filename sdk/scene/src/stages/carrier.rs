@@ -1,0 +1,70 @@
+//! Amplitude modulation on a carrier, which keeps charge from leaking (7 kHz in the paper).
+
+use super::{Entry, Need, Place, Stage};
+use crate::call::Call;
+use crate::file::Effect;
+
+/// Samples after which the oscillator is set anew from its exact phase.
+const RENEW: u32 = 1024;
+
+pub(crate) const ENTRY: Entry = Entry {
+    effect: Effect::Carrier,
+    name: "carrier",
+    place: Place::Device { need, build },
+};
+
+fn need(call: &Call) -> Need {
+    match call.device.carrier_hz {
+        Some(carrier_hz) => Need::yes(format!("the device wants a carrier of {carrier_hz} Hz")),
+        None => Need::no("the device wants no carrier"),
+    }
+}
+
+fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
+    let carrier_hz = call.device.carrier_hz.filter(|_| !neutral).unwrap_or(0.0);
+    let cycles = carrier_hz / call.rate_hz;
+    // Phase in 64-bit fixed point never drifts.
+    let step = (cycles.fract() * 2f64.powi(64)) as u64;
+    let (sin, cos) = (std::f64::consts::TAU * cycles).sin_cos();
+    Box::new(Carrier {
+        step,
+        turn: [cos, sin],
+        phase: 0,
+        at: [1.0, 0.0],
+        left: RENEW,
+    })
+}
+
+struct Carrier {
+    /// A sample's phase, in 2^-64 cycles.
+    step: u64,
+    /// A sample's rotation: cosine and sine.
+    turn: [f64; 2],
+    phase: u64,
+    at: [f64; 2],
+    left: u32,
+}
+
+impl Carrier {
+    fn advance(&mut self) {
+        let ([c, s], [a, b]) = (self.at, self.turn);
+        self.at = [c * a - s * b, c * b + s * a];
+        self.phase = self.phase.wrapping_add(self.step);
+        self.left -= 1;
+        if self.left == 0 {
+            let angle = std::f64::consts::TAU * (self.phase as f64 / 2f64.powi(64));
+            self.at = [libm::cos(angle), libm::sin(angle)];
+            self.left = RENEW;
+        }
+    }
+}
+
+impl Stage for Carrier {
+    fn render(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
+        source(out);
+        for sample in out {
+            *sample *= self.at[0] as f32;
+            self.advance();
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! Stages one behind the other, counted where they run.
+
+use std::time::Instant;
+
+use serde::Serialize;
+
+use super::{Now, Stage, Told};
+
+/// A stage of a chain, and what it did.
+pub(crate) struct Slot {
+    name: &'static str,
+    surface: Option<usize>,
+    stage: Box<dyn Stage>,
+    blocks: u64,
+    ns: u64,
+}
+
+/// What a stage did.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StageRun {
+    /// The stage.
+    pub name: &'static str,
+    /// The surface it is for; none: for all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub surface: Option<usize>,
+    /// How often it ran.
+    pub blocks: u64,
+    /// Time it took, nanoseconds a sample of the device; none when it was not measured.
+    pub ns_per_sample: Option<f64>,
+}
+
+impl Slot {
+    pub(crate) fn new(name: &'static str, surface: Option<usize>, stage: Box<dyn Stage>) -> Self {
+        Self {
+            name,
+            surface,
+            stage,
+            blocks: 0,
+            ns: 0,
+        }
+    }
+
+    pub(crate) fn follow(&mut self, now: &Now) {
+        self.stage.follow(now);
+    }
+
+    /// Runs the stage; its time is that spent in it and not in its source.
+    pub(crate) fn render(
+        &mut self,
+        timed: bool,
+        out: &mut [f32],
+        source: &mut dyn FnMut(&mut [f32]),
+    ) {
+        self.blocks += 1;
+        if !timed {
+            return self.stage.render(out, source);
+        }
+        let (start, mut before) = (Instant::now(), 0);
+        self.stage.render(out, &mut |block| {
+            let start = Instant::now();
+            source(block);
+            before += start.elapsed().as_nanos() as u64;
+        });
+        self.ns += (start.elapsed().as_nanos() as u64).saturating_sub(before);
+    }
+
+    pub(crate) fn tell(&self, told: &mut Told) {
+        self.stage.tell(told);
+    }
+
+    /// What it did in a rendering of so many frames, if they were timed.
+    pub(crate) fn run(&self, timed_frames: Option<u64>) -> StageRun {
+        StageRun {
+            name: self.name,
+            surface: self.surface,
+            blocks: self.blocks,
+            ns_per_sample: timed_frames.map(|frames| self.ns as f64 / frames.max(1) as f64),
+        }
+    }
+}
+
+/// Stages one behind the other; the last one gives the samples.
+#[derive(Default)]
+pub(crate) struct Chain {
+    pub(crate) slots: Vec<Slot>,
+}
+
+impl Chain {
+    pub(crate) fn follow(&mut self, now: &Now) {
+        self.slots.iter_mut().for_each(|slot| slot.follow(now));
+    }
+
+    pub(crate) fn render(
+        &mut self,
+        timed: bool,
+        out: &mut [f32],
+        source: &mut dyn FnMut(&mut [f32]),
+    ) {
+        run(&mut self.slots, timed, out, source);
+    }
+}
+
+/// Runs the last stage, which pulls from the ones before it.
+fn run(slots: &mut [Slot], timed: bool, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
+    match slots.split_last_mut() {
+        None => source(out),
+        Some((last, before)) => last.render(timed, out, &mut |block| {
+            run(before, timed, block, source);
+        }),
+    }
+}

@@ -1,0 +1,65 @@
+//! Silence without contact or slip, and at both ends of a scene on a device that people touch or hear.
+
+use htex_device::Quantity;
+use htex_dsp::glide::Glide;
+
+use super::{Entry, Need, Now, Place, Stage};
+use crate::call::Call;
+use crate::file::Effect;
+
+/// Length of an onset or offset, seconds.
+pub(crate) const RAMP_S: f64 = 0.020;
+
+pub(crate) const ENTRY: Entry = Entry {
+    effect: Effect::Contact,
+    name: "contact",
+    place: Place::Device { need, build },
+};
+
+fn need(call: &Call) -> Need {
+    if call.live {
+        return Need::yes("a live finger comes and goes");
+    }
+    if call.breaks_contact {
+        return Need::yes("the finger rests or is lifted");
+    }
+    match call.device.quantity {
+        Quantity::DisplayVoltage => Need::yes("a voltage starts at zero and ends at zero"),
+        Quantity::Sound => Need::yes("a sound starts and ends without a click"),
+        Quantity::LateralForce => Need::no("the finger slides all the time"),
+    }
+}
+
+fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
+    let ramp = (RAMP_S * call.rate_hz).ceil() as u32;
+    Box::new(Contact {
+        neutral,
+        ramp,
+        gain: Glide::new(if neutral { 1.0 } else { 0.0 }, ramp),
+    })
+}
+
+struct Contact {
+    neutral: bool,
+    ramp: u32,
+    gain: Glide,
+}
+
+impl Stage for Contact {
+    fn follow(&mut self, now: &Now) {
+        if self.neutral {
+            return;
+        }
+        match now.ends_in {
+            Some(left) if left <= u64::from(self.ramp) => {
+                self.gain.set_within(0.0, left as u32);
+            }
+            _ => self.gain.set(if now.finger.slides() { 1.0 } else { 0.0 }),
+        }
+    }
+
+    fn render(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
+        source(out);
+        self.gain.apply(out);
+    }
+}

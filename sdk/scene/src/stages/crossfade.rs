@@ -1,0 +1,56 @@
+//! From one surface to the next, and off and on: equal power, since textures are not correlated.
+//! A surface that is not touched is not rendered.
+
+use htex_dsp::glide::Glide;
+
+use super::{Entry, Need, Place};
+use crate::call::{Call, Part};
+use crate::file::Effect;
+
+/// Length of a crossfade, seconds: a fingertip of 10 mm at 1 m/s.
+const FADE_S: f64 = 0.010;
+
+pub(crate) const ENTRY: Entry = Entry {
+    effect: Effect::Crossfade,
+    name: "crossfade",
+    place: Place::Surface { need, build: None },
+};
+
+fn need(_: &Call, part: &Part) -> Need {
+    if part.always_touched {
+        return Need::no("the finger never leaves the surface");
+    }
+    Need::yes("the finger comes onto the surface or leaves it")
+}
+
+/// The weight of a surface.
+pub(crate) struct Crossfade {
+    weight: Glide,
+}
+
+impl Crossfade {
+    pub(crate) fn new(rate_hz: f64, touched: bool) -> Self {
+        let weight = if touched { 1.0 } else { 0.0 };
+        Self {
+            weight: Glide::new(weight, (FADE_S * rate_hz).ceil() as u32),
+        }
+    }
+
+    pub(crate) fn set(&mut self, touched: bool) {
+        self.weight.set(if touched { 1.0 } else { 0.0 });
+    }
+
+    /// Whether the surface is neither touched nor fading.
+    pub(crate) fn is_silent(&self) -> bool {
+        self.weight.rests_at(0.0)
+    }
+
+    pub(crate) fn apply(&mut self, block: &mut [f32]) {
+        if self.weight.rests_at(1.0) {
+            return;
+        }
+        for sample in block {
+            *sample *= self.weight.advance().sqrt();
+        }
+    }
+}

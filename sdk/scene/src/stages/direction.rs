@@ -1,0 +1,58 @@
+//! Friction opposes the motion: its sign changes with the stroke.
+
+use htex_device::Quantity;
+use htex_dsp::glide::Glide;
+
+use super::{Entry, Need, Now, Place, Stage};
+use crate::call::Call;
+use crate::file::Effect;
+
+/// Length of a change of sign, seconds.
+const RAMP_S: f64 = 0.010;
+
+pub(crate) const ENTRY: Entry = Entry {
+    effect: Effect::Direction,
+    name: "direction",
+    place: Place::Device { need, build },
+};
+
+fn need(call: &Call) -> Need {
+    match call.device.quantity {
+        Quantity::DisplayVoltage => {
+            Need::no("friction on an electrovibration display opposes the motion by itself")
+        }
+        Quantity::Sound => Need::no("the sign of a sound is not heard"),
+        Quantity::LateralForce if call.live => Need::yes("a live motion may turn round"),
+        Quantity::LateralForce if call.turns_round => Need::yes("the finger turns round"),
+        Quantity::LateralForce => Need::no("the finger never turns round"),
+    }
+}
+
+fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
+    Box::new(Direction {
+        neutral,
+        sign: Glide::new(1.0, (RAMP_S * call.rate_hz).ceil() as u32),
+    })
+}
+
+struct Direction {
+    neutral: bool,
+    sign: Glide,
+}
+
+impl Stage for Direction {
+    fn follow(&mut self, now: &Now) {
+        if !self.neutral && now.finger.slides() {
+            self.sign.set(if now.finger.speed_mm_s < 0.0 {
+                -1.0
+            } else {
+                1.0
+            });
+        }
+    }
+
+    fn render(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
+        source(out);
+        self.sign.apply(out);
+    }
+}

@@ -1,0 +1,59 @@
+//! Noise of triangular density, one step to either side, that makes the error of rounding to an integer
+//! file's steps independent of the signal.
+
+use htex_device::Quantity;
+use rand_core::{Rng, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::{Entry, Need, Place, Stage};
+use crate::call::Call;
+use crate::file::Effect;
+
+pub(crate) const ENTRY: Entry = Entry {
+    effect: Effect::Dither,
+    name: "dither",
+    place: Place::Device { need, build },
+};
+
+fn need(call: &Call) -> Need {
+    match (call.device.step, call.device.quantity) {
+        (None, _) => Need::no("the device takes floats"),
+        (Some(_), Quantity::DisplayVoltage) => {
+            Need::no("the steps of a converter behind an amplifier are not felt")
+        }
+        (Some(_), _) if call.device.paced => {
+            Need::no("the device is no file that is processed further")
+        }
+        (Some(_), _) => {
+            Need::yes("the samples are rounded to integers and may be processed further")
+        }
+    }
+}
+
+fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
+    let step = call.device.step.filter(|_| !neutral).unwrap_or(0.0);
+    let limit = call.device.limit.filter(|_| !neutral);
+    Box::new(Dither {
+        step: step as f32,
+        limit: limit.map_or(f32::INFINITY, |limit| limit as f32),
+        random: Xoshiro256PlusPlus::seed_from_u64(call.seed ^ 0x6469_7468_6572),
+    })
+}
+
+struct Dither {
+    step: f32,
+    limit: f32,
+    random: Xoshiro256PlusPlus,
+}
+
+impl Stage for Dither {
+    fn render(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
+        source(out);
+        for sample in out {
+            let bits = self.random.next_u64();
+            let uniform = |bits: u64| (bits & 0xff_ffff) as f32 / 16_777_216.0;
+            let noise = uniform(bits) - uniform(bits >> 32);
+            *sample = (*sample + self.step * noise).clamp(-self.limit, self.limit);
+        }
+    }
+}

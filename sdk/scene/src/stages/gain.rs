@@ -1,0 +1,77 @@
+//! From newtons to what the device wants: the level of a preview, or the radicand of a drive.
+
+use htex_device::Quantity;
+
+use super::{Entry, Need, Place, Stage};
+use crate::call::Call;
+use crate::file::Effect;
+
+/// How far a stream is taken to reach, in units of its RMS. Normal noise is beyond it once in
+/// 150,000 samples on either side, ten equal sinusoids never.
+pub(crate) const HEADROOM: f64 = 4.5;
+
+pub(crate) const ENTRY: Entry = Entry {
+    effect: Effect::Gain,
+    name: "gain",
+    place: Place::Device { need, build },
+};
+
+/// What brings a force to an electrovibration drive: V = sqrt(gain · force + shift), from
+/// V = V_g sqrt(y + 1) with y the force over [`HEADROOM`] times its RMS, and V_g = drive / sqrt(2).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Drive {
+    /// V² a newton.
+    pub(crate) gain: f64,
+    /// V².
+    pub(crate) shift: f64,
+}
+
+impl Drive {
+    pub(crate) fn of(call: &Call) -> Self {
+        let half = call.drive_v * call.drive_v / 2.0;
+        let reach_n = HEADROOM * call.level_n;
+        Self {
+            gain: if reach_n > 0.0 { half / reach_n } else { 0.0 },
+            shift: half,
+        }
+    }
+}
+
+fn need(call: &Call) -> Need {
+    match call.device.quantity {
+        Quantity::LateralForce if call.gain_db == 0.0 => {
+            Need::no("the device takes newtons, and no gain is given")
+        }
+        Quantity::LateralForce => Need::yes(format!("a gain of {} dB is given", call.gain_db)),
+        Quantity::Sound => Need::yes(format!(
+            "the level is brought to {} dB of full scale to be heard",
+            call.level_dbfs
+        )),
+        Quantity::DisplayVoltage => Need::yes(format!(
+            "{HEADROOM} times the RMS reaches the drive's largest voltage, {} V",
+            call.drive_v
+        )),
+    }
+}
+
+fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
+    let db = |db: f64| 10f64.powf(db / 20.0);
+    let gain = match call.device.quantity {
+        _ if neutral => 1.0,
+        Quantity::LateralForce => db(call.gain_db),
+        Quantity::Sound if call.level_n > 0.0 => db(call.level_dbfs) / call.level_n,
+        Quantity::Sound => 0.0,
+        Quantity::DisplayVoltage => Drive::of(call).gain,
+    };
+    Box::new(Gain(gain as f32))
+}
+
+struct Gain(f32);
+
+impl Stage for Gain {
+    fn render(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
+        source(out);
+        let gain = self.0;
+        out.iter_mut().for_each(|sample| *sample *= gain);
+    }
+}

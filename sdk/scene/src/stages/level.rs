@@ -1,0 +1,35 @@
+//! From unit RMS to newtons: the asset's level and the surface's gain.
+
+use htex_dsp::glide::Glide;
+
+use super::{Now, Stage};
+use crate::call::Part;
+
+/// Length of a change of level, seconds.
+const RAMP_S: f64 = 0.010;
+
+pub(crate) struct Level {
+    gain: f64,
+    level: Glide,
+}
+
+impl Level {
+    pub(crate) fn new(part: &Part, level_n: f64) -> Self {
+        let ramp = (RAMP_S * part.rate_hz).ceil() as u32;
+        Self {
+            gain: part.gain,
+            level: Glide::new((part.gain * level_n) as f32, ramp),
+        }
+    }
+}
+
+impl Stage for Level {
+    fn follow(&mut self, now: &Now) {
+        self.level.set((self.gain * now.level_n) as f32);
+    }
+
+    fn render(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
+        source(out);
+        self.level.apply(out);
+    }
+}

@@ -1,0 +1,60 @@
+//! Never above the device's limit, whatever comes; samples that are held there are counted.
+
+use super::{Entry, Need, Place, Stage, Told};
+use crate::call::Call;
+use crate::file::Effect;
+
+pub(crate) const ENTRY: Entry = Entry {
+    effect: Effect::Limiter,
+    name: "limiter",
+    place: Place::Device { need, build },
+};
+
+fn need(call: &Call) -> Need {
+    match call.device.limit {
+        Some(limit) => {
+            let unit = call.device.quantity.unit();
+            Need::yes(format!("the device takes at most {limit} {unit}"))
+        }
+        None => Need::no("the device has no limit"),
+    }
+}
+
+fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
+    let limit = call.device.limit.filter(|_| !neutral);
+    Box::new(Limiter {
+        limit: limit.map_or(f32::INFINITY, at_most),
+        held: 0,
+    })
+}
+
+/// The largest 32-bit float that is not above a number.
+fn at_most(limit: f64) -> f32 {
+    let near = limit as f32;
+    if f64::from(near) > limit {
+        near.next_down()
+    } else {
+        near
+    }
+}
+
+struct Limiter {
+    limit: f32,
+    held: u64,
+}
+
+impl Stage for Limiter {
+    fn render(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
+        source(out);
+        let (limit, mut held) = (self.limit, 0);
+        for sample in out {
+            held += u64::from(sample.abs() > limit);
+            *sample = sample.clamp(-limit, limit);
+        }
+        self.held += held;
+    }
+
+    fn tell(&self, told: &mut Told) {
+        told.limited += self.held;
+    }
+}

@@ -1,0 +1,46 @@
+//! Rounding to the steps the device can put out.
+
+use super::{Entry, Need, Place, Stage};
+use crate::call::Call;
+use crate::file::Effect;
+
+pub(crate) const ENTRY: Entry = Entry {
+    effect: Effect::Quantisation,
+    name: "quantisation",
+    place: Place::Device { need, build },
+};
+
+fn need(call: &Call) -> Need {
+    match call.device.step {
+        Some(step) => {
+            let unit = call.device.quantity.unit();
+            Need::yes(format!("the device has steps of {step:.3e} {unit}"))
+        }
+        None => Need::no("the device takes floats"),
+    }
+}
+
+fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
+    let step = call.device.step.filter(|step| !neutral && *step > 0.0);
+    Box::new(Quantisation {
+        step,
+        limit: call.device.limit.unwrap_or(f64::INFINITY),
+    })
+}
+
+struct Quantisation {
+    step: Option<f64>,
+    limit: f64,
+}
+
+impl Stage for Quantisation {
+    fn render(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
+        source(out);
+        let Some(step) = self.step else { return };
+        let most = (self.limit / step).floor();
+        for sample in out {
+            let steps = (f64::from(*sample) / step).round_ties_even();
+            *sample = (steps.clamp(-most, most) * step) as f32;
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! Shift and square root: the friction an electrovibration display adds goes with the square of its
+//! voltage (the paper's V = V_g sqrt(y + |min y|) cos(2 pi f_c t)).
+//!
+//! The minimum of a stream is not known beforehand. The shift is [`HEADROOM`] times the RMS of the
+//! scene's loudest surface instead; what is still below, is held at zero and counted.
+
+use htex_device::Quantity;
+
+use super::{Drive, Entry, HEADROOM, Need, Place, Stage, Told};
+use crate::call::Call;
+use crate::file::Effect;
+
+pub(crate) const ENTRY: Entry = Entry {
+    effect: Effect::SquareRoot,
+    name: "square_root",
+    place: Place::Device { need, build },
+};
+
+fn need(call: &Call) -> Need {
+    match call.device.quantity {
+        Quantity::DisplayVoltage => Need::yes(format!(
+            "friction goes with the square of the voltage; the shift is {HEADROOM} times the RMS"
+        )),
+        _ => Need::no("the device is no electrovibration display"),
+    }
+}
+
+fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
+    match neutral {
+        true => Box::new(Unchanged),
+        false => Box::new(SquareRoot {
+            shift: Drive::of(call).shift as f32,
+            held: 0,
+        }),
+    }
+}
+
+/// A power of 1 and a shift of 0.
+struct Unchanged;
+
+impl Stage for Unchanged {
+    fn render(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
+        source(out);
+    }
+}
+
+struct SquareRoot {
+    shift: f32,
+    held: u64,
+}
+
+impl Stage for SquareRoot {
+    fn render(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
+        source(out);
+        let mut held = 0;
+        for sample in out {
+            let radicand = *sample + self.shift;
+            held += u64::from(radicand < 0.0);
+            *sample = radicand.max(0.0).sqrt();
+        }
+        self.held += held;
+    }
+
+    fn tell(&self, told: &mut Told) {
+        told.rooted += self.held;
+    }
+}

@@ -1,0 +1,49 @@
+//! The samples themselves: a voice of the surface's model, of unit RMS.
+
+use htex::Source;
+
+use super::Stage;
+
+/// A voice at its model's own rate.
+pub(crate) struct Synthesis {
+    source: Source,
+    failed: Option<htex::Error>,
+}
+
+impl Synthesis {
+    pub(crate) fn new(source: Source) -> Self {
+        Self {
+            source,
+            failed: None,
+        }
+    }
+
+    /// The level after gliding to a motion. A model that cannot follow plays on as before, and says
+    /// so.
+    pub(crate) fn set_motion(&mut self, speed_mm_s: f64, force_n: f64) -> f64 {
+        match self.source.set_motion(speed_mm_s, force_n) {
+            Ok(level_n) => level_n,
+            Err(error) => {
+                self.failed.get_or_insert(error);
+                self.source.level_n()
+            }
+        }
+    }
+
+    pub(crate) fn level_n(&self) -> f64 {
+        self.source.level_n()
+    }
+
+    /// The first failure since this was last asked.
+    pub(crate) fn take_failure(&mut self) -> Option<htex::Error> {
+        self.failed.take()
+    }
+}
+
+impl Stage for Synthesis {
+    fn render(&mut self, out: &mut [f32], _source: &mut dyn FnMut(&mut [f32])) {
+        if let Err(error) = self.source.render(out) {
+            self.failed.get_or_insert(error);
+        }
+    }
+}

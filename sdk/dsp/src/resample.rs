@@ -29,44 +29,87 @@ impl Resampler {
     ///
     /// Rates lie in 1 mHz to 10 MHz and differ by at most a factor 10,000; others give `None` too.
     pub fn new(from_hz: f64, to_hz: f64, top_hz: f64) -> Option<Self> {
-        let (from, to) = (millihertz(from_hz)?, millihertz(to_hz)?);
-        if from == to || from / to > 10_000 || to / from > 10_000 {
-            return None;
-        }
-        let nyquist = 0.5 * from_hz.min(to_hz);
-        // Wide transition where the source leaves room between its top and its first image.
-        let pass = top_hz.min(nyquist * (1.0 - TRANSITION));
-        let stop = (from_hz.min(to_hz) - pass).max(nyquist * (1.0 + TRANSITION));
-        let narrow = stop - pass < 0.5 * nyquist;
-        let stages = if narrow && to / from >= 4 {
-            let middle = 2 * from;
-            let image = 2.0 * from_hz - stop;
-            alloc::vec![
-                Stage::new(from, middle, pass, stop),
-                Stage::new(middle, to, pass.max(1e-3), image.max(stop)),
-            ]
-        } else {
-            alloc::vec![Stage::new(from, to, pass, stop)]
-        };
+        let specs = specs(from_hz, to_hz, top_hz)?;
+        let stages = specs.iter().map(Stage::new).collect();
         Some(Self { stages })
     }
 
-    /// Multiplications and additions an output sample takes, on average.
-    pub fn macs_per_output(&self) -> f64 {
-        let mut rate = 1.0;
+    /// Multiplications and additions that an output sample of such a converter takes, on average;
+    /// none when none is needed.
+    pub fn macs_per_output(from_hz: f64, to_hz: f64, top_hz: f64) -> Option<f64> {
         let mut macs = 0.0;
-        for stage in self.stages.iter().rev() {
-            let passes = if stage.exact { 1.0 } else { 2.0 };
-            macs += rate * passes * stage.taps as f64;
-            rate *= stage.down as f64 / stage.up as f64;
+        for spec in &specs(from_hz, to_hz, top_hz)? {
+            let rate = spec.to as f64 / 1000.0 / to_hz;
+            let rows = if spec.is_exact() { 1.0 } else { 2.0 };
+            macs += rate * rows * spec.taps() as f64;
         }
-        macs
+        Some(macs)
     }
 
     /// Fills `out`, pulling source samples through `source`, which must fill the whole slice it is
     /// given. Does not allocate.
     pub fn process(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
         run(&mut self.stages, out, source);
+    }
+}
+
+/// What a stage is to do: rates in millihertz, edges of its transition in hertz.
+struct Spec {
+    from: u64,
+    to: u64,
+    pass_hz: f64,
+    stop_hz: f64,
+}
+
+/// The stages of a converter; none when none is needed.
+fn specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Option<Vec<Spec>> {
+    let (from, to) = (millihertz(from_hz)?, millihertz(to_hz)?);
+    if from == to || from / to > 10_000 || to / from > 10_000 {
+        return None;
+    }
+    let spec = |from, to, pass_hz, stop_hz| Spec {
+        from,
+        to,
+        pass_hz,
+        stop_hz,
+    };
+    let nyquist = 0.5 * from_hz.min(to_hz);
+    // Wide transition where the source leaves room between its top and its first image.
+    let pass = top_hz.min(nyquist * (1.0 - TRANSITION));
+    let stop = (from_hz.min(to_hz) - pass).max(nyquist * (1.0 + TRANSITION));
+    let narrow = stop - pass < 0.5 * nyquist;
+    if !narrow || to / from < 4 {
+        return Some(alloc::vec![spec(from, to, pass, stop)]);
+    }
+    let middle = 2 * from;
+    let image = 2.0 * from_hz - stop;
+    Some(alloc::vec![
+        spec(from, middle, pass, stop),
+        spec(middle, to, pass.max(1e-3), image.max(stop)),
+    ])
+}
+
+impl Spec {
+    fn up(&self) -> u64 {
+        self.to / gcd(self.from, self.to)
+    }
+
+    fn down(&self) -> u64 {
+        self.from / gcd(self.from, self.to)
+    }
+
+    /// Whether each phase has a row of its own.
+    fn is_exact(&self) -> bool {
+        self.up() <= MAX_EXACT_PHASES
+    }
+
+    fn from_hz(&self) -> f64 {
+        self.from as f64 / 1000.0
+    }
+
+    fn taps(&self) -> usize {
+        let width = (self.stop_hz - self.pass_hz).max(1e-6) / self.from_hz();
+        kaiser_length(width).clamp(8, MAX_TAPS).next_multiple_of(8)
     }
 }
 
@@ -100,18 +143,13 @@ struct Stage {
 }
 
 impl Stage {
-    fn new(from: u64, to: u64, pass_hz: f64, stop_hz: f64) -> Self {
-        let divisor = gcd(from, to);
-        let (up, down) = (to / divisor, from / divisor);
-        let from_hz = from as f64 / 1000.0;
-        let width = (stop_hz - pass_hz).max(1e-6) / from_hz;
-        let taps = kaiser_length(width).clamp(8, MAX_TAPS).next_multiple_of(8);
-        let exact = up <= MAX_EXACT_PHASES;
+    fn new(spec: &Spec) -> Self {
+        let (up, taps, exact) = (spec.up(), spec.taps(), spec.is_exact());
         let phases = if exact { up } else { INTERPOLATED_PHASES };
-        let cutoff = 0.5 * (pass_hz + stop_hz) / from_hz;
+        let cutoff = 0.5 * (spec.pass_hz + spec.stop_hz) / spec.from_hz();
         Self {
             up,
-            down,
+            down: spec.down(),
             taps,
             kernel: windowed_sinc(taps, phases, exact, cutoff),
             exact,
@@ -187,6 +225,7 @@ fn kaiser_length(width: f64) -> usize {
 pub(crate) fn windowed_sinc(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Vec<f32> {
     let rows = phases + u64::from(!exact);
     let beta = 0.1102 * (ATTENUATION_DB - 8.7);
+    let window = Kaiser::new(beta);
     let half = taps as f64 / 2.0;
     let mut all = Vec::with_capacity(rows as usize * taps);
     for row in 0..rows {
@@ -195,7 +234,7 @@ pub(crate) fn windowed_sinc(taps: usize, phases: u64, exact: bool, cutoff: f64) 
             .map(|j| {
                 // Input j of the window stands at time j - (taps/2 - 1) relative to the base.
                 let t = j as f64 - (half - 1.0) - shift;
-                sinc(2.0 * cutoff * t) * kaiser(t / half, beta)
+                sinc(2.0 * cutoff * t) * window.at(t / half)
             })
             .collect();
         // Unit gain at DC in every phase, so that a constant stays one.
@@ -211,11 +250,25 @@ fn sinc(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { libm::sin(a) / a }
 }
 
-fn kaiser(x: f64, beta: f64) -> f64 {
-    if x.abs() > 1.0 {
-        return 0.0;
+/// Kaiser's window.
+struct Kaiser {
+    beta: f64,
+    scale: f64,
+}
+
+impl Kaiser {
+    fn new(beta: f64) -> Self {
+        let scale = 1.0 / bessel_i0(beta);
+        Self { beta, scale }
     }
-    bessel_i0(beta * libm::sqrt(1.0 - x * x)) / bessel_i0(beta)
+
+    /// The window at -1 to 1.
+    fn at(&self, x: f64) -> f64 {
+        if x.abs() > 1.0 {
+            return 0.0;
+        }
+        self.scale * bessel_i0(self.beta * libm::sqrt(1.0 - x * x))
+    }
 }
 
 fn bessel_i0(x: f64) -> f64 {

@@ -11,7 +11,7 @@ use htex_host::{Band, FitRequest, HostError, LoadedModel, Registry};
 use crate::call::{Call, Part, Span};
 use crate::cost::Costs;
 use crate::motion::Finger;
-use crate::stages::{EFFECTS, Level, Now, Place, Stage, resampler};
+use crate::stages::{EFFECTS, Level, Now, Place, Stage, resampling_macs};
 
 const BLOCK: usize = 64;
 /// Samples timed at a stretch: short enough to fall between two interruptions now and then.
@@ -110,7 +110,7 @@ fn stages(mac_ns: f64) -> BTreeMap<String, f64> {
                 build: Some(build), ..
             } => note(entry.name, build(&call, &part, false), 0.0),
             Place::Mix { build, .. } => {
-                let macs = resampler(&call, &part).map_or(0.0, |r| r.macs_per_output());
+                let macs = resampling_macs(&call, &part).unwrap_or(0.0);
                 note(entry.name, build(&call, &part, false), macs);
             }
             Place::Device { build, .. } => note(entry.name, build(&call, false), 0.0),

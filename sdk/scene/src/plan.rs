@@ -11,7 +11,7 @@ use crate::cost::Costs;
 use crate::file::{Effect, Switch};
 use crate::load::LoadedScene;
 use crate::representation::{self, Choice};
-use crate::stages::{EFFECTS, Entry, HEADROOM, Need, Place, resampler};
+use crate::stages::{EFFECTS, Entry, HEADROOM, Need, Place, resampling_macs};
 
 /// What will run, what will not, and why.
 #[derive(Debug, Serialize)]
@@ -308,7 +308,7 @@ impl<'a> Draft<'a> {
         let own = self.costs.stage(entry.name);
         match entry.effect {
             Effect::Resampling => {
-                let macs = resampler(self.call, part).map_or(0.0, |r| r.macs_per_output());
+                let macs = resampling_macs(self.call, part).unwrap_or(0.0);
                 (self.call.rate_hz, own + macs * self.costs.mac_ns)
             }
             _ => {

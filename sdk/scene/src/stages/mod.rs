@@ -25,7 +25,7 @@ pub(crate) use contact::RAMP_S as CONTACT_RAMP_S;
 pub(crate) use crossfade::Crossfade;
 pub(crate) use gain::{Drive, HEADROOM};
 pub(crate) use level::Level;
-pub(crate) use resampling::resampler;
+pub(crate) use resampling::macs as resampling_macs;
 pub(crate) use synthesis::Synthesis;
 
 use crate::call::{Call, Part};

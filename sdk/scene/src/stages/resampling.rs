@@ -13,7 +13,7 @@ pub(crate) const ENTRY: Entry = Entry {
 };
 
 fn need(call: &Call, part: &Part) -> Need {
-    match resampler(call, part) {
+    match macs(call, part) {
         Some(_) => Need::yes(format!(
             "the model renders at {:.0} Hz, the device runs at {:.0} Hz",
             part.mix_rate_hz * part.fixed_ratio,
@@ -23,17 +23,25 @@ fn need(call: &Call, part: &Part) -> Need {
     }
 }
 
-/// The converter that a surface needs; a speed that never changes is in its ratio.
-pub(crate) fn resampler(call: &Call, part: &Part) -> Option<Resampler> {
-    Resampler::new(
-        part.mix_rate_hz * part.fixed_ratio,
-        call.rate_hz,
-        part.top_hz * part.fixed_ratio,
-    )
+/// Rates of the converter that a surface needs, and what lies highest; a speed that never changes is
+/// in its ratio.
+fn rates(call: &Call, part: &Part) -> (f64, f64, f64) {
+    let ratio = part.fixed_ratio;
+    (part.mix_rate_hz * ratio, call.rate_hz, part.top_hz * ratio)
+}
+
+/// Multiplications a sample of the device; none when there is nothing to convert.
+pub(crate) fn macs(call: &Call, part: &Part) -> Option<f64> {
+    let (from, to, top) = rates(call, part);
+    Resampler::macs_per_output(from, to, top)
 }
 
 fn build(call: &Call, part: &Part, neutral: bool) -> Box<dyn Stage> {
-    Box::new(Resampling(resampler(call, part).filter(|_| !neutral)))
+    let (from, to, top) = rates(call, part);
+    Box::new(match neutral {
+        true => Resampling(None),
+        false => Resampling(Resampler::new(from, to, top)),
+    })
 }
 
 struct Resampling(Option<Resampler>);

@@ -103,12 +103,12 @@ impl Spec {
         self.up() <= MAX_EXACT_PHASES
     }
 
-    fn from_hz(&self) -> f64 {
+    fn source_hz(&self) -> f64 {
         self.from as f64 / 1000.0
     }
 
     fn taps(&self) -> usize {
-        let width = (self.stop_hz - self.pass_hz).max(1e-6) / self.from_hz();
+        let width = (self.stop_hz - self.pass_hz).max(1e-6) / self.source_hz();
         kaiser_length(width).clamp(8, MAX_TAPS).next_multiple_of(8)
     }
 }
@@ -146,7 +146,7 @@ impl Stage {
     fn new(spec: &Spec) -> Self {
         let (up, taps, exact) = (spec.up(), spec.taps(), spec.is_exact());
         let phases = if exact { up } else { INTERPOLATED_PHASES };
-        let cutoff = 0.5 * (spec.pass_hz + spec.stop_hz) / spec.from_hz();
+        let cutoff = 0.5 * (spec.pass_hz + spec.stop_hz) / spec.source_hz();
         Self {
             up,
             down: spec.down(),

@@ -2,6 +2,7 @@
 //! them.
 
 use std::collections::BTreeMap;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -9,6 +10,7 @@ use clap::Args;
 use htex_device::{
     Adapter, DeviceError, DeviceOrigin, DeviceSearch, Devices, KnownDevice, NativeAdapter, Settings,
 };
+use htex_device_check::Subject;
 
 use crate::failure::Failure;
 use crate::output::warn;
@@ -77,6 +79,26 @@ impl DeviceArgs {
             origin: DeviceOrigin::Library(file.to_owned()),
         })
     }
+
+    /// As [`Self::named`], for a checker, which loads a library itself.
+    pub(crate) fn subject(&self, name: &str) -> Result<Subject, Failure> {
+        if Path::new(name).is_file() {
+            return Ok(Subject::Library(name.into()));
+        }
+        let known = self.devices_quietly()?.find(name)?.clone();
+        Ok(match known.origin {
+            DeviceOrigin::Library(path) => Subject::Library(path),
+            DeviceOrigin::Builtin => Subject::Builtin(known.adapter),
+        })
+    }
+
+    /// These arguments, for another run of this program.
+    pub(crate) fn again(&self) -> Vec<OsString> {
+        let files = self.device_file.iter().map(|path| ("--device-file", path));
+        let dirs = self.device_dir.iter().map(|path| ("--device-dir", path));
+        let pair = |(flag, path): (&str, &PathBuf)| [flag.into(), path.into()];
+        files.chain(dirs).flat_map(pair).collect()
+    }
 }
 
 /// How a device is set.
@@ -107,6 +129,14 @@ impl SettingArgs {
             Ok((name.to_owned(), value.to_owned()))
         };
         self.settings.iter().map(pair).collect()
+    }
+
+    /// These arguments, for another run of this program.
+    pub(crate) fn again(&self) -> Vec<OsString> {
+        let profile = self.profile.iter().map(|name| ("--profile", name));
+        let settings = self.settings.iter().map(|pair| ("--set", pair));
+        let pair = |(flag, value): (&str, &String)| [flag.into(), value.into()];
+        profile.chain(settings).flat_map(pair).collect()
     }
 
     /// All settings of an adapter.

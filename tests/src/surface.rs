@@ -1,8 +1,10 @@
-//! The frozen surface of the model ABI as canonical text: a line for each constant, status and
+//! The frozen surfaces of the two ABIs as canonical text: a line for each constant, status and
 //! function, read from the Rust side and from the C header.
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::path::Path;
+use std::process::Command;
 
 use crate::workspace;
 
@@ -11,61 +13,233 @@ pub type Prototypes = BTreeMap<String, String>;
 /// Constants and statuses by their C name; values as C text without brackets.
 pub type Constants = BTreeMap<String, String>;
 
-/// The header's text without comments.
-pub fn header() -> String {
-    let text = fs::read_to_string(workspace().join("spec/include/htex_model.h")).unwrap();
-    let mut code = String::new();
-    for (i, part) in text.split("/*").enumerate() {
-        let kept = if i == 0 {
-            part
-        } else {
-            part.split_once("*/").unwrap().1
-        };
-        code.push_str(kept);
+/// Where an ABI is stated, and by which names.
+pub struct Surface {
+    /// The header's file name.
+    pub header: &'static str,
+    /// What functions begin with.
+    pub function: &'static str,
+    /// What constants begin with.
+    pub constant: &'static str,
+    /// The macro that marks a function as exported.
+    pub export: &'static str,
+    /// The source with constants, function types and the table.
+    pub code: &'static str,
+    /// The table of functions.
+    pub table: &'static str,
+    /// Functions beside those of the table, and their types.
+    pub more: &'static [(&'static str, &'static str)],
+    /// The source with the statuses, and their type.
+    pub statuses: (&'static str, &'static str),
+}
+
+/// The model ABI.
+pub const MODEL: Surface = Surface {
+    header: "htex_model.h",
+    function: "htex_model_",
+    constant: "HTEX_",
+    export: "HTEX_EXPORT(",
+    code: "sdk/model/src/abi.rs",
+    table: "ModelTable",
+    more: &[("alloc", "AllocFn"), ("free", "FreeFn")],
+    statuses: ("sdk/model/src/error.rs", "Status"),
+};
+
+/// The device ABI.
+pub const DEVICE: Surface = Surface {
+    header: "htex_device.h",
+    function: "htex_device_",
+    constant: "HTEX_DEVICE_",
+    export: "HTEX_DEVICE_EXPORT(",
+    code: "renderer-adapters/device/src/abi.rs",
+    table: "DeviceTable",
+    more: &[],
+    statuses: ("renderer-adapters/device/src/abi.rs", "Code"),
+};
+
+impl Surface {
+    /// The header's text without comments.
+    pub fn header(&self) -> String {
+        let path = workspace().join("spec/include").join(self.header);
+        let text = fs::read_to_string(path).unwrap();
+        let mut code = String::new();
+        for (i, part) in text.split("/*").enumerate() {
+            let kept = if i == 0 {
+                part
+            } else {
+                part.split_once("*/").unwrap().1
+            };
+            code.push_str(kept);
+        }
+        code
     }
-    code
+
+    /// Functions the header declares.
+    pub fn header_prototypes(&self) -> Prototypes {
+        let header = self.header();
+        let mark = format!("{}{}", self.export, self.function);
+        let declarations = header.split(&mark).skip(1);
+        let prototype = |text: &str| {
+            let (name, rest) = text.split_once(')').unwrap();
+            let declared = one_line(rest.split_once(';').unwrap().0);
+            (format!("{}{name}", self.function), declared)
+        };
+        declarations.map(prototype).collect()
+    }
+
+    /// Constants the header defines.
+    pub fn header_constants(&self) -> Constants {
+        let define = |line: &str| {
+            let (name, value) = line.strip_prefix("#define ")?.split_once(' ')?;
+            let constant = name.starts_with(self.constant) && !name.contains('(');
+            let value = value.trim().trim_matches(['(', ')']);
+            constant.then(|| (name.to_owned(), value.to_owned()))
+        };
+        self.header().lines().filter_map(define).collect()
+    }
+
+    /// Functions the Rust side states, in the words of C.
+    pub fn rust_prototypes(&self) -> Prototypes {
+        let code = rust_code(self.code);
+        let mark = format!("pub struct {} {{", self.table);
+        let table = code.split_once(&mark).unwrap().1;
+        let table = table.split_once('}').unwrap().0;
+        let fields = table.split(',').filter_map(|field| {
+            let (name, kind) = field.trim().strip_prefix("pub ")?.split_once(": ")?;
+            Some((name.to_owned(), kind.to_owned()))
+        });
+        let more = self.more.iter();
+        let more = more.map(|(name, kind)| (name.to_string(), kind.to_string()));
+        let prototype = |(name, kind): (String, String)| {
+            let name = format!("{}{name}", self.function);
+            let text = c_prototype(&name, function_type(&code, &kind));
+            (name, text)
+        };
+        fields.chain(more).map(prototype).collect()
+    }
+
+    /// Names of the constants that the Rust side states, as C has them.
+    pub fn rust_constant_names(&self) -> Vec<String> {
+        let constants = rust_code(self.code);
+        let constants = constants.lines().filter_map(|line| {
+            let (name, _) = line.strip_prefix("pub const ")?.split_once(':')?;
+            Some(format!("{}{name}", self.constant))
+        });
+        constants.chain(self.rust_statuses().into_keys()).collect()
+    }
+
+    /// Statuses that the Rust side states, as C has them.
+    pub fn rust_statuses(&self) -> Constants {
+        let (file, name) = self.statuses;
+        let code = rust_code(file);
+        let (_, variants) = code.split_once(&format!("pub enum {name} {{")).unwrap();
+        let variants = variants.split_once('}').unwrap().0;
+        let status = |text: &str| {
+            let (name, value) = text.trim().split_once(" = ")?;
+            let name = format!("{}{}", self.constant, upper_case(name));
+            Some((name, value.to_owned()))
+        };
+        variants.split(',').filter_map(status).collect()
+    }
+
+    /// The surface by these constants: a line for each constant and function, in order of name.
+    pub fn listing(&self, constants: &Constants) -> String {
+        let constants = constants
+            .iter()
+            .map(|(name, value)| format!("{name} {value}\n"));
+        let functions = self.rust_prototypes();
+        let functions = functions.values().map(|text| format!("{text};\n"));
+        constants.chain(functions).collect()
+    }
+
+    /// Holds the listing to those that were frozen, the newest being the one in use: each a version,
+    /// and the hash of `spec/abi/KIND-VERSION.txt`, from which lines never go.
+    pub fn hold_frozen(&self, kind: &str, frozen: &[(&str, u64)], now: &str, thaw: &str) {
+        let (newest, hash) = frozen.last().unwrap();
+        let found = fnv1a(now);
+        assert_eq!(
+            found, *hash,
+            "{thaw}\nHash: {found:#018x}. {newest} is now:\n{now}"
+        );
+        for (version, hash) in frozen {
+            let file = format!("spec/abi/{kind}-{version}.txt");
+            let then = fs::read_to_string(workspace().join(&file)).unwrap();
+            assert_eq!(fnv1a(&then), *hash, "{file} was edited. {thaw}");
+            let versions = format!("{}ABI_M", self.constant);
+            for line in then.lines().filter(|l| !l.starts_with(&versions)) {
+                assert!(
+                    now.lines().any(|l| l == line),
+                    "gone since {version}: {line}\n{thaw}"
+                );
+            }
+        }
+    }
+
+    /// Header and Rust side say the same.
+    pub fn hold_header(&self, constants: &Constants) {
+        assert_eq!(self.header_prototypes(), self.rust_prototypes());
+        assert_eq!(self.header_constants(), *constants);
+        for name in self.rust_constant_names() {
+            let listed = constants.contains_key(&name);
+            assert!(listed, "{name} is not in the listing of this test");
+        }
+    }
+
+    /// The compilers hold the header to the Rust side: constants, all whole, by assertion,
+    /// functions by being declared again, which is an error for another type.
+    pub fn compile(&self, constants: &Constants) {
+        let folder = tempfile::tempdir().unwrap();
+        for (compiler, standard, file, assertion) in [
+            ("cc", "-std=c11", "surface.c", "_Static_assert"),
+            ("c++", "-std=c++17", "surface.cpp", "static_assert"),
+        ] {
+            let source = folder.path().join(file);
+            fs::write(&source, self.translation_unit(assertion, constants)).unwrap();
+            compile(compiler, standard, &source);
+        }
+    }
+
+    fn translation_unit(&self, assertion: &str, constants: &Constants) -> String {
+        let mut unit = format!("#include \"{}\"\n", self.header);
+        for (name, value) in constants {
+            unit += &format!(
+                "{assertion}((long){name} == (long)({value}), \"{name} is not {value}\");\n"
+            );
+        }
+        unit += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n";
+        for prototype in self.rust_prototypes().values() {
+            unit += &format!("{prototype};\n");
+        }
+        unit + "#ifdef __cplusplus\n}\n#endif\nint main(void) { return 0; }\n"
+    }
 }
 
-/// Functions the header declares.
-pub fn header_prototypes() -> Prototypes {
-    let header = header();
-    let declarations = header.split("HTEX_EXPORT(htex_model_").skip(1);
-    let prototype = |text: &str| {
-        let (name, rest) = text.split_once(')').unwrap();
-        let declared = one_line(rest.split_once(';').unwrap().0);
-        (format!("htex_model_{name}"), declared)
-    };
-    declarations.map(prototype).collect()
+/// FNV-1a of a text.
+fn fnv1a(text: &str) -> u64 {
+    let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, step)
 }
 
-/// Constants the header defines.
-pub fn header_constants() -> Constants {
-    let define = |line: &str| {
-        let (name, value) = line.strip_prefix("#define ")?.split_once(' ')?;
-        let constant = name.starts_with("HTEX_") && !name.contains('(');
-        let value = value.trim().trim_matches(['(', ')']);
-        constant.then(|| (name.to_owned(), value.to_owned()))
-    };
-    header().lines().filter_map(define).collect()
-}
-
-/// Functions the Rust side states, in the words of C.
-pub fn rust_prototypes() -> Prototypes {
-    let code = rust_code("abi.rs");
-    let table = code.split_once("pub struct ModelTable {").unwrap().1;
-    let table = table.split_once('}').unwrap().0;
-    let fields = table.split(',').filter_map(|field| {
-        let (name, kind) = field.trim().strip_prefix("pub ")?.split_once(": ")?;
-        Some((name.to_owned(), kind.to_owned()))
-    });
-    let wasm = [("alloc", "AllocFn"), ("free", "FreeFn")];
-    let wasm = wasm.map(|(name, kind)| (name.to_owned(), kind.to_owned()));
-    let prototype = |(name, kind): (String, String)| {
-        let name = format!("htex_model_{name}");
-        let text = c_prototype(&name, function_type(&code, &kind));
-        (name, text)
-    };
-    fields.chain(wasm).map(prototype).collect()
+fn compile(compiler: &str, standard: &str, source: &Path) {
+    let output = Command::new(compiler)
+        .args([
+            standard,
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            "-pedantic",
+            "-fsyntax-only",
+        ])
+        .arg("-I")
+        .arg(workspace().join("spec/include"))
+        .arg(source)
+        .output()
+        .unwrap_or_else(|e| panic!("{compiler} is wanted (apt install build-essential): {e}"));
+    assert!(
+        output.status.success(),
+        "{compiler} {standard}: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
 }
 
 /// What stands behind `pub type KIND =` without `unsafe extern "C" fn`.
@@ -112,28 +286,6 @@ fn c_declaration(kind: &str, name: &str) -> String {
     format!("{constant}{c} {star}{name}")
 }
 
-/// Names of the constants that the Rust side states, as C has them.
-pub fn rust_constant_names() -> Vec<String> {
-    let constants = rust_code("abi.rs");
-    let constants = constants.lines().filter_map(|line| {
-        let (name, _) = line.strip_prefix("pub const ")?.split_once(':')?;
-        Some(format!("HTEX_{name}"))
-    });
-    constants.chain(rust_statuses().into_keys()).collect()
-}
-
-/// Statuses that the Rust side states, as C has them.
-pub fn rust_statuses() -> Constants {
-    let code = rust_code("error.rs");
-    let (_, variants) = code.split_once("pub enum Status {").unwrap();
-    let variants = variants.split_once('}').unwrap().0;
-    let status = |text: &str| {
-        let (name, value) = text.trim().split_once(" = ")?;
-        Some((format!("HTEX_{}", upper_case(name)), value.to_owned()))
-    };
-    variants.split(',').filter_map(status).collect()
-}
-
 /// `BadHandle` as `BAD_HANDLE`.
 fn upper_case(name: &str) -> String {
     let mut text = String::new();
@@ -146,10 +298,9 @@ fn upper_case(name: &str) -> String {
     text
 }
 
-/// A source of the model crate without comment lines.
+/// A source of the workspace without comment lines.
 fn rust_code(file: &str) -> String {
-    let path = workspace().join("sdk/model/src").join(file);
-    let text = fs::read_to_string(path).unwrap();
+    let text = fs::read_to_string(workspace().join(file)).unwrap();
     let code = text.lines().filter(|l| !l.trim_start().starts_with("//"));
     code.flat_map(|line| [line, "\n"]).collect()
 }

@@ -14,6 +14,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("htex-report", &[]),
     ("htex-device", &[]),
     ("adapter", &["htex-device"]),
+    ("htex-device-check", &["htex-check", "htex-device"]),
     ("htex-shaped", &["htex-dsp", "htex-model"]),
     ("plugin", &["htex-dsp", "htex-model", "htex-shaped"]),
     ("htex-host", &["htex-dsp", "htex-model", "plugin"]),
@@ -39,6 +40,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-check",
             "adapter",
             "htex-device",
+            "htex-device-check",
             "htex-scene",
             "htex-dsp",
             "htex-format",
@@ -60,7 +62,7 @@ fn dependencies_follow_the_arrows() {
     let role = |package: &cargo_metadata::Package| {
         let path = package.manifest_path.as_str();
         match package.name.as_str() {
-            "htex-device" => "htex-device".to_owned(),
+            "htex-device" | "htex-device-check" => package.name.to_string(),
             _ if path.contains("/plugins/") => "plugin".to_owned(),
             _ if path.contains("/renderer-adapters/") => "adapter".to_owned(),
             name => name.to_owned(),

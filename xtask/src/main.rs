@@ -30,7 +30,7 @@ fn usage() -> ExitCode {
 /// Makes what the specification has from the code.
 fn generate() -> ExitCode {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
-    let made: [&[&str]; 4] = [
+    let made: [&[&str]; 5] = [
         &["htex-format", "--example", "conformance"],
         &[
             "htex-model",
@@ -41,6 +41,13 @@ fn generate() -> ExitCode {
         ],
         &["htex-check", "--example", "model_checks"],
         &["htex-scene", "--example", "scene_pages"],
+        &[
+            "htex-device",
+            "--features",
+            "schemars",
+            "--example",
+            "device_schemas",
+        ],
     ];
     for what in made {
         let code = run(&cargo, &[&["run", "--package"], what].concat());

@@ -7,6 +7,7 @@ use crate::abi::{MAX_BLOCK_FRAMES, MAX_RATE_HZ, MIN_RATE_HZ};
 
 /// What a device can do; crosses the ABI as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Capabilities {
     /// What its samples mean.
     pub quantity: Quantity,
@@ -86,6 +87,7 @@ impl Capabilities {
 
 /// What a device's samples mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
     /// Lateral force on the finger, newtons.
@@ -109,6 +111,7 @@ impl Quantity {
 
 /// The rates a device runs at, hertz.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Rates {
     /// Just these, ascending.

@@ -41,8 +41,8 @@ pub(crate) fn incoming(code: Code, text: String, device: &str, library: &str) ->
         }
         Code::Missing => DeviceError::Missing(text),
         Code::Busy => DeviceError::Busy(text),
-        Code::Closed => DeviceError::Closed(device.to_owned()),
-        Code::InvalidArgument | Code::BadHandle => DeviceError::Abi {
+        Code::Closed | Code::BadHandle => DeviceError::Closed(device.to_owned()),
+        Code::InvalidArgument => DeviceError::Abi {
             library: library.to_owned(),
             what: text,
         },

@@ -9,6 +9,7 @@ use crate::abi::MAX_SETTINGS;
 
 /// An adapter's description; crosses the ABI as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Descriptor {
     /// Reverse-DNS identifier, e.g. `org.htex.file`; never changes.
     pub id: String,
@@ -27,6 +28,7 @@ pub struct Descriptor {
 
 /// One setting.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Setting {
     /// Name, unit included, e.g. `limit_v`.
     pub name: String,
@@ -41,6 +43,7 @@ pub struct Setting {
 
 /// What a setting may be. Values are text; numbers are written as JSON writes them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum SettingKind {
     /// A number in a range, both ends included.
@@ -63,6 +66,7 @@ pub enum SettingKind {
 
 /// Settings that belong together.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Profile {
     /// Name it is chosen by.
     pub name: String,
@@ -74,6 +78,7 @@ pub struct Profile {
 
 /// A device that is there.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Endpoint {
     /// The value that chooses it.
     pub name: String,

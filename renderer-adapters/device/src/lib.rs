@@ -19,6 +19,8 @@ mod export;
 mod handles;
 mod library;
 mod native;
+#[cfg(feature = "schemars")]
+mod schemas;
 mod settings;
 pub mod shim;
 
@@ -28,4 +30,6 @@ pub use descriptor::{Descriptor, Endpoint, Profile, Setting, SettingKind};
 pub use devices::{DeviceNote, DeviceOrigin, DeviceSearch, Devices, KnownDevice};
 pub use error::DeviceError;
 pub use native::{NativeAdapter, NativeDevice};
+#[cfg(feature = "schemars")]
+pub use schemas::schemas;
 pub use settings::Settings;

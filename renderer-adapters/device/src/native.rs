@@ -83,6 +83,21 @@ impl NativeAdapter {
         }
     }
 
+    /// As [`Adapter::capabilities`], of lines that need not be settings: for checkers of devices.
+    ///
+    /// # Errors
+    /// As [`Adapter::capabilities`].
+    pub fn capabilities_of(&self, lines: &str) -> Result<Capabilities, DeviceError> {
+        let name = "capabilities";
+        // SAFETY: a live text, and a buffer that is live and of this length, by `Library::text`.
+        let capabilities: Capabilities = self.json(name, |out, len| unsafe {
+            (self.library.table.capabilities)(lines.as_ptr(), lines.len(), out, len)
+        })?;
+        let checked = capabilities.check();
+        checked.map_err(|what| self.library.broken(format!("{name}: {what}")))?;
+        Ok(capabilities)
+    }
+
     /// As [`Adapter::open`], as the type by which a checker reaches further.
     ///
     /// # Errors
@@ -152,14 +167,7 @@ impl Adapter for NativeAdapter {
     }
 
     fn capabilities(&self, settings: &Settings) -> Result<Capabilities, DeviceError> {
-        let (name, lines) = ("capabilities", settings.to_lines(&self.descriptor));
-        // SAFETY: a live text, and a buffer that is live and of this length, by `Library::text`.
-        let capabilities: Capabilities = self.json(name, |out, len| unsafe {
-            (self.library.table.capabilities)(lines.as_ptr(), lines.len(), out, len)
-        })?;
-        let checked = capabilities.check();
-        checked.map_err(|what| self.library.broken(format!("{name}: {what}")))?;
-        Ok(capabilities)
+        self.capabilities_of(&settings.to_lines(&self.descriptor))
     }
 
     fn open(

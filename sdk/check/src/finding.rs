@@ -55,10 +55,11 @@ pub struct Finding {
 }
 
 /// What a check answers: both arms are findings, so that `?` ends a check.
-pub(crate) type Found = Result<Finding, Finding>;
+pub type Found = Result<Finding, Finding>;
 
 impl Finding {
-    pub(crate) fn new(outcome: Outcome, message: impl Into<String>) -> Self {
+    /// A finding without numbers.
+    pub fn new(outcome: Outcome, message: impl Into<String>) -> Self {
         Self {
             outcome,
             message: message.into(),
@@ -66,24 +67,28 @@ impl Finding {
         }
     }
 
-    pub(crate) fn passed(message: impl Into<String>) -> Self {
+    /// The promise is kept.
+    pub fn passed(message: impl Into<String>) -> Self {
         Self::new(Outcome::Passed, message)
     }
 
-    pub(crate) fn warning(message: impl Into<String>) -> Self {
+    /// The promise is kept, but something deserves a look.
+    pub fn warning(message: impl Into<String>) -> Self {
         Self::new(Outcome::Warning, message)
     }
 
-    pub(crate) fn skipped(message: impl Into<String>) -> Self {
+    /// There is nothing to look at.
+    pub fn skipped(message: impl Into<String>) -> Self {
         Self::new(Outcome::Skipped, message)
     }
 
-    pub(crate) fn failed(message: impl Into<String>) -> Self {
+    /// The promise is broken.
+    pub fn failed(message: impl Into<String>) -> Self {
         Self::new(Outcome::Failed, message)
     }
 
     /// Adds a measured number. One that JSON cannot hold is left out; the sentence tells it.
-    pub(crate) fn with(mut self, name: &str, value: f64) -> Self {
+    pub fn with(mut self, name: &str, value: f64) -> Self {
         if value.is_finite() {
             self.numbers.insert(name.to_owned(), value);
         }

@@ -24,9 +24,10 @@ mod start;
 mod table;
 
 pub use bench::{BLOCKS, BlockCost, Cost, Subject, Timing, bench};
-pub use finding::{Finding, Outcome};
+pub use checks::resources::resident_bytes;
+pub use finding::{Finding, Found, Outcome};
 pub use page::model_checks_page;
-pub use report::{CheckReport, Report};
-pub use runner::{Options, Runner, check, run_one};
+pub use report::{CheckReport, Report, lines};
+pub use runner::{Options, Runner, check, run_one, run_process};
 pub use start::Start;
 pub use table::{CHECKS, Check};

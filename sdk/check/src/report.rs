@@ -48,34 +48,19 @@ impl Report {
 
     /// How many checks ended so.
     pub fn count(&self, outcome: Outcome) -> usize {
-        let same = self.checks.iter().filter(|c| c.finding.outcome == outcome);
-        same.count()
+        count(&self.checks, outcome)
     }
 
     /// The report as a person reads it.
     pub fn to_text(&self) -> String {
-        let mut text = format!("{} (seed {})\n", self.file, self.seed);
-        for CheckReport { check, finding } in &self.checks {
-            let word = match finding.outcome {
-                bad if bad.is_bad() => bad.word().to_uppercase(),
-                other => other.word().to_owned(),
-            };
-            // Writing to a string cannot fail.
-            let _ = writeln!(text, "  {word:9}  {check:15}  {}", finding.message);
-        }
-        let counts = [
-            Outcome::Passed,
-            Outcome::Warning,
-            Outcome::Skipped,
-            Outcome::Failed,
-            Outcome::Crashed,
-            Outcome::TimedOut,
-        ];
-        let counts = counts.map(|outcome| (self.count(outcome), outcome.word()));
-        let counts = counts.iter().filter(|(n, _)| *n > 0);
-        let counts: Vec<String> = counts.map(|(n, word)| format!("{n} {word}")).collect();
-        let _ = writeln!(text, "{}", counts.join(", "));
+        let mut text = format!(
+            "{} (seed {})\n{}",
+            self.file,
+            self.seed,
+            lines(&self.checks)
+        );
         if let Some(first) = self.bad().first() {
+            // Writing to a string cannot fail.
             let _ = writeln!(
                 text,
                 "again, in one process: htex plugin check {} --reproduce {first} --seed {}",
@@ -84,4 +69,34 @@ impl Report {
         }
         text
     }
+}
+
+fn count(checks: &[CheckReport], outcome: Outcome) -> usize {
+    let same = checks.iter().filter(|c| c.finding.outcome == outcome);
+    same.count()
+}
+
+/// A line for each check, and one that counts them.
+pub fn lines(checks: &[CheckReport]) -> String {
+    let mut text = String::new();
+    for CheckReport { check, finding } in checks {
+        let word = match finding.outcome {
+            bad if bad.is_bad() => bad.word().to_uppercase(),
+            other => other.word().to_owned(),
+        };
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "  {word:9}  {check:15}  {}", finding.message);
+    }
+    let counts = [
+        Outcome::Passed,
+        Outcome::Warning,
+        Outcome::Skipped,
+        Outcome::Failed,
+        Outcome::Crashed,
+        Outcome::TimedOut,
+    ];
+    let counts = counts.map(|outcome| (count(checks, outcome), outcome.word()));
+    let counts = counts.iter().filter(|(n, _)| *n > 0);
+    let counts: Vec<String> = counts.map(|(n, word)| format!("{n} {word}")).collect();
+    text + &counts.join(", ") + "\n"
 }

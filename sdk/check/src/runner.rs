@@ -137,21 +137,28 @@ fn run_child(file: &Path, check: &Check, options: &Options) -> Finding {
         .args(&options.runner.arguments)
         .arg(file)
         .arg(check.name)
-        .args(["--seed", &options.seed.to_string()])
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped());
+        .args(["--seed", &options.seed.to_string()]);
     if let Some(against) = &options.against {
         command.arg("--against").arg(against);
     }
+    run_process(&mut command, options.timeout)
+}
+
+/// Runs a program that writes one [`Finding`] as a line of JSON; one that dies or does not end in
+/// time gets its finding, too.
+pub fn run_process(command: &mut Command, timeout: Duration) -> Finding {
+    command
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
     let mut child = match command.spawn() {
         Ok(child) => child,
         Err(error) => return Finding::skipped(format!("the check cannot be started: {error}")),
     };
     let (out, err) = (drain(child.stdout.take()), drain(child.stderr.take()));
-    match wait(&mut child, options.timeout) {
+    match wait(&mut child, timeout) {
         None => {
-            let seconds = options.timeout.as_secs_f64();
+            let seconds = timeout.as_secs_f64();
             let message = format!("it did not end within {seconds} s");
             Finding::new(Outcome::TimedOut, message).with("timeout_s", seconds)
         }

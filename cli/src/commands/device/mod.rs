@@ -1,5 +1,6 @@
 //! `htex device`: what there is to play on.
 
+mod check;
 mod info;
 mod list;
 
@@ -20,6 +21,9 @@ pub(crate) struct Device {
 enum Command {
     List(list::List),
     Info(info::Info),
+    Check(check::Check),
+    #[command(hide = true)]
+    CheckOne(check::CheckOne),
 }
 
 impl Device {
@@ -27,6 +31,8 @@ impl Device {
         match self.command {
             Command::List(args) => args.run(),
             Command::Info(args) => args.run(),
+            Command::Check(args) => args.run(),
+            Command::CheckOne(args) => args.run(),
         }
     }
 }

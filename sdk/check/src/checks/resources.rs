@@ -70,7 +70,7 @@ fn growth(run: impl FnOnce() -> Result<(), Finding>) -> Result<f64, Finding> {
 
 /// Resident memory of this process (`/proc/self/status`, `VmRSS`), bytes; `None` where there is no
 /// such file.
-fn resident_bytes() -> Option<f64> {
+pub fn resident_bytes() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status
         .lines()

@@ -1,0 +1,180 @@
+//! The device under test, and what several checks ask of it.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Duration;
+
+use htex_check::Finding;
+use htex_device::{
+    Adapter, Capabilities, Device, DeviceError, NativeAdapter, Rates, SettingKind, Settings,
+    StreamFormat,
+};
+use tempfile::TempDir;
+
+/// A hundredth of the limit, or of the unit where there is none.
+const QUIET: f64 = 0.01;
+/// Frequency of what is played, hertz.
+const TONE_HZ: f64 = 100.0;
+/// Writes that may take nothing, one behind the other, each waiting [`PATIENCE`].
+const EMPTY_WRITES: u32 = 5;
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// What is checked.
+#[derive(Clone)]
+pub enum Subject {
+    /// A library.
+    Library(PathBuf),
+    /// An adapter of this program.
+    Builtin(Arc<dyn Adapter>),
+}
+
+/// A device that was loaded, and how it is to be set.
+pub(crate) struct Case {
+    pub(crate) adapter: Arc<dyn Adapter>,
+    /// The same adapter, where it is a library's.
+    pub(crate) native: Option<NativeAdapter>,
+    profile: Option<String>,
+    given: BTreeMap<String, String>,
+    pub(crate) folder: TempDir,
+    files: AtomicU32,
+}
+
+impl Case {
+    pub(crate) fn load(
+        subject: &Subject,
+        profile: Option<&str>,
+        given: &BTreeMap<String, String>,
+    ) -> Result<Self, DeviceError> {
+        let (adapter, native): (Arc<dyn Adapter>, _) = match subject {
+            Subject::Builtin(adapter) => (adapter.clone(), None),
+            Subject::Library(path) => {
+                let native = NativeAdapter::load(path)?;
+                (Arc::new(native.clone()), Some(native))
+            }
+        };
+        let folder = TempDir::new().map_err(|error| DeviceError::File {
+            path: std::env::temp_dir().display().to_string(),
+            what: error.to_string(),
+        })?;
+        Ok(Self {
+            adapter,
+            native,
+            profile: profile.map(str::to_owned),
+            given: given.clone(),
+            folder,
+            files: AtomicU32::new(0),
+        })
+    }
+
+    /// The settings given, and for what must be given besides: a new file, or the first endpoint.
+    pub(crate) fn settings(&self) -> Result<Settings, Finding> {
+        self.settings_of(self.profile.as_deref())
+    }
+
+    pub(crate) fn settings_of(&self, profile: Option<&str>) -> Result<Settings, Finding> {
+        let descriptor = self.adapter.descriptor();
+        let mut given = self.given.clone();
+        let fixed = descriptor
+            .profiles
+            .iter()
+            .find(|p| Some(&p.name[..]) == profile);
+        for setting in descriptor.settings.iter().filter(|s| s.default.is_none()) {
+            let name = &setting.name;
+            if given.contains_key(name) || fixed.is_some_and(|p| p.settings.contains_key(name)) {
+                continue;
+            }
+            let value = match setting.kind {
+                SettingKind::Path => Some(self.new_file()),
+                _ => self.endpoint(name),
+            };
+            let missing = || Finding::skipped(format!("give its setting: --set {name}=…"));
+            given.insert(name.clone(), value.ok_or_else(missing)?);
+        }
+        Settings::resolve(descriptor, profile, &given).map_err(failed)
+    }
+
+    /// A file that is not there, of a kind that is known to many.
+    fn new_file(&self) -> String {
+        let count = self.files.fetch_add(1, Ordering::Relaxed);
+        let path = self.folder.path().join(format!("check-{count}.wav"));
+        path.display().to_string()
+    }
+
+    fn endpoint(&self, setting: &str) -> Option<String> {
+        let all = self.adapter.endpoints().unwrap_or_default();
+        let first = all.into_iter().find(|endpoint| endpoint.setting == setting);
+        first.map(|endpoint| endpoint.name)
+    }
+
+    pub(crate) fn capabilities(&self) -> Result<Capabilities, Finding> {
+        self.adapter.capabilities(&self.settings()?).map_err(failed)
+    }
+
+    /// A device at its best rate, and its settings.
+    pub(crate) fn open(&self) -> Result<(Box<dyn Device>, Settings), Finding> {
+        let settings = self.settings()?;
+        let rate_hz = self.capabilities()?.default_rate_hz;
+        let device = self.open_at(&settings, rate_hz).map_err(failed)?;
+        Ok((device, settings))
+    }
+
+    pub(crate) fn open_at(
+        &self,
+        settings: &Settings,
+        rate_hz: f64,
+    ) -> Result<Box<dyn Device>, DeviceError> {
+        let block_frames = self.adapter.capabilities(settings)?.block_frames;
+        let format = StreamFormat {
+            rate_hz,
+            block_frames,
+        };
+        self.adapter.open(settings, &format)
+    }
+
+    /// A quiet tone at the best rate.
+    pub(crate) fn tone(&self, frames: usize) -> Result<Vec<f32>, Finding> {
+        let can = self.capabilities()?;
+        let amplitude = QUIET * can.limit.unwrap_or(1.0);
+        let turn = std::f64::consts::TAU * TONE_HZ / can.default_rate_hz;
+        let sample = |i| (amplitude * (turn * i as f64).sin()) as f32;
+        Ok((0..frames).map(sample).collect())
+    }
+}
+
+/// Writes all samples, waiting for a device that has a clock.
+pub(crate) fn write_all(device: &mut dyn Device, samples: &[f32]) -> Result<(), Finding> {
+    let (mut left, mut empty) = (samples, 0);
+    while !left.is_empty() {
+        let taken = device.write(left, PATIENCE).map_err(failed)?;
+        empty = if taken == 0 { empty + 1 } else { 0 };
+        if empty == EMPTY_WRITES {
+            let seconds = PATIENCE.as_secs() * u64::from(EMPTY_WRITES);
+            return Err(Finding::failed(format!(
+                "it takes no samples for {seconds} s"
+            )));
+        }
+        let Some(rest) = left.get(taken..) else {
+            return Err(Finding::failed("it takes more than it was offered"));
+        };
+        left = rest;
+    }
+    Ok(())
+}
+
+/// The rates to try: all of a list, both ends of a range, and the best.
+pub(crate) fn rates(can: &Capabilities) -> Vec<f64> {
+    let mut rates = match &can.rates {
+        Rates::List(all) => all.clone(),
+        Rates::Range { min_hz, max_hz } => vec![*min_hz, *max_hz],
+    };
+    rates.push(can.default_rate_hz);
+    rates.sort_by(f64::total_cmp);
+    rates.dedup();
+    rates
+}
+
+pub(crate) fn failed(error: DeviceError) -> Finding {
+    Finding::failed(error.to_string())
+}

@@ -1,0 +1,142 @@
+//! The marker, the exports, and what a device says of itself.
+
+use htex_check::{Finding, Found};
+use htex_device::{DeviceError, NativeAdapter, SettingKind};
+
+use crate::case::{Case, failed};
+
+/// The check that a loading error belongs to.
+pub(crate) fn owner(error: &DeviceError) -> &'static str {
+    match error {
+        DeviceError::Abi { what, .. } if what.starts_with("the marker") => "marker",
+        DeviceError::Abi { what, .. } if what.starts_with("descriptor") => "descriptor",
+        _ => "exports",
+    }
+}
+
+/// The library's own functions, of which a built-in device has none.
+pub(crate) fn library(case: &Case) -> Result<&NativeAdapter, Finding> {
+    let built_in = || Finding::skipped("it is built in: there is no library");
+    case.native.as_ref().ok_or_else(built_in)
+}
+
+/// A library that was loaded has the marker and the exports.
+pub(crate) fn loaded(case: &Case) -> Found {
+    library(case)?;
+    Ok(Finding::passed("the library was loaded"))
+}
+
+/// Loading looks at a library's descriptor; this is for those that are built in.
+pub(crate) fn descriptor(case: &Case) -> Found {
+    let descriptor = case.adapter.descriptor();
+    descriptor.check().map_err(Finding::failed)?;
+    let (id, version) = (&descriptor.id, &descriptor.version);
+    let (settings, profiles) = (descriptor.settings.len(), descriptor.profiles.len());
+    let message = format!("{id} {version}: {settings} settings, {profiles} profiles");
+    Ok(Finding::passed(message).with("settings", settings as f64))
+}
+
+/// Made-up extensions are not there.
+pub(crate) fn extensions(case: &Case) -> Found {
+    let native = library(case)?;
+    let long = "x".repeat(100_000);
+    for id in [
+        "htex.no-such-thing/1",
+        "com.example.unheard-of/7",
+        "",
+        "\u{1f}é",
+        &long,
+    ] {
+        if native.has_extension(id).map_err(failed)? {
+            let id: String = id.chars().take(40).collect();
+            return Err(Finding::failed(format!(
+                "it says yes to the extension `{id}`"
+            )));
+        }
+    }
+    Ok(Finding::passed(
+        "five made-up extensions are answered by no",
+    ))
+}
+
+/// What is connected can be asked; nothing, or no driver, is an answer.
+pub(crate) fn endpoints(case: &Case) -> Found {
+    let known = |name: &str| {
+        let mut settings = case.adapter.descriptor().settings.iter();
+        settings.any(|setting| setting.name == name)
+    };
+    match case.adapter.endpoints() {
+        Ok(all) => match all.iter().find(|endpoint| !known(&endpoint.setting)) {
+            Some(lost) => {
+                let (name, setting) = (&lost.name, &lost.setting);
+                let message = format!("`{name}` is chosen by `{setting}`, which is no setting");
+                Err(Finding::failed(message))
+            }
+            None => Ok(Finding::passed(format!("{} are connected", all.len()))),
+        },
+        Err(DeviceError::Missing(what)) => Ok(Finding::warning(what)),
+        Err(error) => Err(failed(error)),
+    }
+}
+
+/// What a device can do, set as told and by each of its profiles.
+pub(crate) fn capabilities(case: &Case) -> Found {
+    let can = case.capabilities()?;
+    can.check().map_err(Finding::failed)?;
+    let profiles = &case.adapter.descriptor().profiles;
+    for profile in profiles {
+        let settings = case.settings_of(Some(&profile.name))?;
+        let can = case.adapter.capabilities(&settings);
+        let checked = can.map_err(|e| e.to_string()).and_then(|can| can.check());
+        let name = &profile.name;
+        checked.map_err(|what| Finding::failed(format!("profile `{name}`: {what}")))?;
+    }
+    let unit = can.quantity.unit();
+    let limit = can.limit.map_or("no limit".to_owned(), |limit| {
+        format!("limit {limit} {unit}")
+    });
+    Ok(Finding::passed(format!("{limit}, {}", can.rates)))
+}
+
+/// Lines that are no settings of this device.
+pub(crate) fn bad_settings(case: &Case) -> Found {
+    let native = library(case)?;
+    let good = case.settings()?.to_lines(case.adapter.descriptor());
+    let mut wrong = vec![
+        "no_such_setting_=1\n".to_owned(),
+        "no line of settings\n".to_owned(),
+    ];
+    for setting in &case.adapter.descriptor().settings {
+        let values = match &setting.kind {
+            SettingKind::Number { max, .. } => vec![
+                "".to_owned(),
+                "NaN".to_owned(),
+                "one".to_owned(),
+                format!("{}", max * 2.0 + 1.0),
+            ],
+            SettingKind::Choice { .. } => vec!["".to_owned(), "no such choice".to_owned()],
+            SettingKind::Path | SettingKind::Text => continue,
+        };
+        wrong.extend(
+            values
+                .iter()
+                .map(|value| format!("{}={value}\n", setting.name)),
+        );
+    }
+    for line in &wrong {
+        let name = line.split('=').next().unwrap_or_default();
+        let others = good.lines().filter(|l| !l.starts_with(&format!("{name}=")));
+        let lines: String = others.flat_map(|l| [l, "\n"]).collect();
+        let line = line.trim_end();
+        match native.capabilities_of(&format!("{lines}{line}\n")) {
+            Err(DeviceError::Setting { .. }) => {}
+            Err(error) => return Err(Finding::failed(format!("`{line}`: {error}"))),
+            Ok(_) => return Err(Finding::failed(format!("it takes the setting `{line}`"))),
+        }
+    }
+    let count = wrong.len();
+    Ok(
+        Finding::passed(format!("{count} wrong settings are refused"))
+            .with("settings", count as f64),
+    )
+}

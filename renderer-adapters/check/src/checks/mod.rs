@@ -1,0 +1,7 @@
+//! The checks, grouped by what they look at.
+
+pub(crate) mod describe;
+pub(crate) mod end;
+pub(crate) mod limit;
+pub(crate) mod open;
+pub(crate) mod write;

@@ -1,0 +1,73 @@
+//! Opening.
+
+use htex_check::{Finding, Found};
+use htex_device::DeviceError;
+
+use crate::case::{Case, failed, rates, write_all};
+
+/// It opens at each of its rates, and takes silence.
+pub(crate) fn opens(case: &Case) -> Found {
+    let rates = rates(&case.capabilities()?);
+    for rate_hz in &rates {
+        let opened = case.open_at(&case.settings()?, *rate_hz);
+        let mut device = opened.map_err(|e| Finding::failed(format!("at {rate_hz} Hz: {e}")))?;
+        write_all(device.as_mut(), &[0.0; 16])?;
+    }
+    let count = rates.len();
+    Ok(Finding::passed(format!("it opens at {count} rates")).with("rates", count as f64))
+}
+
+/// Rates that are none of its own.
+pub(crate) fn bad_rate(case: &Case) -> Found {
+    let can = case.capabilities()?;
+    let (lowest, highest) = match rates(&can)[..] {
+        [first, .., last] => (first, last),
+        [only] => (only, only),
+        [] => return Err(Finding::failed("it has no rates")),
+    };
+    let mut wrong = vec![
+        f64::NAN,
+        0.0,
+        -1.0,
+        f64::INFINITY,
+        1e12,
+        0.5 * lowest,
+        2.0 * highest,
+    ];
+    wrong.push(lowest + 0.123);
+    wrong.retain(|rate_hz| !can.rates.has(*rate_hz));
+    for rate_hz in &wrong {
+        match case.open_at(&case.settings()?, *rate_hz) {
+            Err(DeviceError::Rate { .. }) => {}
+            Err(error) => return Err(Finding::failed(format!("{rate_hz} Hz: {error}"))),
+            Ok(_) => return Err(Finding::failed(format!("it opens at {rate_hz} Hz"))),
+        }
+    }
+    let count = wrong.len();
+    Ok(Finding::passed(format!("{count} wrong rates are refused")).with("rates", count as f64))
+}
+
+/// Two at the same time, or a clear refusal.
+pub(crate) fn two(case: &Case) -> Found {
+    let (mut first, settings) = case.open()?;
+    let rate_hz = case
+        .adapter
+        .capabilities(&settings)
+        .map_err(failed)?
+        .default_rate_hz;
+    let tone = case.tone(64)?;
+    let mut second = match case.open_at(&case.settings()?, rate_hz) {
+        Err(DeviceError::Busy(why)) => {
+            return Ok(Finding::passed(format!("one at a time: {why}")));
+        }
+        other => other.map_err(failed)?,
+    };
+    write_all(first.as_mut(), &tone)?;
+    write_all(second.as_mut(), &tone[..10])?;
+    let counts = [first, second].map(|device| device.status().frames_written);
+    if counts == [64, 10] {
+        return Ok(Finding::passed("two are open, each with its own count"));
+    }
+    let message = format!("64 and 10 frames were written, and it counts {counts:?}");
+    Err(Finding::failed(message))
+}

@@ -1,0 +1,195 @@
+/* A sound device with one fault in it.
+ *
+ * Every call is passed on to the library GOOD_LIBRARY (the strip chart of examples/device-c-strip), but
+ * for what one -DFAULT_… changes. The checker must blame just the check that is the fault's own; the
+ * table of faults and checks stands in cli/tests/device.rs.
+ */
+#include <dlfcn.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "htex_device.h"
+
+static void *good_symbol(const char *name) {
+    static void *library;
+    if (!library) library = dlopen(GOOD_LIBRARY, RTLD_NOW | RTLD_LOCAL);
+    void *symbol = library ? dlsym(library, name) : NULL;
+    if (!symbol) abort();
+    return symbol;
+}
+
+/* The good device's function of the same name and type. */
+#define GOOD(function) ((__typeof__(&function))good_symbol(#function))
+
+/* Where a leak points last, so that a compiler does not leave it out. */
+static void *volatile kept;
+
+#if defined FAULT_DESCRIPTOR_DEFAULT || defined FAULT_PROFILE || defined FAULT_DESCRIPTOR_JSON || \
+    defined FAULT_VOLTAGE || defined FAULT_CAPABILITIES || defined FAULT_ENDPOINTS
+static int64_t give(const char *text, uint8_t *out, size_t capacity) {
+    size_t len = strlen(text);
+    memcpy(out, text, capacity < len ? capacity : len);
+    return (int64_t)len;
+}
+#endif
+
+uint32_t htex_device_abi_version(void) {
+#ifdef FAULT_MARKER
+    return 0x48540100; /* a model's */
+#else
+    return GOOD(htex_device_abi_version)();
+#endif
+}
+
+int64_t htex_device_descriptor(uint8_t *out, size_t capacity) {
+#define BAD(default_value, profile)                                                              \
+    "{\"id\":\"org.example.bad\",\"name\":\"Bad\",\"version\":\"1.0.0\",\"summary\":\"Bad.\","   \
+    "\"settings\":[{\"name\":\"a\",\"kind\":{\"type\":\"number\",\"min\":0,\"max\":1},"          \
+    "\"default\":\"" default_value "\",\"description\":\"A.\"}],"                                \
+    "\"profiles\":[{\"name\":\"p\",\"summary\":\"P.\",\"settings\":{" profile "}}]}"
+#if defined FAULT_DESCRIPTOR_JSON
+    return give("{\"id\": \"org.example.bad\", \"settings\": [", out, capacity);
+#elif defined FAULT_DESCRIPTOR_DEFAULT
+    return give(BAD("2", ""), out, capacity);
+#elif defined FAULT_PROFILE
+    return give(BAD("1", "\"b\":\"1\""), out, capacity);
+#else
+    return GOOD(htex_device_descriptor)(out, capacity);
+#endif
+}
+
+int64_t htex_device_last_error(uint8_t *out, size_t capacity) {
+    return GOOD(htex_device_last_error)(out, capacity);
+}
+
+int64_t htex_device_endpoints(uint8_t *out, size_t capacity) {
+#ifdef FAULT_ENDPOINTS
+    return give("[{\"name\":\"a\",\"setting\":\"no_such\",\"summary\":\"A.\"}]", out, capacity);
+#else
+    return GOOD(htex_device_endpoints)(out, capacity);
+#endif
+}
+
+int64_t htex_device_capabilities(const uint8_t *settings, size_t settings_len, uint8_t *out,
+                                 size_t capacity) {
+    int64_t answer = GOOD(htex_device_capabilities)(settings, settings_len, out, capacity);
+    if (answer < 0) {
+#ifdef FAULT_ACCEPTS_SETTING
+        static const char usual[] = "path=usual.svg\n";
+        return GOOD(htex_device_capabilities)((const uint8_t *)usual, sizeof usual - 1, out, capacity);
+#endif
+        return answer;
+    }
+#define CAN(quantity, rate)                                                                      \
+    "{\"quantity\":\"" quantity "\",\"rates\":{\"list\":[10000]},\"default_rate_hz\":" rate ","  \
+    "\"paced\":false,\"block_frames\":64}"
+#if defined FAULT_VOLTAGE
+    return give(CAN("display_voltage", "10000"), out, capacity);
+#elif defined FAULT_CAPABILITIES
+    return give(CAN("lateral_force", "9000"), out, capacity);
+#else
+    return answer;
+#endif
+}
+
+static int64_t opened;
+
+int64_t htex_device_open(const uint8_t *settings, size_t settings_len, double rate_hz,
+                         uint32_t block_frames) {
+#ifdef FAULT_OPEN_HIGH
+    if (rate_hz > 50000) return HTEX_DEVICE_FAILED;
+#elif defined FAULT_ACCEPTS_RATE
+    if (!(rate_hz >= 100)) rate_hz = 100;
+    if (rate_hz > 100000) rate_hz = 100000;
+#elif defined FAULT_TWO
+    if (opened) return HTEX_DEVICE_FAILED;
+#elif defined FAULT_OPENINGS_LEAK
+    kept = memset(malloc(65536), 1, 65536);
+#endif
+    int64_t handle = GOOD(htex_device_open)(settings, settings_len, rate_hz, block_frames);
+    if (handle > 0) opened++;
+    return handle;
+}
+
+#ifdef FAULT_CLOSED_GOES_ON
+static int64_t refused; /* the device that refused a sample */
+#endif
+#ifdef FAULT_WRITE_AFTER_FINISH
+static int64_t finished;
+#endif
+
+int64_t htex_device_write(int64_t device, const float *samples, size_t frames,
+                          uint32_t timeout_ms) {
+#if defined FAULT_WRITE_NOTHING
+    return 0;
+#elif defined FAULT_WRITE_CRASHES
+    if (frames > 100) abort();
+#elif defined FAULT_WRITE_LOOPS
+    for (volatile int forever = frames > 100; forever;) {}
+#elif defined FAULT_WRITE_TOO_MANY
+    if (frames > 100) return (int64_t)frames + 1;
+#elif defined FAULT_LEAK
+    kept = memset(malloc(1024), 1, 1024);
+#elif defined FAULT_WRITE_AFTER_FINISH
+    if (device == finished) return (int64_t)frames;
+#elif defined FAULT_CLOSED_GOES_ON
+    if (device == refused) return (int64_t)frames;
+#endif
+#if defined FAULT_OVER_LIMIT || defined FAULT_NAN
+    float clipped[3];
+    for (size_t i = 0; frames == 3 && i < frames; i++) {
+        clipped[i] = samples[i];
+#ifdef FAULT_OVER_LIMIT
+        if (isfinite(samples[i])) clipped[i] = fmaxf(-1, fminf(1, samples[i]));
+#else
+        if (!isfinite(samples[i])) clipped[i] = 0;
+#endif
+    }
+    if (frames == 3) samples = clipped;
+#endif
+    int64_t answer = GOOD(htex_device_write)(device, samples, frames, timeout_ms);
+#ifdef FAULT_CLOSED_GOES_ON
+    if (answer == HTEX_DEVICE_OVER_LIMIT && isnan(samples[1])) refused = device;
+#endif
+    return answer;
+}
+
+int64_t htex_device_status(int64_t device, double *out, size_t capacity) {
+    int64_t answer = GOOD(htex_device_status)(device, out, capacity);
+#ifdef FAULT_STATUS
+    if (answer > 0) out[HTEX_DEVICE_STATUS_FRAMES_WRITTEN] *= 2;
+#elif defined FAULT_STATUS_SHORT
+    if (answer > 0) return 2;
+#elif defined FAULT_CLOSED_HANDLE
+    if (answer == HTEX_DEVICE_BAD_HANDLE) return HTEX_DEVICE_STATUS_NUMBERS;
+#endif
+    return answer;
+}
+
+#ifndef FAULT_EXPORT_MISSING
+int64_t htex_device_finish(int64_t device) {
+    int64_t answer = GOOD(htex_device_finish)(device);
+#ifdef FAULT_WRITE_AFTER_FINISH
+    if (answer == HTEX_DEVICE_OK) finished = device;
+#endif
+    return answer;
+}
+#endif
+
+int64_t htex_device_close(int64_t device) {
+#ifdef FAULT_LEFT_BEHIND
+    GOOD(htex_device_finish)(device);
+#endif
+    int64_t answer = GOOD(htex_device_close)(device);
+    if (answer == 0) opened--;
+    return answer;
+}
+
+int64_t htex_device_extension(const uint8_t *id, size_t id_len) {
+#ifdef FAULT_EXTENSIONS
+    return 1;
+#else
+    return GOOD(htex_device_extension)(id, id_len);
+#endif
+}

@@ -108,8 +108,13 @@ impl Case {
         first.map(|endpoint| endpoint.name)
     }
 
+    /// What the device can do; where its driver or the device is missing there is nothing to check.
     pub(crate) fn capabilities(&self) -> Result<Capabilities, Finding> {
-        self.adapter.capabilities(&self.settings()?).map_err(failed)
+        let can = self.adapter.capabilities(&self.settings()?);
+        can.map_err(|error| match error {
+            DeviceError::Missing(what) => Finding::skipped(what),
+            error => failed(error),
+        })
     }
 
     /// A device at its best rate, and its settings.

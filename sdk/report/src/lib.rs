@@ -13,6 +13,7 @@
 #![forbid(unsafe_code)]
 
 mod axis;
+mod chain;
 mod color;
 mod curves;
 mod legend;
@@ -28,6 +29,7 @@ mod textures;
 mod ticks;
 
 pub use axis::{Axis, Scale};
+pub use chain::{Chain, ChainStage};
 pub use color::{RECORDING_COLOR, model_color, series_color};
 pub use page::{Page, code_block, list, paragraph};
 pub use plot::Plot;

@@ -10,8 +10,8 @@ use crate::svg::{self, TEXT_PX, fit_text, text_width};
 use crate::ticks::Tick;
 
 const TITLE_PX: f64 = 12.0;
-const FONT: &str = "system-ui, -apple-system, 'Segoe UI', 'DejaVu Sans', sans-serif";
-const INK: &str = "#222";
+pub(crate) const FONT: &str = "system-ui, -apple-system, 'Segoe UI', 'DejaVu Sans', sans-serif";
+pub(crate) const INK: &str = "#222";
 const GRID: &str = "#e3e3e3";
 const MINOR_GRID: &str = "#f2f2f2";
 

@@ -185,3 +185,34 @@ fn a_table_keeps_its_shape() {
     assert_eq!(texts[1], ["short", "\u{2212}2.0*", "\u{2013}"]);
     assert_eq!(texts[2], ["long", "1.0", "\u{2013}"]);
 }
+
+#[test]
+fn a_chain_shows_what_runs_by_its_cost_and_what_was_left_out_pale() {
+    let stage = |name: &str, ns_per_sample: f64| htex_report::ChainStage {
+        name: name.to_owned(),
+        reason: format!("{name} <is> needed"),
+        rate_hz: 10_000.0,
+        ns_per_sample,
+    };
+    let chain = htex_report::Chain {
+        title: "a & b".to_owned(),
+        stages: vec![stage("synthesis", 30.0), stage("gain", 10.0)],
+        left_out: vec![("carrier".to_owned(), "none is wanted".to_owned())],
+    };
+    let svg = chain.to_svg();
+    for text in [
+        "40 ns a sample in all",
+        "&lt;is&gt;",
+        "a &amp; b",
+        "none is wanted",
+        "Left out",
+    ] {
+        assert!(svg.contains(text), "{text}");
+    }
+    // Bars in the proportion of the costs, and one pale box.
+    assert!(
+        svg.contains("width=\"105\"") && svg.contains("width=\"35\""),
+        "{svg}"
+    );
+    assert_eq!(svg.matches("stroke-dasharray").count(), 1);
+}

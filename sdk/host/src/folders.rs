@@ -4,16 +4,24 @@ use std::env::var_os;
 use std::path::PathBuf;
 
 /// Where what can be made again is kept: `$HTEX_CACHE_DIR`, else `htex` in the user's cache folder.
-#[cfg(feature = "wasm")]
-pub(crate) fn cache() -> Option<PathBuf> {
+pub fn cache() -> Option<PathBuf> {
     if let Some(own) = absolute("HTEX_CACHE_DIR") {
         return Some(own);
     }
     base("XDG_CACHE_HOME", ".cache").map(|base| base.join("htex"))
 }
 
+/// Where what a user has chosen is kept: `$HTEX_CONFIG_DIR`, else `htex` in the user's configuration
+/// folder.
+pub fn config() -> Option<PathBuf> {
+    if let Some(own) = absolute("HTEX_CONFIG_DIR") {
+        return Some(own);
+    }
+    base("XDG_CONFIG_HOME", ".config").map(|base| base.join("htex"))
+}
+
 /// Where a user's plugins are: `htex/plugins` in the user's data folder.
-pub(crate) fn plugins() -> Option<PathBuf> {
+pub fn plugins() -> Option<PathBuf> {
     base("XDG_DATA_HOME", ".local/share").map(|base| base.join("htex/plugins"))
 }
 

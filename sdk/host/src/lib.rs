@@ -17,7 +17,7 @@
 
 mod builtin;
 mod error;
-mod folders;
+pub mod folders;
 mod limits;
 mod model;
 mod native;

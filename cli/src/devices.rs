@@ -34,7 +34,7 @@ fn no_sound(name: &str) -> Option<DeviceError> {
 }
 
 /// Where devices come from.
-#[derive(Args)]
+#[derive(Args, Default)]
 #[command(next_help_heading = "Devices")]
 pub(crate) struct DeviceArgs {
     /// A device's native library (it runs with all your rights: load only what you trust); may be
@@ -64,6 +64,11 @@ impl DeviceArgs {
             ..DeviceSearch::default()
         };
         Ok(Devices::search(builtin(), &search)?)
+    }
+
+    /// Why there is no device of this name, when it could have been built in.
+    pub(crate) fn missing(name: &str) -> Option<DeviceError> {
+        no_sound(name)
     }
 
     /// The device in a file, when there is one of this name; else that of this short name or id.

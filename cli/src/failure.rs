@@ -16,6 +16,16 @@ pub(crate) enum Failure {
     Device(#[from] htex_device::DeviceError),
     #[error("{file}: {error}")]
     Asset { file: String, error: htex::Error },
+    #[error("{file}: {}", findings_text(.findings))]
+    Findings {
+        file: String,
+        findings: Vec<htex_format::Finding>,
+    },
+    #[error("{file}: {error}")]
+    Scene {
+        file: String,
+        error: Box<htex_scene::SceneError>,
+    },
     #[error("cannot read {file}: {error}")]
     Read { file: String, error: std::io::Error },
     #[error("cannot write {file}: {error}")]
@@ -51,6 +61,25 @@ impl Failure {
         }
     }
 
+    /// A scene that could not be loaded.
+    pub(crate) fn load(file: &Path, error: htex_scene::LoadError) -> Self {
+        match error {
+            htex_scene::LoadError::Io { path, error } => Self::read(&path, error),
+            htex_scene::LoadError::Invalid { findings } => Self::Findings {
+                file: file.display().to_string(),
+                findings,
+            },
+        }
+    }
+
+    /// A scene that could not be planned or played.
+    pub(crate) fn scene(file: &Path, error: htex_scene::SceneError) -> Self {
+        Self::Scene {
+            file: file.display().to_string(),
+            error: Box::new(error),
+        }
+    }
+
     pub(crate) fn read(file: &Path, error: std::io::Error) -> Self {
         Self::Read {
             file: file.display().to_string(),
@@ -64,4 +93,11 @@ impl Failure {
             error,
         }
     }
+}
+
+/// Findings, one a line.
+fn findings_text(findings: &[htex_format::Finding]) -> String {
+    let line = |f: &htex_format::Finding| format!("\n  {} {f}", f.severity);
+    let lines: String = findings.iter().map(line).collect();
+    format!("this scene cannot be played (`htex explain CODE` says more){lines}")
 }

@@ -6,10 +6,13 @@ mod commands;
 mod devices;
 mod failure;
 mod models;
+mod motions;
 mod output;
+mod playing;
 mod plugins;
 mod progress;
 mod recordings;
+mod scenes;
 mod wasm_limits;
 mod wav;
 
@@ -36,6 +39,7 @@ First steps:
   htex fit rec.csv -o cloth.htex      fit all models to a recording of yours
   htex info cloth.htex                what the file holds, and how good it is
   htex synth cloth.htex -o cloth.wav  play it to a file
+  htex play cloth.htex                play it by ear, or on a device
 
 Exit status: 0 ok, 1 findings or failure, 2 wrong usage.";
 

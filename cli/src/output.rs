@@ -31,6 +31,13 @@ pub(crate) fn warn(warnings: &[String]) {
     }
 }
 
+/// Tells the user of something worth knowing.
+pub(crate) fn note(notes: &[String]) {
+    for note in notes {
+        eprintln!("note: {note}");
+    }
+}
+
 /// Writes a file beside its place and moves it there.
 pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     htex_format::write_file(path, bytes).map_err(|error| Failure::write(path, error))

@@ -76,6 +76,16 @@ pub(crate) struct PlayerArgs {
 }
 
 impl PlayerArgs {
+    /// The models there are, without those that assets bring along.
+    pub(crate) fn registry(&self) -> Result<Registry, Failure> {
+        self.plugins.registry()
+    }
+
+    /// Whether models that assets bring along may run.
+    pub(crate) fn embedded(&self) -> bool {
+        !self.no_embedded_plugins
+    }
+
     /// Opens an asset.
     pub(crate) fn open(&self, path: &Path) -> Result<htex::Asset, Failure> {
         let registry = self.plugins.registry()?;

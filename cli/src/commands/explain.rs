@@ -18,11 +18,14 @@ impl Explain {
         let Some(code) = self.code else {
             let lines = RULES
                 .iter()
+                .chain(htex_scene::RULES)
                 .map(|rule| format!("{:36} {}\n", rule.code, rule.summary));
             print(&lines.collect::<String>())?;
             return Ok(ExitCode::SUCCESS);
         };
-        let rule = explain(&code.to_uppercase()).ok_or_else(|| {
+        let code = code.to_uppercase();
+        let rule = explain(&code).or_else(|| htex_scene::explain(&code));
+        let rule = rule.ok_or_else(|| {
             Failure::Usage(format!("no code `{code}`; `htex explain` lists them all"))
         })?;
         print(&format!(

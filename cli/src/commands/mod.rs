@@ -5,9 +5,13 @@ mod demo;
 mod device;
 mod explain;
 mod fit;
+mod gain;
 mod info;
+mod plan;
+mod play;
 mod plugin;
 mod process;
+mod render;
 mod schema;
 mod simulate;
 mod spectrum;
@@ -31,6 +35,10 @@ pub(crate) enum Command {
     Spectrum(spectrum::Spectrum),
     Synth(synth::Synth),
     Compare(compare::Compare),
+    Plan(plan::Plan),
+    Render(render::Render),
+    Play(play::Play),
+    Gain(gain::Gain),
     Schema(schema::Schema),
     Plugin(plugin::Plugin),
     Device(device::Device),
@@ -49,6 +57,10 @@ impl Command {
             Self::Spectrum(args) => args.run(),
             Self::Synth(args) => args.run(),
             Self::Compare(args) => args.run(),
+            Self::Plan(args) => args.run(),
+            Self::Render(args) => args.run(),
+            Self::Play(args) => args.run(),
+            Self::Gain(args) => args.run(),
             Self::Schema(args) => args.run(),
             Self::Plugin(args) => args.run(),
             Self::Device(args) => args.run(),

@@ -6,7 +6,7 @@ use htex_host::Registry;
 use crate::failure::Failure;
 use crate::output::print;
 
-/// Print a JSON Schema of the manifest, or the descriptors of the models.
+/// Print a JSON Schema of the manifest or of scenes, or the descriptors of the models.
 #[derive(Args)]
 pub(crate) struct Schema {
     /// What to print
@@ -18,6 +18,8 @@ pub(crate) struct Schema {
 enum What {
     /// JSON Schema of `manifest.json`
     Manifest,
+    /// JSON Schema of scenes
+    Scene,
     /// Each model's parameters and fit options, with units and ranges
     Models,
 }
@@ -26,6 +28,7 @@ impl Schema {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         let value = match self.what {
             What::Manifest => Ok(htex_format::manifest_schema()),
+            What::Scene => Ok(htex_scene::scene_schema()),
             What::Models => {
                 let registry = Registry::builtin();
                 let all: Vec<_> = registry.models().iter().map(|m| m.descriptor()).collect();

@@ -9,14 +9,15 @@ use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::output::{print, print_json};
+use crate::scenes::SceneArgs;
 
-/// Check assets against the format; exit status 1 if one is not valid.
+/// Check assets and scenes (*.json) against their formats; exit status 1 if one is not valid.
 ///
 /// Each finding has a stable code (`htex explain CODE`), a severity and a JSON pointer into the
-/// manifest.
+/// manifest or the scene.
 #[derive(Args)]
 pub(crate) struct Validate {
-    /// The assets
+    /// The assets and scenes
     #[arg(required = true)]
     assets: Vec<PathBuf>,
 
@@ -55,6 +56,12 @@ impl Validate {
 
 /// Validates a file; of one that is too large, no more is read than shows it.
 fn validate_file(path: &Path) -> Result<Report, Failure> {
+    if path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("json"))
+    {
+        return SceneArgs::validate(path);
+    }
     let limits = Limits::default();
     let mut bytes = Vec::new();
     let read =

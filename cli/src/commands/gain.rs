@@ -1,0 +1,213 @@
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+
+use clap::Args;
+use htex_device::Quantity;
+use htex_scene::{Gain as Kept, GainKey, Gains, Renderer};
+
+use crate::commands::play;
+use crate::failure::Failure;
+use crate::output::print;
+use crate::playing::{Output, catch_interrupts, interrupted};
+use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs};
+
+/// Steps of the level, decibels.
+const STEP_DB: f64 = 1.0;
+const LARGE_STEP_DB: f64 = 4.0;
+
+/// Find how strong a person wants to feel a surface on a display, by adjustment, and keep it.
+///
+/// The surface plays without end; `+` and `-`, each with Enter, make it 1 dB stronger and weaker, `++` and
+/// `--` 4 dB, and Enter alone says that it matches. As in the paper it starts at the maximum: the device's
+/// limit. `htex play --person` then uses what was found. Ctrl-C keeps nothing.
+#[derive(Args)]
+pub(crate) struct Gain {
+    /// The asset or the scene
+    file: PathBuf,
+
+    #[command(flatten)]
+    choice: ChoiceArgs,
+
+    #[command(flatten)]
+    with: SceneArgs,
+
+    /// Whose gain it is
+    #[arg(long, value_name = "NAME")]
+    person: String,
+
+    /// Largest voltage to start at, V [default: the device's limit]
+    #[arg(long, value_name = "V")]
+    start: Option<f64>,
+}
+
+/// What a line asks for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Wish {
+    Change(f64),
+    Keep,
+}
+
+impl Gain {
+    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        let device = self.choice.to_override(None)?;
+        if !self.choice.names_device() && crate::scenes::is_asset(&self.file) {
+            let sentence = "--device is missing: a gain is for one device";
+            return Err(Failure::Usage(sentence.to_owned()));
+        }
+        let mut ready = play::open(&self.with, &self.file, false, device)?;
+        let limit_v = limit(&ready)?;
+        let start_v = self.start.unwrap_or(limit_v);
+        if !(start_v > 0.0 && start_v <= limit_v) {
+            let sentence = format!("--start {start_v}: more than 0, at most {limit_v} V");
+            return Err(Failure::Usage(sentence));
+        }
+        ready.scene.scene.duration_s = None;
+        let key = key(&self.person, &ready)?;
+        let file = gains_file()?;
+        let mut gains = Gains::load(&file).map_err(|error| Failure::read(&file, error))?;
+        let Some(drive_v) = adjust(&mut ready, start_v, limit_v)? else {
+            return Err(Failure::Other(
+                "ended without a match; nothing was kept".to_owned(),
+            ));
+        };
+        gains.put(Kept {
+            key,
+            file: self.file.display().to_string(),
+            drive_v,
+        });
+        gains
+            .save(&file)
+            .map_err(|error| Failure::write(&file, error))?;
+        let text = format!(
+            "kept for {}: {} ({})\n",
+            self.person,
+            volts(drive_v),
+            file.display()
+        );
+        print(&text)?;
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// What a gain of this person is kept under.
+pub(crate) fn key(person: &str, ready: &Ready) -> Result<GainKey, Failure> {
+    let profile = ready.scene.scene.device.profile.as_deref();
+    GainKey::new(person, &ready.file, &ready.device.descriptor().id, profile)
+        .map_err(|error| Failure::read(&ready.file, error))
+}
+
+/// Where gains are kept.
+pub(crate) fn gains_file() -> Result<PathBuf, Failure> {
+    Gains::user_file().ok_or_else(|| {
+        Failure::Other("there is no folder for gains; set HTEX_CONFIG_DIR to one".to_owned())
+    })
+}
+
+fn limit(ready: &Ready) -> Result<f64, Failure> {
+    let able = &ready.capabilities;
+    match (able.quantity, able.limit) {
+        (Quantity::DisplayVoltage, Some(limit_v)) => Ok(limit_v),
+        _ => Err(Failure::Other(format!(
+            "{} is no electrovibration display; a gain is the voltage of one",
+            ready.device.descriptor().name
+        ))),
+    }
+}
+
+/// Plays until the person is content; none when the input ends or is interrupted before.
+fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<f64>, Failure> {
+    catch_interrupts()?;
+    let wishes = wishes();
+    let (mut drive_v, mut output, mut kept) = (start_v, None, None);
+    let mut goes_on = true;
+    while goes_on {
+        ready.scene.scene.device.drive_v = Some(drive_v);
+        let plan = ready.plan(&costs())?;
+        let mut renderer =
+            Renderer::new(&ready.scene, &plan).map_err(|e| Failure::scene(&ready.file, e))?;
+        let output = match &mut output {
+            Some(output) => output,
+            none => none.insert(opened(ready, &plan)?),
+        };
+        eprintln!(
+            "{}   + stronger, - weaker, Enter: it matches",
+            volts(drive_v)
+        );
+        let wish = play_until_wish(&mut renderer, output, &wishes)?;
+        match wish {
+            Some(Wish::Change(db)) => drive_v = (drive_v * 10f64.powf(db / 20.0)).min(limit_v),
+            Some(Wish::Keep) => (kept, goes_on) = (Some(drive_v), false),
+            None => goes_on = false,
+        }
+    }
+    if let Some(output) = output {
+        output.finish()?;
+    }
+    Ok(kept)
+}
+
+fn opened(ready: &Ready, plan: &htex_scene::Plan) -> Result<Output, Failure> {
+    let output = Output::open(ready, plan)?;
+    Ok(match ready.capabilities.paced {
+        true => output,
+        false => output.paced(),
+    })
+}
+
+/// Plays until there is a wish, and on to silence.
+fn play_until_wish(
+    renderer: &mut Renderer,
+    output: &mut Output,
+    wishes: &Receiver<Wish>,
+) -> Result<Option<Wish>, Failure> {
+    let mut answer = None;
+    let mut stopped = false;
+    while output.step(renderer)? {
+        if stopped {
+            continue;
+        }
+        let wish = wishes.try_recv();
+        stopped = interrupted() || !matches!(wish, Err(TryRecvError::Empty));
+        answer = wish.ok().filter(|_| !interrupted());
+        if stopped {
+            renderer.stop();
+        }
+    }
+    Ok(answer)
+}
+
+/// Wishes from the lines of standard input; a line that is none is told of.
+fn wishes() -> Receiver<Wish> {
+    let (sender, receiver) = channel();
+    std::thread::spawn(move || {
+        for line in std::io::stdin().lines().map_while(Result::ok) {
+            let sent = wish(&line).map(|wish| sender.send(wish));
+            match sent {
+                None => eprintln!("{line:?} is none of +, -, ++, -- and an empty line"),
+                Some(Err(_)) => return,
+                Some(Ok(())) => {}
+            }
+        }
+    });
+    receiver
+}
+
+fn wish(line: &str) -> Option<Wish> {
+    Some(match line.trim() {
+        "+" => Wish::Change(STEP_DB),
+        "-" => Wish::Change(-STEP_DB),
+        "++" => Wish::Change(LARGE_STEP_DB),
+        "--" => Wish::Change(-LARGE_STEP_DB),
+        "" => Wish::Keep,
+        _ => return None,
+    })
+}
+
+/// A drive for people: its largest voltage, and V_g.
+fn volts(drive_v: f64) -> String {
+    format!(
+        "{drive_v:.1} V at most, V_g {:.2} V",
+        drive_v / std::f64::consts::SQRT_2
+    )
+}

@@ -1,0 +1,159 @@
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+use htex_device::Status;
+use htex_scene::file::Motion;
+use htex_scene::{DeviceOverride, Gains, Plan, Renderer};
+
+use crate::commands::gain::{gains_file, key};
+use crate::failure::Failure;
+use crate::motions::{Motions, Moved};
+use crate::output::{note, print};
+use crate::playing::{Output, catch_interrupts, interrupted};
+use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs, first_motion, is_asset};
+
+/// Play a scene or an asset on a device, until its end or Ctrl-C.
+///
+/// An asset is played at the speed and force of its first condition, by ear when no device is named.
+#[derive(Args)]
+pub(crate) struct Play {
+    /// The scene or the asset
+    file: PathBuf,
+
+    #[command(flatten)]
+    choice: ChoiceArgs,
+
+    #[command(flatten)]
+    with: SceneArgs,
+
+    /// Read the motion from standard input while it plays: lines `speed_mm_s force_n [x_mm y_mm]`, a
+    /// negative speed on the back stroke; the end of input is the end
+    #[arg(long, value_name = "-", value_parser = ["-"])]
+    motion: Option<String>,
+
+    /// Length, s, in place of the scene's
+    #[arg(long, value_name = "S")]
+    seconds: Option<f64>,
+
+    /// Drive the display with the gain that `htex gain` found for this person
+    #[arg(long, value_name = "NAME")]
+    person: Option<String>,
+}
+
+impl Play {
+    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        let ready = self.load()?;
+        let plan = ready.plan(&costs())?;
+        note(&plan.notes);
+        let mut renderer =
+            Renderer::new(&ready.scene, &plan).map_err(|e| Failure::scene(&self.file, e))?;
+        catch_interrupts()?;
+        let mut output = Output::open(&ready, &plan)?;
+        let mut motions = self.motion.is_some().then(Motions::from_stdin);
+        let endless = motions.is_some() || plan.frames.is_none();
+        if endless && !ready.capabilities.paced {
+            output = output.paced();
+        }
+        while output.step(&mut renderer)? {
+            let ended = motions.as_mut().is_some_and(|m| follow(m, &mut renderer));
+            if ended || interrupted() {
+                renderer.stop();
+            }
+        }
+        let status = output.finish()?;
+        print(&text(&ready, &plan, &status, &renderer))?;
+        Ok(ExitCode::SUCCESS)
+    }
+
+    fn load(&self) -> Result<Ready, Failure> {
+        if let Some(seconds) = self.seconds.filter(|s| !(*s > 0.0 && *s <= 1e9)) {
+            let sentence = format!("--seconds {seconds}: more than 0, at most 1e9");
+            return Err(Failure::Usage(sentence));
+        }
+        let device = self.choice.to_override(None)?;
+        let mut ready = open(&self.with, &self.file, self.motion.is_some(), device)?;
+        let scene = &mut ready.scene.scene;
+        scene.duration_s = self.seconds.or(scene.duration_s);
+        match (self.motion.is_some(), scene.motion == Motion::Live) {
+            (true, false) => scene.motion = Motion::Live,
+            (false, true) => {
+                let sentence = "the scene's motion is live; give it with --motion -";
+                return Err(Failure::Usage(sentence.to_owned()));
+            }
+            _ => {}
+        }
+        if let Some(person) = &self.person {
+            let drive_v = kept_drive(person, &ready)?;
+            ready.scene.scene.device.drive_v = Some(drive_v);
+        }
+        Ok(ready)
+    }
+}
+
+/// Opens a scene, or makes one of an asset, which is heard when no device is named.
+pub(crate) fn open(
+    with: &SceneArgs,
+    file: &std::path::Path,
+    live: bool,
+    mut device: DeviceOverride,
+) -> Result<Ready, Failure> {
+    if is_asset(file) {
+        device.adapter.get_or_insert_with(|| "audio".to_owned());
+    }
+    if let Some(name) = &device.adapter {
+        ChoiceArgs::check_built(name)?;
+    }
+    if !is_asset(file) {
+        return with.open(file, &device);
+    }
+    let motion = if live {
+        Motion::Live
+    } else {
+        first_motion(file)?
+    };
+    with.of_asset(file, motion, None, &device)
+}
+
+/// Moves the finger; true when there will be no more motions.
+fn follow(motions: &mut Motions, renderer: &mut Renderer) -> bool {
+    match motions.look() {
+        // Only sound motions come through.
+        Moved::To(finger) => renderer.set_motion(finger).is_err(),
+        Moved::Not => false,
+        Moved::Ended => true,
+    }
+}
+
+fn kept_drive(person: &str, ready: &Ready) -> Result<f64, Failure> {
+    let file = gains_file()?;
+    let gains = Gains::load(&file).map_err(|error| Failure::read(&file, error))?;
+    let found = gains.find(&key(person, ready)?);
+    found.map(|gain| gain.drive_v).ok_or_else(|| {
+        let asked = ready.file.display();
+        Failure::Other(format!(
+            "no gain is kept for {person}, {asked} and this device; find it with \
+             `htex gain {asked} --person {person}`"
+        ))
+    })
+}
+
+fn text(ready: &Ready, plan: &Plan, status: &Status, renderer: &Renderer) -> String {
+    let seconds = status.frames_written as f64 / plan.rate_hz;
+    let (unit, name) = (
+        ready.capabilities.quantity.unit(),
+        &ready.device.descriptor().name,
+    );
+    let mut text = format!(
+        "{name}: {seconds:.3} s at {} Hz, latency {:.1} ms, {} underruns, peak {:.4} {unit}\n",
+        plan.rate_hz,
+        1e3 * status.latency_s,
+        status.underruns,
+        status.peak,
+    );
+    let limited = renderer.limited_samples();
+    if limited > 0 {
+        text += &format!("{limited} samples were held at the device's limit\n");
+    }
+    text
+}

@@ -1,0 +1,164 @@
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Args;
+use htex_device::{Capabilities, Quantity, Settings, StreamFormat};
+use htex_scene::Renderer;
+use htex_scene::file::Motion;
+use serde_json::json;
+
+use crate::failure::Failure;
+use crate::output::{note, print, print_json};
+use crate::playing::{Output, catch_interrupts, interrupted};
+use crate::progress::bar;
+use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs};
+
+/// Frames a block has.
+const BLOCK: usize = 4096;
+
+/// Render a scene to a file: just what its device would get, as fast as it goes.
+///
+/// WAV, CSV, NPY or raw samples, by the file's extension, in the unit of the scene's device: newtons,
+/// the volts a display is driven with, or sound.
+#[derive(Args)]
+pub(crate) struct Render {
+    /// The scene
+    scene: PathBuf,
+
+    #[command(flatten)]
+    choice: ChoiceArgs,
+
+    #[command(flatten)]
+    with: SceneArgs,
+
+    /// The file to write [default: the scene's own, else its name with .wav]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+
+    /// Length, s, in place of the scene's
+    #[arg(long, value_name = "S")]
+    seconds: Option<f64>,
+
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+impl Render {
+    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        let mut ready = self
+            .with
+            .open(&self.scene, &self.choice.to_override(None)?)?;
+        self.check_length(&mut ready)?;
+        let plan = ready.plan(&costs())?;
+        note(&plan.notes);
+        let mut renderer =
+            Renderer::new(&ready.scene, &plan).map_err(|e| Failure::scene(&self.scene, e))?;
+        if self.json {
+            renderer = renderer.timed();
+        }
+        catch_interrupts()?;
+        let (file, mut output) = self.open(&ready, plan.rate_hz)?;
+        let length_s = plan.frames.unwrap_or(0) as f64 / plan.rate_hz;
+        let bar = bar(length_s.ceil() as u64);
+        while output.step(&mut renderer)? {
+            if interrupted() {
+                return Err(Failure::Other(
+                    "interrupted; nothing was written".to_owned(),
+                ));
+            }
+            bar.set_position((output.frames() as f64 / plan.rate_hz) as u64);
+        }
+        bar.finish_and_clear();
+        let frames = output.frames();
+        output.finish()?;
+        if self.json {
+            print_json(&json!({
+                "file": file,
+                "frames": frames,
+                "rate_hz": plan.rate_hz,
+                "unit": ready.capabilities.quantity.unit(),
+                "stages_run": renderer.stages_run(),
+                "peak": renderer.peak(),
+                "limited_samples": renderer.limited_samples(),
+            }))?;
+        } else {
+            print(&text(&file, frames, plan.rate_hz, &ready, &renderer))?;
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+
+    /// Sets the length asked for, and refuses a scene without end.
+    fn check_length(&self, ready: &mut Ready) -> Result<(), Failure> {
+        let scene = &mut ready.scene.scene;
+        if let Some(seconds) = self.seconds {
+            if !(seconds > 0.0 && seconds <= 1e9) {
+                let sentence = format!("--seconds {seconds}: more than 0, at most 1e9");
+                return Err(Failure::Usage(sentence));
+            }
+            scene.duration_s = Some(seconds);
+        }
+        let sentence = match scene.motion {
+            Motion::Live => "its motion is live; play it with `htex play --motion -`",
+            Motion::Constant(_) if scene.duration_s.is_none() => {
+                "it has no end; add duration_s, or give --seconds"
+            }
+            _ => return Ok(()),
+        };
+        let file = self.scene.display();
+        Err(Failure::Other(format!("{file}: {sentence}")))
+    }
+
+    /// Opens the file, under its name for people.
+    fn open(&self, ready: &Ready, rate_hz: f64) -> Result<(String, Output), Failure> {
+        let known = ready.devices.find("org.htex.file")?;
+        let is_file = ready.device.descriptor().id == known.descriptor().id;
+        let mut given = match is_file {
+            true => ready
+                .settings()
+                .iter()
+                .map(|(k, v)| (k.to_owned(), v.to_owned()))
+                .collect(),
+            false => like(&ready.capabilities, &self.scene),
+        };
+        if let Some(output) = &self.output {
+            given.insert("path".to_owned(), output.display().to_string());
+        }
+        let settings = Settings::resolve(known.descriptor(), None, &given)?;
+        let format = StreamFormat {
+            rate_hz,
+            block_frames: BLOCK as u32,
+        };
+        let device = known.adapter.open(&settings, &format)?;
+        let file = settings.text("path").to_owned();
+        Ok((file, Output::new(device, BLOCK, rate_hz)))
+    }
+}
+
+/// Settings of a file that holds what a device of these capabilities would get.
+fn like(able: &Capabilities, scene: &Path) -> BTreeMap<String, String> {
+    let name = scene.file_name().unwrap_or_default().to_string_lossy();
+    let stem = name.split('.').next().unwrap_or_default();
+    let mut given = vec![("path", format!("{stem}.wav"))];
+    match able.quantity {
+        Quantity::LateralForce => given.push(("quantity", "lateral_force".to_owned())),
+        Quantity::Sound => given.push(("quantity", "sound".to_owned())),
+        Quantity::DisplayVoltage => {
+            given.push(("quantity", "display_voltage".to_owned()));
+            given.extend(able.limit.map(|limit| ("limit_v", limit.to_string())));
+        }
+    }
+    given.into_iter().map(|(k, v)| (k.to_owned(), v)).collect()
+}
+
+fn text(file: &str, frames: u64, rate_hz: f64, ready: &Ready, renderer: &Renderer) -> String {
+    let (unit, peak) = (ready.capabilities.quantity.unit(), renderer.peak());
+    let seconds = frames as f64 / rate_hz;
+    let mut text = format!("{file}: {seconds:.3} s at {rate_hz} Hz, peak {peak:.4} {unit}\n");
+    let limited = renderer.limited_samples();
+    if limited > 0 {
+        text += &format!("{limited} samples were held at the device's limit\n");
+    }
+    text
+}

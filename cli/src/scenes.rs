@@ -1,0 +1,171 @@
+//! Arguments that say what a scene is played with, shared by the commands that play scenes.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use htex_device::{Capabilities, Devices, KnownDevice, Settings};
+use htex_host::Registry;
+use htex_scene::file::{Constant, Motion};
+use htex_scene::{Costs, DeviceOverride, LoadedScene, Plan, Surroundings};
+
+use crate::devices::{DeviceArgs, SettingArgs};
+use crate::failure::Failure;
+use crate::output::warn;
+use crate::plugins::PlayerArgs;
+
+/// What a finger does that nobody describes: the paper's usual speed (mm/s) and force (newtons).
+const USUAL: (f64, f64) = (80.0, 0.4);
+
+/// Models and devices for a scene.
+#[derive(Args)]
+pub(crate) struct SceneArgs {
+    #[command(flatten)]
+    player: PlayerArgs,
+
+    #[command(flatten)]
+    devices: DeviceArgs,
+}
+
+/// Which device, and how it is set.
+#[derive(Args)]
+pub(crate) struct ChoiceArgs {
+    /// The device, by short name or id, in place of the scene's; its settings are then the defaults
+    #[arg(long, value_name = "ID", help_heading = "Devices")]
+    device: Option<String>,
+
+    #[command(flatten)]
+    settings: SettingArgs,
+}
+
+impl ChoiceArgs {
+    /// What is said, `output` being where a file goes when nobody says it.
+    pub(crate) fn to_override(&self, output: Option<&Path>) -> Result<DeviceOverride, Failure> {
+        Ok(DeviceOverride {
+            adapter: self.device.clone(),
+            profile: self.settings.profile().map(str::to_owned),
+            settings: self.settings.given()?,
+            output: output.map(|path| path.display().to_string()),
+        })
+    }
+
+    /// Refuses a device that is not there because this program was built without it.
+    pub(crate) fn check_built(name: &str) -> Result<(), Failure> {
+        DeviceArgs::missing(name).map_or(Ok(()), |why| Err(why.into()))
+    }
+
+    pub(crate) fn names_device(&self) -> bool {
+        self.device.is_some()
+    }
+}
+
+/// A scene with its device.
+pub(crate) struct Ready {
+    pub(crate) file: PathBuf,
+    pub(crate) scene: LoadedScene,
+    pub(crate) device: KnownDevice,
+    pub(crate) capabilities: Capabilities,
+    pub(crate) devices: Devices,
+}
+
+impl SceneArgs {
+    pub(crate) fn models(&self) -> Result<Registry, Failure> {
+        self.player.registry()
+    }
+
+    /// Loads a scene file.
+    pub(crate) fn open(&self, file: &Path, device: &DeviceOverride) -> Result<Ready, Failure> {
+        self.load(file, |around| LoadedScene::open(file, around, device))
+    }
+
+    /// Makes a scene of an asset.
+    pub(crate) fn of_asset(
+        &self,
+        file: &Path,
+        motion: Motion,
+        seconds: Option<f64>,
+        device: &DeviceOverride,
+    ) -> Result<Ready, Failure> {
+        self.load(file, |around| {
+            LoadedScene::of_asset(file, motion, seconds, around, device)
+        })
+    }
+
+    fn load(
+        &self,
+        file: &Path,
+        load: impl FnOnce(&Surroundings<'_>) -> Result<LoadedScene, htex_scene::LoadError>,
+    ) -> Result<Ready, Failure> {
+        let (models, devices) = (self.models()?, self.devices.devices()?);
+        let around = Surroundings {
+            models: &models,
+            embedded: self.player.embedded(),
+            devices: &devices,
+        };
+        let scene = load(&around).map_err(|error| Failure::load(file, error))?;
+        let notes: Vec<String> = scene.notes.iter().map(ToString::to_string).collect();
+        warn(&notes);
+        let device = devices.find(&scene.scene.device.adapter)?.clone();
+        let capabilities = device.adapter.capabilities(&scene.settings)?;
+        Ok(Ready {
+            file: file.to_owned(),
+            scene,
+            device,
+            capabilities,
+            devices,
+        })
+    }
+
+    /// Validates a scene file.
+    pub(crate) fn validate(file: &Path) -> Result<htex_format::Report, Failure> {
+        let registry = Registry::search(&htex_host::Search::default())?;
+        let around = Surroundings {
+            models: &registry,
+            embedded: true,
+            devices: &DeviceArgs::default().devices_quietly()?,
+        };
+        htex_scene::validate(file, &around).map_err(|error| Failure::load(file, error))
+    }
+}
+
+impl Ready {
+    /// Plans the scene for its device.
+    pub(crate) fn plan(&self, costs: &Costs) -> Result<Plan, Failure> {
+        htex_scene::plan(&self.scene, &self.capabilities, costs)
+            .map_err(|error| Failure::scene(&self.file, error))
+    }
+
+    /// The device's settings.
+    pub(crate) fn settings(&self) -> &Settings {
+        &self.scene.settings
+    }
+}
+
+/// Whether a file is an asset, by its name; else it is a scene.
+pub(crate) fn is_asset(file: &Path) -> bool {
+    file.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("htex"))
+}
+
+/// The motion of an asset's first condition.
+pub(crate) fn first_motion(file: &Path) -> Result<Motion, Failure> {
+    let asset = htex_format::Asset::open(file).map_err(|error| Failure::asset(file, error))?;
+    let first = asset.manifest.conditions.first();
+    let (speed, force) = USUAL;
+    Ok(Motion::Constant(Constant {
+        speed_mm_s: first.and_then(|c| c.speed_mm_s).unwrap_or(speed),
+        force_n: first.and_then(|c| c.force_n).unwrap_or(force),
+        from_mm: None,
+        direction_deg: 0.0,
+    }))
+}
+
+/// Where measured costs are kept.
+pub(crate) fn costs_file() -> Option<PathBuf> {
+    htex_host::folders::cache().map(|folder| folder.join("costs.json"))
+}
+
+/// Costs measured here, else those that the program brings along.
+pub(crate) fn costs() -> Costs {
+    let kept = costs_file().and_then(|file| Costs::load(&file));
+    kept.unwrap_or_else(Costs::embedded)
+}

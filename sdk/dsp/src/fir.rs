@@ -27,13 +27,13 @@ impl Fir {
         let sampled: Vec<f64> = (0..=bins)
             .map(|k| magnitude(0.5 * rate_hz * k as f64 / bins as f64))
             .collect();
+        let cosine: Vec<f64> = (0..2 * bins)
+            .map(|i| libm::cos(core::f64::consts::PI * i as f64 / bins as f64))
+            .collect();
         let at = |lag: usize| {
-            let cosine = |k: usize| {
-                let angle = core::f64::consts::PI * (k * lag % (2 * bins)) as f64 / bins as f64;
-                sampled[k] * libm::cos(angle)
-            };
-            let ends = 0.5 * (cosine(0) + cosine(bins));
-            (ends + (1..bins).map(cosine).sum::<f64>()) / bins as f64
+            let term = |k: usize| sampled[k] * cosine[k * lag % (2 * bins)];
+            let ends = 0.5 * (term(0) + term(bins));
+            (ends + (1..bins).map(term).sum::<f64>()) / bins as f64
         };
         let window = |lag: usize| {
             let x = core::f64::consts::PI * lag as f64 / (half + 1) as f64;

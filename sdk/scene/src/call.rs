@@ -18,6 +18,10 @@ pub(crate) const MAX_RATIO: f64 = 8.0;
 const LIVE_RATIO: f64 = 4.0;
 /// Largest force that a live motion is prepared for, in the recorded one.
 const LIVE_FORCE: f64 = 3.0;
+/// Rate of a voice before a compensation, in the highest frequency there is.
+const FILTERED_OVERSAMPLING: f64 = 2.5;
+/// Relative difference of speeds and forces that is rounding.
+const SAME: f64 = 1e-6;
 /// How often the finger is looked at, seconds.
 const CONTROL_S: f64 = 0.0032;
 /// Level of a preview by ear, decibels of full scale.
@@ -45,15 +49,20 @@ impl Span {
         self.high = self.high.max(x);
     }
 
-    /// One value or none.
+    /// One value, but for rounding, or none.
     pub(crate) fn is_point(&self) -> bool {
-        self.low >= self.high
+        self.low >= self.high - SAME * self.high.abs()
+    }
+
+    /// Whether it is a point at `x`.
+    pub(crate) fn is_at(&self, x: f64) -> bool {
+        self.is_point() && (self.low - x).abs() <= SAME * x.abs()
     }
 
     pub(crate) fn text(&self, unit: &str) -> String {
         match self {
             _ if self.high == f64::INFINITY => format!("live {unit}"),
-            _ if self.low == self.high => format!("{} {unit}", self.low),
+            _ if self.is_point() => format!("{:.4} {unit}", self.low),
             _ => format!("{:.3} to {:.3} {unit}", self.low, self.high),
         }
     }
@@ -310,11 +319,16 @@ impl Part {
     }
 
     /// The surface's voice. A model that renders at any rate is asked for the one that needs no
-    /// conversion behind the scaling of the speed.
+    /// conversion behind the scaling of the speed; before a compensation, for one at which its
+    /// filter is short.
     pub(crate) fn source(&self, scene: &LoadedScene, call: &Call) -> Result<Source, htex::Error> {
+        let mut wanted_hz = call.rate_hz / (self.fixed_ratio * self.oversampling);
+        if call.compensation.is_some() {
+            wanted_hz = wanted_hz.min(FILTERED_OVERSAMPLING * self.top_hz);
+        }
         scene.assets[self.surface].source(&VoiceOptions {
             model: Some(&self.model),
-            rate_hz: call.rate_hz / (self.fixed_ratio * self.oversampling),
+            rate_hz: wanted_hz,
             seed: call.seed.wrapping_add(self.surface as u64),
             motion: self.start,
         })
@@ -413,7 +427,7 @@ fn span(conditions: &[[Option<f64>; 2]], axis: usize) -> Span {
 }
 
 fn only(span: Span) -> Option<f64> {
-    (span.low == span.high && span.low > 0.0).then_some(span.low)
+    (span.is_point() && span.low > 0.0 && span.low.is_finite()).then_some(span.low)
 }
 
 /// Conditions and band error of a representation.

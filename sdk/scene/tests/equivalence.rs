@@ -215,8 +215,8 @@ proptest! {
             let runs = renderer.stages_run();
             let ran: Vec<_> = runs.iter().map(|run| (run.name, run.surface)).collect();
             prop_assert_eq!(ran, names(plan));
-            // A live finger may never come to a surface.
-            prop_assert!(case.motion == 2 || runs.iter().all(|run| run.blocks > 0), "{:?}", runs);
+            // A finger may be on one of several surfaces for less than a sample of its model.
+            prop_assert!(case.surfaces > 1 || runs.iter().all(|run| run.blocks > 0), "{:?}", runs);
         }
         prop_assert!(short_plan.stages.len() <= full_plan.stages.len());
         let effects = |plan: &Plan| Effect::ALL.iter().filter(|e| {

@@ -31,7 +31,7 @@ fn need(_: &Call, part: &Part) -> Need {
             part.force_n.text("N")
         ));
     }
-    Need::no(match part.force_n.low == known {
+    Need::no(match part.force_n.is_at(known) {
         true => format!("the force is always the recorded one, {known} N"),
         false => format!(
             "the force never changes: the level is multiplied by {:.3}",

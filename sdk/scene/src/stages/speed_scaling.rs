@@ -29,7 +29,7 @@ fn need(_: &Call, part: &Part) -> Need {
             part.speed_mm_s.text("mm/s")
         ));
     }
-    Need::no(match part.speed_mm_s.low == known {
+    Need::no(match part.speed_mm_s.is_at(known) {
         true => format!("the speed is always the recorded one, {known} mm/s"),
         false => format!(
             "the speed never changes: the resampler reads {:.3} times as fast",

@@ -1,0 +1,185 @@
+//! For each effect a pair of scenes that differ only in needing it: its stage is in one and not in the
+//! other.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+mod common;
+
+use common::{
+    constant, display, file, grid, integer_file, loudspeaker, planned, rendered, scene, single,
+    surface, trace, traced,
+};
+use htex_device::Capabilities;
+use htex_scene::file::{Effect, Motion, Region, Surface, Switch};
+use htex_scene::{LoadedScene, Renderer, Response};
+
+type Scene = (LoadedScene, Capabilities);
+
+/// A finger that slides to and fro at 80 mm/s or so, `swing` of its speed and force more and less.
+fn strokes(asset: &htex::Asset, swing: f64) -> LoadedScene {
+    let x = move |t: f64| 80.0 * t + 80.0 * swing * (4.0 * t).sin() / 4.0;
+    traced(asset, trace(0.5, x, |_| 0.4), 0.5)
+}
+
+/// Two surfaces side by side, the finger on the left one until `x_mm`.
+fn two(reach_mm: f64) -> LoadedScene {
+    let mut scene = traced(single(), trace(0.5, move |t| reach_mm * t, |_| 0.4), 0.5);
+    let at = |from: f64| Surface {
+        region: Some(Region {
+            x_mm: [from, from + 30.0],
+            y_mm: [-1.0, 1.0],
+        }),
+        ..surface()
+    };
+    scene.scene.surfaces = vec![at(0.0), at(30.0)];
+    scene.assets = vec![single().clone(); 2];
+    scene
+}
+
+fn plain() -> LoadedScene {
+    scene(single(), constant(80.0, 0.4), 0.5)
+}
+
+/// Scenes without and with a need of the effect.
+fn pair(effect: Effect) -> (Scene, Scene) {
+    let forces = |change: f64| {
+        let force = move |t: f64| 0.4 + change * (5.0 * t).sin();
+        traced(single(), trace(0.5, |t| 80.0 * t, force), 0.5)
+    };
+    let with = |change: &dyn Fn(&mut LoadedScene)| {
+        let mut scene = plain();
+        change(&mut scene);
+        scene
+    };
+    let turning = traced(single(), trace(0.5, |t| (20.0 * t).sin(), |_| 0.4), 0.5);
+    let resting = traced(single(), trace(0.5, |t| 80.0 * t.min(0.3), |_| 0.4), 0.5);
+    let response = Response {
+        frequency_hz: vec![20.0, 1_000.0],
+        magnitude: vec![1.0, 0.2],
+        phase_rad: vec![0.0; 2],
+    };
+    let model_rate = Capabilities {
+        default_rate_hz: 2_000.0,
+        ..file()
+    };
+    let ar = with(&|s| s.scene.surfaces[0].representation = "ar".to_owned());
+    match effect {
+        Effect::Interpolation => (
+            (scene(grid(), constant(90.0, 0.5), 0.5), file()),
+            (strokes(grid(), 0.2), file()),
+        ),
+        Effect::SpeedScaling => (
+            (strokes(single(), 0.0), file()),
+            (strokes(single(), 0.2), file()),
+        ),
+        Effect::ForceScaling => ((forces(0.0), file()), (forces(0.1), file())),
+        Effect::Crossfade => ((two(50.0), file()), (two(80.0), file())),
+        Effect::Compensation => (
+            (plain(), display()),
+            (with(&|s| s.response = Some(response.clone())), display()),
+        ),
+        Effect::Resampling => ((ar.clone(), model_rate), (ar, file())),
+        Effect::Direction => ((strokes(single(), 0.2), file()), (turning, file())),
+        Effect::Gain => (
+            (plain(), file()),
+            (with(&|s| s.scene.device.gain_db = Some(6.0)), file()),
+        ),
+        Effect::SquareRoot => ((plain(), loudspeaker()), (plain(), display())),
+        Effect::Contact => ((strokes(single(), 0.2), file()), (resting, file())),
+        Effect::Carrier => {
+            let without = Capabilities {
+                carrier_hz: None,
+                ..display()
+            };
+            ((plain(), without), (plain(), display()))
+        }
+        Effect::Limiter | Effect::Dither | Effect::Quantisation => {
+            ((plain(), file()), (plain(), integer_file()))
+        }
+    }
+}
+
+#[test]
+fn each_effect_is_in_where_it_is_called_for_and_nowhere_else() {
+    for effect in Effect::ALL {
+        let (without, with) = pair(effect);
+        for ((scene, device), wanted) in [(&without, false), (&with, true)] {
+            let plan = planned(scene, device);
+            let stages: Vec<&str> = plan.stages.iter().map(|s| s.name).collect();
+            assert_eq!(
+                stages.contains(&effect.name()),
+                wanted,
+                "{effect:?}: {stages:?}"
+            );
+            let out = plan.left_out.iter().find(|out| out.name == effect.name());
+            assert!(
+                out.is_some() != wanted || effect == Effect::Crossfade,
+                "{effect:?}"
+            );
+            assert!(
+                plan.stages
+                    .iter()
+                    .all(|s| !s.reason.is_empty() && s.rate_hz > 0.0)
+            );
+        }
+    }
+}
+
+#[test]
+fn a_constant_motion_to_a_file_takes_three_stages_and_says_so() {
+    for scene in [
+        plain(),
+        scene(single(), constant(120.0, 0.6), 0.5),
+        scene(grid(), constant(90.0, 0.5), 0.5),
+    ] {
+        let plan = planned(&scene, &file());
+        assert!(plan.stages.len() <= 3, "{:?}", plan.stages);
+        assert!(plan.constant && plan.notes.iter().any(|n| n.contains("nothing changes")));
+        let mut renderer = Renderer::new(&scene, &plan).unwrap();
+        assert_eq!(rendered(&mut renderer).len(), 10_000);
+        assert_eq!(renderer.stages_run().len(), plan.stages.len());
+    }
+}
+
+#[test]
+fn a_surface_that_nobody_touches_is_not_built() {
+    let plan = planned(&two(50.0), &file());
+    assert_eq!(plan.representation.len(), 1);
+    let out = plan
+        .left_out
+        .iter()
+        .find(|out| out.name == "synthesis")
+        .unwrap();
+    assert_eq!(out.surface, Some(1));
+}
+
+#[test]
+fn what_the_chain_needs_cannot_be_switched_off_and_the_rest_can() {
+    let costs = htex_scene::Costs::embedded();
+    for effect in Effect::ALL {
+        let (_, (mut scene, device)) = pair(effect);
+        scene.scene.effects = [(effect, Switch::Off)].into();
+        let result = htex_scene::plan(&scene, &device, &costs);
+        let needed = matches!(effect, Effect::Resampling | Effect::SquareRoot);
+        match result {
+            Ok(plan) => {
+                assert!(!needed, "{effect:?}");
+                assert!(
+                    plan.stages.iter().all(|s| s.name != effect.name()),
+                    "{effect:?}"
+                );
+            }
+            Err(error) => assert!(needed, "{effect:?}: {error}"),
+        }
+    }
+}
+
+#[test]
+fn a_live_scene_is_ready_for_what_may_come() {
+    let live = scene(single(), Motion::Live, 1.0);
+    let plan = planned(&live, &file());
+    let stages: Vec<&str> = plan.stages.iter().map(|s| s.name).collect();
+    for wanted in ["speed_scaling", "force_scaling", "direction", "contact"] {
+        assert!(stages.contains(&wanted), "{wanted}: {stages:?}");
+    }
+    assert!(!plan.constant);
+}

@@ -7,12 +7,15 @@ use htex_host::WasmLimits;
 /// One limit and its value.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WasmLimit {
-    set: fn(&mut WasmLimits, u64),
+    set: Set,
     value: u64,
 }
 
+/// Sets a limit to a value.
+type Set = fn(&mut WasmLimits, u64);
+
 /// Name, largest value, and what it sets.
-const LIMITS: [(&str, u64, fn(&mut WasmLimits, u64)); 8] = [
+const LIMITS: [(&str, u64, Set); 8] = [
     ("module-mib", 1024, |l, n| {
         l.module_bytes = (n as usize) << 20
     }),

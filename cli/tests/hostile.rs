@@ -32,6 +32,7 @@ struct End {
 /// Runs a command to its end, and kills it when it hangs.
 fn run(command: &mut Command, errors: &std::path::Path) -> End {
     let file = std::fs::File::create(errors).unwrap();
+    #[allow(clippy::zombie_processes)] // wait4 below waits, and tells what was used.
     let child = command.stdout(Stdio::null()).stderr(file).spawn().unwrap();
     let begun = Instant::now();
     let pid = child.id() as libc::pid_t;

@@ -1,16 +1,17 @@
 //! Arguments that say what a scene is played with, shared by the commands that play scenes.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_device::{Capabilities, Devices, KnownDevice, Settings};
+use htex_device::{Capabilities, DeviceError, Devices, KnownDevice, Settings};
 use htex_host::Registry;
 use htex_scene::file::{Constant, Motion};
 use htex_scene::{Costs, DeviceOverride, LoadedScene, Plan, Surroundings};
 
 use crate::devices::{DeviceArgs, SettingArgs};
 use crate::failure::Failure;
-use crate::output::warn;
+use crate::output::{note, warn};
 use crate::plugins::PlayerArgs;
 
 /// What a finger does that nobody describes: the paper's usual speed (mm/s) and force (newtons).
@@ -105,7 +106,7 @@ impl SceneArgs {
         let notes: Vec<String> = scene.notes.iter().map(ToString::to_string).collect();
         warn(&notes);
         let device = devices.find(&scene.scene.device.adapter)?.clone();
-        let capabilities = device.adapter.capabilities(&scene.settings)?;
+        let capabilities = capabilities(&device, &scene.settings, &devices)?;
         Ok(Ready {
             file: file.to_owned(),
             scene,
@@ -138,6 +139,32 @@ impl Ready {
     pub(crate) fn settings(&self) -> &Settings {
         &self.scene.settings
     }
+}
+
+/// What a device can do. A display's that is not there is known from its settings, as far as a plan or
+/// a file needs it.
+fn capabilities(
+    device: &KnownDevice,
+    settings: &Settings,
+    devices: &Devices,
+) -> Result<Capabilities, Failure> {
+    let missing = match device.adapter.capabilities(settings) {
+        Err(error @ DeviceError::Missing(_)) if settings.number("limit_v") > 0.0 => error,
+        other => return Ok(other?),
+    };
+    let file = devices.find("org.htex.file")?;
+    let mut given: BTreeMap<String, String> = ["limit_v", "carrier_hz"]
+        .iter()
+        .map(|name| (name.to_string(), settings.text(name).to_owned()))
+        .filter(|(_, value)| !value.is_empty())
+        .collect();
+    given.insert("quantity".to_owned(), "display_voltage".to_owned());
+    given.insert("path".to_owned(), "display.wav".to_owned());
+    let like = Settings::resolve(file.descriptor(), None, &given)?;
+    let able = file.adapter.capabilities(&like).map_err(|_| missing)?;
+    let sentence = "the device is not there: limit and carrier are those of its settings, rates those of a file";
+    note(&[sentence.to_owned()]);
+    Ok(able)
 }
 
 /// Whether a file is an asset, by its name; else it is a scene.

@@ -145,6 +145,36 @@ fn the_examples_are_planned_and_rendered_and_what_is_planned_runs() {
 }
 
 #[test]
+fn the_drive_of_a_card_that_is_not_there_is_rendered_as_its_volts() {
+    let place = place();
+    let mut device = json!({
+        "adapter": "daq",
+        "profile": "pcie-6321_tabor-9200a_sct3250",
+        "settings": { "device": "NoSuchCard/ao0" },
+        "drive_v": 60,
+    });
+    scene(&place, json!({ "device": device, "duration_s": 1 }));
+    let run = place.json(&["render", "s.scene.json", "-o", "v.wav", "--json"]);
+    assert_eq!(
+        (&run["unit"], &run["limited_samples"]),
+        (&json!("V"), &json!(0))
+    );
+    let peak = run["peak"].as_f64().unwrap();
+    assert!((40.0..66.0).contains(&peak), "{peak} V");
+    assert!(names(&run["stages_run"]).contains(&"carrier"), "{run}");
+    // It is not played, and a scene cannot name a driver.
+    assert_eq!(place.run(&["play", "s.scene.json"]).code(), 1);
+    device["settings"]["driver"] = json!("libother.so");
+    scene(&place, json!({ "device": device }));
+    let plan = place.run(&["plan", "s.scene.json"]);
+    assert!(
+        plan.error().contains("DEVICE_PATH_UNSAFE"),
+        "{}",
+        plan.error()
+    );
+}
+
+#[test]
 fn what_is_wrong_is_told_with_code_and_pointer_and_nothing_is_written() {
     let place = place();
     scene(

@@ -26,12 +26,6 @@ pub(crate) struct Gain {
     /// The asset or the scene
     file: PathBuf,
 
-    #[command(flatten)]
-    choice: ChoiceArgs,
-
-    #[command(flatten)]
-    with: SceneArgs,
-
     /// Whose gain it is
     #[arg(long, value_name = "NAME")]
     person: String,
@@ -39,6 +33,12 @@ pub(crate) struct Gain {
     /// Largest voltage to start at, V [default: the device's limit]
     #[arg(long, value_name = "V")]
     start: Option<f64>,
+
+    #[command(flatten)]
+    choice: ChoiceArgs,
+
+    #[command(flatten)]
+    with: SceneArgs,
 }
 
 /// What a line asks for.

@@ -18,12 +18,6 @@ pub(crate) struct Plan {
     /// The scene
     scene: PathBuf,
 
-    #[command(flatten)]
-    choice: ChoiceArgs,
-
-    #[command(flatten)]
-    with: SceneArgs,
-
     /// Measure the costs on this machine first, and keep them for later plans
     #[arg(long)]
     measure: bool,
@@ -35,6 +29,12 @@ pub(crate) struct Plan {
     /// Print JSON
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    choice: ChoiceArgs,
+
+    #[command(flatten)]
+    with: SceneArgs,
 }
 
 impl Plan {

@@ -21,12 +21,6 @@ pub(crate) struct Play {
     /// The scene or the asset
     file: PathBuf,
 
-    #[command(flatten)]
-    choice: ChoiceArgs,
-
-    #[command(flatten)]
-    with: SceneArgs,
-
     /// Read the motion from standard input while it plays: lines `speed_mm_s force_n [x_mm y_mm]`, a
     /// negative speed on the back stroke; the end of input is the end
     #[arg(long, value_name = "-", value_parser = ["-"])]
@@ -39,6 +33,12 @@ pub(crate) struct Play {
     /// Drive the display with the gain that `htex gain` found for this person
     #[arg(long, value_name = "NAME")]
     person: Option<String>,
+
+    #[command(flatten)]
+    choice: ChoiceArgs,
+
+    #[command(flatten)]
+    with: SceneArgs,
 }
 
 impl Play {

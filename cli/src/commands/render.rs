@@ -26,12 +26,6 @@ pub(crate) struct Render {
     /// The scene
     scene: PathBuf,
 
-    #[command(flatten)]
-    choice: ChoiceArgs,
-
-    #[command(flatten)]
-    with: SceneArgs,
-
     /// The file to write [default: the scene's own, else its name with .wav]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -43,6 +37,12 @@ pub(crate) struct Render {
     /// Print JSON
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    choice: ChoiceArgs,
+
+    #[command(flatten)]
+    with: SceneArgs,
 }
 
 impl Render {

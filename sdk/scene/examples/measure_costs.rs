@@ -1,0 +1,9 @@
+//! Prints the costs this crate brings along: `cargo run --release -p htex-scene --example
+//! measure_costs -- "name of the machine" > sdk/scene/src/costs.json`.
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let machine = std::env::args().nth(1).unwrap_or_default();
+    let costs = htex_scene::Costs::measure(&htex::Registry::builtin(), &machine)?;
+    println!("{}", serde_json::to_string_pretty(&costs)?);
+    Ok(())
+}

@@ -1,0 +1,136 @@
+//! What an electrovibration display is driven with gives the texture back.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+mod common;
+
+use common::{constant, display, planned, rendered, scene, single, trace, traced};
+use htex_author::{
+    Averaging, Recording, SegmentChoice, SpectrumOptions, TextureSpectrum, segment_spectra,
+};
+use htex_device::Capabilities;
+use htex_dsp::bands::{energy_matching_gain, rms};
+use htex_dsp::grid::level_rms;
+use htex_scene::{LoadedScene, Renderer, Response};
+
+const RATE_HZ: f64 = 50_000.0;
+const DRIVE_V: f64 = 100.0;
+/// At 50 kHz, seven whole periods of twice the carrier.
+const PERIODS: usize = 25;
+
+/// The paper's rig at 50 kHz, without a converter's steps.
+fn rig() -> Capabilities {
+    Capabilities {
+        default_rate_hz: RATE_HZ,
+        step: None,
+        ..display()
+    }
+}
+
+fn driven(scene: &mut LoadedScene) -> (Vec<f32>, Renderer) {
+    scene.scene.device.drive_v = Some(DRIVE_V);
+    let mut renderer = Renderer::new(scene, &planned(scene, &rig())).unwrap();
+    (rendered(&mut renderer), renderer)
+}
+
+/// Twice the square, averaged over whole periods: what the friction goes with, V².
+fn demodulated(drive: &[f32]) -> Vec<f64> {
+    let squares: Vec<f64> = drive.iter().map(|v| 2.0 * f64::from(*v).powi(2)).collect();
+    let mean = |w: &[f64]| w.iter().sum::<f64>() / PERIODS as f64;
+    squares.windows(PERIODS).map(mean).collect()
+}
+
+/// RMS-averaged magnitudes on the 5 Hz grid.
+fn magnitudes(signal: Vec<f64>) -> Vec<f64> {
+    let options = SpectrumOptions {
+        segments: SegmentChoice::Windows,
+        averaging: Averaging::Rms,
+        response: None,
+    };
+    let recording = Recording::new("drive", RATE_HZ, vec![signal]).unwrap();
+    let part = segment_spectra(&recording, &options).unwrap();
+    TextureSpectrum::average(&[part], options.averaging)
+        .unwrap()
+        .magnitude_n
+}
+
+#[test]
+fn demodulated_and_squared_it_has_the_textures_compensated_spectrum() {
+    let response = Response {
+        frequency_hz: vec![0.0, 100.0, 300.0, 600.0, 1_000.0],
+        magnitude: vec![1.0, 1.2, 0.9, 0.4, 0.25],
+        phase_rad: vec![0.0; 5],
+    };
+    for model in ["ar", "mfcc", "sbeta", "sslope"] {
+        for response in [None, Some(response.clone())] {
+            let mut scene = scene(single(), constant(80.0, 0.4), 60.0);
+            scene.scene.surfaces[0].representation = model.to_owned();
+            scene.response = response.clone();
+            let (drive, renderer) = driven(&mut scene);
+            // Without the ramps at both ends.
+            let steady = demodulated(&drive[RATE_HZ as usize..drive.len() - RATE_HZ as usize]);
+            let grid = single().band().grid_hz();
+            let droop = |f: f64| {
+                let x = std::f64::consts::PI * f * PERIODS as f64 / RATE_HZ;
+                x.sin() / x
+            };
+            let found: Vec<f64> = magnitudes(steady.clone())
+                .iter()
+                .zip(&grid)
+                .map(|(m, f)| m / droop(*f))
+                .collect();
+            let texture = single().magnitude_n(Some(model), None, &grid).unwrap();
+            let inverse = |f: f64| response.as_ref().map_or(1.0, |r| 1.0 / r.at(f).0);
+            let wanted: Vec<f64> = texture
+                .iter()
+                .zip(&grid)
+                .map(|(m, f)| m * inverse(*f))
+                .collect();
+            let gain = energy_matching_gain(&wanted, &found);
+            // A bin that the model leaves empty is no ratio.
+            let most = wanted.iter().copied().fold(0.0, f64::max);
+            let errors: Vec<f64> = found
+                .iter()
+                .zip(&wanted)
+                .filter(|(_, wanted)| **wanted > 1e-3 * most)
+                .map(|(a, b)| 20.0 * (gain * a / b).log10())
+                .collect();
+            assert!(errors.len() > 150);
+            let error_db = rms(&errors);
+            println!(
+                "{model}, {}compensated: {error_db:.2} dB RMS, peak {:.1} V, {} radicands held",
+                if response.is_some() { "" } else { "not " },
+                renderer.peak(),
+                renderer.rooted_samples()
+            );
+            assert!(error_db < 1.0, "{model}: {error_db} dB");
+
+            // 4.5 times the RMS of what is felt reaches half the square of the largest voltage.
+            let reach = 4.5 * level_rms(&found) / (DRIVE_V * DRIVE_V / 2.0);
+            let reach_db = 20.0 * reach.log10();
+            assert!(reach_db.abs() < 0.3, "{model}: {reach_db} dB");
+        }
+    }
+}
+
+#[test]
+fn it_never_exceeds_the_limit_and_starts_and_ends_at_zero() {
+    let lifted = |t: f64| if (0.5..0.7).contains(&t) { 0.0 } else { 0.4 };
+    let motion = trace(2.0, |t| 10.0 * (12.0 * t).sin(), lifted);
+    let mut scene = traced(single(), motion, 2.0);
+    // As much as there is.
+    scene.scene.device.drive_v = Some(150.0);
+    let rig = Capabilities {
+        default_rate_hz: RATE_HZ,
+        ..display()
+    };
+    let mut renderer = Renderer::new(&scene, &planned(&scene, &rig)).unwrap();
+    let drive = rendered(&mut renderer);
+    assert_eq!(drive.len(), 100_000);
+    assert!(drive.iter().all(|v| v.is_finite() && v.abs() <= 150.0));
+    assert!(renderer.peak() > 100.0);
+    assert_eq!(drive[drive.len() - 1], 0.0);
+    // The first step of a ramp of 20 ms, at most.
+    assert!(drive[0].abs() <= 150.0 / 1_000.0, "{}", drive[0]);
+    let lifted = &drive[(0.53 * RATE_HZ) as usize..(0.69 * RATE_HZ) as usize];
+    assert!(lifted.iter().all(|v| *v == 0.0), "silent without contact");
+}

@@ -8,6 +8,8 @@ use htex::{Asset, VoiceOptions};
 use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
 use htex_host::{Registry, Search};
+use htex_scene::file::{self, Budget, DeviceChoice, Effect, Motion, Region, Scene, Switch};
+use htex_scene::{Costs, Finger, LoadedScene, Renderer, plan};
 use xtask::plugins;
 
 thread_local! {
@@ -177,5 +179,75 @@ fn following_the_finger_does_not_allocate_in_a_sandbox() {
             &mut asset.voice(&options).unwrap(),
             &format!("{model} as WASM"),
         );
+    }
+}
+
+/// A scene's renderer, whatever its stages have to do.
+#[test]
+fn a_scene_is_rendered_without_allocating() {
+    let asset = asset();
+    let device = htex_device::Capabilities {
+        quantity: htex_device::Quantity::DisplayVoltage,
+        rates: htex_device::Rates::List(vec![20_000.0]),
+        default_rate_hz: 20_000.0,
+        limit: Some(150.0),
+        step: Some(0.015),
+        carrier_hz: Some(7_000.0),
+        paced: true,
+        block_frames: 64,
+    };
+    for model in ["ar", "mfcc", "speak", "sbeta", "sslope"] {
+        let scene = live_scene(&asset, model);
+        let plan = plan(&scene, &device, &Costs::embedded()).unwrap();
+        let mut renderer = Renderer::new(&scene, &plan).unwrap();
+        let mut block = [0.0f32; 64];
+        for i in 0..400 {
+            let finger = Finger {
+                speed_mm_s: 90.0 + 30.0 * f64::from(i).sin(),
+                force_n: if i % 100 < 90 { 0.4 } else { 0.0 },
+                at_mm: Some([f64::from(i % 50), 0.0]),
+            };
+            let calls = count(|| {
+                renderer.set_motion(finger).unwrap();
+                assert_eq!(renderer.render(&mut block), block.len());
+            });
+            assert_eq!(calls, 0, "{model}, block {i}");
+        }
+        assert!(renderer.take_failure().is_none());
+        assert!(renderer.peak() > 1.0, "there is a drive");
+    }
+}
+
+/// Two surfaces side by side, every effect in, and a finger that does what it likes.
+fn live_scene(asset: &Asset, model: &str) -> LoadedScene {
+    let surface = |from: f64| file::Surface {
+        region: Some(Region {
+            x_mm: [from, from + 20.0],
+            y_mm: [-1.0, 1.0],
+        }),
+        representation: model.to_owned(),
+        ..file::Surface::everywhere("asset.htex".as_ref())
+    };
+    LoadedScene {
+        scene: Scene {
+            htex_scene: "1.0".to_owned(),
+            surfaces: vec![surface(0.0), surface(20.0)],
+            motion: Motion::Live,
+            device: DeviceChoice::default(),
+            duration_s: None,
+            seed: 0,
+            budget: Budget::default(),
+            effects: Effect::ALL.map(|effect| (effect, Switch::On)).into(),
+        },
+        folder: "".into(),
+        assets: vec![asset.clone(); 2],
+        trace: None,
+        response: Some(htex_scene::Response {
+            frequency_hz: vec![20.0, 1_000.0],
+            magnitude: vec![1.0, 0.3],
+            phase_rad: vec![0.0; 2],
+        }),
+        settings: htex_device::Settings::default(),
+        notes: Vec::new(),
     }
 }

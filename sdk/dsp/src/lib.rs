@@ -21,6 +21,7 @@ pub mod fir;
 pub mod glide;
 pub mod grid;
 pub mod inverse_fft;
+mod kernels;
 mod lanes;
 pub mod lattice;
 pub mod least_squares;

@@ -7,15 +7,18 @@ use core::f64::consts::PI;
 
 use crate::linear_prediction::coefficients_to_reflection;
 
-/// Halvings of `[0, π]`: the last is below the spacing of f64 there.
-const BISECTIONS: usize = 56;
+/// Every third step of a search halves its bracket: so many steps halve `[0, π]` 56 times, below the
+/// spacing of f64 there.
+const MOST_STEPS: usize = 3 * 56;
+/// Relative difference of phases that is rounding.
+const NEAR: f64 = 4.0 * f64::EPSILON;
 
 /// The p line spectral frequencies, radians, ascending inside (0, π); `None` if the model is
 /// unstable.
 ///
 /// They are where the phase of the lattice's all-pass, which falls steadily from 0 at ω = 0 to
 /// -(p + 1)π at ω = π, passes a multiple of π. That phase is a sum over the reflection coefficients
-/// with no ambiguity, so that each is found by plain bisection at any order.
+/// with no ambiguity, so that each is found by Newton's steps inside a bracket at any order.
 ///
 /// ```
 /// use htex_dsp::line_spectrum::{from_line_spectral_frequencies, line_spectral_frequencies};
@@ -46,23 +49,35 @@ pub fn lines_of_reflection(reflection: &[f64]) -> impl Iterator<Item = f64> {
 /// The ω in `[from, π]` at which the phase reaches `target`.
 fn angle_of_phase(reflection: &[f64], target: f64, from: f64) -> f64 {
     let (mut low, mut high) = (from, PI);
-    for _ in 0..BISECTIONS {
-        let middle = 0.5 * (low + high);
-        if all_pass_lag(reflection, middle) < target {
-            low = middle;
+    let mut at = 0.5 * (low + high);
+    for step in 1..=MOST_STEPS {
+        let (lag, slope) = all_pass_lag(reflection, at);
+        if lag < target {
+            low = at;
         } else {
-            high = middle;
+            high = at;
         }
+        if (lag - target).abs() <= NEAR * target {
+            break;
+        }
+        let newton = at - (lag - target) / slope;
+        at = match step % 3 != 0 && newton > low && newton < high {
+            true => newton,
+            false => 0.5 * (low + high),
+        };
     }
-    0.5 * (low + high)
+    at
 }
 
-/// Phase lag of `z⁻¹ B_p(z) / A_p(z)` at ω, where `B` is `A` reversed. One stage maps the lag θ to
-/// `ω + θ + 2 arg(1 - k e^{-iθ})`; for |k| < 1 that argument stays within ±π/2.
-fn all_pass_lag(reflection: &[f64], omega: f64) -> f64 {
-    reflection.iter().fold(omega, |theta, k| {
+/// Phase lag of `z⁻¹ B_p(z) / A_p(z)` at ω, where `B` is `A` reversed, and its slope. One stage maps
+/// the lag θ to `ω + θ + 2 arg(1 - k e^{-iθ})`; for |k| < 1 that argument stays within ±π/2.
+fn all_pass_lag(reflection: &[f64], omega: f64) -> (f64, f64) {
+    reflection.iter().fold((omega, 1.0), |(theta, slope), k| {
         let (sine, cosine) = libm::sincos(theta);
-        omega + theta + 2.0 * libm::atan2(k * sine, 1.0 - k * cosine)
+        let turn = 2.0 * libm::atan2(k * sine, 1.0 - k * cosine);
+        let power = 1.0 - 2.0 * k * cosine + k * k;
+        let stretch = 1.0 + 2.0 * k * (cosine - k) / power;
+        (omega + theta + turn, 1.0 + slope * stretch)
     })
 }
 

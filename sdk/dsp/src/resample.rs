@@ -4,10 +4,11 @@
 //! is pulled: it asks its source for just the samples it needs, never allocates while it runs, and
 //! gives the same samples for any block size.
 
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-/// Stop-band attenuation of the filters, decibels.
-const ATTENUATION_DB: f64 = 70.0;
+use crate::kernels;
+
 /// Phases beyond which a table is interpolated instead of exact.
 const MAX_EXACT_PHASES: u64 = 1024;
 const INTERPOLATED_PHASES: u64 = 512;
@@ -40,7 +41,12 @@ impl Resampler {
         let mut macs = 0.0;
         for spec in &specs(from_hz, to_hz, top_hz)? {
             let rate = spec.to as f64 / 1000.0 / to_hz;
-            let rows = if spec.is_exact() { 1.0 } else { 2.0 };
+            // Doubling a rate copies every other sample.
+            let rows = match spec.up() {
+                2 => 0.5,
+                _ if spec.is_exact() => 1.0,
+                _ => 2.0,
+            };
             macs += rate * rows * spec.taps() as f64;
         }
         Some(macs)
@@ -129,13 +135,18 @@ fn millihertz(rate_hz: f64) -> Option<u64> {
 /// One polyphase filter: output k stands at input time k·M/L.
 #[derive(Debug, Clone)]
 struct Stage {
-    up: u64,
-    down: u64,
+    /// L.
+    up: usize,
+    /// Whole and remaining part of M/L.
+    step: (usize, usize),
     taps: usize,
-    /// Phase-major kernel; one row more than there are phases where rows are interpolated.
-    kernel: Vec<f32>,
+    /// Phase-major; one row more than there are phases where rows are interpolated. Shared by all
+    /// converters of the same rates.
+    kernel: Arc<[f32]>,
     exact: bool,
-    phase: u64,
+    /// Where the row of phase 0 has its 1, when all else in it is 0.
+    copies: Option<usize>,
+    phase: usize,
     /// Source samples; `kernel` rows are applied to `history[start..start + taps]`.
     history: Vec<f32>,
     start: usize,
@@ -147,11 +158,14 @@ impl Stage {
         let (up, taps, exact) = (spec.up(), spec.taps(), spec.is_exact());
         let phases = if exact { up } else { INTERPOLATED_PHASES };
         let cutoff = 0.5 * (spec.pass_hz + spec.stop_hz) / spec.source_hz();
+        let kernel = kernels::kernel(taps, phases, exact, cutoff);
+        let down = spec.down();
         Self {
-            up,
-            down: spec.down(),
+            up: up as usize,
+            step: ((down / up) as usize, (down % up) as usize),
             taps,
-            kernel: windowed_sinc(taps, phases, exact, cutoff),
+            copies: only_one(&kernel[..taps]).filter(|_| exact),
+            kernel,
             exact,
             phase: 0,
             history: alloc::vec![0.0; taps + CHUNK],
@@ -161,27 +175,33 @@ impl Stage {
     }
 
     fn process(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
+        let (whole, rest) = self.step;
         for sample in out {
             if self.start + self.taps > self.filled {
                 self.refill(source);
             }
             let window = &self.history[self.start..self.start + self.taps];
             *sample = self.filter(window);
-            self.phase += self.down;
-            self.start += (self.phase / self.up) as usize;
-            self.phase %= self.up;
+            self.phase += rest;
+            self.start += whole;
+            if self.phase >= self.up {
+                self.phase -= self.up;
+                self.start += 1;
+            }
         }
     }
 
-    /// Moves the samples still needed to the front and pulls a few more.
+    /// Pulls a few more samples; moves those still needed to the front when there is no room.
     fn refill(&mut self, source: &mut dyn FnMut(&mut [f32])) {
         while self.start + self.taps > self.filled {
-            let keep_from = self.start.min(self.filled);
-            self.history.copy_within(keep_from..self.filled, 0);
-            self.filled -= keep_from;
-            self.start -= keep_from;
             // Small pulls keep the latency of a change of parameters small.
             let wanted = (self.start + self.taps - self.filled).max(8);
+            if self.filled + wanted > self.history.len() {
+                let keep_from = self.start.min(self.filled);
+                self.history.copy_within(keep_from..self.filled, 0);
+                self.filled -= keep_from;
+                self.start -= keep_from;
+            }
             let end = (self.filled + wanted).min(self.history.len());
             source(&mut self.history[self.filled..end]);
             self.filled = end;
@@ -191,8 +211,10 @@ impl Stage {
     #[inline]
     fn filter(&self, window: &[f32]) -> f32 {
         let row = |i: usize| &self.kernel[i * self.taps..(i + 1) * self.taps];
-        if self.exact {
-            return dot(row(self.phase as usize), window);
+        match self.copies {
+            Some(i) if self.phase == 0 => return window[i],
+            _ if self.exact => return dot(row(self.phase), window),
+            _ => {}
         }
         let place = self.phase as f64 / self.up as f64 * INTERPOLATED_PHASES as f64;
         let i = place as usize;
@@ -200,6 +222,16 @@ impl Stage {
         let (a, b) = (dot(row(i), window), dot(row(i + 1), window));
         a + t * (b - a)
     }
+}
+
+/// The place of the only coefficient that is not 0 (to rounding), and is 1.
+fn only_one(row: &[f32]) -> Option<usize> {
+    let one = row.iter().position(|x| (x - 1.0).abs() < 1e-7)?;
+    let others = row.iter().enumerate().filter(|(i, _)| *i != one);
+    others
+        .map(|(_, x)| x.abs())
+        .all(|x| x < 1e-9)
+        .then_some(one)
 }
 
 /// Dot product in eight lanes; both slices have the same length, a multiple of eight.
@@ -216,69 +248,8 @@ pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
 
 /// Kaiser's estimate of the taps a transition of `width` (cycles per sample) needs.
 fn kaiser_length(width: f64) -> usize {
-    let n = (ATTENUATION_DB - 7.95) / (2.285 * core::f64::consts::TAU * width);
+    let n = (kernels::ATTENUATION_DB - 7.95) / (2.285 * core::f64::consts::TAU * width);
     libm::ceil(n).min(1e6) as usize + 1
-}
-
-/// Rows of a windowed sinc, one a phase, and one more where rows are interpolated; `cutoff` in
-/// cycles per sample.
-pub(crate) fn windowed_sinc(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Vec<f32> {
-    let rows = phases + u64::from(!exact);
-    let beta = 0.1102 * (ATTENUATION_DB - 8.7);
-    let window = Kaiser::new(beta);
-    let half = taps as f64 / 2.0;
-    let mut all = Vec::with_capacity(rows as usize * taps);
-    for row in 0..rows {
-        let shift = row as f64 / phases as f64;
-        let mut values: Vec<f64> = (0..taps)
-            .map(|j| {
-                // Input j of the window stands at time j - (taps/2 - 1) relative to the base.
-                let t = j as f64 - (half - 1.0) - shift;
-                sinc(2.0 * cutoff * t) * window.at(t / half)
-            })
-            .collect();
-        // Unit gain at DC in every phase, so that a constant stays one.
-        let sum: f64 = values.iter().sum();
-        values.iter_mut().for_each(|v| *v /= sum);
-        all.extend(values.iter().map(|&v| v as f32));
-    }
-    all
-}
-
-fn sinc(x: f64) -> f64 {
-    let a = core::f64::consts::PI * x;
-    if x == 0.0 { 1.0 } else { libm::sin(a) / a }
-}
-
-/// Kaiser's window.
-struct Kaiser {
-    beta: f64,
-    scale: f64,
-}
-
-impl Kaiser {
-    fn new(beta: f64) -> Self {
-        let scale = 1.0 / bessel_i0(beta);
-        Self { beta, scale }
-    }
-
-    /// The window at -1 to 1.
-    fn at(&self, x: f64) -> f64 {
-        if x.abs() > 1.0 {
-            return 0.0;
-        }
-        self.scale * bessel_i0(self.beta * libm::sqrt(1.0 - x * x))
-    }
-}
-
-fn bessel_i0(x: f64) -> f64 {
-    let (mut sum, mut term, mut k) = (1.0, 1.0, 1.0);
-    while term > 1e-17 * sum {
-        term *= (x / (2.0 * k)) * (x / (2.0 * k));
-        sum += term;
-        k += 1.0;
-    }
-    sum
 }
 
 fn gcd(a: u64, b: u64) -> u64 {
@@ -310,7 +281,8 @@ mod tests {
         let mut rate = from_hz;
         for stage in &resampler.stages {
             delay_s += (stage.taps as f64 / 2.0 - 1.0) / rate;
-            rate = rate * stage.up as f64 / stage.down as f64;
+            let down = stage.step.0 * stage.up + stage.step.1;
+            rate = rate * stage.up as f64 / down as f64;
         }
         out.iter()
             .enumerate()

@@ -1,8 +1,10 @@
 //! Reading a stream faster or slower, by a ratio that may change all the time.
 
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use crate::resample::{dot, windowed_sinc};
+use crate::kernels;
+use crate::resample::dot;
 
 /// Samples of the source that one output looks at: stop band of about 60 dB.
 const TAPS: usize = 32;
@@ -15,8 +17,8 @@ const CHUNK: usize = 64;
 #[derive(Debug, Clone)]
 pub struct Warp {
     taps: usize,
-    /// `PHASES + 1` rows of `taps`.
-    kernel: Vec<f32>,
+    /// `PHASES + 1` rows of `taps`; not read when there is one tap.
+    kernel: Arc<[f32]>,
     /// Place of the next output behind `start`, samples of the source, 0 to 1.
     place: f64,
     history: Vec<f32>,
@@ -37,8 +39,8 @@ impl Warp {
 
     fn of(taps: usize) -> Self {
         let kernel = match taps {
-            1 => alloc::vec![1.0; PHASES + 1],
-            _ => windowed_sinc(taps, PHASES as u64, false, 0.5),
+            1 => Arc::from(&[1.0f32][..]),
+            _ => kernels::kernel(taps, PHASES as u64, false, 0.5),
         };
         Self {
             taps,

@@ -12,7 +12,7 @@ pub struct Costs {
     pub machine: String,
     /// A sample of a model's voice at the model's own rate, nanoseconds.
     pub model_ns: BTreeMap<String, f64>,
-    /// Changing a voice to other parameters, nanoseconds.
+    /// Mixing two sets of parameters and changing a voice to them, nanoseconds.
     pub retune_ns: BTreeMap<String, f64>,
     /// A sample through a stage at the stage's rate, nanoseconds; without its multiplications, for
     /// stages that filter.

@@ -52,7 +52,7 @@ fn least(mut run: impl FnMut(&mut [f32])) -> f64 {
     (0..ROUNDS).map(|_| stretch()).fold(f64::INFINITY, f64::min)
 }
 
-/// Nanoseconds a sample at the model's own rate, and a change of parameters.
+/// Nanoseconds a sample at the model's own rate, and for mixing parameters and changing to them.
 fn measure_model(model: &LoadedModel) -> Result<(f64, f64), HostError> {
     let (one, other) = (fitted(model, 200.0)?, fitted(model, 300.0)?);
     let rate_hz = model.voice_rate_hz(&one, Band::TACTILE, 20_000.0)?;
@@ -64,8 +64,11 @@ fn measure_model(model: &LoadedModel) -> Result<(f64, f64), HostError> {
     let mut turn = false;
     let retuned = least(|block| {
         turn = !turn;
-        let to = if turn { &other } else { &one };
-        failed = voice.retune(to).and_then(|()| voice.render(block));
+        let weights = if turn { [0.25, 0.75] } else { [0.75, 0.25] };
+        let mixed = model.interpolate(&[&one, &other], &weights);
+        failed = mixed
+            .and_then(|mixed| voice.retune(&mixed))
+            .and_then(|()| voice.render(block));
     });
     failed?;
     Ok((steady, (retuned - steady).max(0.0) * BLOCK as f64))

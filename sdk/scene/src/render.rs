@@ -192,10 +192,11 @@ impl Renderer {
 
     /// Looks at the finger, and tells the stages.
     fn look(&mut self) {
-        self.left = self.call.control;
         if !self.follows {
+            self.left = PIECE;
             return;
         }
+        self.left = self.call.control;
         let finger = match self.course {
             Course::Live => self.live,
             ref course => course.at(self.frame as f64 / self.call.rate_hz),

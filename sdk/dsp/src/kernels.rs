@@ -1,0 +1,94 @@
+//! Windowed-sinc kernels, made once and shared.
+
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+/// Stop-band attenuation of the filters, decibels.
+pub(crate) const ATTENUATION_DB: f64 = 70.0;
+
+/// A kernel as [`windowed_sinc`] makes it. With `std`, one that is in use is shared: a thousand
+/// voices then read the same coefficients.
+#[cfg(feature = "std")]
+pub(crate) fn kernel(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Arc<[f32]> {
+    use std::sync::{Mutex, PoisonError, Weak};
+    type Key = (usize, u64, bool, u64);
+    static IN_USE: Mutex<Vec<(Key, Weak<[f32]>)>> = Mutex::new(Vec::new());
+    let key = (taps, phases, exact, cutoff.to_bits());
+    // The list is whole whatever a panicking thread was doing.
+    let mut in_use = IN_USE.lock().unwrap_or_else(PoisonError::into_inner);
+    let found = in_use.iter().find(|(known, _)| *known == key);
+    if let Some(kernel) = found.and_then(|(_, kernel)| kernel.upgrade()) {
+        return kernel;
+    }
+    let kernel: Arc<[f32]> = windowed_sinc(taps, phases, exact, cutoff).into();
+    in_use.retain(|(_, kernel)| kernel.strong_count() > 0);
+    in_use.push((key, Arc::downgrade(&kernel)));
+    kernel
+}
+
+/// A kernel as [`windowed_sinc`] makes it.
+#[cfg(not(feature = "std"))]
+pub(crate) fn kernel(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Arc<[f32]> {
+    windowed_sinc(taps, phases, exact, cutoff).into()
+}
+
+/// Rows of a windowed sinc, one a phase, and one more where rows are interpolated; `cutoff` in
+/// cycles per sample.
+fn windowed_sinc(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Vec<f32> {
+    let rows = phases + u64::from(!exact);
+    let beta = 0.1102 * (ATTENUATION_DB - 8.7);
+    let window = Kaiser::new(beta);
+    let half = taps as f64 / 2.0;
+    let mut all = Vec::with_capacity(rows as usize * taps);
+    for row in 0..rows {
+        let shift = row as f64 / phases as f64;
+        let mut values: Vec<f64> = (0..taps)
+            .map(|j| {
+                // Input j of the window stands at time j - (taps/2 - 1) relative to the base.
+                let t = j as f64 - (half - 1.0) - shift;
+                sinc(2.0 * cutoff * t) * window.at(t / half)
+            })
+            .collect();
+        // Unit gain at DC in every phase, so that a constant stays one.
+        let sum: f64 = values.iter().sum();
+        values.iter_mut().for_each(|v| *v /= sum);
+        all.extend(values.iter().map(|&v| v as f32));
+    }
+    all
+}
+
+fn sinc(x: f64) -> f64 {
+    let a = core::f64::consts::PI * x;
+    if x == 0.0 { 1.0 } else { libm::sin(a) / a }
+}
+
+/// Kaiser's window.
+struct Kaiser {
+    beta: f64,
+    scale: f64,
+}
+
+impl Kaiser {
+    fn new(beta: f64) -> Self {
+        let scale = 1.0 / bessel_i0(beta);
+        Self { beta, scale }
+    }
+
+    /// The window at -1 to 1.
+    fn at(&self, x: f64) -> f64 {
+        if x.abs() > 1.0 {
+            return 0.0;
+        }
+        self.scale * bessel_i0(self.beta * libm::sqrt(1.0 - x * x))
+    }
+}
+
+fn bessel_i0(x: f64) -> f64 {
+    let (mut sum, mut term, mut k) = (1.0, 1.0, 1.0);
+    while term > 1e-17 * sum {
+        term *= (x / (2.0 * k)) * (x / (2.0 * k));
+        sum += term;
+        k += 1.0;
+    }
+    sum
+}

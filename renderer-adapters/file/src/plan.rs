@@ -9,7 +9,7 @@ use crate::encoding::Encoding;
 /// Lowest and highest rate, hertz.
 const RATES_HZ: (f64, f64) = (100.0, 1_000_000.0);
 /// The rate of friction recordings, hertz.
-const USUAL_RATE_HZ: f64 = 10_000.0;
+const USUAL_RATE_HZ: f64 = 20_000.0;
 /// Samples a period of a carrier.
 const PER_PERIOD: f64 = 10.0;
 const BLOCK_FRAMES: u32 = 4_096;

@@ -61,7 +61,7 @@ impl Span {
 
     pub(crate) fn text(&self, unit: &str) -> String {
         match self {
-            _ if self.high == f64::INFINITY => format!("live {unit}"),
+            _ if self.high == f64::INFINITY => "live".to_owned(),
             _ if self.is_point() => format!("{:.4} {unit}", self.low),
             _ => format!("{:.3} to {:.3} {unit}", self.low, self.high),
         }

@@ -1,14 +1,15 @@
 //! The simulated card of `examples/nidaqmx-simulated`: built, and each test given one of its own.
 
+mod library;
+
 use std::collections::BTreeMap;
 use std::ffi::{CString, c_char};
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::sync::OnceLock;
+use std::path::PathBuf;
 
 use htex_device::{Adapter, Device, DeviceError, Settings, StreamFormat};
 use htex_device_daq::Daq;
+use library::built;
 use tempfile::TempDir;
 
 pub const PAPER: &str = "pcie-6321_tabor-9200a_sct3250";
@@ -76,31 +77,4 @@ impl Card {
         let lines = fs::read_to_string(self.folder.path().join("Dev1_ao0.txt")).unwrap();
         lines.lines().map(|line| line.parse().unwrap()).collect()
     }
-}
-
-/// Builds the library, once a run.
-fn built() -> &'static Path {
-    static BUILT: OnceLock<PathBuf> = OnceLock::new();
-    BUILT.get_or_init(|| {
-        let project =
-            Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/nidaqmx-simulated");
-        let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("nidaqmx-simulated");
-        let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
-        let built = Command::new(cargo)
-            .args([
-                "build",
-                "--release",
-                "--quiet",
-                "--locked",
-                "--manifest-path",
-            ])
-            .arg(project.join("Cargo.toml"))
-            .arg("--target-dir")
-            .arg(&target)
-            .status()
-            .unwrap();
-        assert!(built.success());
-        let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-        target.join(format!("release/{prefix}nidaqmx_simulated{suffix}"))
-    })
 }

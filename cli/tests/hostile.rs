@@ -7,61 +7,17 @@ mod common;
 #[path = "../../sdk/host/tests/common/mod.rs"]
 mod model;
 
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use common::Place;
+use common::measured::run;
 use model::{ID, text, with_descriptor};
 
 /// Longest time of a call, given to the command.
 const DEADLINE: Duration = Duration::from_millis(500);
 /// What may come on top, of processor time: compiling, and all that the command does by itself.
 const BESIDES: Duration = Duration::from_secs(1);
-/// When a command hangs for sure, however busy the machine is.
-const HANGS: Duration = Duration::from_secs(60);
 const MOST_MEMORY_KIB: i64 = 300 << 10;
-
-/// What became of a command.
-struct End {
-    code: i32,
-    error: String,
-    cpu: Duration,
-    memory_kib: i64,
-}
-
-/// Runs a command to its end, and kills it when it hangs.
-fn run(command: &mut Command, errors: &std::path::Path) -> End {
-    let file = std::fs::File::create(errors).unwrap();
-    #[allow(clippy::zombie_processes)] // wait4 below waits, and tells what was used.
-    let child = command.stdout(Stdio::null()).stderr(file).spawn().unwrap();
-    let begun = Instant::now();
-    let pid = child.id() as libc::pid_t;
-    let (mut status, mut killed) = (0, false);
-    // SAFETY: plain data, for which zeros are a value.
-    let mut usage: libc::rusage = unsafe { std::mem::zeroed() };
-    // SAFETY: our own child, which nobody else waits for, and live variables.
-    while unsafe { libc::wait4(pid, &mut status, libc::WNOHANG, &mut usage) } == 0 {
-        if begun.elapsed() > HANGS && !killed {
-            // SAFETY: our own child, not waited for yet.
-            unsafe { libc::kill(pid, libc::SIGKILL) };
-            killed = true;
-        }
-        std::thread::sleep(Duration::from_millis(2));
-    }
-    let time = |t: libc::timeval| {
-        Duration::from_secs(t.tv_sec as u64) + Duration::from_micros(t.tv_usec as u64)
-    };
-    End {
-        code: if libc::WIFEXITED(status) {
-            libc::WEXITSTATUS(status)
-        } else {
-            -1
-        },
-        error: std::fs::read_to_string(errors).unwrap(),
-        cpu: time(usage.ru_utime) + time(usage.ru_stime),
-        memory_kib: usage.ru_maxrss,
-    }
-}
 
 /// A folder with a recording, in which commands are given hostile models.
 struct Bench(Place);

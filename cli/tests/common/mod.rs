@@ -1,6 +1,9 @@
 //! Running `htex` as a user does.
 #![allow(dead_code)] // Each suite uses a part of it.
 
+#[cfg(target_os = "linux")]
+pub mod measured;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 

@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod assets;
+mod checking;
 mod commands;
 mod devices;
 mod failure;

@@ -1,10 +1,10 @@
 use std::process::ExitCode;
-use std::time::Duration;
 
 use clap::Args;
 use htex_check::Finding;
 use htex_device_check::{Options, check, run_one};
 
+use crate::checking::{exit_code, tell_one, this_program, timeout};
 use crate::devices::{DeviceArgs, SettingArgs};
 use crate::failure::Failure;
 use crate::output::{print, print_json};
@@ -66,7 +66,7 @@ impl Check {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         if let Some(name) = &self.reproduce {
             let finding = self.which.run_one(name)?;
-            return self.tell_one(name, &finding);
+            return tell_one(name, &finding, self.json);
         }
         // A wrong name is told once, not by each check.
         self.which.devices.subject(&self.which.device)?;
@@ -80,33 +80,15 @@ impl Check {
         Ok(exit_code(!report.ok))
     }
 
-    fn tell_one(&self, name: &str, finding: &Finding) -> Result<ExitCode, Failure> {
-        if self.json {
-            print_json(finding)?;
-        } else {
-            let word = finding.outcome.word();
-            print(&format!("{name}: {word}: {}\n", finding.message))?;
-        }
-        Ok(exit_code(finding.outcome.is_bad()))
-    }
-
     fn options(&self) -> Result<Options, Failure> {
-        let timeout = Duration::try_from_secs_f64(self.timeout)
-            .ok()
-            .filter(|timeout| !timeout.is_zero() && timeout.as_secs() < 1_000_000);
-        let timeout = timeout.ok_or_else(|| {
-            Failure::Usage(format!("--timeout {}: seconds, more than 0", self.timeout))
-        })?;
-        let program = std::env::current_exe()
-            .map_err(|error| Failure::Other(format!("cannot find this program: {error}")))?;
         let mut arguments = vec!["device".into(), "check-one".into()];
         arguments.extend(self.which.devices.again());
         arguments.extend(self.which.settings.again());
         arguments.push(self.which.device.clone().into());
         Ok(Options {
-            program,
+            program: this_program()?,
             arguments,
-            timeout,
+            timeout: timeout(self.timeout)?,
         })
     }
 }
@@ -115,13 +97,5 @@ impl CheckOne {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         print_json(&self.which.run_one(&self.name)?)?;
         Ok(ExitCode::SUCCESS)
-    }
-}
-
-fn exit_code(bad: bool) -> ExitCode {
-    if bad {
-        ExitCode::FAILURE
-    } else {
-        ExitCode::SUCCESS
     }
 }

@@ -1,10 +1,10 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::Duration;
 
 use clap::Args;
-use htex_check::{Finding, Options, Runner, check, run_one};
+use htex_check::{Options, Runner, check, run_one};
 
+use crate::checking::{exit_code, tell_one, this_program, timeout};
 use crate::failure::Failure;
 use crate::output::{print, print_json};
 
@@ -57,7 +57,7 @@ impl Check {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         if let Some(name) = &self.reproduce {
             let finding = run_one(&self.file, name, self.seed, self.against.as_deref());
-            return self.tell_one(name, &finding.map_err(Failure::Usage)?);
+            return tell_one(name, &finding.map_err(Failure::Usage)?, self.json);
         }
         let report = check(&self.file, &self.options()?).map_err(Failure::Usage)?;
         if self.json {
@@ -68,32 +68,14 @@ impl Check {
         Ok(exit_code(!report.ok))
     }
 
-    fn tell_one(&self, name: &str, finding: &Finding) -> Result<ExitCode, Failure> {
-        if self.json {
-            print_json(finding)?;
-        } else {
-            let word = finding.outcome.word();
-            print(&format!("{name}: {word}: {}\n", finding.message))?;
-        }
-        Ok(exit_code(finding.outcome.is_bad()))
-    }
-
     fn options(&self) -> Result<Options, Failure> {
-        let timeout = Duration::try_from_secs_f64(self.timeout)
-            .ok()
-            .filter(|timeout| !timeout.is_zero() && timeout.as_secs() < 1_000_000);
-        let timeout = timeout.ok_or_else(|| {
-            Failure::Usage(format!("--timeout {}: seconds, more than 0", self.timeout))
-        })?;
-        let program = std::env::current_exe()
-            .map_err(|error| Failure::Other(format!("cannot find this program: {error}")))?;
         Ok(Options {
             runner: Runner {
-                program,
+                program: this_program()?,
                 arguments: vec!["plugin".into(), "check-one".into()],
             },
             seed: self.seed,
-            timeout,
+            timeout: timeout(self.timeout)?,
             only: self.only.clone(),
             against: self.against.clone(),
         })
@@ -105,13 +87,5 @@ impl CheckOne {
         let finding = run_one(&self.file, &self.name, self.seed, self.against.as_deref());
         print_json(&finding.map_err(Failure::Usage)?)?;
         Ok(ExitCode::SUCCESS)
-    }
-}
-
-fn exit_code(bad: bool) -> ExitCode {
-    if bad {
-        ExitCode::FAILURE
-    } else {
-        ExitCode::SUCCESS
     }
 }

@@ -12,6 +12,7 @@
 //!   first and after its last* sample. Samples themselves are never changed.
 #![deny(unsafe_code)]
 
+mod claim;
 mod descriptor;
 mod driver;
 mod fault;

@@ -2,12 +2,15 @@
 
 use htex_device::{DeviceError, Status, StreamFormat};
 
+use crate::claim::Claim;
 use crate::driver::{Driver, Task};
 use crate::fault::Fault;
 use crate::rig::Rig;
 
 pub(crate) struct Session {
     rig: Rig,
+    /// None after the end.
+    claim: Option<Claim>,
     driver: &'static Driver,
     rate_hz: f64,
     /// Frames the driver's buffer holds.
@@ -37,6 +40,7 @@ impl Session {
     ) -> Result<Self, DeviceError> {
         let buffered = (rig.buffer_s * format.rate_hz).ceil() as usize;
         let session = Self {
+            claim: Some(Claim::take(&rig)?),
             capacity: buffered.max(2 * format.block_frames as usize).max(2),
             rate_hz: format.rate_hz,
             rig,
@@ -234,7 +238,9 @@ impl Session {
         if let Some(task) = self.task.take() {
             self.generated = task.generated().unwrap_or(self.generated);
         }
-        self.put_zero()
+        let zero = self.put_zero();
+        self.claim = None;
+        zero
     }
 
     /// Zero by a task of its own, without a clock.

@@ -1,0 +1,36 @@
+//! An output belongs to one open device, whether or not its clock runs yet: the driver reserves an
+//! output only while a task runs.
+
+use std::collections::BTreeSet;
+use std::sync::{Mutex, PoisonError};
+
+use htex_device::DeviceError;
+
+use crate::rig::Rig;
+
+/// Driver and output of all open devices.
+static CLAIMED: Mutex<BTreeSet<(String, String)>> = Mutex::new(BTreeSet::new());
+
+/// Given back when dropped.
+pub(crate) struct Claim((String, String));
+
+impl Claim {
+    pub(crate) fn take(rig: &Rig) -> Result<Self, DeviceError> {
+        let key = (rig.driver.clone(), rig.device.clone());
+        let mut claimed = CLAIMED.lock().unwrap_or_else(PoisonError::into_inner);
+        match claimed.insert(key.clone()) {
+            true => Ok(Self(key)),
+            false => Err(DeviceError::Busy(format!(
+                "{} is open already; finish or drop that device first",
+                rig.device
+            ))),
+        }
+    }
+}
+
+impl Drop for Claim {
+    fn drop(&mut self) {
+        let mut claimed = CLAIMED.lock().unwrap_or_else(PoisonError::into_inner);
+        claimed.remove(&self.0);
+    }
+}

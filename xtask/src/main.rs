@@ -65,10 +65,14 @@ fn build_plugins(options: &[&str]) -> ExitCode {
         ["--wasm-toolchain", way, rest @ ..] => (rest, Some(*way)),
         all => (all, None),
     };
+    if let Some(Err(error)) = way.map(plugins::check_way) {
+        eprintln!("xtask: {error}");
+        return ExitCode::from(2);
+    }
     let wasm = || way.map_or_else(plugins::wasm, plugins::wasm_by);
     let built = match options {
         [] => plugins::native().and_then(|_| wasm()),
-        ["--native-only"] => plugins::native(),
+        ["--native-only"] if way.is_none() => plugins::native(),
         ["--wasm-only"] => wasm(),
         _ => return usage(),
     };

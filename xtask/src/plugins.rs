@@ -49,6 +49,14 @@ pub fn wasm_by(way: &str) -> Result<PathBuf, String> {
     Ok(folder())
 }
 
+/// Whether there is a toolchain of this name.
+///
+/// # Errors
+/// The names there are, when it is none of them.
+pub fn check_way(way: &str) -> Result<(), String> {
+    Toolchain::check_way(way)
+}
+
 /// Whether the compiler in use builds WASM modules as it is.
 pub fn wasm_is_installed() -> bool {
     Toolchain::find("installed").is_ok()

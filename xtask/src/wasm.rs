@@ -31,19 +31,25 @@ impl Toolchain {
     /// The way of this name, or the first that works. What it needs is installed if this machine
     /// allows that, but for `installed`.
     pub(crate) fn find(way: &str) -> Result<Self, String> {
+        Self::check_way(way)?;
         let found = match way {
-            "auto" => installed().or_else(rustup).or_else(debian),
             "installed" => installed(),
             "rustup" => rustup(),
             "debian" => debian(),
-            other => {
-                return Err(format!(
-                    "`{other}` is no way to build WASM modules; there are auto, installed, rustup \
-                     and debian"
-                ));
-            }
+            _ => installed().or_else(rustup).or_else(debian),
         };
         found.ok_or_else(|| NO_TOOLCHAIN.to_owned())
+    }
+
+    /// Whether there is a way of this name.
+    pub(crate) fn check_way(way: &str) -> Result<(), String> {
+        match way {
+            "auto" | "installed" | "rustup" | "debian" => Ok(()),
+            other => Err(format!(
+                "`{other}` is no way to build WASM modules; there are auto, installed, rustup and \
+                 debian"
+            )),
+        }
     }
 
     /// The command to which `rustc --release …` can be added, and the folder to build in.

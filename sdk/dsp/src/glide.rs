@@ -22,11 +22,6 @@ impl Glide {
         }
     }
 
-    /// The gain that stands or is being approached.
-    pub fn target(&self) -> f32 {
-        self.target
-    }
-
     /// Whether the gain stands still at `value`.
     pub fn rests_at(&self, value: f32) -> bool {
         self.left == 0 && self.value == value
@@ -46,7 +41,7 @@ impl Glide {
         }
     }
 
-    /// The gain of the next sample.
+    /// Goes one sample on, and answers the gain there.
     #[inline]
     pub fn advance(&mut self) -> f32 {
         if self.left > 0 {
@@ -60,12 +55,13 @@ impl Glide {
         self.value
     }
 
-    /// Multiplies the next samples.
+    /// Multiplies the next samples; the first by the gain as it stands.
     pub fn apply(&mut self, block: &mut [f32]) {
         let moving = block.len().min(self.left as usize);
         let (moving, steady) = block.split_at_mut(moving);
         for sample in moving {
-            *sample *= self.advance();
+            *sample *= self.value;
+            self.advance();
         }
         let gain = self.value;
         if gain != 1.0 {
@@ -85,7 +81,7 @@ mod tests {
         let mut block = [1.0f32; 6];
         glide.apply(&mut block[..3]);
         glide.apply(&mut block[3..]);
-        assert_eq!(block, [0.75, 0.5, 0.25, 0.0, 0.0, 0.0]);
+        assert_eq!(block, [1.0, 0.75, 0.5, 0.25, 0.0, 0.0]);
         assert!(glide.rests_at(0.0));
         glide.set_within(2.0, 1);
         assert_eq!(glide.advance(), 2.0);

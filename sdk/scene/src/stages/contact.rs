@@ -52,7 +52,8 @@ impl Stage for Contact {
         }
         match now.ends_in {
             Some(left) if left <= u64::from(self.ramp) => {
-                self.gain.set_within(0.0, left as u32);
+                // The last of them is at zero, as the first of a scene is.
+                self.gain.set_within(0.0, (left as u32).saturating_sub(1));
             }
             _ => self.gain.set(if now.finger.slides() { 1.0 } else { 0.0 }),
         }

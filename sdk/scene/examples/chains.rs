@@ -104,7 +104,9 @@ fn saved() {
 fn budgets() {
     let costs = Costs::measure(&Registry::builtin(), "this machine").unwrap();
     println!("\nbudget, ns  chosen             planned  rendered  of the budget");
-    for ns in [100.0, 20.0, 16.0, 12.0, 10.0, 8.0] {
+    for ns in [
+        100.0, 20.0, 12.0, 10.0, 9.0, 8.0, 6.0, 4.0, 3.5, 3.3, 3.1, 2.9,
+    ] {
         let mut scene = scene(single(), constant(80.0, 0.4), 1e4);
         scene.scene.budget = Budget {
             ns_per_sample: Some(ns),

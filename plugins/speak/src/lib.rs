@@ -18,7 +18,8 @@ const PHASE_OPTION: usize = 2;
 
 /// Most sinusoids of one set of parameters.
 const MAX_PEAKS: usize = 64;
-/// Peaks this far below the level are left out: they cannot be felt, nor stored.
+/// Peaks this far below the largest bin are left out: they cannot be felt, nor stored, and may be the
+/// rounding errors beside a tone at the band's edge.
 const FAINTEST: f64 = 1e-7;
 
 /// The model.
@@ -98,8 +99,9 @@ impl Model for SpectralPeak {
             count,
             input.options[JND],
         );
+        let largest = input.magnitude.iter().copied().fold(0.0, f64::max);
+        peaks.retain(|p| p.magnitude > FAINTEST * largest);
         let strongest = peaks.iter().map(|p| p.magnitude).fold(0.0, f64::max);
-        peaks.retain(|p| p.magnitude > FAINTEST * strongest);
         if peaks.is_empty() {
             return Err(Error::cannot_fit(
                 "the spectrum has no peak: no bin stands above both its neighbours",

@@ -2,7 +2,7 @@
 
 use htex_dsp::estimation::{burg, covariance};
 use htex_dsp::grid::{Band, GRID_HZ, level_rms};
-use htex_dsp::linear_prediction::{LinearPrediction, levinson_durbin};
+use htex_dsp::linear_prediction::{LinearPrediction, levinson_durbin, within_radius};
 use htex_dsp::resample::Resampler;
 use htex_model::{Error, Fit, FitInput};
 
@@ -13,6 +13,9 @@ const RATE: usize = 1;
 const METHOD: usize = 2;
 /// Equivalent noise bandwidth of a bin, hertz: magnitude² = 2 · P · this.
 const BIN_ENBW_HZ: f64 = 1.5 * GRID_HZ;
+/// Half-power width of the narrowest resonance a fit gives, hertz: a spectrum in bins shows none
+/// narrower, and the level of one that is cannot be read from bins.
+const NARROWEST_HZ: f64 = GRID_HZ;
 
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     if input.magnitude.iter().all(|&m| m == 0.0) {
@@ -42,15 +45,23 @@ fn from_spectrum(input: &FitInput<'_>, order: usize, rate_hz: f64) -> Result<Fit
         .map(|lag| autocorrelation(input, largest, lag as f64 / rate_hz, rate_hz))
         .collect();
     let model = levinson_durbin(&lags, order);
+    let coefficients = resolved(&model.coefficients, rate_hz);
     let filter = Filter {
-        coefficients: &model.coefficients,
+        coefficients: &coefficients,
         rate_hz,
     };
+    let level = filter.level(input.band.edges().into())?;
+    if coefficients != model.coefficients {
+        // The error is that of another filter.
+        return Ok(Fit {
+            parameters: flat(&coefficients, rate_hz),
+            level_rms: recorded_level(input),
+        });
+    }
     // One-sided P = 2 E |H|² / rate, magnitude² = 2 P ENBW.
     let gain = libm::sqrt(4.0 * model.error * BIN_ENBW_HZ / rate_hz);
-    let level = filter.level(input.band.edges().into())?;
     Ok(Fit {
-        parameters: flat(&model.coefficients, rate_hz),
+        parameters: flat(&coefficients, rate_hz),
         level_rms: largest * gain * level,
     })
 }
@@ -83,15 +94,30 @@ fn from_signal(
         return Err(Error::cannot_fit("the recording's segments are silent"));
     }
     let model = estimate(&resampled(input, rate_hz, scale));
+    let coefficients = resolved(&model.coefficients, rate_hz);
     let filter = Filter {
-        coefficients: &model.coefficients,
+        coefficients: &coefficients,
         rate_hz,
     };
     filter.level(input.band.edges().into())?;
     Ok(Fit {
-        parameters: flat(&model.coefficients, rate_hz),
-        level_rms: level_rms(input.magnitude),
+        parameters: flat(&coefficients, rate_hz),
+        level_rms: recorded_level(input),
     })
+}
+
+/// RMS of the recording in the band.
+fn recorded_level(input: &FitInput<'_>) -> f64 {
+    // Relative to the largest bin, so that no power over- or underflows.
+    let largest = input.magnitude.iter().fold(0.0f64, |a, &m| a.max(m));
+    let relative: Vec<f64> = input.magnitude.iter().map(|m| m / largest).collect();
+    largest * level_rms(&relative)
+}
+
+/// The filter without resonances narrower than [`NARROWEST_HZ`].
+fn resolved(coefficients: &[f64], rate_hz: f64) -> Vec<f64> {
+    let radius = libm::exp(-core::f64::consts::PI * NARROWEST_HZ / rate_hz);
+    within_radius(coefficients, radius)
 }
 
 /// The signal over `scale`, at the model rate.

@@ -186,8 +186,40 @@ pub fn stabilize(coefficients: &[f64]) -> Vec<f64> {
     if coefficients.iter().any(|a| !a.is_finite()) {
         return alloc::vec![0.0; coefficients.len()];
     }
-    // The largest factor that is stable, 1 / outermost radius, by bisection: 0 always is.
-    let (mut stable, mut unstable) = (0.0, 1.0);
+    let stable = largest_stable_factor(coefficients, 1.0);
+    let mirrored = scale_poles(coefficients, stable * stable);
+    if is_stable(&mirrored) {
+        mirrored
+    } else {
+        // Poles on the circle itself: their mirror image is no better.
+        scale_poles(coefficients, stable * stable * (1.0 - 1e-6))
+    }
+}
+
+/// Holds every pole's radius to `radius` (below 1): the model as it is if none lies farther out, else
+/// `A_i g^i` with the g that sets the outermost one there. Also mends what rounding of the
+/// coefficients has put outside the unit circle. One that is not finite becomes zeros.
+///
+/// ```
+/// use htex_dsp::linear_prediction::within_radius;
+/// assert_eq!(within_radius(&[0.5], 0.9), [0.5]);
+/// assert!((within_radius(&[1.0], 0.9)[0] - 0.9).abs() < 1e-12);
+/// ```
+pub fn within_radius(coefficients: &[f64], radius: f64) -> Vec<f64> {
+    if is_stable(&scale_poles(coefficients, 1.0 / radius)) {
+        return coefficients.to_vec();
+    }
+    if coefficients.iter().any(|a| !a.is_finite()) {
+        return alloc::vec![0.0; coefficients.len()];
+    }
+    let largest = largest_stable_factor(coefficients, 1.0 / radius);
+    scale_poles(coefficients, largest * radius)
+}
+
+/// The largest factor of the poles up to `unstable` that is stable, 1 / outermost radius, by
+/// bisection: 0 always is.
+fn largest_stable_factor(coefficients: &[f64], mut unstable: f64) -> f64 {
+    let mut stable = 0.0;
     for _ in 0..60 {
         let middle = 0.5 * (stable + unstable);
         if is_stable(&scale_poles(coefficients, middle)) {
@@ -196,13 +228,7 @@ pub fn stabilize(coefficients: &[f64]) -> Vec<f64> {
             unstable = middle;
         }
     }
-    let mirrored = scale_poles(coefficients, stable * stable);
-    if is_stable(&mirrored) {
-        mirrored
-    } else {
-        // Poles on the circle itself: their mirror image is no better.
-        scale_poles(coefficients, stable * stable * (1.0 - 1e-6))
-    }
+    stable
 }
 
 /// Multiplies every pole's radius by `factor` (bandwidth expansion): `A_i factor^i`.

@@ -151,7 +151,8 @@ pub fn reflection_to_coefficients(reflection: &[f64]) -> Vec<f64> {
 
 /// Reflection coefficients of a stable model; `None` if it is unstable or not finite.
 ///
-/// Each stage divides by `1 - k²`: with poles very near the unit circle digits are lost.
+/// Each stage divides by `1 - k` and `1 + k`: with several poles very near the unit circle digits are
+/// lost.
 pub fn coefficients_to_reflection(coefficients: &[f64]) -> Option<Vec<f64>> {
     let mut a = coefficients.to_vec();
     step_down_in_place(&mut a).then_some(a)
@@ -281,14 +282,16 @@ fn step_up(a: &mut [f64], k: f64) {
     }
 }
 
-/// Inverse of [`step_up`] on all but the last coefficient.
+/// Inverse of [`step_up`] on all but the last coefficient: `(front + k back) / (1 - k²)`, by way of sum
+/// and difference, neither of which loses digits where |k| is nearly 1.
 fn step_down(previous: &mut [f64], k: f64) {
     let m = previous.len();
-    let scale = 1.0 / ((1.0 - k) * (1.0 + k));
+    let (of_sum, of_difference) = (0.5 / (1.0 - k), 0.5 / (1.0 + k));
     for i in 0..m.div_ceil(2) {
         let (front, back) = (previous[i], previous[m - 1 - i]);
-        previous[i] = (front + k * back) * scale;
-        previous[m - 1 - i] = (back + k * front) * scale;
+        let (even, odd) = ((front + back) * of_sum, (front - back) * of_difference);
+        previous[i] = even + odd;
+        previous[m - 1 - i] = even - odd;
     }
 }
 

@@ -19,59 +19,88 @@ const SMALLEST: f64 = 1e-3;
 const LARGEST: f64 = 1e4;
 /// Fewer peaks than parameters (two shapes and a scale) leave the fit undetermined.
 const FEWEST_PEAKS: usize = 3;
+/// A fit that stands higher than this, over the spectrum's largest bin, has its energy where no peak
+/// held it down: it is fitted again to bins all over the band, and brought down to the largest one.
+const HIGHEST: f64 = 2.0;
+/// Part of the points' squared magnitude left over by a density that misses them.
+const NOTHING_EXPLAINED: f64 = 0.99;
 
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
-    let band: Band = input.band.edges().into();
-    let points = reference_points(input);
-    let largest = points.iter().map(|p| p.magnitude).fold(0.0, f64::max);
+    let largest = input.magnitude.iter().copied().fold(0.0, f64::max);
     if largest <= 0.0 {
         return Err(Error::cannot_fit(
             "the spectrum is silent: there is no profile to fit",
         ));
     }
     // Relative magnitudes, so that the tolerances mean the same for a whisper and a blow.
-    let points: Vec<Peak> = points
-        .iter()
-        .map(|p| Peak {
-            magnitude: p.magnitude / largest,
-            ..*p
-        })
-        .collect();
-    let bound = input.options[LOWER_BOUND].max(SMALLEST);
-    let (alpha, beta) = fit_points(&points, band, bound);
-    let scale = best_scale(&points, band, alpha, beta).map_or(0.0, |(scale, _)| scale);
-    let level = curve_level_rms(band, |f| density(alpha, beta, band, f));
+    let relative: Vec<f64> = input.magnitude.iter().map(|m| m / largest).collect();
+    let (count, jnd) = (input.options[POINTS] as usize, input.options[JND]);
+    let mut points = select_peaks(input.frequency_hz, &relative, count, jnd);
+    if points.len() < FEWEST_PEAKS {
+        points = spread_bins(input, &relative);
+    }
+    let mut fitted = Fitted::to(&points, input);
+    if fitted.highest > HIGHEST {
+        points.extend(spread_bins(input, &relative));
+        fitted = Fitted::to(&points, input);
+    }
+    let level = match fitted.highest > HIGHEST {
+        true => fitted.level / fitted.highest,
+        false => fitted.level,
+    };
     Ok(Fit {
-        parameters: vec![alpha, beta],
-        level_rms: largest * scale * level,
+        parameters: vec![fitted.alpha, fitted.beta],
+        level_rms: largest * level,
     })
 }
 
-/// The spectrum's peaks; where there are too few, as many bins evenly spaced in log frequency.
-fn reference_points(input: &FitInput<'_>) -> Vec<Peak> {
-    let count = input.options[POINTS] as usize;
-    let peaks = select_peaks(
-        input.frequency_hz,
-        input.magnitude,
-        count,
-        input.options[JND],
-    );
-    if peaks.len() >= FEWEST_PEAKS {
-        return peaks;
+/// A density, the RMS of its magnitude, and its highest bin, over the spectrum's largest.
+struct Fitted {
+    alpha: f64,
+    beta: f64,
+    level: f64,
+    highest: f64,
+}
+
+impl Fitted {
+    fn to(points: &[Peak], input: &FitInput<'_>) -> Self {
+        let band: Band = input.band.edges().into();
+        let bound = input.options[LOWER_BOUND].max(SMALLEST);
+        let (alpha, beta) = fit_points(points, band, bound);
+        let scale = best_scale(points, band, alpha, beta).map_or(0.0, |(scale, _)| scale);
+        let at = |f: f64| scale * density(alpha, beta, band, f);
+        let bins = input.frequency_hz.iter();
+        Self {
+            alpha,
+            beta,
+            level: curve_level_rms(band, at),
+            highest: bins.map(|&f| at(f)).fold(0.0, f64::max),
+        }
     }
+}
+
+/// As many bins as points are wanted, evenly spaced in log frequency, and the largest bin, which may be
+/// the only one that holds anything.
+fn spread_bins(input: &FitInput<'_>, magnitude: &[f64]) -> Vec<Peak> {
     let band: Band = input.band.edges().into();
     let ratio = band.high_hz / band.low_hz;
-    (0..count)
+    let (count, last) = (input.options[POINTS] as usize, magnitude.len() - 1);
+    let mut bins: Vec<usize> = (0..count)
         .map(|i| {
             let f = band.low_hz * libm::pow(ratio, i as f64 / (count - 1) as f64);
-            let above = input.frequency_hz.partition_point(|&g| g < f);
-            let bin = above.min(input.frequency_hz.len() - 1);
-            Peak {
-                frequency_hz: input.frequency_hz[bin],
-                magnitude: input.magnitude[bin],
-            }
+            input.frequency_hz.partition_point(|&g| g < f).min(last)
         })
-        .collect()
+        .collect();
+    let larger = |&a: &usize, &b: &usize| magnitude[a].total_cmp(&magnitude[b]);
+    let largest = (0..=last).max_by(larger).unwrap_or(0);
+    if !bins.contains(&largest) {
+        bins.push(largest);
+    }
+    let point = |bin: usize| Peak {
+        frequency_hz: input.frequency_hz[bin],
+        magnitude: magnitude[bin],
+    };
+    bins.into_iter().map(point).collect()
 }
 
 /// Alpha and beta, each at least `bound`, of least squared distance to the points.
@@ -81,13 +110,20 @@ pub(crate) fn fit_points(points: &[Peak], band: Band, bound: f64) -> (f64, f64) 
         best_scale(points, band, shape(x[0]), shape(x[1])).map_or(f64::INFINITY, |(_, cost)| cost)
     };
     let options = Options::default();
-    let best = STARTS
-        .iter()
-        .map(|&(alpha, beta)| {
-            let start = [alpha, beta].map(|s: f64| libm::sqrt(s - bound));
-            minimize(cost, start, &options)
-        })
-        .reduce(|best: Minimum<2>, next| if next.value < best.value { next } else { best });
+    let search = |(alpha, beta): (f64, f64)| {
+        let start = [alpha, beta].map(|s: f64| libm::sqrt((s - bound).max(0.0)));
+        minimize(cost, start, &options)
+    };
+    let better = |best: Minimum<2>, next: Minimum<2>| match next.value < best.value {
+        true => next,
+        false => best,
+    };
+    let mut best = STARTS.into_iter().map(search).reduce(better);
+    if best.is_none_or(|best| best.value > NOTHING_EXPLAINED) {
+        // At an edge a density of parameters above 1 is 0, and knows no way up.
+        let at_edges = [(bound, 4.0), (4.0, bound)].into_iter().map(search);
+        best = best.into_iter().chain(at_edges).reduce(better);
+    }
     best.map_or((2.0, 2.0), |m| (shape(m.x[0]), shape(m.x[1])))
 }
 

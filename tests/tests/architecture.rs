@@ -48,6 +48,18 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-report",
         ],
     ),
+    (
+        "htex-hard-cases",
+        &[
+            "htex",
+            "htex-author",
+            "htex-device",
+            "htex-dsp",
+            "htex-format",
+            "htex-host",
+            "htex-scene",
+        ],
+    ),
     ("xtask", &[]),
 ];
 

@@ -30,7 +30,7 @@ fn usage() -> ExitCode {
 /// Makes what the specification has from the code.
 fn generate() -> ExitCode {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
-    let made: [&[&str]; 5] = [
+    let made: [&[&str]; 6] = [
         &["htex-format", "--example", "conformance"],
         &[
             "htex-model",
@@ -41,6 +41,7 @@ fn generate() -> ExitCode {
         ],
         &["htex-check", "--example", "model_checks"],
         &["htex-scene", "--example", "scene_pages"],
+        &["htex-hard-cases", "--example", "hard_cases_page"],
         &[
             "htex-device",
             "--features",

@@ -1,0 +1,189 @@
+//! The AR model beyond its usual order and rate.
+
+use htex_host::{Band, Stream};
+
+use crate::seen::{fit_with, model, models, spectrum, told};
+use crate::signals::{RATE_HZ, friction, noise, tone};
+use crate::{Bound, Case, Section, exact, failures, none, refused, within, worse};
+
+pub(crate) const SECTION: Section = Section {
+    title: "AR",
+    about: "Parameters that a fit gives, and parameters that a file may hold.",
+    cases: CASES,
+};
+
+const BAND: Band = Band::TACTILE;
+/// Rate at which levels are measured, hertz.
+const PLAYED_HZ: f64 = 2_000.0;
+
+/// The refusal of a filter as a parameter set, by magnitude and by voice.
+fn filter_refused(coefficients: &[f64]) -> String {
+    let ar = model("ar");
+    let count = [coefficients.len() as f64];
+    let parameters = [&count[..], coefficients, &[2_000.0]].concat();
+    let magnitude = told(ar.magnitude(&parameters, BAND, &[100.0]));
+    let voice = told(ar.voice(&parameters, BAND, 2_000.0, 1));
+    if magnitude == voice {
+        voice
+    } else {
+        format!("by magnitude {magnitude}; by voice {voice}")
+    }
+}
+
+/// Whether fits of orders up to 64 at a model rate are stable, by each method, and are played.
+fn fits_at(rate_hz: &str) -> f64 {
+    let ar = model("ar");
+    let (signal, mut results) = (friction(), Vec::new());
+    let magnitude = spectrum(&signal);
+    for method in ["yule-walker", "burg", "covariance"] {
+        for order in ["1", "2", "6", "16", "33", "64"] {
+            let options = [("order", order), ("rate_hz", rate_hz), ("method", method)];
+            let fitted = fit_with(&ar, &magnitude, &signal[..8_000], &options).unwrap();
+            let played = Stream::new(&ar, &fitted.parameters, BAND, RATE_HZ, 1)
+                .and_then(|mut stream| stream.render(&mut [0.0; 200]));
+            if played.is_err() {
+                println!("{method} of order {order} at {rate_hz} Hz: {played:?}");
+            }
+            results.push(played.is_ok());
+        }
+    }
+    failures(results)
+}
+
+/// Whether fits of orders that exact arithmetic reaches are stable in it.
+fn exactly_stable(rate_hz: &str) -> f64 {
+    let ar = model("ar");
+    let magnitude = spectrum(&friction());
+    failures(["1", "2", "3", "6", "9", "12"].map(|order| {
+        let options = [("order", order), ("rate_hz", rate_hz)];
+        let fitted = fit_with(&ar, &magnitude, &[], &options).unwrap();
+        let count = fitted.parameters[0] as usize;
+        exact::is_stable(&fitted.parameters[1..=count])
+    }))
+}
+
+/// Decibels by which the level of a fitted tone of 1 N is off, and by which its voice is.
+fn tone_level(hz: f64) -> f64 {
+    let ar = model("ar");
+    let fitted = fit_with(&ar, &spectrum(&tone(hz)), &[], &[]).unwrap();
+    let level_db = 20.0 * (fitted.level_rms * 2f64.sqrt()).log10();
+    let mut voice = ar.voice(&fitted.parameters, BAND, PLAYED_HZ, 1).unwrap();
+    let mut out = vec![0.0f32; 240 * PLAYED_HZ as usize];
+    voice.render(&mut out).unwrap();
+    let power: f64 = out.iter().map(|&x| f64::from(x).powi(2)).sum();
+    let played_db = 10.0 * (power / out.len() as f64).log10();
+    worse(level_db.abs(), played_db.abs())
+}
+
+const CASES: &[Case] = &[
+    within(
+        "a tone of 100, 500 or 902.5 Hz",
+        "AR",
+        "level of the fit and of four minutes played",
+        Bound(1.0, "dB", "the tone's"),
+        || {
+            [100.0, 500.0, 902.5]
+                .map(tone_level)
+                .into_iter()
+                .fold(0.0, worse)
+        },
+    ),
+    within(
+        "friction noise, the band oversampled 1 to 500 times: model rates 2 kHz to 1 MHz",
+        "AR",
+        "fit by each method, orders 1 to 64, and render",
+        none("all are played"),
+        || {
+            ["2000", "20000", "200000", "1000000"]
+                .map(fits_at)
+                .iter()
+                .sum()
+        },
+    ),
+    within(
+        "friction noise, model rates 2 kHz to 200 kHz",
+        "AR",
+        "fit, orders 1 to 12",
+        none("stable, exact"),
+        || ["2000", "20000", "200000"].map(exactly_stable).iter().sum(),
+    ),
+    within(
+        "white noise at a model rate of 50 Hz, below the band's middle",
+        "AR",
+        "fit and render",
+        none("played or refused"),
+        || {
+            let ar = model("ar");
+            let fitted = fit_with(&ar, &spectrum(&noise()), &[], &[("rate_hz", "50")]);
+            let played = fitted.map(|fit| {
+                Stream::new(&ar, &fit.parameters, BAND, RATE_HZ, 1)
+                    .and_then(|mut stream| stream.render(&mut [0.0; 500]))
+            });
+            failures([!matches!(played, Ok(Err(_)))])
+        },
+    ),
+    within(
+        "poles at radius 1 - 1e-12 on and between bins",
+        "AR",
+        "magnitude, render",
+        none("finite"),
+        || {
+            let ar = model("ar");
+            let radius = 1.0 - 1e-12;
+            failures([500.0, 502.5, 20.0, 999.9].map(|hz: f64| {
+                let angle = std::f64::consts::TAU * hz / 2_000.0;
+                let (a1, a2) = (2.0 * radius * angle.cos(), -radius * radius);
+                let parameters = [2.0, a1, a2, 2_000.0];
+                let grid = BAND.grid_hz();
+                let magnitude = ar.magnitude(&parameters, BAND, &grid);
+                let played = Stream::new(&ar, &parameters, BAND, RATE_HZ, 1)
+                    .and_then(|mut stream| stream.render(&mut [0.0; 4_000]));
+                magnitude.is_ok() && played.is_ok()
+            }))
+        },
+    ),
+    refused(
+        "a reflection coefficient of 1",
+        "AR",
+        "magnitude, voice",
+        "InvalidParameters: the filter is not stable",
+        || filter_refused(&[1.0]),
+    ),
+    refused(
+        "a reflection coefficient of -1",
+        "AR",
+        "magnitude, voice",
+        "InvalidParameters: the filter is not stable",
+        || filter_refused(&[0.2, -1.0]),
+    ),
+    refused(
+        "a pole outside the unit circle",
+        "AR",
+        "magnitude, voice",
+        "InvalidParameters: the filter is not stable",
+        || filter_refused(&[2.5, -1.2]),
+    ),
+    refused(
+        "a coefficient that is NaN",
+        "every model",
+        "magnitude, voice",
+        "is NaN",
+        || {
+            let said = models().into_iter().map(|model| {
+                let fitted = crate::seen::fit(&model, &spectrum(&friction())).unwrap();
+                let mut parameters = fitted.parameters;
+                // A scalar's place, or the first of a list.
+                let last = parameters.len() - 1;
+                parameters[last] = f64::NAN;
+                let grid = BAND.grid_hz();
+                [
+                    told(model.magnitude(&parameters, BAND, &grid)),
+                    told(model.voice(&parameters, BAND, 2_000.0, 1)),
+                ]
+            });
+            let all: Vec<String> = said.flatten().collect();
+            let other = all.iter().find(|text| !text.contains("is NaN"));
+            other.unwrap_or(&all[0]).clone()
+        },
+    ),
+];

@@ -1,0 +1,266 @@
+//! The beta density and sBeta at the ends of their parameters.
+
+use htex_dsp::beta::beta_pdf;
+use htex_dsp::grid::level_rms;
+use htex_host::Band;
+
+use crate::big::{Big, big};
+use crate::seen::{fit_with, model, spectrum};
+use crate::signals::tone;
+use crate::{Bound, Case, Section, failures, none, within, worse};
+
+pub(crate) const SECTION: Section = Section {
+    title: "Beta density",
+    about: "The density against 256 bits (ln Γ by Stirling's series), and sBeta with few, equal and extreme peaks.",
+    cases: CASES,
+};
+
+const BAND: Band = Band::TACTILE;
+const PLACES: [f64; 9] = [1e-12, 1e-3, 0.1, 0.3, 0.5, 0.7, 0.9, 0.999, 1.0 - 1e-12];
+
+/// ln Γ(x) in 256 bits: shifted above 60, then Stirling's series to 12 terms, 1e-33 of it.
+fn log_gamma(x: f64) -> Big {
+    // B_2n / (2n (2n - 1)).
+    const TERMS: [(f64, f64); 12] = [
+        (1.0, 12.0),
+        (-1.0, 360.0),
+        (1.0, 1260.0),
+        (-1.0, 1680.0),
+        (1.0, 1188.0),
+        (-691.0, 360_360.0),
+        (1.0, 156.0),
+        (-3617.0, 122_400.0),
+        (43_867.0, 244_188.0),
+        (-174_611.0, 125_400.0),
+        (77_683.0, 5796.0),
+        (-236_364_091.0, 1_506_960.0),
+    ];
+    let (mut x, mut product) = (big(x), big(1.0));
+    while x.to_f64() < 60.0 {
+        product = product * x.clone();
+        x = x + big(1.0);
+    }
+    let half = big(0.5);
+    let leading = (x.clone() - half.clone()) * x.ln() - x.clone();
+    let mut sum = leading + half * (big(2.0) * Big::pi()).ln() - product.ln();
+    let mut power = x.clone();
+    for (over, under) in TERMS {
+        sum = sum + big(over) / big(under) / power.clone();
+        power = power * x.clone() * x.clone();
+    }
+    sum
+}
+
+fn log_density(u: f64, alpha: f64, beta: f64) -> Big {
+    let log_beta = log_gamma(alpha) + log_gamma(beta) - log_gamma(alpha + beta);
+    let (a, b) = (big(alpha) - big(1.0), big(beta) - big(1.0));
+    a * big(u).ln() + b * (big(1.0) - big(u)).ln() - log_beta
+}
+
+/// Largest relative error of the density where it is no underflow.
+fn density_error(parameters: &[f64], places: &[f64]) -> f64 {
+    let mut worst = 0.0;
+    for &alpha in parameters {
+        for &beta in parameters {
+            for &u in places {
+                let log = log_density(u, alpha, beta);
+                let found = beta_pdf(u, alpha, beta);
+                let error = match log.to_f64() {
+                    // What rounds to nothing must be next to nothing.
+                    small if small < -700.0 => (found >= 1e-300).into(),
+                    _ => log.exp().relative_error(found),
+                };
+                worst = worse(worst, if error == 1.0 { f64::NAN } else { error });
+            }
+        }
+    }
+    worst
+}
+
+/// Whether shapes are of unit RMS, and their voices near it.
+fn shapes(parameters: &[f64]) -> f64 {
+    let sbeta = model("sbeta");
+    let mut results = Vec::new();
+    for &alpha in parameters {
+        for &beta in parameters {
+            let set = [alpha, beta];
+            let magnitude = sbeta.magnitude(&set, BAND, &BAND.grid_hz());
+            let voice = sbeta.voice(&set, BAND, 2_500.0, 1);
+            let mut out = vec![0.0f32; 25_000];
+            let played = voice.and_then(|mut voice| voice.render(&mut out));
+            let power: f64 = out.iter().map(|&x| f64::from(x).powi(2)).sum();
+            let rms = (power / out.len() as f64).sqrt();
+            let holds = match (magnitude, played) {
+                (Ok(m), Ok(())) => (level_rms(&m) - 1.0).abs() < 1e-9 && (0.5..2.0).contains(&rms),
+                (Err(by), Err(too)) => {
+                    let named = |e: &htex_host::HostError| {
+                        e.to_string().contains("put all energy between two bins")
+                    };
+                    named(&by) && named(&too)
+                }
+                _ => false,
+            };
+            if !holds {
+                println!("alpha {alpha}, beta {beta}: RMS {rms}");
+            }
+            results.push(holds);
+        }
+    }
+    failures(results)
+}
+
+/// A spectrum with peaks of 1 N at some bins, on a floor.
+fn peaks(at: &[usize], floor: f64) -> Vec<f64> {
+    let mut magnitude = vec![floor; BAND.bins()];
+    at.iter().for_each(|&bin| magnitude[bin] = 1.0);
+    magnitude
+}
+
+/// Whether spectra are fitted with each lower bound and played.
+fn fitted(spectra: &[Vec<f64>]) -> f64 {
+    let sbeta = model("sbeta");
+    failures(spectra.iter().flat_map(|magnitude| {
+        ["1", "0", "0.5"].map(|bound| {
+            let options = [("lower_bound", bound)];
+            fit_with(&sbeta, magnitude, &[], &options).is_ok_and(|fit| {
+                let [alpha, beta] = [fit.parameters[0], fit.parameters[1]];
+                let least = bound.parse::<f64>().unwrap().max(1e-3);
+                let inside = |x: f64| (least..=1e4).contains(&x);
+                let shape = sbeta.magnitude(&fit.parameters, BAND, &BAND.grid_hz());
+                inside(alpha)
+                    && inside(beta)
+                    && fit.level_rms > 0.1 * level_rms(magnitude)
+                    && shape.is_ok()
+            })
+        })
+    }))
+}
+
+const CASES: &[Case] = &[
+    within(
+        "alpha and beta of 0.001, 0.5, 1, 1 + 1e-9, 2, 7.5, 99",
+        "density",
+        "evaluate, down to 1e-12 from the edges",
+        Bound(2e-13, "of it", "256 bits"),
+        || density_error(&[1e-3, 0.5, 1.0, 1.0 + 1e-9, 2.0, 7.5, 99.0], &PLACES),
+    ),
+    within(
+        "alpha and beta of 1e4, 1e6",
+        "density",
+        "evaluate near the mode",
+        Bound(1e-8, "of it", "256 bits"),
+        || {
+            let near = [0.009, 0.01, 0.49, 0.4999, 0.5, 0.5003, 0.51, 0.99, 0.9901];
+            density_error(&[1e4, 1e6], &near)
+        },
+    ),
+    within(
+        "the edges 0 and 1, alpha and beta below, at and above 1",
+        "density",
+        "evaluate",
+        none("the limit: infinite, finite, 0"),
+        || {
+            failures([
+                beta_pdf(0.0, 0.5, 2.0) == f64::INFINITY,
+                beta_pdf(1.0, 2.0, 0.5) == f64::INFINITY,
+                (beta_pdf(0.0, 1.0, 3.0) - 3.0).abs() < 1e-12,
+                (beta_pdf(1.0, 3.0, 1.0) - 3.0).abs() < 1e-12,
+                beta_pdf(0.0, 2.0, 0.5) == 0.0,
+                beta_pdf(1.0, 1e6, 1e6) == 0.0,
+                beta_pdf(-0.1, 0.5, 0.5) == 0.0,
+                beta_pdf(1.1, 0.5, 0.5) == 0.0,
+            ])
+        },
+    ),
+    within(
+        "alpha or beta 0, negative, infinite or NaN; NaN as place",
+        "density",
+        "evaluate",
+        none("NaN"),
+        || {
+            let bad = [0.0, -1.0, f64::INFINITY, f64::NAN];
+            let density =
+                bad.map(|p| beta_pdf(0.5, p, 1.0).is_nan() && beta_pdf(0.5, 1.0, p).is_nan());
+            failures(
+                density
+                    .into_iter()
+                    .chain([beta_pdf(f64::NAN, 2.0, 2.0).is_nan()]),
+            )
+        },
+    ),
+    within(
+        "alpha and beta of 0.001, 0.5, 1, 1 + 1e-9, 2, 100, 1e4, 1e6, each with each",
+        "sBeta",
+        "magnitude, render",
+        none("unit RMS, or refused: all energy between two bins"),
+        || shapes(&[1e-3, 0.5, 1.0, 1.0 + 1e-9, 2.0, 100.0, 1e4, 1e6]),
+    ),
+    within(
+        "one peak, in the middle, next to an edge, on an edge",
+        "sBeta",
+        "fit, lower bounds 0, 0.5, 1",
+        none("in range, played, and within 20 dB of its level"),
+        || {
+            fitted(&[
+                peaks(&[50], 0.0),
+                peaks(&[1], 0.0),
+                peaks(&[195], 0.0),
+                peaks(&[0], 0.0),
+                peaks(&[196], 1e-9),
+            ])
+        },
+    ),
+    within(
+        "a tone of 1 N at 150, 500, 747.5 Hz",
+        "sBeta",
+        "level of the fit",
+        Bound(12.1, "dB", "the tone's"),
+        || {
+            let off = [150.0, 500.0, 747.5].map(|hz| {
+                let fitted = crate::seen::fit(&model("sbeta"), &spectrum(&tone(hz)));
+                let level = fitted.map_or(f64::NAN, |fit| fit.level_rms);
+                20.0 * (level * 2f64.sqrt()).log10().abs()
+            });
+            off.into_iter().fold(0.0, worse)
+        },
+    ),
+    within(
+        "two peaks: far apart, nearer than can be told apart, side by side",
+        "sBeta",
+        "fit, lower bounds 0, 0.5, 1",
+        none("in range, played, and within 20 dB of its level"),
+        || {
+            fitted(&[
+                peaks(&[2, 190], 0.0),
+                peaks(&[100, 104], 0.1),
+                peaks(&[100, 101], 0.0),
+            ])
+        },
+    ),
+    within(
+        "ten equal peaks; a flat spectrum; a plateau",
+        "sBeta",
+        "fit, lower bounds 0, 0.5, 1",
+        none("in range, played, and within 20 dB of its level"),
+        || {
+            let ten: Vec<usize> = (0..10).map(|i| 10 + 18 * i).collect();
+            let plateau: Vec<usize> = (60..140).collect();
+            fitted(&[
+                peaks(&ten, 0.0),
+                peaks(&ten, 0.5),
+                peaks(&[], 1.0),
+                peaks(&plateau, 0.2),
+            ])
+        },
+    ),
+    within(
+        "a spectrum that rises to both edges",
+        "sBeta",
+        "fit, lower bounds 0, 0.5, 1",
+        none("in range, played, and within 20 dB of its level"),
+        || {
+            let valley = |i: usize| (i as f64 - 98.0).powi(4) / 1e8 + 0.01 * (i % 2) as f64;
+            fitted(&[(0..BAND.bins()).map(valley).collect()])
+        },
+    ),
+];

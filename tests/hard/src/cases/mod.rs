@@ -1,0 +1,21 @@
+//! The rows, by kind.
+
+mod autoregression;
+mod beta;
+mod mixing;
+mod prediction;
+mod recordings;
+mod slope;
+
+use crate::Section;
+
+pub(crate) fn sections() -> Vec<Section> {
+    vec![
+        recordings::SECTION,
+        prediction::SECTION,
+        autoregression::SECTION,
+        mixing::SECTION,
+        beta::SECTION,
+        slope::SECTION,
+    ]
+}

@@ -1,0 +1,139 @@
+//! Recordings at which spectra degenerate, through every model of the registry.
+
+use crate::seen::{every_model, every_model_but, refusal, refusal_of_all};
+use crate::signals::{
+    SAMPLES, far_apart, friction, impulse, noise, of_time, quantised, scaled, sum, tone,
+};
+use crate::{Bound, Case, Section, refused, within};
+
+pub(crate) const SECTION: Section = Section {
+    title: "Recordings",
+    about: "Two seconds at 20 kHz, cut into segments of 0.2 s and averaged. *Every model* is every model of the \
+            registry; each is fitted, its magnitude has unit RMS, it is mixed half and half with a \
+            fit of friction noise, rendered, and retuned before every sample. No sample is subnormal, \
+            and the largest is bounded.",
+    cases: CASES,
+};
+
+/// Fitted, played and changed by these models.
+const fn lives(input: &'static str, subject: &'static str, worst: fn() -> f64) -> Case {
+    let bound = Bound(12.0, "× RMS", "finite, and samples");
+    let operation = "fit, magnitude, mix, render, retune";
+    within(input, subject, operation, bound, worst)
+}
+
+const ALL: &str = "every model";
+const NO_PEAK: &str = "CannotFit: the spectrum has no peak";
+const BUT_SPEAK: &str = "every model but sPeak";
+const LENGTH: usize = 4_000;
+
+fn square(hz: f64) -> Vec<f64> {
+    tone(hz).iter().map(|x| x.signum()).collect()
+}
+
+fn clipped() -> Vec<f64> {
+    scaled(&friction(), 100.0)
+        .iter()
+        .map(|x| x.clamp(-0.5, 0.5))
+        .collect()
+}
+
+fn one_bit() -> Vec<f64> {
+    friction().iter().map(|x| x.signum()).collect()
+}
+
+const CASES: &[Case] = &[
+    refused("silence", "every model", "fit", "CannotFit", || {
+        refusal_of_all(&[0.0; SAMPLES])
+    }),
+    refused("a constant 3 N", "every model", "fit", "CannotFit", || {
+        refusal_of_all(&[3.0; SAMPLES])
+    }),
+    lives("one sample of 1 N", ALL, || every_model(&impulse())),
+    lives("a tone of 500 Hz", ALL, || every_model(&tone(500.0))),
+    lives("a tone of 999 Hz", BUT_SPEAK, || {
+        every_model_but(&["speak"], &tone(999.0))
+    }),
+    lives("a tone of 20 Hz, the first bin", BUT_SPEAK, || {
+        every_model_but(&["speak"], &tone(20.0))
+    }),
+    refused(
+        "a tone of 20 Hz, the first bin",
+        "sPeak",
+        "fit",
+        NO_PEAK,
+        || refusal("speak", &tone(20.0)),
+    ),
+    lives("a tone of 21 Hz", BUT_SPEAK, || {
+        every_model_but(&["speak"], &tone(21.0))
+    }),
+    refused("a tone of 21 Hz", "sPeak", "fit", NO_PEAK, || {
+        refusal("speak", &tone(21.0))
+    }),
+    lives("a tone of 1000 Hz, the last bin", BUT_SPEAK, || {
+        every_model_but(&["speak"], &tone(1000.0))
+    }),
+    refused(
+        "a tone of 1000 Hz, the last bin",
+        "sPeak",
+        "fit",
+        NO_PEAK,
+        || refusal("speak", &tone(1000.0)),
+    ),
+    lives("tones of 300 and 301 Hz", ALL, || {
+        every_model(&sum(&tone(300.0), &tone(301.0)))
+    }),
+    lives("tones of 50 and 700 Hz, 120 dB apart", ALL, || {
+        every_model(&far_apart())
+    }),
+    lives("white noise", ALL, || every_model(&noise())),
+    lives("friction noise", ALL, || every_model(&friction())),
+    lives("a square wave of 100 Hz", ALL, || {
+        every_model(&square(100.0))
+    }),
+    lives("friction noise, clipped nearly always", ALL, || {
+        every_model(&clipped())
+    }),
+    lives("friction noise of one bit", ALL, || every_model(&one_bit())),
+    lives("3 N and half a step of a 16-bit converter", ALL, || {
+        every_model(&quantised(
+            &sum(&[3.0; SAMPLES], &scaled(&noise(), 1e-5)),
+            1e-5,
+        ))
+    }),
+    lives("friction noise of 1e30 N", ALL, || {
+        every_model(&scaled(&friction(), 1e30))
+    }),
+    refused(
+        "friction noise of 1e200 N",
+        "MFCC",
+        "fit",
+        "not finite",
+        || refusal("mfcc", &scaled(&friction(), 1e200)),
+    ),
+    lives("friction noise of 1e-300 N", ALL, || {
+        every_model(&scaled(&friction(), 1e-300))
+    }),
+    lives("friction noise of subnormal size, 1e-310 N", ALL, || {
+        every_model(&scaled(&friction(), 1e-310))
+    }),
+    lives("one segment of friction noise", ALL, || {
+        every_model(&friction()[..LENGTH])
+    }),
+    lives("a swept tone, 20 to 1000 Hz", ALL, || {
+        every_model(&of_time(|t| {
+            (std::f64::consts::TAU * (20.0 * t + 245.0 * t * t)).sin()
+        }))
+    }),
+    refused(
+        "NaN in one sample",
+        "every model",
+        "fit",
+        "InvalidArgument: `magnitude`[0] is not a finite number",
+        || {
+            let mut broken = noise();
+            broken[5_000] = f64::NAN;
+            refusal("ar", &broken)
+        },
+    ),
+];

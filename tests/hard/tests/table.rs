@@ -1,0 +1,57 @@
+//! Every row of the table holds, and the page is that of the table.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+use htex_hard_cases::sections;
+
+#[test]
+#[cfg(feature = "pipeline")] // The page has all rows.
+fn the_page_is_up_to_date() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../spec/hard-cases.md");
+    let written = std::fs::read_to_string(path).unwrap();
+    assert!(
+        written == htex_hard_cases::page(),
+        "{path}: run `cargo xtask generate`"
+    );
+}
+
+/// Runs the cases of a section, each in turn; prints what was measured.
+fn hold(title: &str) {
+    let sections = sections();
+    let section = sections.iter().find(|s| s.title == title).unwrap();
+    let mut broken = Vec::new();
+    for case in section.cases {
+        match case.run() {
+            Ok(text) => println!("{text}"),
+            Err(text) => broken.push(text),
+        }
+    }
+    assert!(broken.is_empty(), "\n{}\n", broken.join("\n"));
+}
+
+macro_rules! sections {
+    ($($name:ident: $title:literal),* $(,)?) => {
+        $(#[test]
+        fn $name() {
+            hold($title);
+        })*
+
+        /// A section without a test here would be a table of promises that nobody keeps.
+        #[test]
+        fn every_section_is_held() {
+            let held = [$($title),*];
+            for section in sections() {
+                assert!(held.contains(&section.title), "{}", section.title);
+                assert!(!section.cases.is_empty());
+            }
+        }
+    };
+}
+
+sections! {
+    recordings: "Recordings",
+    prediction: "Linear prediction",
+    autoregression: "AR",
+    mixing: "Interpolation",
+    beta: "Beta density",
+    slope: "Slopes",
+}

@@ -1,0 +1,193 @@
+//! What the model promises: each band keeps its energy, and nothing is made up between them.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+use htex_bands::{BandEnergies, FLOOR_DB};
+use htex_dsp::bands::{BandBank, band_error_db, rms};
+use htex_dsp::grid::{Band, level_rms};
+use htex_model::{Error, Fit, FitInput, Model, Status, Values};
+use proptest::prelude::*;
+
+fn model_band(band: Band) -> htex_model::Band {
+    htex_model::Band {
+        low_hz: band.low_hz,
+        high_hz: band.high_hz,
+    }
+}
+
+fn fit(magnitude: &[f64], band: Band, bands: usize, step_db: f64) -> Result<Fit, Error> {
+    BandEnergies::fit(&FitInput {
+        band: model_band(band),
+        frequency_hz: &band.grid_hz(),
+        magnitude,
+        signal: &[],
+        signal_rate_hz: 20_000.0,
+        options: &[bands as f64, step_db],
+    })
+}
+
+/// The shape's magnitude on the grid.
+fn shape(parameters: &[f64], band: Band) -> Vec<f64> {
+    let descriptor = BandEnergies::descriptor();
+    let values = Values::read(&descriptor, parameters).unwrap();
+    let grid = band.grid_hz();
+    let mut magnitude = vec![f64::NAN; grid.len()];
+    BandEnergies::magnitude(&values, model_band(band), &grid, &mut magnitude).unwrap();
+    magnitude
+}
+
+/// What shape and level together play, on the grid.
+fn played(fit: &Fit, band: Band) -> Vec<f64> {
+    let shape = shape(&fit.parameters, band);
+    shape.iter().map(|m| m * fit.level_rms).collect()
+}
+
+/// Errors of the bands that bins fall into, against the rounded energies of the spectrum, dB.
+fn kept(magnitude: &[f64], fit: &Fit, band: Band) -> Vec<f64> {
+    let count = fit.parameters[0] as usize;
+    let step_db = fit.parameters[count + 1];
+    let bank = BandBank::new(count, band, &band.grid_hz());
+    let loudest = bank.energies(magnitude).into_iter().fold(0.0, f64::max);
+    let rounded: Vec<f64> = fit.parameters[1..=count]
+        .iter()
+        .map(|below| loudest * 10f64.powf(-0.1 * below * step_db))
+        .collect();
+    let errors = band_error_db(&rounded, &bank.energies(&played(fit, band)));
+    let sums = bank.filters().row_sums();
+    let stands = errors.iter().zip(sums).filter(|(_, sum)| *sum > 0.0);
+    stands.map(|(error, _)| *error).collect()
+}
+
+/// Magnitudes of averaged noise under a straight envelope: what recordings look like.
+fn noisy(band: Band) -> impl Strategy<Value = Vec<f64>> {
+    let bins = proptest::collection::vec(0.3..2.0, band.bins());
+    (bins, -2.0..2.0).prop_map(move |(bins, slope): (Vec<f64>, f64)| {
+        let grid = band.grid_hz();
+        let envelope = grid.iter().map(|f| (f / 150.0).powf(slope));
+        bins.iter()
+            .zip(envelope)
+            .map(|(b, e)| 1e-3 * b * e)
+            .collect()
+    })
+}
+
+/// Magnitudes that stand up to 60 dB apart, bin by bin.
+fn wild(band: Band) -> impl Strategy<Value = Vec<f64>> {
+    let bins = proptest::collection::vec(-60.0..0.0, band.bins());
+    bins.prop_map(|db: Vec<f64>| db.iter().map(|db| 10f64.powf(db / 20.0)).collect())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(500))]
+
+    #[test]
+    fn nine_bands_keep_their_energies(noisy in noisy(Band::TACTILE), wild in wild(Band::TACTILE)) {
+        // Rounding may leave energies that no spectrum has, if the wild one was at the edge of what can be.
+        for (magnitude, most) in [(noisy, 1e-6), (wild, 0.25)] {
+            let fit = fit(&magnitude, Band::TACTILE, 9, 0.5).unwrap();
+            let worst = kept(&magnitude, &fit, Band::TACTILE).iter().fold(0.0, |w: f64, e| w.max(e.abs()));
+            prop_assert!(worst < most, "{worst} dB");
+            // And so those of the recording, to half a step.
+            let bank = BandBank::new(9, Band::TACTILE, &Band::TACTILE.grid_hz());
+            let played = played(&fit, Band::TACTILE);
+            for error in band_error_db(&bank.energies(&magnitude), &bank.energies(&played)) {
+                prop_assert!(error.abs() < 0.25 + most, "{error} dB");
+            }
+        }
+    }
+
+    #[test]
+    fn other_numbers_of_bands_keep_theirs(magnitude in noisy(Band::TACTILE), bands in 1usize..=40) {
+        let band = Band::TACTILE;
+        let fit = fit(&magnitude, band, bands, 0.5).unwrap();
+        let errors = kept(&magnitude, &fit, band);
+        // Above 20 some are so narrow that they share their bins, and rounded energies
+        // cannot all be met.
+        let most = if bands <= 20 { 1e-6 } else { 0.5 };
+        prop_assert!(rms(&errors) < most, "{bands} bands: {errors:?}");
+    }
+
+    #[test]
+    fn between_two_apexes_the_curve_goes_one_way_or_stays(
+        below in proptest::collection::vec(0.0..255.0, 1..=40),
+        step_db in 0.05..6.0,
+    ) {
+        let count = below.len();
+        let parameters = [&[count as f64][..], &below, &[step_db]].concat();
+        let band = Band::TACTILE;
+        let magnitude = shape(&parameters, band);
+        prop_assert!(magnitude.iter().all(|m| m.is_finite() && *m >= 0.0));
+        prop_assert!((level_rms(&magnitude) - 1.0).abs() < 1e-9);
+        let bank = BandBank::new(count, band, &band.grid_hz());
+        let edges = bank.edges_hz();
+        for apexes in edges.windows(2) {
+            let inside: Vec<f64> = band
+                .grid_hz()
+                .iter()
+                .zip(&magnitude)
+                .filter(|(f, _)| (apexes[0]..=apexes[1]).contains(*f))
+                .map(|(_, m)| *m)
+                .collect();
+            let slack = 1e-9;
+            let rises = inside.windows(2).all(|w| w[1] >= w[0] * (1.0 - slack));
+            let falls = inside.windows(2).all(|w| w[1] <= w[0] * (1.0 + slack));
+            prop_assert!(rises || falls, "{apexes:?}: {inside:?}");
+        }
+    }
+}
+
+#[test]
+fn lines_and_empty_bands_stay_finite_and_loud_bands_are_kept() {
+    let band = Band::TACTILE;
+    for bin in 1..band.bins() - 1 {
+        let mut magnitude = vec![0.0; band.bins()];
+        magnitude[bin] = 3.0;
+        let fit = fit(&magnitude, band, 9, 0.5).unwrap();
+        let below = &fit.parameters[1..=9];
+        // No band but those over the line has energy; the floor is 120 dB.
+        assert!(below.iter().filter(|b| **b < FLOOR_DB / 0.5).count() <= 2);
+        assert!(below.iter().all(|b| *b <= FLOOR_DB / 0.5));
+        assert!(fit.level_rms.is_finite() && fit.level_rms > 0.0);
+        let magnitude = shape(&fit.parameters, band);
+        assert!(magnitude.iter().all(|m| m.is_finite()));
+        assert!((level_rms(&magnitude) - 1.0).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn lines_over_noise_keep_the_energies_of_nine_bands() {
+    let band = Band::TACTILE;
+    for bin in 2..band.bins() - 2 {
+        let mut magnitude = vec![0.01; band.bins()];
+        // A line as the window shows it, 40 dB above the noise.
+        magnitude[bin - 1] = 0.5;
+        magnitude[bin] = 1.0;
+        magnitude[bin + 1] = 0.5;
+        let fit = fit(&magnitude, band, 9, 0.5).unwrap();
+        for error in kept(&magnitude, &fit, band) {
+            assert!(error.abs() < 1e-6, "{error} dB with a line at bin {bin}");
+        }
+    }
+}
+
+#[test]
+fn silence_is_refused_and_scale_is_of_no_account() {
+    let band = Band::TACTILE;
+    let error = fit(&[0.0; 197], band, 9, 0.5).unwrap_err();
+    assert_eq!(error.status, Status::CannotFit);
+    // At both edges of the band the triangles weigh nothing.
+    let mut edges = [0.0; 197];
+    (edges[0], edges[196]) = (1.0, 1.0);
+    let error = fit(&edges, band, 9, 0.5).unwrap_err();
+    assert_eq!(error.status, Status::CannotFit);
+    let magnitude: Vec<f64> = band.grid_hz().iter().map(|f| 1.0 / f).collect();
+    let scaled = |by: f64| {
+        let magnitude: Vec<f64> = magnitude.iter().map(|m| m * by).collect();
+        fit(&magnitude, band, 9, 0.5).unwrap()
+    };
+    let plain = scaled(1.0);
+    for by in [1e-250, 1e250] {
+        let other = scaled(by);
+        assert_eq!(other.parameters, plain.parameters);
+        assert!((other.level_rms / plain.level_rms / by - 1.0).abs() < 1e-12);
+    }
+}

@@ -26,7 +26,7 @@ use commands::Command;
 /// Texture assets for touch: fit, inspect, measure and play them.
 ///
 /// A recording of a finger sliding over a surface goes in; a `.htex` file of a few hundred bytes
-/// comes out, with up to five models of its spectrum and the measure of how near each comes.
+/// comes out, with models of its spectrum and the measure of how near each comes.
 #[derive(Parser)]
 #[command(name = "htex", version, max_term_width = 100, after_help = FIRST_STEPS)]
 struct Cli {

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use htex_check::{CHECKS, Options, Outcome, Report, Runner, check, model_checks_page, run_one};
 
-const MODELS: [&str; 5] = ["ar", "mfcc", "speak", "sbeta", "sslope"];
+const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
 
 /// A fault of `tests/bad-plugins/bad.c`, and the check that must complain of it.
 const FAULTS: &[(&str, &str, Outcome)] = &[

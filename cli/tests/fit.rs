@@ -7,12 +7,13 @@ use std::time::Duration;
 
 use common::{Place, entries, numbers};
 
-const MODELS: [&str; 5] = [
+const MODELS: [&str; 6] = [
     "org.htex.ar",
     "org.htex.mfcc",
     "org.htex.speak",
     "org.htex.sbeta",
     "org.htex.sslope",
+    "org.htex.bands",
 ];
 
 #[test]
@@ -32,6 +33,7 @@ fn fit_info_and_the_file_agree_and_are_the_same_twice() {
         &["amplitude", "frequency_hz", "random_phase"],
         &["alpha", "beta"],
         &["order_high_pass", "order_low_pass", "peak_hz"],
+        &["below_loudest", "step_db"],
     ];
     for (i, model) in MODELS.iter().enumerate() {
         let (fitted, read) = (&fit["representations"][i], &info["representations"][i]);
@@ -84,7 +86,7 @@ fn assets_are_small() {
         place.json(&arguments)["bytes"].as_u64().unwrap()
     };
     let (one, all) = (fit("sbeta", "one.htex"), fit("all", "all.htex"));
-    println!("sBeta alone: {one} bytes; all five: {all} bytes");
+    println!("sBeta alone: {one} bytes; all: {all} bytes");
     assert!(one <= 1_024 && all <= 4_096, "{one} {all}");
 }
 
@@ -123,6 +125,7 @@ fn every_knob_the_paper_names_changes_the_fit() {
         ("speak", &["speak.phase=seed"]),
         ("sbeta", &["sbeta.points=20", "sbeta.jnd=0.4"]),
         ("sslope", &["sslope.rounding_db_per_decade=5"]),
+        ("bands", &["bands.bands=19", "bands.step_db=1"]),
     ] {
         let default = parameters(model, &[]);
         for option in options {

@@ -10,7 +10,7 @@ fn a_minute_of_each_model_has_its_spectrum_and_its_level() {
     let place = Place::new();
     let csv = place.recording("corrugated-paper");
     let fit = place.json(&["fit", &csv, "-o", "t.htex", "--json"]);
-    for (i, model) in ["ar", "mfcc", "speak", "sbeta", "sslope"]
+    for (i, model) in ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"]
         .iter()
         .enumerate()
     {

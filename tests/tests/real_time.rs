@@ -41,7 +41,7 @@ fn count(run: impl FnOnce()) -> usize {
     CALLS.with(Cell::get) - before
 }
 
-const MODELS: [&str; 5] = ["ar", "mfcc", "speak", "sbeta", "sslope"];
+const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
 
 fn asset() -> Asset {
     Asset::from_bytes(&bytes()).unwrap()
@@ -196,7 +196,7 @@ fn a_scene_is_rendered_without_allocating() {
         paced: true,
         block_frames: 64,
     };
-    for model in ["ar", "mfcc", "speak", "sbeta", "sslope"] {
+    for model in ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"] {
         let scene = live_scene(&asset, model);
         let plan = plan(&scene, &device, &Costs::embedded()).unwrap();
         let mut renderer = Renderer::new(&scene, &plan).unwrap();

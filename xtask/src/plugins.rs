@@ -1,4 +1,4 @@
-//! The five models as plugins: native libraries and WASM modules.
+//! The models as plugins: native libraries and WASM modules.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -6,7 +6,7 @@ use std::process::Command;
 use crate::wasm::{TARGET, Toolchain};
 
 /// The models' short names.
-pub const MODELS: [&str; 5] = ["ar", "mfcc", "speak", "sbeta", "sslope"];
+pub const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
 
 /// Builds every model as a native library; answers the folder they are in, `htex-plugins` in the
 /// target folder. What is built and newer than its sources is not built again.

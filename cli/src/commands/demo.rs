@@ -111,7 +111,7 @@ impl Demo {
 
     fn page(&self, textures: Vec<Texture>) -> TextureReport {
         TextureReport {
-            title: "Five simulated surfaces, five models".to_owned(),
+            title: "Five simulated surfaces, six models".to_owned(),
             intro: vec![
                 "Recordings come from a simulator of a finger sliding to and fro, not from a \
                  finger: they show the way of the data, not the quality of the models on real \

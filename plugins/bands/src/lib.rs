@@ -29,6 +29,9 @@ const STEP_RANGE_DB: (f64, f64) = (STEP_UNIT_DB, 6.0);
 /// as in the measure of band errors, which adds 1e-12 of the largest energy.
 pub const FLOOR_DB: f64 = 120.0;
 
+/// Rounds in which a voice's spectrum is sharpened.
+const SHARPENINGS: usize = 2;
+
 /// The model.
 pub struct BandEnergies;
 
@@ -110,7 +113,16 @@ impl Model for BandEnergies {
         frequency_hz: &[f64],
         magnitude: &mut [f64],
     ) -> Result<(), Error> {
-        htex_shaped::magnitude::<Spectrum>(parameters, band, frequency_hz, magnitude)
+        let band: Band = band.edges().into();
+        let spectrum = Spectrum::new(parameters, band)?;
+        for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
+            *m = if band.contains(f) {
+                spectrum.between(&spectrum.magnitude, f) / spectrum.level
+            } else {
+                0.0
+            };
+        }
+        Ok(())
     }
 
     /// Mixes decibels.
@@ -152,6 +164,9 @@ fn round_steps(below_db: f64, step_db: f64) -> f64 {
 pub struct Spectrum {
     knots: Knots,
     magnitude: Vec<f64>,
+    /// What a voice plays: it is read through a window, as recordings are, and then looks like
+    /// `magnitude`.
+    played: Vec<f64>,
     /// RMS of `magnitude`.
     level: f64,
     first_bin: usize,
@@ -167,6 +182,7 @@ impl Spectrum {
         let mut spectrum = Self {
             knots: Knots::new(below.len(), band),
             magnitude: vec![0.0; band.bins()],
+            played: vec![0.0; band.bins()],
             level: 0.0,
             first_bin: band.first_bin(),
         };
@@ -176,10 +192,25 @@ impl Spectrum {
 
     fn make(&mut self, below: &[f64], step_db: f64) {
         self.knots.solve(|band| below[band] * step_db);
-        for (m, power) in self.magnitude.iter_mut().zip(self.knots.power()) {
+        let power = self.knots.power();
+        for (m, power) in self.magnitude.iter_mut().zip(power) {
             *m = libm::sqrt(*power);
         }
         self.level = level_rms(&self.magnitude);
+        sharpen(power, &mut self.played);
+        for power in &mut self.played {
+            *power = libm::sqrt(*power);
+        }
+    }
+
+    /// Between bins: on the straight line between them.
+    fn between(&self, magnitude: &[f64], frequency_hz: f64) -> f64 {
+        let last = magnitude.len() - 1;
+        let place = (frequency_hz / GRID_HZ - self.first_bin as f64).clamp(0.0, last as f64);
+        let below = place as usize;
+        let above = (below + 1).min(last);
+        let (a, b) = (magnitude[below], magnitude[above]);
+        a + (place - below as f64) * (b - a)
     }
 }
 
@@ -197,17 +228,29 @@ impl Curve for Spectrum {
         Ok(())
     }
 
-    /// Between bins: on the straight line between them.
     fn at(&self, frequency_hz: f64) -> f64 {
-        let last = self.magnitude.len() - 1;
-        let place = (frequency_hz / GRID_HZ - self.first_bin as f64).clamp(0.0, last as f64);
-        let below = place as usize;
-        let above = (below + 1).min(last);
-        let (a, b) = (self.magnitude[below], self.magnitude[above]);
-        a + (place - below as f64) * (b - a)
+        self.between(&self.played, frequency_hz)
     }
 
     fn level(&self) -> f64 {
         self.level
+    }
+}
+
+/// Writes the power that reads as `power` through the Hann window, nearly: noise of even power is read
+/// in its own bin by two thirds, and by a sixth in each neighbour (Richardson and Lucy's steps).
+fn sharpen(power: &[f64], sharp: &mut [f64]) {
+    let last = power.len() - 1;
+    sharp.copy_from_slice(power);
+    for _ in 0..SHARPENINGS {
+        let mut before = sharp[0];
+        for bin in 0..=last {
+            let here = sharp[bin];
+            let read = (before + 4.0 * here + sharp[(bin + 1).min(last)]) / 6.0;
+            before = here;
+            if read > 0.0 {
+                sharp[bin] = here * (power[bin] / read);
+            }
+        }
     }
 }

@@ -7,19 +7,20 @@
 /// The recording: dark grey, behind or beside any model's colour.
 pub const RECORDING_COLOR: &str = "#4d4d4d";
 
-const MODELS: [(&str, &str); 5] = [
+const MODELS: [(&str, &str); 6] = [
     ("ar", "#0072b2"),
     ("mfcc", "#009e73"),
     ("speak", "#d55e00"),
     ("sbeta", "#7d1f6b"),
     ("sslope", "#5b2c00"),
+    ("bands", "#006b7a"),
 ];
 
 /// For models this crate has never heard of.
 const OTHERS: [&str; 4] = ["#5b4fc4", "#8a8000", "#2a7f8e", "#5f7a1f"];
 
 /// The colour of the model called `short_name` (`"sbeta"`), the same in every picture. A model
-/// that is not one of the five gets a colour of its own kind, chosen by its name.
+/// that is not one of these gets a colour of its own kind, chosen by its name.
 pub fn model_color(short_name: &str) -> &'static str {
     let name = short_name.to_ascii_lowercase();
     let known = MODELS.iter().find(|(model, _)| *model == name);

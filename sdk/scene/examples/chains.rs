@@ -131,7 +131,7 @@ fn budgets() {
 /// Voices that one core plays at 20 kHz, each a chain of its own with a resampler of its own.
 fn voices() {
     println!("\nmodel    voices in real time at 20 kHz, blocks of 64");
-    for model in ["ar", "mfcc", "speak", "sbeta", "sslope"] {
+    for model in ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"] {
         println!("{model:8} {:6}", most_voices(model));
     }
 }

@@ -60,7 +60,7 @@ fn demodulated_and_squared_it_has_the_textures_compensated_spectrum() {
         magnitude: vec![1.0, 1.2, 0.9, 0.4, 0.25],
         phase_rad: vec![0.0; 5],
     };
-    for model in ["ar", "mfcc", "sbeta", "sslope"] {
+    for model in ["ar", "mfcc", "sbeta", "sslope", "bands"] {
         for response in [None, Some(response.clone())] {
             let mut scene = scene(single(), constant(80.0, 0.4), 60.0);
             scene.scene.surfaces[0].representation = model.to_owned();

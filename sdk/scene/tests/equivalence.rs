@@ -46,7 +46,7 @@ fn cases() -> impl Strategy<Value = Case> {
         0u8..4,
         any::<bool>(),
         prop_oneof![Just(0.0), -12.0..12.0],
-        0usize..5,
+        0usize..6,
         any::<u64>(),
         prop::collection::vec(1usize..700, 1..5),
     );
@@ -87,7 +87,7 @@ impl Case {
             self.tile(&mut scene);
         }
         for surface in &mut scene.scene.surfaces {
-            let models = ["ar", "mfcc", "speak", "sbeta", "sslope"];
+            let models = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
             surface.representation = models[self.model].to_owned();
         }
         scene.scene.seed = self.seed;

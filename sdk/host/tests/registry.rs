@@ -42,7 +42,7 @@ fn files_go_before_embedded_ones_before_folders_before_built_in_ones() {
     let mut registry = Registry::search(&search).unwrap();
     assert_eq!(version(&registry), "2.0.0", "by file name");
     assert_eq!(registry.models()[0].id(), ID, "before the built-in ones");
-    assert_eq!(registry.models().len(), 6);
+    assert_eq!(registry.models().len(), 7);
     registry.add_wasm_bytes("felt.htex", &embedded).unwrap();
     assert_eq!(version(&registry), "4.0.0");
     let origin = registry.find("hostile").unwrap().origin();
@@ -53,7 +53,7 @@ fn files_go_before_embedded_ones_before_folders_before_built_in_ones() {
     registry.add_wasm_bytes("felt.htex", &embedded).unwrap();
     assert_eq!(version(&registry), "3.0.0");
     assert_eq!(*registry.find(ID).unwrap().origin(), Origin::Wasm(file));
-    assert_eq!(registry.models().len(), 6, "each id once");
+    assert_eq!(registry.models().len(), 7, "each id once");
     let shadowed = |note: &Note| match note {
         Note::Shadowed { shadowed, .. } => shadowed.0.clone(),
         other => panic!("{other}"),

@@ -57,8 +57,15 @@ impl SetupResponse {
 /// What [`read_recording`](crate::read::read_recording) reports of a CSV; and, with the line, a
 /// frequency that is negative or does not ascend, or a negative magnitude.
 pub fn read_response(path: &Path) -> Result<SetupResponse, ReadError> {
-    let (file, bytes) = (file_name(path), read_bytes(path)?);
-    let table = Table::new(&file, as_text(&file, &bytes)?)?;
+    response_from_bytes(&file_name(path), &read_bytes(path)?)
+}
+
+/// Reads a setup response in memory; `file` is what it is called.
+///
+/// # Errors
+/// As [`read_response`].
+pub fn response_from_bytes(file: &str, bytes: &[u8]) -> Result<SetupResponse, ReadError> {
+    let table = Table::new(file, as_text(file, bytes)?)?;
     let mut wanted = vec![
         column(&table, "frequency_hz")?,
         column(&table, "magnitude")?,

@@ -33,7 +33,7 @@ use std::path::Path;
 
 pub use error::ReadError;
 pub use map::{ColumnMap, ColumnRef, MapEntry, Role};
-pub use trace::{TraceColumns, read_trace};
+pub use trace::{TraceColumns, read_trace, trace_from_bytes};
 
 use crate::recording::Recording;
 
@@ -65,11 +65,24 @@ enum Kind {
 pub fn read_recording(path: &Path, options: &ReadOptions) -> Result<Recording, ReadError> {
     let file = text::file_name(path);
     check_options(&file, options)?;
-    let bytes = text::read_bytes(path)?;
-    match kind(path, &bytes) {
-        Kind::Csv => csv::read(&file, &bytes, options),
-        Kind::Wav => wav::read(&file, &bytes, options),
-        Kind::Npy => npy::read(&file, &bytes, options),
+    recording_from_bytes(path, &text::read_bytes(path)?, options)
+}
+
+/// Reads one recording in memory; `path` is what it is called, and is not opened.
+///
+/// # Errors
+/// As [`read_recording`].
+pub fn recording_from_bytes(
+    path: &Path,
+    bytes: &[u8],
+    options: &ReadOptions,
+) -> Result<Recording, ReadError> {
+    let file = text::file_name(path);
+    check_options(&file, options)?;
+    match kind(path, bytes) {
+        Kind::Csv => csv::read(&file, bytes, options),
+        Kind::Wav => wav::read(&file, bytes, options),
+        Kind::Npy => npy::read(&file, bytes, options),
     }
 }
 

@@ -32,8 +32,15 @@ pub struct TraceColumns {
 /// What [`read_recording`](super::read_recording) reports of a CSV; and, with the line, a time that
 /// does not ascend.
 pub fn read_trace(path: &Path) -> Result<TraceColumns, ReadError> {
-    let (file, bytes) = (file_name(path), read_bytes(path)?);
-    let table = Table::new(&file, as_text(&file, &bytes)?)?;
+    trace_from_bytes(&file_name(path), &read_bytes(path)?)
+}
+
+/// Reads a trace in memory; `file` is what it is called.
+///
+/// # Errors
+/// As [`read_trace`].
+pub fn trace_from_bytes(file: &str, bytes: &[u8]) -> Result<TraceColumns, ReadError> {
+    let table = Table::new(file, as_text(file, bytes)?)?;
     let mut warnings = Vec::new();
     let mut found = Vec::new();
     for role in [Role::Time, Role::X, Role::Y, Role::Normal] {

@@ -78,8 +78,22 @@ impl LoadedScene {
         around: &Surroundings<'_>,
         device: &DeviceOverride,
     ) -> Result<Self, LoadError> {
+        Self::from_bytes(path, &read_file(path)?, around, device)
+    }
+
+    /// Opens a scene in memory and all that it names; `path` is where it would lie, and is not
+    /// opened.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub fn from_bytes(
+        path: &Path,
+        bytes: &[u8],
+        around: &Surroundings<'_>,
+        device: &DeviceOverride,
+    ) -> Result<Self, LoadError> {
         let mut findings = Findings::default();
-        let scene = read_file(path, &mut findings)?;
+        let scene = read_scene(bytes, &Limits::default(), &mut findings);
         let device = &device.with_output(path);
         let loaded =
             scene.and_then(|scene| load(scene, folder(path), around, device, &mut findings));
@@ -144,14 +158,13 @@ fn finish(loaded: Option<LoadedScene>, findings: Findings) -> Result<LoadedScene
     }
 }
 
-/// The scene in a file; of one that is too large, no more is read than shows it.
-fn read_file(path: &Path, findings: &mut Findings) -> Result<Option<Scene>, LoadError> {
-    let limits = Limits::default();
+/// The bytes of a file; of one that is too large, no more is read than shows it.
+fn read_file(path: &Path) -> Result<Vec<u8>, LoadError> {
+    let most = Limits::default().file_bytes + 1;
     let mut bytes = Vec::new();
-    let read =
-        File::open(path).and_then(|file| file.take(limits.file_bytes + 1).read_to_end(&mut bytes));
+    let read = File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes));
     match read {
-        Ok(_) => Ok(read_scene(&bytes, &limits, findings)),
+        Ok(_) => Ok(bytes),
         Err(error) => Err(LoadError::Io {
             path: path.to_owned(),
             error,

@@ -16,6 +16,7 @@
 //! ```
 
 mod builtin;
+mod descriptor;
 mod error;
 pub mod folders;
 mod limits;
@@ -33,6 +34,7 @@ mod voice;
 #[cfg(feature = "wasm")]
 mod wasm;
 
+pub use descriptor::read_descriptor;
 pub use error::HostError;
 pub use htex_dsp::grid::{Band, GRID_HZ};
 pub use htex_model::{Descriptor, Field, Fit, FitOption, Kind, Status, Store};

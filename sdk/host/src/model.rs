@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use htex_dsp::grid::Band;
 use htex_model::abi::{
-    ABI_MAJOR, ABI_MARKER, MAX_FIELDS, MAX_PARAMETERS, MAX_RATE_HZ, MAX_TEXT_BYTES, MIN_RATE_HZ,
+    ABI_MAJOR, ABI_MARKER, MAX_PARAMETERS, MAX_RATE_HZ, MAX_TEXT_BYTES, MIN_RATE_HZ,
 };
 use htex_model::{Descriptor, Fit, Kind, Status, Values};
 
+use crate::descriptor::read_descriptor;
 use crate::raw::{RawFit, RawModel};
 use crate::{HostError, ModelVoice, Origin, WasmLimits};
 
@@ -64,9 +65,7 @@ impl LoadedModel {
             },
             NoText::Broken(what) => broken(call, what),
         })?;
-        let descriptor: Descriptor =
-            serde_json::from_str(&json).map_err(|e| broken(call, e.to_string()))?;
-        check_descriptor(&descriptor).map_err(|what| broken(call, what))?;
+        let descriptor = read_descriptor(&json).map_err(|what| broken(call, what))?;
         Ok(Self {
             descriptor: Arc::new(descriptor),
             origin: Arc::new(origin),
@@ -397,40 +396,5 @@ fn no_wasm(origin: &str) -> HostError {
     HostError::Load {
         path: origin.to_owned(),
         what: "this program was built without its `wasm` feature".to_owned(),
-    }
-}
-
-fn check_descriptor(descriptor: &Descriptor) -> Result<(), String> {
-    let dotted = descriptor.id.split('.').count() >= 3
-        && descriptor.id.split('.').all(|part| !part.is_empty());
-    if !dotted
-        || !descriptor
-            .id
-            .bytes()
-            .all(|b| b.is_ascii_alphanumeric() || b"._-".contains(&b))
-    {
-        return Err(format!("`{}` is not a reverse-DNS id", descriptor.id));
-    }
-    if semver::Version::parse(&descriptor.version).is_err() {
-        return Err(format!(
-            "`{}` is not a semantic version",
-            descriptor.version
-        ));
-    }
-    if descriptor.fields.is_empty() || descriptor.fields.len() > MAX_FIELDS {
-        return Err(format!("1 to {MAX_FIELDS} parameter fields are allowed"));
-    }
-    let fields = descriptor.fields.iter().map(|f| (&f.name, f.min, f.max));
-    let options = descriptor.options.iter().map(|o| (&o.name, o.min, o.max));
-    for (name, min, max) in fields.chain(options) {
-        if !(min.is_finite() && max.is_finite() && min <= max) {
-            return Err(format!("`{name}` has the range {min} to {max}"));
-        }
-    }
-    let mut names: Vec<&str> = descriptor.fields.iter().map(|f| f.name.as_str()).collect();
-    names.sort_unstable();
-    match names.windows(2).find(|pair| pair[0] == pair[1]) {
-        Some(pair) => Err(format!("two fields are named `{}`", pair[0])),
-        None => Ok(()),
     }
 }

@@ -1,0 +1,49 @@
+//! What a host holds a model's description to.
+
+use htex_model::Descriptor;
+use htex_model::abi::MAX_FIELDS;
+
+/// Reads a descriptor, as JSON, as every loader does.
+///
+/// # Errors
+/// Why it describes no model that can be called.
+pub fn read_descriptor(json: &str) -> Result<Descriptor, String> {
+    let descriptor: Descriptor = serde_json::from_str(json).map_err(|e| e.to_string())?;
+    check_descriptor(&descriptor)?;
+    Ok(descriptor)
+}
+
+fn check_descriptor(descriptor: &Descriptor) -> Result<(), String> {
+    let dotted = descriptor.id.split('.').count() >= 3
+        && descriptor.id.split('.').all(|part| !part.is_empty());
+    if !dotted
+        || !descriptor
+            .id
+            .bytes()
+            .all(|b| b.is_ascii_alphanumeric() || b"._-".contains(&b))
+    {
+        return Err(format!("`{}` is not a reverse-DNS id", descriptor.id));
+    }
+    if semver::Version::parse(&descriptor.version).is_err() {
+        return Err(format!(
+            "`{}` is not a semantic version",
+            descriptor.version
+        ));
+    }
+    if descriptor.fields.is_empty() || descriptor.fields.len() > MAX_FIELDS {
+        return Err(format!("1 to {MAX_FIELDS} parameter fields are allowed"));
+    }
+    let fields = descriptor.fields.iter().map(|f| (&f.name, f.min, f.max));
+    let options = descriptor.options.iter().map(|o| (&o.name, o.min, o.max));
+    for (name, min, max) in fields.chain(options) {
+        if !(min.is_finite() && max.is_finite() && min <= max) {
+            return Err(format!("`{name}` has the range {min} to {max}"));
+        }
+    }
+    let mut names: Vec<&str> = descriptor.fields.iter().map(|f| f.name.as_str()).collect();
+    names.sort_unstable();
+    match names.windows(2).find(|pair| pair[0] == pair[1]) {
+        Some(pair) => Err(format!("two fields are named `{}`", pair[0])),
+        None => Ok(()),
+    }
+}

@@ -60,6 +60,19 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-scene",
         ],
     ),
+    (
+        "htex-fuzzing",
+        &[
+            "htex",
+            "htex-author",
+            "adapter",
+            "htex-device",
+            "htex-format",
+            "htex-host",
+            "htex-model",
+            "htex-scene",
+        ],
+    ),
     ("xtask", &[]),
 ];
 

@@ -1,4 +1,5 @@
 //! Tasks that tests use too.
 
+pub mod fuzz;
 pub mod plugins;
 mod wasm;

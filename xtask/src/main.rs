@@ -2,7 +2,7 @@
 
 use std::process::{Command, ExitCode};
 
-use xtask::plugins;
+use xtask::{fuzz, plugins};
 
 const TASKS: &str = "\
 cargo xtask ci        all that continuous integration runs
@@ -10,12 +10,17 @@ cargo xtask plugins   builds the models as plugins into target/htex-plugins, nat
                       --native-only or --wasm-only builds the one kind; --wasm-toolchain WAY (or
                       HTEX_WASM_TOOLCHAIN) builds modules with the toolchain that is installed, by
                       rustup, by debian (its own compiler), or auto: the first that works
-cargo xtask generate  makes what spec/ has from the code again: schemas, pages, conformance files";
+cargo xtask fuzz      fuzzes the TARGETS named, or all of fuzz/fuzz_targets, each for --seconds N (60)
+                      or --executions N, --jobs N (2) at a time; with --address under the address
+                      sanitizer, which needs a nightly toolchain; see fuzz/README.md
+cargo xtask generate  makes what spec/ has from the code again: schemas, pages, conformance files,
+                      seeds of the fuzz targets";
 
 fn main() -> ExitCode {
     let tasks: Vec<String> = std::env::args().skip(1).collect();
     match tasks.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["plugins", ref options @ ..] => build_plugins(options),
+        ["fuzz", ref options @ ..] => fuzz_targets(options),
         ["ci"] => run("bash", &[".ci/run"]),
         ["generate"] => generate(),
         _ => usage(),
@@ -49,6 +54,7 @@ fn generate() -> ExitCode {
             "--example",
             "device_schemas",
         ],
+        &["htex-fuzzing", "--example", "seeds"],
     ];
     for what in made {
         let code = run(&cargo, &[&["run", "--package"], what].concat());
@@ -57,6 +63,25 @@ fn generate() -> ExitCode {
         }
     }
     ExitCode::SUCCESS
+}
+
+/// Fuzzes; fails when something was found.
+fn fuzz_targets(options: &[&str]) -> ExitCode {
+    let options = match fuzz::Options::parse(options) {
+        Ok(options) => options,
+        Err(error) => {
+            eprintln!("xtask: {error}");
+            return usage();
+        }
+    };
+    match fuzz::fuzz(&options) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("xtask: {error}");
+            ExitCode::FAILURE
+        }
+    }
 }
 
 /// Builds what the options ask for, and prints where it is.

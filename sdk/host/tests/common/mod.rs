@@ -8,7 +8,7 @@ use htex_host::{HostError, LoadedModel, WasmCache, WasmLimits};
 pub const ID: &str = "org.example.hostile";
 
 /// Name, signature and well-behaved body of each function.
-const FUNCTIONS: &[(&str, &str, &str)] = &[
+pub const FUNCTIONS: &[(&str, &str, &str)] = &[
     ("abi_version", "(result i32)", "(i32.const 0x48540100)"),
     (
         "descriptor",

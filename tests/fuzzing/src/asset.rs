@@ -1,0 +1,43 @@
+//! A whole `.htex` file.
+
+use htex_format::{Asset, Limits, validate};
+
+use crate::container::with_checksums;
+use crate::promise;
+
+/// Smaller than by default, so that what is slow is found by short input.
+const LIMITS: Limits = Limits {
+    file_bytes: 1 << 20,
+    entries: 256,
+    entry_bytes: 1 << 20,
+    total_bytes: 1 << 20,
+    ratio: 200,
+    json_depth: 32,
+    values: 1 << 16,
+};
+
+/// Opens the bytes as they are, and once more with checksums that hold.
+pub(crate) fn open_asset(input: &[u8]) -> bool {
+    let mended = with_checksums(input);
+    let opened = open(input);
+    (mended != input && open(&mended)) || opened
+}
+
+/// Validates, opens, plays, writes. Models that the asset brings along are left to other targets.
+pub(crate) fn open(bytes: &[u8]) -> bool {
+    let report = validate(bytes, &LIMITS);
+    promise::findings(&report.findings);
+    match Asset::from_bytes_with(bytes, &LIMITS) {
+        Ok(asset) => {
+            assert!(report.valid, "opens, and is not valid: {report:?}");
+            promise::round_trip(&asset);
+            promise::play(&htex::Asset::new(asset));
+            true
+        }
+        Err(error) => {
+            assert!(!report.valid, "valid, and does not open: {error}");
+            promise::sentence(&error);
+            false
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! A parameter block of a built-in model, in an asset that has just it.
+
+use std::sync::OnceLock;
+
+use htex_author::stored_fields;
+use htex_format::{AtCondition, Band, Condition, Manifest, Representation};
+use htex_host::{LoadedModel, Registry};
+
+use crate::asset::open;
+use crate::container::container;
+
+/// Opens an asset whose one block is the input; its first byte says of which model it is, the
+/// second of how many conditions.
+pub(crate) fn parameter_block(input: &[u8]) -> bool {
+    let Some((&[model, conditions], block)) = input.split_first_chunk::<2>() else {
+        return false;
+    };
+    static REGISTRY: OnceLock<Registry> = OnceLock::new();
+    let models = REGISTRY.get_or_init(Registry::builtin).models();
+    let manifest = manifest(
+        &models[usize::from(model) % models.len()],
+        1 + usize::from(conditions % 4),
+    );
+    let json = serde_json::to_vec(&manifest).expect("a manifest is JSON");
+    open(&container(&json, [("parameters.bin", block)]))
+}
+
+/// The manifest of an asset of one model at some conditions.
+pub(crate) fn manifest(model: &LoadedModel, conditions: usize) -> Manifest {
+    let band = htex_host::Band::TACTILE;
+    let condition = |i: usize| Condition {
+        speed_mm_s: Some(40.0 + 40.0 * (i % 2) as f64),
+        force_n: Some(0.3 + 0.3 * (i / 2) as f64),
+        repeatability_rms_db: None,
+    };
+    let at = |condition: usize| AtCondition {
+        condition,
+        level_n_rms: 0.1,
+        quality: None,
+    };
+    Manifest {
+        htex: htex_format::VERSION.to_owned(),
+        name: "fuzzed".to_owned(),
+        license: Some("CC0-1.0".to_owned()),
+        author: None,
+        tags: Vec::new(),
+        quantity: htex_format::LATERAL_FORCE.to_owned(),
+        unit: htex_format::NEWTON.to_owned(),
+        band: Band {
+            low_hz: band.low_hz,
+            high_hz: band.high_hz,
+        },
+        provenance: Default::default(),
+        conditions: (0..conditions).map(condition).collect(),
+        representations: vec![Representation {
+            model: model.id().to_owned(),
+            model_version: model.descriptor().version.clone(),
+            fields: stored_fields(model.descriptor()),
+            at: (0..conditions).map(at).collect(),
+            parameters: "parameters.bin".to_owned(),
+        }],
+        reference: None,
+        plugins: Vec::new(),
+        extensions: Default::default(),
+        extensions_required: Vec::new(),
+        other: Default::default(),
+    }
+}

@@ -1,0 +1,116 @@
+//! Containers around fuzzed parts: a checksum would keep a fuzzer out of them.
+
+use std::io::{Cursor, Write};
+
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, DateTime, System, ZipWriter};
+
+const MEDIA_TYPE: &[u8] = b"application/vnd.htex+zip";
+
+/// A sound archive of a manifest and other entries, all of them stored.
+pub(crate) fn container<'a>(
+    manifest: &'a [u8],
+    entries: impl IntoIterator<Item = (&'a str, &'a [u8])>,
+) -> Vec<u8> {
+    let first = [("mimetype", MEDIA_TYPE), ("manifest.json", manifest)];
+    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+    let options = SimpleFileOptions::default()
+        .compression_method(CompressionMethod::Stored)
+        .last_modified_time(DateTime::default())
+        .system(System::Unix)
+        .unix_permissions(0o644);
+    for (name, bytes) in first.into_iter().chain(entries) {
+        // A name that stands twice is refused by this writer, and left to `open_asset`.
+        if writer.start_file(name, options).is_ok() {
+            writer.write_all(bytes).expect("memory takes all");
+        }
+    }
+    writer.finish().expect("memory takes all").into_inner()
+}
+
+/// The same archive with checksums that hold, as far as entries are stored and can be found.
+pub(crate) fn with_checksums(bytes: &[u8]) -> Vec<u8> {
+    const LOCAL: &[u8] = b"PK\x03\x04";
+    const CENTRAL: &[u8] = b"PK\x01\x02";
+    let mut mended = bytes.to_vec();
+    let mut sums = Vec::new();
+    let mut at = 0;
+    while let Some(header) = mended.get(at..at + 30) {
+        if header.starts_with(CENTRAL) {
+            let Some(directory) = mended.get_mut(at..at + 46) else {
+                break;
+            };
+            if !sums.is_empty() {
+                directory[16..20].copy_from_slice(&u32::to_le_bytes(sums.remove(0)));
+            }
+            at += 46
+                + [28, 30, 32]
+                    .map(|i| u16_at(&mended, at + i))
+                    .iter()
+                    .sum::<usize>();
+        } else if header.starts_with(LOCAL) {
+            let is_stored = u16_at(&mended, at + 8) == 0;
+            let size = u16_at(&mended, at + 18) + (u16_at(&mended, at + 20) << 16);
+            let data = at + 30 + u16_at(&mended, at + 26) + u16_at(&mended, at + 28);
+            let sum = match mended.get(data..data.saturating_add(size)) {
+                Some(stored) if is_stored => crc32(stored),
+                _ => u32::from_le_bytes([header[14], header[15], header[16], header[17]]),
+            };
+            mended[at + 14..at + 18].copy_from_slice(&sum.to_le_bytes());
+            sums.push(sum);
+            at = data.saturating_add(size);
+        } else {
+            break;
+        }
+    }
+    mended
+}
+
+fn u16_at(bytes: &[u8], at: usize) -> usize {
+    let two = bytes.get(at..at + 2).unwrap_or(&[0, 0]);
+    usize::from(u16::from_le_bytes([two[0], two[1]]))
+}
+
+/// CRC-32 as ZIP has it, four bits at a time.
+fn crc32(bytes: &[u8]) -> u32 {
+    const TABLE: [u32; 16] = table();
+    let step = |crc: u32| (crc >> 4) ^ TABLE[(crc & 15) as usize];
+    !bytes
+        .iter()
+        .fold(!0u32, |crc, &byte| step(step(crc ^ u32::from(byte))))
+}
+
+const fn table() -> [u32; 16] {
+    let mut table = [0; 16];
+    let mut i = 0;
+    while i < 16 {
+        let mut crc = i as u32;
+        let mut bit = 0;
+        while bit < 4 {
+            crc = (crc >> 1) ^ (0xEDB8_8320 * (crc & 1));
+            bit += 1;
+        }
+        table[i] = crc;
+        i += 1;
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn checksums_are_mended_and_nothing_else() {
+        assert_eq!(crc32(b"123456789"), 0xCBF4_3926);
+        let whole = container(b"{}", [("x", &b"abc"[..])]);
+        assert_eq!(with_checksums(&whole), whole);
+        let at = whole.windows(3).position(|three| three == b"abc").unwrap();
+        let mut changed = whole.clone();
+        changed[at] = b'X';
+        assert_eq!(
+            with_checksums(&changed),
+            container(b"{}", [("x", &b"Xbc"[..])])
+        );
+    }
+}

@@ -1,0 +1,120 @@
+//! Recordings, as CSV, WAV and NPY.
+
+use std::path::Path;
+
+use htex_author::read::{ReadError, ReadOptions, recording_from_bytes, trace_from_bytes};
+use htex_author::{
+    Averaging, Recording, SegmentChoice, SpectrumOptions, TextureSpectrum, exploration,
+    segment_spectra,
+};
+use htex_scene::Trace;
+
+use crate::promise::{finite, sentence};
+
+/// Most samples that are worth a spectrum.
+const MOST: usize = 100_000;
+
+/// A CSV as a recording, and as a motion.
+pub(crate) fn csv(input: &[u8]) -> bool {
+    let followed = match trace_from_bytes("fuzzed.csv", input) {
+        Ok(columns) => {
+            follow(&Trace::new(columns));
+            true
+        }
+        Err(error) => refused(&error),
+    };
+    recording("fuzzed.csv", input, 100.0) || followed
+}
+
+/// A WAV; its header has a rate.
+pub(crate) fn wav(input: &[u8]) -> bool {
+    recording("fuzzed.wav", input, 2000.0)
+}
+
+/// An NPY, at 1 kHz: it has no rate of its own.
+pub(crate) fn npy(input: &[u8]) -> bool {
+    recording("fuzzed.npy", input, 1000.0)
+}
+
+/// Reads a recording as it is and, when it has no rate, at this one; takes its spectrum.
+fn recording(name: &str, input: &[u8], rate_hz: f64) -> bool {
+    let read = |options: &ReadOptions| recording_from_bytes(Path::new(name), input, options);
+    let mut result = read(&ReadOptions::default());
+    if matches!(result, Err(ReadError::NoRate { .. })) {
+        result = read(&ReadOptions {
+            rate_hz: Some(rate_hz),
+            ..ReadOptions::default()
+        });
+    }
+    match result {
+        Ok(recording) => {
+            take_spectra(&recording);
+            true
+        }
+        Err(error) => refused(&error),
+    }
+}
+
+fn refused(error: &ReadError) -> bool {
+    sentence(error);
+    false
+}
+
+fn take_spectra(recording: &Recording) {
+    recording.warnings.iter().for_each(sentence);
+    let signals = recording.lateral_n.iter().chain(&recording.normal_n);
+    for signal in signals.chain(&recording.speed_mm_s) {
+        assert_eq!(signal.len(), recording.samples());
+        finite("signal", signal.iter().copied());
+    }
+    if recording.samples() > MOST || recording.rate_hz > 5.0 * MOST as f64 {
+        return;
+    }
+    for segments in [
+        SegmentChoice::Auto,
+        SegmentChoice::Sweeps,
+        SegmentChoice::Windows,
+    ] {
+        let options = SpectrumOptions {
+            segments,
+            ..SpectrumOptions::default()
+        };
+        let parts = match segment_spectra(recording, &options) {
+            Ok(part) => [part],
+            Err(error) => {
+                sentence(&error);
+                continue;
+            }
+        };
+        let mut warnings = parts[0].warnings.clone();
+        let given = Default::default();
+        if let Err(error) = exploration(recording, &parts[0].segments, given, false, &mut warnings)
+        {
+            sentence(&error);
+        }
+        warnings.iter().for_each(sentence);
+        for averaging in [Averaging::Magnitude, Averaging::Rms, Averaging::Complex] {
+            match TextureSpectrum::average(&parts, averaging) {
+                Ok(spectrum) => {
+                    finite("magnitude", spectrum.magnitude_n);
+                    finite("signal", spectrum.signal_n);
+                    finite("repeatability", spectrum.repeatability_rms_db);
+                }
+                Err(error) => sentence(&error),
+            }
+        }
+    }
+}
+
+/// Looks at a trace all along, and beyond both ends.
+fn follow(trace: &Trace) {
+    trace.warnings.iter().for_each(sentence);
+    let duration_s = trace.duration_s();
+    for step in -1..=17 {
+        let point = trace.at(duration_s * f64::from(step) / 16.0);
+        finite("place", [point.x_mm, point.y_mm]);
+        finite("speed", [point.speed_mm_s, point.vx_mm_s, point.vy_mm_s]);
+        finite("force", [point.force_n]);
+        assert!(point.speed_mm_s >= 0.0 && point.force_n >= 0.0, "{point:?}");
+    }
+}

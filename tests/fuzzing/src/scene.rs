@@ -1,0 +1,143 @@
+//! Scene files, which name the assets, the trace and the response in `examples/scenes`.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+
+use htex::Registry;
+use htex_device::{Capabilities, Devices, Quantity, Rates};
+use htex_device_file::FileAdapter;
+use htex_format::Findings;
+use htex_scene::{
+    Costs, DeviceOverride, Finger, Limits, LoadError, LoadedScene, Renderer, SceneError,
+    Surroundings, explain, plan, read_scene,
+};
+
+use crate::promise::{finite, refusal, sentence};
+
+/// Blocks that are rendered.
+const BLOCKS: usize = 4;
+
+/// Reads a scene, opens what it names, plans it for each kind of device, and renders its start.
+pub(crate) fn scene(input: &[u8]) -> bool {
+    read_twice(input);
+    static AROUND: OnceLock<(Registry, Devices)> = OnceLock::new();
+    let (models, devices) = AROUND.get_or_init(|| {
+        (
+            Registry::builtin(),
+            Devices::new(vec![Arc::new(FileAdapter)]),
+        )
+    });
+    let around = Surroundings {
+        models,
+        embedded: false,
+        devices,
+    };
+    let place = folder().join("fuzzed.scene.json");
+    match LoadedScene::from_bytes(&place, input, &around, &DeviceOverride::default()) {
+        Ok(scene) => {
+            explained(&scene.notes);
+            devices_of(&scene)
+                .iter()
+                .for_each(|device| play(&scene, device));
+            true
+        }
+        Err(LoadError::Invalid { findings }) => {
+            explained(&findings);
+            false
+        }
+        Err(error) => panic!("nothing was to be read here: {error}"),
+    }
+}
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes")
+}
+
+fn explained(findings: &[htex_format::Finding]) {
+    for finding in findings {
+        assert!(explain(&finding.code).is_some(), "{}", finding.code);
+        sentence(finding);
+    }
+}
+
+/// A scene that is sound is the same when it was written and is read again.
+fn read_twice(input: &[u8]) {
+    let mut findings = Findings::default();
+    let scene = read_scene(input, &Limits::default(), &mut findings);
+    assert!(
+        scene.is_some() || findings.has_errors(),
+        "no scene, and no reason"
+    );
+    if let (Some(scene), false) = (scene, findings.has_errors()) {
+        let text = serde_json::to_vec(&scene).expect("a scene is JSON");
+        let again = read_scene(&text, &Limits::default(), &mut Findings::default());
+        assert_eq!(again, Some(scene));
+    }
+}
+
+/// One device of each quantity.
+fn devices_of(scene: &LoadedScene) -> [Capabilities; 3] {
+    let file = Capabilities {
+        quantity: Quantity::LateralForce,
+        rates: Rates::Range {
+            min_hz: 100.0,
+            max_hz: 1e6,
+        },
+        default_rate_hz: 8000.0,
+        limit: None,
+        step: None,
+        carrier_hz: None,
+        paced: false,
+        block_frames: 256,
+    };
+    let display = Capabilities {
+        quantity: Quantity::DisplayVoltage,
+        limit: Some(150.0),
+        step: Some(0.01),
+        carrier_hz: scene.scene.seed.is_multiple_of(2).then_some(3000.0),
+        ..file.clone()
+    };
+    let loudspeaker = Capabilities {
+        quantity: Quantity::Sound,
+        limit: Some(1.0),
+        ..file.clone()
+    };
+    [file, display, loudspeaker]
+}
+
+fn play(scene: &LoadedScene, device: &Capabilities) {
+    let made = plan(scene, device, &Costs::embedded())
+        .and_then(|plan| Ok((Renderer::new(scene, &plan)?, plan)));
+    let mut renderer = match made {
+        Ok((renderer, _)) => renderer,
+        Err(error) => return refused(&error),
+    };
+    let mut block = [f32::NAN; 64];
+    for i in 0..BLOCKS {
+        let finger = Finger {
+            speed_mm_s: 40.0 * i as f64,
+            force_n: 0.4,
+            at_mm: Some([10.0 * i as f64, 5.0]),
+        };
+        if let Err(error) = renderer.set_motion(finger) {
+            refused(&error);
+        }
+        let frames = renderer.render(&mut block);
+        finite("sample", block[..frames].iter().map(|x| f64::from(*x)));
+        let most = device.limit.unwrap_or(f64::MAX) * (1.0 + 1e-6);
+        assert!(
+            block[..frames].iter().all(|x| f64::from(x.abs()) <= most),
+            "above the limit"
+        );
+        if let Some(error) = renderer.take_failure() {
+            refused(&error);
+        }
+    }
+}
+
+fn refused(error: &SceneError) {
+    sentence(error);
+    if let SceneError::Surface { source, .. } = error {
+        refusal(source);
+    }
+}

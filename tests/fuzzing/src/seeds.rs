@@ -1,0 +1,263 @@
+//! The seeds of all targets, made by the project's own writers.
+
+use std::f64::consts::PI;
+use std::io::Cursor;
+
+use htex_host::{LoadedModel, Registry};
+use htex_model::Kind;
+
+use crate::block;
+use crate::container::container;
+use crate::module::model;
+
+/// A target, a file name, and what the file holds.
+pub type Seed = (&'static str, String, Vec<u8>);
+
+/// All seeds.
+///
+/// # Panics
+/// When a writer fails.
+pub fn seeds() -> Vec<Seed> {
+    let registry = Registry::builtin();
+    let mut seeds = Vec::new();
+    for (i, model) in registry.models().iter().enumerate() {
+        let mut add = |target, bytes| seeds.push((target, model.short_name().to_owned(), bytes));
+        let asset = asset(model);
+        add("open_asset", asset.to_bytes().expect("a sound asset"));
+        let block = block_of(&asset);
+        add("parameter_block", [&[i as u8, 1], &block[..]].concat());
+        let json = serde_json::to_vec(&asset.manifest).expect("a manifest is JSON");
+        add(
+            "open_asset",
+            container(&json, [("parameters.bin", &block[..])]),
+        );
+        if let Some(stored) = seeds.last_mut() {
+            stored.1 += "-stored";
+        }
+        let json = serde_json::to_vec(model.descriptor()).expect("a descriptor is JSON");
+        seeds.push(("descriptor", model.short_name().to_owned(), json));
+    }
+    seeds.extend(manifests());
+    seeds.extend(texts());
+    seeds.extend(samples());
+    seeds.extend(modules());
+    seeds
+}
+
+/// An asset of one model at two conditions; each number lies in the middle of its range.
+fn asset(model: &LoadedModel) -> htex_format::Asset {
+    let mut flat = Vec::new();
+    for field in &model.descriptor().fields {
+        let middle = 0.5 * (field.min + field.max);
+        match field.kind {
+            Kind::Scalar => flat.push(middle),
+            Kind::List { max_len } => {
+                let length = max_len.min(3);
+                flat.push(f64::from(length));
+                flat.extend(
+                    (0..length)
+                        .map(|i| field.min + (field.max - field.min) * 0.1 * f64::from(i + 1)),
+                );
+            }
+        }
+    }
+    let manifest = block::manifest(model, 2);
+    let fields = &manifest.representations[0].fields;
+    let rounded = htex_format::round_parameters(fields, &flat).expect("numbers in their ranges");
+    htex_format::Asset {
+        parameters: vec![vec![rounded; 2]],
+        reference: None,
+        plugins: Vec::new(),
+        notes: Vec::new(),
+        manifest,
+    }
+}
+
+/// The block of a written asset: the stored entry is found by its size.
+fn block_of(asset: &htex_format::Asset) -> Vec<u8> {
+    let bytes = asset.to_bytes().expect("a sound asset");
+    let mut zip = zip::ZipArchive::new(Cursor::new(bytes)).expect("an archive");
+    let mut file = zip.by_name("parameters.bin").expect("the block");
+    let mut block = Vec::new();
+    std::io::Read::read_to_end(&mut file, &mut block).expect("the block");
+    block
+}
+
+/// Manifests of the example assets, of an asset with a reference, and of one with a plugin.
+fn manifests() -> Vec<Seed> {
+    const EXAMPLES: [(&str, &[u8]); 2] = [
+        (
+            "coarse-fabric",
+            include_bytes!("../../../examples/scenes/coarse-fabric.htex"),
+        ),
+        (
+            "vinyl",
+            include_bytes!("../../../examples/scenes/vinyl.htex"),
+        ),
+    ];
+    let mut seeds = Vec::new();
+    for (name, bytes) in EXAMPLES {
+        let asset = htex_format::Asset::from_bytes(bytes).expect("an example");
+        let json = serde_json::to_vec(&asset.manifest).expect("a manifest is JSON");
+        seeds.push(("manifest", name.to_owned(), json));
+        seeds.push(("open_asset", name.to_owned(), bytes.to_vec()));
+    }
+    let registry = Registry::builtin();
+    let mut all = block::manifest(&registry.models()[0], 4);
+    all.reference = Some(htex_format::Reference {
+        file: "reference.bin".to_owned(),
+    });
+    all.extensions
+        .insert("com.example.note/1".to_owned(), true.into());
+    all.other.insert("later".to_owned(), 1.into());
+    all.htex = "1.1".to_owned();
+    seeds.push((
+        "manifest",
+        "all-keys".to_owned(),
+        serde_json::to_vec(&all).expect("JSON"),
+    ));
+    all.plugins = vec![
+        htex_format::Plugin::new(&all.representations[0].model, "1.0.0", b"\0asm\x01\0\0\0")
+            .signed(&[1; 32]),
+    ];
+    seeds.push((
+        "manifest",
+        "plugin".to_owned(),
+        serde_json::to_vec(&all).expect("JSON"),
+    ));
+    seeds
+}
+
+/// CSVs and scenes.
+fn texts() -> Vec<Seed> {
+    let rows =
+        |row: &dyn Fn(f64) -> String| -> String { (0..40).map(|i| row(f64::from(i))).collect() };
+    let wave = |i: f64| 0.1 + 0.05 * (2.0 * PI * 0.3 * i).sin();
+    let timed = "t_s,fx_n,fy_n,fz_n,speed_mm_s\n".to_owned()
+        + &rows(&|i| format!("{},{:.4},{:.4},-0.4,80\n", i * 0.01, wave(i), wave(i + 5.0)));
+    let bare = "# simulated\nlateral;x_mm\r\n".to_owned()
+        + &rows(&|i| format!("{:.4};{}\r\n", wave(i), i * 0.8));
+    let trace = "t_s,x_mm,y_mm,force_n\n".to_owned()
+        + &rows(&|i| format!("{},{},5,0.4\n", i * 0.01, i * 0.8));
+    let response = "frequency_hz,magnitude,phase_rad\n20,1,0\n30,0.5,3\n40,2,-3\n1000,0,0.1\n";
+    let two_columns = "frequency_hz,magnitude\n0,1e-3\n5e2,1\n";
+    let mut seeds: Vec<Seed> = Vec::new();
+    let mut add = |target, name: &str, text: &str| {
+        seeds.push((target, name.to_owned(), text.as_bytes().to_vec()));
+    };
+    add("csv", "timed.csv", &timed);
+    add("csv", "bare.csv", &bare);
+    add("csv", "trace.csv", &trace);
+    add("response_csv", "phase.csv", response);
+    add("response_csv", "magnitude.csv", two_columns);
+    add(
+        "scene",
+        "constant",
+        include_str!("../../../examples/scenes/constant.scene.json"),
+    );
+    add(
+        "scene",
+        "two-swatches",
+        include_str!("../../../examples/scenes/two-swatches.scene.json"),
+    );
+    add(
+        "scene",
+        "live",
+        include_str!("../../../examples/scenes/live.scene.json"),
+    );
+    add("scene", "all-keys", SCENE);
+    seeds
+}
+
+const SCENE: &str = r#"{"htex_scene":"1.0","surfaces":[{"asset":"vinyl.htex","region":{"x_mm":[0,50],
+"y_mm":[0,50]},"layer":1,"gain":2,"representation":"ar"},{"asset":"coarse-fabric.htex"}],"motion":{
+"constant":{"speed_mm_s":80,"force_n":0.4,"from_mm":[1,1],"direction_deg":45}},"device":{"adapter":
+"file","settings":{"path":"o.wav"},"rate_hz":8000,"gain_db":-6,"response":"display.csv",
+"response_depth_db":20},"duration_s":1,"seed":2,"budget":{"ns_per_sample":1e6,"max_band_error_db":90},
+"effects":{"crossfade":"on","dither":"auto","limiter":"off"}}"#;
+
+/// WAVs of each kind of sample, and NPYs.
+fn samples() -> Vec<Seed> {
+    let mut seeds = Vec::new();
+    let wave = |i: u32| (f64::from(i) * 0.3).sin() * 0.2;
+    for (bits, channels) in [(8, 1), (16, 2), (24, 3), (32, 1)] {
+        let float = bits == 32;
+        let spec = hound::WavSpec {
+            channels,
+            sample_rate: 200,
+            bits_per_sample: bits,
+            sample_format: match float {
+                true => hound::SampleFormat::Float,
+                false => hound::SampleFormat::Int,
+            },
+        };
+        let mut bytes = Cursor::new(Vec::new());
+        let mut writer = hound::WavWriter::new(&mut bytes, spec).expect("a WAV");
+        for i in 0..50 * u32::from(channels) {
+            let full = 2f64.powi(i32::from(bits) - 1);
+            match float {
+                true => writer.write_sample(wave(i) as f32),
+                false => writer.write_sample((wave(i) * full) as i32),
+            }
+            .expect("memory takes all");
+        }
+        writer.finalize().expect("memory takes all");
+        seeds.push((
+            "wav",
+            format!("{bits}-bit-{channels}.wav"),
+            bytes.into_inner(),
+        ));
+    }
+    let numbers: Vec<f64> = (0..600).map(wave).collect();
+    let shapes: [(&str, &[u64]); 2] = [("one.npy", &[600]), ("three.npy", &[200, 3])];
+    for (name, shape) in shapes {
+        seeds.push(("npy", format!("f8-{name}"), npy(shape, &numbers)));
+        let short: Vec<i16> = numbers.iter().map(|x| (x * 32_768.0) as i16).collect();
+        seeds.push(("npy", format!("i2-{name}"), npy(shape, &short)));
+    }
+    seeds
+}
+
+fn npy<T: npyz::AutoSerialize + Copy>(shape: &[u64], numbers: &[T]) -> Vec<u8> {
+    use npyz::WriterBuilder;
+    let mut bytes = Vec::new();
+    let mut writer = npyz::WriteOptions::new()
+        .default_dtype()
+        .shape(shape)
+        .writer(&mut bytes)
+        .begin_nd()
+        .expect("an array");
+    writer
+        .extend(numbers.iter().copied())
+        .expect("memory takes all");
+    writer.finish().expect("memory takes all");
+    bytes
+}
+
+/// Modules, and what `wasm_module` and `signed_plugin` make theirs of.
+fn modules() -> Vec<Seed> {
+    let sound = wat::parse_str(model::text("1.0.0", &[], "")).expect("a sound module");
+    let varied: Vec<u8> = (0..=255u8).map(|i| i.wrapping_mul(37) ^ (i >> 3)).collect();
+    let mut seeds: Vec<Seed> = vec![
+        ("wasm_module", "sound.wasm".to_owned(), sound.clone()),
+        ("wasm_module", "sound-bodies".to_owned(), vec![0]),
+        ("wasm_module", "made-bodies".to_owned(), varied),
+        ("signed_plugin", "sound".to_owned(), vec![0, 0, 0, 7]),
+        ("signed_plugin", "unsigned".to_owned(), vec![2, 0, 0, 7]),
+        (
+            "signed_plugin",
+            "module".to_owned(),
+            [&[0, 0, 0, 9], &sound[..]].concat(),
+        ),
+    ];
+    // What a change of each part is like, and of the module with and without its hash.
+    for part in 0..8u8 {
+        let how = 1 | part.min(6) << 2 | (part / 7) << 7;
+        seeds.push((
+            "signed_plugin",
+            format!("changed-{part}"),
+            vec![how, 3, b'0' + part, 7],
+        ));
+    }
+    seeds
+}

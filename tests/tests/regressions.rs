@@ -1,0 +1,85 @@
+//! Every seed of the fuzz targets, and everything that fuzzing has found, goes through the function
+//! that found it.
+#![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use htex_fuzzing::{TARGETS, run, seeds};
+use htex_tests::workspace;
+
+/// All files of a target's folder; none when there is no folder.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let files = std::fs::read_dir(folder).into_iter().flatten();
+    files.map(|file| file.unwrap().path()).collect()
+}
+
+/// Whether the target takes what is in the file.
+fn takes(target: &str, file: &Path) -> bool {
+    let input = std::fs::read(file).unwrap();
+    let taken = std::panic::catch_unwind(|| run(target, &input));
+    taken.unwrap_or_else(|_| panic!("{}: see above", file.display()))
+}
+
+fn names(folder: &Path) -> BTreeSet<String> {
+    let name = |file: PathBuf| file.file_stem().unwrap().to_str().unwrap().to_owned();
+    files(folder).into_iter().map(name).collect()
+}
+
+#[test]
+fn regressions_stay_mended() {
+    for target in TARGETS {
+        for file in files(&workspace().join("tests/regressions").join(target.name)) {
+            takes(target.name, &file);
+        }
+    }
+}
+
+#[test]
+fn seeds_are_read_and_used() {
+    for target in TARGETS {
+        let all = files(&workspace().join("fuzz/seeds").join(target.name));
+        let taken = all.iter().filter(|file| takes(target.name, file)).count();
+        println!("{}: {taken} of {} seeds are taken", target.name, all.len());
+        assert!(
+            taken > 0,
+            "no seed of {} gets beyond the reader",
+            target.name
+        );
+    }
+}
+
+#[test]
+fn seeds_are_what_the_writers_write() {
+    for (target, name, bytes) in seeds::seeds() {
+        let file = workspace().join("fuzz/seeds").join(target).join(&name);
+        let there = std::fs::read(&file).unwrap_or_default();
+        assert!(
+            there == bytes,
+            "{target}/{name}: run `cargo xtask generate`"
+        );
+    }
+}
+
+#[test]
+fn targets_programs_and_folders_have_the_same_names() {
+    let targets: BTreeSet<String> = TARGETS.iter().map(|t| t.name.to_owned()).collect();
+    for folder in ["fuzz/fuzz_targets", "fuzz/dictionaries", "fuzz/seeds"] {
+        assert_eq!(names(&workspace().join(folder)), targets, "{folder}");
+    }
+    for name in names(&workspace().join("tests/regressions")) {
+        assert!(targets.contains(&name), "there is no target {name}");
+    }
+    for target in TARGETS {
+        let file = workspace().join("fuzz/fuzz_targets").join(target.name);
+        let program = std::fs::read_to_string(file.with_extension("rs")).unwrap();
+        assert!(program.contains(&format!("run(\"{}\", input)", target.name)));
+    }
+    let manifest = std::fs::read_to_string(workspace().join("fuzz/Cargo.toml")).unwrap();
+    for name in &targets {
+        assert!(
+            manifest.contains(&format!("name = \"{name}\"")),
+            "{name} is no program"
+        );
+    }
+}

@@ -1,0 +1,86 @@
+//! Building the fuzz targets.
+
+use std::path::PathBuf;
+use std::process::Command;
+
+use super::{Options, folder};
+
+/// Coverage counters, as cargo-fuzz has them.
+const COVERAGE: &str = "-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
+    -Cllvm-args=-sanitizer-coverage-inline-8bit-counters \
+    -Cllvm-args=-sanitizer-coverage-pc-table \
+    -Cllvm-args=-sanitizer-coverage-trace-compares --cfg fuzzing -Ccodegen-units=1";
+
+/// Builds all programs; the folder they are in.
+pub(super) fn build(options: &Options) -> Result<PathBuf, String> {
+    let host = host()?;
+    let (flags, place) = match options.address {
+        true => (format!("{COVERAGE} -Zsanitizer=address"), "address"),
+        false => (COVERAGE.to_owned(), "none"),
+    };
+    let place = target_folder().join(place);
+    let mut cargo = cargo(options.address);
+    // `--target` keeps the flags from build scripts and macros.
+    cargo
+        .args([
+            "build",
+            "--release",
+            "--locked",
+            "--bins",
+            "--target",
+            &host,
+        ])
+        .arg("--target-dir")
+        .arg(&place)
+        .env("RUSTFLAGS", flags)
+        .current_dir(folder());
+    match cargo.status() {
+        Ok(status) if status.success() => Ok(place.join(host).join("release")),
+        Ok(_) if options.address => Err(
+            "the targets cannot be built with the address sanitizer; it needs a nightly toolchain: \
+             `rustup toolchain install nightly --profile minimal`, or leave --address out"
+                .to_owned(),
+        ),
+        Ok(_) => Err(
+            "the targets cannot be built; libFuzzer needs a C++ compiler (`apt-get install g++`)"
+                .to_owned(),
+        ),
+        Err(error) => Err(format!("cannot run cargo: {error}")),
+    }
+}
+
+/// The cargo that runs this task, or the nightly one.
+fn cargo(nightly: bool) -> Command {
+    if nightly {
+        let mut cargo = Command::new("cargo");
+        // What the present toolchain set for its own tools would win over the name of another.
+        cargo
+            .env_remove("RUSTUP_TOOLCHAIN")
+            .env_remove("CARGO")
+            .env_remove("RUSTC");
+        cargo.arg("+nightly");
+        return cargo;
+    }
+    Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+}
+
+/// Apart from the programs of `cargo fuzz`, whose flags differ a little.
+fn target_folder() -> PathBuf {
+    match std::env::var_os("CARGO_TARGET_DIR") {
+        Some(place) => PathBuf::from(place).join("fuzz"),
+        None => folder().join("target/xtask"),
+    }
+}
+
+/// The triple of this machine.
+fn host() -> Result<String, String> {
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let output = Command::new(rustc)
+        .arg("-vV")
+        .output()
+        .map_err(|error| format!("cannot run rustc: {error}"))?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    let host = text.lines().find_map(|line| line.strip_prefix("host: "));
+    host.map(str::to_owned)
+        .ok_or_else(|| "rustc does not say what it builds for".to_owned())
+}

@@ -1,0 +1,82 @@
+//! `cargo xtask fuzz`: builds the fuzz targets and runs them, each for a while.
+//!
+//! The programs are built as `cargo fuzz build --sanitizer none` builds them, and with the toolchain
+//! that is installed: nothing here needs a nightly one or cargo-fuzz. The address sanitizer does.
+
+mod build;
+mod options;
+mod report;
+mod run;
+
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+pub use options::Options;
+
+use report::Outcome;
+
+/// Builds and runs what the options ask for; true when nothing was found.
+///
+/// # Errors
+/// When the programs cannot be built or run; says what to do.
+pub fn fuzz(options: &Options) -> Result<bool, String> {
+    let targets = chosen(&options.targets)?;
+    let programs = build::build(options)?;
+    println!("{}", report::HEAD);
+    let waiting = Mutex::new(targets.into_iter().collect::<VecDeque<_>>());
+    let next = || {
+        waiting
+            .lock()
+            .ok()
+            .and_then(|mut targets| targets.pop_front())
+    };
+    let work = || -> Result<Vec<Outcome>, String> {
+        let mut outcomes = Vec::new();
+        while let Some(target) = next() {
+            let outcome = run::run(&programs, &target, options)?;
+            println!("{}", outcome.line());
+            outcomes.push(outcome);
+        }
+        Ok(outcomes)
+    };
+    let results: Vec<Result<Vec<Outcome>, String>> = std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..options.jobs).map(|_| scope.spawn(work)).collect();
+        let joined = workers.into_iter().map(std::thread::ScopedJoinHandle::join);
+        joined
+            .map(|result| result.unwrap_or_else(|_| Err("a run panicked".to_owned())))
+            .collect()
+    });
+    let outcomes: Vec<Vec<Outcome>> = results.into_iter().collect::<Result<_, _>>()?;
+    let outcomes = outcomes.concat();
+    print!("{}", report::end(&outcomes));
+    Ok(outcomes.iter().all(|outcome| outcome.finding.is_none()))
+}
+
+/// The folder `fuzz`.
+fn folder() -> PathBuf {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.parent().unwrap_or(here).join("fuzz")
+}
+
+/// The targets of these names, or all: one a file in `fuzz/fuzz_targets`.
+fn chosen(wanted: &[String]) -> Result<Vec<String>, String> {
+    let place = folder().join("fuzz_targets");
+    let files = std::fs::read_dir(&place).map_err(|e| format!("{}: {e}", place.display()))?;
+    let name = |path: PathBuf| Some(path.file_stem()?.to_str()?.to_owned());
+    let mut all: Vec<String> = files
+        .flatten()
+        .filter_map(|file| name(file.path()))
+        .collect();
+    all.sort();
+    if wanted.is_empty() {
+        return Ok(all);
+    }
+    match wanted.iter().find(|name| !all.contains(name)) {
+        None => Ok(wanted.to_vec()),
+        Some(name) => Err(format!(
+            "there is no target {name}; there are {}",
+            all.join(", ")
+        )),
+    }
+}

@@ -1,0 +1,100 @@
+//! What `cargo xtask fuzz` is told.
+
+/// Time of a target when nothing is said, seconds.
+const SECONDS: u64 = 60;
+
+/// What to fuzz, and for how long.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Options {
+    /// Targets; none: all.
+    pub targets: Vec<String>,
+    /// Longest time of a target, seconds.
+    pub seconds: Option<u64>,
+    /// Most executions of a target.
+    pub executions: Option<u64>,
+    /// Targets that run at a time.
+    pub jobs: usize,
+    /// With the address sanitizer.
+    pub address: bool,
+}
+
+impl Options {
+    /// Reads arguments.
+    ///
+    /// # Errors
+    /// Names the argument that is wrong.
+    pub fn parse(arguments: &[&str]) -> Result<Self, String> {
+        let mut options = Self {
+            targets: Vec::new(),
+            seconds: None,
+            executions: None,
+            jobs: 2,
+            address: false,
+        };
+        let mut arguments = arguments.iter();
+        while let Some(&argument) = arguments.next() {
+            let mut number = || number(argument, arguments.next());
+            match argument {
+                "--seconds" => options.seconds = Some(number()?),
+                "--executions" => options.executions = Some(number()?),
+                "--jobs" => options.jobs = number()?.min(64) as usize,
+                "--address" => options.address = true,
+                _ if argument.starts_with('-') => return Err(format!("{argument} is unknown")),
+                _ => options.targets.push(argument.to_owned()),
+            }
+        }
+        if options.seconds.is_none() && options.executions.is_none() {
+            options.seconds = Some(SECONDS);
+        }
+        Ok(options)
+    }
+}
+
+fn number(name: &str, value: Option<&&str>) -> Result<u64, String> {
+    let number = value.and_then(|text| text.parse().ok());
+    number
+        .filter(|number| *number > 0)
+        .ok_or_else(|| format!("{name} takes a whole number from 1"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arguments_are_told_apart() {
+        let all = [
+            "csv",
+            "--seconds",
+            "5",
+            "wav",
+            "--executions",
+            "9",
+            "--jobs",
+            "1",
+            "--address",
+        ];
+        let options = Options::parse(&all);
+        let expected = Options {
+            targets: vec!["csv".to_owned(), "wav".to_owned()],
+            seconds: Some(5),
+            executions: Some(9),
+            jobs: 1,
+            address: true,
+        };
+        assert_eq!(options, Ok(expected));
+        assert_eq!(Options::parse(&[]).map(|o| o.seconds), Ok(Some(SECONDS)));
+        assert_eq!(
+            Options::parse(&["--executions", "9"]).map(|o| o.seconds),
+            Ok(None)
+        );
+        for wrong in [
+            &["--seconds"][..],
+            &["--seconds", "0"],
+            &["--jobs", "x"],
+            &["--fast"],
+        ] {
+            assert!(Options::parse(wrong).is_err(), "{wrong:?}");
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! Running one fuzz target.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::report::Outcome;
+use super::{Options, folder};
+
+/// Longest input, bytes: a change should hit something.
+const LONGEST: u32 = 4096;
+/// Longest time of one input, seconds.
+const TIMEOUT_S: u32 = 10;
+/// Most memory, MiB.
+const MEMORY_MIB: u32 = 1024;
+
+/// Runs a target; what it says goes to `fuzz/logs`.
+pub(super) fn run(programs: &Path, target: &str, options: &Options) -> Result<Outcome, String> {
+    let at = |kind: &str| folder().join(kind).join(target);
+    let (corpus, artifacts) = (at("corpus"), at("artifacts"));
+    let log = folder().join("logs").join(format!("{target}.log"));
+    let failed = |error: std::io::Error| format!("{target}: {error}");
+    for place in [&corpus, &artifacts, &folder().join("logs")] {
+        fs::create_dir_all(place).map_err(failed)?;
+    }
+    let before = found(&artifacts);
+    let mut program = Command::new(programs.join(target));
+    program
+        .arg(&corpus)
+        .args(inputs(target))
+        .arg(format!("-artifact_prefix={}/", artifacts.display()))
+        .arg(format!("-max_len={LONGEST}"))
+        .arg(format!("-timeout={TIMEOUT_S}"))
+        .arg(format!("-rss_limit_mb={MEMORY_MIB}"))
+        .args([
+            "-print_final_stats=1",
+            "-verbosity=1",
+            "-use_value_profile=0",
+        ]);
+    program.args(
+        options
+            .seconds
+            .map(|seconds| format!("-max_total_time={seconds}")),
+    );
+    program.args(options.executions.map(|most| format!("-runs={most}")));
+    let dictionary = folder().join("dictionaries").join(format!("{target}.dict"));
+    if dictionary.exists() {
+        program.arg(format!("-dict={}", dictionary.display()));
+    }
+    let file = File::create(&log).map_err(failed)?;
+    let also = file.try_clone().map_err(failed)?;
+    let status = program.stdout(also).stderr(file).status().map_err(failed)?;
+    let text = String::from_utf8_lossy(&fs::read(&log).map_err(failed)?).into_owned();
+    let new = found(&artifacts)
+        .into_iter()
+        .find(|file| !before.contains(file));
+    let finding = (!status.success()).then(|| new.unwrap_or(log));
+    Ok(Outcome::read(target, &text, finding))
+}
+
+/// Folders of inputs to begin with, besides the corpus of earlier runs.
+fn inputs(target: &str) -> Vec<PathBuf> {
+    let mut places = vec![
+        folder().join("seeds").join(target),
+        folder().join("../tests/regressions").join(target),
+    ];
+    match target {
+        "open_asset" => places.push(folder().join("../spec/conformance")),
+        "scene" => places.push(folder().join("../spec/scene-conformance")),
+        _ => {}
+    }
+    places.retain(|place| place.is_dir());
+    places
+}
+
+fn found(artifacts: &Path) -> Vec<PathBuf> {
+    let files = fs::read_dir(artifacts).into_iter().flatten();
+    files.flatten().map(|file| file.path()).collect()
+}

@@ -54,4 +54,6 @@ sections! {
     mixing: "Interpolation",
     beta: "Beta density",
     slope: "Slopes",
+    cepstrum: "Cepstra",
+    sound: "Sound",
 }

@@ -2,10 +2,12 @@
 
 mod autoregression;
 mod beta;
+mod cepstrum;
 mod mixing;
 mod prediction;
 mod recordings;
 mod slope;
+mod sound;
 
 use crate::Section;
 
@@ -17,5 +19,7 @@ pub(crate) fn sections() -> Vec<Section> {
         mixing::SECTION,
         beta::SECTION,
         slope::SECTION,
+        cepstrum::SECTION,
+        sound::SECTION,
     ]
 }

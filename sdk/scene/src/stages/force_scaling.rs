@@ -8,6 +8,8 @@ use crate::file::Effect;
 
 /// Length of a change, seconds.
 const RAMP_S: f64 = 0.010;
+/// Largest gain: no finger presses harder, and a gain that is no number would be in every sample.
+const MOST: f64 = 1e6;
 
 pub(crate) const ENTRY: Entry = Entry {
     effect: Effect::ForceScaling,
@@ -56,7 +58,8 @@ struct ForceScaling {
 impl Stage for ForceScaling {
     fn follow(&mut self, now: &Now) {
         if let Some(known) = self.known_n {
-            self.gain.set((now.finger.force_n / known) as f32);
+            let gain = (now.finger.force_n / known).min(MOST);
+            self.gain.set(gain as f32);
         }
     }
 

@@ -42,6 +42,15 @@ pub enum AuthorError {
         /// The recording.
         source_name: String,
     },
+    /// A setup response that nothing can be divided by.
+    #[error(
+        "setup response: its largest magnitude in the band is {largest:e}; a finite one above 0 is \
+         needed at every frequency that is to be divided by it: measure the setup again"
+    )]
+    Response {
+        /// Its largest magnitude in the band; NaN if one is not a number.
+        largest: f64,
+    },
     /// Recordings of different bands were to be averaged.
     #[error(
         "recordings at one condition have different bands because of their rates; fit them apart"

@@ -10,6 +10,8 @@ use crate::{AuthorError, Recording, SetupResponse};
 
 /// The setup's response is held to at least this part of its largest value in the band: -40 dB.
 const RESPONSE_FLOOR: f64 = 0.01;
+/// A response whose largest value in the band is below this is none: its inverse is no number.
+const SMALLEST_RESPONSE: f64 = 1e-200;
 /// A spectrum of fewer bins than this says nothing of a texture.
 const FEWEST_BINS: usize = 3;
 /// Relative error of the grid's frequencies that is worth a warning.
@@ -122,7 +124,8 @@ impl TextureSpectrum {
 /// Cuts a recording into segments and takes their spectra.
 ///
 /// # Errors
-/// When the rate leaves no useful band, or no segment is found.
+/// When the rate leaves no useful band, no segment is found, or the setup's response cannot be divided
+/// by.
 pub fn segment_spectra(
     recording: &Recording,
     options: &SpectrumOptions,
@@ -134,7 +137,8 @@ pub fn segment_spectra(
     let inverse = options
         .response
         .as_ref()
-        .map(|r| inverse_response(r, band, &mut warnings));
+        .map(|r| inverse_response(r, band, &mut warnings))
+        .transpose()?;
     let mut spectra = Vec::with_capacity(segments.starts.len());
     let mut reader = SegmentReader::new(segments.len, band);
     for &start in &segments.starts {
@@ -216,14 +220,19 @@ fn inverse_response(
     response: &SetupResponse,
     band: Band,
     warnings: &mut Vec<String>,
-) -> Vec<Complex<f64>> {
+) -> Result<Vec<Complex<f64>>, AuthorError> {
     let values: Vec<Complex<f64>> = band
         .grid_hz()
         .iter()
         .map(|&f| response.at(f))
         .map(|(re, im)| Complex::new(re, im))
         .collect();
-    let floor = RESPONSE_FLOOR * values.iter().map(|h| h.norm()).fold(0.0, f64::max);
+    let largest = values.iter().map(|h| h.norm()).fold(0.0, f64::max);
+    let broken = values.iter().map(|h| h.norm()).find(|h| !h.is_finite());
+    if let Some(largest) = broken.or(Some(largest).filter(|l| *l < SMALLEST_RESPONSE)) {
+        return Err(AuthorError::Response { largest });
+    }
+    let floor = RESPONSE_FLOOR * largest;
     let floored = values.iter().filter(|h| h.norm() < floor).count();
     if floored > 0 {
         warnings.push(format!(
@@ -235,11 +244,11 @@ fn inverse_response(
     let invert = |h: &Complex<f64>| {
         let norm = h.norm();
         if norm == 0.0 {
-            return Complex::new(1.0 / floor.max(f64::MIN_POSITIVE), 0.0);
+            return Complex::new(1.0 / floor, 0.0);
         }
         h.conj() / (norm * norm.max(floor))
     };
-    values.iter().map(invert).collect()
+    Ok(values.iter().map(invert).collect())
 }
 
 /// Reads segments: mean removed, Hann window, FFT; two axes folded into one (Landin 2010).

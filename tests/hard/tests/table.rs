@@ -29,8 +29,9 @@ fn hold(title: &str) {
 }
 
 macro_rules! sections {
-    ($($name:ident: $title:literal),* $(,)?) => {
+    ($($(#[$when:meta])? $name:ident: $title:literal),* $(,)?) => {
         $(#[test]
+        $(#[$when])?
         fn $name() {
             hold($title);
         })*
@@ -56,4 +57,8 @@ sections! {
     slope: "Slopes",
     cepstrum: "Cepstra",
     sound: "Sound",
+    #[cfg(feature = "pipeline")]
+    files: "Recordings to files",
+    #[cfg(feature = "pipeline")]
+    motion: "Motion and drive",
 }

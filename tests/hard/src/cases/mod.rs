@@ -3,7 +3,11 @@
 mod autoregression;
 mod beta;
 mod cepstrum;
+#[cfg(feature = "pipeline")]
+mod files;
 mod mixing;
+#[cfg(feature = "pipeline")]
+mod motion;
 mod prediction;
 mod recordings;
 mod slope;
@@ -21,5 +25,9 @@ pub(crate) fn sections() -> Vec<Section> {
         slope::SECTION,
         cepstrum::SECTION,
         sound::SECTION,
+        #[cfg(feature = "pipeline")]
+        files::SECTION,
+        #[cfg(feature = "pipeline")]
+        motion::SECTION,
     ]
 }

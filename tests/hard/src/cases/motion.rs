@@ -1,0 +1,283 @@
+//! Fingers that move as no finger does, on assets and in scenes.
+
+use htex::{Asset, VoiceOptions};
+use htex_author::recording::Recording;
+use htex_device::{Capabilities, Quantity, Rates, Settings};
+use htex_scene::file::{self, Budget, DeviceChoice, Effect, Motion, Scene, Switch};
+use htex_scene::{Costs, Finger, LoadedScene, Renderer, plan};
+
+use super::files::fitted;
+use crate::signals::{RATE_HZ, friction, noise, scaled};
+use crate::{Bound, Case, Section, refused, within, worse};
+
+pub(crate) const SECTION: Section = Section {
+    title: "Motion and drive",
+    about: "Speeds and forces from nothing to beyond numbers, on an asset of two conditions (60 and 120 mm/s at \
+            0.4 N) in every model, and in scenes with every stage on.",
+    cases: CASES,
+};
+
+const LIMIT_V: f64 = 150.0;
+
+/// Bytes of an asset of one or two conditions in all models.
+fn asset(conditions: usize) -> Asset {
+    let recording = |x| Recording::new("hard", RATE_HZ, vec![x]).unwrap();
+    let takes = vec![
+        (recording(friction()), 60.0),
+        (recording(scaled(&noise(), 0.1)), 120.0),
+    ];
+    let fitted = fitted(takes.into_iter().take(conditions).collect()).unwrap();
+    Asset::from_bytes(&fitted.asset.to_bytes().unwrap()).unwrap()
+}
+
+fn models() -> Vec<String> {
+    let known = crate::seen::models();
+    known.iter().map(|m| m.short_name().to_owned()).collect()
+}
+
+/// The largest sample over 0.1 N of every model's voice that is moved so before each block.
+fn moved(motions: &[(f64, f64)]) -> f64 {
+    let asset = asset(2);
+    let mut peak = 0.0;
+    for model in models() {
+        let options = VoiceOptions {
+            model: Some(&model),
+            ..VoiceOptions::default()
+        };
+        let mut voice = asset.voice(&options).unwrap();
+        let mut block = [0.0f32; 64];
+        for i in 0..200 {
+            let (speed_mm_s, force_n) = motions[i % motions.len()];
+            if let Err(error) = voice.set_motion(speed_mm_s, force_n) {
+                println!("{model}: {error}");
+                return f64::NAN;
+            }
+            voice.render(&mut block).unwrap();
+            peak = block.iter().fold(peak, |p, x| worse(p, f64::from(x.abs())));
+        }
+    }
+    peak / 0.1
+}
+
+/// The refusal of a motion by every model's voice, which plays on.
+fn motion_refused(speed_mm_s: f64, force_n: f64) -> String {
+    let asset = asset(2);
+    let mut said = String::new();
+    for model in models() {
+        let options = VoiceOptions {
+            model: Some(&model),
+            ..VoiceOptions::default()
+        };
+        let mut voice = asset.voice(&options).unwrap();
+        match voice.set_motion(speed_mm_s, force_n) {
+            Ok(()) => return "it was done".to_owned(),
+            Err(error) => said = error.to_string(),
+        }
+        let mut block = [0.0f32; 256];
+        voice.render(&mut block).unwrap();
+        if block.iter().all(|x| *x == 0.0) {
+            return "the voice fell silent".to_owned();
+        }
+    }
+    said
+}
+
+/// What a device takes: newtons, or volts on a carrier.
+fn device(quantity: Quantity, rate_hz: f64, carrier_hz: Option<f64>) -> Capabilities {
+    Capabilities {
+        quantity,
+        rates: Rates::List(vec![rate_hz]),
+        default_rate_hz: rate_hz,
+        limit: (quantity == Quantity::DisplayVoltage).then_some(LIMIT_V),
+        step: None,
+        carrier_hz,
+        paced: true,
+        block_frames: 64,
+    }
+}
+
+/// A live scene of one surface that lies everywhere, with every stage that can be forced on.
+fn scene(conditions: usize) -> LoadedScene {
+    LoadedScene {
+        scene: Scene {
+            htex_scene: "1.0".to_owned(),
+            surfaces: vec![file::Surface {
+                representation: "sslope".to_owned(),
+                ..file::Surface::everywhere("asset.htex".as_ref())
+            }],
+            motion: Motion::Live,
+            device: DeviceChoice::default(),
+            duration_s: None,
+            seed: 0,
+            budget: Budget::default(),
+            effects: Effect::ALL.map(|effect| (effect, Switch::On)).into(),
+        },
+        folder: "".into(),
+        assets: vec![asset(conditions)],
+        trace: None,
+        response: None,
+        settings: Settings::default(),
+        notes: Vec::new(),
+    }
+}
+
+fn finger(speed_mm_s: f64, force_n: f64) -> Finger {
+    Finger {
+        speed_mm_s,
+        force_n,
+        at_mm: None,
+    }
+}
+
+/// The largest sample of a scene whose finger moves so in turns, and of what it renders when the finger
+/// moves sanely again; NaN if that is silent.
+fn felt(device: &Capabilities, motions: &[(f64, f64)]) -> f64 {
+    let scene = scene(1);
+    let plan = plan(&scene, device, &Costs::embedded()).unwrap();
+    let mut renderer = Renderer::new(&scene, &plan).unwrap();
+    let mut block = [0.0f32; 64];
+    let mut peak = 0.0;
+    for i in 0..600 {
+        let (speed_mm_s, force_n) = match i {
+            400.. => (60.0, 0.4),
+            _ => motions[i / 10 % motions.len()],
+        };
+        renderer.set_motion(finger(speed_mm_s, force_n)).unwrap();
+        renderer.render(&mut block);
+        peak = block.iter().fold(peak, |p, x| worse(p, f64::from(x.abs())));
+    }
+    match block.iter().any(|x| *x != 0.0) {
+        true => peak,
+        false => f64::NAN,
+    }
+}
+
+fn scene_refused(speed_mm_s: f64, force_n: f64) -> String {
+    let scene = scene(2);
+    let device = device(Quantity::LateralForce, 20_000.0, None);
+    let plan = plan(&scene, &device, &Costs::embedded()).unwrap();
+    let mut renderer = Renderer::new(&scene, &plan).unwrap();
+    let moved = renderer.set_motion(finger(speed_mm_s, force_n));
+    moved.map_or_else(|error| error.to_string(), |()| "it was done".to_owned())
+}
+
+const SLOW_AND_FAST: [(f64, f64); 5] =
+    [(0.0, 0.0), (1e9, 1e9), (0.0, 1e9), (1e9, 0.0), (80.0, 0.4)];
+const BEYOND_FLOATS: [(f64, f64); 4] =
+    [(80.0, 1e39), (80.0, 0.4), (1e300, 1e300), (5e-324, 5e-324)];
+
+const CASES: &[Case] = &[
+    within(
+        "speeds and forces of 0 and 1e9, in turns",
+        "voices of every model",
+        "move and render",
+        Bound(12.0, "× RMS", "finite, and samples"),
+        || moved(&SLOW_AND_FAST),
+    ),
+    within(
+        "speeds and forces of 1e39, 1e300, 5e-324, in turns",
+        "voices of every model",
+        "move and render",
+        Bound(12.0, "× RMS", "finite, and samples"),
+        || moved(&BEYOND_FLOATS),
+    ),
+    refused(
+        "a speed of -1 mm/s",
+        "voices of every model",
+        "move",
+        "both must be finite and not negative",
+        || motion_refused(-1.0, 0.4),
+    ),
+    refused(
+        "a speed that is NaN",
+        "voices of every model",
+        "move",
+        "both must be finite and not negative",
+        || motion_refused(f64::NAN, 0.4),
+    ),
+    refused(
+        "an infinite force",
+        "voices of every model",
+        "move",
+        "both must be finite and not negative",
+        || motion_refused(80.0, f64::INFINITY),
+    ),
+    within(
+        "speeds and forces of 0 and 1e9, in turns, on a display on a carrier of 7 kHz",
+        "scene",
+        "move and render",
+        Bound(LIMIT_V, "V", "finite, and not silent for ever,"),
+        || {
+            felt(
+                &device(Quantity::DisplayVoltage, 20_000.0, Some(7_000.0)),
+                &SLOW_AND_FAST,
+            )
+        },
+    ),
+    within(
+        "speeds and forces of 1e39, 1e300, 5e-324, in turns, on a display",
+        "scene",
+        "move and render",
+        Bound(LIMIT_V, "V", "finite, and not silent for ever,"),
+        || {
+            felt(
+                &device(Quantity::DisplayVoltage, 20_000.0, Some(7_000.0)),
+                &BEYOND_FLOATS,
+            )
+        },
+    ),
+    within(
+        "speeds and forces of 1e39, 1e300, 5e-324, in turns, on a device of newtons",
+        "scene",
+        "move and render",
+        Bound(1e6, "N", "finite, and not silent for ever,"),
+        || {
+            felt(
+                &device(Quantity::LateralForce, 20_000.0, None),
+                &BEYOND_FLOATS,
+            )
+        },
+    ),
+    within(
+        "a carrier at half the rate",
+        "scene",
+        "render",
+        Bound(LIMIT_V, "V", "finite, and not silent for ever,"),
+        || {
+            felt(
+                &device(Quantity::DisplayVoltage, 20_000.0, Some(10_000.0)),
+                &[(60.0, 0.4)],
+            )
+        },
+    ),
+    within(
+        "friction far beyond the drive's reach: forces of 1 to 1e6 N where 0.4 N is known",
+        "scene",
+        "square root",
+        Bound(LIMIT_V, "V", "no radicand below 0, and the output"),
+        || {
+            felt(
+                &device(Quantity::DisplayVoltage, 20_000.0, None),
+                &[(60.0, 1.0), (60.0, 1e6), (60.0, 40.0)],
+            )
+        },
+    ),
+    refused("a speed that is NaN", "scene", "move", "motion", || {
+        scene_refused(f64::NAN, 0.4)
+    }),
+    refused("a force of -1 N", "scene", "move", "motion", || {
+        scene_refused(80.0, -1.0)
+    }),
+    within(
+        "back strokes: speeds from -1e9 to 1e9",
+        "scene",
+        "move and render",
+        Bound(1.0, "N", "finite, and not silent for ever,"),
+        || {
+            felt(
+                &device(Quantity::LateralForce, 20_000.0, None),
+                &[(-1e9, 0.4), (1e9, 0.4), (-80.0, 0.4)],
+            )
+        },
+    ),
+];

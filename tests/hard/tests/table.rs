@@ -20,8 +20,9 @@ fn hold(title: &str) {
     let section = sections.iter().find(|s| s.title == title).unwrap();
     let mut broken = Vec::new();
     for case in section.cases {
+        let start = std::time::Instant::now();
         match case.run() {
-            Ok(text) => println!("{text}"),
+            Ok(text) => println!("{text}; took {:.1} s", start.elapsed().as_secs_f64()),
             Err(text) => broken.push(text),
         }
     }

@@ -123,11 +123,11 @@ const CASES: &[Case] = &[
         || unstable_mixes(&filters(6, 0.999, 12)),
     ),
     within(
-        "6 filters of order 16, reflection up to ±0.9",
+        "4 filters of order 16, reflection up to ±0.9",
         "AR",
         "mix of each two, half and half",
         none("stable, exact"),
-        || unstable_mixes(&filters(16, 0.9, 6)),
+        || unstable_mixes(&filters(16, 0.9, 4)),
     ),
     within(
         "3 filters of order 64, reflection up to ±0.3",

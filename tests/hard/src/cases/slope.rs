@@ -6,8 +6,8 @@ use htex_dsp::grid::level_rms;
 use htex_host::Band;
 
 use crate::big::{Big, big};
-use crate::seen::{fit_with, model, models};
-use crate::{Bound, Case, Section, failures, none, within, worse};
+use crate::seen::{fit_with, model, models, told};
+use crate::{Bound, Case, Section, failures, none, refused, within, worse};
 
 pub(crate) const SECTION: Section = Section {
     title: "Slopes",
@@ -108,6 +108,14 @@ fn roof(peak_hz: f64, db_per_decade: f64) -> Vec<f64> {
         .into_iter()
         .map(|f| 10f64.powf(at(f) / 20.0))
         .collect()
+}
+
+const ENDS: &str = "1 N at 20 Hz, 1 N at 1 kHz, nothing between";
+
+fn ends() -> Vec<f64> {
+    let mut magnitude = vec![0.0; 197];
+    (magnitude[0], magnitude[196]) = (1.0, 1.0);
+    magnitude
 }
 
 const CASES: &[Case] = &[
@@ -278,24 +286,34 @@ const CASES: &[Case] = &[
         },
     ),
     within(
-        "1 N at 20 Hz, 1 N at 1 kHz, nothing between",
-        "every model but sPeak",
+        ENDS,
+        "every model but sPeak and bands",
         "fit, magnitude",
         none("unit RMS"),
         || {
-            let mut magnitude = vec![0.0; 197];
-            (magnitude[0], magnitude[196]) = (1.0, 1.0);
-            failures(
-                models()
-                    .iter()
-                    .filter(|m| m.short_name() != "speak")
-                    .map(|model| {
-                        let fitted = crate::seen::fit(model, &magnitude);
-                        let shape = fitted
-                            .and_then(|f| model.magnitude(&f.parameters, BAND, &BAND.grid_hz()));
-                        shape.is_ok_and(|m| (level_rms(&m) - 1.0).abs() < 1e-9)
-                    }),
-            )
+            let fits = models()
+                .into_iter()
+                .filter(|m| !["speak", "bands"].contains(&m.short_name()));
+            failures(fits.map(|model| {
+                let fitted = crate::seen::fit(&model, &ends());
+                let shape =
+                    fitted.and_then(|f| model.magnitude(&f.parameters, BAND, &BAND.grid_hz()));
+                shape.is_ok_and(|m| (level_rms(&m) - 1.0).abs() < 1e-9)
+            }))
         },
+    ),
+    refused(
+        ENDS,
+        "sPeak",
+        "fit",
+        "CannotFit: the spectrum has no peak",
+        || told(crate::seen::fit(&model("speak"), &ends())),
+    ),
+    refused(
+        ENDS,
+        "bands, whose triangles weigh nothing there",
+        "fit",
+        "CannotFit",
+        || told(crate::seen::fit(&model("bands"), &ends())),
     ),
 ];

@@ -88,7 +88,9 @@ fn text(path: &Path, report: &Report) -> String {
         };
         text += &format!(
             "  {severity} {}{place}{}: {}\n",
-            finding.code, finding.pointer, finding.message
+            finding.code,
+            htex_format::plain(&finding.pointer),
+            finding.message
         );
     }
     text

@@ -43,7 +43,10 @@ impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.pointer.as_str() {
             "" => write!(f, "{}: {}", self.code, self.message),
-            pointer => write!(f, "{} at {pointer}: {}", self.code, self.message),
+            pointer => {
+                let pointer = crate::plain(pointer);
+                write!(f, "{} at {pointer}: {}", self.code, self.message)
+            }
         }
     }
 }

@@ -17,6 +17,7 @@ mod limits;
 mod manifest;
 mod manifest_json;
 mod page;
+mod plain;
 mod plugin;
 mod replace;
 mod report;
@@ -36,6 +37,7 @@ pub use manifest::{
     Quality, Reference, Representation, Signature, Source, Steps, Store, VERSION,
 };
 pub use page::{manifest_schema, rules_page, validation_page};
+pub use plain::plain;
 pub use replace::{replace_file, write_file};
 pub use report::{Findings, Report};
 pub use rules::{RULES, Rule, explain};

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::plain;
 use crate::rules::{FINDINGS_TRUNCATED, Rule};
 use crate::{Finding, Severity};
 
@@ -71,6 +72,6 @@ fn finding(rule: &Rule, pointer: String, message: String) -> Finding {
         code: rule.code.to_owned(),
         severity: rule.severity,
         pointer,
-        message,
+        message: plain(&message).into_owned(),
     }
 }

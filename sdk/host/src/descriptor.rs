@@ -3,13 +3,15 @@
 use htex_model::Descriptor;
 use htex_model::abi::MAX_FIELDS;
 
+use crate::error::plain;
+
 /// Reads a descriptor, as JSON, as every loader does.
 ///
 /// # Errors
 /// Why it describes no model that can be called.
 pub fn read_descriptor(json: &str) -> Result<Descriptor, String> {
-    let descriptor: Descriptor = serde_json::from_str(json).map_err(|e| e.to_string())?;
-    check_descriptor(&descriptor)?;
+    let descriptor: Descriptor = serde_json::from_str(json).map_err(|e| plain(&e.to_string()))?;
+    check_descriptor(&descriptor).map_err(|what| plain(&what))?;
     Ok(descriptor)
 }
 

@@ -2,6 +2,17 @@
 
 use htex_model::Status;
 
+/// The text with its control characters written out: a model's words must not steer a terminal.
+pub(crate) fn plain(text: &str) -> String {
+    let one = |c: char| -> Box<dyn Iterator<Item = char>> {
+        match c.is_control() {
+            true => Box::new(c.escape_default()),
+            false => Box::new(std::iter::once(c)),
+        }
+    };
+    text.chars().flat_map(one).collect()
+}
+
 /// An error of one call, or of finding a model.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum HostError {

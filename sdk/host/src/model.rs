@@ -10,6 +10,7 @@ use htex_model::abi::{
 use htex_model::{Descriptor, Fit, Kind, Status, Values};
 
 use crate::descriptor::read_descriptor;
+use crate::error::plain;
 use crate::raw::{RawFit, RawModel};
 use crate::{HostError, ModelVoice, Origin, WasmLimits};
 
@@ -388,7 +389,7 @@ fn text(mut call: impl FnMut(&mut [u8]) -> i64) -> Result<String, NoText> {
 /// The model's last-error text.
 fn reason(last_error: impl FnMut(&mut [u8]) -> i64) -> String {
     let text = text(last_error).ok().filter(|text| !text.is_empty());
-    text.unwrap_or_else(|| "no reason given".to_owned())
+    text.map_or_else(|| "no reason given".to_owned(), |text| plain(&text))
 }
 
 #[cfg(not(feature = "wasm"))]

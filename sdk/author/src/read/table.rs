@@ -89,7 +89,7 @@ impl<'a> Table<'a> {
         if self.width > MANY {
             names.push(format!("and {} more", self.width - MANY));
         }
-        names.join(", ")
+        htex_format::plain(&names.join(", ")).into_owned()
     }
 
     /// Reads the wanted columns (counted from 0, each below `width`); the other cells are only counted.

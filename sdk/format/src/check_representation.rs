@@ -9,6 +9,8 @@ use crate::rules as rule;
 
 /// Bands that agreement is measured in.
 const BANDS: usize = 9;
+/// Largest level, newtons: its samples are 32-bit numbers in any scene.
+const LARGEST_N: f64 = 1e6;
 
 pub(crate) fn check_representations(manifest: &Manifest, findings: &mut Findings) {
     let some = !manifest.representations.is_empty();
@@ -130,10 +132,10 @@ fn check_conditions(
 fn check_fit(fitted: &AtCondition, at: &str, findings: &mut Findings) {
     let level = fitted.level_n_rms;
     findings.require(
-        is_size(level),
+        is_size(level) && level <= LARGEST_N,
         rule::LEVEL_INVALID,
         format!("{at}/level_n_rms"),
-        || format!("{level} N is no level; it is finite and not negative"),
+        || format!("{level} N is no level; it lies in 0 to {LARGEST_N}"),
     );
     if let Some(quality) = &fitted.quality {
         check_quality(quality, &format!("{at}/quality"), findings);

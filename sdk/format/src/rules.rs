@@ -254,7 +254,7 @@ rule_table! {
         "A player could not tell which of them to take.",
         "Keep one.";
     LEVEL_INVALID Error:
-        "A level is negative or not finite.",
+        "A level is negative or beyond 1,000,000 N.",
         "It is the RMS of the texture in the band, newtons.",
         "Correct it; a smooth surface has a level of 0.";
     QUALITY_INVALID Error:

@@ -22,6 +22,9 @@ const LIVE_FORCE: f64 = 3.0;
 const FILTERED_OVERSAMPLING: f64 = 2.5;
 /// Relative difference of speeds and forces that is rounding.
 const SAME: f64 = 1e-6;
+/// Most looks at the finger before a scene plays: nearly an hour at every one. A longer scene is
+/// looked at less often.
+const MOST_LOOKS: u64 = 1 << 20;
 /// How often the finger is looked at, seconds.
 const CONTROL_S: f64 = 0.0032;
 /// Level of a preview by ear, decibels of full scale.
@@ -198,13 +201,15 @@ impl Call {
         // Where nothing changes, one look is enough.
         let still = course.is_constant() && surfaces.len() == 1 && surfaces[0].region.is_none();
         let frames = self.frames.unwrap_or(1);
-        let looks = if still {
-            1
-        } else {
-            frames.div_ceil(self.control as u64).max(1)
+        let controls = match still {
+            true => 1,
+            false => frames.div_ceil(self.control as u64).max(1),
         };
+        let stride = controls.div_ceil(MOST_LOOKS);
+        let looks = controls.div_ceil(stride);
         for look in 0..looks {
-            let finger = course.at(look as f64 * self.control as f64 / self.rate_hz);
+            let frame = (look * stride) as f64 * self.control as f64;
+            let finger = course.at(frame / self.rate_hz);
             self.look(finger, surfaces);
         }
         for touch in &mut self.touches {

@@ -230,7 +230,11 @@ fn open_asset(
     folder: &Path,
     around: &Surroundings<'_>,
 ) -> Result<Asset, (&'static Rule, String)> {
-    let opened = htex_format::Asset::open(&folder.join(asset))
+    let path = folder.join(asset);
+    if !may_be_read(&path) {
+        return Err((rule::ASSET_INVALID, no_file(asset)));
+    }
+    let opened = htex_format::Asset::open(&path)
         .map_err(htex::Error::from)
         .map(|data| Asset::with_registry(data, around.models.clone()))
         .and_then(|asset| match around.embedded {
@@ -243,6 +247,16 @@ fn open_asset(
         }
         _ => (rule::ASSET_INVALID, format!("{}: {error}", asset.display())),
     })
+}
+
+/// Whether it is a file, or nothing: a scene may come from anyone, and a device or a pipe may never
+/// end.
+fn may_be_read(path: &Path) -> bool {
+    std::fs::metadata(path).map_or(true, |what| what.is_file())
+}
+
+fn no_file(path: &Path) -> String {
+    format!("{} is no file; name one", path.display())
 }
 
 fn is_missing(error: &io::Error) -> bool {
@@ -290,8 +304,8 @@ fn open_trace(scene: &Scene, folder: &Path, findings: &mut Findings) -> Option<T
         return None;
     };
     let rules = [rule::TRACE_MISSING, rule::TRACE_INVALID];
-    let result = Trace::open(&folder.join(path));
-    let trace = opened(result, path, rules, "/motion/trace", findings)?;
+    let open = Trace::open;
+    let trace = opened(open, folder, path, rules, "/motion/trace", findings)?;
     for warning in &trace.warnings {
         findings.add(rule::TRACE_ASSUMED, "/motion/trace", warning.clone());
     }
@@ -312,19 +326,25 @@ fn open_trace(scene: &Scene, folder: &Path, findings: &mut Findings) -> Option<T
 fn open_response(scene: &Scene, folder: &Path, findings: &mut Findings) -> Option<Response> {
     let path = scene.device.response.as_ref()?;
     let rules = [rule::RESPONSE_MISSING, rule::RESPONSE_INVALID];
-    let result = response::open(&folder.join(path));
-    opened(result, path, rules, "/device/response", findings)
+    let open = response::open;
+    opened(open, folder, path, rules, "/device/response", findings)
 }
 
 /// What was opened; else the finding of a file that is not there or not valid.
 fn opened<T>(
-    result: Result<T, ReadError>,
+    open: impl Fn(&Path) -> Result<T, ReadError>,
+    folder: &Path,
     path: &Path,
     [gone, invalid]: [&Rule; 2],
     pointer: &str,
     findings: &mut Findings,
 ) -> Option<T> {
-    match result {
+    let place = folder.join(path);
+    if !may_be_read(&place) {
+        findings.add(invalid, pointer, no_file(path));
+        return None;
+    }
+    match open(&place) {
         Ok(value) => return Some(value),
         Err(ReadError::Io { source, .. }) if is_missing(&source) => {
             findings.add(gone, pointer, missing(path));

@@ -2,6 +2,9 @@
 
 use thiserror::Error;
 
+/// Largest number of a recording, in any unit: its square, summed over hours, is still a number.
+const LARGEST: f64 = 1e12;
+
 /// Why a set of columns is not a recording.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum RecordingError {
@@ -35,6 +38,18 @@ pub enum RecordingError {
         /// Samples of this signal.
         got: usize,
     },
+    /// A sample is larger than any recording's.
+    #[error(
+        "{signal} is {value} at sample {sample} (counted from 0), and no recording goes beyond {LARGEST}; correct its unit"
+    )]
+    TooLarge {
+        /// Which signal.
+        signal: &'static str,
+        /// Index from 0.
+        sample: usize,
+        /// What it is.
+        value: f64,
+    },
     /// A sample is NaN or infinite.
     #[error(
         "{signal} is {value} at sample {sample} (counted from 0); repair or cut the recording there"
@@ -51,7 +66,7 @@ pub enum RecordingError {
 
 /// A recording: the lateral force, and what is known about how the finger pressed and moved.
 ///
-/// All signals are equally long, at least two samples, and finite.
+/// All signals are equally long, at least two samples, and finite, none beyond 1e12.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     /// File name without its directory, for messages and provenance.
@@ -160,7 +175,14 @@ fn check(signal: &'static str, values: &[f64], expected: usize) -> Result<(), Re
             got: values.len(),
         });
     }
-    match values.iter().position(|value| !value.is_finite()) {
+    // False for NaN too.
+    let holds = |value: &f64| value.abs() <= LARGEST;
+    match values.iter().position(|value| !holds(value)) {
+        Some(sample) if values[sample].is_finite() => Err(RecordingError::TooLarge {
+            signal,
+            sample,
+            value: values[sample],
+        }),
         Some(sample) => Err(RecordingError::NotFinite {
             signal,
             sample,

@@ -8,6 +8,11 @@ use super::map::Role;
 use super::table::Table;
 use super::text::{as_text, file_name, read_bytes};
 
+/// Shortest time between two rows, seconds.
+const SHORTEST_S: f64 = 1e-9;
+/// Largest time (seconds), place (mm), speed (mm/s) and force (newtons).
+const LARGEST: f64 = 1e9;
+
 /// The columns of a trace, equally long, at least two rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TraceColumns {
@@ -30,7 +35,7 @@ pub struct TraceColumns {
 ///
 /// # Errors
 /// What [`read_recording`](super::read_recording) reports of a CSV; and, with the line, a time that
-/// does not ascend.
+/// does not ascend by a nanosecond, or a number beyond 1e9.
 pub fn read_trace(path: &Path) -> Result<TraceColumns, ReadError> {
     trace_from_bytes(&file_name(path), &read_bytes(path)?)
 }
@@ -62,6 +67,10 @@ pub fn trace_from_bytes(file: &str, bytes: &[u8]) -> Result<TraceColumns, ReadEr
         warnings,
     };
     check_time(&table, &trace.t_s)?;
+    let motion = [&trace.t_s, &trace.x_mm, &trace.y_mm, &trace.force_n];
+    for column in motion.into_iter().chain(&trace.speed_mm_s) {
+        check_size(&table, column)?;
+    }
     Ok(trace)
 }
 
@@ -126,7 +135,10 @@ fn warn_of_unused(table: &Table<'_>, found: &[(usize, f64)], warnings: &mut Vec<
         .map(|column| table.name(column))
         .collect();
     if !names.is_empty() {
-        warnings.push(format!("Columns not used: {}.", names.join(", ")));
+        warnings.push(format!(
+            "Columns not used: {}.",
+            htex_format::plain(&names.join(", "))
+        ));
     }
 }
 
@@ -137,8 +149,22 @@ fn scaled(mut values: Vec<f64>, scale: f64) -> Vec<f64> {
     values
 }
 
+fn check_size(table: &Table<'_>, values: &[f64]) -> Result<(), ReadError> {
+    match values.iter().position(|value| value.abs() > LARGEST) {
+        None => Ok(()),
+        Some(row) => Err(ReadError::Trace {
+            file: table.file.to_owned(),
+            line: table.line_of_row(row),
+            problem: format!("{} is beyond {LARGEST}; correct its unit", values[row]),
+        }),
+    }
+}
+
 fn check_time(table: &Table<'_>, t_s: &[f64]) -> Result<(), ReadError> {
-    let Some(row) = t_s.windows(2).position(|pair| pair[1] <= pair[0]) else {
+    let Some(row) = t_s
+        .windows(2)
+        .position(|pair| pair[1] - pair[0] < SHORTEST_S)
+    else {
         return Ok(());
     };
     let (before, after) = (t_s[row], t_s[row + 1]);
@@ -146,7 +172,7 @@ fn check_time(table: &Table<'_>, t_s: &[f64]) -> Result<(), ReadError> {
         file: table.file.to_owned(),
         line: table.line_of_row(row + 1),
         problem: format!(
-            "time goes from {before} s to {after} s; it must grow on every row (a column with too \
+            "time goes from {before} s to {after} s; it must grow on every row, by a nanosecond or more (a column with too \
              few decimals repeats itself)"
         ),
     })

@@ -6,6 +6,10 @@ use crate::read::ReadError;
 use crate::read::table::Table;
 use crate::read::text::{as_text, file_name, read_bytes};
 
+/// Smallest magnitude above 0, and largest magnitude, frequency (hertz) and phase (radians).
+const SMALLEST: f64 = 1e-9;
+const LARGEST: f64 = 1e9;
+
 /// A frequency response, sampled.
 ///
 /// The three vectors are equally long (at least 2), the frequencies ascend strictly.
@@ -77,11 +81,18 @@ pub fn response_from_bytes(file: &str, bytes: &[u8]) -> Result<SetupResponse, Re
     check(&table, &frequency_hz, &magnitude)?;
     let phase_rad = columns
         .next()
-        .map_or_else(|| vec![0.0; frequency_hz.len()], unwrapped);
+        .unwrap_or_else(|| vec![0.0; frequency_hz.len()]);
+    if let Some(row) = phase_rad.iter().position(|phase| phase.abs() > LARGEST) {
+        return Err(ReadError::Response {
+            file: table.file.to_owned(),
+            line: table.line_of_row(row),
+            problem: format!("the phase {} rad is beyond {LARGEST}", phase_rad[row]),
+        });
+    }
     Ok(SetupResponse {
         frequency_hz,
         magnitude,
-        phase_rad,
+        phase_rad: unwrapped(phase_rad),
     })
 }
 
@@ -112,6 +123,16 @@ fn check(table: &Table<'_>, frequency_hz: &[f64], magnitude: &[f64]) -> Result<(
                 format!(
                     "the frequency {frequency} Hz follows {} Hz; frequencies must ascend on every row",
                     frequency_hz[row - 1]
+                ),
+            );
+        }
+        if *frequency > LARGEST
+            || !(*magnitude == 0.0 || (SMALLEST..=LARGEST).contains(&magnitude.abs()))
+        {
+            return refuse(
+                row,
+                format!(
+                    "{magnitude} at {frequency} Hz is no response; a magnitude is 0, or from {SMALLEST} to {LARGEST}"
                 ),
             );
         }

@@ -35,7 +35,7 @@ fn usage() -> ExitCode {
 /// Makes what the specification has from the code.
 fn generate() -> ExitCode {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
-    let made: [&[&str]; 6] = [
+    let made: &[&[&str]] = &[
         &["htex-format", "--example", "conformance"],
         &[
             "htex-model",
@@ -57,7 +57,7 @@ fn generate() -> ExitCode {
         &["htex-fuzzing", "--example", "seeds"],
     ];
     for what in made {
-        let code = run(&cargo, &[&["run", "--package"], what].concat());
+        let code = run(&cargo, &[&["run", "--package"], *what].concat());
         if code != ExitCode::SUCCESS {
             return code;
         }

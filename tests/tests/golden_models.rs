@@ -171,6 +171,43 @@ fn sslope_orders_by_each_way_of_measuring() {
 }
 
 #[test]
+fn bands_of_whole_and_narrow_spectra() {
+    let bands = model("bands");
+    for case in Golden::all("band_energies") {
+        let one = |key: &str| case.input(key)[0];
+        let band = Band {
+            low_hz: one("low_hz"),
+            high_hz: one("high_hz"),
+        };
+        let grid = band.grid_hz();
+        let magnitude = if case.has_input("mag") {
+            case.input("mag")
+        } else {
+            smooth_spectrum(&grid)
+        };
+        let options = ["bands", "step_db"].map(|key| (key, one(key).to_string()));
+        let options = options.each_ref().map(|(key, value)| (*key, &value[..]));
+        let request = FitRequest {
+            band,
+            frequency_hz: &grid,
+            magnitude: &magnitude,
+            signal: &[],
+            signal_rate_hz: 20_000.0,
+            options: &bands.options(&options).unwrap(),
+        };
+        let fit = bands.fit(&request).unwrap();
+        case.hold(
+            "/below_loudest",
+            &fit.parameters[1..fit.parameters.len() - 1],
+        );
+        case.hold("/level_rms", &[fit.level_rms]);
+        let shape = bands.magnitude(&fit.parameters, band, &grid).unwrap();
+        let newtons: Vec<f64> = shape.iter().map(|m| m * fit.level_rms).collect();
+        case.hold("/magnitude", &newtons);
+    }
+}
+
+#[test]
 fn ar_of_the_spectrum_of_a_known_filter_is_that_filter() {
     // Yule–Walker on the exact one-sided spectrum of an AR(2) process at 2 kHz, whole band.
     let band = Band {

@@ -74,8 +74,8 @@ impl Model for BandEnergies {
             "dB",
             STEP_RANGE_DB,
             0.5,
-            "Energies are rounded to whole steps of this, itself rounded to 0.05 dB; a band is at \
-             most 255 steps and 120 dB below the loudest.",
+            "Energies are rounded to whole steps of this, itself rounded to 0.05 dB; coarser where 255 \
+             steps would not reach the quietest band, which counts as at most 120 dB down.",
         )
     }
 
@@ -95,9 +95,11 @@ impl Model for BandEnergies {
                 "the spectrum is silent: all band energies are zero",
             ));
         }
-        let step_db = libm::round(input.options[STEP_OPTION] / STEP_UNIT_DB) * STEP_UNIT_DB;
-        let steps = |energy: &f64| round_steps(10.0 * libm::log10(loudest / energy), step_db);
-        let below: Vec<f64> = energies.iter().map(steps).collect();
+        let below_db = |energy: &f64| (10.0 * libm::log10(loudest / energy)).min(FLOOR_DB);
+        let below_db: Vec<f64> = energies.iter().map(below_db).collect();
+        let step_db = step_db(input.options[STEP_OPTION], &below_db);
+        let round = |below_db: &f64| libm::round(below_db / step_db).min(MAX_STEPS);
+        let below: Vec<f64> = below_db.iter().map(round).collect();
         let spectrum = Spectrum::of(&below, step_db, band)?;
         let count = [below.len() as f64];
         Ok(Fit {
@@ -154,10 +156,11 @@ impl Model for BandEnergies {
     }
 }
 
-/// Whole steps of an attenuation, infinite for a band without energy.
-fn round_steps(below_db: f64, step_db: f64) -> f64 {
-    let most = libm::floor(FLOOR_DB / step_db + 1e-9).min(MAX_STEPS);
-    libm::round(below_db / step_db).min(most)
+/// The step that is wanted, as a file keeps it, or the least that reaches down to the quietest band.
+fn step_db(wanted_db: f64, below_db: &[f64]) -> f64 {
+    let reach_db = below_db.iter().copied().fold(0.0, f64::max);
+    let least = libm::ceil(reach_db / (MAX_STEPS * STEP_UNIT_DB) - 1e-9);
+    libm::round(wanted_db / STEP_UNIT_DB).max(least) * STEP_UNIT_DB
 }
 
 /// The magnitude that band energies stand for, on the grid.

@@ -170,6 +170,27 @@ fn lines_over_noise_keep_the_energies_of_nine_bands() {
 }
 
 #[test]
+fn a_step_too_fine_for_the_range_is_coarsened() {
+    let band = Band::TACTILE;
+    let step_db = |slope: f64, wanted_db: f64| {
+        let magnitude: Vec<f64> = band.grid_hz().iter().map(|f| f.powf(slope)).collect();
+        let fit = fit(&magnitude, band, 9, wanted_db).unwrap();
+        let worst = kept(&magnitude, &fit, band)
+            .into_iter()
+            .map(f64::abs)
+            .fold(0.0, f64::max);
+        assert!(worst < 1e-6, "{worst} dB");
+        fit.parameters[10]
+    };
+    // Energies that are nearly even.
+    assert_eq!(step_db(-0.5, 0.07), 0.05);
+    assert_eq!(step_db(-0.5, 0.5), 0.5);
+    // 12.75 dB are not enough for 70 dB.
+    let coarse = step_db(-3.0, 0.05);
+    assert!((0.25..=0.35).contains(&coarse), "{coarse}");
+}
+
+#[test]
 fn silence_is_refused_and_scale_is_of_no_account() {
     let band = Band::TACTILE;
     let error = fit(&[0.0; 197], band, 9, 0.5).unwrap_err();

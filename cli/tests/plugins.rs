@@ -77,7 +77,7 @@ fn a_plugin_is_fitted_shown_and_played() {
     let dir = Path::new(&plugin).parent().unwrap().to_str().unwrap();
     let found = htex(&["plugin", "list", "--json", "--plugin-dir", dir]);
     let found: serde_json::Value = serde_json::from_slice(&found.stdout).unwrap();
-    assert_eq!(found["models"].as_array().unwrap().len(), 6);
+    assert_eq!(found["models"].as_array().unwrap().len(), 7);
 }
 
 #[test]

@@ -92,7 +92,7 @@ impl Model for BandEnergies {
         let loudest = energies.iter().copied().fold(0.0, f64::max);
         if loudest == 0.0 {
             return Err(Error::cannot_fit(
-                "the spectrum is silent: all band energies are zero",
+                "the spectrum is silent, at least between its edges: all band energies are zero",
             ));
         }
         let below_db = |energy: &f64| (10.0 * libm::log10(loudest / energy)).min(FLOOR_DB);

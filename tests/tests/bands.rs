@@ -70,6 +70,17 @@ fn nine_bands_of_every_surface_in_24_bytes_to_half_a_decibel() {
 }
 
 #[test]
+fn many_bands_play_as_they_say() {
+    let take = take(Surface::ALL[2]);
+    for bands in ["12", "25", "29", "33", "37", "40"] {
+        let quality = keep(&take, &[("bands", bands)]).quality;
+        let played = quality.samples_band_error_rms_db.unwrap();
+        assert!(quality.band_error_rms_db <= 0.75, "{bands}: {quality:?}");
+        assert!(played <= 1.0, "{bands} bands: played within {played} dB");
+    }
+}
+
+#[test]
 fn bytes_buy_detail_and_steps_buy_accuracy() {
     let take = take(Surface::ALL[0]);
     let mut correlation = 0.0;

@@ -2,7 +2,7 @@
 //!
 //! The logarithm of power is straight between *knots* at the bands' apexes, over the logarithm of
 //! frequency, and level beyond the outermost. So the curve is monotone between two knots and never
-//! passes either. Of all spectra with the same energies, one of this form has the largest entropy; where
+//! passes either. Bins that no band weighs, at the edges, have the power of the next that one does. Of all spectra with the same energies, one of this form has the largest entropy; where
 //! there is one, there is just one.
 //!
 //! The knots are found by Newton's method on the logarithms of the energies, whose derivative is
@@ -26,10 +26,11 @@ const RISE: f64 = 2.0;
 const TINY: f64 = 1e-300;
 
 /// A bin of the grid: on the way from `knot` to the next, `share` of its logarithm from the first.
+#[derive(Clone, Copy)]
 struct Bin {
     knot: usize,
     share: f64,
-    /// Sum of the triangles' weights: 1 but beyond the outermost apexes.
+    /// Sum of the triangles' weights: 1 but beyond the outermost apexes, 0 at the band's edges.
     weight: f64,
 }
 
@@ -60,12 +61,7 @@ impl Knots {
             sums[bin.knot] += bin.weight * bin.share;
             sums[bin.next(bands)] += bin.weight * (1.0 - bin.share);
         }
-        // At the edges the curve goes on from the outermost band that has bins.
-        let first = sums.iter().position(|&s| s > 0.0).unwrap_or(0);
-        let last = sums.iter().rposition(|&s| s > 0.0).unwrap_or(0);
-        for bin in bins.iter_mut().filter(|bin| bin.weight < 1.0) {
-            bin.knot = bin.knot.clamp(first, last);
-        }
+        level_ends(&mut bins);
         let zeros = || vec![0.0; bands];
         Self {
             power: vec![0.0; bins.len()],
@@ -205,6 +201,21 @@ impl Bin {
         let next = knots[self.next(knots.len())];
         self.share * knots[self.knot] + (1.0 - self.share) * next
     }
+}
+
+/// Gives the bins that no band weighs the power of their neighbours: no energy would hold it.
+fn level_ends(bins: &mut [Bin]) {
+    let weighed = |bin: &Bin| bin.weight > 0.0;
+    let (Some(first), Some(last)) = (
+        bins.iter().position(weighed),
+        bins.iter().rposition(weighed),
+    ) else {
+        return;
+    };
+    let unweighed = |bin: Bin| Bin { weight: 0.0, ..bin };
+    let (low, high) = (unweighed(bins[first]), unweighed(bins[last]));
+    bins[..first].fill(low);
+    bins[last + 1..].fill(high);
 }
 
 /// Solves a symmetric, positive definite, tridiagonal system in place; `beside[i]` couples `i` and

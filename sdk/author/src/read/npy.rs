@@ -21,8 +21,12 @@ pub(crate) fn read(
         });
     };
     check_header(bytes).map_err(|problem| broken(file, problem))?;
-    let npy = NpyFile::new(bytes)
-        .map_err(|error| broken(file, format!("not an NPY file that can be read: {error}")))?;
+    let npy = NpyFile::new(bytes).map_err(|error| {
+        // Its parser draws a picture of the place below the first line.
+        let text = error.to_string();
+        let first = htex_format::plain(text.lines().next().unwrap_or_default().trim_end());
+        broken(file, format!("not an NPY file that can be read: {first}"))
+    })?;
     let (rows, columns) = shape(npy.shape()).map_err(|problem| broken(file, problem))?;
     let order = npy.order();
     let (values, is_integer) = values(npy).map_err(|problem| broken(file, problem))?;

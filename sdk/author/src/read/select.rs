@@ -203,10 +203,8 @@ impl Selection {
             .map(|column| table.name(column))
             .collect();
         if !names.is_empty() {
-            self.warnings.push(format!(
-                "Columns not used: {}.",
-                htex_format::plain(&names.join(", "))
-            ));
+            self.warnings
+                .push(format!("Columns not used: {}.", names.join(", ")));
         }
     }
 }

@@ -75,7 +75,7 @@ impl<'a> Table<'a> {
     /// The column's name, or `#` and its number when it has none.
     pub(crate) fn name(&self, column: usize) -> String {
         match self.header.as_ref().and_then(|names| names.get(column)) {
-            Some(name) if !name.is_empty() => (*name).to_owned(),
+            Some(name) if !name.is_empty() => htex_format::plain(name).into_owned(),
             _ => format!("#{}", column + 1),
         }
     }
@@ -89,7 +89,7 @@ impl<'a> Table<'a> {
         if self.width > MANY {
             names.push(format!("and {} more", self.width - MANY));
         }
-        htex_format::plain(&names.join(", ")).into_owned()
+        names.join(", ")
     }
 
     /// Reads the wanted columns (counted from 0, each below `width`); the other cells are only counted.

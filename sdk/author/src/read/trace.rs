@@ -135,10 +135,7 @@ fn warn_of_unused(table: &Table<'_>, found: &[(usize, f64)], warnings: &mut Vec<
         .map(|column| table.name(column))
         .collect();
     if !names.is_empty() {
-        warnings.push(format!(
-            "Columns not used: {}.",
-            htex_format::plain(&names.join(", "))
-        ));
+        warnings.push(format!("Columns not used: {}.", names.join(", ")));
     }
 }
 

@@ -65,7 +65,7 @@ pub struct TextureSpectrum {
     /// How many segments were averaged.
     pub segments: usize,
     /// Nine-band RMS difference between the odd and the even segments, decibels: what the
-    /// recording itself varies by. None with fewer than two segments.
+    /// recording itself varies by. None with fewer than two segments, or when half of them are silent.
     pub repeatability_rms_db: Option<f64>,
     /// The segments, windowed and overlap-added to one signal in the band, newtons.
     pub signal_n: Vec<f64>,
@@ -313,7 +313,8 @@ fn repeatability(band: Band, all: &[&[Complex<f64>]], averaging: Averaging) -> O
         let half: Vec<&[Complex<f64>]> = all.iter().skip(first).step_by(2).copied().collect();
         bank.energies(&average(&half, grid.len(), averaging))
     };
-    Some(rms(&band_error_db(&energies(0), &energies(1))))
+    // Half of the segments may be silent: that is no number of decibels.
+    Some(rms(&band_error_db(&energies(0), &energies(1)))).filter(|rms_db| rms_db.is_finite())
 }
 
 /// The windowed segments, half overlapping, as one signal at four times the band's top.

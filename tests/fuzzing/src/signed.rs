@@ -70,7 +70,8 @@ pub(crate) fn signed_plugin(input: &[u8]) -> bool {
     true
 }
 
-/// Changes one byte of the signature, of the words it is over, or of the module.
+/// Changes one byte of the signature, of the words it is over, or of the module; or takes the
+/// signature of another version.
 fn alter(how: u8, place: u8, change: u8, plugin: &mut Plugin, module: &mut [u8]) {
     let Plugin {
         model,
@@ -92,7 +93,7 @@ fn alter(how: u8, place: u8, change: u8, plugin: &mut Plugin, module: &mut [u8])
         3 => public_key,
         4 => ed25519,
         5 => {
-            let other = Plugin::new(model, version, module).signed(&KEY);
+            let other = Plugin::new(model, "1.0.1", module).signed(&KEY);
             plugin.signature = other.signature;
             return;
         }

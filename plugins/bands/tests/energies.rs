@@ -4,7 +4,7 @@
 use htex_bands::{BandEnergies, FLOOR_DB};
 use htex_dsp::bands::{BandBank, band_error_db, rms};
 use htex_dsp::grid::{Band, level_rms};
-use htex_model::{Error, Fit, FitInput, Model, Status, Values};
+use htex_model::{Error, Fit, FitInput, Model, Numbers, Status, Values, Voice};
 use proptest::prelude::*;
 
 fn model_band(band: Band) -> htex_model::Band {
@@ -77,7 +77,7 @@ fn wild(band: Band) -> impl Strategy<Value = Vec<f64>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(500))]
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..Default::default() })]
 
     #[test]
     fn nine_bands_keep_their_energies(noisy in noisy(Band::TACTILE), wild in wild(Band::TACTILE)) {
@@ -214,4 +214,34 @@ fn silence_is_refused_and_scale_is_of_no_account() {
         assert_eq!(other.parameters, plain.parameters);
         assert!((other.level_rms / plain.level_rms / by - 1.0).abs() < 1e-12);
     }
+}
+
+#[test]
+fn mixes_are_of_decibels_and_of_the_same_bands() {
+    let descriptor = BandEnergies::descriptor();
+    let read = |parameters: &'static [f64]| Values::read(&descriptor, parameters).unwrap();
+    let mix = |a: &'static [f64], b: &'static [f64]| {
+        let mut room = [0.0; 8];
+        let mut out = Numbers::new(&mut room);
+        BandEnergies::interpolate(&[read(a), read(b)], &[0.25, 0.75], &mut out)?;
+        Ok::<_, Error>(room[..a.len()].to_vec())
+    };
+    let loud_low: &[f64] = &[3.0, 0.0, 20.0, 40.0, 0.5];
+    let loud_high: &[f64] = &[3.0, 60.0, 40.0, 0.0, 0.5];
+    assert_eq!(
+        mix(loud_low, loud_high).unwrap(),
+        [3.0, 45.0, 35.0, 10.0, 0.5]
+    );
+    for other in [&[2.0, 0.0, 20.0, 0.5][..], &[3.0, 0.0, 20.0, 40.0, 1.0]] {
+        assert_eq!(
+            mix(loud_low, other).unwrap_err().status,
+            Status::InvalidArgument
+        );
+    }
+    let band = model_band(Band::TACTILE);
+    let mut voice = BandEnergies::voice(&read(loud_low), band, 2_500.0, 1).unwrap();
+    assert!(voice.retune(&read(loud_high)).is_ok());
+    let fewer = voice.retune(&read(&[2.0, 0.0, 20.0, 0.5])).unwrap_err();
+    assert_eq!(fewer.status, Status::InvalidArgument);
+    assert!(BandEnergies::voice(&read(&[0.0, 0.5]), band, 2_500.0, 1).is_err());
 }

@@ -9,6 +9,8 @@
 pub mod big;
 mod cases;
 pub mod exact;
+pub mod guards;
+pub mod long;
 mod page;
 pub mod seen;
 pub mod signals;

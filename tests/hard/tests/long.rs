@@ -1,0 +1,55 @@
+//! Hours of voices: steady, never broken, never the same again. The accuracy of the example
+//! `long_runs` at a length that fits here.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+use htex_hard_cases::long::{Blocks, drift_db, phase_error_cycles, run};
+use htex_hard_cases::seen::models;
+
+/// An hour in parts of ten minutes. Ten minutes of 1 kHz of noise are 1.2 million independent values:
+/// the standard error of a part is 0.0056 dB, and shapes of narrow bands have a fraction of that.
+#[test]
+fn an_hour_is_steady() {
+    for model in models() {
+        let run = run(&model, 1, 3_600.0, 600.0, None);
+        let drift = drift_db(&run.power);
+        let off = 10.0 * (run.power.iter().sum::<f64>() / run.power.len() as f64).log10();
+        println!(
+            "{:8} {} samples at {} Hz: drift {drift:.4} dB, level {off:+.4} dB, broken {}",
+            model.short_name(),
+            run.samples,
+            run.rate_hz,
+            run.broken
+        );
+        assert_eq!(run.power.len(), 6);
+        assert_eq!(run.broken, 0, "{}", model.short_name());
+        assert!(drift < 0.1, "{}: {drift} dB", model.short_name());
+        assert!(off.abs() < 0.05, "{}: {off} dB", model.short_name());
+    }
+}
+
+/// Six minutes of four seeds, no two blocks of 64 samples alike. sPeak repeats: it is a sum of
+/// sinusoids on a grid of 5 Hz.
+#[test]
+fn seeds_never_repeat_a_block() {
+    for model in models().iter().filter(|m| m.short_name() != "speak") {
+        let mut blocks = Blocks::new();
+        let mut samples = 0;
+        for seed in [0, 1, 2, u64::MAX] {
+            let run = run(model, seed, 360.0, 360.0, Some(&mut blocks));
+            assert_eq!(run.repeated, 0, "{}, seed {seed}", model.short_name());
+            samples += run.samples;
+        }
+        assert!(blocks.len() as u64 >= samples / 65);
+    }
+}
+
+/// Frequencies that a binary fraction of the rate does not hold, after 20 million samples: a day at
+/// 230 Hz, and a step of the way of a day at 20 kHz.
+#[test]
+fn phases_do_not_drift() {
+    for (frequency_hz, rate_hz) in [(317.3, 2_000.0), (0.1 + 20.0, 20_000.0), (999.9, 44_100.0)] {
+        let off = phase_error_cycles(frequency_hz, rate_hz, 20_000_000);
+        println!("{frequency_hz} Hz at {rate_hz} Hz: {off:.2e} cycles");
+        assert!(off < 1e-7, "{frequency_hz} Hz: {off} cycles");
+    }
+}

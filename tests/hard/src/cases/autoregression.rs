@@ -1,6 +1,6 @@
 //! The AR model beyond its usual order and rate.
 
-use htex_host::{Band, Stream};
+use htex_host::{Band, FitRequest, Stream};
 
 use crate::seen::{fit_with, model, models, spectrum, told};
 use crate::signals::{RATE_HZ, friction, noise, tone};
@@ -140,6 +140,103 @@ const CASES: &[Case] = &[
                     .and_then(|mut stream| stream.render(&mut [0.0; 4_000]));
                 magnitude.is_ok() && played.is_ok()
             }))
+        },
+    ),
+    within(
+        "a band that ends at 500 Hz, as recorded at 1 kHz",
+        "AR",
+        "fit",
+        none("the model rate is 1 kHz; that of the tactile band stays 2 kHz"),
+        || {
+            let rate = |high_hz: f64| {
+                let ar = model("ar");
+                let band = Band { high_hz, ..BAND };
+                let grid = band.grid_hz();
+                let magnitude: Vec<f64> = grid.iter().map(|f| 1.0 / f).collect();
+                let fitted = ar.fit(&FitRequest {
+                    band,
+                    frequency_hz: &grid,
+                    magnitude: &magnitude,
+                    signal: &[],
+                    signal_rate_hz: RATE_HZ,
+                    options: &ar.options(&[]).unwrap(),
+                });
+                fitted.unwrap().parameters.last().copied()
+            };
+            failures([rate(500.0) == Some(1_000.0), rate(1_000.0) == Some(2_000.0)])
+        },
+    ),
+    within(
+        "friction noise",
+        "AR",
+        "fit by each method",
+        none("no two give the same filter"),
+        || {
+            let (ar, signal) = (model("ar"), friction());
+            let magnitude = spectrum(&signal);
+            let [a, b, c] = ["yule-walker", "burg", "covariance"].map(|method| {
+                let fitted = fit_with(&ar, &magnitude, &signal[..1_000], &[("method", method)]);
+                fitted.unwrap().parameters
+            });
+            failures([a != b, b != c, a != c])
+        },
+    ),
+    within(
+        "a model rate of 500 Hz: nothing above 250 Hz",
+        "AR",
+        "magnitude",
+        none("0 there, above 0 below"),
+        || {
+            let parameters = [1.0, 0.5, 500.0];
+            let magnitude = model("ar").magnitude(&parameters, BAND, &[240.0, 260.0, 900.0]);
+            failures([magnitude.is_ok_and(|m| m[0] > 0.0 && m[1] == 0.0 && m[2] == 0.0)])
+        },
+    ),
+    refused(
+        "a model rate of 50 Hz in a band that begins at 100 Hz",
+        "AR",
+        "magnitude",
+        "InvalidParameters: the filter has no finite energy in the band",
+        || {
+            let band = Band {
+                low_hz: 100.0,
+                ..BAND
+            };
+            told(model("ar").magnitude(&[1.0, 0.5, 50.0], band, &[200.0]))
+        },
+    ),
+    refused(
+        "a signal of no sample or one",
+        "AR",
+        "fit by Burg's method",
+        "CannotFit: this method needs the recording's segments",
+        || {
+            let magnitude = spectrum(&friction());
+            let said = |signal: &[f64]| {
+                let options = [("method", "burg")];
+                told(fit_with(&model("ar"), &magnitude, signal, &options))
+            };
+            let (none, one) = (said(&[]), said(&[1.0]));
+            if none == one {
+                none
+            } else {
+                format!("{none}; {one}")
+            }
+        },
+    ),
+    refused(
+        "a signal of silence",
+        "AR",
+        "fit by Burg's method",
+        "CannotFit: the recording's segments are silent",
+        || {
+            let options = [("method", "burg")];
+            told(fit_with(
+                &model("ar"),
+                &spectrum(&friction()),
+                &[0.0; 100],
+                &options,
+            ))
         },
     ),
     refused(

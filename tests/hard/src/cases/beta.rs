@@ -5,9 +5,9 @@ use htex_dsp::grid::level_rms;
 use htex_host::Band;
 
 use crate::big::{Big, big};
-use crate::seen::{fit_with, model, spectrum};
+use crate::seen::{fit_with, model, spectrum, told};
 use crate::signals::tone;
-use crate::{Bound, Case, Section, failures, none, within, worse};
+use crate::{Bound, Case, Section, failures, none, refused, within, worse};
 
 pub(crate) const SECTION: Section = Section {
     title: "Beta density",
@@ -82,36 +82,47 @@ fn density_error(parameters: &[f64], places: &[f64]) -> f64 {
     worst
 }
 
-/// Whether shapes are of unit RMS, and their voices near it.
-fn shapes(parameters: &[f64]) -> f64 {
-    let sbeta = model("sbeta");
-    let mut results = Vec::new();
-    for &alpha in parameters {
-        for &beta in parameters {
-            let set = [alpha, beta];
-            let magnitude = sbeta.magnitude(&set, BAND, &BAND.grid_hz());
-            let voice = sbeta.voice(&set, BAND, 2_500.0, 1);
-            let mut out = vec![0.0f32; 25_000];
-            let played = voice.and_then(|mut voice| voice.render(&mut out));
-            let power: f64 = out.iter().map(|&x| f64::from(x).powi(2)).sum();
-            let rms = (power / out.len() as f64).sqrt();
-            let holds = match (magnitude, played) {
-                (Ok(m), Ok(())) => (level_rms(&m) - 1.0).abs() < 1e-9 && (0.5..2.0).contains(&rms),
-                (Err(by), Err(too)) => {
-                    let named = |e: &htex_host::HostError| {
-                        e.to_string().contains("put all energy between two bins")
-                    };
-                    named(&by) && named(&too)
-                }
-                _ => false,
-            };
-            if !holds {
-                println!("alpha {alpha}, beta {beta}: RMS {rms}");
-            }
-            results.push(holds);
+/// Whether shapes are of unit RMS, and their voices near it; or refused, if that is `allowed`.
+fn shapes(parameters: &[f64], allowed: bool) -> f64 {
+    let each = |alpha| parameters.iter().map(move |&beta| [alpha, beta]);
+    let sets = parameters.iter().flat_map(|&alpha| each(alpha));
+    failures(sets.map(|set| {
+        let said = shape(&set);
+        if said != "unit RMS" {
+            println!("{set:?}: {said}");
         }
+        said == "unit RMS" || allowed && said.contains("put all energy between two bins")
+    }))
+}
+
+/// What becomes of a parameter set, by magnitude and by voice.
+fn shape(set: &[f64]) -> String {
+    let sbeta = model("sbeta");
+    let magnitude = sbeta.magnitude(set, BAND, &BAND.grid_hz());
+    let voice = sbeta.voice(set, BAND, 2_500.0, 1);
+    let (magnitude, mut voice) = match (magnitude, voice) {
+        (Ok(magnitude), Ok(voice)) => (magnitude, voice),
+        (Err(one), Err(other)) if one.to_string() != other.to_string() => {
+            let same =
+                |e: &htex_host::HostError| e.to_string().split(": ").last().map(String::from);
+            return if same(&one) == same(&other) {
+                one.to_string()
+            } else {
+                format!("{one}; {other}")
+            };
+        }
+        (one, other) => return format!("{one:?}; {other:?}"),
+    };
+    let mut out = vec![0.0f32; 25_000];
+    if let Err(error) = voice.render(&mut out) {
+        return error.to_string();
     }
-    failures(results)
+    let power: f64 = out.iter().map(|&x| f64::from(x).powi(2)).sum();
+    let rms = (power / out.len() as f64).sqrt();
+    match (level_rms(&magnitude) - 1.0).abs() < 1e-9 && (0.5..2.0).contains(&rms) {
+        true => "unit RMS".to_owned(),
+        false => format!("RMS {rms}"),
+    }
 }
 
 /// A spectrum with peaks of 1 N at some bins, on a floor.
@@ -194,11 +205,34 @@ const CASES: &[Case] = &[
         },
     ),
     within(
-        "alpha and beta of 0.001, 0.5, 1, 1 + 1e-9, 2, 100, 1e4, 1e6, each with each",
+        "alpha and beta of 0.001, 0.5, 1, 1 + 1e-9, 2, 100, each with each",
+        "sBeta",
+        "magnitude, render",
+        none("unit RMS"),
+        || shapes(&[1e-3, 0.5, 1.0, 1.0 + 1e-9, 2.0, 100.0], false),
+    ),
+    within(
+        "alpha and beta of 0.5, 1 + 1e-9, 1e4, 1e6, each with each",
         "sBeta",
         "magnitude, render",
         none("unit RMS, or refused: all energy between two bins"),
-        || shapes(&[1e-3, 0.5, 1.0, 1.0 + 1e-9, 2.0, 100.0, 1e4, 1e6]),
+        || shapes(&[0.5, 1.0 + 1e-9, 1e4, 1e6], true),
+    ),
+    refused(
+        "alpha 31,030 and beta 1e6: 0.6 Hz wide at 22.5 Hz",
+        "sBeta",
+        "magnitude, voice",
+        "put all energy between two bins of the 5 Hz grid",
+        || {
+            let (sbeta, set) = (model("sbeta"), [31_030.0, 1e6]);
+            let magnitude = told(sbeta.magnitude(&set, BAND, &[100.0]));
+            let voice = told(sbeta.voice(&set, BAND, 2_500.0, 1));
+            if magnitude == voice {
+                voice
+            } else {
+                format!("{magnitude}; {voice}")
+            }
+        },
     ),
     within(
         "one peak, in the middle, next to an edge, on an edge",

@@ -260,6 +260,24 @@ const CASES: &[Case] = &[
         },
     ),
     within(
+        "flanks that are not straight",
+        "sSlope",
+        "fit, each way of measuring",
+        none("no two ways give the same orders"),
+        || {
+            let bend = |(i, m): (usize, &f64)| m * m.powf(1e-2 * i as f64);
+            let curved: Vec<f64> = roof(140.0, 40.0).iter().enumerate().map(bend).collect();
+            let fitted = |slopes| {
+                let options = [("slopes", slopes), ("rounding_db_per_decade", "1")];
+                fit_with(&model("sslope"), &curved, &[], &options)
+                    .unwrap()
+                    .parameters
+            };
+            let [a, b, c] = ["least-squares", "end-points", "anchored"].map(fitted);
+            failures([a != b, b != c, a != c])
+        },
+    ),
+    within(
         "slopes of 1000 and 5000 dB/decade, down to numbers that f64 has not",
         "sSlope",
         "fit, each way of measuring",

@@ -11,7 +11,7 @@ use htex_host::{Band, LoadedModel, Stream};
 
 use crate::big::{Big, big};
 use crate::seen::{fit, model, models, spectrum, told};
-use crate::signals::{friction, noise};
+use crate::signals::{friction, noise, tone};
 use crate::{Bound, Case, Section, failures, none, refused, within, worse};
 
 pub(crate) const SECTION: Section = Section {
@@ -53,6 +53,40 @@ fn restless(model: &LoadedModel) -> f64 {
         peak = worse(peak, f64::from(sample[0].abs()));
     }
     peak
+}
+
+/// What a voice says to parameters it cannot change to; it plays on.
+fn retune_refused(name: &str, from: &[f64], to: &[f64]) -> String {
+    let mut voice = model(name).voice(from, BAND, 2_000.0, 1).unwrap();
+    let said = told(voice.retune(to));
+    let mut out = [0.0f32; 500];
+    match voice.render(&mut out) {
+        Ok(()) if out.iter().any(|x| *x != 0.0) => said,
+        other => format!("{said}; then {other:?}"),
+    }
+}
+
+/// Decibels by which the level of a voice is off unit RMS after it was retuned from a tone to white
+/// noise, and from there to the tone.
+fn level_after_retune_db(model: &LoadedModel) -> f64 {
+    let [tone, noise] =
+        [tone(300.0), noise()].map(|x| fit(model, &spectrum(&x)).unwrap().parameters);
+    let rate_hz = model.voice_rate_hz(&tone, BAND, 2_500.0).unwrap();
+    let mut voice = model.voice(&tone, BAND, rate_hz, 1).unwrap();
+    let mut off = 0.0;
+    for set in [noise, tone] {
+        // sPeak glides from set to set of as many lines: a second is plenty.
+        let mut out = vec![0.0f32; (41.0 * rate_hz) as usize];
+        if let Err(error) = voice.retune(&set) {
+            println!("{}: {error}", model.short_name());
+            return f64::NAN;
+        }
+        voice.render(&mut out).unwrap();
+        let later = &out[rate_hz as usize..];
+        let power: f64 = later.iter().map(|&x| f64::from(x).powi(2)).sum();
+        off = worse(off, (10.0 * (power / later.len() as f64).log10()).abs());
+    }
+    off
 }
 
 /// Largest error of oscillators between 0 Hz and Nyquist, some hours on, against 256 bits.
@@ -124,6 +158,79 @@ const CASES: &[Case] = &[
         "retune",
         Bound(12.0, "× RMS", "finite, and samples"),
         || models().iter().map(restless).fold(0.0, worse),
+    ),
+    within(
+        "from a tone to white noise, and back",
+        "every model",
+        "retune, and 40 s later",
+        Bound(1.5, "dB", "the level"),
+        || models().iter().map(level_after_retune_db).fold(0.0, worse),
+    ),
+    refused(
+        "a filter of a higher order; one of another model rate",
+        "AR",
+        "retune",
+        "InvalidArgument: a voice of order 1 at 2000 Hz keeps its model rate, and its order or a smaller one",
+        || {
+            let higher = retune_refused("ar", &[1.0, 0.5, 2_000.0], &[2.0, 0.5, 0.1, 2_000.0]);
+            let faster = retune_refused("ar", &[1.0, 0.5, 2_000.0], &[1.0, 0.5, 4_000.0]);
+            if higher == faster {
+                higher
+            } else {
+                format!("{higher}; {faster}")
+            }
+        },
+    ),
+    within(
+        "a filter of a lower order",
+        "AR",
+        "retune",
+        none("done"),
+        || {
+            let said = retune_refused("ar", &[2.0, 0.5, 0.1, 2_000.0], &[1.0, 0.3, 2_000.0]);
+            failures([said == "it was done"])
+        },
+    ),
+    refused(
+        "a cepstrum of other bands; one of another inverse",
+        "MFCC",
+        "retune",
+        "InvalidArgument: a voice keeps its mel bank and inverse",
+        || {
+            let bands = retune_refused("mfcc", &[1.0, 1.0, 26.0, 0.0], &[1.0, 1.0, 20.0, 0.0]);
+            let inverse = retune_refused("mfcc", &[1.0, 1.0, 26.0, 0.0], &[1.0, 1.0, 26.0, 2.0]);
+            if bands == inverse {
+                bands
+            } else {
+                format!("{bands}; {inverse}")
+            }
+        },
+    ),
+    refused(
+        "three bands instead of two",
+        "bands",
+        "retune",
+        "InvalidArgument: a voice keeps its number of bands",
+        || retune_refused("bands", &[2.0, 0.0, 9.0, 1.0], &[3.0, 0.0, 9.0, 9.0, 1.0]),
+    ),
+    within(
+        "phases at their crests, and by seed",
+        "sPeak",
+        "render with two seeds",
+        none("the same from crests, not the same by seed"),
+        || {
+            let first = |random: f64, seed: u64| {
+                let set = [2.0, 50.0, 75.0, 2.0, 1.0, 1.0, random];
+                let mut out = [0.0f32; 64];
+                let voice = model("speak").voice(&set, BAND, 20_000.0, seed);
+                voice.unwrap().render(&mut out).unwrap();
+                out
+            };
+            failures([
+                first(0.0, 1) == first(0.0, 2),
+                first(1.0, 1) != first(1.0, 2),
+            ])
+        },
     ),
     refused(
         "rates of 0, -1, NaN, 1e8 Hz",

@@ -150,9 +150,20 @@ const CASES: &[Case] = &[
         let x = quantised(&sum(&vec![3.0; 40_000], &scaled(&noise(), 1e-5)), 1e-5);
         opened(recording(RATE_HZ, x), all())
     }),
-    lives("friction noise of 1e10 N", || {
-        opened(recording(RATE_HZ, scaled(&friction(), 1e10)), all() - 1)
+    lives("friction noise of 1e6 N", || {
+        opened(recording(RATE_HZ, scaled(&friction(), 1e6)), all() - 1)
     }),
+    refused(
+        "friction noise of 1e10 N",
+        PIPELINE,
+        "store",
+        "LEVEL_INVALID",
+        || {
+            let loud = recording(RATE_HZ, scaled(&friction(), 1e10));
+            let stored = fitted(vec![(loud, 80.0)]).unwrap().asset.to_bytes();
+            stored.map_or_else(|error| format!("{error:?}"), |_| "it was done".to_owned())
+        },
+    ),
     refused(
         "noise of 1e30 N",
         PIPELINE,

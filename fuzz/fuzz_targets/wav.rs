@@ -1,5 +1,5 @@
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|input: &[u8]| {
-    htex_fuzzing::run("wav", input);
+    htex_fuzzing::wav(input);
 });

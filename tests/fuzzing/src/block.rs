@@ -11,7 +11,7 @@ use crate::container::container;
 
 /// Opens an asset whose one block is the input; its first byte says of which model it is, the
 /// second of how many conditions.
-pub(crate) fn parameter_block(input: &[u8]) -> bool {
+pub fn parameter_block(input: &[u8]) -> bool {
     let Some((&[model, conditions], block)) = input.split_first_chunk::<2>() else {
         return false;
     };

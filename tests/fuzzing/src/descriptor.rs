@@ -11,7 +11,7 @@ use crate::promise::{finite, sentence};
 const LONGEST: u32 = 8;
 
 /// Reads a descriptor, writes it, and makes parameters that fit it.
-pub(crate) fn descriptor(input: &[u8]) -> bool {
+pub fn descriptor(input: &[u8]) -> bool {
     let Ok(json) = std::str::from_utf8(input) else {
         return false;
     };

@@ -20,6 +20,16 @@ mod scene;
 pub mod seeds;
 mod signed;
 
+pub use asset::open_asset;
+pub use block::parameter_block;
+pub use descriptor::descriptor;
+pub use manifest::manifest;
+pub use module::wasm_module;
+pub use recordings::{csv, npy, wav};
+pub use response::response_csv;
+pub use scene::scene;
+pub use signed::signed_plugin;
+
 /// A fuzz target.
 #[derive(Debug, Clone, Copy)]
 pub struct Target {
@@ -36,17 +46,17 @@ pub struct Target {
 
 /// All targets.
 pub const TARGETS: &[Target] = &[
-    target("open_asset", asset::open_asset),
-    target("manifest", manifest::manifest),
-    target("parameter_block", block::parameter_block),
-    target("csv", recordings::csv),
-    target("wav", recordings::wav),
-    target("npy", recordings::npy),
-    target("response_csv", response::response_csv),
-    target("scene", scene::scene),
-    target("descriptor", descriptor::descriptor),
-    target("wasm_module", module::wasm_module),
-    target("signed_plugin", signed::signed_plugin),
+    target("open_asset", open_asset),
+    target("manifest", manifest),
+    target("parameter_block", parameter_block),
+    target("csv", csv),
+    target("wav", wav),
+    target("npy", npy),
+    target("response_csv", response_csv),
+    target("scene", scene),
+    target("descriptor", descriptor),
+    target("wasm_module", wasm_module),
+    target("signed_plugin", signed_plugin),
 ];
 
 const fn target(name: &'static str, run: fn(&[u8]) -> bool) -> Target {

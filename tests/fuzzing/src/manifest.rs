@@ -9,7 +9,7 @@ use crate::container::container;
 const MOST: usize = 1 << 16;
 
 /// Opens an asset of this manifest, with entries as it describes them.
-pub(crate) fn manifest(json: &[u8]) -> bool {
+pub fn manifest(json: &[u8]) -> bool {
     let value: Value = serde_json::from_slice(json).unwrap_or_default();
     let mut entries: Vec<(&str, Vec<u8>)> = Vec::new();
     for representation in list(&value, "/representations") {

@@ -27,7 +27,7 @@ pub(crate) fn limits() -> WasmLimits {
 
 /// Loads a module and makes every call. Input that does not begin as a module is one of bodies for
 /// the functions of a sound model.
-pub(crate) fn wasm_module(input: &[u8]) -> bool {
+pub fn wasm_module(input: &[u8]) -> bool {
     let written;
     let bytes = if input.starts_with(b"\0asm") {
         input

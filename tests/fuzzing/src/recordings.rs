@@ -15,7 +15,7 @@ use crate::promise::{finite, sentence};
 const MOST: usize = 100_000;
 
 /// A CSV as a recording, and as a motion.
-pub(crate) fn csv(input: &[u8]) -> bool {
+pub fn csv(input: &[u8]) -> bool {
     let followed = match trace_from_bytes("fuzzed.csv", input) {
         Ok(columns) => {
             follow(&Trace::new(columns));
@@ -27,12 +27,12 @@ pub(crate) fn csv(input: &[u8]) -> bool {
 }
 
 /// A WAV; its header has a rate.
-pub(crate) fn wav(input: &[u8]) -> bool {
+pub fn wav(input: &[u8]) -> bool {
     recording("fuzzed.wav", input, 2000.0)
 }
 
 /// An NPY, at 1 kHz: it has no rate of its own.
-pub(crate) fn npy(input: &[u8]) -> bool {
+pub fn npy(input: &[u8]) -> bool {
     recording("fuzzed.npy", input, 1000.0)
 }
 

@@ -18,7 +18,7 @@ use crate::promise::{finite, refusal, sentence};
 const BLOCKS: usize = 4;
 
 /// Reads a scene, opens what it names, plans it for each kind of device, and renders its start.
-pub(crate) fn scene(input: &[u8]) -> bool {
+pub fn scene(input: &[u8]) -> bool {
     read_twice(input);
     static AROUND: OnceLock<(Registry, Devices)> = OnceLock::new();
     let (models, devices) = AROUND.get_or_init(|| {

@@ -15,7 +15,7 @@ const KEY: [u8; 32] = [7; 32];
 
 /// Opens an asset that brings a model along. The head of the input says what is signed and what is
 /// then changed; behind it stands the module, or nothing for a sound one.
-pub(crate) fn signed_plugin(input: &[u8]) -> bool {
+pub fn signed_plugin(input: &[u8]) -> bool {
     let Some((&[how, place, change, key], module)) = input.split_first_chunk::<HEAD>() else {
         return false;
     };

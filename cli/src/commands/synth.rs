@@ -2,7 +2,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
-use htex::VoiceOptions;
+use htex::{Synthesis, VoiceOptions};
 
 use crate::commands::spectrum::ChoiceArgs;
 use crate::failure::Failure;
@@ -34,6 +34,12 @@ pub(crate) struct Synth {
     #[arg(long, default_value_t = 0)]
     seed: u64,
 
+    /// How samples are made: `streamed` (the model's voice), `loop[:SECONDS]` (a piece of it again and
+    /// again) or `filter[:TAPS]` (white noise through a filter); loop and filter are cheaper and keep
+    /// to one spectrum
+    #[arg(long, default_value_t = Synthesis::Streamed, value_name = "WAY")]
+    quality: Synthesis,
+
     /// The WAV file to write
     #[arg(short, long, value_name = "WAV")]
     output: PathBuf,
@@ -52,6 +58,7 @@ impl Synth {
             rate_hz: f64::from(self.rate),
             seed: self.seed,
             motion: self.choice.motion(&asset),
+            synthesis: self.quality,
         };
         let mut voice = asset.voice(&options).map_err(failure)?;
         let frames = (self.seconds * f64::from(self.rate)).round().max(1.0) as u64;

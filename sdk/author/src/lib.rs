@@ -25,7 +25,7 @@ pub use exploration::{Exploration, exploration};
 pub use fit::{AssetRequest, FittedAsset, Level, ModelRequest, fit_asset, measure};
 pub use metrics::{Agreement, agreement};
 pub use recording::Recording;
-pub use rendered::rendered_spectrum;
+pub use rendered::{rendered_spectrum, spectrum_of_samples};
 pub use response::SetupResponse;
 pub use segments::{SegmentChoice, Segments, Sweep, choose_segments, segment_len};
 pub use spectrum::{

@@ -28,16 +28,32 @@ pub fn rendered_spectrum(
     let rate_hz = 4.0 * reference.band.last_bin() as f64 * GRID_HZ;
     let mut samples = vec![0.0f32; (SECONDS * rate_hz) as usize];
     Stream::new(model, parameters, reference.band, rate_hz, SEED)?.render(&mut samples)?;
+    spectrum_of_samples(&samples, rate_hz, level_n_rms, reference)
+}
+
+/// The magnitudes of samples of unit RMS at a level, newtons, on the reference's grid, RMS-averaged;
+/// zero where the rate holds none.
+///
+/// # Errors
+/// When the samples are too few, or hold what is no number.
+pub fn spectrum_of_samples(
+    samples: &[f32],
+    rate_hz: f64,
+    level_n_rms: f64,
+    reference: SpectrumRef<'_>,
+) -> Result<Vec<f64>, AuthorError> {
     let newtons = samples
         .iter()
         .map(|&x| f64::from(x) * level_n_rms)
         .collect();
-    let recording = Recording::new(model.id(), rate_hz, vec![newtons])?;
+    let recording = Recording::new("samples", rate_hz, vec![newtons])?;
     let options = SpectrumOptions {
         segments: SegmentChoice::Windows,
         averaging: Averaging::Rms,
         response: None,
     };
     let part = segment_spectra(&recording, &options)?;
-    Ok(TextureSpectrum::average(&[part], options.averaging)?.magnitude_n)
+    let mut magnitude_n = TextureSpectrum::average(&[part], options.averaging)?.magnitude_n;
+    magnitude_n.resize(reference.frequency_hz.len(), 0.0);
+    Ok(magnitude_n)
 }

@@ -32,6 +32,7 @@ pub mod nelder_mead;
 pub mod noise;
 pub mod peaks;
 pub mod resample;
+pub mod seam;
 pub mod shaped_noise;
 pub mod sine_bank;
 #[cfg(feature = "std")]

@@ -62,4 +62,13 @@ pub enum HostError {
         /// Which option, and what is allowed.
         what: String,
     },
+    /// No such way to make samples, or one out of its range.
+    #[error(
+        "synthesis `{text}`: it takes streamed, loop:SECONDS (0.1 to 60, at most 67 million samples) \
+         or filter:TAPS (15 to 4095)"
+    )]
+    Synthesis {
+        /// What was asked for.
+        text: String,
+    },
 }

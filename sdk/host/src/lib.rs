@@ -29,6 +29,7 @@ mod raw;
 mod registry;
 mod search;
 mod stream;
+mod synthesis;
 mod table;
 mod voice;
 #[cfg(feature = "wasm")]
@@ -45,4 +46,5 @@ pub use origin::Origin;
 pub use registry::Registry;
 pub use search::Search;
 pub use stream::Stream;
+pub use synthesis::{StillSound, Synthesis};
 pub use voice::ModelVoice;

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use htex_format::{Manifest, Representation};
-use htex_host::{Band, LoadedModel, Registry};
+use htex_host::{Band, LoadedModel, Registry, StillSound, Synthesis};
 use semver::{Version, VersionReq};
 
 use crate::mesh::Mesh;
@@ -29,16 +29,20 @@ pub struct VoiceOptions<'a> {
     pub seed: u64,
     /// Scanning speed, mm/s, and normal force, newtons, at the start; else the first condition.
     pub motion: Option<(f64, f64)>,
+    /// How samples are made: by the model's voice, or cheaper, with a spectrum that stays as it is
+    /// at the start. [`Asset::source`] is always streamed.
+    pub synthesis: Synthesis,
 }
 
 impl Default for VoiceOptions<'_> {
-    /// 20 kHz (the paper's rate), seed 0, the first condition.
+    /// 20 kHz (the paper's rate), seed 0, the first condition, streamed.
     fn default() -> Self {
         Self {
             model: None,
             rate_hz: 20_000.0,
             seed: 0,
             motion: None,
+            synthesis: Synthesis::Streamed,
         }
     }
 }
@@ -121,9 +125,26 @@ impl Asset {
     ///
     /// # Errors
     /// When there is no such representation, its model is not there or not compatible, or it
-    /// refuses the parameters or the rate.
+    /// refuses the parameters or the rate; when the synthesis is out of its range.
     pub fn voice(&self, options: &VoiceOptions<'_>) -> Result<Voice, Error> {
-        Ok(Voice::new(self.source(options)?, options.rate_hz))
+        let still = self.still(options)?;
+        Ok(Voice::new(self.source(options)?, options.rate_hz, still))
+    }
+
+    /// The sound of a voice that is not streamed.
+    fn still(&self, options: &VoiceOptions<'_>) -> Result<Option<StillSound>, Error> {
+        if options.synthesis == Synthesis::Streamed {
+            return Ok(None);
+        }
+        let (parameters, _) = self.parameters(options.model, options.motion)?;
+        Ok(StillSound::new(
+            options.synthesis,
+            &self.model(self.representation(options.model)?)?,
+            &parameters,
+            self.band(),
+            options.rate_hz,
+            options.seed,
+        )?)
     }
 
     /// Makes the source of a voice: the shape alone, at the model's own rate for a listener at

@@ -22,6 +22,6 @@ mod voice;
 pub use asset::{Asset, VoiceOptions};
 pub use error::Error;
 pub use htex_format::{Finding, Limits, Manifest, Severity};
-pub use htex_host::{Band, Registry, Search, WasmLimits};
+pub use htex_host::{Band, Registry, Search, Synthesis, WasmLimits};
 pub use source::Source;
 pub use voice::Voice;

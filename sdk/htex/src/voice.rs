@@ -2,6 +2,7 @@
 
 use htex_dsp::glide::Glide;
 use htex_dsp::resample::Resampler;
+use htex_host::StillSound;
 
 use crate::{Error, Source};
 
@@ -13,22 +14,26 @@ const RAMP_S: f64 = 0.010;
 pub struct Voice {
     source: Source,
     resampler: Option<Resampler>,
+    /// What is heard instead of the source, whose level counts then.
+    still: Option<StillSound>,
     level_n: Glide,
 }
 
 impl Voice {
-    /// A voice at `rate_hz`: the source, and the resampler it needs.
-    pub(crate) fn new(source: Source, rate_hz: f64) -> Self {
+    /// A voice at `rate_hz`: the source and the resampler it needs, or a sound that stands for them.
+    pub(crate) fn new(source: Source, rate_hz: f64, still: Option<StillSound>) -> Self {
         let ramp = (RAMP_S * rate_hz).ceil().max(1.0) as u32;
         Self {
             resampler: Resampler::new(source.rate_hz(), rate_hz, source.top_hz()),
             level_n: Glide::new(source.level_n() as f32, ramp),
             source,
+            still,
         }
     }
 
     /// Follows the finger: spectrum and level glide to those at this scanning speed (mm/s) and
-    /// normal force (newtons), clamped to the conditions the asset knows. A motion that is not new
+    /// normal force (newtons), clamped to the conditions the asset knows; of a voice that is not
+    /// streamed (see [`Synthesis`](crate::Synthesis)) the level alone. A motion that is not new
     /// costs nothing; a new one mixes parameters in the voice's own room. Does not allocate, lock or
     /// do I/O for the models of this project and others that keep to the ABI.
     ///
@@ -53,6 +58,10 @@ impl Voice {
 
     /// Samples of unit RMS at the voice's rate.
     fn render_shape(&mut self, out: &mut [f32]) -> Result<(), Error> {
+        if let Some(still) = &mut self.still {
+            still.render(out);
+            return Ok(());
+        }
         let Some(resampler) = &mut self.resampler else {
             return self.source.render(out);
         };

@@ -336,6 +336,7 @@ impl Part {
             rate_hz: wanted_hz,
             seed: call.seed.wrapping_add(self.surface as u64),
             motion: self.start,
+            ..VoiceOptions::default()
         })
     }
 

@@ -68,6 +68,23 @@ pub(crate) fn decode(
     Ok(flats)
 }
 
+/// Bytes that one flat array takes in an asset's parameter block.
+///
+/// # Errors
+/// As [`round_parameters`].
+pub fn stored_bytes(fields: &[Field], flat: &[f64]) -> Result<usize, WriteError> {
+    let parts = split(fields, flat)?;
+    let bytes = |(field, values): (&Field, &[f64])| {
+        let length = if field.list {
+            shortest(values.len() as u64)
+        } else {
+            0
+        };
+        length + values.len() * field.store.bytes()
+    };
+    Ok(parts.into_iter().map(bytes).sum())
+}
+
 /// The values of a flat array as they will be read back from an asset.
 ///
 /// `flat` holds the fields in order: a scalar's value, or a list's length and then its values.

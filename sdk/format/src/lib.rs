@@ -27,7 +27,7 @@ mod validate;
 mod zip_records;
 
 pub use asset::Asset;
-pub use block::round_parameters;
+pub use block::{round_parameters, stored_bytes};
 pub use document::{Document, DocumentRules, Opened, escape};
 pub use error::{ReadError, WriteError, summary};
 pub use finding::{Finding, Severity};

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{Fitted, asset, fitted, reference, steps};
-use htex_format::{Asset, Reference, Steps, Store, WriteError, round_parameters};
+use htex_format::{Asset, Reference, Steps, Store, WriteError, round_parameters, stored_bytes};
 use proptest::prelude::*;
 
 fn number() -> impl Strategy<Value = f64> {
@@ -121,6 +121,10 @@ proptest! {
         let read = Asset::from_bytes(&bytes).unwrap();
         prop_assert_eq!(&read, &asset);
         prop_assert_eq!(read.to_bytes().unwrap(), bytes);
+        for (i, representation) in read.manifest.representations.iter().enumerate() {
+            let sizes = read.parameters[i].iter().map(|flat| stored_bytes(&representation.fields, flat).unwrap());
+            prop_assert_eq!(sizes.sum::<usize>(), read.payload_bytes(i));
+        }
     }
 
     #[test]

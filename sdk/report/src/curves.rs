@@ -62,7 +62,7 @@ impl Drawing<'_> {
         let places = series.points.iter().filter_map(|p| self.place(*p));
         let shown = places.filter(|place| self.inside(*place));
         shown
-            .map(|(x, y)| svg::circle(x, y, radius).set("fill", &series.color))
+            .map(|(x, y)| svg::circle(x, y, radius).set("fill", series.marker_fill()))
             .collect()
     }
 
@@ -72,7 +72,7 @@ impl Drawing<'_> {
         let mut dots = Element::new("g")
             .set("fill", "transparent")
             .set("stroke", "none");
-        for point in &series.points {
+        for (i, point) in series.points.iter().enumerate() {
             let Some((x, y)) = self.place(*point).filter(|place| self.inside(*place)) else {
                 continue;
             };
@@ -80,7 +80,9 @@ impl Drawing<'_> {
                 continue;
             }
             last = x;
-            let title = Element::new("title").text(&self.describe(series, *point));
+            let text = series.notes.get(i).cloned();
+            let text = text.unwrap_or_else(|| self.describe(series, *point));
+            let title = Element::new("title").text(&text);
             dots = dots.child(&svg::circle(x, y, 4.0).child(&title));
         }
         dots

@@ -9,7 +9,7 @@ use crate::svg::{self, TEXT_PX, text_width};
 pub(crate) fn places(series: &[Series], width: f64) -> Vec<(f64, f64, &Series)> {
     let (mut x, mut y) = (12.0, 33.0);
     let mut out = Vec::new();
-    for one in series {
+    for one in series.iter().filter(|one| !one.name.is_empty()) {
         let needed = 26.0 + text_width(&one.name, TEXT_PX) + 12.0;
         if x > 12.0 && x + needed > width {
             (x, y) = (12.0, y + 16.0);
@@ -28,7 +28,7 @@ pub(crate) fn entry(x: f64, y: f64, series: &Series) -> Element {
     };
     let dot = series
         .marker_radius_px
-        .map(|r| svg::circle(x + 10.0, y - 4.0, r).set("fill", &series.color));
+        .map(|r| svg::circle(x + 10.0, y - 4.0, r).set("fill", series.marker_fill()));
     let look = stroke(Element::new("g"), series)
         .children(sample)
         .children(dot);

@@ -31,7 +31,7 @@ mod ticks;
 pub use axis::{Axis, Scale};
 pub use chain::{Chain, ChainStage};
 pub use color::{RECORDING_COLOR, model_color, series_color};
-pub use page::{Page, code_block, list, paragraph};
+pub use page::{Page, code_block, details, figures, list, paragraph};
 pub use plot::Plot;
 pub use series::{Line, Series};
 pub use table::{Cell, HeatScale, Row, Table};

@@ -64,3 +64,16 @@ pub fn code_block(text: &str) -> String {
     let code = Element::new("code").text(text);
     Element::new("pre").child(&code).render()
 }
+
+/// Finished pictures side by side, below one another where the page is narrow.
+pub fn figures(pictures: &[String]) -> String {
+    let one = |svg: &String| Element::new("figure").set("class", "wide").raw(svg);
+    let figures = Element::new("div").set("class", "figures");
+    figures.children(pictures.iter().map(one)).render()
+}
+
+/// Finished HTML that opens at a click on `summary`.
+pub fn details(summary: &str, html: &str) -> String {
+    let details = Element::new("details").child(&Element::new("summary").text(summary));
+    details.raw(html).render()
+}

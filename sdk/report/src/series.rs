@@ -18,7 +18,7 @@ pub enum Line {
 /// One set of points of a [`Plot`](crate::Plot).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// Shown in the legend and in the hover text.
+    /// Shown in the legend and in the hover text; a series without a name is not in the legend.
     pub name: String,
     /// (x, y) in the axes' units. Points that are not finite are left out.
     pub points: Vec<(f64, f64)>,
@@ -30,8 +30,12 @@ pub struct Series {
     pub line_width_px: f64,
     /// Radius of a dot on each point, pixels; no dots when absent.
     pub marker_radius_px: Option<f64>,
+    /// Whether dots are rings.
+    pub marker_hollow: bool,
     /// Whether pointing at a point shows its values.
     pub hover: bool,
+    /// What is shown instead of its values, point by point; values where there is none.
+    pub notes: Vec<String>,
 }
 
 impl Series {
@@ -44,7 +48,9 @@ impl Series {
             line: Line::Solid,
             line_width_px: 1.5,
             marker_radius_px: None,
+            marker_hollow: false,
             hover: true,
+            notes: Vec::new(),
         }
     }
 
@@ -71,6 +77,15 @@ impl Series {
     pub fn colored(mut self, color: &str) -> Self {
         self.color = color.to_owned();
         self
+    }
+
+    /// What dots are filled with.
+    pub(crate) fn marker_fill(&self) -> &str {
+        if self.marker_hollow {
+            "#fff"
+        } else {
+            &self.color
+        }
     }
 
     /// This series as a backdrop: thin, and silent under the pointer.

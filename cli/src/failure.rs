@@ -14,6 +14,8 @@ pub(crate) enum Failure {
     Model(#[from] htex_host::HostError),
     #[error(transparent)]
     Device(#[from] htex_device::DeviceError),
+    #[error(transparent)]
+    Tradeoff(#[from] htex_tradeoff::TradeoffError),
     #[error("{file}: {error}")]
     Asset { file: String, error: htex::Error },
     #[error("{file}: {}", findings_text(.findings))]

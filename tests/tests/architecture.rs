@@ -33,6 +33,16 @@ const ARROWS: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "htex-tradeoff",
+        &[
+            "htex-author",
+            "htex-dsp",
+            "htex-format",
+            "htex-host",
+            "htex-report",
+        ],
+    ),
+    (
         "htex-cli",
         &[
             "htex",
@@ -42,6 +52,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-device",
             "htex-device-check",
             "htex-scene",
+            "htex-tradeoff",
             "htex-dsp",
             "htex-format",
             "htex-host",

@@ -16,6 +16,7 @@ mod schema;
 mod simulate;
 mod spectrum;
 mod synth;
+mod tradeoff;
 mod validate;
 
 use std::process::ExitCode;
@@ -35,6 +36,7 @@ pub(crate) enum Command {
     Spectrum(spectrum::Spectrum),
     Synth(synth::Synth),
     Compare(compare::Compare),
+    Tradeoff(tradeoff::Tradeoff),
     Plan(plan::Plan),
     Render(render::Render),
     Play(play::Play),
@@ -57,6 +59,7 @@ impl Command {
             Self::Spectrum(args) => args.run(),
             Self::Synth(args) => args.run(),
             Self::Compare(args) => args.run(),
+            Self::Tradeoff(args) => args.run(),
             Self::Plan(args) => args.run(),
             Self::Render(args) => args.run(),
             Self::Play(args) => args.run(),

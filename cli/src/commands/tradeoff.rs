@@ -1,0 +1,217 @@
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Args;
+use htex_author::simulate::{SimulationOptions, Surface, simulate};
+use htex_author::{AuthorError, Exploration, Take};
+use htex_host::{LoadedModel, Origin, Registry};
+use htex_tradeoff::{Journal, Model, Point, Request, Subject, csv, page, sweep};
+
+use crate::failure::Failure;
+use crate::models::tool;
+use crate::output::{print, print_json, warn, write_file};
+use crate::plugins::PluginArgs;
+use crate::progress::bar;
+use crate::recordings::RecordingArgs;
+
+/// Measure what accuracy costs: every model and knob against bytes and time, on your recordings.
+///
+/// Each recording is measured by itself, and the medians of all beside. Writes a page with pictures,
+/// and beside it the same points as CSV and JSON. A sweep that was interrupted goes on where it
+/// stopped when the same command is given again.
+#[derive(Args)]
+pub(crate) struct Tradeoff {
+    /// Recordings: CSV, WAV or NPY
+    #[arg(required_unless_present = "simulated")]
+    recordings: Vec<PathBuf>,
+
+    /// Measure on the five simulated surfaces of `htex demo` too
+    #[arg(long)]
+    simulated: bool,
+
+    /// Models by short name or id, comma-separated [default: all]
+    #[arg(long, value_delimiter = ',', value_name = "ID,…")]
+    only: Vec<String>,
+
+    /// Turn one knob at a time and only to its ends and middle, with fewer turns of timing
+    #[arg(long)]
+    quick: bool,
+
+    /// The page to write; points go beside it as .csv and .json
+    #[arg(short, long, value_name = "HTML")]
+    output: PathBuf,
+
+    #[command(flatten)]
+    plugins: PluginArgs,
+
+    #[command(flatten)]
+    reading: RecordingArgs,
+
+    /// Print JSON instead of a table
+    #[arg(long)]
+    json: bool,
+}
+
+impl Tradeoff {
+    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        let [csv_file, json_file, part_file] =
+            ["csv", "json", "part"].map(|e| self.output.with_extension(e));
+        if [&csv_file, &json_file, &part_file].contains(&&self.output) {
+            let output = self.output.display();
+            let sentence =
+                format!("-o {output}: points go beside it under that name; name a .html file");
+            return Err(Failure::Usage(sentence));
+        }
+        let request = Request {
+            models: self.models()?,
+            quick: self.quick,
+        };
+        let subjects = self.subjects()?;
+        let mut journal = Journal::new(&part_file);
+        let bar = bar(1);
+        let swept = sweep(&subjects, &request, &mut journal, &|done, all, what| {
+            bar.set_length(all);
+            bar.set_position(done);
+            bar.set_message(what.to_owned());
+        })?;
+        bar.finish_and_clear();
+        let tradeoff = htex_tradeoff::Tradeoff::new(&tool(), &subjects, swept);
+        let json = serde_json::to_vec(&tradeoff)
+            .map_err(|error| Failure::Other(format!("cannot write JSON: {error}")))?;
+        write_file(&csv_file, csv(&tradeoff).as_bytes())?;
+        write_file(&json_file, &json)?;
+        write_file(&self.output, page(&tradeoff, &command()).as_bytes())?;
+        journal.discard()?;
+        if self.json {
+            print_json(&tradeoff)?;
+        } else {
+            warn(&tradeoff.warnings);
+            print(&to_text(&tradeoff, &self.output))?;
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+
+    /// The models asked for, each with all ways in which it was found.
+    fn models(&self) -> Result<Vec<Model>, Failure> {
+        let registry = self.plugins.registry_quietly()?;
+        let mut models: Vec<Model> = Vec::new();
+        for model in self.named(&registry)? {
+            let mut found: Vec<&LoadedModel> = registry.all(model.id()).collect();
+            found.sort_by_key(|model| way(model.origin()).0);
+            let ways = found
+                .into_iter()
+                .map(|m| (way(m.origin()).1.to_owned(), m.clone()));
+            let mut ways: Vec<(String, LoadedModel)> = ways.collect();
+            ways.dedup_by(|b, a| a.0 == b.0);
+            models.push(Model { ways });
+        }
+        Ok(models)
+    }
+
+    fn named<'a>(&self, registry: &'a Registry) -> Result<Vec<&'a LoadedModel>, Failure> {
+        if self.only.is_empty() {
+            return Ok(registry.models().iter().collect());
+        }
+        let mut models: Vec<&LoadedModel> = Vec::new();
+        for name in &self.only {
+            let model = registry.find(name)?;
+            if !models.iter().any(|m| m.id() == model.id()) {
+                models.push(model);
+            }
+        }
+        Ok(models)
+    }
+
+    fn subjects(&self) -> Result<Vec<Subject>, Failure> {
+        let mut takes = self.reading.read(&self.recordings)?;
+        if self.simulated {
+            takes.extend(simulated()?);
+        }
+        let options = self.reading.spectrum_options()?;
+        let mut subjects: Vec<Subject> = Vec::new();
+        for take in &takes {
+            let mut subject = Subject::new(take, &options, self.reading.strict())?;
+            // Files of one name in several folders.
+            let same = |s: &&Subject| s.name.split(" #").next() == Some(&subject.name);
+            let before = subjects.iter().filter(same).count();
+            if before > 0 {
+                subject.name += &format!(" #{}", before + 1);
+            }
+            subjects.push(subject);
+        }
+        Ok(subjects)
+    }
+}
+
+/// The five surfaces, as `htex demo` simulates them.
+fn simulated() -> Result<Vec<Take>, Failure> {
+    let take = |surface: Surface| {
+        let options = SimulationOptions::new(surface);
+        let simulation = simulate(&options).map_err(|error| Failure::Other(error.to_string()))?;
+        let recording = simulation
+            .to_recording(&surface.to_string())
+            .map_err(AuthorError::from)?;
+        let given = Exploration {
+            speed_mm_s: Some(options.speed_mm_s),
+            force_n: Some(options.force_n),
+        };
+        Ok(Take { recording, given })
+    };
+    Surface::ALL.into_iter().map(take).collect()
+}
+
+/// Order and name of a way to load a model.
+fn way(origin: &Origin) -> (u8, &'static str) {
+    match origin {
+        Origin::Builtin => (0, "built in"),
+        Origin::Native(_) => (1, "native"),
+        _ => (2, "wasm"),
+    }
+}
+
+/// The command as it was given.
+fn command() -> String {
+    let arguments = std::env::args().skip(1);
+    let quoted = arguments.map(|a| {
+        if a.contains([' ', '\'']) {
+            format!("{a:?}")
+        } else {
+            a
+        }
+    });
+    ["htex".to_owned()]
+        .into_iter()
+        .chain(quoted)
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+fn to_text(tradeoff: &htex_tradeoff::Tradeoff, output: &Path) -> String {
+    let points = tradeoff.summary();
+    let name = points.first().map_or("", |p| &p.recording);
+    let mut text =
+        format!("{name}: the front against bytes\n  bytes  bands/dB   corr.  ns/sample  setting\n");
+    let mut front: Vec<&Point> = points.into_iter().filter(|p| p.on_front).collect();
+    front.sort_by_key(|p| p.bytes);
+    for p in front {
+        text += &format!(
+            "  {:>5}  {:>8.2}  {:>6.3}  {:>9.1}  {}\n",
+            p.bytes,
+            p.band_error_rms_db,
+            p.spectral_correlation,
+            p.ns_per_sample,
+            p.name()
+        );
+    }
+    for against in ["bytes", "time"] {
+        text += &format!("\nknees against {against}\n");
+        for knee in tradeoff
+            .knees
+            .iter()
+            .filter(|k| k.recording == name && k.against == against)
+        {
+            text += &format!("  {}: {}\n", knee.of, knee.words);
+        }
+    }
+    text + &format!("\nThe report, with the pictures: {}\n", output.display())
+}

@@ -1,0 +1,27 @@
+//! How near a spectrum comes, in three numbers.
+
+use htex_author::{SpectrumRef, agreement};
+use htex_dsp::grid::level_rms;
+use serde::{Deserialize, Serialize};
+
+/// How near a spectrum comes to a recording's.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Accuracy {
+    pub(crate) spectral_correlation: f64,
+    pub(crate) band_error_rms_db: f64,
+    /// RMS in the band over the recording's, decibels.
+    pub(crate) level_error_db: f64,
+}
+
+/// A level this far off is none at all: keeps silence finite.
+const FAR_DB: f64 = 200.0;
+
+pub(crate) fn accuracy(reference: SpectrumRef<'_>, magnitude_n: &[f64]) -> Accuracy {
+    let found = agreement(reference, magnitude_n);
+    let ratio = level_rms(magnitude_n) / level_rms(reference.magnitude_n);
+    Accuracy {
+        spectral_correlation: found.spectral_correlation,
+        band_error_rms_db: found.band_error_rms_db,
+        level_error_db: (20.0 * ratio.log10()).clamp(-FAR_DB, FAR_DB),
+    }
+}

@@ -1,0 +1,87 @@
+//! The two baselines: the spectrum itself, coarsely quantised, and the recording.
+
+use htex_dsp::grid::{Band, level_rms};
+use htex_dsp::resample::Resampler;
+use htex_dsp::shaped_noise::{ShapedNoise, economical_rate_hz};
+
+/// Steps of a byte.
+const STEPS: f64 = 255.0;
+/// Bins this far below the largest are stored as if they were there, a part of it: -120 dB.
+const FLOOR: f64 = 1e-6;
+/// Two single-precision numbers: lowest and highest logarithm.
+const RANGE_BYTES: usize = 8;
+
+/// Magnitudes after a round trip through one byte each, on a logarithmic scale from the lowest to
+/// the highest; and the bytes that takes.
+pub(crate) fn quantise(magnitude_n: &[f64]) -> (Vec<f64>, usize) {
+    let top = magnitude_n.iter().copied().fold(0.0, f64::max);
+    let bytes = magnitude_n.len() + RANGE_BYTES;
+    if top <= 0.0 {
+        return (vec![0.0; magnitude_n.len()], bytes);
+    }
+    let logs: Vec<f64> = magnitude_n
+        .iter()
+        .map(|m| m.max(FLOOR * top).ln())
+        .collect();
+    let single = |x: f64| f64::from(x as f32);
+    let low = single(logs.iter().copied().fold(f64::INFINITY, f64::min));
+    let step = (single(top.ln()) - low) / STEPS;
+    let stored = |log: &f64| {
+        if step <= 0.0 {
+            return low.exp();
+        }
+        (low + step * ((log - low) / step).round().clamp(0.0, STEPS)).exp()
+    };
+    (logs.iter().map(stored).collect(), bytes)
+}
+
+/// Noise of unit RMS under magnitudes on the band's grid: as the models of noise play.
+pub(crate) struct SpectrumNoise {
+    noise: ShapedNoise,
+    resampler: Option<Resampler>,
+}
+
+impl SpectrumNoise {
+    pub(crate) fn new(magnitude_n: &[f64], band: Band, rate_hz: f64, seed: u64) -> Self {
+        let noise_hz = economical_rate_hz(rate_hz, band);
+        let mut noise = ShapedNoise::new(noise_hz, band, seed);
+        let level = level_rms(magnitude_n);
+        let last = magnitude_n.len().saturating_sub(1);
+        noise.start(|_, hz| {
+            let place = (hz / htex_dsp::GRID_HZ - band.first_bin() as f64).clamp(0.0, last as f64);
+            let (below, part) = (place as usize, place.fract());
+            let (a, b) = (magnitude_n[below], magnitude_n[(below + 1).min(last)]);
+            (a + part * (b - a)) / level
+        });
+        let resampler = Resampler::new(noise_hz, rate_hz, band.high_hz);
+        Self { noise, resampler }
+    }
+
+    pub(crate) fn render(&mut self, out: &mut [f32]) {
+        let noise = &mut self.noise;
+        match &mut self.resampler {
+            Some(resampler) => resampler.process(out, &mut |block| noise.render(block)),
+            None => noise.render(out),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_byte_a_bin_is_near() {
+        let magnitude: Vec<f64> = (0..197)
+            .map(|i| 0.01 * (-0.03 * f64::from(i)).exp())
+            .collect();
+        let (stored, bytes) = quantise(&magnitude);
+        assert_eq!(bytes, 205);
+        // 51 dB in 255 steps: half a step is 0.1 dB.
+        for (a, b) in magnitude.iter().zip(&stored) {
+            assert!((20.0 * (b / a).log10()).abs() < 0.101, "{a} {b}");
+        }
+        assert_eq!(quantise(&[0.0; 3]).0, [0.0; 3]);
+        assert!((quantise(&[0.5; 3]).0[1] - 0.5).abs() < 1e-6);
+    }
+}

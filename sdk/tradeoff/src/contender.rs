@@ -1,0 +1,98 @@
+//! Whatever can be fitted to a recording, stored and played.
+
+use htex_author::stored_fields;
+use htex_dsp::grid::level_rms;
+use htex_format::{Field, Store, round_parameters, stored_bytes};
+use htex_host::{Fit, FitRequest, HostError, LoadedModel};
+
+use crate::baseline::quantise;
+use crate::setting::Keep;
+use crate::{Setting, Subject, TradeoffError};
+
+/// What is measured: a setting of a model, or a baseline.
+#[derive(Debug, Clone)]
+pub(crate) struct Contender {
+    pub(crate) model: String,
+    pub(crate) setting: Setting,
+    pub(crate) kind: Kind,
+}
+
+#[derive(Debug, Clone)]
+pub(crate) enum Kind {
+    /// A model, with a value for each of its fit options.
+    Model(LoadedModel, Vec<f64>),
+    /// The spectrum, a byte a bin.
+    Quantised,
+    /// The recording itself.
+    Recording,
+}
+
+/// What playing needs.
+pub(crate) struct Stored {
+    pub(crate) parameters: Vec<f64>,
+    pub(crate) level_n: f64,
+    pub(crate) bytes: usize,
+}
+
+impl Contender {
+    /// Its name within a recording: no two have the same.
+    pub(crate) fn id(&self) -> String {
+        format!("{} {}", self.model, self.setting.words())
+    }
+
+    /// Fits it; for the baselines, makes what is stored.
+    pub(crate) fn fit(&self, subject: &Subject) -> Result<Fit, HostError> {
+        let spectrum = &subject.spectrum;
+        match &self.kind {
+            Kind::Model(model, options) => model.fit(&FitRequest {
+                band: spectrum.band,
+                frequency_hz: &spectrum.frequency_hz,
+                magnitude: &spectrum.magnitude_n,
+                signal: &spectrum.signal_n,
+                signal_rate_hz: spectrum.signal_rate_hz,
+                options,
+            }),
+            Kind::Quantised => {
+                let parameters = quantise(&spectrum.magnitude_n).0;
+                let level_rms = level_rms(&parameters);
+                Ok(Fit {
+                    parameters,
+                    level_rms,
+                })
+            }
+            Kind::Recording => Ok(Fit {
+                parameters: Vec::new(),
+                level_rms: level_rms(&spectrum.magnitude_n),
+            }),
+        }
+    }
+
+    /// What is read back after storing a fit, and its size.
+    pub(crate) fn store(&self, subject: &Subject, fit: &Fit) -> Result<Stored, TradeoffError> {
+        let (parameters, bytes) = match &self.kind {
+            Kind::Model(model, _) => {
+                let mut fields = stored_fields(model.descriptor());
+                self.keep(&mut fields);
+                let rounded = round_parameters(&fields, &fit.parameters)?;
+                let bytes = stored_bytes(&fields, &rounded)?;
+                (rounded, bytes)
+            }
+            Kind::Quantised => quantise(&subject.spectrum.magnitude_n),
+            Kind::Recording => (Vec::new(), subject.bytes),
+        };
+        Ok(Stored {
+            parameters,
+            level_n: fit.level_rms,
+            bytes,
+        })
+    }
+
+    fn keep(&self, fields: &mut [Field]) {
+        let store = match self.setting.store {
+            Keep::Model => return,
+            Keep::F32 => Store::F32,
+            Keep::F64 => Store::F64,
+        };
+        fields.iter_mut().for_each(|field| field.store = store);
+    }
+}

@@ -1,0 +1,160 @@
+//! Error against cost as a picture.
+
+use htex_report::{Axis, Line, Plot, RECORDING_COLOR, Series, model_color};
+
+use crate::front::front;
+use crate::knee::along_front;
+use crate::point::{Point, QUANTISED};
+use crate::setting::Keep;
+
+/// What error is weighed against.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Against {
+    /// Bytes of stored parameters; error by magnitudes.
+    Bytes,
+    /// Nanoseconds a sample; error by samples.
+    Time,
+}
+
+impl Against {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Bytes => "bytes",
+            Self::Time => "time",
+        }
+    }
+
+    /// Whether a point's cost means the same as that of the others.
+    pub(crate) fn compares(self, point: &Point) -> bool {
+        match self {
+            Self::Bytes => point.how.plays_as_default(),
+            Self::Time => point.how.times_compare() && point.how.store == Keep::Model,
+        }
+    }
+
+    /// Cost and error of a point.
+    pub(crate) fn place(self, point: &Point) -> (f64, f64) {
+        match self {
+            Self::Bytes => (point.bytes as f64, point.band_error_rms_db),
+            Self::Time => (point.ns_per_sample, point.samples_band_error_rms_db),
+        }
+    }
+
+    pub(crate) fn cost(self, cost: f64) -> String {
+        match self {
+            Self::Bytes => format!("{cost} bytes"),
+            Self::Time => format!("{cost:.1} ns"),
+        }
+    }
+
+    pub(crate) fn words(self, cost: f64, error: f64) -> String {
+        format!("{} at {error:.2} dB", self.cost(cost))
+    }
+
+    fn axis(self) -> Axis {
+        match self {
+            Self::Bytes => Axis::log("stored parameters / bytes"),
+            Self::Time => Axis::log("time of a sample / ns"),
+        }
+    }
+}
+
+/// Marks the points that no other beats.
+pub(crate) fn mark_front(points: &mut [Point], against: Against) {
+    let compared: Vec<usize> = (0..points.len())
+        .filter(|&i| against.compares(&points[i]))
+        .collect();
+    let places: Vec<(f64, f64)> = compared
+        .iter()
+        .map(|&i| against.place(&points[i]))
+        .collect();
+    for (&i, on) in compared.iter().zip(front(&places)) {
+        match against {
+            Against::Bytes => points[i].on_front = on,
+            Against::Time => points[i].on_time_front = on,
+        }
+    }
+}
+
+/// Error against cost: all settings as small dots, each model's own front as larger ones, both
+/// baselines, and the front of all. Both axes are logarithmic.
+pub fn figure(title: &str, points: &[&Point], models: &[String], against: Against) -> Plot {
+    let shown: Vec<&Point> = points
+        .iter()
+        .copied()
+        .filter(|p| against.compares(p))
+        .collect();
+    let mut plot = Plot::new(title, against.axis(), Axis::log("nine-band error / dB"));
+    (plot.width, plot.height) = (560.0, 400.0);
+    let front = along_front(&shown, against);
+    let mut line = Series::line("front of all", steps(&front, against));
+    line.line_width_px = 2.0;
+    line.hover = false;
+    plot.series.push(line.colored("#b8b8b8"));
+    for model in models {
+        let own: Vec<&Point> = shown
+            .iter()
+            .copied()
+            .filter(|p| p.model == *model)
+            .collect();
+        let places =
+            |points: &[&Point]| points.iter().map(|p| against.place(p)).collect::<Vec<_>>();
+        let mut dots = Series::scatter("", places(&own))
+            .colored(model_color(model))
+            .behind();
+        dots.marker_radius_px = Some(1.0);
+        plot.series.push(dots);
+        let best = along_front(&own, against);
+        let mut best_dots = Series::scatter(model, places(&best)).colored(model_color(model));
+        best_dots.notes = best.iter().map(|p| note(p)).collect();
+        plot.series.push(best_dots);
+    }
+    for point in shown.iter().filter(|p| p.is_baseline()) {
+        let quantised = point.model == QUANTISED;
+        let name = match point.setting.as_str() {
+            "default" => point.model.replace('-', " "),
+            other => format!("{} {other}", point.model.replace('-', " ")),
+        };
+        let color = if quantised {
+            "#000000"
+        } else {
+            RECORDING_COLOR
+        };
+        let mut series = Series::scatter(&name, vec![against.place(point)]).colored(color);
+        series.marker_radius_px = Some(5.0);
+        series.line = Line::None;
+        series.marker_hollow = !quantised || point.setting != "default";
+        series.notes = vec![note(point)];
+        plot.series.push(series);
+    }
+    plot
+}
+
+/// A front as steps: an error is had from its cost on.
+fn steps(front: &[&Point], against: Against) -> Vec<(f64, f64)> {
+    let mut steps = Vec::new();
+    for point in front {
+        let place = against.place(point);
+        if let Some(&(_, before)) = steps.last() {
+            steps.push((place.0, before));
+        }
+        steps.push(place);
+    }
+    steps
+}
+
+fn note(p: &Point) -> String {
+    format!(
+        "{}: {} bytes, {:.1} ns a sample (±{:.0} %), first sample {:.0} µs, fit {:.2} ms; {:.2} dB, \
+         played {:.2} dB, correlation {:.3}",
+        p.name(),
+        p.bytes,
+        p.ns_per_sample,
+        100.0 * p.spread,
+        p.first_sample_us,
+        p.fit_ms,
+        p.band_error_rms_db,
+        p.samples_band_error_rms_db,
+        p.spectral_correlation
+    )
+}

@@ -1,0 +1,133 @@
+//! Where a front bends: what the next step up buys less and less.
+
+use serde::Serialize;
+
+use crate::figure::Against;
+use crate::front::front;
+use crate::point::Point;
+
+/// Less than this is no step up.
+const STEP_DB: f64 = 0.05;
+
+/// The bend of a front, and the next step up.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Knee {
+    /// The recording, or the median of all.
+    pub recording: String,
+    /// A model's short name, or `all models`.
+    pub of: String,
+    /// What error is weighed against: `bytes` or `time`.
+    pub against: &'static str,
+    /// Model and setting at the bend.
+    pub at: String,
+    /// Its bytes or ns a sample.
+    pub cost: f64,
+    /// Its nine-band error, dB.
+    pub band_error_rms_db: f64,
+    /// Model and setting of the next step up, which is at least 0.05 dB better; none when there is none.
+    pub next: Option<String>,
+    /// The same, with what the step buys and costs, as a sentence.
+    pub words: String,
+}
+
+/// The place on a front, ascending in cost, that lies furthest below the straight line between its
+/// ends, cost on a logarithmic axis; the first of a front of one or two.
+pub fn knee(front: &[(f64, f64)]) -> Option<usize> {
+    let (&(low, high_error), &(high, low_error)) = (front.first()?, front.last()?);
+    let across = |cost: f64| (cost / low).ln() / (high / low).ln();
+    let below = |&(cost, error): &(f64, f64)| {
+        let line = high_error + across(cost) * (low_error - high_error);
+        if high > low { line - error } else { 0.0 }
+    };
+    // Of several that lie as low, the cheapest.
+    (0..front.len()).reduce(|best, i| {
+        if below(&front[i]) > below(&front[best]) {
+            i
+        } else {
+            best
+        }
+    })
+}
+
+/// The knees of one recording: of all models, then of each.
+pub(crate) fn knees(recording: &str, points: &[&Point], models: &[String]) -> Vec<Knee> {
+    let mut knees = Vec::new();
+    for against in [Against::Bytes, Against::Time] {
+        let shown: Vec<&Point> = points
+            .iter()
+            .copied()
+            .filter(|p| against.compares(p))
+            .collect();
+        knees.extend(knee_of(recording, "all models", against, &shown));
+        for model in models {
+            let own: Vec<&Point> = shown
+                .iter()
+                .copied()
+                .filter(|p| p.model == *model)
+                .collect();
+            knees.extend(knee_of(recording, model, against, &own));
+        }
+    }
+    knees
+}
+
+fn knee_of(recording: &str, of: &str, against: Against, points: &[&Point]) -> Option<Knee> {
+    let along = along_front(points, against);
+    let places: Vec<(f64, f64)> = along.iter().map(|p| against.place(p)).collect();
+    let at = knee(&places)?;
+    let (cost, error) = places[at];
+    let is_step = |i: &usize| error - places[*i].1 >= STEP_DB;
+    let next = (at + 1..places.len()).find(is_step);
+    let next = next.map(|i| (&places[i], along[i]));
+    let here = format!("{}, {}", along[at].name(), against.words(cost, error));
+    let words = match next {
+        None => format!("{here}: there is no step up"),
+        Some((&(next_cost, next_error), next)) => format!(
+            "{here}; the next step up, {}, buys {:.2} dB for {} more ({:+.0} %)",
+            next.name(),
+            error - next_error,
+            against.cost(next_cost - cost),
+            100.0 * (next_cost / cost - 1.0)
+        ),
+    };
+    Some(Knee {
+        recording: recording.to_owned(),
+        of: of.to_owned(),
+        against: against.name(),
+        at: along[at].name(),
+        cost,
+        band_error_rms_db: error,
+        next: next.map(|(_, point)| point.name()),
+        words,
+    })
+}
+
+/// The points of a front, ascending in cost; of equal ones the first.
+pub(crate) fn along_front<'a>(points: &[&'a Point], against: Against) -> Vec<&'a Point> {
+    let places: Vec<(f64, f64)> = points.iter().map(|p| against.place(p)).collect();
+    let on = front(&places);
+    let mut along: Vec<usize> = (0..points.len()).filter(|&i| on[i]).collect();
+    along.sort_by(|&a, &b| places[a].0.total_cmp(&places[b].0));
+    along.dedup_by(|b, a| places[*b] == places[*a]);
+    along.into_iter().map(|i| points[i]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_knee_is_where_the_front_bends() {
+        let bends = [
+            (2.0, 10.0),
+            (4.0, 8.0),
+            (8.0, 1.0),
+            (16.0, 0.8),
+            (512.0, 0.5),
+        ];
+        assert_eq!(knee(&bends), Some(2));
+        assert_eq!(knee(&[(2.0, 10.0), (4.0, 1.0)]), Some(0));
+        assert_eq!(knee(&[(3.0, 1.0)]), Some(0));
+        assert_eq!(knee(&[]), None);
+    }
+}

@@ -1,0 +1,138 @@
+//! What is turned, and how far: one table.
+
+/// A knob and the values it takes in a sweep, besides its default.
+#[derive(Debug, Clone, Copy)]
+pub struct Knob {
+    /// A fit option of the model, or one of [`PLAYING`].
+    pub name: &'static str,
+    /// Its values, from coarse to fine, as `htex fit --option` takes them.
+    pub values: &'static [&'static str],
+}
+
+/// The fit options of a model.
+#[derive(Debug, Clone, Copy)]
+pub struct ModelKnobs {
+    /// The model's short name.
+    pub model: &'static str,
+    /// Every value of one with every value of the others.
+    pub together: &'static [Knob],
+    /// One at a time, the others at their defaults.
+    pub alone: &'static [Knob],
+    /// A knob that says nothing above the value of another.
+    pub not_above: Option<(&'static str, &'static str)>,
+}
+
+const fn knob(name: &'static str, values: &'static [&'static str]) -> Knob {
+    Knob { name, values }
+}
+
+/// Fit options by model. A model that is not here is measured at its defaults.
+pub const MODELS: &[ModelKnobs] = &[
+    ModelKnobs {
+        model: "ar",
+        together: &[
+            knob(
+                "order",
+                &[
+                    "2", "3", "4", "5", "6", "8", "10", "12", "16", "20", "24", "32", "40", "48",
+                    "64",
+                ],
+            ),
+            knob("rate_hz", &["2000", "2500", "4000"]),
+        ],
+        alone: &[knob("method", &["yule-walker", "burg", "covariance"])],
+        not_above: None,
+    },
+    ModelKnobs {
+        model: "mfcc",
+        together: &[
+            knob(
+                "coefficients",
+                &["4", "5", "6", "8", "10", "13", "16", "20", "26", "32", "40"],
+            ),
+            knob("bands", &["26", "40"]),
+            knob("inverse", &["pinv", "nnls", "interpolate"]),
+        ],
+        alone: &[knob("bands", &["20", "32", "64"])],
+        not_above: Some(("coefficients", "bands")),
+    },
+    ModelKnobs {
+        model: "speak",
+        together: &[
+            knob(
+                "count",
+                &[
+                    "1", "2", "3", "4", "6", "8", "10", "12", "16", "24", "32", "48", "64",
+                ],
+            ),
+            knob("jnd", &["0.24", "0.12", "0.06", "0.03", "0"]),
+        ],
+        alone: &[],
+        not_above: None,
+    },
+    ModelKnobs {
+        model: "sbeta",
+        together: &[
+            knob(
+                "points",
+                &["3", "4", "5", "6", "8", "10", "15", "20", "30", "50"],
+            ),
+            knob("lower_bound", &["1", "0"]),
+        ],
+        alone: &[knob("jnd", &["0.24", "0.12", "0.06", "0"])],
+        not_above: None,
+    },
+    ModelKnobs {
+        model: "sslope",
+        together: &[
+            knob("rounding_db_per_decade", &["20", "10", "5", "1"]),
+            knob("slopes", &["least-squares", "end-points", "anchored"]),
+        ],
+        alone: &[],
+        not_above: None,
+    },
+    ModelKnobs {
+        model: "bands",
+        together: &[
+            knob(
+                "bands",
+                &[
+                    "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "12", "14", "16", "19",
+                    "24", "29", "34", "39", "40",
+                ],
+            ),
+            knob("step_db", &["3", "1.5", "1", "0.5", "0.25"]),
+        ],
+        alone: &[],
+        not_above: None,
+    },
+];
+
+/// How what was fitted is stored and played: each alone, at the fit's defaults. Ways to load a
+/// model come to these.
+pub const PLAYING: &[Knob] = &[
+    knob(
+        "synthesis",
+        &[
+            "loop:0.5",
+            "loop:2",
+            "loop:10",
+            "filter:127",
+            "filter:255",
+            "filter:511",
+            "filter:1023",
+        ],
+    ),
+    knob("store", &["f32", "f64"]),
+    knob("block_samples", &["1", "16", "64", "1024"]),
+    knob("output_rate_hz", &["4000", "8000", "48000", "192000"]),
+];
+
+/// Ends and middle of a knob: what a quick sweep takes.
+pub(crate) fn few(values: &'static [&'static str]) -> Vec<&'static str> {
+    let mut few = vec![0, values.len() / 2, values.len().saturating_sub(1)];
+    few.dedup();
+    few.into_iter()
+        .filter_map(|i| values.get(i).copied())
+        .collect()
+}

@@ -1,0 +1,89 @@
+//! Who is measured, and under which key results are kept.
+
+use htex_host::{LoadedModel, Synthesis};
+
+use crate::contender::{Contender, Kind};
+use crate::point::{QUANTISED, RECORDING};
+use crate::settings::{fit_settings, playing_settings};
+use crate::sweep::{Model, Request};
+use crate::{Machine, Setting, Subject, TradeoffError};
+
+/// Everything that stands in the table, and the baselines.
+pub(crate) fn lineup(request: &Request) -> Result<Vec<Contender>, TradeoffError> {
+    let mut all = Vec::new();
+    for Model { ways } in &request.models {
+        let Some((_, first)) = ways.first() else {
+            continue;
+        };
+        let model = first.short_name().to_owned();
+        let mut add = |setting: Setting, loaded: &LoadedModel| {
+            let given: Vec<(&str, &str)> = setting
+                .options
+                .iter()
+                .map(|(n, v)| (&n[..], &v[..]))
+                .collect();
+            let options = loaded.options(&given)?;
+            let kind = Kind::Model(loaded.clone(), options);
+            all.push(Contender {
+                model: model.clone(),
+                setting,
+                kind,
+            });
+            Ok::<(), TradeoffError>(())
+        };
+        let played = playing_settings(request.quick)?;
+        for setting in fit_settings(first, request.quick).into_iter().chain(played) {
+            add(setting, first)?;
+        }
+        for (loader, loaded) in &ways[1..] {
+            add(
+                Setting {
+                    loader: loader.clone(),
+                    ..Setting::default()
+                },
+                loaded,
+            )?;
+        }
+    }
+    let baseline = |model: &str, kind: Kind, synthesis| Contender {
+        model: model.to_owned(),
+        setting: Setting {
+            synthesis,
+            ..Setting::default()
+        },
+        kind,
+    };
+    let looped = Synthesis::Loop { seconds: 2.0 };
+    all.push(baseline(QUANTISED, Kind::Quantised, Synthesis::Streamed));
+    all.push(baseline(QUANTISED, Kind::Quantised, looped));
+    all.push(baseline(RECORDING, Kind::Recording, Synthesis::Streamed));
+    Ok(all)
+}
+
+/// What the results of a sweep depend on, as a BLAKE3 hash.
+pub(crate) fn key(subjects: &[Subject], contenders: &[Contender], request: &Request) -> String {
+    let mut hasher = blake3::Hasher::new();
+    let mut add = |text: &str| {
+        hasher.update(&(text.len() as u64).to_le_bytes());
+        hasher.update(text.as_bytes());
+    };
+    add(env!("CARGO_PKG_VERSION"));
+    add(&format!("{:?} {}", Machine::here(), request.quick));
+    for subject in subjects {
+        add(&subject.name);
+        add(subject.digest.to_hex().as_str());
+    }
+    for one in contenders {
+        add(&one.id());
+        if let Kind::Model(model, options) = &one.kind {
+            let descriptor = model.descriptor();
+            add(&format!(
+                "{} {} {} {options:?}",
+                descriptor.id,
+                descriptor.version,
+                model.origin()
+            ));
+        }
+    }
+    hasher.finalize().to_hex().to_string()
+}

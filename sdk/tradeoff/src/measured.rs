@@ -1,0 +1,118 @@
+//! How near a contender comes, by its magnitudes and by what it plays.
+
+use htex_author::spectrum_of_samples;
+use htex_host::HostError;
+use serde::{Deserialize, Serialize};
+
+use crate::accuracy::{Accuracy, accuracy};
+use crate::contender::{Contender, Kind, Stored};
+use crate::{Subject, TradeoffError};
+
+/// Renderings that are measured, each with a seed of its own.
+const SEEDS: u64 = 3;
+/// Length of each, seconds.
+const SECONDS: f64 = 20.0;
+const QUICK_SECONDS: f64 = 4.0;
+/// Most samples of one rendering: at high rates it is shorter.
+const MOST_SAMPLES: f64 = 2e6;
+
+/// Accuracy and size of a contender.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Measured {
+    pub(crate) bytes: usize,
+    pub(crate) kept_bytes: usize,
+    pub(crate) by_magnitude: Accuracy,
+    pub(crate) by_samples: Accuracy,
+    /// Half the range of the band errors of single renderings, decibels.
+    pub(crate) samples_spread_db: f64,
+}
+
+impl Contender {
+    /// Fits, stores and measures. None for a recording that says nothing of how it repeats.
+    pub(crate) fn measure(
+        &self,
+        subject: &Subject,
+        quick: bool,
+    ) -> Result<Option<Measured>, TradeoffError> {
+        let stored = self.store(subject, &self.fit(subject)?)?;
+        if matches!(self.kind, Kind::Recording) {
+            return Ok(subject.repeats.map(|repeats| Measured {
+                bytes: stored.bytes,
+                kept_bytes: size_of::<f32>() * subject.samples.len(),
+                by_magnitude: repeats,
+                by_samples: repeats,
+                samples_spread_db: 0.0,
+            }));
+        }
+        let reference = subject.spectrum.as_ref();
+        let rendered = self.rendered(subject, &stored, quick)?;
+        let errors = rendered.spectra.iter();
+        let errors = errors.map(|m| accuracy(reference, m).band_error_rms_db);
+        let ends = (f64::INFINITY, f64::NEG_INFINITY);
+        let (low, high) = errors.fold(ends, |(low, high), x| (x.min(low), x.max(high)));
+        Ok(Some(Measured {
+            bytes: stored.bytes,
+            kept_bytes: rendered.kept_bytes,
+            by_magnitude: accuracy(reference, &self.magnitude_n(subject, &stored)?),
+            by_samples: accuracy(reference, &rms_of(&rendered.spectra)),
+            samples_spread_db: 0.5 * (high - low),
+        }))
+    }
+
+    /// The spectra of some renderings.
+    fn rendered(
+        &self,
+        subject: &Subject,
+        stored: &Stored,
+        quick: bool,
+    ) -> Result<Rendered, TradeoffError> {
+        let rate_hz = self.setting.output_rate_hz;
+        let seconds = if quick { QUICK_SECONDS } else { SECONDS };
+        let mut samples = vec![0.0; (seconds * rate_hz).min(MOST_SAMPLES) as usize];
+        let mut rendered = Rendered {
+            spectra: Vec::new(),
+            kept_bytes: 0,
+        };
+        for seed in 1..=SEEDS {
+            let mut sound = self.sound(subject, stored, seed)?;
+            samples
+                .chunks_mut(self.setting.block_samples)
+                .try_for_each(&mut sound.render)?;
+            let reference = subject.spectrum.as_ref();
+            rendered.spectra.push(spectrum_of_samples(
+                &samples,
+                rate_hz,
+                stored.level_n,
+                reference,
+            )?);
+            rendered.kept_bytes = sound.kept_bytes;
+        }
+        Ok(rendered)
+    }
+
+    fn magnitude_n(&self, subject: &Subject, stored: &Stored) -> Result<Vec<f64>, HostError> {
+        let spectrum = &subject.spectrum;
+        match &self.kind {
+            Kind::Model(model, _) => {
+                let shape =
+                    model.magnitude(&stored.parameters, spectrum.band, &spectrum.frequency_hz)?;
+                Ok(shape.iter().map(|m| m * stored.level_n).collect())
+            }
+            Kind::Quantised => Ok(stored.parameters.clone()),
+            Kind::Recording => Ok(spectrum.magnitude_n.clone()),
+        }
+    }
+}
+
+struct Rendered {
+    spectra: Vec<Vec<f64>>,
+    kept_bytes: usize,
+}
+
+/// The root of the mean power of several magnitudes, bin by bin.
+fn rms_of(spectra: &[Vec<f64>]) -> Vec<f64> {
+    let bins = spectra.first().map_or(0, Vec::len);
+    let power = |k: usize| spectra.iter().map(|m| m[k] * m[k]).sum::<f64>();
+    let mean = |k: usize| (power(k) / spectra.len() as f64).sqrt();
+    (0..bins).map(mean).collect()
+}

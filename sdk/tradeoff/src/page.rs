@@ -1,0 +1,176 @@
+//! The report as a page.
+
+use htex_report::{Cell, HeatScale, Page, Row, Table, figures, list, paragraph};
+
+use crate::figure::{Against, figure};
+use crate::knee::{Knee, along_front};
+use crate::{Point, QUANTISED, RECORDING, Tradeoff};
+
+/// The report: self-contained HTML, the summary first, then every recording.
+pub fn page(tradeoff: &Tradeoff, command: &str) -> String {
+    let mut page = Page::new("Accuracy against bytes and time");
+    page.html(&paragraph(&made_of(tradeoff)));
+    page.html(&paragraph(READING));
+    let summary = tradeoff.summary();
+    let name = summary
+        .first()
+        .map_or(String::new(), |p| p.recording.clone());
+    section(&mut page, tradeoff, &name, &summary);
+    page.heading("How it is played");
+    page.html(&paragraph(PLAYING));
+    for model in tradeoff
+        .models
+        .iter()
+        .map(String::as_str)
+        .chain([QUANTISED, RECORDING])
+    {
+        page.html(&htex_report::details(
+            model,
+            &playing(&summary, model).to_html(),
+        ));
+    }
+    if !tradeoff.medians.is_empty() {
+        for recording in &tradeoff.recordings {
+            section(
+                &mut page,
+                tradeoff,
+                &recording.name,
+                &tradeoff.of(&recording.name),
+            );
+        }
+    }
+    page.heading("Warnings");
+    page.html(&match tradeoff.warnings.is_empty() {
+        true => paragraph("None."),
+        false => list(&tradeoff.warnings),
+    });
+    page.heading("How this page was made");
+    page.html(&htex_report::code_block(command));
+    page.html(&paragraph(&machine(tradeoff)));
+    page.render()
+}
+
+const READING: &str = "Each dot is a setting of a model; large ones are the model's own front, where \
+    no other of its settings has less error for as little. The grey line is the front of all. Point at a \
+    large dot for all its numbers. Error is the RMS over nine bands of the energy difference, in \
+    decibels: against bytes by the model's own magnitudes, against time by what it plays. Two \
+    baselines stand in every picture: the spectrum itself at a byte a bin, and the recording, whose \
+    error is what its odd and even strokes differ by. An error below that says nothing more about \
+    the surface.";
+
+const PLAYING: &str = "What was fitted at the defaults, stored and played in other ways, one at a time. A \
+    loop costs memory and keeps the grain of one piece of noise; a filter resolves the better the more \
+    taps it has. Times at another output rate are for a sample at that rate.";
+
+fn made_of(tradeoff: &Tradeoff) -> String {
+    let names: Vec<String> = tradeoff.recordings.iter().map(|r| r.name.clone()).collect();
+    let simulated = tradeoff.recordings.iter().filter(|r| r.simulated).count();
+    let made = match simulated {
+        0 => String::new(),
+        n if n == names.len() => " All of them are simulated: computed, not recorded.".to_owned(),
+        n => format!(" {n} of them are simulated: computed, not recorded."),
+    };
+    let (points, several) = (tradeoff.points.len(), names.len() > 1);
+    let median = if several {
+        " The first pictures show medians over the recordings."
+    } else {
+        ""
+    };
+    format!(
+        "{points} settings, measured on {}.{made}{median}",
+        names.join(", ")
+    )
+}
+
+fn machine(tradeoff: &Tradeoff) -> String {
+    let m = &tradeoff.machine;
+    format!(
+        "{} on {} ({} cores, {}). Times are medians of turns taken in rotation on one core, warm; a \
+         spread is half the distance between the quartiles.",
+        tradeoff.tool, m.processor, m.cores, m.system
+    )
+}
+
+/// Two pictures and the knees of a recording.
+fn section(page: &mut Page, tradeoff: &Tradeoff, name: &str, points: &[&Point]) {
+    page.heading(name);
+    let pictures = [Against::Bytes, Against::Time].map(|against| {
+        let title = match against {
+            Against::Bytes => "Error against bytes",
+            Against::Time => "Error against time",
+        };
+        figure(title, points, &tradeoff.models, against).to_svg()
+    });
+    page.html(&figures(&pictures));
+    for (against, what) in [("bytes", "bytes"), ("time", "time")] {
+        let own = |k: &&Knee| k.recording == name && k.against == against;
+        let words = |k: &Knee| format!("{}: {}", k.of, k.words);
+        let knees: Vec<String> = tradeoff.knees.iter().filter(own).map(words).collect();
+        page.html(&htex_report::details(
+            &format!("Knees against {what}"),
+            &list(&knees),
+        ));
+    }
+    let along = along_front(
+        &points
+            .iter()
+            .copied()
+            .filter(|p| Against::Bytes.compares(p))
+            .collect::<Vec<_>>(),
+        Against::Bytes,
+    );
+    let table = table("The front of all against bytes", &along);
+    page.html(&htex_report::details(
+        "The front against bytes, in numbers",
+        &table.to_html(),
+    ));
+}
+
+const COLUMNS: [&str; 8] = [
+    "bytes",
+    "error / dB",
+    "played / dB",
+    "correlation",
+    "level / dB",
+    "ns a sample",
+    "first sample / µs",
+    "fit / ms",
+];
+
+fn table(caption: &str, points: &[&Point]) -> Table {
+    let row = |p: &&Point| Row {
+        header: p.name(),
+        cells: vec![
+            Cell::Text(p.bytes.to_string(), String::new()),
+            Cell::Plain(p.band_error_rms_db),
+            Cell::Text(
+                format!("{:.2}", p.samples_band_error_rms_db),
+                format!("± {:.2}", p.samples_band_error_spread_db),
+            ),
+            Cell::Text(format!("{:.4}", p.spectral_correlation), String::new()),
+            Cell::Plain(p.level_error_db),
+            timed(p.ns_per_sample, p.spread),
+            timed(p.first_sample_us, p.first_sample_spread),
+            timed(p.fit_ms, p.fit_spread),
+        ],
+    };
+    Table {
+        caption: caption.to_owned(),
+        corner: "setting".to_owned(),
+        columns: COLUMNS.map(str::to_owned).to_vec(),
+        rows: points.iter().map(row).collect(),
+        scale: HeatScale::None,
+        decimals: 2,
+    }
+}
+
+fn timed(median: f64, spread: f64) -> Cell {
+    Cell::Text(format!("{median:.2}"), format!("± {:.0} %", 100.0 * spread))
+}
+
+/// A model fitted at its defaults, stored and played in every way.
+fn playing(points: &[&Point], model: &str) -> Table {
+    let is_own = |p: &&Point| p.how.options.is_empty() && p.model == model;
+    let own: Vec<&Point> = points.iter().copied().filter(is_own).collect();
+    table("Fitted at its defaults", &own)
+}

@@ -1,0 +1,157 @@
+//! The settings of a sweep, from the table of knobs.
+
+use htex_host::LoadedModel;
+
+use crate::knobs::{Knob, MODELS, ModelKnobs, PLAYING, few};
+use crate::{Setting, TradeoffError};
+
+/// The settings of a model's fit options, the defaults first; a quick sweep turns one knob at a time.
+pub(crate) fn fit_settings(model: &LoadedModel, quick: bool) -> Vec<Setting> {
+    let mut settings = vec![Setting::default()];
+    let Some(knobs) = MODELS.iter().find(|m| m.model == model.short_name()) else {
+        return settings;
+    };
+    let mut add = |options: Vec<(String, String)>| {
+        let options = without_defaults(model, options);
+        let setting = Setting {
+            options,
+            ..Setting::default()
+        };
+        // A plugin of the same name may not have all of these options.
+        let given: Vec<(&str, &str)> = setting
+            .options
+            .iter()
+            .map(|(n, v)| (&n[..], &v[..]))
+            .collect();
+        let takes = model.options(&given).is_ok();
+        if takes && !is_idle(model, knobs, &setting) && !settings.contains(&setting) {
+            settings.push(setting);
+        }
+    };
+    if !quick {
+        products(knobs.together).into_iter().for_each(&mut add);
+    }
+    let alone = if quick {
+        [knobs.together, knobs.alone].concat()
+    } else {
+        knobs.alone.to_vec()
+    };
+    for knob in alone {
+        let values = if quick {
+            few(knob.values)
+        } else {
+            knob.values.to_vec()
+        };
+        values
+            .into_iter()
+            .for_each(|value| add(vec![(knob.name.to_owned(), value.to_owned())]));
+    }
+    settings
+}
+
+/// The settings of [`PLAYING`].
+///
+/// # Errors
+/// When the table holds a value that a knob does not take.
+pub(crate) fn playing_settings(quick: bool) -> Result<Vec<Setting>, TradeoffError> {
+    let mut settings = Vec::new();
+    for knob in PLAYING {
+        let values = if quick {
+            few(knob.values)
+        } else {
+            knob.values.to_vec()
+        };
+        for value in values {
+            settings.push(Setting::default().playing(knob.name, value)?);
+        }
+    }
+    Ok(settings)
+}
+
+/// Every value of each knob with every value of the others.
+fn products(knobs: &[Knob]) -> Vec<Vec<(String, String)>> {
+    knobs.iter().fold(vec![Vec::new()], |all, knob| {
+        let with = |value: &'static str| {
+            let pair = (knob.name.to_owned(), value.to_owned());
+            let one = move |options: &Vec<_>| [&options[..], std::slice::from_ref(&pair)].concat();
+            all.iter().map(one).collect::<Vec<_>>()
+        };
+        knob.values.iter().copied().flat_map(with).collect()
+    })
+}
+
+/// Leaves out what the model does by itself.
+fn without_defaults(
+    model: &LoadedModel,
+    mut options: Vec<(String, String)>,
+) -> Vec<(String, String)> {
+    let defaults = &model.descriptor().default_options();
+    options.retain(|(name, value)| {
+        let index = model
+            .descriptor()
+            .options
+            .iter()
+            .position(|o| o.name == *name);
+        let chosen = model.options(&[(name, value)]).ok();
+        index
+            .zip(chosen)
+            .is_none_or(|(i, values)| values[i] != defaults[i])
+    });
+    options
+}
+
+/// Whether one knob is above another that holds it down.
+fn is_idle(model: &LoadedModel, knobs: &ModelKnobs, setting: &Setting) -> bool {
+    let value = |name: &str| {
+        let given = setting.options.iter().find(|(n, _)| n == name);
+        let default = || {
+            let option = model.descriptor().options.iter().find(|o| o.name == name);
+            option.map_or(f64::NAN, |o| o.default)
+        };
+        given
+            .and_then(|(_, v)| v.parse().ok())
+            .unwrap_or_else(default)
+    };
+    knobs
+        .not_above
+        .is_some_and(|(low, high)| value(low) > value(high))
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+mod tests {
+    use super::*;
+    use htex_host::Registry;
+
+    #[test]
+    fn every_knob_of_the_table_turns_something() {
+        let registry = Registry::builtin();
+        for knobs in MODELS {
+            let model = registry.find(knobs.model).unwrap();
+            let settings = fit_settings(model, false);
+            for knob in knobs.together.iter().chain(knobs.alone) {
+                for value in knob.values {
+                    let values = model.options(&[(knob.name, value)]);
+                    assert!(values.is_ok(), "{} {}={value}", knobs.model, knob.name);
+                }
+                let turned = |s: &Setting| s.options.iter().any(|(name, _)| name == knob.name);
+                assert!(settings.iter().any(turned), "{} {}", knobs.model, knob.name);
+            }
+            assert_eq!(settings[0], Setting::default());
+            assert!(fit_settings(model, true).len() < settings.len());
+        }
+        assert_eq!(playing_settings(false).unwrap().len(), 17);
+    }
+
+    #[test]
+    fn a_cepstrum_has_no_more_terms_than_bands() {
+        let registry = Registry::builtin();
+        let settings = fit_settings(registry.find("mfcc").unwrap(), false);
+        let words: Vec<String> = settings.iter().map(Setting::words).collect();
+        assert!(
+            words.contains(&"coefficients=40 bands=40".to_owned()),
+            "{words:?}"
+        );
+        assert!(!words.contains(&"coefficients=40".to_owned()));
+    }
+}

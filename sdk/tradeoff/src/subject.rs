@@ -1,0 +1,99 @@
+//! A recording, as a sweep looks at it.
+
+use htex_author::{
+    AuthorError, SegmentSpectra, SpectrumOptions, Take, TextureSpectrum, exploration,
+    segment_spectra,
+};
+
+use crate::accuracy::{Accuracy, accuracy};
+
+/// A recording, its spectrum, and what it repeats within.
+#[derive(Debug, Clone)]
+pub struct Subject {
+    /// File name, or name of a simulated surface.
+    pub name: String,
+    /// Whether it was computed and not recorded from a finger.
+    pub simulated: bool,
+    /// What models are fitted to.
+    pub spectrum: TextureSpectrum,
+    /// What a user should know.
+    pub warnings: Vec<String>,
+    /// Odd strokes against even ones; none for a single stroke.
+    pub(crate) repeats: Option<Accuracy>,
+    /// The first lateral axis.
+    pub(crate) samples: Vec<f32>,
+    pub(crate) rate_hz: f64,
+    pub(crate) bytes: usize,
+    pub(crate) digest: blake3::Hash,
+}
+
+impl Subject {
+    /// Reads the texture of a recording; `strict` refuses one that leaves its condition.
+    ///
+    /// # Errors
+    /// When the recording is not usable.
+    pub fn new(take: &Take, options: &SpectrumOptions, strict: bool) -> Result<Self, AuthorError> {
+        let recording = &take.recording;
+        let mut warnings = recording.warnings.clone();
+        let part = segment_spectra(recording, options)?;
+        warnings.extend(part.warnings.iter().cloned());
+        exploration(recording, &part.segments, take.given, strict, &mut warnings)?;
+        let repeats = repeats(&part, options)?;
+        let spectrum = TextureSpectrum::average(&[part], options.averaging)?;
+        let axes = &recording.lateral_n;
+        let samples = |axis: &Vec<f64>| axis.iter().map(|&x| x as f32).collect();
+        Ok(Self {
+            name: recording.source.clone(),
+            simulated: recording.simulated,
+            repeats,
+            samples: axes.first().map(samples).unwrap_or_default(),
+            rate_hz: recording.rate_hz,
+            bytes: axes.iter().map(|axis| size_of::<f32>() * axis.len()).sum(),
+            digest: digest(axes, recording.rate_hz, &spectrum),
+            spectrum,
+            warnings,
+        })
+    }
+}
+
+/// How near the odd strokes come to the even ones.
+fn repeats(
+    part: &SegmentSpectra,
+    options: &SpectrumOptions,
+) -> Result<Option<Accuracy>, AuthorError> {
+    if part.spectra.len() < 2 {
+        return Ok(None);
+    }
+    let half = |first: usize| {
+        let spectra = part
+            .spectra
+            .iter()
+            .skip(first)
+            .step_by(2)
+            .cloned()
+            .collect();
+        let part = SegmentSpectra {
+            spectra,
+            ..part.clone()
+        };
+        TextureSpectrum::average(&[part], options.averaging)
+    };
+    let (even, odd) = (half(0)?, half(1)?);
+    Ok(Some(accuracy(even.as_ref(), &odd.magnitude_n)))
+}
+
+/// Everything that results depend on: the samples, and what was made of them.
+fn digest(axes: &[Vec<f64>], rate_hz: f64, spectrum: &TextureSpectrum) -> blake3::Hash {
+    let mut hasher = blake3::Hasher::new();
+    let parts = axes
+        .iter()
+        .chain([&spectrum.magnitude_n, &spectrum.signal_n]);
+    for part in parts {
+        hasher.update(&(part.len() as u64).to_le_bytes());
+        part.iter().for_each(|x| {
+            hasher.update(&x.to_le_bytes());
+        });
+    }
+    hasher.update(&rate_hz.to_le_bytes());
+    hasher.finalize()
+}

@@ -85,7 +85,8 @@ pub fn figure(title: &str, points: &[&Point], models: &[String], against: Agains
         .filter(|p| against.compares(p))
         .collect();
     let mut plot = Plot::new(title, against.axis(), Axis::log("nine-band error / dB"));
-    (plot.width, plot.height) = (560.0, 400.0);
+    // Narrow, so that text stays legible on a telephone.
+    (plot.width, plot.height) = (440.0, 380.0);
     let front = along_front(&shown, against);
     let mut line = Series::line("front of all", steps(&front, against));
     line.line_width_px = 2.0;

@@ -1,11 +1,11 @@
-//! White noise through the filter, as a lattice, which stays stable while it changes.
+//! White noise through the filter.
 
+use htex_dsp::all_pole::{AllPole, GROUP, Group};
 use htex_dsp::band_limit::band_limit;
-use htex_dsp::biquad::Cascade;
 use htex_dsp::grid::{Band, GRID_HZ};
-use htex_dsp::lattice::AllPoleLattice;
 use htex_dsp::linear_prediction::step_down_in_place;
 use htex_dsp::noise::GaussianNoise;
+use htex_dsp::pipeline::Pipeline;
 use htex_model::{Error, Values, Voice};
 
 use crate::{COEFFICIENTS, Filter, MAX_ORDER, MODEL_RATE, unstable};
@@ -15,21 +15,24 @@ const RAMP_S: f64 = 0.010;
 /// Rendered before the first sample, seconds and samples at most: the filter starts in its stride.
 const SETTLE_S: f64 = 0.5;
 const SETTLE_SAMPLES: f64 = 4096.0;
-/// Samples made at once.
-const BLOCK: usize = 64;
+/// Groups of samples made at once.
+const BLOCK: usize = 16;
 
 /// An endless stream of filtered noise.
 pub struct AutoregressionVoice {
     band: Band,
     rate_hz: f64,
     noise: GaussianNoise,
-    lattice: AllPoleLattice,
-    edges: Cascade,
+    filter: AllPole,
+    edges: Pipeline,
     gain: f64,
     target: Target,
     step: Target,
     ramp_len: u32,
     ramp_left: u32,
+    /// What is left of the last group.
+    ready: [f32; GROUP],
+    taken: usize,
 }
 
 /// Reflection coefficients and the gain of the noise.
@@ -57,32 +60,59 @@ impl AutoregressionVoice {
             band,
             rate_hz,
             noise: GaussianNoise::new(seed),
-            lattice: AllPoleLattice::new(&target.reflection[..parameters.list(COEFFICIENTS).len()]),
+            filter: AllPole::new(parameters.list(COEFFICIENTS)).ok_or_else(unstable)?,
             edges: band_limit(band, rate_hz),
             gain: target.gain,
             target,
             step: target,
             ramp_len: libm::ceil(RAMP_S * rate_hz).max(1.0) as u32,
             ramp_left: 0,
+            ready: [0.0; GROUP],
+            taken: GROUP,
         };
         let settle = libm::ceil((SETTLE_S * rate_hz).min(SETTLE_SAMPLES)) as usize;
         voice.render(&mut vec![0.0; settle]);
         Ok(voice)
     }
 
-    /// The next samples of parameters that do not change meanwhile.
-    fn steady(&mut self, out: &mut [f32]) {
-        let mut block = [0.0; BLOCK];
-        for out in out.chunks_mut(BLOCK) {
+    /// The next samples, in whole groups.
+    fn groups(&mut self, out: &mut [[f32; GROUP]]) {
+        let changing = out.len().min((self.ramp_left as usize).div_ceil(GROUP));
+        let (changing, steady) = out.split_at_mut(changing);
+        for group in changing {
+            *group = self.changing();
+        }
+        let mut block = [[0.0; GROUP]; BLOCK];
+        for out in steady.chunks_mut(BLOCK) {
             let block = &mut block[..out.len()];
-            for x in block.iter_mut() {
-                *x = self.gain * self.noise.next_sample();
+            self.noise.fill(block.as_flattened_mut().as_chunks_mut().0);
+            self.filter.process(block);
+            self.finish(block, out);
+        }
+    }
+
+    /// A group of parameters that change.
+    fn changing(&mut self) -> [f32; GROUP] {
+        let mut group: Group = [0.0; GROUP];
+        self.noise.fill(group.as_chunks_mut().0);
+        for x in &mut group {
+            if self.ramp_left > 0 {
+                self.ramp();
             }
-            self.lattice.process(block);
-            self.edges.process(block);
-            for (sample, x) in out.iter_mut().zip(block) {
-                *sample = *x as f32;
-            }
+            *x = self.filter.tick(*x);
+        }
+        let mut out = [[0.0; GROUP]];
+        self.finish(&mut [group], &mut out);
+        out[0]
+    }
+
+    /// Cuts the filter's output to the band and gives it its level.
+    fn finish(&mut self, block: &mut [Group], out: &mut [[f32; GROUP]]) {
+        self.edges
+            .process(block.as_flattened_mut().as_chunks_mut().0);
+        let out = out.as_flattened_mut().iter_mut();
+        for (sample, x) in out.zip(block.as_flattened()) {
+            *sample = (self.gain * x) as f32;
         }
     }
 
@@ -90,7 +120,7 @@ impl AutoregressionVoice {
     fn ramp(&mut self) {
         self.ramp_left -= 1;
         let done = self.ramp_left == 0;
-        for (i, k) in self.lattice.reflection_mut().iter_mut().enumerate() {
+        for (i, k) in self.filter.reflection_mut().iter_mut().enumerate() {
             *k = if done {
                 self.target.reflection[i]
             } else {
@@ -107,21 +137,27 @@ impl AutoregressionVoice {
 
 impl Voice for AutoregressionVoice {
     fn render(&mut self, out: &mut [f32]) {
-        let changing = out.len().min(self.ramp_left as usize);
-        let (changing, steady) = out.split_at_mut(changing);
-        for sample in changing {
-            self.ramp();
-            self.steady(core::slice::from_mut(sample));
+        let kept = out.len().min(GROUP - self.taken);
+        let (first, rest) = out.split_at_mut(kept);
+        first.copy_from_slice(&self.ready[self.taken..self.taken + kept]);
+        self.taken += kept;
+        let (groups, last) = rest.as_chunks_mut();
+        self.groups(groups);
+        if !last.is_empty() {
+            let mut group = [[0.0; GROUP]];
+            self.groups(&mut group);
+            [self.ready] = group;
+            last.copy_from_slice(&self.ready[..last.len()]);
+            self.taken = last.len();
         }
-        self.steady(steady);
     }
 
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         let order = parameters.list(COEFFICIENTS).len();
-        if parameters.scalar(MODEL_RATE) != self.rate_hz || order > self.lattice.order() {
+        if parameters.scalar(MODEL_RATE) != self.rate_hz || order > self.filter.order() {
             return Err(Error::argument(format!(
                 "a voice of order {} at {} Hz keeps its model rate, and its order or a smaller one",
-                self.lattice.order(),
+                self.filter.order(),
                 self.rate_hz
             )));
         }
@@ -129,7 +165,7 @@ impl Voice for AutoregressionVoice {
         self.ramp_left = self.ramp_len;
         let scale = 1.0 / f64::from(self.ramp_len);
         self.step.gain = (self.target.gain - self.gain) * scale;
-        for (i, k) in self.lattice.reflection_mut().iter().enumerate() {
+        for (i, k) in self.filter.reflection_mut().iter().enumerate() {
             self.step.reflection[i] = (self.target.reflection[i] - k) * scale;
         }
         Ok(())

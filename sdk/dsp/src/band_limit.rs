@@ -2,16 +2,16 @@
 
 use alloc::vec::Vec;
 
-use crate::biquad::Cascade;
 use crate::butterworth::{high_pass, low_pass};
 use crate::grid::{Band, GRID_HZ};
+use crate::pipeline::Pipeline;
 
 /// 160 dB a decade: half a bin outside the band lets through next to nothing of its power.
 const ORDER: usize = 8;
 
 /// Butterworth filters half a grid bin outside both edges of `band`, at `rate_hz`. An edge at or
-/// above the Nyquist frequency needs no filter and gets none.
-pub fn band_limit(band: Band, rate_hz: f64) -> Cascade {
+/// above the Nyquist frequency needs no filter and gets none. Some samples late ([`Pipeline`]).
+pub fn band_limit(band: Band, rate_hz: f64) -> Pipeline {
     let half_bin = 0.5 * GRID_HZ;
     let low = high_pass(
         ORDER,
@@ -24,5 +24,5 @@ pub fn band_limit(band: Band, rate_hz: f64) -> Cascade {
         .flatten()
         .flat_map(|sections| sections.iter().copied())
         .collect();
-    Cascade::new(&sections)
+    Pipeline::new(&sections)
 }

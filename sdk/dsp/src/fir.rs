@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use crate::resample::dot;
+use crate::polyphase::dot;
 
 const CHUNK: usize = 256;
 

@@ -33,6 +33,11 @@ impl AllPoleLattice {
         self.reflection.len()
     }
 
+    /// The coefficients.
+    pub fn reflection(&self) -> &[f64] {
+        &self.reflection
+    }
+
     /// The coefficients, to be changed in place between samples; the state stays.
     pub fn reflection_mut(&mut self) -> &mut [f64] {
         &mut self.reflection
@@ -69,12 +74,38 @@ impl AllPoleLattice {
         for sample in block {
             *sample = stages(*sample, &k, &mut delayed);
         }
-        self.delayed.copy_from_slice(&delayed[..order]);
+        self.keep(&delayed);
     }
 
     fn run_any(&mut self, block: &mut [f64]) {
         for sample in block {
             *sample = stages(*sample, &self.reflection, &mut self.delayed);
+        }
+        self.delayed
+            .iter_mut()
+            .for_each(|x| *x = without_denormals(*x));
+    }
+
+    /// Keeps the state behind a block; what has died away is zero before it is so small that
+    /// arithmetic gets slow.
+    fn keep(&mut self, delayed: &[f64]) {
+        for (kept, x) in self.delayed.iter_mut().zip(delayed) {
+            *kept = without_denormals(*x);
+        }
+    }
+
+    /// Takes the state of a filter whose coefficients have stood still, from its last outputs, the
+    /// newest last, at least as many as its order.
+    pub(crate) fn set_past(&mut self, past: &[f64]) {
+        self.reset();
+        for &y in past {
+            let mut forward = y;
+            let mut backward = y;
+            for (k, delayed) in self.reflection.iter().zip(&mut self.delayed) {
+                let before = core::mem::replace(delayed, backward);
+                backward = before - k * forward;
+                forward -= k * before;
+            }
         }
     }
 
@@ -92,11 +123,11 @@ fn stages(input: f64, k: &[f64], delayed: &mut [f64]) -> f64 {
         let before = delayed[stage];
         forward += k[stage] * before;
         if stage + 1 < k.len() {
-            delayed[stage + 1] = without_denormals(before - k[stage] * forward);
+            delayed[stage + 1] = before - k[stage] * forward;
         }
     }
     if let Some(first) = delayed.first_mut() {
-        *first = without_denormals(forward);
+        *first = forward;
     }
     forward
 }

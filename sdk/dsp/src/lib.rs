@@ -10,6 +10,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(feature = "std"), no_std)]
 extern crate alloc;
+pub mod all_pole;
 pub mod band_limit;
 pub mod bands;
 pub mod beta;
@@ -31,6 +32,8 @@ pub mod mel;
 pub mod nelder_mead;
 pub mod noise;
 pub mod peaks;
+pub mod pipeline;
+mod polyphase;
 pub mod resample;
 pub mod seam;
 pub mod shaped_noise;
@@ -38,6 +41,7 @@ pub mod sine_bank;
 #[cfg(feature = "std")]
 pub mod spectrum;
 pub mod triangles;
+mod upsample;
 pub mod warp;
 pub mod window;
 mod ziggurat;

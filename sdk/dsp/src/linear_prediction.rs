@@ -269,7 +269,7 @@ pub fn reflection_gain(reflection: &[f64]) -> f64 {
 }
 
 /// Turns the coefficients of order m - 1 (all but the last element) into those of order m.
-fn step_up(a: &mut [f64], k: f64) {
+pub(crate) fn step_up(a: &mut [f64], k: f64) {
     let Some((last, previous)) = a.split_last_mut() else {
         return;
     };

@@ -25,6 +25,15 @@ impl Uniform {
         self.0.next_u64()
     }
 
+    /// Hands 64 random bits to each item.
+    #[inline(always)]
+    pub(crate) fn each_bits<T>(&mut self, items: &mut [T], mut set: impl FnMut(&mut T, u64)) {
+        // A generator of its own, which nothing else can see, stays in registers.
+        let mut own = self.0.clone();
+        items.iter_mut().for_each(|item| set(item, own.next_u64()));
+        self.0 = own;
+    }
+
     /// Cosine and sine of an angle that is uniform on the circle, exact to 1e-12.
     ///
     /// An angle in the right half plane, and both signs turned or not: two short series do, and
@@ -70,20 +79,22 @@ fn series(z: f64) -> [f64; 2] {
 #[derive(Debug, Clone)]
 pub struct GaussianNoise {
     uniform: Uniform,
+    rare: Uniform,
 }
 
 impl GaussianNoise {
     /// Starts the stream of `seed`.
     pub fn new(seed: u64) -> Self {
+        let mut uniform = Uniform::new(seed);
         Self {
-            uniform: Uniform::new(seed),
+            rare: Uniform::new(uniform.next_bits()),
+            uniform,
         }
     }
 
-    /// The next sample.
-    #[inline]
-    pub fn next_sample(&mut self) -> f64 {
-        ziggurat::normal(&mut self.uniform)
+    /// Fills a block with the next samples, two at a time.
+    pub fn fill(&mut self, out: &mut [[f64; 2]]) {
+        ziggurat::fill(&mut self.uniform, &mut self.rare, out);
     }
 }
 
@@ -113,8 +124,12 @@ mod tests {
         // Beyond 1, 2, 3 and the ziggurat's last layer.
         let mut beyond = [0.0; 4];
         let edges = [1.0, 2.0, 3.0, 3.654_152_885_361_009];
-        for _ in 0..n {
-            let x = noise.next_sample();
+        let mut block = [[0.0; 2]; 500];
+        for i in 0..n {
+            if i % 1_000 == 0 {
+                noise.fill(&mut block);
+            }
+            let x = block.as_flattened()[i % 1_000];
             m1 += x;
             m2 += x * x;
             m4 += x * x * x * x;
@@ -122,7 +137,7 @@ mod tests {
                 *count += f64::from(u8::from(x.abs() > edge));
             }
         }
-        let n = f64::from(n);
+        let n = n as f64;
         // Standard errors: 0.001, 0.0014, 0.0098; five of each.
         assert!((m1 / n).abs() < 0.005);
         assert!((m2 / n - 1.0).abs() < 0.007);

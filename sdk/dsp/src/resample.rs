@@ -4,17 +4,16 @@
 //! is pulled: it asks its source for just the samples it needs, never allocates while it runs, and
 //! gives the same samples for any block size.
 
-use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use crate::kernels;
+use crate::polyphase::{INTERPOLATED_PHASES, Polyphase};
+use crate::upsample::Upsampler;
 
 /// Phases beyond which a table is interpolated instead of exact.
 const MAX_EXACT_PHASES: u64 = 1024;
-const INTERPOLATED_PHASES: u64 = 512;
 /// Half the width of the transition around the source's Nyquist frequency, as a part of it.
 const TRANSITION: f64 = 0.02;
-const CHUNK: usize = 256;
 /// Sides of the kernel beyond which a request is refused, to bound memory.
 const MAX_TAPS: usize = 16_384;
 
@@ -104,6 +103,11 @@ impl Spec {
         self.from / gcd(self.from, self.to)
     }
 
+    /// Whether the rate is raised by a whole number.
+    fn is_whole(&self) -> bool {
+        self.down() == 1 && self.is_exact()
+    }
+
     /// Whether each phase has a row of its own.
     fn is_exact(&self) -> bool {
         self.up() <= MAX_EXACT_PHASES
@@ -115,7 +119,8 @@ impl Spec {
 
     fn taps(&self) -> usize {
         let width = (self.stop_hz - self.pass_hz).max(1e-6) / self.source_hz();
-        kaiser_length(width).clamp(8, MAX_TAPS).next_multiple_of(8)
+        let least = kaiser_length(width).clamp(8, MAX_TAPS);
+        least.next_multiple_of(if self.is_whole() { 2 } else { 8 })
     }
 }
 
@@ -132,118 +137,35 @@ fn millihertz(rate_hz: f64) -> Option<u64> {
     (1.0..=1e10).contains(&value).then_some(value as u64)
 }
 
-/// One polyphase filter: output k stands at input time k·M/L.
 #[derive(Debug, Clone)]
-struct Stage {
-    /// L.
-    up: usize,
-    /// Whole and remaining part of M/L.
-    step: (usize, usize),
-    taps: usize,
-    /// Phase-major; one row more than there are phases where rows are interpolated. Shared by all
-    /// converters of the same rates.
-    kernel: Arc<[f32]>,
-    exact: bool,
-    /// Where the row of phase 0 has its 1, when all else in it is 0.
-    copies: Option<usize>,
-    phase: usize,
-    /// Source samples; `kernel` rows are applied to `history[start..start + taps]`.
-    history: Vec<f32>,
-    start: usize,
-    filled: usize,
+enum Stage {
+    Whole(Upsampler),
+    Rational(Polyphase),
 }
 
 impl Stage {
     fn new(spec: &Spec) -> Self {
-        let (up, taps, exact) = (spec.up(), spec.taps(), spec.is_exact());
-        let phases = if exact { up } else { INTERPOLATED_PHASES };
+        let (up, down, taps) = (spec.up(), spec.down(), spec.taps());
+        let phases = if spec.is_exact() {
+            up
+        } else {
+            INTERPOLATED_PHASES
+        };
         let cutoff = 0.5 * (spec.pass_hz + spec.stop_hz) / spec.source_hz();
-        let kernel = kernels::kernel(taps, phases, exact, cutoff);
-        let down = spec.down();
-        Self {
-            up: up as usize,
-            step: ((down / up) as usize, (down % up) as usize),
-            taps,
-            copies: only_one(&kernel[..taps]).filter(|_| exact),
-            kernel,
-            exact,
-            phase: 0,
-            history: alloc::vec![0.0; taps + CHUNK],
-            start: 0,
-            filled: 0,
+        let kernel = kernels::kernel(taps, phases, spec.is_exact(), cutoff);
+        if spec.is_whole() {
+            return Self::Whole(Upsampler::new(up as usize, taps, kernel));
         }
+        let step = ((down / up) as usize, (down % up) as usize);
+        Self::Rational(Polyphase::new(up as usize, step, taps, kernel))
     }
 
     fn process(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
-        let (whole, rest) = self.step;
-        for sample in out {
-            if self.start + self.taps > self.filled {
-                self.refill(source);
-            }
-            let window = &self.history[self.start..self.start + self.taps];
-            *sample = self.filter(window);
-            self.phase += rest;
-            self.start += whole;
-            if self.phase >= self.up {
-                self.phase -= self.up;
-                self.start += 1;
-            }
+        match self {
+            Self::Whole(stage) => stage.process(out, source),
+            Self::Rational(stage) => stage.process(out, source),
         }
     }
-
-    /// Pulls a few more samples; moves those still needed to the front when there is no room.
-    fn refill(&mut self, source: &mut dyn FnMut(&mut [f32])) {
-        while self.start + self.taps > self.filled {
-            // Small pulls keep the latency of a change of parameters small.
-            let wanted = (self.start + self.taps - self.filled).max(8);
-            if self.filled + wanted > self.history.len() {
-                let keep_from = self.start.min(self.filled);
-                self.history.copy_within(keep_from..self.filled, 0);
-                self.filled -= keep_from;
-                self.start -= keep_from;
-            }
-            let end = (self.filled + wanted).min(self.history.len());
-            source(&mut self.history[self.filled..end]);
-            self.filled = end;
-        }
-    }
-
-    #[inline]
-    fn filter(&self, window: &[f32]) -> f32 {
-        let row = |i: usize| &self.kernel[i * self.taps..(i + 1) * self.taps];
-        match self.copies {
-            Some(i) if self.phase == 0 => return window[i],
-            _ if self.exact => return dot(row(self.phase), window),
-            _ => {}
-        }
-        let place = self.phase as f64 / self.up as f64 * INTERPOLATED_PHASES as f64;
-        let i = place as usize;
-        let t = (place - i as f64) as f32;
-        let (a, b) = (dot(row(i), window), dot(row(i + 1), window));
-        a + t * (b - a)
-    }
-}
-
-/// The place of the only coefficient that is not 0 (to rounding), and is 1.
-fn only_one(row: &[f32]) -> Option<usize> {
-    let one = row.iter().position(|x| (x - 1.0).abs() < 1e-7)?;
-    let others = row.iter().enumerate().filter(|(i, _)| *i != one);
-    others
-        .map(|(_, x)| x.abs())
-        .all(|x| x < 1e-9)
-        .then_some(one)
-}
-
-/// Dot product in eight lanes; both slices have the same length, a multiple of eight.
-#[inline]
-pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
-    let mut lanes = [0.0f32; 8];
-    for (x, y) in a.chunks_exact(8).zip(b.chunks_exact(8)) {
-        for i in 0..8 {
-            lanes[i] += x[i] * y[i];
-        }
-    }
-    (lanes[0] + lanes[4]) + (lanes[1] + lanes[5]) + ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]))
 }
 
 /// Kaiser's estimate of the taps a transition of `width` (cycles per sample) needs.
@@ -263,8 +185,6 @@ mod tests {
     /// Converts a sine and returns the largest error against the same sine at the other rate.
     fn sine_error(from_hz: f64, to_hz: f64, f_hz: f64) -> f64 {
         let mut resampler = Resampler::new(from_hz, to_hz, 1000.0).unwrap();
-        let offset: usize = resampler.stages.iter().map(|s| s.taps / 2 - 1).sum();
-        assert!(offset > 0);
         let mut n = 0usize;
         let mut source = |block: &mut [f32]| {
             for x in block {
@@ -277,13 +197,10 @@ mod tests {
             resampler.process(block, &mut source);
         }
         // Each stage's first output stands at its own window's centre.
-        let mut delay_s = 0.0;
-        let mut rate = from_hz;
-        for stage in &resampler.stages {
-            delay_s += (stage.taps as f64 / 2.0 - 1.0) / rate;
-            let down = stage.step.0 * stage.up + stage.step.1;
-            rate = rate * stage.up as f64 / down as f64;
-        }
+        let specs = specs(from_hz, to_hz, 1000.0).unwrap();
+        let delay = |spec: &Spec| (spec.taps() as f64 / 2.0 - 1.0) / spec.source_hz();
+        let delay_s: f64 = specs.iter().map(delay).sum();
+        assert!(delay_s > 0.0);
         out.iter()
             .enumerate()
             .map(|(k, y)| {

@@ -4,7 +4,7 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use crate::kernels;
-use crate::resample::dot;
+use crate::polyphase::dot;
 
 /// Samples of the source that one output looks at: stop band of about 60 dB.
 const TAPS: usize = 32;

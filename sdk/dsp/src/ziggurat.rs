@@ -11,34 +11,59 @@ const TAIL: f64 = 3.654_152_885_361_009;
 const AREA: f64 = 0.004_928_673_233_99;
 
 /// Right edges of the layers, from the bottom one, which has the tail's area too, to 0.
-static EDGE: [f64; LAYERS + 1] = edges();
+const EDGE: [f64; LAYERS + 1] = edges();
 
-/// The next normal number.
-#[inline]
-pub(crate) fn normal(uniform: &mut Uniform) -> f64 {
-    let bits = uniform.next_bits();
-    // Layer by the lowest bits, place by the highest 53: they do not overlap.
-    let layer = (bits % LAYERS as u64) as usize;
-    let x = ((bits as i64) >> 11) as f64 * (1.0 / (1u64 << 52) as f64) * EDGE[layer];
-    if x.abs() < EDGE[layer + 1] {
-        return x;
-    }
-    rare(uniform, layer, x)
+/// A layer: what a place of 24 bits with sign is multiplied by, and below which size it surely lies
+/// under the density.
+struct Layer {
+    scale: f64,
+    sure: u32,
+}
+
+static LAYER: [Layer; LAYERS] = layers();
+
+/// Fills a block with normal numbers: one of 32 bits each from `uniform`, and what the few that lie at
+/// an edge need from `rare`, so that the one that nearly all come from stays in registers.
+pub(crate) fn fill(uniform: &mut Uniform, rare: &mut Uniform, out: &mut [[f64; 2]]) {
+    uniform.each_bits(out, |pair, bits| {
+        *pair = [bits as u32, (bits >> 32) as u32].map(|bits| {
+            let (layer, place) = point(bits);
+            let x = f64::from(place) * LAYER[layer].scale;
+            if place.unsigned_abs() < LAYER[layer].sure {
+                x
+            } else {
+                at_edge(rare, layer, x)
+            }
+        });
+    });
+}
+
+/// Layer by the lowest bits, place by the others: they do not overlap.
+#[inline(always)]
+fn point(bits: u32) -> (usize, i32) {
+    ((bits % LAYERS as u32) as usize, (bits as i32) >> 8)
 }
 
 /// The points that may lie outside the density, one in a hundred.
 #[cold]
 #[inline(never)]
-fn rare(uniform: &mut Uniform, layer: usize, x: f64) -> f64 {
-    if layer == 0 {
-        return libm::copysign(tail(uniform), x);
+fn at_edge(uniform: &mut Uniform, mut layer: usize, mut x: f64) -> f64 {
+    loop {
+        if layer == 0 {
+            return libm::copysign(tail(uniform), x);
+        }
+        let density = |edge: f64| libm::exp(0.5 * (x * x - edge * edge));
+        let (low, high) = (density(EDGE[layer]), density(EDGE[layer + 1]));
+        if low + uniform.next_unit() * (high - low) < 1.0 {
+            return x;
+        }
+        let place;
+        (layer, place) = point(uniform.next_bits() as u32);
+        x = f64::from(place) * LAYER[layer].scale;
+        if place.unsigned_abs() < LAYER[layer].sure {
+            return x;
+        }
     }
-    let density = |edge: f64| libm::exp(0.5 * (x * x - edge * edge));
-    let (low, high) = (density(EDGE[layer]), density(EDGE[layer + 1]));
-    if low + uniform.next_unit() * (high - low) < 1.0 {
-        return x;
-    }
-    normal(uniform)
 }
 
 /// A number beyond [`TAIL`] (Marsaglia).
@@ -51,6 +76,23 @@ fn tail(uniform: &mut Uniform) -> f64 {
             return TAIL + x;
         }
     }
+}
+
+const fn layers() -> [Layer; LAYERS] {
+    let mut layers = [const {
+        Layer {
+            scale: 0.0,
+            sure: 0,
+        }
+    }; LAYERS];
+    let mut i = 0;
+    while i < LAYERS {
+        let whole = (1u32 << 23) as f64;
+        layers[i].scale = EDGE[i] / whole;
+        layers[i].sure = (EDGE[i + 1] / EDGE[i] * whole) as u32;
+        i += 1;
+    }
+    layers
 }
 
 const fn edges() -> [f64; LAYERS + 1] {

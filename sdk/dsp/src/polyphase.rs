@@ -1,0 +1,105 @@
+//! Changing a rate by a ratio L/M of whole numbers, or nearly: the general case of
+//! [`crate::resample`].
+
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+/// Rows of a kernel that is interpolated, less one.
+pub(crate) const INTERPOLATED_PHASES: u64 = 512;
+const CHUNK: usize = 256;
+
+/// One polyphase filter: output k stands at input time k·M/L.
+#[derive(Debug, Clone)]
+pub(crate) struct Polyphase {
+    /// L.
+    up: usize,
+    /// Whole and remaining part of M/L.
+    step: (usize, usize),
+    taps: usize,
+    /// Phase-major; one row more than there are phases where rows are interpolated. Shared by all
+    /// converters of the same rates.
+    kernel: Arc<[f32]>,
+    exact: bool,
+    phase: usize,
+    /// Source samples; `kernel` rows are applied to `history[start..start + taps]`.
+    history: Vec<f32>,
+    start: usize,
+    filled: usize,
+}
+
+impl Polyphase {
+    /// `step` is the whole and the remaining part of M/L; `taps` is a multiple of eight. The kernel
+    /// has a row for each phase, or one row more than [`INTERPOLATED_PHASES`].
+    pub(crate) fn new(up: usize, step: (usize, usize), taps: usize, kernel: Arc<[f32]>) -> Self {
+        Self {
+            up,
+            step,
+            taps,
+            exact: kernel.len() == up * taps,
+            kernel,
+            phase: 0,
+            history: alloc::vec![0.0; taps + CHUNK],
+            start: 0,
+            filled: 0,
+        }
+    }
+
+    pub(crate) fn process(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
+        let (whole, rest) = self.step;
+        for sample in out {
+            if self.start + self.taps > self.filled {
+                self.refill(source);
+            }
+            let window = &self.history[self.start..self.start + self.taps];
+            *sample = self.filter(window);
+            self.phase += rest;
+            self.start += whole;
+            if self.phase >= self.up {
+                self.phase -= self.up;
+                self.start += 1;
+            }
+        }
+    }
+
+    /// Pulls a few more samples; moves those still needed to the front when there is no room.
+    fn refill(&mut self, source: &mut dyn FnMut(&mut [f32])) {
+        while self.start + self.taps > self.filled {
+            // Small pulls keep the latency of a change of parameters small.
+            let wanted = (self.start + self.taps - self.filled).max(8);
+            if self.filled + wanted > self.history.len() {
+                let keep_from = self.start.min(self.filled);
+                self.history.copy_within(keep_from..self.filled, 0);
+                self.filled -= keep_from;
+                self.start -= keep_from;
+            }
+            let end = (self.filled + wanted).min(self.history.len());
+            source(&mut self.history[self.filled..end]);
+            self.filled = end;
+        }
+    }
+
+    #[inline]
+    fn filter(&self, window: &[f32]) -> f32 {
+        let row = |i: usize| &self.kernel[i * self.taps..(i + 1) * self.taps];
+        if self.exact {
+            return dot(row(self.phase), window);
+        }
+        let place = self.phase as f64 / self.up as f64 * INTERPOLATED_PHASES as f64;
+        let i = place as usize;
+        let t = (place - i as f64) as f32;
+        let (a, b) = (dot(row(i), window), dot(row(i + 1), window));
+        a + t * (b - a)
+    }
+}
+
+/// Dot product in eight lanes; both slices have the same length, a multiple of eight.
+#[inline]
+pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
+    let mut lanes = [0.0f32; 8];
+    for (x, y) in a.chunks_exact(8).zip(b.chunks_exact(8)) {
+        for i in 0..8 {
+            lanes[i] += x[i] * y[i];
+        }
+    }
+    (lanes[0] + lanes[4]) + (lanes[1] + lanes[5]) + ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]))
+}

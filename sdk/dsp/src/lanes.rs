@@ -4,24 +4,24 @@ use core::ops::{Add, Mul, Sub};
 
 /// One number, or several side by side.
 pub(crate) trait Number:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f32, Output = Self>
 {
     const LEN: usize;
     /// From the front of a slice that is long enough.
-    fn load(from: &[f64]) -> Self;
-    fn store(self, to: &mut [f64]);
+    fn load(from: &[f32]) -> Self;
+    fn store(self, to: &mut [f32]);
 }
 
-impl Number for f64 {
+impl Number for f32 {
     const LEN: usize = 1;
 
     #[inline(always)]
-    fn load(from: &[f64]) -> Self {
+    fn load(from: &[f32]) -> Self {
         from[0]
     }
 
     #[inline(always)]
-    fn store(self, to: &mut [f64]) {
+    fn store(self, to: &mut [f32]) {
         to[0] = self;
     }
 }
@@ -29,21 +29,21 @@ impl Number for f64 {
 pub(crate) const LANES: usize = 4;
 
 /// What compilers make vector registers of.
-#[derive(Clone, Copy)]
-pub(crate) struct Lanes([f64; LANES]);
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Lanes(pub(crate) [f32; LANES]);
 
 impl Number for Lanes {
     const LEN: usize = LANES;
 
     #[inline(always)]
-    fn load(from: &[f64]) -> Self {
+    fn load(from: &[f32]) -> Self {
         let mut lanes = [0.0; LANES];
         lanes.copy_from_slice(&from[..LANES]);
         Self(lanes)
     }
 
     #[inline(always)]
-    fn store(self, to: &mut [f64]) {
+    fn store(self, to: &mut [f32]) {
         to[..LANES].copy_from_slice(&self.0);
     }
 }
@@ -66,11 +66,20 @@ impl Sub for Lanes {
     }
 }
 
-impl Mul<f64> for Lanes {
+impl Mul<f32> for Lanes {
     type Output = Self;
 
     #[inline(always)]
-    fn mul(self, factor: f64) -> Self {
+    fn mul(self, factor: f32) -> Self {
         Self(self.0.map(|x| x * factor))
+    }
+}
+
+impl Mul for Lanes {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self(core::array::from_fn(|i| self.0[i] * other.0[i]))
     }
 }

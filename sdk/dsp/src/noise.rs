@@ -3,6 +3,7 @@
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+use crate::lanes::{LANES, Lanes};
 use crate::ziggurat;
 
 /// A seeded stream of uniform numbers; the same seed gives the same bits on every machine.
@@ -34,44 +35,77 @@ impl Uniform {
         self.0 = own;
     }
 
-    /// Cosine and sine of an angle that is uniform on the circle, exact to 1e-12.
+    /// Cosines and sines of angles that are uniform on the circle, exact to 3e-7; as many as there
+    /// is room for in both.
     ///
     /// An angle in the right half plane, and both signs turned or not: two short series do, and
     /// nothing branches.
-    #[inline]
-    pub fn next_direction(&mut self) -> (f64, f64) {
-        let bits = self.next_bits();
-        // The upper 53 bits, signed; the lowest one decides the half plane.
-        let angle =
-            ((bits as i64) >> 11) as f64 * (core::f64::consts::FRAC_PI_2 / (1u64 << 52) as f64);
-        let turn = |x: f64| f64::from_bits(x.to_bits() ^ (bits << 63));
-        let [cos, sin_over_angle] = series(angle * angle);
-        (turn(cos), turn(angle * sin_over_angle))
+    pub fn fill_directions(&mut self, cos: &mut [f32], sin: &mut [f32]) {
+        let (cos, last_cos) = cos.as_chunks_mut();
+        let (sin, last_sin) = sin.as_chunks_mut();
+        let mut own = self.0.clone();
+        for (cos, sin) in cos.iter_mut().zip(sin) {
+            directions(&mut own, cos, sin);
+        }
+        if !last_cos.is_empty() {
+            let (mut cos, mut sin) = ([0.0; DIRECTIONS], [0.0; DIRECTIONS]);
+            directions(&mut own, &mut cos, &mut sin);
+            last_cos.copy_from_slice(&cos[..last_cos.len()]);
+            let rest = last_sin.len().min(DIRECTIONS);
+            last_sin.copy_from_slice(&sin[..rest]);
+        }
+        self.0 = own;
     }
 }
 
-const TERMS: usize = 9;
+/// Directions that are made at once.
+const DIRECTIONS: usize = LANES;
+const QUARTER: f32 = core::f32::consts::FRAC_PI_2 / (1u32 << 31) as f32;
+const TERMS: usize = 7;
 /// Taylor coefficients of the cosine, and of the sine over its angle, in the square of the angle.
-/// Up to a quarter turn less than 1e-12 is left out.
-const TAYLOR: [[f64; 2]; TERMS] = taylor();
+/// Up to a quarter turn less than 1e-8 is left out.
+const TAYLOR: [[f32; 2]; TERMS] = taylor();
 
-const fn taylor() -> [[f64; 2]; TERMS] {
+const fn taylor() -> [[f32; 2]; TERMS] {
+    let mut exact = [[1.0f64; 2]; TERMS];
     let mut terms = [[1.0; 2]; TERMS];
     let mut i = 1;
     while i < TERMS {
         let n = 2.0 * i as f64;
-        terms[i][0] = -terms[i - 1][0] / (n * (n - 1.0));
-        terms[i][1] = -terms[i - 1][1] / (n * (n + 1.0));
+        exact[i][0] = -exact[i - 1][0] / (n * (n - 1.0));
+        exact[i][1] = -exact[i - 1][1] / (n * (n + 1.0));
+        terms[i] = [exact[i][0] as f32, exact[i][1] as f32];
         i += 1;
     }
     terms
 }
 
-/// Both series at once, as a vector of two.
-#[inline]
-fn series(z: f64) -> [f64; 2] {
-    let step = |[c, s]: [f64; 2], [next_c, next_s]: &[f64; 2]| [c * z + next_c, s * z + next_s];
-    TAYLOR.iter().rev().fold([0.0; 2], step)
+#[inline(always)]
+fn directions(
+    random: &mut Xoshiro256PlusPlus,
+    cos: &mut [f32; DIRECTIONS],
+    sin: &mut [f32; DIRECTIONS],
+) {
+    let mut bits = [0u32; DIRECTIONS];
+    for two in bits.as_chunks_mut::<2>().0 {
+        let both = random.next_u64();
+        *two = [both as u32, (both >> 32) as u32];
+    }
+    // The upper bits, signed, are the angle; the lowest one decides the half plane.
+    let angle = Lanes(bits.map(|bits| bits as i32 as f32)) * QUARTER;
+    let square = angle * angle;
+    let (mut c, mut s) = (Lanes::default(), Lanes::default());
+    for [next_c, next_s] in TAYLOR.iter().rev() {
+        c = c * square + Lanes([*next_c; DIRECTIONS]);
+        s = s * square + Lanes([*next_s; DIRECTIONS]);
+    }
+    s = s * angle;
+    for i in 0..DIRECTIONS {
+        cos[i] = f32::from_bits(c.0[i].to_bits() ^ (bits[i] << 31));
+    }
+    for i in 0..DIRECTIONS {
+        sin[i] = f32::from_bits(s.0[i].to_bits() ^ (bits[i] << 31));
+    }
 }
 
 /// White Gaussian noise of zero mean and unit variance (a ziggurat: one random number and one
@@ -106,9 +140,11 @@ mod tests {
     fn directions_lie_on_the_circle_all_around() {
         let mut uniform = Uniform::new(1);
         let mut sums = [0.0; 4];
-        for _ in 0..100_000 {
-            let (cos, sin) = uniform.next_direction();
-            assert!((cos * cos + sin * sin - 1.0).abs() < 1e-11);
+        let (mut cos, mut sin) = (alloc::vec![0.0; 100_003], alloc::vec![0.0; 100_003]);
+        uniform.fill_directions(&mut cos, &mut sin);
+        for (cos, sin) in cos.into_iter().zip(sin) {
+            let (cos, sin) = (f64::from(cos), f64::from(sin));
+            assert!((cos * cos + sin * sin - 1.0).abs() < 6e-7);
             let moments = [cos, sin, cos * cos - sin * sin, 2.0 * cos * sin];
             sums.iter_mut().zip(moments).for_each(|(sum, x)| *sum += x);
         }

@@ -68,7 +68,12 @@ struct Spec {
 
 /// The stages of a converter; none when none is needed.
 fn specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Option<Vec<Spec>> {
-    let (from, to) = (millihertz(from_hz)?, millihertz(to_hz)?);
+    let (from, mut to) = (millihertz(from_hz)?, millihertz(to_hz)?);
+    // A whole part of a rate is seldom a whole number of millihertz.
+    let ratio = libm::round(to_hz / from_hz);
+    if ratio >= 2.0 && (to_hz / from_hz / ratio - 1.0).abs() < 1e-9 {
+        to = from * ratio as u64;
+    }
     if from == to || from / to > 10_000 || to / from > 10_000 {
         return None;
     }

@@ -1,8 +1,9 @@
 //! Random-phase noise with a given spectrum, streamed by overlap-add.
 //!
-//! Frames of uniformly random phases are windowed with a sine and added with half overlap. Frames
-//! are independent and sine² + cos² = 1, so the power is the same at every sample, and no frame
-//! ever comes back (numeric definitions: random phase).
+//! Frames of uniformly random phases follow each other with an eighth of overlap, where one goes out
+//! with a cosine and the next comes in with a sine. Frames are independent and sine² + cos² = 1, so
+//! the power is the same at every sample; a frame is one period of its components, so nothing comes
+//! back (numeric definitions: random phase).
 
 use alloc::vec::Vec;
 
@@ -11,19 +12,23 @@ use crate::inverse_fft::{InverseRealFft, smooth_length};
 use crate::noise::Uniform;
 
 /// Length of half a frame at least, seconds: components stand 2.5 Hz apart, or a little less.
-const HOP_S: f64 = 0.2;
+const HALF_S: f64 = 0.2;
+/// Frames overlap by one part in this.
+const OVERLAP: usize = 8;
 /// Length of the cross-fade after a retune, seconds.
 const FADE_S: f64 = 0.010;
 
 /// An endless stream of noise of unit RMS whose spectrum follows a magnitude curve.
 pub struct ShapedNoise {
     inverse: InverseRealFft,
-    window: Vec<f64>,
+    /// A quarter of a sine: how a frame comes in; its mirror image is how the one before goes out.
+    rise: Vec<f32>,
+    /// Samples from the beginning of a frame to that of the next.
     hop: usize,
     fade_len: usize,
     first: usize,
     component_hz: Vec<f64>,
-    amplitude: Vec<f64>,
+    amplitude: Vec<f32>,
     pending: bool,
     pending_amplitude: Vec<f64>,
     // The generator as it stood before the frame that ends in this hop, and before the one that
@@ -31,11 +36,14 @@ pub struct ShapedNoise {
     ending: Uniform,
     beginning: Uniform,
     next: Uniform,
-    spectrum: Vec<(f64, f64)>,
-    frame: Vec<f64>,
-    tail: Vec<f64>,
-    now: Vec<f64>,
-    faded: Vec<f64>,
+    /// The components of a frame.
+    re: Vec<f32>,
+    im: Vec<f32>,
+    /// The frame that began last, with the end of the one before.
+    now: Vec<f32>,
+    /// The same with other amplitudes, while they change.
+    faded: Vec<f32>,
+    tail: Vec<f32>,
     position: usize,
     fade_position: Option<usize>,
 }
@@ -43,7 +51,7 @@ pub struct ShapedNoise {
 /// Rate at which a voice of [`ShapedNoise`] works when `wanted_hz` is wanted: a whole fraction of
 /// it that still holds the band with room for an easy interpolation filter.
 pub fn economical_rate_hz(wanted_hz: f64, band: Band) -> f64 {
-    let parts = libm::floor(wanted_hz / (2.5 * band.high_hz)).max(1.0);
+    let parts = libm::floor(wanted_hz / (3.2 * band.high_hz)).max(1.0);
     wanted_hz / parts
 }
 
@@ -53,38 +61,40 @@ impl ShapedNoise {
     /// The rate is at least 20 Hz and at most 10 MHz (clamped).
     pub fn new(rate_hz: f64, band: Band, seed: u64) -> Self {
         let rate_hz = rate_hz.clamp(20.0, 1e7);
-        let hop = smooth_length(libm::round(rate_hz * HOP_S).max(2.0) as usize);
-        let len = 2 * hop;
+        let half = smooth_length(libm::round(rate_hz * HALF_S).max(2.0) as usize);
+        let len = 2 * half;
+        let overlap = len.div_ceil(OVERLAP);
+        let hop = len - overlap;
         let spacing = rate_hz / len as f64;
         // Each bin of the texture spectrum stands for half a bin to either side.
         let low = libm::ceil((band.low_hz - 0.5 * GRID_HZ) / spacing - 1e-9).max(1.0) as usize;
         let high = libm::floor((band.high_hz + 0.5 * GRID_HZ) / spacing + 1e-9) as usize;
-        let high = high.min(hop - 1);
+        let high = high.min(half - 1);
         let component_hz: Vec<f64> = (low..=high.max(low))
             .map(|j| (j as f64 * spacing).clamp(band.low_hz, band.high_hz))
             .collect();
-        let window = (0..len)
-            .map(|n| libm::sin(core::f64::consts::PI * (n as f64 + 0.5) / len as f64))
-            .collect();
+        let quarter = 0.5 * core::f64::consts::PI / overlap as f64;
         let zeros = |n| alloc::vec![0.0; n];
         let mut noise = Self {
-            spectrum: alloc::vec![(0.0, 0.0); component_hz.len()],
-            frame: zeros(len),
-            inverse: InverseRealFft::new(hop),
-            window,
+            inverse: InverseRealFft::new(half),
+            rise: (0..overlap)
+                .map(|n| libm::sin((n as f64 + 0.5) * quarter) as f32)
+                .collect(),
             hop,
             fade_len: libm::ceil(FADE_S * rate_hz).max(1.0).min(hop as f64) as usize,
             first: low,
             amplitude: zeros(component_hz.len()),
-            pending_amplitude: zeros(component_hz.len()),
+            pending_amplitude: alloc::vec![0.0; component_hz.len()],
+            re: zeros(component_hz.len()),
+            im: zeros(component_hz.len()),
             component_hz,
             pending: false,
             ending: Uniform::new(seed),
             beginning: Uniform::new(seed),
             next: Uniform::new(seed),
-            tail: zeros(hop),
-            now: zeros(hop),
-            faded: zeros(hop),
+            now: zeros(len),
+            faded: zeros(len),
+            tail: zeros(overlap),
             position: 0,
             fade_position: None,
         };
@@ -102,7 +112,7 @@ impl ShapedNoise {
     /// any scale; negative and non-finite values count as zero.
     pub fn start(&mut self, magnitude: impl Fn(usize, f64) -> f64) {
         self.prepare(magnitude);
-        self.amplitude.copy_from_slice(&self.pending_amplitude);
+        self.take_pending();
         self.remake_hop();
         core::mem::swap(&mut self.now, &mut self.faded);
     }
@@ -130,6 +140,13 @@ impl ShapedNoise {
         self.pending_amplitude.iter_mut().for_each(|a| *a *= gain);
     }
 
+    /// Makes the pending amplitudes the present ones.
+    fn take_pending(&mut self) {
+        for (a, &pending) in self.amplitude.iter_mut().zip(&self.pending_amplitude) {
+            *a = pending as f32;
+        }
+    }
+
     /// Fills `out` with the next samples. Does not allocate.
     pub fn render(&mut self, out: &mut [f32]) {
         let mut rest = out;
@@ -152,10 +169,7 @@ impl ShapedNoise {
     /// next hop this may be asked for sample by sample, or at once.
     fn run_steady(&mut self, out: &mut [f32]) -> usize {
         let run = out.len().min(self.hop - self.position);
-        let now = &self.now[self.position..self.position + run];
-        for (sample, x) in out.iter_mut().zip(now) {
-            *sample = *x as f32;
-        }
+        out[..run].copy_from_slice(&self.now[self.position..self.position + run]);
         self.position += run;
         run
     }
@@ -164,19 +178,19 @@ impl ShapedNoise {
     fn run_fade(&mut self, out: &mut [f32]) -> usize {
         let mut run = 0;
         while run < out.len() && self.fade_position.is_some() {
-            out[run] = self.current() as f32;
+            out[run] = self.current();
             self.position += 1;
             run += 1;
         }
         run
     }
 
-    fn current(&mut self) -> f64 {
+    fn current(&mut self) -> f32 {
         let old = self.now[self.position];
         let Some(done) = self.fade_position else {
             return old;
         };
-        let weight = (done + 1) as f64 / self.fade_len as f64;
+        let weight = (done + 1) as f32 / self.fade_len as f32;
         let value = old + weight * (self.faded[self.position] - old);
         if done + 1 == self.fade_len {
             core::mem::swap(&mut self.now, &mut self.faded);
@@ -193,48 +207,52 @@ impl ShapedNoise {
             return;
         }
         self.pending = false;
-        self.amplitude.copy_from_slice(&self.pending_amplitude);
+        self.take_pending();
         self.remake_hop();
         self.fade_position = Some(0);
     }
 
-    /// Moves on to the next half frame.
+    /// Moves on to the next frame.
     fn next_hop(&mut self) {
         self.ending = self.beginning.clone();
         self.beginning = self.next.clone();
-        let mut phases = self.next.clone();
-        self.make_frame(&mut phases);
-        self.next = phases;
-        for n in 0..self.hop {
-            self.now[n] = self.tail[n] + self.frame[n];
-        }
-        self.tail.copy_from_slice(&self.frame[self.hop..]);
+        self.tail.copy_from_slice(&self.now[self.hop..]);
+        self.next = self.make_frame(self.next.clone());
+        self.blend();
+        core::mem::swap(&mut self.now, &mut self.faded);
         self.position = 0;
     }
 
-    /// Makes both frames of this hop again, with the same phases and the present amplitudes, into
-    /// `faded` and `tail`.
+    /// Makes what can still be heard of this hop again, with the same phases and the present
+    /// amplitudes, into `faded`.
     fn remake_hop(&mut self) {
-        let mut phases = self.ending.clone();
-        self.make_frame(&mut phases);
-        self.faded.copy_from_slice(&self.frame[self.hop..]);
-        let mut phases = self.beginning.clone();
-        self.make_frame(&mut phases);
-        for n in 0..self.hop {
-            self.faded[n] += self.frame[n];
+        if self.position < self.rise.len() {
+            self.make_frame(self.ending.clone());
+            self.tail.copy_from_slice(&self.faded[self.hop..]);
         }
-        self.tail.copy_from_slice(&self.frame[self.hop..]);
+        self.make_frame(self.beginning.clone());
+        self.blend();
     }
 
-    fn make_frame(&mut self, phases: &mut Uniform) {
-        for (bin, &a) in self.spectrum.iter_mut().zip(&self.amplitude) {
-            let (cos, sin) = phases.next_direction();
-            *bin = (0.5 * a * cos, 0.5 * a * sin);
+    /// Makes a frame into `faded`; answers the generator behind it.
+    fn make_frame(&mut self, mut phases: Uniform) -> Uniform {
+        phases.fill_directions(&mut self.re, &mut self.im);
+        let parts = self.re.iter_mut().zip(&mut self.im);
+        for ((re, im), a) in parts.zip(&self.amplitude) {
+            *re *= 0.5 * a;
+            *im *= 0.5 * a;
         }
         self.inverse
-            .run(self.first, &self.spectrum, &mut self.frame);
-        for (x, w) in self.frame.iter_mut().zip(&self.window) {
-            *x *= w;
+            .run(self.first, [&self.re, &self.im], &mut self.faded);
+        phases
+    }
+
+    /// Lets the frame in `faded` come in while the one that `tail` ends goes out.
+    fn blend(&mut self) {
+        let falling = self.rise.iter().rev().zip(&self.tail);
+        let rising = self.faded.iter_mut().zip(&self.rise);
+        for ((x, rise), (fall, tail)) in rising.zip(falling) {
+            *x = rise * *x + fall * tail;
         }
     }
 }

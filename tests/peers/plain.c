@@ -39,14 +39,17 @@ typedef struct { Noise noise; double past[MOST]; double s1[SECTIONS], s2[SECTION
 static Voice voices[VOICES];
 static float out[SAMPLES];
 
-/* The all-pole filter, direct form, state shifted. */
+/* The all-pole filter, direct form; the newest output comes last, so that all else is ready when it is. */
 static void all_pole(Voice *v, double *x, int len) {
+    double y[MOST + BLOCK];
+    memcpy(y, v->past, sizeof v->past);
     for (int n = 0; n < len; n++) {
-        double y = x[n];
-        for (int i = 0; i < order; i++) y += a[i] * v->past[i];
-        for (int i = order - 1; i > 0; i--) v->past[i] = v->past[i - 1];
-        x[n] = v->past[0] = y;
+        double sum = x[n];
+        for (int i = order - 1; i >= 0; i--) sum += a[i] * y[MOST + n - 1 - i];
+        y[MOST + n] = sum;
     }
+    memcpy(x, y + MOST, (size_t)len * sizeof *x);
+    memcpy(v->past, y + len, sizeof v->past);
 }
 
 /* Four sections one after the other, transposed direct form II: the Butterworth high-pass of order 8 at

@@ -10,27 +10,20 @@ cargo xtask plugins   builds the models as plugins into target/htex-plugins, nat
                       --native-only or --wasm-only builds the one kind; --wasm-toolchain WAY (or
                       HTEX_WASM_TOOLCHAIN) builds modules with the toolchain that is installed, by
                       rustup, by debian (its own compiler), or auto: the first that works
-<<<<<<< HEAD
+cargo xtask bench     what htex costs beside plain loops in C and NumPy, SciPy, librosa, in one run;
+                      --json FILE writes the numbers too
 cargo xtask fuzz      fuzzes the TARGETS named, or all of fuzz/fuzz_targets, each for --seconds N (60)
                       or --executions N, --jobs N (2) at a time; with --address under the address
                       sanitizer, which needs a nightly toolchain; see fuzz/README.md
 cargo xtask generate  makes what spec/ has from the code again: schemas, pages, conformance files,
                       seeds of the fuzz targets";
-=======
-cargo xtask bench     what htex costs beside plain loops in C and NumPy, SciPy, librosa, in one run;
-                      --json FILE writes the numbers too
-cargo xtask generate  makes what spec/ has from the code again: schemas, pages, conformance files";
->>>>>>> 61d6cfb (Measure beside plain loops in C and the libraries people use)
 
 fn main() -> ExitCode {
     let tasks: Vec<String> = std::env::args().skip(1).collect();
     match tasks.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["plugins", ref options @ ..] => build_plugins(options),
-<<<<<<< HEAD
-        ["fuzz", ref options @ ..] => fuzz_targets(options),
-=======
         ["bench", ref options @ ..] => xtask::bench::run(options),
->>>>>>> 61d6cfb (Measure beside plain loops in C and the libraries people use)
+        ["fuzz", ref options @ ..] => fuzz_targets(options),
         ["ci"] => run("bash", &[".ci/run"]),
         ["generate"] => generate(),
         _ => usage(),

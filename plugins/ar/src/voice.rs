@@ -86,6 +86,9 @@ impl AutoregressionVoice {
         for out in steady.chunks_mut(BLOCK) {
             let block = &mut block[..out.len()];
             self.noise.fill(block.as_flattened_mut().as_chunks_mut().0);
+            for x in block.as_flattened_mut() {
+                *x *= self.gain;
+            }
             self.filter.process(block);
             self.finish(block, out);
         }
@@ -99,20 +102,20 @@ impl AutoregressionVoice {
             if self.ramp_left > 0 {
                 self.ramp();
             }
-            *x = self.filter.tick(*x);
+            *x = self.filter.tick(self.gain * *x);
         }
         let mut out = [[0.0; GROUP]];
         self.finish(&mut [group], &mut out);
         out[0]
     }
 
-    /// Cuts the filter's output to the band and gives it its level.
+    /// Cuts the filter's output to the band.
     fn finish(&mut self, block: &mut [Group], out: &mut [[f32; GROUP]]) {
         self.edges
             .process(block.as_flattened_mut().as_chunks_mut().0);
         let out = out.as_flattened_mut().iter_mut();
         for (sample, x) in out.zip(block.as_flattened()) {
-            *sample = (self.gain * x) as f32;
+            *sample = *x as f32;
         }
     }
 

@@ -201,10 +201,20 @@ mod tests {
         for block in out.chunks_mut(33) {
             resampler.process(block, &mut source);
         }
-        // Each stage's first output stands at its own window's centre.
-        let specs = specs(from_hz, to_hz, 1000.0).unwrap();
-        let delay = |spec: &Spec| (spec.taps() as f64 / 2.0 - 1.0) / spec.source_hz();
-        let delay_s: f64 = specs.iter().map(delay).sum();
+        // Each stage's first output stands at the centre of its first window.
+        let stages = specs(from_hz, to_hz, 1000.0)
+            .unwrap()
+            .into_iter()
+            .zip(&resampler.stages);
+        let delay_s: f64 = stages
+            .map(|(spec, stage)| {
+                let skipped = match stage {
+                    Stage::Whole(stage) => stage.skipped(),
+                    Stage::Rational(_) => 0,
+                };
+                (skipped as f64 + spec.taps() as f64 / 2.0 - 1.0) / spec.source_hz()
+            })
+            .sum();
         assert!(delay_s > 0.0);
         out.iter()
             .enumerate()

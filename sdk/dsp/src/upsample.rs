@@ -9,6 +9,8 @@ use alloc::vec::Vec;
 
 /// Source samples taken at once.
 const STEPS: usize = 8;
+/// Products that are added up before the sum of all.
+const PART: usize = 12;
 
 #[derive(Debug, Clone)]
 pub(crate) struct Upsampler {
@@ -18,7 +20,8 @@ pub(crate) struct Upsampler {
     kernel: Arc<[f32]>,
     /// Where the row of phase 0 has its 1, when all else in it is 0.
     copies: Option<usize>,
-    /// The samples that `STEPS` windows of `taps` see.
+    /// The samples that `STEPS` windows of `taps` see, and as many before them as make pulls whole
+    /// numbers of `STEPS`: a stage in between that pulls so too is then never ahead.
     history: Vec<f32>,
     primed: bool,
     ready: Vec<f32>,
@@ -34,7 +37,7 @@ impl Upsampler {
             taps,
             copies: only_one(&kernel[..taps]),
             kernel,
-            history: alloc::vec![0.0; taps - 1 + STEPS],
+            history: alloc::vec![0.0; (taps - 1).next_multiple_of(STEPS) + STEPS],
             primed: false,
             taken: ready.len(),
             ready,
@@ -55,17 +58,26 @@ impl Upsampler {
         }
     }
 
+    /// Samples of the source before the window of the first output.
+    pub(crate) fn skipped(&self) -> usize {
+        self.history.len() - STEPS - (self.taps - 1)
+    }
+
     fn advance(&mut self, source: &mut dyn FnMut(&mut [f32])) {
         // The first output stands at the centre of a window that is full.
-        let kept = if self.primed { self.taps - 1 } else { 0 };
-        let from = self.history.len() - kept;
-        self.history.copy_within(from.., 0);
-        source(&mut self.history[kept..]);
-        self.primed = true;
+        if self.primed {
+            self.history.copy_within(STEPS.., 0);
+            let kept = self.history.len() - STEPS;
+            source(&mut self.history[kept..]);
+        } else {
+            source(&mut self.history);
+            self.primed = true;
+        }
+        let seen = &self.history[self.skipped()..];
         for (phase, row) in self.kernel.chunks_exact(self.taps).enumerate() {
             let steps = match self.copies {
-                Some(place) if phase == 0 => self.history[place..].first_chunk().copied(),
-                _ => Some(filter(row, &self.history)),
+                Some(place) if phase == 0 => seen[place..].first_chunk().copied(),
+                _ => Some(filter(row, seen)),
             };
             for (frame, y) in self
                 .ready
@@ -79,21 +91,24 @@ impl Upsampler {
     }
 }
 
-/// A row at `STEPS` neighbouring places; two sums each, so that one need not wait for the other.
+/// A row at `STEPS` neighbouring places. It is added up in parts: a long sum in single precision would
+/// lose digits, and parts need not wait for each other.
 #[inline]
 fn filter(row: &[f32], history: &[f32]) -> [f32; STEPS] {
-    let mut sums = [[0.0f32; STEPS]; 2];
-    for (i, pair) in row.as_chunks::<2>().0.iter().enumerate() {
-        for (sum, (j, k)) in sums.iter_mut().zip(pair.iter().enumerate()) {
-            let Some(window) = history[2 * i + j..].first_chunk::<STEPS>() else {
-                continue;
-            };
+    let mut sums = [0.0f32; STEPS];
+    for (i, part) in row.chunks(PART).enumerate() {
+        let mut partial = [0.0f32; STEPS];
+        let windows = history[i * PART..].windows(STEPS);
+        for (k, window) in part.iter().zip(windows) {
             for t in 0..STEPS {
-                sum[t] += k * window[t];
+                partial[t] += k * window[t];
             }
         }
+        for t in 0..STEPS {
+            sums[t] += partial[t];
+        }
     }
-    core::array::from_fn(|t| sums[0][t] + sums[1][t])
+    sums
 }
 
 /// The place of the only coefficient that is not 0 (to rounding), and is 1.

@@ -21,11 +21,7 @@ impl Peer {
     /// # Errors
     /// A sentence: why it does not run.
     pub fn start(name: &'static str, command: &mut Command) -> Result<Self, String> {
-        let spawned = command
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn();
+        let spawned = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
         let mut child = spawned.map_err(|error| format!("{name} does not start: {error}"))?;
         let (Some(to), Some(from)) = (child.stdin.take(), child.stdout.take()) else {
             return Err(format!("{name} has no pipes"));

@@ -71,6 +71,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-scene",
         ],
     ),
+    ("htex-bench", &["htex", "htex-author", "htex-host"]),
     (
         "htex-fuzzing",
         &[

@@ -24,7 +24,9 @@ pub fn tone(hz: f64) -> Vec<f64> {
 /// White noise of 1 N.
 pub fn noise() -> Vec<f64> {
     let mut noise = GaussianNoise::new(7);
-    (0..SAMPLES).map(|_| noise.next_sample()).collect()
+    let mut samples = vec![0.0; SAMPLES];
+    noise.fill(samples.as_chunks_mut().0);
+    samples
 }
 
 /// Noise with most of its power low, as friction has it, newtons.

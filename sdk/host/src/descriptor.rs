@@ -42,6 +42,12 @@ fn check_descriptor(descriptor: &Descriptor) -> Result<(), String> {
             return Err(format!("`{name}` has the range {min} to {max}"));
         }
     }
+    let fields = descriptor.fields.iter().flat_map(|f| [&f.name, &f.unit]);
+    let options = descriptor.options.iter();
+    let options = options.flat_map(|o| o.choices.iter().chain([&o.name, &o.unit]));
+    if let Some(word) = fields.chain(options).find(|w| w.contains(char::is_control)) {
+        return Err(format!("`{word}` has control characters"));
+    }
     let mut names: Vec<&str> = descriptor.fields.iter().map(|f| f.name.as_str()).collect();
     names.sort_unstable();
     match names.windows(2).find(|pair| pair[0] == pair[1]) {

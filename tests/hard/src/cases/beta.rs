@@ -264,6 +264,22 @@ const CASES: &[Case] = &[
         },
     ),
     within(
+        "a tone of 1 N at 150, 500, 747.5 Hz",
+        "sBeta",
+        "the highest bin of the fit",
+        Bound(1.0, "octave", "the tone"),
+        || {
+            let off = [150.0f64, 500.0, 747.5].map(|hz| {
+                let fitted = crate::seen::fit(&model("sbeta"), &spectrum(&tone(hz))).unwrap();
+                let shape = model("sbeta").magnitude(&fitted.parameters, BAND, &BAND.grid_hz());
+                let shape = shape.unwrap_or_default();
+                let highest = (0..shape.len()).max_by(|&a, &b| shape[a].total_cmp(&shape[b]));
+                highest.map_or(f64::NAN, |bin| (BAND.grid_hz()[bin] / hz).log2().abs())
+            });
+            off.into_iter().fold(0.0, worse)
+        },
+    ),
+    within(
         "two peaks: far apart, nearer than can be told apart, side by side",
         "sBeta",
         "fit, lower bounds 0, 0.5, 1",

@@ -229,6 +229,23 @@ const CASES: &[Case] = &[
             told(model("ar").interpolate(&[&a, &b], &[0.5, 0.5]))
         },
     ),
+    within(
+        "one sinusoid and another; one and two",
+        "sPeak",
+        "mix, half and half",
+        none("one between them; three, faded"),
+        || {
+            let speak = model("speak");
+            let (a, b) = ([1.0, 100.0, 1.0, 1.4, 0.0], [1.0, 200.0, 1.0, 1.4, 0.0]);
+            let two = [2.0, 50.0, 70.0, 2.0, 1.0, 1.0, 0.0];
+            let glided = speak.interpolate(&[&a, &b], &[0.5, 0.5]);
+            let faded = speak.interpolate(&[&a, &two], &[0.5, 0.5]);
+            failures([
+                glided.is_ok_and(|p| p == [1.0, 150.0, 1.0, 1.4, 0.0]),
+                faded.is_ok_and(|p| p[0] == 3.0 && p[1..4] == [100.0, 50.0, 70.0]),
+            ])
+        },
+    ),
     refused(
         "33 and 34 sinusoids",
         "sPeak",

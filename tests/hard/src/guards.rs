@@ -114,12 +114,6 @@ pub const GUARDS: &[Guard] = &[
         "const HIGHEST: f64 = f64::INFINITY;",
         "beta",
     ),
-    guard(
-        "plugins/sslope/src/fit.rs",
-        "(20.0 * libm::log10(ratio)).max(FLOOR_DB)",
-        "(20.0 * libm::log10(ratio))",
-        "slope",
-    ),
     guard("plugins/sslope/src/fit.rs", ".max(1.0);", ";", "slope"),
     guard(
         "plugins/sslope/src/fit.rs",

@@ -202,6 +202,24 @@ const CASES: &[Case] = &[
         },
     ),
     within(
+        "notches at 1 to 9999 Hz, at their own frequency",
+        "filter sections",
+        "magnitude",
+        Bound(1e-6, "of the pass band", "0"),
+        || {
+            let at = |hz: u32| {
+                let hz = f64::from(hz);
+                let notch = Biquad {
+                    b1: -2.0 * (std::f64::consts::TAU * hz / RATE_HZ).cos(),
+                    b2: 1.0,
+                    ..Biquad::IDENTITY
+                };
+                notch.magnitude(hz, RATE_HZ)
+            };
+            (1..10_000).map(at).fold(0.0, worse)
+        },
+    ),
+    within(
         "0 to 1e300 Hz, order 20",
         "analogue Butterworth magnitude",
         "evaluate",

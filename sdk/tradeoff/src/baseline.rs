@@ -12,7 +12,7 @@ const FLOOR: f64 = 1e-6;
 const RANGE_BYTES: usize = 8;
 
 /// Magnitudes after a round trip through one byte each, on a logarithmic scale from the lowest to
-/// the highest; and the bytes that takes.
+/// the highest, each rounded up or down; and the bytes that takes.
 pub(crate) fn quantise(magnitude_n: &[f64]) -> (Vec<f64>, usize) {
     let top = magnitude_n.iter().copied().fold(0.0, f64::max);
     let bytes = magnitude_n.len() + RANGE_BYTES;
@@ -26,11 +26,20 @@ pub(crate) fn quantise(magnitude_n: &[f64]) -> (Vec<f64>, usize) {
     let single = |x: f64| f64::from(x as f32);
     let low = single(logs.iter().copied().fold(f64::INFINITY, f64::min));
     let step = (single(top.ln()) - low) / STEPS;
+    // The energy that rounding left over, brought into the next bin as far as half a step goes: so
+    // bands keep their energies.
+    let mut left_over = 0.0;
     let stored = |log: &f64| {
         if step <= 0.0 {
             return low.exp();
         }
-        (low + step * ((log - low) / step).round().clamp(0.0, STEPS)).exp()
+        let (exact, power) = ((log - low) / step, (2.0 * log).exp());
+        let carried = f64::clamp(left_over, -step * power, step * power);
+        let wanted = (0.5 * (power + carried).max(0.5 * power).ln() - low) / step;
+        let nearest = wanted.round().clamp(exact.floor(), exact.ceil());
+        let stored = (low + step * nearest.clamp(0.0, STEPS)).exp();
+        left_over = power + carried - stored * stored;
+        stored
     };
     (logs.iter().map(stored).collect(), bytes)
 }
@@ -77,9 +86,13 @@ mod tests {
             .collect();
         let (stored, bytes) = quantise(&magnitude);
         assert_eq!(bytes, 205);
-        // 51 dB in 255 steps: half a step is 0.1 dB.
+        // 51 dB in 255 steps of 0.2 dB; ten bins together are much nearer.
         for (a, b) in magnitude.iter().zip(&stored) {
-            assert!((20.0 * (b / a).log10()).abs() < 0.101, "{a} {b}");
+            assert!((20.0 * (b / a).log10()).abs() < 0.201, "{a} {b}");
+        }
+        let power = |m: &[f64]| m.iter().map(|m| m * m).sum::<f64>();
+        for (a, b) in magnitude.chunks(10).zip(stored.chunks(10)) {
+            assert!((10.0 * (power(b) / power(a)).log10()).abs() < 0.04);
         }
         assert_eq!(quantise(&[0.0; 3]).0, [0.0; 3]);
         assert!((quantise(&[0.5; 3]).0[1] - 0.5).abs() < 1e-6);

@@ -3,6 +3,7 @@
 use crate::biquad::without_denormals;
 use crate::lattice::AllPoleLattice;
 use crate::linear_prediction::{step_down_in_place, step_up};
+use crate::wide::{Work, wide};
 
 /// Samples that are filtered together.
 pub const GROUP: usize = 4;
@@ -49,6 +50,13 @@ struct Direct {
     states: [[f64; MAX_DIRECT_ORDER]; GROUP],
     state: [f64; MAX_DIRECT_ORDER],
 }
+
+/// A block while coefficients stand still, in `N` coefficients or fewer; the last outputs are kept.
+struct Steady<'a, const N: usize>(
+    &'a mut Direct,
+    &'a mut [Group],
+    &'a mut [f64; MAX_DIRECT_ORDER],
+);
 
 impl AllPole {
     /// A filter at rest; `None` if a pole lies on or outside the unit circle.
@@ -103,14 +111,15 @@ impl AllPole {
         let Some(direct) = &mut self.direct else {
             return;
         };
+        let past = &mut self.past;
         // State behind the order is zero: so a few lengths do.
         match self.lattice.order() {
-            0..=2 => direct.run::<2>(steady, &mut self.past),
-            3..=4 => direct.run::<4>(steady, &mut self.past),
-            5..=6 => direct.run::<6>(steady, &mut self.past),
-            7..=8 => direct.run::<8>(steady, &mut self.past),
-            9..=12 => direct.run::<12>(steady, &mut self.past),
-            _ => direct.run::<MAX_DIRECT_ORDER>(steady, &mut self.past),
+            0..=2 => wide(Steady::<2>(direct, steady, past)),
+            3..=4 => wide(Steady::<4>(direct, steady, past)),
+            5..=6 => wide(Steady::<6>(direct, steady, past)),
+            7..=8 => wide(Steady::<8>(direct, steady, past)),
+            9..=12 => wide(Steady::<12>(direct, steady, past)),
+            _ => wide(Steady::<MAX_DIRECT_ORDER>(direct, steady, past)),
         }
     }
 
@@ -163,12 +172,15 @@ impl Direct {
         }
         direct
     }
+}
 
-    /// In `N` coefficients or fewer.
-    fn run<const N: usize>(&mut self, groups: &mut [Group], past: &mut [f64; MAX_DIRECT_ORDER]) {
-        let states = self.states.map(|state| first::<N>(&state));
-        let outputs = self.outputs;
-        let mut state = first::<N>(&self.state);
+impl<const N: usize> Work for Steady<'_, N> {
+    #[inline(always)]
+    fn run(self) {
+        let Self(direct, groups, past) = self;
+        let states = direct.states.map(|state| first::<N>(&state));
+        let outputs = direct.outputs;
+        let mut state = first::<N>(&direct.state);
         for group in &mut *groups {
             let met: Group =
                 core::array::from_fn(|i| group[i] + if i < N { state[i] } else { 0.0 });
@@ -178,7 +190,7 @@ impl Direct {
                 left[i] + if i + GROUP < N { state[i + GROUP] } else { 0.0 }
             });
         }
-        self.state[..N].copy_from_slice(&state.map(without_denormals));
+        direct.state[..N].copy_from_slice(&state.map(without_denormals));
         remember(past, groups.as_flattened());
     }
 }

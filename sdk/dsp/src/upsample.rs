@@ -7,6 +7,8 @@
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
+use crate::wide::{Work, wide};
+
 /// Source samples taken at once.
 const STEPS: usize = 8;
 /// Products that are added up before the sum of all.
@@ -73,27 +75,35 @@ impl Upsampler {
             source(&mut self.history);
             self.primed = true;
         }
-        let seen = &self.history[self.skipped()..];
-        for (phase, row) in self.kernel.chunks_exact(self.taps).enumerate() {
-            let steps = match self.copies {
+        wide(Outputs(self));
+        self.taken = 0;
+    }
+}
+
+/// All outputs of the windows that are seen.
+struct Outputs<'a>(&'a mut Upsampler);
+
+impl Work for Outputs<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let Self(stage) = self;
+        let seen = &stage.history[stage.skipped()..];
+        for (phase, row) in stage.kernel.chunks_exact(stage.taps).enumerate() {
+            let steps = match stage.copies {
                 Some(place) if phase == 0 => seen[place..].first_chunk().copied(),
                 _ => Some(filter(row, seen)),
             };
-            for (frame, y) in self
-                .ready
-                .chunks_exact_mut(self.up)
-                .zip(steps.iter().flatten())
-            {
+            let frames = stage.ready.chunks_exact_mut(stage.up);
+            for (frame, y) in frames.zip(steps.iter().flatten()) {
                 frame[phase] = *y;
             }
         }
-        self.taken = 0;
     }
 }
 
 /// A row at `STEPS` neighbouring places. It is added up in parts: a long sum in single precision would
 /// lose digits, and parts need not wait for each other.
-#[inline]
+#[inline(always)]
 fn filter(row: &[f32], history: &[f32]) -> [f32; STEPS] {
     let mut sums = [0.0f32; STEPS];
     for (i, part) in row.chunks(PART).enumerate() {

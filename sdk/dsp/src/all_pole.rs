@@ -12,8 +12,10 @@ pub type Group = [f64; GROUP];
 
 /// Orders up to this have a direct form with all state in registers.
 const MAX_DIRECT_ORDER: usize = 16;
-/// A sum of coefficients up to which the direct form's rounding stays 240 dB below its output.
-const MAX_DIRECT_SUM: f64 = 1e4;
+/// Rounding of the direct form, relative to the output, is at most about 1e-16 times the sum of its
+/// coefficients' sizes times the filter's gain for noise; up to this product samples of single
+/// precision do not show it.
+const MAX_DIRECT_ERROR: f64 = 1e7;
 
 /// `H(z) = 1 / (1 - Σ A_i z⁻ⁱ)` with coefficients that can be moved (f64 state).
 ///
@@ -145,7 +147,9 @@ impl AllPole {
             step_up(&mut a[..=m], k);
         }
         let sum: f64 = a.iter().map(|a| a.abs()).sum();
-        if sum <= MAX_DIRECT_SUM {
+        let remaining = |k: &f64| (1.0 - k) * (1.0 + k);
+        let power: f64 = self.lattice.reflection().iter().map(remaining).product();
+        if sum <= MAX_DIRECT_ERROR * libm::sqrt(power) {
             self.direct = Some(Direct::new(&a, &self.past));
         }
     }
@@ -229,6 +233,7 @@ fn remember(past: &mut [f64; MAX_DIRECT_ORDER], outputs: &[f64]) {
 mod tests {
     use super::*;
     use crate::noise::GaussianNoise;
+    use alloc::vec::Vec;
 
     /// Standing still, moving, and standing still again: the same as a lattice all the time.
     #[test]
@@ -271,6 +276,36 @@ mod tests {
                 }
                 for (y, x) in group.iter().zip(expected) {
                     assert!((y - x).abs() < 1e-11, "{n}: {y} {x}");
+                }
+            }
+        }
+    }
+
+    /// What is too long for the direct form, or would lose digits in it, stays a lattice.
+    #[test]
+    fn the_direct_form_is_left_where_it_would_not_do() {
+        let coefficients_of = |poles: usize, radius: f64| {
+            let mut polynomial = alloc::vec![1.0];
+            for _ in 0..poles {
+                polynomial.push(0.0);
+                for i in (1..polynomial.len()).rev() {
+                    polynomial[i] -= radius * polynomial[i - 1];
+                }
+            }
+            polynomial[1..].iter().map(|c| -c).collect::<Vec<f64>>()
+        };
+        for (poles, radius, direct) in [(12, 0.4, true), (12, 0.7, false), (17, 0.1, false)] {
+            let mut filter = AllPole::new(&coefficients_of(poles, radius)).unwrap();
+            assert_eq!(filter.direct.is_some(), direct, "{poles} poles at {radius}");
+            let mut lattice = filter.lattice.clone();
+            let mut noise = GaussianNoise::new(2);
+            for _ in 0..100 {
+                let mut group: Group = [0.0; GROUP];
+                noise.fill(group.as_chunks_mut().0);
+                let expected = group.map(|x| lattice.tick(x));
+                filter.process(core::slice::from_mut(&mut group));
+                for (y, x) in group.iter().zip(expected) {
+                    assert!((y - x).abs() <= 1e-9 * x.abs().max(1.0), "{poles}: {y} {x}");
                 }
             }
         }

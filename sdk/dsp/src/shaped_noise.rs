@@ -1,9 +1,9 @@
 //! Random-phase noise with a given spectrum, streamed by overlap-add.
 //!
-//! Frames of uniformly random phases follow each other with an eighth of overlap, where one goes out
-//! with a cosine and the next comes in with a sine. Frames are independent and sine² + cos² = 1, so
-//! the power is the same at every sample; a frame is one period of its components, so nothing comes
-//! back (numeric definitions: random phase).
+//! Frames of uniformly random phases follow each other with an eighth of overlap, where one goes out as
+//! the next comes in. Frames are independent and the squares of the two weights add up to 1, so the
+//! power is the same at every sample; a frame is one period of its components, so nothing comes back
+//! (numeric definitions: random phase).
 
 use alloc::vec::Vec;
 
@@ -21,7 +21,7 @@ const FADE_S: f64 = 0.010;
 /// An endless stream of noise of unit RMS whose spectrum follows a magnitude curve.
 pub struct ShapedNoise {
     inverse: InverseRealFft,
-    /// A quarter of a sine: how a frame comes in; its mirror image is how the one before goes out.
+    /// How a frame comes in; its mirror image is how the one before goes out.
     rise: Vec<f32>,
     /// Samples from the beginning of a frame to that of the next.
     hop: usize,
@@ -51,8 +51,16 @@ pub struct ShapedNoise {
 /// Rate at which a voice of [`ShapedNoise`] works when `wanted_hz` is wanted: a whole fraction of
 /// it that still holds the band with room for an easy interpolation filter.
 pub fn economical_rate_hz(wanted_hz: f64, band: Band) -> f64 {
-    let parts = libm::floor(wanted_hz / (3.2 * band.high_hz)).max(1.0);
+    let parts = libm::floor(wanted_hz / (3.7 * band.high_hz)).max(1.0);
     wanted_hz / parts
+}
+
+/// How a frame comes in over `overlap` samples: `sin(π/2 sin²)`, which has no corners at its ends as a
+/// sine has, so that a steep spectrum's floor stays low. With its mirror image its squares add up to 1.
+fn rise(n: usize, overlap: usize) -> f64 {
+    let quarter = core::f64::consts::FRAC_PI_2;
+    let sine = libm::sin(quarter * (n as f64 + 0.5) / overlap as f64);
+    libm::sin(quarter * sine * sine)
 }
 
 impl ShapedNoise {
@@ -73,13 +81,10 @@ impl ShapedNoise {
         let component_hz: Vec<f64> = (low..=high.max(low))
             .map(|j| (j as f64 * spacing).clamp(band.low_hz, band.high_hz))
             .collect();
-        let quarter = 0.5 * core::f64::consts::PI / overlap as f64;
         let zeros = |n| alloc::vec![0.0; n];
         let mut noise = Self {
             inverse: InverseRealFft::new(half),
-            rise: (0..overlap)
-                .map(|n| libm::sin((n as f64 + 0.5) * quarter) as f32)
-                .collect(),
+            rise: (0..overlap).map(|n| rise(n, overlap) as f32).collect(),
             hop,
             fade_len: libm::ceil(FADE_S * rate_hz).max(1.0).min(hop as f64) as usize,
             first: low,

@@ -75,7 +75,7 @@ fn bare_finger_csv_in_volts_at_10_khz() {
             .as_array()
             .unwrap()
             .len(),
-        5
+        6
     );
 }
 

@@ -287,7 +287,7 @@ mod tests {
         let coefficients_of = |poles: usize, radius: f64| {
             let mut polynomial = alloc::vec![1.0];
             for _ in 0..poles {
-                polynomial.push(0.0);
+                polynomial.resize(polynomial.len() + 1, 0.0);
                 for i in (1..polynomial.len()).rev() {
                     polynomial[i] -= radius * polynomial[i - 1];
                 }

@@ -2,15 +2,24 @@
 
 use htex_model::Status;
 
-/// The text with its control characters written out: a model's words must not steer a terminal.
+/// Most bytes of a model's words that a message shows.
+const LONGEST_SHOWN: usize = 4096;
+
+/// The text as a message shows it: with its control characters written out, as a model's words must
+/// not steer a terminal, and cut where they are too long to read.
 pub(crate) fn plain(text: &str) -> String {
-    let one = |c: char| -> Box<dyn Iterator<Item = char>> {
-        match c.is_control() {
-            true => Box::new(c.escape_default()),
-            false => Box::new(std::iter::once(c)),
+    let mut plain = String::with_capacity(text.len().min(LONGEST_SHOWN));
+    for c in text.chars() {
+        if plain.len() >= LONGEST_SHOWN {
+            plain.push('…');
+            break;
         }
-    };
-    text.chars().flat_map(one).collect()
+        match c.is_control() {
+            true => plain.extend(c.escape_default()),
+            false => plain.push(c),
+        }
+    }
+    plain
 }
 
 /// An error of one call, or of finding a model.

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { SAMPLES = 1 << 20, BLOCK = 256, VOICES = 1000, MOST = 64, SECTIONS = 4, LINES = 10, LANES = 8 };
+enum { SAMPLES = 1 << 20, BLOCK = 256, VOICES = 1000, MOST = 64, SECTIONS = 2, LINES = 10, LANES = 8 };
 
 /* Noise of its own, of which compilers make vector instructions: the sum of four uniform numbers of 16
  * bits. Its tails end at 3.5 sigma; it is quicker than a true normal law, and flatters C. */
@@ -52,15 +52,14 @@ static void all_pole(Voice *v, double *x, int len) {
     memcpy(v->past, y + len, sizeof v->past);
 }
 
-/* Four sections one after the other, transposed direct form II: the Butterworth high-pass of order 8 at
+/* Two sections one after the other, transposed direct form II: the Chebyshev high-pass of order 4 at
  * 17.5 Hz for 2 kHz, as our voice has it, and the same work as a band-pass of sSlope. */
 static const double SOS[SECTIONS][5] = {
-    {0.868553, -1.737106, 0.868553, -1.894856, 0.897723}, {1, -2, 1, -1.909724, 0.912614},
-    {1, -2, 1, -1.937819, 0.940751}, {1, -2, 1, -1.975797, 0.978787},
+    {0.909822, -1.819644, 0.909822, -1.861370, 0.869042}, {1, -2, 1, -1.973117, 0.976448},
 };
 
-static void sections(Voice *v, double *x, int len, int count) {
-    for (int s = 0; s < count; s++)
+static void sections(Voice *v, double *x, int len) {
+    for (int s = 0; s < SECTIONS; s++)
         for (int n = 0; n < len; n++) {
             double y = SOS[s][0] * x[n] + v->s1[s];
             v->s1[s] = SOS[s][1] * x[n] - SOS[s][3] * y + v->s2[s];
@@ -73,7 +72,7 @@ static void ar_block(Voice *v, float *to, int edges) {
     double block[BLOCK];
     noise_fill(&v->noise, block, BLOCK);
     all_pole(v, block, BLOCK);
-    if (edges) sections(v, block, BLOCK, SECTIONS);
+    if (edges) sections(v, block, BLOCK);
     for (int n = 0; n < BLOCK; n++) to[n] = (float)block[n];
 }
 
@@ -91,7 +90,7 @@ static void slope(void) {
     for (int k = 0; k < SAMPLES; k += BLOCK) {
         double block[BLOCK];
         noise_fill(&v->noise, block, BLOCK);
-        sections(v, block, BLOCK, 2);
+        sections(v, block, BLOCK);
         for (int n = 0; n < BLOCK; n++) out[k + n] = (float)block[n];
     }
 }

@@ -85,9 +85,11 @@ impl AutoregressionVoice {
         let mut block = [[0.0; GROUP]; BLOCK];
         for out in steady.chunks_mut(BLOCK) {
             let block = &mut block[..out.len()];
-            self.noise.fill(block.as_flattened_mut().as_chunks_mut().0);
-            for x in block.as_flattened_mut() {
-                *x *= self.gain;
+            // The room of the output holds the noise first.
+            self.noise.fill(out.as_flattened_mut());
+            let noise = out.as_flattened().iter();
+            for (x, noise) in block.as_flattened_mut().iter_mut().zip(noise) {
+                *x = self.gain * f64::from(*noise);
             }
             self.filter.process(block);
             self.finish(block, out);
@@ -96,15 +98,15 @@ impl AutoregressionVoice {
 
     /// A group of parameters that change.
     fn changing(&mut self) -> [f32; GROUP] {
-        let mut group: Group = [0.0; GROUP];
-        self.noise.fill(group.as_chunks_mut().0);
-        for x in &mut group {
+        let mut out = [[0.0; GROUP]];
+        self.noise.fill(out.as_flattened_mut());
+        let [noise] = out;
+        let group = noise.map(|x| {
             if self.ramp_left > 0 {
                 self.ramp();
             }
-            *x = self.filter.tick(self.gain * *x);
-        }
-        let mut out = [[0.0; GROUP]];
+            self.filter.tick(self.gain * f64::from(x))
+        });
         self.finish(&mut [group], &mut out);
         out[0]
     }

@@ -27,8 +27,9 @@ impl Deref for Sections {
     }
 }
 
+/// What a filter lets pass.
 #[derive(Clone, Copy)]
-enum Kind {
+pub(crate) enum Kind {
     LowPass,
     HighPass,
 }
@@ -57,8 +58,7 @@ pub fn analog_high_pass_magnitude(f_hz: f64, fc_hz: f64, order: usize) -> f64 {
 }
 
 fn design(kind: Kind, order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {
-    let in_range = fc_hz > 0.0 && fc_hz < rate_hz / 2.0 && rate_hz.is_finite();
-    if !(1..=MAX_ORDER).contains(&order) || !in_range {
+    if !(1..=MAX_ORDER).contains(&order) || !in_range(fc_hz, rate_hz) {
         return None;
     }
     let omega = 2.0 * PI * fc_hz / rate_hz;
@@ -77,6 +77,11 @@ fn design(kind: Kind, order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections
         len += 1;
     }
     Some(Sections { sections, len })
+}
+
+/// Whether an edge lies strictly between 0 and the Nyquist frequency.
+pub(crate) fn in_range(edge_hz: f64, rate_hz: f64) -> bool {
+    edge_hz > 0.0 && edge_hz < rate_hz / 2.0 && rate_hz.is_finite()
 }
 
 /// Bilinear transform of `1 / (s + 1)` or `s / (s + 1)`, written with sine and cosine of half the
@@ -98,7 +103,7 @@ fn first_order(kind: Kind, omega: f64) -> Biquad {
 }
 
 /// Bilinear transform of `1 / (s² + s/Q + 1)` or `s² / (s² + s/Q + 1)`.
-fn second_order(kind: Kind, omega: f64, half_inverse_q: f64) -> Biquad {
+pub(crate) fn second_order(kind: Kind, omega: f64, half_inverse_q: f64) -> Biquad {
     let alpha = libm::sin(omega) * half_inverse_q;
     let scale = 1.0 / (1.0 + alpha);
     let (sine, cosine) = libm::sincos(omega / 2.0);

@@ -159,7 +159,7 @@ impl Stage {
         let cutoff = 0.5 * (spec.pass_hz + spec.stop_hz) / spec.source_hz();
         let kernel = kernels::kernel(taps, phases, spec.is_exact(), cutoff);
         if spec.is_whole() {
-            return Self::Whole(Upsampler::new(up as usize, taps, kernel));
+            return Self::Whole(Upsampler::new(up as usize, taps, kernel, spec.source_hz()));
         }
         let step = ((down / up) as usize, (down % up) as usize);
         Self::Rational(Polyphase::new(up as usize, step, taps, kernel))

@@ -9,21 +9,25 @@ use alloc::vec::Vec;
 
 use crate::wide::{Work, wide};
 
-/// Source samples taken at once.
-const STEPS: usize = 8;
+/// Source samples taken at once: few, as a change of parameters is heard after them, and twice as many
+/// where they take no longer for it.
+const FEW: usize = 8;
+const MANY: usize = 16;
+const MANY_HZ: f64 = 3_500.0;
 /// Products that are added up before the sum of all.
 const PART: usize = 12;
 
 #[derive(Debug, Clone)]
 pub(crate) struct Upsampler {
     up: usize,
+    steps: usize,
     taps: usize,
     /// One row of `taps` for each of the `up` phases.
     kernel: Arc<[f32]>,
     /// Where the row of phase 0 has its 1, when all else in it is 0.
     copies: Option<usize>,
-    /// The samples that `STEPS` windows of `taps` see, and as many before them as make pulls whole
-    /// numbers of `STEPS`: a stage in between that pulls so too is then never ahead.
+    /// The samples that `steps` windows of `taps` see, and as many before them as make pulls whole
+    /// numbers of `steps`: a stage in between that pulls so too is then never ahead.
     history: Vec<f32>,
     primed: bool,
     ready: Vec<f32>,
@@ -32,14 +36,16 @@ pub(crate) struct Upsampler {
 
 impl Upsampler {
     /// `taps` is even, and the kernel has `up` rows of them.
-    pub(crate) fn new(up: usize, taps: usize, kernel: Arc<[f32]>) -> Self {
-        let ready = alloc::vec![0.0; up * STEPS];
+    pub(crate) fn new(up: usize, taps: usize, kernel: Arc<[f32]>, source_hz: f64) -> Self {
+        let steps = if source_hz < MANY_HZ { FEW } else { MANY };
+        let ready = alloc::vec![0.0; up * steps];
         Self {
             up,
+            steps,
             taps,
             copies: only_one(&kernel[..taps]),
             kernel,
-            history: alloc::vec![0.0; (taps - 1).next_multiple_of(STEPS) + STEPS],
+            history: alloc::vec![0.0; (taps - 1).next_multiple_of(steps) + steps],
             primed: false,
             taken: ready.len(),
             ready,
@@ -62,28 +68,31 @@ impl Upsampler {
 
     /// Samples of the source before the window of the first output.
     pub(crate) fn skipped(&self) -> usize {
-        self.history.len() - STEPS - (self.taps - 1)
+        self.history.len() - self.steps - (self.taps - 1)
     }
 
     fn advance(&mut self, source: &mut dyn FnMut(&mut [f32])) {
         // The first output stands at the centre of a window that is full.
         if self.primed {
-            self.history.copy_within(STEPS.., 0);
-            let kept = self.history.len() - STEPS;
+            self.history.copy_within(self.steps.., 0);
+            let kept = self.history.len() - self.steps;
             source(&mut self.history[kept..]);
         } else {
             source(&mut self.history);
             self.primed = true;
         }
-        wide(Outputs(self));
+        match self.steps {
+            FEW => wide(Outputs::<FEW>(self)),
+            _ => wide(Outputs::<MANY>(self)),
+        }
         self.taken = 0;
     }
 }
 
 /// All outputs of the windows that are seen.
-struct Outputs<'a>(&'a mut Upsampler);
+struct Outputs<'a, const STEPS: usize>(&'a mut Upsampler);
 
-impl Work for Outputs<'_> {
+impl<const STEPS: usize> Work for Outputs<'_, STEPS> {
     #[inline(always)]
     fn run(self) {
         let Self(stage) = self;
@@ -91,11 +100,11 @@ impl Work for Outputs<'_> {
         for (phase, row) in stage.kernel.chunks_exact(stage.taps).enumerate() {
             let steps = match stage.copies {
                 Some(place) if phase == 0 => seen[place..].first_chunk().copied(),
-                _ => Some(filter(row, seen)),
+                _ => Some(filter::<STEPS>(row, seen)),
             };
-            let frames = stage.ready.chunks_exact_mut(stage.up);
-            for (frame, y) in frames.zip(steps.iter().flatten()) {
-                frame[phase] = *y;
+            let (steps, places) = (steps.unwrap_or([0.0; STEPS]), &mut stage.ready[phase..]);
+            for i in 0..STEPS {
+                places[i * stage.up] = steps[i];
             }
         }
     }
@@ -104,14 +113,14 @@ impl Work for Outputs<'_> {
 /// A row at `STEPS` neighbouring places. It is added up in parts: a long sum in single precision would
 /// lose digits, and parts need not wait for each other.
 #[inline(always)]
-fn filter(row: &[f32], history: &[f32]) -> [f32; STEPS] {
+fn filter<const STEPS: usize>(row: &[f32], history: &[f32]) -> [f32; STEPS] {
     let mut sums = [0.0f32; STEPS];
     for (i, part) in row.chunks(PART).enumerate() {
         let mut partial = [0.0f32; STEPS];
         let windows = history[i * PART..].windows(STEPS);
-        for (k, window) in part.iter().zip(windows) {
+        for (coefficient, window) in part.iter().zip(windows) {
             for t in 0..STEPS {
-                partial[t] += k * window[t];
+                partial[t] += coefficient * window[t];
             }
         }
         for t in 0..STEPS {

@@ -213,9 +213,8 @@ impl FilteredNoise {
     fn render(&mut self, out: &mut [f32]) {
         let (noise, fir, gain) = (&mut self.noise, &mut self.fir, self.gain);
         let mut make = |block: &mut [f32]| {
-            for x in block.iter_mut() {
-                *x = gain * noise.next_sample() as f32;
-            }
+            noise.fill(block);
+            block.iter_mut().for_each(|x| *x *= gain);
             fir.process(block);
         };
         match &mut self.resampler {

@@ -25,7 +25,7 @@ pub fn tone(hz: f64) -> Vec<f64> {
 pub fn noise() -> Vec<f64> {
     let mut noise = GaussianNoise::new(7);
     let mut samples = vec![0.0; SAMPLES];
-    noise.fill(samples.as_chunks_mut().0);
+    samples.fill_with(|| noise.next_sample().into());
     samples
 }
 

@@ -97,7 +97,7 @@ fn rim_run(reflection: &[f64]) -> f64 {
     let mut block = [0.0; 1_000];
     let (mut largest, mut count) = (0.0, 0.0);
     for _ in 0..1_000 {
-        noise.fill(block.as_chunks_mut().0);
+        block.fill_with(|| noise.next_sample().into());
         lattice.process(&mut block);
         count += block.len() as f64;
         largest = block.iter().fold(largest, |a, x| worse(a, x.abs()));

@@ -431,20 +431,16 @@ const CASES: &[Case] = &[
         || {
             let (mut uniform, mut gaussian) = (Uniform::new(u64::MAX), GaussianNoise::new(0));
             let (mut cos, mut sin) = (vec![0.0; 1_000_000], vec![0.0; 1_000_000]);
-            let mut normal = vec![[0.0; 2]; 500_000];
+            let mut normal = vec![0.0; 1_000_000];
             uniform.fill_directions(&mut cos, &mut sin);
             gaussian.fill(&mut normal);
             let directions = cos.into_iter().zip(sin);
-            failures(
-                directions
-                    .zip(normal.as_flattened())
-                    .map(|((cos, sin), x)| {
-                        let (cos, sin) = (f64::from(cos), f64::from(sin));
-                        (0.0..1.0).contains(&uniform.next_unit())
-                            && (cos * cos + sin * sin - 1.0).abs() < 6e-7
-                            && x.abs() < 7.0
-                    }),
-            )
+            failures(directions.zip(normal).map(|((cos, sin), x): (_, f32)| {
+                let (cos, sin) = (f64::from(cos), f64::from(sin));
+                (0.0..1.0).contains(&uniform.next_unit())
+                    && (cos * cos + sin * sin - 1.0).abs() < 6e-7
+                    && x.abs() < 7.0
+            }))
         },
     ),
     within(

@@ -1,0 +1,61 @@
+//! Random bits from generators that stand side by side in vector registers.
+
+use crate::noise::Uniform;
+
+/// Generators, and numbers that are made at once.
+pub(crate) const LANES: usize = 8;
+
+/// Eight generators xoshiro128++ (Blackman and Vigna 2021), whose states a seed draws: each would take
+/// 2¹²⁸ numbers to come back.
+#[derive(Debug, Clone)]
+pub(crate) struct RandomLanes([[u32; LANES]; 4]);
+
+impl RandomLanes {
+    pub(crate) fn new(seed: u64) -> Self {
+        let mut uniform = Uniform::new(seed);
+        Self([(); 4].map(|()| [(); LANES].map(|()| uniform.next_bits() as u32)))
+    }
+
+    /// The next 32 bits of each.
+    #[inline(always)]
+    pub(crate) fn next_bits(&mut self) -> [u32; LANES] {
+        let [a, b, c, d] = &mut self.0;
+        let mut bits = [0; LANES];
+        for i in 0..LANES {
+            bits[i] = a[i].wrapping_add(d[i]).rotate_left(7).wrapping_add(a[i]);
+            let shifted = b[i] << 9;
+            c[i] ^= a[i];
+            d[i] ^= b[i];
+            b[i] ^= c[i];
+            a[i] ^= d[i];
+            c[i] ^= shifted;
+            d[i] = d[i].rotate_left(11);
+        }
+        bits
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_core::{Rng, SeedableRng};
+    use rand_xoshiro::Xoshiro128PlusPlus;
+
+    #[test]
+    fn each_is_the_generator_that_others_have_written_too() {
+        let mut lanes = RandomLanes::new(3);
+        let seed = |i: usize| {
+            let mut bytes = [0; 16];
+            for (to, state) in bytes.chunks_mut(4).zip(lanes.0) {
+                to.copy_from_slice(&state[i].to_le_bytes());
+            }
+            bytes
+        };
+        let mut others: [_; LANES] =
+            core::array::from_fn(|i| Xoshiro128PlusPlus::from_seed(seed(i)));
+        for _ in 0..1_000 {
+            let expected = others.each_mut().map(|other| other.next_u32());
+            assert_eq!(lanes.next_bits(), expected);
+        }
+    }
+}

@@ -5,7 +5,7 @@ use htex_dsp::nelder_mead::{Minimum, Options, minimize};
 use htex_dsp::peaks::{Peak, select_peaks};
 use htex_model::{Error, Fit, FitInput};
 
-use crate::density;
+use crate::Profile;
 
 const POINTS: usize = 0;
 const JND: usize = 1;
@@ -68,7 +68,8 @@ impl Fitted {
         let bound = input.options[LOWER_BOUND].max(SMALLEST);
         let (alpha, beta) = fit_points(points, band, bound);
         let scale = best_scale(points, band, alpha, beta).map_or(0.0, |(scale, _)| scale);
-        let at = |f: f64| scale * density(alpha, beta, band, f);
+        let profile = Profile::new(alpha, beta, band);
+        let at = |f: f64| scale * profile.at(f);
         let bins = input.frequency_hz.iter();
         Self {
             alpha,
@@ -130,9 +131,10 @@ pub(crate) fn fit_points(points: &[Peak], band: Band, bound: f64) -> (f64, f64) 
 /// The scale of least squares, in closed form, and the squared distance it leaves relative to the
 /// points' own; `None` where the density is not finite or zero at all points.
 fn best_scale(points: &[Peak], band: Band, alpha: f64, beta: f64) -> Option<(f64, f64)> {
+    let profile = Profile::new(alpha, beta, band);
     let (mut pp, mut pm, mut mm) = (0.0, 0.0, 0.0);
     for point in points {
-        let p = density(alpha, beta, band, point.frequency_hz);
+        let p = profile.at(point.frequency_hz);
         pp += p * p;
         pm += p * point.magnitude;
         mm += point.magnitude * point.magnitude;
@@ -143,7 +145,7 @@ fn best_scale(points: &[Peak], band: Band, alpha: f64, beta: f64) -> Option<(f64
     let scale = pm / pp;
     let residual: f64 = points
         .iter()
-        .map(|point| scale * density(alpha, beta, band, point.frequency_hz) - point.magnitude)
+        .map(|point| scale * profile.at(point.frequency_hz) - point.magnitude)
         .map(|r| r * r)
         .sum();
     Some((scale, residual / mm))

@@ -3,7 +3,7 @@
 
 mod fit;
 
-use htex_dsp::beta::{beta_pdf, log_unit};
+use htex_dsp::beta::{BetaDensity, log_unit};
 use htex_dsp::grid::{Band, GRID_HZ, curve_level_rms};
 use htex_model::{Descriptor, Error, Fit, FitInput, Model, Numbers, Values, mix};
 use htex_shaped::{Curve, ShapedVoice};
@@ -85,21 +85,17 @@ impl Model for SpectralBeta {
     }
 }
 
-/// The density over frequency.
+/// The density over frequency, and its RMS in the band.
 #[derive(Clone, Copy)]
 pub struct Shape {
-    alpha: f64,
-    beta: f64,
-    band: Band,
+    profile: Profile,
     level: f64,
 }
 
 impl Curve for Shape {
     fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
         let mut shape = Self {
-            alpha: 1.0,
-            beta: 1.0,
-            band,
+            profile: Profile::new(1.0, 1.0, band),
             level: 1.0,
         };
         shape.set(parameters)?;
@@ -107,21 +103,20 @@ impl Curve for Shape {
     }
 
     fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
-        self.alpha = parameters.scalar(ALPHA);
-        self.beta = parameters.scalar(BETA);
-        self.level = curve_level_rms(self.band, |f| self.at(f));
+        let (alpha, beta) = (parameters.scalar(ALPHA), parameters.scalar(BETA));
+        self.profile = Profile::new(alpha, beta, self.profile.band);
+        self.level = curve_level_rms(self.profile.band, |f| self.at(f));
         if self.level > 0.0 && self.level.is_finite() {
             return Ok(());
         }
         Err(Error::parameters(format!(
-            "alpha {} and beta {} put all energy between two bins of the {GRID_HZ} Hz grid; \
-             take smaller ones",
-            self.alpha, self.beta
+            "alpha {alpha} and beta {beta} put all energy between two bins of the {GRID_HZ} Hz grid; \
+             take smaller ones"
         )))
     }
 
     fn at(&self, frequency_hz: f64) -> f64 {
-        density(self.alpha, self.beta, self.band, frequency_hz)
+        self.profile.at(frequency_hz)
     }
 
     fn level(&self) -> f64 {
@@ -129,19 +124,29 @@ impl Curve for Shape {
     }
 }
 
-/// The beta density at a frequency in the band. Where it is infinite, at an edge with a parameter
+/// The beta density at the frequencies of a band. Where it is infinite, at an edge with a parameter
 /// below 1, the value a quarter of a bin inside stands for what a bin that wide would read.
-fn density(alpha: f64, beta: f64, band: Band, frequency_hz: f64) -> f64 {
-    let inset = 0.25 * GRID_HZ;
-    let low = if alpha < 1.0 {
-        band.low_hz + inset
-    } else {
-        band.low_hz
-    };
-    let high = if beta < 1.0 {
-        band.high_hz - inset
-    } else {
-        band.high_hz
-    };
-    beta_pdf(log_unit(frequency_hz.clamp(low, high), band), alpha, beta)
+#[derive(Clone, Copy)]
+pub(crate) struct Profile {
+    density: BetaDensity,
+    band: Band,
+    low_hz: f64,
+    high_hz: f64,
+}
+
+impl Profile {
+    pub(crate) fn new(alpha: f64, beta: f64, band: Band) -> Self {
+        let inset = |parameter: f64| if parameter < 1.0 { 0.25 * GRID_HZ } else { 0.0 };
+        Self {
+            density: BetaDensity::new(alpha, beta),
+            band,
+            low_hz: band.low_hz + inset(alpha),
+            high_hz: band.high_hz - inset(beta),
+        }
+    }
+
+    pub(crate) fn at(&self, frequency_hz: f64) -> f64 {
+        let inside = frequency_hz.clamp(self.low_hz, self.high_hz);
+        self.density.at(log_unit(inside, self.band))
+    }
 }

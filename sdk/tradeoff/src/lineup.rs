@@ -1,6 +1,8 @@
 //! Who is measured, and under which key results are kept.
 
-use htex_host::{LoadedModel, Synthesis};
+use std::path::Path;
+
+use htex_host::{LoadedModel, Origin, Synthesis};
 
 use crate::contender::{Contender, Kind};
 use crate::point::{QUANTISED, RECORDING};
@@ -67,7 +69,7 @@ pub(crate) fn key(subjects: &[Subject], contenders: &[Contender], request: &Requ
         hasher.update(&(text.len() as u64).to_le_bytes());
         hasher.update(text.as_bytes());
     };
-    add(env!("CARGO_PKG_VERSION"));
+    add(&std::env::current_exe().map_or_else(|_| String::new(), |program| build(&program)));
     add(&format!("{:?} {}", Machine::here(), request.quick));
     for subject in subjects {
         add(&subject.name);
@@ -83,7 +85,19 @@ pub(crate) fn key(subjects: &[Subject], contenders: &[Contender], request: &Requ
                 descriptor.version,
                 model.origin()
             ));
+            if let Origin::Native(file) | Origin::Wasm(file) = model.origin() {
+                add(&build(file));
+            }
         }
     }
     hasher.finalize().to_hex().to_string()
+}
+
+/// Which build of a program a file is, by its size and its time; empty if that cannot be read.
+fn build(file: &Path) -> String {
+    let read = || {
+        let about = file.metadata().ok()?;
+        Some(format!("{} {:?}", about.len(), about.modified().ok()?))
+    };
+    read().unwrap_or_default()
 }

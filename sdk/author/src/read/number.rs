@@ -4,59 +4,86 @@
 const POWERS: [f64; 17] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
 ];
+/// Digits that are read in a loop of known length, which costs a fifth less: few runs are longer.
+const USUAL: usize = 9;
 
 /// The number a cell holds; `None` when it is not one. NaN and infinities come back as such.
 pub(crate) fn parse_number(cell: &str) -> Option<f64> {
-    match plain_prefix(cell.as_bytes()) {
-        Some((value, length)) if length == cell.len() => Some(value),
+    match plain_number(cell.as_bytes()) {
+        Some((value, [])) => Some(value),
         _ => cell.parse().ok(),
     }
 }
 
-/// Reads a row of plain numbers into `values`, one for each cell.
+/// Reads the row of plain numbers at the front of `text` into `values`, one for each cell; gives what
+/// stands behind it, from the line feed on.
 ///
-/// False when a cell is anything else or their count is not `values.len()`: then the row needs the
+/// `None` when a cell is anything else or their count is not `values.len()`: then the row needs the
 /// slow way, and `values` holds nothing of use.
-pub(crate) fn parse_plain_row(row: &[u8], delimiter: u8, values: &mut [f64]) -> bool {
-    let last = values.len().saturating_sub(1);
-    let mut rest = row;
-    for (column, slot) in values.iter_mut().enumerate() {
-        let Some((value, length)) = plain_prefix(rest) else {
-            return false;
-        };
-        *slot = value;
-        match rest.get(length) {
-            Some(byte) if *byte == delimiter && column < last => rest = &rest[length + 1..],
-            None if column == last => return true,
-            _ => return false,
+pub(crate) fn parse_plain_row<'a>(
+    text: &'a [u8],
+    delimiter: u8,
+    values: &mut [f64],
+) -> Option<&'a [u8]> {
+    let (last, before) = values.split_last_mut()?;
+    let mut rest = text;
+    for slot in before {
+        (*slot, rest) = plain_number(rest)?;
+        match rest {
+            [byte, behind @ ..] if *byte == delimiter => rest = behind,
+            _ => return None,
         }
     }
-    false
+    (*last, rest) = plain_number(rest)?;
+    match rest {
+        [] | [b'\n', ..] => Some(rest),
+        [b'\r', behind @ ..] if matches!(behind, [] | [b'\n', ..]) => Some(behind),
+        _ => None,
+    }
 }
 
-/// The number `[+-]digits[.digits]` at the front, and its length in bytes; `None` when there is none
+/// The number `[+-]digits[.digits]` at the front, and what stands behind it; `None` when there is none
 /// or it has more digits than `f64` surely holds. The quotient of two exact numbers is rounded once,
 /// so it equals what `str::parse` gives.
-fn plain_prefix(text: &[u8]) -> Option<(f64, usize)> {
-    let negative = text.first() == Some(&b'-');
-    let sign = usize::from(negative || text.first() == Some(&b'+'));
-    let (whole, integer_digits) = digits(&text[sign..], 0);
-    let mut length = sign + integer_digits;
-    let (mut mantissa, mut decimals) = (whole, 0);
-    if text.get(length) == Some(&b'.') {
-        (mantissa, decimals) = digits(&text[length + 1..], whole);
-        length += 1 + decimals;
+// Called for every cell: a quarter of the time of a row goes where this is not inlined.
+#[inline(always)]
+fn plain_number(text: &[u8]) -> Option<(f64, &[u8])> {
+    let (negative, text) = match text {
+        [b'-', behind @ ..] => (true, behind),
+        [b'+', behind @ ..] => (false, behind),
+        _ => (false, text),
+    };
+    let (mut mantissa, mut rest) = digits(text, 0);
+    let integer_digits = text.len() - rest.len();
+    let mut decimals = 0;
+    if let [b'.', behind @ ..] = rest {
+        (mantissa, rest) = digits(behind, mantissa);
+        decimals = behind.len() - rest.len();
     }
     let count = integer_digits + decimals;
     if count == 0 || count > 16 || mantissa > 1 << 53 {
         return None;
     }
     let magnitude = mantissa as f64 / POWERS[decimals];
-    Some((if negative { -magnitude } else { magnitude }, length))
+    Some((if negative { -magnitude } else { magnitude }, rest))
 }
 
-/// Appends the digits at the front to `value`; wraps beyond 19, which the caller refuses by the count.
-fn digits(text: &[u8], mut value: u64) -> (u64, usize) {
+/// Appends the digits at the front to `value`, and gives what stands behind them; wraps beyond 19,
+/// which the caller refuses by the count.
+#[inline(always)]
+fn digits(text: &[u8], value: u64) -> (u64, &[u8]) {
+    if let Some(front) = text.first_chunk::<USUAL>() {
+        let (value, count) = append(front, value);
+        if count < USUAL {
+            return (value, &text[count..]);
+        }
+    }
+    let (value, count) = append(text, value);
+    (value, &text[count..])
+}
+
+#[inline]
+fn append(text: &[u8], mut value: u64) -> (u64, usize) {
     let mut count = 0;
     for byte in text {
         let digit = byte.wrapping_sub(b'0');
@@ -76,7 +103,9 @@ mod tests {
 
     proptest! {
         #[test]
-        fn agrees_with_the_standard_parser(text in "[+-]?[0-9]{0,12}(\\.[0-9]{0,9})?(e-?[0-9])?") {
+        fn agrees_with_the_standard_parser(
+            text in "[+-]?[0-9]{0,19}(\\.[0-9]{0,19})?(e-?[0-9])?[ -~]?"
+        ) {
             prop_assert_eq!(parse_number(&text), text.parse().ok());
         }
     }
@@ -84,12 +113,33 @@ mod tests {
     #[test]
     fn a_plain_row_is_all_numbers_or_nothing() {
         let mut values = [0.0; 3];
-        assert!(parse_plain_row(b"1,-0.25,+3.", b',', &mut values));
-        assert_eq!(values, [1.0, -0.25, 3.0]);
-        for row in [
-            "1,2", "1,2,3,4", "1,2,", "1,2,3,", "1,2,3 ", "1,,3", "1,2,1e3", "1,2,-", "",
+        for (row, rest) in [
+            ("1,-0.25,+3.", ""),
+            ("1,-0.25,+3.\r", ""),
+            ("1,-0.25,+3.\n\n", "\n\n"),
+            ("1,-0.25,+3.\r\n4", "\n4"),
         ] {
-            assert!(!parse_plain_row(row.as_bytes(), b',', &mut values), "{row}");
+            let found = parse_plain_row(row.as_bytes(), b',', &mut values);
+            assert_eq!(found, Some(rest.as_bytes()), "{row:?}");
+            assert_eq!(values, [1.0, -0.25, 3.0]);
+        }
+        for row in [
+            "1,2",
+            "1,2,3,4",
+            "1,2,",
+            "1,2,3,",
+            "1,2,3 ",
+            "1,,3",
+            "1,2,1e3",
+            "1,2,-",
+            "",
+            "\n",
+            "1,2\n3",
+            "1,2,3\r\r\n",
+            "1,2,3\r4",
+        ] {
+            let found = parse_plain_row(row.as_bytes(), b',', &mut values);
+            assert_eq!(found, None, "{row:?}");
         }
     }
 }

@@ -97,12 +97,7 @@ impl<'a> Table<'a> {
         let mut lines = self.rows.clone();
         let mut columns = vec![Vec::new(); wanted.len()];
         let mut row = vec![0.0; self.width];
-        while let Some(line) = lines.next_row()? {
-            let plain = matches!(self.delimiter, Delimiter::Byte(delimiter)
-                if parse_plain_row(line.as_bytes(), delimiter, &mut row));
-            if !plain {
-                self.read_row(line, &lines, wanted, &mut row)?;
-            }
+        while self.next_numbers(&mut lines, wanted, &mut row)? {
             for (values, &column) in columns.iter_mut().zip(wanted) {
                 values.push(row[column]);
             }
@@ -129,6 +124,24 @@ impl<'a> Table<'a> {
             }
         }
         lines.number
+    }
+
+    /// Reads the wanted cells of the next row, if there is one.
+    fn next_numbers(
+        &self,
+        lines: &mut Lines<'_>,
+        wanted: &[usize],
+        row: &mut [f64],
+    ) -> Result<bool, ReadError> {
+        if let Delimiter::Byte(delimiter) = self.delimiter
+            && lines.pass_line(|text| parse_plain_row(text, delimiter, row))
+        {
+            return Ok(true);
+        }
+        match lines.next_row()? {
+            Some(line) => self.read_row(line, lines, wanted, row).map(|()| true),
+            None => Ok(false),
+        }
     }
 
     /// Reads the wanted cells of a row that is not all plain numbers; `lines` stands behind it.

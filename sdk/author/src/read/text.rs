@@ -100,6 +100,21 @@ impl<'a> Lines<'a> {
         Ok(None)
     }
 
+    /// Passes over the next line if `parse` can read it; `parse` is given the text from there on, and
+    /// gives back what stands behind the line, from the line feed on.
+    pub(crate) fn pass_line(&mut self, parse: impl FnOnce(&[u8]) -> Option<&[u8]>) -> bool {
+        let Some(left) = parse(self.rest.as_bytes()) else {
+            return false;
+        };
+        let length = self.rest.len() - left.len();
+        if length > MAX_LINE {
+            return false;
+        }
+        self.rest = self.rest.get(length + 1..).unwrap_or_default();
+        self.number += 1;
+        true
+    }
+
     fn take_line(&mut self) -> Result<&'a str, ReadError> {
         let (line, rest) = self.rest.split_once('\n').unwrap_or((self.rest, ""));
         self.rest = rest;

@@ -1,6 +1,7 @@
 //! How the finger moved: speed and force while the texture was read.
 
-use crate::segments::{Segments, moving_average};
+use crate::segments::Segments;
+use crate::sums::Sums;
 use crate::{AuthorError, Recording};
 
 /// Beyond this part of its target a speed or force is worth a warning (paper: such recordings were
@@ -95,12 +96,16 @@ struct Range {
 
 impl Range {
     fn over(values: &[f64], rate_hz: f64, segments: &Segments) -> Option<Self> {
-        let smooth = moving_average(values, (HALF_AVERAGE_S * rate_hz).round() as usize);
-        let parts = segments
+        let sums = Sums::of(values.iter().copied());
+        let half = (HALF_AVERAGE_S * rate_hz).round() as usize;
+        let all: Vec<f64> = segments
             .starts
             .iter()
-            .filter_map(|&s| smooth.get(s..s + segments.len));
-        let all: Vec<f64> = parts.flatten().copied().collect();
+            .map(|&start| start..start + segments.len)
+            .filter(|part| part.end <= values.len())
+            .flatten()
+            .map(|at| sums.mean_around(at, half))
+            .collect();
         (!all.is_empty()).then(|| Self {
             mean: all.iter().sum::<f64>() / all.len() as f64,
             min: all.iter().copied().fold(f64::INFINITY, f64::min),

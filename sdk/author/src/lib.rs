@@ -18,6 +18,7 @@ mod segments;
 pub mod simulate;
 mod spectrum;
 mod stored;
+mod sums;
 
 pub use conditions::Take;
 pub use error::AuthorError;

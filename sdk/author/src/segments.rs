@@ -1,6 +1,7 @@
 //! Where in a recording the texture is read: sweeps, or evenly spaced windows.
 
 use crate::Recording;
+use crate::sums::Sums;
 
 /// Texture spectra have a resolution of 5 Hz: segments are a fifth of a second.
 const SEGMENTS_PER_S: f64 = 5.0;
@@ -49,17 +50,17 @@ pub struct Segments {
 pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments {
     let len = segment_len(recording.rate_hz);
     let resultant = resultant(&recording.lateral_n);
-    let threshold_n = resultant.iter().sum::<f64>() / resultant.len().max(1) as f64;
+    let samples = resultant.samples();
+    let threshold_n = resultant.mean(0, samples);
     let half = (HALF_AVERAGE_S * recording.rate_hz).round() as usize;
-    let smooth = moving_average(&resultant, half);
-    let sweeps = find_sweeps(&smooth, threshold_n, len);
-    let rests = smooth.iter().any(|&r| r < REST_LEVEL * threshold_n);
+    let smooth = || (0..samples).map(|at| resultant.mean_around(at, half));
+    let sweeps = find_sweeps(smooth(), threshold_n, len);
+    let rests = smooth().any(|r| r < REST_LEVEL * threshold_n);
     let from_sweeps = match choice {
         SegmentChoice::Auto => rests && !sweeps.is_empty(),
         SegmentChoice::Sweeps => true,
         SegmentChoice::Windows => false,
     };
-    let samples = recording.samples();
     let starts = if from_sweeps {
         sweeps
             .iter()
@@ -83,34 +84,18 @@ pub fn segment_len(rate_hz: f64) -> usize {
 }
 
 /// Length of the lateral force vector, sample by sample.
-fn resultant(axes: &[Vec<f64>]) -> Vec<f64> {
+fn resultant(axes: &[Vec<f64>]) -> Sums {
     match axes {
-        [x, y] => x.iter().zip(y).map(|(x, y)| x.hypot(*y)).collect(),
-        _ => axes.iter().flatten().map(|x| x.abs()).collect(),
+        [x, y] => Sums::of(x.iter().zip(y).map(|(x, y)| x.hypot(*y))),
+        [x] => Sums::of(x.iter().map(|x| x.abs())),
+        _ => Sums::of(std::iter::empty()),
     }
 }
 
-/// Mean over `2·half + 1` samples around each, fewer at the ends.
-pub(crate) fn moving_average(values: &[f64], half: usize) -> Vec<f64> {
-    let mut sums = Vec::with_capacity(values.len() + 1);
-    sums.push(0.0);
-    let mut sum = 0.0;
-    for value in values {
-        sum += value;
-        sums.push(sum);
-    }
-    (0..values.len())
-        .map(|i| {
-            let (from, to) = (i.saturating_sub(half), (i + half + 1).min(values.len()));
-            (sums[to] - sums[from]) / (to - from) as f64
-        })
-        .collect()
-}
-
-fn find_sweeps(smooth: &[f64], threshold: f64, shortest: usize) -> Vec<Sweep> {
+fn find_sweeps(smooth: impl Iterator<Item = f64>, threshold: f64, shortest: usize) -> Vec<Sweep> {
     let mut sweeps = Vec::new();
     let mut start = None;
-    for (i, &r) in smooth.iter().chain([&f64::NEG_INFINITY]).enumerate() {
+    for (i, r) in smooth.chain([f64::NEG_INFINITY]).enumerate() {
         match (r > threshold, start) {
             (true, None) => start = Some(i),
             (false, Some(from)) => {

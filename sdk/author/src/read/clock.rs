@@ -52,8 +52,8 @@ fn measure(
     time_s: &[f64],
     warnings: &mut Vec<String>,
 ) -> Result<f64, ReadError> {
-    let steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    if let Some(row) = steps.iter().position(|step| *step <= 0.0) {
+    let steps = || time_s.windows(2).map(|pair| pair[1] - pair[0]);
+    if let Some(row) = steps().position(|step| step <= 0.0) {
         return Err(ReadError::Time {
             file: table.file.to_owned(),
             line: table.line_of_row(row + 1),
@@ -61,10 +61,10 @@ fn measure(
             after: time_s[row + 1],
         });
     }
-    let longest = GAP * median(&steps) * (1.0 + 1e-6);
+    let longest = GAP * median(steps().collect()) * (1.0 + 1e-6);
     let (mut sum, mut squares, mut count, mut gaps) = (0.0, 0.0, 0.0, 0_usize);
-    for step in &steps {
-        if *step <= longest {
+    for step in steps() {
+        if step <= longest {
             sum += step;
             squares += step * step;
             count += 1.0;
@@ -80,20 +80,19 @@ fn measure(
             100.0 * jitter
         ));
     }
-    if let Some(row) = steps.iter().position(|step| *step > longest) {
+    if let Some((row, gap)) = steps().enumerate().find(|(_, step)| *step > longest) {
         warnings.push(format!(
             "{gaps} gap(s) in the time column; the first, of {:.6} s, ends on line {}. Samples are taken as evenly spaced.",
-            steps[row],
+            gap,
             table.line_of_row(row + 1)
         ));
     }
     Ok(snap(1.0 / mean))
 }
 
-fn median(steps: &[f64]) -> f64 {
-    let mut sorted = steps.to_vec();
-    let middle = (sorted.len() - 1) / 2;
-    *sorted.select_nth_unstable_by(middle, f64::total_cmp).1
+fn median(mut steps: Vec<f64>) -> f64 {
+    let middle = (steps.len() - 1) / 2;
+    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 fn snap(rate_hz: f64) -> f64 {

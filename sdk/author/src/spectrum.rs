@@ -268,6 +268,7 @@ impl SegmentReader {
     }
 
     fn read(&mut self, axes: &[Vec<f64>], start: usize) -> Result<Vec<Complex<f64>>, AuthorError> {
+        let scale = self.analyzer.amplitude_scale();
         let mut spectra = Vec::with_capacity(axes.len());
         for axis in axes {
             let mut bins = self.analyzer.make_bins();
@@ -275,17 +276,16 @@ impl SegmentReader {
             self.analyzer
                 .analyze(segment, &mut bins)
                 .map_err(|_| AuthorError::BandsDiffer)?;
-            spectra.push(bins);
+            let in_band = self.band.first_bin()..=self.band.last_bin();
+            let bin = |k: usize| bins.get(k).copied().unwrap_or_default();
+            spectra.push(in_band.map(bin).collect::<Vec<_>>());
         }
-        let folded = match &spectra[..] {
+        let mut folded = match &spectra[..] {
             [x, y] => dft321(x, y),
             _ => spectra.concat(),
         };
-        let scale = self.analyzer.amplitude_scale();
-        let in_band = self.band.first_bin()..=self.band.last_bin();
-        Ok(in_band
-            .map(|k| folded.get(k).copied().unwrap_or_default() * scale)
-            .collect())
+        folded.iter_mut().for_each(|bin| *bin *= scale);
+        Ok(folded)
     }
 }
 

@@ -59,13 +59,17 @@ static const double SOS[SECTIONS][5] = {
 };
 
 static void sections(Voice *v, double *x, int len) {
-    for (int s = 0; s < SECTIONS; s++)
+    for (int s = 0; s < SECTIONS; s++) {
+        double s1 = v->s1[s], s2 = v->s2[s];
         for (int n = 0; n < len; n++) {
-            double y = SOS[s][0] * x[n] + v->s1[s];
-            v->s1[s] = SOS[s][1] * x[n] - SOS[s][3] * y + v->s2[s];
-            v->s2[s] = SOS[s][2] * x[n] - SOS[s][4] * y;
+            double y = SOS[s][0] * x[n] + s1;
+            s1 = SOS[s][1] * x[n] - SOS[s][3] * y + s2;
+            s2 = SOS[s][2] * x[n] - SOS[s][4] * y;
             x[n] = y;
         }
+        v->s1[s] = s1;
+        v->s2[s] = s2;
+    }
 }
 
 static void ar_block(Voice *v, float *to, int edges) {

@@ -234,15 +234,66 @@ impl<F: FnMut(&[f64; N]) -> f64, const N: usize> Search<F, N> {
 mod tests {
     use super::*;
 
+    fn square(x: f64) -> f64 {
+        x * x
+    }
+
+    fn valley(x: &[f64; 2]) -> f64 {
+        square(1.0 - x[0]) + 100.0 * square(x[1] - x[0] * x[0])
+    }
+
+    fn crease(x: &[f64; 3]) -> f64 {
+        (x[0] - 0.7).abs() + 4.0 * (x[1] + 0.4).abs() + (x[2] + x[0]).abs()
+    }
+
     #[test]
     fn rosenbrock_is_found_from_the_classic_start() {
-        let valley = |x: &[f64; 2]| {
-            let (a, b) = (1.0 - x[0], x[1] - x[0] * x[0]);
-            a * a + 100.0 * b * b
-        };
         let found = minimize(valley, [-1.2, 1.0], &Options::default());
         assert!(found.converged && found.evaluations < 400);
         assert!((found.x[0] - 1.0).abs() < 1e-6 && (found.x[1] - 1.0).abs() < 1e-6);
+    }
+
+    /// As often called, and as low in the end, as SciPy 1.17's `fmin` of these tolerances.
+    fn is_as_scipy<const N: usize>(
+        f: impl FnMut(&[f64; N]) -> f64,
+        start: [f64; N],
+        tolerance: f64,
+        (evaluations, value): (usize, f64),
+    ) {
+        let options = Options {
+            x_tolerance: tolerance,
+            f_tolerance: tolerance,
+            ..Options::default()
+        };
+        let found = minimize(f, start, &options);
+        assert!(found.converged);
+        assert_eq!(found.evaluations, evaluations);
+        let off = (found.value - value).abs();
+        assert!(off <= 1e-6 * value.max(1e-6), "{} {value}", found.value);
+    }
+
+    #[test]
+    fn it_goes_the_way_of_scipy() {
+        is_as_scipy(valley, [-1.2, 1.0], 1e-4, (159, 8.177_661_197_416_674e-10));
+        is_as_scipy(|x| (x[0] - 0.3).abs(), [3.0], 1e-2, (22, 0.0));
+        let far = [4.0, -3.0, 2.0];
+        is_as_scipy(crease, far, 1e-2, (98, 4.724_163_151_593_016));
+        let steps = |x: &[f64; 3]| {
+            let [a, b] = [3.0 * (x[0] - 0.7).abs(), 2.0 * (x[1] + 0.4).abs()];
+            libm::floor(a) + libm::floor(b) + x[2].abs()
+        };
+        is_as_scipy(steps, far, 1e-2, (69, 10.552_659_338_007_429));
+        let powell = |x: &[f64; 4]| {
+            let (a, b) = (square(x[0] + 10.0 * x[1]), 5.0 * square(x[2] - x[3]));
+            let (c, d) = (square(x[1] - 2.0 * x[2]), square(x[0] - x[3]));
+            a + b + square(c) + 10.0 * square(d)
+        };
+        is_as_scipy(
+            powell,
+            [3.0, -1.0, 0.0, 1.0],
+            1e-2,
+            (161, 1.172_335_029_864_933_5e-4),
+        );
     }
 
     #[test]
@@ -255,14 +306,20 @@ mod tests {
         let found = minimize(walled, [3.0], &Options::default());
         assert!((found.x[0] - 0.5).abs() < 1e-6);
         assert_eq!(calls, found.evaluations);
-        for budget in 1..20 {
+        for budget in 1..100 {
             let options = Options {
                 max_evaluations: budget,
                 ..Options::default()
             };
-            assert!(
-                minimize(|x: &[f64; 2]| x[0] * x[1], [1.0, 0.0], &options).evaluations <= budget
-            );
+            let mut least = f64::INFINITY;
+            let seen = |x: &[f64; 3]| {
+                let value = crease(x);
+                least = least.min(value);
+                value
+            };
+            let found = minimize(seen, [4.0, -3.0, 2.0], &options);
+            assert!(found.evaluations <= budget);
+            assert_eq!(found.value, least);
         }
         let nowhere = minimize(|_: &[f64; 2]| f64::NAN, [1.0, 1.0], &Options::default());
         assert_eq!(nowhere.value, f64::INFINITY);

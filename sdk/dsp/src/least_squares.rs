@@ -120,13 +120,13 @@ impl Factors {
 fn jacobi_rotation(a: &[f64], b: &[f64]) -> Option<(f64, f64)> {
     let (aa, bb, ab) = (dot(a, a), dot(b, b), dot(a, b));
     let limit = ORTHOGONAL * libm::sqrt(aa) * libm::sqrt(bb);
-    if ab.abs() <= limit || ab.is_nan() || limit.is_nan() {
-        return None;
-    }
-    let zeta = (bb - aa) / (2.0 * ab);
-    let tangent = libm::copysign(1.0, zeta) / (zeta.abs() + libm::hypot(1.0, zeta));
-    let cosine = 1.0 / libm::hypot(1.0, tangent);
-    Some((cosine, cosine * tangent))
+    // False if either is NaN.
+    (ab.abs() > limit).then(|| {
+        let zeta = (bb - aa) / (2.0 * ab);
+        let tangent = libm::copysign(1.0, zeta) / (zeta.abs() + libm::hypot(1.0, zeta));
+        let cosine = 1.0 / libm::hypot(1.0, tangent);
+        (cosine, cosine * tangent)
+    })
 }
 
 fn rotate(vectors: &mut [Vec<f64>], p: usize, q: usize, cosine: f64, sine: f64) {

@@ -247,6 +247,33 @@ mod tests {
     }
 
     #[test]
+    fn a_section_is_stable_if_both_poles_lie_inside() {
+        let holds = |a1, a2| {
+            let section = Biquad {
+                a1,
+                a2,
+                ..Biquad::IDENTITY
+            };
+            section.is_stable()
+        };
+        // Real poles, (z - p) (z - q), and a pair at a radius.
+        for (p, q, stable) in [
+            (0.9, -0.9, true),
+            (0.9, 0.8, true),
+            (1.1, 0.5, false),
+            (-1.1, 0.5, false),
+            (1.1, -0.9, false),
+            (1.5, 1.5, false),
+        ] {
+            assert_eq!(holds(-(p + q), p * q), stable, "{p} {q}");
+        }
+        for (radius, stable) in [(0.99, true), (1.01, false)] {
+            assert_eq!(holds(radius * 0.6, radius * radius), stable, "{radius}");
+        }
+        assert!(!holds(f64::NAN, 0.0) && !holds(0.0, f64::NAN));
+    }
+
+    #[test]
     fn replacing_coefficients_keeps_state_and_capacity_bites() {
         let mut cascade = Cascade::with_capacity(2);
         let delay = Biquad {

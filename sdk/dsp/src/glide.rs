@@ -78,11 +78,12 @@ mod tests {
     fn it_goes_straight_lands_exactly_and_stays() {
         let mut glide = Glide::new(1.0, 4);
         glide.set(0.0);
+        assert!(!glide.rests_at(1.0));
         let mut block = [1.0f32; 6];
         glide.apply(&mut block[..3]);
         glide.apply(&mut block[3..]);
         assert_eq!(block, [1.0, 0.75, 0.5, 0.25, 0.0, 0.0]);
-        assert!(glide.rests_at(0.0));
+        assert!(glide.rests_at(0.0) && !glide.rests_at(1.0));
         glide.set_within(2.0, 1);
         assert_eq!(glide.advance(), 2.0);
     }

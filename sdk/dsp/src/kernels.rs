@@ -92,3 +92,17 @@ fn bessel_i0(x: f64) -> f64 {
     }
     sum
 }
+
+#[cfg(all(test, feature = "std"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_kernel_in_use_is_shared_and_another_is_another() {
+        let half = kernel(8, 2, true, 0.25);
+        let third = kernel(8, 2, true, 0.33);
+        assert!(Arc::ptr_eq(&half, &kernel(8, 2, true, 0.25)));
+        assert!(Arc::ptr_eq(&third, &kernel(8, 2, true, 0.33)));
+        assert_ne!(half, third);
+    }
+}

@@ -234,11 +234,24 @@ mod tests {
             (2_594.117_647, 44_100.0),
             (20_000.0, 48_000.0),
             (20_000.0, 2_400.0),
+            (1_000_000.0, 3_000.0),
         ] {
             for f in [20.0, 317.0, 900.0] {
                 let error = sine_error(from, to, f);
                 assert!(error < 2e-3, "{from} -> {to} at {f}: {error}");
             }
         }
+        // 17 times, though not in millihertz.
+        let whole = specs(2_594.117_647, 44_100.0, 900.0).unwrap();
+        assert!(whole.iter().all(Spec::is_whole));
+    }
+
+    #[test]
+    fn a_steep_filter_costs_little_where_it_can_be_made_at_a_low_rate() {
+        let macs = |to_hz| Resampler::macs_per_output(2_000.0, to_hz, 1_000.0).unwrap();
+        let taps = specs(2_000.0, 4_000.0, 1_000.0).unwrap()[0].taps() as f64;
+        // Every other sample is a copy; five times as many are made of those with few taps.
+        assert_eq!(macs(4_000.0), 0.5 * taps);
+        assert!(macs(20_000.0) < 0.2 * macs(4_000.0) + 12.0);
     }
 }

@@ -135,6 +135,10 @@ mod tests {
         let mut again = closed.clone();
         parts.chunks_mut(77).for_each(|part| again.render(part));
         assert_eq!(whole, parts);
+        let louder = closed.with_rms(3.0);
+        let square = |x: &f32| f64::from(*x).powi(2);
+        let power: f64 = louder.samples().iter().map(square).sum();
+        assert!((power / LEN as f64 - 9.0).abs() < 1e-5);
     }
 
     #[test]

@@ -103,7 +103,7 @@ pub fn covariance(segments: &[&[f64]], order: usize) -> LinearPrediction {
     let count: usize = long.iter().map(|s| s.len() - order).sum();
     let gram = covariance_matrix(&long, order);
     let stride = order + 1;
-    if !(gram[0] > 0.0 && gram.iter().all(|g| g.is_finite())) {
+    if !gram.iter().all(|g| g.is_finite()) {
         return LinearPrediction::silent(order);
     }
     let matrix: Vec<f64> = (1..stride)
@@ -185,6 +185,9 @@ mod tests {
         let grown = covariance(&[&decaying(1.01)], 2);
         assert!(grown.adjusted && is_stable(&grown.coefficients));
         assert!((grown.coefficients[1] + 1.0 / 1.0201).abs() < 1e-6);
+        // Two poles are all that there is to find.
+        let more = covariance(&[&decaying(0.98)], 3);
+        assert!(more.adjusted && more.usable_stages == 2);
     }
 
     #[test]
@@ -199,6 +202,16 @@ mod tests {
                 let model = estimate(segments, 4);
                 assert_eq!(model.coefficients.len(), 4);
                 assert!(is_stable(&model.coefficients));
+                let heard = segments.concat().iter().any(|&x| x != 0.0);
+                assert!(heard || model.adjusted && model.usable_stages == 0);
+            }
+            for broken in [f64::NAN, f64::INFINITY, 1e200] {
+                for order in [0, 4] {
+                    let model = estimate(&[&[&[broken, 1.0][..], &x].concat()], order);
+                    assert_eq!(model.coefficients, alloc::vec![0.0; order]);
+                    assert_eq!((model.error, model.usable_stages), (0.0, 0));
+                    assert_eq!(model.adjusted, order > 0);
+                }
             }
         }
     }

@@ -67,7 +67,7 @@ impl Fitted {
         let band: Band = input.band.edges().into();
         let bound = input.options[LOWER_BOUND].max(SMALLEST);
         let (alpha, beta) = fit_points(points, band, bound);
-        let scale = best_scale(points, band, alpha, beta).map_or(0.0, |(scale, _)| scale);
+        let (scale, _) = best_scale(points, band, alpha, beta);
         let profile = Profile::new(alpha, beta, band);
         let at = |f: f64| scale * profile.at(f);
         let bins = input.frequency_hz.iter();
@@ -107,9 +107,7 @@ fn spread_bins(input: &FitInput<'_>, magnitude: &[f64]) -> Vec<Peak> {
 /// Alpha and beta, each at least `bound`, of least squared distance to the points.
 pub(crate) fn fit_points(points: &[Peak], band: Band, bound: f64) -> (f64, f64) {
     let shape = |x: f64| (bound + x * x).min(LARGEST);
-    let cost = |x: &[f64; 2]| {
-        best_scale(points, band, shape(x[0]), shape(x[1])).map_or(f64::INFINITY, |(_, cost)| cost)
-    };
+    let cost = |x: &[f64; 2]| best_scale(points, band, shape(x[0]), shape(x[1])).1;
     let options = Options::default();
     let search = |(alpha, beta): (f64, f64)| {
         let start = [alpha, beta].map(|s: f64| libm::sqrt((s - bound).max(0.0)));
@@ -129,8 +127,8 @@ pub(crate) fn fit_points(points: &[Peak], band: Band, bound: f64) -> (f64, f64) 
 }
 
 /// The scale of least squares, in closed form, and the squared distance it leaves relative to the
-/// points' own; `None` where the density is not finite or zero at all points.
-fn best_scale(points: &[Peak], band: Band, alpha: f64, beta: f64) -> Option<(f64, f64)> {
+/// points' own; NaN, which no search takes, where the density is not finite or zero at all points.
+fn best_scale(points: &[Peak], band: Band, alpha: f64, beta: f64) -> (f64, f64) {
     let profile = Profile::new(alpha, beta, band);
     let (mut pp, mut pm, mut mm) = (0.0, 0.0, 0.0);
     for point in points {
@@ -139,14 +137,11 @@ fn best_scale(points: &[Peak], band: Band, alpha: f64, beta: f64) -> Option<(f64
         pm += p * point.magnitude;
         mm += point.magnitude * point.magnitude;
     }
-    if !(pp > 0.0 && pp.is_finite() && mm > 0.0) {
-        return None;
-    }
     let scale = pm / pp;
     let residual: f64 = points
         .iter()
         .map(|point| scale * profile.at(point.frequency_hz) - point.magnitude)
         .map(|r| r * r)
         .sum();
-    Some((scale, residual / mm))
+    (scale, residual / mm)
 }

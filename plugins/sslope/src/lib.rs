@@ -124,7 +124,7 @@ impl Shape {
 
     fn measure(&mut self) -> Result<(), Error> {
         self.level = curve_level_rms(self.band, |f| self.at(f));
-        if self.level > 0.0 && self.level.is_finite() {
+        if self.level > 0.0 {
             return Ok(());
         }
         Err(Error::parameters(format!(

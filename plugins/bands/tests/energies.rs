@@ -1,10 +1,11 @@
 //! What the model promises: each band keeps its energy, and nothing is made up between them.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
-use htex_bands::{BandEnergies, FLOOR_DB};
+use htex_bands::{BandEnergies, FLOOR_DB, Spectrum};
 use htex_dsp::bands::{BandBank, band_error_db, rms};
 use htex_dsp::grid::{Band, level_rms};
 use htex_model::{Error, Fit, FitInput, Model, Numbers, Status, Values, Voice};
+use htex_shaped::Curve;
 use proptest::prelude::*;
 
 fn model_band(band: Band) -> htex_model::Band {
@@ -169,6 +170,27 @@ fn lines_over_noise_keep_the_energies_of_nine_bands() {
         for error in kept(&magnitude, &fit, band) {
             assert!(error.abs() < 1e-6, "{error} dB with a line at bin {bin}");
         }
+    }
+}
+
+/// Noise is read in its own bin by two thirds, and by a sixth in each neighbour.
+#[test]
+fn what_a_voice_plays_reads_as_stated() {
+    let (band, descriptor) = (Band::TACTILE, BandEnergies::descriptor());
+    let parameters = [
+        9.0, 0.0, 30.0, 60.0, 20.0, 60.0, 90.0, 30.0, 80.0, 120.0, 0.5,
+    ];
+    let curve = Spectrum::new(&Values::read(&descriptor, &parameters).unwrap(), band).unwrap();
+    let stated = shape(&parameters, band);
+    let played = band
+        .grid_hz()
+        .into_iter()
+        .map(|f| curve.at(f) / curve.level());
+    let power: Vec<f64> = played.map(|m| m * m).collect();
+    for (read, stated) in power.windows(3).zip(&stated[1..]) {
+        let read = (read[0] + 4.0 * read[1] + read[2]) / 6.0;
+        let off = 10.0 * (read / (stated * stated)).log10();
+        assert!(off.abs() < 0.01, "{off} dB");
     }
 }
 

@@ -354,5 +354,11 @@ mod tests {
             .map(|w| (w[1] - w[0]).abs())
             .fold(0.0, f32::max);
         assert!(step < 0.09, "{step}");
+        // All oscillators of the bank, whole periods of both sines but for a thousandth.
+        bank.retune(&two_sines());
+        let mut out = alloc::vec![0.0f32; 20_200];
+        bank.render(&mut out);
+        let power = out[200..].iter().map(|x| f64::from(x * x)).sum::<f64>() / 20_000.0;
+        assert!((power - 0.625).abs() < 2e-3, "{power}");
     }
 }

@@ -182,6 +182,12 @@ impl Spectrum {
                 "`below_loudest` is empty; at least one band is wanted",
             ));
         }
+        if band.bins() == 0 {
+            return Err(Error::parameters(format!(
+                "no bin of the {GRID_HZ} Hz grid lies in the band {} to {} Hz",
+                band.low_hz, band.high_hz
+            )));
+        }
         let mut spectrum = Self {
             knots: Knots::new(below.len(), band),
             magnitude: vec![0.0; band.bins()],

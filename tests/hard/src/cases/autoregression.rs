@@ -261,6 +261,22 @@ const CASES: &[Case] = &[
         || filter_refused(&[2.5, -1.2]),
     ),
     refused(
+        "poles 1e-16 inside the circle and on a bin, where the magnitude rounds to infinity",
+        "AR",
+        "magnitude, voice",
+        "InvalidParameters: the filter has no finite energy in the band",
+        || {
+            let all = [
+                filter_refused(&[1.996_053_456_856_543_1, -0.999_999_999_999_999_9]),
+                filter_refused(&[1.970_218_652_309_547_8, -0.999_999_999_999_999_9]),
+                filter_refused(&[1.937_166_322_257_262_2, -0.999_999_999_999_999_9]),
+                filter_refused(&[1.902_113_032_590_307, -0.999_999_999_999_999_8]),
+            ];
+            let other = all.iter().find(|text| !text.contains("no finite energy"));
+            other.unwrap_or(&all[0]).clone()
+        },
+    ),
+    refused(
         "a coefficient that is NaN",
         "every model",
         "magnitude, voice",

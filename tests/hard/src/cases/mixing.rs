@@ -1,6 +1,9 @@
 //! Interpolation between models that have nothing in common.
 
-use htex_dsp::line_spectrum::{from_line_spectral_frequencies, line_spectral_frequencies};
+use htex_dsp::line_spectrum::{
+    from_line_spectral_frequencies, line_spectral_frequencies,
+    line_spectral_frequencies_of_reflection,
+};
 use htex_dsp::linear_prediction::reflection_to_coefficients;
 use htex_dsp::noise::Uniform;
 use htex_host::{Band, LoadedModel};
@@ -162,6 +165,26 @@ const CASES: &[Case] = &[
         "there and back",
         Bound(1e-12, "of the largest coefficient", "the filter"),
         || round_trip(&extremes()),
+    ),
+    within(
+        "orders 1 to 16, reflection ±(1 - 1e-1) to ±(1 - 1e-6)",
+        "line spectral frequencies",
+        "find",
+        none("in order, in 0 to π, however near"),
+        || {
+            failures((1..=400).map(|seed| {
+                let mut uniform = Uniform::new(seed);
+                let reflection: Vec<f64> = (0..1 + seed % 16)
+                    .map(|_| {
+                        let k = 1.0 - 10f64.powf(-1.0 - 5.0 * uniform.next_unit());
+                        k.copysign(uniform.next_unit() - 0.5)
+                    })
+                    .collect();
+                let lines = line_spectral_frequencies_of_reflection(&reflection);
+                let bounded = [&[0.0], &lines[..], &[std::f64::consts::PI]].concat();
+                bounded.is_sorted()
+            }))
+        },
     ),
     within(
         "frequencies that touch, cross, leave (0, π), or are NaN; more than 128",

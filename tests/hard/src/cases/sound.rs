@@ -283,6 +283,26 @@ const CASES: &[Case] = &[
             other.unwrap_or(&all[0]).clone()
         },
     ),
+    refused(
+        "a band of 21 to 24 Hz, between two bins",
+        "every model but sPeak",
+        "voice, magnitude",
+        "InvalidParameters",
+        || {
+            let band = Band::from((21.0, 24.0));
+            let of_bins = models().into_iter().filter(|m| m.short_name() != "speak");
+            let said = of_bins.flat_map(|model| {
+                let [set, _] = two_sets(&model);
+                [
+                    told(model.voice(&set, band, 2_000.0, 1)),
+                    told(model.magnitude(&set, band, &[22.0])),
+                ]
+            });
+            let all: Vec<String> = said.collect();
+            let other = all.iter().find(|text| !text.contains("InvalidParameters"));
+            other.unwrap_or(&all[0]).clone()
+        },
+    ),
     within(
         "0, 1e-9, 20, 333.3 and 9999.98 Hz at 20 kHz, six minutes on",
         "sine bank",
@@ -359,6 +379,16 @@ const CASES: &[Case] = &[
             let grid: Vec<f64> = (1..=5).map(f64::from).collect();
             let nan = select_peaks(&grid, &[0.0, f64::NAN, 0.0, f64::NAN, 0.0], 5, 0.12).is_empty();
             failures(found.chain([nan]))
+        },
+    ),
+    within(
+        "plateaus of two and of three, between slopes",
+        "peaks",
+        "find",
+        none("once each, at the middle, the lower of two"),
+        || {
+            let found = local_maxima(&[0.0, 1.0, 1.0, 0.5, 2.0, 2.0, 2.0, 1.0]);
+            failures([found == [1, 5]])
         },
     ),
     within(

@@ -104,8 +104,8 @@ pub const GUARDS: &[Guard] = &[
     ),
     guard(
         "plugins/sbeta/src/lib.rs",
-        "let inset = 0.25 * GRID_HZ;",
-        "let inset = 0.0 * GRID_HZ;",
+        "{ 0.25 * GRID_HZ }",
+        "{ 0.0 * GRID_HZ }",
         "beta",
     ),
     guard(

@@ -7,7 +7,7 @@ use htex_dsp::resample::Resampler;
 use htex_dsp::shaped_noise::ShapedNoise;
 use htex_dsp::sine_bank::{Sine, SineBank};
 use htex_dsp::warp::Warp;
-use htex_host::{Band, LoadedModel, Stream};
+use htex_host::{Band, LoadedModel, ModelVoice, Stream};
 
 use crate::big::{Big, big};
 use crate::seen::{fit, model, models, spectrum, told};
@@ -89,6 +89,54 @@ fn level_after_retune_db(model: &LoadedModel) -> f64 {
     off
 }
 
+/// By how much the correlation of neighbouring samples, which tells spectra apart, is off a new voice's
+/// after a voice was retuned from a tone to white noise, and from there to the tone.
+fn unlike_a_new_voice(model: &LoadedModel) -> f64 {
+    let [tone, noise] =
+        [tone(300.0), noise()].map(|x| fit(model, &spectrum(&x)).unwrap().parameters);
+    let rate_hz = model.voice_rate_hz(&tone, BAND, 2_500.0).unwrap();
+    let neighbours = |voice: &mut ModelVoice| {
+        let mut out = vec![0.0f32; (21.0 * rate_hz) as usize];
+        voice.render(&mut out).unwrap();
+        let later = &out[rate_hz as usize..];
+        let product = |by: usize| -> f64 {
+            let pairs = later.iter().zip(&later[by..]);
+            pairs.map(|(x, y)| f64::from(x * y)).sum()
+        };
+        product(1) / product(0)
+    };
+    let mut voice = model.voice(&tone, BAND, rate_hz, 1).unwrap();
+    let off = [noise, tone].map(|set| {
+        voice.retune(&set).unwrap();
+        let mut new = model.voice(&set, BAND, rate_hz, 2).unwrap();
+        (neighbours(&mut voice) - neighbours(&mut new)).abs()
+    });
+    worse(off[0], off[1])
+}
+
+/// Whether a voice plays the same samples in odd blocks as in one, before and after a change.
+fn same_in_blocks(model: &LoadedModel) -> bool {
+    let [set, other] = two_sets(model);
+    let rate_hz = model.voice_rate_hz(&set, BAND, 2_500.0).unwrap();
+    let play = |lengths: &[usize]| {
+        let mut voice = model.voice(&set, BAND, rate_hz, 1).unwrap();
+        let mut out = [f32::NAN; 3_000];
+        for mut rest in out.chunks_mut(1_001) {
+            for &length in lengths.iter().cycle() {
+                let (block, later) = rest.split_at_mut(length.min(rest.len()));
+                voice.render(block).unwrap();
+                rest = later;
+                if rest.is_empty() {
+                    break;
+                }
+            }
+            voice.retune(&other).unwrap();
+        }
+        out
+    };
+    play(&[3_000]) == play(&[1, 2, 3, 5, 7, 11])
+}
+
 /// Largest error of oscillators between 0 Hz and Nyquist, some hours on, against 256 bits.
 fn sine_error(rate_hz: f64, hours: f64) -> f64 {
     let frequencies = [0.0, 1e-9, 20.0, 333.3, 0.499_999 * rate_hz];
@@ -165,6 +213,20 @@ const CASES: &[Case] = &[
         "retune, and 40 s later",
         Bound(1.5, "dB", "the level"),
         || models().iter().map(level_after_retune_db).fold(0.0, worse),
+    ),
+    within(
+        "blocks of 1, 2, 3, 5, 7, 11 samples",
+        "every model",
+        "render, retune, render",
+        none("the samples of one block"),
+        || failures(models().iter().map(same_in_blocks)),
+    ),
+    within(
+        "from a tone to white noise, and back",
+        "every model",
+        "retune, and 20 s later",
+        Bound(0.05, "correlation of neighbours", "a new voice's"),
+        || models().iter().map(unlike_a_new_voice).fold(0.0, worse),
     ),
     refused(
         "a filter of a higher order; one of another model rate",

@@ -79,6 +79,12 @@ pub const GUARDS: &[Guard] = &[
         "autoregression",
     ),
     guard(
+        "plugins/ar/src/lib.rs",
+        "level > 0.0 && level.is_finite()",
+        "level > 0.0",
+        "autoregression",
+    ),
+    guard(
         "plugins/mfcc/src/lib.rs",
         "libm::log(e.max(FLOOR))",
         "libm::log(e.max(0.0 * FLOOR))",

@@ -235,18 +235,21 @@ const CASES: &[Case] = &[
         || words(fitted(vec![(recording(50.0, friction()), 80.0)])),
     ),
     within(
-        "a setup response of 0 in the band",
+        "a setup response of 0, or of 1e-9, at a bin of the band",
         PIPELINE,
         "compensate",
         Bound(40.1, "dB", "raised by what the maximum allows,"),
         || {
-            let (plain, zero) = (through([1.0; 5]), through([1.0, 1.0, 0.0, 1.0, 1.0]));
-            let (Ok(plain), Ok(zero)) = (plain, zero) else {
-                return f64::NAN;
+            let raised = |response: f64| {
+                let faint = through([1.0, 1.0, response, 1.0, 1.0]);
+                let (Ok(plain), Ok(faint)) = (through([1.0; 5]), faint) else {
+                    return f64::NAN;
+                };
+                let pairs = plain.magnitude_n.iter().zip(&faint.magnitude_n);
+                let raised = pairs.map(|(a, b)| 20.0 * (b / a).log10());
+                raised.fold(0.0, worse)
             };
-            let pairs = plain.magnitude_n.iter().zip(&zero.magnitude_n);
-            let raised = pairs.map(|(a, b)| 20.0 * (b / a).log10());
-            raised.fold(0.0, worse)
+            worse(raised(0.0), raised(1e-9))
         },
     ),
     refused(

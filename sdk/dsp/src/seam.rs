@@ -88,9 +88,7 @@ mod tests {
 
     fn white(seed: u64) -> Vec<f32> {
         let mut noise = GaussianNoise::new(seed);
-        (0..LEN + FADE)
-            .map(|_| noise.next_sample() as f32)
-            .collect()
+        (0..LEN + FADE).map(|_| noise.next_sample()).collect()
     }
 
     #[test]

@@ -598,6 +598,7 @@ const CASES: &[Case] = &[
                 (f64::NAN, 2e3),
                 (2e3, f64::INFINITY),
                 (1.0, 1e6),
+                (1e6, 1.0),
             ];
             failures(bad.map(|(from, to)| Resampler::new(from, to, 1_000.0).is_none()))
         },

@@ -267,9 +267,23 @@ mod tests {
     use super::*;
 
     fn noise(seed: u64) -> ShapedNoise {
+        falling(seed, 200.0)
+    }
+
+    fn falling(seed: u64, scale_hz: f64) -> ShapedNoise {
+        started(seed, |_, f| libm::exp(-f / scale_hz))
+    }
+
+    fn started(seed: u64, magnitude: impl Fn(usize, f64) -> f64) -> ShapedNoise {
         let mut noise = ShapedNoise::new(2_500.0, Band::TACTILE, seed);
-        noise.start(|_, f| libm::exp(-f / 200.0));
+        noise.start(magnitude);
         noise
+    }
+
+    fn rendered(mut noise: ShapedNoise, len: usize) -> Vec<f32> {
+        let mut out = alloc::vec![0.0; len];
+        noise.render(&mut out);
+        out
     }
 
     #[test]
@@ -294,30 +308,47 @@ mod tests {
         assert!((total - 1.0).abs() < 0.01, "{total}");
     }
 
+    /// Block sizes do not matter either.
     #[test]
-    fn blocks_do_not_matter_and_retunes_do_not_click() {
-        let render = |block: usize| {
-            let mut noise = noise(5);
-            let mut out = alloc::vec![0.0f32; 5_000];
-            for (i, part) in out.chunks_mut(block).enumerate() {
-                if (i * block).is_multiple_of(1_000) && i > 0 {
-                    noise.retune(|_, f| libm::exp(-f / (50.0 + i as f64)));
-                }
-                noise.render(part);
+    fn a_retune_fades_to_the_voice_that_had_the_spectrum_all_along() {
+        let (hop, fade, overlap) = {
+            let noise = noise(5);
+            (noise.hop, noise.fade_len, noise.rise.len())
+        };
+        let len = 3 * hop;
+        let [first, second, third] =
+            [200.0, 50.0, 400.0].map(|scale_hz| rendered(falling(5, scale_hz), len));
+        // Where frames overlap, behind that, and too near to the next frame.
+        for at in [10, overlap - 3, overlap + 50, hop - 5, hop + 7] {
+            let begun = if at < hop && at + fade > hop { hop } else { at };
+            let mut voice = falling(5, 200.0);
+            let mut out = alloc::vec![0.0f32; len];
+            out[..at].chunks_mut(7).for_each(|part| voice.render(part));
+            voice.retune(|_, f| libm::exp(-f / 50.0));
+            voice.render(&mut out[at..begun + 3]);
+            // This has to wait for the other.
+            voice.retune(|_, f| libm::exp(-f / 400.0));
+            voice.render(&mut out[begun + 3..]);
+            for (n, y) in out.iter().enumerate() {
+                let part =
+                    |from: usize| ((n + 1).saturating_sub(from) as f32 / fade as f32).min(1.0);
+                let mixed = first[n] + part(begun) * (second[n] - first[n]);
+                let expected = mixed + part(begun + fade) * (third[n] - mixed);
+                assert!((y - expected).abs() < 1e-5, "{at}: {n}: {y} {expected}");
             }
-            out
+        }
+    }
+
+    #[test]
+    fn what_is_no_magnitude_counts_as_none() {
+        let with = |odd: f64| {
+            let magnitude = move |i: usize, _| if i.is_multiple_of(3) { odd } else { 1.0 };
+            rendered(started(1, magnitude), 1_000)
         };
-        let step = |x: &[f32]| {
-            x.windows(2)
-                .map(|w| (w[1] - w[0]).abs())
-                .fold(0.0, f32::max)
-        };
-        let out = render(1_000);
-        // Between 1,000 and 1,025 the fade runs; it is no steeper than the noise itself.
-        assert!(step(&out[990..1_040]) < 2.0 * step(&out[..990]));
-        let mut plain = noise(5);
-        let mut singles = alloc::vec![0.0f32; 999];
-        singles.chunks_mut(7).for_each(|part| plain.render(part));
-        assert_eq!(singles, out[..999]);
+        let without = with(0.0);
+        for odd in [f64::NAN, f64::INFINITY, -1.0] {
+            assert_eq!(with(odd), without);
+        }
+        assert_eq!(rendered(started(1, |_, _| 0.0), 1_000), [0.0; 1_000]);
     }
 }

@@ -72,6 +72,7 @@ sections! {
     beta: "Beta density",
     slope: "Slopes",
     cepstrum: "Cepstra",
+    voices: "Voices",
     sound: "Sound",
     #[cfg(feature = "pipeline")]
     files: "Recordings to files",

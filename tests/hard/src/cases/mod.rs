@@ -12,6 +12,7 @@ mod prediction;
 mod recordings;
 mod slope;
 mod sound;
+mod voices;
 
 use crate::Section;
 
@@ -24,6 +25,7 @@ pub(crate) fn sections() -> Vec<Section> {
         beta::SECTION,
         slope::SECTION,
         cepstrum::SECTION,
+        voices::SECTION,
         sound::SECTION,
         #[cfg(feature = "pipeline")]
         files::SECTION,

@@ -1,6 +1,6 @@
 //! Points on the unit circle.
 
-/// An angle of half a turn, of the range of a signed number of 32 bits.
+/// Radians of a step of a signed number of 32 bits whose whole range is half a turn.
 const QUARTER: f32 = core::f32::consts::FRAC_PI_2 / (1u32 << 31) as f32;
 const TERMS: usize = 7;
 /// Taylor coefficients of the cosine, and of the sine over its angle, in the square of the angle.

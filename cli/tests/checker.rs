@@ -14,6 +14,7 @@ const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
 const FAULTS: &[(&str, &str, Outcome)] = &[
     ("MARKER", "marker", Outcome::Failed),
     ("EXPORT_MISSING", "exports", Outcome::Failed),
+    ("EXTENSION_MISSING", "exports", Outcome::Failed),
     ("DESCRIPTOR_JSON", "descriptor", Outcome::Failed),
     ("DESCRIPTOR_DEFAULT", "descriptor", Outcome::Failed),
     ("EXTENSIONS", "extensions", Outcome::Failed),
@@ -37,6 +38,7 @@ const FAULTS: &[(&str, &str, Outcome)] = &[
     ("BLOCKS", "blocks", Outcome::Failed),
     ("SEED_IGNORED", "seeds", Outcome::Failed),
     ("SHARED_STATE", "voices-apart", Outcome::Failed),
+    ("TOGETHER", "voices-together", Outcome::Failed),
     ("FREED_HANDLE", "handles", Outcome::Failed),
     ("CLICK", "retune", Outcome::Failed),
     ("INTERPOLATE_ENDS", "interpolate", Outcome::Failed),

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "htex_model.h"
+#include "htex_voices_1.h"
 
 static void *good_symbol(const char *name) {
     static void *library;
@@ -252,3 +253,18 @@ int64_t htex_model_extension(const uint8_t *id, size_t id_len) {
     return GOOD(htex_model_extension)(id, id_len);
 #endif
 }
+
+#ifndef FAULT_EXTENSION_MISSING
+int64_t htex_voices_1_render(const int64_t *handles, size_t count, float *out, size_t frames) {
+    for (size_t i = 0; i < count; i++) {
+        int64_t answer = htex_model_voice_render(handles[i], out + i * frames, frames);
+        if (answer < 0) return answer;
+    }
+#ifdef FAULT_TOGETHER
+    /* The last of many voices is a sample late. */
+    if (count > 8 && frames > 1)
+        memmove(out + (count - 1) * frames + 1, out + (count - 1) * frames, (frames - 1) * sizeof *out);
+#endif
+    return 0;
+}
+#endif

@@ -1,4 +1,4 @@
-//! The frozen surfaces of the two ABIs as canonical text: a line for each constant, status and
+//! The frozen surfaces of the two ABIs, and of an extension, as canonical text: a line for each constant, status and
 //! function, read from the Rust side and from the C header.
 
 use std::collections::BTreeMap;
@@ -29,8 +29,8 @@ pub struct Surface {
     pub table: &'static str,
     /// Functions beside those of the table, and their types.
     pub more: &'static [(&'static str, &'static str)],
-    /// The source with the statuses, and their type.
-    pub statuses: (&'static str, &'static str),
+    /// The source with the statuses, and their type; none where they are another surface's.
+    pub statuses: Option<(&'static str, &'static str)>,
 }
 
 /// The model ABI.
@@ -42,7 +42,19 @@ pub const MODEL: Surface = Surface {
     code: "sdk/model/src/abi.rs",
     table: "ModelTable",
     more: &[("alloc", "AllocFn"), ("free", "FreeFn")],
-    statuses: ("sdk/model/src/error.rs", "Status"),
+    statuses: Some(("sdk/model/src/error.rs", "Status")),
+};
+
+/// The extension of the model ABI by which several voices are rendered in one call.
+pub const VOICES: Surface = Surface {
+    header: "htex_voices_1.h",
+    function: "htex_voices_1_",
+    constant: "HTEX_VOICES_1_",
+    export: "HTEX_EXPORT(",
+    code: "sdk/model/src/voices_1.rs",
+    table: "VoicesTable",
+    more: &[],
+    statuses: None,
 };
 
 /// The device ABI.
@@ -54,7 +66,7 @@ pub const DEVICE: Surface = Surface {
     code: "renderer-adapters/device/src/abi.rs",
     table: "DeviceTable",
     more: &[],
-    statuses: ("renderer-adapters/device/src/abi.rs", "Code"),
+    statuses: Some(("renderer-adapters/device/src/abi.rs", "Code")),
 };
 
 impl Surface {
@@ -130,7 +142,9 @@ impl Surface {
 
     /// Statuses that the Rust side states, as C has them.
     pub fn rust_statuses(&self) -> Constants {
-        let (file, name) = self.statuses;
+        let Some((file, name)) = self.statuses else {
+            return Constants::new();
+        };
         let code = rust_code(file);
         let (_, variants) = code.split_once(&format!("pub enum {name} {{")).unwrap();
         let variants = variants.split_once('}').unwrap().0;

@@ -7,7 +7,8 @@ use htex_model::abi::{
     ABI_MAJOR, ABI_MARKER, ABI_MINOR, ALLOC_ALIGN, GRID_HZ, MAX_BAND_HZ, MAX_FIELDS, MAX_LIST_LEN,
     MAX_PARAMETERS, MAX_RATE_HZ, MAX_TEXT_BYTES, MIN_BINS, MIN_RATE_HZ,
 };
-use htex_tests::surface::{Constants, MODEL};
+use htex_model::voices_1::MAX_VOICES;
+use htex_tests::surface::{Constants, MODEL, VOICES};
 use htex_tests::workspace;
 
 /// FNV-1a of the listing of each minor version of this major, oldest first. Lines are only added.
@@ -50,6 +51,19 @@ fn the_surface_is_frozen() {
 #[test]
 fn header_and_rust_say_the_same() {
     MODEL.hold_header(&rust_constants());
+}
+
+#[test]
+fn the_extension_for_voices_is_frozen() {
+    let constants = [("HTEX_VOICES_1_MAX_VOICES", MAX_VOICES.to_string())];
+    let constants = constants
+        .map(|(name, value)| (name.to_owned(), value))
+        .into();
+    let now = VOICES.listing(&constants);
+    let thaw = "A revision of an extension never changes: make another, htex.voices/2.";
+    VOICES.hold_frozen("voices", &[("1", 0xdcb1_d85e_348f_32df)], &now, thaw);
+    VOICES.hold_header(&constants);
+    VOICES.compile(&constants);
 }
 
 #[test]

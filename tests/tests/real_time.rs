@@ -110,6 +110,31 @@ fn retuning_does_not_allocate() {
     }
 }
 
+/// Voices in common calls, more than one call takes.
+#[test]
+fn rendering_together_does_not_allocate() {
+    let asset = asset();
+    for model in MODELS {
+        let source = |seed| {
+            let options = VoiceOptions {
+                model: Some(model),
+                seed,
+                ..VoiceOptions::default()
+            };
+            asset.source(&options).unwrap()
+        };
+        let mut sources: Vec<_> = (0..18).map(source).collect();
+        let mut out = vec![0.0; 18 * 128];
+        for i in 0..40 {
+            let calls = count(|| {
+                sources[i % 18].set_motion(60.0 + i as f64, 0.4).unwrap();
+                htex::Source::render_together(&mut sources, 128, &mut out).unwrap();
+            });
+            assert_eq!(calls, 0, "{model}, block {i}");
+        }
+    }
+}
+
 /// Blocks of a voice, before each of which the finger changes its speed.
 fn follow(voice: &mut htex::Voice, what: &str) {
     let mut block = [0.0f32; 64];

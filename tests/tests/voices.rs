@@ -2,7 +2,7 @@
 //! sizes, follow its seed, and change without a click.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
-use htex_host::{Band, FitRequest, LoadedModel, Registry, Stream};
+use htex_host::{Band, FitRequest, LoadedModel, Registry, Stream, render_together};
 use htex_tests::measure::{RATE_HZ, distance_db, measured_spectrum, rms};
 use htex_tests::smooth_spectrum;
 
@@ -112,6 +112,61 @@ fn retunes_do_not_click() {
             model.id(),
             largest(&out)
         );
+    }
+}
+
+/// Voices that are rendered in one call give the bits that each gives alone: whatever is left of their last
+/// blocks, while some of them change, and beside voices of other models.
+#[test]
+fn voices_together_are_voices_alone() {
+    let models = fitted();
+    let (ar, _) = &models[0];
+    let mut sets: Vec<(&LoadedModel, Vec<f64>)> =
+        models.iter().map(|(m, p)| (m, p.clone())).collect();
+    // Orders and rates of filters that run side by side, in other lengths, and as a lattice.
+    let orders = [
+        6, 6, 2, 6, 9, 6, 6, 6, 6, 3, 6, 6, 20, 6, 6, 6, 6, 1, 6, 6, 6,
+    ];
+    for (i, order) in orders.into_iter().enumerate() {
+        let mut set = vec![f64::from(order)];
+        set.extend((0..order).map(|k| 0.25 * (-0.7f64).powi(k)));
+        set.push(if i / 4 == 1 { 4_000.0 } else { 2_000.0 });
+        sets.push((ar, set));
+    }
+    let make = |(i, (model, set)): (usize, &(&LoadedModel, Vec<f64>))| {
+        let rate_hz = model.voice_rate_hz(set, Band::TACTILE, RATE_HZ).unwrap();
+        model.voice(set, Band::TACTILE, rate_hz, i as u64).unwrap()
+    };
+    let mut alone: Vec<_> = sets.iter().enumerate().map(make).collect();
+    let mut together: Vec<_> = sets.iter().enumerate().map(make).collect();
+    // The last are behind the others by a sample.
+    let last = sets.len() - 1;
+    together[last].render(&mut [0.0]).unwrap();
+    alone[last].render(&mut [0.0]).unwrap();
+    for (round, frames) in [1, 256, 64, 3, 67, 200, 0, 1_000, 40, 256]
+        .into_iter()
+        .enumerate()
+    {
+        if round == 4 {
+            for i in [6, 13] {
+                let mut set = sets[i].1.clone();
+                set[1] *= 0.8;
+                alone[i].retune(&set).unwrap();
+                together[i].retune(&set).unwrap();
+            }
+        }
+        let mut out = vec![f32::NAN; (sets.len() + 1) * frames];
+        render_together(&mut together, frames, &mut out).unwrap();
+        for (i, voice) in alone.iter_mut().enumerate() {
+            let mut own = vec![0.0; frames];
+            voice.render(&mut own).unwrap();
+            assert_eq!(
+                own,
+                out[i * frames..][..frames],
+                "voice {i}, {frames} frames"
+            );
+        }
+        assert!(out[sets.len() * frames..].iter().all(|x| *x == 0.0));
     }
 }
 

@@ -2,6 +2,7 @@
 //! Auto-regression; after Culbertson et al. 2014).
 
 mod fit;
+mod together;
 mod voice;
 
 use htex_dsp::grid::{Band, curve_level_rms};

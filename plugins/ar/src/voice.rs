@@ -8,7 +8,7 @@ use htex_dsp::noise::GaussianNoise;
 use htex_dsp::pipeline::Pipeline;
 use htex_model::{Error, Values, Voice};
 
-use crate::{COEFFICIENTS, Filter, MAX_ORDER, MODEL_RATE, unstable};
+use crate::{COEFFICIENTS, Filter, MAX_ORDER, MODEL_RATE, together, unstable};
 
 /// Length of a change of parameters, seconds.
 const RAMP_S: f64 = 0.010;
@@ -16,23 +16,23 @@ const RAMP_S: f64 = 0.010;
 const SETTLE_S: f64 = 0.5;
 const SETTLE_SAMPLES: f64 = 4096.0;
 /// Groups of samples made at once.
-const BLOCK: usize = 16;
+const BLOCK: usize = 32;
 
 /// An endless stream of filtered noise.
 pub struct AutoregressionVoice {
     band: Band,
     rate_hz: f64,
-    noise: GaussianNoise,
-    filter: AllPole,
-    edges: Pipeline,
-    gain: f64,
+    pub(crate) noise: GaussianNoise,
+    pub(crate) filter: AllPole,
+    pub(crate) edges: Pipeline,
+    pub(crate) gain: f64,
     target: Target,
     step: Target,
     ramp_len: u32,
-    ramp_left: u32,
+    pub(crate) ramp_left: u32,
     /// What is left of the last group.
     ready: [f32; GROUP],
-    taken: usize,
+    pub(crate) taken: usize,
 }
 
 /// Reflection coefficients and the gain of the noise.
@@ -154,6 +154,19 @@ impl Voice for AutoregressionVoice {
             [self.ready] = group;
             last.copy_from_slice(&self.ready[..last.len()]);
             self.taken = last.len();
+        }
+    }
+
+    fn render_together(voices: &mut [&mut Self], frames: usize, out: &mut [f32]) {
+        let mut rows = out.chunks_exact_mut(frames.max(1));
+        let (fours, others) = voices.as_chunks_mut();
+        for four in fours {
+            if let [Some(a), Some(b), Some(c), Some(d)] = [(); 4].map(|()| rows.next()) {
+                together::render(four, [a, b, c, d]);
+            }
+        }
+        for (voice, row) in others.iter_mut().zip(rows) {
+            voice.render(row);
         }
     }
 

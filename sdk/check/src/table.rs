@@ -1,7 +1,9 @@
 //! Every check, in one table.
 
 use crate::case::Case;
-use crate::checks::{abi, change, fit, magnitude, refusal, repeat, resources, sound, twin};
+use crate::checks::{
+    abi, change, fit, magnitude, refusal, repeat, resources, sound, together, twin,
+};
 use crate::finding::Found;
 
 /// One check.
@@ -96,6 +98,11 @@ checks! {
         "Voices do not disturb each other.",
         "Two voices in turns of 64 samples, and two on threads of their own, against each one alone, \
          bit by bit.";
+    "voices-together" needs ["blocks", "voices-apart"] together::agrees:
+        "Voices that are rendered in one call sound as each does alone.",
+        "Where the model has the extension `htex.voices/1`: seventeen voices of two sets of parameters, in \
+         blocks of 1, 256, 3, 64 and 500 frames, one of them retuned on the way, against each alone, bit by \
+         bit.";
     "handles" needs ["render"] repeat::handles:
         "A freed handle is refused.",
         "Rendering, retuning and freeing by a handle that was freed answer a status; so it is after \

@@ -1,17 +1,14 @@
 //! The all-pole filter: quick while its coefficients stand still, stable while they change.
 
-use crate::biquad::without_denormals;
+pub use crate::direct_form::GROUP;
+use crate::direct_form::{Direct, MAX_ORDER as MAX_DIRECT_ORDER};
 use crate::lattice::AllPoleLattice;
 use crate::linear_prediction::{step_down_in_place, step_up};
-use crate::wide::{Work, wide};
+use crate::quad::{Quad, VOICES};
 
-/// Samples that are filtered together.
-pub const GROUP: usize = 4;
 /// As many samples as are filtered together.
 pub type Group = [f64; GROUP];
 
-/// Orders up to this have a direct form with all state in registers.
-const MAX_DIRECT_ORDER: usize = 16;
 /// Rounding of the direct form, relative to the output, is at most about 1e-16 times the sum of its
 /// coefficients' sizes times the filter's gain for noise; up to this product samples of single
 /// precision do not show it.
@@ -44,21 +41,10 @@ pub struct AllPole {
     direct: Option<Direct>,
 }
 
-/// Four samples of the transposed direct form II: what each of the four inputs, with the state that
-/// meets it, leaves in the outputs and in the state behind them.
-#[derive(Debug, Clone, Copy)]
-struct Direct {
-    outputs: [Group; GROUP],
-    states: [[f64; MAX_DIRECT_ORDER]; GROUP],
-    state: [f64; MAX_DIRECT_ORDER],
-}
-
-/// A block while coefficients stand still, in `N` coefficients or fewer; the last outputs are kept.
-struct Steady<'a, const N: usize>(
-    &'a mut Direct,
-    &'a mut [Group],
-    &'a mut [f64; MAX_DIRECT_ORDER],
-);
+/// Four filters whose coefficients stand still, side by side: each gives what it would give alone, bit
+/// for bit.
+#[derive(Debug)]
+pub struct AllPoles<'a>([&'a mut AllPole; VOICES]);
 
 impl AllPole {
     /// A filter at rest; `None` if a pole lies on or outside the unit circle.
@@ -110,18 +96,9 @@ impl AllPole {
         };
         let (moved, steady) = groups.split_at_mut(in_lattice);
         self.run_lattice(moved.as_flattened_mut());
-        let Some(direct) = &mut self.direct else {
-            return;
-        };
-        let past = &mut self.past;
-        // State behind the order is zero: so a few lengths do.
-        match self.lattice.order() {
-            0..=2 => wide(Steady::<2>(direct, steady, past)),
-            3..=4 => wide(Steady::<4>(direct, steady, past)),
-            5..=6 => wide(Steady::<6>(direct, steady, past)),
-            7..=8 => wide(Steady::<8>(direct, steady, past)),
-            9..=12 => wide(Steady::<12>(direct, steady, past)),
-            _ => wide(Steady::<MAX_DIRECT_ORDER>(direct, steady, past)),
+        if let Some(direct) = &mut self.direct {
+            direct.process(self.lattice.order(), steady);
+            remember(&mut self.past, steady.as_flattened());
         }
     }
 
@@ -155,78 +132,39 @@ impl AllPole {
     }
 }
 
-impl Direct {
-    fn new(a: &[f64; MAX_DIRECT_ORDER], past: &[f64; MAX_DIRECT_ORDER]) -> Self {
-        let mut direct = Self {
-            outputs: [[0.0; GROUP]; GROUP],
-            states: [[0.0; MAX_DIRECT_ORDER]; GROUP],
-            state: [0.0; MAX_DIRECT_ORDER],
-        };
-        let effects = direct.outputs.iter_mut().zip(&mut direct.states);
-        for (at, (outputs, state)) in effects.enumerate() {
-            for (n, y) in outputs.iter_mut().enumerate() {
-                *y = tick(a, state, f64::from(u8::from(n == at)));
-            }
-        }
-        // All that the filter holds are its last outputs.
-        for &y in past {
-            // An input that makes the output just this.
-            let input = y - direct.state[0];
-            tick(a, &mut direct.state, input);
-        }
-        direct
+impl<'a> AllPoles<'a> {
+    /// These filters side by side; `None` where one of them is a lattice, as while its coefficients move.
+    pub fn new(filters: [&'a mut AllPole; VOICES]) -> Option<Self> {
+        let direct = filters.iter().all(|filter| filter.direct.is_some());
+        direct.then_some(Self(filters))
     }
-}
 
-impl<const N: usize> Work for Steady<'_, N> {
-    #[inline(always)]
-    fn run(self) {
-        let Self(direct, groups, past) = self;
-        let states = direct.states.map(|state| first::<N>(&state));
-        let outputs = direct.outputs;
-        let mut state = first::<N>(&direct.state);
-        for group in &mut *groups {
-            let met: Group =
-                core::array::from_fn(|i| group[i] + if i < N { state[i] } else { 0.0 });
-            *group = sum(&outputs, &met);
-            let left = sum(&states, &met);
-            state = core::array::from_fn(|i| {
-                left[i] + if i + GROUP < N { state[i + GROUP] } else { 0.0 }
-            });
+    /// Filters a block in place. Does not allocate.
+    pub fn process(&mut self, groups: &mut [[Quad; GROUP]]) {
+        let order = self.0.iter().map(|filter| filter.order()).max();
+        let forms = self.0.each_mut().map(|filter| filter.direct.as_mut());
+        if let [Some(a), Some(b), Some(c), Some(d)] = forms {
+            Direct::process_four([a, b, c, d], order.unwrap_or_default(), groups);
         }
-        direct.state[..N].copy_from_slice(&state.map(without_denormals));
-        remember(past, groups.as_flattened());
+        let outputs = groups.as_flattened();
+        let new = outputs.len().min(MAX_DIRECT_ORDER);
+        let outputs = &outputs[outputs.len() - new..];
+        for (voice, filter) in self.0.iter_mut().enumerate() {
+            filter.past.copy_within(new.., 0);
+            let past = filter.past[MAX_DIRECT_ORDER - new..].iter_mut();
+            past.zip(outputs).for_each(|(y, x)| *y = x.0[voice]);
+        }
     }
-}
-
-/// What each number of `met` leaves, added up.
-#[inline(always)]
-fn sum<const N: usize>(left: &[[f64; N]; GROUP], met: &Group) -> [f64; N] {
-    core::array::from_fn(|i| {
-        (left[0][i] * met[0] + left[1][i] * met[1]) + (left[2][i] * met[2] + left[3][i] * met[3])
-    })
-}
-
-#[inline(always)]
-fn first<const N: usize>(of: &[f64; MAX_DIRECT_ORDER]) -> [f64; N] {
-    core::array::from_fn(|i| of[i])
-}
-
-/// One sample: the output, and the state behind it.
-fn tick(a: &[f64], state: &mut [f64], input: f64) -> f64 {
-    let y = input + state[0];
-    for i in 0..a.len() {
-        state[i] = a[i] * y + state.get(i + 1).copied().unwrap_or(0.0);
-    }
-    y
 }
 
 /// Keeps the last of some more outputs.
 fn remember(past: &mut [f64; MAX_DIRECT_ORDER], outputs: &[f64]) {
-    let new = outputs.len().min(past.len());
-    past.copy_within(new.., 0);
-    let kept = past.len() - new;
-    past[kept..].copy_from_slice(&outputs[outputs.len() - new..]);
+    if let Some(last) = outputs.last_chunk() {
+        *past = *last;
+        return;
+    }
+    past.copy_within(outputs.len().., 0);
+    past[MAX_DIRECT_ORDER - outputs.len()..].copy_from_slice(outputs);
 }
 
 #[cfg(test)]
@@ -306,6 +244,48 @@ mod tests {
                     assert!((y - x).abs() <= 1e-8 * x.abs().max(1.0), "{poles}: {y} {x}");
                 }
             }
+        }
+    }
+
+    /// Side by side each gives the bits it gives alone, in all lengths; a lattice cannot stand there.
+    #[test]
+    fn four_filters_are_one_and_one() {
+        let order = |n: usize| -> Vec<f64> { (0..n).map(|i| 0.5 / (i + n) as f64).collect() };
+        for orders in [
+            [1, 2, 2, 1],
+            [4, 3, 1, 2],
+            [6; 4],
+            [7, 1, 8, 2],
+            [12, 9, 3, 4],
+            [16; 4],
+        ] {
+            let mut alone = orders.map(|n| AllPole::new(&order(n)).unwrap());
+            let mut beside = alone.clone();
+            let mut noise = GaussianNoise::new(3);
+            for groups in [1, 2, 7, 30] {
+                let mut next = || f64::from(noise.next_sample());
+                let mut block: Vec<[Quad; GROUP]> = (0..groups)
+                    .map(|_| [(); GROUP].map(|()| Quad([(); VOICES].map(|()| next()))))
+                    .collect();
+                let expected = core::array::from_fn::<_, VOICES, _>(|voice| {
+                    let own = |group: &[Quad; GROUP]| group.map(|x| x.0[voice]);
+                    let mut own: Vec<Group> = block.iter().map(own).collect();
+                    alone[voice].process(&mut own);
+                    own
+                });
+                let mut four = AllPoles::new(beside.each_mut()).unwrap();
+                four.process(&mut block);
+                for (voice, expected) in expected.iter().enumerate() {
+                    let same = |(y, x): (&[Quad; GROUP], &Group)| y.map(|y| y.0[voice]) == *x;
+                    assert!(block.iter().zip(expected).all(same), "{orders:?} {voice}");
+                }
+                // What a lattice would go on from.
+                for (own, alone) in beside.iter().zip(&alone) {
+                    assert_eq!(own.past, alone.past);
+                }
+            }
+            beside[2].reflection_mut();
+            assert!(AllPoles::new(beside.each_mut()).is_none());
         }
     }
 }

@@ -7,7 +7,7 @@
 //!
 //! Frequencies are in hertz, rates in hertz, angles in radians, magnitudes in the unit of the
 //! signal unless a name says otherwise.
-#![deny(unsafe_code)] // But for one call in `wide`.
+#![deny(unsafe_code)] // But for two calls in `wide`.
 #![cfg_attr(not(feature = "std"), no_std)]
 extern crate alloc;
 pub mod all_pole;
@@ -19,6 +19,7 @@ pub mod butterworth;
 mod chebyshev;
 mod circle;
 pub mod dct;
+mod direct_form;
 pub mod estimation;
 pub mod fir;
 pub mod glide;
@@ -36,6 +37,7 @@ pub mod noise;
 pub mod peaks;
 pub mod pipeline;
 mod polyphase;
+pub mod quad;
 mod random_lanes;
 pub mod resample;
 pub mod seam;

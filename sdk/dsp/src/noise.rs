@@ -5,7 +5,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::circle::directions;
 use crate::random_lanes::{LANES, RandomLanes};
-use crate::wide::{Work, wide};
+use crate::wide::{Work, very_wide, wide};
 
 /// A seeded stream of uniform numbers; the same seed gives the same bits on every machine.
 #[derive(Debug, Clone)]
@@ -76,6 +76,19 @@ impl GaussianNoise {
         one[0]
     }
 
+    /// Fills a block of each of two streams, which may be quicker than one after the other; the samples
+    /// are those of [`Self::fill`]. Does not allocate.
+    pub fn fill_both([a, b]: [&mut Self; 2], [x, y]: [&mut [f32]; 2]) {
+        // Up to the end of a group that both are in.
+        let head = (GROUP - a.taken.max(b.taken)).min(x.len()).min(y.len());
+        let ((x_head, x), (y_head, y)) = (x.split_at_mut(head), y.split_at_mut(head));
+        a.fill(x_head);
+        b.fill(y_head);
+        let done = fill_two([a, b], [x, y]);
+        a.fill(&mut x[done..]);
+        b.fill(&mut y[done..]);
+    }
+
     /// Fills a block with the next samples; quickest in multiples of 16. Does not allocate.
     pub fn fill(&mut self, out: &mut [f32]) {
         let kept = out.len().min(GROUP - self.taken);
@@ -92,6 +105,21 @@ impl GaussianNoise {
             last.copy_from_slice(&self.ready[..last.len()]);
             self.taken = last.len();
         }
+    }
+}
+
+/// Fills whole groups of two streams that both begin one, where registers are wide enough for both;
+/// answers how many samples of each.
+fn fill_two([a, b]: [&mut GaussianNoise; 2], [x, y]: [&mut [f32]; 2]) -> usize {
+    if a.taken < GROUP || b.taken < GROUP {
+        return 0;
+    }
+    let groups = x.len().min(y.len()) / GROUP;
+    let (x, y) = (x.as_chunks_mut().0, y.as_chunks_mut().0);
+    let random = [&mut a.random, &mut b.random];
+    match very_wide(TwoNormals(random, &mut x[..groups], &mut y[..groups])) {
+        Ok(()) => groups * GROUP,
+        Err(_) => 0,
     }
 }
 
@@ -115,11 +143,47 @@ impl Work for Normals<'_> {
     }
 }
 
+/// Groups that are made before they are parted: compilers would compute in halves otherwise.
+const PARTED: usize = 8;
+
+/// Groups of normal numbers of two streams.
+struct TwoNormals<'a>(
+    [&'a mut RandomLanes; 2],
+    &'a mut [[f32; GROUP]],
+    &'a mut [[f32; GROUP]],
+);
+
+impl Work for TwoNormals<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let Self([first, second], x, y) = self;
+        let mut random = RandomLanes::beside(first, second);
+        let mut room = [[[0.0; 2 * LANES]; 2]; PARTED];
+        for (x, y) in x.chunks_mut(PARTED).zip(y.chunks_mut(PARTED)) {
+            for [first, second] in &mut room[..x.len()] {
+                let radius = radii(random.next_bits());
+                let (cos, sin) = directions(random.next_bits());
+                for i in 0..2 * LANES {
+                    first[i] = radius[i] * cos[i];
+                    second[i] = radius[i] * sin[i];
+                }
+            }
+            for ((x, y), [first, second]) in x.iter_mut().zip(y).zip(&room) {
+                x[..LANES].copy_from_slice(&first[..LANES]);
+                x[LANES..].copy_from_slice(&second[..LANES]);
+                y[..LANES].copy_from_slice(&first[LANES..]);
+                y[LANES..].copy_from_slice(&second[LANES..]);
+            }
+        }
+        random.part(first, second);
+    }
+}
+
 /// Distances from the centre of points whose two coordinates are normal numbers.
 #[inline(always)]
-fn radii(bits: [u32; LANES]) -> [f32; LANES] {
-    let mut radii = [0.0; LANES];
-    for i in 0..LANES {
+fn radii<const N: usize>(bits: [u32; N]) -> [f32; N] {
+    let mut radii = [0.0; N];
+    for i in 0..N {
         // In (0, 1]: a step above 0, 31 bits as those have a sign.
         let uniform = ((bits[i] >> 1) as i32 as f32 + 1.0) * (1.0 / (1u32 << 31) as f32);
         radii[i] = -2.0 * ln(uniform);
@@ -175,6 +239,31 @@ mod tests {
             assert!(off <= 2e-7 * (1.0 - exact), "{x}: {off}");
         }
         assert_eq!(ln(1.0), 0.0);
+    }
+
+    /// Two streams filled in one go are the two streams, wherever they are in their groups.
+    #[test]
+    fn two_streams_are_one_and_one() {
+        let mut alone = [GaussianNoise::new(1), GaussianNoise::new(2)];
+        let mut both = alone.clone();
+        for (first, second) in [
+            (64, 64),
+            (100, 33),
+            (0, 7),
+            (64, 64),
+            (5, 16),
+            (7, 8),
+            (96, 96),
+        ] {
+            let room = || [alloc::vec![0.0; first], alloc::vec![0.0; second]];
+            let (mut expected, mut found) = (room(), room());
+            for (noise, out) in alone.iter_mut().zip(&mut expected) {
+                noise.fill(out);
+            }
+            let [x, y] = &mut found;
+            GaussianNoise::fill_both(both.each_mut(), [x, y]);
+            assert_eq!(found, expected);
+        }
     }
 
     #[test]

@@ -2,7 +2,9 @@
 
 use alloc::vec::Vec;
 
-use crate::biquad::{Biquad, without_denormals};
+use crate::biquad::Biquad;
+use crate::quad::{Quad, Real, VOICES, beside, part};
+use crate::wide::{Work, wide};
 
 /// Sections side by side, and where few are left.
 const LANES: usize = 4;
@@ -23,30 +25,34 @@ const PAIR: usize = 2;
 /// ```
 #[derive(Debug, Clone)]
 pub struct Pipeline {
-    rows: Vec<Row<LANES>>,
-    last: Option<Row<FEW>>,
+    rows: Vec<Row<f64, LANES>>,
+    last: Option<Row<f64, FEW>>,
 }
+
+/// Four pipelines of as many sections side by side: each gives what it would give alone, bit for bit.
+#[derive(Debug)]
+pub struct Pipelines<'a>([&'a mut Pipeline; VOICES]);
 
 /// Sections side by side: transposed direct form II, written out for two samples, so that the new state
 /// is a sum of what the inputs and what the old state leave, and these need not wait for each other.
 #[derive(Debug, Clone, Copy)]
-struct Row<const N: usize> {
+struct Row<T, const N: usize> {
     /// Product of all `b0`, by which the other numerators are divided.
-    gain: f64,
+    gain: T,
     /// What the first and the second input leave in the two numbers of the state.
-    first: [[f64; N]; 2],
-    second: [[f64; N]; 2],
+    first: [[T; N]; 2],
+    second: [[T; N]; 2],
     /// What the first and the second number of the state leave in both, the second with its sign changed.
-    kept: [[f64; N]; 2],
-    crossed: [[f64; N]; 2],
-    state: State<N>,
+    kept: [[T; N]; 2],
+    crossed: [[T; N]; 2],
+    state: State<T, N>,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct State<const N: usize> {
-    s1: [f64; N],
-    s2: [f64; N],
-    y: [[f64; N]; PAIR],
+struct State<T, const N: usize> {
+    s1: [T; N],
+    s2: [T; N],
+    y: [[T; N]; PAIR],
 }
 
 impl Pipeline {
@@ -74,7 +80,74 @@ impl Pipeline {
     }
 }
 
-impl<const N: usize> Row<N> {
+impl<'a> Pipelines<'a> {
+    /// These pipelines side by side; `None` where they have not all as many rows of sections.
+    pub fn new(pipelines: [&'a mut Pipeline; VOICES]) -> Option<Self> {
+        let shape = |pipeline: &Pipeline| (pipeline.rows.len(), pipeline.last.is_some());
+        let [first, others @ ..] = &pipelines;
+        let alike = others.iter().all(|other| shape(other) == shape(first));
+        alike.then_some(Self(pipelines))
+    }
+
+    /// Filters a block in place. Does not allocate.
+    pub fn process(&mut self, pairs: &mut [[Quad; PAIR]]) {
+        let [a, b, c, d] = self.0.each_mut();
+        let rows = a.rows.iter_mut().zip(&mut b.rows);
+        for ((a, b), (c, d)) in rows.zip(c.rows.iter_mut().zip(&mut d.rows)) {
+            run_four([a, b, c, d], pairs);
+        }
+        if let (Some(a), Some(b), Some(c), Some(d)) =
+            (&mut a.last, &mut b.last, &mut c.last, &mut d.last)
+        {
+            run_four([a, b, c, d], pairs);
+        }
+    }
+}
+
+/// Runs a row of each of four pipelines.
+fn run_four<const N: usize>(mut rows: [&mut Row<f64, N>; VOICES], pairs: &mut [[Quad; PAIR]]) {
+    let mut row = Row::NONE;
+    wide(Beside(&mut row, rows.each_ref().map(|row| &**row)));
+    wide(Run(&mut row, pairs));
+    for (voice, own) in rows.iter_mut().enumerate() {
+        own.state = row.state.part(voice);
+    }
+}
+
+/// Puts four rows side by side.
+struct Beside<'a, const N: usize>(&'a mut Row<Quad, N>, [&'a Row<f64, N>; VOICES]);
+
+impl<const N: usize> Work for Beside<'_, N> {
+    #[inline(always)]
+    fn run(self) {
+        let Self(row, [a, b, c, d]) = self;
+        row.gain = Quad([a.gain, b.gain, c.gain, d.gain]);
+        for k in 0..2 {
+            row.first[k] = beside([&a.first[k], &b.first[k], &c.first[k], &d.first[k]]);
+            row.second[k] = beside([&a.second[k], &b.second[k], &c.second[k], &d.second[k]]);
+            row.kept[k] = beside([&a.kept[k], &b.kept[k], &c.kept[k], &d.kept[k]]);
+            row.crossed[k] = beside([&a.crossed[k], &b.crossed[k], &c.crossed[k], &d.crossed[k]]);
+        }
+        let (state, [a, b, c, d]) = (&mut row.state, [a, b, c, d].map(|row| &row.state));
+        state.s1 = beside([&a.s1, &b.s1, &c.s1, &d.s1]);
+        state.s2 = beside([&a.s2, &b.s2, &c.s2, &d.s2]);
+        for k in 0..PAIR {
+            state.y[k] = beside([&a.y[k], &b.y[k], &c.y[k], &d.y[k]]);
+        }
+    }
+}
+
+/// Apart from what puts the rows side by side: compilers would shuffle lanes all along otherwise.
+struct Run<'a, const N: usize>(&'a mut Row<Quad, N>, &'a mut [[Quad; PAIR]]);
+
+impl<const N: usize> Work for Run<'_, N> {
+    #[inline(always)]
+    fn run(self) {
+        self.0.run(self.1);
+    }
+}
+
+impl<const N: usize> Row<f64, N> {
     fn new(sections: &[Biquad]) -> Self {
         let lanes = |of: fn(&Biquad) -> f64| {
             core::array::from_fn(|i| of(sections.get(i).unwrap_or(&Biquad::IDENTITY)))
@@ -95,22 +168,56 @@ impl<const N: usize> Row<N> {
             },
         }
     }
+}
 
-    fn run(&mut self, pairs: &mut [[f64; PAIR]]) {
+impl<const N: usize> Row<Quad, N> {
+    const NONE: Self = {
+        let zeros = [Quad::ZERO; N];
+        Self {
+            gain: Quad::ZERO,
+            first: [zeros; 2],
+            second: [zeros; 2],
+            kept: [zeros; 2],
+            crossed: [zeros; 2],
+            state: State {
+                s1: zeros,
+                s2: zeros,
+                y: [zeros; PAIR],
+            },
+        }
+    };
+}
+
+impl<const N: usize> State<Quad, N> {
+    /// The state of a voice.
+    #[inline(always)]
+    fn part(&self, voice: usize) -> State<f64, N> {
+        State {
+            s1: part(&self.s1, voice),
+            s2: part(&self.s2, voice),
+            y: [part(&self.y[0], voice), part(&self.y[1], voice)],
+        }
+    }
+}
+
+// Loops, not closures: these would not be compiled for the wider registers.
+impl<T: Real, const N: usize> Row<T, N> {
+    #[inline(always)]
+    fn run(&mut self, pairs: &mut [[T; PAIR]]) {
         let mut state = self.state;
         for pair in pairs {
             *pair = self.tick(&mut state, *pair);
         }
         // What has died away is zero before it is so small that arithmetic gets slow.
         self.state = State {
-            s1: state.s1.map(without_denormals),
-            s2: state.s2.map(without_denormals),
-            y: state.y.map(|y| y.map(without_denormals)),
+            s1: state.s1.map(T::without_denormals),
+            s2: state.s2.map(T::without_denormals),
+            y: state.y.map(|y| y.map(T::without_denormals)),
         };
     }
 
     #[inline(always)]
-    fn tick(&self, state: &mut State<N>, [first, second]: [f64; PAIR]) -> [f64; PAIR] {
+    fn tick(&self, state: &mut State<T, N>, [first, second]: [T; PAIR]) -> [T; PAIR] {
         let x0 = behind(self.gain * first, &state.y[0]);
         let x1 = behind(self.gain * second, &state.y[1]);
         for i in 0..N {
@@ -118,19 +225,24 @@ impl<const N: usize> Row<N> {
             state.y[0][i] = x0[i] + s1;
             let ahead = self.second[0][i] * x0[i];
             state.y[1][i] = (ahead + x1[i]) + (s2 - self.crossed[0][i] * s1);
-            let left = |k: usize| self.first[k][i] * x0[i] + self.second[k][i] * x1[i];
-            let kept = |k: usize| self.kept[k][i] * s1 - self.crossed[k][i] * s2;
-            state.s1[i] = left(0) + kept(0);
-            state.s2[i] = left(1) + kept(1);
+            state.s1[i] = (self.first[0][i] * x0[i] + self.second[0][i] * x1[i])
+                + (self.kept[0][i] * s1 - self.crossed[0][i] * s2);
+            state.s2[i] = (self.first[1][i] * x0[i] + self.second[1][i] * x1[i])
+                + (self.kept[1][i] * s1 - self.crossed[1][i] * s2);
         }
-        state.y.map(|y| y[N - 1])
+        [state.y[0][N - 1], state.y[1][N - 1]]
     }
 }
 
 /// What each section takes: the input, or what the one before it gave.
 #[inline(always)]
-fn behind<const N: usize>(input: f64, given: &[f64; N]) -> [f64; N] {
-    core::array::from_fn(|i| if i == 0 { input } else { given[i - 1] })
+#[allow(clippy::manual_memcpy)] // A copied slice goes through memory, and takes a quarter longer.
+fn behind<T: Copy, const N: usize>(input: T, given: &[T; N]) -> [T; N] {
+    let mut taken = [input; N];
+    for i in 1..N {
+        taken[i] = given[i - 1];
+    }
+    taken
 }
 
 #[cfg(test)]
@@ -156,6 +268,37 @@ mod tests {
             for (y, x) in block[late..].iter().zip(expected) {
                 assert!((y - x).abs() < 1e-9, "order {order}: {y} {x}");
             }
+        }
+    }
+
+    /// Side by side each gives the bits it gives alone; other numbers of rows cannot stand there.
+    #[test]
+    fn four_pipelines_are_one_and_one() {
+        for order in [2, 4, 6, 8, 12] {
+            let edges = [10.0, 17.5, 20.0, 40.0];
+            let mut alone = edges.map(|f| Pipeline::new(&high_pass(order, f, 2_000.0).unwrap()));
+            let mut beside = alone.clone();
+            let mut noise = GaussianNoise::new(4);
+            for pairs in [1, 3, 40] {
+                let mut next = || f64::from(noise.next_sample());
+                let mut block: Vec<[Quad; PAIR]> = (0..pairs)
+                    .map(|_| [(); PAIR].map(|()| Quad([(); VOICES].map(|()| next()))))
+                    .collect();
+                let expected = core::array::from_fn::<_, VOICES, _>(|voice| {
+                    let own = |pair: &[Quad; PAIR]| pair.map(|x| x.0[voice]);
+                    let mut own: Vec<[f64; PAIR]> = block.iter().map(own).collect();
+                    alone[voice].process(&mut own);
+                    own
+                });
+                let mut four = Pipelines::new(beside.each_mut()).unwrap();
+                four.process(&mut block);
+                for (voice, expected) in expected.iter().enumerate() {
+                    let same = |(y, x): (&[Quad; PAIR], &[f64; PAIR])| y.map(|y| y.0[voice]) == *x;
+                    assert!(block.iter().zip(expected).all(same), "{order} {voice}");
+                }
+            }
+            beside[1] = Pipeline::new(&high_pass(order + 8, 20.0, 2_000.0).unwrap());
+            assert!(Pipelines::new(beside.each_mut()).is_none());
         }
     }
 }

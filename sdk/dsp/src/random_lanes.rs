@@ -8,20 +8,44 @@ pub(crate) const LANES: usize = 8;
 /// Eight generators xoshiro128++ (Blackman and Vigna 2021), whose states a seed draws: each would take
 /// 2¹²⁸ numbers to come back.
 #[derive(Debug, Clone)]
-pub(crate) struct RandomLanes([[u32; LANES]; 4]);
+pub(crate) struct RandomLanes<const N: usize = LANES>([[u32; N]; 4]);
 
 impl RandomLanes {
     pub(crate) fn new(seed: u64) -> Self {
         let mut uniform = Uniform::new(seed);
         Self([(); 4].map(|()| [(); LANES].map(|()| uniform.next_bits() as u32)))
     }
+}
 
+impl RandomLanes<{ 2 * LANES }> {
+    /// Those of two side by side.
+    #[inline(always)]
+    pub(crate) fn beside(first: &RandomLanes, second: &RandomLanes) -> Self {
+        let mut both = Self([[0; 2 * LANES]; 4]);
+        for (k, both) in both.0.iter_mut().enumerate() {
+            both[..LANES].copy_from_slice(&first.0[k]);
+            both[LANES..].copy_from_slice(&second.0[k]);
+        }
+        both
+    }
+
+    /// Gives them back.
+    #[inline(always)]
+    pub(crate) fn part(&self, first: &mut RandomLanes, second: &mut RandomLanes) {
+        for (k, both) in self.0.iter().enumerate() {
+            first.0[k].copy_from_slice(&both[..LANES]);
+            second.0[k].copy_from_slice(&both[LANES..]);
+        }
+    }
+}
+
+impl<const N: usize> RandomLanes<N> {
     /// The next 32 bits of each.
     #[inline(always)]
-    pub(crate) fn next_bits(&mut self) -> [u32; LANES] {
+    pub(crate) fn next_bits(&mut self) -> [u32; N] {
         let [a, b, c, d] = &mut self.0;
-        let mut bits = [0; LANES];
-        for i in 0..LANES {
+        let mut bits = [0; N];
+        for i in 0..N {
             bits[i] = a[i].wrapping_add(d[i]).rotate_left(7).wrapping_add(a[i]);
             let shifted = b[i] << 9;
             c[i] ^= a[i];

@@ -28,3 +28,32 @@ pub(crate) fn wide(work: impl Work) {
 pub(crate) fn wide(work: impl Work) {
     work.run();
 }
+
+/// Does some work in registers of 512 bits where the processor has them, else gives it back: with half of
+/// them it would take longer than twice half of it.
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+#[inline]
+#[allow(unsafe_code)]
+pub(crate) fn very_wide<W: Work>(work: W) -> Result<(), W> {
+    #[target_feature(enable = "avx512f,avx512vl,avx512bw,avx512dq")]
+    fn with_avx512(work: impl Work) {
+        work.run();
+    }
+    let there = std::is_x86_feature_detected!("avx512f")
+        && std::is_x86_feature_detected!("avx512vl")
+        && std::is_x86_feature_detected!("avx512bw")
+        && std::is_x86_feature_detected!("avx512dq");
+    if !there {
+        return Err(work);
+    }
+    // SAFETY: the processor was just asked.
+    unsafe { with_avx512(work) };
+    Ok(())
+}
+
+/// Gives the work back.
+#[cfg(not(all(feature = "std", target_arch = "x86_64")))]
+#[inline(always)]
+pub(crate) fn very_wide<W: Work>(work: W) -> Result<(), W> {
+    Err(work)
+}

@@ -1,15 +1,15 @@
 //! Models linked into this program, called through their tables.
 
-use htex_model::abi::ModelTable;
+use crate::table::TableModel;
 
-/// The tables of the built-in models, in the order in which they are shown.
-pub(crate) fn tables() -> [&'static ModelTable; 6] {
+/// The built-in models, in the order in which they are shown.
+pub(crate) fn models() -> [TableModel; 6] {
     [
-        &htex_ar::TABLE,
-        &htex_mfcc::TABLE,
-        &htex_speak::TABLE,
-        &htex_sbeta::TABLE,
-        &htex_sslope::TABLE,
-        &htex_bands::TABLE,
+        TableModel::new(&htex_ar::TABLE, Some(&htex_ar::VOICES)),
+        TableModel::new(&htex_mfcc::TABLE, Some(&htex_mfcc::VOICES)),
+        TableModel::new(&htex_speak::TABLE, Some(&htex_speak::VOICES)),
+        TableModel::new(&htex_sbeta::TABLE, Some(&htex_sbeta::VOICES)),
+        TableModel::new(&htex_sslope::TABLE, Some(&htex_sslope::VOICES)),
+        TableModel::new(&htex_bands::TABLE, Some(&htex_bands::VOICES)),
     ]
 }

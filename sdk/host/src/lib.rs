@@ -31,6 +31,7 @@ mod search;
 mod stream;
 mod synthesis;
 mod table;
+mod together;
 mod voice;
 #[cfg(feature = "wasm")]
 mod wasm;
@@ -47,4 +48,5 @@ pub use registry::Registry;
 pub use search::Search;
 pub use stream::Stream;
 pub use synthesis::{StillSound, Synthesis};
+pub use together::{VOICES_EXTENSION, render_together};
 pub use voice::ModelVoice;

@@ -9,6 +9,7 @@ use htex_model::abi::{
     AbiVersion, DescriptorJson, ExtensionFn, FitFn, InterpolateFn, LastError, MagnitudeFn,
     ModelTable, VoiceFreeFn, VoiceNewFn, VoiceRateFn, VoiceRenderFn, VoiceRetuneFn,
 };
+use htex_model::voices_1::{VoicesRenderFn, VoicesTable};
 use libloading::Library;
 
 use crate::HostError;
@@ -32,7 +33,7 @@ pub(crate) fn load(path: &Path) -> Result<TableModel, HostError> {
     let abi_version: AbiVersion = unsafe { symbol(library, "htex_model_abi_version", &error)? };
     crate::model::check_marker(&origin, abi_version())?;
     // SAFETY: a library with this marker exports these names with these types.
-    let table = unsafe {
+    let table: &'static ModelTable = Box::leak(Box::new(unsafe {
         ModelTable {
             abi_version,
             descriptor: symbol::<DescriptorJson>(library, "htex_model_descriptor", &error)?,
@@ -47,8 +48,16 @@ pub(crate) fn load(path: &Path) -> Result<TableModel, HostError> {
             voice_free: symbol::<VoiceFreeFn>(library, "htex_model_voice_free", &error)?,
             extension: symbol::<ExtensionFn>(library, "htex_model_extension", &error)?,
         }
-    };
-    Ok(TableModel(Box::leak(Box::new(table))))
+    }));
+    let id = VoicesTable::ID.as_bytes();
+    // SAFETY: a live slice.
+    if unsafe { (table.extension)(id.as_ptr(), id.len()) } != 1 {
+        return Ok(TableModel::new(table, None));
+    }
+    // SAFETY: a library with this extension exports this name with this type.
+    let render = unsafe { symbol::<VoicesRenderFn>(library, "htex_voices_1_render", &error)? };
+    let voices = Box::leak(Box::new(VoicesTable { render }));
+    Ok(TableModel::new(table, Some(voices)))
 }
 
 /// The address of a symbol.

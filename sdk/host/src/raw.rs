@@ -1,6 +1,8 @@
 //! The flat calls of the model ABI over slices: what a loader provides.
 
 use htex_model::Band;
+use htex_model::abi::ModelTable;
+use htex_model::voices_1::VoicesRenderFn;
 
 /// Arguments of a fit, as they cross the ABI.
 pub(crate) struct RawFit<'a> {
@@ -48,5 +50,17 @@ pub(crate) trait RawVoice: Send {
     /// Asks the model to free the voice. The handle is kept: calls after this one reach the model,
     /// which answers `BadHandle`, and dropping frees nothing again.
     fn free(&mut self) -> i64;
+    /// What it takes to render this voice in one call with others of its model, if the model can.
+    fn together(&self) -> Option<Together> {
+        None
+    }
     fn last_error(&self, out: &mut [u8]) -> i64;
+}
+
+/// A voice's part in a call that renders several.
+pub(crate) struct Together {
+    pub(crate) render: VoicesRenderFn,
+    /// Of the model, by whose place in memory it is known.
+    pub(crate) table: &'static ModelTable,
+    pub(crate) handle: i64,
 }

@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use semver::{Version, VersionReq};
 
-use crate::builtin::tables;
-use crate::table::TableModel;
+use crate::builtin;
 use crate::{HostError, LoadedModel, Note, Origin, Search, WasmLimits};
 
 /// Models by id. Of several with one id, the one that [`Search`] puts first is used; the others are
@@ -59,9 +58,9 @@ impl Registry {
     }
 
     pub(crate) fn add_builtin(&mut self) {
-        for table in tables() {
+        for model in builtin::models() {
             // A built-in model that cannot be loaded is not there; the tests count them.
-            if let Ok(model) = LoadedModel::new(Origin::Builtin, Arc::new(TableModel(table))) {
+            if let Ok(model) = LoadedModel::new(Origin::Builtin, Arc::new(model)) {
                 self.add(Rank::Builtin, model);
             }
         }

@@ -2,34 +2,46 @@
 
 use htex_model::Band;
 use htex_model::abi::ModelTable;
+use htex_model::voices_1::VoicesTable;
 
-use crate::raw::{RawFit, RawModel, RawVoice};
+use crate::raw::{RawFit, RawModel, RawVoice, Together};
 
 /// A model behind a table of native functions.
-pub(crate) struct TableModel(pub(crate) &'static ModelTable);
+#[derive(Clone, Copy)]
+pub(crate) struct TableModel {
+    table: &'static ModelTable,
+    /// Where the model has the extension.
+    voices: Option<&'static VoicesTable>,
+}
+
+impl TableModel {
+    pub(crate) fn new(table: &'static ModelTable, voices: Option<&'static VoicesTable>) -> Self {
+        Self { table, voices }
+    }
+}
 
 // Each call below passes slices of this program, readable or writable for its whole length during
 // the call, as the ABI asks; a voice's handle is
 // held by its `TableVoice` alone.
 impl RawModel for TableModel {
     fn abi_version(&self) -> u32 {
-        (self.0.abi_version)()
+        (self.table.abi_version)()
     }
 
     fn descriptor(&self, out: &mut [u8]) -> i64 {
         // SAFETY: a live slice.
-        unsafe { (self.0.descriptor)(out.as_mut_ptr(), out.len()) }
+        unsafe { (self.table.descriptor)(out.as_mut_ptr(), out.len()) }
     }
 
     fn last_error(&self, out: &mut [u8]) -> i64 {
         // SAFETY: a live slice.
-        unsafe { (self.0.last_error)(out.as_mut_ptr(), out.len()) }
+        unsafe { (self.table.last_error)(out.as_mut_ptr(), out.len()) }
     }
 
     fn fit(&self, call: &RawFit<'_>, parameters: &mut [f64], level_rms: &mut f64) -> i64 {
         // SAFETY: live slices; `magnitude` is as long as `frequency_hz`, which `LoadedModel` checks.
         unsafe {
-            (self.0.fit)(
+            (self.table.fit)(
                 call.band.low_hz,
                 call.band.high_hz,
                 call.frequency_hz.as_ptr(),
@@ -56,7 +68,7 @@ impl RawModel for TableModel {
     ) -> i64 {
         // SAFETY: live slices; the shorter of the two lengths is used for both.
         unsafe {
-            (self.0.magnitude)(
+            (self.table.magnitude)(
                 parameters.as_ptr(),
                 parameters.len(),
                 band.low_hz,
@@ -71,7 +83,7 @@ impl RawModel for TableModel {
     fn interpolate(&self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64 {
         // SAFETY: live slices.
         unsafe {
-            (self.0.interpolate)(
+            (self.table.interpolate)(
                 sets.as_ptr(),
                 sets.len(),
                 weights.as_ptr(),
@@ -84,13 +96,15 @@ impl RawModel for TableModel {
 
     fn extension(&self, id: &[u8]) -> i64 {
         // SAFETY: a live slice.
-        unsafe { (self.0.extension)(id.as_ptr(), id.len()) }
+        unsafe { (self.table.extension)(id.as_ptr(), id.len()) }
     }
 
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64 {
         let (low, high) = band.edges();
         // SAFETY: a live slice.
-        unsafe { (self.0.voice_rate)(parameters.as_ptr(), parameters.len(), low, high, wanted_hz) }
+        unsafe {
+            (self.table.voice_rate)(parameters.as_ptr(), parameters.len(), low, high, wanted_hz)
+        }
     }
 
     fn voice_new(
@@ -103,7 +117,7 @@ impl RawModel for TableModel {
         let (low, high) = band.edges();
         // SAFETY: a live slice.
         let handle = unsafe {
-            (self.0.voice_new)(
+            (self.table.voice_new)(
                 parameters.as_ptr(),
                 parameters.len(),
                 low,
@@ -116,7 +130,7 @@ impl RawModel for TableModel {
             return Err(handle);
         }
         Ok(Box::new(TableVoice {
-            table: self.0,
+            model: *self,
             handle,
             freed: false,
         }))
@@ -125,7 +139,7 @@ impl RawModel for TableModel {
 
 /// A voice behind a handle, which it alone holds.
 struct TableVoice {
-    table: &'static ModelTable,
+    model: TableModel,
     handle: i64,
     freed: bool,
 }
@@ -133,26 +147,36 @@ struct TableVoice {
 impl RawVoice for TableVoice {
     fn render(&mut self, out: &mut [f32]) -> i64 {
         // SAFETY: a live slice; `&mut self` keeps the handle to one thread at a time.
-        unsafe { (self.table.voice_render)(self.handle, out.as_mut_ptr(), out.len()) }
+        unsafe { (self.model.table.voice_render)(self.handle, out.as_mut_ptr(), out.len()) }
     }
 
     fn retune(&mut self, parameters: &[f64]) -> i64 {
         // SAFETY: a live slice; `&mut self` keeps the handle to one thread at a time.
-        unsafe { (self.table.voice_retune)(self.handle, parameters.as_ptr(), parameters.len()) }
+        unsafe {
+            (self.model.table.voice_retune)(self.handle, parameters.as_ptr(), parameters.len())
+        }
     }
 
     fn interpolate(&mut self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64 {
-        TableModel(self.table).interpolate(sets, weights, parameters)
+        self.model.interpolate(sets, weights, parameters)
     }
 
     fn free(&mut self) -> i64 {
         self.freed = true;
-        (self.table.voice_free)(self.handle)
+        (self.model.table.voice_free)(self.handle)
+    }
+
+    fn together(&self) -> Option<Together> {
+        Some(Together {
+            render: self.model.voices?.render,
+            table: self.model.table,
+            handle: self.handle,
+        })
     }
 
     fn last_error(&self, out: &mut [u8]) -> i64 {
         // SAFETY: a live slice.
-        unsafe { (self.table.last_error)(out.as_mut_ptr(), out.len()) }
+        unsafe { (self.model.table.last_error)(out.as_mut_ptr(), out.len()) }
     }
 }
 
@@ -160,7 +184,7 @@ impl Drop for TableVoice {
     fn drop(&mut self) {
         if !self.freed {
             // There is nobody to tell if a model cannot free what it made.
-            (self.table.voice_free)(self.handle);
+            (self.model.table.voice_free)(self.handle);
         }
     }
 }

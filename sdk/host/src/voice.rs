@@ -1,6 +1,6 @@
 //! A voice of a model.
 
-use crate::raw::RawVoice;
+use crate::raw::{RawVoice, Together};
 use crate::{HostError, LoadedModel};
 
 /// An endless stream of samples of unit RMS at the model's own rate.
@@ -33,8 +33,13 @@ impl ModelVoice {
             .inspect_err(|_| out.fill(0.0))
     }
 
+    /// What it takes to render it in one call with others of its model, if the model can.
+    pub(crate) fn together(&self) -> Option<Together> {
+        self.raw.together()
+    }
+
     /// A sample that is no number would stay in every filter behind this voice.
-    fn check_finite(&self, out: &[f32]) -> Result<(), HostError> {
+    pub(crate) fn check_finite(&self, out: &[f32]) -> Result<(), HostError> {
         // No early end: the loop is then one of vectors.
         if out.iter().fold(true, |finite, x| finite & x.is_finite()) {
             return Ok(());
@@ -86,7 +91,7 @@ impl ModelVoice {
         self.check("voice_free", answer)
     }
 
-    fn check(&self, call: &'static str, answer: i64) -> Result<(), HostError> {
+    pub(crate) fn check(&self, call: &'static str, answer: i64) -> Result<(), HostError> {
         if answer >= 0 {
             return Ok(());
         }

@@ -49,6 +49,11 @@ macro_rules! export_model {
             extension: htex_model_exports::htex_model_extension,
         };
 
+        /// What the extension `htex.voices/1` adds.
+        pub static VOICES: $crate::voices_1::VoicesTable = $crate::voices_1::VoicesTable {
+            render: htex_model_exports::htex_voices_1_render,
+        };
+
         /// The C functions by their ABI names; `htex_model::abi` says what each does.
         #[allow(missing_docs, clippy::missing_safety_doc, clippy::too_many_arguments)]
         mod htex_model_exports {
@@ -208,6 +213,23 @@ macro_rules! export_model {
             ) -> i64 {
                 // SAFETY: the caller's text, by the ABI.
                 shim::extension(unsafe { Input::new(id, id_len) })
+            }
+
+            #[cfg_attr(
+                                        all(feature = $feature, not(target_family = "wasm")),
+                                        unsafe(no_mangle)
+                                    )]
+            pub(super) unsafe extern "C" fn htex_voices_1_render(
+                voices: *const i64,
+                count: usize,
+                out: *mut f32,
+                frames: usize,
+            ) -> i64 {
+                // SAFETY: the caller's arrays, and one thread a voice, by the extension.
+                unsafe {
+                    let out = Output::new(out, count.saturating_mul(frames));
+                    STATE.voices_render(Input::new(voices, count), frames, out)
+                }
             }
 
             #[cfg(target_family = "wasm")]

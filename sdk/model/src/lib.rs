@@ -27,6 +27,7 @@ mod traits;
 mod values;
 #[cfg(feature = "std")]
 mod voices;
+pub mod voices_1;
 
 #[cfg(feature = "schemars")]
 pub use descriptor::descriptor_schema;

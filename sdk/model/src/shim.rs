@@ -12,6 +12,7 @@ use std::sync::OnceLock;
 
 use crate::abi::{ALLOC_ALIGN, MAX_BAND_HZ, MAX_RATE_HZ, MIN_BINS, MIN_RATE_HZ};
 use crate::voices::Voices;
+use crate::voices_1::{MAX_VOICES, VoicesTable};
 use crate::{Band, Descriptor, Error, FitInput, Model, Numbers, Status, Values, Voice};
 
 /// Sets that can be mixed without allocating.
@@ -248,6 +249,33 @@ impl<M: Model> State<M> {
         })
     }
 
+    /// See [`crate::voices_1::VoicesRenderFn`].
+    ///
+    /// # Safety
+    /// No other thread uses or frees these voices meanwhile.
+    pub unsafe fn voices_render(
+        &self,
+        handles: Input<'_, i64>,
+        frames: usize,
+        out: Output<'_, f32>,
+    ) -> i64 {
+        answer(|| {
+            let (handles, out) = (handles.get("voices")?, out.get("out")?);
+            check_handles(handles)?;
+            let mut voices = [core::ptr::null_mut::<M::Voice>(); MAX_VOICES];
+            for (voice, &handle) in voices.iter_mut().zip(handles) {
+                // SAFETY: the caller's promise; no handle stands here twice.
+                *voice = unsafe { self.voices.get(handle) }.ok_or_else(bad_handle)?;
+            }
+            let voices = voices.as_mut_ptr().cast::<&mut M::Voice>();
+            // SAFETY: as many pointers as there are handles were just made of references, each to a
+            // voice of its own, and are not used again but as these.
+            let voices = unsafe { core::slice::from_raw_parts_mut(voices, handles.len()) };
+            M::Voice::render_together(voices, frames, out);
+            Ok(0)
+        })
+    }
+
     /// See [`crate::abi::VoiceRetuneFn`].
     ///
     /// # Safety
@@ -303,9 +331,10 @@ pub fn last_error(out: Output<'_, u8>) -> i64 {
         .map_or(Status::InvalidArgument as i64, |out| copy_text(&text, out))
 }
 
-/// See [`crate::abi::ExtensionFn`]. No extension is defined yet.
-pub fn extension(_id: Input<'_, u8>) -> i64 {
-    0
+/// See [`crate::abi::ExtensionFn`].
+pub fn extension(id: Input<'_, u8>) -> i64 {
+    let known = id.0 == Some(VoicesTable::ID.as_bytes());
+    i64::from(known && !cfg!(target_family = "wasm"))
 }
 
 /// Runs a call; an error or a panic becomes a status and the last-error text.
@@ -329,6 +358,23 @@ fn answer(call: impl FnOnce() -> Result<i64, Error>) -> i64 {
         });
         error.status as i64
     })
+}
+
+/// Voices that are rendered together: not too many, and none of them twice.
+fn check_handles(handles: &[i64]) -> Result<(), Error> {
+    if handles.len() > MAX_VOICES {
+        let count = handles.len();
+        return Err(Error::argument(format!(
+            "{count} voices in one call; at most {MAX_VOICES} are allowed"
+        )));
+    }
+    let again = |(i, handle)| handles[..i].contains(handle);
+    match handles.iter().enumerate().find(|pair| again(*pair)) {
+        None => Ok(()),
+        Some((i, _)) => Err(Error::argument(format!(
+            "`voices`[{i}] stands there a second time"
+        ))),
+    }
 }
 
 fn bad_handle() -> Error {
@@ -443,6 +489,82 @@ fn read_sets<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A model whose voices count.
+    struct Counting;
+    struct Counter(f32);
+
+    impl Model for Counting {
+        type Voice = Counter;
+        fn descriptor() -> Descriptor {
+            Descriptor::new("org.example.counting", "Counting", "1.0.0", "Counts.")
+        }
+        fn fit(_: &FitInput<'_>) -> Result<crate::Fit, Error> {
+            Err(Error::cannot_fit("never"))
+        }
+        fn magnitude(_: &Values<'_>, _: Band, _: &[f64], _: &mut [f64]) -> Result<(), Error> {
+            Ok(())
+        }
+        fn interpolate(_: &[Values<'_>], _: &[f64], _: &mut Numbers<'_>) -> Result<(), Error> {
+            Ok(())
+        }
+        fn voice(_: &Values<'_>, _: Band, _: f64, seed: u64) -> Result<Counter, Error> {
+            Ok(Counter(seed as f32))
+        }
+    }
+
+    impl Voice for Counter {
+        fn render(&mut self, out: &mut [f32]) {
+            for x in out {
+                *x = self.0;
+                self.0 += 1.0;
+            }
+        }
+        fn retune(&mut self, _: &Values<'_>) -> Result<(), Error> {
+            Ok(())
+        }
+    }
+
+    /// One array of handles that is not right, and no voice moves on.
+    #[test]
+    fn voices_are_rendered_together_or_not_at_all() {
+        let state = State::<Counting>::new();
+        let none = Input(Some(&[][..]));
+        let new = |seed| state.voice_new(none, (20.0, 1_000.0), 2_000.0, seed);
+        let (a, b) = (new(100), new(200));
+        let render = |handles: &[i64], frames: usize| {
+            let mut out = std::vec![-1.0; handles.len() * frames];
+            // SAFETY: one thread.
+            let answer = unsafe {
+                state.voices_render(Input(Some(handles)), frames, Output(Some(&mut out)))
+            };
+            (answer, out)
+        };
+        let freed = new(300);
+        assert_eq!(state.voice_free(freed), 0);
+        for (handles, status) in [
+            (&[a, b, a][..], Status::InvalidArgument),
+            (&[a, freed], Status::BadHandle),
+            (&[a, 0], Status::BadHandle),
+            (&(1..=17).collect::<Vec<_>>(), Status::InvalidArgument),
+        ] {
+            let (answer, out) = render(handles, 3);
+            assert_eq!(answer, status as i64);
+            assert!(out.iter().all(|x| *x == -1.0), "{handles:?}");
+        }
+        assert_eq!(render(&[], 3), (0, std::vec![]));
+        assert_eq!(render(&[a, b], 0), (0, std::vec![]));
+        assert_eq!(
+            render(&[b, a], 2),
+            (0, std::vec![200.0, 201.0, 100.0, 101.0])
+        );
+        // SAFETY: null is refused before it is read.
+        let null = unsafe {
+            state.voices_render(Input(Some(&[a])), 2, Output::new(core::ptr::null_mut(), 2))
+        };
+        assert_eq!(null, Status::InvalidArgument as i64);
+        assert_eq!(render(&[a], 1), (0, std::vec![102.0]));
+    }
 
     #[test]
     fn memory_is_given_and_taken_back() {

@@ -77,7 +77,7 @@ impl<V> Voices<V> {
     ///
     /// # Safety
     /// No other thread uses or frees this voice meanwhile, and the caller holds one such reference
-    /// at a time.
+    /// to it at a time.
     #[allow(clippy::mut_from_ref)]
     pub unsafe fn get(&self, handle: i64) -> Option<&mut V> {
         let slot = self.live_slot(handle)?;

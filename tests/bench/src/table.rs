@@ -80,12 +80,8 @@ pub const fn rows() -> &'static [Row] {
             "ar_many",
             "AR, 1,000 voices at 2 kHz",
             &[
-                c("ar_many", "C loop", None),
-                c(
-                    "ar_many_edges",
-                    "C loop, the band's edge as ours",
-                    Some(2.0),
-                ),
+                c("ar_many", "C loop", Some(2.0)),
+                c("ar_many_edges", "C loop, the band's edge as ours", None),
             ],
         ),
         sample(

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 /// Hour against hour, decibels.
 const DRIFT_DB: f64 = 0.05;
-/// Time of a sample in the last minute over that in the first.
+/// Time of a sample in the last minute over that in the first, rendered again in turns with it.
 const SLOWDOWN: f64 = 1.1;
 const PHASE_CYCLES: f64 = 1e-6;
 /// Seconds in which blocks are compared, of each seed.

@@ -8,4 +8,5 @@ pub(crate) mod refusal;
 pub(crate) mod repeat;
 pub(crate) mod resources;
 pub(crate) mod sound;
+pub(crate) mod together;
 pub(crate) mod twin;

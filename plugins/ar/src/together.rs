@@ -1,0 +1,78 @@
+//! Four voices side by side.
+
+use htex_dsp::all_pole::{AllPoles, GROUP};
+use htex_dsp::noise::GaussianNoise;
+use htex_dsp::pipeline::Pipelines;
+use htex_dsp::quad::{Quad, VOICES};
+use htex_model::Voice;
+
+use crate::AutoregressionVoice;
+
+/// Groups of samples made at once.
+const BLOCK: usize = 64;
+/// Fewest groups for which putting voices side by side pays.
+const LEAST: usize = 16;
+
+/// Fills a row of each of four voices.
+pub(crate) fn render(voices: &mut [&mut AutoregressionVoice; VOICES], rows: [&mut [f32]; VOICES]) {
+    let frames = rows[0].len();
+    let [first, others @ ..] = &*voices;
+    // What is left of the last group comes first, and then whole groups.
+    let head = (GROUP - first.taken).min(frames);
+    let body = (frames - head) / GROUP * GROUP;
+    let steady = |voice: &AutoregressionVoice| voice.ramp_left == 0;
+    let alike = others.iter().all(|other| other.taken == first.taken);
+    if !alike || body < LEAST * GROUP || !voices.iter().all(|voice| steady(voice)) {
+        return alone(voices, rows);
+    }
+    let parts = rows.map(|row| {
+        let (head, rest) = row.split_at_mut(head);
+        let (body, tail) = rest.split_at_mut(body);
+        [head, body, tail]
+    });
+    let [[h0, b0, t0], [h1, b1, t1], [h2, b2, t2], [h3, b3, t3]] = parts;
+    alone(voices, [h0, h1, h2, h3]);
+    let mut body = [b0, b1, b2, b3];
+    if !groups(voices, &mut body) {
+        alone(voices, body);
+    }
+    alone(voices, [t0, t1, t2, t3]);
+}
+
+fn alone(voices: &mut [&mut AutoregressionVoice; VOICES], rows: [&mut [f32]; VOICES]) {
+    for (voice, row) in voices.iter_mut().zip(rows) {
+        voice.render(row);
+    }
+}
+
+/// Whole groups of each voice; false, with nothing done, where their filters cannot stand side by side.
+fn groups(
+    voices: &mut [&mut AutoregressionVoice; VOICES],
+    rows: &mut [&mut [f32]; VOICES],
+) -> bool {
+    let [a, b, c, d] = voices;
+    let filters = [&mut a.filter, &mut b.filter, &mut c.filter, &mut d.filter];
+    let edges = [&mut a.edges, &mut b.edges, &mut c.edges, &mut d.edges];
+    let (Some(mut filters), Some(mut edges)) = (AllPoles::new(filters), Pipelines::new(edges))
+    else {
+        return false;
+    };
+    let gains = Quad([a.gain, b.gain, c.gain, d.gain]);
+    // The room of the output holds the noise first.
+    let [r0, r1, r2, r3] = rows;
+    GaussianNoise::fill_both([&mut a.noise, &mut b.noise], [r0, r1]);
+    GaussianNoise::fill_both([&mut c.noise, &mut d.noise], [r2, r3]);
+    let frames = rows[0].len();
+    let mut room = [Quad([0.0; VOICES]); BLOCK * GROUP];
+    for start in (0..frames).step_by(room.len()) {
+        let block = &mut room[..(frames - start).min(BLOCK * GROUP)];
+        let [a, b, c, d] = rows
+            .each_mut()
+            .map(|row| &mut row[start..start + block.len()]);
+        Quad::gather([a, b, c, d], gains, block);
+        filters.process(block.as_chunks_mut().0);
+        edges.process(block.as_chunks_mut().0);
+        Quad::scatter(block, [a, b, c, d]);
+    }
+    true
+}

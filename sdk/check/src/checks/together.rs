@@ -1,0 +1,59 @@
+//! Several voices in one call.
+
+use htex_host::{ModelVoice, VOICES_EXTENSION, render_together};
+
+use crate::case::Case;
+use crate::finding::{Finding, Found};
+use crate::signal::first_difference;
+
+/// One more than a call takes.
+const VOICES: usize = 17;
+const FRAMES: [usize; 5] = [1, 256, 3, 64, 500];
+/// Before this block one of them is retuned.
+const RETUNED_AT: usize = 2;
+const RETUNED: usize = 5;
+
+/// The same as alone.
+pub(crate) fn agrees(case: &Case) -> Found {
+    if !case.model.has_extension(VOICES_EXTENSION)? {
+        return Ok(Finding::passed(format!(
+            "the model has no extension `{VOICES_EXTENSION}`"
+        )));
+    }
+    let (first, second) = match case.two_sets()? {
+        Some(sets) => sets,
+        None => (case.parameters()?, case.parameters()?),
+    };
+    let set = |voice: usize| if voice % 3 == 1 { &second } else { &first };
+    let make = || -> Result<Vec<ModelVoice>, Finding> {
+        let voice = |i| Ok(case.voice(set(i), case.seed.wrapping_add(i as u64))?);
+        (0..VOICES).map(voice).collect()
+    };
+    let (mut alone, mut together) = (make()?, make()?);
+    for (block, frames) in FRAMES.into_iter().enumerate() {
+        if block == RETUNED_AT {
+            // A voice may refuse, for one that has another rate; both then play on.
+            let answers = [&mut alone, &mut together].map(|v| v[RETUNED].retune(&second).is_ok());
+            if answers[0] != answers[1] {
+                return Err(Finding::failed(
+                    "one of two voices of the same history refuses to be retuned",
+                ));
+            }
+        }
+        let mut out = vec![0.0; VOICES * frames];
+        render_together(&mut together, frames, &mut out)?;
+        for (i, (voice, row)) in alone.iter_mut().zip(out.chunks(frames)).enumerate() {
+            let mut own = vec![0.0; frames];
+            voice.render(&mut own)?;
+            if let Some(at) = first_difference(row, &own) {
+                return Err(Finding::failed(format!(
+                    "voice {i} of {VOICES}, {frames} frames: sample {at} differs from it alone"
+                ))
+                .with("sample", at as f64));
+            }
+        }
+    }
+    Ok(Finding::passed(format!(
+        "{VOICES} voices in common calls sound as each does alone"
+    )))
+}

@@ -1,0 +1,235 @@
+//! The direct form of an all-pole filter, four samples at a time, for one voice or for four.
+
+use crate::biquad::without_denormals;
+use crate::quad::{Quad, Real, VOICES, beside, part};
+use crate::wide::{Work, wide};
+
+/// Samples that are filtered together.
+pub const GROUP: usize = 4;
+
+/// Orders up to this have a direct form with all state in registers.
+pub(crate) const MAX_ORDER: usize = 16;
+
+/// Four samples of the transposed direct form II: what each of the four inputs, with the state that
+/// meets it, leaves in the outputs and in the state behind them. Numbers behind the order are zero.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Direct {
+    outputs: [[f64; GROUP]; GROUP],
+    states: [[f64; MAX_ORDER]; GROUP],
+    state: [f64; MAX_ORDER],
+}
+
+impl Direct {
+    /// The form of these coefficients, behind some outputs, the newest last.
+    pub(crate) fn new(a: &[f64; MAX_ORDER], past: &[f64; MAX_ORDER]) -> Self {
+        let mut direct = Self {
+            outputs: [[0.0; GROUP]; GROUP],
+            states: [[0.0; MAX_ORDER]; GROUP],
+            state: [0.0; MAX_ORDER],
+        };
+        let effects = direct.outputs.iter_mut().zip(&mut direct.states);
+        for (at, (outputs, state)) in effects.enumerate() {
+            for (n, y) in outputs.iter_mut().enumerate() {
+                *y = tick(a, state, f64::from(u8::from(n == at)));
+            }
+        }
+        // All that the filter holds are its last outputs.
+        for &y in past {
+            // An input that makes the output just this.
+            let input = y - direct.state[0];
+            tick(a, &mut direct.state, input);
+        }
+        direct
+    }
+
+    /// Filters a block in place, by a filter of this order or a smaller one.
+    pub(crate) fn process(&mut self, order: usize, groups: &mut [[f64; GROUP]]) {
+        match order {
+            0..=2 => wide(One::<2>(self, groups)),
+            3..=4 => wide(One::<4>(self, groups)),
+            5..=6 => wide(One::<6>(self, groups)),
+            7..=8 => wide(One::<8>(self, groups)),
+            9..=12 => wide(One::<12>(self, groups)),
+            _ => wide(One::<MAX_ORDER>(self, groups)),
+        }
+    }
+
+    /// As [`Self::process`], four voices side by side.
+    pub(crate) fn process_four(
+        four: [&mut Self; VOICES],
+        order: usize,
+        groups: &mut [[Quad; GROUP]],
+    ) {
+        match order {
+            0..=2 => run_four::<2>(four, groups),
+            3..=4 => run_four::<4>(four, groups),
+            5..=6 => run_four::<6>(four, groups),
+            7..=8 => run_four::<8>(four, groups),
+            9..=12 => run_four::<12>(four, groups),
+            _ => run_four::<MAX_ORDER>(four, groups),
+        }
+    }
+
+    /// All that stands in the first `N` places, where the order is no higher.
+    #[inline(always)]
+    fn short<const N: usize>(&self) -> Short<f64, N> {
+        let mut states = [[0.0; N]; GROUP];
+        for at in 0..GROUP {
+            states[at] = first(&self.states[at]);
+        }
+        Short {
+            outputs: self.outputs,
+            states,
+            state: first(&self.state),
+        }
+    }
+
+    #[inline(always)]
+    fn keep<const N: usize>(&mut self, state: &[f64; N]) {
+        for i in 0..N {
+            self.state[i] = without_denormals(state[i]);
+        }
+    }
+}
+
+#[inline(always)]
+fn first<const N: usize>(of: &[f64; MAX_ORDER]) -> [f64; N] {
+    let mut first = [0.0; N];
+    first.copy_from_slice(&of[..N]);
+    first
+}
+
+/// A voice's block.
+struct One<'a, const N: usize>(&'a mut Direct, &'a mut [[f64; GROUP]]);
+
+impl<const N: usize> Work for One<'_, N> {
+    #[inline(always)]
+    fn run(self) {
+        let Self(direct, groups) = self;
+        let mut short = direct.short::<N>();
+        short.run(groups);
+        direct.keep(&short.state);
+    }
+}
+
+/// A block of each of four voices.
+fn run_four<const N: usize>(mut four: [&mut Direct; VOICES], groups: &mut [[Quad; GROUP]]) {
+    let mut short = Short::<Quad, N> {
+        outputs: [Quad::ZERO; GROUP],
+        states: [[Quad::ZERO; N]; GROUP],
+        state: [Quad::ZERO; N],
+    };
+    wide(Beside(&mut short, four.each_ref().map(|one| &**one)));
+    wide(Four(&mut short, groups));
+    for (voice, own) in four.iter_mut().enumerate() {
+        own.keep(&part(&short.state, voice));
+    }
+}
+
+/// Apart from what puts the voices side by side: compilers would shuffle lanes all along otherwise.
+struct Four<'a, const N: usize>(&'a mut Short<Quad, N>, &'a mut [[Quad; GROUP]]);
+
+impl<const N: usize> Work for Four<'_, N> {
+    #[inline(always)]
+    fn run(self) {
+        self.0.run(self.1);
+    }
+}
+
+/// [`Direct`] in `N` coefficients, of one voice or of four.
+struct Short<T: Lane, const N: usize> {
+    outputs: T::Outputs,
+    states: [[T; N]; GROUP],
+    state: [T; N],
+}
+
+/// Puts four voices side by side.
+struct Beside<'a, const N: usize>(&'a mut Short<Quad, N>, [&'a Direct; VOICES]);
+
+impl<const N: usize> Work for Beside<'_, N> {
+    #[inline(always)]
+    fn run(self) {
+        let Self(short, [a, b, c, d]) = self;
+        short.outputs = beside([&a.outputs[0], &b.outputs[0], &c.outputs[0], &d.outputs[0]]);
+        short.state = beside([&a.state, &b.state, &c.state, &d.state]);
+        for at in 0..GROUP {
+            let states = [&a.states[at], &b.states[at], &c.states[at], &d.states[at]];
+            short.states[at] = beside(states);
+        }
+    }
+}
+
+/// What stands in the lanes of vector registers: samples of one voice, or voices.
+trait Lane: Real {
+    type Outputs: Copy;
+    /// The outputs of what each input meets.
+    fn outputs(left: &Self::Outputs, met: &[Self; GROUP]) -> [Self; GROUP];
+}
+
+impl Lane for f64 {
+    type Outputs = [[f64; GROUP]; GROUP];
+
+    #[inline(always)]
+    fn outputs(left: &Self::Outputs, met: &[Self; GROUP]) -> [Self; GROUP] {
+        sum(left, met)
+    }
+}
+
+impl Lane for Quad {
+    /// Of the first input: those of the others are the same, later.
+    type Outputs = [Quad; GROUP];
+
+    /// The same sums, without what is multiplied by 0 or 1.
+    #[inline(always)]
+    fn outputs(&[_, h1, h2, h3]: &Self::Outputs, met: &[Self; GROUP]) -> [Self; GROUP] {
+        let [a, b, c, d] = *met;
+        [
+            a,
+            h1 * a + b,
+            (h2 * a + h1 * b) + c,
+            (h3 * a + h2 * b) + (h1 * c + d),
+        ]
+    }
+}
+
+// Loops, not closures: these would not be compiled for the wider registers.
+impl<T: Lane, const N: usize> Short<T, N> {
+    /// Filters a block in place.
+    #[inline(always)]
+    fn run(&mut self, groups: &mut [[T; GROUP]]) {
+        let (outputs, states, mut state) = (self.outputs, self.states, self.state);
+        for group in groups {
+            let mut met = *group;
+            for i in 0..GROUP.min(N) {
+                met[i] = met[i] + state[i];
+            }
+            *group = T::outputs(&outputs, &met);
+            let mut next = sum(&states, &met);
+            for i in GROUP..N {
+                next[i - GROUP] = next[i - GROUP] + state[i];
+            }
+            state = next;
+        }
+        self.state = state;
+    }
+}
+
+/// What each number of `met` leaves, added up.
+#[inline(always)]
+fn sum<T: Real, const N: usize>(left: &[[T; N]; GROUP], met: &[T; GROUP]) -> [T; N] {
+    let mut sum = [T::ZERO; N];
+    for i in 0..N {
+        sum[i] = (left[0][i] * met[0] + left[1][i] * met[1])
+            + (left[2][i] * met[2] + left[3][i] * met[3]);
+    }
+    sum
+}
+
+/// One sample: the output, and the state behind it.
+fn tick(a: &[f64], state: &mut [f64], input: f64) -> f64 {
+    let y = input + state[0];
+    for i in 0..a.len() {
+        state[i] = a[i] * y + state.get(i + 1).copied().unwrap_or(0.0);
+    }
+    y
+}

@@ -4,7 +4,7 @@ use htex_dsp::all_pole::{AllPole, GROUP, Group};
 use htex_dsp::band_limit::band_limit;
 use htex_dsp::grid::{Band, GRID_HZ};
 use htex_dsp::linear_prediction::step_down_in_place;
-use htex_dsp::noise::GaussianNoise;
+use htex_dsp::noise::{GROUP as NOISE_GROUP, GaussianNoise};
 use htex_dsp::pipeline::Pipeline;
 use htex_model::{Error, Values, Voice};
 
@@ -71,7 +71,7 @@ impl AutoregressionVoice {
             taken: GROUP,
         };
         let settle = libm::ceil((SETTLE_S * rate_hz).min(SETTLE_SAMPLES)) as usize;
-        voice.render(&mut vec![0.0; settle]);
+        voice.render(&mut vec![0.0; settle.next_multiple_of(NOISE_GROUP)]);
         Ok(voice)
     }
 

@@ -46,8 +46,8 @@ impl Uniform {
 /// Directions that are made at once.
 const DIRECTIONS: usize = 4;
 
-/// Samples of Gaussian noise that are made at once.
-const GROUP: usize = 2 * LANES;
+/// Samples of Gaussian noise that are made at once; a stream is quickest in whole groups.
+pub const GROUP: usize = 2 * LANES;
 
 /// White Gaussian noise of zero mean and unit variance, by Box and Muller's transform in single
 /// precision: no number is larger than 6.6.
@@ -89,7 +89,7 @@ impl GaussianNoise {
         b.fill(&mut y[done..]);
     }
 
-    /// Fills a block with the next samples; quickest in multiples of 16. Does not allocate.
+    /// Fills a block with the next samples; quickest in multiples of [`GROUP`]. Does not allocate.
     pub fn fill(&mut self, out: &mut [f32]) {
         let kept = out.len().min(GROUP - self.taken);
         let (first, rest) = out.split_at_mut(kept);

@@ -69,13 +69,13 @@ pub fn read_response(path: &Path) -> Result<SetupResponse, ReadError> {
 /// # Errors
 /// As [`read_response`].
 pub fn response_from_bytes(file: &str, bytes: &[u8]) -> Result<SetupResponse, ReadError> {
-    let table = Table::new(file, as_text(file, bytes)?)?;
+    let mut table = Table::new(file, as_text(file, bytes)?)?;
     let mut wanted = vec![
         column(&table, "frequency_hz")?,
         column(&table, "magnitude")?,
     ];
     wanted.extend(column(&table, "phase_rad").ok());
-    let mut columns = table.numbers(&wanted)?.columns.into_iter();
+    let mut columns = table.numbers(&wanted, None)?.columns.into_iter();
     let frequency_hz = columns.next().unwrap_or_default();
     let magnitude = columns.next().unwrap_or_default();
     check(&table, &frequency_hz, &magnitude)?;

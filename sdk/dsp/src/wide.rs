@@ -29,8 +29,8 @@ pub(crate) fn wide(work: impl Work) {
     work.run();
 }
 
-/// Does some work in registers of 512 bits where the processor has them, else gives it back: with half of
-/// them it would take longer than twice half of it.
+/// Does some work in registers of 512 bits where the processor has them, else gives it back: work of
+/// that width is better done in two halves then.
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 #[inline]
 #[allow(unsafe_code)]

@@ -9,8 +9,8 @@ pub const VOICES_EXTENSION: &str = VoicesTable::ID;
 
 /// Fills `out` with the next `frames` samples of each voice, one voice behind the other: what
 /// [`ModelVoice::render`] gives of each, to the bit. Neighbours of one model are rendered in one call
-/// where the model has the extension `htex.voices/1`, as the built-in ones have. AR is then twice as
-/// quick, from some 64 frames on; the others gain nothing. Voices for which `out` has no room stay as they
+/// where the model has the extension `htex.voices/1`, as the built-in ones have. AR takes some
+/// six tenths of the time then, from 64 frames on; the others gain nothing. Voices for which `out` has no room stay as they
 /// are, and room without a voice is silent. Does not allocate, lock or block for well-made models.
 ///
 /// ```

@@ -1,34 +1,32 @@
 //! Recordings as delimited text.
 
+use super::blocks::Blocks;
 use super::clock;
 use super::map::Role;
 use super::motion;
 use super::select::{Selection, select};
 use super::table::Table;
-use super::text::as_text;
 use super::{ReadError, ReadOptions};
 use crate::recording::{Recording, RecordingError};
 
-/// Reads a CSV's bytes; `file` is its name.
-pub(crate) fn read(
-    file: &str,
-    bytes: &[u8],
-    options: &ReadOptions,
-) -> Result<Recording, ReadError> {
+/// Reads a CSV, a block at a time.
+pub(crate) fn read(mut blocks: Blocks<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
+    let file = blocks.file;
     if options.newtons_per_unit.is_some() {
         return Err(ReadError::Option {
             file: file.to_owned(),
             problem: "--newtons-per-unit is for WAV and NPY; scale a CSV's columns with --map lateral=COLUMN:SCALE".into(),
         });
     }
-    let table = Table::new(file, as_text(file, bytes)?)?;
+    let head = blocks.head()?;
+    let mut table = Table::new(file, &head)?;
     let mut selection = select(&table, options.map.as_ref())?;
     let wanted: Vec<usize> = selection
         .chosen
         .iter()
         .map(|chosen| chosen.column)
         .collect();
-    let mut numbers = table.numbers(&wanted)?;
+    let mut numbers = table.numbers(&wanted, Some(&mut blocks))?;
     for (values, chosen) in numbers.columns.iter_mut().zip(&selection.chosen) {
         if chosen.scale != 1.0 {
             values.iter_mut().for_each(|value| *value *= chosen.scale);

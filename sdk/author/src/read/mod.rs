@@ -15,6 +15,7 @@
 //! # Ok::<(), htex_author::read::ReadError>(())
 //! ```
 
+mod blocks;
 mod clock;
 mod columns;
 mod csv;
@@ -29,6 +30,7 @@ pub(crate) mod text;
 mod trace;
 mod wav;
 
+use std::io::Read;
 use std::path::Path;
 
 pub use error::ReadError;
@@ -36,6 +38,8 @@ pub use map::{ColumnMap, ColumnRef, MapEntry, Role};
 pub use trace::{TraceColumns, read_trace, trace_from_bytes};
 
 use crate::recording::Recording;
+
+use blocks::Blocks;
 
 /// What a file may leave unsaid.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -63,9 +67,7 @@ enum Kind {
 /// # Errors
 /// See [`ReadError`]: each names the file, and the line and column where there is one.
 pub fn read_recording(path: &Path, options: &ReadOptions) -> Result<Recording, ReadError> {
-    let file = text::file_name(path);
-    check_options(&file, options)?;
-    recording_from_bytes(path, &text::read_bytes(path)?, options)
+    read_from(path, || Ok(text::open(path)?.0), options)
 }
 
 /// Reads one recording in memory; `path` is what it is called, and is not opened.
@@ -77,12 +79,21 @@ pub fn recording_from_bytes(
     bytes: &[u8],
     options: &ReadOptions,
 ) -> Result<Recording, ReadError> {
+    read_from(path, || Ok(bytes), options)
+}
+
+fn read_from<R: Read>(
+    path: &Path,
+    open: impl FnOnce() -> Result<R, ReadError>,
+    options: &ReadOptions,
+) -> Result<Recording, ReadError> {
     let file = text::file_name(path);
     check_options(&file, options)?;
-    match kind(path, bytes) {
-        Kind::Csv => csv::read(&file, bytes, options),
-        Kind::Wav => wav::read(&file, bytes, options),
-        Kind::Npy => npy::read(&file, bytes, options),
+    let mut blocks = Blocks::new(&file, open()?);
+    match kind(path, blocks.front()?) {
+        Kind::Csv => csv::read(blocks, options),
+        Kind::Wav => wav::read(&file, &blocks.rest()?, options),
+        Kind::Npy => npy::read(&file, &blocks.rest()?, options),
     }
 }
 

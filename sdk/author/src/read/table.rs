@@ -4,6 +4,7 @@
 //! them in less time than that crate splits alone, and messages need the line as an editor counts it.
 
 use super::ReadError;
+use super::blocks::Blocks;
 use super::number::{parse_number, parse_plain_row};
 use super::text::Lines;
 
@@ -28,6 +29,8 @@ pub(crate) struct Table<'a> {
     delimiter: Delimiter,
     /// Stands before the first row of numbers.
     rows: Lines<'a>,
+    /// Rows that stand on other lines than the next after the row before, and these lines; the first does.
+    runs: Vec<(usize, usize)>,
 }
 
 /// Columns of numbers, and what the comments said.
@@ -69,6 +72,7 @@ impl<'a> Table<'a> {
             width,
             delimiter,
             rows,
+            runs: Vec::new(),
         })
     }
 
@@ -92,15 +96,29 @@ impl<'a> Table<'a> {
         names.join(", ")
     }
 
-    /// Reads the wanted columns (counted from 0, each below `width`); the other cells are only counted.
-    pub(crate) fn numbers(&self, wanted: &[usize]) -> Result<Numbers, ReadError> {
-        let mut lines = self.rows.clone();
+    /// Reads the wanted columns (counted from 0, each below `width`), also from the blocks behind the text
+    /// that the table was made of; the other cells are only counted.
+    pub(crate) fn numbers(
+        &mut self,
+        wanted: &[usize],
+        mut behind: Option<&mut Blocks<'_>>,
+    ) -> Result<Numbers, ReadError> {
         let mut columns = vec![Vec::new(); wanted.len()];
-        let mut row = vec![0.0; self.width];
-        while self.next_numbers(&mut lines, wanted, &mut row)? {
-            for (values, &column) in columns.iter_mut().zip(wanted) {
-                values.push(row[column]);
+        let mut lines = self.rows.clone();
+        let mut read = self.block(&mut lines, wanted, &mut columns);
+        let (mut number, mut simulated) = (lines.number, lines.simulated);
+        if let Some(behind) = &mut behind {
+            loop {
+                read.or_else(|error| Err(in_the_middle(error, behind)?))?;
+                let Some(text) = behind.next(number)? else {
+                    break;
+                };
+                let mut lines = Lines::behind(self.file, text, number, simulated);
+                read = self.block(&mut lines, wanted, &mut columns);
+                (number, simulated) = (lines.number, lines.simulated);
             }
+        } else {
+            read?;
         }
         let rows = columns.first().map_or(0, Vec::len);
         if rows < 2 {
@@ -109,21 +127,35 @@ impl<'a> Table<'a> {
                 rows,
             });
         }
-        Ok(Numbers {
-            columns,
-            simulated: lines.simulated,
-        })
+        Ok(Numbers { columns, simulated })
     }
 
-    /// The line, from 1, on which a row of numbers (from 0) stands.
-    pub(crate) fn line_of_row(&self, row: usize) -> usize {
-        let mut lines = self.rows.clone();
-        for _ in 0..=row {
-            if !matches!(lines.next_row(), Ok(Some(_))) {
-                break;
+    /// Reads the rows of a block.
+    fn block(
+        &mut self,
+        lines: &mut Lines<'_>,
+        wanted: &[usize],
+        columns: &mut [Vec<f64>],
+    ) -> Result<(), ReadError> {
+        let mut row = vec![0.0; self.width];
+        let mut count = columns.first().map_or(0, Vec::len);
+        while self.next_numbers(lines, wanted, &mut row)? {
+            for (values, &column) in columns.iter_mut().zip(wanted) {
+                values.push(row[column]);
             }
+            if self.line_of_row(count) != lines.number {
+                self.runs.push((count, lines.number));
+            }
+            count += 1;
         }
-        lines.number
+        Ok(())
+    }
+
+    /// The line, from 1, on which a row of numbers that were read (from 0) stands.
+    pub(crate) fn line_of_row(&self, row: usize) -> usize {
+        let mut runs = self.runs.iter().rev();
+        let run = runs.find(|(first, _)| *first <= row);
+        run.map_or(0, |(first, line)| line + (row - first))
     }
 
     /// Reads the wanted cells of the next row, if there is one.
@@ -202,6 +234,24 @@ impl<'a> Table<'a> {
             column: self.name(column),
             problem,
         }
+    }
+}
+
+/// A row that ends a block is not cut off if others follow.
+fn in_the_middle(error: ReadError, behind: &mut Blocks<'_>) -> Result<ReadError, ReadError> {
+    match error {
+        ReadError::CutOff {
+            file,
+            line,
+            expected,
+            got,
+        } if behind.has_row(line)? => Ok(ReadError::Ragged {
+            file,
+            line,
+            expected,
+            got,
+        }),
+        other => Ok(other),
     }
 }
 

@@ -1,7 +1,7 @@
 //! A text file in memory, and its lines with their numbers.
 
 use std::fs::File;
-use std::io::Read;
+use std::io::{Read, Take};
 use std::path::Path;
 
 use super::ReadError;
@@ -19,8 +19,8 @@ pub(crate) fn file_name(path: &Path) -> String {
         .into_owned()
 }
 
-/// All bytes of a file of bounded size.
-pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
+/// A file of bounded size, and the size it says it has.
+pub(crate) fn open(path: &Path) -> Result<(Take<File>, u64), ReadError> {
     let io = |source| ReadError::Io {
         file: file_name(path),
         source,
@@ -34,19 +34,46 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
             limit: MAX_BYTES,
         });
     }
-    let mut content = Vec::with_capacity(bytes as usize);
     // A pipe or a growing file tells no size before it ends.
-    file.take(MAX_BYTES).read_to_end(&mut content).map_err(io)?;
-    Ok(content)
+    Ok((file.take(MAX_BYTES), bytes))
+}
+
+/// All bytes of a file of bounded size.
+pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
+    let (mut file, bytes) = open(path)?;
+    let mut content = Vec::with_capacity(bytes as usize);
+    match file.read_to_end(&mut content) {
+        Ok(_) => Ok(content),
+        Err(source) => Err(ReadError::Io {
+            file: file_name(path),
+            source,
+        }),
+    }
 }
 
 /// The bytes as text without a byte order mark; refuses NUL and what is not UTF-8.
 pub(crate) fn as_text<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, ReadError> {
+    checked(file, bytes, 0).map(without_mark)
+}
+
+/// Without a byte order mark.
+pub(crate) fn without_mark(text: &str) -> &str {
+    text.strip_prefix('\u{feff}').unwrap_or(text)
+}
+
+/// The bytes as text, behind `before` lines; refuses NUL and what is not UTF-8.
+pub(crate) fn checked<'a>(
+    file: &str,
+    bytes: &'a [u8],
+    before: usize,
+) -> Result<&'a str, ReadError> {
     let refuse = |position: usize, what| {
-        let line = 1 + bytes[..position]
-            .iter()
-            .filter(|byte| **byte == b'\n')
-            .count();
+        let line = before
+            + 1
+            + bytes[..position]
+                .iter()
+                .filter(|byte| **byte == b'\n')
+                .count();
         ReadError::NotText {
             file: file.to_owned(),
             line,
@@ -57,9 +84,8 @@ pub(crate) fn as_text<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, ReadEr
         let position = bytes.iter().position(|byte| *byte == 0).unwrap_or(0);
         return Err(refuse(position, "a NUL byte"));
     }
-    let text = std::str::from_utf8(bytes)
-        .map_err(|error| refuse(error.valid_up_to(), "a byte sequence that is not UTF-8"))?;
-    Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
+    std::str::from_utf8(bytes)
+        .map_err(|error| refuse(error.valid_up_to(), "a byte sequence that is not UTF-8"))
 }
 
 /// The lines that hold cells: blank lines and `#` comments are passed over.
@@ -77,12 +103,17 @@ pub(crate) struct Lines<'a> {
 
 impl<'a> Lines<'a> {
     pub(crate) fn new(file: &'a str, text: &'a str) -> Self {
+        Self::behind(file, text, 0, false)
+    }
+
+    /// Of a text behind some lines, which may have said "simulated".
+    pub(crate) fn behind(file: &'a str, text: &'a str, number: usize, simulated: bool) -> Self {
         Self {
             file,
             rest: text,
-            number: 0,
+            number,
             comment: None,
-            simulated: false,
+            simulated,
         }
     }
 

@@ -45,7 +45,7 @@ pub fn read_trace(path: &Path) -> Result<TraceColumns, ReadError> {
 /// # Errors
 /// As [`read_trace`].
 pub fn trace_from_bytes(file: &str, bytes: &[u8]) -> Result<TraceColumns, ReadError> {
-    let table = Table::new(file, as_text(file, bytes)?)?;
+    let mut table = Table::new(file, as_text(file, bytes)?)?;
     let mut warnings = Vec::new();
     let mut found = Vec::new();
     for role in [Role::Time, Role::X, Role::Y, Role::Normal] {
@@ -55,7 +55,11 @@ pub fn trace_from_bytes(file: &str, bytes: &[u8]) -> Result<TraceColumns, ReadEr
     found.extend(speed);
     warn_of_unused(&table, &found, &mut warnings);
     let wanted: Vec<usize> = found.iter().map(|(column, _)| *column).collect();
-    let columns = table.numbers(&wanted)?.columns.into_iter().zip(&found);
+    let columns = table
+        .numbers(&wanted, None)?
+        .columns
+        .into_iter()
+        .zip(&found);
     let mut columns = columns.map(|(values, (_, scale))| scaled(values, *scale));
     let mut next = || columns.next().unwrap_or_default();
     let trace = TraceColumns {

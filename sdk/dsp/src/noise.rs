@@ -248,6 +248,8 @@ mod tests {
         let mut both = alone.clone();
         for (first, second) in [
             (64, 64),
+            (9, 2),
+            (80, 80),
             (100, 33),
             (0, 7),
             (64, 64),

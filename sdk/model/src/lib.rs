@@ -15,6 +15,8 @@ extern crate alloc;
 extern crate std;
 
 pub mod abi;
+#[cfg(feature = "std")]
+mod arguments;
 mod descriptor;
 mod error;
 #[cfg(feature = "std")]

@@ -1,0 +1,117 @@
+//! What a model is asked with, checked: the same refusals in every model.
+
+use alloc::format;
+
+use crate::abi::{MAX_BAND_HZ, MAX_RATE_HZ, MIN_BINS, MIN_RATE_HZ};
+use crate::voices_1::MAX_VOICES;
+use crate::{Band, Descriptor, Error, FitInput, Status, Values};
+
+/// Voices that are rendered together: not too many, and none of them twice.
+pub(crate) fn check_handles(handles: &[i64]) -> Result<(), Error> {
+    if handles.len() > MAX_VOICES {
+        let count = handles.len();
+        return Err(Error::argument(format!(
+            "{count} voices in one call; at most {MAX_VOICES} are allowed"
+        )));
+    }
+    let again = |(i, handle)| handles[..i].contains(handle);
+    match handles.iter().enumerate().find(|pair| again(*pair)) {
+        None => Ok(()),
+        Some((i, _)) => Err(Error::argument(format!(
+            "`voices`[{i}] stands there a second time"
+        ))),
+    }
+}
+
+pub(crate) fn band((low_hz, high_hz): (f64, f64)) -> Result<Band, Error> {
+    if low_hz > 0.0 && low_hz < high_hz && high_hz <= MAX_BAND_HZ {
+        return Ok(Band { low_hz, high_hz });
+    }
+    Err(Error::argument(format!(
+        "band {low_hz} to {high_hz} Hz: 0 < low < high <= 1 MHz is allowed"
+    )))
+}
+
+pub(crate) fn check_rate(rate_hz: f64) -> Result<(), Error> {
+    if (MIN_RATE_HZ..=MAX_RATE_HZ).contains(&rate_hz) {
+        return Ok(());
+    }
+    Err(Error::argument(format!(
+        "rate {rate_hz} Hz: 1 Hz to 10 MHz is allowed"
+    )))
+}
+
+pub(crate) fn finite(name: &str, numbers: &[f64]) -> Result<(), Error> {
+    match numbers.iter().position(|x| !x.is_finite()) {
+        None => Ok(()),
+        Some(i) => Err(Error::argument(format!(
+            "`{name}`[{i}] is not a finite number"
+        ))),
+    }
+}
+
+pub(crate) fn check_fit_input(input: &FitInput<'_>, descriptor: &Descriptor) -> Result<(), Error> {
+    finite("frequency_hz", input.frequency_hz)?;
+    finite("magnitude", input.magnitude)?;
+    finite("signal", input.signal)?;
+    let bins = input.frequency_hz.len();
+    if bins < MIN_BINS || input.magnitude.len() != bins {
+        return Err(Error::argument("a spectrum needs three bins or more"));
+    }
+    if !input.frequency_hz.is_sorted_by(|a, b| a < b) {
+        return Err(Error::argument("`frequency_hz` does not ascend"));
+    }
+    if input.magnitude.iter().any(|&m| m < 0.0) {
+        return Err(Error::argument("`magnitude` holds a negative number"));
+    }
+    if !input.signal.is_empty() {
+        check_rate(input.signal_rate_hz)?;
+    }
+    check_options(input.options, descriptor)
+}
+
+fn check_options(values: &[f64], descriptor: &Descriptor) -> Result<(), Error> {
+    let invalid = |message| Err(Error::new(Status::InvalidOption, message));
+    if values.len() != descriptor.options.len() {
+        let (want, got) = (descriptor.options.len(), values.len());
+        return invalid(format!("{want} option values are wanted, {got} came"));
+    }
+    for (option, &value) in descriptor.options.iter().zip(values) {
+        let whole = !option.integer || value as i64 as f64 == value;
+        if !(option.min..=option.max).contains(&value) || !whole {
+            let kind = if option.integer { "whole numbers " } else { "" };
+            return invalid(format!(
+                "option `{}` is {value}; {kind}{} to {} {} is allowed",
+                option.name, option.min, option.max, option.unit
+            ));
+        }
+    }
+    Ok(())
+}
+
+pub(crate) fn check_weights(weights: &[f64]) -> Result<(), Error> {
+    let sum: f64 = weights.iter().sum();
+    let sane = weights.iter().all(|w| (0.0..=1.0).contains(w)) && (sum - 1.0).abs() < 1e-6;
+    if sane {
+        return Ok(());
+    }
+    Err(Error::argument("weights must lie in 0 to 1 and sum to 1"))
+}
+
+pub(crate) fn read_sets<'a>(
+    descriptor: &Descriptor,
+    mut flat: &'a [f64],
+    sets: &mut [Values<'a>],
+) -> Result<(), Error> {
+    for set in sets {
+        let used;
+        (*set, used) = Values::read_first(descriptor, flat)?;
+        flat = &flat[used..];
+    }
+    if !flat.is_empty() {
+        return Err(Error::argument(
+            "numbers stand behind the last parameter set",
+        ));
+    }
+    Ok(())
+}

@@ -9,8 +9,9 @@ pub const VOICES_EXTENSION: &str = VoicesTable::ID;
 
 /// Fills `out` with the next `frames` samples of each voice, one voice behind the other: what
 /// [`ModelVoice::render`] gives of each, to the bit. Neighbours of one model are rendered in one call
-/// where the model has the extension `htex.voices/1`, as the built-in ones have. AR takes some
-/// six tenths of the time then, from 64 frames on; the others gain nothing. Voices for which `out` has no room stay as they
+/// where the model has the extension `htex.voices/1`, as the built-in ones have. In blocks of
+/// 256 frames AR takes some six tenths of the time then (`cargo xtask bench`); below 64 frames, and of
+/// other models, voices are rendered one after the other. Voices for which `out` has no room stay as they
 /// are, and room without a voice is silent. Does not allocate, lock or block for well-made models.
 ///
 /// ```

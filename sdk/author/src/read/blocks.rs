@@ -57,7 +57,7 @@ impl<'a> Blocks<'a> {
     }
 
     /// The next lines, behind `before` others; `None` at the end. A line that is longer than a block comes in
-    /// pieces, each of which is too long.
+    /// pieces, the first of which is too long.
     pub(crate) fn next(&mut self, before: usize) -> Result<Option<&str>, ReadError> {
         self.front()?;
         let filled = &self.buffer[..self.filled];

@@ -326,3 +326,26 @@ fn truncated(field: &Field, condition: usize) -> BlockError {
         condition,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn each_value_of_steps_that_work_leads_back_to_its_step(
+            offset in prop_oneof![-800.0..800.0f64, 700.0..800.0f64, (-1020.0..1020.0f64).prop_map(libm::exp2)],
+            finer in -56.0..4.0f64, log: bool, negative: bool, q: u16,
+        ) {
+            let offset = if negative { -offset } else { offset };
+            let scale = offset.abs().max(f64::MIN_POSITIVE) * libm::exp2(finer);
+            let steps = Steps { scale, offset, log };
+            for last in [u16::from(u8::MAX), u16::MAX].into_iter().filter(|last| steps.work(*last)) {
+                for q in [0, q.min(last), last] {
+                    prop_assert_eq!(step(steps, steps.value(q), f64::from(last)), Some(f64::from(q)));
+                }
+            }
+        }
+    }
+}

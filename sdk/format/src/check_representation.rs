@@ -11,6 +11,8 @@ use crate::rules as rule;
 const BANDS: usize = 9;
 /// Largest level, newtons: its samples are 32-bit numbers in any scene.
 const LARGEST_N: f64 = 1e6;
+/// Smallest step over the largest number it is added to: below it, rounding may lead to the next.
+const FINEST: f64 = 4.0 * f64::EPSILON;
 
 pub(crate) fn check_representations(manifest: &Manifest, findings: &mut Findings) {
     let some = !manifest.representations.is_empty();
@@ -84,15 +86,32 @@ fn check_fields(representation: &Representation, at: &str, findings: &mut Findin
             Store::U8(steps) => steps.work(u8::MAX.into()),
         };
         findings.require(works, rule::STORE_INVALID, format!("{at}/store"), || {
-            "scale is not above 0, or a step's value is not finite".to_owned()
+            "scale is not above 0, a step's value is not finite or, in the logarithm, no normal \
+             number, or steps are too fine for their offset"
+                .to_owned()
         });
     }
 }
 
 impl Steps {
-    fn work(&self, last: u16) -> bool {
+    /// Whether every value that a step stands for leads back to that step.
+    pub(crate) fn work(&self, last: u16) -> bool {
         let positive = self.scale > 0.0 && self.scale.is_finite() && self.offset.is_finite();
-        positive && self.value(last).is_finite()
+        let far_end = self.offset + self.scale * f64::from(last);
+        let mut furthest = self.offset.abs().max(far_end.abs());
+        if self.log {
+            // The logarithm of a value is known no better than the value itself.
+            furthest = furthest.max(1.0);
+        }
+        let least = if self.log {
+            f64::MIN_POSITIVE
+        } else {
+            f64::MIN
+        };
+        positive
+            && self.value(last).is_finite()
+            && self.value(0) >= least
+            && self.scale >= FINEST * furthest
     }
 }
 

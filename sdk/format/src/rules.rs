@@ -239,7 +239,7 @@ rule_table! {
         "Use the names in the model's descriptor.";
     STORE_INVALID Error:
         "A store has steps that do not work.",
-        "`scale` must be finite and above 0, and the values of all steps finite.",
+        "`scale` must be finite and above 0, the values of all steps finite and, in the logarithm, at least 2^-1022, and `scale` at least 2^-50 of the largest magnitude of o + s q (of 1, in the logarithm, if that is larger).",
         "Correct `scale` and `offset`.";
     AT_EMPTY Error:
         "A representation is fitted at no condition.",

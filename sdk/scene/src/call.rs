@@ -9,7 +9,7 @@ use crate::SceneError;
 use crate::file::{Effect, Surface, Switch};
 use crate::load::LoadedScene;
 use crate::motion::{Course, Finger};
-use crate::stages::CONTACT_RAMP_S;
+use crate::stages::{CONTACT_RAMP_S, force_gain};
 
 /// Slowest and fastest reading of a texture, in its recorded speed.
 pub(crate) const MIN_RATIO: f64 = 1.0 / 16.0;
@@ -369,12 +369,12 @@ impl Part {
         };
         match self.force_n {
             point if point.is_point() && point.low.is_finite() => {
-                self.fixed_force_gain = point.low / known;
+                self.fixed_force_gain = force_gain(point.low, known);
                 self.gain *= self.fixed_force_gain;
                 1.0
             }
             span if span.is_point() => 1.0,
-            span if span.high.is_finite() => span.high / known,
+            span if span.high.is_finite() => force_gain(span.high, known),
             _ => LIVE_FORCE,
         }
     }

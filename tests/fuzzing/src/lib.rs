@@ -11,6 +11,7 @@ mod block;
 mod body;
 mod container;
 mod descriptor;
+pub mod edges;
 mod manifest;
 mod module;
 mod promise;

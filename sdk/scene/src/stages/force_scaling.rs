@@ -50,6 +50,11 @@ fn build(_: &Call, part: &Part, neutral: bool) -> Box<dyn Stage> {
     })
 }
 
+/// Gain at a force, where the asset knows one.
+pub(crate) fn force_gain(force_n: f64, known_n: f64) -> f64 {
+    (force_n / known_n).min(MOST)
+}
+
 struct ForceScaling {
     known_n: Option<f64>,
     gain: Glide,
@@ -58,8 +63,7 @@ struct ForceScaling {
 impl Stage for ForceScaling {
     fn follow(&mut self, now: &Now) {
         if let Some(known) = self.known_n {
-            let gain = (now.finger.force_n / known).min(MOST);
-            self.gain.set(gain as f32);
+            self.gain.set(force_gain(now.finger.force_n, known) as f32);
         }
     }
 

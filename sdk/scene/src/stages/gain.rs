@@ -10,6 +10,9 @@ use crate::file::Effect;
 /// 150,000 samples on either side, ten equal sinusoids never.
 pub(crate) const HEADROOM: f64 = 4.5;
 
+/// Quieter than this, newtons RMS, is nothing to bring anywhere: the gain would be no number.
+const LEAST_N: f64 = 1e-20;
+
 pub(crate) const ENTRY: Entry = Entry {
     effect: Effect::Gain,
     name: "gain",
@@ -29,11 +32,18 @@ pub(crate) struct Drive {
 impl Drive {
     pub(crate) fn of(call: &Call) -> Self {
         let half = call.drive_v * call.drive_v / 2.0;
-        let reach_n = HEADROOM * call.level_n;
         Self {
-            gain: if reach_n > 0.0 { half / reach_n } else { 0.0 },
+            gain: brings_level_to(half / HEADROOM, call),
             shift: half,
         }
+    }
+}
+
+/// The gain that brings the scene's level to this one; 0 when there is no level.
+fn brings_level_to(level: f64, call: &Call) -> f64 {
+    match call.level_n > LEAST_N {
+        true => level / call.level_n,
+        false => 0.0,
     }
 }
 
@@ -59,8 +69,7 @@ fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
     let gain = match call.device.quantity {
         _ if neutral => 1.0,
         Quantity::LateralForce => db(call.gain_db),
-        Quantity::Sound if call.level_n > 0.0 => db(call.level_dbfs) / call.level_n,
-        Quantity::Sound => 0.0,
+        Quantity::Sound => brings_level_to(db(call.level_dbfs), call),
         Quantity::DisplayVoltage => Drive::of(call).gain,
     };
     Box::new(Gain(gain as f32))

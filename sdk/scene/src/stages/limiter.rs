@@ -1,4 +1,5 @@
-//! Never above the device's limit, whatever comes; samples that are held there are counted.
+//! Never above the device's limit, whatever comes; samples that are held there are counted. One that
+//! is no number is held at zero.
 
 use super::{Entry, Need, Place, Stage, Told};
 use crate::call::Call;
@@ -48,13 +49,33 @@ impl Stage for Limiter {
         source(out);
         let (limit, mut held) = (self.limit, 0);
         for sample in out {
-            held += u64::from(sample.abs() > limit);
-            *sample = sample.clamp(-limit, limit);
+            held += u64::from(sample.is_nan() || sample.abs() > limit);
+            *sample = match sample.is_nan() {
+                true => 0.0,
+                false => sample.clamp(-limit, limit),
+            };
         }
         self.held += held;
     }
 
     fn tell(&self, told: &mut Told) {
         told.limited += self.held;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_no_device_takes_is_held_and_counted() {
+        let (limit, mut told) = (at_most(0.1), Told::default());
+        let mut limiter = Limiter { limit, held: 0 };
+        let given = [0.05, -0.2, f32::INFINITY, f32::NEG_INFINITY, f32::NAN, -0.0];
+        let mut out = given;
+        limiter.render(&mut out, &mut |out| out.copy_from_slice(&given));
+        assert_eq!(out, [0.05, -limit, limit, -limit, 0.0, 0.0]);
+        limiter.tell(&mut told);
+        assert_eq!(told.limited, 4);
     }
 }

@@ -23,6 +23,7 @@ pub(crate) use chain::{Chain, Slot};
 pub(crate) use compensation::taps as compensation_taps;
 pub(crate) use contact::RAMP_S as CONTACT_RAMP_S;
 pub(crate) use crossfade::Crossfade;
+pub(crate) use force_scaling::force_gain;
 pub(crate) use gain::{Drive, HEADROOM};
 pub(crate) use level::Level;
 pub(crate) use resampling::macs as resampling_macs;

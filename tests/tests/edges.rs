@@ -1,0 +1,86 @@
+//! Every value of every seed of the fuzz targets, at every edge: what a fuzzer finds by chance.
+#![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
+
+use std::path::Path;
+
+use htex_fuzzing::{edges, run};
+use htex_tests::workspace;
+
+/// Calls the function with each input made of a document.
+type Edges = fn(&[u8], &mut dyn FnMut(&[u8]));
+
+/// Runs the target on all inputs made of its seeds.
+fn all_edges(target: &str, edges: Edges) {
+    let (mut runs, mut taken) = (0u64, 0u64);
+    let mut seeds: Vec<_> = std::fs::read_dir(workspace().join("fuzz/seeds").join(target))
+        .unwrap()
+        .map(|file| file.unwrap().path())
+        .collect();
+    seeds.sort();
+    for seed in seeds {
+        edges(&std::fs::read(&seed).unwrap(), &mut |input| {
+            runs += 1;
+            match std::panic::catch_unwind(|| run(target, input)) {
+                Ok(used) => taken += u64::from(used),
+                Err(_) => panic!("see above; {}", kept(target, input)),
+            }
+        });
+    }
+    println!("{target}: {runs} inputs, {taken} taken");
+    assert!(taken > 0 && taken < runs, "{target}: {taken} of {runs}");
+}
+
+/// Keeps the input, and says how to keep it for good.
+fn kept(target: &str, input: &[u8]) -> String {
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("edge-of-{target}"));
+    std::fs::write(&file, input).unwrap();
+    format!(
+        "cp {} tests/regressions/{target}/NAME, with a NAME that says what was wrong",
+        file.display()
+    )
+}
+
+#[test]
+fn every_value_of_a_manifest() {
+    all_edges("manifest", edges::json);
+}
+
+#[test]
+fn every_value_of_a_scene() {
+    all_edges("scene", edges::json);
+}
+
+#[test]
+fn every_value_of_a_descriptor() {
+    all_edges("descriptor", edges::json);
+}
+
+#[test]
+fn every_cell_of_a_recording() {
+    all_edges("csv", edges::table);
+}
+
+#[test]
+fn every_cell_of_a_response() {
+    all_edges("response_csv", edges::table);
+}
+
+#[test]
+fn every_byte_of_a_wav() {
+    all_edges("wav", edges::bytes);
+}
+
+#[test]
+fn every_byte_of_an_npy() {
+    all_edges("npy", edges::bytes);
+}
+
+#[test]
+fn every_byte_of_a_parameter_block() {
+    all_edges("parameter_block", edges::bytes);
+}
+
+#[test]
+fn every_byte_of_an_asset() {
+    all_edges("open_asset", edges::bytes);
+}

@@ -48,7 +48,10 @@ fn main() -> ExitCode {
     match Cli::parse().command.run() {
         Ok(code) => code,
         Err(failure) => {
-            eprintln!("htex: {failure}");
+            // It may quote the name of a file: nothing in it steers the terminal.
+            let text = failure.to_string();
+            let lines: Vec<_> = text.lines().map(htex_format::plain).collect();
+            eprintln!("htex: {}", lines.join("\n"));
             failure.exit_code()
         }
     }

@@ -2,14 +2,16 @@
 
 use thiserror::Error;
 
+/// Highest sample rate, hertz: no force sensor is as fast, and counts of samples stay numbers.
+pub const MAX_RATE_HZ: f64 = 1e9;
 /// Largest number of a recording, in any unit: its square, summed over hours, is still a number.
 const LARGEST: f64 = 1e12;
 
 /// Why a set of columns is not a recording.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum RecordingError {
-    /// The rate is zero, negative, NaN or infinite.
-    #[error("the sample rate is {rate_hz} Hz; it must be a positive finite number of hertz")]
+    /// The rate is zero, negative, NaN, or above [`MAX_RATE_HZ`].
+    #[error("the sample rate is {rate_hz} Hz; it must be above 0 and at most {MAX_RATE_HZ} Hz")]
     Rate {
         /// The rate that was given.
         rate_hz: f64,
@@ -91,8 +93,8 @@ impl Recording {
     /// `lateral_n` holds one or two axes in newtons.
     ///
     /// # Errors
-    /// When the rate is not positive and finite, the axes are not one or two, are shorter than two
-    /// samples, differ in length, or hold NaN or an infinity.
+    /// When the rate is not above 0 and at most [`MAX_RATE_HZ`], the axes are not one or two, are
+    /// shorter than two samples, differ in length, or hold NaN or an infinity.
     ///
     /// ```
     /// # use htex_author::recording::Recording;
@@ -106,9 +108,7 @@ impl Recording {
         rate_hz: f64,
         lateral_n: Vec<Vec<f64>>,
     ) -> Result<Self, RecordingError> {
-        if !(rate_hz.is_finite() && rate_hz > 0.0) {
-            return Err(RecordingError::Rate { rate_hz });
-        }
+        check_rate(rate_hz)?;
         let samples = match lateral_n.as_slice() {
             [axis] | [axis, _] => axis.len(),
             axes => return Err(RecordingError::Axes { axes: axes.len() }),
@@ -164,6 +164,14 @@ impl Recording {
     #[must_use]
     pub fn duration_s(&self) -> f64 {
         self.samples() as f64 / self.rate_hz
+    }
+}
+
+/// Refuses a rate that no recording has.
+pub(crate) fn check_rate(rate_hz: f64) -> Result<(), RecordingError> {
+    match rate_hz > 0.0 && rate_hz <= MAX_RATE_HZ {
+        true => Ok(()),
+        false => Err(RecordingError::Rate { rate_hz }),
     }
 }
 

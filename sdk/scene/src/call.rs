@@ -154,7 +154,7 @@ impl Call {
         let limit = device.limit.unwrap_or(f64::INFINITY);
         let mut call = Self {
             rate_hz,
-            control: ((CONTROL_S * rate_hz / 8.0).round() as usize * 8).clamp(8, 4096),
+            control: (8.0 * (CONTROL_S * rate_hz / 8.0).round()).clamp(8.0, 4096.0) as usize,
             frames: duration_s.map(|s| (s * rate_hz).round().max(1.0) as u64),
             live: matches!(course, Course::Live),
             turns_round: false,

@@ -35,6 +35,10 @@ const NUMBERS: &[&str] = &[
 ];
 /// The numbers that two values take at once.
 const FEW: &[&str] = &["0", "-1", "1", "5e-324", "1e19", "1e300", "1e308"];
+/// The steps that a column climbs by.
+const CLIMBS: &[f64] = &[
+    5e-324, 1e-308, 1e-300, 1e-12, 1e-9, 1e-6, 1e6, 1e15, 1e300, 1e307,
+];
 /// What is no number, as JSON.
 const WORDS: &[&str] = &[
     "null",
@@ -182,8 +186,8 @@ fn numbers_that_stand_together<'a>(
     pairs.into_iter()
 }
 
-/// A table with each cell put at each edge, with each column put there as a whole and by turns,
-/// and without each row.
+/// A table with each cell put at each edge, with each column put there as a whole and by turns or
+/// climbing by a step at an edge, and without each row.
 ///
 /// # Panics
 /// When the table is no text.
@@ -211,16 +215,30 @@ pub fn table(document: &[u8], each: &mut dyn FnMut(&[u8])) {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let turns = FEW.iter().flat_map(|a| FEW.iter().map(move |b| (*a, *b)));
     let turns: Vec<_> = turns.chain(edges().map(|edge| (edge, edge))).collect();
+    let climbs: Vec<Vec<String>> = CLIMBS.iter().map(|by| climb(*by, rows.len())).collect();
     for c in 0..columns {
-        for (even, odd) in &turns {
+        let mut with = |cell_of: &dyn Fn(usize) -> String| {
+            let cells: Vec<String> = (0..rows.len()).map(cell_of).collect();
             let mut other = rows.clone();
-            let cells = other.iter_mut().filter_map(|row| row.get_mut(c));
-            for (i, cell) in cells.enumerate().skip(1) {
-                *cell = if i % 2 == 0 { even } else { odd };
+            let column = other.iter_mut().zip(&cells).skip(1);
+            for (row, new) in column {
+                if let Some(cell) = row.get_mut(c) {
+                    *cell = new;
+                }
             }
             each(write(&other).as_bytes());
+        };
+        for (even, odd) in &turns {
+            with(&|r| if r % 2 == 0 { *even } else { *odd }.to_owned());
+        }
+        for climb in &climbs {
+            with(&|r| climb[r].clone());
         }
     }
+}
+
+fn climb(by: f64, rows: usize) -> Vec<String> {
+    (0..rows).map(|r| format!("{:e}", by * r as f64)).collect()
 }
 
 /// A file of bytes with each byte, and each four of them as a little-endian number, put at edges,

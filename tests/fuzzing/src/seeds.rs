@@ -135,6 +135,8 @@ fn texts() -> Vec<Seed> {
     let wave = |i: f64| 0.1 + 0.05 * (2.0 * PI * 0.3 * i).sin();
     let timed = "t_s,fx_n,fy_n,fz_n,speed_mm_s\n".to_owned()
         + &rows(&|i| format!("{},{:.4},{:.4},-0.4,80\n", i * 0.01, wave(i), wave(i + 5.0)));
+    let placed = "t_s,fx_n,x_mm,y_mm\n".to_owned()
+        + &rows(&|i| format!("{},{:.4},{},5\n", i * 0.01, wave(i), i * 0.8));
     let bare = "# simulated\nlateral;x_mm\r\n".to_owned()
         + &rows(&|i| format!("{:.4};{}\r\n", wave(i), i * 0.8));
     let trace = "t_s,x_mm,y_mm,force_n\n".to_owned()
@@ -146,6 +148,7 @@ fn texts() -> Vec<Seed> {
         seeds.push((target, name.to_owned(), text.as_bytes().to_vec()));
     };
     add("csv", "timed.csv", &timed);
+    add("csv", "placed.csv", &placed);
     add("csv", "bare.csv", &bare);
     add("csv", "trace.csv", &trace);
     add("response_csv", "phase.csv", response);

@@ -2,6 +2,7 @@
 
 use super::ReadError;
 use super::table::Table;
+use crate::recording::check_rate;
 
 /// Steps this much longer than the median are gaps, and say nothing of the rate.
 const GAP: f64 = 1.5;
@@ -87,7 +88,12 @@ fn measure(
             table.line_of_row(row + 1)
         ));
     }
-    Ok(snap(1.0 / mean))
+    let rate_hz = snap(1.0 / mean);
+    check_rate(rate_hz).map_err(|source| ReadError::Recording {
+        file: table.file.to_owned(),
+        source,
+    })?;
+    Ok(rate_hz)
 }
 
 fn median(mut steps: Vec<f64>) -> f64 {

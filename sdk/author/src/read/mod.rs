@@ -37,7 +37,7 @@ pub use error::ReadError;
 pub use map::{ColumnMap, ColumnRef, MapEntry, Role};
 pub use trace::{TraceColumns, read_trace, trace_from_bytes};
 
-use crate::recording::Recording;
+use crate::recording::{MAX_RATE_HZ, Recording, check_rate};
 
 use blocks::Blocks;
 
@@ -123,8 +123,8 @@ fn check_options(file: &str, options: &ReadOptions) -> Result<(), ReadError> {
         })
     };
     match (options.rate_hz, options.newtons_per_unit) {
-        (Some(rate), _) if !(rate.is_finite() && rate > 0.0) => refuse(format!(
-            "--rate is {rate}; it must be a positive number of hertz"
+        (Some(rate), _) if check_rate(rate).is_err() => refuse(format!(
+            "--rate is {rate}; it must be above 0 and at most {MAX_RATE_HZ} Hz"
         )),
         (_, Some(scale)) if !scale.is_finite() || scale == 0.0 => refuse(format!(
             "--newtons-per-unit is {scale}; it must be finite and not 0"

@@ -125,17 +125,26 @@ fn follow(motions: &mut Motions, renderer: &mut Renderer) -> bool {
     }
 }
 
+/// The drive kept for a person, which the device may no longer take.
 fn kept_drive(person: &str, ready: &Ready) -> Result<f64, Failure> {
     let file = gains_file()?;
     let gains = Gains::load(&file).map_err(|error| Failure::read(&file, error))?;
-    let found = gains.find(&key(person, ready)?);
-    found.map(|gain| gain.drive_v).ok_or_else(|| {
-        let asked = ready.file.display();
-        Failure::Other(format!(
-            "no gain is kept for {person}, {asked} and this device; find it with \
-             `htex gain {asked} --person {person}`"
-        ))
-    })
+    let limit_v = ready.capabilities.limit.unwrap_or(f64::INFINITY);
+    let problem = match gains.find(&key(person, ready)?) {
+        Some(gain) if gain.drive_v > 0.0 && gain.drive_v <= limit_v => return Ok(gain.drive_v),
+        Some(gain) => format!(
+            "the drive of {} V kept for {person} is not within the device's limit of {limit_v} V",
+            gain.drive_v
+        ),
+        None => format!(
+            "no gain is kept for {person}, {} and this device",
+            ready.file.display()
+        ),
+    };
+    let asked = ready.file.display();
+    Err(Failure::Other(format!(
+        "{problem}; find it with `htex gain {asked} --person {person}`"
+    )))
 }
 
 fn text(ready: &Ready, plan: &Plan, status: &Status, renderer: &Renderer) -> String {

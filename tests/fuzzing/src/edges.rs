@@ -1,5 +1,5 @@
-//! Inputs that differ from a sound one in one value, or in two that stand together, which are put
-//! at the edges of what can be written: all of them, in the same order each time.
+//! Inputs that differ from a sound one in one value, or in two that stand together, put at the
+//! edges of what can be written: all of them, in the same order each time.
 
 use serde_json::Value;
 
@@ -79,8 +79,8 @@ const SECOND_MARK: &str = "\"~there~\"";
 /// Bytes looked at from the beginning and from the end.
 const BYTES: usize = 512;
 
-/// A JSON document with each value put at each edge, written twice, or left out; and with each
-/// two numbers of one object or list put at edges.
+/// A JSON document with each value put at each edge, written twice, or left out; and with two
+/// neighbouring numbers of an object or list put at edges.
 ///
 /// # Panics
 /// When the document is no JSON.
@@ -102,7 +102,7 @@ pub fn json(document: &[u8], each: &mut dyn FnMut(&[u8])) {
         }
         each(without(&sound, pointer).as_bytes());
     }
-    for (one, other) in numbers_that_stand_together(&sound, &pointers) {
+    for (one, other) in neighbours(&sound, &pointers) {
         let mut both = sound.clone();
         mark(&mut both, one, MARK);
         mark(&mut both, other, SECOND_MARK);
@@ -171,19 +171,13 @@ fn without(sound: &Value, pointer: &str) -> String {
     document.to_string()
 }
 
-fn numbers_that_stand_together<'a>(
-    sound: &Value,
-    pointers: &'a [String],
-) -> impl Iterator<Item = (&'a str, &'a str)> {
+/// Numbers of one object or list that follow on each other.
+fn neighbours<'a>(sound: &Value, pointers: &'a [String]) -> Vec<(&'a str, &'a str)> {
     let is_number = |pointer: &&String| sound.pointer(pointer).is_some_and(Value::is_number);
     let numbers: Vec<&str> = pointers.iter().filter(is_number).map(|p| &**p).collect();
     let folder = |pointer: &str| pointer.rfind('/').map(|slash| pointer[..slash].to_owned());
-    let pairs: Vec<_> = numbers
-        .windows(2)
-        .filter(|pair| folder(pair[0]) == folder(pair[1]))
-        .map(|pair| (pair[0], pair[1]))
-        .collect();
-    pairs.into_iter()
+    let pairs = numbers.windows(2).map(|pair| (pair[0], pair[1]));
+    pairs.filter(|(a, b)| folder(a) == folder(b)).collect()
 }
 
 /// A table with each cell put at each edge, with each column put there as a whole and by turns or

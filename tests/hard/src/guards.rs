@@ -135,8 +135,8 @@ pub const GUARDS: &[Guard] = &[
     )),
     piped(guard(
         "sdk/scene/src/stages/force_scaling.rs",
-        "(now.finger.force_n / known).min(MOST)",
-        "(now.finger.force_n / known)",
+        "(force_n / known_n).min(MOST)",
+        "(force_n / known_n)",
         "motion",
     )),
     piped(guard(
@@ -147,8 +147,14 @@ pub const GUARDS: &[Guard] = &[
     )),
     piped(guard(
         "sdk/scene/src/stages/limiter.rs",
-        "*sample = sample.clamp(-limit, limit);",
-        "",
+        "sample.clamp(-limit, limit)",
+        "*sample",
+        "motion",
+    )),
+    piped(guard(
+        "sdk/scene/src/stages/gain.rs",
+        "call.level_n > LEAST_N",
+        "call.level_n > 0.0",
         "motion",
     )),
 ];

@@ -3,7 +3,7 @@
 use htex::{Asset, VoiceOptions};
 use htex_author::recording::Recording;
 use htex_device::{Capabilities, Quantity, Rates, Settings};
-use htex_scene::file::{self, Budget, DeviceChoice, Effect, Motion, Scene, Switch};
+use htex_scene::file::{self, Budget, Constant, DeviceChoice, Effect, Motion, Scene, Switch};
 use htex_scene::{Costs, Finger, LoadedScene, Renderer, plan};
 
 use super::files::fitted;
@@ -152,6 +152,26 @@ fn felt(device: &Capabilities, motions: &[(f64, f64)]) -> f64 {
     }
 }
 
+/// The largest sample of a scene that never changes, of a finger that all but lifts off.
+fn all_but_lifted(force_n: f64) -> f64 {
+    let mut scene = scene(1);
+    scene.scene.effects.clear();
+    scene.scene.duration_s = Some(0.1);
+    scene.scene.motion = Motion::Constant(Constant {
+        speed_mm_s: 80.0,
+        force_n,
+        from_mm: None,
+        direction_deg: 0.0,
+    });
+    let device = device(Quantity::Sound, 20_000.0, None);
+    let plan = plan(&scene, &device, &Costs::embedded()).unwrap();
+    let mut renderer = Renderer::new(&scene, &plan).unwrap();
+    let mut block = [f32::NAN; 2_000];
+    renderer.render(&mut block);
+    let samples = block.iter().map(|x| f64::from(x.abs()));
+    samples.fold(0.0, worse)
+}
+
 fn scene_refused(speed_mm_s: f64, force_n: f64) -> String {
     let scene = scene(2);
     let device = device(Quantity::LateralForce, 20_000.0, None);
@@ -260,6 +280,18 @@ const CASES: &[Case] = &[
                 &device(Quantity::DisplayVoltage, 20_000.0, None),
                 &[(60.0, 1.0), (60.0, 1e6), (60.0, 40.0)],
             )
+        },
+    ),
+    within(
+        "a force of 5e-324, 1e-300, 1e-30 N, brought to the level of speech",
+        "scene",
+        "render",
+        Bound(1.0, "of full scale", "finite, and samples"),
+        || {
+            [5e-324, 1e-300, 1e-30]
+                .map(all_but_lifted)
+                .into_iter()
+                .fold(0.0, worse)
         },
     ),
     refused("a speed that is NaN", "scene", "move", "motion", || {

@@ -130,13 +130,13 @@ fn finger(speed_mm_s: f64, force_n: f64) -> Finger {
 }
 
 /// The largest sample of a scene whose finger moves so in turns, and of what it renders when the finger
-/// moves sanely again; NaN if that is silent.
+/// moves sanely again; NaN if that is silent, or if the limiter held what was no number.
 fn felt(device: &Capabilities, motions: &[(f64, f64)]) -> f64 {
     let scene = scene(1);
     let plan = plan(&scene, device, &Costs::embedded()).unwrap();
     let mut renderer = Renderer::new(&scene, &plan).unwrap();
     let mut block = [0.0f32; 64];
-    let mut peak = 0.0;
+    let (mut peak, mut at_limit) = (0.0, 0);
     for i in 0..600 {
         let (speed_mm_s, force_n) = match i {
             400.. => (60.0, 0.4),
@@ -144,9 +144,12 @@ fn felt(device: &Capabilities, motions: &[(f64, f64)]) -> f64 {
         };
         renderer.set_motion(finger(speed_mm_s, force_n)).unwrap();
         renderer.render(&mut block);
-        peak = block.iter().fold(peak, |p, x| worse(p, f64::from(x.abs())));
+        let sizes = block.iter().map(|x| f64::from(x.abs()));
+        at_limit += sizes.clone().filter(|x| Some(*x) == device.limit).count() as u64;
+        peak = sizes.fold(peak, worse);
     }
-    match block.iter().any(|x| *x != 0.0) {
+    let held_numbers = renderer.limited_samples() == at_limit;
+    match held_numbers && block.iter().any(|x| *x != 0.0) {
         true => peak,
         false => f64::NAN,
     }

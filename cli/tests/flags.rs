@@ -1,4 +1,4 @@
-//! Every number that a flag takes, at every edge.
+//! Numbers that flags take, at every edge.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -56,7 +56,7 @@ const FLAGS: &[(&str, &str)] = &[
 ];
 
 #[test]
-fn every_flag_at_every_edge_ends_well_or_in_a_sentence() {
+fn flags_at_edges_end_well_or_in_a_sentence() {
     let place = Place::new();
     let made = "simulate --surface vinyl --seconds 2 -o rec.csv";
     assert_eq!(place.run(&words(made)).code(), 0);

@@ -129,6 +129,7 @@ fn follow(motions: &mut Motions, renderer: &mut Renderer) -> bool {
 fn kept_drive(person: &str, ready: &Ready) -> Result<f64, Failure> {
     let file = gains_file()?;
     let gains = Gains::load(&file).map_err(|error| Failure::read(&file, error))?;
+    let asked = ready.file.display();
     let limit_v = ready.capabilities.limit.unwrap_or(f64::INFINITY);
     let problem = match gains.find(&key(person, ready)?) {
         Some(gain) if gain.drive_v > 0.0 && gain.drive_v <= limit_v => return Ok(gain.drive_v),
@@ -136,12 +137,8 @@ fn kept_drive(person: &str, ready: &Ready) -> Result<f64, Failure> {
             "the drive of {} V kept for {person} is not within the device's limit of {limit_v} V",
             gain.drive_v
         ),
-        None => format!(
-            "no gain is kept for {person}, {} and this device",
-            ready.file.display()
-        ),
+        None => format!("no gain is kept for {person}, {asked} and this device"),
     };
-    let asked = ready.file.display();
     Err(Failure::Other(format!(
         "{problem}; find it with `htex gain {asked} --person {person}`"
     )))

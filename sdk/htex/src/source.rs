@@ -103,8 +103,8 @@ impl Source {
 
     /// Fills `out` with the next `frames` samples of each source, one behind the other: what
     /// [`Self::render`] gives of each, to the bit, in as few calls as models allow. In blocks of 256
-    /// frames AR takes some six tenths of the time then. Sources for which `out` has no room stay as they are, and room without
-    /// a source is silent. Does not allocate, lock or do I/O.
+    /// frames AR takes some six tenths of the time then. Sources for which `out` has no room stay as
+    /// they are, and room without a source is silent. Does not allocate, lock or do I/O.
     ///
     /// # Errors
     /// The first, when a model fails; what it should have rendered is silent, and other sources play on.

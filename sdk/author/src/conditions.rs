@@ -6,9 +6,6 @@ use crate::fit::source_of;
 use crate::spectrum::{SegmentSpectra, segment_spectra};
 use crate::{AuthorError, Exploration, Recording, SpectrumOptions, TextureSpectrum, exploration};
 
-/// Recordings whose speeds and forces differ by less than this part are of one condition.
-const SAME: f64 = 0.05;
-
 /// A recording and what is known of its condition beforehand.
 #[derive(Debug, Clone)]
 pub struct Take {
@@ -83,9 +80,10 @@ pub(crate) fn group_takes(
     })
 }
 
+/// Whether two recordings are of one condition.
 fn same(a: Exploration, b: Exploration) -> bool {
     let near = |a: Option<f64>, b: Option<f64>| match (a, b) {
-        (Some(a), Some(b)) => (a - b).abs() <= SAME * a.max(b),
+        (Some(a), Some(b)) => Condition::is_same(a, b),
         (None, None) => true,
         _ => false,
     };

@@ -34,7 +34,7 @@ pub use finding::{Finding, Severity};
 pub use limits::Limits;
 pub use manifest::{
     AtCondition, Band, Condition, Field, LATERAL_FORCE, Manifest, NEWTON, Plugin, Provenance,
-    Quality, Reference, Representation, Signature, Source, Steps, Store, VERSION,
+    Quality, Reference, Representation, SAME_CONDITION, Signature, Source, Steps, Store, VERSION,
 };
 pub use page::{manifest_schema, rules_page, validation_page};
 pub use plain::plain;

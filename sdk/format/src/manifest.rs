@@ -123,6 +123,17 @@ pub struct Condition {
     pub repeatability_rms_db: Option<f64>,
 }
 
+/// Speeds, or forces, that differ by at most this part of the larger one are the same: a hand that is asked to
+/// keep a speed or a force comes no nearer to it.
+pub const SAME_CONDITION: f64 = 0.05;
+
+impl Condition {
+    /// Whether two speeds, or two forces, are the same within [`SAME_CONDITION`]; both not negative.
+    pub fn is_same(a: f64, b: f64) -> bool {
+        (a - b).abs() <= SAME_CONDITION * a.max(b)
+    }
+}
+
 /// One model's account of the texture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Representation {

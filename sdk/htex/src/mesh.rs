@@ -1,7 +1,22 @@
-//! Interpolation between exploration conditions: barycentric in the Delaunay triangulation of the
-//! known (speed, force) points, clamped to their hull.
+//! Interpolation between exploration conditions.
+//!
+//! Weights are barycentric in the Delaunay triangulation of the known (speed, force) points, each axis divided by
+//! its largest value. A motion outside the hull has the weights of the hull's nearest point. Measured conditions
+//! never line up exactly, which two rules allow for:
+//!
+//! - Speeds that are the same within [`htex_format::SAME_CONDITION`] are one value, and forces alike (`axis`).
+//! - A condition that is the same as its foot on an edge of the hull lies on that edge. The sliver of a triangle
+//!   between them is not interpolated in: motions in it, and outside the hull beside it, have the weights of their
+//!   feet on the edge.
+//!
+//! Weights are continuous in the motion, and a known condition has its own weight alone.
 
-use spade::{DelaunayTriangulation, Point2, Triangulation};
+mod axis;
+mod build;
+#[cfg(test)]
+mod tests;
+
+use axis::Axis;
 
 /// Weights of up to three conditions, summing to one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,164 +55,120 @@ impl Weights {
 /// The known conditions.
 #[derive(Debug, Clone)]
 pub(crate) struct Mesh {
-    points: Vec<[f64; 2]>,
-    /// What makes both axes comparable.
-    scale: [f64; 2],
-    triangles: Vec<[usize; 3]>,
-    /// Edges of the hull; for points on a line, from each to the next.
-    edges: Vec<[usize; 2]>,
+    axes: [Axis; 2],
+    faces: Vec<Face>,
+    sides: Vec<Side>,
+}
+
+/// A triangle between three conditions.
+#[derive(Debug, Clone, PartialEq)]
+struct Face {
+    corners: [usize; 3],
+    places: [[f64; 2]; 3],
+    /// The edge of the hull that a sliver belongs to.
+    side: Option<usize>,
+}
+
+/// An edge of the hull, with all conditions that lie on it; or the line that all conditions lie on.
+#[derive(Debug, Clone, PartialEq)]
+struct Side {
+    from: [f64; 2],
+    along: [f64; 2],
+    /// Conditions in their order along the edge, both ends included.
+    conditions: Vec<usize>,
+    /// Place of each one's foot, 0 at the first and 1 at the last, strictly ascending.
+    feet: Vec<f64>,
 }
 
 impl Mesh {
     /// A mesh over points of (speed, force), of which there is at least one.
     pub(crate) fn new(conditions: &[[f64; 2]]) -> Self {
-        let scale = [0, 1].map(|axis| {
-            let largest = conditions.iter().map(|c| c[axis].abs()).fold(0.0, f64::max);
-            if largest > 0.0 { 1.0 / largest } else { 1.0 }
-        });
-        let points: Vec<[f64; 2]> = conditions
-            .iter()
-            .map(|c| [c[0] * scale[0], c[1] * scale[1]])
-            .collect();
-        let (triangles, edges) = triangulate(&points).unwrap_or_else(|| (vec![], chain(&points)));
-        Self {
-            points,
-            scale,
-            triangles,
-            edges,
-        }
+        build::mesh(conditions)
     }
 
     /// Weights at a motion. Does not allocate.
     pub(crate) fn weights(&self, speed_mm_s: f64, force_n: f64) -> Weights {
-        let q = [speed_mm_s * self.scale[0], force_n * self.scale[1]];
-        let inside = self.triangles.iter().find_map(|t| self.in_triangle(*t, q));
+        let [speed, force] = &self.axes;
+        let q = [speed.place(speed_mm_s), force.place(force_n)];
+        let inside = self.faces.iter().find_map(|face| self.within(face, q));
         inside.unwrap_or_else(|| self.nearest(q)).without_zeros()
     }
 
-    fn in_triangle(&self, corners: [usize; 3], q: [f64; 2]) -> Option<Weights> {
-        let [a, b, c] = corners.map(|i| self.points[i]);
-        let area = cross(a, b, c);
-        let weight = [
-            cross(q, b, c) / area,
-            cross(a, q, c) / area,
-            cross(a, b, q) / area,
-        ];
-        let inside = weight.iter().all(|w| *w >= 0.0);
-        inside.then_some(Weights {
-            condition: corners,
-            weight,
+    fn within(&self, face: &Face, q: [f64; 2]) -> Option<Weights> {
+        let [a, b, c] = face.places;
+        // Two triangles compute the same number, of opposite signs, for the edge between them: no motion is
+        // outside of both.
+        let areas = [area(q, b, c), area(q, c, a), area(q, a, b)];
+        if areas.iter().any(|area| *area < 0.0) {
+            return None;
+        }
+        if let Some(side) = face.side {
+            return Some(self.sides[side].weights(q));
+        }
+        let sum: f64 = areas.iter().sum();
+        (sum > 0.0).then(|| Weights {
+            condition: face.corners,
+            weight: areas.map(|area| area / sum),
             count: 3,
         })
     }
 
-    /// The nearest point of the hull's edges.
+    /// The weights of the hull's nearest point.
     fn nearest(&self, q: [f64; 2]) -> Weights {
-        let on_edge = |&[i, j]: &[usize; 2]| {
-            let (a, b) = (self.points[i], self.points[j]);
-            let along = [b[0] - a[0], b[1] - a[1]];
-            let length2 = along[0] * along[0] + along[1] * along[1];
-            let dot = (q[0] - a[0]) * along[0] + (q[1] - a[1]) * along[1];
-            let t = (dot / length2).clamp(0.0, 1.0);
-            let off = [a[0] + t * along[0] - q[0], a[1] + t * along[1] - q[1]];
-            let weights = Weights {
-                condition: [i, j, 0],
-                weight: [1.0 - t, t, 0.0],
-                count: 2,
-            };
-            (off[0] * off[0] + off[1] * off[1], weights)
-        };
-        let nearer = |a: (f64, Weights), b: (f64, Weights)| if b.0 < a.0 { b } else { a };
-        let best = self.edges.iter().map(on_edge).reduce(nearer);
-        best.map_or(Weights::one(0), |(_, weights)| weights)
+        let distance = |side: &Side| side.distance2(q);
+        let nearest = self
+            .sides
+            .iter()
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        nearest.map_or(Weights::one(0), |side| side.weights(q))
     }
 }
 
-/// Twice the signed area of a triangle.
-fn cross(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
-    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-}
-
-type Faces = (Vec<[usize; 3]>, Vec<[usize; 2]>);
-
-/// Triangles and hull edges; none if the points do not span a triangle.
-fn triangulate(points: &[[f64; 2]]) -> Option<Faces> {
-    let mut mesh = DelaunayTriangulation::<Point2<f64>>::new();
-    let mut index = Vec::new();
-    for (i, p) in points.iter().enumerate() {
-        let handle = mesh.insert(Point2::new(p[0], p[1])).ok()?;
-        if handle.index() == index.len() {
-            index.push(i);
-        }
-    }
-    let triangles: Vec<[usize; 3]> = mesh
-        .inner_faces()
-        .map(|face| face.vertices().map(|v| index[v.fix().index()]))
-        .collect();
-    let corner = |v: spade::handles::FixedVertexHandle| index[v.index()];
-    let edges = mesh
-        .convex_hull()
-        .map(|edge| [corner(edge.from().fix()), corner(edge.to().fix())])
-        .collect();
-    (!triangles.is_empty()).then_some((triangles, edges))
-}
-
-/// Points on a line, each joined to the next along it.
-fn chain(points: &[[f64; 2]]) -> Vec<[usize; 2]> {
-    let mut order: Vec<usize> = (0..points.len()).collect();
-    order.sort_by(|&a, &b| {
-        let (a, b) = (points[a], points[b]);
-        a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
-    });
-    order
-        .windows(2)
-        .map(|pair| [pair[0], pair[1]])
-        .filter(|[a, b]| points[*a] != points[*b])
-        .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn at(mesh: &Mesh, speed: f64, force: f64) -> Vec<(usize, f64)> {
-        mesh.weights(speed, force).iter().collect()
-    }
-
-    #[test]
-    fn corners_edges_middle_and_outside_of_a_square() {
-        let square = [[50.0, 0.2], [150.0, 0.2], [50.0, 0.8], [150.0, 0.8]];
-        let mesh = Mesh::new(&square);
-        for (i, c) in square.iter().enumerate() {
-            assert_eq!(at(&mesh, c[0], c[1]), [(i, 1.0)]);
-        }
-        // Far outside: the nearest corner. Beside an edge: the edge's point.
-        assert_eq!(at(&mesh, 1e9, 100.0), [(3, 1.0)]);
-        let beside = at(&mesh, 100.0, 0.0);
-        assert_eq!(beside.len(), 2);
-        assert!(
-            beside
-                .iter()
-                .all(|(i, w)| *i < 2 && (w - 0.5).abs() < 1e-12)
-        );
-        // Anywhere inside: weights that give back the point.
-        for (speed, force) in [(60.0, 0.3), (100.0, 0.5), (149.0, 0.79)] {
-            let weights = at(&mesh, speed, force);
-            let mean = |axis: usize| {
-                weights
-                    .iter()
-                    .map(|(i, w)| square[*i][axis] * w)
-                    .sum::<f64>()
-            };
-            assert!((mean(0) - speed).abs() < 1e-9 && (mean(1) - force).abs() < 1e-12);
+impl Side {
+    /// A side without other conditions than its ends.
+    fn new(ends: [usize; 2], places: &[[f64; 2]]) -> Self {
+        let [from, to] = ends.map(|i| places[i]);
+        Self {
+            from,
+            along: [to[0] - from[0], to[1] - from[1]],
+            conditions: ends.to_vec(),
+            feet: vec![0.0, 1.0],
         }
     }
 
-    #[test]
-    fn one_condition_and_conditions_on_a_line() {
-        assert_eq!(at(&Mesh::new(&[[80.0, 0.4]]), 10.0, 3.0), [(0, 1.0)]);
-        let line = Mesh::new(&[[160.0, 0.4], [40.0, 0.4], [80.0, 0.4]]);
-        assert_eq!(at(&line, 60.0, 0.4), [(1, 0.5), (2, 0.5)]);
-        assert_eq!(at(&line, 0.0, 0.4), [(1, 1.0)]);
+    /// Place of a point's foot on the line through the edge.
+    fn foot(&self, q: [f64; 2]) -> f64 {
+        let [x, y] = self.along;
+        ((q[0] - self.from[0]) * x + (q[1] - self.from[1]) * y) / (x * x + y * y)
     }
+
+    fn at(&self, place: f64) -> [f64; 2] {
+        [0, 1].map(|axis| self.from[axis] + place * self.along[axis])
+    }
+
+    /// Squared distance from the edge.
+    fn distance2(&self, q: [f64; 2]) -> f64 {
+        let [x, y] = self.at(self.foot(q).clamp(0.0, 1.0));
+        (x - q[0]) * (x - q[0]) + (y - q[1]) * (y - q[1])
+    }
+
+    /// The weights at a point's foot on the edge.
+    fn weights(&self, q: [f64; 2]) -> Weights {
+        let place = self.foot(q).clamp(0.0, 1.0);
+        let last = self.feet.len() - 1;
+        let behind = (1..last).find(|i| self.feet[*i] >= place).unwrap_or(last);
+        let (from, to) = (self.feet[behind - 1], self.feet[behind]);
+        let part = (place - from) / (to - from);
+        Weights {
+            condition: [self.conditions[behind - 1], self.conditions[behind], 0],
+            weight: [1.0 - part, part, 0.0],
+            count: 2,
+        }
+    }
+}
+
+/// Twice the signed area of a triangle whose corners but the first stand in either order: swapping them changes the
+/// sign alone.
+fn area(q: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+    (b[0] - q[0]) * (c[1] - q[1]) - (b[1] - q[1]) * (c[0] - q[0])
 }

@@ -1,0 +1,65 @@
+//! One axis of a mesh: speeds or forces, those that are the same at one place.
+
+use htex_format::Condition;
+
+/// Farthest place from 0, so that no motion is beyond numbers.
+const FAR: f64 = 1e100;
+
+/// Places of speeds or forces, in parts of the largest that is known. Ascending, and level over values that are the
+/// same.
+#[derive(Debug, Clone)]
+pub(super) struct Axis {
+    groups: Vec<Group>,
+    scale: f64,
+}
+
+/// Known values from the lowest to the highest of those that stand at one place.
+#[derive(Debug, Clone)]
+struct Group {
+    low: f64,
+    high: f64,
+    place: f64,
+}
+
+impl Axis {
+    /// An axis of known values, not negative, of which there is at least one. `merged`: those that are the same stand
+    /// at one place.
+    pub(super) fn new(mut values: Vec<f64>, merged: bool) -> Self {
+        values.sort_by(f64::total_cmp);
+        let largest = values.last().copied().unwrap_or(0.0);
+        let scale = if largest > 0.0 { 1.0 / largest } else { 1.0 };
+        let is_one = |a: &f64, x: f64| a == &x || (merged && Condition::is_same(*a, x));
+        let mut groups: Vec<Group> = Vec::new();
+        for x in values {
+            match groups.last_mut() {
+                Some(group) if is_one(&group.low, x) => group.high = x,
+                _ => groups.push(Group {
+                    low: x,
+                    high: x,
+                    place: 0.0,
+                }),
+            }
+        }
+        for group in &mut groups {
+            group.place = 0.5 * (group.low + group.high) * scale;
+        }
+        Self { groups, scale }
+    }
+
+    /// The place of any speed or force. Does not allocate.
+    pub(super) fn place(&self, x: f64) -> f64 {
+        let next = self.groups.iter().position(|group| x <= group.high);
+        let next = next.unwrap_or(self.groups.len());
+        let before = next.checked_sub(1).map(|i| &self.groups[i]);
+        match (before, self.groups.get(next)) {
+            (_, Some(group)) if x >= group.low => group.place,
+            (Some(below), Some(above)) => {
+                let part = (x - below.high) / (above.low - below.high);
+                below.place + part * (above.place - below.place)
+            }
+            (None, Some(first)) => first.place - (first.low - x) * self.scale,
+            (Some(last), None) => (last.place + (x - last.high) * self.scale).min(FAR),
+            (None, None) => 0.0,
+        }
+    }
+}

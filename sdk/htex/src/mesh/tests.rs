@@ -1,0 +1,139 @@
+use proptest::prelude::*;
+
+use super::*;
+
+fn at(mesh: &Mesh, speed: f64, force: f64) -> Vec<(usize, f64)> {
+    mesh.weights(speed, force).iter().collect()
+}
+
+#[test]
+fn corners_edges_middle_and_outside_of_a_square() {
+    let square = [[50.0, 0.2], [150.0, 0.2], [50.0, 0.8], [150.0, 0.8]];
+    let mesh = Mesh::new(&square);
+    // Far outside: the nearest corner. Beside an edge: the edge's point.
+    assert_eq!(at(&mesh, 1e9, 100.0), [(3, 1.0)]);
+    assert_eq!(at(&mesh, 1e300, 1e300), [(3, 1.0)]);
+    let beside = at(&mesh, 100.0, 0.0);
+    assert_eq!(beside.len(), 2);
+    assert!(
+        beside
+            .iter()
+            .all(|(i, w)| *i < 2 && (w - 0.5).abs() < 1e-12)
+    );
+    // Anywhere inside: weights that give back the point.
+    for (speed, force) in [(60.0, 0.3), (100.0, 0.5), (149.0, 0.79)] {
+        let weights = at(&mesh, speed, force);
+        let mean = |axis: usize| {
+            weights
+                .iter()
+                .map(|(i, w)| square[*i][axis] * w)
+                .sum::<f64>()
+        };
+        assert!((mean(0) - speed).abs() < 1e-9 && (mean(1) - force).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn one_condition_and_conditions_on_a_line() {
+    assert_eq!(at(&Mesh::new(&[[80.0, 0.4]]), 10.0, 3.0), [(0, 1.0)]);
+    // Forces that a hand took for one: the speed alone counts, whatever the force.
+    for forces in [[0.4, 0.4, 0.4], [0.4069, 0.4061, 0.4014]] {
+        let line = Mesh::new(&[[160.0, forces[2]], [40.0, forces[0]], [80.0, forces[1]]]);
+        for force in [0.0, 0.4, 0.407, 9.0] {
+            assert_eq!(at(&line, 60.0, force), [(1, 0.5), (2, 0.5)]);
+            assert_eq!(at(&line, 80.0, force), [(2, 1.0)]);
+            assert_eq!(at(&line, 0.0, force), [(1, 1.0)]);
+        }
+    }
+}
+
+/// Conditions that recordings would have been merged to one of: each is still met.
+#[test]
+fn conditions_that_are_the_same_stay_apart() {
+    let points = [[40.0, 0.4], [80.0, 0.4], [80.1, 0.41], [80.0, 0.405]];
+    for (i, [speed, force]) in points.iter().enumerate() {
+        assert_eq!(at(&Mesh::new(&points), *speed, *force), [(i, 1.0)]);
+    }
+}
+
+/// Speeds or forces, each some tenths above the one before.
+fn axis(
+    count: impl Into<proptest::collection::SizeRange>,
+    from: f64,
+) -> impl Strategy<Value = Vec<f64>> {
+    let steps = prop::collection::vec(1.4..2.2, count);
+    (from..4.0 * from, steps).prop_map(|(start, steps)| {
+        let next = |x: &mut f64, step: f64| Some(std::mem::replace(x, *x * step));
+        steps.into_iter().scan(start, next).collect()
+    })
+}
+
+/// Conditions as they are meant: lines along an axis, lines across, grids.
+fn meant() -> impl Strategy<Value = Vec<[f64; 2]>> {
+    let across =
+        (axis(2..=6usize, 10.0), 0.1..0.4, 0.5..1.0f64).prop_map(|(speeds, low, steep)| {
+            let force = |v: f64| low * (1.0 + steep * (v / speeds[0] - 1.0));
+            speeds.iter().map(|v| [*v, force(*v)]).collect()
+        });
+    let grid = (axis(1..=5usize, 10.0), axis(1..=5usize, 0.1)).prop_map(|(speeds, forces)| {
+        let row = |f: &f64| speeds.iter().map(|v| [*v, *f]).collect::<Vec<_>>();
+        forces.iter().flat_map(row).collect()
+    });
+    prop_oneof![1 => across, 3 => grid]
+}
+
+/// Conditions as a hand makes them, 1 % beside what was meant, and the level of each: powers of speed and force, within
+/// 0.5 dB.
+fn measured() -> impl Strategy<Value = (Vec<[f64; 2]>, Vec<f64>)> {
+    let scattered = meant().prop_flat_map(|points| {
+        let near = |[v, f]: [f64; 2]| [v * 0.99..v * 1.01, f * 0.99..f * 1.01];
+        points.into_iter().map(near).collect::<Vec<_>>()
+    });
+    (scattered, -0.5..1.2, 0.0..1.2f64).prop_flat_map(|(points, of_speed, of_force)| {
+        let decibels = prop::collection::vec(-0.5..0.5, points.len());
+        let level = move |([v, f], db): (&[f64; 2], f64)| {
+            v.powf(of_speed) * f.powf(of_force) * 10f64.powf(db / 20.0)
+        };
+        decibels.prop_map(move |db| {
+            let levels = points.iter().zip(db).map(level).collect();
+            (points.clone(), levels)
+        })
+    })
+}
+
+/// Motions to try: all over, 50 % beyond what is known, and close to each condition.
+fn motions() -> impl Strategy<Value = Vec<[f64; 2]>> {
+    prop::collection::vec([0.0..1.0, 0.0..1.0], 24)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 10_000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// On any measured lines and grids: each condition is met, has most of the weight near by, and nothing jumps.
+    #[test]
+    fn measured_conditions_are_met_and_nothing_jumps(
+        (points, levels) in measured(), places in motions(),
+    ) {
+        let mesh = Mesh::new(&points);
+        let db = |[v, f]: [f64; 2]| {
+            let level: f64 = at(&mesh, v, f).iter().map(|(i, w)| w * levels[*i]).sum();
+            20.0 * level.log10()
+        };
+        let most = |axis: usize| points.iter().map(|p| p[axis]).fold(0.0, f64::max);
+        let mut tried: Vec<[f64; 2]> = places.iter().map(|p| [1.5 * p[0] * most(0), 1.5 * p[1] * most(1)]).collect();
+        for (i, [v, f]) in points.iter().enumerate() {
+            prop_assert_eq!(at(&mesh, *v, *f), [(i, 1.0)]);
+            let beside = &places[i % places.len()];
+            let close = [v * (0.98 + 0.04 * beside[0]), f * (0.98 + 0.04 * beside[1])];
+            let own = at(&mesh, close[0], close[1]).into_iter().find(|(k, _)| *k == i);
+            prop_assert!(own.is_some_and(|(_, w)| w > 0.7), "condition {i} at {close:?}: {own:?}");
+            tried.push(close);
+        }
+        for [v, f] in tried {
+            for on in [[1.01, 1.0], [1.0, 1.01], [1.01, 1.01], [1.01, 0.99]] {
+                let step = db([v * on[0], f * on[1]]) - db([v, f]);
+                prop_assert!(step.abs() < 0.5, "{step} dB from {v} mm/s, {f} N in {on:?}: {points:?}");
+            }
+        }
+    }
+}

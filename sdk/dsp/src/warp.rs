@@ -11,6 +11,8 @@ const TAPS: usize = 32;
 /// Rows of the kernel's table; between two rows it is interpolated.
 const PHASES: usize = 256;
 const CHUNK: usize = 64;
+/// Samples of a window that stand before the place that is read.
+const BEFORE: usize = TAPS / 2 - 1;
 
 /// Reads its source at a changing ratio, by windowed-sinc interpolation. Pulled like
 /// [`crate::resample::Resampler`]; gives the same samples for any block size.
@@ -24,6 +26,8 @@ pub struct Warp {
     history: Vec<f32>,
     start: usize,
     filled: usize,
+    /// Whether it reads; else it hands its source on.
+    reads: bool,
 }
 
 impl Warp {
@@ -35,6 +39,16 @@ impl Warp {
     /// Reads at a ratio of 1 only, without any delay: what goes in comes out.
     pub fn through() -> Self {
         Self::of(1)
+    }
+
+    /// Hands its source on, without delay and bit by bit, as long as the ratio is 1. At the first other ratio it
+    /// begins to read by interpolation, from the place where it stands, and goes on so.
+    pub fn when_needed() -> Self {
+        Self {
+            filled: BEFORE,
+            reads: false,
+            ..Self::of(TAPS)
+        }
     }
 
     fn of(taps: usize) -> Self {
@@ -49,12 +63,20 @@ impl Warp {
             history: alloc::vec![0.0; taps + CHUNK],
             start: 0,
             filled: 0,
+            reads: true,
         }
     }
 
     /// Fills `out`; each sample stands `ratio` source samples (0 to 1,000) after the one before.
     /// Aliases where `ratio` is above 1, unless the source has nothing there. Does not allocate.
     pub fn process(&mut self, ratio: f64, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
+        if !self.reads {
+            if ratio == 1.0 {
+                source(out);
+                return self.remember(out);
+            }
+            self.reads = true;
+        }
         for sample in out {
             while self.start + self.taps > self.filled {
                 self.refill(source);
@@ -65,6 +87,13 @@ impl Warp {
             self.place -= whole as f64;
             self.start += whole;
         }
+    }
+
+    /// Keeps what stands before the next sample.
+    fn remember(&mut self, block: &[f32]) {
+        let new = block.len().min(BEFORE);
+        self.history.copy_within(new..BEFORE, 0);
+        self.history[BEFORE - new..BEFORE].copy_from_slice(&block[block.len() - new..]);
     }
 
     fn read(&self) -> f32 {
@@ -139,6 +168,37 @@ mod tests {
             warp.process(1.0, block, &mut source);
         }
         assert_eq!(direct, through);
+    }
+
+    #[test]
+    fn it_begins_to_read_where_it_stands() {
+        let rendered = |sizes: &[usize]| {
+            let (mut warp, mut source) = (Warp::when_needed(), sine(0.05));
+            let mut out = [0.0f32; 600];
+            let (still, moving) = out.split_at_mut(100);
+            for (part, ratio) in [(still, 1.0), (moving, 1.3)] {
+                let mut rest = part;
+                for size in sizes.iter().cycle() {
+                    let (block, behind) = rest.split_at_mut(rest.len().min(*size));
+                    warp.process(ratio, block, &mut source);
+                    rest = behind;
+                    if rest.is_empty() {
+                        break;
+                    }
+                }
+            }
+            out
+        };
+        let out = rendered(&[600]);
+        assert_eq!(out, rendered(&[1, 7, 40]));
+        let mut direct = [0.0f32; 100];
+        sine(0.05)(&mut direct);
+        assert_eq!(out[..100], direct);
+        for (n, x) in out.iter().enumerate() {
+            let place = n.min(100) as f64 + 1.3 * n.saturating_sub(100) as f64;
+            let expected = libm::sin(core::f64::consts::TAU * 0.05 * place);
+            assert!((f64::from(*x) - expected).abs() < 1e-3, "{n}: {x}");
+        }
     }
 
     #[test]

@@ -7,6 +7,7 @@ use htex_format::{Manifest, Representation};
 use htex_host::{Band, LoadedModel, Registry, StillSound, Synthesis};
 use semver::{Version, VersionReq};
 
+use crate::exploration::{Coverage, Effects, Explored};
 use crate::mesh::Mesh;
 use crate::{Error, Source, Voice};
 
@@ -32,10 +33,12 @@ pub struct VoiceOptions<'a> {
     /// How samples are made: by the model's voice, or cheaper, with a spectrum that stays as it is
     /// at the start. [`Asset::source`] is always streamed.
     pub synthesis: Synthesis,
+    /// What a motion does beyond the recorded conditions; [`Asset::source`] has no effects.
+    pub effects: Effects,
 }
 
 impl Default for VoiceOptions<'_> {
-    /// 20 kHz (the paper's rate), seed 0, the first condition, streamed.
+    /// 20 kHz (the paper's rate), seed 0, the first condition, streamed, all effects.
     fn default() -> Self {
         Self {
             model: None,
@@ -43,6 +46,7 @@ impl Default for VoiceOptions<'_> {
             seed: 0,
             motion: None,
             synthesis: Synthesis::Streamed,
+            effects: Effects::default(),
         }
     }
 }
@@ -128,7 +132,42 @@ impl Asset {
     /// refuses the parameters or the rate; when the synthesis is out of its range.
     pub fn voice(&self, options: &VoiceOptions<'_>) -> Result<Voice, Error> {
         let still = self.still(options)?;
-        Ok(Voice::new(self.source(options)?, options.rate_hz, still))
+        let base = self.base_ratio(options)?;
+        // Read faster, the source's samples come at a higher rate: one that renders at any rate is asked for less.
+        let source = self.source(&VoiceOptions {
+            rate_hz: options.rate_hz / base,
+            ..options.clone()
+        })?;
+        let (rate_hz, effects) = (options.rate_hz, options.effects);
+        Ok(Voice::new(source, rate_hz, still, effects, base))
+    }
+
+    /// How many times as fast as recorded a voice is read from its start on.
+    fn base_ratio(&self, options: &VoiceOptions<'_>) -> Result<f64, Error> {
+        let r = self.representation(options.model)?;
+        let (speed, force) = options.motion.unwrap_or_else(|| self.first_condition(r));
+        crate::source::check_motion(speed, force)?;
+        let scales = options.effects.speed_scaling && crate::exploration::slides(speed, force);
+        Ok(if scales {
+            self.explored(r).speed_ratio(speed)
+        } else {
+            1.0
+        })
+    }
+
+    /// What a voice with these effects makes of a motion, a speed (mm/s) and a force (newtons), and whether it lies
+    /// within what was recorded.
+    ///
+    /// # Errors
+    /// When there is no such representation.
+    pub fn coverage(
+        &self,
+        model: Option<&str>,
+        motion: (f64, f64),
+        effects: Effects,
+    ) -> Result<Coverage, Error> {
+        let known = self.known(self.representation(model)?);
+        Ok(known.coverage(motion, effects))
     }
 
     /// The sound of a voice that is not streamed.
@@ -167,7 +206,8 @@ impl Asset {
     }
 
     /// Magnitudes of a representation at a motion (else its first condition) and frequencies in
-    /// hertz; newtons, in the measure of the texture spectrum.
+    /// hertz; newtons, in the measure of the texture spectrum. As recorded, or interpolated: what a voice makes of a
+    /// motion beyond that ([`Self::coverage`]) is not in it.
     ///
     /// # Errors
     /// As [`Self::voice`].
@@ -268,9 +308,16 @@ impl Asset {
         let points: Vec<[f64; 2]> = at.iter().map(|a| point(a.condition)).collect();
         Known {
             mesh: Mesh::new(&points),
+            explored: self.explored(representation),
             level_n: at.iter().map(|a| a.level_n_rms).collect(),
             parameters: self.data.parameters[representation].clone(),
         }
+    }
+
+    fn explored(&self, representation: usize) -> Explored {
+        let manifest = &self.data.manifest;
+        let at = &manifest.representations[representation].at;
+        Explored::new(at, &manifest.conditions)
     }
 
     fn first_condition(&self, representation: usize) -> (f64, f64) {
@@ -309,6 +356,7 @@ fn nearest(all: &[Representation]) -> Option<usize> {
 #[derive(Debug, Clone)]
 pub(crate) struct Known {
     pub(crate) mesh: Mesh,
+    pub(crate) explored: Explored,
     pub(crate) level_n: Vec<f64>,
     pub(crate) parameters: Vec<Vec<f64>>,
 }
@@ -317,6 +365,13 @@ impl Known {
     /// Numbers in the longest set of parameters.
     pub(crate) fn longest(&self) -> usize {
         self.parameters.iter().map(Vec::len).max().unwrap_or(0)
+    }
+
+    /// What a voice makes of a motion.
+    pub(crate) fn coverage(&self, motion: (f64, f64), effects: Effects) -> Coverage {
+        let weights = self.mesh.weights(motion.0, motion.1);
+        let nearest = self.mesh.motion(&weights);
+        self.explored.coverage(motion.into(), nearest, effects)
     }
 
     /// Parameters and level (newtons) at a motion; the model decides in which space to mix.

@@ -15,12 +15,15 @@
 
 mod asset;
 mod error;
+pub mod exploration;
+mod follow;
 mod mesh;
 mod source;
 mod voice;
 
 pub use asset::{Asset, VoiceOptions};
 pub use error::Error;
+pub use exploration::{Coverage, Effects, Explored, Reach, Recorded};
 pub use htex_format::{Finding, Limits, Manifest, Severity};
 pub use htex_host::{Band, Registry, Search, Synthesis, WasmLimits};
 pub use source::Source;

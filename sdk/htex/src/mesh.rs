@@ -55,6 +55,7 @@ impl Weights {
 /// The known conditions.
 #[derive(Debug, Clone)]
 pub(crate) struct Mesh {
+    conditions: Vec<[f64; 2]>,
     axes: [Axis; 2],
     faces: Vec<Face>,
     sides: Vec<Side>,
@@ -92,6 +93,17 @@ impl Mesh {
         let q = [speed.place(speed_mm_s), force.place(force_n)];
         let inside = self.faces.iter().find_map(|face| self.within(face, q));
         inside.unwrap_or_else(|| self.nearest(q)).without_zeros()
+    }
+
+    /// The motion between conditions that weights stand for, (speed, force).
+    pub(crate) fn motion(&self, weights: &Weights) -> [f64; 2] {
+        let mean = |axis: usize| {
+            weights
+                .iter()
+                .map(|(i, w)| w * self.conditions[i][axis])
+                .sum()
+        };
+        [mean(0), mean(1)]
     }
 
     fn within(&self, face: &Face, q: [f64; 2]) -> Option<Weights> {

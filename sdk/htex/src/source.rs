@@ -4,6 +4,7 @@ use htex_host::{Band, LoadedModel, ModelVoice};
 
 use crate::Error;
 use crate::asset::Known;
+use crate::exploration::{Coverage, Effects, Explored};
 use crate::mesh::Weights;
 
 /// Most conditions that are mixed.
@@ -11,7 +12,8 @@ const MIXED: usize = 3;
 
 /// Samples of unit RMS at the rate the model itself renders at, and the level they stand for. A
 /// renderer that brings many textures together resamples them once, behind their sum; [`crate::Voice`]
-/// does it for a single one.
+/// does it for a single one. A source interpolates between conditions and does nothing else with a motion: what
+/// lies beyond ([`Effects`]) is its renderer's.
 #[derive(Debug)]
 pub struct Source {
     known: Known,
@@ -62,6 +64,21 @@ impl Source {
     /// RMS of the texture at the present motion, newtons.
     pub fn level_n(&self) -> f64 {
         self.level_n
+    }
+
+    /// The present motion: scanning speed, mm/s, and normal force, newtons.
+    pub(crate) fn motion(&self) -> (f64, f64) {
+        self.motion
+    }
+
+    /// The conditions that are known.
+    pub fn explored(&self) -> Explored {
+        self.known.explored
+    }
+
+    /// What a voice with these effects makes of a motion (mm/s, newtons). Does not allocate.
+    pub fn coverage(&self, speed_mm_s: f64, force_n: f64, effects: Effects) -> Coverage {
+        self.known.coverage((speed_mm_s, force_n), effects)
     }
 
     /// Glides to the spectrum at this scanning speed (mm/s) and normal force (newtons), clamped to

@@ -4,12 +4,25 @@ use htex_dsp::glide::Glide;
 use htex_dsp::resample::Resampler;
 use htex_host::StillSound;
 
+use crate::exploration::{Coverage, Effects};
+use crate::follow::Follow;
 use crate::{Error, Source};
 
 /// Length of a change of level, seconds.
 const RAMP_S: f64 = 0.010;
 
-/// An endless stream of lateral force, newtons, that follows the finger's motion.
+/// An endless stream of lateral force, newtons, that follows the finger's motion as a scene does: see
+/// [`Effects`].
+///
+/// ```no_run
+/// use htex::{Asset, VoiceOptions};
+/// // Recorded at 80 mm/s and 0.4 N.
+/// let mut voice = Asset::open("sandpaper.htex")?.voice(&VoiceOptions::default())?;
+/// voice.set_motion(160.0, 0.8)?; // an octave higher, twice as strong
+/// voice.set_motion(0.0, 0.8)?; // silent
+/// println!("{}", voice.coverage(160.0, 0.8));
+/// # Ok::<(), htex::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Voice {
     source: Source,
@@ -17,33 +30,60 @@ pub struct Voice {
     /// What is heard instead of the source, whose level counts then.
     still: Option<StillSound>,
     level_n: Glide,
+    follow: Follow,
 }
 
 impl Voice {
-    /// A voice at `rate_hz`: the source and the resampler it needs, or a sound that stands for them.
-    pub(crate) fn new(source: Source, rate_hz: f64, still: Option<StillSound>) -> Self {
+    /// A voice at `rate_hz`: the source and the resampler it needs, or a sound that stands for them. The resampler reads
+    /// the source `base` times as fast as recorded.
+    pub(crate) fn new(
+        source: Source,
+        rate_hz: f64,
+        still: Option<StillSound>,
+        effects: Effects,
+        base: f64,
+    ) -> Self {
         let ramp = (RAMP_S * rate_hz).ceil().max(1.0) as u32;
+        // A still sound is at the voice's rate already, as recorded.
+        let base = if still.is_some() { 1.0 } else { base };
+        let top_hz = source.top_hz() * base;
+        let known = (source.explored(), effects);
+        let follow = Follow::new(known, source.motion(), base, rate_hz, top_hz);
         Self {
-            resampler: Resampler::new(source.rate_hz(), rate_hz, source.top_hz()),
-            level_n: Glide::new(source.level_n() as f32, ramp),
+            resampler: Resampler::new(source.rate_hz() * base, rate_hz, top_hz),
+            level_n: Glide::new((source.level_n() * follow.gain()) as f32, ramp),
             source,
             still,
+            follow,
         }
     }
 
-    /// Follows the finger: spectrum and level glide to those at this scanning speed (mm/s) and
-    /// normal force (newtons), clamped to the conditions the asset knows; of a voice that is not
-    /// streamed (see [`Synthesis`](crate::Synthesis)) the level alone. A motion that is not new
-    /// costs nothing; a new one mixes parameters in the voice's own room. Does not allocate, lock or
-    /// do I/O for the models of this project and others that keep to the ABI.
+    /// Follows the finger to this scanning speed (mm/s) and normal force (newtons). Spectrum and level glide to those
+    /// between the conditions the asset knows, clamped to them; of a voice that is not streamed (see
+    /// [`Synthesis`](crate::Synthesis)) the level alone. Where the asset knows one speed, frequencies go in proportion to
+    /// the speed, 1/16 to 8 times as fast and as far as half the rate allows; where it knows one force, the level goes
+    /// in proportion to the force. A finger that does not slide (below 0.5 mm/s or at 0 N) feels nothing. Each of these
+    /// can be switched off ([`Effects`]), and [`Self::coverage`] tells what becomes of a motion.
+    ///
+    /// A motion that is not new costs nothing; a new one mixes parameters in the voice's own memory. Does not allocate,
+    /// lock or do I/O for the models of this project and others that keep to the ABI.
     ///
     /// # Errors
     /// When a value is negative or not a number, or the model cannot mix; the voice then plays on
     /// as before.
     pub fn set_motion(&mut self, speed_mm_s: f64, force_n: f64) -> Result<(), Error> {
-        let level_n = self.source.set_motion(speed_mm_s, force_n)?;
-        self.level_n.set(level_n as f32);
+        crate::source::check_motion(speed_mm_s, force_n)?;
+        if self.follow.set_motion((speed_mm_s, force_n)) {
+            let level_n = self.source.set_motion(speed_mm_s, force_n)?;
+            self.level_n.set((level_n * self.follow.gain()) as f32);
+        }
         Ok(())
+    }
+
+    /// What this voice makes of a motion, and whether it lies within what was recorded. Does not allocate.
+    pub fn coverage(&self, speed_mm_s: f64, force_n: f64) -> Coverage {
+        self.source
+            .coverage(speed_mm_s, force_n, self.follow.effects())
     }
 
     /// Fills `out` with the next samples, newtons. Does not allocate, lock or do I/O.
@@ -53,24 +93,25 @@ impl Voice {
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), Error> {
         let result = self.render_shape(out);
         self.level_n.apply(out);
+        self.follow.apply_contact(out);
         result
     }
 
     /// Samples of unit RMS at the voice's rate.
     fn render_shape(&mut self, out: &mut [f32]) -> Result<(), Error> {
-        if let Some(still) = &mut self.still {
-            still.render(out);
-            return Ok(());
-        }
-        let Some(resampler) = &mut self.resampler else {
-            return self.source.render(out);
-        };
-        let mut result = Ok(());
-        resampler.process(out, &mut |block| {
-            if let Err(error) = self.source.render(block) {
+        let (source, resampler) = (&mut self.source, &mut self.resampler);
+        let (still, mut result) = (&mut self.still, Ok(()));
+        let mut render = |block: &mut [f32]| {
+            if let Err(error) = source.render(block) {
                 result = Err(error);
             }
-        });
+        };
+        self.follow
+            .read(out, &mut |block| match (&mut *still, &mut *resampler) {
+                (Some(still), _) => still.render(block),
+                (None, Some(resampler)) => resampler.process(block, &mut render),
+                (None, None) => render(block),
+            });
         result
     }
 }

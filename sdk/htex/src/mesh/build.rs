@@ -21,7 +21,12 @@ pub(super) fn mesh(conditions: &[[f64; 2]]) -> Mesh {
     for (i, side) in sides.iter_mut().enumerate() {
         take_slivers(i, side, &mut faces, &places);
     }
-    Mesh { axes, faces, sides }
+    Mesh {
+        conditions: conditions.to_vec(),
+        axes,
+        faces,
+        sides,
+    }
 }
 
 /// Both axes, and the places of all conditions.

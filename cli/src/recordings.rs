@@ -37,8 +37,9 @@ pub(crate) struct RecordingArgs {
     #[arg(long, value_enum, default_value = "auto")]
     segments: SegmentsArg,
 
-    /// How segments are averaged; `magnitude` is the paper's, `rms` reads noise 1.05 dB higher
-    #[arg(long, value_enum, default_value = "magnitude")]
+    /// How segments are averaged; `rms` reads noise at its level, `magnitude` is the paper's mean and
+    /// reads noise 1.05 dB lower, `complex` keeps only what is in phase in all segments
+    #[arg(long, value_enum, default_value = "rms")]
     averaging: AveragingArg,
 
     /// Scanning speed, mm/s, where the recording does not say, or instead of what it says
@@ -144,7 +145,7 @@ impl RecordingArgs {
             ("segments", value_name(self.segments, SegmentsArg::Auto)),
             (
                 "averaging",
-                value_name(self.averaging, AveragingArg::Magnitude),
+                value_name(self.averaging, AveragingArg::Rms),
             ),
         ];
         let said = entries

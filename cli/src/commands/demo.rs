@@ -1,15 +1,20 @@
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
 use htex::VoiceOptions;
 use htex_author::read::{ReadOptions, read_recording};
-use htex_author::simulate::{SimulationOptions, Surface, simulate};
-use htex_author::{AssetRequest, AuthorError, Exploration, FittedAsset, Take, fit_asset};
+use htex_author::simulate::{SimulationError, SimulationOptions, Surface, simulate};
+use htex_author::{
+    AssetRequest, AuthorError, Exploration, FittedAsset, SetupResponse, SpectrumOptions, Take,
+    fit_asset,
+};
 use htex_host::Registry;
 use htex_report::{ModelResult, Texture, TextureReport, texture_report};
 use serde::Serialize;
 
+use super::simulate::write_response;
 use crate::assets::{AssetSummary, RepresentationSummary, motion_text, short_name};
 use crate::failure::Failure;
 use crate::models::{model_requests, tool};
@@ -19,6 +24,8 @@ use crate::wav::write_wav;
 
 const WAV_RATE_HZ: u32 = 20_000;
 const WAV_SECONDS: u64 = 5;
+/// The simulated rig's response.
+const RIG: &str = "rig.csv";
 /// The condition the surfaces are explored at (paper, Texture recording).
 const CONDITION: Exploration = Exploration {
     speed_mm_s: Some(80.0),
@@ -28,7 +35,8 @@ const CONDITION: Exploration = Exploration {
 /// Run the whole way on five simulated surfaces: recordings, assets, sounds and a report.
 ///
 /// Needs nothing but this program. Writes NAME.csv (the simulated recording), NAME.htex,
-/// NAME-MODEL.wav and report.html into DIR.
+/// NAME-MODEL.wav, rig.csv (the simulated rig's response, by which recordings are divided) and
+/// report.html into DIR.
 #[derive(Args)]
 pub(crate) struct Demo {
     /// Where to write; made if it is not there
@@ -46,11 +54,15 @@ pub(crate) struct Demo {
 impl Demo {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         std::fs::create_dir_all(&self.dir).map_err(|error| Failure::write(&self.dir, error))?;
+        let rig = SimulationOptions::new(Surface::Sandpaper)
+            .setup_response()
+            .map_err(simulation_failure)?;
+        write_response(&rig, &self.dir.join(RIG))?;
         let bar = bar(Surface::ALL.len() as u64);
         let mut done = Vec::new();
         for surface in Surface::ALL {
             bar.set_message(surface.to_string());
-            done.push(self.texture(surface)?);
+            done.push(self.texture(surface, &rig)?);
             bar.inc(1);
         }
         bar.finish_and_clear();
@@ -71,7 +83,7 @@ impl Demo {
     }
 
     /// Simulates, fits, validates and plays one surface.
-    fn texture(&self, surface: Surface) -> Result<DemoTexture, Failure> {
+    fn texture(&self, surface: Surface, rig: &SetupResponse) -> Result<DemoTexture, Failure> {
         let name = surface.to_string();
         let csv = self.dir.join(format!("{name}.csv"));
         self.write_recording(surface, &csv)?;
@@ -80,7 +92,7 @@ impl Demo {
             recording,
             given: CONDITION,
         };
-        let fitted = fit_asset(&[take], &request(&name)?)?;
+        let fitted = fit_asset(&[take], &request(&name, rig)?)?;
         let path = self.dir.join(format!("{name}.htex"));
         let bytes = fitted.asset.to_bytes().map_err(AuthorError::from)?;
         write_file(&path, &bytes)?;
@@ -103,7 +115,7 @@ impl Demo {
             seed: self.seed,
             ..SimulationOptions::new(surface)
         };
-        let simulation = simulate(&options).map_err(|error| Failure::Other(error.to_string()))?;
+        let simulation = simulate(&options).map_err(simulation_failure)?;
         let write =
             |file: &mut std::fs::File| simulation.write_csv(&mut std::io::BufWriter::new(file));
         htex_format::replace_file(csv, write).map_err(|error| Failure::write(csv, error))
@@ -162,13 +174,22 @@ impl DemoTexture {
     }
 }
 
-fn request(name: &str) -> Result<AssetRequest, Failure> {
+fn simulation_failure(error: SimulationError) -> Failure {
+    Failure::Other(error.to_string())
+}
+
+fn request(name: &str, rig: &SetupResponse) -> Result<AssetRequest, Failure> {
     Ok(AssetRequest {
         name: name.to_owned(),
         license: Some("CC0-1.0".to_owned()),
         author: Some("htex demo".to_owned()),
         tags: vec!["simulated".to_owned()],
         models: model_requests(&Registry::builtin(), &["all".to_owned()], &[])?,
+        spectrum: SpectrumOptions {
+            response: Some(rig.clone()),
+            ..SpectrumOptions::default()
+        },
+        recorded_options: BTreeMap::from([("frf".to_owned(), RIG.to_owned())]),
         tool: tool(),
         ..AssetRequest::default()
     })

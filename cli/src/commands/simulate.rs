@@ -1,9 +1,10 @@
 use std::io::BufWriter;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use htex_author::simulate::{SimulationOptions, Surface, simulate};
+use htex_author::SetupResponse;
+use htex_author::simulate::{SimulationError, SimulationOptions, Surface, simulate};
 
 use crate::failure::Failure;
 
@@ -24,6 +25,11 @@ pub(crate) struct Simulate {
     /// Where to write it: CSV with columns t_s,fx_n,fy_n,fz_n,x_mm,y_mm
     #[arg(short, long, value_name = "CSV")]
     output: PathBuf,
+
+    /// Where to write the simulated rig's response as well: CSV with columns
+    /// frequency_hz,magnitude,phase_rad, for `htex fit --frf`
+    #[arg(long, value_name = "CSV")]
+    frf: Option<PathBuf>,
 
     /// Length, s
     #[arg(long, default_value_t = 10.0, value_name = "S")]
@@ -52,10 +58,20 @@ impl Simulate {
             force_n: self.force,
             ..SimulationOptions::new(self.surface)
         };
-        let simulation = simulate(&options).map_err(|error| Failure::Usage(error.to_string()))?;
+        let usage = |error: SimulationError| Failure::Usage(error.to_string());
+        let simulation = simulate(&options).map_err(usage)?;
         let write = |file: &mut std::fs::File| simulation.write_csv(&mut BufWriter::new(file));
         htex_format::replace_file(&self.output, write)
             .map_err(|error| Failure::write(&self.output, error))?;
+        if let Some(frf) = &self.frf {
+            write_response(&options.setup_response().map_err(usage)?, frf)?;
+        }
         Ok(ExitCode::SUCCESS)
     }
+}
+
+/// Writes a setup response for `--frf`.
+pub(super) fn write_response(response: &SetupResponse, path: &Path) -> Result<(), Failure> {
+    let write = |file: &mut std::fs::File| response.write_csv(&mut BufWriter::new(file));
+    htex_format::replace_file(path, write).map_err(|error| Failure::write(path, error))
 }

@@ -1,4 +1,5 @@
-//! Least squares of the density to the spectrum's peaks (paper: fminsearch on ten peaks).
+//! Least squares of the density to the spectrum's peaks (paper: fminsearch on ten peaks; it names no
+//! cost).
 
 use htex_dsp::grid::{Band, curve_level_rms};
 use htex_dsp::nelder_mead::{Minimum, Options, minimize};
@@ -10,6 +11,7 @@ use crate::Profile;
 const POINTS: usize = 0;
 const JND: usize = 1;
 const LOWER_BOUND: usize = 2;
+const ERROR: usize = 3;
 
 /// Starting points (numeric definitions: sBeta).
 const STARTS: [(f64, f64); 4] = [(2.0, 2.0), (1.5, 3.0), (3.0, 1.5), (4.0, 4.0)];
@@ -24,6 +26,17 @@ const FEWEST_PEAKS: usize = 3;
 const HIGHEST: f64 = 2.0;
 /// Part of the points' squared magnitude left over by a density that misses them.
 const NOTHING_EXPLAINED: f64 = 0.99;
+/// Points and densities this far below their largest count as no lower, in decibels.
+const FAINTEST: f64 = 1e-6;
+
+/// What is least at the points, relative to their own.
+#[derive(Clone, Copy)]
+enum Distance {
+    /// Squared differences of magnitudes.
+    Magnitude,
+    /// Squared differences of logarithms.
+    Decibel,
+}
 
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     let largest = input.magnitude.iter().copied().fold(0.0, f64::max);
@@ -66,9 +79,16 @@ impl Fitted {
     fn to(points: &[Peak], input: &FitInput<'_>) -> Self {
         let band: Band = input.band.edges().into();
         let bound = input.options[LOWER_BOUND].max(SMALLEST);
-        let (alpha, beta) = fit_points(points, band, bound);
-        let (scale, _) = best_scale(points, band, alpha, beta);
+        let distance = match input.options[ERROR] as u32 {
+            0 => Distance::Magnitude,
+            _ => Distance::Decibel,
+        };
+        // The scale is that of the shape that files store, in single precision: a parameter of 1 + 1e-16
+        // has no density at its edge, and one of 1 may have its most there.
+        let (alpha, beta) = fit_points(points, band, bound, distance);
+        let [alpha, beta] = [alpha, beta].map(|parameter| f64::from(parameter as f32));
         let profile = Profile::new(alpha, beta, band);
+        let (scale, _) = distance.best_scale(points, &profile);
         let at = |f: f64| scale * profile.at(f);
         let bins = input.frequency_hz.iter();
         Self {
@@ -104,10 +124,11 @@ fn spread_bins(input: &FitInput<'_>, magnitude: &[f64]) -> Vec<Peak> {
     bins.into_iter().map(point).collect()
 }
 
-/// Alpha and beta, each at least `bound`, of least squared distance to the points.
-pub(crate) fn fit_points(points: &[Peak], band: Band, bound: f64) -> (f64, f64) {
+/// Alpha and beta, each at least `bound`, of least distance to the points.
+fn fit_points(points: &[Peak], band: Band, bound: f64, distance: Distance) -> (f64, f64) {
     let shape = |x: f64| (bound + x * x).min(LARGEST);
-    let cost = |x: &[f64; 2]| best_scale(points, band, shape(x[0]), shape(x[1])).1;
+    let profile = |x: &[f64; 2]| Profile::new(shape(x[0]), shape(x[1]), band);
+    let cost = |x: &[f64; 2]| distance.best_scale(points, &profile(x)).1;
     let options = Options::default();
     let search = |(alpha, beta): (f64, f64)| {
         let start = [alpha, beta].map(|s: f64| libm::sqrt((s - bound).max(0.0)));
@@ -126,10 +147,19 @@ pub(crate) fn fit_points(points: &[Peak], band: Band, bound: f64) -> (f64, f64) 
     best.map_or((2.0, 2.0), |m| (shape(m.x[0]), shape(m.x[1])))
 }
 
-/// The scale of least squares, in closed form, and the squared distance it leaves relative to the
-/// points' own; NaN, which no search takes, where the density is not finite or zero at all points.
-fn best_scale(points: &[Peak], band: Band, alpha: f64, beta: f64) -> (f64, f64) {
-    let profile = Profile::new(alpha, beta, band);
+impl Distance {
+    /// The scale of least distance, in closed form, and that distance; NaN, which no search takes,
+    /// where the density is not finite or zero at all points.
+    fn best_scale(self, points: &[Peak], profile: &Profile) -> (f64, f64) {
+        match self {
+            Self::Magnitude => least_squares(points, profile),
+            Self::Decibel => least_decibels(points, profile),
+        }
+    }
+}
+
+/// By the squared differences of magnitudes, over the points' own squares.
+fn least_squares(points: &[Peak], profile: &Profile) -> (f64, f64) {
     let (mut pp, mut pm, mut mm) = (0.0, 0.0, 0.0);
     for point in points {
         let p = profile.at(point.frequency_hz);
@@ -144,4 +174,25 @@ fn best_scale(points: &[Peak], band: Band, alpha: f64, beta: f64) -> (f64, f64) 
         .map(|r| r * r)
         .sum();
     (scale, residual / mm)
+}
+
+/// By the mean squared difference of natural logarithms. The band's edges, where a density may be 0
+/// however well it fits beside them, have no say.
+fn least_decibels(points: &[Peak], profile: &Profile) -> (f64, f64) {
+    let Band { low_hz, high_hz } = profile.band;
+    let inside = |point: &&Peak| low_hz < point.frequency_hz && point.frequency_hz < high_hz;
+    let points = || points.iter().filter(inside);
+    let density = |point: &Peak| profile.at(point.frequency_hz);
+    let least_density = FAINTEST * points().map(density).fold(0.0, f64::max);
+    let least_magnitude = FAINTEST * points().map(|point| point.magnitude).fold(0.0, f64::max);
+    let (mut count, mut sum, mut squares) = (0.0, 0.0, 0.0);
+    for point in points() {
+        let magnitude = point.magnitude.max(least_magnitude);
+        let ratio = libm::log(magnitude) - libm::log(density(point).max(least_density));
+        count += 1.0;
+        sum += ratio;
+        squares += ratio * ratio;
+    }
+    let mean = sum / count;
+    (libm::exp(mean), squares / count - mean * mean)
 }

@@ -48,6 +48,12 @@ impl Model for SpectralBeta {
             1.0,
             "Smallest alpha and beta; below 1 the density may be infinite at an edge.",
         )
+        .choice(
+            "error",
+            &["magnitude", "decibel"],
+            "What is least at the points: the squared difference of magnitudes, which the strongest \
+             peaks decide, or that of decibels, to which all peaks count alike (the paper names none).",
+        )
     }
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {

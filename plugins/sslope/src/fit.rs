@@ -4,7 +4,7 @@
 use htex_model::{Error, Fit, FitInput};
 use htex_shaped::Curve;
 
-use crate::{MAX_ORDER, Shape};
+use crate::{MAX_ORDER, ORDER_STEP, Shape};
 
 const ROUNDING: usize = 0;
 const METHOD: usize = 1;
@@ -54,10 +54,12 @@ fn decibels(ratio: f64) -> f64 {
     }
 }
 
-/// The order of a slope, rounded half away from zero to whole steps, at least one step.
+/// The order of a slope, rounded half away from zero to whole steps, at least one step, as files store
+/// it.
 fn round_order(slope_db_per_decade: f64, step_db_per_decade: f64) -> f64 {
     let steps = libm::round(slope_db_per_decade / step_db_per_decade).max(1.0);
-    (steps * step_db_per_decade / DB_PER_ORDER).min(MAX_ORDER)
+    let order = (steps * step_db_per_decade / DB_PER_ORDER).min(MAX_ORDER);
+    ORDER_STEP * libm::round(order / ORDER_STEP)
 }
 
 /// Slope of the least-squares line; `None` with fewer than two points.

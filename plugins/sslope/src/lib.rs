@@ -15,6 +15,8 @@ const PEAK: usize = 0;
 const HIGH_PASS: usize = 1;
 const LOW_PASS: usize = 2;
 
+/// Files store an order in twentieths: 1 dB a decade.
+const ORDER_STEP: f64 = 0.05;
 /// Highest filter order: 400 dB a decade.
 pub const MAX_ORDER: f64 = 20.0;
 
@@ -32,12 +34,6 @@ impl Model for SpectralSlope {
             offset: 0.0,
             log: false,
         };
-        // A twentieth of an order is 1 dB a decade.
-        let order = Store::U16 {
-            scale: 0.05,
-            offset: 0.0,
-            log: false,
-        };
         Descriptor::new(
             "org.htex.sslope",
             "sSlope",
@@ -47,9 +43,9 @@ impl Model for SpectralSlope {
         .scalar("peak_hz", "Hz", (1.0, 2000.0), "Dominant peak and cut-off of both filters.")
         .stored(steps(0.03125))
         .scalar("order_high_pass", "1", (0.05, MAX_ORDER), "Order r_a of the Butterworth high-pass.")
-        .stored(order)
+        .stored(steps(ORDER_STEP))
         .scalar("order_low_pass", "1", (0.05, MAX_ORDER), "Order r_b of the Butterworth low-pass.")
-        .stored(order)
+        .stored(steps(ORDER_STEP))
         .option(
             "rounding_db_per_decade",
             "dB/decade",

@@ -1,6 +1,9 @@
 //! The setup's frequency response: what the recording rig does to a lateral force.
 
 use std::path::Path;
+use std::{fmt, io};
+
+use htex_dsp::grid::Band;
 
 use crate::read::ReadError;
 use crate::read::table::Table;
@@ -9,6 +12,9 @@ use crate::read::text::{as_text, file_name, read_bytes};
 /// Smallest magnitude above 0, and largest magnitude, frequency (hertz) and phase (radians).
 const SMALLEST: f64 = 1e-9;
 const LARGEST: f64 = 1e9;
+/// Gains above this, decibels, are told: what they raise was a third of the rest or less, and mostly
+/// noise.
+const RAISED_DB: f64 = 10.0;
 
 /// A frequency response, sampled.
 ///
@@ -51,6 +57,67 @@ impl SetupResponse {
         let between = |values: &[f64]| values[low] + weight * (values[high] - values[low]);
         let (magnitude, phase) = (between(&self.magnitude), between(&self.phase_rad));
         (magnitude * libm::cos(phase), magnitude * libm::sin(phase))
+    }
+
+    /// Largest magnitude in a band, its edges included.
+    #[must_use]
+    pub fn largest_in(&self, band: Band) -> f64 {
+        let edges = [band.low_hz, band.high_hz].map(|hz| self.at(hz));
+        let inside = |hz: &f64| band.contains(*hz);
+        let both = self.frequency_hz.iter().zip(&self.magnitude);
+        let sampled = both.filter(|(hz, _)| inside(hz)).map(|(_, m)| *m);
+        let at_edges = edges.into_iter().map(|(re, im)| libm::hypot(re, im));
+        sampled.chain(at_edges).fold(0.0, f64::max)
+    }
+}
+
+impl SetupResponse {
+    /// Writes `frequency_hz,magnitude,phase_rad`, each number as short as it reads back to the same
+    /// bits.
+    ///
+    /// # Errors
+    /// What the writer reports.
+    pub fn write_csv(&self, out: &mut impl io::Write) -> io::Result<()> {
+        writeln!(out, "frequency_hz,magnitude,phase_rad")?;
+        let numbers = self.magnitude.iter().zip(&self.phase_rad);
+        for (hz, (magnitude, phase_rad)) in self.frequency_hz.iter().zip(numbers) {
+            writeln!(out, "{hz},{magnitude},{phase_rad}")?;
+        }
+        Ok(())
+    }
+}
+
+/// Where dividing by a response raises a spectrum by more than 10 dB, and by how much.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Raised {
+    /// Lowest and highest frequency of each stretch, hertz, and its largest gain, decibels.
+    pub stretches: Vec<(f64, f64, f64)>,
+}
+
+/// The stretches of a grid on which gains exceed 10 dB; none when there is no such stretch.
+pub fn raised(frequency_hz: &[f64], gains: impl Iterator<Item = f64>) -> Option<Raised> {
+    let mut stretches: Vec<(f64, f64, f64)> = Vec::new();
+    let mut goes_on = false;
+    for (&hz, gain) in frequency_hz.iter().zip(gains) {
+        let gain_db = 20.0 * libm::log10(gain);
+        let is_raised = gain_db > RAISED_DB;
+        match stretches.last_mut().filter(|_| goes_on) {
+            Some(last) if is_raised => *last = (last.0, hz, last.2.max(gain_db)),
+            None if is_raised => stretches.push((hz, hz, gain_db)),
+            _ => {}
+        }
+        goes_on = is_raised;
+    }
+    (!stretches.is_empty()).then_some(Raised { stretches })
+}
+
+impl fmt::Display for Raised {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, (low_hz, high_hz, most_db)) in self.stretches.iter().enumerate() {
+            let comma = if i > 0 { ", " } else { "" };
+            write!(f, "{comma}{low_hz} to {high_hz} Hz by up to {most_db:.1} dB")?;
+        }
+        Ok(())
     }
 }
 

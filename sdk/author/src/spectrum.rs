@@ -5,6 +5,7 @@ use htex_dsp::grid::{Band, GRID_HZ};
 use htex_dsp::spectrum::{Complex, SegmentAnalyzer, dft321};
 use realfft::RealFftPlanner;
 
+use crate::response::raised;
 use crate::segments::{SegmentChoice, Segments, choose_segments};
 use crate::{AuthorError, Recording, SetupResponse};
 
@@ -20,10 +21,11 @@ const GRID_TOLERANCE: f64 = 1e-3;
 /// How segments are averaged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Averaging {
-    /// Mean of the magnitudes. Reads noise 1.05 dB below its RMS (a Rayleigh distribution's mean).
-    #[default]
+    /// Mean of the magnitudes (paper, Texture processing). Reads noise 1.05 dB, a factor of √π/2, below
+    /// its RMS: the mean of a Rayleigh distribution.
     Magnitude,
-    /// Root of the mean power: what the level of noise really is.
+    /// Root of the mean power: reads noise and tones at their RMS.
+    #[default]
     Rms,
     /// Magnitude of the mean of the complex spectra: keeps only what is in step in all segments.
     Complex,
@@ -227,17 +229,23 @@ fn inverse_response(
         .map(|&f| response.at(f))
         .map(|(re, im)| Complex::new(re, im))
         .collect();
-    let largest = values.iter().map(|h| h.norm()).fold(0.0, f64::max);
+    let largest = response.largest_in(band);
     let broken = values.iter().map(|h| h.norm()).find(|h| !h.is_finite());
     if let Some(largest) = broken.or(Some(largest).filter(|l| *l < SMALLEST_RESPONSE)) {
         return Err(AuthorError::Response { largest });
     }
     let floor = RESPONSE_FLOOR * largest;
+    let gains = values.iter().map(|h| 1.0 / h.norm().max(floor));
+    if let Some(raised) = raised(&band.grid_hz(), gains) {
+        warnings.push(format!(
+            "setup response: dividing by it raises {raised}; noise there is raised as much"
+        ));
+    }
     let floored = values.iter().filter(|h| h.norm() < floor).count();
     if floored > 0 {
         warnings.push(format!(
             "setup response: {floored} of {} bins lie more than 40 dB below its maximum in the \
-             band and were held there; what they amplify is mostly noise",
+             band and are divided by no less than that",
             values.len()
         ));
     }

@@ -5,7 +5,9 @@
 use std::path::Path;
 
 use htex_author::read::{ReadOptions, read_recording};
-use htex_author::simulate::{Simulation, SimulationOptions, Surface, setup_response, simulate};
+use htex_author::response::response_from_bytes;
+use htex_author::simulate::{Simulation, SimulationOptions, Surface, simulate};
+use htex_author::{SetupResponse, SpectrumOptions, TextureSpectrum, segment_spectra};
 
 fn paper(surface: Surface) -> Simulation {
     simulate(&SimulationOptions::new(surface)).unwrap()
@@ -228,10 +230,40 @@ fn options_out_of_range_are_refused_and_names_go_round() {
 }
 
 #[test]
-fn the_rig_is_mild_and_known() {
-    let response = setup_response(&[0.0, 20.0, 620.0, 1000.0]);
-    assert_eq!(response.magnitude[0], 1.0);
-    assert!((response.magnitude[1] - 1.0).abs() < 1e-3);
-    assert!((1.5..2.0).contains(&response.magnitude[2]));
-    assert!((0.3..1.0).contains(&response.magnitude[3]));
+fn dividing_by_the_rigs_response_gives_the_force_at_the_finger() {
+    let options = SimulationOptions::new(Surface::Sandpaper);
+    let response = options.setup_response().unwrap();
+    let written = {
+        let mut bytes = Vec::new();
+        response.write_csv(&mut bytes).unwrap();
+        response_from_bytes("rig.csv", &bytes).unwrap()
+    };
+    assert_eq!(written.frequency_hz, response.frequency_hz);
+    assert_eq!(written.magnitude, response.magnitude);
+    let recording = simulate(&options).unwrap().to_recording("rec").unwrap();
+    let spectrum = |response: Option<SetupResponse>| {
+        let options = SpectrumOptions {
+            response,
+            ..SpectrumOptions::default()
+        };
+        let part = segment_spectra(&recording, &options).unwrap();
+        assert_eq!(part.warnings, [""; 0]);
+        TextureSpectrum::average(&[part], options.averaging).unwrap()
+    };
+    let (raw, at_finger) = (spectrum(None), spectrum(Some(written)));
+    // Sandpaper falls smoothly through 500 to 740 Hz; the rig's resonance and the gap above it do not.
+    let step_db = |s: &TextureSpectrum| {
+        let level = |low: f64, high: f64| {
+            let bins = s.frequency_hz.iter().zip(&s.magnitude_n);
+            let inside: Vec<f64> = bins
+                .filter(|(f, _)| (low..high).contains(*f))
+                .map(|(_, m)| m * m)
+                .collect();
+            10.0 * (inside.iter().sum::<f64>() / inside.len() as f64).log10()
+        };
+        level(590.0, 650.0) - level(680.0, 740.0)
+    };
+    let (raw_db, finger_db) = (step_db(&raw), step_db(&at_finger));
+    println!("590-650 over 680-740 Hz: {raw_db:.1} dB recorded, {finger_db:.1} dB at the finger");
+    assert!(raw_db > 9.0 && finger_db < 5.0, "{raw_db} {finger_db}");
 }

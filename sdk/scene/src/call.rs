@@ -2,13 +2,13 @@
 //! built.
 
 use htex::{Source, VoiceOptions};
-use htex_author::response::SetupResponse;
 use htex_device::{Capabilities, Quantity};
 
 use crate::SceneError;
 use crate::file::{Effect, Surface, Switch};
 use crate::load::LoadedScene;
 use crate::motion::{Course, Finger};
+use crate::response::Inverse;
 use crate::stages::{CONTACT_RAMP_S, force_gain};
 
 /// Slowest and fastest reading of a texture, in its recorded speed.
@@ -107,35 +107,6 @@ pub(crate) struct Touch {
     pub(crate) first: Option<Finger>,
 }
 
-/// A response, to be divided out.
-#[derive(Debug, Clone)]
-pub(crate) struct Inverse {
-    response: SetupResponse,
-    floor: f64,
-}
-
-impl Inverse {
-    fn new(response: &SetupResponse, depth_db: f64) -> Self {
-        let largest = response.magnitude.iter().copied().fold(0.0, f64::max);
-        Self {
-            response: response.clone(),
-            floor: largest * 10f64.powf(-depth_db / 20.0),
-        }
-    }
-
-    /// 1/|H|, and no more than 1/(2 floor): |H| / (|H|² + floor²).
-    pub(crate) fn at(&self, frequency_hz: f64) -> f64 {
-        let (re, im) = self.response.at(frequency_hz);
-        let power = re * re + im * im;
-        let below = power + self.floor * self.floor;
-        if below > 0.0 {
-            power.sqrt() / below
-        } else {
-            0.0
-        }
-    }
-}
-
 impl Call {
     /// Gathers what does not depend on the choice of representations.
     pub(crate) fn gather(scene: &LoadedScene, device: &Capabilities) -> Result<Self, SceneError> {
@@ -152,6 +123,10 @@ impl Call {
             .duration_s
             .or(scene.trace.as_ref().map(|t| t.duration_s()));
         let limit = device.limit.unwrap_or(f64::INFINITY);
+        let pitch = match device.quantity {
+            Quantity::Sound => choice.pitch.unwrap_or(1.0),
+            _ => 1.0,
+        };
         let mut call = Self {
             rate_hz,
             control: (8.0 * (CONTROL_S * rate_hz / 8.0).round()).clamp(8.0, 4096.0) as usize,
@@ -163,15 +138,12 @@ impl Call {
             drive_v: choice.drive_v.unwrap_or(0.5 * limit),
             gain_db: choice.gain_db.unwrap_or(0.0),
             level_dbfs: choice.level_dbfs.unwrap_or(PREVIEW_DBFS),
-            pitch: match device.quantity {
-                Quantity::Sound => choice.pitch.unwrap_or(1.0),
-                _ => 1.0,
-            },
+            pitch,
             seed: file.seed,
             compensation: scene
                 .response
                 .as_ref()
-                .map(|r| Inverse::new(r, choice.response_depth_db)),
+                .map(|r| Inverse::new(r, &scene.assets, pitch, choice.response_depth_db)),
             touches: Vec::new(),
             device: device.clone(),
         };

@@ -13,7 +13,7 @@ use htex_format::{Finding, Findings, Report, Rule};
 use crate::check::check;
 use crate::device::{DeviceOverride, check_device};
 use crate::file::{DeviceChoice, Motion, Scene, Surface, VERSION};
-use crate::response::{self, Response};
+use crate::response::{self, Inverse, Response};
 use crate::rules as rule;
 use crate::trace::Trace;
 use crate::validate::{Limits, read_scene};
@@ -189,8 +189,12 @@ fn load(
     device.apply(&mut scene.device);
     let response = open_response(&scene, &folder, findings);
     let settings = check_device(&scene.device, device, &folder, around.devices, findings);
+    let assets = assets?;
+    if let Some(response) = &response {
+        check_response(response, &assets, &scene.device, findings);
+    }
     Some(LoadedScene {
-        assets: assets?,
+        assets,
         trace,
         response,
         settings: settings?,
@@ -328,6 +332,36 @@ fn open_response(scene: &Scene, folder: &Path, findings: &mut Findings) -> Optio
     let rules = [rule::RESPONSE_MISSING, rule::RESPONSE_INVALID];
     let open = response::open;
     opened(open, folder, path, rules, "/device/response", findings)
+}
+
+/// Finds a response that has nothing where the textures lie, and tells what one raises there.
+fn check_response(
+    response: &Response,
+    assets: &[Asset],
+    choice: &DeviceChoice,
+    findings: &mut Findings,
+) {
+    let pitch = choice.pitch.unwrap_or(1.0);
+    let inverse = Inverse::new(response, assets, pitch, choice.response_depth_db);
+    let band = inverse.band();
+    findings.require(
+        inverse.reaches_band(),
+        rule::RESPONSE_INVALID,
+        "/device/response",
+        || {
+            format!(
+                "every magnitude from {} to {} Hz, where the textures lie, is 0; measure there",
+                band.low_hz, band.high_hz
+            )
+        },
+    );
+    if let Some(raised) = inverse.raised() {
+        findings.add(
+            rule::RESPONSE_RAISED,
+            "/device/response",
+            format!("the compensation raises {raised}, over where the response is largest"),
+        );
+    }
 }
 
 /// What was opened; else the finding of a file that is not there or not valid.

@@ -132,6 +132,10 @@ htex_format::rule_table! {
         "The response cannot be read.",
         "It is a CSV with the columns `frequency_hz`, ascending, and `magnitude`, not negative and not all 0.",
         "Correct it at the line the message names.";
+    RESPONSE_RAISED Warning:
+        "The compensation of the response raises a part of the band by more than 10 dB.",
+        "The device plays that part so much stronger than the texture is: it may reach its limit there, and errors of the response count as much.",
+        "Check the response there, or hold the compensation back by a lower `response_depth_db`.";
     DEVICE_UNKNOWN Error:
         "There is no such device adapter.",
         "What the samples mean depends on the device.",

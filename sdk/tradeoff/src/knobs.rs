@@ -78,6 +78,7 @@ pub const MODELS: &[ModelKnobs] = &[
                 &["3", "4", "5", "6", "8", "10", "15", "20", "30", "50"],
             ),
             knob("lower_bound", &["1", "0"]),
+            knob("error", &["magnitude", "decibel"]),
         ],
         alone: &[knob("jnd", &["0.24", "0.12", "0.06", "0"])],
         not_above: None,

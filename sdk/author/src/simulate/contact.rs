@@ -1,5 +1,7 @@
 //! From the finger's motion to the forces that the rig's sensor gives.
 
+use htex_dsp::spectrum::Complex;
+
 use super::filters::Biquad;
 use super::hand::Finger;
 use super::random::Random;
@@ -111,6 +113,24 @@ impl Rig {
     }
 }
 
+impl Rig {
+    /// What it does to a lateral force at frequencies in hertz, strictly ascending, at the rate it
+    /// was made for.
+    pub(super) fn response(&self, frequency_hz: Vec<f64>, inner_hz: f64) -> SetupResponse {
+        let lateral = &self.mode[..1];
+        let filters = || lateral.iter().chain(self.anti_alias.iter().flat_map(|[x, ..]| x));
+        let at = |&hz: &f64| -> Complex<f64> {
+            filters().map(|filter| filter.response(hz, inner_hz)).product()
+        };
+        let values: Vec<Complex<f64>> = frequency_hz.iter().map(at).collect();
+        SetupResponse {
+            magnitude: values.iter().map(|h| libm::hypot(h.re, h.im)).collect(),
+            phase_rad: values.iter().map(|h| libm::atan2(h.im, h.re)).collect(),
+            frequency_hz,
+        }
+    }
+}
+
 fn chain(filters: &mut [Biquad], x: f64) -> f64 {
     filters.iter_mut().fold(x, |x, filter| filter.tick(x))
 }
@@ -123,31 +143,5 @@ pub(super) fn sense(force: Force, rate_hz: f64, random: &mut Random) -> Force {
         x: read(force.x),
         y: read(force.y),
         z: read(force.z),
-    }
-}
-
-/// The frequency response that every simulated recording has gone through, at the given frequencies
-/// in hertz (strictly ascending, at least 2): `1 - s + s / (1 - r^2 + 2 i d r)` with `r = f / 620 Hz`,
-/// damping ratio `d = 0.08` and modal share `s = 0.25`.
-#[must_use]
-pub fn setup_response(frequency_hz: &[f64]) -> SetupResponse {
-    let (hz, damping, share) = MODE;
-    let at = |frequency: &f64| {
-        let r = frequency / hz;
-        let (re, im) = (1.0 - r * r, 2.0 * damping * r);
-        let square = re * re + im * im;
-        (1.0 - share + share * re / square, -share * im / square)
-    };
-    let values: Vec<(f64, f64)> = frequency_hz.iter().map(at).collect();
-    SetupResponse {
-        frequency_hz: frequency_hz.to_vec(),
-        magnitude: values
-            .iter()
-            .map(|(re, im)| libm::hypot(*re, *im))
-            .collect(),
-        phase_rad: values
-            .iter()
-            .map(|(re, im)| libm::atan2(*im, *re))
-            .collect(),
     }
 }

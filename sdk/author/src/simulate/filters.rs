@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use htex_dsp::spectrum::Complex;
+
 /// Second-order section, transposed direct form II.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Biquad {
@@ -39,6 +41,15 @@ impl Biquad {
     pub(super) fn mode(share: f64, damping: f64, hz: f64, rate_hz: f64) -> Self {
         let (rest, q) = (1.0 - share, 0.5 / damping);
         Self::analog([rest, rest / q, 1.0], q, hz, rate_hz)
+    }
+
+    /// Its frequency response, by its coefficients.
+    pub(super) fn response(&self, hz: f64, rate_hz: f64) -> Complex<f64> {
+        let angle = -2.0 * PI * hz / rate_hz;
+        let delay = Complex::new(libm::cos(angle), libm::sin(angle));
+        let [b0, b1, b2] = self.b;
+        let [a1, a2] = self.a;
+        (delay * (delay * b2 + b1) + b0) / (delay * (delay * a2 + a1) + 1.0)
     }
 
     pub(super) fn tick(&mut self, x: f64) -> f64 {

@@ -26,13 +26,14 @@ mod relief;
 mod surface;
 mod write;
 
+use htex_dsp::grid::{Band, GRID_HZ};
 use thiserror::Error;
 
-pub use contact::setup_response;
 pub use surface::Surface;
 
 use crate::read::motion::speed_mm_s;
 use crate::recording::{Recording, RecordingError};
+use crate::response::SetupResponse;
 use contact::{Contact, Force, Rig, sense};
 use hand::{Finger, Hand};
 use random::Random;
@@ -98,6 +99,40 @@ impl SimulationOptions {
             speed_mm_s: 80.0,
             force_n: 0.4,
         }
+    }
+
+    /// What the simulated rig does to a lateral force: a resonance at 620 Hz, and for rates below 20 kHz
+    /// an anti-aliasing filter; each 5 Hz from 0 to 1000 Hz, or to half the rate. Dividing the
+    /// recording by it gives the force at the finger.
+    ///
+    /// # Errors
+    /// When an option is out of its range.
+    ///
+    /// ```
+    /// use htex_author::simulate::{SimulationOptions, Surface};
+    ///
+    /// let response = SimulationOptions::new(Surface::Vinyl).setup_response()?;
+    /// assert_eq!((response.frequency_hz[0], response.magnitude[0]), (0.0, 1.0));
+    /// assert!((response.magnitude[124] - 1.73).abs() < 0.01, "at 620 Hz");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn setup_response(&self) -> Result<SetupResponse, SimulationError> {
+        self.check()?;
+        let top_hz = Band::TACTILE.high_hz.min(0.5 * self.rate_hz);
+        let bins = (top_hz / GRID_HZ) as usize;
+        let frequency_hz = (0..=bins).map(|bin| bin as f64 * GRID_HZ).collect();
+        let rig = Rig::new(self.inner_hz(), self.rate_hz);
+        Ok(rig.response(frequency_hz, self.inner_hz()))
+    }
+
+    /// Steps of the physics a sample.
+    fn inner_steps(&self) -> usize {
+        libm::ceil(INNER_HZ / self.rate_hz) as usize
+    }
+
+    /// Rate of the physics, hertz.
+    fn inner_hz(&self) -> f64 {
+        self.rate_hz * self.inner_steps() as f64
     }
 
     fn check(&self) -> Result<(), SimulationError> {
@@ -196,8 +231,7 @@ pub fn simulate(options: &SimulationOptions) -> Result<Simulation, SimulationErr
     options.check()?;
     let parameters = options.surface.parameters();
     let samples = libm::round(options.rate_hz * options.duration_s) as usize;
-    let inner_steps = libm::ceil(INNER_HZ / options.rate_hz) as usize;
-    let inner_hz = options.rate_hz * inner_steps as f64;
+    let (inner_steps, inner_hz) = (options.inner_steps(), options.inner_hz());
     let stream = |part: u64| Random::new(options.seed, 16 * parameters.label + part);
     let mut hand = Hand::new(options.speed_mm_s, options.force_n, inner_hz, stream(0));
     let mut contact = Contact::new(parameters, inner_hz, &mut stream(1));

@@ -1,5 +1,5 @@
 //! The response of finger and display, inverted, so that the friction on the finger has the texture's
-//! spectrum: 1/|H| where |H| is large, and no more than its depth below the maximum allows.
+//! spectrum: 1/|H| where |H| is large, and no more than its depth below the maximum in the band allows.
 
 use htex_dsp::fir::Fir;
 
@@ -18,7 +18,12 @@ pub(crate) const ENTRY: Entry = Entry {
 
 fn need(call: &Call, _: &Part) -> Need {
     match &call.compensation {
-        Some(_) => Need::yes("the device's response is given, and is divided out"),
+        Some(inverse) => Need::yes(match inverse.raised() {
+            None => "the device's response is given, and is divided out".to_owned(),
+            Some(raised) => {
+                format!("the device's response is given, and is divided out: it raises {raised}")
+            }
+        }),
         None => Need::no("no response of finger and display is given"),
     }
 }

@@ -49,7 +49,15 @@ pub fn files() -> Vec<(&'static str, Vec<u8>)> {
         ),
         (
             "display.csv",
-            b"frequency_hz,magnitude\n20,1\n1000,0.1\n".to_vec(),
+            b"frequency_hz,magnitude\n20,1\n1000,0.5\n".to_vec(),
+        ),
+        (
+            "weak.csv",
+            b"frequency_hz,magnitude\n0,1000\n10,1000\n20,1\n1000,0.1\n".to_vec(),
+        ),
+        (
+            "elsewhere.csv",
+            b"frequency_hz,magnitude\n0,1\n10,0\n2000,0\n".to_vec(),
         ),
         (
             "dead.csv",
@@ -342,6 +350,14 @@ pub fn cases() -> Vec<Case> {
         (
             "response_invalid",
             with(&[volts(), ("/device/response", json!("dead.csv"))]),
+        ),
+        (
+            "response_invalid_band",
+            with(&[volts(), ("/device/response", json!("elsewhere.csv"))]),
+        ),
+        (
+            "response_raised",
+            with(&[volts(), ("/device/response", json!("weak.csv"))]),
         ),
         (
             "device_unknown",

@@ -138,7 +138,7 @@ impl AssetSummary {
                 signer.map_or("not signed".to_owned(), |key| format!("signed by {key}"))
             );
         }
-        text += "\n  model    cond.  level/mN   corr.  bands/dB  played/dB  bytes  parameters\n";
+        text += "\n  model    cond.  level/mN   corr.  bands/dB  third-oct/dB  log-sp/dB  played/dB  bytes  parameters\n";
         for r in &self.representations {
             let all = if r.at.is_empty() {
                 std::slice::from_ref(&r.first)
@@ -178,12 +178,14 @@ fn row(r: &RepresentationSummary, at: &AtSummary) -> String {
         .map(|(k, v)| parameter_text(k, v))
         .collect();
     format!(
-        "  {:8} {:>5}  {:>8.3}  {:>6}  {:>8}  {:>9}  {:>5}  {}\n",
+        "  {:8} {:>5}  {:>8.3}  {:>6}  {:>8}  {:>12}  {:>9}  {:>9}  {:>5}  {}\n",
         short_name(&r.model),
         at.condition,
         at.level_n_rms * 1e3,
         number(quality.map(|q| q.spectral_correlation), 3),
         number(quality.map(|q| q.band_error_rms_db), 2),
+        number(quality.and_then(|q| q.third_octave_error_rms_db), 2),
+        number(quality.and_then(|q| q.log_spectral_distance_db), 2),
         number(quality.and_then(|q| q.samples_band_error_rms_db), 2),
         r.payload_bytes,
         parameters.join(" ")

@@ -117,15 +117,17 @@ impl Compare {
 
 impl Comparison {
     fn to_text(&self) -> String {
-        let mut text = String::from("  model      corr.  bands/dB  gain-matched/dB  played/dB\n");
+        let mut text = String::from("  model      corr.  bands/dB  gain-matched/dB  third-oct/dB  log-sp/dB  played/dB\n");
         for r in &self.representations {
             let q = &r.quality;
             text += &format!(
-                "  {:8}  {:>6.3}  {:>8.2}  {:>15.2}  {:>9.2}\n",
+                "  {:8}  {:>6.3}  {:>8.2}  {:>15.2}  {:>12.2}  {:>9.2}  {:>9.2}\n",
                 short_name(&r.model),
                 q.spectral_correlation,
                 q.band_error_rms_db,
                 q.band_error_matched_rms_db.unwrap_or(f64::NAN),
+                q.third_octave_error_rms_db.unwrap_or(f64::NAN),
+                q.log_spectral_distance_db.unwrap_or(f64::NAN),
                 q.samples_band_error_rms_db.unwrap_or(f64::NAN)
             );
         }

@@ -147,6 +147,8 @@ struct Row {
     model: String,
     spectral_correlation: f64,
     band_error_rms_db: f64,
+    third_octave_error_rms_db: Option<f64>,
+    log_spectral_distance_db: Option<f64>,
     samples_band_error_rms_db: Option<f64>,
     repeatability_rms_db: Option<f64>,
     payload_bytes: usize,
@@ -163,6 +165,8 @@ impl DemoTexture {
                 model: short_name(&r.model).to_owned(),
                 spectral_correlation: quality.map_or(f64::NAN, |q| q.spectral_correlation),
                 band_error_rms_db: quality.map_or(f64::NAN, |q| q.band_error_rms_db),
+                third_octave_error_rms_db: quality.and_then(|q| q.third_octave_error_rms_db),
+                log_spectral_distance_db: quality.and_then(|q| q.log_spectral_distance_db),
                 samples_band_error_rms_db: quality.and_then(|q| q.samples_band_error_rms_db),
                 repeatability_rms_db: self.summary.repeatability_rms_db,
                 payload_bytes: r.payload_bytes,
@@ -232,6 +236,8 @@ fn picture(
                 .as_ref()
                 .map_or(f64::NAN, |q| q.spectral_correlation),
             band_error_rms_db: quality.as_ref().map_or(f64::NAN, |q| q.band_error_rms_db),
+            third_octave_error_rms_db: quality.as_ref().and_then(|q| q.third_octave_error_rms_db),
+            log_spectral_distance_db: quality.as_ref().and_then(|q| q.log_spectral_distance_db),
             samples_band_error_rms_db: quality.as_ref().and_then(|q| q.samples_band_error_rms_db),
             band_error_db: quality.map(|q| q.band_error_db).unwrap_or_default(),
             payload_bytes: r.payload_bytes,
@@ -258,17 +264,19 @@ fn picture(
 
 fn table(rows: &[Row]) -> String {
     let mut text = String::from(
-        "texture           model   corr.  bands/dB  played/dB  repeats/dB  parameters/B  asset/B  \
+        "texture           model   corr.  bands/dB  third-oct/dB  log-sp/dB  played/dB  repeats/dB  parameters/B  asset/B  \
          recording/B\n",
     );
     for r in rows {
         let db = |x: Option<f64>| x.map_or("-".to_owned(), |x| format!("{x:.2}"));
         text += &format!(
-            "{:16}  {:6}  {:>5.3}  {:>8.2}  {:>9}  {:>10}  {:>12}  {:>7}  {:>11}\n",
+            "{:16}  {:6}  {:>5.3}  {:>8.2}  {:>12}  {:>9}  {:>9}  {:>10}  {:>12}  {:>7}  {:>11}\n",
             r.texture,
             r.model,
             r.spectral_correlation,
             r.band_error_rms_db,
+            db(r.third_octave_error_rms_db),
+            db(r.log_spectral_distance_db),
             db(r.samples_band_error_rms_db),
             db(r.repeatability_rms_db),
             r.payload_bytes,

@@ -201,8 +201,12 @@ pub fn measure(
         band_error_db: by_magnitude.band_error_db,
         band_error_rms_db: by_magnitude.band_error_rms_db,
         band_error_matched_rms_db: Some(by_magnitude.band_error_matched_rms_db),
+        third_octave_error_rms_db: by_magnitude.third_octave_error_rms_db,
+        log_spectral_distance_db: by_magnitude.log_spectral_distance_db,
         samples_spectral_correlation: Some(by_samples.spectral_correlation),
         samples_band_error_rms_db: Some(by_samples.band_error_rms_db),
+        samples_third_octave_error_rms_db: by_samples.third_octave_error_rms_db,
+        samples_log_spectral_distance_db: by_samples.log_spectral_distance_db,
         rounding_error_db: None,
     })
 }

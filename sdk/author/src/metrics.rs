@@ -3,10 +3,12 @@
 use htex_dsp::bands::{
     BAND_COUNT, BandBank, band_error_db, energy_matching_gain, pearson_correlation, rms,
 };
+use htex_dsp::fidelity::{log_spectral_distance_db, third_octave_error_rms_db};
 
 use crate::spectrum::SpectrumRef;
 
-/// Agreement of one spectrum with a reference (paper: spectral correlation; nine critical bands).
+/// Agreement of one spectrum with a reference: the paper's measures (spectral correlation, nine critical
+/// bands), and two that no model is fitted to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agreement {
     /// Pearson correlation of the linear magnitudes.
@@ -19,6 +21,10 @@ pub struct Agreement {
     pub matching_gain_db: f64,
     /// RMS of the nine after that gain.
     pub band_error_matched_rms_db: f64,
+    /// RMS error over third-octave bands, decibels; none where the reference has no energy in any.
+    pub third_octave_error_rms_db: Option<f64>,
+    /// RMS over the bins of the decibels between the magnitudes; none for a silent reference.
+    pub log_spectral_distance_db: Option<f64>,
 }
 
 /// Compares magnitudes on the reference's grid with the reference.
@@ -34,5 +40,11 @@ pub fn agreement(reference: SpectrumRef<'_>, magnitude_n: &[f64]) -> Agreement {
         band_error_db: error_db,
         matching_gain_db: 20.0 * gain.log10(),
         band_error_matched_rms_db: rms(&band_error_db(&expected, &bank.energies(&matched))),
+        third_octave_error_rms_db: third_octave_error_rms_db(
+            reference.frequency_hz,
+            reference.magnitude_n,
+            magnitude_n,
+        ),
+        log_spectral_distance_db: log_spectral_distance_db(reference.magnitude_n, magnitude_n),
     }
 }

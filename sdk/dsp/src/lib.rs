@@ -21,6 +21,7 @@ mod circle;
 pub mod dct;
 mod direct_form;
 pub mod estimation;
+pub mod fidelity;
 pub mod fir;
 pub mod glide;
 pub mod grid;

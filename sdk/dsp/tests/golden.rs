@@ -8,6 +8,7 @@ use htex_dsp::biquad::{Biquad, Cascade};
 use htex_dsp::butterworth;
 use htex_dsp::dct::{dct_ii, inverse_dct_ii};
 use htex_dsp::estimation::{burg, covariance, yule_walker};
+use htex_dsp::fidelity::{log_spectral_distance_db, third_octave_error_rms_db};
 use htex_dsp::lattice::AllPoleLattice;
 use htex_dsp::least_squares::PseudoInverse;
 use htex_dsp::linear_prediction::{
@@ -196,6 +197,18 @@ fn band_banks() {
         case.check("row_sums", &bank.filters().row_sums());
         case.check("weights_at_100_hz", &column(bank.filters(), 100.0));
         case.check("weights_at_447_hz_bin445", &column(bank.filters(), 445.0));
+    }
+}
+
+#[test]
+fn measures_that_no_model_is_fitted_to() {
+    let frequencies = Band::TACTILE.grid_hz();
+    for case in cases("fidelity", &["fidelity"]) {
+        let (reference, model) = (case.numbers("reference"), case.numbers("model"));
+        let third_octave = third_octave_error_rms_db(&frequencies, &reference, &model);
+        case.check("third_octave_error_rms_db", &[third_octave.unwrap()]);
+        let distance = log_spectral_distance_db(&reference, &model);
+        case.check("log_spectral_distance_db", &[distance.unwrap()]);
     }
 }
 

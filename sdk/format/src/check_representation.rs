@@ -191,8 +191,21 @@ fn check_quality(quality: &Quality, at: &str, findings: &mut Findings) {
             quality.band_error_matched_rms_db,
         ),
         (
+            "third_octave_error_rms_db",
+            quality.third_octave_error_rms_db,
+        ),
+        ("log_spectral_distance_db", quality.log_spectral_distance_db),
+        (
             "samples_band_error_rms_db",
             quality.samples_band_error_rms_db,
+        ),
+        (
+            "samples_third_octave_error_rms_db",
+            quality.samples_third_octave_error_rms_db,
+        ),
+        (
+            "samples_log_spectral_distance_db",
+            quality.samples_log_spectral_distance_db,
         ),
         ("rounding_error_db", quality.rounding_error_db),
     ];

@@ -16,6 +16,7 @@ mod finding;
 mod limits;
 mod manifest;
 mod manifest_json;
+mod measure;
 mod page;
 mod plain;
 mod plugin;
@@ -36,6 +37,7 @@ pub use manifest::{
     AtCondition, Band, Condition, Field, LATERAL_FORCE, Manifest, NEWTON, Plugin, Provenance,
     Quality, Reference, Representation, SAME_CONDITION, Signature, Source, Steps, Store, VERSION,
 };
+pub use measure::ErrorMeasure;
 pub use page::{manifest_schema, rules_page, validation_page};
 pub use plain::plain;
 pub use replace::{replace_file, write_file};

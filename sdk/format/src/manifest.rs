@@ -228,12 +228,24 @@ pub struct Quality {
     /// RMS of the nine after one gain that equalises the total energy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub band_error_matched_rms_db: Option<f64>,
+    /// RMS error over third-octave bands, decibels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub third_octave_error_rms_db: Option<f64>,
+    /// RMS over the bins of the decibels between the magnitudes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub log_spectral_distance_db: Option<f64>,
     /// Spectral correlation of rendered samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples_spectral_correlation: Option<f64>,
     /// Nine-band RMS of rendered samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples_band_error_rms_db: Option<f64>,
+    /// Third-octave error of rendered samples.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples_third_octave_error_rms_db: Option<f64>,
+    /// Log-spectral distance of rendered samples.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples_log_spectral_distance_db: Option<f64>,
     /// Nine-band RMS between the spectra of the fitted and of the stored parameters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rounding_error_db: Option<f64>,

@@ -31,16 +31,24 @@ fn round_quality(quality: &mut Quality) {
         band_error_db,
         band_error_rms_db,
         band_error_matched_rms_db,
+        third_octave_error_rms_db,
+        log_spectral_distance_db,
         samples_spectral_correlation,
         samples_band_error_rms_db,
+        samples_third_octave_error_rms_db,
+        samples_log_spectral_distance_db,
         rounding_error_db,
     } = quality;
     four_decimals([spectral_correlation, band_error_rms_db].into_iter());
     four_decimals(band_error_db.iter_mut());
     let optional = [
         band_error_matched_rms_db,
+        third_octave_error_rms_db,
+        log_spectral_distance_db,
         samples_spectral_correlation,
         samples_band_error_rms_db,
+        samples_third_octave_error_rms_db,
+        samples_log_spectral_distance_db,
         rounding_error_db,
     ];
     four_decimals(optional.into_iter().flatten());

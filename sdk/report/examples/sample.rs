@@ -88,6 +88,8 @@ fn model(
         spectral_correlation: correlation - 0.03 * index as f64,
         band_error_db: (0..9).map(band_error).collect(),
         band_error_rms_db: error_db,
+        third_octave_error_rms_db: Some(1.4 * error_db),
+        log_spectral_distance_db: Some(1.9 * error_db),
         samples_band_error_rms_db: Some(error_db + 0.2),
         payload_bytes: bytes,
         lines: (name == "sPeak").then(|| strongest(frequency_hz, recorded_n)),

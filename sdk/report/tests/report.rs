@@ -51,6 +51,8 @@ fn hostile_model(values: &[f64], lines: bool) -> ModelResult {
         spectral_correlation: first,
         band_error_db: values.to_vec(),
         band_error_rms_db: first,
+        third_octave_error_rms_db: values.last().copied(),
+        log_spectral_distance_db: values.first().copied(),
         samples_band_error_rms_db: values.last().copied(),
         payload_bytes: values.len(),
         lines: lines.then(|| values.iter().map(|v| (*v, *v)).collect()),

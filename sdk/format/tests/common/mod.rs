@@ -116,8 +116,12 @@ fn at(i: usize) -> AtCondition {
             band_error_db: errors.to_vec(),
             band_error_rms_db: 1.0538,
             band_error_matched_rms_db: Some(1.0421),
+            third_octave_error_rms_db: Some(1.8127),
+            log_spectral_distance_db: Some(2.7643),
             samples_spectral_correlation: Some(0.9376),
             samples_band_error_rms_db: Some(1.1243),
+            samples_third_octave_error_rms_db: Some(1.8519),
+            samples_log_spectral_distance_db: Some(2.8011),
             rounding_error_db: Some(0.0003),
         }),
     }

@@ -53,7 +53,11 @@ pub struct ModelResult {
     pub band_error_db: Vec<f64>,
     /// Root mean square of the nine, decibels.
     pub band_error_rms_db: f64,
-    /// The same of rendered samples and not of the magnitude, decibels.
+    /// Error over third-octave bands, RMS, decibels.
+    pub third_octave_error_rms_db: Option<f64>,
+    /// Difference of the magnitudes in decibels, RMS over the bins.
+    pub log_spectral_distance_db: Option<f64>,
+    /// The nine-band error of rendered samples and not of the magnitude, decibels.
     pub samples_band_error_rms_db: Option<f64>,
     /// Size of the parameters, bytes.
     pub payload_bytes: usize,

@@ -12,7 +12,7 @@ const WITHIN: &str = "\u{a0}*";
 /// Errors of this size and more have the darkest shade, decibels.
 const DARKEST_DB: f64 = 12.0;
 
-/// Correlation, error, and the error of rendered samples where it was measured.
+/// Correlation and nine-band error, and the other measures where they were taken.
 pub(super) fn summary(report: &TextureReport) -> String {
     let mut out = Element::new("div").set("class", "tables");
     let correlation = correlation(report).to_html();
@@ -22,19 +22,44 @@ pub(super) fn summary(report: &TextureReport) -> String {
             Some(m.band_error_rms_db)
         }));
     let rendered = |m: &ModelResult| m.samples_band_error_rms_db;
-    if report
-        .textures
-        .iter()
-        .flat_map(|t| &t.models)
-        .any(|m| rendered(m).is_some())
-    {
+    if measured(report, rendered) {
         out = out.raw(&error(report, "rendered samples", rendered));
+    }
+    let beside: [(&str, Value); 2] = [
+        ("Third-octave error of the fitted magnitude, RMS in dB", |m| {
+            m.third_octave_error_rms_db
+        }),
+        ("Log-spectral distance of the fitted magnitude, RMS in dB", |m| {
+            m.log_spectral_distance_db
+        }),
+    ];
+    for (caption, value) in beside {
+        if measured(report, value) {
+            out = out.raw(&independent_error(report, caption, value));
+        }
     }
     let note = paragraph(
         "* at or below the recording's own repeatability: the recording itself varies by as much \
          from one part to another, so a smaller error says nothing more about the model.",
     );
     out.render() + "\n" + &note
+}
+
+type Value = fn(&ModelResult) -> Option<f64>;
+
+fn measured(report: &TextureReport, value: impl Fn(&ModelResult) -> Option<f64>) -> bool {
+    let mut models = report.textures.iter().flat_map(|t| &t.models);
+    models.any(|m| value(m).is_some())
+}
+
+/// A measure that the recording's repeatability is not known by.
+fn independent_error(report: &TextureReport, caption: &str, value: Value) -> String {
+    let cell = |_: &Texture, model: &ModelResult| {
+        value(model).map_or(Cell::Missing, |db| Cell::Shaded(db, ""))
+    };
+    let mut table = by_model(report, cell);
+    table.caption = format!("{caption} (0 is the best, light)");
+    table.to_html()
 }
 
 fn correlation(report: &TextureReport) -> Table {

@@ -66,7 +66,9 @@ fn how_to_read(page: &mut Page) {
          magnitudes, bin by bin: it rewards matching every ripple, and 1 is the best. The \
          nine-band error compares the energy in nine overlapping bands, evenly spaced in log \
          frequency, in decibels: it asks only for the right amount of vibration in the right \
-         region, and 0 is the best. The two can disagree; neither is a rating by a person.",
+         region, and 0 is the best. Third-octave bands do not overlap and are about twice as fine, \
+         and the log-spectral distance compares every bin in decibels; no model is fitted to either. \
+         The measures can disagree; none is a rating by a person.",
     ));
 }
 

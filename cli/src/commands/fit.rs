@@ -36,8 +36,10 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "MODEL.NAME=VALUE")]
     option: Vec<String>,
 
-    /// Level of a representation: that of its own fit, or the recording's RMS in the band
-    #[arg(long, value_enum, default_value = "fitted")]
+    /// Level of a representation: the recording's RMS in the band, so that it plays as strong as the
+    /// recording, or that of its own fit, as in the paper. Bands, which keeps energies, always has
+    /// that of its fit
+    #[arg(long, value_enum, default_value = "recording")]
     level: LevelArg,
 
     /// The asset to write
@@ -157,8 +159,8 @@ impl Fit {
                 recorded_options.insert(name.to_owned(), value.to_owned());
             }
         }
-        if self.level == LevelArg::Recording {
-            recorded_options.insert("level".to_owned(), "recording".to_owned());
+        if self.level == LevelArg::Fitted {
+            recorded_options.insert("level".to_owned(), "fitted".to_owned());
         }
         let stem = self
             .output
@@ -175,12 +177,20 @@ impl Fit {
                 LevelArg::Fitted => Level::Fitted,
                 LevelArg::Recording => Level::Recording,
             },
+            alternatives: alternatives(registry),
             strict: self.reading.strict(),
             keep_reference: self.keep_reference,
             recorded_options,
             tool: tool(),
         })
     }
+}
+
+/// The models that come with this program: a plugin runs only where it is asked for.
+fn alternatives(registry: &Registry) -> Vec<LoadedModel> {
+    let models = registry.models().iter();
+    let builtin = models.filter(|model| *model.origin() == Origin::Builtin);
+    builtin.cloned().collect()
 }
 
 /// Reads an ed25519 secret key.

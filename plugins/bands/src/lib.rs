@@ -52,6 +52,7 @@ impl Model for BandEnergies {
             env!("CARGO_PKG_VERSION"),
             "The energies in a few log-spaced bands; straight lines in decibels between them.",
         )
+        .keeping_level()
         .list(
             "below_loudest",
             "1",

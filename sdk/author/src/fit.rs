@@ -4,14 +4,15 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
-use htex_dsp::grid::level_rms;
 use htex_format::{
     Asset, AtCondition, Condition, LATERAL_FORCE, Manifest, NEWTON, Provenance, Quality, Reference,
     Representation, Source, VERSION, round_parameters,
 };
-use htex_host::{FitRequest, HostError, LoadedModel};
+use htex_host::{HostError, LoadedModel};
 
+use crate::alternatives::warning;
 use crate::conditions::{Group, Take, group_takes};
+use crate::level::{Level, stored_level};
 use crate::spectrum::SpectrumRef;
 use crate::stored::stored_fields;
 use crate::{AuthorError, SpectrumOptions, TextureSpectrum, agreement, rendered_spectrum};
@@ -23,16 +24,6 @@ pub struct ModelRequest {
     pub model: LoadedModel,
     /// Its option values ([`LoadedModel::options`]).
     pub options: Vec<f64>,
-}
-
-/// Which level a representation gets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Level {
-    /// The RMS of its own fitted magnitude: shape times level is what was fitted.
-    #[default]
-    Fitted,
-    /// The recording's RMS in the band.
-    Recording,
 }
 
 /// What an asset is to be made of.
@@ -52,6 +43,9 @@ pub struct AssetRequest {
     pub spectrum: SpectrumOptions,
     /// Which level representations get.
     pub level: Level,
+    /// Models to try, at their defaults, where a representation misses its bands; those in `models` are
+    /// tried in any case.
+    pub alternatives: Vec<LoadedModel>,
     /// Refuse recordings that leave their condition by more than 10 %.
     pub strict: bool,
     /// Keep the recorded spectra in the asset.
@@ -88,7 +82,10 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
     let mut skipped = Vec::new();
     for choice in &request.models {
         match fit_model(choice, &grouped.groups, request.level) {
-            Ok(representation) => fitted.push(representation),
+            Ok(one) => {
+                warnings.extend(misses(choice, &one, &grouped.groups, request));
+                fitted.push(one);
+            }
             Err(AuthorError::Model(HostError::Call { call, message, .. })) => {
                 let message = match call {
                     "fit" => message,
@@ -139,24 +136,12 @@ fn fit_model(
     let fields = stored_fields(model.descriptor());
     let (mut at, mut parameters, mut fit_ms) = (Vec::new(), Vec::new(), 0.0);
     for (condition, group) in groups.iter().enumerate() {
-        let spectrum = &group.spectrum;
-        let request = FitRequest {
-            band: spectrum.band,
-            frequency_hz: &spectrum.frequency_hz,
-            magnitude: &spectrum.magnitude_n,
-            signal: &spectrum.signal_n,
-            signal_rate_hz: spectrum.signal_rate_hz,
-            options: &choice.options,
-        };
+        let reference = group.spectrum.as_ref();
         let start = Instant::now();
-        let fit = model.fit(&request)?;
+        let fit = model.fit(&group.spectrum.fit_request(&choice.options))?;
         fit_ms += start.elapsed().as_secs_f64() * 1e3;
         let stored = round_parameters(&fields, &fit.parameters)?;
-        let level_n_rms = match level {
-            Level::Fitted => fit.level_rms,
-            Level::Recording => level_rms(&spectrum.magnitude_n),
-        };
-        let reference = spectrum.as_ref();
+        let level_n_rms = stored_level(model, &fit, &stored, reference, level)?;
         let mut quality = measure(model, &stored, level_n_rms, reference)?;
         let rounding = rounding_error_db(model, &fit.parameters, &stored, reference)?;
         quality.rounding_error_db = Some(rounding);
@@ -179,6 +164,26 @@ fn fit_model(
         parameters,
         fit_ms,
     })
+}
+
+/// The warning of a representation that misses its bands.
+fn misses(
+    choice: &ModelRequest,
+    fitted: &FittedModel,
+    groups: &[Group],
+    request: &AssetRequest,
+) -> Option<String> {
+    let at = &fitted.representation.at;
+    let qualities: Vec<&Quality> = at.iter().filter_map(|at| at.quality.as_ref()).collect();
+    let spectra: Vec<&TextureSpectrum> = groups.iter().map(|group| &group.spectrum).collect();
+    let mut models: Vec<LoadedModel> = request.models.iter().map(|m| m.model.clone()).collect();
+    let known = |models: &[LoadedModel], id: &str| models.iter().any(|m| m.id() == id);
+    for model in &request.alternatives {
+        if !known(&models, model.id()) {
+            models.push(model.clone());
+        }
+    }
+    warning(choice, &qualities, &spectra, &models, request.level)
 }
 
 /// Agreement of parameters and level with a recorded spectrum, by magnitude and by samples.

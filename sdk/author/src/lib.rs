@@ -5,10 +5,12 @@
 //! where it is silent, the option's own documentation says what is done.
 #![forbid(unsafe_code)]
 
+mod alternatives;
 mod conditions;
 mod error;
 mod exploration;
 mod fit;
+mod level;
 mod metrics;
 pub mod read;
 pub mod recording;
@@ -23,7 +25,8 @@ mod sums;
 pub use conditions::Take;
 pub use error::AuthorError;
 pub use exploration::{Exploration, exploration};
-pub use fit::{AssetRequest, FittedAsset, Level, ModelRequest, fit_asset, measure};
+pub use fit::{AssetRequest, FittedAsset, ModelRequest, fit_asset, measure};
+pub use level::{Level, stored_level};
 pub use metrics::{Agreement, agreement};
 pub use recording::Recording;
 pub use rendered::{rendered_spectrum, spectrum_of_samples};

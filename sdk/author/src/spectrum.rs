@@ -3,6 +3,7 @@
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
 use htex_dsp::grid::{Band, GRID_HZ};
 use htex_dsp::spectrum::{Complex, SegmentAnalyzer, dft321};
+use htex_host::FitRequest;
 use realfft::RealFftPlanner;
 
 use crate::response::raised;
@@ -111,6 +112,18 @@ impl TextureSpectrum {
             signal_n,
             signal_rate_hz,
         })
+    }
+
+    /// What a model is asked to fit, with one value for each of its options.
+    pub fn fit_request<'a>(&'a self, options: &'a [f64]) -> FitRequest<'a> {
+        FitRequest {
+            band: self.band,
+            frequency_hz: &self.frequency_hz,
+            magnitude: &self.magnitude_n,
+            signal: &self.signal_n,
+            signal_rate_hz: self.signal_rate_hz,
+            options,
+        }
     }
 
     /// Band and magnitudes.

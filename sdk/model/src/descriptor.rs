@@ -22,6 +22,14 @@ pub struct Descriptor {
     /// Fit options, in the order of their array.
     #[serde(default)]
     pub options: Vec<FitOption>,
+    /// The level of a fit is part of what the model keeps of a spectrum, as with energies, and stays as
+    /// it is. Otherwise the level may be taken from the recording.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub keeps_level: bool,
+}
+
+fn is_false(flag: &bool) -> bool {
+    !flag
 }
 
 /// One parameter field.
@@ -124,7 +132,14 @@ impl Descriptor {
             summary: summary.to_string(),
             fields: Vec::new(),
             options: Vec::new(),
+            keeps_level: false,
         }
+    }
+
+    /// Says that the level of a fit is part of what the model keeps.
+    pub fn keeping_level(mut self) -> Self {
+        self.keeps_level = true;
+        self
     }
 
     /// Adds a parameter of one number in `min..=max`, stored as 32-bit float unless

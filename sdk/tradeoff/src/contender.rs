@@ -1,9 +1,9 @@
 //! Whatever can be fitted to a recording, stored and played.
 
-use htex_author::stored_fields;
+use htex_author::{Level, stored_fields, stored_level};
 use htex_dsp::grid::level_rms;
 use htex_format::{Field, Store, round_parameters, stored_bytes};
-use htex_host::{Fit, FitRequest, HostError, LoadedModel};
+use htex_host::{Fit, HostError, LoadedModel};
 
 use crate::baseline::quantise;
 use crate::setting::Keep;
@@ -44,14 +44,7 @@ impl Contender {
     pub(crate) fn fit(&self, subject: &Subject) -> Result<Fit, HostError> {
         let spectrum = &subject.spectrum;
         match &self.kind {
-            Kind::Model(model, options) => model.fit(&FitRequest {
-                band: spectrum.band,
-                frequency_hz: &spectrum.frequency_hz,
-                magnitude: &spectrum.magnitude_n,
-                signal: &spectrum.signal_n,
-                signal_rate_hz: spectrum.signal_rate_hz,
-                options,
-            }),
+            Kind::Model(model, options) => model.fit(&spectrum.fit_request(options)),
             Kind::Quantised => {
                 let parameters = quantise(&spectrum.magnitude_n).0;
                 let level_rms = level_rms(&parameters);
@@ -69,15 +62,20 @@ impl Contender {
 
     /// What is read back after storing a fit, and its size.
     pub(crate) fn store(&self, subject: &Subject, fit: &Fit) -> Result<Stored, TradeoffError> {
+        let spectrum = &subject.spectrum;
         let (parameters, bytes) = match &self.kind {
             Kind::Model(model, _) => {
                 let mut fields = stored_fields(model.descriptor());
                 self.keep(&mut fields);
-                let rounded = round_parameters(&fields, &fit.parameters)?;
-                let bytes = stored_bytes(&fields, &rounded)?;
-                (rounded, bytes)
+                let parameters = round_parameters(&fields, &fit.parameters)?;
+                let (reference, level) = (spectrum.as_ref(), Level::default());
+                return Ok(Stored {
+                    level_n: stored_level(model, fit, &parameters, reference, level)?,
+                    bytes: stored_bytes(&fields, &parameters)?,
+                    parameters,
+                });
             }
-            Kind::Quantised => quantise(&subject.spectrum.magnitude_n),
+            Kind::Quantised => quantise(&spectrum.magnitude_n),
             Kind::Recording => (Vec::new(), subject.bytes),
         };
         Ok(Stored {

@@ -1,0 +1,114 @@
+//! What fits a recording better than a representation that misses its bands: options of the same model
+//! and other models, each tried.
+
+use htex_format::Quality;
+use htex_host::{FitOption, LoadedModel};
+
+use crate::fit::ModelRequest;
+use crate::level::{Level, stored_level};
+use crate::stored::stored_fields;
+use crate::{TextureSpectrum, agreement};
+
+/// Nine-band RMS error above which a representation is told to miss its bands, decibels.
+const MISSES_DB: f64 = 12.0;
+
+/// Something that was tried, and the nine-band RMS error it leaves, decibels.
+struct Tried {
+    name: String,
+    error_db: f64,
+}
+
+/// The warning of a representation that misses its bands at one of its conditions; none when it does
+/// not. `models` are tried beside the model's own options.
+pub(crate) fn warning(
+    choice: &ModelRequest,
+    qualities: &[&Quality],
+    spectra: &[&TextureSpectrum],
+    models: &[LoadedModel],
+    level: Level,
+) -> Option<String> {
+    let conditions = qualities.iter().zip(spectra);
+    let error_db = |quality: &Quality| quality.band_error_rms_db;
+    let (quality, spectrum) =
+        conditions.max_by(|a, b| error_db(a.0).total_cmp(&error_db(b.0)))?;
+    let misses_db = error_db(quality);
+    if misses_db <= MISSES_DB {
+        return None;
+    }
+    let try_one = |model: &LoadedModel, options: Vec<f64>, name: String| {
+        let error_db = error_of(model, &options, spectrum, level)?;
+        (error_db < misses_db).then_some(Tried { name, error_db })
+    };
+    let own = other_options(choice).into_iter();
+    let best_option =
+        best(own.filter_map(|(name, options)| try_one(&choice.model, options, name)));
+    let others = models.iter().filter(|m| m.id() != choice.model.id());
+    let best_model = best(others.filter_map(|model| {
+        let name = format!("the model {}", model.short_name());
+        try_one(model, model.descriptor().default_options(), name)
+    }));
+    let better: Vec<String> = best_option
+        .into_iter()
+        .chain(best_model)
+        .map(|tried| format!("{} by {:.1} dB", tried.name, tried.error_db))
+        .collect();
+    let advice = match &better[..] {
+        [] => "none of its options and no other model does better".to_owned(),
+        better => format!("tried on this recording, {}", better.join(", ")),
+    };
+    let model = choice.model.short_name();
+    Some(format!(
+        "{model} misses the nine bands by {misses_db:.1} dB (RMS); {advice}"
+    ))
+}
+
+fn best(tried: impl Iterator<Item = Tried>) -> Option<Tried> {
+    tried.min_by(|a, b| a.error_db.total_cmp(&b.error_db))
+}
+
+/// The request's options with one of them at another choice or at an end of its range, and how that is
+/// asked for.
+fn other_options(choice: &ModelRequest) -> Vec<(String, Vec<f64>)> {
+    let mut others = Vec::new();
+    let model = &choice.model;
+    for (i, option) in model.descriptor().options.iter().enumerate() {
+        for value in other_values(option) {
+            let mut options = choice.options.clone();
+            if options.get(i).is_none_or(|now| *now == value) {
+                continue;
+            }
+            options[i] = value;
+            let shown = option.choices.get(value as usize);
+            let shown = shown.cloned().unwrap_or_else(|| value.to_string());
+            others.push((
+                format!("{}.{}={shown}", model.short_name(), option.name),
+                options,
+            ));
+        }
+    }
+    others
+}
+
+fn other_values(option: &FitOption) -> Vec<f64> {
+    match option.choices.len() {
+        0 => vec![option.min, option.max],
+        choices => (0..choices).map(|choice| choice as f64).collect(),
+    }
+}
+
+/// Nine-band RMS error of a model's stored fit, from its magnitudes; none when it cannot be fitted.
+fn error_of(
+    model: &LoadedModel,
+    options: &[f64],
+    spectrum: &TextureSpectrum,
+    level: Level,
+) -> Option<f64> {
+    let reference = spectrum.as_ref();
+    let fit = model.fit(&spectrum.fit_request(options)).ok()?;
+    let fields = stored_fields(model.descriptor());
+    let stored = htex_format::round_parameters(&fields, &fit.parameters).ok()?;
+    let level_n_rms = stored_level(model, &fit, &stored, reference, level).ok()?;
+    let shape = model.magnitude(&stored, reference.band, reference.frequency_hz);
+    let magnitude: Vec<f64> = shape.ok()?.iter().map(|m| m * level_n_rms).collect();
+    Some(agreement(reference, &magnitude).band_error_rms_db).filter(|error| error.is_finite())
+}

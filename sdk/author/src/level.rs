@@ -1,0 +1,65 @@
+//! The level of what is stored: how strong a shape plays.
+
+use htex_dsp::grid::level_rms;
+use htex_host::{Fit, HostError, LoadedModel};
+
+use crate::SpectrumRef;
+
+/// Which level a representation gets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Level {
+    /// The recording's RMS in the band, so that the asset plays as strong as its recording and a copy of
+    /// a copy as strong as the first. A model whose level is part of what it keeps
+    /// ([`htex_host::Descriptor::keeps_level`]) keeps that of its fit.
+    #[default]
+    Recording,
+    /// That of the model's own fit (the paper's definitions), for the parameters as they are stored.
+    Fitted,
+}
+
+/// The level of a fit whose parameters are stored as `stored`, newtons RMS.
+///
+/// # Errors
+/// When the model refuses the parameters.
+pub fn stored_level(
+    model: &LoadedModel,
+    fit: &Fit,
+    stored: &[f64],
+    spectrum: SpectrumRef<'_>,
+    level: Level,
+) -> Result<f64, HostError> {
+    match level {
+        Level::Recording if !model.descriptor().keeps_level => {
+            Ok(recorded_level(spectrum.magnitude_n))
+        }
+        _ => fitted_level(model, fit, stored, spectrum),
+    }
+}
+
+/// The level at which the stored shape comes nearest to the fitted magnitudes, by least squares over
+/// the band's grid.
+fn fitted_level(
+    model: &LoadedModel,
+    fit: &Fit,
+    stored: &[f64],
+    spectrum: SpectrumRef<'_>,
+) -> Result<f64, HostError> {
+    if fit.parameters == stored {
+        return Ok(fit.level_rms);
+    }
+    let shape = |parameters| model.magnitude(parameters, spectrum.band, spectrum.frequency_hz);
+    let (fitted, stored) = (shape(&fit.parameters)?, shape(stored)?);
+    let both: f64 = fitted.iter().zip(&stored).map(|(f, s)| f * s).sum();
+    let own: f64 = stored.iter().map(|s| s * s).sum();
+    Ok(fit.level_rms * (both / own))
+}
+
+/// RMS of magnitudes, taken relative to the largest so that no square over- or underflows.
+fn recorded_level(magnitude_n: &[f64]) -> f64 {
+    let largest = magnitude_n.iter().copied().fold(0.0, f64::max);
+    if largest == 0.0 {
+        return 0.0;
+    }
+    let relative: Vec<f64> = magnitude_n.iter().map(|m| m / largest).collect();
+    largest * level_rms(&relative)
+}

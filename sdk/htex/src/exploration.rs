@@ -98,11 +98,21 @@ impl Recorded {
         }
     }
 
-    /// The recorded value nearest to `x`, where just one is known.
-    pub fn one(&self, x: f64) -> Option<f64> {
+    /// Whether just one value was recorded.
+    pub fn is_one(&self) -> bool {
+        matches!(self, Self::One { .. })
+    }
+}
+
+impl fmt::Display for Recorded {
+    /// Such as `80` or `40 to 160`, without a unit.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::One { low, high } => Some(x.clamp(low, high)),
-            _ => None,
+            Self::Unknown => f.write_str("unknown"),
+            Self::One { low, high } | Self::Several { low, high } if low == high => {
+                write!(f, "{low}")
+            }
+            Self::One { low, high } | Self::Several { low, high } => write!(f, "{low} to {high}"),
         }
     }
 }

@@ -1,7 +1,8 @@
 //! What a scene calls for: gathered once, from the scene, its assets and its device, before anything is
 //! built.
 
-use htex::{Source, VoiceOptions};
+use htex::exploration::CONTACT_RAMP_S;
+use htex::{Explored, Recorded, Source, VoiceOptions};
 use htex_device::{Capabilities, Quantity};
 
 use crate::SceneError;
@@ -9,11 +10,7 @@ use crate::file::{Effect, Surface, Switch};
 use crate::load::LoadedScene;
 use crate::motion::{Course, Finger};
 use crate::response::Inverse;
-use crate::stages::{CONTACT_RAMP_S, force_gain};
 
-/// Slowest and fastest reading of a texture, in its recorded speed.
-pub(crate) const MIN_RATIO: f64 = 1.0 / 16.0;
-pub(crate) const MAX_RATIO: f64 = 8.0;
 /// Fastest reading that a live motion is prepared for.
 const LIVE_RATIO: f64 = 4.0;
 /// Largest force that a live motion is prepared for, in the recorded one.
@@ -57,9 +54,15 @@ impl Span {
         self.low >= self.high - SAME * self.high.abs()
     }
 
-    /// Whether it is a point at `x`.
-    pub(crate) fn is_at(&self, x: f64) -> bool {
-        self.is_point() && (self.low - x).abs() <= SAME * x.abs()
+    /// Whether a texture that was recorded so is scaled by more than one factor.
+    pub(crate) fn changes(&self, recorded: &Recorded) -> bool {
+        !self.is_point() && recorded.ratio(self.low) != recorded.ratio(self.high)
+    }
+
+    /// Whether it is what was recorded, but for rounding.
+    pub(crate) fn is_as(&self, recorded: &Recorded) -> bool {
+        let near = |x: f64| (recorded.ratio(x) - 1.0).abs() <= SAME;
+        near(self.low) && near(self.high)
     }
 
     pub(crate) fn text(&self, unit: &str) -> String {
@@ -227,8 +230,10 @@ pub(crate) struct Part {
     pub(crate) model: String,
     /// Nine-band RMS error, decibels; infinite when it was not measured.
     pub(crate) band_error_db: f64,
-    /// Known speeds (mm/s) and forces (newtons).
-    pub(crate) conditions: Vec<[Option<f64>; 2]>,
+    /// Known conditions.
+    pub(crate) known: usize,
+    /// Known speeds and forces.
+    pub(crate) explored: Explored,
     pub(crate) speed_mm_s: Span,
     pub(crate) force_n: Span,
     pub(crate) always_touched: bool,
@@ -260,12 +265,13 @@ impl Part {
         model: &str,
     ) -> Result<Self, SceneError> {
         let (asset, touch) = (&scene.assets[surface], &call.touches[surface]);
-        let (conditions, band_error_db) = known(asset, model);
+        let (known, explored, band_error_db) = known(asset, model);
         let mut part = Self {
             surface,
             model: model.to_owned(),
             band_error_db,
-            conditions,
+            known,
+            explored,
             speed_mm_s: touch.speed_mm_s,
             force_n: touch.force_n,
             always_touched: touch.always,
@@ -315,11 +321,11 @@ impl Part {
     /// The speed in the rates: a constant one in the resampler's, a changing one in the warp's.
     fn scale_speed(&mut self, scene: &LoadedScene) {
         let off = scene.scene.effects.get(&Effect::SpeedScaling) == Some(&Switch::Off);
-        let Some(known) = self.one_speed_mm_s().filter(|_| !off) else {
+        if off || !self.explored.speed.is_one() {
             return;
-        };
-        let ratio = |speed: f64| (speed / known).clamp(MIN_RATIO, MAX_RATIO);
-        if self.speed_mm_s.is_point() {
+        }
+        let ratio = |speed: f64| self.explored.speed_ratio(speed);
+        if !self.speed_mm_s.changes(&self.explored.speed) {
             if self.speed_mm_s.low.is_finite() {
                 self.fixed_ratio *= ratio(self.speed_mm_s.low);
             }
@@ -336,17 +342,18 @@ impl Part {
     /// A constant force in the gain; answers the largest gain that forces make.
     fn scale_force(&mut self, scene: &LoadedScene) -> f64 {
         let off = scene.scene.effects.get(&Effect::ForceScaling) == Some(&Switch::Off);
-        let Some(known) = self.one_force_n().filter(|_| !off) else {
+        if off || !self.explored.force.is_one() {
             return 1.0;
-        };
+        }
+        let changes = self.force_n.changes(&self.explored.force);
         match self.force_n {
-            point if point.is_point() && point.low.is_finite() => {
-                self.fixed_force_gain = force_gain(point.low, known);
+            span if !changes && span.low.is_finite() => {
+                self.fixed_force_gain = self.explored.force_gain(span.low);
                 self.gain *= self.fixed_force_gain;
                 1.0
             }
-            span if span.is_point() => 1.0,
-            span if span.high.is_finite() => force_gain(span.high, known),
+            _ if !changes => 1.0,
+            span if span.high.is_finite() => self.explored.force_gain(span.high),
             _ => LIVE_FORCE,
         }
     }
@@ -371,61 +378,20 @@ impl Part {
             1.0
         })
     }
-
-    /// The speeds that are known; an empty span if one is not.
-    pub(crate) fn speeds(&self) -> Span {
-        span(&self.conditions, 0)
-    }
-
-    /// The forces that are known; an empty span if one is not.
-    pub(crate) fn forces(&self) -> Span {
-        span(&self.conditions, 1)
-    }
-
-    /// The recorded speed, if there is just one.
-    pub(crate) fn one_speed_mm_s(&self) -> Option<f64> {
-        only(self.speeds())
-    }
-
-    /// The recorded force, if there is just one.
-    pub(crate) fn one_force_n(&self) -> Option<f64> {
-        only(self.forces())
-    }
 }
 
-fn span(conditions: &[[Option<f64>; 2]], axis: usize) -> Span {
-    let mut span = Span::NONE;
-    for condition in conditions {
-        match condition[axis] {
-            Some(x) => span.take(x),
-            None => return Span::NONE,
-        }
-    }
-    span
-}
-
-fn only(span: Span) -> Option<f64> {
-    (span.is_point() && span.low > 0.0 && span.low.is_finite()).then_some(span.low)
-}
-
-/// Conditions and band error of a representation.
-fn known(asset: &htex::Asset, model: &str) -> (Vec<[Option<f64>; 2]>, f64) {
+/// How many conditions a representation knows, which, and its band error.
+fn known(asset: &htex::Asset, model: &str) -> (usize, Explored, f64) {
     let manifest = asset.manifest();
     let found = manifest.representations.iter().find(|r| r.model == model);
     let at = found.map_or(&[][..], |r| &r.at);
-    let conditions = at
-        .iter()
-        .filter_map(|at| manifest.conditions.get(at.condition));
     let error = |at: &htex_format::AtCondition| {
         at.quality
             .as_ref()
             .map_or(f64::INFINITY, |q| q.band_error_rms_db)
     };
     let worst = at.iter().map(error).fold(0.0, f64::max);
-    (
-        conditions.map(|c| [c.speed_mm_s, c.force_n]).collect(),
-        worst,
-    )
+    (at.len(), Explored::new(at, &manifest.conditions), worst)
 }
 
 /// The largest level of a representation, newtons.

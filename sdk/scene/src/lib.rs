@@ -28,7 +28,7 @@ pub use error::SceneError;
 pub use file::Scene;
 pub use gains::{Gain, GainKey, Gains};
 pub use load::{LoadError, LoadedScene, Surroundings, validate};
-pub use motion::{Finger, MIN_SLIDING_MM_S};
+pub use motion::Finger;
 pub use page::{findings_page, scene_schema};
 pub use plan::{Chosen, LeftOut, Plan, PlannedStage, plan};
 pub use render::Renderer;

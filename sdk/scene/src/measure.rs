@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::hint::black_box;
 use std::time::Instant;
 
+use htex::{Explored, Recorded};
 use htex_device::{Capabilities, Quantity, Rates};
 use htex_dsp::fir::Fir;
 use htex_host::{Band, FitRequest, HostError, LoadedModel, Registry};
@@ -181,7 +182,17 @@ fn example_part() -> Part {
         surface: 0,
         model: String::new(),
         band_error_db: 0.0,
-        conditions: vec![[Some(80.0), Some(0.4)]],
+        known: 1,
+        explored: Explored {
+            speed: Recorded::One {
+                low: 80.0,
+                high: 80.0,
+            },
+            force: Recorded::One {
+                low: 0.4,
+                high: 0.4,
+            },
+        },
         speed_mm_s: Span::ANY,
         force_n: Span::ANY,
         always_touched: false,

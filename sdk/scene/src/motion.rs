@@ -1,11 +1,10 @@
 //! Where the finger is, and how it moves, at any time of a scene.
 
+use htex::exploration::{MIN_SLIDING_MM_S, slides};
+
 use crate::file::{Constant, Motion, Region};
 use crate::load::LoadedScene;
 use crate::trace::Trace;
-
-/// Below this speed the finger does not slide, and there is no texture to feel.
-pub const MIN_SLIDING_MM_S: f64 = 0.5;
 
 /// A finger at one moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,7 +27,7 @@ impl Finger {
 
     /// Whether it slides over something.
     pub fn slides(&self) -> bool {
-        self.speed_mm_s.abs() >= MIN_SLIDING_MM_S && self.force_n > 0.0
+        slides(self.speed_mm_s, self.force_n)
     }
 
     /// Whether it is in a region; none lies everywhere.

@@ -1,14 +1,12 @@
 //! Silence without contact or slip, and at both ends of a scene on a device that people touch or hear.
 
+use htex::exploration::CONTACT_RAMP_S;
 use htex_device::Quantity;
 use htex_dsp::glide::Glide;
 
 use super::{Entry, Need, Now, Place, Stage};
 use crate::call::Call;
 use crate::file::Effect;
-
-/// Length of an onset or offset, seconds.
-pub(crate) const RAMP_S: f64 = 0.020;
 
 pub(crate) const ENTRY: Entry = Entry {
     effect: Effect::Contact,
@@ -31,7 +29,7 @@ fn need(call: &Call) -> Need {
 }
 
 fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
-    let ramp = (RAMP_S * call.rate_hz).ceil() as u32;
+    let ramp = (CONTACT_RAMP_S * call.rate_hz).ceil() as u32;
     Box::new(Contact {
         neutral,
         ramp,

@@ -1,8 +1,10 @@
 //! Parameters and level between exploration conditions, as speed and force change. The voice is
 //! retuned; no samples pass through this stage.
 
+use htex::{Explored, Recorded};
+
 use super::{Entry, Need, Place};
-use crate::call::{Call, Part};
+use crate::call::{Call, Part, Span};
 use crate::file::Effect;
 
 pub(crate) const ENTRY: Entry = Entry {
@@ -12,15 +14,15 @@ pub(crate) const ENTRY: Entry = Entry {
 };
 
 fn need(_: &Call, part: &Part) -> Need {
-    let known = part.conditions.len();
+    let known = part.known;
     if known < 2 {
         return Need::no("the asset knows one exploration condition");
     }
-    let speeds = part.speeds();
-    let forces = part.forces();
-    let varies =
-        |span: &crate::call::Span, known: &crate::call::Span| !span.is_point() && !known.is_point();
-    if varies(&part.speed_mm_s, &speeds) || varies(&part.force_n, &forces) {
+    let varies = |span: &Span, recorded: Recorded| {
+        !span.is_point() && matches!(recorded, Recorded::Several { .. })
+    };
+    let Explored { speed, force } = part.explored;
+    if varies(&part.speed_mm_s, speed) || varies(&part.force_n, force) {
         return Need::yes(format!(
             "speed ({}) and force ({}) change between {known} known conditions",
             part.speed_mm_s.text("mm/s"),

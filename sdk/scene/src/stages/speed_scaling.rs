@@ -1,10 +1,11 @@
 //! Temporal frequency in proportion to the scanning speed, f ∝ v: what a fixed surface does to a finger
 //! that moves faster, where the asset knows only one speed.
 
+use htex::{Explored, Recorded};
 use htex_dsp::warp::Warp;
 
 use super::{Entry, Need, Now, Place, Stage};
-use crate::call::{Call, MAX_RATIO, MIN_RATIO, Part};
+use crate::call::{Call, Part};
 use crate::file::Effect;
 
 pub(crate) const ENTRY: Entry = Entry {
@@ -17,43 +18,43 @@ pub(crate) const ENTRY: Entry = Entry {
 };
 
 fn need(_: &Call, part: &Part) -> Need {
-    let Some(known) = part.one_speed_mm_s() else {
-        return Need::no(match part.speeds().is_point() {
-            true => "the asset does not say at which speed it was recorded",
-            false => "the asset knows several speeds, and is interpolated between them",
-        });
-    };
-    if !part.speed_mm_s.is_point() {
-        return Need::yes(format!(
+    let known = part.explored.speed;
+    match known {
+        Recorded::Unknown => Need::no("the asset does not say at which speed it was recorded"),
+        Recorded::Several { .. } => {
+            Need::no("the asset knows several speeds, and is interpolated between them")
+        }
+        Recorded::One { .. } if part.speed_mm_s.changes(&known) => Need::yes(format!(
             "the asset knows {known} mm/s alone, and the speed is {}",
             part.speed_mm_s.text("mm/s")
-        ));
-    }
-    Need::no(match part.speed_mm_s.is_at(known) {
-        true => format!("the speed is always the recorded one, {known} mm/s"),
-        false => format!(
+        )),
+        Recorded::One { .. } if part.speed_mm_s.is_as(&known) => Need::no(format!(
+            "the speed is always the recorded one, {known} mm/s"
+        )),
+        Recorded::One { .. } => Need::no(format!(
             "the speed never changes: the resampler reads {:.3} times as fast",
             part.fixed_ratio
-        ),
-    })
+        )),
+    }
 }
 
 fn build(_: &Call, part: &Part, neutral: bool) -> Box<dyn Stage> {
-    let known = part.one_speed_mm_s().filter(|_| !neutral);
+    let scales = part.explored.speed.is_one() && !neutral;
     Box::new(SpeedScaling {
-        known_mm_s: known,
-        warp: if known.is_some() {
-            Warp::new()
-        } else {
-            Warp::through()
+        known: part.explored,
+        warp: match scales {
+            true => Warp::new(),
+            false => Warp::through(),
         },
+        scales,
         ratio: 1.0,
         oversampling: part.oversampling,
     })
 }
 
 struct SpeedScaling {
-    known_mm_s: Option<f64>,
+    known: Explored,
+    scales: bool,
     warp: Warp,
     ratio: f64,
     /// Samples given for each one of the source, so that a faster finger fits below half the rate.
@@ -62,9 +63,8 @@ struct SpeedScaling {
 
 impl Stage for SpeedScaling {
     fn follow(&mut self, now: &Now) {
-        if let (Some(known), true) = (self.known_mm_s, now.finger.slides()) {
-            let ratio = now.finger.speed_mm_s.abs() / known;
-            self.ratio = ratio.clamp(MIN_RATIO, MAX_RATIO);
+        if self.scales && now.finger.slides() {
+            self.ratio = self.known.speed_ratio(now.finger.speed_mm_s.abs());
         }
     }
 

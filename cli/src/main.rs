@@ -12,6 +12,7 @@ mod output;
 mod playing;
 mod plugins;
 mod progress;
+mod recording_plot;
 mod recordings;
 mod scenes;
 mod wasm_limits;

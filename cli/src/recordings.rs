@@ -6,7 +6,10 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use htex_author::read::{ColumnMap, ReadOptions, read_recording};
 use htex_author::response::read_response;
-use htex_author::{Averaging, Exploration, SegmentChoice, SpectrumOptions, Take};
+use htex_author::{
+    Averaging, Exploration, SegmentChoice, SpectrumOptions, Take, validate_recording,
+};
+use htex_format::Report;
 
 use crate::failure::Failure;
 
@@ -33,7 +36,16 @@ pub(crate) struct RecordingArgs {
     #[arg(long, value_name = "CSV")]
     frf: Option<PathBuf>,
 
-    /// Where the texture is read: in sweeps, in evenly spaced windows, or sweeps if there are any
+    /// Reads the recording from this time on, s
+    #[arg(long, value_name = "S")]
+    from: Option<f64>,
+
+    /// Reads the recording up to this time, s
+    #[arg(long, value_name = "S")]
+    to: Option<f64>,
+
+    /// Where the texture is read: in the middles of whole sweeps, in evenly spaced windows, or (auto) in sweeps if
+    /// there are any that speak for at least half of the sliding, a sweep for 2 s at most
     #[arg(long, value_enum, default_value = "auto")]
     segments: SegmentsArg,
 
@@ -50,11 +62,13 @@ pub(crate) struct RecordingArgs {
     #[arg(long, value_name = "N")]
     force: Option<f64>,
 
-    /// Exploration condition of each recording, in their order, or one for all: speed=80,force=0.4
+    /// Exploration condition of each recording, in their order, or one for all: speed=80,force=0.4. Where the
+    /// recording has the motion too, segments that leave this by more than 10 % are left out
     #[arg(long, value_name = "CONDITION")]
     at: Vec<String>,
 
-    /// Refuse a recording whose speed or force leaves its target by more than 10 % (else: warn)
+    /// Refuse a recording with findings that are errors or warnings (`htex validate` lists them): clipping, spikes,
+    /// a stuck sensor, a speed or force that leaves its target by more than 10 %, …
     #[arg(long)]
     strict: bool,
 }
@@ -99,6 +113,19 @@ impl RecordingArgs {
         Ok(Take { recording, given })
     }
 
+    /// What is found in one recording.
+    pub(crate) fn validate(&self, file: &Path) -> Result<Report, Failure> {
+        let given = self.conditions(1)?.pop().unwrap_or_default();
+        let (read, options) = (self.read_options()?, self.spectrum_options()?);
+        Ok(validate_recording(file, &read, given, &options)?)
+    }
+
+    /// Whether any option of reading recordings was given.
+    pub(crate) fn is_given(&self) -> bool {
+        let condition = self.speed.is_some() || self.force.is_some() || !self.at.is_empty();
+        condition || self.strict || !self.recorded_options().is_empty()
+    }
+
     fn read_options(&self) -> Result<ReadOptions, Failure> {
         let map = match &self.map {
             None => None,
@@ -111,6 +138,8 @@ impl RecordingArgs {
             rate_hz: self.rate,
             map,
             newtons_per_unit: self.newtons_per_unit,
+            from_s: self.from,
+            to_s: self.to,
         })
     }
 
@@ -141,6 +170,8 @@ impl RecordingArgs {
                 "newtons_per_unit",
                 self.newtons_per_unit.as_ref().and_then(|v| name(v)),
             ),
+            ("from", self.from.as_ref().and_then(|v| name(v))),
+            ("to", self.to.as_ref().and_then(|v| name(v))),
             ("frf", self.frf.as_ref().and_then(file)),
             ("segments", value_name(self.segments, SegmentsArg::Auto)),
             (

@@ -49,6 +49,7 @@ fn generate() -> ExitCode {
         ],
         &["htex-check", "--example", "model_checks"],
         &["htex-scene", "--example", "scene_pages"],
+        &["htex-author", "--example", "recording_pages"],
         &["htex-hard-cases", "--example", "hard_cases_page"],
         &[
             "htex-device",

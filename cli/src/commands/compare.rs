@@ -2,12 +2,12 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
-use htex_author::{Exploration, TextureSpectrum, exploration, measure, segment_spectra};
+use htex_author::{Exploration, TextureSpectrum, measure, read_take};
 use serde::Serialize;
 
 use crate::assets::short_name;
 use crate::failure::Failure;
-use crate::output::{print, print_json, warn};
+use crate::output::{note, print, print_json, warn};
 use crate::plugins::PlayerArgs;
 use crate::recordings::RecordingArgs;
 
@@ -79,16 +79,12 @@ impl Compare {
     fn spectrum(&self) -> Result<(TextureSpectrum, Exploration, Vec<String>), Failure> {
         let take = self.reading.read_one(&self.recording)?;
         let options = self.reading.spectrum_options()?;
-        let mut warnings = take.recording.warnings.clone();
-        let part = segment_spectra(&take.recording, &options)?;
-        warnings.extend(part.warnings.iter().cloned());
-        let strict = self.reading.strict();
-        let segments = &part.segments;
-        let found = exploration(&take.recording, segments, take.given, strict, &mut warnings)?;
+        let reading = read_take(&take, &options, self.reading.strict())?;
+        note(&reading.notes);
         Ok((
-            TextureSpectrum::average(&[part], options.averaging)?,
-            found,
-            warnings,
+            TextureSpectrum::average(&[reading.part], options.averaging)?,
+            reading.condition,
+            reading.warnings,
         ))
     }
 

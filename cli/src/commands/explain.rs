@@ -19,12 +19,15 @@ impl Explain {
             let lines = RULES
                 .iter()
                 .chain(htex_scene::RULES)
+                .chain(htex_author::findings::RULES)
                 .map(|rule| format!("{:36} {}\n", rule.code, rule.summary));
             print(&lines.collect::<String>())?;
             return Ok(ExitCode::SUCCESS);
         };
         let code = code.to_uppercase();
-        let rule = explain(&code).or_else(|| htex_scene::explain(&code));
+        let rule = explain(&code)
+            .or_else(|| htex_scene::explain(&code))
+            .or_else(|| htex_author::findings::explain(&code));
         let rule = rule.ok_or_else(|| {
             Failure::Usage(format!("no code `{code}`; `htex explain` lists them all"))
         })?;

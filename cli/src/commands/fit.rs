@@ -9,7 +9,7 @@ use htex_host::{LoadedModel, Origin, Registry};
 use crate::assets::AssetSummary;
 use crate::failure::Failure;
 use crate::models::{model_requests, tool};
-use crate::output::{print, print_json, warn, write_file};
+use crate::output::{note, print, print_json, warn, write_file};
 use crate::plugins::PluginArgs;
 use crate::recordings::RecordingArgs;
 
@@ -112,6 +112,7 @@ impl Fit {
             print_json(&summary)?;
         } else {
             warn(&summary.warnings);
+            note(&fitted.notes);
             summary.warnings.clear();
             print(&summary.to_text())?;
         }

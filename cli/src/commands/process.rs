@@ -2,11 +2,12 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
-use htex_author::{TextureSpectrum, exploration, segment_spectra};
-use serde_json::json;
+use htex_author::{Reading, Recording, TextureSpectrum, read_take};
+use serde_json::{Value, json};
 
 use crate::failure::Failure;
-use crate::output::{print, print_json, warn};
+use crate::output::{note, print, print_json, warn, write_file};
+use crate::recording_plot::recording_plot;
 use crate::recordings::RecordingArgs;
 
 /// Show the texture spectrum of a recording.
@@ -22,6 +23,10 @@ pub(crate) struct Process {
     #[command(flatten)]
     reading: RecordingArgs,
 
+    /// Draw the recording with the seconds that are read, and those left out, as an SVG picture
+    #[arg(long, value_name = "SVG")]
+    svg: Option<PathBuf>,
+
     /// Print JSON instead of CSV
     #[arg(long)]
     json: bool,
@@ -31,33 +36,87 @@ impl Process {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         let take = self.reading.read_one(&self.recording)?;
         let options = self.reading.spectrum_options()?;
-        let mut warnings = take.recording.warnings.clone();
-        let part = segment_spectra(&take.recording, &options)?;
-        warnings.extend(part.warnings.iter().cloned());
-        let strict = self.reading.strict();
-        let segments = &part.segments;
-        let found = exploration(&take.recording, segments, take.given, strict, &mut warnings)?;
-        let from_sweeps = segments.from_sweeps;
-        let spectrum = TextureSpectrum::average(&[part], options.averaging)?;
+        let reading = read_take(&take, &options, self.reading.strict())?;
+        let part = std::slice::from_ref(&reading.part);
+        let spectrum = TextureSpectrum::average(part, options.averaging)?;
+        if let Some(svg) = &self.svg {
+            let picture = recording_plot(&take.recording, &reading.part.segments).to_svg();
+            write_file(svg, picture.as_bytes())?;
+        }
         if self.json {
-            print_json(&json!({
-                "rate_hz": take.recording.rate_hz,
-                "segments": spectrum.segments,
-                "segments_from": if from_sweeps { "sweeps" } else { "windows" },
-                "frequency_hz": spectrum.frequency_hz,
-                "magnitude_n": spectrum.magnitude_n,
-                "speed_mm_s": found.speed_mm_s,
-                "force_n": found.force_n,
-                "repeatability_rms_db": spectrum.repeatability_rms_db,
-                "simulated": take.recording.simulated,
-                "warnings": warnings,
-            }))?;
+            print_json(&summary(&take.recording, &reading, &spectrum))?;
         } else {
-            warn(&warnings);
+            warn(&reading.warnings);
+            note(&reading.notes);
+            note(&[seconds_read(&take.recording, &reading)]);
             let rows = spectrum.frequency_hz.iter().zip(&spectrum.magnitude_n);
             let rows: String = rows.map(|(f, m)| format!("{f},{m:.9}\n")).collect();
             print(&format!("frequency_hz,magnitude_n\n{rows}"))?;
         }
         Ok(ExitCode::SUCCESS)
     }
+}
+
+/// Where segments come from.
+fn origin(reading: &Reading) -> &'static str {
+    match reading.part.segments.from_sweeps {
+        true => "sweeps",
+        false => "windows",
+    }
+}
+
+/// The stretches that are read, seconds in the file.
+fn stretches_s(recording: &Recording, reading: &Reading) -> Vec<[f64; 2]> {
+    let stretches = reading.part.segments.stretches().into_iter();
+    stretches
+        .map(|part| [part.start, part.end].map(|at| recording.second(at)))
+        .collect()
+}
+
+/// How many segments are read, where they lie, and how far the motion spreads over them.
+fn seconds_read(recording: &Recording, reading: &Reading) -> String {
+    let stretches = stretches_s(recording, reading);
+    let named: Vec<String> = stretches
+        .iter()
+        .map(|[a, b]| format!("{a:.2}-{b:.2}"))
+        .collect();
+    let count = reading.part.segments.starts.len();
+    let mut text = format!(
+        "{count} segments of 0.2 s from {}, s: {}",
+        origin(reading),
+        named.join(", ")
+    );
+    let spread = &reading.spread;
+    for (spread, what, unit) in [
+        (spread.speed_mm_s, "speed", "mm/s"),
+        (spread.force_n, "force", "N"),
+    ] {
+        if let Some([low, high]) = spread {
+            text += &format!("; {what} {low:.4} to {high:.4} {unit}");
+        }
+    }
+    text
+}
+
+fn summary(recording: &Recording, reading: &Reading, spectrum: &TextureSpectrum) -> Value {
+    let segments = &reading.part.segments;
+    json!({
+        "rate_hz": recording.rate_hz,
+        "segments": spectrum.segments,
+        "segments_from": origin(reading),
+        "segments_off_target": segments.off_target.len(),
+        "sweeps": segments.sweeps.len(),
+        "sweeps_cut_off": segments.cut_off,
+        "read_s": stretches_s(recording, reading),
+        "frequency_hz": spectrum.frequency_hz,
+        "magnitude_n": spectrum.magnitude_n,
+        "speed_mm_s": reading.condition.speed_mm_s,
+        "speed_spread_mm_s": reading.spread.speed_mm_s,
+        "force_n": reading.condition.force_n,
+        "force_spread_n": reading.spread.force_n,
+        "repeatability_rms_db": spectrum.repeatability_rms_db,
+        "simulated": recording.simulated,
+        "findings": reading.findings,
+        "warnings": reading.warnings,
+    })
 }

@@ -3,8 +3,9 @@
 use htex_format::{Condition, Source};
 
 use crate::fit::source_of;
-use crate::spectrum::{SegmentSpectra, segment_spectra};
-use crate::{AuthorError, Exploration, Recording, SpectrumOptions, TextureSpectrum, exploration};
+use crate::reading::read_take;
+use crate::spectrum::SegmentSpectra;
+use crate::{AuthorError, Exploration, Recording, SpectrumOptions, TextureSpectrum};
 
 /// A recording and what is known of its condition beforehand.
 #[derive(Debug, Clone)]
@@ -26,6 +27,7 @@ pub(crate) struct Grouped {
     pub(crate) conditions: Vec<Condition>,
     pub(crate) sources: Vec<Source>,
     pub(crate) warnings: Vec<String>,
+    pub(crate) notes: Vec<String>,
 }
 
 struct Gathering {
@@ -39,14 +41,14 @@ pub(crate) fn group_takes(
     options: &SpectrumOptions,
     strict: bool,
 ) -> Result<Grouped, AuthorError> {
-    let (mut gatherings, mut sources, mut warnings) = (Vec::<Gathering>::new(), Vec::new(), vec![]);
+    let (mut gatherings, mut sources) = (Vec::<Gathering>::new(), Vec::new());
+    let (mut warnings, mut notes) = (Vec::new(), Vec::new());
     for take in takes {
-        warnings.extend(take.recording.warnings.iter().cloned());
-        let part = segment_spectra(&take.recording, options)?;
-        warnings.extend(part.warnings.iter().cloned());
+        let reading = read_take(take, options, strict)?;
+        let (condition, part) = (reading.condition, reading.part);
+        warnings.extend(reading.warnings);
+        notes.extend(reading.notes);
         sources.push(source_of(take, part.spectra.len()));
-        let (recording, segments) = (&take.recording, &part.segments);
-        let condition = exploration(recording, segments, take.given, strict, &mut warnings)?;
         match gatherings.iter_mut().find(|g| same(g.condition, condition)) {
             Some(gathering) => gathering.parts.push(part),
             None => gatherings.push(Gathering {
@@ -77,6 +79,7 @@ pub(crate) fn group_takes(
         conditions,
         sources,
         warnings,
+        notes,
     })
 }
 

@@ -4,14 +4,17 @@ use std::path::PathBuf;
 
 use htex_host::HostError;
 
+use crate::hertz::hertz;
+
 /// An error of the authoring pipeline; each message says what, where, and what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum AuthorError {
     /// The rate leaves nothing of the tactile band.
     #[error(
-        "{source_name}: sampled at {rate_hz} Hz it holds nothing above {nyquist_hz} Hz, and a \
+        "{source_name}: sampled at {} it holds nothing above {}, and a \
          texture's spectrum lies at 20 to 1000 Hz; record at 2 kHz or more (60 Hz is the least \
-         that leaves anything)"
+         that leaves anything)",
+        hertz(*rate_hz), hertz(*nyquist_hz)
     )]
     RateTooLow {
         /// The recording.
@@ -35,8 +38,8 @@ pub enum AuthorError {
     },
     /// No sweep is long enough.
     #[error(
-        "{source_name}: no sweep of 0.2 s or more; try `--segments windows` for a recording \
-         without back-and-forth sweeps"
+        "{source_name}: no whole sweep of 0.2 s or more (one that the beginning or the end cuts off does not count); \
+         try `--segments windows` for a recording without back-and-forth sweeps"
     )]
     NoSegments {
         /// The recording.
@@ -56,9 +59,27 @@ pub enum AuthorError {
         "recordings at one condition have different bands because of their rates; fit them apart"
     )]
     BandsDiffer,
-    /// Speed or force left its target by more than 10 % and `strict` was asked for.
-    #[error("{0}")]
-    OffTarget(String),
+    /// No segment keeps to the condition that was asked for.
+    #[error(
+        "{source_name}: all {segments} segments leave their target by more than 10 %: {told}; give the condition that \
+         was recorded, scale a column with `--map`, or record again"
+    )]
+    OffTarget {
+        /// The recording.
+        source_name: String,
+        /// How many segments there were.
+        segments: usize,
+        /// What was measured, and what was asked for.
+        told: String,
+    },
+    /// The recording has findings, and `strict` was asked for.
+    #[error("{source_name}: --strict refuses it (`htex explain CODE` says more):{}", lines(.findings))]
+    Strict {
+        /// The recording.
+        source_name: String,
+        /// Its errors and warnings.
+        findings: Vec<htex_format::Finding>,
+    },
     /// A speed or a force that no exploration has.
     #[error("{what} is {value}; {allowed}")]
     Condition {
@@ -106,4 +127,10 @@ pub enum AuthorError {
         /// The system's reason.
         error: std::io::Error,
     },
+}
+
+/// Findings, one a line.
+fn lines(findings: &[htex_format::Finding]) -> String {
+    let line = |f: &htex_format::Finding| format!("\n  {} {f}", f.severity);
+    findings.iter().map(line).collect()
 }

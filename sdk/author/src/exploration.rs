@@ -1,11 +1,14 @@
 //! How the finger moved: speed and force while the texture was read.
 
+use htex_format::Findings;
+
+use crate::findings::{RECORDING_OFF_TARGET, RECORDING_UNSTEADY, median};
 use crate::segments::Segments;
 use crate::sums::Sums;
 use crate::{AuthorError, Recording};
 
-/// Beyond this part of its target a speed or force is worth a warning (paper: such recordings were
-/// discarded and repeated).
+/// Speed and force may leave their target by this part of it (paper: recordings beyond were discarded and
+/// repeated).
 const TOLERANCE: f64 = 0.10;
 /// Half the length of the average that speed and force are judged on, seconds: fast ripple is the
 /// texture's, not the hand's.
@@ -45,89 +48,183 @@ impl Exploration {
     }
 }
 
-/// Speed and force of a recording over its segments: what was given, else what was measured.
-///
-/// Measured values that leave their target (given, else their own mean) by more than 10 % give a
-/// warning.
-///
-/// # Errors
-/// With `strict`, instead of that warning. When a value is impossible.
-pub fn exploration(
-    recording: &Recording,
-    segments: &Segments,
-    given: Exploration,
-    strict: bool,
-    warnings: &mut Vec<String>,
-) -> Result<Exploration, AuthorError> {
-    given.check()?;
-    let mut judge = |what: &str, unit: &str, values: Option<&Vec<f64>>, target: Option<f64>| {
-        let Some(range) = values.and_then(|v| Range::over(v, recording.rate_hz, segments)) else {
-            return Ok(target);
-        };
-        if let Some(complaint) = range.complaint(what, unit, target) {
-            let complaint = format!("{}: {complaint}", recording.source);
-            if strict {
-                return Err(AuthorError::OffTarget(complaint));
-            }
-            warnings.push(complaint);
-        }
-        Ok(target.or(Some(range.mean)))
-    };
-    let force_n = judge(
-        "normal force",
-        "N",
-        recording.normal_n.as_ref(),
-        given.force_n,
-    )?;
-    let speed = recording.speed_mm_s.as_ref();
-    let found = Exploration {
-        speed_mm_s: judge("scanning speed", "mm/s", speed, given.speed_mm_s)?,
-        force_n,
-    };
-    found.check()?;
-    Ok(found)
+/// Lowest and highest value over the segments that are read, averaged over 50 ms; none where it is not
+/// known.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Spread {
+    /// Of the scanning speed, mm/s.
+    pub speed_mm_s: Option<[f64; 2]>,
+    /// Of the normal force, newtons.
+    pub force_n: Option<[f64; 2]>,
 }
 
-struct Range {
-    mean: f64,
-    min: f64,
-    max: f64,
+/// What is known of the motion: each quantity's name, unit, samples and target.
+struct Known<'a> {
+    what: &'static str,
+    signal: &'static str,
+    unit: &'static str,
+    values: &'a [f64],
+    target: Option<f64>,
+    average: Sums,
+    half: usize,
 }
 
-impl Range {
-    fn over(values: &[f64], rate_hz: f64, segments: &Segments) -> Option<Self> {
-        let sums = Sums::of(values.iter().copied());
-        let half = (HALF_AVERAGE_S * rate_hz).round() as usize;
-        let all: Vec<f64> = segments
-            .starts
-            .iter()
-            .map(|&start| start..start + segments.len)
-            .filter(|part| part.end <= values.len())
-            .flatten()
-            .map(|at| sums.mean_around(at, half))
-            .collect();
-        (!all.is_empty()).then(|| Self {
-            mean: all.iter().sum::<f64>() / all.len() as f64,
-            min: all.iter().copied().fold(f64::INFINITY, f64::min),
-            max: all.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+/// The quantities of the motion that the recording knows: the speed, the normal force.
+fn known(recording: &Recording, target: Exploration) -> [Option<Known<'_>>; 2] {
+    let half = (HALF_AVERAGE_S * recording.rate_hz).round() as usize;
+    let make = |what, signal, unit, values, target| Known {
+        what,
+        signal,
+        unit,
+        values,
+        target,
+        average: Sums::of(values.iter().copied()),
+        half,
+    };
+    let speed = recording.speed_mm_s.as_deref();
+    let force = recording.normal_n.as_deref();
+    [
+        speed.map(|values| make("scanning speed", "speed", "mm/s", values, target.speed_mm_s)),
+        force.map(|values| make("normal force", "normal", "N", values, target.force_n)),
+    ]
+}
+
+impl Known<'_> {
+    /// Lowest and highest average over a segment.
+    fn range(&self, start: usize, len: usize) -> [f64; 2] {
+        let averages = (start..start + len).map(|at| self.average.mean_around(at, self.half));
+        averages.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+            [low.min(value), high.max(value)]
         })
     }
 
-    fn complaint(&self, what: &str, unit: &str, target: Option<f64>) -> Option<String> {
-        let aim = target.unwrap_or(self.mean);
-        let off = |value: f64| (value - aim).abs() > TOLERANCE * aim.abs();
-        if ![self.mean, self.min, self.max].into_iter().any(off) {
-            return None;
+    fn spread(&self, segments: &Segments) -> [f64; 2] {
+        let ranges = segments
+            .starts
+            .iter()
+            .map(|&start| self.range(start, segments.len));
+        ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |a, b| {
+            [a[0].min(b[0]), a[1].max(b[1])]
+        })
+    }
+
+    /// Median of the samples of all segments: what a few readings that no finger makes do not move.
+    fn median(&self, segments: &Segments) -> Option<f64> {
+        let parts = segments
+            .starts
+            .iter()
+            .map(|&start| &self.values[start..start + segments.len]);
+        median(&parts.flatten().copied().collect::<Vec<f64>>())
+    }
+
+    fn keeps_to(&self, target: f64, [low, high]: [f64; 2]) -> bool {
+        let near = |value: f64| (value - target).abs() <= TOLERANCE * target.abs();
+        near(low) && near(high)
+    }
+
+    /// Whether a segment keeps to the target, if there is one.
+    fn is_on_target(&self, start: usize, len: usize) -> bool {
+        self.target
+            .is_none_or(|target| self.keeps_to(target, self.range(start, len)))
+    }
+}
+
+/// Leaves out the segments over which a known motion leaves its target by more than 10 %.
+///
+/// # Errors
+/// When the target is impossible, or no segment is left.
+pub(crate) fn keep_on_target(
+    recording: &Recording,
+    segments: &mut Segments,
+    target: Exploration,
+    findings: &mut Findings,
+) -> Result<(), AuthorError> {
+    target.check()?;
+    let known = known(recording, target);
+    let of_all = segments.clone();
+    let is_on_target = |start: &usize| {
+        let mut known = known.iter().flatten();
+        known.all(|one| one.is_on_target(*start, of_all.len))
+    };
+    (segments.starts, segments.off_target) = of_all.starts.iter().partition(|s| is_on_target(s));
+    let off = segments.off_target.len();
+    if off == 0 {
+        return Ok(());
+    }
+    let told: Vec<String> = known
+        .iter()
+        .flatten()
+        .filter_map(|one| one.told(&of_all))
+        .collect();
+    let told = told.join("; ");
+    if segments.starts.is_empty() {
+        return Err(AuthorError::OffTarget {
+            source_name: recording.source.clone(),
+            segments: off,
+            told,
+        });
+    }
+    findings.add(
+        RECORDING_OFF_TARGET,
+        "",
+        format!(
+            "{off} of {} segments left out, as they leave their target by more than 10 %: {told}",
+            of_all.starts.len()
+        ),
+    );
+    Ok(())
+}
+
+/// Speed and force over the segments: what was given, else the median of what was measured; and the
+/// spread of what was measured. A median that is left by more than 10 % is a finding.
+///
+/// # Errors
+/// When a value is impossible.
+pub(crate) fn exploration(
+    recording: &Recording,
+    segments: &Segments,
+    given: Exploration,
+    findings: &mut Findings,
+) -> Result<(Exploration, Spread), AuthorError> {
+    let (mut found, mut spread) = (given, Spread::default());
+    let [speed, force] = known(recording, given);
+    if let Some(speed) = speed {
+        spread.speed_mm_s = Some(speed.spread(segments));
+        found.speed_mm_s = speed.value(segments, findings);
+    }
+    if let Some(force) = force {
+        spread.force_n = Some(force.spread(segments));
+        found.force_n = force.value(segments, findings);
+    }
+    found.check()?;
+    Ok((found, spread))
+}
+
+impl Known<'_> {
+    /// The target, else the median; tells when the motion is not steady about it.
+    fn value(&self, segments: &Segments, findings: &mut Findings) -> Option<f64> {
+        if self.target.is_some() {
+            return self.target;
         }
-        let name = if target.is_some() {
-            "its target"
-        } else {
-            "its mean"
-        };
+        let median = self.median(segments)?;
+        let [low, high] = self.spread(segments);
+        if !self.keeps_to(median, [low, high]) {
+            let (what, unit) = (self.what, self.unit);
+            findings.add(RECORDING_UNSTEADY, format!("/{}", self.signal), format!(
+                "the {what} leaves its median of {median:.4} {unit} by more than 10 %: from {low:.4} to {high:.4} {unit}; \
+                 cut a steady part out with --from and --to, or give a target with --at"
+            ));
+        }
+        Some(median)
+    }
+
+    /// A quantity with a target: its median and range over the segments.
+    fn told(&self, segments: &Segments) -> Option<String> {
+        let (target, median) = (self.target?, self.median(segments)?);
+        let ([low, high], unit) = (self.spread(segments), self.unit);
         Some(format!(
-            "{what} leaves {name} of {aim:.4} {unit} by more than 10 %: mean {:.4}, from {:.4} to \
-             {:.4} {unit}",
-            self.mean, self.min, self.max
+            "{} {median:.4} {unit} (median, from {low:.4} to {high:.4}) where {target} {unit} is asked for",
+            self.what
         ))
     }
 }

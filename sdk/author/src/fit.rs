@@ -46,7 +46,7 @@ pub struct AssetRequest {
     /// Models to try, at their defaults, where a representation misses its bands; those in `models` are
     /// tried in any case.
     pub alternatives: Vec<LoadedModel>,
-    /// Refuse recordings that leave their condition by more than 10 %.
+    /// Refuse recordings with findings that are errors or warnings.
     pub strict: bool,
     /// Keep the recorded spectra in the asset.
     pub keep_reference: bool,
@@ -67,6 +67,8 @@ pub struct FittedAsset {
     pub skipped: Vec<(String, String)>,
     /// The texture spectrum of each condition.
     pub spectra: Vec<TextureSpectrum>,
+    /// Findings of the recordings that are no warnings: what was left out, and why.
+    pub notes: Vec<String>,
 }
 
 /// Fits every model to every condition, measures what will be stored, and makes the asset.
@@ -77,7 +79,7 @@ pub struct FittedAsset {
 /// When a recording is not usable, or no model could be fitted.
 pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, AuthorError> {
     let grouped = group_takes(takes, &request.spectrum, request.strict)?;
-    let mut warnings = grouped.warnings;
+    let (mut warnings, notes) = (grouped.warnings, grouped.notes);
     let mut fitted = Vec::new();
     let mut skipped = Vec::new();
     for choice in &request.models {
@@ -118,6 +120,7 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
         fit_ms,
         skipped,
         spectra,
+        notes,
     })
 }
 

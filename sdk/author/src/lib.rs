@@ -9,10 +9,13 @@ mod alternatives;
 mod conditions;
 mod error;
 mod exploration;
+pub mod findings;
 mod fit;
+mod hertz;
 mod level;
 mod metrics;
 pub mod read;
+mod reading;
 pub mod recording;
 mod rendered;
 pub mod response;
@@ -24,14 +27,16 @@ mod sums;
 
 pub use conditions::Take;
 pub use error::AuthorError;
-pub use exploration::{Exploration, exploration};
+pub use exploration::{Exploration, Spread};
+pub use findings::recording_findings;
 pub use fit::{AssetRequest, FittedAsset, ModelRequest, fit_asset, measure};
 pub use level::{Level, stored_level};
 pub use metrics::{Agreement, agreement};
+pub use reading::{Reading, read_take, validate_recording};
 pub use recording::Recording;
 pub use rendered::{rendered_spectrum, spectrum_of_samples};
 pub use response::SetupResponse;
-pub use segments::{SegmentChoice, Segments, Sweep, choose_segments, segment_len};
+pub use segments::{SegmentChoice, Segments, Sweep, Unread, choose_segments, segment_len};
 pub use spectrum::{
     Averaging, SegmentSpectra, SpectrumOptions, SpectrumRef, TextureSpectrum, segment_spectra,
 };

@@ -1,5 +1,6 @@
 //! One recording of a finger sliding on a surface, in physical units.
 
+use htex_format::Finding;
 use thiserror::Error;
 
 /// Highest sample rate, hertz: no force sensor is as fast, and counts of samples stay numbers.
@@ -27,6 +28,20 @@ pub enum RecordingError {
     TooShort {
         /// How many samples were given.
         samples: usize,
+    },
+    /// A range with fewer than two samples in it.
+    #[error(
+        "from {from_s} to {to_s} s there are fewer than 2 samples; the recording runs from {begins_s:.3} to {ends_s:.3} s"
+    )]
+    Between {
+        /// Where the range begins, seconds.
+        from_s: f64,
+        /// Where it ends, seconds.
+        to_s: f64,
+        /// Where the recording begins, seconds.
+        begins_s: f64,
+        /// Where it ends, seconds.
+        ends_s: f64,
     },
     /// A signal is not as long as the first lateral axis.
     #[error(
@@ -83,6 +98,10 @@ pub struct Recording {
     pub speed_mm_s: Option<Vec<f64>>,
     /// True when the file says that it comes from a simulator and not from a finger.
     pub simulated: bool,
+    /// Samples of the file before the first of this recording.
+    pub first_sample: usize,
+    /// What the time column showed: gaps, unevenness.
+    pub clock_findings: Vec<Finding>,
     /// What the reader had to assume or noticed; each a full sentence.
     pub warnings: Vec<String>,
 }
@@ -126,6 +145,8 @@ impl Recording {
             normal_n: None,
             speed_mm_s: None,
             simulated: false,
+            first_sample: 0,
+            clock_findings: Vec::new(),
             warnings: Vec::new(),
         })
     }
@@ -152,6 +173,54 @@ impl Recording {
         check("the speed", &speed_mm_s, self.samples())?;
         self.speed_mm_s = Some(speed_mm_s);
         Ok(self)
+    }
+
+    /// The part of the recording between two times of its file, seconds; a side that is not given is left
+    /// as it is. What was found of the clock stays.
+    ///
+    /// # Errors
+    /// When a time is not finite, or fewer than two samples lie between them.
+    ///
+    /// ```
+    /// # use htex_author::recording::Recording;
+    /// let recording = Recording::new("tap.csv", 10.0, vec![vec![0.1, 0.2, 0.3, 0.4]])?;
+    /// let part = recording.between(Some(0.1), Some(0.3))?;
+    /// assert_eq!((part.first_sample, &part.lateral_n[0][..]), (1, &[0.2, 0.3][..]));
+    /// # Ok::<(), htex_author::recording::RecordingError>(())
+    /// ```
+    pub fn between(
+        mut self,
+        from_s: Option<f64>,
+        to_s: Option<f64>,
+    ) -> Result<Self, RecordingError> {
+        let sample = |second: f64| {
+            let at = (second * self.rate_hz).round() - self.first_sample as f64;
+            at.clamp(0.0, self.samples() as f64) as usize
+        };
+        let from = from_s.map_or(0, sample);
+        let to = to_s.map_or(self.samples(), sample);
+        let times_are_finite = [from_s, to_s].into_iter().flatten().all(f64::is_finite);
+        if !times_are_finite || to < from.saturating_add(2) {
+            return Err(RecordingError::Between {
+                from_s: from_s.unwrap_or(self.second(0)),
+                to_s: to_s.unwrap_or(self.second(self.samples())),
+                begins_s: self.second(0),
+                ends_s: self.second(self.samples()),
+            });
+        }
+        let (normal, speed) = (&mut self.normal_n, &mut self.speed_mm_s);
+        for signal in self.lateral_n.iter_mut().chain(normal).chain(speed) {
+            signal.truncate(to);
+            signal.drain(..from);
+        }
+        self.first_sample += from;
+        Ok(self)
+    }
+
+    /// Time of a sample in its file, seconds.
+    #[must_use]
+    pub fn second(&self, sample: usize) -> f64 {
+        (self.first_sample + sample) as f64 / self.rate_hz
     }
 
     /// Samples in each signal, at least 2.

@@ -1,5 +1,7 @@
 //! Where in a recording the texture is read: sweeps, or evenly spaced windows.
 
+use std::ops::Range;
+
 use crate::Recording;
 use crate::sums::Sums;
 
@@ -7,16 +9,25 @@ use crate::sums::Sums;
 const SEGMENTS_PER_S: f64 = 5.0;
 /// Half the length of the moving average that sweeps are found on (50 ms in all), seconds.
 const HALF_AVERAGE_S: f64 = 0.025;
-/// A recording has sweeps if between them its friction falls below this part of the threshold.
+/// A recording has sweeps if between them its friction falls below this part of the threshold; above it
+/// the finger slides.
 const REST_LEVEL: f64 = 0.5;
+/// Sliding that a sweep's one segment stands for at most, seconds: ten segments. The paper's sweeps, 100 mm
+/// at 80 mm/s, last 1.25 s.
+const SPOKEN_FOR_S: f64 = 2.0;
+/// Least part of the sliding that the segments must stand for, or sweeps leave most of it unread.
+const SPOKEN_FOR: f64 = 0.5;
 
 /// How segments are chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SegmentChoice {
-    /// Sweeps if the recording has them, else windows.
+    /// Sweeps if the recording has them and they speak for at least half of its sliding, else windows.
+    ///
+    /// A sweep speaks for itself, but for 2 s at most: a long stroke is more than its middle.
     #[default]
     Auto,
-    /// One segment in the middle of each sweep (paper, Texture processing).
+    /// One segment in the middle of each sweep that the recording holds whole (paper, Texture
+    /// processing). A sweep that its beginning or end cuts off has no known middle.
     Sweeps,
     /// Windows one behind the other over the whole recording.
     Windows,
@@ -31,6 +42,15 @@ pub struct Sweep {
     pub end: usize,
 }
 
+/// What sweeps would have left unread.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unread {
+    /// Sliding that their segments stand for, seconds.
+    pub spoken_for_s: f64,
+    /// All sliding, seconds.
+    pub sliding_s: f64,
+}
+
 /// The segments of a recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Segments {
@@ -42,8 +62,28 @@ pub struct Segments {
     pub from_sweeps: bool,
     /// The sweeps that were found, also if windows are used.
     pub sweeps: Vec<Sweep>,
+    /// How many of them the recording's beginning or end cuts off; they are not read.
+    pub cut_off: usize,
+    /// First samples of the segments that were left out because the motion left its target.
+    pub off_target: Vec<usize>,
+    /// Why `auto` turned to windows though there are sweeps.
+    pub unread: Option<Unread>,
     /// Mean resultant friction, newtons.
     pub threshold_n: f64,
+}
+
+impl Segments {
+    /// The stretches that are read, samples; segments that touch are one.
+    pub fn stretches(&self) -> Vec<Range<usize>> {
+        let mut stretches: Vec<Range<usize>> = Vec::new();
+        for &start in &self.starts {
+            match stretches.last_mut() {
+                Some(last) if last.end >= start => last.end = start + self.len,
+                _ => stretches.push(start..start + self.len),
+            }
+        }
+        stretches
+    }
 }
 
 /// Chooses the segments of a recording. There may be none.
@@ -53,26 +93,38 @@ pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments
     let samples = resultant.samples();
     let threshold_n = resultant.mean(0, samples);
     let half = (HALF_AVERAGE_S * recording.rate_hz).round() as usize;
-    let smooth = || (0..samples).map(|at| resultant.mean_around(at, half));
-    let sweeps = find_sweeps(smooth(), threshold_n, len);
-    let rests = smooth().any(|r| r < REST_LEVEL * threshold_n);
+    let smooth = (0..samples).map(|at| resultant.mean_around(at, half));
+    let Scan { sweeps, sliding } = scan(smooth, threshold_n, len);
+    let whole = || {
+        let is_whole = |sweep: &&Sweep| sweep.start > 0 && sweep.end < samples;
+        sweeps.iter().filter(is_whole)
+    };
+    let longest = (SPOKEN_FOR_S * recording.rate_hz) as usize;
+    let spoken_for: usize = whole().map(|s| (s.end - s.start).min(longest)).sum();
+    let has_sweeps = !sweeps.is_empty() && sliding < samples;
+    let speak_for_most = spoken_for as f64 >= SPOKEN_FOR * sliding as f64;
     let from_sweeps = match choice {
-        SegmentChoice::Auto => rests && !sweeps.is_empty(),
+        SegmentChoice::Auto => has_sweeps && speak_for_most,
         SegmentChoice::Sweeps => true,
         SegmentChoice::Windows => false,
     };
     let starts = if from_sweeps {
-        sweeps
-            .iter()
-            .filter_map(|sweep| middle(*sweep, len, samples))
-            .collect()
+        let middles = whole().filter_map(|sweep| middle(*sweep, len, samples));
+        middles.collect()
     } else {
         (0..samples / len).map(|i| i * len).collect()
     };
+    let turned = choice == SegmentChoice::Auto && has_sweeps && !speak_for_most;
     Segments {
         len,
         starts,
         from_sweeps,
+        cut_off: sweeps.len() - whole().count(),
+        off_target: Vec::new(),
+        unread: turned.then(|| Unread {
+            spoken_for_s: spoken_for as f64 / recording.rate_hz,
+            sliding_s: sliding as f64 / recording.rate_hz,
+        }),
         sweeps,
         threshold_n,
     }
@@ -92,10 +144,17 @@ fn resultant(axes: &[Vec<f64>]) -> Sums {
     }
 }
 
-fn find_sweeps(smooth: impl Iterator<Item = f64>, threshold: f64, shortest: usize) -> Vec<Sweep> {
-    let mut sweeps = Vec::new();
+/// The sweeps, and the number of samples at which the finger slides.
+struct Scan {
+    sweeps: Vec<Sweep>,
+    sliding: usize,
+}
+
+fn scan(smooth: impl Iterator<Item = f64>, threshold: f64, shortest: usize) -> Scan {
+    let (mut sweeps, mut sliding) = (Vec::new(), 0);
     let mut start = None;
     for (i, r) in smooth.chain([f64::NEG_INFINITY]).enumerate() {
+        sliding += usize::from(r >= REST_LEVEL * threshold);
         match (r > threshold, start) {
             (true, None) => start = Some(i),
             (false, Some(from)) => {
@@ -110,7 +169,7 @@ fn find_sweeps(smooth: impl Iterator<Item = f64>, threshold: f64, shortest: usiz
             _ => {}
         }
     }
-    sweeps
+    Scan { sweeps, sliding }
 }
 
 /// Start of the segment around a sweep's middle, if it lies inside the recording.

@@ -6,6 +6,7 @@ use htex_dsp::spectrum::{Complex, SegmentAnalyzer, dft321};
 use htex_host::FitRequest;
 use realfft::RealFftPlanner;
 
+use crate::hertz::hertz;
 use crate::response::raised;
 use crate::segments::{SegmentChoice, Segments, choose_segments};
 use crate::{AuthorError, Recording, SetupResponse};
@@ -145,9 +146,19 @@ pub fn segment_spectra(
     recording: &Recording,
     options: &SpectrumOptions,
 ) -> Result<SegmentSpectra, AuthorError> {
+    spectra_of(recording, options, |_| Ok(()))
+}
+
+/// The spectra of the segments that `keep` leaves.
+pub(crate) fn spectra_of(
+    recording: &Recording,
+    options: &SpectrumOptions,
+    keep: impl FnOnce(&mut Segments) -> Result<(), AuthorError>,
+) -> Result<SegmentSpectra, AuthorError> {
     let mut warnings = Vec::new();
     let band = usable_band(recording, &mut warnings)?;
-    let segments = choose_segments(recording, options.segments);
+    let mut segments = choose_segments(recording, options.segments);
+    keep(&mut segments)?;
     check_segments(recording, &segments, &mut warnings)?;
     let inverse = options
         .response
@@ -187,15 +198,17 @@ fn usable_band(recording: &Recording, warnings: &mut Vec<String>) -> Result<Band
     }
     if band.high_hz < Band::TACTILE.high_hz {
         warnings.push(format!(
-            "{source}: sampled at {rate_hz} Hz, so the spectrum ends at {nyquist_hz} Hz instead of \
-             1000 Hz; what a finger feels above that is not in the recording"
+            "{source}: sampled at {}, so the spectrum ends at {} instead of 1000 Hz; what a finger feels above that is \
+             not in the recording",
+            hertz(rate_hz),
+            hertz(nyquist_hz)
         ));
     }
     let spacing_hz = rate_hz / crate::segments::segment_len(rate_hz) as f64;
     if (spacing_hz / GRID_HZ - 1.0).abs() > GRID_TOLERANCE {
         warnings.push(format!(
-            "{source}: {rate_hz} Hz is no multiple of 5 Hz: bins are {spacing_hz:.3} Hz apart and \
-             read as if they were 5 Hz apart"
+            "{source}: {} is no multiple of 5 Hz: bins are {spacing_hz:.3} Hz apart and read as if they were 5 Hz apart",
+            hertz(rate_hz)
         ));
     }
     Ok(band)

@@ -57,8 +57,11 @@ fn all_rows_are_read_and_lines_are_counted_through() {
         })
         .collect();
     let gap = read(format!("t_s,lateral_n\n\n{timed}")).unwrap();
-    let told = gap.warnings.iter().any(|text| text.contains("line 50003"));
-    assert!(told, "{:?}", gap.warnings);
+    let told = gap
+        .clock_findings
+        .iter()
+        .any(|found| found.message.contains("line 50003"));
+    assert!(told, "{:?}", gap.clock_findings);
 }
 
 /// A short row is cut off at the end of the file only, wherever blocks end.

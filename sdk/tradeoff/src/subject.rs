@@ -1,9 +1,6 @@
 //! A recording, as a sweep looks at it.
 
-use htex_author::{
-    AuthorError, SegmentSpectra, SpectrumOptions, Take, TextureSpectrum, exploration,
-    segment_spectra,
-};
+use htex_author::{AuthorError, SegmentSpectra, SpectrumOptions, Take, TextureSpectrum, read_take};
 
 use crate::accuracy::{Accuracy, accuracy};
 
@@ -28,16 +25,15 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// Reads the texture of a recording; `strict` refuses one that leaves its condition.
+    /// Reads the texture of a recording; `strict` refuses one with findings that are errors or
+    /// warnings.
     ///
     /// # Errors
     /// When the recording is not usable.
     pub fn new(take: &Take, options: &SpectrumOptions, strict: bool) -> Result<Self, AuthorError> {
         let recording = &take.recording;
-        let mut warnings = recording.warnings.clone();
-        let part = segment_spectra(recording, options)?;
-        warnings.extend(part.warnings.iter().cloned());
-        exploration(recording, &part.segments, take.given, strict, &mut warnings)?;
+        let reading = read_take(take, options, strict)?;
+        let (part, warnings) = (reading.part, reading.warnings);
         let repeats = repeats(&part, options)?;
         let spectrum = TextureSpectrum::average(&[part], options.averaging)?;
         let axes = &recording.lateral_n;

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use htex_author::read::{ReadError, ReadOptions, recording_from_bytes, trace_from_bytes};
 use htex_author::{
-    Averaging, Recording, SegmentChoice, SpectrumOptions, TextureSpectrum, exploration,
-    segment_spectra,
+    Averaging, Exploration, Recording, SegmentChoice, SpectrumOptions, Take, TextureSpectrum,
+    read_take, recording_findings,
 };
 use htex_scene::Trace;
 
@@ -70,6 +70,7 @@ fn take_spectra(recording: &Recording) {
     if recording.samples() > MOST {
         return;
     }
+    recording_findings(recording).iter().for_each(sentence);
     for segments in [
         SegmentChoice::Auto,
         SegmentChoice::Sweeps,
@@ -79,20 +80,26 @@ fn take_spectra(recording: &Recording) {
             segments,
             ..SpectrumOptions::default()
         };
-        let parts = match segment_spectra(recording, &options) {
-            Ok(part) => [part],
+        let take = Take {
+            recording: recording.clone(),
+            given: Exploration::default(),
+        };
+        let parts = match read_take(&take, &options, false) {
+            Ok(reading) => {
+                reading
+                    .warnings
+                    .iter()
+                    .chain(&reading.notes)
+                    .for_each(sentence);
+                finite("speed", reading.condition.speed_mm_s);
+                finite("force", reading.condition.force_n);
+                [reading.part]
+            }
             Err(error) => {
                 sentence(&error);
                 continue;
             }
         };
-        let mut warnings = parts[0].warnings.clone();
-        let given = Default::default();
-        if let Err(error) = exploration(recording, &parts[0].segments, given, false, &mut warnings)
-        {
-            sentence(&error);
-        }
-        warnings.iter().for_each(sentence);
         for averaging in [Averaging::Magnitude, Averaging::Rms, Averaging::Complex] {
             match TextureSpectrum::average(&parts, averaging) {
                 Ok(spectrum) => {

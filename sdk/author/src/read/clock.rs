@@ -1,24 +1,41 @@
 //! The sample rate of a table: from its time column, or from the user.
 
+use htex_format::Findings;
+
 use super::ReadError;
 use super::table::Table;
+use crate::findings::{RECORDING_CLOCK_GAP, RECORDING_CLOCK_JITTER};
+use crate::hertz::hertz;
 use crate::recording::check_rate;
 
-/// Steps this much longer than the median are gaps, and say nothing of the rate.
+/// Steps this much longer than the median are gaps, where the clock is even otherwise.
 const GAP: f64 = 1.5;
-/// Unevenness of the steps (rms over median) from which on a warning is due.
+/// The same where it is not: a long step is then made up for by short ones, and is no gap. Of steps that
+/// scatter as widely as those of a Poisson process, one in a thousand is longer.
+const GAP_UNEVEN: f64 = 10.0;
+/// Quartiles of the steps this far apart, as a part of the median, make a clock uneven: normal scatter of
+/// that width brings one step in 200,000 beyond [`GAP`].
+const UNEVEN: f64 = 0.15;
+/// Unevenness of the steps (rms over mean) from which on a warning is due.
 const JITTER: f64 = 0.01;
 /// Difference between column and option from which on a warning is due.
 const DISAGREE: f64 = 1e-3;
 /// Within this of a whole number of hertz, the whole number is meant: times are printed rounded.
 const WHOLE: f64 = 1e-5;
 
+/// What a reader noticed: sentences, and findings of the clock.
+#[derive(Default)]
+pub(crate) struct Noticed {
+    pub(crate) warnings: Vec<String>,
+    pub(crate) findings: Findings,
+}
+
 /// The rate in hertz; `given` wins over the time column `time_s`.
 pub(crate) fn rate(
     table: &Table<'_>,
     time_s: Option<&[f64]>,
     given: Option<f64>,
-    warnings: &mut Vec<String>,
+    noticed: &mut Noticed,
 ) -> Result<f64, ReadError> {
     let measured = match (time_s, given) {
         (None, None) => {
@@ -27,31 +44,34 @@ pub(crate) fn rate(
             });
         }
         (None, Some(given)) => return Ok(given),
-        (Some(time_s), _) => measure(table, time_s, warnings),
+        (Some(time_s), _) => measure(table, time_s, given, noticed),
     };
     match (measured, given) {
         (measured, None) => measured,
         (Ok(measured), Some(given)) => {
             if (measured / given - 1.0).abs() > DISAGREE {
-                warnings.push(format!(
-                    "The time column runs at {measured:.6} Hz, --rate says {given} Hz: --rate is used."
+                noticed.warnings.push(format!(
+                    "The time column runs at {}, --rate says {}: --rate is used.",
+                    hertz(measured),
+                    hertz(given)
                 ));
             }
             Ok(given)
         }
         (Err(error), Some(given)) => {
-            warnings.push(format!("The time column is not used, --rate is: {error}."));
+            let sentence = format!("The time column is not used, --rate is: {error}.");
+            noticed.warnings.push(sentence);
             Ok(given)
         }
     }
 }
 
-/// One over the mean of the steps that are no gaps: like their median where the clock is even, and
-/// right too where rounding makes the steps alternate.
+/// The number of steps over the time they take, without gaps.
 fn measure(
     table: &Table<'_>,
     time_s: &[f64],
-    warnings: &mut Vec<String>,
+    given: Option<f64>,
+    noticed: &mut Noticed,
 ) -> Result<f64, ReadError> {
     let steps = || time_s.windows(2).map(|pair| pair[1] - pair[0]);
     if let Some(row) = steps().position(|step| step <= 0.0) {
@@ -62,7 +82,7 @@ fn measure(
             after: time_s[row + 1],
         });
     }
-    let longest = GAP * median(steps().collect()) * (1.0 + 1e-6);
+    let longest = longest_step(steps().collect());
     let (mut sum, mut squares, mut count, mut gaps) = (0.0, 0.0, 0.0, 0_usize);
     for step in steps() {
         if step <= longest {
@@ -74,31 +94,47 @@ fn measure(
         }
     }
     let mean: f64 = sum / count;
-    let jitter = (squares / count / (mean * mean) - 1.0).max(0.0).sqrt();
-    if jitter > JITTER {
-        warnings.push(format!(
-            "The time steps are uneven by {:.1} % (rms).",
-            100.0 * jitter
-        ));
-    }
-    if let Some((row, gap)) = steps().enumerate().find(|(_, step)| *step > longest) {
-        warnings.push(format!(
-            "{gaps} gap(s) in the time column; the first, of {:.6} s, ends on line {}. Samples are taken as evenly spaced.",
-            gap,
-            table.line_of_row(row + 1)
-        ));
-    }
     let rate_hz = snap(1.0 / mean);
     check_rate(rate_hz).map_err(|source| ReadError::Recording {
         file: table.file.to_owned(),
         source,
     })?;
+    let findings = &mut noticed.findings;
+    if let Some((row, gap)) = steps().enumerate().find(|(_, step)| *step > longest) {
+        findings.add(RECORDING_CLOCK_GAP, format!("/time/{}", row + 1), format!(
+            "{gaps} gap{} in the time column; the first, of {gap:.6} s, ends on line {}. Samples are taken as evenly \
+             spaced; cut the recording there with --from and --to",
+            if gaps == 1 { "" } else { "s" },
+            table.line_of_row(row + 1)
+        ));
+    }
+    let jitter = (squares / count / (mean * mean) - 1.0).max(0.0).sqrt();
+    if jitter > JITTER {
+        let used = match given {
+            None => format!("read at {}, its steps over their time", hertz(rate_hz)),
+            Some(_) => "--rate is used".to_owned(),
+        };
+        findings.add(
+            RECORDING_CLOCK_JITTER,
+            "/time",
+            format!(
+                "the steps of the time column are uneven by {:.1} % (rms); {used}",
+                100.0 * jitter
+            ),
+        );
+    }
     Ok(rate_hz)
 }
 
-fn median(mut steps: Vec<f64>) -> f64 {
-    let middle = (steps.len() - 1) / 2;
-    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
+/// The longest step that is no gap.
+fn longest_step(mut steps: Vec<f64>) -> f64 {
+    let last = steps.len() - 1;
+    let mut rank = |at: usize| *steps.select_nth_unstable_by(at, f64::total_cmp).1;
+    let [low, median, high] = [last / 4, last / 2, last - last / 4].map(&mut rank);
+    let is_even = high - low <= UNEVEN * median;
+    // A step that is too long by rounding alone is none.
+    let factor = if is_even { GAP } else { GAP_UNEVEN };
+    factor * median * (1.0 + 1e-6)
 }
 
 fn snap(rate_hz: f64) -> f64 {

@@ -1,7 +1,7 @@
 //! Recordings as delimited text.
 
 use super::blocks::Blocks;
-use super::clock;
+use super::clock::{self, Noticed};
 use super::map::Role;
 use super::motion;
 use super::select::{Selection, select};
@@ -32,13 +32,16 @@ pub(crate) fn read(mut blocks: Blocks<'_>, options: &ReadOptions) -> Result<Reco
             values.iter_mut().for_each(|value| *value *= chosen.scale);
         }
     }
-    let mut warnings = std::mem::take(&mut selection.warnings);
+    let mut noticed = Noticed {
+        warnings: std::mem::take(&mut selection.warnings),
+        ..Noticed::default()
+    };
     let mut signals = Signals {
         selection,
         columns: numbers.columns,
     };
     let time_s = signals.take(Role::Time);
-    let rate_hz = clock::rate(&table, time_s.as_deref(), options.rate_hz, &mut warnings)?;
+    let rate_hz = clock::rate(&table, time_s.as_deref(), options.rate_hz, &mut noticed)?;
     let mut recording =
         signals
             .into_recording(file, rate_hz)
@@ -47,7 +50,8 @@ pub(crate) fn read(mut blocks: Blocks<'_>, options: &ReadOptions) -> Result<Reco
                 source,
             })?;
     recording.simulated = numbers.simulated;
-    recording.warnings = warnings;
+    recording.clock_findings = noticed.findings.into_list();
+    recording.warnings = noticed.warnings;
     Ok(recording)
 }
 

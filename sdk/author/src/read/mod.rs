@@ -51,6 +51,10 @@ pub struct ReadOptions {
     pub map: Option<ColumnMap>,
     /// Newtons of a full-scale (1.0) sample in WAV and NPY; 1 when absent, with a warning.
     pub newtons_per_unit: Option<f64>,
+    /// Time in the file from which on it is read, seconds.
+    pub from_s: Option<f64>,
+    /// Time in the file up to which it is read, seconds.
+    pub to_s: Option<f64>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -90,10 +94,16 @@ fn read_from<R: Read>(
     let file = text::file_name(path);
     check_options(&file, options)?;
     let mut blocks = Blocks::new(&file, open()?);
-    match kind(path, blocks.front()?) {
+    let recording = match kind(path, blocks.front()?) {
         Kind::Csv => csv::read(blocks, options),
         Kind::Wav => wav::read(&file, &blocks.rest()?, options),
         Kind::Npy => npy::read(&file, &blocks.rest()?, options),
+    }?;
+    match (options.from_s, options.to_s) {
+        (None, None) => Ok(recording),
+        (from_s, to_s) => recording
+            .between(from_s, to_s)
+            .map_err(|source| ReadError::Recording { file, source }),
     }
 }
 

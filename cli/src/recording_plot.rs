@@ -1,0 +1,93 @@
+//! A recording as a picture: what is read of it, and what is left out.
+
+use std::ops::Range;
+
+use htex_author::{Recording, Segments};
+use htex_report::{Axis, Line, Plot, Series, series_color};
+
+/// Columns of the picture; each shows the lowest and the highest of its samples.
+const COLUMNS: usize = 1000;
+const READ: &str = "#0072b2";
+const LEFT_OUT: &str = "#d55e00";
+const QUIET: &str = "#b5b5b5";
+
+/// The lateral force over time, with the segments that are read, those that are left out, and the threshold
+/// that sweeps are found by.
+pub(crate) fn recording_plot(recording: &Recording, segments: &Segments) -> Plot {
+    let force = lateral(recording);
+    let draw = |name: String, color: &str, parts: &[Range<usize>]| {
+        let mut series = Series::line(&name, envelope(recording, &force, parts)).colored(color);
+        (series.hover, series.line_width_px) = (false, 1.0);
+        series
+    };
+    let mut plot = Plot::new(
+        &recording.source,
+        Axis::linear("time / s").with_range(recording.second(0), recording.second(force.len())),
+        Axis::linear("lateral force, magnitude / N"),
+    );
+    (plot.width, plot.height) = (960.0, 320.0);
+    let whole = 0..force.len();
+    plot.series
+        .push(draw("recorded".to_owned(), QUIET, &[whole]));
+    let left_out = left_out(segments, force.len());
+    if !left_out.is_empty() {
+        plot.series.push(draw(
+            format!("left out ({})", left_out.len()),
+            LEFT_OUT,
+            &left_out,
+        ));
+    }
+    let read = format!("read ({} segments)", segments.starts.len());
+    plot.series.push(draw(read, READ, &segments.stretches()));
+    let ends = [0, force.len()].map(|at| (recording.second(at), segments.threshold_n));
+    let mut threshold =
+        Series::line("mean: sweeps lie above", ends.to_vec()).colored(series_color(4));
+    (threshold.line, threshold.hover) = (Line::Dashed, false);
+    plot.series.push(threshold);
+    plot
+}
+
+/// Magnitude of the lateral force, sample by sample.
+fn lateral(recording: &Recording) -> Vec<f64> {
+    let squares = |at: usize| {
+        recording
+            .lateral_n
+            .iter()
+            .map(|axis| axis[at] * axis[at])
+            .sum::<f64>()
+    };
+    (0..recording.samples())
+        .map(|at| squares(at).sqrt())
+        .collect()
+}
+
+/// Sweeps that are cut off, where sweeps are read, and segments off their target.
+fn left_out(segments: &Segments, samples: usize) -> Vec<Range<usize>> {
+    let cut_off = segments
+        .sweeps
+        .iter()
+        .filter(|sweep| segments.from_sweeps && (sweep.start == 0 || sweep.end == samples))
+        .map(|sweep| sweep.start..sweep.end);
+    let off_target = segments
+        .off_target
+        .iter()
+        .map(|start| *start..start + segments.len);
+    cut_off.chain(off_target).collect()
+}
+
+/// The lowest and highest force of each column of the picture, with a break behind each part.
+fn envelope(recording: &Recording, force: &[f64], parts: &[Range<usize>]) -> Vec<(f64, f64)> {
+    let column = force.len().div_ceil(COLUMNS);
+    let mut points = Vec::new();
+    for part in parts {
+        for start in part.clone().step_by(column) {
+            let samples = &force[start..(start + column).min(part.end)];
+            let low = samples.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = samples.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let at = recording.second(start);
+            points.extend([(at, low), (at, high)]);
+        }
+        points.push((f64::NAN, f64::NAN));
+    }
+    points
+}

@@ -1,0 +1,67 @@
+//! What is wrong with a recording: findings with stable codes.
+
+mod levels;
+mod page;
+mod plausible;
+mod quantile;
+mod rules;
+mod segments;
+mod spikes;
+mod stuck;
+
+use htex_format::{Finding, Findings};
+
+use crate::Recording;
+
+pub use page::findings_page;
+pub(crate) use quantile::median;
+pub(crate) use rules::{
+    RECORDING_CLOCK_GAP, RECORDING_CLOCK_JITTER, RECORDING_NOTED, RECORDING_OFF_TARGET,
+    RECORDING_UNREADABLE, RECORDING_UNSTEADY, RECORDING_UNUSABLE,
+};
+pub use rules::{RULES, explain};
+pub(crate) use segments::judge_segments;
+
+/// What a recording's signals show to be wrong, before any spectrum is taken: clipping, stuck
+/// sensors, spikes, forces and speeds that no finger has; and what its clock showed when it was read.
+///
+/// ```
+/// use htex_author::{Recording, recording_findings};
+///
+/// let held = Recording::new("held.csv", 1000.0, vec![vec![0.3; 2000]])?;
+/// assert_eq!(recording_findings(&held)[0].code, "RECORDING_STUCK");
+/// # Ok::<(), htex_author::recording::RecordingError>(())
+/// ```
+pub fn recording_findings(recording: &Recording) -> Vec<Finding> {
+    let mut findings = Findings::default();
+    for axis in 0..recording.lateral_n.len() {
+        let clipped = levels::judge(recording, axis, &mut findings);
+        stuck::judge_lateral(recording, axis, &clipped, &mut findings);
+        spikes::judge_lateral(recording, axis, &mut findings);
+    }
+    stuck::judge_normal(recording, &mut findings);
+    spikes::judge_normal(recording, &mut findings);
+    plausible::judge_friction(recording, &mut findings);
+    plausible::judge_speed(recording, &mut findings);
+    let found = findings.into_list();
+    recording
+        .clock_findings
+        .iter()
+        .cloned()
+        .chain(found)
+        .collect()
+}
+
+/// A lateral axis' name in pointers and messages.
+fn axis_name(recording: &Recording, axis: usize) -> &'static str {
+    match (recording.lateral_n.len(), axis) {
+        (1, _) => "lateral",
+        (_, 0) => "lateral_x",
+        _ => "lateral_y",
+    }
+}
+
+/// A JSON pointer to a sample of a signal, counted in the file.
+fn pointer(recording: &Recording, signal: &str, sample: usize) -> String {
+    format!("/{signal}/{}", recording.first_sample + sample)
+}

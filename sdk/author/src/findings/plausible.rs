@@ -1,0 +1,79 @@
+//! Forces and speeds that no finger has.
+
+use htex_format::Findings;
+
+use super::quantile::{median, quantile};
+use super::rules::{
+    RECORDING_FRICTION_IMPLAUSIBLE, RECORDING_SPEED_IMPLAUSIBLE, RECORDING_SPEED_ZERO,
+};
+use crate::Recording;
+
+/// Largest lateral over normal force. Fingers on smooth, wet glass reach 3 to 5 at light touch, where
+/// adhesion counts most; twice that leaves room for offsets of the sensors.
+const LARGEST_FRICTION: f64 = 10.0;
+/// A speed below which the finger stands still, mm/s: at it, the skin alone, which gives by about a
+/// millimetre, takes a quarter of an hour to be stretched.
+const STILL_MM_S: f64 = 1e-3;
+/// Speeds of hands that explore, mm/s: the slowest tribometers for fingers run at 1; an arm in full swing
+/// reaches 2 m/s.
+const HANDS_MM_S: [f64; 2] = [1.0, 2000.0];
+/// The speed is judged by this rank of its samples: the rest of them may be turns and pauses.
+const SLIDING: f64 = 0.75;
+
+/// Compares the medians of lateral and normal force.
+pub(super) fn judge_friction(recording: &Recording, findings: &mut Findings) {
+    let Some(normal) = recording.normal_n.as_deref().and_then(median) else {
+        return;
+    };
+    let squares = |at: usize| {
+        recording
+            .lateral_n
+            .iter()
+            .map(|axis| axis[at] * axis[at])
+            .sum::<f64>()
+    };
+    let lateral = quantile(0.5, recording.samples(), squares)
+        .unwrap_or(0.0)
+        .sqrt();
+    if lateral > LARGEST_FRICTION * normal.max(0.0) {
+        findings.add(RECORDING_FRICTION_IMPLAUSIBLE, "/normal", format!(
+            "the lateral force is {lateral:.4} N (median) at a normal force of {normal:.4} N; correct the scale of one of \
+             them with --map"
+        ));
+    }
+}
+
+/// Judges the speed by its faster samples.
+pub(super) fn judge_speed(recording: &Recording, findings: &mut Findings) {
+    let Some(speed) = &recording.speed_mm_s else {
+        return;
+    };
+    let fastest = speed
+        .iter()
+        .fold(0.0, |most: f64, speed| most.max(speed.abs()));
+    if fastest < STILL_MM_S {
+        findings.add(RECORDING_SPEED_ZERO, "/speed", format!(
+            "the speed is never above {fastest} mm/s in {:.2} s; leave the column out, or give --speed",
+            recording.duration_s()
+        ));
+        return;
+    }
+    let sliding = quantile(SLIDING, speed.len(), |at| speed[at].abs()).unwrap_or(0.0);
+    let [slowest, largest] = HANDS_MM_S;
+    if !(slowest..=largest).contains(&sliding) {
+        let guess = match sliding {
+            low if low < slowest => format!(
+                "if it is in m/s ({:.4} mm/s), give --map speed=COLUMN:1000",
+                1e3 * low
+            ),
+            high => format!(
+                "if it is in um/s ({:.4} mm/s), give --map speed=COLUMN:0.001",
+                1e-3 * high
+            ),
+        };
+        findings.add(RECORDING_SPEED_IMPLAUSIBLE, "/speed", format!(
+            "a quarter of the time the speed is {sliding:.4} mm/s or more, and hands slide at {slowest} to {largest} mm/s; \
+             {guess}"
+        ));
+    }
+}

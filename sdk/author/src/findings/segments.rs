@@ -1,0 +1,105 @@
+//! What is to be said of the segments that are read, and of those that are not.
+
+use htex_format::Findings;
+
+use super::quantile::median;
+use super::rules::{RECORDING_READ_IN_WINDOWS, RECORDING_SWEEPS_CUT_OFF, RECORDING_UNEVEN};
+use crate::{Recording, SegmentSpectra};
+
+/// Level over the median of all segments from which on one is too loud: 12 dB. Force and speed within
+/// 10 % make about 1 dB, seams and knots of a material a few.
+const LOUD: f64 = 4.0;
+/// Loud ones are the exception: at most a quarter of the segments.
+const EXCEPTION: usize = 4;
+/// Places that a message names.
+const NAMED: usize = 5;
+
+/// Tells which sweeps were left out, what is read instead, and which segments are too loud.
+pub(crate) fn judge_segments(
+    recording: &Recording,
+    part: &SegmentSpectra,
+    findings: &mut Findings,
+) {
+    let segments = &part.segments;
+    if segments.from_sweeps && segments.cut_off > 0 {
+        let (n, s) = (
+            segments.cut_off,
+            if segments.cut_off == 1 { "" } else { "s" },
+        );
+        findings.add(RECORDING_SWEEPS_CUT_OFF, "/lateral", format!(
+            "{n} sweep{s} of {} left out: the beginning or the end of the recording cuts {} off",
+            segments.sweeps.len(),
+            if n == 1 { "it" } else { "them" }
+        ));
+    }
+    if let Some(unread) = segments.unread {
+        findings.add(RECORDING_READ_IN_WINDOWS, "/lateral", format!(
+            "read in windows ({}): its sweeps stand for {:.1} of {:.1} s of sliding; --segments sweeps reads their middles alone",
+            seconds_read(recording, part),
+            unread.spoken_for_s,
+            unread.sliding_s
+        ));
+    }
+    judge_levels(recording, part, findings);
+}
+
+/// The stretches that are read, as a person reads them.
+fn seconds_read(recording: &Recording, part: &SegmentSpectra) -> String {
+    let stretches = part.segments.stretches();
+    let second = |sample| recording.second(sample);
+    let named = stretches.iter().take(NAMED);
+    let mut named: Vec<String> = named
+        .map(|part| format!("{:.1} to {:.1} s", second(part.start), second(part.end)))
+        .collect();
+    if stretches.len() > NAMED {
+        named.push(format!("{} more", stretches.len() - NAMED));
+    }
+    named.join(", ")
+}
+
+fn judge_levels(recording: &Recording, part: &SegmentSpectra, findings: &mut Findings) {
+    let level = |bins: &Vec<_>| {
+        bins.iter()
+            .map(htex_dsp::spectrum::Complex::<f64>::norm_sqr)
+            .sum::<f64>()
+            .sqrt()
+    };
+    let levels: Vec<f64> = part.spectra.iter().map(level).collect();
+    let usual = median(&levels).unwrap_or(0.0);
+    let starts = &part.segments.starts;
+    let loud: Vec<(usize, f64)> = starts
+        .iter()
+        .zip(&levels)
+        .filter(|(_, level)| usual > 0.0 && **level > LOUD * usual)
+        .map(|(start, level)| (*start, *level))
+        .collect();
+    let Some((first, _)) = loud
+        .first()
+        .filter(|_| loud.len() <= levels.len() / EXCEPTION)
+    else {
+        return;
+    };
+    let place = |(start, level): &(usize, f64)| {
+        let to = recording.second(start + part.segments.len);
+        format!(
+            "{:.2} to {to:.2} s by {:.1} dB",
+            recording.second(*start),
+            20.0 * (level / usual).log10()
+        )
+    };
+    let mut named: Vec<String> = loud.iter().take(NAMED).map(place).collect();
+    if loud.len() > NAMED {
+        named.push(format!("{} more", loud.len() - NAMED));
+    }
+    let message = format!(
+        "{} of {} segments lie above the median of all: {}; look there, and choose a range with --from and --to",
+        loud.len(),
+        levels.len(),
+        named.join(", ")
+    );
+    findings.add(
+        RECORDING_UNEVEN,
+        super::pointer(recording, super::axis_name(recording, 0), *first),
+        message,
+    );
+}

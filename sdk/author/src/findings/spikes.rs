@@ -1,0 +1,118 @@
+//! Single samples that stand out.
+
+use htex_format::Findings;
+
+use super::quantile::{median, quantile};
+use super::rules::{RECORDING_FORCE_OUTLIER, RECORDING_SPIKE};
+use super::{axis_name, pointer};
+use crate::Recording;
+
+/// Blocks in which the sharpest corner is looked for, seconds.
+const BLOCK_S: f64 = 0.1;
+/// A corner this many times as sharp as those of usual blocks is a spike: with its energy, 100 times
+/// theirs, one sample raises the highest bands of a segment at 20 kHz by about 1.5 dB, at 1 kHz by 7 dB.
+const SPIKE: f64 = 10.0;
+/// The usual block is the one of this rank: three quarters of a recording may be rest.
+const USUAL: f64 = 0.75;
+/// Sharp corners in more than this part of the blocks are the texture's own (stick and slip).
+const RARE: f64 = 0.1;
+/// As many are rare in any recording.
+const FEW: usize = 3;
+/// Part of the median normal force that a single step may have: forces come in steps, and are often
+/// constant but for one.
+const FORCE_STEP: f64 = 0.05;
+/// Places that a message names.
+const NAMED: usize = 5;
+
+/// Finds spikes of a lateral axis.
+pub(super) fn judge_lateral(recording: &Recording, axis: usize, findings: &mut Findings) {
+    let values = &recording.lateral_n[axis];
+    let name = axis_name(recording, axis);
+    let spikes = spikes(values, recording.rate_hz, 0.0);
+    if let Some(first) = spikes.first() {
+        let message = format!(
+            "the {name} force has {} that stand{} out of all others: {}; cut them away with --from and --to, or repair \
+             them",
+            count(spikes.len()),
+            if spikes.len() == 1 { "s" } else { "" },
+            places(recording, values, &spikes)
+        );
+        findings.add(RECORDING_SPIKE, pointer(recording, name, *first), message);
+    }
+}
+
+/// Finds outliers of the normal force.
+pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
+    let Some(values) = &recording.normal_n else {
+        return;
+    };
+    let usual = median(values).unwrap_or(0.0);
+    let spikes = spikes(values, recording.rate_hz, FORCE_STEP * usual.abs());
+    if let Some(first) = spikes.first() {
+        let message = format!(
+            "the normal force has {} that no finger presses with: {}; its median is {usual:.4} N (its mean would be \
+             {:.4} N), repair them or give --force",
+            count(spikes.len()),
+            places(recording, values, &spikes),
+            values.iter().sum::<f64>() / values.len() as f64
+        );
+        findings.add(
+            RECORDING_FORCE_OUTLIER,
+            pointer(recording, "normal", *first),
+            message,
+        );
+    }
+}
+
+/// The sharpest sample of each block whose corner is beyond all that is usual and above a floor.
+fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
+    let block = ((BLOCK_S * rate_hz) as usize).max(8);
+    let sharpest: Vec<(usize, f64)> = (0..values.len())
+        .step_by(block)
+        .filter_map(|start| sharpest(values, start, block))
+        .collect();
+    let usual = quantile(USUAL, sharpest.len(), |at| sharpest[at].1).unwrap_or(0.0);
+    let limit = SPIKE * usual.max(floor);
+    if limit == 0.0 {
+        return Vec::new();
+    }
+    let found: Vec<usize> = sharpest
+        .iter()
+        .filter(|(_, corner)| *corner > limit)
+        .map(|(at, _)| *at)
+        .collect();
+    let rare = FEW.max((RARE * sharpest.len() as f64) as usize);
+    if found.len() > rare {
+        Vec::new()
+    } else {
+        found
+    }
+}
+
+/// The sample of a block that differs most from the mean of its neighbours, and by how much.
+fn sharpest(values: &[f64], start: usize, block: usize) -> Option<(usize, f64)> {
+    let from = start.saturating_sub(1);
+    let reach = &values[from..(start + block + 1).min(values.len())];
+    let corner = |w: &[f64]| (w[1] - 0.5 * (w[0] + w[2])).abs();
+    let corners = reach.windows(3).enumerate();
+    corners.map(|(at, w)| (from + at + 1, corner(w))).fold(
+        None,
+        |best: Option<(usize, f64)>, next| match best {
+            Some(best) if best.1 >= next.1 => Some(best),
+            _ => Some(next),
+        },
+    )
+}
+
+fn count(samples: usize) -> String {
+    format!("{samples} sample{}", if samples == 1 { "" } else { "s" })
+}
+
+fn places(recording: &Recording, values: &[f64], spikes: &[usize]) -> String {
+    let place = |at: &usize| format!("{:.4} N at {:.4} s", values[*at], recording.second(*at));
+    let mut named: Vec<String> = spikes.iter().take(NAMED).map(place).collect();
+    if spikes.len() > NAMED {
+        named.push(format!("{} more", spikes.len() - NAMED));
+    }
+    named.join(", ")
+}

@@ -1,0 +1,122 @@
+//! Sensors that hold one value.
+
+use std::ops::Range;
+
+use htex_format::Findings;
+
+use super::rules::{RECORDING_SILENT, RECORDING_STUCK};
+use super::{axis_name, pointer};
+use crate::Recording;
+
+/// Shortest stretch of one value that is a stuck sensor, seconds: longer than a hand takes to turn (0.1
+/// to 0.3 s), and two segments and a half.
+const STUCK_S: f64 = 0.5;
+/// Shortest stretch of one value near zero that is worth a word, seconds: pauses between sweeps are shorter.
+const SILENT_S: f64 = 1.0;
+/// A value this far from zero, as a part of the mean magnitude, is friction; nearer to it is rest.
+const FRICTION: f64 = 0.5;
+/// Part of the mean speed below which the finger rests.
+const RESTS: f64 = 0.1;
+/// Part of the samples at which a normal force changes whose converter resolves its noise. Forces in
+/// coarser steps, and set points, may well stay.
+const LIVELY: f64 = 0.5;
+
+/// Finds stretches in which a lateral axis stands still, except at the values that it is clipped at.
+pub(super) fn judge_lateral(
+    recording: &Recording,
+    axis: usize,
+    clipped: &[f64],
+    findings: &mut Findings,
+) {
+    let values = &recording.lateral_n[axis];
+    let name = axis_name(recording, axis);
+    let magnitude = mean(values.iter().map(|value| value.abs()));
+    let shortest = |seconds: f64| ((seconds * recording.rate_hz) as usize).max(2);
+    let (mut stuck, mut silent) = (Vec::new(), Vec::new());
+    for run in runs(values, shortest(STUCK_S)) {
+        let value = values[run.start];
+        if clipped.contains(&value) {
+            continue;
+        }
+        let is_friction = value.abs() > FRICTION * magnitude;
+        match moves(recording, &run) {
+            Some(true) => stuck.push(run),
+            None if is_friction => stuck.push(run),
+            None if run.len() >= shortest(SILENT_S) => silent.push(run),
+            _ => {}
+        }
+    }
+    for (rule, runs) in [(RECORDING_STUCK, stuck), (RECORDING_SILENT, silent)] {
+        if let Some(first) = runs.first() {
+            let message = sentence(recording, name, values, &runs);
+            findings.add(rule, pointer(recording, name, first.start), message);
+        }
+    }
+}
+
+/// Finds stretches in which a normal force stands still that elsewhere does not.
+pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
+    let Some(values) = &recording.normal_n else {
+        return;
+    };
+    let runs = runs(values, ((STUCK_S * recording.rate_hz) as usize).max(2));
+    let Some(first) = runs.first() else {
+        return;
+    };
+    let held: usize = runs.iter().map(Range::len).sum();
+    let changes = values.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    if changes as f64 > LIVELY * (values.len() - held) as f64 {
+        let message = sentence(recording, "normal", values, &runs);
+        findings.add(
+            RECORDING_STUCK,
+            pointer(recording, "normal", first.start),
+            message,
+        );
+    }
+}
+
+/// Whether the finger moves in a stretch, where its speed is known.
+fn moves(recording: &Recording, run: &Range<usize>) -> Option<bool> {
+    let speed = recording.speed_mm_s.as_ref()?;
+    let usual = mean(speed.iter().map(|speed| speed.abs()));
+    let here = mean(speed[run.clone()].iter().map(|speed| speed.abs()));
+    (usual > 0.0).then_some(here > RESTS * usual)
+}
+
+fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len() as f64;
+    values.sum::<f64>() / count
+}
+
+/// Stretches of one value, of at least so many samples.
+fn runs(values: &[f64], shortest: usize) -> Vec<Range<usize>> {
+    let mut runs = Vec::new();
+    let mut start = 0;
+    for at in 1..=values.len() {
+        if values.get(at) != Some(&values[start]) {
+            if at - start >= shortest {
+                runs.push(start..at);
+            }
+            start = at;
+        }
+    }
+    runs
+}
+
+fn sentence(recording: &Recording, name: &str, values: &[f64], runs: &[Range<usize>]) -> String {
+    let held: usize = runs.iter().map(Range::len).sum();
+    let longest = runs
+        .iter()
+        .max_by_key(|run| run.len())
+        .cloned()
+        .unwrap_or_default();
+    format!(
+        "the {name} force holds one value for {:.2} of {:.2} s, longest {:.4} N from {:.3} to {:.3} s; cut it away with \
+         --from and --to, or record again",
+        held as f64 / recording.rate_hz,
+        recording.duration_s(),
+        values[longest.start],
+        recording.second(longest.start),
+        recording.second(longest.end),
+    )
+}

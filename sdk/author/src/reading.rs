@@ -1,0 +1,130 @@
+//! A recording, read: its segments' spectra, its condition, and what is to be said of it.
+
+use std::path::Path;
+
+use htex_format::{Finding, Findings, Report, Severity};
+
+use crate::conditions::Take;
+use crate::exploration::{exploration, keep_on_target};
+use crate::findings::{
+    RECORDING_NOTED, RECORDING_UNREADABLE, RECORDING_UNUSABLE, judge_segments, recording_findings,
+};
+use crate::read::{ReadError, ReadOptions, read_recording};
+use crate::spectrum::spectra_of;
+use crate::{AuthorError, Exploration, Recording, SegmentSpectra, SpectrumOptions, Spread};
+
+/// A recording, read.
+#[derive(Debug, Clone)]
+pub struct Reading {
+    /// The spectra of its segments.
+    pub part: SegmentSpectra,
+    /// Speed and force: what was given, else the median of what was measured over the segments.
+    pub condition: Exploration,
+    /// How far speed and force spread over the segments.
+    pub spread: Spread,
+    /// All findings, in the order of `spec/recording-findings.md`.
+    pub findings: Vec<Finding>,
+    /// What the readers noticed, and the findings that are errors or warnings, as sentences.
+    pub warnings: Vec<String>,
+    /// The findings that are worth knowing and no more, as sentences.
+    pub notes: Vec<String>,
+}
+
+/// Reads the texture of a recording: finds what is wrong with it, chooses its segments, leaves out those that
+/// leave the given condition by more than 10 %, and takes their spectra.
+///
+/// # Errors
+/// When the recording is too short, its rate too low, no segment is left, the response cannot be divided
+/// by, or a speed or force is impossible; with `strict`, when a finding is an error or a warning.
+pub fn read_take(
+    take: &Take,
+    options: &SpectrumOptions,
+    strict: bool,
+) -> Result<Reading, AuthorError> {
+    let recording = &take.recording;
+    let mut of_segments = Findings::default();
+    let part = spectra_of(recording, options, |segments| {
+        keep_on_target(recording, segments, take.given, &mut of_segments)
+    })?;
+    judge_segments(recording, &part, &mut of_segments);
+    let (condition, spread) = exploration(recording, &part.segments, take.given, &mut of_segments)?;
+    let mut findings = recording_findings(recording);
+    findings.extend(of_segments.into_list());
+    if strict {
+        refuse(recording, &findings)?;
+    }
+    let sentences = |info: bool| {
+        let chosen = findings
+            .iter()
+            .filter(move |f| (f.severity == Severity::Info) == info);
+        chosen.map(|f| format!("{}: {}: {}", recording.source, f.code, f.message))
+    };
+    let noticed = recording.warnings.iter().chain(&part.warnings).cloned();
+    Ok(Reading {
+        warnings: noticed.chain(sentences(false)).collect(),
+        notes: sentences(true).collect(),
+        part,
+        condition,
+        spread,
+        findings,
+    })
+}
+
+fn refuse(recording: &Recording, findings: &[Finding]) -> Result<(), AuthorError> {
+    let grave = findings.iter().filter(|f| f.severity != Severity::Info);
+    let findings: Vec<Finding> = grave.cloned().collect();
+    match findings.is_empty() {
+        true => Ok(()),
+        false => Err(AuthorError::Strict {
+            source_name: recording.source.clone(),
+            findings,
+        }),
+    }
+}
+
+/// Everything that is found in a recording; it is valid when no finding is an error.
+///
+/// # Errors
+/// When the file cannot be opened, or an option cannot be followed. A file that is no recording is a
+/// finding.
+pub fn validate_recording(
+    path: &Path,
+    read: &ReadOptions,
+    given: Exploration,
+    options: &SpectrumOptions,
+) -> Result<Report, ReadError> {
+    let findings = match read_recording(path, read) {
+        Err(error @ (ReadError::Io { .. } | ReadError::Option { .. })) => return Err(error),
+        Err(error) => {
+            let mut findings = Findings::default();
+            findings.add(RECORDING_UNREADABLE, "", error.to_string());
+            findings.into_list()
+        }
+        Ok(recording) => all_findings(Take { recording, given }, options),
+    };
+    Ok(Report {
+        valid: findings.iter().all(|f| f.severity != Severity::Error),
+        findings,
+    })
+}
+
+/// The findings of a recording that can be read, and what was noticed while it was.
+fn all_findings(take: Take, options: &SpectrumOptions) -> Vec<Finding> {
+    let mut rest = Findings::default();
+    let mut noticed = take.recording.warnings.clone();
+    let mut findings = match read_take(&take, options, false) {
+        Ok(reading) => {
+            noticed.extend(reading.part.warnings);
+            reading.findings
+        }
+        Err(error) => {
+            rest.add(RECORDING_UNUSABLE, "", error.to_string());
+            recording_findings(&take.recording)
+        }
+    };
+    noticed
+        .into_iter()
+        .for_each(|sentence| rest.add(RECORDING_NOTED, "", sentence));
+    findings.extend(rest.into_list());
+    findings
+}

@@ -174,10 +174,7 @@ impl RecordingArgs {
             ("to", self.to.as_ref().and_then(|v| name(v))),
             ("frf", self.frf.as_ref().and_then(file)),
             ("segments", value_name(self.segments, SegmentsArg::Auto)),
-            (
-                "averaging",
-                value_name(self.averaging, AveragingArg::Rms),
-            ),
+            ("averaging", value_name(self.averaging, AveragingArg::Rms)),
         ];
         let said = entries
             .into_iter()

@@ -143,10 +143,7 @@ impl RecordingArgs {
             ),
             ("frf", self.frf.as_ref().and_then(file)),
             ("segments", value_name(self.segments, SegmentsArg::Auto)),
-            (
-                "averaging",
-                value_name(self.averaging, AveragingArg::Rms),
-            ),
+            ("averaging", value_name(self.averaging, AveragingArg::Rms)),
         ];
         let said = entries
             .into_iter()

@@ -29,8 +29,7 @@ pub(crate) fn warning(
 ) -> Option<String> {
     let conditions = qualities.iter().zip(spectra);
     let error_db = |quality: &Quality| quality.band_error_rms_db;
-    let (quality, spectrum) =
-        conditions.max_by(|a, b| error_db(a.0).total_cmp(&error_db(b.0)))?;
+    let (quality, spectrum) = conditions.max_by(|a, b| error_db(a.0).total_cmp(&error_db(b.0)))?;
     let misses_db = error_db(quality);
     if misses_db <= MISSES_DB {
         return None;
@@ -40,8 +39,7 @@ pub(crate) fn warning(
         (error_db < misses_db).then_some(Tried { name, error_db })
     };
     let own = other_options(choice).into_iter();
-    let best_option =
-        best(own.filter_map(|(name, options)| try_one(&choice.model, options, name)));
+    let best_option = best(own.filter_map(|(name, options)| try_one(&choice.model, options, name)));
     let others = models.iter().filter(|m| m.id() != choice.model.id());
     let best_model = best(others.filter_map(|model| {
         let name = format!("the model {}", model.short_name());

@@ -115,7 +115,10 @@ impl fmt::Display for Raised {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, (low_hz, high_hz, most_db)) in self.stretches.iter().enumerate() {
             let comma = if i > 0 { ", " } else { "" };
-            write!(f, "{comma}{low_hz} to {high_hz} Hz by up to {most_db:.1} dB")?;
+            write!(
+                f,
+                "{comma}{low_hz} to {high_hz} Hz by up to {most_db:.1} dB"
+            )?;
         }
         Ok(())
     }

@@ -26,10 +26,7 @@ fn played(response: Option<Response>) -> (Vec<f32>, Option<String>) {
     let mut stages = plan.stages.iter();
     let stage = stages.find(|stage| stage.name == "compensation");
     let reason = stage.map(|stage| stage.reason.clone());
-    (
-        rendered(&mut Renderer::new(&scene, &plan).unwrap()),
-        reason,
-    )
+    (rendered(&mut Renderer::new(&scene, &plan).unwrap()), reason)
 }
 
 /// Energies from 40 to 200, to 500, to 930 Hz, dB.
@@ -74,5 +71,8 @@ fn what_lies_outside_the_band_holds_nothing_back() {
     }
     assert_eq!(none, None);
     let reason = reason.unwrap();
-    assert!(reason.contains("505 to 1000 Hz by up to 19.9 dB"), "{reason}");
+    assert!(
+        reason.contains("505 to 1000 Hz by up to 19.9 dB"),
+        "{reason}"
+    );
 }

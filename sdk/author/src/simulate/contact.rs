@@ -118,9 +118,15 @@ impl Rig {
     /// was made for.
     pub(super) fn response(&self, frequency_hz: Vec<f64>, inner_hz: f64) -> SetupResponse {
         let lateral = &self.mode[..1];
-        let filters = || lateral.iter().chain(self.anti_alias.iter().flat_map(|[x, ..]| x));
+        let filters = || {
+            lateral
+                .iter()
+                .chain(self.anti_alias.iter().flat_map(|[x, ..]| x))
+        };
         let at = |&hz: &f64| -> Complex<f64> {
-            filters().map(|filter| filter.response(hz, inner_hz)).product()
+            filters()
+                .map(|filter| filter.response(hz, inner_hz))
+                .product()
         };
         let values: Vec<Complex<f64>> = frequency_hz.iter().map(at).collect();
         SetupResponse {

@@ -90,6 +90,66 @@ fn assets_are_small() {
     assert!(one <= 1_024 && all <= 4_096, "{one} {all}");
 }
 
+fn db(ratio: f64) -> f64 {
+    20.0 * ratio.log10()
+}
+
+#[test]
+fn a_copy_of_a_copy_plays_as_strong_as_the_recording() {
+    let place = Place::new();
+    let csv = place.recording("sandpaper");
+    let magnitude = numbers(&place.json(&["process", &csv, "--json"])["magnitude_n"]);
+    let recorded = (magnitude.iter().map(|m| m * m).sum::<f64>() / 3.0).sqrt();
+    for model in ["ar", "mfcc", "sbeta", "sslope", "bands"] {
+        let level = |recording: &str, more: &[&str]| {
+            let fit = ["fit", recording, "--model", model, "-o", "g.htex", "--json"];
+            let fitted = place.json(&[&fit[..], more].concat());
+            fitted["representations"][0]["level_n_rms"]
+                .as_f64()
+                .unwrap()
+        };
+        let mut levels = vec![level(&csv, &[])];
+        for seed in ["0", "1", "2"] {
+            let synth = ["synth", "g.htex", "--seconds", "60", "--rate", "8000"];
+            let run = place.run(&[&synth[..], &["--seed", seed, "-o", "g.wav"]].concat());
+            assert_eq!(run.code(), 0, "{}", run.error());
+            levels.push(level("g.wav", &["--newtons-per-unit", "1"]));
+        }
+        let off_db: Vec<f64> = levels.iter().map(|level| db(level / recorded)).collect();
+        println!("{model:6} {off_db:+.3?} dB over the recording");
+        // Bands keeps the energies of its bands, which rounding to 0.5 dB moves.
+        let first_db = if model == "bands" { 0.25 } else { 1e-6 };
+        assert!(off_db[0].abs() < first_db, "{model}: {off_db:?}");
+        assert!(
+            off_db.iter().all(|db| (db - off_db[0]).abs() < 0.1),
+            "{model}: {off_db:?}"
+        );
+    }
+}
+
+#[test]
+fn a_fit_that_misses_its_bands_is_told_with_what_does_better() {
+    let place = Place::new();
+    let simulate = ["simulate", "--surface", "corrugated-paper", "--seed", "1"];
+    let run = place.run(&[&simulate[..], &["-o", "cp.csv", "--frf", "rig.csv"]].concat());
+    assert_eq!(run.code(), 0, "{}", run.error());
+    let fit = |options: &[&str]| {
+        let fit = [
+            "fit", "cp.csv", "--frf", "rig.csv", "--model", "sbeta", "-o", "s.htex",
+        ];
+        let fitted = place.json(&[&fit[..], &["--json"], options].concat());
+        let error = &fitted["representations"][0]["band_error_rms_db"];
+        (error.as_f64().unwrap(), fitted["warnings"].to_string())
+    };
+    let (by_magnitude_db, told) = fit(&[]);
+    let (by_decibel_db, silent) = fit(&["--option", "sbeta.error=decibel"]);
+    println!("{by_magnitude_db:.1} dB, in decibels {by_decibel_db:.1} dB\n{told}");
+    assert!(by_magnitude_db > 30.0 && by_decibel_db < 8.0);
+    let advice = format!("sbeta.error=decibel by {by_decibel_db:.1} dB, the model bands by ");
+    assert!(told.contains(&advice), "{told}");
+    assert!(!silent.contains("misses"), "{silent}");
+}
+
 #[test]
 fn every_knob_the_paper_names_changes_the_fit() {
     let place = Place::new();
@@ -123,7 +183,10 @@ fn every_knob_the_paper_names_changes_the_fit() {
             ],
         ),
         ("speak", &["speak.phase=seed"]),
-        ("sbeta", &["sbeta.points=20", "sbeta.jnd=0.4"]),
+        (
+            "sbeta",
+            &["sbeta.points=20", "sbeta.jnd=0.4", "sbeta.error=decibel"],
+        ),
         ("sslope", &["sslope.rounding_db_per_decade=5"]),
         ("bands", &["bands.bands=19", "bands.step_db=1"]),
     ] {

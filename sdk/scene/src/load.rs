@@ -189,6 +189,9 @@ fn load(
     device.apply(&mut scene.device);
     let response = open_response(&scene, &folder, findings);
     let settings = check_device(&scene.device, device, &folder, around.devices, findings);
+    if let Some(assets) = &assets {
+        crate::beyond::check(&scene, assets, trace.as_ref(), findings);
+    }
     Some(LoadedScene {
         assets: assets?,
         trace,

@@ -6,6 +6,7 @@ mod checking;
 mod commands;
 mod devices;
 mod failure;
+mod gains;
 mod models;
 mod motions;
 mod output;

@@ -15,7 +15,7 @@ use crate::output::{note, warn};
 use crate::plugins::PlayerArgs;
 
 /// What a finger does that nobody describes: the paper's usual speed (mm/s) and force (newtons).
-const USUAL: (f64, f64) = (80.0, 0.4);
+pub(crate) const USUAL: (f64, f64) = (80.0, 0.4);
 
 /// Models and devices for a scene.
 #[derive(Args)]

@@ -49,6 +49,11 @@ fn asset() -> Asset {
 
 /// A texture of two conditions, in all models.
 fn bytes() -> Vec<u8> {
+    recorded_at(&[60.0, 120.0])
+}
+
+/// A texture recorded at these speeds, in all models.
+fn recorded_at(speeds_mm_s: &[f64]) -> Vec<u8> {
     let take = |speed_mm_s: f64| {
         let options = SimulationOptions {
             speed_mm_s,
@@ -79,7 +84,8 @@ fn bytes() -> Vec<u8> {
         models: Registry::builtin().models().iter().map(model).collect(),
         ..AssetRequest::default()
     };
-    let fitted = fit_asset(&[take(60.0), take(120.0)], &request).unwrap();
+    let takes: Vec<Take> = speeds_mm_s.iter().map(|speed| take(*speed)).collect();
+    let fitted = fit_asset(&takes, &request).unwrap();
     fitted.asset.to_bytes().unwrap()
 }
 
@@ -139,8 +145,14 @@ fn rendering_together_does_not_allocate() {
 fn follow(voice: &mut htex::Voice, what: &str) {
     let mut block = [0.0f32; 64];
     for i in 0..400 {
+        let force_n = if i % 50 < 40 {
+            0.4 + 0.01 * f64::from(i % 7)
+        } else {
+            0.0
+        };
         let calls = count(|| {
-            voice.set_motion(60.0 + f64::from(i % 61), 0.4).unwrap();
+            voice.set_motion(60.0 + f64::from(i % 61), force_n).unwrap();
+            assert!(voice.coverage(80.0, 0.4).slides);
             voice.render(&mut block).unwrap();
         });
         assert_eq!(calls, 0, "{what}, block {i}");
@@ -153,8 +165,10 @@ fn following_the_finger_does_not_allocate() {
         count(|| drop(std::hint::black_box(vec![1u8]))) >= 2,
         "the counter counts"
     );
-    let asset = asset();
-    for model in MODELS {
+    // Interpolated between two speeds, and scaled from one.
+    let one = Asset::from_bytes(&recorded_at(&[80.0])).unwrap();
+    let assets = [asset(), one];
+    for (asset, model) in assets.iter().flat_map(|a| MODELS.map(|model| (a, model))) {
         for rate_hz in [20_000.0, 44_100.0] {
             let options = VoiceOptions {
                 model: Some(model),

@@ -4,10 +4,11 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use clap::Args;
 use htex_device::Quantity;
-use htex_scene::{Gain as Kept, GainKey, Gains, Renderer};
+use htex_scene::{Gain as Kept, Renderer};
 
 use crate::commands::play;
 use crate::failure::Failure;
+use crate::gains::{FeltArgs, gains, hash, key, recordings};
 use crate::output::print;
 use crate::playing::{Output, catch_interrupts, interrupted};
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs};
@@ -21,6 +22,9 @@ const LARGE_STEP_DB: f64 = 4.0;
 /// The surface plays without end; `+` and `-`, each with Enter, make it 1 dB stronger and weaker, `++` and
 /// `--` 4 dB, and Enter alone says that it matches. As in the paper it starts at the maximum: the device's
 /// limit. `htex play --person` then uses what was found. Ctrl-C keeps nothing.
+///
+/// A gain is kept for a person, a texture and a device. All representations share it, and so do assets fitted anew: a
+/// texture is known by its name and author. The paper finds it with `--model ar` and plays all models with it.
 #[derive(Args)]
 pub(crate) struct Gain {
     /// The asset or the scene
@@ -34,11 +38,24 @@ pub(crate) struct Gain {
     #[arg(long, value_name = "V")]
     start: Option<f64>,
 
+    /// What the texture is called, where another one has the same name and author
+    #[arg(long, value_name = "NAME")]
+    texture: Option<String>,
+
+    #[command(flatten)]
+    felt: FeltArgs,
+
     #[command(flatten)]
     choice: ChoiceArgs,
 
     #[command(flatten)]
     with: SceneArgs,
+}
+
+/// A drive, volts, and the RMS in newtons that had it.
+struct Found {
+    drive_v: f64,
+    reference_n: f64,
 }
 
 /// What a line asks for.
@@ -63,45 +80,36 @@ impl Gain {
             return Err(Failure::Usage(sentence));
         }
         ready.scene.scene.duration_s = None;
-        let key = key(&self.person, &ready)?;
-        let file = gains_file()?;
-        let mut gains = Gains::load(&file).map_err(|error| Failure::read(&file, error))?;
-        let Some(drive_v) = adjust(&mut ready, start_v, limit_v)? else {
+        self.felt.apply(&mut ready)?;
+        let key = key(&self.person, self.texture.as_deref(), &ready);
+        let (mut gains, file) = gains()?;
+        let Some(found) = adjust(&mut ready, start_v, limit_v)? else {
             return Err(Failure::Other(
                 "ended without a match; nothing was kept".to_owned(),
             ));
         };
-        gains.put(Kept {
+        let text = format!(
+            "kept for {} and `{}`: {} ({})\n",
+            self.person,
+            key.texture,
+            volts(found.drive_v),
+            file.display()
+        );
+        let kept = Kept {
             key,
             file: self.file.display().to_string(),
-            drive_v,
-        });
+            drive_v: found.drive_v,
+            reference_n: Some(found.reference_n),
+            recordings: recordings(&ready),
+            blake3: None,
+        };
+        gains.put(kept, &hash(&ready)?);
         gains
             .save(&file)
             .map_err(|error| Failure::write(&file, error))?;
-        let text = format!(
-            "kept for {}: {} ({})\n",
-            self.person,
-            volts(drive_v),
-            file.display()
-        );
         print(&text)?;
         Ok(ExitCode::SUCCESS)
     }
-}
-
-/// What a gain of this person is kept under.
-pub(crate) fn key(person: &str, ready: &Ready) -> Result<GainKey, Failure> {
-    let profile = ready.scene.scene.device.profile.as_deref();
-    GainKey::new(person, &ready.file, &ready.device.descriptor().id, profile)
-        .map_err(|error| Failure::read(&ready.file, error))
-}
-
-/// Where gains are kept.
-pub(crate) fn gains_file() -> Result<PathBuf, Failure> {
-    Gains::user_file().ok_or_else(|| {
-        Failure::Other("there is no folder for gains; set HTEX_CONFIG_DIR to one".to_owned())
-    })
 }
 
 fn limit(ready: &Ready) -> Result<f64, Failure> {
@@ -116,7 +124,7 @@ fn limit(ready: &Ready) -> Result<f64, Failure> {
 }
 
 /// Plays until the person is content; none when the input ends or is interrupted before.
-fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<f64>, Failure> {
+fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<Found>, Failure> {
     catch_interrupts()?;
     let wishes = wishes();
     let (mut drive_v, mut output, mut kept) = (start_v, None, None);
@@ -137,7 +145,14 @@ fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<f64>, 
         let wish = play_until_wish(&mut renderer, output, &wishes)?;
         match wish {
             Some(Wish::Change(db)) => drive_v = (drive_v * 10f64.powf(db / 20.0)).min(limit_v),
-            Some(Wish::Keep) => (kept, goes_on) = (Some(drive_v), false),
+            Some(Wish::Keep) => {
+                let reference_n = plan.reference_n;
+                kept = Some(Found {
+                    drive_v,
+                    reference_n,
+                });
+                goes_on = false;
+            }
             None => goes_on = false,
         }
     }

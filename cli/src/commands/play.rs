@@ -4,10 +4,10 @@ use std::process::ExitCode;
 use clap::Args;
 use htex_device::Status;
 use htex_scene::file::Motion;
-use htex_scene::{DeviceOverride, Gains, Plan, Renderer};
+use htex_scene::{DeviceOverride, Plan, Renderer};
 
-use crate::commands::gain::{gains_file, key};
 use crate::failure::Failure;
+use crate::gains::{FeltArgs, apply_kept};
 use crate::motions::{Motions, Moved};
 use crate::output::{note, print};
 use crate::playing::{Output, catch_interrupts, interrupted};
@@ -33,6 +33,13 @@ pub(crate) struct Play {
     /// Drive the display with the gain that `htex gain` found for this person
     #[arg(long, value_name = "NAME")]
     person: Option<String>,
+
+    /// What the texture was called when the gain was found, if not by its own name
+    #[arg(long, value_name = "NAME", requires = "person")]
+    texture: Option<String>,
+
+    #[command(flatten)]
+    felt: FeltArgs,
 
     #[command(flatten)]
     choice: ChoiceArgs,
@@ -83,9 +90,9 @@ impl Play {
             }
             _ => {}
         }
+        self.felt.apply(&mut ready)?;
         if let Some(person) = &self.person {
-            let drive_v = kept_drive(person, &ready)?;
-            ready.scene.scene.device.drive_v = Some(drive_v);
+            apply_kept(person, self.texture.as_deref(), &mut ready)?;
         }
         Ok(ready)
     }
@@ -123,25 +130,6 @@ fn follow(motions: &mut Motions, renderer: &mut Renderer) -> bool {
         Moved::Not => false,
         Moved::Ended => true,
     }
-}
-
-/// The drive kept for a person, which the device may no longer take.
-fn kept_drive(person: &str, ready: &Ready) -> Result<f64, Failure> {
-    let file = gains_file()?;
-    let gains = Gains::load(&file).map_err(|error| Failure::read(&file, error))?;
-    let asked = ready.file.display();
-    let limit_v = ready.capabilities.limit.unwrap_or(f64::INFINITY);
-    let problem = match gains.find(&key(person, ready)?) {
-        Some(gain) if gain.drive_v > 0.0 && gain.drive_v <= limit_v => return Ok(gain.drive_v),
-        Some(gain) => format!(
-            "the drive of {} V kept for {person} is not within the device's limit of {limit_v} V",
-            gain.drive_v
-        ),
-        None => format!("no gain is kept for {person}, {asked} and this device"),
-    };
-    Err(Failure::Other(format!(
-        "{problem}; find it with `htex gain {asked} --person {person}`"
-    )))
 }
 
 fn text(ready: &Ready, plan: &Plan, status: &Status, renderer: &Renderer) -> String {

@@ -5,8 +5,9 @@ use clap::Args;
 use serde_json::json;
 
 use crate::failure::Failure;
-use crate::output::{print, print_json};
+use crate::output::{print, print_json, warn};
 use crate::plugins::PlayerArgs;
+use crate::scenes::USUAL;
 
 /// Show the spectrum of one representation of an asset, 20 to 1000 Hz in steps of 5 Hz.
 ///
@@ -45,13 +46,29 @@ pub(crate) struct ChoiceArgs {
 }
 
 impl ChoiceArgs {
-    /// The motion asked for; what was not said comes from the asset's first condition.
+    /// The motion asked for; what was not said comes from the asset's first condition,
+    /// else is the paper's usual.
     pub(crate) fn motion(&self, asset: &htex::Asset) -> Option<(f64, f64)> {
         let first = asset.manifest().conditions.first();
         let speed = self.speed.or(first.and_then(|c| c.speed_mm_s));
         let force = self.force.or(first.and_then(|c| c.force_n));
         (self.speed.is_some() || self.force.is_some())
-            .then(|| (speed.unwrap_or(0.0), force.unwrap_or(0.0)))
+            .then(|| (speed.unwrap_or(USUAL.0), force.unwrap_or(USUAL.1)))
+    }
+}
+
+impl ChoiceArgs {
+    /// What becomes of the motion asked for, where it is not one that was recorded.
+    pub(crate) fn beyond(
+        &self,
+        asset: &htex::Asset,
+        effects: htex::Effects,
+    ) -> Result<Option<String>, htex::Error> {
+        let Some(motion) = self.motion(asset) else {
+            return Ok(None);
+        };
+        let coverage = asset.coverage(self.model.as_deref(), motion, effects)?;
+        Ok((!coverage.is_inside()).then(|| coverage.to_string()))
     }
 }
 
@@ -64,6 +81,12 @@ impl Spectrum {
         let magnitude = asset
             .magnitude_n(self.choice.model.as_deref(), motion, &grid)
             .map_err(failure)?;
+        let beyond = self.choice.beyond(&asset, htex::Effects::default());
+        if let Some(said) = beyond.map_err(failure)? {
+            warn(&[format!(
+                "{said}; the spectrum is the one recorded, and a voice plays it so"
+            )]);
+        }
         if self.json {
             print_json(&json!({ "frequency_hz": grid, "magnitude_n": magnitude }))?;
         } else {

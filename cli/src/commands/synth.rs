@@ -2,10 +2,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
-use htex::{Synthesis, VoiceOptions};
+use htex::{Effects, Synthesis, VoiceOptions};
 
 use crate::commands::spectrum::ChoiceArgs;
 use crate::failure::Failure;
+use crate::output::warn;
 use crate::plugins::PlayerArgs;
 use crate::wav::write_wav;
 
@@ -20,6 +21,11 @@ pub(crate) struct Synth {
 
     #[command(flatten)]
     player: PlayerArgs,
+
+    /// Play the texture as it was recorded, whatever the speed and force: without it, frequencies go with the speed
+    /// and the level with the force where just one was recorded, and a finger that rests feels nothing
+    #[arg(long)]
+    as_recorded: bool,
 
     /// Length, s
     #[arg(long, default_value_t = 10.0, value_name = "S")]
@@ -59,7 +65,16 @@ impl Synth {
             seed: self.seed,
             motion: self.choice.motion(&asset),
             synthesis: self.quality,
+            effects: match self.as_recorded {
+                true => Effects::NONE,
+                false => Effects::default(),
+            },
         };
+        let beyond = self
+            .choice
+            .beyond(&asset, options.effects)
+            .map_err(failure)?;
+        warn(&Vec::from_iter(beyond));
         let mut voice = asset.voice(&options).map_err(failure)?;
         let frames = (self.seconds * f64::from(self.rate)).round().max(1.0) as u64;
         write_wav(&self.output, self.rate, frames, |block| {

@@ -138,18 +138,19 @@ impl Asset {
             rate_hz: options.rate_hz / base,
             ..options.clone()
         })?;
-        let (rate_hz, effects) = (options.rate_hz, options.effects);
-        Ok(Voice::new(source, rate_hz, still, effects, base))
+        Ok(Voice::new(source, still, options, base))
     }
 
     /// How many times as fast as recorded a voice is read from its start on.
     fn base_ratio(&self, options: &VoiceOptions<'_>) -> Result<f64, Error> {
-        let r = self.representation(options.model)?;
-        let (speed, force) = options.motion.unwrap_or_else(|| self.first_condition(r));
+        let Some((speed, force)) = options.motion else {
+            return Ok(1.0);
+        };
         crate::source::check_motion(speed, force)?;
         let scales = options.effects.speed_scaling && crate::exploration::slides(speed, force);
+        let explored = self.explored(self.representation(options.model)?);
         Ok(if scales {
-            self.explored(r).speed_ratio(speed)
+            explored.speed_ratio(speed)
         } else {
             1.0
         })

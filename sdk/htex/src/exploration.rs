@@ -233,11 +233,33 @@ pub enum Reach {
 }
 
 impl Coverage {
+    /// How far a motion lies beyond the one that is played, relative to it; 0 where the texture is played as
+    /// recorded, interpolated, or scaled to the motion.
+    pub fn excess(&self) -> f64 {
+        let excess = self.speed.excess().max(self.force.excess());
+        // What is left is rounding.
+        if excess > 1e-9 { excess } else { 0.0 }
+    }
+
     /// Whether the texture is played as it was recorded, or interpolated between recordings; what is not known does
     /// not count.
     pub fn is_inside(&self) -> bool {
         let inside = |reach| matches!(reach, Reach::Inside | Reach::Unknown);
         self.slides && inside(self.speed) && inside(self.force)
+    }
+}
+
+impl Reach {
+    fn excess(&self) -> f64 {
+        match *self {
+            Self::Inside | Self::Unknown => 0.0,
+            Self::Scaled {
+                asked,
+                recorded,
+                factor,
+            } => (asked / recorded / factor - 1.0).abs(),
+            Self::Clamped { asked, played } => (asked / played - 1.0).abs(),
+        }
     }
 }
 

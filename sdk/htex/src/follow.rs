@@ -22,11 +22,11 @@ pub(crate) struct Follow {
 }
 
 impl Follow {
-    /// For a voice that starts with a motion, at `rate_hz`, of a source with nothing above `top_hz`; its samples come in
+    /// For a voice that starts with a motion, else as recorded, at `rate_hz`, of a source with nothing above `top_hz`; its samples come in
     /// read `base` times as fast as recorded.
     pub(crate) fn new(
         (explored, effects): (Explored, Effects),
-        motion: (f64, f64),
+        motion: Option<(f64, f64)>,
         base: f64,
         rate_hz: f64,
         top_hz: f64,
@@ -42,7 +42,7 @@ impl Follow {
             warp: Warp::when_needed(),
             contact: Glide::new(1.0, ramp),
         };
-        if !follow.set_motion(motion) {
+        if motion.is_some_and(|motion| !follow.set_motion(motion)) {
             follow.contact = Glide::new(0.0, ramp);
         }
         follow

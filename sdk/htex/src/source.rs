@@ -66,11 +66,6 @@ impl Source {
         self.level_n
     }
 
-    /// The present motion: scanning speed, mm/s, and normal force, newtons.
-    pub(crate) fn motion(&self) -> (f64, f64) {
-        self.motion
-    }
-
     /// The conditions that are known.
     pub fn explored(&self) -> Explored {
         self.known.explored

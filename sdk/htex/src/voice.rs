@@ -4,15 +4,15 @@ use htex_dsp::glide::Glide;
 use htex_dsp::resample::Resampler;
 use htex_host::StillSound;
 
-use crate::exploration::{Coverage, Effects};
+use crate::exploration::Coverage;
 use crate::follow::Follow;
-use crate::{Error, Source};
+use crate::{Error, Source, VoiceOptions};
 
 /// Length of a change of level, seconds.
 const RAMP_S: f64 = 0.010;
 
 /// An endless stream of lateral force, newtons, that follows the finger's motion as a scene does: see
-/// [`Effects`].
+/// [`Effects`](crate::Effects).
 ///
 /// ```no_run
 /// use htex::{Asset, VoiceOptions};
@@ -34,21 +34,21 @@ pub struct Voice {
 }
 
 impl Voice {
-    /// A voice at `rate_hz`: the source and the resampler it needs, or a sound that stands for them. The resampler reads
-    /// the source `base` times as fast as recorded.
+    /// A voice as `options` want it: the source and the resampler it needs, or a sound that stands for them. The
+    /// resampler reads the source `base` times as fast as recorded.
     pub(crate) fn new(
         source: Source,
-        rate_hz: f64,
         still: Option<StillSound>,
-        effects: Effects,
+        options: &VoiceOptions<'_>,
         base: f64,
     ) -> Self {
+        let rate_hz = options.rate_hz;
         let ramp = (RAMP_S * rate_hz).ceil().max(1.0) as u32;
         // A still sound is at the voice's rate already, as recorded.
         let base = if still.is_some() { 1.0 } else { base };
         let top_hz = source.top_hz() * base;
-        let known = (source.explored(), effects);
-        let follow = Follow::new(known, source.motion(), base, rate_hz, top_hz);
+        let known = (source.explored(), options.effects);
+        let follow = Follow::new(known, options.motion, base, rate_hz, top_hz);
         Self {
             resampler: Resampler::new(source.rate_hz() * base, rate_hz, top_hz),
             level_n: Glide::new((source.level_n() * follow.gain()) as f32, ramp),
@@ -63,7 +63,7 @@ impl Voice {
     /// [`Synthesis`](crate::Synthesis)) the level alone. Where the asset knows one speed, frequencies go in proportion to
     /// the speed, 1/16 to 8 times as fast and as far as half the rate allows; where it knows one force, the level goes
     /// in proportion to the force. A finger that does not slide (below 0.5 mm/s or at 0 N) feels nothing. Each of these
-    /// can be switched off ([`Effects`]), and [`Self::coverage`] tells what becomes of a motion.
+    /// can be switched off ([`Effects`](crate::Effects)), and [`Self::coverage`] tells what becomes of a motion.
     ///
     /// A motion that is not new costs nothing; a new one mixes parameters in the voice's own memory. Does not allocate,
     /// lock or do I/O for the models of this project and others that keep to the ABI.

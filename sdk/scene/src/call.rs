@@ -86,7 +86,7 @@ pub(crate) struct Call {
     pub(crate) live: bool,
     pub(crate) turns_round: bool,
     pub(crate) breaks_contact: bool,
-    /// RMS of the loudest surface as it reaches the device's stages, newtons.
+    /// RMS that is brought to the drive or to the level of a preview, as it reaches the device's stages, newtons.
     pub(crate) level_n: f64,
     pub(crate) drive_v: f64,
     pub(crate) gain_db: f64,

@@ -125,6 +125,7 @@ fn check_device(device: &DeviceChoice, findings: &mut Findings) {
         ("gain_db", device.gain_db, Range(-120.0, 120.0)),
         ("drive_v", device.drive_v, Range(f64::MIN_POSITIVE, 1e4)),
         ("level_dbfs", device.level_dbfs, Range(-120.0, 0.0)),
+        ("reference_n", device.reference_n, Range(1e-9, 1e6)),
         ("pitch", device.pitch, Range(0.05, 20.0)),
         (
             "response_depth_db",

@@ -9,7 +9,7 @@ use htex_device::{
 use htex_format::{Findings, escape};
 use serde_json::Value;
 
-use crate::file::DeviceChoice;
+use crate::file::{DeviceChoice, Levels};
 use crate::rules as rule;
 
 /// The setting that names a library of code; a scene, which may come from anyone, must not have it.
@@ -178,6 +178,20 @@ fn check_fit(choice: &DeviceChoice, able: &Capabilities, findings: &mut Findings
             format!("{key} is for a device of {unit}, and this one takes {takes}; leave it out")
         });
     }
+    let is_own = choice.levels == Levels::Own;
+    let takes_newtons = able.quantity == Quantity::LateralForce;
+    findings.require(
+        !(is_own && takes_newtons),
+        rule::DEVICE_FIELD_UNFIT,
+        "/device/levels",
+        || "the device takes newtons, which are never normalised; leave it out".to_owned(),
+    );
+    findings.require(
+        is_own || choice.reference_n.is_none(),
+        rule::DEVICE_FIELD_UNFIT,
+        "/device/reference_n",
+        || "reference_n goes with the levels `own`; add these, or leave it out".to_owned(),
+    );
     let (drive_v, limit_v) = (
         choice.drive_v.unwrap_or(0.0),
         able.limit.unwrap_or(f64::MAX),

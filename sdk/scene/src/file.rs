@@ -130,6 +130,13 @@ pub struct DeviceChoice {
     /// RMS of a preview by ear, decibels below full scale (so not above 0); absent: -18.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub level_dbfs: Option<f64>,
+    /// Whether the drive, or the level of a preview, is that of the scene's loudest texture.
+    #[serde(default, skip_serializing_if = "Levels::is_normalised")]
+    pub levels: Levels,
+    /// With levels of their own: the RMS that has the drive, or the level of a preview, newtons. Absent: that of the
+    /// strongest representation of all that the scene's surfaces have.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reference_n: Option<f64>,
     /// Factor on all frequencies of a preview by ear.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pitch: Option<f64>,
@@ -140,6 +147,24 @@ pub struct DeviceChoice {
     /// How far below its maximum the response is compensated at most, decibels.
     #[serde(default = "depth", skip_serializing_if = "is_depth")]
     pub response_depth_db: f64,
+}
+
+/// What a device that does not take newtons is given the levels of textures as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Levels {
+    /// The loudest texture of the scene, by the representation that plays it, has the drive or the level given: all
+    /// representations are as strong.
+    #[default]
+    Normalised,
+    /// A reference level has it, whatever plays: each representation keeps its own energy.
+    Own,
+}
+
+impl Levels {
+    fn is_normalised(&self) -> bool {
+        *self == Self::Normalised
+    }
 }
 
 /// What chooses representations. With both, the nearest within the time must be near enough.
@@ -252,6 +277,8 @@ impl Default for DeviceChoice {
             gain_db: None,
             drive_v: None,
             level_dbfs: None,
+            levels: Levels::default(),
+            reference_n: None,
             pitch: None,
             response: None,
             response_depth_db: depth(),

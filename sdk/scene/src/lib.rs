@@ -2,6 +2,7 @@
 //! scene calls for and says why each is in or out; the renderer runs just that chain.
 #![forbid(unsafe_code)]
 
+mod beyond;
 mod call;
 mod check;
 mod cost;
@@ -26,7 +27,7 @@ pub use cost::Costs;
 pub use device::DeviceOverride;
 pub use error::SceneError;
 pub use file::Scene;
-pub use gains::{Gain, GainKey, Gains};
+pub use gains::{Gain, GainKey, Gains, recordings_of, texture_id, texture_name};
 pub use load::{LoadError, LoadedScene, Surroundings, validate};
 pub use motion::Finger;
 pub use page::{findings_page, scene_schema};

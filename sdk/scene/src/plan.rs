@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::SceneError;
 use crate::call::{Call, Part};
 use crate::cost::Costs;
-use crate::file::{Effect, Switch};
+use crate::file::{Effect, Levels, Switch};
 use crate::load::LoadedScene;
 use crate::representation::{self, Choice};
 use crate::stages::{EFFECTS, Entry, HEADROOM, Need, Place, resampling_macs};
@@ -34,6 +34,8 @@ pub struct Plan {
     pub frames: Option<u64>,
     /// Where the costs come from.
     pub costs: String,
+    /// RMS that is brought to the drive or to the level of a preview, newtons.
+    pub reference_n: f64,
     /// What is worth knowing.
     pub notes: Vec<String>,
     #[serde(skip)]
@@ -113,7 +115,11 @@ pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result
         };
         representation::choose(scene, &call, &cost)?
     };
-    call.level_n = choices.iter().map(|c| c.part.level_n).fold(0.0, f64::max);
+    let loudest_n = choices.iter().map(|c| c.part.level_n).fold(0.0, f64::max);
+    call.level_n = match scene.scene.device.levels {
+        Levels::Normalised => loudest_n,
+        Levels::Own => representation::reference_n(scene, &call)?,
+    };
     let parts: Vec<Part> = choices.iter().map(|c| c.part.clone()).collect();
     let mut draft = Draft::new(scene, &call, costs);
     draft.all(&parts)?;
@@ -136,7 +142,8 @@ pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result
         block_frames: call.control,
         frames: call.frames,
         costs: costs.machine.clone(),
-        notes: notes(&call, constant),
+        notes: notes(&call, constant, loudest_n),
+        reference_n: call.level_n,
         call,
         parts,
         mixes,
@@ -160,10 +167,20 @@ fn is_constant(call: &Call, parts: &[PlannedPart]) -> bool {
     !call.live && !call.breaks_contact && !call.turns_round && parts.iter().all(steady)
 }
 
-fn notes(call: &Call, constant: bool) -> Vec<String> {
+fn notes(call: &Call, constant: bool, loudest_n: f64) -> Vec<String> {
     let mut notes = Vec::new();
     if constant {
         notes.push("nothing changes over the scene: the constant path is taken".to_owned());
+    }
+    // A level of its own, that is.
+    if call.level_n > 0.0 && loudest_n > 0.0 && loudest_n != call.level_n {
+        let db = 20.0 * (loudest_n / call.level_n).log10();
+        notes.push(format!(
+            "levels are not normalised: the loudest texture, {:.3} mN RMS, stands {db:+.1} dB from the reference \
+             of {:.3} mN",
+            1e3 * loudest_n,
+            1e3 * call.level_n
+        ));
     }
     match call.device.quantity {
         Quantity::DisplayVoltage => notes.push(format!(

@@ -124,6 +124,10 @@ htex_format::rule_table! {
         "The scene lasts longer than its trace.",
         "Behind its last row the finger does not touch.",
         "Shorten `duration_s`, or leave it out.";
+    MOTION_BEYOND_RECORDED Warning:
+        "A texture is played as at another motion than the finger's.",
+        "The motion lies beyond the speeds and forces it was recorded at, or beyond what it can be scaled to from one.",
+        "Move within what was recorded (`htex info`), or record the texture at such a motion too.";
     RESPONSE_MISSING Error:
         "The response is not there.",
         "Relative paths start at the scene's folder.",
@@ -158,7 +162,8 @@ htex_format::rule_table! {
         "Choose one of its rates, or leave `rate_hz` out.";
     DEVICE_FIELD_UNFIT Error:
         "A key of `device` does not go with what the device takes.",
-        "`gain_db` is for newtons, `drive_v` for volts at a display, `level_dbfs` and `pitch` for sound.",
+        "`gain_db` is for newtons, `drive_v` for volts at a display, `level_dbfs` and `pitch` for sound, and \
+         `levels` for the last two; `reference_n` goes with the levels `own`.",
         "Leave it out, or choose another device.";
     DEVICE_DRIVE_TOO_HIGH Error:
         "`drive_v` is above the device's limit.",

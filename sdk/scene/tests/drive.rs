@@ -10,6 +10,7 @@ use htex_author::{
 use htex_device::Capabilities;
 use htex_dsp::bands::{energy_matching_gain, rms};
 use htex_dsp::grid::level_rms;
+use htex_scene::file::Levels;
 use htex_scene::{LoadedScene, Renderer, Response};
 
 const RATE_HZ: f64 = 50_000.0;
@@ -108,6 +109,40 @@ fn demodulated_and_squared_it_has_the_textures_compensated_spectrum() {
             let reach = 4.5 * level_rms(&found) / (DRIVE_V * DRIVE_V / 2.0);
             let reach_db = 20.0 * reach.log10();
             assert!(reach_db.abs() < 0.3, "{model}: {reach_db} dB");
+        }
+    }
+}
+
+/// What the drive of each model demodulates to, dB RMS, and the level of its representation.
+#[test]
+fn under_one_gain_levels_are_alike_or_the_representations_own() {
+    let model = |name: &str, levels: Levels, reference_n: Option<f64>| {
+        let mut scene = scene(single(), constant(80.0, 0.4), 20.0);
+        scene.scene.surfaces[0].representation = name.to_owned();
+        scene.scene.device.levels = levels;
+        scene.scene.device.reference_n = reference_n;
+        let (drive, _) = driven(&mut scene);
+        let steady = demodulated(&drive[RATE_HZ as usize..drive.len() - RATE_HZ as usize]);
+        let mean = steady.iter().sum::<f64>() / steady.len() as f64;
+        let moved: Vec<f64> = steady.iter().map(|v2| v2 - mean).collect();
+        20.0 * rms(&moved).log10()
+    };
+    let level_n = |name: &str| single().parameters(Some(name), None).unwrap().1;
+    let all = single().manifest().representations.iter();
+    let strongest_n = all.map(|r| level_n(&r.model)).fold(0.0, f64::max);
+    let alike = model("ar", Levels::Normalised, None);
+    for name in ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"] {
+        let normalised = model(name, Levels::Normalised, None) - alike;
+        assert!(normalised.abs() < 0.3, "{name}: {normalised} dB");
+        for reference_n in [None, Some(1.5 * strongest_n)] {
+            let against_n = reference_n.unwrap_or(strongest_n);
+            let wanted = 20.0 * (level_n(name) / against_n).log10();
+            let found = model(name, Levels::Own, reference_n) - alike;
+            println!("{name}: {found:.2} dB, by its level {wanted:.2} dB");
+            assert!(
+                (found - wanted).abs() < 0.3,
+                "{name}: {found} dB, not {wanted} dB"
+            );
         }
     }
 }

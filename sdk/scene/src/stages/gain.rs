@@ -39,7 +39,7 @@ impl Drive {
     }
 }
 
-/// The gain that brings the scene's level to this one; 0 when there is no level.
+/// The gain that brings the scene's reference level to this one; 0 when there is no level.
 fn brings_level_to(level: f64, call: &Call) -> f64 {
     match call.level_n > LEAST_N {
         true => level / call.level_n,

@@ -217,6 +217,26 @@ pub fn cases() -> Vec<Case> {
                 json!({ "ns_per_sample": 100, "max_band_error_db": 3 }),
             )]),
         ),
+        (
+            "valid_own_levels",
+            with(&[
+                volts(),
+                ("/device/levels", json!("own")),
+                ("/device/reference_n", json!(0.02)),
+            ]),
+        ),
+        (
+            "motion_beyond_recorded",
+            with(&[("/motion/constant/speed_mm_s", json!(1000))]),
+        ),
+        (
+            "device_field_unfit_levels",
+            with(&[("/device", json!({ "levels": "own" }))]),
+        ),
+        (
+            "device_field_unfit_reference",
+            with(&[volts(), ("/device/reference_n", json!(0.02))]),
+        ),
         ("scene_json_too_deep", "[".repeat(17) + &"]".repeat(17)),
         (
             "scene_json_syntax",

@@ -1,6 +1,6 @@
 //! Fingers that move as no finger does, on assets and in scenes.
 
-use htex::{Asset, VoiceOptions};
+use htex::{Asset, Effects, VoiceOptions};
 use htex_author::recording::Recording;
 use htex_device::{Capabilities, Quantity, Rates, Settings};
 use htex_scene::file::{self, Budget, Constant, DeviceChoice, Effect, Motion, Scene, Switch};
@@ -36,12 +36,13 @@ fn models() -> Vec<String> {
 }
 
 /// The largest sample over 0.1 N of every model's voice that is moved so before each block.
-fn moved(motions: &[(f64, f64)]) -> f64 {
+fn moved(motions: &[(f64, f64)], effects: Effects) -> f64 {
     let asset = asset(2);
     let mut peak = 0.0;
     for model in models() {
         let options = VoiceOptions {
             model: Some(&model),
+            effects,
             ..VoiceOptions::default()
         };
         let mut voice = asset.voice(&options).unwrap();
@@ -192,17 +193,39 @@ const BEYOND_FLOATS: [(f64, f64); 4] =
 const CASES: &[Case] = &[
     within(
         "speeds and forces of 0 and 1e9, in turns",
-        "voices of every model",
+        "voices of every model, without effects",
         "move and render",
         Bound(12.0, "× RMS", "finite, and samples"),
-        || moved(&SLOW_AND_FAST),
+        || moved(&SLOW_AND_FAST, Effects::NONE),
     ),
     within(
         "speeds and forces of 1e39, 1e300, 5e-324, in turns",
-        "voices of every model",
+        "voices of every model, without effects",
         "move and render",
         Bound(12.0, "× RMS", "finite, and samples"),
-        || moved(&BEYOND_FLOATS),
+        || moved(&BEYOND_FLOATS, Effects::NONE),
+    ),
+    within(
+        "speeds and forces of 0 and 1e9, in turns, where one force is known",
+        "voices of every model",
+        "move and render",
+        Bound(
+            1.2e7,
+            "× RMS, a gain of at most 1e6,",
+            "finite, and samples",
+        ),
+        || moved(&SLOW_AND_FAST, Effects::default()),
+    ),
+    within(
+        "speeds and forces of 1e39, 1e300, 5e-324, in turns, where one force is known",
+        "voices of every model",
+        "move and render",
+        Bound(
+            1.2e7,
+            "× RMS, a gain of at most 1e6,",
+            "finite, and samples",
+        ),
+        || moved(&BEYOND_FLOATS, Effects::default()),
     ),
     refused(
         "a speed of -1 mm/s",

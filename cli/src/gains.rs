@@ -1,0 +1,141 @@
+//! Gains of people, and what they are felt with, shared by `gain` and `play`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use htex_device::Quantity;
+use htex_format::Manifest;
+use htex_scene::file::Levels;
+use htex_scene::{Gain, GainKey, Gains, recordings_of, texture_id, texture_name};
+
+use crate::failure::Failure;
+use crate::output::warn;
+use crate::scenes::Ready;
+
+/// How a texture is felt, in place of what a scene says.
+#[derive(Args)]
+pub(crate) struct FeltArgs {
+    /// The representation that plays every surface, by its model's short name or id
+    #[arg(long, value_name = "ID")]
+    model: Option<String>,
+
+    /// `normalised`: every representation is as strong; `own`: each keeps its energy, measured by the one that the
+    /// gain of --person was found with, else by the strongest
+    #[arg(long, value_name = "LEVELS", value_parser = ["normalised", "own"])]
+    levels: Option<String>,
+}
+
+impl FeltArgs {
+    pub(crate) fn apply(&self, ready: &mut Ready) -> Result<(), Failure> {
+        let scene = &mut ready.scene.scene;
+        if let Some(model) = &self.model {
+            for surface in &mut scene.surfaces {
+                surface.representation.clone_from(model);
+            }
+        }
+        let Some(levels) = &self.levels else {
+            return Ok(());
+        };
+        if ready.capabilities.quantity == Quantity::LateralForce {
+            let sentence = "--levels: the device takes newtons, which are never normalised";
+            return Err(Failure::Usage(sentence.to_owned()));
+        }
+        scene.device.levels = match levels.as_str() {
+            "own" => Levels::Own,
+            _ => Levels::Normalised,
+        };
+        Ok(())
+    }
+}
+
+/// Where gains are kept.
+pub(crate) fn gains_file() -> Result<PathBuf, Failure> {
+    Gains::user_file().ok_or_else(|| {
+        Failure::Other("there is no folder for gains; set HTEX_CONFIG_DIR to one".to_owned())
+    })
+}
+
+/// The kept gains, and their file.
+pub(crate) fn gains() -> Result<(Gains, PathBuf), Failure> {
+    let file = gains_file()?;
+    let gains = Gains::load(&file).map_err(|error| Failure::read(&file, error))?;
+    Ok((gains, file))
+}
+
+/// What a gain of this person is kept under; `texture` is what the textures are called, if not by their own names.
+pub(crate) fn key(person: &str, texture: Option<&str>, ready: &Ready) -> GainKey {
+    let device = &ready.scene.scene.device;
+    GainKey {
+        person: person.to_owned(),
+        texture: texture.map_or_else(|| texture_id(manifests(ready)), texture_name),
+        device: ready.device.descriptor().id.clone(),
+        profile: device.profile.clone().unwrap_or_default(),
+    }
+}
+
+/// The hash by which gains of old were kept.
+pub(crate) fn hash(ready: &Ready) -> Result<String, Failure> {
+    Gains::hash_of(&ready.file).map_err(|error| Failure::read(&ready.file, error))
+}
+
+/// Names of the files that the textures were recorded in.
+pub(crate) fn recordings(ready: &Ready) -> Vec<String> {
+    recordings_of(manifests(ready))
+}
+
+fn manifests(ready: &Ready) -> impl Iterator<Item = &Manifest> {
+    ready.scene.assets.iter().map(|asset| asset.manifest())
+}
+
+/// Drives a scene as is kept for a person.
+pub(crate) fn apply_kept(
+    person: &str,
+    texture: Option<&str>,
+    ready: &mut Ready,
+) -> Result<(), Failure> {
+    let (gains, _) = gains()?;
+    let key = key(person, texture, ready);
+    let asked = ready.file.display();
+    let find = format!("find it with `htex gain {asked} --person {person}`");
+    let Some(gain) = gains.find(&key, &hash(ready)?) else {
+        let what = &key.texture;
+        let sentence = format!("no gain is kept for {person}, `{what}` and this device; {find}");
+        return Err(Failure::Other(sentence));
+    };
+    let limit_v = ready.capabilities.limit.unwrap_or(f64::INFINITY);
+    if !(gain.drive_v > 0.0 && gain.drive_v <= limit_v) {
+        let drive_v = gain.drive_v;
+        return Err(Failure::Other(format!(
+            "the drive of {drive_v} V kept for {person} is not within the device's limit of {limit_v} V; {find}"
+        )));
+    }
+    warn_of_other_recordings(gain, ready);
+    let device = &mut ready.scene.scene.device;
+    device.drive_v = Some(gain.drive_v);
+    if device.levels == Levels::Own && device.reference_n.is_none() {
+        let known_n = gain.reference_n.filter(|n| n.is_finite() && *n > 0.0);
+        device.reference_n = Some(known_n.ok_or_else(|| {
+            let sentence = format!(
+                "the gain kept for {person} does not say at which level it was found; {find}"
+            );
+            Failure::Other(sentence)
+        })?);
+    }
+    Ok(())
+}
+
+/// Two textures may have one name.
+fn warn_of_other_recordings(gain: &Gain, ready: &Ready) {
+    let here = recordings(ready);
+    let shared = gain.recordings.iter().any(|name| here.contains(name));
+    if shared || here.is_empty() || gain.recordings.is_empty() {
+        return;
+    }
+    warn(&[format!(
+        "the gain for `{}` was found with a texture recorded in {}, and this one was recorded in {}; if it is another, \
+         give it a name of its own with --texture",
+        gain.key.texture,
+        gain.recordings.join(", "),
+        here.join(", ")
+    )]);
+}

@@ -1,0 +1,97 @@
+//! Whether a scene's motion lies within what its textures were recorded at.
+
+use htex::{Asset, Coverage, Effects, Source, VoiceOptions};
+use htex_format::Findings;
+
+use crate::call::topmost;
+use crate::file::{Effect, Motion, Scene, Surface, Switch};
+use crate::motion::Finger;
+use crate::rules as rule;
+use crate::trace::Trace;
+
+/// Part of the time on a surface that may lie beyond what was recorded: strokes turn, and are slow there.
+const MOST: f64 = 0.1;
+
+/// Warns of each surface that is played as at another motion than the finger's.
+pub(crate) fn check(
+    scene: &Scene,
+    assets: &[Asset],
+    trace: Option<&Trace>,
+    findings: &mut Findings,
+) {
+    let fingers = fingers(scene, trace);
+    for (i, asset) in assets.iter().enumerate() {
+        // One that cannot be played has its finding already.
+        let Ok(source) = source(asset, &scene.surfaces[i]) else {
+            continue;
+        };
+        let here = |finger: &&Finger| match trace {
+            Some(_) => topmost(&scene.surfaces, finger) == Some(i),
+            None => true,
+        };
+        let (share, farthest) = beyond(fingers.iter().filter(here), &source, effects(scene));
+        if let (true, Some(farthest)) = (share > MOST, farthest) {
+            let percent = 100.0 * share;
+            let message =
+                format!("surface {i}: {percent:.0} % of the motion on it, as far as: {farthest}");
+            findings.add(rule::MOTION_BEYOND_RECORDED, "/motion", message);
+        }
+    }
+}
+
+fn source(asset: &Asset, surface: &Surface) -> Result<Source, htex::Error> {
+    let name = surface.representation.as_str();
+    asset.source(&VoiceOptions {
+        model: (name != "auto").then_some(name),
+        ..VoiceOptions::default()
+    })
+}
+
+fn effects(scene: &Scene) -> Effects {
+    let is_on = |effect| scene.effects.get(&effect) != Some(&Switch::Off);
+    Effects {
+        speed_scaling: is_on(Effect::SpeedScaling),
+        force_scaling: is_on(Effect::ForceScaling),
+        contact: true,
+    }
+}
+
+/// The finger at each row of a trace, or as it always is; none when it is live.
+fn fingers(scene: &Scene, trace: Option<&Trace>) -> Vec<Finger> {
+    match (&scene.motion, trace) {
+        (Motion::Constant(motion), _) => vec![Finger {
+            speed_mm_s: motion.speed_mm_s,
+            force_n: motion.force_n,
+            at_mm: motion.from_mm,
+        }],
+        (Motion::Trace(_), Some(trace)) => {
+            let points = trace.t_s.iter().map(|t| trace.at(*t));
+            let finger = |point: crate::trace::TracePoint| Finger {
+                speed_mm_s: point.speed_mm_s,
+                force_n: point.force_n,
+                at_mm: Some([point.x_mm, point.y_mm]),
+            };
+            points.map(finger).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Which part of the fingers that slide is played as at another motion, and the farthest of them.
+fn beyond<'a>(
+    fingers: impl Iterator<Item = &'a Finger>,
+    source: &Source,
+    effects: Effects,
+) -> (f64, Option<Coverage>) {
+    let (mut all, mut beyond, mut farthest) = (0.0, 0.0, None::<Coverage>);
+    for finger in fingers.filter(|finger| finger.slides()) {
+        let coverage = source.coverage(finger.speed_mm_s, finger.force_n, effects);
+        all += 1.0;
+        if coverage.excess() > 0.0 {
+            beyond += 1.0;
+            let least = farthest.map_or(0.0, |coverage| coverage.excess());
+            farthest = Some(coverage).filter(|c| c.excess() > least).or(farthest);
+        }
+    }
+    (if all > 0.0 { beyond / all } else { 0.0 }, farthest)
+}

@@ -1,0 +1,272 @@
+//! A voice makes of a motion what a scene makes of it.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+mod common;
+
+use common::{constant, file, grid, planned, rendered, scene, single};
+use htex::{Effects, Explored, Reach, Recorded, Voice, VoiceOptions};
+use htex_format::{AtCondition, Condition};
+use htex_scene::file::Motion;
+use htex_scene::{Finger, Renderer};
+
+const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
+const RATE_HZ: f64 = 20_000.0;
+const RECORDED: (f64, f64) = (80.0, 0.4);
+/// Frames between two motions, those of a scene at this rate.
+const CONTROL: usize = 64;
+
+/// A voice with the seed that the first surface of a scene gets.
+fn voice(model: &str, motion: Option<(f64, f64)>, effects: Effects) -> Voice {
+    let options = VoiceOptions {
+        model: Some(model),
+        seed: 1,
+        motion,
+        effects,
+        ..VoiceOptions::default()
+    };
+    single().voice(&options).unwrap()
+}
+
+fn samples(voice: &mut Voice, frames: usize) -> Vec<f32> {
+    let mut out = vec![0.0; frames];
+    voice.render(&mut out).unwrap();
+    out
+}
+
+fn rms_db(signal: &[f32]) -> f64 {
+    let power: f64 = signal.iter().map(|x| f64::from(*x).powi(2)).sum();
+    10.0 * (power / signal.len() as f64).log10()
+}
+
+/// Power by octaves from `low_hz`, decibels of all.
+fn octaves(signal: &[f32], low_hz: f64) -> Vec<f64> {
+    let n = 4_000;
+    let mut power = vec![0.0; 6];
+    for segment in signal.chunks_exact(n) {
+        for (k, power_of) in power.iter_mut().enumerate() {
+            let edge = |k: usize| (low_hz * 2f64.powi(k as i32) * n as f64 / RATE_HZ) as usize;
+            *power_of += (edge(k)..edge(k + 1))
+                .map(|bin| bin_power(segment, bin))
+                .sum::<f64>();
+        }
+    }
+    let all: f64 = power.iter().sum();
+    power.iter().map(|p| 10.0 * (p / all).log10()).collect()
+}
+
+/// Goertzel's algorithm on the segment times a Hann window.
+fn bin_power(segment: &[f32], bin: usize) -> f64 {
+    let turn = std::f64::consts::TAU / segment.len() as f64;
+    let coefficient = 2.0 * (turn * bin as f64).cos();
+    let (mut a, mut b) = (0.0, 0.0);
+    for (i, x) in segment.iter().enumerate() {
+        let window = 0.5 - 0.5 * (turn * i as f64).cos();
+        (a, b) = (window * f64::from(*x) + coefficient * a - b, a);
+    }
+    a * a + b * b - coefficient * a * b
+}
+
+#[test]
+fn a_constant_motion_plays_as_in_a_scene_whether_a_voice_is_made_for_it_or_moved_to_it() {
+    for model in MODELS {
+        for motion in [RECORDED, (160.0, 0.8), (30.0, 0.2), (0.0, 0.4), (80.0, 0.0)] {
+            let mut scene = scene(single(), constant(motion.0, motion.1), 2.0);
+            scene.scene.surfaces[0].representation = model.to_owned();
+            let mut renderer = Renderer::new(&scene, &planned(&scene, &file())).unwrap();
+            let played = rendered(&mut renderer);
+            let made = samples(
+                &mut voice(model, Some(motion), Effects::default()),
+                played.len(),
+            );
+            let peak = played.iter().fold(0.0f32, |peak, x| peak.max(x.abs()));
+            let same = |(a, b): (&f32, &f32)| (a - b).abs() <= 1e-5 * peak;
+            assert!(played.iter().zip(&made).all(same), "{model} at {motion:?}");
+
+            let mut moved = voice(model, None, Effects::default());
+            moved.set_motion(motion.0, motion.1).unwrap();
+            // Behind the ramps of level and contact.
+            samples(&mut moved, 1_000);
+            let moved = samples(&mut moved, played.len());
+            if peak == 0.0 {
+                assert!(motion.0 * motion.1 == 0.0 && moved.iter().all(|x| *x == 0.0));
+                continue;
+            }
+            let difference_db = rms_db(&moved) - rms_db(&played);
+            assert!(
+                difference_db.abs() < 0.4,
+                "{model} at {motion:?}: {difference_db} dB"
+            );
+            let low_hz = 20.0 * motion.0 / RECORDED.0;
+            for (k, (a, b)) in octaves(&moved, low_hz)
+                .iter()
+                .zip(octaves(&played, low_hz))
+                .enumerate()
+            {
+                // What lies 30 dB below all is not compared.
+                assert!(
+                    (a - b).abs() < 1.5 || b < -30.0,
+                    "{model} at {motion:?}, octave {k}: {a} and {b} dB"
+                );
+            }
+        }
+    }
+}
+
+/// A stroke that gets faster and stronger, and rests at its end.
+fn stroke(block: usize, blocks: usize) -> (f64, f64) {
+    let part = block as f64 / blocks as f64;
+    match part < 0.9 {
+        true => (40.0 + 160.0 * part, 0.2 + 0.6 * part),
+        false => (0.0, 0.4),
+    }
+}
+
+#[test]
+fn a_live_motion_plays_as_in_a_scene() {
+    let blocks = 4 * RATE_HZ as usize / CONTROL;
+    for model in MODELS {
+        let mut scene = scene(single(), Motion::Live, 5.0);
+        scene.scene.surfaces[0].representation = model.to_owned();
+        let mut renderer = Renderer::new(&scene, &planned(&scene, &file())).unwrap();
+        let mut voice = voice(model, Some(stroke(0, blocks)), Effects::default());
+        let (mut played, mut followed) = (Vec::new(), Vec::new());
+        for block in 0..blocks {
+            let (speed_mm_s, force_n) = stroke(block, blocks);
+            let finger = Finger {
+                speed_mm_s,
+                force_n,
+                at_mm: None,
+            };
+            renderer.set_motion(finger).unwrap();
+            let mut out = [0.0f32; CONTROL];
+            renderer.render(&mut out);
+            played.extend(out);
+            voice.set_motion(speed_mm_s, force_n).unwrap();
+            followed.extend(samples(&mut voice, CONTROL));
+        }
+        // Windows of half a second while the finger slides, silence at the end.
+        let window = RATE_HZ as usize / 2;
+        for (i, (a, b)) in followed
+            .chunks(window)
+            .zip(played.chunks(window))
+            .enumerate()
+            .skip(1)
+            .take(6)
+        {
+            let difference_db = rms_db(a) - rms_db(b);
+            assert!(
+                difference_db.abs() < 1.0,
+                "{model}, window {i}: {difference_db} dB"
+            );
+        }
+        let end = followed.len() - 4_000;
+        assert!(
+            followed[end..]
+                .iter()
+                .chain(&played[end..])
+                .all(|x| *x == 0.0),
+            "{model}"
+        );
+    }
+}
+
+#[test]
+fn blocks_do_not_matter_and_the_recorded_motion_changes_nothing() {
+    let motions = [
+        RECORDED,
+        (80.0, 0.5),
+        (200.0, 0.4),
+        (0.0, 0.0),
+        (120.0, 0.4),
+        RECORDED,
+    ];
+    for model in MODELS {
+        let follow = |size: usize| {
+            let mut voice = voice(model, None, Effects::default());
+            let mut all = Vec::new();
+            for (speed, force) in motions {
+                voice.set_motion(speed, force).unwrap();
+                let mut out = [0.0f32; 900];
+                out.chunks_mut(size)
+                    .for_each(|block| voice.render(block).unwrap());
+                all.extend(out);
+            }
+            all
+        };
+        let whole = follow(900);
+        assert!(
+            [1, 7, 64].iter().all(|size| follow(*size) == whole),
+            "{model}"
+        );
+        let (mut plain, mut followed) = (
+            voice(model, None, Effects::NONE),
+            voice(model, None, Effects::default()),
+        );
+        for _ in 0..20 {
+            followed.set_motion(RECORDED.0, RECORDED.1).unwrap();
+            assert_eq!(
+                samples(&mut followed, 333),
+                samples(&mut plain, 333),
+                "{model}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_voice_says_what_it_makes_of_a_motion() {
+    let all = voice("ar", None, Effects::default());
+    assert!(all.coverage(80.0, 0.4).is_inside());
+    let beyond = all.coverage(160.0, 0.2);
+    assert_eq!(
+        beyond.to_string(),
+        "160 mm/s, where 80 mm/s was recorded: frequencies are 2.000 times as high; \
+         0.2 N, where 0.4 N was recorded: the level is 0.500 times as high"
+    );
+    assert!(!beyond.is_inside() && !all.coverage(0.0, 0.4).slides);
+    let none = voice("ar", None, Effects::NONE).coverage(160.0, 0.0);
+    let as_recorded = Reach::Clamped {
+        asked: 160.0,
+        played: 80.0,
+    };
+    assert!(none.slides && none.speed == as_recorded);
+
+    // Four conditions, 60 and 120 mm/s by 0.3 and 0.6 N.
+    let of = |motion| grid().coverage(None, motion, Effects::default()).unwrap();
+    assert!(of((100.0, 0.4)).is_inside() && of((122.0, 0.6)).is_inside());
+    let fast = of((240.0, 0.4));
+    assert_eq!(fast.force, Reach::Inside);
+    assert_eq!(
+        fast.to_string(),
+        "240 mm/s is beyond what was recorded, and is played as 120.0000 mm/s"
+    );
+}
+
+/// Forces that a hand took for one are one: each of them plays as it was recorded, and others are scaled.
+#[test]
+fn forces_that_nearly_agree_are_one() {
+    let condition = |speed: f64, force: f64| Condition {
+        speed_mm_s: Some(speed),
+        force_n: Some(force),
+        repeatability_rms_db: None,
+    };
+    let conditions = [
+        condition(40.0, 0.4069),
+        condition(80.0, 0.4061),
+        condition(160.0, 0.4014),
+    ];
+    let at = [0, 1, 2].map(|condition| AtCondition {
+        condition,
+        level_n_rms: 1.0,
+        quality: None,
+    });
+    let explored = Explored::new(&at, &conditions);
+    assert!(matches!(explored.speed, Recorded::Several { .. }) && explored.force.is_one());
+    assert!(
+        conditions
+            .iter()
+            .all(|c| explored.force_gain(c.force_n.unwrap()) == 1.0)
+    );
+    assert_eq!(explored.force_gain(0.8138), 2.0);
+    assert_eq!(explored.force_gain(0.2007), 0.5);
+}

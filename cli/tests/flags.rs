@@ -26,7 +26,7 @@ const FLAGS: &[(&str, &str)] = &[
     ),
     (
         "process rec.csv",
-        "--rate=@ --speed=@ --force=@ --at=speed=@ --map=lateral=fx_n:@",
+        "--rate=@ --speed=@ --force=@ --at=speed=@ --map=lateral=fx_n:@ --from=@ --to=@",
     ),
     (
         "fit rec.csv --license CC0-1.0 -o fitted.htex",

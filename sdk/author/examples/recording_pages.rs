@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used)] // It is run by hand.
 
 #[path = "../tests/common/recordings.rs"]
+#[allow(dead_code)]
 mod recordings;
 
 use std::path::Path;

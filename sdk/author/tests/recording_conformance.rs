@@ -94,9 +94,11 @@ fn sound_recordings_at_any_rate_and_speed_have_no_warning() {
         Surface::Vinyl,
     ];
     for surface in surfaces {
-        for (rate_hz, speed_mm_s, seed) in
-            [(20_000.0, 80.0, 1), (2_000.0, 40.0, 2), (1_000.0, 160.0, 3)]
-        {
+        for (rate_hz, speed_mm_s, seed) in [
+            (20_000.0, 80.0, 1),
+            (2_000.0, 120.0, 2),
+            (1_000.0, 160.0, 3),
+        ] {
             let options = SimulationOptions {
                 rate_hz,
                 speed_mm_s,

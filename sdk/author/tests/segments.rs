@@ -83,7 +83,7 @@ fn with_a_target_a_segment_counts_within_ten_percent_and_without_one_always() {
     assert_eq!(near.part.segments.off_target.len(), 2);
     assert_eq!(near.findings[0].code, "RECORDING_OFF_TARGET");
     assert!(
-        near.warnings[0].contains("2 of 6 segments left out"),
+        near.warnings[1].contains("2 of 6 segments left out"),
         "{:?}",
         near.warnings
     );

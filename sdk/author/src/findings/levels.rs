@@ -4,7 +4,7 @@ use htex_format::Findings;
 
 use super::rules::{RECORDING_CLIPPED, RECORDING_COARSE};
 use super::{axis_name, pointer};
-use crate::Recording;
+use crate::{Recording, segment_len};
 
 /// Values of a signal below which it is its converter's steps: a texture of 4 bits has a quantisation
 /// noise 26 dB below a full swing (6.02 · 4 + 1.76), hardly more than the spectrum's own scatter.
@@ -15,31 +15,47 @@ const CLIPPED: f64 = 0.01;
 /// The extreme value holds this many times the samples of the range next to it ([`BESIDE`]); at the top
 /// of a sine in steps it holds twice as many.
 const OVER_BESIDE: usize = 4;
-/// Width of that range, as a part of the whole.
-const BESIDE: f64 = 0.02;
+/// Width of that range, as a part of the whole; at least one step of the converter. A texture on a plateau is
+/// a few percent of the whole, and dense: it must not be taken for one value.
+const BESIDE: f64 = 0.001;
 /// A clipping signal comes back to its limit; one that came once or twice has stuck there.
 const FEWEST_VISITS: usize = 3;
 /// A limit lies this far from zero, as a part of the mean magnitude: nearer to it lies rest.
 const REST: f64 = 0.5;
 
-/// Finds coarse steps and clipping; returns the values that an axis is clipped at.
-pub(super) fn judge(recording: &Recording, axis: usize, findings: &mut Findings) -> Vec<f64> {
+/// What the values of an axis are like.
+pub(super) enum Levels {
+    /// Too few to judge anything else by.
+    Coarse,
+    /// Many; these are the ones that the axis is clipped at.
+    ClippedAt(Vec<f64>),
+}
+
+/// Finds coarse steps and clipping; what is shorter than a segment is not judged.
+pub(super) fn judge(recording: &Recording, axis: usize, findings: &mut Findings) -> Levels {
     let values = &recording.lateral_n[axis];
     let name = axis_name(recording, axis);
-    let levels = count_levels(values);
-    if levels < FEWEST_LEVELS {
-        if levels > 1 {
+    if values.len() < segment_len(recording.rate_hz) {
+        return Levels::ClippedAt(Vec::new());
+    }
+    match count_levels(values) {
+        1 => return Levels::ClippedAt(Vec::new()),
+        FEWEST_LEVELS => {}
+        levels => {
             findings.add(RECORDING_COARSE, format!("/{name}"), format!(
                 "the {name} force takes {levels} different values in {} samples; raise the gain or write more digits",
                 values.len()
             ));
+            return Levels::Coarse;
         }
-        return Vec::new();
     }
-    let clips: Vec<Clip> = [1.0, -1.0]
+    let mut clips: Vec<Clip> = [1.0, -1.0]
         .into_iter()
         .filter_map(|side| clip(values, side))
         .collect();
+    if clips.iter().map(|clip| clip.visits).sum::<usize>() < FEWEST_VISITS {
+        clips.clear();
+    }
     if let Some(first) = clips.iter().map(|clip| clip.first).min() {
         let count: usize = clips.iter().map(|clip| clip.count).sum();
         let limits: Vec<String> = clips
@@ -53,7 +69,7 @@ pub(super) fn judge(recording: &Recording, axis: usize, findings: &mut Findings)
             recording.second(first)
         ));
     }
-    clips.iter().map(|clip| clip.level).collect()
+    Levels::ClippedAt(clips.iter().map(|clip| clip.level).collect())
 }
 
 /// How many different values there are, as far as [`FEWEST_LEVELS`].
@@ -73,10 +89,12 @@ fn count_levels(values: &[f64]) -> usize {
 struct Clip {
     level: f64,
     count: usize,
+    /// Stretches on the level.
+    visits: usize,
     first: usize,
 }
 
-/// Clipping at the highest value (`side` 1) or the lowest (-1).
+/// What looks like clipping at the highest value (`side` 1) or the lowest (-1).
 fn clip(values: &[f64], side: f64) -> Option<Clip> {
     let (mut top, mut second, mut bottom) = (f64::NEG_INFINITY, f64::NEG_INFINITY, f64::INFINITY);
     let mut magnitude = 0.0;
@@ -105,12 +123,11 @@ fn clip(values: &[f64], side: f64) -> Option<Clip> {
         }
         before = on;
     }
-    let clipped = count as f64 >= CLIPPED * values.len() as f64
-        && visits >= FEWEST_VISITS
-        && count >= OVER_BESIDE * near;
+    let clipped = count as f64 >= CLIPPED * values.len() as f64 && count >= OVER_BESIDE * near;
     clipped.then_some(Clip {
         level: side * top,
         count,
+        visits,
         first: first?,
     })
 }

@@ -12,6 +12,7 @@ mod stuck;
 use htex_format::{Finding, Findings};
 
 use crate::Recording;
+use levels::Levels;
 
 pub use page::findings_page;
 pub(crate) use quantile::median;
@@ -35,9 +36,10 @@ pub(crate) use segments::judge_segments;
 pub fn recording_findings(recording: &Recording) -> Vec<Finding> {
     let mut findings = Findings::default();
     for axis in 0..recording.lateral_n.len() {
-        let clipped = levels::judge(recording, axis, &mut findings);
-        stuck::judge_lateral(recording, axis, &clipped, &mut findings);
-        spikes::judge_lateral(recording, axis, &mut findings);
+        if let Levels::ClippedAt(clips) = levels::judge(recording, axis, &mut findings) {
+            stuck::judge_lateral(recording, axis, &clips, &mut findings);
+            spikes::judge_lateral(recording, axis, &mut findings);
+        }
     }
     stuck::judge_normal(recording, &mut findings);
     spikes::judge_normal(recording, &mut findings);

@@ -92,7 +92,7 @@ fn judge_levels(recording: &Recording, part: &SegmentSpectra, findings: &mut Fin
         named.push(format!("{} more", loud.len() - NAMED));
     }
     let message = format!(
-        "{} of {} segments lie above the median of all: {}; look there, and choose a range with --from and --to",
+        "{} of {} segments 12 dB or more above the median of all: {}; look there, and choose a range with --from and --to",
         loud.len(),
         levels.len(),
         named.join(", ")

@@ -21,6 +21,8 @@ const FEW: usize = 3;
 /// Part of the median normal force that a single step may have: forces come in steps, and are often
 /// constant but for one.
 const FORCE_STEP: f64 = 0.05;
+/// Sharp corners this near to each other, samples, are one spike's.
+const NEIGHBOURS: usize = 2;
 /// Places that a message names.
 const NAMED: usize = 5;
 
@@ -76,16 +78,20 @@ fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
     if limit == 0.0 {
         return Vec::new();
     }
-    let found: Vec<usize> = sharpest
-        .iter()
-        .filter(|(_, corner)| *corner > limit)
-        .map(|(at, _)| *at)
-        .collect();
-    let rare = FEW.max((RARE * sharpest.len() as f64) as usize);
-    if found.len() > rare {
-        Vec::new()
-    } else {
-        found
+    let mut found: Vec<(usize, f64)> = sharpest;
+    found.retain(|(_, corner)| *corner > limit);
+    // At the edge of a block, a spike's neighbours make the sharpest corner of the next.
+    found.dedup_by(|next, one| {
+        let is_one = next.0 - one.0 <= NEIGHBOURS;
+        if is_one && next.1 > one.1 {
+            *one = *next;
+        }
+        is_one
+    });
+    let rare = FEW.max((RARE * (values.len() / block) as f64) as usize);
+    match found.len() > rare {
+        true => Vec::new(),
+        false => found.into_iter().map(|(at, _)| at).collect(),
     }
 }
 

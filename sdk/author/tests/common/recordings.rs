@@ -30,8 +30,8 @@ impl Case {
     /// What else may be found in it: a knock is sharp, and a gap or the end of a stuck stretch is a step.
     pub fn may_also_raise(&self, code: &str) -> bool {
         let also: &[&str] = match self.name {
-            "recording_clock_gap" | "recording_stuck" => &["RECORDING_SPIKE"],
-            "recording_spike" => &["RECORDING_UNEVEN"],
+            "recording_clock_gap" | "recording_stuck" | "recording_silent" => &["RECORDING_SPIKE"],
+            "recording_uneven" => &["RECORDING_SPIKE"],
             "recording_force_outlier" | "recording_speed_zero" => &["RECORDING_UNSTEADY"],
             _ => &[],
         };
@@ -63,6 +63,8 @@ impl Case {
 
 /// Columns of a simulated recording; each case changes what it is about.
 struct Columns {
+    /// Decimals of the time.
+    decimals: usize,
     t_s: Vec<f64>,
     lateral_n: Vec<f64>,
     normal_n: Vec<f64>,
@@ -79,6 +81,7 @@ impl Columns {
         let simulation: Simulation = simulate(&options).unwrap();
         let speed_mm_s = simulation.to_recording("").unwrap().speed_mm_s.unwrap();
         Self {
+            decimals: 3,
             t_s: simulation.t_s,
             lateral_n: simulation.fy_n,
             normal_n: simulation.fz_n,
@@ -106,7 +109,7 @@ impl Columns {
     fn text(&self, header: &str, row: impl Fn(&Self, usize) -> String) -> String {
         let mut text = format!("# simulated\n{header}\n");
         for (at, t_s) in self.t_s.iter().enumerate() {
-            writeln!(text, "{t_s:.5},{}", row(self, at)).unwrap();
+            writeln!(text, "{t_s:.*},{}", self.decimals, row(self, at)).unwrap();
         }
         text
     }
@@ -194,7 +197,10 @@ fn clock_gap() -> String {
 
 /// Timestamps by a busy computer.
 fn clock_jitter() -> String {
-    let mut columns = Columns::new(3.0);
+    let mut columns = Columns {
+        decimals: 5,
+        ..Columns::new(3.0)
+    };
     for (at, t_s) in columns.t_s.iter_mut().enumerate() {
         *t_s += 0.45 * noise(at) / RATE_HZ;
     }

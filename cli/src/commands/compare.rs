@@ -117,7 +117,9 @@ impl Compare {
 
 impl Comparison {
     fn to_text(&self) -> String {
-        let mut text = String::from("  model      corr.  bands/dB  gain-matched/dB  third-oct/dB  log-sp/dB  played/dB\n");
+        let mut text = String::from(
+            "  model      corr.  bands/dB  gain-matched/dB  third-oct/dB  log-sp/dB  played/dB\n",
+        );
         for r in &self.representations {
             let q = &r.quality;
             text += &format!(

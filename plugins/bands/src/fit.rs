@@ -5,8 +5,6 @@
 //! Noise keeps its energies to a hundredth of a decibel; the second part decides where no spectrum has
 //! them, or only one with knots hundreds of decibels apart, as beside a line.
 
-use htex_dsp::grid::Band;
-
 use crate::FLOOR_DB;
 use crate::axis::{Axis, Point};
 
@@ -47,9 +45,8 @@ impl Fitter {
         let weight = energies(&points, &vec![1.0; points.len()], axis.knots);
         let loudest = energy.iter().copied().fold(0.0, f64::max);
         let least = loudest * libm::pow(10.0, -FLOOR_DB / 10.0);
-        let wanted = |(energy, weight): (&f64, &f64)| {
-            (*weight > 0.0).then(|| libm::log(energy.max(least)))
-        };
+        let wanted =
+            |(energy, weight): (&f64, &f64)| (*weight > 0.0).then(|| libm::log(energy.max(least)));
         if least <= 0.0 {
             return None;
         }
@@ -96,7 +93,9 @@ impl Fitter {
             .iter()
             .zip(&energy)
             .map(|(wanted, energy)| {
-                wanted.map_or(0.0, |wanted| libm::log(energy.max(f64::MIN_POSITIVE)) - wanted)
+                wanted.map_or(0.0, |wanted| {
+                    libm::log(energy.max(f64::MIN_POSITIVE)) - wanted
+                })
             })
             .collect();
         let square = |(knot, mean): (&f64, &f64)| (knot - mean) * (knot - mean);
@@ -181,7 +180,11 @@ fn step(knots: &[f64], system: &Pentadiagonal, slope: &[f64], damping: f64) -> V
     let step = system.damped_solution(damping, slope);
     let largest = step.iter().fold(0.0_f64, |largest, s| largest.max(s.abs()));
     let part = (STRIDE / largest).min(1.0);
-    knots.iter().zip(&step).map(|(knot, step)| knot - part * step).collect()
+    knots
+        .iter()
+        .zip(&step)
+        .map(|(knot, step)| knot - part * step)
+        .collect()
 }
 
 /// A symmetric matrix: its diagonal, and the two above.
@@ -253,13 +256,23 @@ pub(crate) fn below_highest_db(knots: &[f64]) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::axis::Layout;
+    use htex_dsp::grid::Band;
 
     /// The decomposition against the product, and the fit's gradient against differences.
     #[test]
     fn the_system_is_that_of_the_sum() {
         let band = Band::TACTILE;
-        for (knots, layout) in [(1, Layout::Within), (2, Layout::Edges), (9, Layout::Within), (30, Layout::Edges)] {
-            let axis = Axis { knots, layout, band };
+        for (knots, layout) in [
+            (1, Layout::Within),
+            (2, Layout::Edges),
+            (9, Layout::Within),
+            (30, Layout::Edges),
+        ] {
+            let axis = Axis {
+                knots,
+                layout,
+                band,
+            };
             let grid = band.grid_hz();
             let power: Vec<f64> = grid.iter().map(|f| 1.0 + (f * 0.7).sin() * 0.9).collect();
             let fitter = Fitter::new(&axis, &grid, &power).unwrap();
@@ -272,7 +285,11 @@ mod tests {
                     fitter.trial(knots).sum
                 };
                 let expected = (moved(1e-5) - moved(-1e-5)) / 4e-5;
-                assert!((slope[i] - expected).abs() < 1e-6, "{knots} {i}: {} {expected}", slope[i]);
+                assert!(
+                    (slope[i] - expected).abs() < 1e-6,
+                    "{knots} {i}: {} {expected}",
+                    slope[i]
+                );
             }
             let x = system.damped_solution(0.5, &slope);
             for i in 0..knots {

@@ -22,10 +22,10 @@ const BANDS_OPTION: usize = 0;
 const STEP_OPTION: usize = 1;
 const LAYOUT_OPTION: usize = 2;
 
-/// Thirty bands of 0.75 dB take at most 24 bytes for each of 15 simulated recordings; with fewer bands or
-/// coarser steps the third-octave error rises, with more the bytes.
+/// Thirty bands in steps of 1 dB took 21 bytes, 22 at most, for 15 simulated recordings, and came within
+/// 0.32 dB (median) in third-octave bands; 9 bands come within 3.7 dB, 64 within 0.17 dB in 34 bytes.
 const DEFAULT_BANDS: u32 = 30;
-const DEFAULT_STEP_DB: f64 = 0.75;
+const DEFAULT_STEP_DB: f64 = 1.0;
 const MAX_BANDS: u32 = 64;
 /// Most steps below the highest knot: what a byte holds.
 const MAX_STEPS: f64 = 255.0;
@@ -115,7 +115,11 @@ impl Model for BandEnergies {
             },
             band: input.band.edges().into(),
         };
-        let power: Vec<f64> = input.magnitude.iter().map(|m| (m / top) * (m / top)).collect();
+        let power: Vec<f64> = input
+            .magnitude
+            .iter()
+            .map(|m| (m / top) * (m / top))
+            .collect();
         let fitter = Fitter::new(&axis, input.frequency_hz, &power).ok_or_else(|| {
             Error::cannot_fit(
                 "the spectrum is silent, at least between its edges: all band energies are zero",

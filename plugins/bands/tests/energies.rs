@@ -124,7 +124,12 @@ proptest! {
 #[test]
 fn knots_stand_where_the_layout_says() {
     let band = Band::TACTILE;
-    let within = shape(&[9.0, 0.0, 8.0, 16.0, 24.0, 32.0, 40.0, 48.0, 56.0, 64.0, 0.5, 0.0], band);
+    let within = shape(
+        &[
+            9.0, 0.0, 8.0, 16.0, 24.0, 32.0, 40.0, 48.0, 56.0, 64.0, 0.5, 0.0,
+        ],
+        band,
+    );
     let edges = shape(&[3.0, 0.0, 20.0, 40.0, 0.5, 1.0], band);
     for ((f, within_m), edges_m) in band.grid_hz().iter().zip(&within).zip(&edges) {
         let x = (10.0 * (f / 20.0).ln() / 50f64.ln()).clamp(1.0, 9.0) - 1.0;

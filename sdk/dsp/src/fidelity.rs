@@ -87,8 +87,14 @@ mod tests {
     #[test]
     fn silence_is_far_and_finite_and_nothing_to_compare_is_nothing() {
         let f = [100.0, 105.0];
-        assert_eq!(third_octave_error_rms_db(&f, &[1.0; 2], &[0.0; 2]), Some(180.0));
-        assert_eq!(log_spectral_distance_db(&[1.0, 0.0], &[0.0, 5.0]), Some(180.0));
+        assert_eq!(
+            third_octave_error_rms_db(&f, &[1.0; 2], &[0.0; 2]),
+            Some(180.0)
+        );
+        assert_eq!(
+            log_spectral_distance_db(&[1.0, 0.0], &[0.0, 5.0]),
+            Some(180.0)
+        );
         assert_eq!(third_octave_error_rms_db(&f, &[0.0; 2], &[1.0; 2]), None);
         assert_eq!(log_spectral_distance_db(&[0.0; 2], &[1.0; 2]), None);
         assert_eq!(third_octave_error_rms_db(&[2000.0], &[1.0], &[1.0]), None);

@@ -4,6 +4,7 @@
 use htex::{Source, VoiceOptions};
 use htex_author::response::SetupResponse;
 use htex_device::{Capabilities, Quantity};
+use htex_format::ErrorMeasure;
 
 use crate::SceneError;
 use crate::file::{Effect, Surface, Switch};
@@ -253,8 +254,8 @@ pub(crate) struct Part {
     pub(crate) surface: usize,
     /// Id of the model.
     pub(crate) model: String,
-    /// Nine-band RMS error, decibels; infinite when it was not measured.
-    pub(crate) band_error_db: f64,
+    /// Error by the budget's measure, decibels; infinite when it was not measured.
+    pub(crate) error_db: f64,
     /// Known speeds (mm/s) and forces (newtons).
     pub(crate) conditions: Vec<[Option<f64>; 2]>,
     pub(crate) speed_mm_s: Span,
@@ -288,11 +289,11 @@ impl Part {
         model: &str,
     ) -> Result<Self, SceneError> {
         let (asset, touch) = (&scene.assets[surface], &call.touches[surface]);
-        let (conditions, band_error_db) = known(asset, model);
+        let (conditions, error_db) = known(asset, model, scene.scene.budget.error);
         let mut part = Self {
             surface,
             model: model.to_owned(),
-            band_error_db,
+            error_db,
             conditions,
             speed_mm_s: touch.speed_mm_s,
             force_n: touch.force_n,
@@ -436,8 +437,8 @@ fn only(span: Span) -> Option<f64> {
     (span.is_point() && span.low > 0.0 && span.low.is_finite()).then_some(span.low)
 }
 
-/// Conditions and band error of a representation.
-fn known(asset: &htex::Asset, model: &str) -> (Vec<[Option<f64>; 2]>, f64) {
+/// Conditions of a representation, and the largest of its errors.
+fn known(asset: &htex::Asset, model: &str, measure: ErrorMeasure) -> (Vec<[Option<f64>; 2]>, f64) {
     let manifest = asset.manifest();
     let found = manifest.representations.iter().find(|r| r.model == model);
     let at = found.map_or(&[][..], |r| &r.at);
@@ -445,9 +446,8 @@ fn known(asset: &htex::Asset, model: &str) -> (Vec<[Option<f64>; 2]>, f64) {
         .iter()
         .filter_map(|at| manifest.conditions.get(at.condition));
     let error = |at: &htex_format::AtCondition| {
-        at.quality
-            .as_ref()
-            .map_or(f64::INFINITY, |q| q.band_error_rms_db)
+        let quality = at.quality.as_ref();
+        quality.and_then(|q| measure.of(q)).unwrap_or(f64::INFINITY)
     };
     let worst = at.iter().map(error).fold(0.0, f64::max);
     (

@@ -180,7 +180,7 @@ fn example_part() -> Part {
     Part {
         surface: 0,
         model: String::new(),
-        band_error_db: 0.0,
+        error_db: 0.0,
         conditions: vec![[Some(80.0), Some(0.4)]],
         speed_mm_s: Span::ANY,
         force_n: Span::ANY,

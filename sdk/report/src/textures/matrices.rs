@@ -26,12 +26,14 @@ pub(super) fn summary(report: &TextureReport) -> String {
         out = out.raw(&error(report, "rendered samples", rendered));
     }
     let beside: [(&str, Value); 2] = [
-        ("Third-octave error of the fitted magnitude, RMS in dB", |m| {
-            m.third_octave_error_rms_db
-        }),
-        ("Log-spectral distance of the fitted magnitude, RMS in dB", |m| {
-            m.log_spectral_distance_db
-        }),
+        (
+            "Third-octave error of the fitted magnitude, RMS in dB",
+            |m| m.third_octave_error_rms_db,
+        ),
+        (
+            "Log-spectral distance of the fitted magnitude, RMS in dB",
+            |m| m.log_spectral_distance_db,
+        ),
     ];
     for (caption, value) in beside {
         if measured(report, value) {

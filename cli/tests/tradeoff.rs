@@ -82,6 +82,33 @@ fn a_sweep_writes_a_page_and_its_points() {
     };
     assert_eq!(ar("store=f32")["bytes"], 29);
     assert_eq!(ar("store=f64")["bytes"], 57);
+    // The same sweep by another error: fronts and knees go by it, and points stay as they were.
+    let arguments = [
+        &quick(&csv, "ar,sslope", "third.html")[..],
+        &["--error", "third-octave"],
+    ]
+    .concat();
+    let third = place.json(&arguments);
+    assert_eq!(third["error"], "third_octave");
+    assert!(read("third.html").contains("third-octave error / dB"));
+    let mut front: Vec<&Value> = points(&third)
+        .iter()
+        .filter(|p| p["on_front"] == true)
+        .collect();
+    front.sort_by_key(|p| p["bytes"].as_u64());
+    let falls = |key: &str| {
+        front
+            .windows(2)
+            .all(|w| number(w[1], key) <= number(w[0], key))
+    };
+    assert!(falls("third_octave_error_rms_db"));
+    let error = |t: &Value| {
+        points(t)
+            .iter()
+            .map(|p| number(p, "third_octave_error_rms_db"))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(error(&third), error(&told));
     let knees = told["knees"].as_array().unwrap();
     assert!(
         knees

@@ -52,6 +52,14 @@ impl Golden {
         numbers(&self.0["input"][key])
     }
 
+    /// A number or a word of the input, as text.
+    pub fn input_text(&self, key: &str) -> String {
+        match &self.0["input"][key] {
+            Value::String(text) => text.clone(),
+            other => other.to_string(),
+        }
+    }
+
     /// Whether the input has this key.
     pub fn has_input(&self, key: &str) -> bool {
         !self.0["input"][key].is_null()

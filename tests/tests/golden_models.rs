@@ -185,7 +185,7 @@ fn bands_of_whole_and_narrow_spectra() {
         } else {
             smooth_spectrum(&grid)
         };
-        let options = ["bands", "step_db"].map(|key| (key, one(key).to_string()));
+        let options = ["bands", "step_db", "layout"].map(|key| (key, case.input_text(key)));
         let options = options.each_ref().map(|(key, value)| (*key, &value[..]));
         let request = FitRequest {
             band,
@@ -196,10 +196,10 @@ fn bands_of_whole_and_narrow_spectra() {
             options: &bands.options(&options).unwrap(),
         };
         let fit = bands.fit(&request).unwrap();
-        case.hold(
-            "/below_loudest",
-            &fit.parameters[1..fit.parameters.len() - 1],
-        );
+        let count = fit.parameters[0] as usize;
+        case.hold("/below_highest", &fit.parameters[1..=count]);
+        case.hold("/step_db", &fit.parameters[count + 1..count + 2]);
+        case.hold("/layout", &fit.parameters[count + 2..]);
         case.hold("/level_rms", &[fit.level_rms]);
         let shape = bands.magnitude(&fit.parameters, band, &grid).unwrap();
         let newtons: Vec<f64> = shape.iter().map(|m| m * fit.level_rms).collect();

@@ -4,6 +4,7 @@ use std::process::ExitCode;
 use clap::Args;
 use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_author::{AuthorError, Exploration, Take};
+use htex_format::ErrorMeasure;
 use htex_host::{LoadedModel, Origin, Registry};
 use htex_tradeoff::{Journal, Model, Point, Request, Subject, csv, page, sweep};
 
@@ -37,6 +38,10 @@ pub(crate) struct Tradeoff {
     #[arg(long)]
     quick: bool,
 
+    /// The error that pictures, fronts and knees go by
+    #[arg(long, value_enum, default_value = "nine-band")]
+    error: ErrorArg,
+
     /// The page to write; points go beside it as .csv and .json
     #[arg(short, long, value_name = "HTML")]
     output: PathBuf,
@@ -50,6 +55,23 @@ pub(crate) struct Tradeoff {
     /// Print JSON instead of a table
     #[arg(long)]
     json: bool,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum ErrorArg {
+    NineBand,
+    ThirdOctave,
+    LogSpectral,
+}
+
+impl ErrorArg {
+    fn measure(self) -> ErrorMeasure {
+        match self {
+            Self::NineBand => ErrorMeasure::NineBand,
+            Self::ThirdOctave => ErrorMeasure::ThirdOctave,
+            Self::LogSpectral => ErrorMeasure::LogSpectral,
+        }
+    }
 }
 
 impl Tradeoff {
@@ -75,7 +97,8 @@ impl Tradeoff {
             bar.set_message(what.to_owned());
         })?;
         bar.finish_and_clear();
-        let tradeoff = htex_tradeoff::Tradeoff::new(&tool(), &subjects, swept);
+        let tradeoff =
+            htex_tradeoff::Tradeoff::new(&tool(), &subjects, swept, self.error.measure());
         let json = serde_json::to_vec(&tradeoff)
             .map_err(|error| Failure::Other(format!("cannot write JSON: {error}")))?;
         write_file(&csv_file, csv(&tradeoff).as_bytes())?;
@@ -189,15 +212,20 @@ fn command() -> String {
 fn to_text(tradeoff: &htex_tradeoff::Tradeoff, output: &Path) -> String {
     let points = tradeoff.summary();
     let name = points.first().map_or("", |p| &p.recording);
-    let mut text =
-        format!("{name}: the front against bytes\n  bytes  bands/dB   corr.  ns/sample  setting\n");
+    let mut text = format!(
+        "{name}: the front against bytes, by {}\n  bytes  bands/dB  third-oct/dB  log-sp/dB   corr.  \
+         ns/sample  setting\n",
+        tradeoff.error
+    );
     let mut front: Vec<&Point> = points.into_iter().filter(|p| p.on_front).collect();
     front.sort_by_key(|p| p.bytes);
     for p in front {
         text += &format!(
-            "  {:>5}  {:>8.2}  {:>6.3}  {:>9.1}  {}\n",
+            "  {:>5}  {:>8.2}  {:>12.2}  {:>9.2}  {:>6.3}  {:>9.1}  {}\n",
             p.bytes,
             p.band_error_rms_db,
+            p.third_octave_error_rms_db,
+            p.log_spectral_distance_db,
             p.spectral_correlation,
             p.ns_per_sample,
             p.name()

@@ -25,5 +25,6 @@ fn store(store: htex_host::Store) -> Store {
         htex_host::Store::F32 => Store::F32,
         htex_host::Store::U16 { scale, offset, log } => Store::U16(steps(scale, offset, log)),
         htex_host::Store::U8 { scale, offset, log } => Store::U8(steps(scale, offset, log)),
+        htex_host::Store::Packed { scale, offset, log } => Store::Packed(steps(scale, offset, log)),
     }
 }

@@ -7,6 +7,7 @@
 use bincode::config::{Configuration, standard};
 use bincode::{Decode, Encode};
 
+use crate::packed::{most_steps, pack, packed_bytes, unpack};
 use crate::{Field, Steps, Store, WriteError};
 
 const CONFIGURATION: Configuration = standard();
@@ -18,6 +19,8 @@ pub(crate) enum BlockError {
     Truncated { field: String, condition: usize },
     #[error("the length of list {field} of condition {condition} is not in its shortest form")]
     Length { field: String, condition: usize },
+    #[error("the packed list {field} of condition {condition} is cut off or not in its one form")]
+    Packed { field: String, condition: usize },
     #[error("{0} bytes follow the last value")]
     Trailing(usize),
     #[error("{field}[{index}] of condition {condition} is not a finite number")]
@@ -37,6 +40,10 @@ pub(crate) fn encode(fields: &[Field], conditions: &[Vec<f64>]) -> Result<Vec<u8
         for (field, values) in split(fields, flat)? {
             if field.list {
                 put(&mut out, values.len() as u64)?;
+            }
+            if let Store::Packed(_) = field.store {
+                out.extend(pack(&steps_of(field, values)?));
+                continue;
             }
             for (index, &value) in values.iter().enumerate() {
                 put_number(&mut out, quantise(field, index, value)?)?;
@@ -73,16 +80,27 @@ pub(crate) fn decode(
 /// # Errors
 /// As [`round_parameters`].
 pub fn stored_bytes(fields: &[Field], flat: &[f64]) -> Result<usize, WriteError> {
-    let parts = split(fields, flat)?;
-    let bytes = |(field, values): (&Field, &[f64])| {
-        let length = if field.list {
-            shortest(values.len() as u64)
-        } else {
-            0
+    let mut bytes = 0;
+    for (field, values) in split(fields, flat)? {
+        if field.list {
+            bytes += shortest(values.len() as u64);
+        }
+        bytes += match field.store {
+            Store::Packed(_) => packed_bytes(&steps_of(field, values)?),
+            store => values.len() * store.bytes(),
         };
-        length + values.len() * field.store.bytes()
+    }
+    Ok(bytes)
+}
+
+/// The steps of a packed list.
+fn steps_of(field: &Field, values: &[f64]) -> Result<Vec<u8>, WriteError> {
+    let step = |(index, &value): (usize, &f64)| match quantise(field, index, value)? {
+        Number::U8(q) => Ok(q),
+        // `quantise` makes no other of this store.
+        _ => Ok(0),
     };
-    Ok(parts.into_iter().map(bytes).sum())
+    values.iter().enumerate().map(step).collect()
 }
 
 /// The values of a flat array as they will be read back from an asset.
@@ -159,7 +177,7 @@ fn quantise(field: &Field, index: usize, value: f64) -> Result<Number, WriteErro
             let q = step(steps, value, f64::from(u16::MAX)).map(|q| Number::U16(q as u16));
             (q, steps.value(0), steps.value(u16::MAX))
         }
-        Store::U8(steps) => {
+        Store::U8(steps) | Store::Packed(steps) => {
             let q = step(steps, value, f64::from(u8::MAX)).map(|q| Number::U8(q as u8));
             (q, steps.value(0), steps.value(u8::MAX.into()))
         }
@@ -198,7 +216,7 @@ fn value_of(number: Number, store: Store) -> f64 {
         (Number::F64(x), _) => x,
         (Number::F32(x), _) => f64::from(x),
         (Number::U16(q), Store::U16(steps)) => steps.value(q),
-        (Number::U8(q), Store::U8(steps)) => steps.value(q.into()),
+        (Number::U8(q), Store::U8(steps) | Store::Packed(steps)) => steps.value(q.into()),
         (Number::U16(q), _) => f64::from(q),
         (Number::U8(q), _) => f64::from(q),
     }
@@ -245,6 +263,11 @@ impl Reader<'_> {
                 .left
                 .checked_sub(count)
                 .ok_or(BlockError::TooMany(self.limit))?;
+            if let Store::Packed(steps) = field.store {
+                let all = self.steps(field, condition, count)?;
+                flat.extend(all.into_iter().map(|q| steps.value(q.into())));
+                continue;
+            }
             for index in 0..count {
                 let value = self
                     .number(field.store)
@@ -262,6 +285,21 @@ impl Reader<'_> {
         Ok(flat)
     }
 
+    /// The steps of a packed list; every step's value is finite, which the manifest was checked for.
+    fn steps(
+        &mut self,
+        field: &Field,
+        condition: usize,
+        count: usize,
+    ) -> Result<Vec<u8>, BlockError> {
+        let (steps, used) = unpack(self.bytes, count).ok_or_else(|| BlockError::Packed {
+            field: field.name.clone(),
+            condition,
+        })?;
+        self.bytes = &self.bytes[used..];
+        Ok(steps)
+    }
+
     /// A list's length, no more than the bytes that follow can hold.
     fn length(&mut self, field: &Field, condition: usize) -> Result<usize, BlockError> {
         let before = self.bytes.len();
@@ -274,7 +312,10 @@ impl Reader<'_> {
                 condition,
             });
         }
-        let room = self.bytes.len() / field.store.bytes();
+        let room = match field.store {
+            Store::Packed(_) => most_steps(self.bytes.len()),
+            store => self.bytes.len() / store.bytes(),
+        };
         match usize::try_from(length) {
             Ok(length) if length <= room => Ok(length),
             _ => Err(truncated(field, condition)),
@@ -286,7 +327,7 @@ impl Reader<'_> {
             Store::F64 => Number::F64(self.take()?),
             Store::F32 => Number::F32(self.take()?),
             Store::U16(_) => Number::U16(u16::from_le_bytes(self.take()?)),
-            Store::U8(_) => Number::U8(self.take()?),
+            Store::U8(_) | Store::Packed(_) => Number::U8(self.take()?),
         };
         Some(value_of(number, store))
     }
@@ -299,13 +340,13 @@ impl Reader<'_> {
 }
 
 impl Store {
-    /// Bytes of a stored number.
+    /// Bytes of a stored number; a packed one has no size of its own.
     fn bytes(self) -> usize {
         match self {
             Self::F64 => 8,
             Self::F32 => 4,
             Self::U16(_) => 2,
-            Self::U8(_) => 1,
+            Self::U8(_) | Self::Packed(_) => 1,
         }
     }
 }

@@ -84,10 +84,11 @@ fn check_fields(representation: &Representation, at: &str, findings: &mut Findin
             Store::F64 | Store::F32 => true,
             Store::U16(steps) => steps.work(u16::MAX),
             Store::U8(steps) => steps.work(u8::MAX.into()),
+            Store::Packed(steps) => field.list && steps.work(u8::MAX.into()),
         };
         findings.require(works, rule::STORE_INVALID, format!("{at}/store"), || {
             "scale is not above 0, a step's value is not finite or, in the logarithm, no normal \
-             number, or steps are too fine for their offset"
+             number, steps are too fine for their offset, or a number is packed that is no list"
                 .to_owned()
         });
     }

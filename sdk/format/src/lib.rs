@@ -17,6 +17,7 @@ mod limits;
 mod manifest;
 mod manifest_json;
 mod measure;
+mod packed;
 mod page;
 mod plain;
 mod plugin;

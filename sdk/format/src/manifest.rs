@@ -179,6 +179,8 @@ pub enum Store {
     U16(Steps),
     /// 8-bit steps.
     U8(Steps),
+    /// 8-bit steps of a list, by their differences: fewer bits where neighbours are alike.
+    Packed(Steps),
 }
 
 /// Steps of an integer store.

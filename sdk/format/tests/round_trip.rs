@@ -31,7 +31,8 @@ fn store() -> impl Strategy<Value = Store> {
         steps.clone().prop_map(Store::U16),
         steps.prop_map(Store::U8),
         log.clone().prop_map(Store::U16),
-        log.prop_map(Store::U8),
+        log.clone().prop_map(Store::U8),
+        log.prop_map(Store::Packed),
     ]
 }
 
@@ -46,7 +47,10 @@ fn representation(i: usize, conditions: usize) -> impl Strategy<Value = Fitted> 
             .collect();
         let (mut representation, mut flats) = fitted(&format!("m{i}"), conditions, &shapes);
         for (field, (store, ..)) in representation.fields.iter_mut().zip(&fields) {
-            field.store = *store;
+            field.store = match *store {
+                Store::Packed(steps) if !field.list => Store::U8(steps),
+                store => store,
+            };
         }
         for flat in &mut flats {
             let mut at = 0;
@@ -66,7 +70,7 @@ fn representation(i: usize, conditions: usize) -> impl Strategy<Value = Fitted> 
 fn inside(store: Store, place: f64, otherwise: f64) -> f64 {
     let (steps, last) = match store {
         Store::U16(steps) => (steps, f64::from(u16::MAX)),
-        Store::U8(steps) => (steps, f64::from(u8::MAX)),
+        Store::U8(steps) | Store::Packed(steps) => (steps, f64::from(u8::MAX)),
         Store::F64 | Store::F32 => return otherwise * place,
     };
     let x = steps.offset + steps.scale * (place * last);

@@ -96,6 +96,16 @@ pub enum Store {
         #[serde(default)]
         log: bool,
     },
+    /// Unsigned 8-bit steps of a list, packed by their differences.
+    Packed {
+        /// Step.
+        scale: f64,
+        /// Value at zero.
+        offset: f64,
+        /// Steps in the logarithm.
+        #[serde(default)]
+        log: bool,
+    },
 }
 
 /// One knob of the fit: a number, or one of several named choices (the number is its index).

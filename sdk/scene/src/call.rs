@@ -4,6 +4,7 @@
 use htex::exploration::CONTACT_RAMP_S;
 use htex::{Explored, Recorded, Source, VoiceOptions};
 use htex_device::{Capabilities, Quantity};
+use htex_format::ErrorMeasure;
 
 use crate::SceneError;
 use crate::file::{Effect, Surface, Switch};
@@ -228,8 +229,8 @@ pub(crate) struct Part {
     pub(crate) surface: usize,
     /// Id of the model.
     pub(crate) model: String,
-    /// Nine-band RMS error, decibels; infinite when it was not measured.
-    pub(crate) band_error_db: f64,
+    /// Error by the budget's measure, decibels; infinite when it was not measured.
+    pub(crate) error_db: f64,
     /// Known conditions.
     pub(crate) known: usize,
     /// Known speeds and forces.
@@ -265,11 +266,11 @@ impl Part {
         model: &str,
     ) -> Result<Self, SceneError> {
         let (asset, touch) = (&scene.assets[surface], &call.touches[surface]);
-        let (known, explored, band_error_db) = known(asset, model);
+        let (known, explored, error_db) = known(asset, model, scene.scene.budget.error);
         let mut part = Self {
             surface,
             model: model.to_owned(),
-            band_error_db,
+            error_db,
             known,
             explored,
             speed_mm_s: touch.speed_mm_s,
@@ -380,15 +381,14 @@ impl Part {
     }
 }
 
-/// How many conditions a representation knows, which, and its band error.
-fn known(asset: &htex::Asset, model: &str) -> (usize, Explored, f64) {
+/// How many conditions a representation knows, which, and the largest of its errors.
+fn known(asset: &htex::Asset, model: &str, measure: ErrorMeasure) -> (usize, Explored, f64) {
     let manifest = asset.manifest();
     let found = manifest.representations.iter().find(|r| r.model == model);
     let at = found.map_or(&[][..], |r| &r.at);
     let error = |at: &htex_format::AtCondition| {
-        at.quality
-            .as_ref()
-            .map_or(f64::INFINITY, |q| q.band_error_rms_db)
+        let quality = at.quality.as_ref();
+        quality.and_then(|q| measure.of(q)).unwrap_or(f64::INFINITY)
     };
     let worst = at.iter().map(error).fold(0.0, f64::max);
     (at.len(), Explored::new(at, &manifest.conditions), worst)

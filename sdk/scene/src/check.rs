@@ -147,7 +147,7 @@ fn check_device(device: &DeviceChoice, findings: &mut Findings) {
 fn check_budget(budget: &Budget, findings: &mut Findings) {
     let numbers = [
         ("ns_per_sample", budget.ns_per_sample),
-        ("max_band_error_db", budget.max_band_error_db),
+        ("max_error_db", budget.max_error_db),
     ];
     for (key, value) in numbers {
         let range = Range(f64::MIN_POSITIVE, 1e12);

@@ -29,7 +29,7 @@ pub enum SceneError {
     /// No representation is near enough.
     #[error(
         "surface {surface}: no representation comes within {wanted_db} dB; the nearest is {model} \
-         at {nearest_db:.2} dB: raise budget.max_band_error_db"
+         at {nearest_db:.2} dB: raise budget.max_error_db"
     )]
     NotNearEnough {
         /// Index of the surface.

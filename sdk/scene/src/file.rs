@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use htex_format::ErrorMeasure;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -173,9 +174,16 @@ pub struct Budget {
     /// Most time a sample of the whole chain may take, nanoseconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ns_per_sample: Option<f64>,
-    /// Largest nine-band RMS error of a representation, decibels.
+    /// Largest error of a representation, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub max_band_error_db: Option<f64>,
+    pub max_error_db: Option<f64>,
+    /// What the error is: which measure `max_error_db` bounds and the nearest has least of.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub error: ErrorMeasure,
+}
+
+fn is_default(measure: &ErrorMeasure) -> bool {
+    *measure == ErrorMeasure::default()
 }
 
 /// What a scene may call for, in the order in which a chain has it.

@@ -181,7 +181,7 @@ fn example_part() -> Part {
     Part {
         surface: 0,
         model: String::new(),
-        band_error_db: 0.0,
+        error_db: 0.0,
         known: 1,
         explored: Explored {
             speed: Recorded::One {

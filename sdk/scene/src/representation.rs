@@ -98,7 +98,7 @@ fn candidates(scene: &LoadedScene, call: &Call, surface: usize) -> Result<Candid
             there: models.collect::<Vec<_>>().join(", "),
         });
     }
-    parts.sort_by(|a, b| a.band_error_db.total_cmp(&b.band_error_db));
+    parts.sort_by(|a, b| a.error_db.total_cmp(&b.error_db));
     Ok(Candidates {
         surface,
         parts,
@@ -112,10 +112,10 @@ fn within(
     budget: &Budget,
     cost: &dyn Fn(&[Part]) -> f64,
 ) -> Result<Vec<Part>, SceneError> {
-    if let Some(error_db) = budget.max_band_error_db {
+    if let Some(error_db) = budget.max_error_db {
         check_error(all, error_db)?;
     }
-    match (budget.max_band_error_db, budget.ns_per_sample) {
+    match (budget.max_error_db, budget.ns_per_sample) {
         (None, None) => Ok(all.iter().map(|c| c.parts[0].clone()).collect()),
         (Some(error_db), None) => Ok(quickest(all, error_db, cost)),
         (error_db, Some(ns)) => nearest_within(all, error_db, ns, cost),
@@ -131,13 +131,13 @@ fn nearest_within(
 ) -> Result<Vec<Part>, SceneError> {
     let mut bounds: Vec<f64> = all
         .iter()
-        .flat_map(|c| c.parts.iter().map(|p| p.band_error_db))
+        .flat_map(|c| c.parts.iter().map(|p| p.error_db))
         .filter(|bound| error_db.is_none_or(|most| *bound <= most))
         .collect();
     bounds.sort_by(f64::total_cmp);
     // Below this, a surface has no representation at all.
     let least = all.iter().filter(|c| !c.named);
-    let least = least.map(|c| c.parts[0].band_error_db).fold(0.0, f64::max);
+    let least = least.map(|c| c.parts[0].error_db).fold(0.0, f64::max);
     let mut quickest_ns = f64::INFINITY;
     for bound in bounds.into_iter().filter(|bound| *bound >= least) {
         let parts = quickest(all, bound, cost);
@@ -166,10 +166,7 @@ fn nearest_within(
 /// The quickest part of each surface with an error of at most `error_db`.
 fn quickest(all: &[Candidates], error_db: f64, cost: &dyn Fn(&[Part]) -> f64) -> Vec<Part> {
     let one = |c: &Candidates| {
-        let near = c
-            .parts
-            .iter()
-            .filter(|p| c.named || p.band_error_db <= error_db);
+        let near = c.parts.iter().filter(|p| c.named || p.error_db <= error_db);
         let alone = |part: &&Part| cost(std::slice::from_ref(*part));
         let best = near.min_by(|a, b| alone(a).total_cmp(&alone(b)));
         best.unwrap_or(&c.parts[0]).clone()
@@ -178,22 +175,22 @@ fn quickest(all: &[Candidates], error_db: f64, cost: &dyn Fn(&[Part]) -> f64) ->
 }
 
 fn check_error(all: &[Candidates], wanted_db: f64) -> Result<(), SceneError> {
-    let far = |c: &&Candidates| c.parts[0].band_error_db > wanted_db;
+    let far = |c: &&Candidates| c.parts[0].error_db > wanted_db;
     match all.iter().find(far) {
         None => Ok(()),
         Some(c) => Err(SceneError::NotNearEnough {
             surface: c.surface,
             wanted_db,
             model: c.parts[0].model.clone(),
-            nearest_db: c.parts[0].band_error_db,
+            nearest_db: c.parts[0].error_db,
         }),
     }
 }
 
 fn reason(part: &Part, from: &Candidates, budget: &Budget) -> String {
-    let error = format!("nine-band error {:.2} dB", part.band_error_db);
+    let error = format!("{} {:.2} dB", budget.error, part.error_db);
     let of = from.parts.len();
-    match (from.named, budget.max_band_error_db, budget.ns_per_sample) {
+    match (from.named, budget.max_error_db, budget.ns_per_sample) {
         (true, _, _) => format!("the scene names it; {error}"),
         (_, None, None) => format!("the nearest of {of}: {error}"),
         (_, Some(most), None) => format!("the quickest of {of} within {most} dB: {error}"),

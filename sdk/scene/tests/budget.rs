@@ -4,6 +4,7 @@
 mod common;
 
 use common::{constant, file, planned, scene, single};
+use htex_format::ErrorMeasure;
 use htex_scene::file::Budget;
 use htex_scene::{Costs, Plan, SceneError, plan};
 
@@ -11,12 +12,12 @@ use htex_scene::{Costs, Plan, SceneError, plan};
 const RESERVE: f64 = 1.5;
 
 /// Each representation's error and the budget that the plan with it alone needs.
-fn measured() -> Vec<(String, f64, f64)> {
+fn measured(measure: ErrorMeasure) -> Vec<(String, f64, f64)> {
     let manifest = single().manifest();
     let one = |r: &htex_format::Representation| {
         let mut scene = scene(single(), constant(80.0, 0.4), 1.0);
         scene.scene.surfaces[0].representation = r.model.clone();
-        let error_db = r.at[0].quality.as_ref().unwrap().band_error_rms_db;
+        let error_db = measure.of(r.at[0].quality.as_ref().unwrap()).unwrap();
         let ns = RESERVE * planned(&scene, &file()).ns_per_sample_total;
         (r.model.clone(), error_db, ns)
     };
@@ -36,7 +37,7 @@ fn error_of(all: &[(String, f64, f64)], plan: &Plan) -> f64 {
 
 #[test]
 fn less_time_means_more_error_and_never_the_other_way() {
-    let all = measured();
+    let all = measured(ErrorMeasure::NineBand);
     let dearest = all.iter().map(|(.., ns)| *ns).fold(0.0, f64::max);
     let cheapest = all.iter().map(|(.., ns)| *ns).fold(f64::INFINITY, f64::min);
     let (mut last_error, mut choices) = (0.0, std::collections::BTreeSet::new());
@@ -74,27 +75,35 @@ fn less_time_means_more_error_and_never_the_other_way() {
 
 #[test]
 fn more_error_means_less_time_and_never_the_other_way() {
-    let all = measured();
-    let mut last_ns = f64::INFINITY;
-    for step in 0..200 {
-        let most_db = 0.1 * 1.05f64.powi(step);
-        let budget = Budget {
-            max_band_error_db: Some(most_db),
-            ..Budget::default()
-        };
-        match within(budget) {
-            Ok(plan) => {
-                assert!(error_of(&all, &plan) <= most_db);
-                let ns = RESERVE * plan.ns_per_sample_total;
-                assert!(ns <= last_ns);
-                last_ns = ns;
-            }
-            Err(error) => {
-                assert!(matches!(error, SceneError::NotNearEnough { .. }), "{error}");
-                assert!(all.iter().all(|(_, e, _)| *e > most_db));
+    for error in ErrorMeasure::ALL {
+        let all = measured(error);
+        let mut last_ns = f64::INFINITY;
+        for step in 0..200 {
+            let most_db = 0.1 * 1.05f64.powi(step);
+            let budget = Budget {
+                max_error_db: Some(most_db),
+                error,
+                ..Budget::default()
+            };
+            match within(budget) {
+                Ok(plan) => {
+                    assert!(error_of(&all, &plan) <= most_db);
+                    assert!(plan.representation[0].why.contains(error.name()));
+                    let ns = RESERVE * plan.ns_per_sample_total;
+                    assert!(ns <= last_ns);
+                    last_ns = ns;
+                }
+                Err(refused) => {
+                    assert!(
+                        matches!(refused, SceneError::NotNearEnough { .. }),
+                        "{refused}"
+                    );
+                    assert!(all.iter().all(|(_, e, _)| *e > most_db));
+                }
             }
         }
+        let near = all.iter().filter(|(_, e, _)| *e <= 0.1 * 1.05f64.powi(199));
+        let cheapest = near.map(|(.., ns)| *ns).fold(f64::INFINITY, f64::min);
+        assert_eq!(last_ns, cheapest);
     }
-    let cheapest = all.iter().map(|(.., ns)| *ns).fold(f64::INFINITY, f64::min);
-    assert_eq!(last_ns, cheapest);
 }

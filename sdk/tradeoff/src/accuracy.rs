@@ -1,4 +1,4 @@
-//! How near a spectrum comes, in three numbers.
+//! How near a spectrum comes, in five numbers.
 
 use htex_author::{SpectrumRef, agreement};
 use htex_dsp::grid::level_rms;
@@ -9,11 +9,14 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct Accuracy {
     pub(crate) spectral_correlation: f64,
     pub(crate) band_error_rms_db: f64,
+    pub(crate) third_octave_error_rms_db: f64,
+    pub(crate) log_spectral_distance_db: f64,
     /// RMS in the band over the recording's, decibels.
     pub(crate) level_error_db: f64,
 }
 
-/// A level this far off is none at all: keeps silence finite.
+/// A level this far off is none at all: keeps silence finite. The errors of what has nothing to be
+/// compared with.
 const FAR_DB: f64 = 200.0;
 
 pub(crate) fn accuracy(reference: SpectrumRef<'_>, magnitude_n: &[f64]) -> Accuracy {
@@ -22,6 +25,8 @@ pub(crate) fn accuracy(reference: SpectrumRef<'_>, magnitude_n: &[f64]) -> Accur
     Accuracy {
         spectral_correlation: found.spectral_correlation,
         band_error_rms_db: found.band_error_rms_db,
+        third_octave_error_rms_db: found.third_octave_error_rms_db.unwrap_or(FAR_DB),
+        log_spectral_distance_db: found.log_spectral_distance_db.unwrap_or(FAR_DB),
         level_error_db: (20.0 * ratio.log10()).clamp(-FAR_DB, FAR_DB),
     }
 }

@@ -22,6 +22,12 @@ const COLUMNS: &[Column] = &[
         p.spectral_correlation.to_string()
     }),
     ("band_error_rms_db", |p| p.band_error_rms_db.to_string()),
+    ("third_octave_error_rms_db", |p| {
+        p.third_octave_error_rms_db.to_string()
+    }),
+    ("log_spectral_distance_db", |p| {
+        p.log_spectral_distance_db.to_string()
+    }),
     ("level_error_db", |p| p.level_error_db.to_string()),
     ("samples_spectral_correlation", |p| {
         p.samples_spectral_correlation.to_string()
@@ -31,6 +37,12 @@ const COLUMNS: &[Column] = &[
     }),
     ("samples_band_error_spread_db", |p| {
         p.samples_band_error_spread_db.to_string()
+    }),
+    ("samples_third_octave_error_rms_db", |p| {
+        p.samples_third_octave_error_rms_db.to_string()
+    }),
+    ("samples_log_spectral_distance_db", |p| {
+        p.samples_log_spectral_distance_db.to_string()
     }),
     ("samples_level_error_db", |p| {
         p.samples_level_error_db.to_string()

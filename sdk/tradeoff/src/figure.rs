@@ -1,5 +1,6 @@
 //! Error against cost as a picture.
 
+use htex_format::ErrorMeasure;
 use htex_report::{Axis, Line, Plot, RECORDING_COLOR, Series, model_color};
 
 use crate::front::front;
@@ -9,14 +10,23 @@ use crate::setting::Keep;
 
 /// What error is weighed against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Against {
+pub enum Cost {
     /// Bytes of stored parameters; error by magnitudes.
     Bytes,
     /// Nanoseconds a sample; error by samples.
     Time,
 }
 
-impl Against {
+/// Which error is weighed against what.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Against {
+    /// What it is weighed against.
+    pub cost: Cost,
+    /// How the error is measured.
+    pub error: ErrorMeasure,
+}
+
+impl Cost {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Bytes => "bytes",
@@ -32,15 +42,7 @@ impl Against {
         }
     }
 
-    /// Cost and error of a point.
-    pub(crate) fn place(self, point: &Point) -> (f64, f64) {
-        match self {
-            Self::Bytes => (point.bytes as f64, point.band_error_rms_db),
-            Self::Time => (point.ns_per_sample, point.samples_band_error_rms_db),
-        }
-    }
-
-    pub(crate) fn cost(self, cost: f64) -> String {
+    pub(crate) fn amount(self, cost: f64) -> String {
         match self {
             Self::Bytes => format!("{cost} bytes"),
             Self::Time => format!("{cost:.1} ns"),
@@ -48,7 +50,7 @@ impl Against {
     }
 
     pub(crate) fn words(self, cost: f64, error: f64) -> String {
-        format!("{} at {error:.2} dB", self.cost(cost))
+        format!("{} at {error:.2} dB", self.amount(cost))
     }
 
     fn axis(self) -> Axis {
@@ -59,19 +61,29 @@ impl Against {
     }
 }
 
+impl Against {
+    /// Cost and error of a point.
+    pub(crate) fn place(self, point: &Point) -> (f64, f64) {
+        match self.cost {
+            Cost::Bytes => (point.bytes as f64, point.error_db(self.error)),
+            Cost::Time => (point.ns_per_sample, point.samples_error_db(self.error)),
+        }
+    }
+}
+
 /// Marks the points that no other beats.
 pub(crate) fn mark_front(points: &mut [Point], against: Against) {
     let compared: Vec<usize> = (0..points.len())
-        .filter(|&i| against.compares(&points[i]))
+        .filter(|&i| against.cost.compares(&points[i]))
         .collect();
     let places: Vec<(f64, f64)> = compared
         .iter()
         .map(|&i| against.place(&points[i]))
         .collect();
     for (&i, on) in compared.iter().zip(front(&places)) {
-        match against {
-            Against::Bytes => points[i].on_front = on,
-            Against::Time => points[i].on_time_front = on,
+        match against.cost {
+            Cost::Bytes => points[i].on_front = on,
+            Cost::Time => points[i].on_time_front = on,
         }
     }
 }
@@ -82,9 +94,13 @@ pub fn figure(title: &str, points: &[&Point], models: &[String], against: Agains
     let shown: Vec<&Point> = points
         .iter()
         .copied()
-        .filter(|p| against.compares(p))
+        .filter(|p| against.cost.compares(p))
         .collect();
-    let mut plot = Plot::new(title, against.axis(), Axis::log("nine-band error / dB"));
+    let mut plot = Plot::new(
+        title,
+        against.cost.axis(),
+        Axis::log(&format!("{} / dB", against.error)),
+    );
     // Narrow, so that text stays legible on a telephone.
     (plot.width, plot.height) = (440.0, 380.0);
     let front = along_front(&shown, against);
@@ -146,8 +162,8 @@ fn steps(front: &[&Point], against: Against) -> Vec<(f64, f64)> {
 
 fn note(p: &Point) -> String {
     format!(
-        "{}: {} bytes, {:.1} ns a sample (±{:.0} %), first sample {:.0} µs, fit {:.2} ms; {:.2} dB, \
-         played {:.2} dB, correlation {:.3}",
+        "{}: {} bytes, {:.1} ns a sample (±{:.0} %), first sample {:.0} µs, fit {:.2} ms; nine bands {:.2} dB, \
+         played {:.2} dB, third octaves {:.2} dB, log-spectral {:.2} dB, correlation {:.3}",
         p.name(),
         p.bytes,
         p.ns_per_sample,
@@ -156,6 +172,8 @@ fn note(p: &Point) -> String {
         p.fit_ms,
         p.band_error_rms_db,
         p.samples_band_error_rms_db,
+        p.third_octave_error_rms_db,
+        p.log_spectral_distance_db,
         p.spectral_correlation
     )
 }

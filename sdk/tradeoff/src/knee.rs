@@ -1,8 +1,9 @@
 //! Where a front bends: what the next step up buys less and less.
 
+use htex_format::ErrorMeasure;
 use serde::Serialize;
 
-use crate::figure::Against;
+use crate::figure::{Against, Cost};
 use crate::front::front;
 use crate::point::Point;
 
@@ -22,8 +23,10 @@ pub struct Knee {
     pub at: String,
     /// Its bytes or ns a sample.
     pub cost: f64,
-    /// Its nine-band error, dB.
-    pub band_error_rms_db: f64,
+    /// How its error is measured.
+    pub error: ErrorMeasure,
+    /// Its error, dB.
+    pub error_db: f64,
     /// Model and setting of the next step up, which is at least 0.05 dB better; none when there is none.
     pub next: Option<String>,
     /// The same, with what the step buys and costs, as a sentence.
@@ -50,13 +53,19 @@ pub fn knee(front: &[(f64, f64)]) -> Option<usize> {
 }
 
 /// The knees of one recording: of all models, then of each.
-pub(crate) fn knees(recording: &str, points: &[&Point], models: &[String]) -> Vec<Knee> {
+pub(crate) fn knees(
+    recording: &str,
+    points: &[&Point],
+    models: &[String],
+    error: ErrorMeasure,
+) -> Vec<Knee> {
     let mut knees = Vec::new();
-    for against in [Against::Bytes, Against::Time] {
+    for cost in [Cost::Bytes, Cost::Time] {
+        let against = Against { cost, error };
         let shown: Vec<&Point> = points
             .iter()
             .copied()
-            .filter(|p| against.compares(p))
+            .filter(|p| cost.compares(p))
             .collect();
         knees.extend(knee_of(recording, "all models", against, &shown));
         for model in models {
@@ -79,24 +88,25 @@ fn knee_of(recording: &str, of: &str, against: Against, points: &[&Point]) -> Op
     let is_step = |i: &usize| error - places[*i].1 >= STEP_DB;
     let next = (at + 1..places.len()).find(is_step);
     let next = next.map(|i| (&places[i], along[i]));
-    let here = format!("{}, {}", along[at].name(), against.words(cost, error));
+    let here = format!("{}, {}", along[at].name(), against.cost.words(cost, error));
     let words = match next {
         None => format!("{here}: there is no step up"),
         Some((&(next_cost, next_error), next)) => format!(
             "{here}; the next step up, {}, buys {:.2} dB for {} more ({:+.0} %)",
             next.name(),
             error - next_error,
-            against.cost(next_cost - cost),
+            against.cost.amount(next_cost - cost),
             100.0 * (next_cost / cost - 1.0)
         ),
     };
     Some(Knee {
         recording: recording.to_owned(),
         of: of.to_owned(),
-        against: against.name(),
+        against: against.cost.name(),
         at: along[at].name(),
         cost,
-        band_error_rms_db: error,
+        error: against.error,
+        error_db: error,
         next: next.map(|(_, point)| point.name()),
         words,
     })

@@ -30,7 +30,7 @@ mod tradeoff;
 
 pub use csv::csv;
 pub use error::TradeoffError;
-pub use figure::{Against, figure};
+pub use figure::{Against, Cost, figure};
 pub use front::front;
 pub use journal::Journal;
 pub use knee::{Knee, knee};

@@ -23,7 +23,7 @@ pub(crate) struct Measured {
     pub(crate) kept_bytes: usize,
     pub(crate) by_magnitude: Accuracy,
     pub(crate) by_samples: Accuracy,
-    /// Half the range of the band errors of single renderings, decibels.
+    /// Half the range of the nine-band errors of single renderings, decibels.
     pub(crate) samples_spread_db: f64,
 }
 

@@ -41,10 +41,14 @@ fn median_of(same: &[&Point], name: &str) -> Point {
         kept_bytes: of(|p| p.kept_bytes as f64) as usize,
         spectral_correlation: of(|p| p.spectral_correlation),
         band_error_rms_db: of(|p| p.band_error_rms_db),
+        third_octave_error_rms_db: of(|p| p.third_octave_error_rms_db),
+        log_spectral_distance_db: of(|p| p.log_spectral_distance_db),
         level_error_db: of(|p| p.level_error_db),
         samples_spectral_correlation: of(|p| p.samples_spectral_correlation),
         samples_band_error_rms_db: of(|p| p.samples_band_error_rms_db),
         samples_band_error_spread_db: of(|p| p.samples_band_error_spread_db),
+        samples_third_octave_error_rms_db: of(|p| p.samples_third_octave_error_rms_db),
+        samples_log_spectral_distance_db: of(|p| p.samples_log_spectral_distance_db),
         samples_level_error_db: of(|p| p.samples_level_error_db),
         ..same[0].clone()
     }

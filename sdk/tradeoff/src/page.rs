@@ -1,8 +1,9 @@
 //! The report as a page.
 
+use htex_format::ErrorMeasure;
 use htex_report::{Cell, HeatScale, Page, Row, Table, figures, list, paragraph};
 
-use crate::figure::{Against, figure};
+use crate::figure::{Cost, figure};
 use crate::knee::{Knee, along_front};
 use crate::{Point, QUANTISED, RECORDING, Tradeoff};
 
@@ -10,7 +11,7 @@ use crate::{Point, QUANTISED, RECORDING, Tradeoff};
 pub fn page(tradeoff: &Tradeoff, command: &str) -> String {
     let mut page = Page::new("Accuracy against bytes and time");
     page.html(&paragraph(&made_of(tradeoff)));
-    page.html(&paragraph(READING));
+    page.html(&paragraph(&reading(tradeoff)));
     let summary = tradeoff.summary();
     let name = summary
         .first()
@@ -50,13 +51,24 @@ pub fn page(tradeoff: &Tradeoff, command: &str) -> String {
     page.render()
 }
 
-const READING: &str = "Each dot is a setting of a model; large ones are the model's own front, where \
-    no other of its settings has less error for as little. The grey line is the front of all. Point at a \
-    large dot for all its numbers. Error is the RMS over nine bands of the energy difference, in \
-    decibels: against bytes by the model's own magnitudes, against time by what it plays. Two \
-    baselines stand in every picture: the spectrum itself at a byte a bin, and the recording, whose \
-    error is what its odd and even strokes differ by. An error below that says nothing more about \
-    the surface.";
+fn reading(tradeoff: &Tradeoff) -> String {
+    let own = match tradeoff.error {
+        ErrorMeasure::NineBand => {
+            "`bands` stores what the nine-band error is made of; no model is fitted to the other two"
+        }
+        _ => "no model is fitted to it",
+    };
+    format!(
+        "Each dot is a setting of a model; large ones are the model's own front, where no other of its \
+         settings has less error for as little. The grey line is the front of all. Point at a large dot \
+         for all its numbers. In the pictures and knees error is the {}, in decibels ({own}): against \
+         bytes by the model's own magnitudes, against time by what it plays. The tables have the \
+         nine-band error, third-octave error and log-spectral distance side by side. Two baselines stand \
+         in every picture: the spectrum itself at a byte a bin, and the recording, whose error is what its \
+         odd and even strokes differ by. An error below that says nothing more about the surface.",
+        tradeoff.error
+    )
+}
 
 const PLAYING: &str = "What was fitted at the defaults, stored and played in other ways, one at a time. A \
     loop costs memory and keeps the grain of one piece of noise; a filter resolves the better the more \
@@ -94,12 +106,12 @@ fn machine(tradeoff: &Tradeoff) -> String {
 /// Two pictures and the knees of a recording.
 fn section(page: &mut Page, tradeoff: &Tradeoff, name: &str, points: &[&Point]) {
     page.heading(name);
-    let pictures = [Against::Bytes, Against::Time].map(|against| {
-        let title = match against {
-            Against::Bytes => "Error against bytes",
-            Against::Time => "Error against time",
+    let pictures = [Cost::Bytes, Cost::Time].map(|cost| {
+        let title = match cost {
+            Cost::Bytes => "Error against bytes",
+            Cost::Time => "Error against time",
         };
-        figure(title, points, &tradeoff.models, against).to_svg()
+        figure(title, points, &tradeoff.models, tradeoff.against(cost)).to_svg()
     });
     page.html(&figures(&pictures));
     for (against, what) in [("bytes", "bytes"), ("time", "time")] {
@@ -115,9 +127,9 @@ fn section(page: &mut Page, tradeoff: &Tradeoff, name: &str, points: &[&Point]) 
         &points
             .iter()
             .copied()
-            .filter(|p| Against::Bytes.compares(p))
+            .filter(|p| Cost::Bytes.compares(p))
             .collect::<Vec<_>>(),
-        Against::Bytes,
+        tradeoff.against(Cost::Bytes),
     );
     let table = table("The front of all against bytes", &along);
     page.html(&htex_report::details(
@@ -126,9 +138,11 @@ fn section(page: &mut Page, tradeoff: &Tradeoff, name: &str, points: &[&Point]) 
     ));
 }
 
-const COLUMNS: [&str; 8] = [
+const COLUMNS: [&str; 10] = [
     "bytes",
-    "error / dB",
+    "nine bands / dB",
+    "third octaves / dB",
+    "log-spectral / dB",
     "played / dB",
     "correlation",
     "level / dB",
@@ -143,6 +157,8 @@ fn table(caption: &str, points: &[&Point]) -> Table {
         cells: vec![
             Cell::Text(p.bytes.to_string(), String::new()),
             Cell::Plain(p.band_error_rms_db),
+            Cell::Plain(p.third_octave_error_rms_db),
+            Cell::Plain(p.log_spectral_distance_db),
             Cell::Text(
                 format!("{:.2}", p.samples_band_error_rms_db),
                 format!("± {:.2}", p.samples_band_error_spread_db),

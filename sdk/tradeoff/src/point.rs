@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use htex_format::ErrorMeasure;
 use serde::Serialize;
 use serde_json::Value;
 
@@ -49,6 +50,10 @@ pub struct Point {
     pub spectral_correlation: f64,
     /// RMS of the nine bands' errors, dB, by the model's own magnitudes.
     pub band_error_rms_db: f64,
+    /// RMS error over third-octave bands, dB, by the model's own magnitudes.
+    pub third_octave_error_rms_db: f64,
+    /// RMS over the bins of the decibels between the magnitudes.
+    pub log_spectral_distance_db: f64,
     /// Level over the recording's, dB, by the model's own magnitudes.
     pub level_error_db: f64,
     /// Correlation, by what it plays.
@@ -57,6 +62,10 @@ pub struct Point {
     pub samples_band_error_rms_db: f64,
     /// Half the range of that error over single renderings, dB.
     pub samples_band_error_spread_db: f64,
+    /// RMS error over third-octave bands, dB, by what it plays.
+    pub samples_third_octave_error_rms_db: f64,
+    /// Log-spectral distance, dB, by what it plays.
+    pub samples_log_spectral_distance_db: f64,
     /// Level, dB, by what it plays.
     pub samples_level_error_db: f64,
     /// Whether no other setting that plays at its defaults has as few bytes and as small an error,
@@ -95,13 +104,35 @@ impl Point {
             kept_bytes: measured.kept_bytes,
             spectral_correlation: magnitude.spectral_correlation,
             band_error_rms_db: magnitude.band_error_rms_db,
+            third_octave_error_rms_db: magnitude.third_octave_error_rms_db,
+            log_spectral_distance_db: magnitude.log_spectral_distance_db,
             level_error_db: magnitude.level_error_db,
             samples_spectral_correlation: samples.spectral_correlation,
             samples_band_error_rms_db: samples.band_error_rms_db,
             samples_band_error_spread_db: measured.samples_spread_db,
+            samples_third_octave_error_rms_db: samples.third_octave_error_rms_db,
+            samples_log_spectral_distance_db: samples.log_spectral_distance_db,
             samples_level_error_db: samples.level_error_db,
             on_front: false,
             on_time_front: false,
+        }
+    }
+
+    /// The error, dB, by the model's own magnitudes.
+    pub fn error_db(&self, measure: ErrorMeasure) -> f64 {
+        match measure {
+            ErrorMeasure::NineBand => self.band_error_rms_db,
+            ErrorMeasure::ThirdOctave => self.third_octave_error_rms_db,
+            ErrorMeasure::LogSpectral => self.log_spectral_distance_db,
+        }
+    }
+
+    /// The error, dB, by what it plays.
+    pub fn samples_error_db(&self, measure: ErrorMeasure) -> f64 {
+        match measure {
+            ErrorMeasure::NineBand => self.samples_band_error_rms_db,
+            ErrorMeasure::ThirdOctave => self.samples_third_octave_error_rms_db,
+            ErrorMeasure::LogSpectral => self.samples_log_spectral_distance_db,
         }
     }
 

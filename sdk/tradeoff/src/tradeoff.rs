@@ -1,9 +1,10 @@
 //! What a sweep comes to: fronts, knees, warnings.
 
+use htex_format::ErrorMeasure;
 use serde::Serialize;
 
 use crate::Subject;
-use crate::figure::{Against, mark_front};
+use crate::figure::{Against, Cost, mark_front};
 use crate::knee::{Knee, along_front, knees};
 use crate::median::medians;
 use crate::point::Point;
@@ -11,10 +12,11 @@ use crate::sweep::{LeftOut, Swept};
 
 /// What the numbers are, for whoever reads the JSON.
 const METHOD: &str = "times are medians of interleaved turns on one core, warm; every spread is half \
-    the distance between the quartiles over the median. Errors are RMS over nine bands, by the \
-    model's own magnitudes, and by what three renderings play. on_front: bytes against \
-    band_error_rms_db, settings that play at their defaults; on_time_front: ns_per_sample against \
-    samples_band_error_rms_db, settings with blocks and output rate at their defaults. The \
+    the distance between the quartiles over the median. Errors are RMS over nine bands, over \
+    third-octave bands, and over the bins (log-spectral distance), by the model's own magnitudes, \
+    and by what three renderings play; `error` says which one fronts and knees go by. on_front: bytes \
+    against the error by magnitudes, settings that play at their defaults; on_time_front: \
+    ns_per_sample against the error by samples, settings with blocks and output rate at their defaults. The \
     recording's error is that of its odd strokes against its even ones.";
 
 /// Steps that a warning names.
@@ -65,6 +67,8 @@ pub struct Tradeoff {
     pub tool: String,
     /// Where it ran.
     pub machine: Machine,
+    /// The error that fronts and knees go by.
+    pub error: ErrorMeasure,
     /// What the numbers are.
     pub method: &'static str,
     /// The recordings.
@@ -85,7 +89,7 @@ pub struct Tradeoff {
 
 impl Tradeoff {
     /// Marks the fronts of a sweep over `subjects` and finds their knees.
-    pub fn new(tool: &str, subjects: &[Subject], swept: Swept) -> Self {
+    pub fn new(tool: &str, subjects: &[Subject], swept: Swept, error: ErrorMeasure) -> Self {
         let Swept {
             mut points,
             left_out,
@@ -95,13 +99,13 @@ impl Tradeoff {
             // Points stand by recording.
             let first = points.iter().position(own).unwrap_or(0);
             let count = points.iter().filter(|p| own(p)).count();
-            mark(&mut points[first..first + count]);
+            mark(&mut points[first..first + count], error);
         }
         let mut medians = match subjects.len() {
             0 | 1 => Vec::new(),
             several => medians(&points, several),
         };
-        mark(&mut medians);
+        mark(&mut medians, error);
         let mut models: Vec<String> = Vec::new();
         for point in points.iter().filter(|p| !p.is_baseline()) {
             if !models.contains(&point.model) {
@@ -111,6 +115,7 @@ impl Tradeoff {
         let mut tradeoff = Self {
             tool: tool.to_owned(),
             machine: Machine::here(),
+            error,
             method: METHOD,
             recordings: subjects.iter().map(Recorded::new).collect(),
             models,
@@ -143,17 +148,25 @@ impl Tradeoff {
         points.iter().collect()
     }
 
+    pub(crate) fn against(&self, cost: Cost) -> Against {
+        Against {
+            cost,
+            error: self.error,
+        }
+    }
+
     fn find_knees(&self) -> Vec<Knee> {
         let medians: Vec<&Point> = self.medians.iter().collect();
         let mut all = Vec::new();
         if let Some(first) = medians.first() {
-            all.extend(knees(&first.recording, &medians, &self.models));
+            all.extend(knees(&first.recording, &medians, &self.models, self.error));
         }
         for recording in &self.recordings {
             all.extend(knees(
                 &recording.name,
                 &self.of(&recording.name),
                 &self.models,
+                self.error,
             ));
         }
         all
@@ -182,9 +195,9 @@ impl Tradeoff {
         let points: Vec<&Point> = self
             .of(recording)
             .into_iter()
-            .filter(|p| Against::Time.compares(p))
+            .filter(|p| Cost::Time.compares(p))
             .collect();
-        let along = along_front(&points, Against::Time);
+        let along = along_front(&points, self.against(Cost::Time));
         let ns = |p: &Point| p.spread * p.ns_per_sample;
         let hidden: Vec<String> = along
             .windows(2)
@@ -214,7 +227,8 @@ impl Recorded {
     }
 }
 
-fn mark(points: &mut [Point]) {
-    mark_front(points, Against::Bytes);
-    mark_front(points, Against::Time);
+fn mark(points: &mut [Point], error: ErrorMeasure) {
+    for cost in [Cost::Bytes, Cost::Time] {
+        mark_front(points, Against { cost, error });
+    }
 }

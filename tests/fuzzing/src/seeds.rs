@@ -176,7 +176,7 @@ const SCENE: &str = r#"{"htex_scene":"1.0","surfaces":[{"asset":"vinyl.htex","re
 "y_mm":[0,50]},"layer":1,"gain":2,"representation":"ar"},{"asset":"coarse-fabric.htex"}],"motion":{
 "constant":{"speed_mm_s":80,"force_n":0.4,"from_mm":[1,1],"direction_deg":45}},"device":{"adapter":
 "file","settings":{"path":"o.wav"},"rate_hz":8000,"gain_db":-6,"response":"display.csv",
-"response_depth_db":20},"duration_s":1,"seed":2,"budget":{"ns_per_sample":1e6,"max_band_error_db":90},
+"response_depth_db":20},"duration_s":1,"seed":2,"budget":{"ns_per_sample":1e6,"max_error_db":90},
 "effects":{"crossfade":"on","dither":"auto","limiter":"off"}}"#;
 
 /// WAVs of each kind of sample, and NPYs.

@@ -1,6 +1,6 @@
 //! The marker, the exports, the descriptor and extensions.
 
-use htex_host::{Descriptor, FitOption, HostError, Store};
+use htex_host::{Descriptor, Field, FitOption, HostError, Kind, Store};
 
 use crate::case::Case;
 use crate::finding::{Finding, Found};
@@ -55,17 +55,24 @@ fn wrong_in(descriptor: &Descriptor) -> Option<String> {
     let field = descriptor.fields.iter();
     field
         .clone()
-        .find(|f| !store_works(&f.store))
-        .map(|f| format!("`{}`: the store needs a finite, positive step", f.name))
+        .find(|f| !store_works(f))
+        .map(|f| {
+            format!(
+                "`{}`: the store needs a finite, positive step, and only a list is packed",
+                f.name
+            )
+        })
         .or_else(|| twice(descriptor.options.iter().map(|o| o.name.as_str())))
         .or_else(|| descriptor.options.iter().find_map(wrong_default))
 }
 
-fn store_works(store: &Store) -> bool {
-    match *store {
+fn store_works(field: &Field) -> bool {
+    let works = |scale: f64, offset: f64| scale.is_finite() && scale > 0.0 && offset.is_finite();
+    match field.store {
         Store::F64 | Store::F32 => true,
-        Store::U16 { scale, offset, .. } | Store::U8 { scale, offset, .. } => {
-            scale.is_finite() && scale > 0.0 && offset.is_finite()
+        Store::U16 { scale, offset, .. } | Store::U8 { scale, offset, .. } => works(scale, offset),
+        Store::Packed { scale, offset, .. } => {
+            matches!(field.kind, Kind::List { .. }) && works(scale, offset)
         }
     }
 }

@@ -121,7 +121,9 @@ fn stored(field: &Field, numbers: &[f64]) -> Vec<f64> {
         Store::F64 => x,
         Store::F32 => f64::from(x as f32),
         Store::U16 { scale, offset, log } => step(x, scale, offset, log, 65_535.0),
-        Store::U8 { scale, offset, log } => step(x, scale, offset, log, 255.0),
+        Store::U8 { scale, offset, log } | Store::Packed { scale, offset, log } => {
+            step(x, scale, offset, log, 255.0)
+        }
     };
     debug_assert!(matches!(field.kind, Kind::List { .. }) || numbers.len() == 1);
     numbers.iter().map(keep).collect()

@@ -6,7 +6,7 @@ use htex_format::*;
 use serde_json::{Value, json};
 
 use super::raw_zip::{Entry, archive};
-use super::{asset, five, reference, sbeta};
+use super::{asset, bands, five, reference, sbeta};
 
 /// A conformance file.
 pub struct Case {
@@ -93,6 +93,7 @@ fn valid() -> Vec<Named> {
         ),
         ("valid_five_models", asset(1, five(1)).to_bytes().unwrap()),
         ("valid_conditions", asset(3, five(3)).to_bytes().unwrap()),
+        ("valid_packed", asset(2, vec![bands(2)]).to_bytes().unwrap()),
         ("valid_reference", with_reference.to_bytes().unwrap()),
         ("valid_plugin", with_plugin(|_| ())),
         ("valid_extension", extended.to_bytes().unwrap()),
@@ -187,6 +188,14 @@ fn with_manifest(change: impl Fn(&mut Value)) -> Vec<u8> {
 
 fn with_block(block: &[u8]) -> Vec<u8> {
     archive(&parts(manifest().to_string().as_bytes(), block))
+}
+
+/// A block of one packed list.
+fn with_packed(block: &[u8]) -> Vec<u8> {
+    let mut manifest = manifest();
+    manifest["representations"][0]["fields"] =
+        json!([{ "name": "steps", "list": true, "store": { "packed": { "scale": 1 } } }]);
+    archive(&parts(manifest.to_string().as_bytes(), block))
 }
 
 fn with_parts(change: impl Fn(&mut Vec<Entry>)) -> Vec<u8> {
@@ -333,6 +342,7 @@ fn texts() -> Vec<Named> {
         ("json_type_twice", with_text(twice.as_bytes())),
         ("parameters_invalid_short", with_block(&block()[..7])),
         ("parameters_invalid_long", with_block(&[0; 9])),
+        ("parameters_invalid_packed", with_packed(&[1, 0x1F, 0xE1])),
         (
             "parameters_not_finite",
             with_block(&[0, 0, 0xC0, 0x7F, 0, 0, 0, 0]),
@@ -410,6 +420,12 @@ fn manifests() -> Vec<Named> {
                 .as_array_mut()
                 .unwrap()
                 .push(twin);
+        }),
+        ("store_invalid_packed", |m| {
+            m["representations"][0]["fields"][0]["store"] = json!({ "packed": { "scale": 1 } });
+        }),
+        ("quality_invalid_distance", |m| {
+            m["representations"][0]["at"][0]["quality"]["log_spectral_distance_db"] = json!(-1);
         }),
         ("level_invalid", |m| {
             m["representations"][0]["at"][0]["level_n_rms"] = json!(-0.1)

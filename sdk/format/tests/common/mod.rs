@@ -142,6 +142,16 @@ pub fn sbeta(conditions: usize) -> Fitted {
     fitted("sbeta", conditions, &fields)
 }
 
+/// Knots, packed: 30 steps that rise slowly.
+pub fn bands(conditions: usize) -> Fitted {
+    let fields = [
+        ("below_highest", "", 30, Store::Packed(steps(0.25))),
+        ("step_db", "dB", 0, Store::U8(steps(0.05))),
+        ("layout", "", 0, Store::U8(steps(1.0))),
+    ];
+    fitted("bands", conditions, &fields)
+}
+
 /// The five models, stored as their descriptors say.
 pub fn five(conditions: usize) -> Vec<Fitted> {
     let hertz = Store::U16(steps(0.03125));

@@ -214,7 +214,7 @@ pub fn cases() -> Vec<Case> {
             "valid_budget",
             with(&[(
                 "/budget",
-                json!({ "ns_per_sample": 100, "max_band_error_db": 3 }),
+                json!({ "ns_per_sample": 100, "max_error_db": 3, "error": "third_octave" }),
             )]),
         ),
         (

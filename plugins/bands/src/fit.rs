@@ -1,0 +1,304 @@
+//! The knots whose band energies come nearest to a recording's.
+//!
+//! Minimised is the sum over the bands of the squared logarithm of the energy over the wanted one, and
+//! of 1e-4 times the squared distance of each knot from its band's mean level, in the logarithm of power.
+//! Noise keeps its energies to a hundredth of a decibel; the second part decides where no spectrum has
+//! them, or only one with knots hundreds of decibels apart, as beside a line.
+
+use crate::FLOOR_DB;
+use crate::axis::{Axis, Point};
+
+/// Weight of the knots' squared distances from their bands' mean levels.
+const STIFFNESS: f64 = 1e-4;
+/// Steps of Levenberg and Marquardt's method at most; noise takes three to six.
+const STEPS: usize = 100;
+/// A step that betters the sum by less than this part of it is the last.
+const TOLERANCE: f64 = 1e-13;
+/// Damping at the start, and the most: no step that betters the sum is left.
+const DAMPING: (f64, f64) = (1e-3, 1e8);
+/// Most change of the logarithm of power at a knot in one step.
+const STRIDE: f64 = 3.0;
+
+/// Knots, and what their fit takes.
+pub(crate) struct Fitter {
+    points: Vec<Point>,
+    /// Logarithms of the energies wanted; none of a band that no bin falls into.
+    wanted: Vec<Option<f64>>,
+    /// Logarithms of the mean power in each band; of one without a bin, that of the band before.
+    mean: Vec<f64>,
+}
+
+/// A trial: the logarithms of power at the knots, and how far their energies are off.
+struct Trial {
+    knots: Vec<f64>,
+    power: Vec<f64>,
+    energy: Vec<f64>,
+    lack: Vec<f64>,
+    sum: f64,
+}
+
+impl Fitter {
+    /// Bands of `axis`, and the power on the band's grid; none if no band has energy.
+    pub(crate) fn new(axis: &Axis, grid_hz: &[f64], power: &[f64]) -> Option<Self> {
+        let points: Vec<Point> = grid_hz.iter().map(|&f| axis.point(f)).collect();
+        let energy = energies(&points, power, axis.knots);
+        let weight = energies(&points, &vec![1.0; points.len()], axis.knots);
+        let loudest = energy.iter().copied().fold(0.0, f64::max);
+        let least = loudest * libm::pow(10.0, -FLOOR_DB / 10.0);
+        let wanted =
+            |(energy, weight): (&f64, &f64)| (*weight > 0.0).then(|| libm::log(energy.max(least)));
+        if least <= 0.0 {
+            return None;
+        }
+        let wanted: Vec<Option<f64>> = energy.iter().zip(&weight).map(wanted).collect();
+        Some(Self {
+            mean: mean_levels(&wanted, &weight),
+            wanted,
+            points,
+        })
+    }
+
+    /// Logarithms of power at the knots.
+    pub(crate) fn fit(&self) -> Vec<f64> {
+        let mut best = self.trial(self.mean.clone());
+        let mut damping = DAMPING.0;
+        for _ in 0..STEPS {
+            let before = best.sum;
+            let (system, slope) = self.system(&best);
+            while damping <= DAMPING.1 {
+                let trial = self.trial(step(&best.knots, &system, &slope, damping));
+                if trial.sum < best.sum {
+                    best = trial;
+                    damping *= 0.25;
+                    break;
+                }
+                damping *= 8.0;
+            }
+            if before - best.sum <= TOLERANCE * before {
+                break;
+            }
+        }
+        best.knots
+    }
+
+    fn trial(&self, knots: Vec<f64>) -> Trial {
+        let power: Vec<f64> = self
+            .points
+            .iter()
+            .map(|point| libm::exp(point.between(&knots)))
+            .collect();
+        let energy = energies(&self.points, &power, knots.len());
+        let lack: Vec<f64> = self
+            .wanted
+            .iter()
+            .zip(&energy)
+            .map(|(wanted, energy)| {
+                wanted.map_or(0.0, |wanted| {
+                    libm::log(energy.max(f64::MIN_POSITIVE)) - wanted
+                })
+            })
+            .collect();
+        let square = |(knot, mean): (&f64, &f64)| (knot - mean) * (knot - mean);
+        let strain: f64 = knots.iter().zip(&self.mean).map(square).sum();
+        let sum = lack.iter().map(|r| r * r).sum::<f64>() + STIFFNESS * strain;
+        Trial {
+            knots,
+            power,
+            energy,
+            lack,
+            sum,
+        }
+    }
+
+    /// The Gauss–Newton matrix and half the gradient of the sum.
+    fn system(&self, trial: &Trial) -> (Pentadiagonal, Vec<f64>) {
+        let knots = trial.knots.len();
+        let by = self.derivatives(trial);
+        let mut system = Pentadiagonal::zero(knots);
+        let mut slope = vec![0.0; knots];
+        for i in (0..knots).filter(|&i| self.wanted[i].is_some()) {
+            let row = by[i].map(|d| d / trial.energy[i].max(f64::MIN_POSITIVE));
+            let first = i.saturating_sub(1);
+            let row = if i == 0 { &row[1..] } else { &row[..] };
+            let row = &row[..row.len().min(knots - first)];
+            system.add_row(first, row);
+            add_scaled(&mut slope[first..], row, trial.lack[i]);
+        }
+        for (i, knot) in trial.knots.iter().enumerate() {
+            system.0[0][i] += STIFFNESS;
+            slope[i] += STIFFNESS * (knot - self.mean[i]);
+        }
+        (system, slope)
+    }
+
+    /// Derivatives of the energies by the knot before, the own and the next one.
+    fn derivatives(&self, trial: &Trial) -> Vec<[f64; 3]> {
+        let mut by = vec![[0.0; 3]; trial.knots.len()];
+        for (point, power) in self.points.iter().zip(&trial.power) {
+            let (a, b, power) = (point.share, 1.0 - point.share, point.weight * power);
+            by[point.knot][1] += power * a * a;
+            by[point.next][1] += power * b * b;
+            if point.next > point.knot {
+                by[point.knot][2] += power * a * b;
+                by[point.next][0] += power * a * b;
+            }
+        }
+        by
+    }
+}
+
+/// Levels as if the power were even in each band.
+fn mean_levels(wanted: &[Option<f64>], weight: &[f64]) -> Vec<f64> {
+    let level = |(wanted, weight): (&Option<f64>, &f64)| wanted.map(|w| w - libm::log(*weight));
+    let levels: Vec<Option<f64>> = wanted.iter().zip(weight).map(level).collect();
+    let mut last = levels.iter().flatten().copied().next().unwrap_or(0.0);
+    let or_last = |level: Option<f64>| {
+        last = level.unwrap_or(last);
+        last
+    };
+    levels.into_iter().map(or_last).collect()
+}
+
+/// Energy of each band.
+fn energies(points: &[Point], power: &[f64], bands: usize) -> Vec<f64> {
+    let mut energies = vec![0.0; bands];
+    for (point, power) in points.iter().zip(power) {
+        energies[point.knot] += point.weight * power * point.share;
+        energies[point.next] += point.weight * power * (1.0 - point.share);
+    }
+    energies
+}
+
+fn add_scaled(to: &mut [f64], row: &[f64], scale: f64) {
+    for (to, row) in to.iter_mut().zip(row) {
+        *to += scale * row;
+    }
+}
+
+/// The knots after a damped step.
+fn step(knots: &[f64], system: &Pentadiagonal, slope: &[f64], damping: f64) -> Vec<f64> {
+    let step = system.damped_solution(damping, slope);
+    let largest = step.iter().fold(0.0_f64, |largest, s| largest.max(s.abs()));
+    let part = (STRIDE / largest).min(1.0);
+    knots
+        .iter()
+        .zip(&step)
+        .map(|(knot, step)| knot - part * step)
+        .collect()
+}
+
+/// A symmetric matrix: its diagonal, and the two above.
+struct Pentadiagonal([Vec<f64>; 3]);
+
+impl Pentadiagonal {
+    fn zero(size: usize) -> Self {
+        Self([(); 3].map(|()| vec![0.0; size]))
+    }
+
+    /// Adds the product of a row, whose numbers begin at column `first`, with itself.
+    fn add_row(&mut self, first: usize, row: &[f64]) {
+        for (i, a) in row.iter().enumerate() {
+            for (above, b) in row[i..].iter().enumerate() {
+                self.0[above][first + i] += a * b;
+            }
+        }
+    }
+
+    /// Solves `(self + damping) x = right` by a decomposition into L D L'.
+    fn damped_solution(&self, damping: f64, right: &[f64]) -> Vec<f64> {
+        let size = right.len();
+        let [diagonal, first, second] = &self.0;
+        let (mut d, mut l1, mut l2) = (vec![0.0; size], vec![0.0; size], vec![0.0; size]);
+        let mut x = right.to_vec();
+        for i in 0..size {
+            d[i] = diagonal[i] + damping;
+            l1[i] = first[i];
+            if i > 0 {
+                d[i] -= l1[i - 1] * l1[i - 1] * d[i - 1];
+                l1[i] -= l2[i - 1] * l1[i - 1] * d[i - 1];
+                x[i] -= l1[i - 1] * x[i - 1];
+            }
+            if i > 1 {
+                d[i] -= l2[i - 2] * l2[i - 2] * d[i - 2];
+                x[i] -= l2[i - 2] * x[i - 2];
+            }
+            l1[i] /= d[i];
+            l2[i] = second[i] / d[i];
+        }
+        for i in (0..size).rev() {
+            x[i] /= d[i];
+            if i + 1 < size {
+                x[i] -= l1[i] * x[i + 1];
+            }
+            if i + 2 < size {
+                x[i] -= l2[i] * x[i + 2];
+            }
+        }
+        x
+    }
+}
+
+/// Energy that the bands have together, of power on the grid.
+pub(crate) fn total_energy(axis: &Axis, grid_hz: &[f64], power: &[f64]) -> f64 {
+    let weighed = |(f, power): (&f64, &f64)| axis.point(*f).weight * power;
+    grid_hz.iter().zip(power).map(weighed).sum()
+}
+
+/// Decibels of each knot below the highest, at most [`FLOOR_DB`].
+pub(crate) fn below_highest_db(knots: &[f64]) -> Vec<f64> {
+    let highest = knots.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let below = |knot: &f64| (highest - knot) * 10.0 / core::f64::consts::LN_10;
+    knots.iter().map(|knot| below(knot).min(FLOOR_DB)).collect()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+mod tests {
+    use super::*;
+    use crate::axis::Layout;
+    use htex_dsp::grid::Band;
+
+    /// The decomposition against the product, and the fit's gradient against differences.
+    #[test]
+    fn the_system_is_that_of_the_sum() {
+        let band = Band::TACTILE;
+        for (knots, layout) in [
+            (1, Layout::Within),
+            (2, Layout::Edges),
+            (9, Layout::Within),
+            (30, Layout::Edges),
+        ] {
+            let axis = Axis {
+                knots,
+                layout,
+                band,
+            };
+            let grid = band.grid_hz();
+            let power: Vec<f64> = grid.iter().map(|f| 1.0 + (f * 0.7).sin() * 0.9).collect();
+            let fitter = Fitter::new(&axis, &grid, &power).unwrap();
+            let at: Vec<f64> = (0..knots).map(|i| (i as f64 * 1.3).cos()).collect();
+            let (system, slope) = fitter.system(&fitter.trial(at.clone()));
+            for i in 0..knots {
+                let moved = |by: f64| {
+                    let mut knots = at.clone();
+                    knots[i] += by;
+                    fitter.trial(knots).sum
+                };
+                let expected = (moved(1e-5) - moved(-1e-5)) / 4e-5;
+                assert!(
+                    (slope[i] - expected).abs() < 1e-6,
+                    "{knots} {i}: {} {expected}",
+                    slope[i]
+                );
+            }
+            let x = system.damped_solution(0.5, &slope);
+            for i in 0..knots {
+                let mut product = 0.5 * x[i];
+                for (j, x) in x.iter().enumerate().filter(|(j, _)| j.abs_diff(i) <= 2) {
+                    product += system.0[j.abs_diff(i)][i.min(j)] * x;
+                }
+                assert!((product - slope[i]).abs() < 1e-9);
+            }
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! Lists of steps, packed: the first step, and then the differences in Rice's code.
+//!
+//! Steps that change little from one to the next take two to five bits each. The code has one
+//! form for a list, so a block comes back byte for byte.
+
+/// Bits of the parameter `k`.
+const PARAMETER_BITS: u32 = 3;
+/// Bits of the first step.
+const FIRST_BITS: u32 = 8;
+/// Largest folded difference of two steps.
+const MOST: u32 = 2 * u8::MAX as u32;
+
+/// The most steps that so many bytes can hold: a difference takes a bit or more.
+pub(crate) fn most_steps(bytes: usize) -> usize {
+    bytes.saturating_mul(8)
+}
+
+/// Bytes of the packed list.
+pub(crate) fn packed_bytes(steps: &[u8]) -> usize {
+    bits(steps, parameter(steps)).div_ceil(8)
+}
+
+/// Packs a list; an empty one takes no byte.
+pub(crate) fn pack(steps: &[u8]) -> Vec<u8> {
+    let Some(&first) = steps.first() else {
+        return Vec::new();
+    };
+    let k = parameter(steps);
+    let mut out = Writer::default();
+    out.put(k, PARAMETER_BITS);
+    out.put(first.into(), FIRST_BITS);
+    for z in differences(steps) {
+        (0..z >> k).for_each(|_| out.put(1, 1));
+        out.put(0, 1);
+        out.put(z & ((1 << k) - 1), k);
+    }
+    out.bytes
+}
+
+/// The `count` steps at the head of `bytes`, and the bytes they take; none where the bytes end too early
+/// or are not what [`pack`] writes.
+pub(crate) fn unpack(bytes: &[u8], count: usize) -> Option<(Vec<u8>, usize)> {
+    if count == 0 {
+        return Some((Vec::new(), 0));
+    }
+    let mut reader = Reader { bytes, at: 0 };
+    let k = reader.take(PARAMETER_BITS)?;
+    let mut last = u8::try_from(reader.take(FIRST_BITS)?).ok()?;
+    let mut steps = vec![last];
+    for _ in 1..count {
+        let mut quotient = 0;
+        while reader.take(1)? == 1 {
+            quotient += 1;
+            if quotient > MOST {
+                return None;
+            }
+        }
+        let z = (quotient << k) | reader.take(k)?;
+        last = u8::try_from(i32::from(last) + unfold(z)).ok()?;
+        steps.push(last);
+    }
+    let used = reader.at.div_ceil(8);
+    (parameter(&steps) == k && reader.rest_is_zero()).then_some((steps, used))
+}
+
+/// The parameter of fewest bits, the least of several.
+fn parameter(steps: &[u8]) -> u32 {
+    let all = 0..1 << PARAMETER_BITS;
+    all.min_by_key(|&k| bits(steps, k)).unwrap_or(0)
+}
+
+fn bits(steps: &[u8], k: u32) -> usize {
+    let code = |z: u32| (z >> k) as usize + 1 + k as usize;
+    match steps {
+        [] => 0,
+        _ => (PARAMETER_BITS + FIRST_BITS) as usize + differences(steps).map(code).sum::<usize>(),
+    }
+}
+
+/// Differences of neighbours, folded to 0, 1, 2, 3, ... for 0, -1, 1, -2, ...
+fn differences(steps: &[u8]) -> impl Iterator<Item = u32> {
+    steps.windows(2).map(|pair| {
+        let difference = i32::from(pair[1]) - i32::from(pair[0]);
+        ((difference << 1) ^ (difference >> 31)) as u32
+    })
+}
+
+fn unfold(z: u32) -> i32 {
+    (z >> 1) as i32 ^ -((z & 1) as i32)
+}
+
+/// Bits into bytes, the most significant first.
+#[derive(Default)]
+struct Writer {
+    bytes: Vec<u8>,
+    /// Bits of the last byte that are taken.
+    taken: u32,
+}
+
+impl Writer {
+    fn put(&mut self, value: u32, bits: u32) {
+        for bit in (0..bits).rev() {
+            if self.taken.is_multiple_of(8) {
+                self.bytes.push(0);
+                self.taken = 0;
+            }
+            if let Some(last) = self.bytes.last_mut() {
+                *last |= ((value >> bit & 1) as u8) << (7 - self.taken);
+            }
+            self.taken += 1;
+        }
+    }
+}
+
+struct Reader<'a> {
+    bytes: &'a [u8],
+    /// Bits that are read.
+    at: usize,
+}
+
+impl Reader<'_> {
+    fn take(&mut self, bits: u32) -> Option<u32> {
+        let mut value = 0;
+        for _ in 0..bits {
+            let byte = self.bytes.get(self.at / 8)?;
+            value = value << 1 | u32::from(byte >> (7 - self.at % 8) & 1);
+            self.at += 1;
+        }
+        Some(value)
+    }
+
+    /// Whether the bits that are left of the last byte are zero.
+    fn rest_is_zero(&mut self) -> bool {
+        let left = self.at.next_multiple_of(8) - self.at;
+        self.take(left as u32) == Some(0)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn the_bits_are_those_of_the_specification() {
+        // k = 1 and 40; then -1, 0, 1 and 3 as 1, 0, 2 and 6: 001 00101000 01 00 100 11100, and one zero.
+        let steps = [40, 39, 39, 40, 43];
+        assert_eq!(pack(&steps), [0b0010_0101, 0b0000_1001, 0b0011_1000]);
+        assert_eq!(unpack(&pack(&steps), 5).unwrap(), (steps.to_vec(), 3));
+        // An empty list, and one step.
+        assert_eq!(pack(&[]), [0u8; 0]);
+        assert_eq!(pack(&[255]), [0b0001_1111, 0b1110_0000]);
+    }
+
+    #[test]
+    fn other_forms_and_steps_out_of_range_are_refused() {
+        // A set bit behind the last.
+        assert_eq!(unpack(&[0b0001_1111, 0b1110_0001], 1), None);
+        // k = 1 where 0 takes fewer bits.
+        assert_eq!(unpack(&[0b0011_1111, 0b1110_0000], 1), None);
+        // 255 and one more.
+        assert_eq!(unpack(&[0b0001_1111, 0b1111_1000], 2), None);
+        // Ones without end.
+        assert_eq!(unpack(&[0xFF; 400], 2), None);
+    }
+
+    proptest! {
+        #[test]
+        fn a_list_comes_back_and_nothing_else_stands_for_it(
+            first: u8, by in prop::collection::vec(-9i32..=9, 0..70), damage in 0usize..600, junk: u8,
+        ) {
+            let mut steps = vec![first];
+            for by in by {
+                let next = i32::from(*steps.last().unwrap()) + by * by * by;
+                steps.push(next.clamp(0, 255) as u8);
+            }
+            let mut bytes = pack(&steps);
+            prop_assert_eq!(bytes.len(), packed_bytes(&steps));
+            prop_assert!(steps.len() <= most_steps(bytes.len()));
+            bytes.push(junk);
+            prop_assert_eq!(unpack(&bytes, steps.len()), Some((steps.clone(), bytes.len() - 1)));
+            prop_assert_eq!(unpack(&bytes[..bytes.len() - 2], steps.len()), None);
+            let at = damage % (8 * (bytes.len() - 1));
+            bytes[at / 8] ^= 1 << (at % 8);
+            if let Some((other, used)) = unpack(&bytes, steps.len()) {
+                prop_assert_eq!(&pack(&other)[..], &bytes[..used]);
+                prop_assert_ne!(other, steps);
+            }
+        }
+    }
+}

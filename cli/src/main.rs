@@ -14,6 +14,7 @@ mod plugins;
 mod progress;
 mod recordings;
 mod scenes;
+mod schemas;
 mod wasm_limits;
 mod wav;
 

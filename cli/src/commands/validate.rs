@@ -4,22 +4,31 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use htex_format::{Limits, Report, Severity, validate};
+use htex_format::{Findings, Limits, Report, Representation, Severity, explain, validate_with};
+use htex_host::Registry;
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::output::{print, print_json};
 use crate::scenes::SceneArgs;
+use crate::schemas::{ExtensionSchema, Named};
 
-/// Check assets and scenes (*.json) against their formats; exit status 1 if one is not valid.
+/// Check assets, scenes (*.json) and descriptors of models and devices (*.json) against their
+/// formats and JSON Schemas; exit status 1 if one is not valid.
 ///
-/// Each finding has a stable code (`htex explain CODE`), a severity and a JSON pointer into the
-/// manifest or the scene.
+/// Each finding has a stable code (`htex explain CODE`), a severity, a JSON pointer into the
+/// document and, where a JSON Schema says the same, the rule of the schema. Fields of models that
+/// this program has are compared with the models'.
 #[derive(Args)]
 pub(crate) struct Validate {
-    /// The assets and scenes
+    /// The files
     #[arg(required = true)]
-    assets: Vec<PathBuf>,
+    files: Vec<PathBuf>,
+
+    /// Hold the extension of this name to a JSON Schema (draft 2020-12); nothing is fetched. May be
+    /// given several times
+    #[arg(long, value_name = "com.vendor.NAME/1=FILE")]
+    extension_schema: Vec<String>,
 
     /// Print JSON
     #[arg(long)]
@@ -28,10 +37,15 @@ pub(crate) struct Validate {
 
 impl Validate {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        let schemas = self
+            .extension_schema
+            .iter()
+            .map(|a| ExtensionSchema::read(a));
+        let schemas = schemas.collect::<Result<Vec<_>, _>>()?;
         let mut all_valid = true;
         let mut answers: Vec<Value> = Vec::new();
-        for path in &self.assets {
-            let report = validate_file(path)?;
+        for path in &self.files {
+            let report = validate_file(path, &schemas)?;
             all_valid &= report.valid;
             if self.json {
                 answers.push(json!({
@@ -55,21 +69,81 @@ impl Validate {
 }
 
 /// Validates a file; of one that is too large, no more is read than shows it.
-fn validate_file(path: &Path) -> Result<Report, Failure> {
-    if path
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("json"))
-    {
-        return SceneArgs::validate(path);
-    }
+fn validate_file(path: &Path, extensions: &[ExtensionSchema]) -> Result<Report, Failure> {
     let limits = Limits::default();
     let mut bytes = Vec::new();
-    let read =
-        File::open(path).and_then(|file| file.take(limits.file_bytes + 1).read_to_end(&mut bytes));
-    match read {
-        Ok(_) => Ok(validate(&bytes, &limits)),
-        Err(error) => Err(Failure::Other(format!("{}: {error}", path.display()))),
+    File::open(path)
+        .and_then(|file| file.take(limits.file_bytes + 1).read_to_end(&mut bytes))
+        .map_err(|error| Failure::Other(format!("{}: {error}", path.display())))?;
+    let is_json = path.extension();
+    if is_json.is_some_and(|e| e.eq_ignore_ascii_case("json")) {
+        return validate_json(path, &bytes);
     }
+    let models = Registry::builtin();
+    let known = |r: &Representation| {
+        let model = htex::model_of(&models, r).ok()?;
+        Some(model.descriptor())
+    };
+    let mut report = validate_with(&bytes, &limits, &known);
+    if let Some(manifest) = htex_format::manifest_json(&bytes, &limits) {
+        if is_of_major_1(&manifest, "htex") {
+            Named::manifest()?.hold(&manifest, &mut report);
+        }
+        for extension in extensions {
+            extension.hold(&manifest, &mut report);
+        }
+    }
+    Ok(report)
+}
+
+/// Whether the rules of this version are those of the document: of another one, and of one that says
+/// no version, they may not be.
+fn is_of_major_1(document: &Value, key: &str) -> bool {
+    let version = document.get(key).and_then(Value::as_str);
+    version.is_some_and(|version| version.starts_with("1."))
+}
+
+/// Validates a scene or a descriptor, told apart by their keys.
+fn validate_json(path: &Path, bytes: &[u8]) -> Result<Report, Failure> {
+    let document = htex_format::parse_json(bytes).unwrap_or_default();
+    let text = || String::from_utf8_lossy(bytes);
+    let has = |key: &str| document.get(key).is_some();
+    if has("id") && has("fields") {
+        let problem = htex_host::read_descriptor(&text()).err();
+        return descriptor(&document, problem, Named::model()?);
+    }
+    if has("id") && has("settings") {
+        let read = serde_json::from_str::<htex_device::Descriptor>(&text());
+        let problem = read
+            .map_err(|e| e.to_string())
+            .and_then(|d| d.check())
+            .err();
+        return descriptor(&document, problem, Named::device()?);
+    }
+    let mut report = SceneArgs::validate(path)?;
+    if document
+        .get("htex_scene")
+        .is_some_and(|v| v == htex_scene::file::VERSION)
+    {
+        Named::scene()?.hold(&document, &mut report);
+        if let Some(settings) = SceneArgs::settings_schema(&document)? {
+            settings.hold(&document, &mut report);
+        }
+    }
+    Ok(report)
+}
+
+fn descriptor(document: &Value, problem: Option<String>, schema: Named) -> Result<Report, Failure> {
+    let mut findings = Findings::default();
+    if let (Some(problem), Some(rule)) = (problem, explain("DESCRIPTOR_INVALID")) {
+        findings.add(rule, "", format!("{problem}; correct it"));
+    }
+    let mut report = Report {
+        valid: !findings.has_errors(),
+        findings: findings.into_list(),
+    };
+    schema.hold(document, &mut report);
+    Ok(report)
 }
 
 fn text(path: &Path, report: &Report) -> String {
@@ -92,6 +166,9 @@ fn text(path: &Path, report: &Report) -> String {
             htex_format::plain(&finding.pointer),
             finding.message
         );
+        if let Some(rule) = &finding.schema_rule {
+            text += &format!("    schema: {}\n", htex_format::plain(rule));
+        }
     }
     text
 }

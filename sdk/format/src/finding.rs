@@ -27,6 +27,10 @@ pub struct Finding {
     pub pointer: String,
     /// What, where, and what to do.
     pub message: String,
+    /// The rule of a JSON Schema that says the same: the schema's file, `#` and a JSON pointer into
+    /// it. Only a validator that holds documents to schemas gives it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub schema_rule: Option<String>,
 }
 
 impl fmt::Display for Severity {

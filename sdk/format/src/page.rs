@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::{Manifest, RULES, Rule};
 
@@ -60,12 +60,5 @@ fn push(page: &mut String, text: std::fmt::Arguments<'_>) {
 
 /// The JSON Schema of `manifest.json`: `spec/schemas/manifest-1.json`.
 pub fn manifest_schema() -> Value {
-    let mut schema = schemars::schema_for!(Manifest).to_value();
-    if let Some(object) = schema.as_object_mut() {
-        object.insert(
-            "title".to_owned(),
-            json!("manifest.json of an htex 1 asset"),
-        );
-    }
-    schema
+    htex_schema::document::<Manifest>("manifest-1.json", "manifest.json of an htex 1 asset")
 }

@@ -73,5 +73,6 @@ fn finding(rule: &Rule, pointer: String, message: String) -> Finding {
         severity: rule.severity,
         pointer,
         message: plain(&message).into_owned(),
+        schema_rule: None,
     }
 }

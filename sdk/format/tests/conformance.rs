@@ -8,9 +8,16 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use common::cases::cases;
-use htex_format::{Asset, RULES, explain, manifest_schema, validate, validation_page};
+use htex_format::{Asset, RULES, Severity, explain, manifest_schema, validation_page};
 
 const RENEW: &str = "stale: cargo run -p htex-format --example conformance";
+
+/// What only `htex validate` finds, with JSON Schemas.
+const WITHOUT_FILE: [&str; 3] = [
+    "SCHEMA_BROKEN",
+    "EXTENSION_SCHEMA_BROKEN",
+    "DESCRIPTOR_INVALID",
+];
 
 fn spec() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../spec")
@@ -42,7 +49,7 @@ fn every_file_gets_its_report() {
 fn a_file_is_named_after_the_rule_it_breaks_and_every_rule_has_one() {
     let mut raised = BTreeSet::new();
     for case in cases() {
-        let report = validate(&case.bytes, &case.limits);
+        let report = case.report();
         let codes: BTreeSet<String> = report.findings.iter().map(|f| f.code.clone()).collect();
         let name = case.name.to_uppercase();
         let named = codes.iter().any(|code| name.starts_with(code.as_str()));
@@ -52,14 +59,26 @@ fn a_file_is_named_after_the_rule_it_breaks_and_every_rule_has_one() {
             "{name}: {:?}",
             report.findings
         );
+        // A reader without models cannot tell whose fields are wrong.
+        let by_model = [
+            "FIELD_UNKNOWN",
+            "FIELD_MISSING",
+            "FIELD_KIND_WRONG",
+            "FIELD_UNIT_WRONG",
+        ];
+        let mut errors = report
+            .findings
+            .iter()
+            .filter(|f| f.severity == Severity::Error);
         assert_eq!(
             Asset::from_bytes_with(&case.bytes, &case.limits).is_ok(),
-            report.valid
+            errors.all(|f| by_model.contains(&f.code.as_str()))
         );
         raised.extend(codes);
     }
-    let rules: BTreeSet<String> = RULES.iter().map(|rule| rule.code.to_owned()).collect();
-    assert_eq!(raised, rules);
+    let silent = RULES.iter().filter(|rule| !raised.contains(rule.code));
+    let silent: Vec<&str> = silent.map(|rule| rule.code).collect();
+    assert_eq!(silent, WITHOUT_FILE);
     assert!(explain("BAND_INVALID").is_some() && explain("BAND").is_none());
 }
 

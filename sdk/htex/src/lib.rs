@@ -16,6 +16,7 @@
 mod asset;
 mod error;
 mod mesh;
+mod playable;
 mod source;
 mod voice;
 
@@ -23,5 +24,6 @@ pub use asset::{Asset, VoiceOptions};
 pub use error::Error;
 pub use htex_format::{Finding, Limits, Manifest, Severity};
 pub use htex_host::{Band, Registry, Search, Synthesis, WasmLimits};
+pub use playable::{field_order, model_of};
 pub use source::Source;
 pub use voice::Voice;

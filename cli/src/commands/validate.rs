@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::Args;
 use htex_format::{Findings, Limits, Report, Representation, Severity, explain, validate_with};
 use htex_host::Registry;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::failure::Failure;
 use crate::output::{print, print_json};
@@ -43,22 +43,18 @@ impl Validate {
             .map(|a| ExtensionSchema::read(a));
         let schemas = schemas.collect::<Result<Vec<_>, _>>()?;
         let mut all_valid = true;
-        let mut answers: Vec<Value> = Vec::new();
+        let mut reports = Vec::new();
         for path in &self.files {
             let report = validate_file(path, &schemas)?;
             all_valid &= report.valid;
             if self.json {
-                answers.push(json!({
-                    "file": path.display().to_string(),
-                    "valid": report.valid,
-                    "findings": report.findings,
-                }));
+                reports.push(report.of_file(&path.display().to_string()));
             } else {
                 print(&text(path, &report))?;
             }
         }
         if self.json {
-            print_json(&answers)?;
+            print_json(&reports)?;
         }
         Ok(if all_valid {
             ExitCode::SUCCESS

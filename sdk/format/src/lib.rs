@@ -30,6 +30,7 @@ mod report;
 mod rounding;
 mod rules;
 mod schema_words;
+mod stages;
 mod typed;
 mod unpack;
 mod validate;
@@ -49,11 +50,12 @@ pub use manifest::{
     AtCondition, Band, Condition, Field, Manifest, Plugin, Provenance, Quality, Reference,
     Representation, Signature, Source, Steps, Store, VERSION,
 };
-pub use page::{manifest_schema, rules_page, validation_page};
+pub use page::{manifest_schema, report_schema, rules_page, validation_page};
 pub use plain::plain;
 pub use pointer::escape;
 pub use quantity::Quantity;
 pub use replace::{replace_file, write_file};
-pub use report::{Findings, Report};
+pub use report::{FileReport, Findings, Report};
 pub use rules::{RULES, Rule, explain};
+pub use stages::{STAGES, Stage};
 pub use validate::{manifest_json, validate, validate_with};

@@ -34,7 +34,9 @@ pub(crate) fn parse(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> O
     let (manifest, unknown) = DOCUMENT.typed::<Manifest>(&opened, findings)?;
     if !opened.newer {
         let other = manifest.other.keys().map(|key| format!("/{}", escape(key)));
-        for pointer in other.chain(unknown) {
+        let mut pointers: Vec<String> = other.chain(unknown).collect();
+        pointers.sort_unstable();
+        for pointer in pointers {
             let message = "version 1.0 has no such key; correct it or use an extension".to_owned();
             findings.add(rule::JSON_UNKNOWN_KEY, pointer, message);
         }

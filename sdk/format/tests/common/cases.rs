@@ -26,21 +26,16 @@ impl Case {
 
     /// The report the file must get, as pretty JSON.
     pub fn golden(&self) -> String {
-        let report = self.report();
-        let mut golden = BTreeMap::from([
-            ("file", json!(format!("{}.htex", self.name))),
-            ("valid", json!(report.valid)),
-            ("findings", json!(report.findings)),
-        ]);
-        let limits = overrides(&self.limits);
-        if !limits.is_empty() {
-            golden.insert("limits", json!(limits));
-        }
-        serde_json::to_string_pretty(&golden).unwrap() + "\n"
+        let report = FileReport {
+            limits: overrides(&self.limits),
+            ..self.report().of_file(&format!("{}.htex", self.name))
+        };
+        // Through a value, for its keys in alphabetical order.
+        serde_json::to_string_pretty(&json!(report)).unwrap() + "\n"
     }
 }
 
-fn overrides(limits: &Limits) -> BTreeMap<&'static str, u64> {
+fn overrides(limits: &Limits) -> BTreeMap<String, u64> {
     let pairs = |l: &Limits| {
         [
             ("file_bytes", l.file_bytes),
@@ -54,7 +49,7 @@ fn overrides(limits: &Limits) -> BTreeMap<&'static str, u64> {
     };
     let all = pairs(limits).into_iter().zip(pairs(&Limits::default()));
     all.filter(|(ours, default)| ours != default)
-        .map(|(ours, _)| ours)
+        .map(|((name, ours), _)| (name.to_owned(), ours))
         .collect()
 }
 
@@ -307,6 +302,21 @@ fn entries() -> Vec<Named> {
         ("entry_name_duplicate", named(b"Manifest.JSON")),
         ("entry_unreferenced", named(b"notes.txt")),
         (
+            "entry_encrypted_and_others",
+            with_parts(|p| {
+                p[1] = p[1].clone().with(|h| h.flags = 1 | 8);
+                p[2] = p[2].clone().with(|h| h.method = 93);
+                p[2].data[0] ^= 1;
+            }),
+        ),
+        (
+            "mimetype_wrong_and_others",
+            with_parts(|p| {
+                p[0] = Entry::stored("mimetype", b"application/zip");
+                p[1] = Entry::stored("manifest.json", b"{}");
+            }),
+        ),
+        (
             "entry_encrypted",
             changed(|e| *e = e.clone().with(|h| h.flags = 1)),
         ),
@@ -476,6 +486,20 @@ fn manifests() -> Vec<Named> {
             drop(m.as_object_mut().unwrap().remove("license"))
         }),
         ("quantity_unknown", |m| m["quantity"] = json!("friction")),
+        ("name_empty_and_others", |m| {
+            m["name"] = json!("");
+            m["unit"] = json!("mN");
+            m["z"] = json!(1);
+            m["band"] = json!({ "a": 1, "low_hz": 30, "high_hz": 20 });
+            m["conditions"] = json!([{ "speed_mm_s": -1 }, {}, {}]);
+            let mut second = m["representations"][0].clone();
+            second["model"] = json!("org.htex.sslope");
+            second["at"][0]["condition"] = json!(3);
+            second["at"][0]["quality"]["band_error_rms_db"] = json!(-1);
+            m["representations"].as_array_mut().unwrap().push(second);
+            m["reference"] = json!({ "file": "absent.bin" });
+            m["extensions"] = json!({ "LOOK": {} });
+        }),
         ("unit_unknown_acceleration", |m| {
             m["quantity"] = json!("acceleration")
         }),

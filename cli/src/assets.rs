@@ -105,6 +105,11 @@ impl AssetSummary {
         }
     }
 
+    /// Adds what a reader should know.
+    pub(crate) fn note(&mut self, note: String) {
+        self.notes.push(note);
+    }
+
     /// The summary as a person reads it.
     pub(crate) fn to_text(&self) -> String {
         let mut text = format!("{}: {} bytes\n", self.asset, self.bytes);
@@ -256,7 +261,7 @@ impl AtSummary {
         Self {
             condition: at.condition,
             parameters: named_parameters(fields, flat),
-            level_n_rms: at.level_n_rms,
+            level_n_rms: at.level_rms,
             quality: at.quality.clone(),
         }
     }

@@ -16,6 +16,7 @@ mod progress;
 mod recording_plot;
 mod recordings;
 mod scenes;
+mod schemas;
 mod wasm_limits;
 mod wav;
 

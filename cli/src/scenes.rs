@@ -8,11 +8,13 @@ use htex_device::{Capabilities, DeviceError, Devices, KnownDevice, Settings};
 use htex_host::Registry;
 use htex_scene::file::{Constant, Motion};
 use htex_scene::{Costs, DeviceOverride, LoadedScene, Plan, Surroundings};
+use serde_json::Value;
 
 use crate::devices::{DeviceArgs, SettingArgs};
 use crate::failure::Failure;
 use crate::output::{note, warn};
 use crate::plugins::PlayerArgs;
+use crate::schemas::Named;
 
 /// What a finger does that nobody describes: the paper's usual speed (mm/s) and force (newtons).
 pub(crate) const USUAL: (f64, f64) = (80.0, 0.4);
@@ -125,6 +127,15 @@ impl SceneArgs {
             devices: &DeviceArgs::default().devices_quietly()?,
         };
         htex_scene::validate(file, &around).map_err(|error| Failure::load(file, error))
+    }
+
+    /// The schema of the settings of a scene's device, where it is known here.
+    pub(crate) fn settings_schema(scene: &Value) -> Result<Option<Named>, Failure> {
+        let name = scene.pointer("/device/adapter").and_then(Value::as_str);
+        let devices = DeviceArgs::default().devices_quietly()?;
+        let device = devices.find(name.unwrap_or("file")).ok();
+        let settings = |known: &KnownDevice| crate::schemas::settings(known.descriptor());
+        device.map(settings).transpose()
     }
 }
 

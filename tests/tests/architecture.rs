@@ -9,10 +9,11 @@ use htex_tests::workspace;
 /// device families `adapter`.
 const ARROWS: &[(&str, &[&str])] = &[
     ("htex-dsp", &[]),
-    ("htex-model", &[]),
-    ("htex-format", &[]),
+    ("htex-model", &["htex-schema"]),
+    ("htex-schema", &[]),
+    ("htex-format", &["htex-model", "htex-schema"]),
     ("htex-report", &[]),
-    ("htex-device", &[]),
+    ("htex-device", &["htex-schema"]),
     ("adapter", &["htex-device"]),
     ("htex-device-check", &["htex-check", "htex-device"]),
     ("htex-shaped", &["htex-dsp", "htex-model"]),
@@ -30,6 +31,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-dsp",
             "htex-format",
             "htex-host",
+            "htex-schema",
         ],
     ),
     (
@@ -56,7 +58,9 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-dsp",
             "htex-format",
             "htex-host",
+            "htex-model",
             "htex-report",
+            "htex-schema",
         ],
     ),
     (

@@ -3,7 +3,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use htex_author::{AssetRequest, Level, fit_asset};
-use htex_format::Plugin;
+use htex_format::{Plugin, Severity, check_license};
 use htex_host::{LoadedModel, Origin, Registry};
 
 use crate::assets::AssetSummary;
@@ -95,6 +95,7 @@ enum LevelArg {
 impl Fit {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         let registry = self.plugins.registry_with(&self.embed_plugin)?;
+        self.check_license()?;
         let request = self.request(&registry)?;
         let takes = self.reading.read(&self.recordings)?;
         let mut fitted = fit_asset(&takes, &request)?;
@@ -150,6 +151,18 @@ impl Fit {
             asset.manifest.plugins.push(plugin);
             asset.plugins.push(module);
         }
+        Ok(())
+    }
+
+    /// Says early what the asset's validation would say of the licence at the end.
+    fn check_license(&self) -> Result<(), Failure> {
+        let Some(Err((rule, message))) = self.license.as_deref().map(check_license) else {
+            return Ok(());
+        };
+        if rule.severity == Severity::Error {
+            return Err(Failure::Usage(format!("--license: {message}")));
+        }
+        warn(&[format!("--license: {message}")]);
         Ok(())
     }
 

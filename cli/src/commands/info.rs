@@ -2,6 +2,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
+use htex_host::Registry;
 
 use crate::assets::AssetSummary;
 use crate::failure::Failure;
@@ -27,7 +28,15 @@ impl Info {
         let asset = htex_format::Asset::open(&self.asset)
             .map_err(|error| Failure::asset(&self.asset, error))?;
         let bytes = std::fs::metadata(&self.asset).map_or(0, |m| m.len());
-        let summary = AssetSummary::new(&self.asset, bytes, &asset);
+        let mut summary = AssetSummary::new(&self.asset, bytes, &asset);
+        let models = Registry::builtin();
+        for representation in &asset.manifest.representations {
+            let model = htex::model_of(&models, representation).ok();
+            let order = model.map(|model| htex::field_order(representation, model));
+            if let Some(Err(error)) = order {
+                summary.note(error.to_string());
+            }
+        }
         if self.json {
             print_json(&summary)?;
         } else {

@@ -6,7 +6,7 @@ use htex_host::Registry;
 use crate::failure::Failure;
 use crate::output::print;
 
-/// Print a JSON Schema of the manifest or of scenes, or the descriptors of the models.
+/// Print a JSON Schema of the manifest, of scenes or of reports, or the descriptors of the models.
 #[derive(Args)]
 pub(crate) struct Schema {
     /// What to print
@@ -20,6 +20,8 @@ enum What {
     Manifest,
     /// JSON Schema of scenes
     Scene,
+    /// JSON Schema of reports of validation
+    Report,
     /// Each model's parameters and fit options, with units and ranges
     Models,
 }
@@ -29,6 +31,7 @@ impl Schema {
         let value = match self.what {
             What::Manifest => Ok(htex_format::manifest_schema()),
             What::Scene => Ok(htex_scene::scene_schema()),
+            What::Report => Ok(htex_format::report_schema()),
             What::Models => {
                 let registry = Registry::builtin();
                 let all: Vec<_> = registry.models().iter().map(|m| m.descriptor()).collect();

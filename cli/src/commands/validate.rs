@@ -4,24 +4,33 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use htex_format::{Limits, Report, Severity, validate};
-use serde_json::{Value, json};
+use htex_format::{Findings, Limits, Report, Representation, Severity, explain, validate_with};
+use htex_host::Registry;
+use serde_json::Value;
 
 use crate::failure::Failure;
 use crate::output::{print, print_json};
 use crate::recordings::RecordingArgs;
 use crate::scenes::SceneArgs;
+use crate::schemas::{ExtensionSchema, Named};
 
-/// Check assets, scenes (*.json) and recordings; exit status 1 if one is not valid.
+/// Check assets, scenes (*.json), descriptors of models and devices (*.json) and recordings against
+/// their formats and JSON Schemas; exit status 1 if one is not valid.
 ///
-/// Each finding has a stable code (`htex explain CODE`), a severity and a JSON pointer into the
-/// manifest, the scene or the recording. A file that is neither called *.htex or *.json nor begins as a
-/// ZIP archive is looked at as a recording.
+/// Each finding has a stable code (`htex explain CODE`), a severity, a JSON pointer into the
+/// document or the recording and, where a JSON Schema says the same, the rule of the schema. Fields of
+/// models that this program has are compared with the models'. A file that is neither called *.htex or
+/// *.json nor begins as a ZIP archive is read as a recording.
 #[derive(Args)]
 pub(crate) struct Validate {
-    /// The assets, scenes and recordings
+    /// The files
     #[arg(required = true)]
     files: Vec<PathBuf>,
+
+    /// Hold the extension of this name to a JSON Schema (draft 2020-12); nothing is fetched. May be
+    /// given several times
+    #[arg(long, value_name = "com.vendor.NAME/1=FILE")]
+    extension_schema: Vec<String>,
 
     #[command(flatten)]
     reading: RecordingArgs,
@@ -33,8 +42,13 @@ pub(crate) struct Validate {
 
 impl Validate {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        let schemas = self
+            .extension_schema
+            .iter()
+            .map(|a| ExtensionSchema::read(a));
+        let schemas = schemas.collect::<Result<Vec<_>, _>>()?;
         let mut all_valid = true;
-        let mut answers: Vec<Value> = Vec::new();
+        let mut reports = Vec::new();
         let kinds: Vec<Kind> = self.files.iter().map(|path| kind(path)).collect();
         if self.reading.is_given() && !kinds.contains(&Kind::Recording) {
             let sentence =
@@ -43,24 +57,20 @@ impl Validate {
         }
         for (path, kind) in self.files.iter().zip(kinds) {
             let report = match kind {
-                Kind::Asset => validate_asset(path),
-                Kind::Scene => SceneArgs::validate(path),
+                Kind::Asset => validate_asset(path, &schemas),
+                Kind::Document => validate_json(path),
                 Kind::Recording => self.reading.validate(path),
             }?;
             let refused = self.reading.strict() && kind == Kind::Recording && !is_clean(&report);
             all_valid &= report.valid && !refused;
             if self.json {
-                answers.push(json!({
-                    "file": path.display().to_string(),
-                    "valid": report.valid,
-                    "findings": report.findings,
-                }));
+                reports.push(report.of_file(&path.display().to_string()));
             } else {
                 print(&text(path, &report))?;
             }
         }
         if self.json {
-            print_json(&answers)?;
+            print_json(&reports)?;
         }
         Ok(if all_valid {
             ExitCode::SUCCESS
@@ -73,7 +83,8 @@ impl Validate {
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Asset,
-    Scene,
+    /// A scene or a descriptor.
+    Document,
     Recording,
 }
 
@@ -86,7 +97,7 @@ fn kind(path: &Path) -> Kind {
     let mut first = [0; 2];
     let read = File::open(path).and_then(|mut file| file.read_exact(&mut first));
     match () {
-        () if called("json") => Kind::Scene,
+        () if called("json") => Kind::Document,
         () if called("htex") || read.is_ok() && first == *b"PK" => Kind::Asset,
         () => Kind::Recording,
     }
@@ -98,15 +109,84 @@ fn is_clean(report: &Report) -> bool {
 }
 
 /// Validates an asset; of one that is too large, no more is read than shows it.
-fn validate_asset(path: &Path) -> Result<Report, Failure> {
+fn validate_asset(path: &Path, extensions: &[ExtensionSchema]) -> Result<Report, Failure> {
     let limits = Limits::default();
-    let mut bytes = Vec::new();
-    let read =
-        File::open(path).and_then(|file| file.take(limits.file_bytes + 1).read_to_end(&mut bytes));
-    match read {
-        Ok(_) => Ok(validate(&bytes, &limits)),
-        Err(error) => Err(Failure::Other(format!("{}: {error}", path.display()))),
+    let bytes = read_at_most(path, &limits)?;
+    let models = Registry::builtin();
+    let known = |r: &Representation| {
+        let model = htex::model_of(&models, r).ok()?;
+        Some(model.descriptor())
+    };
+    let mut report = validate_with(&bytes, &limits, &known);
+    if let Some(manifest) = htex_format::manifest_json(&bytes, &limits) {
+        if is_of_major_1(&manifest, "htex") {
+            Named::manifest()?.hold(&manifest, &mut report);
+        }
+        for extension in extensions {
+            extension.hold(&manifest, &mut report);
+        }
     }
+    Ok(report)
+}
+
+/// Whether the rules of this version are those of the document: of another one, and of one that says
+/// no version, they may not be.
+fn is_of_major_1(document: &Value, key: &str) -> bool {
+    let version = document.get(key).and_then(Value::as_str);
+    version.is_some_and(|version| version.starts_with("1."))
+}
+
+/// The file's bytes, or as many as show that it is too large.
+fn read_at_most(path: &Path, limits: &Limits) -> Result<Vec<u8>, Failure> {
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(limits.file_bytes + 1).read_to_end(&mut bytes))
+        .map_err(|error| Failure::Other(format!("{}: {error}", path.display())))?;
+    Ok(bytes)
+}
+
+/// Validates a scene or a descriptor, told apart by their keys.
+fn validate_json(path: &Path) -> Result<Report, Failure> {
+    let bytes = read_at_most(path, &Limits::default())?;
+    let document = htex_format::parse_json(&bytes).unwrap_or_default();
+    let text = || String::from_utf8_lossy(&bytes);
+    let has = |key: &str| document.get(key).is_some();
+    if has("id") && has("fields") {
+        let problem = htex_host::read_descriptor(&text()).err();
+        return descriptor(&document, problem, Named::model()?);
+    }
+    if has("id") && has("settings") {
+        let read = serde_json::from_str::<htex_device::Descriptor>(&text());
+        let problem = read
+            .map_err(|e| e.to_string())
+            .and_then(|d| d.check())
+            .err();
+        return descriptor(&document, problem, Named::device()?);
+    }
+    let mut report = SceneArgs::validate(path)?;
+    if document
+        .get("htex_scene")
+        .is_some_and(|v| v == htex_scene::file::VERSION)
+    {
+        Named::scene()?.hold(&document, &mut report);
+        if let Some(settings) = SceneArgs::settings_schema(&document)? {
+            settings.hold(&document, &mut report);
+        }
+    }
+    Ok(report)
+}
+
+fn descriptor(document: &Value, problem: Option<String>, schema: Named) -> Result<Report, Failure> {
+    let mut findings = Findings::default();
+    if let (Some(problem), Some(rule)) = (problem, explain("DESCRIPTOR_INVALID")) {
+        findings.add(rule, "", format!("{problem}; correct it"));
+    }
+    let mut report = Report {
+        valid: !findings.has_errors(),
+        findings: findings.into_list(),
+    };
+    schema.hold(document, &mut report);
+    Ok(report)
 }
 
 fn text(path: &Path, report: &Report) -> String {
@@ -129,6 +209,9 @@ fn text(path: &Path, report: &Report) -> String {
             htex_format::plain(&finding.pointer),
             finding.message
         );
+        if let Some(rule) = &finding.schema_rule {
+            text += &format!("    schema: {}\n", htex_format::plain(rule));
+        }
     }
     text
 }

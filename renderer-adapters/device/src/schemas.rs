@@ -1,39 +1,27 @@
 //! JSON Schemas of what crosses the ABI as JSON.
 
+use htex_schema::crossing;
 use serde_json::Value;
 
 use crate::{Capabilities, Descriptor, Endpoint};
 
 /// The files of `spec/schemas` that this crate makes, and what stands in them.
 pub fn schemas() -> [(&'static str, Value); 3] {
-    let titled = |title: &str, schema: schemars::Schema| {
-        let mut schema = schema.to_value();
-        if let Some(object) = schema.as_object_mut() {
-            object.insert("title".to_owned(), title.into());
-        }
-        schema
-    };
+    let [descriptor, capabilities, endpoints] = [
+        "device-descriptor-1.json",
+        "device-capabilities-1.json",
+        "device-endpoints-1.json",
+    ];
+    let connected = "devices that are connected, ABI 1";
     [
         (
-            "device-descriptor-1.json",
-            titled(
-                "descriptor of a device, ABI 1",
-                schemars::schema_for!(Descriptor),
-            ),
+            descriptor,
+            crossing::<Descriptor>(descriptor, "descriptor of a device, ABI 1"),
         ),
         (
-            "device-capabilities-1.json",
-            titled(
-                "capabilities of a device, ABI 1",
-                schemars::schema_for!(Capabilities),
-            ),
+            capabilities,
+            crossing::<Capabilities>(capabilities, "capabilities of a device, ABI 1"),
         ),
-        (
-            "device-endpoints-1.json",
-            titled(
-                "devices that are connected, ABI 1",
-                schemars::schema_for!(Vec<Endpoint>),
-            ),
-        ),
+        (endpoints, crossing::<Vec<Endpoint>>(endpoints, connected)),
     ]
 }

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
 use htex_format::{
-    Asset, AtCondition, Condition, LATERAL_FORCE, Manifest, NEWTON, Provenance, Quality, Reference,
+    Asset, AtCondition, Condition, Manifest, Provenance, Quality, Quantity, Reference,
     Representation, Source, VERSION, round_parameters,
 };
 use htex_host::{HostError, LoadedModel};
@@ -150,7 +150,7 @@ fn fit_model(
         quality.rounding_error_db = Some(rounding);
         at.push(AtCondition {
             condition,
-            level_n_rms,
+            level_rms: level_n_rms,
             quality: Some(quality),
         });
         parameters.push(stored);
@@ -257,8 +257,8 @@ fn assemble(
             license: request.license.clone(),
             author: request.author.clone(),
             tags: request.tags.clone(),
-            quantity: LATERAL_FORCE.to_owned(),
-            unit: NEWTON.to_owned(),
+            quantity: Quantity::LateralForce,
+            unit: Quantity::LateralForce.unit().to_owned(),
             band: htex_format::Band {
                 low_hz: band.0,
                 high_hz: band.1,

@@ -1,17 +1,13 @@
 //! A model's parameter fields, as an asset stores them.
 
-use htex_format::{Field, Steps, Store};
+use htex_format::{Field, Steps, Store, stored_unit};
 use htex_host::{Descriptor, Kind};
 
 /// The asset's fields for a model.
 pub fn stored_fields(descriptor: &Descriptor) -> Vec<Field> {
     let field = |f: &htex_host::Field| Field {
         name: f.name.clone(),
-        unit: if f.unit == "1" {
-            String::new()
-        } else {
-            f.unit.clone()
-        },
+        unit: stored_unit(&f.unit).to_owned(),
         list: matches!(f.kind, Kind::List { .. }),
         store: store(f.store),
     };

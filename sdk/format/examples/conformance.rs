@@ -1,5 +1,5 @@
 //! Writes what the specification has from the code: the conformance files with their reports, the
-//! page of findings and the manifest's schema.
+//! page of findings and the schemas of manifests and reports.
 //!
 //! `cargo run -p htex-format --example conformance`
 
@@ -9,7 +9,7 @@ mod common;
 use std::path::Path;
 use std::{fs, io};
 
-use htex_format::{manifest_schema, validation_page, write_file};
+use htex_format::{manifest_schema, report_schema, validation_page, write_file};
 
 fn main() -> io::Result<()> {
     let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../spec");
@@ -26,7 +26,12 @@ fn main() -> io::Result<()> {
             case.golden().as_bytes(),
         )?;
     }
-    let schema = serde_json::to_string_pretty(&manifest_schema())? + "\n";
-    write_file(&spec.join("schemas/manifest-1.json"), schema.as_bytes())?;
+    for (file, schema) in [
+        ("manifest-1.json", manifest_schema()),
+        ("report-1.json", report_schema()),
+    ] {
+        let schema = serde_json::to_string_pretty(&schema)? + "\n";
+        write_file(&spec.join("schemas").join(file), schema.as_bytes())?;
+    }
     write_file(&spec.join("validation.md"), validation_page().as_bytes())
 }

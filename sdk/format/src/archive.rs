@@ -1,42 +1,46 @@
-//! A strict look at the archive before anything of it is unpacked.
+//! A strict look at the archive before anything of it is unpacked, and then all its entries.
 //!
 //! The ZIP format lets two programs see two archives in one file. An asset's archive has one
 //! reading only: entries back to back from byte 0, then the directory in the same order, then the
 //! end record, with sizes stated twice and alike.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
-use std::io::{Cursor, Read};
-
-use zip::ZipArchive;
+use std::ops::Range;
 
 use crate::limits::Limits;
 use crate::report::Findings;
 use crate::rules as rule;
-use crate::zip_records::{self, Central, END_BYTES, End, Local};
+use crate::unpack::{DEFLATED, STORED, unpack};
+use crate::zip_records::{self, Central, Common, END_BYTES, End, Local};
 
-pub(crate) const STORED: u16 = 0;
-pub(crate) const DEFLATED: u16 = 8;
 const ENCRYPTED: u16 = 1 | 1 << 6 | 1 << 13;
 const DATA_DESCRIPTOR: u16 = 1 << 3;
 const ZIP64_16: u16 = u16::MAX;
 const ZIP64_32: u32 = u32::MAX;
 
-/// An entry that may be unpacked.
-pub(crate) struct Entry {
+/// An entry, unpacked.
+pub(crate) struct Entry<'a> {
     pub name: String,
     pub method: u16,
-    pub size: u32,
+    pub bytes: Cow<'a, [u8]>,
 }
 
-/// An archive whose structure is sound.
+/// An entry that may be unpacked.
+struct Packed<'a> {
+    name: String,
+    common: Common,
+    data: &'a [u8],
+}
+
+/// An archive whose structure is sound, all of it unpacked.
 pub(crate) struct Archive<'a> {
-    zip: ZipArchive<Cursor<&'a [u8]>>,
-    pub entries: Vec<Entry>,
+    pub entries: Vec<Entry<'a>>,
 }
 
 impl<'a> Archive<'a> {
-    /// Scans the archive; none when a finding is an error.
-    pub(crate) fn scan(bytes: &'a [u8], limits: &Limits, findings: &mut Findings) -> Option<Self> {
+    /// Scans and unpacks the archive; none when a finding is an error.
+    pub(crate) fn open(bytes: &'a [u8], limits: &Limits, findings: &mut Findings) -> Option<Self> {
         if bytes.len() as u64 > limits.file_bytes {
             findings.add(
                 rule::FILE_TOO_LARGE,
@@ -46,50 +50,36 @@ impl<'a> Archive<'a> {
             return None;
         }
         let end = end_record(bytes, limits, findings)?;
-        let entries = directory(bytes, &end, limits, findings)?;
+        let packed = directory(bytes, &end, limits, findings)?;
         if findings.has_errors() {
             return None;
         }
-        let zip = ZipArchive::new(Cursor::new(bytes))
-            .ok()
-            .filter(|zip| zip.len() == entries.len());
-        if zip.is_none() {
-            findings.add(
-                rule::ARCHIVE_INVALID,
-                "",
-                "the directory cannot be read; get the file again".to_owned(),
-            );
-        }
-        Some(Self { zip: zip?, entries })
+        let unpacked = packed.into_iter().map(|packed| packed.unpack(findings));
+        let entries: Vec<Option<Entry<'_>>> = unpacked.collect();
+        let entries = entries.into_iter().collect::<Option<_>>()?;
+        Some(Self { entries })
     }
 
     pub(crate) fn index(&self, name: &str) -> Option<usize> {
         self.entries.iter().position(|entry| entry.name == name)
     }
+}
 
-    /// The bytes of an entry; its size was held to the limits by the scan.
-    pub(crate) fn read(&mut self, index: usize, findings: &mut Findings) -> Option<Vec<u8>> {
-        let entry = self.entries.get(index)?;
-        let size = entry.size as usize;
-        let mut bytes = Vec::new();
-        let read = self
-            .zip
-            .by_index(index)
-            .map_err(|e| e.to_string())
-            .and_then(|file| {
-                // One byte more than stated: the checksum is compared at the end of the data.
-                let taken = file.take(size as u64 + 1).read_to_end(&mut bytes);
-                taken.map_err(|e| e.to_string())
-            });
-        let problem = match read {
-            Ok(length) if length == size => return Some(bytes),
-            Ok(length) => format!("it unpacks to {length} bytes or more, not to {size}"),
-            Err(problem) => problem,
-        };
-        let name = &entry.name;
-        let message = format!("{name} is damaged: {problem}; get the file again");
-        findings.add(rule::ENTRY_CORRUPT, "", message);
-        None
+impl<'a> Packed<'a> {
+    fn unpack(self, findings: &mut Findings) -> Option<Entry<'a>> {
+        let (name, method) = (self.name, self.common.method);
+        match unpack(self.data, &self.common) {
+            Ok(bytes) => Some(Entry {
+                name,
+                method,
+                bytes,
+            }),
+            Err(problem) => {
+                let message = format!("{name} is damaged: {problem}; get the file again");
+                findings.add(rule::ENTRY_CORRUPT, "", message);
+                None
+            }
+        }
     }
 }
 
@@ -143,12 +133,12 @@ fn end_record(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<
     Some(end)
 }
 
-fn directory(
-    bytes: &[u8],
+fn directory<'a>(
+    bytes: &'a [u8],
     end: &End,
     limits: &Limits,
     findings: &mut Findings,
-) -> Option<Vec<Entry>> {
+) -> Option<Vec<Packed<'a>>> {
     let mut entries = Vec::new();
     let mut names = BTreeSet::new();
     let (mut at, mut expected_local, mut total) = (end.directory_at as usize, 0usize, 0u64);
@@ -169,11 +159,12 @@ fn directory(
         check_record(&central, &name, findings);
         check_sizes(&central, &name, limits, findings);
         total += u64::from(central.common.size);
-        expected_local = check_local(bytes, &central, &name, expected_local, findings)?;
-        entries.push(Entry {
+        let data = check_local(bytes, &central, &name, expected_local, findings)?;
+        expected_local = data.end;
+        entries.push(Packed {
             name,
-            method: central.common.method,
-            size: central.common.size,
+            common: central.common,
+            data: bytes.get(data)?,
         });
     }
     check_ends(end, at, expected_local, findings);
@@ -247,14 +238,14 @@ fn check_sizes(central: &Central<'_>, name: &str, limits: &Limits, findings: &mu
     }
 }
 
-/// Compares the local header; gives where the next one must start, none when there is none here.
+/// Compares the local header; gives where the entry's data are, none when there is none here.
 fn check_local(
     bytes: &[u8],
     central: &Central<'_>,
     name: &str,
     expected: usize,
     findings: &mut Findings,
-) -> Option<usize> {
+) -> Option<Range<usize>> {
     if central.local_at as usize != expected {
         let message = format!(
             "{name} starts at byte {} and the entry before it ends at {expected}; \
@@ -278,7 +269,7 @@ fn check_local(
         let message = format!("{name} has an extra field in its local header; write it without");
         findings.add(rule::ENTRY_EXTRA_FIELD, "", message);
     }
-    Some(local.data.end)
+    Some(local.data)
 }
 
 fn agrees(central: &Central<'_>, local: &Local<'_>) -> bool {

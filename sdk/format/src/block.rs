@@ -124,7 +124,7 @@ pub fn round_parameters(fields: &[Field], flat: &[f64]) -> Result<Vec<f64>, Writ
 }
 
 /// The values of each field, without the lengths of lists.
-fn split<'a>(
+pub(crate) fn split<'a>(
     fields: &'a [Field],
     flat: &'a [f64],
 ) -> Result<Vec<(&'a Field, &'a [f64])>, WriteError> {

@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 
 use crate::check_plugins::check_plugins;
 use crate::check_representation::check_representations;
-use crate::document::escape;
-use crate::manifest::{Band, Condition, LATERAL_FORCE, Manifest, NEWTON};
+use crate::license::check_license;
+use crate::manifest::{Band, Condition, Manifest};
+use crate::pointer::escape;
 use crate::report::Findings;
 use crate::rules as rule;
 
@@ -61,15 +62,16 @@ fn check_words(manifest: &Manifest, findings: &mut Findings) {
         "",
         || "there is no license; add an SPDX expression".to_owned(),
     );
-    let (quantity, unit) = (&manifest.quantity, &manifest.unit);
-    findings.require(
-        quantity == LATERAL_FORCE,
-        rule::QUANTITY_UNKNOWN,
-        "/quantity",
-        || format!("{quantity:?} is no quantity of version 1; it has {LATERAL_FORCE}"),
-    );
-    findings.require(unit == NEWTON, rule::UNIT_UNKNOWN, "/unit", || {
-        format!("{unit:?} is not the unit of {LATERAL_FORCE}; write {NEWTON}")
+    let license = manifest.license.as_deref().map(check_license);
+    if let Some(Err((rule, message))) = license {
+        findings.add(rule, "/license", message);
+    }
+    let (unit, wanted) = (&manifest.unit, manifest.quantity.unit());
+    findings.require(unit == wanted, rule::UNIT_UNKNOWN, "/unit", || {
+        format!(
+            "{unit:?} is not the unit of {}; write {wanted}",
+            manifest.quantity
+        )
     });
 }
 
@@ -128,7 +130,7 @@ fn check_extensions(manifest: &Manifest, findings: &mut Findings) {
     for name in manifest.extensions.keys() {
         let pointer = format!("/extensions/{}", escape(name));
         findings.require(
-            is_extension(name),
+            is_extension_name(name),
             rule::EXTENSION_NAME_INVALID,
             pointer,
             || format!("{name:?} is not of the form com.vendor.NAME/REVISION"),
@@ -141,7 +143,8 @@ fn check_extensions(manifest: &Manifest, findings: &mut Findings) {
     }
 }
 
-fn is_extension(name: &str) -> bool {
+/// Whether a name is of the form `com.vendor.NAME/REVISION`.
+pub fn is_extension_name(name: &str) -> bool {
     let Some((id, revision)) = name.split_once('/') else {
         return false;
     };

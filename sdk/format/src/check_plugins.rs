@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use crate::check_representation::is_model_id;
+use htex_model::is_model_id;
+
 use crate::report::Findings;
 use crate::rules as rule;
 use crate::{Manifest, Plugin};

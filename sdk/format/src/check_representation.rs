@@ -2,15 +2,16 @@
 
 use std::collections::BTreeSet;
 
+use htex_model::is_model_id;
+
 use crate::check_manifest::is_size;
 use crate::manifest::{AtCondition, Manifest, Quality, Representation, Steps, Store};
+use crate::quantity::Quantity;
 use crate::report::Findings;
 use crate::rules as rule;
 
 /// Bands that agreement is measured in.
 const BANDS: usize = 9;
-/// Largest level, newtons: its samples are 32-bit numbers in any scene.
-const LARGEST_N: f64 = 1e6;
 /// Smallest step over the largest number it is added to: below it, rounding may lead to the next.
 const FINEST: f64 = 4.0 * f64::EPSILON;
 
@@ -34,7 +35,7 @@ pub(crate) fn check_representations(manifest: &Manifest, findings: &mut Findings
         );
         check_model(representation, &at, findings);
         check_fields(representation, &at, findings);
-        check_conditions(representation, manifest.conditions.len(), &at, findings);
+        check_conditions(representation, manifest, &at, findings);
     }
 }
 
@@ -55,12 +56,6 @@ fn check_model(representation: &Representation, at: &str, findings: &mut Finding
     findings.require(semantic, rule::MODEL_VERSION_INVALID, pointer, || {
         format!("{model_version:?} is no semantic version; write one like 1.0.0")
     });
-}
-
-pub(crate) fn is_model_id(id: &str) -> bool {
-    let allowed = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-' || b == b'_';
-    let word = |part: &str| !part.is_empty() && part.bytes().all(allowed);
-    id.split('.').count() >= 3 && id.split('.').all(word)
 }
 
 fn check_fields(representation: &Representation, at: &str, findings: &mut Findings) {
@@ -118,7 +113,7 @@ impl Steps {
 
 fn check_conditions(
     representation: &Representation,
-    conditions: usize,
+    manifest: &Manifest,
     at: &str,
     findings: &mut Findings,
 ) {
@@ -128,6 +123,7 @@ fn check_conditions(
         format!("{at}/at"),
         || "the model is fitted at no condition; fit it or leave it out".to_owned(),
     );
+    let conditions = manifest.conditions.len();
     let mut seen = BTreeSet::new();
     for (i, fitted) in representation.at.iter().enumerate() {
         let at = format!("{at}/at/{i}");
@@ -145,17 +141,17 @@ fn check_conditions(
             pointer,
             || format!("condition {index} stands here twice; keep one"),
         );
-        check_fit(fitted, &at, findings);
+        check_fit(fitted, manifest.quantity, &at, findings);
     }
 }
 
-fn check_fit(fitted: &AtCondition, at: &str, findings: &mut Findings) {
-    let level = fitted.level_n_rms;
+fn check_fit(fitted: &AtCondition, quantity: Quantity, at: &str, findings: &mut Findings) {
+    let (level, largest, unit) = (fitted.level_rms, quantity.largest_level(), quantity.unit());
     findings.require(
-        is_size(level) && level <= LARGEST_N,
+        is_size(level) && level <= largest,
         rule::LEVEL_INVALID,
-        format!("{at}/level_n_rms"),
-        || format!("{level} N is no level; it lies in 0 to {LARGEST_N}"),
+        format!("{at}/level_rms"),
+        || format!("{level} {unit} is no level; it lies in 0 to {largest}"),
     );
     if let Some(quality) = &fitted.quality {
         check_quality(quality, &format!("{at}/quality"), findings);

@@ -33,7 +33,7 @@ impl Asset {
     /// # Errors
     /// As [`Self::from_bytes`].
     pub fn from_bytes_with(bytes: &[u8], limits: &Limits) -> Result<Self, ReadError> {
-        let (asset, findings) = inspect(bytes, limits);
+        let (asset, findings) = inspect(bytes, limits, &|_| None);
         asset.ok_or(ReadError::Invalid { findings })
     }
 
@@ -170,7 +170,7 @@ fn read_capped(path: &Path, limits: &Limits) -> Result<Vec<u8>, ReadError> {
 
 /// The bytes, when they can be read back: what is written is always valid.
 fn readable(bytes: Vec<u8>) -> Result<Vec<u8>, WriteError> {
-    match inspect(&bytes, &Limits::default()) {
+    match inspect(&bytes, &Limits::default(), &|_| None) {
         (Some(_), _) => Ok(bytes),
         (None, findings) => Err(WriteError::Invalid { findings }),
     }

@@ -4,7 +4,9 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use crate::Rule;
+use crate::json_text::{self, TextError};
 use crate::report::Findings;
+use crate::typed::typed;
 
 /// A kind of document: what it is called in messages, its version, and the rules it is held to.
 #[derive(Debug, Clone, Copy)]
@@ -63,16 +65,26 @@ impl Document {
             findings.add(rules.too_deep, "", message);
             return None;
         }
-        let value = match serde_json::from_slice::<Value>(bytes) {
-            Ok(value) => value,
-            Err(error) => {
-                let message = format!("{} is not JSON: {error}; correct it there", self.file);
-                findings.add(rules.syntax, "", message);
-                return None;
-            }
-        };
+        let value = self.value(bytes, findings)?;
         let newer = self.check_version(&value, findings)?;
         Some(Opened { value, newer })
+    }
+
+    fn value(&self, bytes: &[u8], findings: &mut Findings) -> Option<Value> {
+        let rules = &self.rules;
+        match json_text::parse(bytes) {
+            Ok(value) => Some(value),
+            Err(TextError::Syntax(error)) => {
+                let message = format!("{} is not JSON: {error}; correct it there", self.file);
+                findings.add(rules.syntax, "", message);
+                None
+            }
+            Err(TextError::Twice(pointer)) => {
+                let message = "the key stands twice; keep one of them".to_owned();
+                findings.add(rules.wrong_type, pointer, message);
+                None
+            }
+        }
     }
 
     /// Whether the minor version is newer than known; none when the document cannot be read.
@@ -109,30 +121,19 @@ impl Document {
         Some(minor > known_minor)
     }
 
-    /// The text as a `T`, and pointers to the keys inside it that no type knows; none when a finding
-    /// says why not.
+    /// The document as a `T`, and pointers to the keys inside it that no type knows; none when a
+    /// finding says why not.
     pub fn typed<T: DeserializeOwned>(
         &self,
-        bytes: &[u8],
         opened: &Opened,
         findings: &mut Findings,
     ) -> Option<(T, Vec<String>)> {
-        let mut unknown = Vec::new();
-        let mut track = serde_path_to_error::Track::new();
-        let mut json = serde_json::Deserializer::from_slice(bytes);
-        let tracked = serde_path_to_error::Deserializer::new(&mut json, &mut track);
-        let result = serde_ignored::deserialize(tracked, |path| {
-            unknown.push(ignored_pointer(&path, &opened.value));
-        });
-        match result {
-            Ok(value) => Some((value, unknown)),
+        match typed(&opened.value) {
+            Ok(typed) => Some(typed),
             Err(error) => {
                 let message = format!("{error}; correct it or add what is missing");
-                findings.add(
-                    self.rules.wrong_type,
-                    tracked_pointer(&track.path()),
-                    message,
-                );
+                let pointer = error.pointer.unwrap_or_default();
+                findings.add(self.rules.wrong_type, pointer, message);
                 None
             }
         }
@@ -166,40 +167,4 @@ fn numbers(version: &str) -> Option<(u64, u64)> {
 fn number(text: &str) -> Option<u64> {
     let number: u64 = text.parse().ok()?;
     (number.to_string() == text).then_some(number)
-}
-
-fn tracked_pointer(path: &serde_path_to_error::Path) -> String {
-    use serde_path_to_error::Segment;
-    let part = |segment: &Segment| match segment {
-        Segment::Seq { index } => format!("/{index}"),
-        Segment::Map { key } => format!("/{}", escape(key)),
-        Segment::Enum { variant } => format!("/{}", escape(variant)),
-        Segment::Unknown => String::new(),
-    };
-    path.iter().map(part).collect()
-}
-
-fn ignored_pointer(path: &serde_ignored::Path<'_>, root: &Value) -> String {
-    use serde_ignored::Path;
-    match path {
-        Path::Root => String::new(),
-        Path::Seq { parent, index } => format!("{}/{index}", ignored_pointer(parent, root)),
-        Path::Map { parent, key } => format!("{}/{}", ignored_pointer(parent, root), escape(key)),
-        Path::NewtypeVariant { parent } => variant_pointer(ignored_pointer(parent, root), root),
-        Path::Some { parent } | Path::NewtypeStruct { parent } => ignored_pointer(parent, root),
-    }
-}
-
-/// The pointer into a variant, which is the only key of its object and which the path does not name.
-fn variant_pointer(parent: String, root: &Value) -> String {
-    let object = root.pointer(&parent).and_then(Value::as_object);
-    match object.and_then(|object| object.keys().next()) {
-        Some(variant) => format!("{parent}/{}", escape(variant)),
-        None => parent,
-    }
-}
-
-/// A key as a part of a JSON pointer (RFC 6901, section 3).
-pub fn escape(key: &str) -> String {
-    key.replace('~', "~0").replace('/', "~1")
 }

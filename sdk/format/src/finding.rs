@@ -2,10 +2,13 @@
 
 use std::fmt;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How bad a finding is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
     /// The asset cannot be used.
@@ -17,16 +20,23 @@ pub enum Severity {
 }
 
 /// One finding.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Finding {
     /// Stable name of the rule.
+    #[schemars(regex(pattern = "^[A-Z][A-Z0-9_]*$"))]
     pub code: String,
     /// How bad it is.
     pub severity: Severity,
     /// JSON pointer into the manifest; empty for the file as a whole.
+    #[schemars(regex(pattern = "^(/([^~/]|~[01])*)*$"))]
     pub pointer: String,
     /// What, where, and what to do.
     pub message: String,
+    /// The rule of a JSON Schema that says the same: the schema's file, `#` and a JSON pointer into
+    /// it. Only a validator that holds documents to schemas gives it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(regex(pattern = "#"))]
+    pub schema_rule: Option<String>,
 }
 
 impl fmt::Display for Severity {

@@ -1,6 +1,7 @@
 //! The `.htex` container: types, reading, writing, validation.
 //!
-//! `spec/htex-1.md` is the normative text. This crate knows no signal processing and no model.
+//! `spec/htex-1.md` is the normative text. This crate knows no signal processing, and of models no
+//! more than their descriptors.
 #![forbid(unsafe_code)]
 
 mod archive;
@@ -12,7 +13,10 @@ mod check_representation;
 mod container;
 mod document;
 mod error;
+mod fields;
 mod finding;
+mod json_text;
+mod license;
 mod limits;
 mod manifest;
 mod manifest_json;
@@ -21,27 +25,40 @@ mod packed;
 mod page;
 mod plain;
 mod plugin;
+mod pointer;
+mod quantity;
 mod replace;
 mod report;
 mod rounding;
 mod rules;
+mod schema_words;
+mod stages;
+mod typed;
+mod unpack;
 mod validate;
 mod zip_records;
 
 pub use asset::Asset;
 pub use block::{round_parameters, stored_bytes};
-pub use document::{Document, DocumentRules, Opened, escape};
+pub use check_manifest::is_extension_name;
+pub use document::{Document, DocumentRules, Opened};
 pub use error::{ReadError, WriteError, summary};
+pub use fields::{FieldMismatch, FieldOrder, KnownModel, match_fields, stored_unit};
 pub use finding::{Finding, Severity};
+pub use json_text::parse_json;
+pub use license::check_license;
 pub use limits::Limits;
 pub use manifest::{
-    AtCondition, Band, Condition, Field, LATERAL_FORCE, Manifest, NEWTON, Plugin, Provenance,
-    Quality, Reference, Representation, SAME_CONDITION, Signature, Source, Steps, Store, VERSION,
+    AtCondition, Band, Condition, Field, Manifest, Plugin, Provenance, Quality, Reference,
+    Representation, SAME_CONDITION, Signature, Source, Steps, Store, VERSION,
 };
 pub use measure::ErrorMeasure;
-pub use page::{manifest_schema, rules_page, validation_page};
+pub use page::{manifest_schema, report_schema, rules_page, validation_page};
 pub use plain::plain;
+pub use pointer::escape;
+pub use quantity::Quantity;
 pub use replace::{replace_file, write_file};
-pub use report::{Findings, Report};
+pub use report::{FileReport, Findings, Report};
 pub use rules::{RULES, Rule, explain};
-pub use validate::validate;
+pub use stages::{STAGES, Stage};
+pub use validate::{manifest_json, validate, validate_with};

@@ -9,22 +9,27 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::Quantity;
+use crate::schema_words::{
+    ENTRY_NAME, MODEL_ID, SEMANTIC_VERSION, open_variants, own_entries, quantities_and_units,
+};
+
 /// The version of the format this crate writes.
 pub const VERSION: &str = "1.0";
-/// `quantity` of version 1.
-pub const LATERAL_FORCE: &str = "lateral_force";
-/// `unit` of version 1.
-pub const NEWTON: &str = "N";
 
 /// The asset: one surface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(extend("oneOf" = quantities_and_units()))]
 pub struct Manifest {
     /// Version of the format, `MAJOR.MINOR`.
+    #[schemars(regex(pattern = r"^1\.(0|[1-9][0-9]*)$"))]
     pub htex: String,
     /// Name of the texture.
+    #[schemars(regex(pattern = r"\S"))]
     pub name: String,
     /// SPDX licence expression of the asset.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(length(min = 1))]
     pub license: Option<String>,
     /// Who made it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -32,9 +37,9 @@ pub struct Manifest {
     /// Words to find it by.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
-    /// What the samples mean: `lateral_force`.
-    pub quantity: String,
-    /// Their unit: `N`.
+    /// What the samples mean.
+    pub quantity: Quantity,
+    /// Their unit: [`Quantity::unit`].
     pub unit: String,
     /// The band the spectra cover.
     pub band: Band,
@@ -42,14 +47,17 @@ pub struct Manifest {
     #[serde(default, skip_serializing_if = "Provenance::is_empty")]
     pub provenance: Provenance,
     /// The exploration conditions the texture is known at.
+    #[schemars(length(min = 1), extend("uniqueItems" = true))]
     pub conditions: Vec<Condition>,
     /// The texture's spectrum, once for each model.
+    #[schemars(length(min = 1), extend("uniqueItems" = true))]
     pub representations: Vec<Representation>,
     /// The recorded spectra themselves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reference: Option<Reference>,
     /// Models the asset brings along, for players that do not have them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("uniqueItems" = true))]
     pub plugins: Vec<Plugin>,
     /// Extensions by name (`com.vendor.NAME/REV`).
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -67,8 +75,10 @@ pub struct Manifest {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Band {
     /// Lower edge, hertz, above 0.
+    #[schemars(range(max = 20000), extend("exclusiveMinimum" = 0))]
     pub low_hz: f64,
     /// Upper edge, hertz, above the lower.
+    #[schemars(range(max = 20000), extend("exclusiveMinimum" = 0))]
     pub high_hz: f64,
 }
 
@@ -104,6 +114,7 @@ pub struct Source {
     /// File name without its folder.
     pub file: String,
     /// Sampling rate, hertz.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub rate_hz: f64,
     /// How many segments of it were averaged.
     pub segments: u64,
@@ -114,12 +125,15 @@ pub struct Source {
 pub struct Condition {
     /// Scanning speed, mm/s, not negative.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0))]
     pub speed_mm_s: Option<f64>,
     /// Normal force, newtons, not negative.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0))]
     pub force_n: Option<f64>,
     /// Nine-band RMS difference between odd and even segments, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0))]
     pub repeatability_rms_db: Option<f64>,
 }
 
@@ -138,14 +152,19 @@ impl Condition {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Representation {
     /// Reverse-DNS id of the model.
+    #[schemars(regex(pattern = MODEL_ID))]
     pub model: String,
     /// Semantic version of the model that fitted it.
+    #[schemars(regex(pattern = SEMANTIC_VERSION))]
     pub model_version: String,
     /// Parameter fields, in the order of the flat array.
+    #[schemars(extend("uniqueItems" = true))]
     pub fields: Vec<Field>,
     /// The conditions it is fitted at, in the order of the parameter block.
+    #[schemars(length(min = 1), extend("uniqueItems" = true))]
     pub at: Vec<AtCondition>,
     /// Archive entry that holds the parameter block.
+    #[schemars(regex(pattern = ENTRY_NAME), extend("not" = own_entries()))]
     pub parameters: String,
 }
 
@@ -153,6 +172,7 @@ pub struct Representation {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Field {
     /// Name, as in the model's descriptor.
+    #[schemars(length(min = 1))]
     pub name: String,
     /// Unit symbol; a pure number has none.
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -169,6 +189,7 @@ pub struct Field {
 /// `exp(offset + scale·q)`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
+#[schemars(transform = open_variants)]
 pub enum Store {
     /// IEEE 754 binary64.
     #[default]
@@ -187,6 +208,7 @@ pub enum Store {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Steps {
     /// Size of a step, above 0.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub scale: f64,
     /// Value at `q = 0`.
     #[serde(default, skip_serializing_if = "is_zero")]
@@ -211,8 +233,10 @@ fn is_zero(x: &f64) -> bool {
 pub struct AtCondition {
     /// Index into the asset's conditions.
     pub condition: usize,
-    /// RMS of the fitted spectrum in the band, newtons; the parameters are a shape of unit RMS.
-    pub level_n_rms: f64,
+    /// RMS of the fitted spectrum in the band, in the asset's unit; the parameters are a shape of
+    /// unit RMS.
+    #[schemars(range(min = 0))]
+    pub level_rms: f64,
     /// How near it comes to the recording.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quality: Option<Quality>,
@@ -222,13 +246,17 @@ pub struct AtCondition {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Quality {
     /// Pearson correlation of the linear magnitudes, -1 to 1.
+    #[schemars(range(min = -1, max = 1))]
     pub spectral_correlation: f64,
     /// Energy over the recording's in nine bands, decibels.
+    #[schemars(length(equal = 9))]
     pub band_error_db: Vec<f64>,
     /// RMS of the nine.
+    #[schemars(range(min = 0))]
     pub band_error_rms_db: f64,
     /// RMS of the nine after one gain that equalises the total energy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0))]
     pub band_error_matched_rms_db: Option<f64>,
     /// RMS error over third-octave bands, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -238,9 +266,11 @@ pub struct Quality {
     pub log_spectral_distance_db: Option<f64>,
     /// Spectral correlation of rendered samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = -1, max = 1))]
     pub samples_spectral_correlation: Option<f64>,
     /// Nine-band RMS of rendered samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0))]
     pub samples_band_error_rms_db: Option<f64>,
     /// Third-octave error of rendered samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -250,13 +280,16 @@ pub struct Quality {
     pub samples_log_spectral_distance_db: Option<f64>,
     /// Nine-band RMS between the spectra of the fitted and of the stored parameters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0))]
     pub rounding_error_db: Option<f64>,
 }
 
 /// Where the recorded spectra are kept.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reference {
-    /// Archive entry: one array of 32-bit floats a condition, on the band's 5 Hz grid, newtons.
+    /// Archive entry: one array of 32-bit floats a condition, on the band's 5 Hz grid, in
+    /// the asset's unit.
+    #[schemars(regex(pattern = ENTRY_NAME), extend("not" = own_entries()))]
     pub file: String,
 }
 
@@ -264,12 +297,16 @@ pub struct Reference {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Plugin {
     /// Reverse-DNS id of the model.
+    #[schemars(regex(pattern = MODEL_ID))]
     pub model: String,
     /// Semantic version of the module's model.
+    #[schemars(regex(pattern = SEMANTIC_VERSION))]
     pub version: String,
     /// Archive entry that holds the module: `plugins/ID.wasm`.
+    #[schemars(regex(pattern = r"^plugins/[a-z0-9._-]+\.wasm$"))]
     pub file: String,
     /// BLAKE3 of the module, 64 lower-case hexadecimal digits.
+    #[schemars(regex(pattern = "^[0-9a-f]{64}$"))]
     pub blake3: String,
     /// Who vouches for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -280,7 +317,9 @@ pub struct Plugin {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Signature {
     /// The signer's public key, 64 hexadecimal digits.
+    #[schemars(regex(pattern = "^[0-9a-fA-F]{64}$"))]
     pub public_key: String,
     /// The signature, 128 hexadecimal digits.
+    #[schemars(regex(pattern = "^[0-9a-fA-F]{128}$"))]
     pub ed25519: String,
 }

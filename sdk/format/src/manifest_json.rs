@@ -1,10 +1,13 @@
 //! From the bytes of `manifest.json` to a manifest.
 
-use crate::Manifest;
-use crate::document::{Document, DocumentRules, escape};
+use serde_json::Value;
+
+use crate::document::{Document, DocumentRules};
 use crate::limits::Limits;
+use crate::pointer::escape;
 use crate::report::Findings;
 use crate::rules as rule;
+use crate::{Manifest, Quantity};
 
 const DOCUMENT: Document = Document {
     text: "manifest",
@@ -27,13 +30,31 @@ const DOCUMENT: Document = Document {
 /// Reads a manifest; none when a finding says why not.
 pub(crate) fn parse(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<Manifest> {
     let opened = DOCUMENT.open(bytes, limits.json_depth, findings)?;
-    let (manifest, unknown) = DOCUMENT.typed::<Manifest>(bytes, &opened, findings)?;
+    check_quantity(&opened.value, findings)?;
+    let (manifest, unknown) = DOCUMENT.typed::<Manifest>(&opened, findings)?;
     if !opened.newer {
         let other = manifest.other.keys().map(|key| format!("/{}", escape(key)));
-        for pointer in other.chain(unknown) {
+        let mut pointers: Vec<String> = other.chain(unknown).collect();
+        pointers.sort_unstable();
+        for pointer in pointers {
             let message = "version 1.0 has no such key; correct it or use an extension".to_owned();
             findings.add(rule::JSON_UNKNOWN_KEY, pointer, message);
         }
     }
     Some(manifest)
+}
+
+/// None when the quantity has a name that this version does not know.
+fn check_quantity(manifest: &Value, findings: &mut Findings) -> Option<()> {
+    let Some(Value::String(name)) = manifest.get("quantity") else {
+        return Some(());
+    };
+    if Quantity::from_name(name).is_some() {
+        return Some(());
+    }
+    let names: Vec<&str> = Quantity::ALL.iter().map(|q| q.name()).collect();
+    let names = names.join(", ");
+    let message = format!("{name:?} is no quantity of version 1; it has {names}");
+    findings.add(rule::QUANTITY_UNKNOWN, "/quantity", message);
+    None
 }

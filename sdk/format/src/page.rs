@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use serde_json::{Value, json};
+use serde_json::Value;
 
-use crate::{Manifest, RULES, Rule};
+use crate::{FileReport, Manifest, RULES, Rule, STAGES};
 
 const HEAD: &str = "\
 # Findings of validation
@@ -14,11 +14,26 @@ Generated from the table of rules in `sdk/format/src/rules.rs` by
 
 A finding has a code, a severity, a JSON pointer into the manifest (empty for the file as a whole)
 and a message. An asset is valid when no finding is an error. Codes never change their meaning.
+Section 11 of [htex-1.md](htex-1.md) says what a report is.
+
+## Stages
+
+A reader looks for findings in these stages, in this order. After an error in a stage that ends the
+reading, no finding of a later stage follows.
+
 ";
 
 /// The page that explains every rule: `spec/validation.md`.
 pub fn validation_page() -> String {
-    rules_page(HEAD, RULES)
+    let mut head = format!("{HEAD}| stage | findings | errors end the reading |\n|---|---|---|\n");
+    for stage in STAGES {
+        let ends = if stage.ends { "yes" } else { "no" };
+        let codes: Vec<String> = stage.codes.iter().map(|code| format!("`{code}`")).collect();
+        let (of, codes) = (stage.of, codes.join(", "));
+        push(&mut head, format_args!("| {of} | {codes} | {ends} |\n"));
+    }
+    head += "\n## Codes\n";
+    rules_page(&head, RULES)
 }
 
 /// A page that explains rules: `head`, a table of all codes, then each rule.
@@ -60,12 +75,10 @@ fn push(page: &mut String, text: std::fmt::Arguments<'_>) {
 
 /// The JSON Schema of `manifest.json`: `spec/schemas/manifest-1.json`.
 pub fn manifest_schema() -> Value {
-    let mut schema = schemars::schema_for!(Manifest).to_value();
-    if let Some(object) = schema.as_object_mut() {
-        object.insert(
-            "title".to_owned(),
-            json!("manifest.json of an htex 1 asset"),
-        );
-    }
-    schema
+    htex_schema::document::<Manifest>("manifest-1.json", "manifest.json of an htex 1 asset")
+}
+
+/// The JSON Schema of a report of validation: `spec/schemas/report-1.json`.
+pub fn report_schema() -> Value {
+    htex_schema::document::<FileReport>("report-1.json", "report of validation of an htex file")
 }

@@ -1,5 +1,8 @@
 //! What validation finds in a file.
 
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::plain;
@@ -16,6 +19,33 @@ pub struct Report {
     pub valid: bool,
     /// Everything found, in the order the file is read.
     pub findings: Vec<Finding>,
+}
+
+/// The outcome of validation of a file, as `htex validate --json` and the conformance reports write it;
+/// its schema is `spec/schemas/report-1.json`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct FileReport {
+    /// The file.
+    pub file: String,
+    /// Whether it can be used: no finding is an error.
+    pub valid: bool,
+    /// Everything found, in the order of the stages.
+    pub findings: Vec<Finding>,
+    /// Limits other than the defaults, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub limits: BTreeMap<String, u64>,
+}
+
+impl Report {
+    /// The report with the name of its file.
+    pub fn of_file(self, file: &str) -> FileReport {
+        FileReport {
+            file: file.to_owned(),
+            valid: self.valid,
+            findings: self.findings,
+            limits: BTreeMap::new(),
+        }
+    }
 }
 
 /// Findings while they are collected; the first hundred are kept.
@@ -73,5 +103,6 @@ fn finding(rule: &Rule, pointer: String, message: String) -> Finding {
         severity: rule.severity,
         pointer,
         message: plain(&message).into_owned(),
+        schema_rule: None,
     }
 }

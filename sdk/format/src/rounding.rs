@@ -19,7 +19,7 @@ impl Manifest {
 }
 
 fn round_at(at: &mut AtCondition) {
-    at.level_n_rms = reread(&format!("{:.8e}", at.level_n_rms), at.level_n_rms);
+    at.level_rms = reread(&format!("{:.8e}", at.level_rms), at.level_rms);
     if let Some(quality) = &mut at.quality {
         round_quality(quality);
     }

@@ -177,6 +177,14 @@ rule_table! {
         "The texture has no name.",
         "People find it by its name.",
         "Give it one.";
+    LICENSE_INVALID Error:
+        "`license` is not an SPDX licence expression.",
+        "Programs sort assets by it, and people rely on it. The form is fixed, so it is an error.",
+        "Write an expression such as `CC-BY-4.0` or `MIT OR Apache-2.0`; a licence of your own is `LicenseRef-NAME`.";
+    LICENSE_UNKNOWN Warning:
+        "`license` names a licence that is not in the reader's SPDX list.",
+        "It may be misspelt, upper and lower case included. The list grows, so it is a warning.",
+        "Correct it by https://spdx.org/licenses, or write `LicenseRef-NAME` for a licence of your own.";
     LICENSE_MISSING Warning:
         "There is no licence.",
         "Without one nobody else may use the asset.",
@@ -184,11 +192,11 @@ rule_table! {
     QUANTITY_UNKNOWN Error:
         "`quantity` is not one of this version.",
         "A player that mistakes what the samples mean may drive a device too hard.",
-        "Version 1 has `lateral_force`.";
+        "Version 1 has `lateral_force`, `normal_force`, `acceleration`, `velocity` and `displacement`.";
     UNIT_UNKNOWN Error:
         "`unit` is not the quantity's unit.",
         "A player that mistakes the unit is wrong by orders of magnitude.",
-        "The unit of `lateral_force` is `N`.";
+        "Forces are in `N`, accelerations in `m/s2`, velocities in `m/s`, displacements in `m`.";
     BAND_INVALID Error:
         "The band is empty, upside down or out of range.",
         "It must be 0 < low_hz < high_hz <= 20000 and hold a multiple of 5 Hz.",
@@ -237,6 +245,22 @@ rule_table! {
         "Two fields of a representation have the same name.",
         "Fields are matched to the model's by name.",
         "Use the names in the model's descriptor.";
+    FIELD_UNKNOWN Error:
+        "The model has no field of this name.",
+        "Fields are matched to the model's by name. Of a model in a newer version than the reader's, fields it does not know are not judged.",
+        "Use the name in the model's descriptor (`htex schema models`), or take the field out.";
+    FIELD_KIND_WRONG Error:
+        "A list is stored where the model takes one number, or the other way round.",
+        "The model would read lengths as values.",
+        "Correct `list`, and fit again.";
+    FIELD_UNIT_WRONG Error:
+        "A field's unit is not the model's.",
+        "The model would be wrong by a factor.",
+        "Correct `unit`, and the numbers with it.";
+    FIELD_MISSING Error:
+        "A field of the model is not stored.",
+        "Only fields with a default in the model's descriptor may be absent: a later minor version added them.",
+        "Fit again.";
     STORE_INVALID Error:
         "A store has steps that do not work.",
         "`scale` must be finite and above 0, the values of all steps finite and, in the logarithm, at least 2^-1022, and `scale` at least 2^-50 of the largest magnitude of o + s q (of 1, in the logarithm, if that is larger).",
@@ -254,8 +278,8 @@ rule_table! {
         "A player could not tell which of them to take.",
         "Keep one.";
     LEVEL_INVALID Error:
-        "A level is negative or beyond 1,000,000 N.",
-        "It is the RMS of the texture in the band, newtons.",
+        "A level is negative or beyond its quantity's largest.",
+        "It is the RMS of the texture in the band, in the asset's unit: up to 1,000,000 N or m/s2, 10,000 m/s or 100 m.",
         "Correct it; a smooth surface has a level of 0.";
     QUALITY_INVALID Error:
         "A number of `quality` is out of range.",
@@ -283,7 +307,7 @@ rule_table! {
         "Write the asset anew, or leave `reference` out.";
     REFERENCE_INVALID Error:
         "A magnitude of the reference is negative or not finite.",
-        "A magnitude is a size in newtons.",
+        "A magnitude is a size in the asset's unit.",
         "Write the asset anew, or leave `reference` out.";
     PLUGIN_INVALID Error:
         "A plugin's model, version, file or hash is not of its form.",
@@ -317,6 +341,18 @@ rule_table! {
         "The asset needs an extension this reader does not have.",
         "Its author says it cannot be used without.",
         "Use a program that knows the extension.";
+    SCHEMA_BROKEN Error:
+        "The document breaks a rule of its JSON Schema that no other finding names.",
+        "`htex validate` holds documents to the schemas in `spec/schemas` too, and finds what stands behind the first wrong value.",
+        "Correct it at the place the pointer names; `schema_rule` says which keyword does not hold.";
+    EXTENSION_SCHEMA_BROKEN Error:
+        "An extension breaks a rule of the schema its author gave.",
+        "`htex validate --extension-schema NAME=FILE` holds the extension of that name to the schema.",
+        "Correct the extension, or its schema.";
+    DESCRIPTOR_INVALID Error:
+        "A model's or device's descriptor describes nothing that can be called.",
+        "Hosts refuse it when they load the model or device.",
+        "Correct what the message names.";
     FINDINGS_TRUNCATED Info:
         "There are more findings than are shown.",
         "The first hundred are enough to start from.",

@@ -1,15 +1,21 @@
 //! From bytes to an asset, or to the reasons why not. Reading and validating are this one path.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-use crate::archive::{Archive, STORED};
+use serde_json::Value;
+
+use crate::archive::Archive;
 use crate::block::{self, BlockError};
 use crate::check_manifest::check_manifest;
+use crate::fields::{KnownModel, check_fields};
+use crate::json_text;
 use crate::limits::Limits;
 use crate::manifest_json;
 use crate::plugin::WASM_MAGIC;
 use crate::report::{Findings, Report};
 use crate::rules as rule;
+use crate::unpack::STORED;
 use crate::{Asset, Finding, Manifest, Plugin, Representation, Severity};
 
 /// Name of the entry that says what the archive is.
@@ -22,17 +28,35 @@ pub(crate) const MANIFEST: &str = "manifest.json";
 /// Validates the bytes of a `.htex` file: every broken rule that can be told apart from the ones
 /// before it. Never panics, and takes no more than `limits` allow.
 pub fn validate(bytes: &[u8], limits: &Limits) -> Report {
-    let (asset, findings) = inspect(bytes, limits);
+    validate_with(bytes, limits, &|_| None)
+}
+
+/// Validates as [`validate`] does, and compares fields with those of the models that are known.
+pub fn validate_with(bytes: &[u8], limits: &Limits, known: KnownModel<'_>) -> Report {
+    let (asset, findings) = inspect(bytes, limits, known);
     Report {
         valid: asset.is_some(),
         findings,
     }
 }
 
-/// The asset, when no finding is an error.
-pub(crate) fn inspect(bytes: &[u8], limits: &Limits) -> (Option<Asset>, Vec<Finding>) {
+/// The manifest of an asset as JSON, whatever stands in it; none when it cannot be reached, or is
+/// not JSON.
+pub fn manifest_json(bytes: &[u8], limits: &Limits) -> Option<Value> {
     let mut findings = Findings::default();
-    let asset = read(bytes, limits, &mut findings).filter(|_| !findings.has_errors());
+    let archive = Archive::open(bytes, limits, &mut findings)?;
+    let entry = &archive.entries[archive.index(MANIFEST)?];
+    json_text::parse(&entry.bytes).ok()
+}
+
+/// The asset, when no finding is an error.
+pub(crate) fn inspect(
+    bytes: &[u8],
+    limits: &Limits,
+    known: KnownModel<'_>,
+) -> (Option<Asset>, Vec<Finding>) {
+    let mut findings = Findings::default();
+    let asset = read(bytes, limits, known, &mut findings).filter(|_| !findings.has_errors());
     let findings = findings.into_list();
     let notes = findings
         .iter()
@@ -43,17 +67,23 @@ pub(crate) fn inspect(bytes: &[u8], limits: &Limits) -> (Option<Asset>, Vec<Find
     (asset, findings)
 }
 
-fn read(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<Asset> {
-    let mut archive = Archive::scan(bytes, limits, findings)?;
-    check_mimetype(&mut archive, findings);
+fn read(
+    bytes: &[u8],
+    limits: &Limits,
+    known: KnownModel<'_>,
+    findings: &mut Findings,
+) -> Option<Asset> {
+    let archive = Archive::open(bytes, limits, findings)?;
+    check_mimetype(&archive, findings);
     let Some(index) = archive.index(MANIFEST) else {
         let message = format!("there is no entry {MANIFEST}; write the asset anew");
         findings.add(rule::MANIFEST_MISSING, "", message);
         return None;
     };
-    let json = archive.read(index, findings)?;
-    let manifest = manifest_json::parse(&json, limits, findings)?;
+    let json = &archive.entries[index].bytes;
+    let manifest = manifest_json::parse(json, limits, findings)?;
     check_manifest(&manifest, findings);
+    check_fields(&manifest, known, findings);
     let mut payload = Payload {
         archive,
         claimed: BTreeSet::from([MIMETYPE.to_owned(), MANIFEST.to_owned()]),
@@ -73,7 +103,7 @@ fn read(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<Asset>
     })
 }
 
-fn check_mimetype(archive: &mut Archive<'_>, findings: &mut Findings) {
+fn check_mimetype(archive: &Archive<'_>, findings: &mut Findings) {
     let Some(index) = archive.index(MIMETYPE) else {
         let message = format!("there is no entry {MIMETYPE}; write it first: {MEDIA_TYPE}");
         findings.add(rule::MIMETYPE_MISSING, "", message);
@@ -82,21 +112,17 @@ fn check_mimetype(archive: &mut Archive<'_>, findings: &mut Findings) {
     findings.require(index == 0, rule::MIMETYPE_NOT_FIRST, "", || {
         format!("{MIMETYPE} is entry {index}, counted from 0; write it first")
     });
-    let stored = archive
-        .entries
-        .get(index)
-        .is_some_and(|entry| entry.method == STORED);
-    findings.require(stored, rule::MIMETYPE_COMPRESSED, "", || {
-        format!("{MIMETYPE} is compressed; store it")
+    let entry = &archive.entries[index];
+    findings.require(
+        entry.method == STORED,
+        rule::MIMETYPE_COMPRESSED,
+        "",
+        || format!("{MIMETYPE} is compressed; store it"),
+    );
+    let right = *entry.bytes == *MEDIA_TYPE.as_bytes();
+    findings.require(right, rule::MIMETYPE_WRONG, "", || {
+        format!("{MIMETYPE} is not {MEDIA_TYPE}, byte for byte")
     });
-    if let Some(text) = archive.read(index, findings) {
-        findings.require(
-            text == MEDIA_TYPE.as_bytes(),
-            rule::MIMETYPE_WRONG,
-            "",
-            || format!("{MIMETYPE} is not {MEDIA_TYPE}, byte for byte"),
-        );
-    }
 }
 
 /// The entries the manifest names, while they are read.
@@ -107,7 +133,7 @@ struct Payload<'a, 'f> {
     findings: &'f mut Findings,
 }
 
-impl Payload<'_, '_> {
+impl<'a> Payload<'a, '_> {
     fn parameters(&mut self, manifest: &Manifest) -> Vec<Vec<Vec<f64>>> {
         let all = manifest.representations.iter().enumerate();
         all.map(|(i, representation)| {
@@ -139,7 +165,7 @@ impl Payload<'_, '_> {
     }
 
     /// The bytes of an entry that nothing else has named.
-    fn entry(&mut self, name: &str, pointer: String) -> Option<Vec<u8>> {
+    fn entry(&mut self, name: &str, pointer: String) -> Option<Cow<'a, [u8]>> {
         let Some(index) = self.archive.index(name) else {
             let message = format!("there is no entry {name:?}; add it or remove what names it");
             self.findings.add(rule::ENTRY_MISSING, pointer, message);
@@ -151,7 +177,7 @@ impl Payload<'_, '_> {
                 .add(rule::PARAMETERS_ENTRY_INVALID, pointer, message);
             return None;
         }
-        self.archive.read(index, self.findings)
+        Some(std::mem::take(&mut self.archive.entries[index].bytes))
     }
 
     fn reference(&mut self, manifest: &Manifest) -> Option<Vec<Vec<f32>>> {
@@ -185,7 +211,7 @@ impl Payload<'_, '_> {
             .position(|m| !(m.is_finite() && *m >= 0.0));
         if let Some(bad) = bad {
             let message = format!(
-                "magnitude {bad} is {}; write a size in newtons",
+                "magnitude {bad} is {}; write one that is finite and not negative",
                 magnitudes[bad]
             );
             self.findings
@@ -219,7 +245,7 @@ impl Payload<'_, '_> {
             pointer,
             || format!("{} has the hash {hash}; embed the module anew", plugin.file),
         );
-        Some(bytes)
+        Some(bytes.into_owned())
     }
 
     fn check_unreferenced(&mut self) {

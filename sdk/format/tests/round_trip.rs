@@ -103,7 +103,7 @@ fn any_asset() -> impl Strategy<Value = Asset> {
             serde_json::json!([error, null]),
         );
         let at = &mut manifest.representations[0].at[0];
-        at.level_n_rms = level;
+        at.level_rms = level;
         at.quality.as_mut().unwrap().band_error_db[3] = error;
         if extra {
             manifest.reference = Some(Reference {

@@ -1,7 +1,7 @@
 //! What a host holds a model's description to.
 
-use htex_model::Descriptor;
 use htex_model::abi::MAX_FIELDS;
+use htex_model::{Descriptor, Field, Kind, is_model_id};
 
 use crate::error::plain;
 
@@ -16,15 +16,11 @@ pub fn read_descriptor(json: &str) -> Result<Descriptor, String> {
 }
 
 fn check_descriptor(descriptor: &Descriptor) -> Result<(), String> {
-    let dotted = descriptor.id.split('.').count() >= 3
-        && descriptor.id.split('.').all(|part| !part.is_empty());
-    if !dotted
-        || !descriptor
-            .id
-            .bytes()
-            .all(|b| b.is_ascii_alphanumeric() || b"._-".contains(&b))
-    {
-        return Err(format!("`{}` is not a reverse-DNS id", descriptor.id));
+    if !is_model_id(&descriptor.id) {
+        return Err(format!(
+            "`{}` is not a reverse-DNS id: three or more parts of a-z, 0-9, `-` and `_`",
+            descriptor.id
+        ));
     }
     if semver::Version::parse(&descriptor.version).is_err() {
         return Err(format!(
@@ -42,6 +38,12 @@ fn check_descriptor(descriptor: &Descriptor) -> Result<(), String> {
             return Err(format!("`{name}` has the range {min} to {max}"));
         }
     }
+    if let Some(field) = descriptor.fields.iter().find(|field| !default_holds(field)) {
+        let name = &field.name;
+        return Err(format!(
+            "`{name}` has a default outside its range, or is a list"
+        ));
+    }
     let fields = descriptor.fields.iter().flat_map(|f| [&f.name, &f.unit]);
     let options = descriptor.options.iter();
     let options = options.flat_map(|o| o.choices.iter().chain([&o.name, &o.unit]));
@@ -54,4 +56,11 @@ fn check_descriptor(descriptor: &Descriptor) -> Result<(), String> {
         Some(pair) => Err(format!("two fields are named `{}`", pair[0])),
         None => Ok(()),
     }
+}
+
+/// Whether a default is that of a scalar, and in its range.
+fn default_holds(field: &Field) -> bool {
+    let inside =
+        |value: f64| field.kind == Kind::Scalar && (field.min..=field.max).contains(&value);
+    field.default.is_none_or(inside)
 }

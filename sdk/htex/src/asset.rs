@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use htex_format::{Manifest, Representation};
 use htex_host::{Band, LoadedModel, Registry, StillSound, Synthesis};
-use semver::{Version, VersionReq};
 
 use crate::exploration::{Coverage, Effects, Explored};
 use crate::mesh::Mesh;
+use crate::playable::{field_order, model_of};
 use crate::{Error, Source, Voice};
 
 /// An opened texture. A clone shares what the file holds.
@@ -195,7 +195,8 @@ impl Asset {
     pub fn source(&self, options: &VoiceOptions<'_>) -> Result<Source, Error> {
         let r = self.representation(options.model)?;
         let motion = options.motion.unwrap_or_else(|| self.first_condition(r));
-        let (known, model) = (self.known(r), self.model(r)?);
+        let model = self.model(r)?;
+        let known = self.known(r, &model)?;
         Source::new(
             known,
             model,
@@ -256,7 +257,8 @@ impl Asset {
         let r = self.representation(model)?;
         let (speed, force) = motion.unwrap_or_else(|| self.first_condition(r));
         crate::source::check_motion(speed, force)?;
-        self.known(r).at(&self.model(r)?, speed, force)
+        let model = self.model(r)?;
+        self.known(r, &model)?.at(&model, speed, force)
     }
 
     /// The index of a representation by its model's id or short name, else of the best.
@@ -276,29 +278,22 @@ impl Asset {
         })
     }
 
-    /// The model of a representation, if it is of a compatible version.
     fn model(&self, representation: usize) -> Result<LoadedModel, Error> {
-        let representation = &self.data.manifest.representations[representation];
-        let model = self.registry.find(&representation.model)?;
-        let installed = &model.descriptor().version;
-        let wanted = major(&representation.model_version);
-        if wanted.is_some() && wanted == major(installed) {
-            return Ok(model.clone());
-        }
-        // One that is shadowed by a newer one may still do.
-        let other = wanted
-            .and_then(|major| VersionReq::parse(&format!("={major}")).ok())
-            .and_then(|wanted| self.registry.find_version(model.id(), &wanted).ok());
-        other.cloned().ok_or_else(|| Error::ModelVersion {
-            model: representation.model.clone(),
-            asset: representation.model_version.clone(),
-            installed: installed.clone(),
-        })
+        model_of(
+            &self.registry,
+            &self.data.manifest.representations[representation],
+        )
+        .cloned()
     }
 
-    fn known(&self, representation: usize) -> Known {
+    /// What the asset knows of a representation, its parameters in the order of the model's fields.
+    fn known(&self, representation: usize, model: &LoadedModel) -> Result<Known, Error> {
         let manifest = &self.data.manifest;
-        let at = &manifest.representations[representation].at;
+        let stored = &manifest.representations[representation];
+        let order = field_order(stored, model)?;
+        let sets = self.data.parameters[representation].iter();
+        let parameters: Result<_, _> = sets.map(|flat| order.arrange(flat)).collect();
+        let at = &stored.at;
         let point = |condition: usize| {
             let condition = &manifest.conditions[condition];
             [
@@ -307,12 +302,15 @@ impl Asset {
             ]
         };
         let points: Vec<[f64; 2]> = at.iter().map(|a| point(a.condition)).collect();
-        Known {
+        Ok(Known {
             mesh: Mesh::new(&points),
             explored: self.explored(representation),
-            level_n: at.iter().map(|a| a.level_n_rms).collect(),
-            parameters: self.data.parameters[representation].clone(),
-        }
+            level_n: at.iter().map(|a| a.level_rms).collect(),
+            parameters: parameters.map_err(|error| Error::Fields {
+                model: stored.model.clone(),
+                problem: error.to_string(),
+            })?,
+        })
     }
 
     fn explored(&self, representation: usize) -> Explored {
@@ -329,10 +327,6 @@ impl Asset {
             (c.speed_mm_s.unwrap_or(0.0), c.force_n.unwrap_or(0.0))
         })
     }
-}
-
-fn major(version: &str) -> Option<u64> {
-    Version::parse(version).ok().map(|version| version.major)
 }
 
 fn is_named(representation: &Representation, name: &str) -> bool {

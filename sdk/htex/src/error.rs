@@ -38,6 +38,14 @@ pub enum Error {
         /// The version of the model.
         installed: String,
     },
+    /// The stored fields are not those of the model.
+    #[error("the parameters do not suit {model}: {problem}; fit the recording again")]
+    Fields {
+        /// The model's id.
+        model: String,
+        /// Every field that differs, and how.
+        problem: String,
+    },
     /// A speed or force that is negative or not a number.
     #[error("motion of {speed_mm_s} mm/s at {force_n} N; both must be finite and not negative")]
     Motion {

@@ -18,6 +18,7 @@ mod error;
 pub mod exploration;
 mod follow;
 mod mesh;
+mod playable;
 mod source;
 mod voice;
 
@@ -26,5 +27,6 @@ pub use error::Error;
 pub use exploration::{Coverage, Effects, Explored, Reach, Recorded};
 pub use htex_format::{Finding, Limits, Manifest, Severity};
 pub use htex_host::{Band, Registry, Search, Synthesis, WasmLimits};
+pub use playable::{field_order, model_of};
 pub use source::Source;
 pub use voice::Voice;

@@ -10,6 +10,10 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Descriptor {
     /// Reverse-DNS identifier, e.g. `org.htex.sbeta`; never changes.
+    #[cfg_attr(
+        feature = "schemars",
+        schemars(regex(pattern = r"^[a-z0-9_-]+(\.[a-z0-9_-]+){2,}$"))
+    )]
     pub id: String,
     /// Name for people, e.g. `sBeta`.
     pub name: String,
@@ -18,6 +22,7 @@ pub struct Descriptor {
     /// One sentence: what the model keeps of a spectrum.
     pub summary: String,
     /// Parameters, in the order of the flat array.
+    #[cfg_attr(feature = "schemars", schemars(length(min = 1, max = 32)))]
     pub fields: Vec<Field>,
     /// Fit options, in the order of their array.
     #[serde(default)]
@@ -48,6 +53,9 @@ pub struct Field {
     pub max: f64,
     /// How an asset stores the values.
     pub store: Store,
+    /// Value for assets of earlier minor versions, which lack the field; a scalar's alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub default: Option<f64>,
     /// What the field means.
     pub description: String,
 }
@@ -62,6 +70,7 @@ pub enum Kind {
     /// From none to `max_len` numbers.
     List {
         /// Most numbers allowed, at most 65,535.
+        #[cfg_attr(feature = "schemars", schemars(range(max = 65535)))]
         max_len: u32,
     },
 }
@@ -79,6 +88,7 @@ pub enum Store {
     /// Unsigned 16-bit steps.
     U16 {
         /// Step.
+        #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
         scale: f64,
         /// Value at zero.
         offset: f64,
@@ -89,6 +99,7 @@ pub enum Store {
     /// Unsigned 8-bit steps.
     U8 {
         /// Step.
+        #[cfg_attr(feature = "schemars", schemars(extend("exclusiveMinimum" = 0)))]
         scale: f64,
         /// Value at zero.
         offset: f64,
@@ -185,6 +196,7 @@ impl Descriptor {
             min,
             max,
             store: Store::F32,
+            default: None,
             description: description.to_string(),
         });
         self
@@ -194,6 +206,14 @@ impl Descriptor {
     pub fn stored(mut self, store: Store) -> Self {
         if let Some(field) = self.fields.last_mut() {
             field.store = store;
+        }
+        self
+    }
+
+    /// Says which value the scalar added last has in assets of earlier minor versions.
+    pub fn defaulted(mut self, value: f64) -> Self {
+        if let Some(field) = self.fields.last_mut() {
+            field.default = Some(value);
         }
         self
     }
@@ -256,10 +276,6 @@ impl Descriptor {
 /// The JSON Schema of a descriptor: `spec/schemas/descriptor-1.json`.
 #[cfg(feature = "schemars")]
 pub fn descriptor_schema() -> serde_json::Value {
-    let mut schema = schemars::schema_for!(Descriptor).to_value();
-    if let Some(object) = schema.as_object_mut() {
-        let title = "descriptor of a texture model, ABI 1";
-        object.insert("title".to_string(), title.into());
-    }
-    schema
+    let title = "descriptor of a texture model, ABI 1";
+    htex_schema::document::<Descriptor>("descriptor-1.json", title)
 }

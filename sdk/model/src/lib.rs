@@ -21,6 +21,7 @@ mod descriptor;
 mod error;
 #[cfg(feature = "std")]
 mod export;
+mod id;
 pub mod mix;
 mod numbers;
 #[cfg(feature = "std")]
@@ -35,6 +36,7 @@ pub mod voices_1;
 pub use descriptor::descriptor_schema;
 pub use descriptor::{Descriptor, Field, FitOption, Kind, Store};
 pub use error::{Error, Status};
+pub use id::is_model_id;
 pub use numbers::Numbers;
 pub use traits::{Band, Fit, FitInput, Model, Voice};
 pub use values::{Values, flatten};

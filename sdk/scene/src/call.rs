@@ -398,9 +398,6 @@ fn known(asset: &htex::Asset, model: &str, measure: ErrorMeasure) -> (usize, Exp
 fn loudest(asset: &htex::Asset, model: &str, level_n: f64) -> f64 {
     let manifest = asset.manifest();
     let found = manifest.representations.iter().find(|r| r.model == model);
-    let levels = found
-        .into_iter()
-        .flat_map(|r| &r.at)
-        .map(|at| at.level_n_rms);
+    let levels = found.into_iter().flat_map(|r| &r.at).map(|at| at.level_rms);
     levels.fold(level_n, f64::max)
 }

@@ -13,10 +13,13 @@ pub const VERSION: &str = "1.0";
 
 /// A scene: surfaces, how the finger moves over them, and the device it is felt on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Scene {
     /// Version of the format, `MAJOR.MINOR`.
+    #[schemars(extend("const" = VERSION))]
     pub htex_scene: String,
     /// What can be touched.
+    #[schemars(length(min = 1, max = 256))]
     pub surfaces: Vec<Surface>,
     /// How the finger moves.
     pub motion: Motion,
@@ -25,6 +28,7 @@ pub struct Scene {
     pub device: DeviceChoice,
     /// Length, seconds; absent: the trace's, and without end for other motions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 1e9), extend("exclusiveMinimum" = 0))]
     pub duration_s: Option<f64>,
     /// The same seed gives the same samples.
     #[serde(default)]
@@ -39,6 +43,7 @@ pub struct Scene {
 
 /// A texture, and where it lies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Surface {
     /// The asset; a relative path starts at the scene's folder.
     pub asset: PathBuf,
@@ -50,9 +55,11 @@ pub struct Surface {
     pub layer: i32,
     /// Factor on its level, 0 to 1000.
     #[serde(default = "one")]
+    #[schemars(range(min = 0, max = 1000))]
     pub gain: f64,
     /// A model by its id or short name, or `auto`.
     #[serde(default = "auto")]
+    #[schemars(regex(pattern = r"\S"))]
     pub representation: String,
 }
 
@@ -71,6 +78,7 @@ impl Surface {
 
 /// A rectangle, edges included at the lower end and excluded at the upper.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Region {
     /// From and to along x, mm.
     pub x_mm: [f64; 2],
@@ -93,21 +101,26 @@ pub enum Motion {
 
 /// A motion that is always alike.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Constant {
     /// Scanning speed, mm/s.
+    #[schemars(range(min = 0, max = 1e4))]
     pub speed_mm_s: f64,
     /// Normal force, newtons.
+    #[schemars(range(min = 0, max = 1e3))]
     pub force_n: f64,
     /// Where it starts, x and y, mm; only a single surface without a region goes without it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from_mm: Option<[f64; 2]>,
     /// Whither it goes, degrees from the x axis towards the y axis.
     #[serde(default)]
+    #[schemars(range(min = -3600, max = 3600))]
     pub direction_deg: f64,
 }
 
 /// The device, and how the scene is brought to it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct DeviceChoice {
     /// The adapter by its id or short name.
     #[serde(default = "file_adapter")]
@@ -120,16 +133,20 @@ pub struct DeviceChoice {
     pub settings: BTreeMap<String, Value>,
     /// Rate of the samples, hertz; absent: the device's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 1e7), extend("exclusiveMinimum" = 0))]
     pub rate_hz: Option<f64>,
     /// Gain on the force that a device of newtons gets, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = -120, max = 120))]
     pub gain_db: Option<f64>,
     /// Largest voltage of an electrovibration drive, volts: V_g of the paper is this over sqrt(2).
     /// Absent: half of the device's limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 1e4), extend("exclusiveMinimum" = 0))]
     pub drive_v: Option<f64>,
     /// RMS of a preview by ear, decibels below full scale (so not above 0); absent: -18.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = -120, max = 0))]
     pub level_dbfs: Option<f64>,
     /// Whether the drive, or the level of a preview, is that of the scene's loudest texture.
     #[serde(default, skip_serializing_if = "Levels::is_normalised")]
@@ -140,6 +157,7 @@ pub struct DeviceChoice {
     pub reference_n: Option<f64>,
     /// Factor on all frequencies of a preview by ear.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.05, max = 20))]
     pub pitch: Option<f64>,
     /// Response of finger and display, to be compensated: a CSV with the columns `frequency_hz`,
     /// `magnitude`; a relative path starts at the scene's folder.
@@ -147,6 +165,7 @@ pub struct DeviceChoice {
     pub response: Option<PathBuf>,
     /// How far below its maximum the response is compensated at most, decibels.
     #[serde(default = "depth", skip_serializing_if = "is_depth")]
+    #[schemars(range(min = 0, max = 120))]
     pub response_depth_db: f64,
 }
 
@@ -170,12 +189,15 @@ impl Levels {
 
 /// What chooses representations. With both, the nearest within the time must be near enough.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Budget {
     /// Most time a sample of the whole chain may take, nanoseconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 1e12), extend("exclusiveMinimum" = 0))]
     pub ns_per_sample: Option<f64>,
     /// Largest error of a representation, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 1e12), extend("exclusiveMinimum" = 0))]
     pub max_error_db: Option<f64>,
     /// What the error is: which measure `max_error_db` bounds and the nearest has least of.
     #[serde(default, skip_serializing_if = "is_default")]

@@ -1,7 +1,7 @@
 //! `spec/scene-findings.md` and `spec/schemas/scene-1.json`, made from the code.
 
 use htex_format::rules_page;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::{RULES, Scene};
 
@@ -20,11 +20,7 @@ pub fn findings_page() -> String {
     rules_page(HEAD, RULES)
 }
 
-/// The JSON Schema of a scene: `spec/schemas/scene-1.json`.
+/// The JSON Schema of a scene of version 1.0: `spec/schemas/scene-1.json`.
 pub fn scene_schema() -> Value {
-    let mut schema = schemars::schema_for!(Scene).to_value();
-    if let Some(object) = schema.as_object_mut() {
-        object.insert("title".to_owned(), json!("Scene of htex 1"));
-    }
-    schema
+    htex_schema::document::<Scene>("scene-1.json", "Scene of htex 1.0")
 }

@@ -58,7 +58,7 @@ pub fn read_scene(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Opt
     if !opened.newer {
         check_effect_names(&opened.value, findings)?;
     }
-    let (scene, unknown) = DOCUMENT.typed::<Scene>(bytes, &opened, findings)?;
+    let (scene, unknown) = DOCUMENT.typed::<Scene>(&opened, findings)?;
     if !opened.newer {
         for pointer in unknown {
             let message = "version 1.0 has no such key; correct it or take it out".to_owned();

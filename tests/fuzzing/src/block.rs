@@ -35,7 +35,7 @@ pub(crate) fn manifest(model: &LoadedModel, conditions: usize) -> Manifest {
     };
     let at = |condition: usize| AtCondition {
         condition,
-        level_n_rms: 0.1,
+        level_rms: 0.1,
         quality: None,
     };
     Manifest {
@@ -44,8 +44,8 @@ pub(crate) fn manifest(model: &LoadedModel, conditions: usize) -> Manifest {
         license: Some("CC0-1.0".to_owned()),
         author: None,
         tags: Vec::new(),
-        quantity: htex_format::LATERAL_FORCE.to_owned(),
-        unit: htex_format::NEWTON.to_owned(),
+        quantity: htex_format::Quantity::LateralForce,
+        unit: htex_format::Quantity::LateralForce.unit().to_owned(),
         band: Band {
             low_hz: band.low_hz,
             high_hz: band.high_hz,

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use htex_format::*;
+use htex_host::Registry;
 use serde_json::{Value, json};
 
 use super::raw_zip::{Entry, archive};
@@ -16,23 +17,25 @@ pub struct Case {
 }
 
 impl Case {
+    /// What a reader reports that knows the models of the specification.
+    pub fn report(&self) -> Report {
+        let models = Registry::builtin();
+        let known = |r: &Representation| models.find(&r.model).ok().map(|m| m.descriptor());
+        validate_with(&self.bytes, &self.limits, &known)
+    }
+
     /// The report the file must get, as pretty JSON.
     pub fn golden(&self) -> String {
-        let report = validate(&self.bytes, &self.limits);
-        let mut golden = BTreeMap::from([
-            ("file", json!(format!("{}.htex", self.name))),
-            ("valid", json!(report.valid)),
-            ("findings", json!(report.findings)),
-        ]);
-        let limits = overrides(&self.limits);
-        if !limits.is_empty() {
-            golden.insert("limits", json!(limits));
-        }
-        serde_json::to_string_pretty(&golden).unwrap() + "\n"
+        let report = FileReport {
+            limits: overrides(&self.limits),
+            ..self.report().of_file(&format!("{}.htex", self.name))
+        };
+        // Through a value, for its keys in alphabetical order.
+        serde_json::to_string_pretty(&json!(report)).unwrap() + "\n"
     }
 }
 
-fn overrides(limits: &Limits) -> BTreeMap<&'static str, u64> {
+fn overrides(limits: &Limits) -> BTreeMap<String, u64> {
     let pairs = |l: &Limits| {
         [
             ("file_bytes", l.file_bytes),
@@ -46,7 +49,7 @@ fn overrides(limits: &Limits) -> BTreeMap<&'static str, u64> {
     };
     let all = pairs(limits).into_iter().zip(pairs(&Limits::default()));
     all.filter(|(ours, default)| ours != default)
-        .map(|(ours, _)| ours)
+        .map(|((name, ours), _)| (name.to_owned(), ours))
         .collect()
 }
 
@@ -97,6 +100,23 @@ fn valid() -> Vec<Named> {
         ("valid_reference", with_reference.to_bytes().unwrap()),
         ("valid_plugin", with_plugin(|_| ())),
         ("valid_extension", extended.to_bytes().unwrap()),
+        ("valid_acceleration", of(Quantity::Acceleration)),
+        ("valid_velocity", of(Quantity::Velocity)),
+        ("valid_displacement", of(Quantity::Displacement)),
+        ("valid_normal_force", of(Quantity::NormalForce)),
+        (
+            "valid_license_ref",
+            with_manifest(|m| m["license"] = json!("LicenseRef-Example OR CC0-1.0")),
+        ),
+        (
+            "valid_field_order",
+            with_manifest(|m| {
+                let fields = m["representations"][0]["fields"].as_array_mut();
+                fields.unwrap().reverse();
+            }),
+        ),
+        ("valid_newer_store", with_store_key("1.1")),
+        ("valid_field_of_newer_model", with_newer_model()),
         (
             "valid_newer_minor",
             with_manifest(|m| {
@@ -105,6 +125,36 @@ fn valid() -> Vec<Named> {
             }),
         ),
     ]
+}
+
+/// An asset of another quantity.
+fn of(quantity: Quantity) -> Vec<u8> {
+    let mut asset = asset(1, vec![sbeta(1)]);
+    asset.manifest.quantity = quantity;
+    asset.manifest.unit = quantity.unit().to_owned();
+    asset.to_bytes().unwrap()
+}
+
+/// Two fields in steps, with a key beside those that this version knows.
+fn with_store_key(version: &str) -> Vec<u8> {
+    let mut manifest = manifest();
+    manifest["htex"] = json!(version);
+    let fields = manifest["representations"][0]["fields"].as_array_mut();
+    for field in fields.unwrap() {
+        field["store"] = json!({ "u8": { "scale": 0.5 }, "entropy": { "order": 2 } });
+    }
+    archive(&parts(manifest.to_string().as_bytes(), &[3, 5]))
+}
+
+/// An asset fitted by a later minor version of its model, which had one more field.
+fn with_newer_model() -> Vec<u8> {
+    let mut manifest = manifest();
+    let representation = &mut manifest["representations"][0];
+    representation["model_version"] = json!("1.9.0");
+    let fields = representation["fields"].as_array_mut().unwrap();
+    fields.push(json!({ "name": "gamma", "store": "f32" }));
+    let block = [&block()[..], &0.25f32.to_le_bytes()].concat();
+    archive(&parts(manifest.to_string().as_bytes(), &block))
 }
 
 /// An asset that brings the (empty) module of its model, signed; `change` comes after signing.
@@ -261,6 +311,21 @@ fn entries() -> Vec<Named> {
         ("entry_name_duplicate", named(b"Manifest.JSON")),
         ("entry_unreferenced", named(b"notes.txt")),
         (
+            "entry_encrypted_and_others",
+            with_parts(|p| {
+                p[1] = p[1].clone().with(|h| h.flags = 1 | 8);
+                p[2] = p[2].clone().with(|h| h.method = 93);
+                p[2].data[0] ^= 1;
+            }),
+        ),
+        (
+            "mimetype_wrong_and_others",
+            with_parts(|p| {
+                p[0] = Entry::stored("mimetype", b"application/zip");
+                p[1] = Entry::stored("manifest.json", b"{}");
+            }),
+        ),
+        (
             "entry_encrypted",
             changed(|e| *e = e.clone().with(|h| h.flags = 1)),
         ),
@@ -279,6 +344,30 @@ fn entries() -> Vec<Named> {
         ("entry_header_mismatch", changed(|e| e.local.name[0] = b'P')),
         ("entry_header_mismatch_size", changed(|e| e.local.size += 1)),
         ("entry_corrupt", changed(|e| e.data[3] ^= 1)),
+        (
+            "entry_corrupt_unreferenced",
+            with_parts(|p| {
+                let mut notes = Entry::stored("notes.txt", b"x");
+                notes.data[0] ^= 1;
+                p.push(notes);
+            }),
+        ),
+        (
+            "entry_corrupt_deflate",
+            with_parts(|p| {
+                p[1] = deflated(&p[1]);
+                p[1].data[0] = 7;
+            }),
+        ),
+        (
+            "entry_corrupt_trailing",
+            with_parts(|p| {
+                p[1] = deflated(&p[1]);
+                p[1].data.extend(b"more");
+                let packed = p[1].data.len() as u32;
+                p[1] = p[1].clone().with(|h| h.packed = packed);
+            }),
+        ),
         ("mimetype_missing", with_parts(|p| p.truncate_front(1))),
         ("mimetype_not_first", with_parts(|p| p.swap(0, 1))),
         (
@@ -327,6 +416,7 @@ fn deflated(entry: &Entry) -> Entry {
 fn texts() -> Vec<Named> {
     let text = manifest().to_string();
     let twice = text.replacen('{', "{\"name\":\"Twice\",", 1);
+    let with = |key: &str| with_text(text.replacen('{', &format!("{{{key},"), 1).as_bytes());
     let deep = format!("{}{}", "[".repeat(40), "]".repeat(40));
     vec![
         ("json_syntax", with_text(b"{\"htex\": \"1.0\",}")),
@@ -340,6 +430,26 @@ fn texts() -> Vec<Named> {
         ),
         ("json_too_deep", with_text(deep.as_bytes())),
         ("json_type_twice", with_text(twice.as_bytes())),
+        (
+            "json_type_twice_extension",
+            with(r#""extensions":{"com.example.LOOK/1":[{"a~b":{"x":1,"x":1}}]}"#),
+        ),
+        (
+            "json_type_twice_unknown",
+            with(r#""friction":{"static":0.4,"static":0.4}"#),
+        ),
+        (
+            "valid_null_in_extension",
+            with(r#""extensions":{"com.example.LOOK/1":{"colour":null}}"#),
+        ),
+        (
+            "valid_whole_numbers",
+            with_text(
+                text.replacen("\"condition\":0", "\"condition\":0e0", 1)
+                    .replacen("\"segments\":48", "\"segments\":4.8e1", 1)
+                    .as_bytes(),
+            ),
+        ),
         ("parameters_invalid_short", with_block(&block()[..7])),
         ("parameters_invalid_long", with_block(&[0; 9])),
         ("parameters_invalid_packed", with_packed(&[1, 0x1F, 0xE1])),
@@ -354,6 +464,21 @@ fn manifests() -> Vec<Named> {
     type Change = fn(&mut Value);
     let changes: Vec<(&'static str, Change)> = vec![
         ("json_type", |m| m["band"]["low_hz"] = json!("20")),
+        ("json_type_array", |m| m["band"] = json!([20, 1000])),
+        ("json_type_word_as_object", |m| {
+            m["representations"][0]["fields"][0]["store"] = json!({ "f32": null })
+        }),
+        ("json_type_object_as_word", |m| {
+            m["representations"][0]["fields"][0]["store"] = json!("u16")
+        }),
+        ("json_type_two_stores", |m| {
+            let steps = json!({ "scale": 1 });
+            m["representations"][0]["fields"][0]["store"] = json!({ "u8": steps, "u16": steps })
+        }),
+        ("json_type_null", |m| m["author"] = json!(null)),
+        ("json_type_fraction", |m| {
+            m["representations"][0]["at"][0]["condition"] = json!(0.5)
+        }),
         ("json_type_missing", |m| {
             drop(m.as_object_mut().unwrap().remove("band"))
         }),
@@ -370,8 +495,36 @@ fn manifests() -> Vec<Named> {
         ("license_missing", |m| {
             drop(m.as_object_mut().unwrap().remove("license"))
         }),
-        ("quantity_unknown", |m| {
+        ("quantity_unknown", |m| m["quantity"] = json!("friction")),
+        ("name_empty_and_others", |m| {
+            m["name"] = json!("");
+            m["unit"] = json!("mN");
+            m["z"] = json!(1);
+            m["band"] = json!({ "a": 1, "low_hz": 30, "high_hz": 20 });
+            m["conditions"] = json!([{ "speed_mm_s": -1 }, {}, {}]);
+            let mut second = m["representations"][0].clone();
+            second["model"] = json!("org.htex.sslope");
+            second["at"][0]["condition"] = json!(3);
+            second["at"][0]["quality"]["band_error_rms_db"] = json!(-1);
+            m["representations"].as_array_mut().unwrap().push(second);
+            m["reference"] = json!({ "file": "absent.bin" });
+            m["extensions"] = json!({ "LOOK": {} });
+        }),
+        ("unit_unknown_acceleration", |m| {
             m["quantity"] = json!("acceleration")
+        }),
+        ("license_invalid", |m| m["license"] = json!("CC BY 4.0")),
+        ("license_unknown", |m| m["license"] = json!("CC-BY-9.0")),
+        ("field_unknown", |m| {
+            m["representations"][0]["fields"][0]["name"] = json!("alfa")
+        }),
+        ("field_unit_wrong", |m| {
+            m["representations"][0]["fields"][1]["unit"] = json!("Hz")
+        }),
+        ("level_invalid_displacement", |m| {
+            m["quantity"] = json!("displacement");
+            m["unit"] = json!("m");
+            m["representations"][0]["at"][0]["level_rms"] = json!(101);
         }),
         ("unit_unknown", |m| m["unit"] = json!("mN")),
         ("band_invalid", |m| {
@@ -428,7 +581,7 @@ fn manifests() -> Vec<Named> {
             m["representations"][0]["at"][0]["quality"]["log_spectral_distance_db"] = json!(-1);
         }),
         ("level_invalid", |m| {
-            m["representations"][0]["at"][0]["level_n_rms"] = json!(-0.1)
+            m["representations"][0]["at"][0]["level_rms"] = json!(-0.1)
         }),
         ("quality_invalid", |m| {
             m["representations"][0]["at"][0]["quality"]["band_error_db"] = json!([0.5, 1.5]);
@@ -458,7 +611,23 @@ fn manifests() -> Vec<Named> {
         .map(|(n, c)| (n, with_manifest(c)))
         .collect();
     files.push(("reference_invalid", with_reference_of(-1.0)));
+    let alpha = json!({ "name": "alpha", "store": "f32" });
+    let list = json!({ "name": "beta", "list": true, "store": "f32" });
+    files.push(("json_unknown_key_store", with_store_key("1.0")));
+    files.push(("field_missing", with_fields(json!([alpha]), &block()[..4])));
+    let block = [&block()[..4], &[1], &block()[4..]].concat();
+    files.push((
+        "field_kind_wrong",
+        with_fields(json!([alpha, list]), &block),
+    ));
     files
+}
+
+/// A manifest whose fields are not the model's, with a block that follows the fields.
+fn with_fields(fields: Value, block: &[u8]) -> Vec<u8> {
+    let mut manifest = manifest();
+    manifest["representations"][0]["fields"] = fields;
+    archive(&parts(manifest.to_string().as_bytes(), block))
 }
 
 fn with_reference_of(magnitude: f32) -> Vec<u8> {

@@ -25,8 +25,8 @@ pub fn asset(conditions: usize, fitted: Vec<Fitted>) -> Asset {
             license: Some("CC-BY-4.0".to_owned()),
             author: Some("Haptics Laboratory, Example University".to_owned()),
             tags: ["cotton", "textile", "rough"].map(str::to_owned).to_vec(),
-            quantity: LATERAL_FORCE.to_owned(),
-            unit: NEWTON.to_owned(),
+            quantity: Quantity::LateralForce,
+            unit: Quantity::LateralForce.unit().to_owned(),
             band: Band {
                 low_hz: 20.0,
                 high_hz: 1000.0,
@@ -110,7 +110,7 @@ fn at(i: usize) -> AtCondition {
     ];
     AtCondition {
         condition: i,
-        level_n_rms: 0.0731529846 + 0.01 * i as f64,
+        level_rms: 0.0731529846 + 0.01 * i as f64,
         quality: Some(Quality {
             spectral_correlation: 0.9412,
             band_error_db: errors.to_vec(),

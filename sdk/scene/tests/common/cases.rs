@@ -5,9 +5,7 @@ use std::sync::Arc;
 
 use htex::Registry;
 use htex_device::Devices;
-use htex_format::{
-    AtCondition, Band, Condition, Field, LATERAL_FORCE, Manifest, NEWTON, Representation, Store,
-};
+use htex_format::{AtCondition, Band, Condition, Field, Manifest, Quantity, Representation, Store};
 use htex_scene::{Surroundings, validate};
 use serde_json::{Value, json};
 
@@ -81,7 +79,7 @@ fn asset(models: &[&str]) -> Vec<u8> {
         fields: fields(model).iter().map(|(name, _)| field(name)).collect(),
         at: vec![AtCondition {
             condition: 0,
-            level_n_rms: 0.02,
+            level_rms: 0.02,
             quality: None,
         }],
         parameters: format!("parameters/{model}.bin"),
@@ -99,8 +97,8 @@ fn asset(models: &[&str]) -> Vec<u8> {
             license: Some("CC0-1.0".to_owned()),
             author: None,
             tags: Vec::new(),
-            quantity: LATERAL_FORCE.to_owned(),
-            unit: NEWTON.to_owned(),
+            quantity: Quantity::LateralForce,
+            unit: Quantity::LateralForce.unit().to_owned(),
             band: Band {
                 low_hz: 20.0,
                 high_hz: 1000.0,

@@ -67,7 +67,7 @@ fn opened(recording: Recording, models: usize) -> f64 {
     }
     let asset = htex::Asset::from_bytes(&bytes).unwrap();
     let peaks = back.manifest.representations.iter().map(|r| {
-        let level = r.at[0].level_n_rms;
+        let level = r.at[0].level_rms;
         played(&asset, &r.model) / if level > 1e-30 { level } else { 1e-30 }
     });
     peaks.fold(0.0, worse)

@@ -1,0 +1,157 @@
+//! What JSON Schemas say of documents, beside the findings of their own rules.
+
+use std::path::{Path, PathBuf};
+
+use htex_device::SettingKind;
+use htex_format::{Finding, Findings, Report, Severity, explain};
+use htex_schema::{Schema, Violation};
+use serde_json::{Map, Value, json};
+
+use crate::failure::Failure;
+
+/// A schema of this project, by its file in `spec/schemas`.
+pub(crate) struct Named {
+    file: String,
+    schema: Schema,
+}
+
+impl Named {
+    pub(crate) fn manifest() -> Result<Self, Failure> {
+        Self::new("manifest-1.json", &htex_format::manifest_schema())
+    }
+
+    pub(crate) fn scene() -> Result<Self, Failure> {
+        Self::new("scene-1.json", &htex_scene::scene_schema())
+    }
+
+    pub(crate) fn model() -> Result<Self, Failure> {
+        Self::new("descriptor-1.json", &htex_model::descriptor_schema())
+    }
+
+    pub(crate) fn device() -> Result<Self, Failure> {
+        let [(file, schema), ..] = htex_device::schemas();
+        Self::new(file, &schema)
+    }
+
+    fn new(file: &str, schema: &Value) -> Result<Self, Failure> {
+        let schema = Schema::new(schema);
+        let schema = schema.map_err(|error| Failure::Other(format!("{file}: {error}")))?;
+        let file = file.to_owned();
+        Ok(Self { file, schema })
+    }
+
+    /// Adds what the schema says: to the finding that says the same, else as a finding of its own.
+    pub(crate) fn hold(&self, document: &Value, report: &mut Report) {
+        for violation in self.schema.violations(document) {
+            let rule = format!("{}#{}", self.file, violation.rule);
+            let same = |f: &&mut Finding| {
+                f.severity == Severity::Error && covers(&f.pointer, &violation.pointer)
+            };
+            match report.findings.iter_mut().find(same) {
+                Some(finding) => drop(finding.schema_rule.get_or_insert(rule)),
+                None => add(report, "SCHEMA_BROKEN", violation, rule, ""),
+            }
+        }
+    }
+}
+
+/// Whether a finding at one place says what a schema says at the other: at the same place, further
+/// inside, or around it.
+fn covers(finding: &str, violation: &str) -> bool {
+    let inside = |inner: &str, outer: &str| {
+        let rest = inner.strip_prefix(outer);
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+    };
+    inside(finding, violation) || (!finding.is_empty() && inside(violation, finding))
+}
+
+fn add(report: &mut Report, code: &str, violation: Violation, rule: String, at: &str) {
+    let mut findings = Findings::default();
+    if let Some(broken) = explain(code) {
+        let pointer = format!("{at}{}", violation.pointer);
+        findings.add(
+            broken,
+            pointer,
+            format!("{}; correct it", violation.message),
+        );
+    }
+    for mut finding in findings.into_list() {
+        finding.schema_rule = Some(rule.clone());
+        report.findings.push(finding);
+        report.valid = false;
+    }
+}
+
+/// The schema that an extension's author gives: `com.vendor.NAME/REVISION=FILE`.
+pub(crate) struct ExtensionSchema {
+    name: String,
+    file: PathBuf,
+    schema: Schema,
+}
+
+impl ExtensionSchema {
+    pub(crate) fn read(argument: &str) -> Result<Self, Failure> {
+        let wrong = |what: String| Failure::Usage(format!("--extension-schema {argument}: {what}"));
+        let form = || wrong("it looks like com.vendor.NAME/1=FILE".to_owned());
+        let (name, file) = argument.split_once('=').ok_or_else(form)?;
+        if !htex_format::is_extension_name(name) {
+            return Err(form());
+        }
+        let file = PathBuf::from(file);
+        let bytes = std::fs::read(&file).map_err(|error| Failure::read(&file, error))?;
+        let schema = htex_format::parse_json(&bytes).map_err(wrong)?;
+        let schema = Schema::new(&schema).map_err(|error| wrong(error.to_string()))?;
+        let name = name.to_owned();
+        Ok(Self { name, file, schema })
+    }
+
+    /// Adds a finding for each rule that the manifest's extension breaks.
+    pub(crate) fn hold(&self, manifest: &Value, report: &mut Report) {
+        let Some(extension) = manifest
+            .get("extensions")
+            .and_then(|all| all.get(&self.name))
+        else {
+            return;
+        };
+        let at = format!("/extensions/{}", htex_format::escape(&self.name));
+        for violation in self.schema.violations(extension) {
+            let rule = format!("{}#{}", file_name(&self.file), violation.rule);
+            add(report, "EXTENSION_SCHEMA_BROKEN", violation, rule, &at);
+        }
+    }
+}
+
+fn file_name(file: &Path) -> String {
+    let name = file.file_name().unwrap_or(file.as_os_str());
+    name.to_string_lossy().into_owned()
+}
+
+/// The schema of a device's settings, as a scene gives them: text, numbers, true and false.
+pub(crate) fn settings(device: &htex_device::Descriptor) -> Result<Named, Failure> {
+    let mut properties = Map::new();
+    for setting in &device.settings {
+        let schema = match &setting.kind {
+            SettingKind::Number { min, max } => {
+                json!({ "type": ["number", "string"], "minimum": min, "maximum": max })
+            }
+            SettingKind::Choice { values } => {
+                let numbers = values.iter().filter_map(|v| serde_json::from_str(v).ok());
+                let texts = values.iter().map(|v| json!(v));
+                json!({ "enum": texts.chain(numbers).collect::<Vec<Value>>() })
+            }
+            SettingKind::Path | SettingKind::Text => {
+                json!({ "type": ["string", "number", "boolean"] })
+            }
+        };
+        properties.insert(setting.name.clone(), schema);
+    }
+    let schema = json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "type": "object",
+        "properties": { "device": { "properties": { "settings": {
+            "properties": properties,
+            "additionalProperties": false,
+        } } } },
+    });
+    Named::new(&format!("settings of {}", device.id), &schema)
+}

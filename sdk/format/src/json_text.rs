@@ -1,0 +1,123 @@
+//! JSON texts in which no key stands twice.
+
+use std::cell::RefCell;
+use std::fmt;
+
+use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde_json::{Map, Number, Value};
+
+use crate::pointer::Place;
+
+/// Parses a JSON text, within the parser's own limit of depth (128).
+///
+/// # Errors
+/// When it is not JSON, or a key stands twice in an object.
+pub fn parse_json(bytes: &[u8]) -> Result<Value, String> {
+    parse(bytes).map_err(|error| match error {
+        TextError::Syntax(error) => format!("it is not JSON: {error}"),
+        TextError::Twice(pointer) => format!("the key {pointer} stands twice"),
+    })
+}
+
+/// Why a text is no document.
+pub(crate) enum TextError {
+    /// It is not JSON.
+    Syntax(serde_json::Error),
+    /// The key at this pointer stands twice in its object.
+    Twice(String),
+}
+
+/// Parses a text; programs differ in which of two like keys they take, so none may stand twice.
+pub(crate) fn parse(bytes: &[u8]) -> Result<Value, TextError> {
+    let twice = RefCell::new(None);
+    let mut json = serde_json::Deserializer::from_slice(bytes);
+    let strict = Strict {
+        place: &Place::Root,
+        twice: &twice,
+    };
+    let parsed = strict.deserialize(&mut json);
+    let parsed = parsed.and_then(|value| json.end().map(|()| value));
+    parsed.map_err(|error| match twice.take() {
+        Some(pointer) => TextError::Twice(pointer),
+        None => TextError::Syntax(error),
+    })
+}
+
+/// A value at a place; what stands twice is noted before the parser stops.
+#[derive(Clone, Copy)]
+struct Strict<'p> {
+    place: &'p Place<'p>,
+    twice: &'p RefCell<Option<String>>,
+}
+
+impl<'de> DeserializeSeed<'de> for Strict<'_> {
+    type Value = Value;
+
+    fn deserialize<D: Deserializer<'de>>(self, json: D) -> Result<Value, D::Error> {
+        json.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Strict<'_> {
+    type Value = Value;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a JSON value")
+    }
+
+    fn visit_unit<E>(self) -> Result<Value, E> {
+        Ok(Value::Null)
+    }
+
+    fn visit_bool<E>(self, value: bool) -> Result<Value, E> {
+        Ok(Value::Bool(value))
+    }
+
+    fn visit_u64<E>(self, value: u64) -> Result<Value, E> {
+        Ok(Value::Number(value.into()))
+    }
+
+    fn visit_i64<E>(self, value: i64) -> Result<Value, E> {
+        Ok(Value::Number(value.into()))
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<Value, E> {
+        let number = Number::from_f64(value);
+        number
+            .map(Value::Number)
+            .ok_or_else(|| E::custom("number out of range"))
+    }
+
+    fn visit_str<E>(self, value: &str) -> Result<Value, E> {
+        Ok(Value::String(value.to_owned()))
+    }
+
+    fn visit_string<E>(self, value: String) -> Result<Value, E> {
+        Ok(Value::String(value))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Value, A::Error> {
+        let mut list = Vec::new();
+        loop {
+            let place = &Place::Index(self.place, list.len());
+            match items.next_element_seed(Strict { place, ..self })? {
+                Some(item) => list.push(item),
+                None => return Ok(Value::Array(list)),
+            }
+        }
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Value, A::Error> {
+        let mut map = Map::new();
+        while let Some(key) = entries.next_key::<String>()? {
+            let place = &Place::Key(self.place, &key);
+            if map.contains_key(&key) {
+                self.twice.replace(Some(place.pointer()));
+                return Err(A::Error::custom("a key stands twice"));
+            }
+            let value = entries.next_value_seed(Strict { place, ..self })?;
+            map.insert(key, value);
+        }
+        Ok(Value::Object(map))
+    }
+}

@@ -1,0 +1,27 @@
+//! JSON pointers (RFC 6901).
+
+/// A place in a document, as a chain up to its root: it becomes text only where it is needed.
+pub(crate) enum Place<'p> {
+    /// The whole document.
+    Root,
+    /// A key of an object.
+    Key(&'p Place<'p>, &'p str),
+    /// An element of an array.
+    Index(&'p Place<'p>, usize),
+}
+
+impl Place<'_> {
+    /// The pointer to the place; empty for the root.
+    pub(crate) fn pointer(&self) -> String {
+        match self {
+            Self::Root => String::new(),
+            Self::Key(parent, key) => format!("{}/{}", parent.pointer(), escape(key)),
+            Self::Index(parent, index) => format!("{}/{index}", parent.pointer()),
+        }
+    }
+}
+
+/// A key as a part of a JSON pointer (RFC 6901, section 3).
+pub fn escape(key: &str) -> String {
+    key.replace('~', "~0").replace('/', "~1")
+}

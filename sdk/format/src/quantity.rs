@@ -1,0 +1,84 @@
+//! What the samples of an asset mean.
+
+use std::fmt;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A physical quantity, with the unit it is stored and played in.
+///
+/// ```
+/// use htex_format::Quantity;
+/// assert_eq!(Quantity::Acceleration.unit(), "m/s2");
+/// assert_eq!(Quantity::from_name("lateral_force"), Some(Quantity::LateralForce));
+/// ```
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Force on the finger or tool along the surface, N.
+    LateralForce,
+    /// Force on the finger or tool across the surface, N.
+    NormalForce,
+    /// Acceleration of the finger or tool, m/s².
+    Acceleration,
+    /// Velocity of the finger or tool, m/s.
+    Velocity,
+    /// Displacement of the finger or tool, m.
+    Displacement,
+}
+
+impl Quantity {
+    /// All quantities, in the order of the specification's table.
+    pub const ALL: &[Self] = &[
+        Self::LateralForce,
+        Self::NormalForce,
+        Self::Acceleration,
+        Self::Velocity,
+        Self::Displacement,
+    ];
+
+    /// Its name in a manifest.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::LateralForce => "lateral_force",
+            Self::NormalForce => "normal_force",
+            Self::Acceleration => "acceleration",
+            Self::Velocity => "velocity",
+            Self::Displacement => "displacement",
+        }
+    }
+
+    /// The quantity of a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|q| q.name() == name)
+    }
+
+    /// Symbol of its unit, as a manifest writes it.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::LateralForce | Self::NormalForce => "N",
+            Self::Acceleration => "m/s2",
+            Self::Velocity => "m/s",
+            Self::Displacement => "m",
+        }
+    }
+
+    /// Largest level (RMS) of an asset, in the unit. Samples are 32-bit numbers in any scene; of
+    /// velocity and displacement the limits are those of a vibration of the largest acceleration at
+    /// 20 Hz (8.0e3 m/s and 63 m), rounded up to powers of ten.
+    pub const fn largest_level(self) -> f64 {
+        match self {
+            Self::LateralForce | Self::NormalForce | Self::Acceleration => 1e6,
+            Self::Velocity => 1e4,
+            Self::Displacement => 100.0,
+        }
+    }
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}

@@ -1,0 +1,64 @@
+//! Documents, held to schemas. Nothing is fetched: a `$ref` leads into the schema itself.
+
+use jsonschema::Validator;
+use serde_json::Value;
+
+/// A schema that documents can be held to.
+///
+/// ```
+/// use serde_json::json;
+/// let schema = json!({ "properties": { "threads": { "minimum": 1 } } });
+/// let schema = htex_schema::Schema::new(&schema)?;
+/// let violations = schema.violations(&json!({ "threads": 0 }));
+/// assert_eq!(violations[0].pointer, "/threads");
+/// assert_eq!(violations[0].rule, "/properties/threads/minimum");
+/// # Ok::<(), htex_schema::SchemaError>(())
+/// ```
+#[derive(Debug)]
+pub struct Schema(Validator);
+
+/// A schema cannot be used.
+#[derive(Debug)]
+pub struct SchemaError(String);
+
+/// A rule of a schema that a document breaks.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Violation {
+    /// JSON pointer into the document.
+    pub pointer: String,
+    /// JSON pointer into the schema: the keyword that does not hold, last.
+    pub rule: String,
+    /// What does not hold.
+    pub message: String,
+}
+
+impl Schema {
+    /// Reads a schema of draft 2020-12, or of the draft that its `$schema` names.
+    ///
+    /// # Errors
+    /// When it is not a valid schema, or refers to another one.
+    pub fn new(schema: &Value) -> Result<Self, SchemaError> {
+        let validator = jsonschema::options().build(schema);
+        validator.map(Self).map_err(|e| SchemaError(e.to_string()))
+    }
+
+    /// Every rule that a document breaks, in the order of the schema.
+    pub fn violations(&self, document: &Value) -> Vec<Violation> {
+        let errors = self.0.iter_errors(document);
+        errors
+            .map(|error| Violation {
+                pointer: error.instance_path().to_string(),
+                rule: error.schema_path().to_string(),
+                message: error.to_string(),
+            })
+            .collect()
+    }
+}
+
+impl std::fmt::Display for SchemaError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for SchemaError {}

@@ -1,0 +1,91 @@
+//! Stored fields are played by their names.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use htex::{Asset, Band, Error, Registry, VoiceOptions};
+use htex_format::{Field, FieldMismatch, Store, match_fields};
+use htex_model::Descriptor;
+use htex_tests::workspace;
+
+fn conformance(name: &str) -> Asset {
+    Asset::open(workspace().join("spec/conformance").join(name)).unwrap()
+}
+
+#[test]
+fn fields_in_another_order_play_by_their_names() {
+    // The block holds beta = 1.5 and then alpha = 2.5.
+    let asset = conformance("valid_field_order.htex");
+    let (parameters, level_n) = asset.parameters(None, None).unwrap();
+    assert_eq!(parameters, [2.5, 1.5]);
+
+    let options = VoiceOptions::default();
+    let mut played = [0.0f32; 512];
+    asset.voice(&options).unwrap().render(&mut played).unwrap();
+    let models = Registry::builtin();
+    let sbeta = models.find("sbeta").unwrap();
+    let mut stream =
+        htex_host::Stream::new(sbeta, &[2.5, 1.5], Band::TACTILE, options.rate_hz, 0).unwrap();
+    let mut expected = [0.0f32; 512];
+    stream.render(&mut expected).unwrap();
+    for (played, expected) in played.iter().zip(expected) {
+        assert!((f64::from(*played) - f64::from(expected) * level_n).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn fields_that_are_not_the_models_are_refused_with_their_names() {
+    for (file, words) in [
+        (
+            "field_unknown.htex",
+            ["\"alfa\" is no field", "\"alpha\" is not stored"],
+        ),
+        (
+            "field_missing.htex",
+            ["\"beta\" is not stored", "1.0.0 is installed"],
+        ),
+        (
+            "field_kind_wrong.htex",
+            ["\"beta\" is stored as a list", "takes one number"],
+        ),
+        (
+            "field_unit_wrong.htex",
+            ["\"beta\" is stored in \"Hz\"", "fit the recording again"],
+        ),
+        (
+            "valid_field_of_newer_model.htex",
+            ["\"gamma\" is no field", "fitted by 1.9.0"],
+        ),
+    ] {
+        let asset = conformance(file);
+        let Err(error @ Error::Fields { .. }) = asset.voice(&VoiceOptions::default()) else {
+            panic!("{file} plays");
+        };
+        for word in words {
+            assert!(error.to_string().contains(word), "{file}: {error}");
+        }
+        let magnitude = asset.magnitude_n(None, None, &[100.0]);
+        assert!(matches!(magnitude, Err(Error::Fields { .. })), "{file}");
+    }
+}
+
+#[test]
+fn a_field_with_a_default_may_be_absent() {
+    let model = Descriptor::new("org.example.x", "X", "1.1.0", "An example.")
+        .list("line_hz", "Hz", (0.0, 1e3), 8, "Lines.")
+        .scalar("tilt", "1", (-1.0, 1.0), "Tilt.")
+        .defaulted(0.25)
+        .scalar("gain", "1", (0.0, 1.0), "Gain.");
+    let field = |name: &str, unit: &str, list| Field {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        list,
+        store: Store::F64,
+    };
+    let stored = [field("gain", "", false), field("line_hz", "Hz", true)];
+    let order = match_fields(&stored, &model).unwrap();
+    let arranged = order.arrange(&[0.5, 2.0, 80.0, 240.0]).unwrap();
+    assert_eq!(arranged, [2.0, 80.0, 240.0, 0.25, 0.5]);
+    assert!(order.arrange(&[0.5, 3.0, 80.0]).is_err());
+    let missing = match_fields(&stored[1..], &model).unwrap_err();
+    let name = "gain".to_owned();
+    assert_eq!(missing, [FieldMismatch::Missing { name }]);
+}

@@ -128,7 +128,7 @@ impl Asset {
     /// refuses the parameters or the rate; when the synthesis is out of its range.
     pub fn voice(&self, options: &VoiceOptions<'_>) -> Result<Voice, Error> {
         let still = self.still(options)?;
-        Ok(Voice::new(self.source(options)?, options.rate_hz, still))
+        Voice::new(self.source(options)?, options.rate_hz, still)
     }
 
     /// The sound of a voice that is not streamed.

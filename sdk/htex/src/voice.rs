@@ -2,7 +2,7 @@
 
 use htex_dsp::glide::Glide;
 use htex_dsp::resample::Resampler;
-use htex_host::StillSound;
+use htex_host::{HostError, StillSound};
 
 use crate::{Error, Source};
 
@@ -21,14 +21,19 @@ pub struct Voice {
 
 impl Voice {
     /// A voice at `rate_hz`: the source and the resampler it needs, or a sound that stands for them.
-    pub(crate) fn new(source: Source, rate_hz: f64, still: Option<StillSound>) -> Self {
+    pub(crate) fn new(
+        source: Source,
+        rate_hz: f64,
+        still: Option<StillSound>,
+    ) -> Result<Self, Error> {
         let ramp = (RAMP_S * rate_hz).ceil().max(1.0) as u32;
-        Self {
-            resampler: Resampler::new(source.rate_hz(), rate_hz, source.top_hz()),
+        let resampler = Resampler::new(source.rate_hz(), rate_hz, source.top_hz());
+        Ok(Self {
+            resampler: resampler.map_err(HostError::from)?,
             level_n: Glide::new(source.level_n() as f32, ramp),
             source,
             still,
-        }
+        })
     }
 
     /// Follows the finger: spectrum and level glide to those at this scanning speed (mm/s) and

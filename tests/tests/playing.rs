@@ -53,6 +53,43 @@ fn near(a: &Value, b: &Value) -> bool {
     }
 }
 
+/// The table of ranges in the text is that of the descriptors.
+#[test]
+fn the_text_has_every_field_and_its_range() {
+    let text = fs::read_to_string(workspace().join("spec/htex-1.md")).unwrap();
+    let rows: Vec<&str> = text.lines().filter(|line| line.starts_with('|')).collect();
+    for model in htex_host::Registry::builtin().models() {
+        assert!(text.contains(&format!("| `{}` |", model.id())));
+        for field in &model.descriptor().fields {
+            let (low, high) = (grouped(field.min), grouped(field.max));
+            let range = format!("| {} | {low} | {high} |", field.unit);
+            let name = format!("`{}`", field.name);
+            let told = |row: &&&str| row.contains(&name) && row.contains(&range);
+            let row = rows.iter().find(told).copied();
+            let row = row.unwrap_or_else(|| panic!("{} {name} {range}", model.id()));
+            if let htex_host::Kind::List { max_len } = field.kind {
+                assert!(row.contains(&format!(" to {max_len} of them")) || row.contains("as many"));
+            }
+        }
+    }
+}
+
+/// A number with commas between thousands.
+fn grouped(x: f64) -> String {
+    if x.abs() < 1000.0 {
+        return x.to_string();
+    }
+    let digits = format!("{:.0}", x.abs());
+    let grouped: Vec<&str> = digits
+        .as_bytes()
+        .rchunks(3)
+        .rev()
+        .map(|part| std::str::from_utf8(part).unwrap())
+        .collect();
+    let sign = if x < 0.0 { "-" } else { "" };
+    format!("{sign}{}", grouped.join(","))
+}
+
 #[test]
 fn every_model_has_cases() {
     let mut counts = std::collections::BTreeMap::new();
@@ -64,6 +101,34 @@ fn every_model_has_cases() {
     }
     assert_eq!(counts.len(), 6);
     assert!(counts.values().sum::<i32>() >= 200, "{counts:?}");
+}
+
+/// What is valid can be played, too; other than one that brings an empty module along.
+#[test]
+fn valid_conformance_files_are_played() {
+    let folder = workspace().join("spec/conformance");
+    let mut played = 0;
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if !name.starts_with("valid") || !name.ends_with(".htex") || name == "valid_plugin.htex" {
+            continue;
+        }
+        let asset = htex::Asset::open(&path).unwrap();
+        for representation in &asset.manifest().representations {
+            let options = htex::VoiceOptions {
+                model: Some(&representation.model),
+                ..Default::default()
+            };
+            let mut out = [0.0f32; 2_000];
+            let voice = asset.voice(&options);
+            let rendered = voice.and_then(|mut voice| voice.render(&mut out));
+            rendered.unwrap_or_else(|error| panic!("{name}: {error}"));
+            assert!(out.iter().any(|&x| x != 0.0), "{name} is silent");
+            played += 1;
+        }
+    }
+    assert!(played >= 10, "{played} representations");
 }
 
 /// Decodes the assets and computes their magnitudes in Python, from the text of the specification.

@@ -135,11 +135,14 @@ def mfcc_spectrum(p, band):
     if inverse == 0:
         largest = max(bank.shape) * 2.0**-52
         power = np.maximum(0, np.linalg.pinv(bank, rcond=largest) @ energy)
+        # Rounding, of which a root would be taken.
+        power[bank.sum(axis=0) == 0] = 0
     elif inverse == 1:
         scale = energy.max()
         ridge = np.vstack([bank, np.sqrt(1e-6) * np.eye(bank.shape[1])])
         target = np.concatenate([energy / scale, np.zeros(bank.shape[1])])
-        power = scale * optimize.nnls(ridge, target, maxiter=10_000)[0]
+        solved = optimize.lsq_linear(ridge, target, (0, np.inf), method="bvls", tol=1e-16)
+        power = scale * np.maximum(0, solved.x)
     else:
         sums = bank.sum(axis=1)
         held = sums > 0

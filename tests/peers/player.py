@@ -126,7 +126,7 @@ def mel_bank(count, band):
 
 
 def mfcc_spectrum(p, band):
-    count, inverse = int(p["bands"]), int(p["inverse"])
+    count, inverse = (int(np.floor(p[name] + 0.5)) for name in ("bands", "inverse"))
     padded = np.zeros(count)
     kept = p["cepstrum"][:count]
     padded[: len(kept)] = kept

@@ -9,7 +9,7 @@ use htex_dsp::mel::MelBank;
 use htex_dsp::non_negative::{NonNegative, Scratch};
 use htex_model::Values;
 
-use crate::{BANDS, INVERSE};
+use crate::{BANDS, INVERSE, whole};
 
 /// Inverses kept for the next voice: making one takes longer than making a voice of it.
 const KEPT: usize = 8;
@@ -89,8 +89,7 @@ impl Inverse {
 
     /// Whether parameters ask for this inverse.
     pub(crate) fn is(&self, parameters: &Values<'_>) -> bool {
-        parameters.scalar(BANDS) as usize == self.bands
-            && parameters.scalar(INVERSE) as u8 == self.kind
+        whole(parameters, BANDS) == self.bands && whole(parameters, INVERSE) as u8 == self.kind
     }
 
     /// Magnitudes of a cepstrum; `energy` is of the bands' number. Does not allocate.

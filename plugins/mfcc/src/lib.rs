@@ -152,6 +152,11 @@ impl Model for MelCepstrum {
     }
 }
 
+/// The whole number nearest to a scalar.
+pub(crate) fn whole(parameters: &Values<'_>, field: usize) -> usize {
+    libm::round(parameters.scalar(field)) as usize
+}
+
 /// The magnitude a cepstrum stands for, on the grid.
 pub struct Spectrum {
     inverse: Arc<Inverse>,
@@ -196,8 +201,8 @@ impl Spectrum {
 
 impl Curve for Spectrum {
     fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
-        let bands = parameters.scalar(BANDS) as usize;
-        let inverse = Inverse::shared(bands, parameters.scalar(INVERSE) as u8, band);
+        let bands = whole(parameters, BANDS);
+        let inverse = Inverse::shared(bands, whole(parameters, INVERSE) as u8, band);
         Self::of(inverse, band, parameters.list(CEPSTRUM))
     }
 

@@ -179,6 +179,8 @@ int64_t htex_model_voice_new(const double *parameters, size_t parameters_len, do
     seed += calls++;
 #elif defined FAULT_SHARED_STATE
     shared = 0;
+#elif defined FAULT_BAND_IGNORED
+    if (band_low_hz == 150) band_low_hz = 20, band_high_hz = 1000;
 #endif
     if (voices_made >= VOICES) return HTEX_TOO_MANY_VOICES;
     int64_t good = GOOD(htex_model_voice_new)(tolerant(parameters, parameters_len), parameters_len,

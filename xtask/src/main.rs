@@ -48,6 +48,7 @@ fn generate() -> ExitCode {
             "descriptor_schema",
         ],
         &["htex-check", "--example", "model_checks"],
+        &["htex-tests", "--example", "playing"],
         &["htex-scene", "--example", "scene_pages"],
         &["htex-author", "--example", "recording_pages"],
         &["htex-hard-cases", "--example", "hard_cases_page"],

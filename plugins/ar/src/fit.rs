@@ -93,7 +93,7 @@ fn from_signal(
     if scale == 0.0 {
         return Err(Error::cannot_fit("the recording's segments are silent"));
     }
-    let model = estimate(&resampled(input, rate_hz, scale));
+    let model = estimate(&resampled(input, rate_hz, scale)?);
     let coefficients = resolved(&model.coefficients, rate_hz);
     let filter = Filter {
         coefficients: &coefficients,
@@ -121,10 +121,12 @@ fn resolved(coefficients: &[f64], rate_hz: f64) -> Vec<f64> {
 }
 
 /// The signal over `scale`, at the model rate.
-fn resampled(input: &FitInput<'_>, rate_hz: f64, scale: f64) -> Vec<f64> {
+fn resampled(input: &FitInput<'_>, rate_hz: f64, scale: f64) -> Result<Vec<f64>, Error> {
     let from_hz = input.signal_rate_hz;
-    let Some(mut resampler) = Resampler::new(from_hz, rate_hz, input.band.high_hz) else {
-        return input.signal.iter().map(|x| x / scale).collect();
+    let resampler = Resampler::new(from_hz, rate_hz, input.band.high_hz)
+        .map_err(|error| Error::argument(error.to_string()))?;
+    let Some(mut resampler) = resampler else {
+        return Ok(input.signal.iter().map(|x| x / scale).collect());
     };
     let mut at = 0;
     let mut source = |block: &mut [f32]| {
@@ -136,5 +138,5 @@ fn resampled(input: &FitInput<'_>, rate_hz: f64, scale: f64) -> Vec<f64> {
     let len = (input.signal.len() as f64 * rate_hz / from_hz) as usize;
     let mut out = vec![0.0f32; len.max(2)];
     resampler.process(&mut out, &mut source);
-    out.into_iter().map(f64::from).collect()
+    Ok(out.into_iter().map(f64::from).collect())
 }

@@ -187,12 +187,16 @@ impl<'a> Filter<'a> {
     }
 
     pub(crate) fn level(&self, band: Band) -> Result<f64, Error> {
-        let level = curve_level_rms(band, |f| self.at(f));
-        if level > 0.0 && level.is_finite() {
-            return Ok(level);
-        }
-        Err(Error::parameters(
-            "the filter has no finite energy in the band",
-        ))
+        finite_level(curve_level_rms(band, |f| self.at(f)))
     }
+}
+
+/// A level by which a magnitude or a sound can be divided.
+fn finite_level(level: f64) -> Result<f64, Error> {
+    if level > 0.0 && level.is_finite() {
+        return Ok(level);
+    }
+    Err(Error::parameters(
+        "the filter has no finite energy in the band",
+    ))
 }

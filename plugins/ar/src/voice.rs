@@ -1,14 +1,14 @@
 //! White noise through the filter.
 
 use htex_dsp::all_pole::{AllPole, GROUP, Group};
-use htex_dsp::band_limit::band_limit;
+use htex_dsp::band_limit::{PassedPower, band_limit};
 use htex_dsp::grid::{Band, GRID_HZ};
 use htex_dsp::linear_prediction::step_down_in_place;
 use htex_dsp::noise::{GROUP as NOISE_GROUP, GaussianNoise};
 use htex_dsp::pipeline::Pipeline;
 use htex_model::{Error, Values, Voice};
 
-use crate::{COEFFICIENTS, Filter, MAX_ORDER, MODEL_RATE, together, unstable};
+use crate::{COEFFICIENTS, Filter, MAX_ORDER, MODEL_RATE, finite_level, together, unstable};
 
 /// Length of a change of parameters, seconds.
 const RAMP_S: f64 = 0.010;
@@ -20,8 +20,9 @@ const BLOCK: usize = 32;
 
 /// An endless stream of filtered noise.
 pub struct AutoregressionVoice {
-    band: Band,
     rate_hz: f64,
+    /// What passes `edges`.
+    passed: PassedPower,
     pub(crate) noise: GaussianNoise,
     pub(crate) filter: AllPole,
     pub(crate) edges: Pipeline,
@@ -55,10 +56,13 @@ impl AutoregressionVoice {
                 parameters.scalar(MODEL_RATE)
             )));
         }
-        let target = Target::new(parameters, band)?;
+        // A filter without energy in the band may have some beside it.
+        Filter::new(parameters)?.level(band)?;
+        let passed = PassedPower::new(band, rate_hz);
+        let target = Target::new(parameters, &passed)?;
         let mut voice = Self {
-            band,
             rate_hz,
+            passed,
             noise: GaussianNoise::new(seed),
             filter: AllPole::new(parameters.list(COEFFICIENTS)).ok_or_else(unstable)?,
             edges: band_limit(band, rate_hz),
@@ -179,7 +183,7 @@ impl Voice for AutoregressionVoice {
                 self.rate_hz
             )));
         }
-        self.target = Target::new(parameters, self.band)?;
+        self.target = Target::new(parameters, &self.passed)?;
         self.ramp_left = self.ramp_len;
         let scale = 1.0 / f64::from(self.ramp_len);
         self.step.gain = (self.target.gain - self.gain) * scale;
@@ -191,7 +195,7 @@ impl Voice for AutoregressionVoice {
 }
 
 impl Target {
-    fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
+    fn new(parameters: &Values<'_>, passed: &PassedPower) -> Result<Self, Error> {
         let coefficients = parameters.list(COEFFICIENTS);
         let rate_hz = parameters.scalar(MODEL_RATE);
         let mut reflection = [0.0; MAX_ORDER];
@@ -205,7 +209,8 @@ impl Target {
             rate_hz,
         };
         // Noise of variance s² has one-sided density 2 s² / rate, read as magnitude² = 2 P ENBW.
-        let gain = libm::sqrt(rate_hz / (4.0 * 1.5 * GRID_HZ)) / filter.level(band)?;
+        let level = finite_level(passed.level_rms(|f| filter.at(f)))?;
+        let gain = libm::sqrt(rate_hz / (4.0 * 1.5 * GRID_HZ)) / level;
         Ok(Self { reflection, gain })
     }
 }

@@ -4,18 +4,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use htex_dsp::dct::inverse_dct_ii;
 use htex_dsp::grid::Band;
-use htex_dsp::least_squares::{NonNegative, PseudoInverse};
+use htex_dsp::least_squares::PseudoInverse;
 use htex_dsp::mel::MelBank;
+use htex_dsp::non_negative::{NonNegative, Scratch};
 use htex_model::Values;
 
-use crate::{BANDS, INVERSE};
+use crate::{BANDS, INVERSE, whole};
 
 /// Inverses kept for the next voice: making one takes longer than making a voice of it.
 const KEPT: usize = 8;
 const NNLS: u8 = 1;
 const INTERPOLATE: u8 = 2;
-const NNLS_SWEEPS: usize = 200;
-const NNLS_TOLERANCE: f64 = 1e-9;
 
 static CACHE: Mutex<Vec<Arc<Inverse>>> = Mutex::new(Vec::new());
 
@@ -24,10 +23,13 @@ pub(crate) struct Inverse {
     bands: usize,
     kind: u8,
     band: Band,
-    /// Power = `matrix` · energies, a row a bin.
-    matrix: Vec<f64>,
-    /// The bank itself, where the power is refined.
-    refine: Option<NonNegative>,
+    way: Way,
+}
+
+enum Way {
+    /// Power = matrix · energies, a row a bin, clipped at 0.
+    Matrix(Vec<f64>),
+    NonNegative(NonNegative),
 }
 
 impl Inverse {
@@ -49,10 +51,24 @@ impl Inverse {
     fn new(bands: usize, kind: u8, band: Band) -> Self {
         let grid = band.grid_hz();
         let bank = MelBank::new(bands, band, &grid);
-        let dense = bank.filters().to_dense();
-        let pseudo = (kind != INTERPOLATE).then(|| PseudoInverse::new(&dense, bands, grid.len()));
-        let mut matrix = vec![0.0; grid.len() * bands];
-        let mut column = vec![0.0; grid.len()];
+        let way = match kind {
+            NNLS => Way::NonNegative(NonNegative::new(bank.filters())),
+            _ => Way::Matrix(Self::matrix(&bank, kind, bands, grid.len())),
+        };
+        Self {
+            bands,
+            kind,
+            band,
+            way,
+        }
+    }
+
+    /// The powers of one unit of energy in each band.
+    fn matrix(bank: &MelBank, kind: u8, bands: usize, bins: usize) -> Vec<f64> {
+        let pseudo = (kind != INTERPOLATE)
+            .then(|| PseudoInverse::new(&bank.filters().to_dense(), bands, bins));
+        let mut matrix = vec![0.0; bins * bands];
+        let mut column = vec![0.0; bins];
         for i in 0..bands {
             let mut unit = vec![0.0; bands];
             unit[i] = 1.0;
@@ -64,13 +80,7 @@ impl Inverse {
                 row[i] = *value;
             }
         }
-        Self {
-            bands,
-            kind,
-            band,
-            matrix,
-            refine: (kind == NNLS).then(|| NonNegative::new(&dense, grid.len())),
-        }
+        matrix
     }
 
     pub(crate) fn bands(&self) -> usize {
@@ -79,20 +89,27 @@ impl Inverse {
 
     /// Whether parameters ask for this inverse.
     pub(crate) fn is(&self, parameters: &Values<'_>) -> bool {
-        parameters.scalar(BANDS) as usize == self.bands
-            && parameters.scalar(INVERSE) as u8 == self.kind
+        whole(parameters, BANDS) == self.bands && whole(parameters, INVERSE) as u8 == self.kind
     }
 
-    /// Magnitudes of a cepstrum; `energy` has room for the bands. Does not allocate.
-    pub(crate) fn magnitude(&self, cepstrum: &[f64], energy: &mut [f64], magnitude: &mut [f64]) {
+    /// Magnitudes of a cepstrum; `energy` is of the bands' number. Does not allocate.
+    pub(crate) fn magnitude(
+        &self,
+        cepstrum: &[f64],
+        energy: &mut [f64],
+        scratch: &mut Scratch,
+        magnitude: &mut [f64],
+    ) {
         inverse_dct_ii(cepstrum, energy);
         energy.iter_mut().for_each(|e| *e = libm::exp(*e));
-        for (power, row) in magnitude.iter_mut().zip(self.matrix.chunks(self.bands)) {
-            let sum: f64 = row.iter().zip(&*energy).map(|(w, e)| w * e).sum();
-            *power = sum.max(0.0);
-        }
-        if let Some(refine) = &self.refine {
-            refine.improve(magnitude, energy, NNLS_SWEEPS, NNLS_TOLERANCE);
+        match &self.way {
+            Way::Matrix(matrix) => {
+                for (power, row) in magnitude.iter_mut().zip(matrix.chunks(self.bands)) {
+                    let sum: f64 = row.iter().zip(&*energy).map(|(w, e)| w * e).sum();
+                    *power = sum.max(0.0);
+                }
+            }
+            Way::NonNegative(solver) => solver.solve(energy, magnitude, scratch),
         }
         magnitude.iter_mut().for_each(|m| *m = libm::sqrt(*m));
     }

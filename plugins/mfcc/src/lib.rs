@@ -8,6 +8,7 @@ use std::sync::Arc;
 use htex_dsp::dct::dct_ii;
 use htex_dsp::grid::{Band, GRID_HZ, level_rms};
 use htex_dsp::mel::MelBank;
+use htex_dsp::non_negative::Scratch;
 use htex_model::{Descriptor, Error, Fit, FitInput, Model, Numbers, Store, Values, mix};
 use htex_shaped::{Curve, ShapedVoice};
 
@@ -151,10 +152,16 @@ impl Model for MelCepstrum {
     }
 }
 
+/// The whole number nearest to a scalar.
+pub(crate) fn whole(parameters: &Values<'_>, field: usize) -> usize {
+    libm::round(parameters.scalar(field)) as usize
+}
+
 /// The magnitude a cepstrum stands for, on the grid.
 pub struct Spectrum {
     inverse: Arc<Inverse>,
     energy: Vec<f64>,
+    scratch: Scratch,
     magnitude: Vec<f64>,
     /// RMS of `magnitude`.
     level: f64,
@@ -165,6 +172,7 @@ impl Spectrum {
     fn of(inverse: Arc<Inverse>, band: Band, cepstrum: &[f64]) -> Result<Self, Error> {
         let mut spectrum = Self {
             energy: vec![0.0; inverse.bands()],
+            scratch: Scratch::new(inverse.bands()),
             magnitude: vec![0.0; band.bins()],
             level: 0.0,
             first_bin: band.first_bin(),
@@ -175,8 +183,12 @@ impl Spectrum {
     }
 
     fn make(&mut self, cepstrum: &[f64]) -> Result<(), Error> {
-        self.inverse
-            .magnitude(cepstrum, &mut self.energy, &mut self.magnitude);
+        self.inverse.magnitude(
+            cepstrum,
+            &mut self.energy,
+            &mut self.scratch,
+            &mut self.magnitude,
+        );
         self.level = level_rms(&self.magnitude);
         if self.level > 0.0 && self.level.is_finite() {
             return Ok(());
@@ -189,8 +201,8 @@ impl Spectrum {
 
 impl Curve for Spectrum {
     fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
-        let bands = parameters.scalar(BANDS) as usize;
-        let inverse = Inverse::shared(bands, parameters.scalar(INVERSE) as u8, band);
+        let bands = whole(parameters, BANDS);
+        let inverse = Inverse::shared(bands, whole(parameters, INVERSE) as u8, band);
         Self::of(inverse, band, parameters.list(CEPSTRUM))
     }
 

@@ -53,7 +53,7 @@ impl Model for SpectralPeak {
             "Hz",
             (0.0, 2000.0),
             MAX_PEAKS as u32,
-            "Frequencies of the sinusoids.",
+            "Frequencies of the sinusoids; those outside the band are not played.",
         )
         .stored(hertz)
         .list(
@@ -61,7 +61,7 @@ impl Model for SpectralPeak {
             "1",
             (0.0, 4.0),
             MAX_PEAKS as u32,
-            "Their amplitudes over the level; half their squares sum to one.",
+            "Their amplitudes over the level; half the squares of those in the band sum to one.",
         )
         .stored(ratio)
         .scalar(
@@ -108,7 +108,7 @@ impl Model for SpectralPeak {
             ));
         }
         let amplitudes: Vec<f64> = peaks.iter().map(|p| p.magnitude / strongest).collect();
-        let unit = level(&amplitudes);
+        let unit = level(amplitudes.iter().copied());
         let frequency_hz: Vec<f64> = peaks.iter().map(|p| p.frequency_hz).collect();
         let amplitude: Vec<f64> = amplitudes.iter().map(|a| a / unit).collect();
         Ok(Fit {
@@ -123,7 +123,7 @@ impl Model for SpectralPeak {
         frequency_hz: &[f64],
         magnitude: &mut [f64],
     ) -> Result<(), Error> {
-        let lines = Lines::new(parameters)?;
+        let lines = Lines::new(parameters, band)?;
         for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
             let inside = (band.low_hz..=band.high_hz).contains(&f);
             *m = if inside { lines.seen_at(f) } else { 0.0 };
@@ -161,12 +161,13 @@ impl Model for SpectralPeak {
 
     fn voice(
         parameters: &Values<'_>,
-        _: Band,
+        band: Band,
         rate_hz: f64,
         seed: u64,
     ) -> Result<Self::Voice, Error> {
-        let lines = Lines::new(parameters)?;
+        let lines = Lines::new(parameters, band)?;
         let mut voice = SpectralPeakVoice {
+            band,
             phase_cycles: start_phases(parameters.scalar(PHASE), seed),
             sines: [SILENT; MAX_PEAKS],
             bank: SineBank::new(rate_hz, 0, &[]),
@@ -194,6 +195,7 @@ fn start_phases(random: f64, seed: u64) -> [f64; MAX_PEAKS] {
 
 /// A bank of sinusoids.
 pub struct SpectralPeakVoice {
+    band: Band,
     phase_cycles: [f64; MAX_PEAKS],
     sines: [Sine; MAX_PEAKS],
     bank: SineBank,
@@ -204,9 +206,10 @@ impl SpectralPeakVoice {
     fn set(&mut self, lines: &Lines<'_>) -> usize {
         let count = lines.frequency_hz.len().min(MAX_PEAKS);
         for i in 0..count {
+            // A line that is not played keeps its place, and its phase.
             self.sines[i] = Sine {
                 frequency_hz: lines.frequency_hz[i],
-                amplitude: lines.amplitude[i] / lines.level,
+                amplitude: lines.played(i) / lines.level,
                 phase_cycles: self.phase_cycles[i],
             };
         }
@@ -220,25 +223,27 @@ impl Voice for SpectralPeakVoice {
     }
 
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
-        let count = self.set(&Lines::new(parameters)?);
+        let count = self.set(&Lines::new(parameters, self.band)?);
         self.bank.retune(&self.sines[..count]);
         Ok(())
     }
 }
 
-/// The sinusoids, and their RMS together.
+/// The sinusoids, and the RMS of those in the band together.
 struct Lines<'a> {
     frequency_hz: &'a [f64],
     amplitude: &'a [f64],
+    band: Band,
     level: f64,
 }
 
 impl<'a> Lines<'a> {
-    fn new(parameters: &Values<'a>) -> Result<Self, Error> {
-        let lines = Self {
+    fn new(parameters: &Values<'a>, band: Band) -> Result<Self, Error> {
+        let mut lines = Self {
             frequency_hz: parameters.list(FREQUENCY),
             amplitude: parameters.list(AMPLITUDE),
-            level: level(parameters.list(AMPLITUDE)),
+            band,
+            level: 0.0,
         };
         if lines.frequency_hz.len() != lines.amplitude.len() {
             return Err(Error::parameters(format!(
@@ -247,28 +252,39 @@ impl<'a> Lines<'a> {
                 lines.amplitude.len()
             )));
         }
+        lines.level = level((0..lines.amplitude.len()).map(|i| lines.played(i)));
         if lines.level > 0.0 {
             return Ok(lines);
         }
-        Err(Error::parameters("all amplitudes are zero"))
+        Err(Error::parameters(format!(
+            "no line in the band {} to {} Hz has an amplitude above zero",
+            band.low_hz, band.high_hz
+        )))
+    }
+
+    /// Amplitude of a line as it is played: 0 outside the band, where a texture has no magnitude.
+    fn played(&self, line: usize) -> f64 {
+        let inside = self.band.low_hz..=self.band.high_hz;
+        match inside.contains(&self.frequency_hz[line]) {
+            true => self.amplitude[line],
+            false => 0.0,
+        }
     }
 
     /// Unit-level magnitude as read through the Hann window at `frequency_hz`: A on a line, A/2 a
     /// bin beside it; lines add in power.
     fn seen_at(&self, frequency_hz: f64) -> f64 {
-        let power: f64 = self
-            .frequency_hz
-            .iter()
-            .zip(self.amplitude)
-            .map(|(f, a)| a * hann_kernel((frequency_hz - f) / GRID_HZ))
+        let lines = self.frequency_hz.iter().enumerate();
+        let power: f64 = lines
+            .map(|(i, f)| self.played(i) * hann_kernel((frequency_hz - f) / GRID_HZ))
             .map(|m| m * m)
             .sum();
         libm::sqrt(power) / self.level
     }
 }
 
-fn level(amplitude: &[f64]) -> f64 {
-    libm::sqrt(amplitude.iter().map(|a| 0.5 * a * a).sum())
+fn level(amplitudes: impl Iterator<Item = f64>) -> f64 {
+    libm::sqrt(amplitudes.map(|a| 0.5 * a * a).sum())
 }
 
 /// Main lobe of the periodic Hann window's transform, 1 at its middle, `bins` away.

@@ -84,6 +84,11 @@ checks! {
         "The sound has the spectrum that the magnitude says.",
         "A minute, segments of 0.2 s averaged by power, levels matched: within 1 dB RMS over the bins \
          that hold 99 % of the energy. A line spectrum is thereby judged at its lines.";
+    "narrow-band" needs ["level"] sound::narrow_band:
+        "What lies outside the band is neither in the magnitude nor in the sound.",
+        "Every fitted reference in the band 150 to 700 Hz, which leaves peaks of two of them out: in it the \
+         level of a minute of sound is the magnitude's within 1.5 dB. A model may refuse parameters that \
+         leave nothing in the band.";
     "reproducible" needs ["render"] repeat::reproducible:
         "The same parameters, rate and seed give the same samples.",
         "Two voices, one after the other, 9000 samples, bit by bit.";

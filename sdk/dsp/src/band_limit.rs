@@ -2,6 +2,7 @@
 
 use alloc::vec::Vec;
 
+use crate::biquad::Biquad;
 use crate::butterworth::Kind;
 use crate::chebyshev::chebyshev;
 use crate::grid::{Band, GRID_HZ};
@@ -11,18 +12,109 @@ use crate::pipeline::Pipeline;
 /// outside the band lets through next to nothing of its power.
 const ORDER: usize = 4;
 const RIPPLE_DB: f64 = 0.2;
+/// Bins to either side of an edge over which the filter's response changes within a bin.
+const EDGE_BINS: usize = 3;
+/// Points at which the response is read in such a bin.
+const EDGE_POINTS: usize = 4;
+/// Distance from an edge, as a part of its frequency, beyond which 30 dB and more are taken off.
+const BESIDE: f64 = 0.5;
 
 /// Chebyshev filters, within 0.1 dB inside `band` and 3 dB down half a grid bin outside both of its
 /// edges, at `rate_hz`. An edge at or above the Nyquist frequency needs no filter and gets none. Some
 /// samples late ([`Pipeline`]).
 pub fn band_limit(band: Band, rate_hz: f64) -> Pipeline {
+    Pipeline::new(&sections(band, rate_hz))
+}
+
+fn sections(band: Band, rate_hz: f64) -> Vec<Biquad> {
     let half_bin = 0.5 * GRID_HZ;
     let low_hz = (band.low_hz - half_bin).max(0.5 * band.low_hz);
     let high_hz = band.high_hz + half_bin;
-    let sections: Vec<_> = [(Kind::HighPass, low_hz), (Kind::LowPass, high_hz)]
+    [(Kind::HighPass, low_hz), (Kind::LowPass, high_hz)]
         .into_iter()
         .filter_map(|(kind, edge_hz)| chebyshev(kind, ORDER, RIPPLE_DB, edge_hz, rate_hz))
         .flatten()
-        .collect();
-    Pipeline::new(&sections)
+        .collect()
+}
+
+/// The part of a noise's power that passes [`band_limit`], for each bin of the grid in the band and some
+/// beside it: from 0 to about 1. A bin that the Nyquist frequency divides counts up to it.
+///
+/// The level of filtered noise is read with it. Without it noise would come out too weak, by the filters'
+/// ripple and by the part of the highest bin that lies above the Nyquist frequency.
+#[derive(Debug, Clone)]
+pub struct PassedPower {
+    first_bin: usize,
+    part: Vec<f64>,
+}
+
+impl PassedPower {
+    /// What passes the filters of a band at a rate.
+    pub fn new(band: Band, rate_hz: f64) -> Self {
+        let sections = sections(band, rate_hz);
+        let power = |hz: f64| -> f64 {
+            let magnitudes = sections.iter().map(|s| s.magnitude(hz, rate_hz));
+            magnitudes.map(|m| m * m).product()
+        };
+        let edges = [band.first_bin(), band.last_bin()];
+        let [below, above] = edges.map(|bin| EDGE_BINS.max((BESIDE * bin as f64) as usize));
+        let nyquist_bin = libm::ceil(0.5 * rate_hz / GRID_HZ) as usize;
+        let first_bin = edges[0].saturating_sub(below);
+        let last_bin = (edges[1] + above).min(nyquist_bin);
+        let part = |bin: usize| {
+            let points = match edges.iter().any(|edge| edge.abs_diff(bin) <= EDGE_BINS) {
+                true => EDGE_POINTS,
+                false => 1,
+            };
+            let at = |i: usize| (bin as f64 - 0.5 + (i as f64 + 0.5) / points as f64) * GRID_HZ;
+            let heard = (0..points)
+                .map(at)
+                .filter(|hz| (0.0..0.5 * rate_hz).contains(hz));
+            heard.map(&power).sum::<f64>() / points as f64
+        };
+        Self {
+            first_bin,
+            part: (first_bin..=last_bin).map(part).collect(),
+        }
+    }
+
+    /// RMS of filtered noise whose magnitudes before the filters are `curve`, as
+    /// [`curve_level_rms`](crate::grid::curve_level_rms) of a curve in the band.
+    pub fn level_rms(&self, curve: impl Fn(f64) -> f64) -> f64 {
+        let bins = self.part.iter().zip(self.first_bin..);
+        let power: f64 = bins
+            .map(|(part, bin)| (part, curve(bin as f64 * GRID_HZ)))
+            .map(|(part, m)| part * m * m)
+            .sum();
+        libm::sqrt(power / 3.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// White noise of unit variance: half its power a hertz below the Nyquist frequency times the mean
+    /// power of the filters' response, which the energy of the answer to an impulse is, too.
+    #[test]
+    fn the_power_that_passes_is_the_energy_of_an_impulses_answer() {
+        for (low_hz, high_hz, rate_hz) in [
+            (20.0, 1000.0, 2_000.0),
+            (20.0, 1000.0, 2_050.0),
+            (20.0, 1000.0, 8_000.0),
+            (23.0, 61.0, 2_000.0),
+            (300.0, 800.0, 2_000.0),
+        ] {
+            let band = Band { low_hz, high_hz };
+            let mut impulse = alloc::vec![[0.0; 2]; 1 << 16];
+            impulse[0][0] = 1.0;
+            band_limit(band, rate_hz).process(&mut impulse);
+            let energy: f64 = impulse.as_flattened().iter().map(|x| x * x).sum();
+            // Magnitude squared of white noise of unit variance: 2 P ENBW, P = 2 / rate.
+            let magnitude = libm::sqrt(4.0 * 1.5 * GRID_HZ / rate_hz);
+            let level = PassedPower::new(band, rate_hz).level_rms(|_| magnitude);
+            let ratio = level / libm::sqrt(energy);
+            assert!((ratio - 1.0).abs() < 2e-3, "{band:?} at {rate_hz}: {ratio}");
+        }
+    }
 }

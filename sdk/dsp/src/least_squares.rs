@@ -144,90 +144,9 @@ fn norm(a: &[f64]) -> f64 {
     libm::sqrt(dot(a, a))
 }
 
-/// Least squares over `x >= 0`, by cyclic coordinate descent.
-///
-/// With more unknowns than equations there are many solutions, and the start decides: from a
-/// smooth start the result is smooth.
-///
-/// ```
-/// use htex_dsp::least_squares::NonNegative;
-/// let mut x = [1.0, 1.0];
-/// NonNegative::new(&[1.0, 0.0, 0.0, 1.0], 2).improve(&mut x, &mut [3.0, -2.0], 100, 1e-12);
-/// assert_eq!(x, [3.0, 0.0]);
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-pub struct NonNegative {
-    /// The matrix, column after column.
-    columns: Vec<f64>,
-    rows: usize,
-}
-
-impl NonNegative {
-    /// Takes a matrix of `columns` columns.
-    pub fn new(matrix: &[f64], columns: usize) -> Self {
-        let column = |c| matrix.iter().skip(c).step_by(columns.max(1)).copied();
-        Self {
-            columns: (0..columns).flat_map(column).collect(),
-            rows: matrix.len() / columns.max(1),
-        }
-    }
-
-    /// Improves `x` (one value a column) so that `|matrix · x - rhs|²` falls, until no element
-    /// moves by more than `tolerance` times the largest, or `max_sweeps` are done. Returns the
-    /// sweeps made; `rhs` (one value a row) is left as the residual. Does not allocate.
-    pub fn improve(
-        &self,
-        x: &mut [f64],
-        rhs: &mut [f64],
-        max_sweeps: usize,
-        tolerance: f64,
-    ) -> usize {
-        let residual = rhs;
-        x.iter_mut().for_each(|x| *x = x.max(0.0));
-        for (column, &x) in self.columns.chunks(self.rows.max(1)).zip(x.iter()) {
-            subtract(residual, column, x);
-        }
-        for sweep in 1..=max_sweeps {
-            let (moved, largest) = self.sweep(x, residual);
-            if moved <= tolerance * largest {
-                return sweep;
-            }
-        }
-        max_sweeps
-    }
-
-    /// Moves every element once; the largest move, and the largest element.
-    fn sweep(&self, x: &mut [f64], residual: &mut [f64]) -> (f64, f64) {
-        let (mut moved, mut largest) = (0.0_f64, 0.0_f64);
-        for (column, x) in self.columns.chunks(self.rows.max(1)).zip(x.iter_mut()) {
-            let step = dot(column, residual) / dot(column, column);
-            let target = if step.is_finite() {
-                (*x + step).max(0.0)
-            } else {
-                *x
-            };
-            subtract(residual, column, target - *x);
-            moved = moved.max((target - *x).abs());
-            *x = target;
-            largest = largest.max(target);
-        }
-        (moved, largest)
-    }
-}
-
-fn subtract(residual: &mut [f64], column: &[f64], factor: f64) {
-    for (r, c) in residual.iter_mut().zip(column) {
-        *r -= factor * c;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn product(matrix: &[f64], columns: usize, x: &[f64]) -> Vec<f64> {
-        matrix.chunks(columns).map(|row| dot(row, x)).collect()
-    }
 
     #[test]
     fn dependent_and_empty_rows_do_no_harm() {
@@ -250,15 +169,5 @@ mod tests {
         let mut x = [0.0; 2];
         PseudoInverse::new(&matrix, 4, 2).apply(&[1.0, 3.0, 5.0, 7.0], &mut x);
         assert!((x[0] - 1.0).abs() < 1e-13 && (x[1] - 2.0).abs() < 1e-13);
-    }
-
-    #[test]
-    fn a_wide_nonnegative_fit_meets_reachable_energies() {
-        let matrix = [1.0, 0.5, 0.0, 0.0, 0.0, 0.5, 1.0, 0.5];
-        let mut x = [0.0; 4];
-        NonNegative::new(&matrix, 4).improve(&mut x, &mut [1.0, 3.0], 10_000, 1e-14);
-        let reached = product(&matrix, 4, &x);
-        assert!((reached[0] - 1.0).abs() < 1e-9 && (reached[1] - 3.0).abs() < 1e-9);
-        assert!(x.iter().all(|&x| x >= 0.0));
     }
 }

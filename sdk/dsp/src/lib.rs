@@ -35,6 +35,7 @@ pub mod linear_prediction;
 pub mod mel;
 pub mod nelder_mead;
 pub mod noise;
+pub mod non_negative;
 pub mod peaks;
 pub mod pipeline;
 mod polyphase;

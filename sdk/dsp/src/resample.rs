@@ -16,8 +16,40 @@ const MAX_EXACT_PHASES: u64 = 1024;
 const TRANSITION: f64 = 0.02;
 /// Sides of the kernel beyond which a request is refused, to bound memory.
 const MAX_TAPS: usize = 16_384;
+/// Most that the rates differ by.
+const MAX_RATIO: u64 = 10_000;
+
+/// Rates between which no converter is made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UnusableRates {
+    /// Rate of the source, hertz.
+    pub from_hz: f64,
+    /// Rate wanted, hertz.
+    pub to_hz: f64,
+}
+
+impl core::fmt::Display for UnusableRates {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Self { from_hz, to_hz } = self;
+        write!(
+            f,
+            "no conversion from {from_hz} Hz to {to_hz} Hz: rates lie in 1 mHz to 10 MHz and differ by a \
+             factor of at most 10,000"
+        )
+    }
+}
+
+impl core::error::Error for UnusableRates {}
 
 /// Converts a stream from one rate to another.
+///
+/// ```
+/// use htex_dsp::resample::Resampler;
+/// assert!(Resampler::new(2_000.0, 48_000.0, 1_000.0)?.is_some());
+/// assert!(Resampler::new(2_000.0, 2_000.0, 1_000.0)?.is_none());
+/// assert!(Resampler::new(2_000.0, f64::NAN, 1_000.0).is_err());
+/// # Ok::<(), htex_dsp::resample::UnusableRates>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Resampler {
     stages: Vec<Stage>,
@@ -25,20 +57,29 @@ pub struct Resampler {
 
 impl Resampler {
     /// A converter from `from_hz` to `to_hz` for a source that holds nothing of interest above
-    /// `top_hz`; `None` when the rates are the same (to a millihertz) and nothing needs doing.
+    /// `top_hz`; `None` when the rates are the same (to a millihertz) and nothing is to be done.
     ///
-    /// Rates lie in 1 mHz to 10 MHz and differ by at most a factor 10,000; others give `None` too.
-    pub fn new(from_hz: f64, to_hz: f64, top_hz: f64) -> Option<Self> {
+    /// # Errors
+    /// Rates outside 1 mHz to 10 MHz, or that differ by more than a factor of 10,000.
+    pub fn new(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Option<Self>, UnusableRates> {
         let specs = specs(from_hz, to_hz, top_hz)?;
-        let stages = specs.iter().map(Stage::new).collect();
-        Some(Self { stages })
+        let stages: Vec<Stage> = specs.iter().map(Stage::new).collect();
+        Ok((!stages.is_empty()).then_some(Self { stages }))
     }
 
     /// Multiplications and additions that an output sample of such a converter takes, on average;
-    /// none when none is needed.
-    pub fn macs_per_output(from_hz: f64, to_hz: f64, top_hz: f64) -> Option<f64> {
+    /// `None` when none is needed.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn macs_per_output(
+        from_hz: f64,
+        to_hz: f64,
+        top_hz: f64,
+    ) -> Result<Option<f64>, UnusableRates> {
+        let specs = specs(from_hz, to_hz, top_hz)?;
         let mut macs = 0.0;
-        for spec in &specs(from_hz, to_hz, top_hz)? {
+        for spec in &specs {
             let rate = spec.to as f64 / 1000.0 / to_hz;
             // Doubling a rate copies every other sample.
             let rows = match spec.up() {
@@ -48,7 +89,7 @@ impl Resampler {
             };
             macs += rate * rows * spec.taps() as f64;
         }
-        Some(macs)
+        Ok((!specs.is_empty()).then_some(macs))
     }
 
     /// Fills `out`, pulling source samples through `source`, which must fill the whole slice it is
@@ -67,15 +108,21 @@ struct Spec {
 }
 
 /// The stages of a converter; none when none is needed.
-fn specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Option<Vec<Spec>> {
-    let (from, mut to) = (millihertz(from_hz)?, millihertz(to_hz)?);
+fn specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, UnusableRates> {
+    let unusable = UnusableRates { from_hz, to_hz };
+    let (Some(from), Some(mut to)) = (millihertz(from_hz), millihertz(to_hz)) else {
+        return Err(unusable);
+    };
     // A whole part of a rate is seldom a whole number of millihertz.
     let ratio = libm::round(to_hz / from_hz);
     if ratio >= 2.0 && (to_hz / from_hz / ratio - 1.0).abs() < 1e-9 {
         to = from * ratio as u64;
     }
-    if from == to || from / to > 10_000 || to / from > 10_000 {
-        return None;
+    if from == to {
+        return Ok(Vec::new());
+    }
+    if from > MAX_RATIO * to || to > MAX_RATIO * from {
+        return Err(unusable);
     }
     let spec = |from, to, pass_hz, stop_hz| Spec {
         from,
@@ -89,11 +136,11 @@ fn specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Option<Vec<Spec>> {
     let stop = (from_hz.min(to_hz) - pass).max(nyquist * (1.0 + TRANSITION));
     let narrow = stop - pass < 0.5 * nyquist;
     if !narrow || to / from < 4 {
-        return Some(alloc::vec![spec(from, to, pass, stop)]);
+        return Ok(alloc::vec![spec(from, to, pass, stop)]);
     }
     let middle = 2 * from;
     let image = 2.0 * from_hz - stop;
-    Some(alloc::vec![
+    Ok(alloc::vec![
         spec(from, middle, pass, stop),
         spec(middle, to, pass.max(1e-3), image.max(stop)),
     ])
@@ -189,7 +236,7 @@ mod tests {
 
     /// Converts a sine and returns the largest error against the same sine at the other rate.
     fn sine_error(from_hz: f64, to_hz: f64, f_hz: f64) -> f64 {
-        let mut resampler = Resampler::new(from_hz, to_hz, 1000.0).unwrap();
+        let mut resampler = Resampler::new(from_hz, to_hz, 1000.0).unwrap().unwrap();
         let mut n = 0usize;
         let mut source = |block: &mut [f32]| {
             for x in block {
@@ -248,7 +295,11 @@ mod tests {
 
     #[test]
     fn a_steep_filter_costs_little_where_it_can_be_made_at_a_low_rate() {
-        let macs = |to_hz| Resampler::macs_per_output(2_000.0, to_hz, 1_000.0).unwrap();
+        let macs = |to_hz| {
+            Resampler::macs_per_output(2_000.0, to_hz, 1_000.0)
+                .unwrap()
+                .unwrap()
+        };
         let taps = specs(2_000.0, 4_000.0, 1_000.0).unwrap()[0].taps() as f64;
         // Every other sample is a copy; five times as many are made of those with few taps.
         assert_eq!(macs(4_000.0), 0.5 * taps);

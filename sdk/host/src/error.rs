@@ -1,5 +1,6 @@
 //! What can go wrong between a host and a model.
 
+use htex_dsp::resample::UnusableRates;
 use htex_model::Status;
 
 /// Most bytes of a model's words that a message shows.
@@ -80,4 +81,17 @@ pub enum HostError {
         /// What was asked for.
         text: String,
     },
+    /// The model's samples cannot be brought to the rate that is wanted.
+    #[error("{what}")]
+    Rates {
+        /// The two rates, and which can be converted.
+        what: String,
+    },
+}
+
+impl From<UnusableRates> for HostError {
+    fn from(rates: UnusableRates) -> Self {
+        let what = rates.to_string();
+        Self::Rates { what }
+    }
 }

@@ -18,7 +18,7 @@ impl Stream {
     /// Makes a voice of `model` and what is needed to hear it at `rate_hz`.
     ///
     /// # Errors
-    /// When the model refuses the parameters or the rate.
+    /// When the model refuses the parameters or the rate, or its own rate cannot be converted to `rate_hz`.
     pub fn new(
         model: &LoadedModel,
         parameters: &[f64],
@@ -29,7 +29,7 @@ impl Stream {
         let voice_rate_hz = model.voice_rate_hz(parameters, band, rate_hz)?;
         Ok(Self {
             voice: model.voice(parameters, band, voice_rate_hz, seed)?,
-            resampler: Resampler::new(voice_rate_hz, rate_hz, band.high_hz),
+            resampler: Resampler::new(voice_rate_hz, rate_hz, band.high_hz)?,
             voice_rate_hz,
         })
     }

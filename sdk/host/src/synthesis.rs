@@ -206,7 +206,7 @@ impl FilteredNoise {
             } as f32,
             fir,
             taps,
-            resampler: Resampler::new(noise_hz, rate_hz, band.high_hz),
+            resampler: Resampler::new(noise_hz, rate_hz, band.high_hz)?,
         })
     }
 

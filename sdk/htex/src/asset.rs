@@ -138,7 +138,7 @@ impl Asset {
             rate_hz: options.rate_hz / base,
             ..options.clone()
         })?;
-        Ok(Voice::new(source, still, options, base))
+        Voice::new(source, still, options, base)
     }
 
     /// How many times as fast as recorded a voice is read from its start on.
@@ -167,7 +167,8 @@ impl Asset {
         motion: (f64, f64),
         effects: Effects,
     ) -> Result<Coverage, Error> {
-        let known = self.known(self.representation(model)?);
+        let r = self.representation(model)?;
+        let known = self.known(r, &self.model(r)?)?;
         Ok(known.coverage(motion, effects))
     }
 

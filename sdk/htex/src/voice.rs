@@ -2,7 +2,7 @@
 
 use htex_dsp::glide::Glide;
 use htex_dsp::resample::Resampler;
-use htex_host::StillSound;
+use htex_host::{HostError, StillSound};
 
 use crate::exploration::Coverage;
 use crate::follow::Follow;
@@ -41,7 +41,7 @@ impl Voice {
         still: Option<StillSound>,
         options: &VoiceOptions<'_>,
         base: f64,
-    ) -> Self {
+    ) -> Result<Self, Error> {
         let rate_hz = options.rate_hz;
         let ramp = (RAMP_S * rate_hz).ceil().max(1.0) as u32;
         // A still sound is at the voice's rate already, as recorded.
@@ -49,13 +49,14 @@ impl Voice {
         let top_hz = source.top_hz() * base;
         let known = (source.explored(), options.effects);
         let follow = Follow::new(known, options.motion, base, rate_hz, top_hz);
-        Self {
-            resampler: Resampler::new(source.rate_hz() * base, rate_hz, top_hz),
+        let resampler = Resampler::new(source.rate_hz() * base, rate_hz, top_hz);
+        Ok(Self {
+            resampler: resampler.map_err(HostError::from)?,
             level_n: Glide::new((source.level_n() * follow.gain()) as f32, ramp),
             source,
             still,
             follow,
-        }
+        })
     }
 
     /// Follows the finger to this scanning speed (mm/s) and normal force (newtons). Spectrum and level glide to those

@@ -81,6 +81,9 @@ pub enum SceneError {
         /// Why it is needed.
         reason: String,
     },
+    /// The rate of a model cannot be converted to the device's.
+    #[error(transparent)]
+    Rates(#[from] htex_dsp::resample::UnusableRates),
     /// A motion that is no motion.
     #[error(
         "a motion of {speed_mm_s} mm/s at {force_n} N; both must be finite, and the force not negative"

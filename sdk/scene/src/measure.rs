@@ -7,6 +7,7 @@ use std::time::Instant;
 use htex::{Explored, Recorded};
 use htex_device::{Capabilities, Quantity, Rates};
 use htex_dsp::fir::Fir;
+use htex_dsp::resample::UnusableRates;
 use htex_host::{Band, FitRequest, HostError, LoadedModel, Registry};
 
 use crate::call::{Call, Part, Span};
@@ -35,7 +36,7 @@ impl Costs {
             costs.retune_ns.insert(model.id().to_owned(), retune_ns);
         }
         costs.mac_ns = mac_ns();
-        costs.stage_ns = stages(costs.mac_ns);
+        costs.stage_ns = stages(costs.mac_ns)?;
         Ok(costs)
     }
 }
@@ -99,7 +100,7 @@ fn mac_ns() -> f64 {
 }
 
 /// What each stage costs at its own rate, multiplications of filters aside.
-fn stages(mac_ns: f64) -> BTreeMap<String, f64> {
+fn stages(mac_ns: f64) -> Result<BTreeMap<String, f64>, UnusableRates> {
     let (call, part) = (example_call(), example_part());
     let mut costs = BTreeMap::new();
     let mut note = |name: &str, mut stage: Box<dyn Stage>, macs: f64| {
@@ -114,13 +115,13 @@ fn stages(mac_ns: f64) -> BTreeMap<String, f64> {
                 build: Some(build), ..
             } => note(entry.name, build(&call, &part, false), 0.0),
             Place::Mix { build, .. } => {
-                let macs = resampling_macs(&call, &part).unwrap_or(0.0);
-                note(entry.name, build(&call, &part, false), macs);
+                let macs = resampling_macs(&call, &part)?.unwrap_or(0.0);
+                note(entry.name, build(&call, &part, false)?, macs);
             }
             Place::Device { build, .. } => note(entry.name, build(&call, false), 0.0),
         }
     }
-    costs
+    Ok(costs)
 }
 
 fn measure_stage(stage: &mut dyn Stage) -> f64 {

@@ -306,7 +306,7 @@ impl<'a> Draft<'a> {
             let Place::Mix { need, .. } = &entry.place else {
                 continue;
             };
-            let (rate_hz, ns) = self.mix_cost(entry, first);
+            let (rate_hz, ns) = self.mix_cost(entry, first)?;
             if let Some(neutral) =
                 self.decide(entry, surface, need(self.call, first), rate_hz, ns)?
             {
@@ -321,11 +321,11 @@ impl<'a> Draft<'a> {
     }
 
     /// Rate of what a mix's stage gives, and its cost a frame of the device.
-    fn mix_cost(&self, entry: &Entry, part: &Part) -> (f64, f64) {
+    fn mix_cost(&self, entry: &Entry, part: &Part) -> Result<(f64, f64), SceneError> {
         let own = self.costs.stage(entry.name);
-        match entry.effect {
+        Ok(match entry.effect {
             Effect::Resampling => {
-                let macs = resampling_macs(self.call, part).unwrap_or(0.0);
+                let macs = resampling_macs(self.call, part)?.unwrap_or(0.0);
                 (self.call.rate_hz, own + macs * self.costs.mac_ns)
             }
             _ => {
@@ -336,7 +336,7 @@ impl<'a> Draft<'a> {
                     (own + taps * self.costs.mac_ns) * per_frame,
                 )
             }
-        }
+        })
     }
 
     /// Takes an effect in (and answers whether it is neutral) or leaves it out.

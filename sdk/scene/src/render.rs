@@ -295,7 +295,7 @@ impl MixChain {
         let surface = (mix.parts.len() == 1 && parts.len() > 1).then_some(first.surface);
         for (entry, neutral) in &mix.entries {
             if let Place::Mix { build, .. } = &entry.place {
-                let stage = build(call, first, *neutral);
+                let stage = build(call, first, *neutral)?;
                 chain.slots.push(Slot::new(entry.name, surface, stage));
             }
         }

@@ -3,6 +3,7 @@
 use htex_dsp::grid::{Band, level_rms};
 use htex_dsp::resample::Resampler;
 use htex_dsp::shaped_noise::{ShapedNoise, economical_rate_hz};
+use htex_host::HostError;
 
 /// Steps of a byte.
 const STEPS: f64 = 255.0;
@@ -51,7 +52,12 @@ pub(crate) struct SpectrumNoise {
 }
 
 impl SpectrumNoise {
-    pub(crate) fn new(magnitude_n: &[f64], band: Band, rate_hz: f64, seed: u64) -> Self {
+    pub(crate) fn new(
+        magnitude_n: &[f64],
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Self, HostError> {
         let noise_hz = economical_rate_hz(rate_hz, band);
         let mut noise = ShapedNoise::new(noise_hz, band, seed);
         let level = level_rms(magnitude_n);
@@ -62,8 +68,8 @@ impl SpectrumNoise {
             let (a, b) = (magnitude_n[below], magnitude_n[(below + 1).min(last)]);
             (a + part * (b - a)) / level
         });
-        let resampler = Resampler::new(noise_hz, rate_hz, band.high_hz);
-        Self { noise, resampler }
+        let resampler = Resampler::new(noise_hz, rate_hz, band.high_hz)?;
+        Ok(Self { noise, resampler })
     }
 
     pub(crate) fn render(&mut self, out: &mut [f32]) {

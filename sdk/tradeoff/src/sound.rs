@@ -29,8 +29,8 @@ impl Contender {
     ) -> Result<Sound, HostError> {
         match &self.kind {
             Kind::Model(model, _) => of_model(&self.setting, model, subject, stored, seed),
-            Kind::Quantised => Ok(of_spectrum(&self.setting, subject, stored, seed)),
-            Kind::Recording => Ok(of_recording(&self.setting, subject)),
+            Kind::Quantised => of_spectrum(&self.setting, subject, stored, seed),
+            Kind::Recording => of_recording(&self.setting, subject),
         }
     }
 }
@@ -71,11 +71,16 @@ fn of_model(
     })
 }
 
-fn of_spectrum(setting: &Setting, subject: &Subject, stored: &Stored, seed: u64) -> Sound {
+fn of_spectrum(
+    setting: &Setting,
+    subject: &Subject,
+    stored: &Stored,
+    seed: u64,
+) -> Result<Sound, HostError> {
     let (band, rate_hz) = (subject.spectrum.band, setting.output_rate_hz);
-    let mut noise = SpectrumNoise::new(&stored.parameters, band, rate_hz, seed);
+    let mut noise = SpectrumNoise::new(&stored.parameters, band, rate_hz, seed)?;
     let Synthesis::Loop { seconds } = setting.synthesis else {
-        return Sound::sure(0, move |out| noise.render(out));
+        return Ok(Sound::sure(0, move |out| noise.render(out)));
     };
     let fade = (FADE_S * rate_hz) as usize;
     let mut piece = vec![0.0; (seconds * rate_hz) as usize + fade];
@@ -83,17 +88,18 @@ fn of_spectrum(setting: &Setting, subject: &Subject, stored: &Stored, seed: u64)
     noise.render(&mut piece);
     let mut samples = Loop::new(piece, fade).with_rms(1.0);
     let kept = size_of_val(samples.samples());
-    Sound::sure(kept, move |out| samples.render(out))
+    Ok(Sound::sure(kept, move |out| samples.render(out)))
 }
 
-fn of_recording(setting: &Setting, subject: &Subject) -> Sound {
+fn of_recording(setting: &Setting, subject: &Subject) -> Result<Sound, HostError> {
     let (own_hz, rate_hz) = (subject.rate_hz, setting.output_rate_hz);
     let mut samples = Loop::new(subject.samples.clone(), (FADE_S * own_hz) as usize);
     let kept = size_of_val(samples.samples());
-    match Resampler::new(own_hz, rate_hz, subject.spectrum.band.high_hz) {
+    let resampler = Resampler::new(own_hz, rate_hz, subject.spectrum.band.high_hz)?;
+    Ok(match resampler {
         None => Sound::sure(kept, move |out| samples.render(out)),
         Some(mut resampler) => Sound::sure(kept, move |out| {
             resampler.process(out, &mut |block| samples.render(block));
         }),
-    }
+    })
 }

@@ -1,9 +1,9 @@
 //! What a voice sounds like, against what the magnitude says.
 
 use htex_dsp::grid::level_rms;
-use htex_host::Band;
+use htex_host::{Band, Stream};
 
-use crate::case::{Case, Fitted, RATE_HZ};
+use crate::case::{Case, Fitted, RATE_HZ, is_refusal};
 use crate::checks::magnitude::fine_grid;
 use crate::finding::{Finding, Found};
 use crate::signal::{distance_db, is_line_spectrum, measured_spectrum, rms, rms_spread};
@@ -22,6 +22,15 @@ const SPECTRUM_DB: f64 = 1.0;
 fn about(fitted: &Fitted, what: &str) -> Finding {
     Finding::failed(format!("spectrum `{}`: {what}", fitted.reference))
 }
+
+/// A band inside the one that references are fitted in: two of them have their peaks outside.
+const NARROW: Band = Band {
+    low_hz: 150.0,
+    high_hz: 700.0,
+};
+/// Distance of the level in it from 1 that is allowed, dB: an order of 4 in a filter of the band lets
+/// through that much beside it.
+const NARROW_DB: f64 = 1.5;
 
 /// One second of every reference.
 pub(crate) fn renders(case: &Case) -> Found {
@@ -115,4 +124,36 @@ pub(crate) fn spectrum(case: &Case) -> Found {
     }
     let message = format!("the sound is within {worst:.2} dB RMS of the magnitude");
     Ok(Finding::passed(message).with("distance_db", worst))
+}
+
+/// Unit RMS in a band narrower than that of the fit, of the magnitude and of the sound.
+pub(crate) fn narrow_band(case: &Case) -> Found {
+    let grid = NARROW.grid_hz();
+    let (mut worst, mut voices) = (0.0f64, 0.0);
+    for fitted in case.fitted()? {
+        let parameters = &fitted.parameters;
+        let magnitude = match case.model.magnitude(parameters, NARROW, &grid) {
+            Err(error) if is_refusal(&error) => continue,
+            magnitude => magnitude?,
+        };
+        let mut stream = Stream::new(&case.model, parameters, NARROW, RATE_HZ, case.seed)?;
+        let mut out = vec![0.0; (SECONDS * RATE_HZ) as usize];
+        stream.render(&mut out)?;
+        let first = NARROW.first_bin() - Band::TACTILE.first_bin();
+        let heard = &measured_spectrum(&out)[first..first + grid.len()];
+        let off_db = 20.0 * (level_rms(heard) / level_rms(&magnitude)).log10();
+        // Written so that a level that is no number fails.
+        if !matches!(off_db.abs().partial_cmp(&NARROW_DB), Some(o) if o.is_le()) {
+            let what = format!(
+                "between {} and {} Hz the sound is {off_db:.2} dB off the magnitude's level; \
+                 {NARROW_DB} dB are allowed: what lies outside the band is not to be played",
+                NARROW.low_hz, NARROW.high_hz
+            );
+            return Err(about(&fitted, &what).with("level_db", off_db));
+        }
+        worst = worst.max(off_db.abs());
+        voices += 1.0;
+    }
+    let message = format!("{voices} sounds are within {worst:.2} dB of the magnitude's level");
+    Ok(Finding::passed(message).with("level_db", worst))
 }

@@ -88,20 +88,27 @@ fn field(&(name, unit, length, store): &(&str, &str, usize, Store)) -> Field {
 
 fn flat(condition: usize, fields: &[(&str, &str, usize, Store)], stored: &[Field]) -> Vec<f64> {
     let mut flat = Vec::new();
-    for &(_, _, length, store) in fields {
+    for &(name, _, length, _) in fields {
         if length > 0 {
             flat.push(length as f64);
         }
-        for i in 0..length.max(1) {
-            let x = 0.5 + 0.37 * (i as f64 + 1.0).sqrt() + 0.1 * condition as f64;
-            flat.push(if matches!(store, Store::U8(_)) {
-                x.round()
-            } else {
-                x
-            });
-        }
+        flat.extend((0..length.max(1)).map(|i| value(name, i as f64, condition as f64)));
     }
     round_parameters(stored, &flat).expect("the values fit their stores")
+}
+
+/// A value that the model of the field plays.
+fn value(field: &str, i: f64, condition: f64) -> f64 {
+    match field {
+        "coefficients" => 0.2 / (i + 1.0) - 0.1 * condition / (i + 2.0),
+        "model_rate_hz" => 2_000.0,
+        "cepstrum" => -3.0 / (i + 1.0) + 0.2 * condition,
+        "bands" => 26.0,
+        "inverse" | "random_phase" => 0.0,
+        "frequency_hz" => 37.0 * (i + 1.0) + condition,
+        "peak_hz" => 120.0 + 10.0 * condition,
+        _ => 0.5 + 0.37 * (i + 1.0).sqrt() + 0.1 * condition,
+    }
 }
 
 fn at(i: usize) -> AtCondition {

@@ -2,6 +2,7 @@
 //! spectrum: 1/|H| where |H| is large, and no more than its depth below the maximum in the band allows.
 
 use htex_dsp::fir::Fir;
+use htex_dsp::resample::UnusableRates;
 
 use super::{Entry, Need, Place, Stage};
 use crate::call::{Call, Part};
@@ -33,7 +34,7 @@ pub(crate) fn taps(part: &Part) -> usize {
     (4.0 * part.mix_rate_hz * part.fixed_ratio / RESOLUTION_HZ).clamp(1.0, 16_384.0) as usize
 }
 
-fn build(call: &Call, part: &Part, neutral: bool) -> Box<dyn Stage> {
+fn build(call: &Call, part: &Part, neutral: bool) -> Result<Box<dyn Stage>, UnusableRates> {
     let fir = match &call.compensation {
         Some(inverse) if !neutral => {
             // Before the resampler, which reads `fixed_ratio` times as fast.
@@ -42,7 +43,7 @@ fn build(call: &Call, part: &Part, neutral: bool) -> Box<dyn Stage> {
         }
         _ => Fir::through(),
     };
-    Box::new(Compensation(fir))
+    Ok(Box::new(Compensation(fir)))
 }
 
 struct Compensation(Fir);

@@ -27,6 +27,8 @@ pub(crate) use level::Level;
 pub(crate) use resampling::macs as resampling_macs;
 pub(crate) use synthesis::Synthesis;
 
+use htex_dsp::resample::UnusableRates;
+
 use crate::call::{Call, Part};
 use crate::file::Effect;
 use crate::motion::Finger;
@@ -92,7 +94,7 @@ pub(crate) enum Place {
     /// For the surfaces of one rate, mixed; the need is that of one of them.
     Mix {
         need: fn(&Call, &Part) -> Need,
-        build: BuildFor,
+        build: fn(&Call, &Part, neutral: bool) -> Result<Box<dyn Stage>, UnusableRates>,
     },
     /// For the sum of all, at the device's rate.
     Device {
@@ -101,7 +103,7 @@ pub(crate) enum Place {
     },
 }
 
-/// Makes the stage of an effect for a surface, or for those mixed at its rate.
+/// Makes the stage of an effect for a surface.
 type BuildFor = fn(&Call, &Part, neutral: bool) -> Box<dyn Stage>;
 
 /// An effect in the table.

@@ -1,6 +1,6 @@
 //! From the rate of the models to the rate of the device: once, for all surfaces of a rate together.
 
-use htex_dsp::resample::Resampler;
+use htex_dsp::resample::{Resampler, UnusableRates};
 
 use super::{Entry, Need, Place, Stage};
 use crate::call::{Call, Part};
@@ -14,12 +14,13 @@ pub(crate) const ENTRY: Entry = Entry {
 
 fn need(call: &Call, part: &Part) -> Need {
     match macs(call, part) {
-        Some(_) => Need::yes(format!(
+        // Rates that cannot be converted are refused where the stage is planned.
+        Ok(Some(_)) | Err(_) => Need::yes(format!(
             "the model renders at {:.0} Hz, the device runs at {:.0} Hz",
             part.mix_rate_hz * part.fixed_ratio,
             call.rate_hz
         )),
-        None => Need::no(format!("model and device run at {:.0} Hz", call.rate_hz)),
+        Ok(None) => Need::no(format!("model and device run at {:.0} Hz", call.rate_hz)),
     }
 }
 
@@ -31,17 +32,17 @@ fn rates(call: &Call, part: &Part) -> (f64, f64, f64) {
 }
 
 /// Multiplications a sample of the device; none when there is nothing to convert.
-pub(crate) fn macs(call: &Call, part: &Part) -> Option<f64> {
+pub(crate) fn macs(call: &Call, part: &Part) -> Result<Option<f64>, UnusableRates> {
     let (from, to, top) = rates(call, part);
     Resampler::macs_per_output(from, to, top)
 }
 
-fn build(call: &Call, part: &Part, neutral: bool) -> Box<dyn Stage> {
+fn build(call: &Call, part: &Part, neutral: bool) -> Result<Box<dyn Stage>, UnusableRates> {
     let (from, to, top) = rates(call, part);
-    Box::new(match neutral {
+    Ok(Box::new(match neutral {
         true => Resampling(None),
-        false => Resampling(Resampler::new(from, to, top)),
-    })
+        false => Resampling(Resampler::new(from, to, top)?),
+    }))
 }
 
 struct Resampling(Option<Resampler>);

@@ -1,0 +1,266 @@
+//! Power from the energies of triangular filters, none of it negative.
+
+use alloc::vec::Vec;
+
+use crate::triangles::TriangleBank;
+
+/// Weight of the power's own square: what makes the solution unique, and moves energies that can be met
+/// by about a millionth.
+pub const RIDGE: f64 = 1e-6;
+/// Newton's steps at most; energies of recordings take three to eight.
+const STEPS: usize = 100;
+/// Halvings of a step at most.
+const HALVINGS: usize = 40;
+/// Slope along a step, over that at its start, that is rounding.
+const FLAT: f64 = 1e-9;
+
+/// The powers `p >= 0` that minimise `|W p - e|² + RIDGE |p|²` for a bank `W` of triangular filters and
+/// energies `e`: there is one such solution.
+///
+/// It has the form `p = max(0, Wᵀ s)` with one number `s` a filter, and `s` solves
+/// `RIDGE s + W max(0, Wᵀ s) = e`: straight pieces, on each of which Newton's method is exact. Its matrix is
+/// tridiagonal, since only neighbouring filters overlap.
+///
+/// ```
+/// use htex_dsp::non_negative::{NonNegative, Scratch};
+/// use htex_dsp::triangles::TriangleBank;
+/// let bank = TriangleBank::new(&[0.0, 1.0, 2.0, 3.0], &[1.0, 1.5, 2.0]);
+/// let (mut power, mut scratch) = ([0.0; 3], Scratch::new(2));
+/// NonNegative::new(&bank).solve(&[1.0, 0.0], &mut power, &mut scratch);
+/// assert!((power[0] - 1.0).abs() < 1e-5 && power[2] == 0.0);
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct NonNegative {
+    columns: Vec<Column>,
+    rows: usize,
+}
+
+/// What filters weigh a place by: the filter `first` and the next one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Column {
+    first: usize,
+    weight: [f64; 2],
+}
+
+/// Memory of [`NonNegative::solve`], for one number of filters.
+#[derive(Debug, Clone)]
+pub struct Scratch {
+    wanted: Vec<f64>,
+    /// The solution so far, and the step from it.
+    at: Vec<f64>,
+    step: Vec<f64>,
+    residual: Vec<f64>,
+    diagonal: Vec<f64>,
+    beside: Vec<f64>,
+}
+
+impl Scratch {
+    /// For so many filters.
+    pub fn new(rows: usize) -> Self {
+        let zeros = || alloc::vec![0.0; rows];
+        Self {
+            wanted: zeros(),
+            at: zeros(),
+            step: zeros(),
+            residual: zeros(),
+            diagonal: zeros(),
+            beside: zeros(),
+        }
+    }
+}
+
+impl NonNegative {
+    /// Takes the weights of a bank.
+    pub fn new(bank: &TriangleBank) -> Self {
+        let rows = bank.rows();
+        let column = |c: usize| {
+            let first = (0..rows).find(|&row| bank.weight(row, c) > 0.0);
+            let first = first.unwrap_or(0);
+            let weight = [first, first + 1].map(|row| bank.weight(row, c));
+            Column { first, weight }
+        };
+        Self {
+            columns: (0..bank.columns()).map(column).collect(),
+            rows,
+        }
+    }
+
+    /// Writes the power of `energies`, which are not negative; `scratch` is for as many filters. An energy
+    /// of a filter that weighs no place has no say. Does not allocate.
+    pub fn solve(&self, energies: &[f64], power: &mut [f64], scratch: &mut Scratch) {
+        let largest = energies.iter().copied().fold(0.0, f64::max);
+        self.start(energies, largest, scratch);
+        for _ in 0..STEPS {
+            if !self.advance(scratch) {
+                break;
+            }
+        }
+        for (power, column) in power.iter_mut().zip(&self.columns) {
+            *power = largest * column.between(&scratch.at).max(0.0);
+        }
+    }
+
+    /// Energies relative to the largest, and the solution as if powers could be negative.
+    fn start(&self, energies: &[f64], largest: f64, scratch: &mut Scratch) {
+        scratch.wanted.fill(0.0);
+        for column in &self.columns {
+            for (row, weight) in (column.first..).zip(column.weight) {
+                if weight > 0.0 {
+                    scratch.wanted[row] = energies[row] / largest;
+                }
+            }
+        }
+        scratch.derive(&self.columns, |_| true);
+        scratch.at.copy_from_slice(&scratch.wanted);
+        solve_tridiagonal(&mut scratch.diagonal, &scratch.beside, &mut scratch.at);
+    }
+
+    /// One step of Newton's method, halved until the slope along it is not upwards; false at the solution.
+    fn advance(&self, scratch: &mut Scratch) -> bool {
+        scratch.measure(&self.columns, 0.0);
+        let Scratch { residual, step, .. } = scratch;
+        for (step, residual) in step.iter_mut().zip(&*residual) {
+            *step = -residual;
+        }
+        scratch.derive_here(&self.columns);
+        solve_tridiagonal(&mut scratch.diagonal, &scratch.beside, &mut scratch.step);
+        let slope = scratch.slope();
+        // Written so that a slope that is no number ends the search.
+        if !matches!(slope.partial_cmp(&0.0), Some(core::cmp::Ordering::Less)) {
+            return false;
+        }
+        let mut part = 1.0;
+        for _ in 0..HALVINGS {
+            scratch.measure(&self.columns, part);
+            if scratch.slope() <= -FLAT * slope {
+                break;
+            }
+            part *= 0.5;
+        }
+        let mut moved = false;
+        for (at, step) in scratch.at.iter_mut().zip(&scratch.step) {
+            let next = *at + part * step;
+            moved |= (next - *at).abs() > 1e-14 * next.abs();
+            *at = next;
+        }
+        moved
+    }
+
+    /// Filters.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+}
+
+impl Column {
+    /// `Wᵀ s` at this place.
+    fn between(&self, values: &[f64]) -> f64 {
+        let next = values.get(self.first + 1).copied().unwrap_or(0.0);
+        self.weight[0] * values[self.first] + self.weight[1] * next
+    }
+}
+
+impl Scratch {
+    /// The residual at `at + part * step`.
+    fn measure(&mut self, columns: &[Column], part: f64) {
+        for i in 0..self.at.len() {
+            let s = self.at[i] + part * self.step[i];
+            self.residual[i] = RIDGE * s - self.wanted[i];
+        }
+        for column in columns {
+            let power = column.between(&self.at) + part * column.between(&self.step);
+            if power > 0.0 {
+                for (row, weight) in (column.first..).zip(column.weight) {
+                    if weight > 0.0 {
+                        self.residual[row] += weight * power;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Slope of what is minimised along the step.
+    fn slope(&self) -> f64 {
+        self.residual
+            .iter()
+            .zip(&self.step)
+            .map(|(r, d)| r * d)
+            .sum()
+    }
+
+    /// The residual's derivative where the solution stands.
+    fn derive_here(&mut self, columns: &[Column]) {
+        let at = core::mem::take(&mut self.at);
+        self.derive(columns, |column| column.between(&at) > 0.0);
+        self.at = at;
+    }
+
+    /// The residual's derivative with power at the places that `active` tells.
+    fn derive(&mut self, columns: &[Column], active: impl Fn(&Column) -> bool) {
+        self.diagonal.fill(RIDGE);
+        self.beside.fill(0.0);
+        for column in columns.iter().filter(|column| active(column)) {
+            let [here, next] = column.weight;
+            self.diagonal[column.first] += here * here;
+            if next > 0.0 {
+                self.diagonal[column.first + 1] += next * next;
+                self.beside[column.first] += here * next;
+            }
+        }
+    }
+}
+
+/// Solves a symmetric, positive definite, tridiagonal system in place; `beside[i]` couples `i` and `i + 1`.
+fn solve_tridiagonal(diagonal: &mut [f64], beside: &[f64], values: &mut [f64]) {
+    for i in 1..values.len() {
+        let ratio = beside[i - 1] / diagonal[i - 1];
+        diagonal[i] -= ratio * beside[i - 1];
+        values[i] -= ratio * values[i - 1];
+    }
+    let mut behind = 0.0;
+    for i in (0..values.len()).rev() {
+        values[i] = (values[i] - beside[i] * behind) / diagonal[i];
+        behind = values[i];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Band;
+    use crate::mel::MelBank;
+    use crate::noise::Uniform;
+
+    /// Where power is, the cost is level; where there is none, it rises: what a minimum of a convex cost
+    /// is known by.
+    #[test]
+    fn the_solution_is_the_minimum() {
+        let grid = Band::TACTILE.grid_hz();
+        let mut uniform = Uniform::new(7);
+        for bands in [2, 9, 26, 60, 128] {
+            let mel = MelBank::new(bands, Band::TACTILE, &grid);
+            let (solver, mut scratch) = (NonNegative::new(mel.filters()), Scratch::new(bands));
+            let mut power = alloc::vec![0.0; grid.len()];
+            for round in 0..20 {
+                // Up to 100 dB apart, so that most energies cannot be met.
+                let spread = f64::from(round);
+                let energies: Vec<f64> = (0..bands)
+                    .map(|_| libm::exp(spread * uniform.next_unit()))
+                    .collect();
+                solver.solve(&energies, &mut power, &mut scratch);
+                let reached = mel.energies(&power);
+                let largest = energies.iter().copied().fold(0.0, f64::max);
+                for (column, &p) in power.iter().enumerate() {
+                    let pull: f64 = (0..bands)
+                        .map(|row| {
+                            mel.filters().weight(row, column) * (energies[row] - reached[row])
+                        })
+                        .sum();
+                    let gradient = (RIDGE * p - pull) / largest;
+                    assert!(p >= 0.0 && gradient > -1e-10, "{bands} {round}: {gradient}");
+                    assert!(p == 0.0 || gradient < 1e-10, "{bands} {round}: {gradient}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,369 @@
+"""A player written from spec/htex-1.md alone, with NumPy and SciPy: decodes assets, mixes parameters
+between conditions, and computes magnitudes. Compares them with the numbers beside the assets.
+
+Argument: the folder of assets and numbers. Exit status 1 and a line a difference where they differ by more
+than 1e-8.
+"""
+
+import json
+import pathlib
+import struct
+import sys
+import zipfile
+
+import numpy as np
+from scipy import fft, optimize, spatial, special
+
+TOLERANCE = 1e-8
+
+
+# Container, manifest, blocks (sections 1 to 4).
+
+
+def read_length(data, at):
+    first = data[at]
+    if first <= 250:
+        return first, at + 1
+    size = {0xFB: 2, 0xFC: 4, 0xFD: 8}[first]
+    return int.from_bytes(data[at + 1 : at + 1 + size], "little"), at + 1 + size
+
+
+def read_numbers(store, count, data, at):
+    if isinstance(store, str):
+        code = {"f64": "d", "f32": "f"}[store]
+        steps = None
+    else:
+        ((kind, steps),) = store.items()
+        code = {"u16": "H", "u8": "B"}[kind]
+    values = struct.unpack_from(f"<{count}{code}", data, at)
+    at += count * struct.calcsize(code)
+    if steps:
+        values = [steps.get("offset", 0.0) + steps["scale"] * q for q in values]
+        if steps.get("log", False):
+            values = [np.exp(x) for x in values]
+    return np.array(values, float), at
+
+
+def read_block(representation, data):
+    """For each condition a dictionary of the fields by name."""
+    at, sets = 0, []
+    for _ in representation["at"]:
+        fields = {}
+        for field in representation["fields"]:
+            count = 1
+            if field.get("list", False):
+                count, at = read_length(data, at)
+            values, at = read_numbers(field.get("store", "f64"), count, data, at)
+            fields[field["name"]] = values if field.get("list", False) else values[0]
+        sets.append(fields)
+    assert at == len(data), "bytes behind the last number"
+    return sets
+
+
+def flat(representation, fields):
+    parts = []
+    for field in representation["fields"]:
+        value = fields[field["name"]]
+        parts += [len(value), *value] if field.get("list", False) else [value]
+    return parts
+
+
+# Shapes (section 6).
+
+
+class Band:
+    def __init__(self, low, high):
+        self.low, self.high = low, high
+        first, last = int(np.ceil(low / 5 - 1e-9)), int(np.floor(high / 5 + 1e-9))
+        self.grid = 5.0 * np.arange(first, last + 1)
+
+    def holds(self, f):
+        return (f >= self.low) & (f <= self.high)
+
+    def log_unit(self, f):
+        return np.log(f / self.low) / np.log(self.high / self.low)
+
+
+def rms(magnitude):
+    return np.sqrt(np.sum(magnitude**2) / 3)
+
+
+def normed(curve):
+    """The magnitude of a curve: divided by its RMS on the grid, 0 outside the band."""
+
+    def magnitude(parameters, band, f):
+        m = np.zeros_like(f)
+        inside = band.holds(f)
+        m[inside] = curve(parameters, band, f[inside]) / rms(curve(parameters, band, band.grid))
+        return m
+
+    return magnitude
+
+
+def on_the_grid(spectrum):
+    """A curve that is given on the grid: straight between."""
+    return lambda parameters, band, f: np.interp(f, band.grid, spectrum(parameters, band))
+
+
+@normed
+def ar(p, band, f):
+    rate = p["model_rate_hz"]
+    k = np.arange(1, len(p["coefficients"]) + 1)
+    z = np.exp(-2j * np.pi * np.outer(f, k) / rate)
+    h = 1 / np.abs(1 - z @ p["coefficients"])
+    return np.where(f <= rate / 2, h, 0.0)
+
+
+def mel_bank(count, band):
+    mel = lambda f: 2595 * np.log10(1 + f / 700)
+    points = np.linspace(mel(band.low), mel(band.high), count + 2)
+    edges = 700 * (10 ** (points / 2595) - 1)
+    edges[0], edges[-1] = band.low, band.high
+    f = band.grid
+    rise = (f - edges[:-2, None]) / np.diff(edges)[:-1, None]
+    fall = (edges[2:, None] - f) / np.diff(edges)[1:, None]
+    return edges, np.maximum(0, np.minimum(rise, fall))
+
+
+def mfcc_spectrum(p, band):
+    count, inverse = (int(np.floor(p[name] + 0.5)) for name in ("bands", "inverse"))
+    padded = np.zeros(count)
+    kept = p["cepstrum"][:count]
+    padded[: len(kept)] = kept
+    energy = np.exp(fft.idct(padded, type=2, norm="ortho"))
+    edges, bank = mel_bank(count, band)
+    if inverse == 0:
+        largest = max(bank.shape) * 2.0**-52
+        power = np.maximum(0, np.linalg.pinv(bank, rcond=largest) @ energy)
+        # Rounding, of which a root would be taken.
+        power[bank.sum(axis=0) == 0] = 0
+    elif inverse == 1:
+        scale = energy.max()
+        ridge = np.vstack([bank, np.sqrt(1e-6) * np.eye(bank.shape[1])])
+        target = np.concatenate([energy / scale, np.zeros(bank.shape[1])])
+        solved = optimize.lsq_linear(ridge, target, (0, np.inf), method="bvls", tol=1e-16)
+        power = scale * np.maximum(0, solved.x)
+    else:
+        sums = bank.sum(axis=1)
+        held = sums > 0
+        power = np.interp(band.grid, edges[1:-1][held], energy[held] / sums[held])
+    return np.sqrt(power)
+
+
+mfcc = normed(on_the_grid(mfcc_spectrum))
+
+
+def speak(p, band, f):
+    lines, a = p["frequency_hz"], p["amplitude"]
+    played = band.holds(lines)
+    lines, a = lines[played], a[played]
+    d = np.abs(np.subtract.outer(f, lines)) / 5
+    with np.errstate(divide="ignore", invalid="ignore"):
+        lobe = np.sinc(d) / (1 - d**2)
+    lobe = np.where(np.abs(d - 1) < 1e-7, 0.5, lobe)
+    lobe = np.where(d >= 2, 0.0, lobe)
+    m = np.sqrt(((a * lobe) ** 2).sum(axis=1)) / np.sqrt((a**2).sum() / 2)
+    return np.where(band.holds(f), m, 0.0)
+
+
+@normed
+def sbeta(p, band, f):
+    alpha, beta = p["alpha"], p["beta"]
+    low = band.low + (1.25 if alpha < 1 else 0)
+    high = band.high - (1.25 if beta < 1 else 0)
+    u = band.log_unit(np.clip(f, low, high))
+    return np.exp(
+        special.xlogy(alpha - 1, u) + special.xlog1py(beta - 1, -u) - special.betaln(alpha, beta)
+    )
+
+
+@normed
+def sslope(p, band, f):
+    x = f / p["peak_hz"]
+    high_pass, low_pass = p["order_high_pass"], p["order_low_pass"]
+    return 1 / np.sqrt((1 + x ** (-2 * high_pass)) * (1 + x ** (2 * low_pass)))
+
+
+def bands_spectrum(p, band):
+    q, step = p["below_loudest"], p["step_db"]
+    n = len(q)
+    wanted_db = -np.minimum(120, step * (q - q.min()))
+    x = (n + 1) * band.log_unit(band.grid)
+    weights = np.maximum(0, 1 - np.abs(np.arange(1, n + 1)[:, None] - x))
+    held = weights.sum(axis=1) > 0
+    weighed = np.flatnonzero(weights.sum(axis=0) > 0)
+    nearest = np.clip(np.arange(len(x)), weighed[0], weighed[-1])
+
+    def log_power(knots):
+        return np.interp(x[nearest], np.arange(1, n + 1), knots)
+
+    def missed(knots):
+        return np.log(weights[held] @ np.exp(log_power(knots))) - wanted_db[held] * np.log(10) / 10
+
+    start = wanted_db * np.log(10) / 10 - np.log(np.maximum(weights.sum(axis=1), 1e-9))
+    found = optimize.least_squares(missed, start, method="lm", xtol=1e-15, ftol=1e-15, gtol=1e-15)
+    return np.exp(0.5 * log_power(found.x))
+
+
+bands = normed(on_the_grid(bands_spectrum))
+
+
+# Between conditions (section 11).
+
+
+def weights_at(conditions, motion):
+    """Pairs of condition and weight."""
+    points = np.array([[c.get("speed_mm_s", 0.0), c.get("force_n", 0.0)] for c in conditions])
+    scale = np.abs(points).max(axis=0)
+    scale[scale == 0] = 1
+    points, q = points / scale, np.array(motion) / scale
+    edges = [(0, 0)]
+    if len(points) > 2:
+        mesh = spatial.Delaunay(points)
+        for corners in mesh.simplices:
+            a, b, c = points[corners]
+            w = np.linalg.solve(np.column_stack([b - a, c - a]), q - a)
+            w = np.array([1 - w.sum(), *w])
+            if (w >= -1e-12).all():
+                return [(i, x) for i, x in zip(corners, w) if x > 1e-12]
+        edges = mesh.convex_hull
+    elif len(points) == 2:
+        edges = [(0, 1)]
+    best = (np.inf, None)
+    for i, j in edges:
+        along = points[j] - points[i]
+        t = np.clip(np.dot(q - points[i], along) / max(np.dot(along, along), 1e-300), 0, 1)
+        away = np.linalg.norm(points[i] + t * along - q)
+        if away < best[0]:
+            best = (away, [(i, 1 - t), (j, t)])
+    return [(i, w) for i, w in best[1] if w > 0]
+
+
+def linear(sets, weights):
+    return {name: sum(w * s[name] for w, s in zip(weights, sets)) for name in sets[0]}
+
+
+def line_spectral_frequencies(coefficients, order):
+    a = np.zeros(order + 2)
+    a[0] = 1
+    a[1 : len(coefficients) + 1] = -coefficients
+    angles = []
+    for polynomial in (a + a[::-1], a - a[::-1]):
+        angle = np.angle(np.roots(polynomial))
+        angles += [w for w in angle if 1e-9 < w < np.pi - 1e-9]
+    return np.sort(angles)
+
+
+def coefficients_of(lines):
+    order = len(lines)
+    symmetric, antisymmetric = np.poly1d([1.0]), np.poly1d([1.0])
+    for i, w in enumerate(lines):
+        factor = np.poly1d([1, -2 * np.cos(w), 1])
+        if i % 2 == 0:
+            symmetric *= factor
+        else:
+            antisymmetric *= factor
+    if order % 2 == 0:
+        symmetric, antisymmetric = symmetric * np.poly1d([1, 1]), antisymmetric * np.poly1d([1, -1])
+    else:
+        antisymmetric *= np.poly1d([1, 0, -1])
+    a = 0.5 * (symmetric.coeffs + antisymmetric.coeffs)
+    return -a[1 : order + 1]
+
+
+def mix_ar(sets, weights):
+    order = max(len(s["coefficients"]) for s in sets)
+    lines = [line_spectral_frequencies(s["coefficients"], order) for s in sets]
+    mixed = sum(w * x for w, x in zip(weights, lines))
+    return {"coefficients": coefficients_of(mixed), "model_rate_hz": sets[0]["model_rate_hz"]}
+
+
+def mix_mfcc(sets, weights):
+    longest = max(len(s["cepstrum"]) for s in sets)
+    padded = [{**s, "cepstrum": np.pad(s["cepstrum"], (0, longest - len(s["cepstrum"])))} for s in sets]
+    return linear(padded, weights)
+
+
+def mix_speak(sets, weights):
+    if len({len(s["frequency_hz"]) for s in sets}) == 1:
+        return linear(sets, weights)
+    return {
+        "frequency_hz": np.concatenate([s["frequency_hz"] for s in sets]),
+        "amplitude": np.concatenate([np.sqrt(w) * s["amplitude"] for w, s in zip(weights, sets)]),
+        "random_phase": sets[0]["random_phase"],
+    }
+
+
+MODELS = {
+    "org.htex.ar": (ar, mix_ar),
+    "org.htex.mfcc": (mfcc, mix_mfcc),
+    "org.htex.speak": (speak, mix_speak),
+    "org.htex.sbeta": (sbeta, linear),
+    "org.htex.sslope": (sslope, linear),
+    "org.htex.bands": (bands, linear),
+}
+
+
+# The comparison.
+
+
+def differ(what, mine, theirs, findings):
+    mine, theirs = np.atleast_1d(mine).astype(float), np.atleast_1d(theirs).astype(float)
+    if mine.shape != theirs.shape:
+        findings.append(f"{what}: {len(mine)} numbers, {len(theirs)} expected")
+        return 0.0
+    # Where a spectrum is nearly 0, relative to its largest value.
+    scale = np.maximum(np.abs(theirs), 1e-6 * np.abs(theirs).max())
+    off = np.abs(mine - theirs) / np.where(scale > 0, scale, 1)
+    if not off.max() <= TOLERANCE:
+        i = int(off.argmax())
+        findings.append(f"{what}: number {i} is {mine[i]!r}, {theirs[i]!r} expected ({off[i]:.1e})")
+    return off.max()
+
+
+def check(path, findings):
+    """Cases of a file, and the largest difference of a magnitude by model."""
+    told = json.loads(path.read_text())
+    with zipfile.ZipFile(path.with_name(told["asset"])) as archive:
+        manifest = json.loads(archive.read("manifest.json"))
+        blocks = {r["model"]: archive.read(r["parameters"]) for r in manifest["representations"]}
+    band = Band(manifest["band"]["low_hz"], manifest["band"]["high_hz"])
+    frequency = np.array(told["frequency_hz"])
+    worst = {}
+    for case in told["cases"]:
+        representation = next(r for r in manifest["representations"] if r["model"] == case["model"])
+        sets = read_block(representation, blocks[case["model"]])
+        at = representation["at"]
+        conditions = [manifest["conditions"][a["condition"]] for a in at]
+        mixed = weights_at(conditions, (case["speed_mm_s"], case["force_n"]))
+        level = sum(w * at[i]["level_n_rms"] for i, w in mixed)
+        magnitude, mix = MODELS[case["model"]]
+        chosen = [sets[i] for i, _ in mixed]
+        parameters = chosen[0] if len(chosen) == 1 else mix(chosen, [w for _, w in mixed])
+        what = f"{path.stem} {case['model']} at {case['speed_mm_s']} mm/s, {case['force_n']} N"
+        if case["model"] != "org.htex.speak" or len(mixed) == 1:
+            # The order in which lines of several sets stand is not told.
+            differ(f"{what}, parameters", flat(representation, parameters), case["parameters"], findings)
+        differ(f"{what}, level", level, case["level_n_rms"], findings)
+        m = level * magnitude(parameters, band, frequency)
+        off = differ(f"{what}, magnitude", m, case["magnitude_n"], findings)
+        worst[case["model"]] = max(worst.get(case["model"], 0.0), off)
+    return len(told["cases"]), worst
+
+
+def main(folder):
+    findings, count, worst = [], 0, {}
+    for path in sorted(pathlib.Path(folder).glob("*.json")):
+        cases, off = check(path, findings)
+        count += cases
+        for model, x in off.items():
+            worst[model] = max(worst.get(model, 0.0), x)
+    for model, x in sorted(worst.items()):
+        print(f"{model}: magnitudes within {x:.1e}")
+    print(f"{count} cases, {len(findings)} differences")
+    sys.stderr.writelines(line + "\n" for line in findings)
+    return 1 if findings or count == 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))

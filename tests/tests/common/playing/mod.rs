@@ -1,0 +1,193 @@
+//! Numbers that a player is tested against: the models' descriptors, assets with parameters of every
+//! model, and what is to be read of them.
+
+mod parameters;
+
+use std::path::PathBuf;
+
+use htex::Asset;
+use htex_author::stored_fields;
+use htex_host::{LoadedModel, Registry};
+use htex_tests::workspace;
+use serde_json::{Value, json};
+
+use parameters::parameters;
+
+/// An asset to be made: its band, where it is known, and where it is read in between.
+struct Plan {
+    name: &'static str,
+    band_hz: [f64; 2],
+    /// Speed, mm/s, and force, newtons.
+    conditions: &'static [[f64; 2]],
+    motions: &'static [[f64; 2]],
+}
+
+const TACTILE_HZ: [f64; 2] = [20.0, 1000.0];
+
+/// Conditions of an asset of three and more are far from a line and from a circle.
+const PLANS: [Plan; 5] = [
+    Plan {
+        name: "one_condition",
+        band_hz: TACTILE_HZ,
+        conditions: &[[80.0, 0.4]],
+        motions: &[[160.0, 0.8]],
+    },
+    Plan {
+        name: "two_speeds",
+        band_hz: TACTILE_HZ,
+        conditions: &[[40.0, 0.4], [160.0, 0.4]],
+        motions: &[[70.0, 0.4], [100.0, 0.4], [20.0, 0.9], [400.0, 0.1]],
+    },
+    Plan {
+        name: "three_conditions",
+        band_hz: TACTILE_HZ,
+        conditions: &[[50.0, 0.2], [150.0, 0.3], [90.0, 0.9]],
+        motions: &[
+            [95.0, 0.45],
+            [60.0, 0.3],
+            [100.0, 0.1],
+            [150.0, 0.9],
+            [10.0, 0.1],
+        ],
+    },
+    Plan {
+        name: "narrow_band",
+        band_hz: [32.5, 437.5],
+        conditions: &[[50.0, 0.2], [170.0, 0.25], [60.0, 0.8], [140.0, 0.9]],
+        motions: &[[100.0, 0.5], [75.0, 0.3], [130.0, 0.4], [200.0, 0.6]],
+    },
+    Plan {
+        name: "five_conditions",
+        band_hz: TACTILE_HZ,
+        conditions: &[
+            [40.0, 0.2],
+            [170.0, 0.25],
+            [90.0, 0.6],
+            [50.0, 1.1],
+            [190.0, 1.0],
+        ],
+        motions: &[
+            [80.0, 0.3],
+            [60.0, 0.7],
+            [120.0, 0.9],
+            [150.0, 0.6],
+            [300.0, 2.0],
+        ],
+    },
+];
+
+/// Frequencies beside the grid and beside the band at which magnitudes are told as well, hertz.
+const BESIDE_HZ: [f64; 8] = [10.0, 19.99, 33.3, 101.25, 317.7, 437.5, 998.5, 1_000.5];
+
+/// Where the models' descriptors are.
+pub fn models_folder() -> PathBuf {
+    workspace().join("spec/models")
+}
+
+/// Where the assets and their numbers are.
+pub fn cases_folder() -> PathBuf {
+    workspace().join("spec/playing-conformance")
+}
+
+/// Every file with its bytes.
+pub fn files() -> Vec<(PathBuf, Vec<u8>)> {
+    let registry = Registry::builtin();
+    let mut files: Vec<(PathBuf, Vec<u8>)> = registry.models().iter().map(descriptor).collect();
+    for (number, plan) in PLANS.iter().enumerate() {
+        let bytes = asset(&registry, number, plan);
+        let numbers = numbers(plan, &Asset::from_bytes(&bytes).unwrap());
+        let path = |ending: &str| cases_folder().join(format!("{}.{ending}", plan.name));
+        files.push((path("htex"), bytes));
+        files.push((path("json"), numbers.into_bytes()));
+    }
+    files
+}
+
+/// A model's descriptor as it crosses the ABI, and where it is kept.
+fn descriptor(model: &LoadedModel) -> (PathBuf, Vec<u8>) {
+    let file = format!("{}.json", model.id());
+    let text = serde_json::to_string_pretty(model.descriptor()).unwrap() + "\n";
+    (models_folder().join(file), text.into_bytes())
+}
+
+fn asset(registry: &Registry, number: usize, plan: &Plan) -> Vec<u8> {
+    let conditions: Vec<Value> = plan
+        .conditions
+        .iter()
+        .map(|[speed, force]| json!({"speed_mm_s": speed, "force_n": force}))
+        .collect();
+    let mut representations = Vec::new();
+    let mut all = Vec::new();
+    for model in registry.models() {
+        let fields = stored_fields(model.descriptor());
+        let sets: Vec<Vec<f64>> = (0..conditions.len())
+            .map(|i| parameters(model.short_name(), number, i))
+            .map(|flat| htex_format::round_parameters(&fields, &flat).unwrap())
+            .collect();
+        let at: Vec<Value> = (0..sets.len())
+            .map(|i| json!({"condition": i, "level_n_rms": 0.01 * (1 + i + number) as f64}))
+            .collect();
+        representations.push(json!({
+            "model": model.id(),
+            "model_version": model.descriptor().version,
+            "fields": fields,
+            "at": at,
+            "parameters": format!("parameters/{}.bin", model.id()),
+        }));
+        all.push(sets);
+    }
+    let manifest = json!({
+        "htex": "1.0",
+        "name": plan.name,
+        "license": "CC0-1.0",
+        "quantity": "lateral_force",
+        "unit": "N",
+        "band": {"low_hz": plan.band_hz[0], "high_hz": plan.band_hz[1]},
+        "conditions": conditions,
+        "representations": representations,
+    });
+    let asset = htex_format::Asset {
+        manifest: serde_json::from_value(manifest).unwrap(),
+        parameters: all,
+        reference: None,
+        plugins: Vec::new(),
+        notes: Vec::new(),
+    };
+    asset.to_bytes().unwrap()
+}
+
+/// What is read of an asset, a line of JSON a case.
+fn numbers(plan: &Plan, asset: &Asset) -> String {
+    let mut frequency_hz = asset.band().grid_hz();
+    frequency_hz.extend(BESIDE_HZ);
+    let mut cases = Vec::new();
+    for representation in &asset.manifest().representations {
+        let model = Some(&representation.model[..]);
+        for motion in plan.conditions.iter().chain(plan.motions) {
+            let motion = (motion[0], motion[1]);
+            let (parameters, level_n) = asset.parameters(model, Some(motion)).unwrap();
+            let magnitude = asset.magnitude_n(model, Some(motion), &frequency_hz);
+            cases.push(json!({
+                "model": representation.model,
+                "speed_mm_s": motion.0,
+                "force_n": motion.1,
+                "parameters": parameters,
+                "level_n_rms": level_n,
+                "magnitude_n": rounded(&magnitude.unwrap()),
+            }));
+        }
+    }
+    let cases: Vec<String> = cases.iter().map(Value::to_string).collect();
+    format!(
+        "{{\"asset\":\"{}.htex\",\n\"frequency_hz\":{},\n\"cases\":[\n{}\n]}}\n",
+        plan.name,
+        json!(frequency_hz),
+        cases.join(",\n")
+    )
+}
+
+/// Twelve digits: more than players are held to.
+fn rounded(values: &[f64]) -> Vec<f64> {
+    let round = |x: &f64| format!("{x:.11e}").parse().unwrap();
+    values.iter().map(round).collect()
+}

@@ -1,0 +1,87 @@
+//! Parameters of each model, drawn in ranges that cover its cases.
+
+use htex_dsp::linear_prediction::reflection_to_coefficients;
+use htex_dsp::noise::Uniform;
+
+/// The flat array of a model for a condition of an asset.
+pub fn parameters(model: &str, asset: usize, condition: usize) -> Vec<f64> {
+    let seed = model
+        .bytes()
+        .fold(7, |sum, byte| 31 * sum + u64::from(byte));
+    let mut draw = Draw(Uniform::new(seed + (100 * asset + condition) as u64));
+    match model {
+        "ar" => ar(&mut draw, asset, condition),
+        "mfcc" => mfcc(&mut draw, asset),
+        "speak" => speak(&mut draw, asset, condition),
+        "sbeta" => vec![draw.within(0.5, 8.0), draw.within(0.5, 8.0)],
+        "sslope" => vec![
+            draw.within(10.0, 1_200.0),
+            draw.within(0.3, 4.0),
+            draw.within(0.3, 4.0),
+        ],
+        "bands" => bands(&mut draw, asset),
+        other => panic!("no parameters for {other}"),
+    }
+}
+
+struct Draw(Uniform);
+
+impl Draw {
+    fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.0.next_unit()
+    }
+
+    fn list(&mut self, count: usize, low: f64, high: f64) -> Vec<f64> {
+        (0..count).map(|_| self.within(low, high)).collect()
+    }
+}
+
+/// A list behind its length.
+fn list(values: &[f64]) -> Vec<f64> {
+    [&[values.len() as f64], values].concat()
+}
+
+/// Orders 2 to 12, within an asset too, at rates that reach above the band, to it, and not to it.
+fn ar(draw: &mut Draw, asset: usize, condition: usize) -> Vec<f64> {
+    let order = [6, 2, 4, 6, 8][asset] + 2 * (condition % 3);
+    let rate_hz = [2_000.0, 2_000.0, 4_000.0, 1_000.0, 1_500.0][asset];
+    let reflection = draw.list(order, -0.8, 0.8);
+    [
+        list(&reflection_to_coefficients(&reflection)),
+        vec![rate_hz],
+    ]
+    .concat()
+}
+
+/// All three inverses; fewer coefficients than bands, and more.
+fn mfcc(draw: &mut Draw, asset: usize) -> Vec<f64> {
+    let (count, bands, inverse) = [
+        (10, 26.0, 0.0),
+        (10, 26.0, 1.0),
+        (13, 40.0, 2.0),
+        (12, 9.0, 1.0),
+        (5, 12.0, 0.0),
+    ][asset];
+    let mut cepstrum = draw.list(count, -1.0, 1.0);
+    cepstrum[0] = draw.within(-40.0, -20.0);
+    cepstrum[1] = draw.within(0.0, 6.0);
+    [list(&cepstrum), vec![bands, inverse]].concat()
+}
+
+/// As many lines at all conditions of an asset, or not; some outside the band.
+fn speak(draw: &mut Draw, asset: usize, condition: usize) -> Vec<f64> {
+    let count = 3 + asset + if asset % 2 == 0 { 0 } else { condition };
+    let mut frequency_hz = draw.list(count, 35.0, 430.0);
+    frequency_hz[count - 1] = draw.within(5.0, 1_200.0);
+    let amplitude = draw.list(count, 0.05, 1.0);
+    let random = (asset % 2) as f64;
+    [list(&frequency_hz), list(&amplitude), vec![random]].concat()
+}
+
+/// Energies that a spectrum has, in whole steps.
+fn bands(draw: &mut Draw, asset: usize) -> Vec<f64> {
+    let (count, step_db) = [(9, 0.5), (9, 1.0), (5, 0.5), (7, 0.25), (14, 0.5)][asset];
+    let below: Vec<f64> = draw.list(count, 0.0, 8.0);
+    let below: Vec<f64> = below.iter().map(|db| (db / step_db).round()).collect();
+    [list(&below), vec![step_db]].concat()
+}

@@ -1,0 +1,153 @@
+//! What `spec/models` and `spec/playing-conformance` hold is what the models are and give, and a reader
+//! written from the specification reads it too.
+#![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
+
+#[path = "common/playing/mod.rs"]
+mod playing;
+
+use std::fs;
+use std::process::Command;
+
+use htex_tests::workspace;
+use serde_json::Value;
+
+/// Relative difference that compilers and versions of a library may make.
+const NEAR: f64 = 1e-9;
+
+#[test]
+fn the_files_are_fresh() {
+    let files = playing::files();
+    for (path, bytes) in &files {
+        let kept = fs::read(path).unwrap_or_default();
+        let fresh = match path.extension().is_some_and(|e| e == "json") {
+            true => near(&parsed(&kept), &parsed(bytes)),
+            false => kept == *bytes,
+        };
+        assert!(fresh, "{} is stale: cargo xtask generate", path.display());
+    }
+    for folder in [playing::models_folder(), playing::cases_folder()] {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            assert!(files.iter().any(|file| file.0 == path), "{path:?} is stale");
+        }
+    }
+}
+
+fn parsed(text: &[u8]) -> Value {
+    serde_json::from_slice(text).unwrap_or_default()
+}
+
+fn near(a: &Value, b: &Value) -> bool {
+    match (a, b) {
+        (Value::Number(a), Value::Number(b)) => {
+            let (a, b) = (a.as_f64().unwrap(), b.as_f64().unwrap());
+            (a - b).abs() <= NEAR * a.abs().max(b.abs()).max(1e-6)
+        }
+        (Value::Array(a), Value::Array(b)) => {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| near(a, b))
+        }
+        (Value::Object(a), Value::Object(b)) => {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.0 == b.0 && near(a.1, b.1))
+        }
+        _ => a == b,
+    }
+}
+
+/// The table of ranges in the text is that of the descriptors.
+#[test]
+fn the_text_has_every_field_and_its_range() {
+    let text = fs::read_to_string(workspace().join("spec/htex-1.md")).unwrap();
+    let rows: Vec<&str> = text.lines().filter(|line| line.starts_with('|')).collect();
+    for model in htex_host::Registry::builtin().models() {
+        assert!(text.contains(&format!("| `{}` |", model.id())));
+        for field in &model.descriptor().fields {
+            let (low, high) = (grouped(field.min), grouped(field.max));
+            let range = format!("| {} | {low} | {high} |", field.unit);
+            let name = format!("`{}`", field.name);
+            let told = |row: &&&str| row.contains(&name) && row.contains(&range);
+            let row = rows.iter().find(told).copied();
+            let row = row.unwrap_or_else(|| panic!("{} {name} {range}", model.id()));
+            if let htex_host::Kind::List { max_len } = field.kind {
+                assert!(row.contains(&format!(" to {max_len} of them")) || row.contains("as many"));
+            }
+        }
+    }
+}
+
+/// A number with commas between thousands.
+fn grouped(x: f64) -> String {
+    if x.abs() < 1000.0 {
+        return x.to_string();
+    }
+    let digits = format!("{:.0}", x.abs());
+    let grouped: Vec<&str> = digits
+        .as_bytes()
+        .rchunks(3)
+        .rev()
+        .map(|part| std::str::from_utf8(part).unwrap())
+        .collect();
+    let sign = if x < 0.0 { "-" } else { "" };
+    format!("{sign}{}", grouped.join(","))
+}
+
+#[test]
+fn every_model_has_cases() {
+    let mut counts = std::collections::BTreeMap::new();
+    let numbers = playing::files().into_iter();
+    for (_, bytes) in numbers.filter(|(path, _)| path.starts_with(playing::cases_folder())) {
+        for case in parsed(&bytes)["cases"].as_array().into_iter().flatten() {
+            *counts.entry(case["model"].to_string()).or_insert(0) += 1;
+        }
+    }
+    assert_eq!(counts.len(), 6);
+    assert!(counts.values().sum::<i32>() >= 200, "{counts:?}");
+}
+
+/// What is valid can be played, too; other than one that brings an empty module along.
+#[test]
+fn valid_conformance_files_are_played() {
+    let folder = workspace().join("spec/conformance");
+    let mut played = 0;
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if !name.starts_with("valid") || !name.ends_with(".htex") || name == "valid_plugin.htex" {
+            continue;
+        }
+        let asset = htex::Asset::open(&path).unwrap();
+        for representation in &asset.manifest().representations {
+            let options = htex::VoiceOptions {
+                model: Some(&representation.model),
+                ..Default::default()
+            };
+            let mut out = [0.0f32; 2_000];
+            let voice = asset.voice(&options);
+            let rendered = voice.and_then(|mut voice| voice.render(&mut out));
+            rendered.unwrap_or_else(|error| panic!("{name}: {error}"));
+            assert!(out.iter().any(|&x| x != 0.0), "{name} is silent");
+            played += 1;
+        }
+    }
+    assert!(played >= 10, "{played} representations");
+}
+
+/// Decodes the assets and computes their magnitudes in Python, from the text of the specification.
+#[test]
+fn a_reader_written_from_the_text_agrees() {
+    let python = std::env::var("HTEX_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let has = Command::new(&python)
+        .args(["-c", "import numpy, scipy"])
+        .output();
+    if !has.is_ok_and(|output| output.status.success()) {
+        println!("skipped: {python} with NumPy and SciPy is not there");
+        return;
+    }
+    let output = Command::new(&python)
+        .arg(workspace().join("tests/peers/player.py"))
+        .arg(playing::cases_folder())
+        .output()
+        .unwrap();
+    print!("{}", String::from_utf8_lossy(&output.stdout));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+}

@@ -61,7 +61,7 @@ pub(crate) struct RepresentationSummary {
 pub(crate) struct AtSummary {
     condition: usize,
     parameters: Map<String, Value>,
-    level_n_rms: f64,
+    level_rms: f64,
     #[serde(flatten)]
     pub(crate) quality: Option<Quality>,
 }
@@ -186,7 +186,7 @@ fn row(r: &RepresentationSummary, at: &AtSummary) -> String {
         "  {:8} {:>5}  {:>8.3}  {:>6}  {:>8}  {:>12}  {:>9}  {:>9}  {:>5}  {}\n",
         short_name(&r.model),
         at.condition,
-        at.level_n_rms * 1e3,
+        at.level_rms * 1e3,
         number(quality.map(|q| q.spectral_correlation), 3),
         number(quality.map(|q| q.band_error_rms_db), 2),
         number(quality.and_then(|q| q.third_octave_error_rms_db), 2),
@@ -261,7 +261,7 @@ impl AtSummary {
         Self {
             condition: at.condition,
             parameters: named_parameters(fields, flat),
-            level_n_rms: at.level_rms,
+            level_rms: at.level_rms,
             quality: at.quality.clone(),
         }
     }
@@ -294,7 +294,7 @@ impl AtSummary {
             values.into_iter().flatten().filter_map(Value::as_f64)
         };
         list("frequency_hz")
-            .zip(list("amplitude").map(|a| a * self.level_n_rms))
+            .zip(list("amplitude").map(|a| a * self.level_rms))
             .collect()
     }
 }

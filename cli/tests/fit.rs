@@ -51,7 +51,7 @@ fn fit_info_and_the_file_agree_and_are_the_same_twice() {
         assert_eq!(fitted["payload_bytes"], read["payload_bytes"]);
         assert_eq!(numbers(&fitted["band_error_db"]).len(), 9);
         for key in [
-            "level_n_rms",
+            "level_rms",
             "spectral_correlation",
             "band_error_rms_db",
             "third_octave_error_rms_db",
@@ -112,7 +112,7 @@ fn a_copy_of_a_copy_plays_as_strong_as_the_recording() {
         let level = |recording: &str, more: &[&str]| {
             let fit = ["fit", recording, "--model", model, "-o", "g.htex", "--json"];
             let fitted = place.json(&[&fit[..], more].concat());
-            fitted["representations"][0]["level_n_rms"]
+            fitted["representations"][0]["level_rms"]
                 .as_f64()
                 .unwrap()
         };
@@ -255,7 +255,7 @@ fn several_conditions_of_one_texture() {
         sum.sqrt()
     };
     // At a known condition, its level; between, between; outside, the hull's.
-    let known = fit["representations"][3]["at"][3]["level_n_rms"]
+    let known = fit["representations"][3]["at"][3]["level_rms"]
         .as_f64()
         .unwrap();
     assert!((level("120", "0.7") / known - 1.0).abs() < 1e-6);

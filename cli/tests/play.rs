@@ -30,7 +30,7 @@ fn a_minute_of_each_model_has_its_spectrum_and_its_level() {
         assert_eq!((wav.spec().sample_rate, wav.len()), (20_000, 1_200_000));
         let samples = wav.samples::<f32>().map(|x| f64::from(x.unwrap()));
         let power = samples.map(|x| x * x).sum::<f64>() / 1_200_000.0;
-        let level = fit["representations"][i]["level_n_rms"].as_f64().unwrap();
+        let level = fit["representations"][i]["level_rms"].as_f64().unwrap();
         let ratio = power.sqrt() / level;
 
         let stated = place.json(&["spectrum", "t.htex", "--model", model, "--json"]);

@@ -434,7 +434,7 @@ fn one_gain_serves_all_representations_of_a_texture() {
     let asset = htex_format::Asset::open(&place.path("coarse-fabric.htex")).unwrap();
     let level_n = |model: &str| {
         let mut all = asset.manifest.representations.iter();
-        all.find(|r| r.model.ends_with(model)).unwrap().at[0].level_n_rms
+        all.find(|r| r.model.ends_with(model)).unwrap().at[0].level_rms
     };
     let (ar_db, _) = level_db("coarse-fabric.htex", "ar", &[]);
     for model in ["sbeta", "sslope"] {

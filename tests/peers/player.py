@@ -336,7 +336,7 @@ def check(path, findings):
         at = representation["at"]
         conditions = [manifest["conditions"][a["condition"]] for a in at]
         mixed = weights_at(conditions, (case["speed_mm_s"], case["force_n"]))
-        level = sum(w * at[i]["level_n_rms"] for i, w in mixed)
+        level = sum(w * at[i]["level_rms"] for i, w in mixed)
         magnitude, mix = MODELS[case["model"]]
         chosen = [sets[i] for i, _ in mixed]
         parameters = chosen[0] if len(chosen) == 1 else mix(chosen, [w for _, w in mixed])
@@ -344,7 +344,7 @@ def check(path, findings):
         if case["model"] != "org.htex.speak" or len(mixed) == 1:
             # The order in which lines of several sets stand is not told.
             differ(f"{what}, parameters", flat(representation, parameters), case["parameters"], findings)
-        differ(f"{what}, level", level, case["level_n_rms"], findings)
+        differ(f"{what}, level", level, case["level_rms"], findings)
         m = level * magnitude(parameters, band, frequency)
         off = differ(f"{what}, magnitude", m, case["magnitude_n"], findings)
         worst[case["model"]] = max(worst.get(case["model"], 0.0), off)

@@ -48,7 +48,7 @@ struct Comparison {
 #[derive(Serialize)]
 struct Compared {
     model: String,
-    level_n_rms: f64,
+    level_rms: f64,
     #[serde(flatten)]
     quality: htex_format::Quality,
 }
@@ -97,14 +97,14 @@ impl Compare {
         let motion = found.speed_mm_s.zip(found.force_n);
         let mut compared = Vec::new();
         for representation in &asset.manifest().representations {
-            let (parameters, level_n_rms) = asset
+            let (parameters, level_rms) = asset
                 .parameters(Some(&representation.model), motion)
                 .map_err(|error| Failure::asset(&self.asset, error))?;
             let model = asset.registry().find(&representation.model)?;
             compared.push(Compared {
                 model: representation.model.clone(),
-                level_n_rms,
-                quality: measure(model, &parameters, level_n_rms, spectrum.as_ref())?,
+                level_rms,
+                quality: measure(model, &parameters, level_rms, spectrum.as_ref())?,
             });
         }
         Ok(compared)

@@ -105,8 +105,8 @@ fn error_of(
     let fit = model.fit(&spectrum.fit_request(options)).ok()?;
     let fields = stored_fields(model.descriptor());
     let stored = htex_format::round_parameters(&fields, &fit.parameters).ok()?;
-    let level_n_rms = stored_level(model, &fit, &stored, reference, level).ok()?;
+    let level_rms = stored_level(model, &fit, &stored, reference, level).ok()?;
     let shape = model.magnitude(&stored, reference.band, reference.frequency_hz);
-    let magnitude: Vec<f64> = shape.ok()?.iter().map(|m| m * level_n_rms).collect();
+    let magnitude: Vec<f64> = shape.ok()?.iter().map(|m| m * level_rms).collect();
     Some(agreement(reference, &magnitude).band_error_rms_db).filter(|error| error.is_finite())
 }

@@ -144,13 +144,13 @@ fn fit_model(
         let fit = model.fit(&group.spectrum.fit_request(&choice.options))?;
         fit_ms += start.elapsed().as_secs_f64() * 1e3;
         let stored = round_parameters(&fields, &fit.parameters)?;
-        let level_n_rms = stored_level(model, &fit, &stored, reference, level)?;
-        let mut quality = measure(model, &stored, level_n_rms, reference)?;
+        let level_rms = stored_level(model, &fit, &stored, reference, level)?;
+        let mut quality = measure(model, &stored, level_rms, reference)?;
         let rounding = rounding_error_db(model, &fit.parameters, &stored, reference)?;
         quality.rounding_error_db = Some(rounding);
         at.push(AtCondition {
             condition,
-            level_rms: level_n_rms,
+            level_rms: level_rms,
             quality: Some(quality),
         });
         parameters.push(stored);
@@ -196,13 +196,13 @@ fn misses(
 pub fn measure(
     model: &LoadedModel,
     parameters: &[f64],
-    level_n_rms: f64,
+    level_rms: f64,
     reference: SpectrumRef<'_>,
 ) -> Result<Quality, AuthorError> {
     let shape = model.magnitude(parameters, reference.band, reference.frequency_hz)?;
-    let magnitude: Vec<f64> = shape.iter().map(|m| m * level_n_rms).collect();
+    let magnitude: Vec<f64> = shape.iter().map(|m| m * level_rms).collect();
     let by_magnitude = agreement(reference, &magnitude);
-    let rendered = rendered_spectrum(model, parameters, level_n_rms, reference)?;
+    let rendered = rendered_spectrum(model, parameters, level_rms, reference)?;
     let by_samples = agreement(reference, &rendered);
     Ok(Quality {
         spectral_correlation: by_magnitude.spectral_correlation,

@@ -21,14 +21,14 @@ const SEED: u64 = 1;
 pub fn rendered_spectrum(
     model: &LoadedModel,
     parameters: &[f64],
-    level_n_rms: f64,
+    level_rms: f64,
     reference: SpectrumRef<'_>,
 ) -> Result<Vec<f64>, AuthorError> {
     // Four times the band's top, a whole number of samples a segment.
     let rate_hz = 4.0 * reference.band.last_bin() as f64 * GRID_HZ;
     let mut samples = vec![0.0f32; (SECONDS * rate_hz) as usize];
     Stream::new(model, parameters, reference.band, rate_hz, SEED)?.render(&mut samples)?;
-    spectrum_of_samples(&samples, rate_hz, level_n_rms, reference)
+    spectrum_of_samples(&samples, rate_hz, level_rms, reference)
 }
 
 /// The magnitudes of samples of unit RMS at a level, newtons, on the reference's grid, RMS-averaged;
@@ -39,12 +39,12 @@ pub fn rendered_spectrum(
 pub fn spectrum_of_samples(
     samples: &[f32],
     rate_hz: f64,
-    level_n_rms: f64,
+    level_rms: f64,
     reference: SpectrumRef<'_>,
 ) -> Result<Vec<f64>, AuthorError> {
     let newtons = samples
         .iter()
-        .map(|&x| f64::from(x) * level_n_rms)
+        .map(|&x| f64::from(x) * level_rms)
         .collect();
     let recording = Recording::new("samples", rate_hz, vec![newtons])?;
     let options = SpectrumOptions {

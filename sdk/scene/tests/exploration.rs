@@ -257,7 +257,7 @@ fn forces_that_nearly_agree_are_one() {
     ];
     let at = [0, 1, 2].map(|condition| AtCondition {
         condition,
-        level_n_rms: 1.0,
+        level_rms: 1.0,
         quality: None,
     });
     let explored = Explored::new(&at, &conditions);

@@ -125,7 +125,7 @@ fn asset(registry: &Registry, number: usize, plan: &Plan) -> Vec<u8> {
             .map(|flat| htex_format::round_parameters(&fields, &flat).unwrap())
             .collect();
         let at: Vec<Value> = (0..sets.len())
-            .map(|i| json!({"condition": i, "level_n_rms": 0.01 * (1 + i + number) as f64}))
+            .map(|i| json!({"condition": i, "level_rms": 0.01 * (1 + i + number) as f64}))
             .collect();
         representations.push(json!({
             "model": model.id(),
@@ -172,7 +172,7 @@ fn numbers(plan: &Plan, asset: &Asset) -> String {
                 "speed_mm_s": motion.0,
                 "force_n": motion.1,
                 "parameters": parameters,
-                "level_n_rms": level_n,
+                "level_rms": level_n,
                 "magnitude_n": rounded(&magnitude.unwrap()),
             }));
         }

@@ -173,7 +173,7 @@ fn numbers(plan: &Plan, asset: &Asset) -> String {
                 "force_n": motion.1,
                 "parameters": parameters,
                 "level_rms": level_n,
-                "magnitude_n": rounded(&magnitude.unwrap()),
+                "magnitude": rounded(&magnitude.unwrap()),
             }));
         }
     }

@@ -78,10 +78,16 @@ fn speak(draw: &mut Draw, asset: usize, condition: usize) -> Vec<f64> {
     [list(&frequency_hz), list(&amplitude), vec![random]].concat()
 }
 
-/// Energies that a spectrum has, in whole steps.
+/// Both layouts, one knot to many; the same layout and count at all conditions of an asset.
 fn bands(draw: &mut Draw, asset: usize) -> Vec<f64> {
-    let (count, step_db) = [(9, 0.5), (9, 1.0), (5, 0.5), (7, 0.25), (14, 0.5)][asset];
-    let below: Vec<f64> = draw.list(count, 0.0, 8.0);
+    let (count, step_db, layout) = [
+        (9, 0.5, 0.0),
+        (30, 1.0, 1.0),
+        (5, 0.5, 1.0),
+        (7, 0.25, 0.0),
+        (64, 0.5, 1.0),
+    ][asset];
+    let below: Vec<f64> = draw.list(count, 0.0, 30.0);
     let below: Vec<f64> = below.iter().map(|db| (db / step_db).round()).collect();
-    [list(&below), vec![step_db]].concat()
+    [list(&below), vec![step_db, layout]].concat()
 }

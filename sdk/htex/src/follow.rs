@@ -17,7 +17,8 @@ pub(crate) struct Follow {
     /// How many times as fast as recorded the texture is to be read.
     ratio: f64,
     gain: f64,
-    warp: Warp,
+    /// Where there is one speed to read in proportion to.
+    warp: Option<Warp>,
     contact: Glide,
 }
 
@@ -32,6 +33,7 @@ impl Follow {
         top_hz: f64,
     ) -> Self {
         let ramp = (CONTACT_RAMP_S * rate_hz).ceil() as u32;
+        let scales = effects.speed_scaling && explored.speed.is_one();
         let mut follow = Self {
             explored,
             effects,
@@ -39,7 +41,7 @@ impl Follow {
             fastest: (0.5 * rate_hz / top_hz).max(base),
             ratio: base,
             gain: 1.0,
-            warp: Warp::when_needed(),
+            warp: scales.then(Warp::when_needed),
             contact: Glide::new(1.0, ramp),
         };
         if motion.is_some_and(|motion| !follow.set_motion(motion)) {
@@ -74,8 +76,11 @@ impl Follow {
 
     /// Fills `out` with samples read as fast as the finger moves.
     pub(crate) fn read(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
-        // Exactly 1 as long as the motion is the one the voice was made for.
-        self.warp.process(self.ratio / self.base, out, source);
+        match &mut self.warp {
+            // Exactly 1 as long as the motion is the one the voice was made for.
+            Some(warp) => warp.process(self.ratio / self.base, out, source),
+            None => source(out),
+        }
     }
 
     /// What it does.

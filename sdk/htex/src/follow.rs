@@ -23,14 +23,14 @@ pub(crate) struct Follow {
 }
 
 impl Follow {
-    /// For a voice that starts with a motion, else as recorded, at `rate_hz`, of a source with nothing above `top_hz`; its samples come in
-    /// read `base` times as fast as recorded.
+    /// For a voice of `rate_hz` that starts with a motion, else as recorded. Its samples come in read `base` times as fast
+    /// as recorded, and can be read `highest` times as fast until they reach half the rate.
     pub(crate) fn new(
         (explored, effects): (Explored, Effects),
         motion: Option<(f64, f64)>,
         base: f64,
+        highest: f64,
         rate_hz: f64,
-        top_hz: f64,
     ) -> Self {
         let ramp = (CONTACT_RAMP_S * rate_hz).ceil() as u32;
         let scales = effects.speed_scaling && explored.speed.is_one();
@@ -38,7 +38,7 @@ impl Follow {
             explored,
             effects,
             base,
-            fastest: (0.5 * rate_hz / top_hz).max(base),
+            fastest: highest.max(base),
             ratio: base,
             gain: 1.0,
             warp: scales.then(Warp::when_needed),
@@ -81,6 +81,11 @@ impl Follow {
             Some(warp) => warp.process(self.ratio / self.base, out, source),
             None => source(out),
         }
+    }
+
+    /// Fastest reading, in the recorded speed.
+    pub(crate) fn fastest(&self) -> f64 {
+        self.fastest
     }
 
     /// What it does.

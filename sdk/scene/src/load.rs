@@ -189,7 +189,8 @@ fn load(
     device.apply(&mut scene.device);
     let response = open_response(&scene, &folder, findings);
     let settings = check_device(&scene.device, device, &folder, around.devices, findings);
-    if let Some(assets) = &assets {
+    // A motion that is not valid has its finding already.
+    if let (Some(assets), false) = (&assets, findings.has_errors()) {
         crate::beyond::check(&scene, assets, trace.as_ref(), findings);
     }
     Some(LoadedScene {

@@ -260,7 +260,7 @@ fn a_voice_says_what_it_makes_of_a_motion() {
     assert_eq!(fast.force, Reach::Inside);
     assert_eq!(
         fast.to_string(),
-        "240 mm/s is beyond what was recorded, and is played as 120.0000 mm/s"
+        "240 mm/s is beyond what was recorded, and is played as 120 mm/s"
     );
 }
 

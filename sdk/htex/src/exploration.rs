@@ -263,6 +263,11 @@ impl Reach {
     }
 }
 
+/// Measured speeds and forces mean nothing beyond four digits.
+fn four_digits(x: f64) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(x)
+}
+
 impl fmt::Display for Coverage {
     /// What is not as recorded, as a sentence; empty when all of it is.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -282,11 +287,15 @@ impl fmt::Display for Coverage {
                     factor,
                 } => write!(
                     f,
-                    "{joint}{asked} {unit}, where {recorded} {unit} was recorded: {scaled} {factor:.3} times as high"
+                    "{joint}{} {unit}, where {} {unit} was recorded: {scaled} {factor:.3} times as high",
+                    four_digits(asked),
+                    four_digits(recorded)
                 )?,
                 Reach::Clamped { asked, played } => write!(
                     f,
-                    "{joint}{asked} {unit} is beyond what was recorded, and is played as {played:.4} {unit}"
+                    "{joint}{} {unit} is beyond what was recorded, and is played as {} {unit}",
+                    four_digits(asked),
+                    four_digits(played)
                 )?,
             }
             joint = "; ";

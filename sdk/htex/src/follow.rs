@@ -17,29 +17,31 @@ pub(crate) struct Follow {
     /// How many times as fast as recorded the texture is to be read.
     ratio: f64,
     gain: f64,
-    warp: Warp,
+    /// Where there is one speed to read in proportion to.
+    warp: Option<Warp>,
     contact: Glide,
 }
 
 impl Follow {
-    /// For a voice that starts with a motion, else as recorded, at `rate_hz`, of a source with nothing above `top_hz`; its samples come in
-    /// read `base` times as fast as recorded.
+    /// For a voice of `rate_hz` that starts with a motion, else as recorded. Its samples come in read `base` times as fast
+    /// as recorded, and can be read `highest` times as fast until they reach half the rate.
     pub(crate) fn new(
         (explored, effects): (Explored, Effects),
         motion: Option<(f64, f64)>,
         base: f64,
+        highest: f64,
         rate_hz: f64,
-        top_hz: f64,
     ) -> Self {
         let ramp = (CONTACT_RAMP_S * rate_hz).ceil() as u32;
+        let scales = effects.speed_scaling && explored.speed.is_one();
         let mut follow = Self {
             explored,
             effects,
             base,
-            fastest: (0.5 * rate_hz / top_hz).max(base),
+            fastest: highest.max(base),
             ratio: base,
             gain: 1.0,
-            warp: Warp::when_needed(),
+            warp: scales.then(Warp::when_needed),
             contact: Glide::new(1.0, ramp),
         };
         if motion.is_some_and(|motion| !follow.set_motion(motion)) {
@@ -74,8 +76,16 @@ impl Follow {
 
     /// Fills `out` with samples read as fast as the finger moves.
     pub(crate) fn read(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
-        // Exactly 1 as long as the motion is the one the voice was made for.
-        self.warp.process(self.ratio / self.base, out, source);
+        match &mut self.warp {
+            // Exactly 1 as long as the motion is the one the voice was made for.
+            Some(warp) => warp.process(self.ratio / self.base, out, source),
+            None => source(out),
+        }
+    }
+
+    /// Fastest reading, in the recorded speed.
+    pub(crate) fn fastest(&self) -> f64 {
+        self.fastest
     }
 
     /// What it does.

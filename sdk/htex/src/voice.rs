@@ -4,7 +4,7 @@ use htex_dsp::glide::Glide;
 use htex_dsp::resample::Resampler;
 use htex_host::{HostError, StillSound};
 
-use crate::exploration::Coverage;
+use crate::exploration::{Coverage, Reach};
 use crate::follow::Follow;
 use crate::{Error, Source, VoiceOptions};
 
@@ -46,10 +46,15 @@ impl Voice {
         let ramp = (RAMP_S * rate_hz).ceil().max(1.0) as u32;
         // A still sound is at the voice's rate already, as recorded.
         let base = if still.is_some() { 1.0 } else { base };
-        let top_hz = source.top_hz() * base;
         let known = (source.explored(), options.effects);
-        let follow = Follow::new(known, options.motion, base, rate_hz, top_hz);
-        let resampler = Resampler::new(source.rate_hz() * base, rate_hz, top_hz);
+        let follow = Follow::new(
+            known,
+            options.motion,
+            base,
+            0.5 * rate_hz / source.top_hz(),
+            rate_hz,
+        );
+        let resampler = Resampler::new(source.rate_hz() * base, rate_hz, source.top_hz() * base);
         Ok(Self {
             resampler: resampler.map_err(HostError::from)?,
             level_n: Glide::new((source.level_n() * follow.gain()) as f32, ramp),
@@ -83,8 +88,12 @@ impl Voice {
 
     /// What this voice makes of a motion, and whether it lies within what was recorded. Does not allocate.
     pub fn coverage(&self, speed_mm_s: f64, force_n: f64) -> Coverage {
-        self.source
-            .coverage(speed_mm_s, force_n, self.follow.effects())
+        let effects = self.follow.effects();
+        let mut coverage = self.source.coverage(speed_mm_s, force_n, effects);
+        if let Reach::Scaled { factor, .. } = &mut coverage.speed {
+            *factor = factor.min(self.follow.fastest());
+        }
+        coverage
     }
 
     /// Fills `out` with the next samples, newtons. Does not allocate, lock or do I/O.

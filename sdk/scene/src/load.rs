@@ -190,7 +190,10 @@ fn load(
     let response = open_response(&scene, &folder, findings);
     let settings = check_device(&scene.device, device, &folder, around.devices, findings);
     let assets = assets?;
-    crate::beyond::check(&scene, &assets, trace.as_ref(), findings);
+    // A motion that is not valid has its finding already.
+    if !findings.has_errors() {
+        crate::beyond::check(&scene, &assets, trace.as_ref(), findings);
+    }
     if let Some(response) = &response {
         check_response(response, &assets, &scene.device, findings);
     }

@@ -118,7 +118,7 @@ pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result
     let loudest_n = choices.iter().map(|c| c.part.level_n).fold(0.0, f64::max);
     call.level_n = match scene.scene.device.levels {
         Levels::Normalised => loudest_n,
-        Levels::Own => representation::reference_n(scene, &call)?,
+        Levels::Own => representation::reference_n(scene, &call),
     };
     let parts: Vec<Part> = choices.iter().map(|c| c.part.clone()).collect();
     let mut draft = Draft::new(scene, &call, costs);

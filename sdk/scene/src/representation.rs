@@ -46,21 +46,21 @@ pub(crate) fn choose(
 
 /// The level that stands for the drive where levels are not normalised, newtons: the one given, else that of the
 /// strongest representation of the surfaces that are touched, whichever plays them.
-pub(crate) fn reference_n(scene: &LoadedScene, call: &Call) -> Result<f64, SceneError> {
+pub(crate) fn reference_n(scene: &LoadedScene, call: &Call) -> f64 {
     if let Some(given_n) = scene.scene.device.reference_n {
-        return Ok(given_n);
+        return given_n;
     }
     let mut strongest_n = 0.0f64;
     for surface in (0..scene.assets.len()).filter(|&i| call.touches[i].share > 0.0) {
         let asset = &scene.assets[surface];
         for r in &asset.manifest().representations {
-            if asset.registry().find(&r.model).is_ok() {
-                let part = Part::new(scene, call, surface, &r.model)?;
+            // One that cannot be played here has no say.
+            if let Ok(part) = Part::new(scene, call, surface, &r.model) {
                 strongest_n = strongest_n.max(part.level_n);
             }
         }
     }
-    Ok(strongest_n)
+    strongest_n
 }
 
 fn candidates(scene: &LoadedScene, call: &Call, surface: usize) -> Result<Candidates, SceneError> {

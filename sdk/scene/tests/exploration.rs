@@ -231,6 +231,28 @@ fn a_voice_says_what_it_makes_of_a_motion() {
     };
     assert!(none.slides && none.speed == as_recorded);
 
+    // A texture of 1 kHz at 4 kHz: no more than twice as fast.
+    let options = VoiceOptions {
+        rate_hz: 4_000.0,
+        ..VoiceOptions::default()
+    };
+    let low = |speed: f64| {
+        let mut voice = single().voice(&options).unwrap();
+        voice.set_motion(speed, 0.4).unwrap();
+        (samples(&mut voice, 4_000), voice.coverage(speed, 0.4))
+    };
+    let ((faster, coverage), (twice, _)) = (low(320.0), low(160.0));
+    assert!(faster == twice && faster != low(120.0).0);
+    assert_eq!(
+        coverage.speed,
+        Reach::Scaled {
+            asked: 320.0,
+            recorded: 80.0,
+            factor: 2.0
+        }
+    );
+    assert_eq!(coverage.excess(), 1.0);
+
     // Four conditions, 60 and 120 mm/s by 0.3 and 0.6 N.
     let of = |motion| grid().coverage(None, motion, Effects::default()).unwrap();
     assert!(of((100.0, 0.4)).is_inside() && of((122.0, 0.6)).is_inside());
@@ -238,7 +260,7 @@ fn a_voice_says_what_it_makes_of_a_motion() {
     assert_eq!(fast.force, Reach::Inside);
     assert_eq!(
         fast.to_string(),
-        "240 mm/s is beyond what was recorded, and is played as 120.0000 mm/s"
+        "240 mm/s is beyond what was recorded, and is played as 120 mm/s"
     );
 }
 

@@ -134,9 +134,9 @@ pub const GUARDS: &[Guard] = &[
         "files",
     )),
     piped(guard(
-        "sdk/scene/src/stages/force_scaling.rs",
-        "(force_n / known_n).min(MOST)",
-        "(force_n / known_n)",
+        "sdk/htex/src/exploration.rs",
+        "self.force.ratio(force_n).min(MOST_GAIN)",
+        "self.force.ratio(force_n)",
         "motion",
     )),
     piped(guard(

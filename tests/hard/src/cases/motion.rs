@@ -211,7 +211,7 @@ const CASES: &[Case] = &[
         "move and render",
         Bound(
             1.2e7,
-            "× RMS, a gain of at most 1e6,",
+            "× RMS (a gain of at most 1e6)",
             "finite, and samples",
         ),
         || moved(&SLOW_AND_FAST, Effects::default()),
@@ -222,7 +222,7 @@ const CASES: &[Case] = &[
         "move and render",
         Bound(
             1.2e7,
-            "× RMS, a gain of at most 1e6,",
+            "× RMS (a gain of at most 1e6)",
             "finite, and samples",
         ),
         || moved(&BEYOND_FLOATS, Effects::default()),

@@ -218,8 +218,8 @@ const CASES: &[Case] = &[
         "three bands instead of two",
         "bands",
         "retune",
-        "InvalidArgument: a voice keeps its number of bands",
-        || retune_refused("bands", &[2.0, 0.0, 9.0, 1.0], &[3.0, 0.0, 9.0, 9.0, 1.0]),
+        "InvalidArgument: a voice keeps its bands",
+        || retune_refused("bands", &[2.0, 0.0, 9.0, 1.0, 0.0], &[3.0, 0.0, 9.0, 9.0, 1.0, 0.0]),
     ),
     within(
         "phases at their crests, and by seed",

@@ -41,9 +41,9 @@ fn list(values: &[f64]) -> Vec<f64> {
     [&[values.len() as f64], values].concat()
 }
 
-/// Orders 2 to 12, within an asset too, at rates that reach above the band, to it, and not to it.
+/// Orders 0 to 12, within an asset too, at rates that reach above the band, to it, and not to it.
 fn ar(draw: &mut Draw, asset: usize, condition: usize) -> Vec<f64> {
-    let order = [6, 2, 4, 6, 8][asset] + 2 * (condition % 3);
+    let order = [0, 2, 4, 6, 8][asset] + 2 * (condition % 3);
     let rate_hz = [2_000.0, 2_000.0, 4_000.0, 1_000.0, 1_500.0][asset];
     let reflection = draw.list(order, -0.8, 0.8);
     [

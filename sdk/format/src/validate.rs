@@ -11,7 +11,7 @@ use crate::check_manifest::check_manifest;
 use crate::fields::{KnownModel, check_fields};
 use crate::json_text;
 use crate::limits::Limits;
-use crate::manifest_json;
+use crate::manifest_json::parse;
 use crate::plugin::WASM_MAGIC;
 use crate::report::{Findings, Report};
 use crate::rules as rule;
@@ -81,7 +81,7 @@ fn read(
         return None;
     };
     let json = &archive.entries[index].bytes;
-    let manifest = manifest_json::parse(json, limits, findings)?;
+    let manifest = parse(json, limits, findings)?;
     check_manifest(&manifest, findings);
     check_fields(&manifest, known, findings);
     let mut payload = Payload {

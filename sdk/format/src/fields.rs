@@ -35,7 +35,7 @@ pub enum FieldMismatch {
         wanted: &'static str,
     },
     /// The unit is another one.
-    #[error("{name:?} is stored in {stored:?} and the model takes {wanted:?}")]
+    #[error("{name:?} is stored {} and the model takes it {}", words(.stored), words(.wanted))]
     Unit {
         /// Place among the stored fields.
         index: usize,
@@ -154,6 +154,13 @@ fn mismatch(index: usize, stored: &Field, model: &Descriptor) -> Option<FieldMis
         stored: stored.unit.clone(),
         wanted: wanted.to_owned(),
     })
+}
+
+fn words(unit: &str) -> String {
+    match unit {
+        "" => "as a pure number".to_owned(),
+        unit => format!("in {unit:?}"),
+    }
 }
 
 fn kind(list: bool) -> &'static str {

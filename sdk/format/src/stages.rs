@@ -98,7 +98,11 @@ pub const STAGES: &[Stage] = &[
     },
     Stage {
         of: "conditions, in their order",
-        codes: &["CONDITIONS_EMPTY", "CONDITION_INVALID", "CONDITION_DUPLICATE"],
+        codes: &[
+            "CONDITIONS_EMPTY",
+            "CONDITION_INVALID",
+            "CONDITION_DUPLICATE",
+        ],
         ends: false,
     },
     Stage {
@@ -183,7 +187,11 @@ pub const STAGES: &[Stage] = &[
     },
     Stage {
         of: "JSON Schemas, of validators that hold documents to them",
-        codes: &["SCHEMA_BROKEN", "EXTENSION_SCHEMA_BROKEN", "DESCRIPTOR_INVALID"],
+        codes: &[
+            "SCHEMA_BROKEN",
+            "EXTENSION_SCHEMA_BROKEN",
+            "DESCRIPTOR_INVALID",
+        ],
         ends: false,
     },
     Stage {

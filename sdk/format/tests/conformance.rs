@@ -8,7 +8,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use common::cases::cases;
-use htex_format::{Asset, Finding, RULES, STAGES, Severity, Stage, explain, manifest_json, report_schema, manifest_schema, validation_page};
+use htex_format::{
+    Asset, Finding, RULES, STAGES, Severity, Stage, explain, manifest_json, manifest_schema,
+    report_schema, validation_page,
+};
 
 const RENEW: &str = "stale: cargo run -p htex-format --example conformance";
 
@@ -131,9 +134,17 @@ fn findings_stand_in_the_order_of_the_stages_and_end_where_a_stage_ends() {
         let mut errors = (0..findings.len()).filter(error);
         let ends = errors.find(|i| STAGES[stages[*i]].ends);
         let last = *stages.last().unwrap_or(&0);
-        assert!(ends.is_none_or(|i| stages[i] == last), "{}: {findings:?}", case.name);
+        assert!(
+            ends.is_none_or(|i| stages[i] == last),
+            "{}: {findings:?}",
+            case.name
+        );
     }
-    let named: BTreeSet<&str> = STAGES.iter().flat_map(|stage| stage.codes).copied().collect();
+    let named: BTreeSet<&str> = STAGES
+        .iter()
+        .flat_map(|stage| stage.codes)
+        .copied()
+        .collect();
     let rules: BTreeSet<&str> = RULES.iter().map(|rule| rule.code).collect();
     assert_eq!(named, rules);
 }

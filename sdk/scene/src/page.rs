@@ -22,5 +22,5 @@ pub fn findings_page() -> String {
 
 /// The JSON Schema of a scene of version 1.0: `spec/schemas/scene-1.json`.
 pub fn scene_schema() -> Value {
-    htex_schema::document::<Scene>("scene-1.json", "Scene of htex 1.0")
+    htex_schema::document::<Scene>("scene-1.json", "Scene of htex 1")
 }

@@ -1,6 +1,8 @@
 //! Documents, held to schemas. Nothing is fetched: a `$ref` leads into the schema itself.
 
-use jsonschema::Validator;
+use std::error::Error;
+
+use jsonschema::{Retrieve, Uri, Validator};
 use serde_json::Value;
 
 /// A schema that documents can be held to.
@@ -32,13 +34,22 @@ pub struct Violation {
     pub message: String,
 }
 
+/// What a schema refers to outside itself.
+struct Nothing;
+
+impl Retrieve for Nothing {
+    fn retrieve(&self, _uri: &Uri<String>) -> Result<Value, Box<dyn Error + Send + Sync>> {
+        Err("nothing is fetched; put what it refers to into its own $defs".into())
+    }
+}
+
 impl Schema {
     /// Reads a schema of draft 2020-12, or of the draft that its `$schema` names.
     ///
     /// # Errors
     /// When it is not a valid schema, or refers to another one.
     pub fn new(schema: &Value) -> Result<Self, SchemaError> {
-        let validator = jsonschema::options().build(schema);
+        let validator = jsonschema::options().with_retriever(Nothing).build(schema);
         validator.map(Self).map_err(|e| SchemaError(e.to_string()))
     }
 
@@ -61,4 +72,4 @@ impl std::fmt::Display for SchemaError {
     }
 }
 
-impl std::error::Error for SchemaError {}
+impl Error for SchemaError {}

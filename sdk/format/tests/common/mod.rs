@@ -8,6 +8,7 @@
 )]
 
 pub mod cases;
+mod manifest_cases;
 pub mod raw_zip;
 
 use htex_format::*;

@@ -123,7 +123,7 @@ fn asset(models: &[&str]) -> Vec<u8> {
 fn field(name: &str) -> Field {
     Field {
         name: name.to_owned(),
-        unit: String::new(),
+        unit: if name == "peak_hz" { "Hz" } else { "" }.to_owned(),
         list: false,
         store: Store::F64,
     }

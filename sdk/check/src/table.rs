@@ -83,7 +83,8 @@ checks! {
     "spectrum" needs ["magnitude", "render"] sound::spectrum:
         "The sound has the spectrum that the magnitude says.",
         "A minute, segments of 0.2 s averaged by power, levels matched: within 1 dB RMS over the bins \
-         that hold 99 % of the energy. A line spectrum is thereby judged at its lines.";
+         that hold 99 % of the energy, of the magnitude or of what noise of that density reads through the \
+         window, which differ at steep flanks. A line spectrum is thereby judged at its lines.";
     "narrow-band" needs ["level"] sound::narrow_band:
         "What lies outside the band is neither in the magnitude nor in the sound.",
         "Every fitted reference in the band 150 to 700 Hz, which leaves peaks of two of them out: the RMS \

@@ -59,6 +59,17 @@ pub(crate) fn distance_db(measured: &[f64], reference: &[f64]) -> f64 {
     (sum / n).sqrt()
 }
 
+/// What noise with these magnitudes as its density reads through the periodic Hann window: two thirds of
+/// the power in its own bin, a sixth in each neighbour, and nothing from outside the band.
+pub(crate) fn read_as_noise(magnitude: &[f64]) -> Vec<f64> {
+    let power = |i: Option<usize>| i.and_then(|i| magnitude.get(i)).map_or(0.0, |m| m * m);
+    let read = |i: usize| {
+        let beside = power(i.checked_sub(1)) + power(Some(i + 1));
+        ((beside + 4.0 * power(Some(i))) / 6.0).sqrt()
+    };
+    (0..magnitude.len()).map(read).collect()
+}
+
 /// Standard deviation of the RMS, relative, of `seconds` of noise with this spectrum: half that of
 /// its power, `1 / sqrt(B T)` with the equivalent bandwidth `B = (Σ m²)² Δf / Σ m⁴`.
 pub(crate) fn rms_spread(magnitude: &[f64], seconds: f64) -> f64 {

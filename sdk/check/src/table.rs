@@ -83,11 +83,12 @@ checks! {
     "spectrum" needs ["magnitude", "render"] sound::spectrum:
         "The sound has the spectrum that the magnitude says.",
         "A minute, segments of 0.2 s averaged by power, levels matched: within 1 dB RMS over the bins \
-         that hold 99 % of the energy. A line spectrum is thereby judged at its lines.";
+         that hold 99 % of the energy, of the magnitude or of what noise of that density reads through the \
+         window, which differ at steep flanks. A line spectrum is thereby judged at its lines.";
     "narrow-band" needs ["level"] sound::narrow_band:
         "What lies outside the band is neither in the magnitude nor in the sound.",
-        "Every fitted reference in the band 150 to 700 Hz, which leaves peaks of two of them out: in it the \
-         level of a minute of sound is the magnitude's within 1.5 dB. A model may refuse parameters that \
+        "Every fitted reference in the band 150 to 700 Hz, which leaves peaks of two of them out: the RMS \
+         of a minute of sound is 1 within 1.5 dB, in the band and in all. A model may refuse parameters that \
          leave nothing in the band.";
     "reproducible" needs ["render"] repeat::reproducible:
         "The same parameters, rate and seed give the same samples.",

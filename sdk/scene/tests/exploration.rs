@@ -41,7 +41,7 @@ fn rms_db(signal: &[f32]) -> f64 {
 /// Power by octaves from `low_hz`, decibels of all.
 fn octaves(signal: &[f32], low_hz: f64) -> Vec<f64> {
     let n = 4_000;
-    let mut power = vec![0.0; 6];
+    let mut power = [0.0; 6];
     for segment in signal.chunks_exact(n) {
         for (k, power_of) in power.iter_mut().enumerate() {
             let edge = |k: usize| (low_hz * 2f64.powi(k as i32) * n as f64 / RATE_HZ) as usize;

@@ -197,7 +197,10 @@ fn every_knob_the_paper_names_changes_the_fit() {
             &["sbeta.points=20", "sbeta.jnd=0.4", "sbeta.error=decibel"],
         ),
         ("sslope", &["sslope.rounding_db_per_decade=5"]),
-        ("bands", &["bands.bands=19", "bands.step_db=1"]),
+        (
+            "bands",
+            &["bands.bands=19", "bands.step_db=0.5", "bands.layout=within"],
+        ),
     ] {
         let default = parameters(model, &[]);
         for option in options {

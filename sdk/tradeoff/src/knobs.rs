@@ -104,7 +104,7 @@ pub const MODELS: &[ModelKnobs] = &[
             ),
             knob("step_db", &["3", "1.5", "1", "0.75", "0.5", "0.25"]),
         ],
-        alone: &[knob("layout", &["within", "edges"])],
+        alone: &[knob("layout", &["within"])],
         not_above: None,
     },
 ];

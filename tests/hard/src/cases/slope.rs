@@ -327,9 +327,7 @@ const CASES: &[Case] = &[
         "fit, magnitude",
         none("unit RMS"),
         || {
-            let fits = models()
-                .into_iter()
-                .filter(|m| m.short_name() != "speak");
+            let fits = models().into_iter().filter(|m| m.short_name() != "speak");
             failures(fits.map(|model| {
                 let fitted = crate::seen::fit(&model, &ends());
                 let shape =

@@ -219,7 +219,13 @@ const CASES: &[Case] = &[
         "bands",
         "retune",
         "InvalidArgument: a voice keeps its bands",
-        || retune_refused("bands", &[2.0, 0.0, 9.0, 1.0, 0.0], &[3.0, 0.0, 9.0, 9.0, 1.0, 0.0]),
+        || {
+            retune_refused(
+                "bands",
+                &[2.0, 0.0, 9.0, 1.0, 0.0],
+                &[3.0, 0.0, 9.0, 9.0, 1.0, 0.0],
+            )
+        },
     ),
     within(
         "phases at their crests, and by seed",

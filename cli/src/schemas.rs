@@ -9,6 +9,9 @@ use serde_json::{Map, Value, json};
 
 use crate::failure::Failure;
 
+/// Findings that a report holds, before it says that there are more.
+const KEPT: usize = 100;
+
 /// A schema of this project, by its file in `spec/schemas`.
 pub(crate) struct Named {
     file: String,
@@ -65,21 +68,36 @@ fn covers(finding: &str, violation: &str) -> bool {
     inside(finding, violation) || (!finding.is_empty() && inside(violation, finding))
 }
 
+/// Adds a violation, while there are not a hundred findings yet.
 fn add(report: &mut Report, code: &str, violation: Violation, rule: String, at: &str) {
-    let mut findings = Findings::default();
-    if let Some(broken) = explain(code) {
+    report.valid = false;
+    let shown = report.findings.len();
+    if shown < KEPT {
+        let message = format!("{}; correct it", violation.message);
         let pointer = format!("{at}{}", violation.pointer);
-        findings.add(
-            broken,
-            pointer,
-            format!("{}; correct it", violation.message),
-        );
+        push(report, code, pointer, message, Some(rule));
+    } else if shown == KEPT {
+        let message = "more findings are not shown".to_owned();
+        push(report, "FINDINGS_TRUNCATED", String::new(), message, None);
     }
-    for mut finding in findings.into_list() {
-        finding.schema_rule = Some(rule.clone());
-        report.findings.push(finding);
-        report.valid = false;
+}
+
+fn push(
+    report: &mut Report,
+    code: &str,
+    pointer: String,
+    message: String,
+    schema_rule: Option<String>,
+) {
+    let mut findings = Findings::default();
+    if let Some(rule) = explain(code) {
+        findings.add(rule, pointer, message);
     }
+    let found = findings.into_list().into_iter();
+    report.findings.extend(found.map(|finding| Finding {
+        schema_rule: schema_rule.clone(),
+        ..finding
+    }));
 }
 
 /// The schema that an extension's author gives: `com.vendor.NAME/REVISION=FILE`.

@@ -134,7 +134,11 @@ fn the_conformance_files_validate_as_their_reports_say() {
             continue;
         }
         let run = place.run(&["validate", &path, "--json"]);
-        let got: serde_json::Value = serde_json::from_str(&run.text()).unwrap();
+        let mut got: serde_json::Value = serde_json::from_str(&run.text()).unwrap();
+        for finding in got[0]["findings"].as_array_mut().unwrap() {
+            // The command holds manifests to their schema too, and names its rule.
+            finding.as_object_mut().unwrap().remove("schema_rule");
+        }
         assert_eq!(got[0]["valid"], golden["valid"], "{name}");
         assert_eq!(got[0]["findings"], golden["findings"], "{name}");
         assert_eq!(run.code(), i32::from(golden["valid"] != true), "{name}");

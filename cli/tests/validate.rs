@@ -115,7 +115,7 @@ fn descriptors_are_held_to_their_schemas() {
     device["settings"][0]["kind"] = json!({ "type": "numbr" });
     place.write("device.json", device.to_string());
     let (code, broken) = report(&place, &["device.json"]);
-    let rule = broken["findings"][0]["schema_rule"]
+    let rule = broken["findings"][1]["schema_rule"]
         .as_str()
         .unwrap_or_default();
     assert!(

@@ -137,3 +137,24 @@ fn dependencies_follow_the_arrows() {
         }
     }
 }
+
+/// Who only opens and plays assets does without a validator of JSON Schemas.
+#[test]
+fn only_the_command_and_tests_hold_documents_to_schemas() {
+    let metadata = MetadataCommand::new()
+        .manifest_path(workspace().join("Cargo.toml"))
+        .no_deps()
+        .exec()
+        .unwrap();
+    let mut holders = BTreeSet::new();
+    for package in &metadata.packages {
+        for used in &package.dependencies {
+            let held = used.name == "htex-schema" && used.features.iter().any(|f| f == "check");
+            let own = used.name == "jsonschema" && !used.optional;
+            if held || own {
+                holders.insert(package.name.as_str());
+            }
+        }
+    }
+    assert_eq!(holders, BTreeSet::from(["htex-cli", "htex-tests"]));
+}

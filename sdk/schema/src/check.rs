@@ -5,6 +5,9 @@ use std::error::Error;
 use jsonschema::{Retrieve, Uri, Validator};
 use serde_json::Value;
 
+/// Violations that are told; a hostile document could break rules by the million.
+const MOST: usize = 1000;
+
 /// A schema that documents can be held to.
 ///
 /// ```
@@ -53,10 +56,11 @@ impl Schema {
         validator.map(Self).map_err(|e| SchemaError(e.to_string()))
     }
 
-    /// Every rule that a document breaks, in the order of the schema.
+    /// The rules that a document breaks, in the order of the schema; at most the first thousand.
     pub fn violations(&self, document: &Value) -> Vec<Violation> {
         let errors = self.0.iter_errors(document);
         errors
+            .take(MOST)
             .map(|error| Violation {
                 pointer: error.instance_path().to_string(),
                 rule: error.schema_path().to_string(),

@@ -27,7 +27,7 @@ pub(crate) struct AssetSummary {
     pub(crate) representations: Vec<RepresentationSummary>,
     pub(crate) repeatability_rms_db: Option<f64>,
     pub(crate) warnings: Vec<String>,
-    notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
 }
 
 /// A model that the asset brings along.

@@ -76,6 +76,21 @@ fn fit_warns_of_what_strict_refuses() {
         "--strict",
     ]);
     assert_eq!(run.code(), 0, "{}", run.error());
+    let fitted = place.json(&[
+        "fit",
+        &spec("valid"),
+        "-o",
+        "x.htex",
+        "--model",
+        "bands",
+        "--json",
+    ]);
+    assert!(
+        fitted["notes"]
+            .to_string()
+            .contains("1 sweep of 4 left out"),
+        "{fitted}"
+    );
     let run = place.run(&["validate", "x.htex", "--rate", "1000"]);
     assert_eq!(
         run.code(),

@@ -110,6 +110,7 @@ impl Fit {
             r.fit_ms = Some(*ms);
         }
         if self.json {
+            summary.notes.extend(fitted.notes);
             print_json(&summary)?;
         } else {
             warn(&summary.warnings);

@@ -66,9 +66,9 @@ pub const GUARDS: &[Guard] = &[
         "prediction",
     ),
     guard(
-        "sdk/dsp/src/least_squares.rs",
-        "(*x + step).max(0.0)",
-        "(*x + step)",
+        "sdk/dsp/src/non_negative.rs",
+        "column.between(&scratch.at).max(0.0)",
+        "column.between(&scratch.at)",
         "cepstrum",
     ),
     guard("sdk/dsp/src/biquad.rs", ".max(0.0)\n}", "\n}", "slope"),

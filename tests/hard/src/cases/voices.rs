@@ -336,7 +336,7 @@ const CASES: &[Case] = &[
         "sinusoids without amplitude; none",
         "sPeak",
         "voice",
-        "InvalidParameters: all amplitudes are zero",
+        "InvalidParameters: no line in the band 20 to 1000 Hz has an amplitude above zero",
         || {
             let none = told(model("speak").voice(&[0.0, 0.0, 0.0], BAND, 20_000.0, 1));
             let silent = told(model("speak").voice(&[1.0, 50.0, 1.0, 0.0, 0.0], BAND, 20_000.0, 1));

@@ -87,9 +87,7 @@ fn a_third_party_model_travels_with_its_asset() {
         .samples::<f32>()
         .map(|x| f64::from(x.unwrap()).powi(2))
         .sum();
-    let level = fitted["representations"][0]["level_rms"]
-        .as_f64()
-        .unwrap();
+    let level = fitted["representations"][0]["level_rms"].as_f64().unwrap();
     let ratio = (power / 40_000.0).sqrt() / level;
     assert!(
         (0.8..1.2).contains(&ratio),

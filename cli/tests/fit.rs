@@ -112,9 +112,7 @@ fn a_copy_of_a_copy_plays_as_strong_as_the_recording() {
         let level = |recording: &str, more: &[&str]| {
             let fit = ["fit", recording, "--model", model, "-o", "g.htex", "--json"];
             let fitted = place.json(&[&fit[..], more].concat());
-            fitted["representations"][0]["level_rms"]
-                .as_f64()
-                .unwrap()
+            fitted["representations"][0]["level_rms"].as_f64().unwrap()
         };
         let mut levels = vec![level(&csv, &[])];
         // A voice of AR loses 0.05 dB each time: the resampler falls off over the last 2 % of its band.

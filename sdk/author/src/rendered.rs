@@ -42,10 +42,7 @@ pub fn spectrum_of_samples(
     level_rms: f64,
     reference: SpectrumRef<'_>,
 ) -> Result<Vec<f64>, AuthorError> {
-    let newtons = samples
-        .iter()
-        .map(|&x| f64::from(x) * level_rms)
-        .collect();
+    let newtons = samples.iter().map(|&x| f64::from(x) * level_rms).collect();
     let recording = Recording::new("samples", rate_hz, vec![newtons])?;
     let options = SpectrumOptions {
         segments: SegmentChoice::Windows,

@@ -107,7 +107,7 @@ fn a_long_stroke_is_read_all_along_and_sweeps_in_their_middles() {
         choose_segments(&recording, SegmentChoice::Auto)
     };
     let stroke = read_in(&[(0.3, 8.7)]);
-    assert!(!stroke.from_sweeps && stroke.starts.len() == 45);
+    assert!(!stroke.from_sweeps && stroke.starts.len() == 89);
     let unread = stroke.unread.unwrap();
     assert!((unread.spoken_for_s - 2.0).abs() < 0.01 && (unread.sliding_s - 8.4).abs() < 0.1);
     // Two whole sweeps of a second beside a long one that is cut off.

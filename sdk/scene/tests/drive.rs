@@ -131,16 +131,18 @@ fn under_one_gain_levels_are_alike_or_the_representations_own() {
     let all = single().manifest().representations.iter();
     let strongest_n = all.map(|r| level_n(&r.model)).fold(0.0, f64::max);
     let alike = model("ar", Levels::Normalised, None);
+    // The RMS of 20 s of noise that holds most of its power in some 30 Hz is uncertain by 0.2 dB.
+    const SPREAD_DB: f64 = 0.5;
     for name in ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"] {
         let normalised = model(name, Levels::Normalised, None) - alike;
-        assert!(normalised.abs() < 0.3, "{name}: {normalised} dB");
+        assert!(normalised.abs() < SPREAD_DB, "{name}: {normalised} dB");
         for reference_n in [None, Some(1.5 * strongest_n)] {
             let against_n = reference_n.unwrap_or(strongest_n);
             let wanted = 20.0 * (level_n(name) / against_n).log10();
             let found = model(name, Levels::Own, reference_n) - alike;
             println!("{name}: {found:.2} dB, by its level {wanted:.2} dB");
             assert!(
-                (found - wanted).abs() < 0.3,
+                (found - wanted).abs() < SPREAD_DB,
                 "{name}: {found} dB, not {wanted} dB"
             );
         }

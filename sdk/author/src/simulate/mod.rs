@@ -112,7 +112,8 @@ impl SimulationOptions {
     /// use htex_author::simulate::{SimulationOptions, Surface};
     ///
     /// let response = SimulationOptions::new(Surface::Vinyl).setup_response()?;
-    /// assert_eq!((response.frequency_hz[0], response.magnitude[0]), (0.0, 1.0));
+    /// assert_eq!(response.frequency_hz[0], 0.0);
+    /// assert!((response.magnitude[0] - 1.0).abs() < 1e-9);
     /// assert!((response.magnitude[124] - 1.73).abs() < 0.01, "at 620 Hz");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

@@ -1,6 +1,7 @@
 //! Writes what players are tested against: `spec/models` and `spec/playing-conformance`.
 //!
 //! `cargo run -p htex-tests --example playing`
+#![allow(clippy::unwrap_used, clippy::panic)] // A program for developers: a failure may end it.
 
 #[path = "../tests/common/playing/mod.rs"]
 mod playing;

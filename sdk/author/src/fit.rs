@@ -150,7 +150,7 @@ fn fit_model(
         quality.rounding_error_db = Some(rounding);
         at.push(AtCondition {
             condition,
-            level_rms: level_rms,
+            level_rms,
             quality: Some(quality),
         });
         parameters.push(stored);

@@ -94,7 +94,7 @@ pub(crate) enum Place {
     /// For the surfaces of one rate, mixed; the need is that of one of them.
     Mix {
         need: fn(&Call, &Part) -> Need,
-        build: fn(&Call, &Part, neutral: bool) -> Result<Box<dyn Stage>, UnusableRates>,
+        build: BuildMix,
     },
     /// For the sum of all, at the device's rate.
     Device {
@@ -105,6 +105,9 @@ pub(crate) enum Place {
 
 /// Makes the stage of an effect for a surface.
 type BuildFor = fn(&Call, &Part, neutral: bool) -> Box<dyn Stage>;
+
+/// Makes the stage of an effect for the surfaces of one rate.
+type BuildMix = fn(&Call, &Part, neutral: bool) -> Result<Box<dyn Stage>, UnusableRates>;
 
 /// An effect in the table.
 #[derive(Debug)]

@@ -70,7 +70,13 @@ fn mfcc(draw: &mut Draw, asset: usize) -> Vec<f64> {
 
 /// As many lines at all conditions of an asset, or not; some outside the band.
 fn speak(draw: &mut Draw, asset: usize, condition: usize) -> Vec<f64> {
-    let count = 3 + asset + if asset % 2 == 0 { 0 } else { condition };
+    let count = 3
+        + asset
+        + if asset.is_multiple_of(2) {
+            0
+        } else {
+            condition
+        };
     let mut frequency_hz = draw.list(count, 35.0, 430.0);
     frequency_hz[count - 1] = draw.within(5.0, 1_200.0);
     let amplitude = draw.list(count, 0.05, 1.0);

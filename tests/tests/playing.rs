@@ -6,6 +6,7 @@
 mod playing;
 
 use std::fs;
+use std::path::PathBuf;
 use std::process::Command;
 
 use htex_tests::workspace;
@@ -141,14 +142,13 @@ fn valid_conformance_files_are_played() {
 /// Decodes the assets and computes their magnitudes in Python, from the text of the specification.
 #[test]
 fn a_reader_written_from_the_text_agrees() {
-    let python = std::env::var("HTEX_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let has = Command::new(&python)
-        .args(["-c", "import numpy, scipy"])
-        .output();
-    if !has.is_ok_and(|output| output.status.success()) {
-        println!("skipped: {python} with NumPy and SciPy is not there");
+    let Some(python) = python() else {
+        println!(
+            "skipped: no Python with NumPy and SciPy. To have it: python3 -m venv target/peers && \
+             target/peers/bin/pip install -r tests/peers/player-requirements.txt"
+        );
         return;
-    }
+    };
     let output = Command::new(&python)
         .arg(workspace().join("tests/peers/player.py"))
         .arg(playing::cases_folder())
@@ -157,4 +157,18 @@ fn a_reader_written_from_the_text_agrees() {
     print!("{}", String::from_utf8_lossy(&output.stdout));
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
+}
+
+/// The Python with NumPy and SciPy that the environment names, else of the bench, else of the machine.
+fn python() -> Option<PathBuf> {
+    let named = std::env::var_os("HTEX_PYTHON").map(PathBuf::from);
+    let own = workspace().join("target/peers/bin/python");
+    let known = named.into_iter().chain([own, "python3".into()]);
+    let has = |python: &PathBuf| {
+        let output = Command::new(python)
+            .args(["-c", "import numpy, scipy"])
+            .output();
+        output.is_ok_and(|output| output.status.success())
+    };
+    known.into_iter().find(has)
 }

@@ -104,7 +104,11 @@ fn every_model_has_cases() {
     assert!(counts.values().sum::<i32>() >= 200, "{counts:?}");
 }
 
-/// What is valid can be played, too; other than one that brings an empty module along.
+/// Valid files that this player does not play: one brings an empty module along, one has a field that a newer version
+/// of the model knows.
+const NOT_PLAYED: [&str; 2] = ["valid_plugin.htex", "valid_field_of_newer_model.htex"];
+
+/// What is valid can be played, too.
 #[test]
 fn valid_conformance_files_are_played() {
     let folders = [
@@ -119,7 +123,7 @@ fn valid_conformance_files_are_played() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         let sound = name.starts_with("valid") || path.starts_with(playing::cases_folder());
-        if !sound || !name.ends_with(".htex") || name == "valid_plugin.htex" {
+        if !sound || !name.ends_with(".htex") || NOT_PLAYED.contains(&&name[..]) {
             continue;
         }
         let asset = htex::Asset::open(&path).unwrap();

@@ -70,7 +70,8 @@ fn bin_power(segment: &[f32], bin: usize) -> f64 {
 fn a_constant_motion_plays_as_in_a_scene_whether_a_voice_is_made_for_it_or_moved_to_it() {
     for model in MODELS {
         for motion in [RECORDED, (160.0, 0.8), (30.0, 0.2), (0.0, 0.4), (80.0, 0.0)] {
-            let mut scene = scene(single(), constant(motion.0, motion.1), 2.0);
+            // Eight seconds of an octave from 20 Hz are uncertain by 0.35 dB.
+            let mut scene = scene(single(), constant(motion.0, motion.1), 8.0);
             scene.scene.surfaces[0].representation = model.to_owned();
             let mut renderer = Renderer::new(&scene, &planned(&scene, &file())).unwrap();
             let played = rendered(&mut renderer);
@@ -102,9 +103,11 @@ fn a_constant_motion_plays_as_in_a_scene_whether_a_voice_is_made_for_it_or_moved
                 .zip(octaves(&played, low_hz))
                 .enumerate()
             {
-                // What lies 30 dB below all is not compared.
+                // What lies 30 dB below all is not compared. The lowest octave has the band's edge, at which a voice that
+                // was moved plays up to 6 dB more between 5 and 7 Hz (of 7.5).
+                let most_db = if k == 0 { 3.0 } else { 1.5 };
                 assert!(
-                    (a - b).abs() < 1.5 || b < -30.0,
+                    (a - b).abs() < most_db || b < -30.0,
                     "{model} at {motion:?}, octave {k}: {a} and {b} dB"
                 );
             }

@@ -158,3 +158,28 @@ fn the_conformance_files_validate_as_their_reports_say() {
         }
     }
 }
+
+/// An acceleration is never played as a force.
+#[test]
+fn an_asset_of_another_quantity_is_not_played_as_newtons() {
+    let place = Place::new();
+    let cloth = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../examples/scenes/coarse-fabric.htex"
+    );
+    let mut asset = htex_format::Asset::open(cloth.as_ref()).unwrap();
+    asset.manifest.quantity = htex_format::Quantity::Acceleration;
+    asset.manifest.unit = asset.manifest.quantity.unit().to_owned();
+    place.write("tool.htex", asset.to_bytes().unwrap());
+    let valid = place.run(&["validate", "tool.htex"]);
+    assert_eq!(valid.code(), 0, "{}", valid.text());
+    let file = ["--device", "file", "--set", "path=out.wav"];
+    let played = place.run(&[&["play", "tool.htex"][..], &file].concat());
+    assert_eq!(played.code(), 1, "{}", played.error());
+    assert!(
+        played.error().contains("acceleration in m/s2"),
+        "{}",
+        played.error()
+    );
+    assert!(!place.path("out.wav").exists());
+}

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use htex::{Asset, Registry, VoiceOptions};
 use htex_author::read::ReadError;
 use htex_device::{Devices, Settings};
-use htex_format::{Finding, Findings, Report, Rule};
+use htex_format::{Finding, Findings, Quantity, Report, Rule};
 
 use crate::check::check;
 use crate::device::{DeviceOverride, check_device};
@@ -249,12 +249,27 @@ fn open_asset(
             true => asset.with_embedded(),
             false => Ok(asset),
         });
-    opened.map_err(|error| match &error {
+    let opened = opened.map_err(|error| match &error {
         htex::Error::Read(htex_format::ReadError::Io { error, .. }) if is_missing(error) => {
             (rule::ASSET_MISSING, missing(asset))
         }
         _ => (rule::ASSET_INVALID, format!("{}: {error}", asset.display())),
-    })
+    })?;
+    check_quantity(asset, opened)
+}
+
+/// Refuses an asset whose samples are no lateral force: every device of a scene takes them as newtons.
+fn check_quantity(path: &Path, asset: Asset) -> Result<Asset, (&'static Rule, String)> {
+    match asset.manifest().quantity {
+        Quantity::LateralForce => Ok(asset),
+        other => {
+            let (path, unit) = (path.display(), other.unit());
+            let message = format!(
+                "{path} holds the quantity {other} in {unit}, and scenes play lateral_force in N; name an asset of it"
+            );
+            Err((rule::ASSET_INVALID, message))
+        }
+    }
 }
 
 /// Whether it is a file, or nothing: a scene may come from anyone, and a device or a pipe may never

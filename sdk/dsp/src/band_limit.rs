@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use crate::biquad::Biquad;
 use crate::butterworth::Kind;
 use crate::chebyshev::chebyshev;
-use crate::grid::{Band, GRID_HZ};
+use crate::grid::{Band, GRID_HZ, read_part};
 use crate::pipeline::Pipeline;
 
 /// 80 dB a decade, and as steep at the edge as a Butterworth filter of twice the order: half a bin
@@ -37,20 +37,26 @@ fn sections(band: Band, rate_hz: f64) -> Vec<Biquad> {
         .collect()
 }
 
-/// The part of a noise's power that passes [`band_limit`], for each bin of the grid in the band and some
-/// beside it: from 0 to about 1. A bin that the Nyquist frequency divides counts up to it.
+/// The part of a noise's power that passes [`band_limit`] and that the band's bins read ([`read_part`]), for each
+/// bin of the grid in the band and some beside it, near the edges for parts of bins. A bin that the Nyquist
+/// frequency divides counts up to it.
 ///
 /// The level of filtered noise is read with it. Without it noise would come out too weak, by the filters'
-/// ripple and by the part of the highest bin that lies above the Nyquist frequency.
+/// ripple, by the part of the highest bin that lies above the Nyquist frequency, and by what the window misses at
+/// the band's edges.
 #[derive(Debug, Clone)]
 pub struct PassedPower {
-    first_bin: usize,
-    part: Vec<f64>,
+    /// Frequency, hertz, and what is heard there of a bin, 0 to about 1.
+    points: Vec<(f64, f64)>,
 }
 
 impl PassedPower {
-    /// What passes the filters of a band at a rate.
+    /// What passes the filters of a band at a rate and is read.
     pub fn new(band: Band, rate_hz: f64) -> Self {
+        Self::read_by(band, rate_hz, |hz| read_part(band, hz))
+    }
+
+    fn read_by(band: Band, rate_hz: f64, read: impl Fn(f64) -> f64) -> Self {
         let sections = sections(band, rate_hz);
         let power = |hz: f64| -> f64 {
             let magnitudes = sections.iter().map(|s| s.magnitude(hz, rate_hz));
@@ -61,29 +67,29 @@ impl PassedPower {
         let nyquist_bin = libm::ceil(0.5 * rate_hz / GRID_HZ) as usize;
         let first_bin = edges[0].saturating_sub(below);
         let last_bin = (edges[1] + above).min(nyquist_bin);
-        let part = |bin: usize| {
-            let points = match edges.iter().any(|edge| edge.abs_diff(bin) <= EDGE_BINS) {
+        let heard = |bin: usize| {
+            let count = match edges.iter().any(|edge| edge.abs_diff(bin) <= EDGE_BINS) {
                 true => EDGE_POINTS,
                 false => 1,
             };
-            let at = |i: usize| (bin as f64 - 0.5 + (i as f64 + 0.5) / points as f64) * GRID_HZ;
-            let heard = (0..points)
-                .map(at)
-                .filter(|hz| (0.0..0.5 * rate_hz).contains(hz));
-            heard.map(&power).sum::<f64>() / points as f64
+            let parts = (0..count).map(move |i| (i as f64 + 0.5) / count as f64);
+            let all = parts.map(move |part| (bin as f64 - 0.5 + part) * GRID_HZ);
+            all.filter(|hz| (0.0..0.5 * rate_hz).contains(hz))
+                .map(|hz| (hz, power(hz) * read(hz) / count as f64))
+                .collect::<Vec<_>>()
         };
         Self {
-            first_bin,
-            part: (first_bin..=last_bin).map(part).collect(),
+            points: (first_bin..=last_bin).flat_map(heard).collect(),
         }
     }
 
     /// RMS of filtered noise whose magnitudes before the filters are `curve`, as
     /// [`curve_level_rms`](crate::grid::curve_level_rms) of a curve in the band.
     pub fn level_rms(&self, curve: impl Fn(f64) -> f64) -> f64 {
-        let bins = self.part.iter().zip(self.first_bin..);
-        let power: f64 = bins
-            .map(|(part, bin)| (part, curve(bin as f64 * GRID_HZ)))
+        let power: f64 = self
+            .points
+            .iter()
+            .map(|(hz, part)| (part, curve(*hz)))
             .map(|(part, m)| part * m * m)
             .sum();
         libm::sqrt(power / 3.0)
@@ -112,7 +118,7 @@ mod tests {
             let energy: f64 = impulse.as_flattened().iter().map(|x| x * x).sum();
             // Magnitude squared of white noise of unit variance: 2 P ENBW, P = 2 / rate.
             let magnitude = libm::sqrt(4.0 * 1.5 * GRID_HZ / rate_hz);
-            let level = PassedPower::new(band, rate_hz).level_rms(|_| magnitude);
+            let level = PassedPower::read_by(band, rate_hz, |_| 1.0).level_rms(|_| magnitude);
             let ratio = level / libm::sqrt(energy);
             assert!((ratio - 1.0).abs() < 2e-3, "{band:?} at {rate_hz}: {ratio}");
         }

@@ -49,6 +49,44 @@ impl Band {
     }
 }
 
+/// The part of a component's power that the bins of a band read through the periodic Hann window: 1 well
+/// inside the band, 5/6 at its edge bins, a half between an edge bin and the first one outside, 0 far outside.
+///
+/// A component is read in all bins, as 1.5 times its own power; where some of these lie outside the band, that
+/// part is not read. Noise that is to read as a level in the band is made stronger by it.
+pub fn read_part(band: Band, frequency_hz: f64) -> f64 {
+    let at = frequency_hz / GRID_HZ;
+    let (first, last) = (band.first_bin() as f64, band.last_bin() as f64);
+    if at >= first + WINDOW_BINS && at <= last - WINDOW_BINS {
+        return 1.0;
+    }
+    let nearest = libm::round(at);
+    let turn = libm::sin(core::f64::consts::PI * (at - nearest)) / core::f64::consts::PI;
+    let low = first.max(nearest - WINDOW_BINS) as i64;
+    let high = last.min(nearest + WINDOW_BINS) as i64;
+    let read: f64 = (low..=high)
+        .map(|bin| hann_power(bin as f64 - at, turn))
+        .sum();
+    read / 1.5
+}
+
+/// Bins to either side of a component beyond which the Hann window reads less than 1e-6 of its power.
+const WINDOW_BINS: f64 = 8.0;
+
+/// Power that the Hann window reads `x` bins beside a component of unit power: the square of
+/// `sinc(x) / (1 - x²)`; `turn` is `sin(πx) / π` but for its sign.
+fn hann_power(x: f64, turn: f64) -> f64 {
+    let x = libm::fabs(x);
+    let amplitude = if x < 1e-6 {
+        1.0
+    } else if libm::fabs(x - 1.0) < 1e-6 {
+        0.5
+    } else {
+        turn / x / (1.0 - x * x)
+    };
+    amplitude * amplitude
+}
+
 impl From<(f64, f64)> for Band {
     fn from((low_hz, high_hz): (f64, f64)) -> Self {
         Self { low_hz, high_hz }
@@ -70,4 +108,46 @@ pub fn curve_level_rms(band: Band, curve: impl Fn(f64) -> f64) -> f64 {
         .map(|m| m * m)
         .sum();
     libm::sqrt(power / 3.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spectrum::SegmentAnalyzer;
+
+    /// Against the analyzer itself, with components on bins and between them.
+    #[test]
+    fn the_part_that_is_read_is_what_the_window_reads() {
+        let (band, len) = (Band::TACTILE, 2_000);
+        let rate_hz = len as f64 * GRID_HZ;
+        let mut analyzer = SegmentAnalyzer::new(len);
+        let mut bins = analyzer.make_bins();
+        for hz in [
+            9.0, 12.5, 15.0, 17.5, 18.7, 20.0, 22.5, 31.0, 500.0, 998.0, 1000.0, 1002.5, 1011.0,
+        ] {
+            // Two phases a quarter of a turn apart: what noise of this frequency reads in the mean.
+            let power: f64 = [0.0, 0.25]
+                .map(|turn| {
+                    let wave = |n: usize| {
+                        libm::cos(core::f64::consts::TAU * (turn + hz * n as f64 / rate_hz))
+                    };
+                    let samples: Vec<f64> = (0..len).map(wave).collect();
+                    analyzer
+                        .analyze(&samples, &mut bins)
+                        .expect("as long as the segment");
+                    let magnitude: Vec<f64> = bins[band.first_bin()..=band.last_bin()]
+                        .iter()
+                        .map(|bin| bin.norm() * analyzer.amplitude_scale())
+                        .collect();
+                    level_rms(&magnitude).powi(2)
+                })
+                .iter()
+                .sum();
+            let part = read_part(band, hz);
+            assert!((power - part).abs() < 2e-3, "{hz} Hz: {power} {part}");
+        }
+        assert_eq!(read_part(band, 500.0), 1.0);
+        assert!((read_part(band, 20.0) - 5.0 / 6.0).abs() < 1e-3);
+        assert!((read_part(band, 1002.5) - 0.5).abs() < 1e-5);
+    }
 }

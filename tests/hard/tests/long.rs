@@ -23,7 +23,12 @@ fn an_hour_is_steady() {
         assert_eq!(run.power.len(), 6);
         assert_eq!(run.broken, 0, "{}", model.short_name());
         assert!(drift < 0.1, "{}: {drift} dB", model.short_name());
-        assert!(off.abs() < 0.05, "{}: {off} dB", model.short_name());
+        // Above 0 by what the bins of the band miss at its edges.
+        assert!(
+            (-0.05..0.15).contains(&off),
+            "{}: {off} dB",
+            model.short_name()
+        );
     }
 }
 

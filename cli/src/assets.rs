@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use htex_format::{AtCondition, Condition, Field, Quality, Representation};
+use htex_format::{AtCondition, Condition, Field, Quality, Quantity, Representation};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -20,6 +20,8 @@ pub(crate) struct AssetSummary {
     author: Option<String>,
     tags: Vec<String>,
     simulated: bool,
+    quantity: Quantity,
+    unit: &'static str,
     band_hz: [f64; 2],
     conditions: Vec<Condition>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -88,6 +90,8 @@ impl AssetSummary {
             author: manifest.author.clone(),
             tags: manifest.tags.clone(),
             simulated: manifest.provenance.simulated,
+            quantity: manifest.quantity,
+            unit: manifest.quantity.unit(),
             band_hz: [manifest.band.low_hz, manifest.band.high_hz],
             conditions: manifest.conditions.clone(),
             plugins: plugins(asset),
@@ -116,8 +120,10 @@ impl AssetSummary {
         let kind = if self.simulated { " (simulated)" } else { "" };
         let _ = writeln!(
             text,
-            "{}{kind}, {} to {} Hz{}{}",
+            "{}{kind}, {} in {}, {} to {} Hz{}{}",
             self.name,
+            self.quantity.words(),
+            self.unit,
             self.band_hz[0],
             self.band_hz[1],
             self.author
@@ -143,7 +149,7 @@ impl AssetSummary {
                 signer.map_or("not signed".to_owned(), |key| format!("signed by {key}"))
             );
         }
-        text += "\n  model    cond.  level/mN   corr.  bands/dB  third-oct/dB  log-sp/dB  played/dB  bytes  parameters\n";
+        text += "\n  model    cond.       level   corr.  bands/dB  third-oct/dB  log-sp/dB  played/dB  bytes  parameters\n";
         for r in &self.representations {
             let all = if r.at.is_empty() {
                 std::slice::from_ref(&r.first)
@@ -151,7 +157,7 @@ impl AssetSummary {
                 &r.at[..]
             };
             for at in all {
-                text += &row(r, at);
+                text += &row(r, at, self.quantity);
             }
         }
         for line in self.warnings.iter().chain(&self.notes) {
@@ -174,7 +180,7 @@ fn plugins(asset: &htex_format::Asset) -> Vec<PluginSummary> {
     .collect()
 }
 
-fn row(r: &RepresentationSummary, at: &AtSummary) -> String {
+fn row(r: &RepresentationSummary, at: &AtSummary, quantity: Quantity) -> String {
     let number = |x: Option<f64>, digits: usize| x.map_or("-".into(), |x| format!("{x:.digits$}"));
     let quality = at.quality.as_ref();
     let parameters: Vec<String> = at
@@ -183,10 +189,10 @@ fn row(r: &RepresentationSummary, at: &AtSummary) -> String {
         .map(|(k, v)| parameter_text(k, v))
         .collect();
     format!(
-        "  {:8} {:>5}  {:>8.3}  {:>6}  {:>8}  {:>12}  {:>9}  {:>9}  {:>5}  {}\n",
+        "  {:8} {:>5}  {:>10}  {:>6}  {:>8}  {:>12}  {:>9}  {:>9}  {:>5}  {}\n",
         short_name(&r.model),
         at.condition,
-        at.level_rms * 1e3,
+        quantity.text(at.level_rms),
         number(quality.map(|q| q.spectral_correlation), 3),
         number(quality.map(|q| q.band_error_rms_db), 2),
         number(quality.and_then(|q| q.third_octave_error_rms_db), 2),

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use htex_device::Quantity;
 use htex_format::Manifest;
 use htex_scene::file::Levels;
 use htex_scene::{Gain, GainKey, Gains, recordings_of, texture_id, texture_name};
@@ -36,9 +35,11 @@ impl FeltArgs {
         let Some(levels) = &self.levels else {
             return Ok(());
         };
-        if ready.capabilities.quantity == Quantity::LateralForce {
-            let sentence = "--levels: the device takes newtons, which are never normalised";
-            return Err(Failure::Usage(sentence.to_owned()));
+        if ready.capabilities.quantity.is_physical() {
+            let unit = ready.capabilities.quantity.unit();
+            return Err(Failure::Usage(format!(
+                "--levels: the device takes {unit}, which is never normalised"
+            )));
         }
         scene.device.levels = match levels.as_str() {
             "own" => Levels::Own,
@@ -112,9 +113,9 @@ pub(crate) fn apply_kept(
     warn_of_other_recordings(gain, ready);
     let device = &mut ready.scene.scene.device;
     device.drive_v = Some(gain.drive_v);
-    if device.levels == Levels::Own && device.reference_n.is_none() {
-        let known_n = gain.reference_n.filter(|n| n.is_finite() && *n > 0.0);
-        device.reference_n = Some(known_n.ok_or_else(|| {
+    if device.levels == Levels::Own && device.reference_rms.is_none() {
+        let known_n = gain.reference_rms.filter(|n| n.is_finite() && *n > 0.0);
+        device.reference_rms = Some(known_n.ok_or_else(|| {
             let sentence = format!(
                 "the gain kept for {person} does not say at which level it was found; {find}"
             );

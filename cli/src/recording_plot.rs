@@ -11,25 +11,31 @@ const READ: &str = "#0072b2";
 const LEFT_OUT: &str = "#d55e00";
 const QUIET: &str = "#b5b5b5";
 
-/// The lateral force over time, with the segments that are read, those that are left out, and the threshold
+/// The signal's magnitude over time, with the segments that are read, those that are left out, and the threshold
 /// that sweeps are found by.
 pub(crate) fn recording_plot(recording: &Recording, segments: &Segments) -> Plot {
-    let force = lateral(recording);
+    let values: Vec<f64> = (0..recording.samples())
+        .map(|at| recording.magnitude_at(at))
+        .collect();
     let draw = |name: String, color: &str, parts: &[Range<usize>]| {
-        let mut series = Series::line(&name, envelope(recording, &force, parts)).colored(color);
+        let mut series = Series::line(&name, envelope(recording, &values, parts)).colored(color);
         (series.hover, series.line_width_px) = (false, 1.0);
         series
     };
     let mut plot = Plot::new(
         &recording.source,
-        Axis::linear("time / s").with_range(recording.second(0), recording.second(force.len())),
-        Axis::linear("lateral force, magnitude / N"),
+        Axis::linear("time / s").with_range(recording.second(0), recording.second(values.len())),
+        Axis::linear(&format!(
+            "{}, magnitude / {}",
+            recording.quantity.words(),
+            recording.quantity.unit()
+        )),
     );
     (plot.width, plot.height) = (960.0, 320.0);
-    let whole = 0..force.len();
+    let whole = 0..values.len();
     plot.series
         .push(draw("recorded".to_owned(), QUIET, &[whole]));
-    let left_out = left_out(segments, force.len());
+    let left_out = left_out(segments, values.len());
     if !left_out.is_empty() {
         plot.series.push(draw(
             format!("left out ({})", left_out.len()),
@@ -39,26 +45,12 @@ pub(crate) fn recording_plot(recording: &Recording, segments: &Segments) -> Plot
     }
     let read = format!("read ({} segments)", segments.starts.len());
     plot.series.push(draw(read, READ, &segments.stretches()));
-    let ends = [0, force.len()].map(|at| (recording.second(at), segments.threshold_n));
+    let ends = [0, values.len()].map(|at| (recording.second(at), segments.threshold));
     let mut threshold =
         Series::line("mean: sweeps lie above", ends.to_vec()).colored(series_color(4));
     (threshold.line, threshold.hover) = (Line::Dashed, false);
     plot.series.push(threshold);
     plot
-}
-
-/// Magnitude of the lateral force, sample by sample.
-fn lateral(recording: &Recording) -> Vec<f64> {
-    let squares = |at: usize| {
-        recording
-            .lateral_n
-            .iter()
-            .map(|axis| axis[at] * axis[at])
-            .sum::<f64>()
-    };
-    (0..recording.samples())
-        .map(|at| squares(at).sqrt())
-        .collect()
 }
 
 /// Sweeps that are cut off, where sweeps are read, and segments off their target.
@@ -75,13 +67,13 @@ fn left_out(segments: &Segments, samples: usize) -> Vec<Range<usize>> {
     cut_off.chain(off_target).collect()
 }
 
-/// The lowest and highest force of each column of the picture, with a break behind each part.
-fn envelope(recording: &Recording, force: &[f64], parts: &[Range<usize>]) -> Vec<(f64, f64)> {
-    let column = force.len().div_ceil(COLUMNS);
+/// The lowest and highest value of each column of the picture, with a break behind each part.
+fn envelope(recording: &Recording, values: &[f64], parts: &[Range<usize>]) -> Vec<(f64, f64)> {
+    let column = values.len().div_ceil(COLUMNS);
     let mut points = Vec::new();
     for part in parts {
         for start in part.clone().step_by(column) {
-            let samples = &force[start..(start + column).min(part.end)];
+            let samples = &values[start..(start + column).min(part.end)];
             let low = samples.iter().copied().fold(f64::INFINITY, f64::min);
             let high = samples.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             let at = recording.second(start);

@@ -9,7 +9,7 @@ use htex_author::response::read_response;
 use htex_author::{
     Averaging, Exploration, SegmentChoice, SpectrumOptions, Take, validate_recording,
 };
-use htex_format::Report;
+use htex_format::{Quantity, Report};
 
 use crate::failure::Failure;
 
@@ -22,14 +22,20 @@ pub(crate) struct RecordingArgs {
     rate: Option<f64>,
 
     /// Names and scales other people's CSV columns: ROLE=COLUMN or ROLE=COLUMN:SCALE, e.g.
-    /// lateral=lateral_V:0.4444,normal=normal_V:0.31. Roles: lateral, lateral_x, lateral_y, normal,
-    /// speed, time, x, y; columns by name or number (#3); scales lead to N, mm/s, s, mm
+    /// lateral=lateral_V:0.4444,normal=normal_V:0.31. Roles: lateral, lateral_x, lateral_y (of other quantities:
+    /// signal, signal_x, signal_y, signal_z), normal, speed, time, x, y; columns by name or number (#3); scales lead
+    /// to N, the quantity's unit, mm/s, s, mm
     #[arg(long, value_name = "MAP")]
     map: Option<String>,
 
-    /// Newtons of a full-scale sample in WAV and NPY files
-    #[arg(long, value_name = "N")]
-    newtons_per_unit: Option<f64>,
+    /// What the texture's signal is: a force in N, an acceleration in m/s2 (tool tips), a velocity in m/s, a
+    /// displacement in m
+    #[arg(long, value_enum, default_value = "lateral-force")]
+    quantity: QuantityArg,
+
+    /// What a full-scale sample in WAV and NPY files is, in the quantity's unit
+    #[arg(long, value_name = "UNITS")]
+    scale: Option<f64>,
 
     /// Response of the recording setup to divide out: CSV with columns frequency_hz,
     /// magnitude and, if known, phase_rad
@@ -71,6 +77,17 @@ pub(crate) struct RecordingArgs {
     /// a stuck sensor, a speed or force that leaves its target by more than 10 %, …
     #[arg(long)]
     strict: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum QuantityArg {
+    #[value(alias = "lateral_force")]
+    LateralForce,
+    #[value(alias = "normal_force")]
+    NormalForce,
+    Acceleration,
+    Velocity,
+    Displacement,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -137,7 +154,14 @@ impl RecordingArgs {
         Ok(ReadOptions {
             rate_hz: self.rate,
             map,
-            newtons_per_unit: self.newtons_per_unit,
+            quantity: match self.quantity {
+                QuantityArg::LateralForce => Quantity::LateralForce,
+                QuantityArg::NormalForce => Quantity::NormalForce,
+                QuantityArg::Acceleration => Quantity::Acceleration,
+                QuantityArg::Velocity => Quantity::Velocity,
+                QuantityArg::Displacement => Quantity::Displacement,
+            },
+            scale: self.scale,
             from_s: self.from,
             to_s: self.to,
         })
@@ -167,9 +191,10 @@ impl RecordingArgs {
             ("rate", self.rate.as_ref().and_then(|v| name(v))),
             ("map", self.map.clone()),
             (
-                "newtons_per_unit",
-                self.newtons_per_unit.as_ref().and_then(|v| name(v)),
+                "quantity",
+                value_name(self.quantity, QuantityArg::LateralForce),
             ),
+            ("scale", self.scale.as_ref().and_then(|v| name(v))),
             ("from", self.from.as_ref().and_then(|v| name(v))),
             ("to", self.to.as_ref().and_then(|v| name(v))),
             ("frf", self.frf.as_ref().and_then(file)),

@@ -38,6 +38,11 @@ pub(crate) struct ChoiceArgs {
 
     #[command(flatten)]
     settings: SettingArgs,
+
+    /// What one unit of the assets' quantity is in the device's unit, where they differ: 0.1 plays an acceleration
+    /// of 1 m/s2 as 0.1 N
+    #[arg(long, value_name = "GAIN", help_heading = "Devices")]
+    quantity_gain: Option<f64>,
 }
 
 impl ChoiceArgs {
@@ -47,6 +52,7 @@ impl ChoiceArgs {
             adapter: self.device.clone(),
             profile: self.settings.profile().map(str::to_owned),
             settings: self.settings.given()?,
+            quantity_gain: self.quantity_gain,
             output: output.map(|path| path.display().to_string()),
         })
     }

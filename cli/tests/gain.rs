@@ -145,13 +145,13 @@ fn one_gain_serves_all_representations_of_a_texture() {
         (10.0 * (power / squares.len() as f64).log10(), error)
     };
     let asset = htex_format::Asset::open(&place.path("coarse-fabric.htex")).unwrap();
-    let level_n = |model: &str| {
+    let level_rms = |model: &str| {
         let mut all = asset.manifest.representations.iter();
         all.find(|r| r.model.ends_with(model)).unwrap().at[0].level_rms
     };
     let (ar_db, _) = level_db("coarse-fabric.htex", "ar", &[]);
     for model in ["sbeta", "sslope"] {
-        let own_db = 20.0 * (level_n(model) / level_n("ar")).log10();
+        let own_db = 20.0 * (level_rms(model) / level_rms("ar")).log10();
         assert!(own_db > 2.0, "{model}: {own_db} dB");
         for (levels, wanted_db) in [("normalised", 0.0), ("own", own_db)] {
             let (found_db, _) = level_db("coarse-fabric.htex", model, &["--levels", levels]);

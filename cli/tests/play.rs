@@ -31,7 +31,6 @@ fn a_minute_of_each_model_has_its_spectrum_and_its_level() {
         let samples = wav.samples::<f32>().map(|x| f64::from(x.unwrap()));
         let power = samples.map(|x| x * x).sum::<f64>() / 1_200_000.0;
         let level = fit["representations"][i]["level_rms"].as_f64().unwrap();
-        let ratio = power.sqrt() / level;
 
         let stated = place.json(&["spectrum", "t.htex", "--model", model, "--json"]);
         let process = [
@@ -42,11 +41,16 @@ fn a_minute_of_each_model_has_its_spectrum_and_its_level() {
             "--averaging",
             "rms",
         ];
-        let measured = place.json(&[&process[..], &["--newtons-per-unit", "1", "--json"]].concat());
+        let measured = place.json(&[&process[..], &["--scale", "1", "--json"]].concat());
         let (stated, measured) = (
-            numbers(&stated["magnitude_n"]),
-            numbers(&measured["magnitude_n"]),
+            numbers(&stated["magnitude"]),
+            numbers(&measured["magnitude"]),
         );
+        // In the band's bins; in all it may be more at the band's edges, and lines are in all what they are.
+        let read = (measured.iter().map(|m| m * m).sum::<f64>() / 3.0).sqrt() / level;
+        let in_all = power.sqrt() / level;
+        let ratio = if *model == "speak" { in_all } else { read };
+        assert!((0.98..1.1).contains(&in_all), "{model}: {in_all}");
         let distance = if *model == "speak" {
             let lines = &fit["representations"][i]["parameters"]["frequency_hz"];
             let bins = numbers(lines)
@@ -157,29 +161,4 @@ fn the_conformance_files_validate_as_their_reports_say() {
             assert!(explained.text().contains("What to do"), "{finding}");
         }
     }
-}
-
-/// An acceleration is never played as a force.
-#[test]
-fn an_asset_of_another_quantity_is_not_played_as_newtons() {
-    let place = Place::new();
-    let cloth = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../examples/scenes/coarse-fabric.htex"
-    );
-    let mut asset = htex_format::Asset::open(cloth.as_ref()).unwrap();
-    asset.manifest.quantity = htex_format::Quantity::Acceleration;
-    asset.manifest.unit = asset.manifest.quantity.unit().to_owned();
-    place.write("tool.htex", asset.to_bytes().unwrap());
-    let valid = place.run(&["validate", "tool.htex"]);
-    assert_eq!(valid.code(), 0, "{}", valid.text());
-    let file = ["--device", "file", "--set", "path=out.wav"];
-    let played = place.run(&[&["play", "tool.htex"][..], &file].concat());
-    assert_eq!(played.code(), 1, "{}", played.error());
-    assert!(
-        played.error().contains("acceleration in m/s2"),
-        "{}",
-        played.error()
-    );
-    assert!(!place.path("out.wav").exists());
 }

@@ -142,7 +142,7 @@ fn a_long_stroke_is_read_in_windows_and_drawn() {
         place.json(&[&all[..], more].concat())
     };
     let level = |of: &Value| {
-        numbers(&of["magnitude_n"])
+        numbers(&of["magnitude"])
             .iter()
             .map(|m| m * m)
             .sum::<f64>()

@@ -25,7 +25,7 @@ fn friction(rate_hz: f64, seconds: f64) -> Vec<f64> {
 }
 
 fn strongest_hz(spectrum: &serde_json::Value) -> f64 {
-    let magnitude = numbers(&spectrum["magnitude_n"]);
+    let magnitude = numbers(&spectrum["magnitude"]);
     let top = (0..magnitude.len())
         .max_by(|&a, &b| magnitude[a].total_cmp(&magnitude[b]))
         .unwrap();
@@ -57,7 +57,7 @@ fn bare_finger_csv_in_volts_at_10_khz() {
     assert_eq!(process["rate_hz"], 10_000.0);
     assert!((process["force_n"].as_f64().unwrap() - 0.4).abs() < 1e-4);
     assert_eq!(strongest_hz(&process), 110.0);
-    let magnitude = numbers(&process["magnitude_n"]);
+    let magnitude = numbers(&process["magnitude"]);
     assert!((magnitude[18] - 0.02).abs() < 0.005, "{}", magnitude[18]);
     let arguments = [
         "fit",
@@ -108,7 +108,7 @@ fn csv_at_1_khz_with_speed_force_accel_friction() {
     let spectrum = place.json(&["spectrum", "t.htex", "--model", "speak", "--json"]);
     assert_eq!(strongest_hz(&spectrum), 110.0);
     // Above the band there is nothing, and the asset plays at any rate all the same.
-    assert_eq!(numbers(&spectrum["magnitude_n"])[150], 0.0);
+    assert_eq!(numbers(&spectrum["magnitude"])[150], 0.0);
     let run = place.run(&[
         "synth",
         "t.htex",
@@ -136,7 +136,7 @@ fn wav_at_44_100_hz() {
         wav.write_sample((f / 2.0 * 32_767.0) as i16).unwrap();
     }
     wav.finalize().unwrap();
-    let condition = ["--newtons-per-unit", "2", "--at", "speed=80,force=0.4"];
+    let condition = ["--scale", "2", "--at", "speed=80,force=0.4"];
     let arguments = ["fit", "stroke.wav", "-o", "w.htex", "--json"];
     let fit = place.json(&[&arguments[..], &condition].concat());
     assert_eq!(fit["conditions"][0]["speed_mm_s"], 80.0);
@@ -232,7 +232,7 @@ fn a_setup_response_is_divided_out() {
     let magnitude = |frf: &[&str]| {
         let process = place.json(&[&["process", &csv, "--json"][..], frf].concat());
         (
-            numbers(&process["magnitude_n"]),
+            numbers(&process["magnitude"]),
             process["warnings"].to_string(),
         )
     };

@@ -14,7 +14,7 @@ fn conformance(name: &str) -> Asset {
 fn fields_in_another_order_play_by_their_names() {
     // The block holds beta = 1.5 and then alpha = 2.5.
     let asset = conformance("valid_field_order.htex");
-    let (parameters, level_n) = asset.parameters(None, None).unwrap();
+    let (parameters, level_rms) = asset.parameters(None, None).unwrap();
     assert_eq!(parameters, [2.5, 1.5]);
 
     let options = VoiceOptions::default();
@@ -27,7 +27,7 @@ fn fields_in_another_order_play_by_their_names() {
     let mut expected = [0.0f32; 512];
     stream.render(&mut expected).unwrap();
     for (played, expected) in played.iter().zip(expected) {
-        assert!((f64::from(*played) - f64::from(expected) * level_n).abs() < 1e-6);
+        assert!((f64::from(*played) - f64::from(expected) * level_rms).abs() < 1e-6);
     }
 }
 
@@ -62,7 +62,7 @@ fn fields_that_are_not_the_models_are_refused_with_their_names() {
         for word in words {
             assert!(error.to_string().contains(word), "{file}: {error}");
         }
-        let magnitude = asset.magnitude_n(None, None, &[100.0]);
+        let magnitude = asset.magnitude(None, None, &[100.0]);
         assert!(matches!(magnitude, Err(Error::Fields { .. })), "{file}");
     }
 }

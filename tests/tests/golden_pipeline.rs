@@ -69,7 +69,7 @@ fn hold(name: &str, response: Option<SetupResponse>) {
     let segments = choose_segments(&recording, SegmentChoice::Auto);
     assert!(segments.from_sweeps);
     assert_eq!(segments.sweeps.len() as f64, case.expected("/n_sweeps")[0]);
-    case.hold("/threshold_n", &[segments.threshold_n]);
+    case.hold("/threshold_n", &[segments.threshold]);
     let near = |got: Vec<usize>, pointer: &str| {
         for (got, expected) in got.iter().zip(case.expected(pointer)) {
             assert!(
@@ -92,14 +92,14 @@ fn hold(name: &str, response: Option<SetupResponse>) {
     let part = segment_spectra(&recording, &options).unwrap();
     assert_eq!(part.warnings, [""; 0]);
     let spectrum = TextureSpectrum::average(&[part], Averaging::Magnitude).unwrap();
-    assert_eq!(spectrum.magnitude_n.len(), 197);
-    let at = |f: &f64| spectrum.magnitude_n[(f / 5.0) as usize - 4];
+    assert_eq!(spectrum.magnitude.len(), 197);
+    let at = |f: &f64| spectrum.magnitude[(f / 5.0) as usize - 4];
     let picked: Vec<f64> = case.expected("/mag_f_hz").iter().map(at).collect();
     case.hold("/mag_n", &picked);
-    case.hold("/mag_sum", &[spectrum.magnitude_n.iter().sum()]);
+    case.hold("/mag_sum", &[spectrum.magnitude.iter().sum()]);
     case.hold(
         "/mag_sum_sq",
-        &[spectrum.magnitude_n.iter().map(|m| m * m).sum()],
+        &[spectrum.magnitude.iter().map(|m| m * m).sum()],
     );
 }
 
@@ -123,7 +123,7 @@ fn overlap_added_segments_keep_the_spectrum() {
     let lines = [0.01f64, 0.006, 0.004, 0.002];
     let expected = lines.iter().map(|a| a * a / 2.0).sum::<f64>().sqrt();
     // Windowed power is 3/8 of the whole and two windows overlap: 0.87 of the RMS if phases differ.
-    let ratio = rms(&spectrum.signal_n) / expected;
+    let ratio = rms(&spectrum.signal) / expected;
     assert!((0.7..1.05).contains(&ratio), "{ratio}");
     assert_eq!(spectrum.signal_rate_hz, 4_000.0);
 }

@@ -57,6 +57,12 @@ impl Compare {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         let (spectrum, found, warnings) = self.spectrum()?;
         let asset = self.player.open(&self.asset)?;
+        let (held, recorded) = (asset.quantity(), spectrum.quantity);
+        if held != recorded {
+            return Err(Failure::Usage(format!(
+                "the asset holds {held}, the recording is read as {recorded}; give --quantity {held}"
+            )));
+        }
         let representations = self.compare(&asset, &spectrum, found)?;
         let comparison = Comparison {
             recording: self.recording.display().to_string(),

@@ -224,14 +224,14 @@ fn picture(
     let spectrum = &fitted.spectra[0];
     let mut models = Vec::new();
     for r in &summary.representations {
-        let magnitude_n = asset.magnitude_n(Some(&r.model), None, &spectrum.frequency_hz)?;
+        let magnitude = asset.magnitude(Some(&r.model), None, &spectrum.frequency_hz)?;
         let short = short_name(&r.model).to_owned();
         let quality = r.first.quality.clone();
         models.push(ModelResult {
             model: asset.model_name(&r.model)?,
             lines: (short == "speak").then(|| r.first.lines()),
             short_name: short,
-            magnitude_n,
+            magnitude,
             spectral_correlation: quality
                 .as_ref()
                 .map_or(f64::NAN, |q| q.spectral_correlation),
@@ -256,7 +256,7 @@ fn picture(
         asset_bytes: summary.bytes,
         repeatability_rms_db: summary.repeatability_rms_db,
         frequency_hz: spectrum.frequency_hz.clone(),
-        recorded_n: spectrum.magnitude_n.clone(),
+        recorded: spectrum.magnitude.clone(),
         models,
         warnings: summary.warnings.clone(),
     })

@@ -55,7 +55,7 @@ pub(crate) struct Gain {
 /// A drive, volts, and the RMS in newtons that had it.
 struct Found {
     drive_v: f64,
-    reference_n: f64,
+    reference_rms: f64,
 }
 
 /// What a line asks for.
@@ -99,7 +99,7 @@ impl Gain {
             key,
             file: self.file.display().to_string(),
             drive_v: found.drive_v,
-            reference_n: Some(found.reference_n),
+            reference_rms: Some(found.reference_rms),
             recordings: recordings(&ready),
             blake3: None,
         };
@@ -146,10 +146,10 @@ fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<Found>
         match wish {
             Some(Wish::Change(db)) => drive_v = (drive_v * 10f64.powf(db / 20.0)).min(limit_v),
             Some(Wish::Keep) => {
-                let reference_n = plan.reference_n;
+                let reference_rms = plan.reference_rms;
                 kept = Some(Found {
                     drive_v,
-                    reference_n,
+                    reference_rms,
                 });
                 goes_on = false;
             }

@@ -10,7 +10,7 @@ use crate::output::{print, print_json};
 
 /// Show what an asset holds and how near each model comes to the recording.
 ///
-/// Columns: level (RMS, mN); Pearson correlation with the recorded spectrum; RMS over nine critical
+/// Columns: level (RMS, in the asset's unit); Pearson correlation with the recorded spectrum; RMS over nine critical
 /// bands of the energy difference, from the model's magnitudes and from samples it played; bytes of
 /// parameters.
 #[derive(Args)]

@@ -13,7 +13,7 @@ use crate::recordings::RecordingArgs;
 /// Show the texture spectrum of a recording.
 ///
 /// Segments of 0.2 s, Hann-windowed, two axes folded into one (DFT321), divided by the setup's
-/// response if there is one, averaged, 20 to 1000 Hz in steps of 5 Hz. A sinusoid of A newtons on
+/// response if there is one, averaged, 20 to 1000 Hz in steps of 5 Hz. A sinusoid of amplitude A on
 /// that grid reads A.
 #[derive(Args)]
 pub(crate) struct Process {
@@ -49,9 +49,10 @@ impl Process {
             warn(&reading.warnings);
             note(&reading.notes);
             note(&[seconds_read(&take.recording, &reading)]);
-            let rows = spectrum.frequency_hz.iter().zip(&spectrum.magnitude_n);
-            let rows: String = rows.map(|(f, m)| format!("{f},{m:.9}\n")).collect();
-            print(&format!("frequency_hz,magnitude_n\n{rows}"))?;
+            let rows = spectrum.frequency_hz.iter().zip(&spectrum.magnitude);
+            let rows: String = rows.map(|(f, m)| format!("{f},{m:.12}\n")).collect();
+            let suffix = spectrum.quantity.suffix();
+            print(&format!("frequency_hz,magnitude_{suffix}\n{rows}"))?;
         }
         Ok(ExitCode::SUCCESS)
     }
@@ -108,8 +109,10 @@ fn summary(recording: &Recording, reading: &Reading, spectrum: &TextureSpectrum)
         "sweeps": segments.sweeps.len(),
         "sweeps_cut_off": segments.cut_off,
         "read_s": stretches_s(recording, reading),
+        "quantity": spectrum.quantity,
+        "unit": spectrum.quantity.unit(),
         "frequency_hz": spectrum.frequency_hz,
-        "magnitude_n": spectrum.magnitude_n,
+        "magnitude": spectrum.magnitude,
         "speed_mm_s": reading.condition.speed_mm_s,
         "speed_spread_mm_s": reading.spread.speed_mm_s,
         "force_n": reading.condition.force_n,

@@ -142,12 +142,11 @@ fn like(able: &Capabilities, scene: &Path) -> BTreeMap<String, String> {
     let stem = name.split('.').next().unwrap_or_default();
     let mut given = vec![("path", format!("{stem}.wav"))];
     match able.quantity {
-        Quantity::LateralForce => given.push(("quantity", "lateral_force".to_owned())),
-        Quantity::Sound => given.push(("quantity", "sound".to_owned())),
         Quantity::DisplayVoltage => {
             given.push(("quantity", "display_voltage".to_owned()));
             given.extend(able.limit.map(|limit| ("limit_v", limit.to_string())));
         }
+        other => given.push(("quantity", other.name().to_owned())),
     }
     given.into_iter().map(|(k, v)| (k.to_owned(), v)).collect()
 }

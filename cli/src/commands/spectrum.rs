@@ -79,7 +79,7 @@ impl Spectrum {
         let grid = htex::Band::TACTILE.grid_hz();
         let motion = self.choice.motion(&asset);
         let magnitude = asset
-            .magnitude_n(self.choice.model.as_deref(), motion, &grid)
+            .magnitude(self.choice.model.as_deref(), motion, &grid)
             .map_err(failure)?;
         let beyond = self.choice.beyond(&asset, htex::Effects::default());
         if let Some(said) = beyond.map_err(failure)? {
@@ -87,12 +87,19 @@ impl Spectrum {
                 "{said}; the spectrum is the one recorded, and a voice plays it so"
             )]);
         }
+        let quantity = asset.quantity();
         if self.json {
-            print_json(&json!({ "frequency_hz": grid, "magnitude_n": magnitude }))?;
+            print_json(&json!({
+                "quantity": quantity,
+                "unit": quantity.unit(),
+                "frequency_hz": grid,
+                "magnitude": magnitude,
+            }))?;
         } else {
             let rows = grid.iter().zip(&magnitude);
-            let rows: String = rows.map(|(f, m)| format!("{f},{m:.9}\n")).collect();
-            print(&format!("frequency_hz,magnitude_n\n{rows}"))?;
+            let rows: String = rows.map(|(f, m)| format!("{f},{m:.12}\n")).collect();
+            let suffix = quantity.suffix();
+            print(&format!("frequency_hz,magnitude_{suffix}\n{rows}"))?;
         }
         Ok(ExitCode::SUCCESS)
     }

@@ -10,7 +10,7 @@ use crate::output::warn;
 use crate::plugins::PlayerArgs;
 use crate::wav::write_wav;
 
-/// Play an asset to a WAV file: 32-bit float samples, newtons of lateral force.
+/// Play an asset to a WAV file: 32-bit float samples in the asset's unit, such as newtons.
 #[derive(Args)]
 pub(crate) struct Synth {
     /// The asset

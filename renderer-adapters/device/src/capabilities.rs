@@ -92,6 +92,14 @@ impl Capabilities {
 pub enum Quantity {
     /// Lateral force on the finger, newtons.
     LateralForce,
+    /// Normal force on the finger, newtons.
+    NormalForce,
+    /// Acceleration of the finger or tool, m/s².
+    Acceleration,
+    /// Velocity of the finger or tool, m/s.
+    Velocity,
+    /// Displacement of the finger or tool, metres.
+    Displacement,
     /// Voltage at an electrovibration display, volts: the friction it adds goes with its square.
     DisplayVoltage,
     /// Sound; 1 is full scale.
@@ -99,10 +107,42 @@ pub enum Quantity {
 }
 
 impl Quantity {
+    /// All quantities.
+    pub const ALL: [Self; 7] = [
+        Self::LateralForce,
+        Self::NormalForce,
+        Self::Acceleration,
+        Self::Velocity,
+        Self::Displacement,
+        Self::DisplayVoltage,
+        Self::Sound,
+    ];
+
+    /// Its name in the capabilities.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::LateralForce => "lateral_force",
+            Self::NormalForce => "normal_force",
+            Self::Acceleration => "acceleration",
+            Self::Velocity => "velocity",
+            Self::Displacement => "displacement",
+            Self::DisplayVoltage => "display_voltage",
+            Self::Sound => "sound",
+        }
+    }
+
+    /// Whether samples are what a finger or tool meets, in an SI unit: levels are then those of the textures.
+    pub fn is_physical(self) -> bool {
+        !matches!(self, Self::DisplayVoltage | Self::Sound)
+    }
+
     /// Symbol of the unit; `FS` is full scale.
     pub fn unit(self) -> &'static str {
         match self {
-            Self::LateralForce => "N",
+            Self::LateralForce | Self::NormalForce => "N",
+            Self::Acceleration => "m/s2",
+            Self::Velocity => "m/s",
+            Self::Displacement => "m",
             Self::DisplayVoltage => "V",
             Self::Sound => "FS",
         }

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use htex_device::{Descriptor, Setting, SettingKind};
+use htex_device::{Descriptor, Quantity, Setting, SettingKind};
 
 /// Largest limit, volts, and largest full scale, in the quantity's unit.
 const MOST: f64 = 1_000.0;
@@ -50,10 +50,10 @@ fn settings() -> Vec<Setting> {
         ),
         (
             "quantity",
-            choice(&["lateral_force", "display_voltage", "sound"]),
+            choice(&Quantity::ALL.map(Quantity::name)),
             Some("lateral_force"),
-            "What the samples are: newtons, the volts an electrovibration display is driven with, \
-             or sound.",
+            "What the samples are: what a finger or tool meets, in N, m/s2, m/s or m; the volts an \
+             electrovibration display is driven with; or sound.",
         ),
         (
             "limit_v",

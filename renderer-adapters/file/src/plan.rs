@@ -38,11 +38,11 @@ impl Plan {
     pub(crate) fn new(settings: &Settings) -> Result<Self, DeviceError> {
         let path = PathBuf::from(settings.text("path"));
         let form = form(settings.text("format"), &path)?;
-        let quantity = match settings.text("quantity") {
-            "display_voltage" => Quantity::DisplayVoltage,
-            "sound" => Quantity::Sound,
-            _ => Quantity::LateralForce,
-        };
+        let named = settings.text("quantity");
+        let mut all = Quantity::ALL.into_iter();
+        let quantity = all
+            .find(|quantity| quantity.name() == named)
+            .unwrap_or(Quantity::LateralForce);
         let plan = Self {
             encoding: encoding(settings, form)?,
             path,

@@ -166,6 +166,10 @@ fn npy_header(encoding: Encoding, frames: u64) -> io::Result<Vec<u8>> {
 fn column(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::LateralForce => "lateral_force_n",
+        Quantity::NormalForce => "normal_force_n",
+        Quantity::Acceleration => "acceleration_m_s2",
+        Quantity::Velocity => "velocity_m_s",
+        Quantity::Displacement => "displacement_m",
         Quantity::DisplayVoltage => "display_voltage_v",
         Quantity::Sound => "sound",
     }

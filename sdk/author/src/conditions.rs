@@ -68,6 +68,13 @@ pub(crate) fn group_takes(
         });
         groups.push(Group { spectrum });
     }
+    let first = groups.first().map(|group| group.spectrum.quantity);
+    if groups
+        .iter()
+        .any(|group| Some(group.spectrum.quantity) != first)
+    {
+        return Err(AuthorError::QuantitiesDiffer);
+    }
     if groups
         .windows(2)
         .any(|pair| pair[0].spectrum.band != pair[1].spectrum.band)

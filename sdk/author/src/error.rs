@@ -59,6 +59,11 @@ pub enum AuthorError {
         "recordings at one condition have different bands because of their rates; fit them apart"
     )]
     BandsDiffer,
+    /// Recordings of one texture hold different quantities.
+    #[error(
+        "the recordings hold different quantities, such as forces and accelerations; fit them apart"
+    )]
+    QuantitiesDiffer,
     /// No segment keeps to the condition that was asked for.
     #[error(
         "{source_name}: all {segments} segments leave their target by more than 10 %: {told}; give the condition that \

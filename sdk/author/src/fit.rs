@@ -241,15 +241,16 @@ fn assemble(
     spectra: &[TextureSpectrum],
     fitted: Vec<FittedModel>,
 ) -> Asset {
-    // There is a spectrum a condition, all of one band: `group_takes` sees to it.
+    // There is a spectrum a condition, all of one band and quantity: `group_takes` sees to it.
     let band = spectra
         .first()
         .map_or((20.0, 1000.0), |s| (s.band.low_hz, s.band.high_hz));
+    let quantity = spectra.first().map_or(Quantity::default(), |s| s.quantity);
     let (representations, parameters) = fitted
         .into_iter()
         .map(|f| (f.representation, f.parameters))
         .unzip();
-    let to_f32 = |s: &TextureSpectrum| s.magnitude_n.iter().map(|&m| m as f32).collect();
+    let to_f32 = |s: &TextureSpectrum| s.magnitude.iter().map(|&m| m as f32).collect();
     Asset {
         manifest: Manifest {
             htex: VERSION.to_owned(),
@@ -257,8 +258,8 @@ fn assemble(
             license: request.license.clone(),
             author: request.author.clone(),
             tags: request.tags.clone(),
-            quantity: Quantity::LateralForce,
-            unit: Quantity::LateralForce.unit().to_owned(),
+            quantity,
+            unit: quantity.unit().to_owned(),
             band: htex_format::Band {
                 low_hz: band.0,
                 high_hz: band.1,

@@ -17,7 +17,7 @@ pub enum Level {
     Fitted,
 }
 
-/// The level of a fit whose parameters are stored as `stored`, newtons RMS.
+/// The level of a fit whose parameters are stored as `stored`, RMS in the spectrum's unit.
 ///
 /// # Errors
 /// When the model refuses the parameters.
@@ -30,7 +30,7 @@ pub fn stored_level(
 ) -> Result<f64, HostError> {
     match level {
         Level::Recording if !model.descriptor().keeps_level => {
-            Ok(recorded_level(spectrum.magnitude_n))
+            Ok(recorded_level(spectrum.magnitude))
         }
         _ => fitted_level(model, fit, stored, spectrum),
     }
@@ -55,11 +55,11 @@ fn fitted_level(
 }
 
 /// RMS of magnitudes, taken relative to the largest so that no square over- or underflows.
-fn recorded_level(magnitude_n: &[f64]) -> f64 {
-    let largest = magnitude_n.iter().copied().fold(0.0, f64::max);
+fn recorded_level(magnitude: &[f64]) -> f64 {
+    let largest = magnitude.iter().copied().fold(0.0, f64::max);
     if largest == 0.0 {
         return 0.0;
     }
-    let relative: Vec<f64> = magnitude_n.iter().map(|m| m / largest).collect();
+    let relative: Vec<f64> = magnitude.iter().map(|m| m / largest).collect();
     largest * level_rms(&relative)
 }

@@ -28,23 +28,23 @@ pub struct Agreement {
 }
 
 /// Compares magnitudes on the reference's grid with the reference.
-pub fn agreement(reference: SpectrumRef<'_>, magnitude_n: &[f64]) -> Agreement {
+pub fn agreement(reference: SpectrumRef<'_>, magnitude: &[f64]) -> Agreement {
     let bank = BandBank::new(BAND_COUNT, reference.band, reference.frequency_hz);
-    let expected = bank.energies(reference.magnitude_n);
-    let gain = energy_matching_gain(reference.magnitude_n, magnitude_n);
-    let matched: Vec<f64> = magnitude_n.iter().map(|m| m * gain).collect();
-    let error_db = band_error_db(&expected, &bank.energies(magnitude_n));
+    let expected = bank.energies(reference.magnitude);
+    let gain = energy_matching_gain(reference.magnitude, magnitude);
+    let matched: Vec<f64> = magnitude.iter().map(|m| m * gain).collect();
+    let error_db = band_error_db(&expected, &bank.energies(magnitude));
     Agreement {
-        spectral_correlation: pearson_correlation(reference.magnitude_n, magnitude_n),
+        spectral_correlation: pearson_correlation(reference.magnitude, magnitude),
         band_error_rms_db: rms(&error_db),
         band_error_db: error_db,
         matching_gain_db: 20.0 * gain.log10(),
         band_error_matched_rms_db: rms(&band_error_db(&expected, &bank.energies(&matched))),
         third_octave_error_rms_db: third_octave_error_rms_db(
             reference.frequency_hz,
-            reference.magnitude_n,
-            magnitude_n,
+            reference.magnitude,
+            magnitude,
         ),
-        log_spectral_distance_db: log_spectral_distance_db(reference.magnitude_n, magnitude_n),
+        log_spectral_distance_db: log_spectral_distance_db(reference.magnitude, magnitude),
     }
 }

@@ -1,6 +1,6 @@
 //! One recording of a finger sliding on a surface, in physical units.
 
-use htex_format::Finding;
+use htex_format::{Finding, Quantity};
 use thiserror::Error;
 
 /// Highest sample rate, hertz: no force sensor is as fast, and counts of samples stay numbers.
@@ -17,9 +17,11 @@ pub enum RecordingError {
         /// The rate that was given.
         rate_hz: f64,
     },
-    /// Not one or two lateral axes.
-    #[error("a recording has one or two lateral axes, this one has {axes}")]
+    /// More axes than the quantity has, or none.
+    #[error("a recording of a {} has 1 to {} axes, this one has {axes}", .quantity.words(), most_axes(*.quantity))]
     Axes {
+        /// What is recorded.
+        quantity: Quantity,
         /// How many axes were given.
         axes: usize,
     },
@@ -43,21 +45,21 @@ pub enum RecordingError {
         /// Where it ends, seconds.
         ends_s: f64,
     },
-    /// A signal is not as long as the first lateral axis.
+    /// A signal is not as long as the first axis.
     #[error(
-        "{signal} has {got} samples, the lateral force has {expected}; all signals must be equally long"
+        "the {signal} has {got} samples, the first axis has {expected}; all signals must be equally long"
     )]
     Lengths {
         /// Which signal.
         signal: &'static str,
-        /// Samples of the first lateral axis.
+        /// Samples of the first axis.
         expected: usize,
         /// Samples of this signal.
         got: usize,
     },
     /// A sample is larger than any recording's.
     #[error(
-        "{signal} is {value} at sample {sample} (counted from 0), and no recording goes beyond {LARGEST}; correct its unit"
+        "the {signal} is {value} at sample {sample} (counted from 0), and no recording goes beyond {LARGEST}; correct its unit"
     )]
     TooLarge {
         /// Which signal.
@@ -69,7 +71,7 @@ pub enum RecordingError {
     },
     /// A sample is NaN or infinite.
     #[error(
-        "{signal} is {value} at sample {sample} (counted from 0); repair or cut the recording there"
+        "the {signal} is {value} at sample {sample} (counted from 0); repair or cut the recording there"
     )]
     NotFinite {
         /// Which signal.
@@ -81,7 +83,8 @@ pub enum RecordingError {
     },
 }
 
-/// A recording: the lateral force, and what is known about how the finger pressed and moved.
+/// A recording: the texture's signal, such as the lateral force, and what is known about how the finger pressed
+/// and moved.
 ///
 /// All signals are equally long, at least two samples, and finite, none beyond 1e12.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,8 +93,11 @@ pub struct Recording {
     pub source: String,
     /// Samples per second of every signal, hertz.
     pub rate_hz: f64,
-    /// Lateral force, newtons: one axis, or two perpendicular ones.
-    pub lateral_n: Vec<Vec<f64>>,
+    /// What the axes are.
+    pub quantity: Quantity,
+    /// The signal in the quantity's unit: one axis, or perpendicular ones: two of a lateral force, up to three of
+    /// an acceleration, velocity or displacement.
+    pub axes: Vec<Vec<f64>>,
     /// Normal force, newtons, positive on the whole when the finger presses.
     pub normal_n: Option<Vec<f64>>,
     /// Sliding speed of each sample, mm/s.
@@ -107,13 +113,10 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// A checked recording without normal force, speed or warnings.
-    ///
-    /// `lateral_n` holds one or two axes in newtons.
+    /// A checked recording of a lateral force, one or two axes in newtons: [`Self::of`].
     ///
     /// # Errors
-    /// When the rate is not above 0 and at most [`MAX_RATE_HZ`], the axes are not one or two, are
-    /// shorter than two samples, differ in length, or hold NaN or an infinity.
+    /// As of [`Self::of`].
     ///
     /// ```
     /// # use htex_author::recording::Recording;
@@ -125,23 +128,48 @@ impl Recording {
     pub fn new(
         source: impl Into<String>,
         rate_hz: f64,
-        lateral_n: Vec<Vec<f64>>,
+        axes: Vec<Vec<f64>>,
+    ) -> Result<Self, RecordingError> {
+        Self::of(Quantity::LateralForce, source, rate_hz, axes)
+    }
+
+    /// A checked recording without normal force, speed or warnings; `axes` are in the quantity's unit.
+    ///
+    /// # Errors
+    /// When the rate is not above 0 and at most [`MAX_RATE_HZ`], there are no axes or more than the quantity
+    /// has, or they are shorter than two samples, differ in length, or hold NaN or an infinity.
+    ///
+    /// ```
+    /// # use htex_author::recording::Recording;
+    /// # use htex_format::Quantity;
+    /// let axes = vec![vec![0.1, -0.2], vec![0.0, 0.3], vec![9.8, 9.9]];
+    /// let tool = Recording::of(Quantity::Acceleration, "tool.csv", 10_000.0, axes)?;
+    /// assert_eq!((tool.axes.len(), tool.quantity.unit()), (3, "m/s2"));
+    /// # Ok::<(), htex_author::recording::RecordingError>(())
+    /// ```
+    pub fn of(
+        quantity: Quantity,
+        source: impl Into<String>,
+        rate_hz: f64,
+        axes: Vec<Vec<f64>>,
     ) -> Result<Self, RecordingError> {
         check_rate(rate_hz)?;
-        let samples = match lateral_n.as_slice() {
-            [axis] | [axis, _] => axis.len(),
-            axes => return Err(RecordingError::Axes { axes: axes.len() }),
-        };
+        if !(1..=most_axes(quantity)).contains(&axes.len()) {
+            let axes = axes.len();
+            return Err(RecordingError::Axes { quantity, axes });
+        }
+        let samples = axes[0].len();
         if samples < 2 {
             return Err(RecordingError::TooShort { samples });
         }
-        for axis in &lateral_n {
-            check("the lateral force", axis, samples)?;
+        for axis in &axes {
+            check(quantity.words(), axis, samples)?;
         }
         Ok(Self {
             source: source.into(),
             rate_hz,
-            lateral_n,
+            quantity,
+            axes,
             normal_n: None,
             speed_mm_s: None,
             simulated: false,
@@ -155,9 +183,9 @@ impl Recording {
     /// pressing reads positive whichever way the sensor counts.
     ///
     /// # Errors
-    /// When it differs in length from the lateral force or is not finite.
+    /// When it differs in length from the axes or is not finite.
     pub fn with_normal(mut self, mut normal_n: Vec<f64>) -> Result<Self, RecordingError> {
-        check("the normal force", &normal_n, self.samples())?;
+        check("normal force", &normal_n, self.samples())?;
         if normal_n.iter().sum::<f64>() < 0.0 {
             normal_n.iter_mut().for_each(|force| *force = -*force);
         }
@@ -168,9 +196,9 @@ impl Recording {
     /// Adds the sliding speed of each sample, mm/s.
     ///
     /// # Errors
-    /// When it differs in length from the lateral force or is not finite.
+    /// When it differs in length from the axes or is not finite.
     pub fn with_speed(mut self, speed_mm_s: Vec<f64>) -> Result<Self, RecordingError> {
-        check("the speed", &speed_mm_s, self.samples())?;
+        check("speed", &speed_mm_s, self.samples())?;
         self.speed_mm_s = Some(speed_mm_s);
         Ok(self)
     }
@@ -185,7 +213,7 @@ impl Recording {
     /// # use htex_author::recording::Recording;
     /// let recording = Recording::new("tap.csv", 10.0, vec![vec![0.1, 0.2, 0.3, 0.4]])?;
     /// let part = recording.between(Some(0.1), Some(0.3))?;
-    /// assert_eq!((part.first_sample, &part.lateral_n[0][..]), (1, &[0.2, 0.3][..]));
+    /// assert_eq!((part.first_sample, &part.axes[0][..]), (1, &[0.2, 0.3][..]));
     /// # Ok::<(), htex_author::recording::RecordingError>(())
     /// ```
     pub fn between(
@@ -209,7 +237,7 @@ impl Recording {
             });
         }
         let (normal, speed) = (&mut self.normal_n, &mut self.speed_mm_s);
-        for signal in self.lateral_n.iter_mut().chain(normal).chain(speed) {
+        for signal in self.axes.iter_mut().chain(normal).chain(speed) {
             signal.truncate(to);
             signal.drain(..from);
         }
@@ -223,16 +251,49 @@ impl Recording {
         (self.first_sample + sample) as f64 / self.rate_hz
     }
 
+    /// Length of the signal's vector at a sample.
+    #[must_use]
+    pub fn magnitude_at(&self, sample: usize) -> f64 {
+        let square = |axis: &Vec<f64>| axis[sample] * axis[sample];
+        match &self.axes[..] {
+            [axis] => axis[sample].abs(),
+            axes => axes.iter().map(square).sum::<f64>().sqrt(),
+        }
+    }
+
+    /// An axis' name in pointers and messages: `lateral_x`, `signal`.
+    #[must_use]
+    pub fn axis_name(&self, axis: usize) -> &'static str {
+        let names = match self.quantity {
+            Quantity::LateralForce => ["lateral", "lateral_x", "lateral_y", "lateral_z"],
+            Quantity::NormalForce => ["normal"; 4],
+            _ => ["signal", "signal_x", "signal_y", "signal_z"],
+        };
+        match self.axes.len() {
+            1 => names[0],
+            _ => names[(axis + 1).min(3)],
+        }
+    }
+
     /// Samples in each signal, at least 2.
     #[must_use]
     pub fn samples(&self) -> usize {
-        self.lateral_n.first().map_or(0, Vec::len)
+        self.axes.first().map_or(0, Vec::len)
     }
 
     /// Length in seconds: samples over rate.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
         self.samples() as f64 / self.rate_hz
+    }
+}
+
+/// A force along a surface has two axes, one across it has one, and motions have three.
+pub(crate) const fn most_axes(quantity: Quantity) -> usize {
+    match quantity {
+        Quantity::LateralForce => 2,
+        Quantity::NormalForce => 1,
+        Quantity::Acceleration | Quantity::Velocity | Quantity::Displacement => 3,
     }
 }
 

@@ -31,7 +31,7 @@ pub fn rendered_spectrum(
     spectrum_of_samples(&samples, rate_hz, level_rms, reference)
 }
 
-/// The magnitudes of samples of unit RMS at a level, newtons, on the reference's grid, RMS-averaged;
+/// The magnitudes of samples of unit RMS at a level, in its unit, on the reference's grid, RMS-averaged;
 /// zero where the rate holds none.
 ///
 /// # Errors
@@ -42,15 +42,15 @@ pub fn spectrum_of_samples(
     level_rms: f64,
     reference: SpectrumRef<'_>,
 ) -> Result<Vec<f64>, AuthorError> {
-    let newtons = samples.iter().map(|&x| f64::from(x) * level_rms).collect();
-    let recording = Recording::new("samples", rate_hz, vec![newtons])?;
+    let scaled = samples.iter().map(|&x| f64::from(x) * level_rms).collect();
+    let recording = Recording::new("samples", rate_hz, vec![scaled])?;
     let options = SpectrumOptions {
         segments: SegmentChoice::Windows,
         averaging: Averaging::Rms,
         response: None,
     };
     let part = segment_spectra(&recording, &options)?;
-    let mut magnitude_n = TextureSpectrum::average(&[part], options.averaging)?.magnitude_n;
-    magnitude_n.resize(reference.frequency_hz.len(), 0.0);
-    Ok(magnitude_n)
+    let mut magnitude = TextureSpectrum::average(&[part], options.averaging)?.magnitude;
+    magnitude.resize(reference.frequency_hz.len(), 0.0);
+    Ok(magnitude)
 }

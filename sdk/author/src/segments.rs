@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use htex_format::Quantity;
+
 use crate::Recording;
 use crate::sums::Sums;
 
@@ -34,7 +36,7 @@ pub enum SegmentChoice {
     Windows,
 }
 
-/// A stretch of the recording in which the friction exceeds the threshold.
+/// A stretch of the recording in which the signal exceeds the threshold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sweep {
     /// First sample.
@@ -69,8 +71,8 @@ pub struct Segments {
     pub off_target: Vec<usize>,
     /// Why `auto` turned to windows though there are sweeps.
     pub unread: Option<Unread>,
-    /// Mean resultant friction, newtons.
-    pub threshold_n: f64,
+    /// Mean length of the signal's vector, in its unit.
+    pub threshold: f64,
 }
 
 impl Segments {
@@ -90,12 +92,12 @@ impl Segments {
 /// Chooses the segments of a recording. There may be none.
 pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments {
     let len = segment_len(recording.rate_hz);
-    let resultant = resultant(&recording.lateral_n);
+    let resultant = resultant(recording);
     let samples = resultant.samples();
-    let threshold_n = resultant.mean(0, samples);
+    let threshold = resultant.mean(0, samples);
     let half = (HALF_AVERAGE_S * recording.rate_hz).round() as usize;
     let smooth = (0..samples).map(|at| resultant.mean_around(at, half));
-    let Scan { sweeps, sliding } = scan(smooth, threshold_n, len);
+    let Scan { sweeps, sliding } = scan(smooth, threshold, len);
     let whole = || {
         let is_whole = |sweep: &&Sweep| sweep.start > 0 && sweep.end < samples;
         sweeps.iter().filter(is_whole)
@@ -129,7 +131,7 @@ pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments
             sliding_s: sliding as f64 / recording.rate_hz,
         }),
         sweeps,
-        threshold_n,
+        threshold,
     }
 }
 
@@ -138,13 +140,19 @@ pub fn segment_len(rate_hz: f64) -> usize {
     (rate_hz / SEGMENTS_PER_S).round().max(1.0) as usize
 }
 
-/// Length of the lateral force vector, sample by sample.
-fn resultant(axes: &[Vec<f64>]) -> Sums {
-    match axes {
-        [x, y] => Sums::of(x.iter().zip(y).map(|(x, y)| x.hypot(*y))),
-        [x] => Sums::of(x.iter().map(|x| x.abs())),
-        _ => Sums::of(std::iter::empty()),
-    }
+/// Length of the signal's vector, sample by sample. The mean of friction tells sliding from rest; that of any
+/// other quantity (gravity, a place, a weight) tells nothing and is removed.
+fn resultant(recording: &Recording) -> Sums {
+    let mean = |axis: &Vec<f64>| match recording.quantity {
+        Quantity::LateralForce => 0.0,
+        _ => axis.iter().sum::<f64>() / axis.len() as f64,
+    };
+    let centred: Vec<(&Vec<f64>, f64)> = recording.axes.iter().map(|x| (x, mean(x))).collect();
+    let length = |at: usize| {
+        let squares = centred.iter().map(|(x, mean)| (x[at] - mean).powi(2));
+        squares.sum::<f64>().sqrt()
+    };
+    Sums::of((0..recording.samples()).map(length))
 }
 
 /// The sweeps, and the number of samples at which the finger slides.

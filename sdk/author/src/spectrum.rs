@@ -3,6 +3,7 @@
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
 use htex_dsp::grid::{Band, GRID_HZ};
 use htex_dsp::spectrum::{Complex, SegmentAnalyzer, dft321};
+use htex_format::Quantity;
 use htex_host::FitRequest;
 use realfft::RealFftPlanner;
 
@@ -47,9 +48,11 @@ pub struct SpectrumOptions {
 /// The compensated spectra of a recording's segments, one axis, in the band.
 #[derive(Debug, Clone)]
 pub struct SegmentSpectra {
+    /// What is recorded.
+    pub quantity: Quantity,
     /// The band: 20 to 1000 Hz, or up to half the rate.
     pub band: Band,
-    /// A spectrum a segment on the band's grid; a sinusoid of A newtons on the grid reads A.
+    /// A spectrum a segment on the band's grid; a sinusoid of amplitude A on the grid reads A.
     pub spectra: Vec<Vec<Complex<f64>>>,
     /// Where the segments lie.
     pub segments: Segments,
@@ -60,19 +63,21 @@ pub struct SegmentSpectra {
 /// An averaged texture spectrum.
 #[derive(Debug, Clone)]
 pub struct TextureSpectrum {
+    /// What was recorded; magnitudes and the signal are in its unit.
+    pub quantity: Quantity,
     /// The band.
     pub band: Band,
     /// The band's grid, hertz.
     pub frequency_hz: Vec<f64>,
-    /// Magnitude at the grid, newtons.
-    pub magnitude_n: Vec<f64>,
+    /// Magnitude at the grid.
+    pub magnitude: Vec<f64>,
     /// How many segments were averaged.
     pub segments: usize,
     /// Nine-band RMS difference between the odd and the even segments, decibels: what the
     /// recording itself varies by. None with fewer than two segments, or when half of them are silent.
     pub repeatability_rms_db: Option<f64>,
-    /// The segments, windowed and overlap-added to one signal in the band, newtons.
-    pub signal_n: Vec<f64>,
+    /// The segments, windowed and overlap-added to one signal in the band.
+    pub signal: Vec<f64>,
     /// Rate of that signal, hertz.
     pub signal_rate_hz: f64,
 }
@@ -83,18 +88,21 @@ pub struct TextureSpectrum {
 pub struct SpectrumRef<'a> {
     pub band: Band,
     pub frequency_hz: &'a [f64],
-    pub magnitude_n: &'a [f64],
+    pub magnitude: &'a [f64],
 }
 
 impl TextureSpectrum {
     /// Averages segment spectra of one texture at one condition, of one or more recordings.
     ///
     /// # Errors
-    /// When there are no segments, or the bands differ.
+    /// When there are no segments, or the quantities or bands differ.
     pub fn average(parts: &[SegmentSpectra], averaging: Averaging) -> Result<Self, AuthorError> {
         let first = parts.first().ok_or(AuthorError::NoSegments {
             source_name: String::new(),
         })?;
+        if parts.iter().any(|part| part.quantity != first.quantity) {
+            return Err(AuthorError::QuantitiesDiffer);
+        }
         if parts.iter().any(|part| part.band != first.band) {
             return Err(AuthorError::BandsDiffer);
         }
@@ -103,14 +111,15 @@ impl TextureSpectrum {
             .flat_map(|part| part.spectra.iter().map(Vec::as_slice))
             .collect();
         let frequency_hz = first.band.grid_hz();
-        let (signal_n, signal_rate_hz) = overlap_add(first.band, &all);
+        let (signal, signal_rate_hz) = overlap_add(first.band, &all);
         Ok(Self {
+            quantity: first.quantity,
             band: first.band,
-            magnitude_n: average(&all, frequency_hz.len(), averaging),
+            magnitude: average(&all, frequency_hz.len(), averaging),
             segments: all.len(),
             repeatability_rms_db: repeatability(first.band, &all, averaging),
             frequency_hz,
-            signal_n,
+            signal,
             signal_rate_hz,
         })
     }
@@ -120,8 +129,8 @@ impl TextureSpectrum {
         FitRequest {
             band: self.band,
             frequency_hz: &self.frequency_hz,
-            magnitude: &self.magnitude_n,
-            signal: &self.signal_n,
+            magnitude: &self.magnitude,
+            signal: &self.signal,
             signal_rate_hz: self.signal_rate_hz,
             options,
         }
@@ -132,7 +141,7 @@ impl TextureSpectrum {
         SpectrumRef {
             band: self.band,
             frequency_hz: &self.frequency_hz,
-            magnitude_n: &self.magnitude_n,
+            magnitude: &self.magnitude,
         }
     }
 }
@@ -168,13 +177,14 @@ pub(crate) fn spectra_of(
     let mut spectra = Vec::with_capacity(segments.starts.len());
     let mut reader = SegmentReader::new(segments.len, band);
     for &start in &segments.starts {
-        let mut bins = reader.read(&recording.lateral_n, start)?;
+        let mut bins = reader.read(&recording.axes, start)?;
         if let Some(inverse) = &inverse {
             bins.iter_mut().zip(inverse).for_each(|(bin, h)| *bin *= h);
         }
         spectra.push(bins);
     }
     Ok(SegmentSpectra {
+        quantity: recording.quantity,
         band,
         spectra,
         segments,
@@ -285,7 +295,7 @@ fn inverse_response(
     Ok(values.iter().map(invert).collect())
 }
 
-/// Reads segments: mean removed, Hann window, FFT; two axes folded into one (Landin 2010).
+/// Reads segments: mean removed, Hann window, FFT; axes folded into one (Landin 2010).
 struct SegmentReader {
     analyzer: SegmentAnalyzer,
     len: usize,
@@ -314,10 +324,7 @@ impl SegmentReader {
             let bin = |k: usize| bins.get(k).copied().unwrap_or_default();
             spectra.push(in_band.map(bin).collect::<Vec<_>>());
         }
-        let mut folded = match &spectra[..] {
-            [x, y] => dft321(x, y),
-            _ => spectra.concat(),
-        };
+        let mut folded = dft321(&spectra);
         folded.iter_mut().for_each(|bin| *bin *= scale);
         Ok(folded)
     }

@@ -40,7 +40,7 @@ fn all_rows_are_read_and_lines_are_counted_through() {
     let recording = read(&text).unwrap();
     assert!(recording.simulated);
     let expected: Vec<f64> = (0..ROWS).map(|n| (n % 9_973) as f64).collect();
-    assert_eq!(recording.lateral_n, [expected]);
+    assert_eq!(recording.axes, [expected]);
     let error = read(format!("{text}1,nonsense\n1,1\n")).unwrap_err();
     assert!(error.contains(&format!("line {}", lines + 1)), "{error}");
     let mut bytes = text.clone().into_bytes();
@@ -90,7 +90,7 @@ fn a_short_row_is_cut_off_at_the_end_alone() {
 fn comments_and_lines_may_be_longer_than_a_block() {
     let comments = "# a long story\n".repeat(60_000);
     let recording = read(format!("{comments}lateral_n\n1\n2\n3\n")).unwrap();
-    assert_eq!(recording.lateral_n, [[1.0, 2.0, 3.0]]);
+    assert_eq!(recording.axes, [[1.0, 2.0, 3.0]]);
     for long in ["1".repeat(3 * BLOCK), "é".repeat(2 * BLOCK)] {
         let error = read(format!("lateral_n\n1\n2\n{long}\n3\n")).unwrap_err();
         assert!(

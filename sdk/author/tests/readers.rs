@@ -69,7 +69,7 @@ fn two_axes_time_and_position_by_name() {
         ("a.csv", 1000.0)
     );
     assert_eq!((recording.samples(), recording.duration_s()), (200, 0.2));
-    assert_eq!(recording.lateral_n, [[0.1; 200], [0.2; 200]]);
+    assert_eq!(recording.axes, [[0.1; 200], [0.2; 200]]);
     assert_eq!(
         recording.normal_n,
         Some(vec![0.4; 200]),
@@ -93,7 +93,7 @@ fn volts_need_a_map_and_the_message_gives_it() {
     assert!(error.contains("--map lateral=lateral_V:SCALE"), "{error}");
     let options = mapped("lateral=lateral_V:0.4444,normal=#2:0.31", Some(10_000.0));
     let recording = read("v.csv", text, &options).unwrap();
-    assert_eq!(recording.lateral_n, [[0.4444, 3.0 * 0.4444]]);
+    assert_eq!(recording.axes, [[0.4444, 3.0 * 0.4444]]);
     assert_eq!(recording.normal_n, Some(vec![2.0 * 0.31, 4.0 * 0.31]));
     let half = read("v.csv", text, &mapped("lateral=LATERAL_v:1", Some(1e4))).unwrap();
     assert_eq!(half.normal_n, None);
@@ -104,7 +104,7 @@ fn volts_need_a_map_and_the_message_gives_it() {
 fn units_left_unsaid_are_assumed_aloud() {
     let text = "speed,force,accel,friction\n80,0.4,9,0.1\n81,0.5,9,0.2\n";
     let recording = read("k.csv", text, &at(1000.0)).unwrap();
-    assert_eq!(recording.lateral_n, [[0.1, 0.2]]);
+    assert_eq!(recording.axes, [[0.1, 0.2]]);
     assert_eq!(recording.speed_mm_s, Some(vec![80.0, 81.0]));
     assert!(has_warning(
         &recording,
@@ -133,7 +133,7 @@ fn delimiters_comments_quotes_and_headerless_files() {
     ] {
         let recording =
             read("d.csv", text, &at(100.0)).unwrap_or_else(|error| panic!("{text:?}: {error}"));
-        assert_eq!(recording.lateral_n, [same], "{text:?}");
+        assert_eq!(recording.axes, [same], "{text:?}");
     }
     assert!(
         read("h.csv", "1,2\n3,4\n", &at(100.0))
@@ -141,7 +141,7 @@ fn delimiters_comments_quotes_and_headerless_files() {
             .contains("--map lateral=#2")
     );
     let by_number = read("h.csv", "1,2\n3,4\n", &mapped("lateral=#2:2", Some(100.0))).unwrap();
-    assert_eq!(by_number.lateral_n, [[4.0, 8.0]]);
+    assert_eq!(by_number.axes, [[4.0, 8.0]]);
 }
 
 #[test]
@@ -329,15 +329,15 @@ fn wav_of_one_to_three_channels_and_all_depths() {
     for bits in [8, 16, 24, 32] {
         let bytes = wav(spec(3, bits), &[0.5, -0.25, -0.75, -0.5, 0.25, -0.5]);
         let plain = read("w.wav", &bytes, &ReadOptions::default()).unwrap();
-        assert_eq!(plain.lateral_n, [[0.5, -0.5], [-0.25, 0.25]]);
+        assert_eq!(plain.axes, [[0.5, -0.5], [-0.25, 0.25]]);
         assert_eq!(plain.normal_n, Some(vec![0.75, 0.5]));
-        assert!(plain.rate_hz == 44_100.0 && has_warning(&plain, "--newtons-per-unit"));
+        assert!(plain.rate_hz == 44_100.0 && has_warning(&plain, "--scale"));
         let options = ReadOptions {
-            newtons_per_unit: Some(4.0),
+            scale: Some(4.0),
             ..ReadOptions::default()
         };
         let scaled = read("w.dat", &bytes, &options).unwrap();
-        assert_eq!((scaled.lateral_n[0][0], scaled.warnings.len()), (2.0, 0));
+        assert_eq!((scaled.axes[0][0], scaled.warnings.len()), (2.0, 0));
     }
     let bytes = wav(spec(1, 16), &[0.1; 100]);
     let cut = read("w.wav", &bytes[..bytes.len() - 41], &ReadOptions::default()).unwrap_err();
@@ -402,7 +402,7 @@ fn npy_in_either_order_and_endianness() {
         npy(&npy_header("<i2", "False", "(2, 2)"), &integer),
     ] {
         let recording = read("n.npy", &bytes, &at(20_000.0)).unwrap();
-        assert_eq!(recording.lateral_n, [[0.5, -0.5], [0.25, -0.25]]);
+        assert_eq!(recording.axes, [[0.5, -0.5], [0.25, -0.25]]);
         assert!(
             read("n.npy", &bytes, &ReadOptions::default())
                 .unwrap_err()

@@ -254,7 +254,7 @@ fn dividing_by_the_rigs_response_gives_the_force_at_the_finger() {
     // Sandpaper falls smoothly through 500 to 740 Hz; the rig's resonance and the gap above it do not.
     let step_db = |s: &TextureSpectrum| {
         let level = |low: f64, high: f64| {
-            let bins = s.frequency_hz.iter().zip(&s.magnitude_n);
+            let bins = s.frequency_hz.iter().zip(&s.magnitude);
             let inside: Vec<f64> = bins
                 .filter(|(f, _)| (low..high).contains(*f))
                 .map(|(_, m)| m * m)

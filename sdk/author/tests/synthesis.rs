@@ -21,8 +21,8 @@ fn parameters(model: &LoadedModel, spectrum: &TextureSpectrum) -> Vec<f64> {
     let request = FitRequest {
         band: spectrum.band,
         frequency_hz: &spectrum.frequency_hz,
-        magnitude: &spectrum.magnitude_n,
-        signal: &spectrum.signal_n,
+        magnitude: &spectrum.magnitude,
+        signal: &spectrum.signal,
         signal_rate_hz: spectrum.signal_rate_hz,
         options: &model.descriptor().default_options(),
     };
@@ -44,7 +44,7 @@ fn played(model: &LoadedModel, spectrum: &TextureSpectrum, synthesis: &str) -> (
         .magnitude(&parameters, spectrum.band, &spectrum.frequency_hz)
         .unwrap();
     let mut stated = spectrum.clone();
-    stated.magnitude_n = shape;
+    stated.magnitude = shape;
     let found = spectrum_of_samples(&samples, RATE_HZ, 1.0, stated.as_ref()).unwrap();
     let error_db = agreement(stated.as_ref(), &found).band_error_rms_db;
     (error_db, (power / samples.len() as f64).sqrt())

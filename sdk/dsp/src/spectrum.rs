@@ -141,16 +141,22 @@ impl SegmentAnalyzer {
     }
 }
 
-/// Two axes folded into one: magnitude `sqrt(|X|² + |Y|²)`, phase of `X + Y` (DFT321, Landin et
-/// al. 2010). Where `X + Y` vanishes the phase is 0. The shorter input decides the length.
-pub fn dft321(x: &[Complex<f64>], y: &[Complex<f64>]) -> Vec<Complex<f64>> {
-    x.iter().zip(y).map(|(x, y)| fold_bin(*x, *y)).collect()
+/// Axes folded into one: magnitude `sqrt(|X|² + |Y|² + …)`, phase of `X + Y + …` (DFT321, Landin et
+/// al. 2010). Where the sum vanishes the phase is 0. One axis is left as it is; the shortest decides the length.
+pub fn dft321(axes: &[Vec<Complex<f64>>]) -> Vec<Complex<f64>> {
+    let bins = axes.iter().map(Vec::len).min().unwrap_or(0);
+    match axes {
+        [axis] => axis.clone(),
+        axes => (0..bins)
+            .map(|k| fold_bin(axes.iter().map(|axis| axis[k])))
+            .collect(),
+    }
 }
 
-fn fold_bin(x: Complex<f64>, y: Complex<f64>) -> Complex<f64> {
+fn fold_bin(axes: impl Iterator<Item = Complex<f64>> + Clone) -> Complex<f64> {
     let norm = |z: Complex<f64>| libm::hypot(z.re, z.im);
-    let magnitude = libm::hypot(norm(x), norm(y));
-    let sum = x + y;
+    let magnitude = axes.clone().map(norm).fold(0.0, libm::hypot);
+    let sum: Complex<f64> = axes.sum();
     let length = norm(sum);
     if length > 0.0 {
         sum / length * magnitude
@@ -192,9 +198,12 @@ mod tests {
 
     #[test]
     fn opposite_axes_keep_their_power() {
-        let x = [Complex::new(3.0, 4.0)];
-        let folded = dft321(&x, &[-x[0]]);
+        let x = Complex::new(3.0, 4.0);
+        let folded = dft321(&[vec![x], vec![-x]]);
         assert!((folded[0].norm() - 50_f64.sqrt()).abs() < 1e-12);
         assert_eq!(folded[0].im, 0.0);
+        let folded = dft321(&[vec![x], vec![x], vec![Complex::new(0.0, 0.0); 2]]);
+        assert_eq!(folded.len(), 1);
+        assert!((folded[0] - x * 2_f64.sqrt()).norm() < 1e-12);
     }
 }

@@ -455,7 +455,7 @@ fn two_axes_folded_into_one() {
             analyzer.transform(&samples, &mut bins).unwrap();
             bins
         });
-        let folded = dft321(&x, &y);
+        let folded = dft321(&[x.clone(), y.clone()]);
         case.check("mag", &folded.iter().map(|z| z.norm()).collect::<Vec<_>>());
         case.check("re", &folded.iter().map(|z| z.re).collect::<Vec<_>>());
         case.check("im", &folded.iter().map(|z| z.im).collect::<Vec<_>>());

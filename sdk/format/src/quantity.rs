@@ -13,11 +13,12 @@ use serde::{Deserialize, Serialize};
 /// assert_eq!(Quantity::from_name("lateral_force"), Some(Quantity::LateralForce));
 /// ```
 #[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize, JsonSchema,
 )]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
     /// Force on the finger or tool along the surface, N.
+    #[default]
     LateralForce,
     /// Force on the finger or tool across the surface, N.
     NormalForce,
@@ -63,6 +64,50 @@ impl Quantity {
             Self::Velocity => "m/s",
             Self::Displacement => "m",
         }
+    }
+
+    /// The unit as the end of a name: `n`, `m_s2`, `m_s`, `m`.
+    pub const fn suffix(self) -> &'static str {
+        match self {
+            Self::LateralForce | Self::NormalForce => "n",
+            Self::Acceleration => "m_s2",
+            Self::Velocity => "m_s",
+            Self::Displacement => "m",
+        }
+    }
+
+    /// Its name in a sentence.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::LateralForce => "lateral force",
+            Self::NormalForce => "normal force",
+            Self::Acceleration => "acceleration",
+            Self::Velocity => "velocity",
+            Self::Displacement => "displacement",
+        }
+    }
+
+    /// A value with its unit and a prefix that leaves one to three digits before the point.
+    ///
+    /// ```
+    /// use htex_format::Quantity;
+    /// assert_eq!(Quantity::LateralForce.text(0.01234), "12.34 mN");
+    /// assert_eq!(Quantity::Displacement.text(2.5e-6), "2.500 um");
+    /// assert_eq!(Quantity::Acceleration.text(12.0), "12.00 m/s2");
+    /// ```
+    pub fn text(self, value: f64) -> String {
+        let prefixes = [(1.0, ""), (1e-3, "m"), (1e-6, "u"), (1e-9, "n")];
+        let (size, prefix) = prefixes
+            .into_iter()
+            .find(|(size, _)| value.abs() >= *size)
+            .unwrap_or((1.0, ""));
+        let number = value / size;
+        let digits = match number.abs() {
+            large if large >= 100.0 => 1,
+            middle if middle >= 10.0 => 2,
+            _ => 3,
+        };
+        format!("{number:.digits$} {prefix}{}", self.unit())
     }
 
     /// Largest level (RMS) of an asset, in the unit. Samples are 32-bit numbers in any scene; of

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use htex_format::{Manifest, Representation};
+use htex_format::{Manifest, Quantity, Representation};
 use htex_host::{Band, LoadedModel, Registry, StillSound, Synthesis};
 
 use crate::exploration::{Coverage, Effects, Explored};
@@ -111,6 +111,11 @@ impl Asset {
         &self.data.manifest
     }
 
+    /// What its samples are, and so their unit: a lateral force in newtons, an acceleration in m/s².
+    pub fn quantity(&self) -> Quantity {
+        self.data.manifest.quantity
+    }
+
     /// The models that can play it.
     pub fn registry(&self) -> &Registry {
         &self.registry
@@ -209,21 +214,21 @@ impl Asset {
     }
 
     /// Magnitudes of a representation at a motion (else its first condition) and frequencies in
-    /// hertz; newtons, in the measure of the texture spectrum. As recorded, or interpolated: what a voice makes of a
+    /// hertz; in the asset's unit, in the measure of the texture spectrum. As recorded, or interpolated: what a voice makes of a
     /// motion beyond that ([`Self::coverage`]) is not in it.
     ///
     /// # Errors
     /// As [`Self::voice`].
-    pub fn magnitude_n(
+    pub fn magnitude(
         &self,
         model: Option<&str>,
         motion: Option<(f64, f64)>,
         frequency_hz: &[f64],
     ) -> Result<Vec<f64>, Error> {
-        let (parameters, level_n) = self.parameters(model, motion)?;
+        let (parameters, level_rms) = self.parameters(model, motion)?;
         let model = self.model(self.representation(model)?)?;
         let shape = model.magnitude(&parameters, self.band(), frequency_hz)?;
-        Ok(shape.iter().map(|m| m * level_n).collect())
+        Ok(shape.iter().map(|m| m * level_rms).collect())
     }
 
     /// The name, for people, of a model that the asset can be played by.
@@ -245,7 +250,7 @@ impl Asset {
         Ok(&self.data.manifest.representations[r].model)
     }
 
-    /// Parameters (the flat array) and level (RMS, newtons) of a representation at a motion, else
+    /// Parameters (the flat array) and level (RMS, in the asset's unit) of a representation at a motion, else
     /// at its first condition.
     ///
     /// # Errors
@@ -306,7 +311,7 @@ impl Asset {
         Ok(Known {
             mesh: Mesh::new(&points),
             explored: self.explored(representation),
-            level_n: at.iter().map(|a| a.level_rms).collect(),
+            level_rms: at.iter().map(|a| a.level_rms).collect(),
             parameters: parameters.map_err(|error| Error::Fields {
                 model: stored.model.clone(),
                 problem: error.to_string(),
@@ -353,7 +358,7 @@ fn nearest(all: &[Representation]) -> Option<usize> {
 pub(crate) struct Known {
     pub(crate) mesh: Mesh,
     pub(crate) explored: Explored,
-    pub(crate) level_n: Vec<f64>,
+    pub(crate) level_rms: Vec<f64>,
     pub(crate) parameters: Vec<Vec<f64>>,
 }
 
@@ -370,7 +375,7 @@ impl Known {
         self.explored.coverage(motion.into(), nearest, effects)
     }
 
-    /// Parameters and level (newtons) at a motion; the model decides in which space to mix.
+    /// Parameters and level at a motion; the model decides in which space to mix.
     pub(crate) fn at(
         &self,
         model: &LoadedModel,
@@ -378,15 +383,15 @@ impl Known {
         force_n: f64,
     ) -> Result<(Vec<f64>, f64), Error> {
         let weights = self.mesh.weights(speed_mm_s, force_n);
-        let level_n = weights.iter().map(|(i, w)| w * self.level_n[i]).sum();
+        let level_rms = weights.iter().map(|(i, w)| w * self.level_rms[i]).sum();
         let sets: Vec<&[f64]> = weights
             .iter()
             .map(|(i, _)| &self.parameters[i][..])
             .collect();
         if let [only] = sets[..] {
-            return Ok((only.to_vec(), level_n));
+            return Ok((only.to_vec(), level_rms));
         }
         let parameters = model.interpolate(&sets, &weights.weight[..weights.count])?;
-        Ok((parameters, level_n))
+        Ok((parameters, level_rms))
     }
 }

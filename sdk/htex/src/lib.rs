@@ -6,7 +6,7 @@
 //! let mut voice = asset.voice(&VoiceOptions::default())?;
 //! let mut block = [0.0f32; 256];
 //! voice.set_motion(80.0, 0.4)?; // mm/s, newtons
-//! voice.render(&mut block)?; // newtons
+//! voice.render(&mut block)?; // in the asset's unit
 //! # Ok::<(), htex::Error>(())
 //! ```
 //!
@@ -25,7 +25,7 @@ mod voice;
 pub use asset::{Asset, VoiceOptions};
 pub use error::Error;
 pub use exploration::{Coverage, Effects, Explored, Reach, Recorded};
-pub use htex_format::{Finding, Limits, Manifest, Severity};
+pub use htex_format::{Finding, Limits, Manifest, Quantity, Severity};
 pub use htex_host::{Band, Registry, Search, Synthesis, WasmLimits};
 pub use playable::{field_order, model_of};
 pub use source::Source;

@@ -24,7 +24,7 @@ pub struct Source {
     rate_hz: f64,
     top_hz: f64,
     motion: (f64, f64),
-    level_n: f64,
+    level_rms: f64,
 }
 
 impl Source {
@@ -37,7 +37,7 @@ impl Source {
         motion: (f64, f64),
     ) -> Result<Self, Error> {
         check_motion(motion.0, motion.1)?;
-        let (parameters, level_n) = known.at(&model, motion.0, motion.1)?;
+        let (parameters, level_rms) = known.at(&model, motion.0, motion.1)?;
         let rate_hz = model.voice_rate_hz(&parameters, band, wanted_hz)?;
         Ok(Self {
             voice: model.voice(&parameters, band, rate_hz, seed)?,
@@ -47,7 +47,7 @@ impl Source {
             rate_hz,
             top_hz: band.high_hz,
             motion,
-            level_n,
+            level_rms,
         })
     }
 
@@ -61,9 +61,9 @@ impl Source {
         self.top_hz
     }
 
-    /// RMS of the texture at the present motion, newtons.
-    pub fn level_n(&self) -> f64 {
-        self.level_n
+    /// RMS of the texture at the present motion, in the asset's unit.
+    pub fn level_rms(&self) -> f64 {
+        self.level_rms
     }
 
     /// The conditions that are known.
@@ -77,7 +77,7 @@ impl Source {
     }
 
     /// Glides to the spectrum at this scanning speed (mm/s) and normal force (newtons), clamped to
-    /// the conditions the asset knows, and answers its level, newtons. A motion that is not new
+    /// the conditions the asset knows, and answers its level. A motion that is not new
     /// costs nothing; a new one mixes parameters in the voice's own room. Does not allocate, lock or
     /// do I/O for the models of this project and others that keep to the ABI.
     ///
@@ -87,14 +87,14 @@ impl Source {
     pub fn set_motion(&mut self, speed_mm_s: f64, force_n: f64) -> Result<f64, Error> {
         check_motion(speed_mm_s, force_n)?;
         if self.motion == (speed_mm_s, force_n) || self.known.parameters.len() < 2 {
-            return Ok(self.level_n);
+            return Ok(self.level_rms);
         }
         let weights = self.known.mesh.weights(speed_mm_s, force_n);
         self.retune(&weights)?;
         self.motion = (speed_mm_s, force_n);
-        let level_n = |(i, weight): (usize, f64)| weight * self.known.level_n[i];
-        self.level_n = weights.iter().map(level_n).sum();
-        Ok(self.level_n)
+        let level_rms = |(i, weight): (usize, f64)| weight * self.known.level_rms[i];
+        self.level_rms = weights.iter().map(level_rms).sum();
+        Ok(self.level_rms)
     }
 
     /// Changes the spectrum to the mix of some conditions.

@@ -11,7 +11,7 @@ use crate::{Error, Source, VoiceOptions};
 /// Length of a change of level, seconds.
 const RAMP_S: f64 = 0.010;
 
-/// An endless stream of lateral force, newtons, that follows the finger's motion as a scene does: see
+/// An endless stream of samples in the asset's unit ([`Asset::quantity`](crate::Asset::quantity)) that follows the finger's motion as a scene does: see
 /// [`Effects`](crate::Effects).
 ///
 /// ```no_run
@@ -29,7 +29,7 @@ pub struct Voice {
     resampler: Option<Resampler>,
     /// What is heard instead of the source, whose level counts then.
     still: Option<StillSound>,
-    level_n: Glide,
+    level_rms: Glide,
     follow: Follow,
 }
 
@@ -57,7 +57,7 @@ impl Voice {
         let resampler = Resampler::new(source.rate_hz() * base, rate_hz, source.top_hz() * base);
         Ok(Self {
             resampler: resampler.map_err(HostError::from)?,
-            level_n: Glide::new((source.level_n() * follow.gain()) as f32, ramp),
+            level_rms: Glide::new((source.level_rms() * follow.gain()) as f32, ramp),
             source,
             still,
             follow,
@@ -80,8 +80,8 @@ impl Voice {
     pub fn set_motion(&mut self, speed_mm_s: f64, force_n: f64) -> Result<(), Error> {
         crate::source::check_motion(speed_mm_s, force_n)?;
         if self.follow.set_motion((speed_mm_s, force_n)) {
-            let level_n = self.source.set_motion(speed_mm_s, force_n)?;
-            self.level_n.set((level_n * self.follow.gain()) as f32);
+            let level_rms = self.source.set_motion(speed_mm_s, force_n)?;
+            self.level_rms.set((level_rms * self.follow.gain()) as f32);
         }
         Ok(())
     }
@@ -96,13 +96,13 @@ impl Voice {
         coverage
     }
 
-    /// Fills `out` with the next samples, newtons. Does not allocate, lock or do I/O.
+    /// Fills `out` with the next samples, in the asset's unit. Does not allocate, lock or do I/O.
     ///
     /// # Errors
     /// When the model fails; what it should have rendered is silent.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), Error> {
         let result = self.render_shape(out);
-        self.level_n.apply(out);
+        self.level_rms.apply(out);
         self.follow.apply_contact(out);
         result
     }

@@ -36,11 +36,11 @@ fn texture(index: usize) -> Texture {
     let envelope =
         |f: f64| height_n * (-((f / peak_hz).ln() / width).powi(2) / 2.0).exp() + 0.04 * height_n;
     let ripple = |f: f64| 1.0 + 0.35 * (f * 0.71 + index as f64).sin() * (f * 0.113).cos();
-    let recorded_n: Vec<f64> = frequency_hz
+    let recorded: Vec<f64> = frequency_hz
         .iter()
         .map(|f| envelope(*f) * ripple(*f))
         .collect();
-    let model = |spec: &Spec| model(spec, &frequency_hz, &recorded_n, envelope, peak_hz, index);
+    let model = |spec: &Spec| model(spec, &frequency_hz, &recorded, envelope, peak_hz, index);
     Texture {
         name: name.to_owned(),
         simulated: true,
@@ -54,7 +54,7 @@ fn texture(index: usize) -> Texture {
             _ => Vec::new(),
         },
         frequency_hz,
-        recorded_n,
+        recorded,
     }
 }
 
@@ -72,7 +72,7 @@ const SPECS: [Spec; 5] = [
 fn model(
     spec: &Spec,
     frequency_hz: &[f64],
-    recorded_n: &[f64],
+    recorded: &[f64],
     envelope: impl Fn(f64) -> f64,
     peak_hz: f64,
     index: usize,
@@ -84,7 +84,7 @@ fn model(
     ModelResult {
         model: name.to_owned(),
         short_name: name.to_ascii_lowercase(),
-        magnitude_n: frequency_hz.iter().map(shape).collect(),
+        magnitude: frequency_hz.iter().map(shape).collect(),
         spectral_correlation: correlation - 0.03 * index as f64,
         band_error_db: (0..9).map(band_error).collect(),
         band_error_rms_db: error_db,
@@ -92,18 +92,17 @@ fn model(
         log_spectral_distance_db: Some(1.9 * error_db),
         samples_band_error_rms_db: Some(error_db + 0.2),
         payload_bytes: bytes,
-        lines: (name == "sPeak").then(|| strongest(frequency_hz, recorded_n)),
+        lines: (name == "sPeak").then(|| strongest(frequency_hz, recorded)),
     }
 }
 
 /// Up to ten local maxima, (hertz, newtons).
-fn strongest(frequency_hz: &[f64], recorded_n: &[f64]) -> Vec<(f64, f64)> {
-    let inner = 1..recorded_n.len() - 1;
-    let is_peak =
-        |i: &usize| recorded_n[*i] > recorded_n[*i - 1] && recorded_n[*i] > recorded_n[*i + 1];
+fn strongest(frequency_hz: &[f64], recorded: &[f64]) -> Vec<(f64, f64)> {
+    let inner = 1..recorded.len() - 1;
+    let is_peak = |i: &usize| recorded[*i] > recorded[*i - 1] && recorded[*i] > recorded[*i + 1];
     let mut peaks: Vec<_> = inner
         .filter(is_peak)
-        .map(|i| (frequency_hz[i], recorded_n[i]))
+        .map(|i| (frequency_hz[i], recorded[i]))
         .collect();
     peaks.sort_by(|a, b| b.1.total_cmp(&a.1));
     peaks.truncate(10);

@@ -47,7 +47,7 @@ fn hostile_model(values: &[f64], lines: bool) -> ModelResult {
     ModelResult {
         model: HOSTILE.to_owned(),
         short_name: HOSTILE.to_owned(),
-        magnitude_n: values.to_vec(),
+        magnitude: values.to_vec(),
         spectral_correlation: first,
         band_error_db: values.to_vec(),
         band_error_rms_db: first,
@@ -66,7 +66,7 @@ fn hostile_report(values: &[f64]) -> TextureReport {
         condition: HOSTILE.to_owned(),
         repeatability_rms_db: values.first().copied(),
         frequency_hz: values.iter().map(|v| v.abs()).collect(),
-        recorded_n: values.to_vec(),
+        recorded: values.to_vec(),
         models: vec![hostile_model(values, false), hostile_model(values, true)],
         warnings: vec![HOSTILE.to_owned()],
         ..Texture::default()

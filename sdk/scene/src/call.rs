@@ -7,6 +7,7 @@ use htex_device::{Capabilities, Quantity};
 use htex_format::ErrorMeasure;
 
 use crate::SceneError;
+use crate::device::quantity_misfit;
 use crate::file::{Effect, Surface, Switch};
 use crate::load::LoadedScene;
 use crate::motion::{Course, Finger};
@@ -87,8 +88,13 @@ pub(crate) struct Call {
     pub(crate) live: bool,
     pub(crate) turns_round: bool,
     pub(crate) breaks_contact: bool,
-    /// RMS that is brought to the drive or to the level of a preview, as it reaches the device's stages, newtons.
-    pub(crate) level_n: f64,
+    /// What the assets hold.
+    pub(crate) quantity: htex_format::Quantity,
+    /// The device's unit for one of the assets' unit.
+    pub(crate) quantity_gain: f64,
+    /// RMS that is brought to the drive or to the level of a preview, as it reaches the device's stages, in the
+    /// assets' unit.
+    pub(crate) level_rms: f64,
     pub(crate) drive_v: f64,
     pub(crate) gain_db: f64,
     pub(crate) level_dbfs: f64,
@@ -122,6 +128,11 @@ impl Call {
                 rates: device.rates.to_string(),
             });
         }
+        let quantity = scene.quantity();
+        let misfit = quantity_misfit(quantity, device.quantity, choice.quantity_gain);
+        if let Some(sentence) = misfit {
+            return Err(SceneError::Quantity { sentence });
+        }
         let course = Course::of(scene);
         let duration_s = file
             .duration_s
@@ -138,7 +149,9 @@ impl Call {
             live: matches!(course, Course::Live),
             turns_round: false,
             breaks_contact: false,
-            level_n: 0.0,
+            quantity,
+            quantity_gain: choice.quantity_gain.unwrap_or(1.0),
+            level_rms: 0.0,
             drive_v: choice.drive_v.unwrap_or(0.5 * limit),
             gain_db: choice.gain_db.unwrap_or(0.0),
             level_dbfs: choice.level_dbfs.unwrap_or(PREVIEW_DBFS),
@@ -254,7 +267,7 @@ pub(crate) struct Part {
     /// Factor on the asset's level.
     pub(crate) gain: f64,
     /// Largest RMS, newtons, compensated.
-    pub(crate) level_n: f64,
+    pub(crate) level_rms: f64,
 }
 
 impl Part {
@@ -285,7 +298,7 @@ impl Part {
             fixed_ratio: call.pitch,
             fixed_force_gain: 1.0,
             gain: scene.scene.surfaces[surface].gain,
-            level_n: 0.0,
+            level_rms: 0.0,
         };
         part.scale_speed(scene);
         let force_gain = part.scale_force(scene);
@@ -298,7 +311,7 @@ impl Part {
         part.rate_hz = source.rate_hz();
         part.mix_rate_hz = part.rate_hz * part.oversampling;
         let shape = part.compensated(call, asset).map_err(failed)?;
-        part.level_n = loudest(asset, model, source.level_n()) * part.gain * force_gain * shape;
+        part.level_rms = loudest(asset, model, source.level_rms()) * part.gain * force_gain * shape;
         Ok(part)
     }
 
@@ -366,7 +379,7 @@ impl Part {
         };
         let band = asset.band();
         let grid = band.grid_hz();
-        let magnitude = asset.magnitude_n(Some(&self.model), self.start, &grid)?;
+        let magnitude = asset.magnitude(Some(&self.model), self.start, &grid)?;
         let sum = |gain: &dyn Fn(f64) -> f64| {
             let one = |(m, f): (&f64, &f64)| (m * gain(*f)).powi(2);
             magnitude.iter().zip(&grid).map(one).sum::<f64>()
@@ -395,9 +408,9 @@ fn known(asset: &htex::Asset, model: &str, measure: ErrorMeasure) -> (usize, Exp
 }
 
 /// The largest level of a representation, newtons.
-fn loudest(asset: &htex::Asset, model: &str, level_n: f64) -> f64 {
+fn loudest(asset: &htex::Asset, model: &str, level_rms: f64) -> f64 {
     let manifest = asset.manifest();
     let found = manifest.representations.iter().find(|r| r.model == model);
     let levels = found.into_iter().flat_map(|r| &r.at).map(|at| at.level_rms);
-    levels.fold(level_n, f64::max)
+    levels.fold(level_rms, f64::max)
 }

@@ -123,9 +123,10 @@ fn check_device(device: &DeviceChoice, findings: &mut Findings) {
     let numbers = [
         ("rate_hz", device.rate_hz, Range(f64::MIN_POSITIVE, 1e7)),
         ("gain_db", device.gain_db, Range(-120.0, 120.0)),
+        ("quantity_gain", device.quantity_gain, Range(1e-9, 1e9)),
         ("drive_v", device.drive_v, Range(f64::MIN_POSITIVE, 1e4)),
         ("level_dbfs", device.level_dbfs, Range(-120.0, 0.0)),
-        ("reference_n", device.reference_n, Range(1e-9, 1e6)),
+        ("reference_rms", device.reference_rms, Range(1e-12, 1e6)),
         ("pitch", device.pitch, Range(0.05, 20.0)),
         (
             "response_depth_db",

@@ -6,7 +6,7 @@ use std::path::{Component, Path};
 use htex_device::{
     Capabilities, Descriptor, DeviceError, Devices, Quantity, SettingKind, Settings,
 };
-use htex_format::{Findings, escape};
+use htex_format::{Findings, Quantity as Held, escape};
 use serde_json::Value;
 
 use crate::file::{DeviceChoice, Levels};
@@ -24,6 +24,8 @@ pub struct DeviceOverride {
     pub profile: Option<String>,
     /// Settings as the adapter reads them; relative paths are left as they are.
     pub settings: BTreeMap<String, String>,
+    /// Another [`DeviceChoice::quantity_gain`].
+    pub quantity_gain: Option<f64>,
     /// What a setting that names a file is when nobody says; absent: the scene's name with `.wav`,
     /// in the current folder.
     pub output: Option<String>,
@@ -54,6 +56,7 @@ impl DeviceOverride {
         if self.profile.is_some() {
             choice.profile.clone_from(&self.profile);
         }
+        choice.quantity_gain = self.quantity_gain.or(choice.quantity_gain);
     }
 }
 
@@ -63,6 +66,7 @@ pub(crate) fn check_device(
     change: &DeviceOverride,
     folder: &Path,
     devices: &Devices,
+    held: Option<Held>,
     findings: &mut Findings,
 ) -> Option<Settings> {
     let adapter = match devices.find(&choice.adapter) {
@@ -83,7 +87,10 @@ pub(crate) fn check_device(
     let settled = Settings::resolve(descriptor, choice.profile.as_deref(), &given);
     let settings = settled.map_err(|error| add_error(error, findings)).ok()?;
     match adapter.capabilities(&settings) {
-        Ok(able) => check_fit(choice, &able, findings),
+        Ok(able) => {
+            check_fit(choice, &able, findings);
+            check_quantity(choice, &able, held, findings);
+        }
         Err(error @ DeviceError::Setting { .. }) => {
             add_error(error, findings);
             return None;
@@ -165,32 +172,51 @@ fn check_fit(choice: &DeviceChoice, able: &Capabilities, findings: &mut Findings
         );
     }
     let keys = [
-        ("gain_db", choice.gain_db, Quantity::LateralForce),
-        ("drive_v", choice.drive_v, Quantity::DisplayVoltage),
-        ("level_dbfs", choice.level_dbfs, Quantity::Sound),
-        ("pitch", choice.pitch, Quantity::Sound),
+        (
+            "gain_db",
+            choice.gain_db,
+            able.quantity.is_physical(),
+            "N, m/s2, m/s or m",
+        ),
+        (
+            "drive_v",
+            choice.drive_v,
+            able.quantity == Quantity::DisplayVoltage,
+            "V",
+        ),
+        (
+            "level_dbfs",
+            choice.level_dbfs,
+            able.quantity == Quantity::Sound,
+            "FS",
+        ),
+        (
+            "pitch",
+            choice.pitch,
+            able.quantity == Quantity::Sound,
+            "FS",
+        ),
     ];
-    for (key, value, of) in keys {
-        let fits = value.is_none() || able.quantity == of;
+    let takes = able.quantity.unit();
+    for (key, value, fits, unit) in keys {
+        let fits = value.is_none() || fits;
         let pointer = format!("/device/{key}");
         findings.require(fits, rule::DEVICE_FIELD_UNFIT, pointer, || {
-            let (unit, takes) = (of.unit(), able.quantity.unit());
             format!("{key} is for a device of {unit}, and this one takes {takes}; leave it out")
         });
     }
     let is_own = choice.levels == Levels::Own;
-    let takes_newtons = able.quantity == Quantity::LateralForce;
     findings.require(
-        !(is_own && takes_newtons),
+        !(is_own && able.quantity.is_physical()),
         rule::DEVICE_FIELD_UNFIT,
         "/device/levels",
-        || "the device takes newtons, which are never normalised; leave it out".to_owned(),
+        || format!("the device takes {takes}, which is never normalised; leave it out"),
     );
     findings.require(
-        is_own || choice.reference_n.is_none(),
+        is_own || choice.reference_rms.is_none(),
         rule::DEVICE_FIELD_UNFIT,
-        "/device/reference_n",
-        || "reference_n goes with the levels `own`; add these, or leave it out".to_owned(),
+        "/device/reference_rms",
+        || "reference_rms goes with the levels `own`; add these, or leave it out".to_owned(),
     );
     let (drive_v, limit_v) = (
         choice.drive_v.unwrap_or(0.0),
@@ -202,4 +228,43 @@ fn check_fit(choice: &DeviceChoice, able: &Capabilities, findings: &mut Findings
         "/device/drive_v",
         || format!("{drive_v} V is above the device's limit of {limit_v} V; lower it"),
     );
+}
+
+/// Whether the device takes what the assets hold.
+fn check_quantity(
+    choice: &DeviceChoice,
+    able: &Capabilities,
+    held: Option<Held>,
+    findings: &mut Findings,
+) {
+    let Some(held) = held else { return };
+    if let Some(sentence) = quantity_misfit(held, able.quantity, choice.quantity_gain) {
+        findings.add(rule::DEVICE_QUANTITY, "/device/quantity_gain", sentence);
+    }
+}
+
+/// Why assets of a quantity cannot be played on a device with this gain, or without one; none when they can.
+///
+/// A drive's voltage adds a lateral force; sound is brought to its level from any unit.
+pub(crate) fn quantity_misfit(held: Held, device: Quantity, gain: Option<f64>) -> Option<String> {
+    let takes = match device {
+        Quantity::DisplayVoltage => Quantity::LateralForce.name(),
+        other => other.name(),
+    };
+    let unit = held.unit();
+    let is_sound = device == Quantity::Sound;
+    match gain {
+        None if is_sound || held.name() == takes => None,
+        None => Some(format!(
+            "the assets hold {held} in {unit}, and the device takes {takes}; choose a device or a setting that takes \
+             {held} (a file: quantity={held}), or state what one {unit} is there by quantity_gain"
+        )),
+        Some(_) if is_sound => Some(
+            "the device takes sound, whose level is not that of the assets; leave quantity_gain out".to_owned(),
+        ),
+        Some(_) if held.name() == takes => Some(format!(
+            "the assets hold what the device takes, {held}; leave quantity_gain out (gain_db is a gain)"
+        )),
+        Some(_) => None,
+    }
 }

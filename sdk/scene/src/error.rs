@@ -73,6 +73,12 @@ pub enum SceneError {
         /// The device's rates.
         rates: String,
     },
+    /// The device does not take what the assets hold.
+    #[error("{sentence}")]
+    Quantity {
+        /// What to do.
+        sentence: String,
+    },
     /// An effect that the chain cannot do without is switched off.
     #[error("`{effect}` is off, and without it the scene cannot be played: {reason}")]
     Needed {

@@ -135,10 +135,15 @@ pub struct DeviceChoice {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e7), extend("exclusiveMinimum" = 0))]
     pub rate_hz: Option<f64>,
-    /// Gain on the force that a device of newtons gets, decibels.
+    /// Gain on what a device of newtons, or of another quantity of touch, gets, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -120, max = 120))]
     pub gain_db: Option<f64>,
+    /// What one unit of the assets' quantity is in the device's unit, where they differ: with 0.1, a device of
+    /// newtons plays an acceleration of 1 m/s2 as 0.1 N. Without it such assets are refused.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1e-9, max = 1e9))]
+    pub quantity_gain: Option<f64>,
     /// Largest voltage of an electrovibration drive, volts: V_g of the paper is this over sqrt(2).
     /// Absent: half of the device's limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -151,10 +156,10 @@ pub struct DeviceChoice {
     /// Whether the drive, or the level of a preview, is that of the scene's loudest texture.
     #[serde(default, skip_serializing_if = "Levels::is_normalised")]
     pub levels: Levels,
-    /// With levels of their own: the RMS that has the drive, or the level of a preview, newtons. Absent: that of the
+    /// With levels of their own: the RMS that has the drive, or the level of a preview, in the assets' unit. Absent: that of the
     /// strongest representation of all that the scene's surfaces have.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub reference_n: Option<f64>,
+    pub reference_rms: Option<f64>,
     /// Factor on all frequencies of a preview by ear.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.05, max = 20))]
@@ -169,7 +174,7 @@ pub struct DeviceChoice {
     pub response_depth_db: f64,
 }
 
-/// What a device that does not take newtons is given the levels of textures as.
+/// What a device of sound or voltages is given the levels of textures as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Levels {
@@ -305,10 +310,11 @@ impl Default for DeviceChoice {
             settings: BTreeMap::new(),
             rate_hz: None,
             gain_db: None,
+            quantity_gain: None,
             drive_v: None,
             level_dbfs: None,
             levels: Levels::default(),
-            reference_n: None,
+            reference_rms: None,
             pitch: None,
             response: None,
             response_depth_db: depth(),

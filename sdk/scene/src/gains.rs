@@ -38,7 +38,7 @@ pub struct Gain {
     pub drive_v: f64,
     /// RMS that had this drive, newtons: what other representations are measured by where levels are not normalised.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub reference_n: Option<f64>,
+    pub reference_rms: Option<f64>,
     /// Names of the files that the texture was recorded in: they tell two textures of one name apart.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub recordings: Vec<String>,

@@ -69,6 +69,12 @@ pub enum LoadError {
 }
 
 impl LoadedScene {
+    /// What the assets hold, all of them the same.
+    pub fn quantity(&self) -> Quantity {
+        let first = self.assets.first();
+        first.map_or(Quantity::default(), Asset::quantity)
+    }
+
     /// Opens a scene file and all that it names.
     ///
     /// # Errors
@@ -188,8 +194,20 @@ fn load(
     let trace = open_trace(&scene, &folder, findings);
     device.apply(&mut scene.device);
     let response = open_response(&scene, &folder, findings);
-    let settings = check_device(&scene.device, device, &folder, around.devices, findings);
+    let held = assets
+        .as_ref()
+        .and_then(|all| all.first())
+        .map(Asset::quantity);
+    let settings = check_device(
+        &scene.device,
+        device,
+        &folder,
+        around.devices,
+        held,
+        findings,
+    );
     let assets = assets?;
+    check_quantities(&assets, findings);
     // A motion that is not valid has its finding already.
     if !findings.has_errors() {
         crate::beyond::check(&scene, &assets, trace.as_ref(), findings);
@@ -249,26 +267,33 @@ fn open_asset(
             true => asset.with_embedded(),
             false => Ok(asset),
         });
-    let opened = opened.map_err(|error| match &error {
+    opened.map_err(|error| match &error {
         htex::Error::Read(htex_format::ReadError::Io { error, .. }) if is_missing(error) => {
             (rule::ASSET_MISSING, missing(asset))
         }
         _ => (rule::ASSET_INVALID, format!("{}: {error}", asset.display())),
-    })?;
-    check_quantity(asset, opened)
+    })
 }
 
-/// Refuses an asset whose samples are no lateral force: every device of a scene takes them as newtons.
-fn check_quantity(path: &Path, asset: Asset) -> Result<Asset, (&'static Rule, String)> {
-    match asset.manifest().quantity {
-        Quantity::LateralForce => Ok(asset),
-        other => {
-            let (path, unit) = (path.display(), other.unit());
-            let message = format!(
-                "{path} holds the quantity {other} in {unit}, and scenes play lateral_force in N; name an asset of it"
-            );
-            Err((rule::ASSET_INVALID, message))
-        }
+/// Finds an asset that holds another quantity than the first.
+fn check_quantities(assets: &[Asset], findings: &mut Findings) {
+    let Some(first) = assets.first().map(Asset::quantity) else {
+        return;
+    };
+    for (i, asset) in assets.iter().enumerate() {
+        let held = asset.quantity();
+        findings.require(
+            held == first,
+            rule::QUANTITIES_DIFFER,
+            format!("/surfaces/{i}/asset"),
+            || {
+                format!(
+                    "the asset holds {held} in {}, that of the first surface {first} in {}",
+                    held.unit(),
+                    first.unit()
+                )
+            },
+        );
     }
 }
 

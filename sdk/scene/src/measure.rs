@@ -141,7 +141,7 @@ fn measure_stage(stage: &mut dyn Stage) -> f64 {
             force_n: 0.5,
             at_mm: None,
         },
-        level_n: 0.1,
+        level_rms: 0.1,
         ends_in: None,
     });
     let alone = least(&mut source);
@@ -167,7 +167,9 @@ fn example_call() -> Call {
         live: true,
         turns_round: true,
         breaks_contact: true,
-        level_n: 0.1,
+        quantity: htex_format::Quantity::LateralForce,
+        quantity_gain: 1.0,
+        level_rms: 0.1,
         drive_v: 100.0,
         gain_db: 0.0,
         level_dbfs: -18.0,
@@ -206,6 +208,6 @@ fn example_part() -> Part {
         fixed_ratio: 1.0,
         fixed_force_gain: 1.0,
         gain: 1.0,
-        level_n: 0.1,
+        level_rms: 0.1,
     }
 }

@@ -35,7 +35,7 @@ pub struct Plan {
     /// Where the costs come from.
     pub costs: String,
     /// RMS that is brought to the drive or to the level of a preview, newtons.
-    pub reference_n: f64,
+    pub reference_rms: f64,
     /// What is worth knowing.
     pub notes: Vec<String>,
     #[serde(skip)]
@@ -115,10 +115,10 @@ pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result
         };
         representation::choose(scene, &call, &cost)?
     };
-    let loudest_n = choices.iter().map(|c| c.part.level_n).fold(0.0, f64::max);
-    call.level_n = match scene.scene.device.levels {
-        Levels::Normalised => loudest_n,
-        Levels::Own => representation::reference_n(scene, &call),
+    let loudest_rms = choices.iter().map(|c| c.part.level_rms).fold(0.0, f64::max);
+    call.level_rms = match scene.scene.device.levels {
+        Levels::Normalised => loudest_rms,
+        Levels::Own => representation::reference_rms(scene, &call),
     };
     let parts: Vec<Part> = choices.iter().map(|c| c.part.clone()).collect();
     let mut draft = Draft::new(scene, &call, costs);
@@ -142,8 +142,8 @@ pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result
         block_frames: call.control,
         frames: call.frames,
         costs: costs.machine.clone(),
-        notes: notes(&call, constant, loudest_n),
-        reference_n: call.level_n,
+        notes: notes(&call, constant, loudest_rms),
+        reference_rms: call.level_rms,
         call,
         parts,
         mixes,
@@ -167,19 +167,18 @@ fn is_constant(call: &Call, parts: &[PlannedPart]) -> bool {
     !call.live && !call.breaks_contact && !call.turns_round && parts.iter().all(steady)
 }
 
-fn notes(call: &Call, constant: bool, loudest_n: f64) -> Vec<String> {
+fn notes(call: &Call, constant: bool, loudest_rms: f64) -> Vec<String> {
     let mut notes = Vec::new();
     if constant {
         notes.push("nothing changes over the scene: the constant path is taken".to_owned());
     }
     // A level of its own, that is.
-    if call.level_n > 0.0 && loudest_n > 0.0 && loudest_n != call.level_n {
-        let db = 20.0 * (loudest_n / call.level_n).log10();
+    if call.level_rms > 0.0 && loudest_rms > 0.0 && loudest_rms != call.level_rms {
+        let db = 20.0 * (loudest_rms / call.level_rms).log10();
         notes.push(format!(
-            "levels are not normalised: the loudest texture, {:.3} mN RMS, stands {db:+.1} dB from the reference \
-             of {:.3} mN",
-            1e3 * loudest_n,
-            1e3 * call.level_n
+            "levels are not normalised: the loudest texture, {} RMS, stands {db:+.1} dB from the reference of {}",
+            call.quantity.text(loudest_rms),
+            call.quantity.text(call.level_rms)
         ));
     }
     match call.device.quantity {
@@ -197,7 +196,7 @@ fn notes(call: &Call, constant: bool, loudest_n: f64) -> Vec<String> {
                 false => format!(", and frequencies are multiplied by {}", call.pitch),
             }
         )),
-        Quantity::LateralForce => {}
+        _ => {}
     }
     notes
 }
@@ -379,9 +378,10 @@ impl<'a> Draft<'a> {
     fn is_needed(&self, entry: &Entry) -> bool {
         match entry.effect {
             Effect::Resampling => true,
-            Effect::Gain | Effect::SquareRoot => {
-                self.call.device.quantity != Quantity::LateralForce
+            Effect::Gain => {
+                !self.call.device.quantity.is_physical() || self.call.quantity_gain != 1.0
             }
+            Effect::SquareRoot => !self.call.device.quantity.is_physical(),
             _ => false,
         }
     }

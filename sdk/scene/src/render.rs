@@ -203,7 +203,7 @@ impl Renderer {
         };
         let now = Now {
             finger,
-            level_n: 0.0,
+            level_rms: 0.0,
             ends_in: self.frames_left(),
         };
         let touched = topmost(&self.surfaces, &finger);
@@ -362,7 +362,7 @@ impl Lane {
         }
         // The level comes behind what changes the rate, and before what changes the level.
         let scaled = planned.effects.contains_key(&Effect::SpeedScaling);
-        let level = Level::new(part, synthesis.level_n());
+        let level = Level::new(part, synthesis.level_rms());
         let level = Slot::new("level", Some(part.surface), Box::new(level));
         chain.slots.insert(usize::from(scaled), level);
         let crossfade = planned.effects.get(&Effect::Crossfade).map(|neutral| {
@@ -400,7 +400,7 @@ impl Lane {
             });
         }
         self.chain.follow(&Now {
-            level_n: self.synthesis.level_n(),
+            level_rms: self.synthesis.level_rms(),
             ..*now
         });
     }

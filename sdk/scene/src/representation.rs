@@ -46,21 +46,21 @@ pub(crate) fn choose(
 
 /// The level that stands for the drive where levels are not normalised, newtons: the one given, else that of the
 /// strongest representation of the surfaces that are touched, whichever plays them.
-pub(crate) fn reference_n(scene: &LoadedScene, call: &Call) -> f64 {
-    if let Some(given_n) = scene.scene.device.reference_n {
+pub(crate) fn reference_rms(scene: &LoadedScene, call: &Call) -> f64 {
+    if let Some(given_n) = scene.scene.device.reference_rms {
         return given_n;
     }
-    let mut strongest_n = 0.0f64;
+    let mut strongest_rms = 0.0f64;
     for surface in (0..scene.assets.len()).filter(|&i| call.touches[i].share > 0.0) {
         let asset = &scene.assets[surface];
         for r in &asset.manifest().representations {
             // One that cannot be played here has no say.
             if let Ok(part) = Part::new(scene, call, surface, &r.model) {
-                strongest_n = strongest_n.max(part.level_n);
+                strongest_rms = strongest_rms.max(part.level_rms);
             }
         }
     }
-    strongest_n
+    strongest_rms
 }
 
 fn candidates(scene: &LoadedScene, call: &Call, surface: usize) -> Result<Candidates, SceneError> {

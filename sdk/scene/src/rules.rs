@@ -162,9 +162,18 @@ htex_format::rule_table! {
         "Choose one of its rates, or leave `rate_hz` out.";
     DEVICE_FIELD_UNFIT Error:
         "A key of `device` does not go with what the device takes.",
-        "`gain_db` is for newtons, `drive_v` for volts at a display, `level_dbfs` and `pitch` for sound, and \
-         `levels` for the last two; `reference_n` goes with the levels `own`.",
+        "`gain_db` is for newtons and other quantities of touch, `drive_v` for volts at a display, `level_dbfs` and `pitch` for sound, and \
+         `levels` for the last two; `reference_rms` goes with the levels `own`.",
         "Leave it out, or choose another device.";
+    DEVICE_QUANTITY Error:
+        "The device does not take what the assets hold, or `quantity_gain` is stated for one that does.",
+        "An acceleration of 1 m/s2 is no force of 1 N: what it is to be felt as, a person must say.",
+        "Choose a device or a setting that takes the assets' quantity, or state `quantity_gain`; leave it out where \
+         device and assets agree, and for sound.";
+    QUANTITIES_DIFFER Error:
+        "The assets of a scene hold different quantities.",
+        "One device plays them all, and newtons and metres cannot be compared.",
+        "Use assets of one quantity, or a scene for each.";
     DEVICE_DRIVE_TOO_HIGH Error:
         "`drive_v` is above the device's limit.",
         "Voltages beyond the limit are cut off, and are not what was meant to be felt.",

@@ -40,7 +40,7 @@ fn energies_db(samples: &[f32]) -> [f64; 3] {
     let part = segment_spectra(&recording, &options).unwrap();
     let spectrum = TextureSpectrum::average(&[part], options.averaging).unwrap();
     [(40.0, 200.0), (200.0, 500.0), (500.0, 930.0)].map(|(low, high)| {
-        let bins = spectrum.frequency_hz.iter().zip(&spectrum.magnitude_n);
+        let bins = spectrum.frequency_hz.iter().zip(&spectrum.magnitude);
         let inside = bins.filter(|(f, _)| (low..high).contains(*f));
         10.0 * inside.map(|(_, m)| m * m).sum::<f64>().log10()
     })

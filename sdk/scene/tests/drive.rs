@@ -51,7 +51,7 @@ fn magnitudes(signal: Vec<f64>) -> Vec<f64> {
     let part = segment_spectra(&recording, &options).unwrap();
     TextureSpectrum::average(&[part], options.averaging)
         .unwrap()
-        .magnitude_n
+        .magnitude
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn demodulated_and_squared_it_has_the_textures_compensated_spectrum() {
                 .zip(&grid)
                 .map(|(m, f)| m / droop(*f))
                 .collect();
-            let texture = single().magnitude_n(Some(model), None, &grid).unwrap();
+            let texture = single().magnitude(Some(model), None, &grid).unwrap();
             let inverse = |f: f64| response.as_ref().map_or(1.0, |r| 1.0 / r.at(f).0);
             let wanted: Vec<f64> = texture
                 .iter()
@@ -116,30 +116,30 @@ fn demodulated_and_squared_it_has_the_textures_compensated_spectrum() {
 /// What the drive of each model demodulates to, dB RMS, and the level of its representation.
 #[test]
 fn under_one_gain_levels_are_alike_or_the_representations_own() {
-    let model = |name: &str, levels: Levels, reference_n: Option<f64>| {
+    let model = |name: &str, levels: Levels, reference_rms: Option<f64>| {
         let mut scene = scene(single(), constant(80.0, 0.4), 20.0);
         scene.scene.surfaces[0].representation = name.to_owned();
         scene.scene.device.levels = levels;
-        scene.scene.device.reference_n = reference_n;
+        scene.scene.device.reference_rms = reference_rms;
         let (drive, _) = driven(&mut scene);
         let steady = demodulated(&drive[RATE_HZ as usize..drive.len() - RATE_HZ as usize]);
         let mean = steady.iter().sum::<f64>() / steady.len() as f64;
         let moved: Vec<f64> = steady.iter().map(|v2| v2 - mean).collect();
         20.0 * rms(&moved).log10()
     };
-    let level_n = |name: &str| single().parameters(Some(name), None).unwrap().1;
+    let level_rms = |name: &str| single().parameters(Some(name), None).unwrap().1;
     let all = single().manifest().representations.iter();
-    let strongest_n = all.map(|r| level_n(&r.model)).fold(0.0, f64::max);
+    let strongest_rms = all.map(|r| level_rms(&r.model)).fold(0.0, f64::max);
     let alike = model("ar", Levels::Normalised, None);
     // The RMS of 20 s of noise that holds most of its power in some 30 Hz is uncertain by 0.2 dB.
     const SPREAD_DB: f64 = 0.5;
     for name in ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"] {
         let normalised = model(name, Levels::Normalised, None) - alike;
         assert!(normalised.abs() < SPREAD_DB, "{name}: {normalised} dB");
-        for reference_n in [None, Some(1.5 * strongest_n)] {
-            let against_n = reference_n.unwrap_or(strongest_n);
-            let wanted = 20.0 * (level_n(name) / against_n).log10();
-            let found = model(name, Levels::Own, reference_n) - alike;
+        for reference_rms in [None, Some(1.5 * strongest_rms)] {
+            let against_rms = reference_rms.unwrap_or(strongest_rms);
+            let wanted = 20.0 * (level_rms(name) / against_rms).log10();
+            let found = model(name, Levels::Own, reference_rms) - alike;
             println!("{name}: {found:.2} dB, by its level {wanted:.2} dB");
             assert!(
                 (found - wanted).abs() < SPREAD_DB,

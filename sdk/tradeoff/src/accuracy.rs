@@ -19,9 +19,9 @@ pub(crate) struct Accuracy {
 /// compared with.
 const FAR_DB: f64 = 200.0;
 
-pub(crate) fn accuracy(reference: SpectrumRef<'_>, magnitude_n: &[f64]) -> Accuracy {
-    let found = agreement(reference, magnitude_n);
-    let ratio = level_rms(magnitude_n) / level_rms(reference.magnitude_n);
+pub(crate) fn accuracy(reference: SpectrumRef<'_>, magnitude: &[f64]) -> Accuracy {
+    let found = agreement(reference, magnitude);
+    let ratio = level_rms(magnitude) / level_rms(reference.magnitude);
     Accuracy {
         spectral_correlation: found.spectral_correlation,
         band_error_rms_db: found.band_error_rms_db,

@@ -14,16 +14,13 @@ const RANGE_BYTES: usize = 8;
 
 /// Magnitudes after a round trip through one byte each, on a logarithmic scale from the lowest to
 /// the highest, each rounded up or down; and the bytes that takes.
-pub(crate) fn quantise(magnitude_n: &[f64]) -> (Vec<f64>, usize) {
-    let top = magnitude_n.iter().copied().fold(0.0, f64::max);
-    let bytes = magnitude_n.len() + RANGE_BYTES;
+pub(crate) fn quantise(magnitude: &[f64]) -> (Vec<f64>, usize) {
+    let top = magnitude.iter().copied().fold(0.0, f64::max);
+    let bytes = magnitude.len() + RANGE_BYTES;
     if top <= 0.0 {
-        return (vec![0.0; magnitude_n.len()], bytes);
+        return (vec![0.0; magnitude.len()], bytes);
     }
-    let logs: Vec<f64> = magnitude_n
-        .iter()
-        .map(|m| m.max(FLOOR * top).ln())
-        .collect();
+    let logs: Vec<f64> = magnitude.iter().map(|m| m.max(FLOOR * top).ln()).collect();
     let single = |x: f64| f64::from(x as f32);
     let low = single(logs.iter().copied().fold(f64::INFINITY, f64::min));
     let step = (single(top.ln()) - low) / STEPS;
@@ -53,19 +50,19 @@ pub(crate) struct SpectrumNoise {
 
 impl SpectrumNoise {
     pub(crate) fn new(
-        magnitude_n: &[f64],
+        magnitude: &[f64],
         band: Band,
         rate_hz: f64,
         seed: u64,
     ) -> Result<Self, HostError> {
         let noise_hz = economical_rate_hz(rate_hz, band);
         let mut noise = ShapedNoise::new(noise_hz, band, seed);
-        let level = level_rms(magnitude_n);
-        let last = magnitude_n.len().saturating_sub(1);
+        let level = level_rms(magnitude);
+        let last = magnitude.len().saturating_sub(1);
         noise.start(|_, hz| {
             let place = (hz / htex_dsp::GRID_HZ - band.first_bin() as f64).clamp(0.0, last as f64);
             let (below, part) = (place as usize, place.fract());
-            let (a, b) = (magnitude_n[below], magnitude_n[(below + 1).min(last)]);
+            let (a, b) = (magnitude[below], magnitude[(below + 1).min(last)]);
             (a + part * (b - a)) / level
         });
         let resampler = Resampler::new(noise_hz, rate_hz, band.high_hz)?;

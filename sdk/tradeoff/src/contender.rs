@@ -30,7 +30,7 @@ pub(crate) enum Kind {
 /// What playing needs.
 pub(crate) struct Stored {
     pub(crate) parameters: Vec<f64>,
-    pub(crate) level_n: f64,
+    pub(crate) level_rms: f64,
     pub(crate) bytes: usize,
 }
 
@@ -46,7 +46,7 @@ impl Contender {
         match &self.kind {
             Kind::Model(model, options) => model.fit(&spectrum.fit_request(options)),
             Kind::Quantised => {
-                let parameters = quantise(&spectrum.magnitude_n).0;
+                let parameters = quantise(&spectrum.magnitude).0;
                 let level_rms = level_rms(&parameters);
                 Ok(Fit {
                     parameters,
@@ -55,7 +55,7 @@ impl Contender {
             }
             Kind::Recording => Ok(Fit {
                 parameters: Vec::new(),
-                level_rms: level_rms(&spectrum.magnitude_n),
+                level_rms: level_rms(&spectrum.magnitude),
             }),
         }
     }
@@ -70,17 +70,17 @@ impl Contender {
                 let parameters = round_parameters(&fields, &fit.parameters)?;
                 let (reference, level) = (spectrum.as_ref(), Level::default());
                 return Ok(Stored {
-                    level_n: stored_level(model, fit, &parameters, reference, level)?,
+                    level_rms: stored_level(model, fit, &parameters, reference, level)?,
                     bytes: stored_bytes(&fields, &parameters)?,
                     parameters,
                 });
             }
-            Kind::Quantised => quantise(&spectrum.magnitude_n),
+            Kind::Quantised => quantise(&spectrum.magnitude),
             Kind::Recording => (Vec::new(), subject.bytes),
         };
         Ok(Stored {
             parameters,
-            level_n: fit.level_rms,
+            level_rms: fit.level_rms,
             bytes,
         })
     }

@@ -53,7 +53,7 @@ impl Contender {
         Ok(Some(Measured {
             bytes: stored.bytes,
             kept_bytes: rendered.kept_bytes,
-            by_magnitude: accuracy(reference, &self.magnitude_n(subject, &stored)?),
+            by_magnitude: accuracy(reference, &self.magnitude(subject, &stored)?),
             by_samples: accuracy(reference, &rms_of(&rendered.spectra)),
             samples_spread_db: 0.5 * (high - low),
         }))
@@ -82,7 +82,7 @@ impl Contender {
             rendered.spectra.push(spectrum_of_samples(
                 &samples,
                 rate_hz,
-                stored.level_n,
+                stored.level_rms,
                 reference,
             )?);
             rendered.kept_bytes = sound.kept_bytes;
@@ -90,16 +90,16 @@ impl Contender {
         Ok(rendered)
     }
 
-    fn magnitude_n(&self, subject: &Subject, stored: &Stored) -> Result<Vec<f64>, HostError> {
+    fn magnitude(&self, subject: &Subject, stored: &Stored) -> Result<Vec<f64>, HostError> {
         let spectrum = &subject.spectrum;
         match &self.kind {
             Kind::Model(model, _) => {
                 let shape =
                     model.magnitude(&stored.parameters, spectrum.band, &spectrum.frequency_hz)?;
-                Ok(shape.iter().map(|m| m * stored.level_n).collect())
+                Ok(shape.iter().map(|m| m * stored.level_rms).collect())
             }
             Kind::Quantised => Ok(stored.parameters.clone()),
-            Kind::Recording => Ok(spectrum.magnitude_n.clone()),
+            Kind::Recording => Ok(spectrum.magnitude.clone()),
         }
     }
 }

@@ -36,7 +36,7 @@ impl Subject {
         let (part, warnings) = (reading.part, reading.warnings);
         let repeats = repeats(&part, options)?;
         let spectrum = TextureSpectrum::average(&[part], options.averaging)?;
-        let axes = &recording.lateral_n;
+        let axes = &recording.axes;
         let samples = |axis: &Vec<f64>| axis.iter().map(|&x| x as f32).collect();
         Ok(Self {
             name: recording.source.clone(),
@@ -75,15 +75,13 @@ fn repeats(
         TextureSpectrum::average(&[part], options.averaging)
     };
     let (even, odd) = (half(0)?, half(1)?);
-    Ok(Some(accuracy(even.as_ref(), &odd.magnitude_n)))
+    Ok(Some(accuracy(even.as_ref(), &odd.magnitude)))
 }
 
 /// Everything that results depend on: the samples, and what was made of them.
 fn digest(axes: &[Vec<f64>], rate_hz: f64, spectrum: &TextureSpectrum) -> blake3::Hash {
     let mut hasher = blake3::Hasher::new();
-    let parts = axes
-        .iter()
-        .chain([&spectrum.magnitude_n, &spectrum.signal_n]);
+    let parts = axes.iter().chain([&spectrum.magnitude, &spectrum.signal]);
     for part in parts {
         hasher.update(&(part.len() as u64).to_le_bytes());
         part.iter().for_each(|x| {

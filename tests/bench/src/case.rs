@@ -75,8 +75,8 @@ impl Case {
     fn json(&self) -> serde_json::Value {
         let lines = self.list("speak", 0);
         json!({
-            "magnitude": self.spectrum.magnitude_n,
-            "signal": self.spectrum.signal_n,
+            "magnitude": self.spectrum.magnitude,
+            "signal": self.spectrum.signal,
             "ar": self.ar(),
             "sslope": self.parameters("sslope"),
             "sbeta": self.parameters("sbeta"),
@@ -91,8 +91,8 @@ pub fn request<'a>(spectrum: &'a TextureSpectrum, options: &'a [f64]) -> FitRequ
     FitRequest {
         band: spectrum.band,
         frequency_hz: &spectrum.frequency_hz,
-        magnitude: &spectrum.magnitude_n,
-        signal: &spectrum.signal_n,
+        magnitude: &spectrum.magnitude,
+        signal: &spectrum.signal,
         signal_rate_hz: spectrum.signal_rate_hz,
         options,
     }

@@ -64,7 +64,7 @@ pub(crate) fn play(asset: &Asset) {
     ];
     for representation in &asset.manifest().representations {
         let model = Some(representation.model.as_str());
-        match asset.magnitude_n(model, None, &edges) {
+        match asset.magnitude(model, None, &edges) {
             Ok(magnitude) => finite("magnitude", magnitude),
             Err(error) => refusal(&error),
         }

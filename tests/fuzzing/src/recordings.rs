@@ -62,7 +62,7 @@ fn refused(error: &ReadError) -> bool {
 
 fn take_spectra(recording: &Recording) {
     recording.warnings.iter().for_each(sentence);
-    let signals = recording.lateral_n.iter().chain(&recording.normal_n);
+    let signals = recording.axes.iter().chain(&recording.normal_n);
     for signal in signals.chain(&recording.speed_mm_s) {
         assert_eq!(signal.len(), recording.samples());
         finite("signal", signal.iter().copied());
@@ -103,8 +103,8 @@ fn take_spectra(recording: &Recording) {
         for averaging in [Averaging::Magnitude, Averaging::Rms, Averaging::Complex] {
             match TextureSpectrum::average(&parts, averaging) {
                 Ok(spectrum) => {
-                    finite("magnitude", spectrum.magnitude_n);
-                    finite("signal", spectrum.signal_n);
+                    finite("magnitude", spectrum.magnitude);
+                    finite("signal", spectrum.signal);
                     finite("repeatability", spectrum.repeatability_rms_db);
                 }
                 Err(error) => sentence(&error),

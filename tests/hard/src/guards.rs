@@ -153,8 +153,8 @@ pub const GUARDS: &[Guard] = &[
     )),
     piped(guard(
         "sdk/scene/src/stages/gain.rs",
-        "call.level_n > LEAST_N",
-        "call.level_n > 0.0",
+        "call.level_rms > LEAST_RMS",
+        "call.level_rms > 0.0",
         "motion",
     )),
 ];

@@ -3,7 +3,7 @@
 use htex_format::Findings;
 
 use super::rules::{RECORDING_CLIPPED, RECORDING_COARSE};
-use super::{axis_name, pointer};
+use super::{axis_words, pointer};
 use crate::{Recording, segment_len};
 
 /// Values of a signal below which it is its converter's steps: a texture of 4 bits has a quantisation
@@ -33,8 +33,8 @@ pub(super) enum Levels {
 
 /// Finds coarse steps and clipping; what is shorter than a segment is not judged.
 pub(super) fn judge(recording: &Recording, axis: usize, findings: &mut Findings) -> Levels {
-    let values = &recording.lateral_n[axis];
-    let name = axis_name(recording, axis);
+    let values = &recording.axes[axis];
+    let (name, words) = (recording.axis_name(axis), axis_words(recording, axis));
     if values.len() < segment_len(recording.rate_hz) {
         return Levels::ClippedAt(Vec::new());
     }
@@ -43,7 +43,7 @@ pub(super) fn judge(recording: &Recording, axis: usize, findings: &mut Findings)
         FEWEST_LEVELS => {}
         levels => {
             findings.add(RECORDING_COARSE, format!("/{name}"), format!(
-                "the {name} force takes {levels} different values in {} samples; raise the gain or write more digits",
+                "the {words} takes {levels} different values in {} samples; raise the gain or write more digits",
                 values.len()
             ));
             return Levels::Coarse;
@@ -60,10 +60,10 @@ pub(super) fn judge(recording: &Recording, axis: usize, findings: &mut Findings)
         let count: usize = clips.iter().map(|clip| clip.count).sum();
         let limits: Vec<String> = clips
             .iter()
-            .map(|clip| format!("{:.4} N", clip.level))
+            .map(|clip| format!("{:.4} {}", clip.level, recording.quantity.unit()))
             .collect();
         findings.add(RECORDING_CLIPPED, pointer(recording, name, first), format!(
-            "{:.1} % of the samples of the {name} force lie on {}, first at {:.3} s; record with a larger range",
+            "{:.1} % of the samples of the {words} lie on {}, first at {:.3} s; record with a larger range",
             100.0 * count as f64 / values.len() as f64,
             limits.join(" or "),
             recording.second(first)

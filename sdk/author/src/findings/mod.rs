@@ -9,7 +9,7 @@ mod segments;
 mod spikes;
 mod stuck;
 
-use htex_format::{Finding, Findings};
+use htex_format::{Finding, Findings, Quantity};
 
 use crate::Recording;
 use levels::Levels;
@@ -35,15 +35,19 @@ pub(crate) use segments::judge_segments;
 /// ```
 pub fn recording_findings(recording: &Recording) -> Vec<Finding> {
     let mut findings = Findings::default();
-    for axis in 0..recording.lateral_n.len() {
+    for axis in 0..recording.axes.len() {
         if let Levels::ClippedAt(clips) = levels::judge(recording, axis, &mut findings) {
-            stuck::judge_lateral(recording, axis, &clips, &mut findings);
-            spikes::judge_lateral(recording, axis, &mut findings);
+            stuck::judge_axis(recording, axis, &clips, &mut findings);
+            spikes::judge_axis(recording, axis, &mut findings);
         }
     }
-    stuck::judge_normal(recording, &mut findings);
-    spikes::judge_normal(recording, &mut findings);
-    plausible::judge_friction(recording, &mut findings);
+    if recording.quantity != Quantity::NormalForce {
+        stuck::judge_normal(recording, &mut findings);
+        spikes::judge_normal(recording, &mut findings);
+    }
+    if recording.quantity == Quantity::LateralForce {
+        plausible::judge_friction(recording, &mut findings);
+    }
     plausible::judge_speed(recording, &mut findings);
     let found = findings.into_list();
     recording
@@ -54,12 +58,12 @@ pub fn recording_findings(recording: &Recording) -> Vec<Finding> {
         .collect()
 }
 
-/// A lateral axis' name in pointers and messages.
-fn axis_name(recording: &Recording, axis: usize) -> &'static str {
-    match (recording.lateral_n.len(), axis) {
-        (1, _) => "lateral",
-        (_, 0) => "lateral_x",
-        _ => "lateral_y",
+/// An axis in a sentence: `lateral_x force`, `signal_z`.
+fn axis_words(recording: &Recording, axis: usize) -> String {
+    let name = recording.axis_name(axis);
+    match recording.quantity {
+        Quantity::LateralForce | Quantity::NormalForce => format!("{name} force"),
+        _ => name.to_owned(),
     }
 }
 

@@ -25,16 +25,8 @@ pub(super) fn judge_friction(recording: &Recording, findings: &mut Findings) {
     let Some(normal) = recording.normal_n.as_deref().and_then(median) else {
         return;
     };
-    let squares = |at: usize| {
-        recording
-            .lateral_n
-            .iter()
-            .map(|axis| axis[at] * axis[at])
-            .sum::<f64>()
-    };
-    let lateral = quantile(0.5, recording.samples(), squares)
-        .unwrap_or(0.0)
-        .sqrt();
+    let magnitude = |at| recording.magnitude_at(at);
+    let lateral = quantile(0.5, recording.samples(), magnitude).unwrap_or(0.0);
     if lateral > LARGEST_FRICTION * normal.max(0.0) {
         findings.add(RECORDING_FRICTION_IMPLAUSIBLE, "/normal", format!(
             "the lateral force is {lateral:.4} N (median) at a normal force of {normal:.4} N; correct the scale of one of \

@@ -99,7 +99,7 @@ fn judge_levels(recording: &Recording, part: &SegmentSpectra, findings: &mut Fin
     );
     findings.add(
         RECORDING_UNEVEN,
-        super::pointer(recording, super::axis_name(recording, 0), *first),
+        super::pointer(recording, recording.axis_name(0), *first),
         message,
     );
 }

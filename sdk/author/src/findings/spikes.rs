@@ -1,10 +1,10 @@
 //! Single samples that stand out.
 
-use htex_format::Findings;
+use htex_format::{Findings, Quantity};
 
 use super::quantile::{median, quantile};
 use super::rules::{RECORDING_FORCE_OUTLIER, RECORDING_SPIKE};
-use super::{axis_name, pointer};
+use super::{axis_words, pointer};
 use crate::Recording;
 
 /// Blocks in which the sharpest corner is looked for, seconds.
@@ -26,18 +26,18 @@ const NEIGHBOURS: usize = 2;
 /// Places that a message names.
 const NAMED: usize = 5;
 
-/// Finds spikes of a lateral axis.
-pub(super) fn judge_lateral(recording: &Recording, axis: usize, findings: &mut Findings) {
-    let values = &recording.lateral_n[axis];
-    let name = axis_name(recording, axis);
+/// Finds spikes of an axis.
+pub(super) fn judge_axis(recording: &Recording, axis: usize, findings: &mut Findings) {
+    let values = &recording.axes[axis];
+    let (name, words) = (recording.axis_name(axis), axis_words(recording, axis));
     let spikes = spikes(values, recording.rate_hz, 0.0);
     if let Some(first) = spikes.first() {
         let message = format!(
-            "the {name} force has {} that stand{} out of all others: {}; cut them away with --from and --to, or repair \
+            "the {words} has {} that stand{} out of all others: {}; cut them away with --from and --to, or repair \
              them",
             count(spikes.len()),
             if spikes.len() == 1 { "s" } else { "" },
-            places(recording, values, &spikes)
+            places(recording, recording.quantity, values, &spikes)
         );
         findings.add(RECORDING_SPIKE, pointer(recording, name, *first), message);
     }
@@ -55,7 +55,7 @@ pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
             "the normal force has {} that no finger presses with: {}; its median is {usual:.4} N (its mean would be \
              {:.4} N), repair them or give --force",
             count(spikes.len()),
-            places(recording, values, &spikes),
+            places(recording, Quantity::NormalForce, values, &spikes),
             values.iter().sum::<f64>() / values.len() as f64
         );
         findings.add(
@@ -114,8 +114,12 @@ fn count(samples: usize) -> String {
     format!("{samples} sample{}", if samples == 1 { "" } else { "s" })
 }
 
-fn places(recording: &Recording, values: &[f64], spikes: &[usize]) -> String {
-    let place = |at: &usize| format!("{:.4} N at {:.4} s", values[*at], recording.second(*at));
+fn places(recording: &Recording, quantity: Quantity, values: &[f64], spikes: &[usize]) -> String {
+    let unit = quantity.unit();
+    let place = |at: &usize| {
+        let second = recording.second(*at);
+        format!("{:.4} {unit} at {second:.4} s", values[*at])
+    };
     let mut named: Vec<String> = spikes.iter().take(NAMED).map(place).collect();
     if spikes.len() > NAMED {
         named.push(format!("{} more", spikes.len() - NAMED));

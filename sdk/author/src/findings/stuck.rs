@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use htex_format::Findings;
+use htex_format::{Findings, Quantity};
 
 use super::rules::{RECORDING_SILENT, RECORDING_STUCK};
-use super::{axis_name, pointer};
+use super::{axis_words, pointer};
 use crate::Recording;
 
 /// Shortest stretch of one value that is a stuck sensor, seconds: longer than a hand takes to turn (0.1
@@ -21,15 +21,15 @@ const RESTS: f64 = 0.1;
 /// coarser steps, and set points, may well stay.
 const LIVELY: f64 = 0.5;
 
-/// Finds stretches in which a lateral axis stands still, except at the values that it is clipped at.
-pub(super) fn judge_lateral(
+/// Finds stretches in which an axis stands still, except at the values that it is clipped at.
+pub(super) fn judge_axis(
     recording: &Recording,
     axis: usize,
     clipped: &[f64],
     findings: &mut Findings,
 ) {
-    let values = &recording.lateral_n[axis];
-    let name = axis_name(recording, axis);
+    let values = &recording.axes[axis];
+    let (name, words) = (recording.axis_name(axis), axis_words(recording, axis));
     let magnitude = mean(values.iter().map(|value| value.abs()));
     let shortest = |seconds: f64| ((seconds * recording.rate_hz) as usize).max(2);
     let (mut stuck, mut silent) = (Vec::new(), Vec::new());
@@ -48,7 +48,7 @@ pub(super) fn judge_lateral(
     }
     for (rule, runs) in [(RECORDING_STUCK, stuck), (RECORDING_SILENT, silent)] {
         if let Some(first) = runs.first() {
-            let message = sentence(recording, name, values, &runs);
+            let message = sentence(recording, &words, recording.quantity, values, &runs);
             findings.add(rule, pointer(recording, name, first.start), message);
         }
     }
@@ -66,7 +66,13 @@ pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
     let held: usize = runs.iter().map(Range::len).sum();
     let changes = values.windows(2).filter(|pair| pair[0] != pair[1]).count();
     if changes as f64 > LIVELY * (values.len() - held) as f64 {
-        let message = sentence(recording, "normal", values, &runs);
+        let message = sentence(
+            recording,
+            "normal force",
+            Quantity::NormalForce,
+            values,
+            &runs,
+        );
         findings.add(
             RECORDING_STUCK,
             pointer(recording, "normal", first.start),
@@ -103,7 +109,13 @@ fn runs(values: &[f64], shortest: usize) -> Vec<Range<usize>> {
     runs
 }
 
-fn sentence(recording: &Recording, name: &str, values: &[f64], runs: &[Range<usize>]) -> String {
+fn sentence(
+    recording: &Recording,
+    words: &str,
+    quantity: Quantity,
+    values: &[f64],
+    runs: &[Range<usize>],
+) -> String {
     let held: usize = runs.iter().map(Range::len).sum();
     let longest = runs
         .iter()
@@ -111,11 +123,12 @@ fn sentence(recording: &Recording, name: &str, values: &[f64], runs: &[Range<usi
         .cloned()
         .unwrap_or_default();
     format!(
-        "the {name} force holds one value for {:.2} of {:.2} s, longest {:.4} N from {:.3} to {:.3} s; cut it away with \
+        "the {words} holds one value for {:.2} of {:.2} s, longest {:.4} {} from {:.3} to {:.3} s; cut it away with \
          --from and --to, or record again",
         held as f64 / recording.rate_hz,
         recording.duration_s(),
         values[longest.start],
+        quantity.unit(),
         recording.second(longest.start),
         recording.second(longest.end),
     )

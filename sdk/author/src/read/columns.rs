@@ -1,11 +1,13 @@
 //! What a column's name says: its role and its unit.
 
+use htex_format::Quantity;
+
 use super::map::Role;
 
 /// What the name says of the unit.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Unit {
-    /// Factor to the role's own unit (N, mm/s, s, mm).
+    /// Factor to the role's own unit (that of the quantity, N, mm/s, s, mm).
     Scale(f64),
     /// No unit in the name.
     Unsaid,
@@ -100,35 +102,39 @@ const NAMES: [(Role, &[&str]); 8] = [
 ];
 
 /// Unit suffixes after an underscore, the longer before the shorter that ends it.
-const SUFFIXES: [&str; 16] = [
-    "mm_s", "cm_s", "m_s", "mm/s", "cm/s", "m/s", "mn", "un", "kn", "n", "mv", "v", "ms", "us",
-    "s", "mm",
+const SUFFIXES: [&str; 23] = [
+    "mm_s2", "cm_s2", "m_s2", "mm/s2", "cm/s2", "m/s2", "mm_s", "cm_s", "um_s", "m_s", "mm/s",
+    "cm/s", "m/s", "mn", "un", "kn", "n", "mv", "v", "ms", "us", "s", "mm",
 ];
-/// Lengths, apart from the list above because `_m` also ends other words' units.
-const LENGTHS: [&str; 3] = ["cm", "um", "m"];
+/// Lengths and accelerations of gravity, apart from the list above because `_m` also ends other words' units.
+const SHORT: [&str; 5] = ["cm", "um", "nm", "m", "g"];
+/// Standard gravity, m/s².
+const GRAVITY_M_S2: f64 = 9.806_65;
 
-/// The role that a column's name is known for, and its unit.
-pub(crate) fn recognise(name: &str) -> Option<(Role, Unit)> {
+/// The role that a column's name is known for in a recording of a quantity, and its unit.
+pub(crate) fn recognise(name: &str, quantity: Quantity) -> Option<(Role, Unit)> {
     let name = normalise(name);
-    if let Some(role) = known_role(&name) {
+    let known = |name: &str| signal_role(name, quantity).or_else(|| known_role(name));
+    if let Some(role) = known(&name) {
         return Some((role, Unit::Unsaid));
     }
     let (base, unit) = split_unit(&name)?;
-    let role = known_role(base)?;
-    Some((role, unit_of(role, unit)))
+    let role = known(base)?;
+    Some((role, unit_of(role, unit, quantity)))
 }
 
 /// The unit that a column's name gives when the column is used in this role.
-pub(crate) fn unit_in(name: &str, role: Role) -> Unit {
+pub(crate) fn unit_in(name: &str, role: Role, quantity: Quantity) -> Unit {
     match split_unit(&normalise(name)) {
-        Some((_, unit)) => unit_of(role, unit),
+        Some((_, unit)) => unit_of(role, unit, quantity),
         None => Unit::Unsaid,
     }
 }
 
 /// The unit that a role is kept in.
-pub(crate) fn base_unit(role: Role) -> &'static str {
+pub(crate) fn base_unit(role: Role, quantity: Quantity) -> &'static str {
     match role {
+        Role::Signal | Role::SignalX | Role::SignalY | Role::SignalZ => quantity.unit(),
         Role::Lateral | Role::LateralX | Role::LateralY | Role::Normal => "N",
         Role::Speed => "mm/s",
         Role::Time => "s",
@@ -141,6 +147,29 @@ fn normalise(name: &str) -> String {
         .to_lowercase()
         .replace(['µ', 'μ'], "u")
         .replace([' ', '-'], "_")
+        .replace('²', "2")
+        .replace('^', "")
+}
+
+/// The axis of a motion's quantity that a name stands for: `accel`, `ax`, `velocity_y`, `z_disp`.
+fn signal_role(name: &str, quantity: Quantity) -> Option<Role> {
+    let bases: &[&str] = match quantity {
+        Quantity::LateralForce | Quantity::NormalForce => return None,
+        Quantity::Acceleration => &["acceleration", "accel", "acc", "a"],
+        Quantity::Velocity => &["velocity", "vel", "v"],
+        Quantity::Displacement => &["displacement", "disp", "deflection", "d"],
+    };
+    bases.iter().find_map(|base| {
+        let before = name.strip_suffix(base).filter(|axis| axis.ends_with('_'));
+        let axis = name.strip_prefix(base).or(before)?;
+        match axis.trim_matches('_') {
+            "" => Some(Role::Signal),
+            "x" => Some(Role::SignalX),
+            "y" => Some(Role::SignalY),
+            "z" => Some(Role::SignalZ),
+            _ => None,
+        }
+    })
 }
 
 fn known_role(name: &str) -> Option<Role> {
@@ -160,14 +189,14 @@ fn split_unit(name: &str) -> Option<(&str, &str)> {
             return Some((base.trim_end_matches('_'), unit.trim_matches('_')));
         }
     }
-    SUFFIXES.iter().chain(&LENGTHS).find_map(|unit| {
+    SUFFIXES.iter().chain(&SHORT).find_map(|unit| {
         let base = name.strip_suffix(unit)?.strip_suffix('_')?;
         Some((base, *unit))
     })
 }
 
-fn unit_of(role: Role, unit: &str) -> Unit {
-    let scale = match (base_unit(role), unit) {
+fn unit_of(role: Role, unit: &str, quantity: Quantity) -> Unit {
+    let scale = match (base_unit(role, quantity), unit) {
         ("N", "n" | "newton" | "newtons") => 1.0,
         ("N", "mn") => 1e-3,
         ("N", "un") => 1e-6,
@@ -175,6 +204,19 @@ fn unit_of(role: Role, unit: &str) -> Unit {
         ("mm/s", "mm_s" | "mm/s" | "mm/sec") => 1.0,
         ("mm/s", "cm_s" | "cm/s") => 10.0,
         ("mm/s", "m_s" | "m/s") => 1e3,
+        ("m/s2", "m_s2" | "m/s2" | "m/s/s") => 1.0,
+        ("m/s2", "cm_s2" | "cm/s2") => 1e-2,
+        ("m/s2", "mm_s2" | "mm/s2") => 1e-3,
+        ("m/s2", "g" | "g0" | "gn") => GRAVITY_M_S2,
+        ("m/s", "m_s" | "m/s") => 1.0,
+        ("m/s", "cm_s" | "cm/s") => 1e-2,
+        ("m/s", "mm_s" | "mm/s") => 1e-3,
+        ("m/s", "um_s" | "um/s") => 1e-6,
+        ("m", "m") => 1.0,
+        ("m", "cm") => 1e-2,
+        ("m", "mm") => 1e-3,
+        ("m", "um") => 1e-6,
+        ("m", "nm") => 1e-9,
         ("s", "s" | "sec" | "seconds") => 1.0,
         ("s", "ms") => 1e-3,
         ("s", "us") => 1e-6,
@@ -215,10 +257,61 @@ mod tests {
             ("y_m", Role::Y, Unit::Scale(1e3)),
         ];
         for (name, role, unit) in cases {
-            assert_eq!(recognise(name), Some((role, unit)), "{name}");
+            let found = recognise(name, Quantity::LateralForce);
+            assert_eq!(found, Some((role, unit)), "{name}");
         }
         for name in ["accel", "temperature_C", "", "n", "torque_n"] {
-            assert_eq!(recognise(name), None, "{name}");
+            assert_eq!(recognise(name, Quantity::LateralForce), None, "{name}");
+        }
+        let motions = [
+            (
+                "ax [m/s²]",
+                Quantity::Acceleration,
+                Role::SignalX,
+                Unit::Scale(1.0),
+            ),
+            (
+                "acc_z_g",
+                Quantity::Acceleration,
+                Role::SignalZ,
+                Unit::Scale(GRAVITY_M_S2),
+            ),
+            (
+                "Y accel (mm/s^2)",
+                Quantity::Acceleration,
+                Role::SignalY,
+                Unit::Scale(1e-3),
+            ),
+            ("accel", Quantity::Acceleration, Role::Signal, Unit::Unsaid),
+            ("a_v", Quantity::Acceleration, Role::Signal, Unit::Volts),
+            (
+                "velocity_mm_s",
+                Quantity::Velocity,
+                Role::Signal,
+                Unit::Scale(1e-3),
+            ),
+            (
+                "speed_mm_s",
+                Quantity::Velocity,
+                Role::Speed,
+                Unit::Scale(1.0),
+            ),
+            (
+                "disp_um",
+                Quantity::Displacement,
+                Role::Signal,
+                Unit::Scale(1e-6),
+            ),
+            ("x_mm", Quantity::Displacement, Role::X, Unit::Scale(1.0)),
+            (
+                "fz_n",
+                Quantity::Acceleration,
+                Role::Normal,
+                Unit::Scale(1.0),
+            ),
+        ];
+        for (name, quantity, role, unit) in motions {
+            assert_eq!(recognise(name, quantity), Some((role, unit)), "{name}");
         }
     }
 }

@@ -1,10 +1,12 @@
 //! Recordings as delimited text.
 
+use htex_format::Quantity;
+
 use super::blocks::Blocks;
 use super::clock::{self, Noticed};
 use super::map::Role;
 use super::motion;
-use super::select::{Selection, select};
+use super::select::{Selection, all_axis_roles, select};
 use super::table::Table;
 use super::{ReadError, ReadOptions};
 use crate::recording::{Recording, RecordingError};
@@ -12,15 +14,17 @@ use crate::recording::{Recording, RecordingError};
 /// Reads a CSV, a block at a time.
 pub(crate) fn read(mut blocks: Blocks<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
     let file = blocks.file;
-    if options.newtons_per_unit.is_some() {
+    if options.scale.is_some() {
         return Err(ReadError::Option {
             file: file.to_owned(),
-            problem: "--newtons-per-unit is for WAV and NPY; scale a CSV's columns with --map lateral=COLUMN:SCALE".into(),
+            problem:
+                "--scale is for WAV and NPY; scale a CSV's columns with --map lateral=COLUMN:SCALE"
+                    .into(),
         });
     }
     let head = blocks.head()?;
     let mut table = Table::new(file, &head)?;
-    let mut selection = select(&table, options.map.as_ref())?;
+    let mut selection = select(&table, options.map.as_ref(), options.quantity)?;
     let wanted: Vec<usize> = selection
         .chosen
         .iter()
@@ -42,13 +46,12 @@ pub(crate) fn read(mut blocks: Blocks<'_>, options: &ReadOptions) -> Result<Reco
     };
     let time_s = signals.take(Role::Time);
     let rate_hz = clock::rate(&table, time_s.as_deref(), options.rate_hz, &mut noticed)?;
-    let mut recording =
-        signals
-            .into_recording(file, rate_hz)
-            .map_err(|source| ReadError::Recording {
-                file: file.to_owned(),
-                source,
-            })?;
+    let mut recording = signals
+        .into_recording(options.quantity, file, rate_hz)
+        .map_err(|source| ReadError::Recording {
+            file: file.to_owned(),
+            source,
+        })?;
     recording.simulated = numbers.simulated;
     recording.clock_findings = noticed.findings.into_list();
     recording.warnings = noticed.warnings;
@@ -71,10 +74,20 @@ impl Signals {
         roles.iter().filter_map(|role| self.take(*role)).collect()
     }
 
-    fn into_recording(mut self, file: &str, rate_hz: f64) -> Result<Recording, RecordingError> {
-        let lateral = self.take_all(&[Role::Lateral, Role::LateralX, Role::LateralY]);
-        let mut recording = Recording::new(file, rate_hz, lateral)?;
-        if let Some(normal) = self.take(Role::Normal) {
+    fn into_recording(
+        mut self,
+        quantity: Quantity,
+        file: &str,
+        rate_hz: f64,
+    ) -> Result<Recording, RecordingError> {
+        let roles: Vec<Role> = all_axis_roles(quantity).collect();
+        let axes = self.take_all(&roles);
+        let normal = match quantity {
+            Quantity::NormalForce => axes.first().cloned(),
+            _ => self.take(Role::Normal),
+        };
+        let mut recording = Recording::of(quantity, file, rate_hz, axes)?;
+        if let Some(normal) = normal {
             recording = recording.with_normal(normal)?;
         }
         if let Some(speed) = self.take(Role::Speed) {

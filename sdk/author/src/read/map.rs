@@ -14,6 +14,14 @@ pub enum Role {
     LateralX,
     /// Second lateral axis, newtons.
     LateralY,
+    /// The only axis of an acceleration, velocity or displacement, in its unit.
+    Signal,
+    /// First of its axes.
+    SignalX,
+    /// Second of its axes.
+    SignalY,
+    /// Third of its axes.
+    SignalZ,
     /// Normal force, newtons.
     Normal,
     /// Sliding speed, mm/s.
@@ -28,10 +36,14 @@ pub enum Role {
 
 impl Role {
     /// Every role, in the order in which columns are claimed.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 12] = [
         Self::Lateral,
         Self::LateralX,
         Self::LateralY,
+        Self::Signal,
+        Self::SignalX,
+        Self::SignalY,
+        Self::SignalZ,
         Self::Normal,
         Self::Speed,
         Self::Time,
@@ -46,6 +58,10 @@ impl Role {
             Self::Lateral => "lateral",
             Self::LateralX => "lateral_x",
             Self::LateralY => "lateral_y",
+            Self::Signal => "signal",
+            Self::SignalX => "signal_x",
+            Self::SignalY => "signal_y",
+            Self::SignalZ => "signal_z",
             Self::Normal => "normal",
             Self::Speed => "speed",
             Self::Time => "time",
@@ -86,7 +102,7 @@ pub struct MapEntry {
     pub role: Role,
     /// Which column.
     pub column: ColumnRef,
-    /// Factor from the column's unit to the role's (N, mm/s, s, mm); `None`: by the unit in its name.
+    /// Factor from the column's unit to the role's (N, the quantity's, mm/s, s, mm); `None`: by the unit in its name.
     pub scale: Option<f64>,
 }
 
@@ -133,11 +149,17 @@ impl FromStr for ColumnMap {
             map.add(parse_entry(part.trim())?)?;
         }
         let has = |role| map.entries.iter().any(|entry| entry.role == role);
-        if has(Role::Lateral) && (has(Role::LateralX) || has(Role::LateralY)) {
-            return Err(problem(
-                "lateral is one axis, lateral_x and lateral_y are two: give one or the other"
-                    .into(),
-            ));
+        let lateral = (Role::Lateral, &[Role::LateralX, Role::LateralY][..]);
+        let signal = (
+            Role::Signal,
+            &[Role::SignalX, Role::SignalY, Role::SignalZ][..],
+        );
+        for (one, several) in [lateral, signal] {
+            if has(one) && several.iter().any(|role| has(*role)) {
+                return Err(problem(format!(
+                    "{one} is one axis, {one}_x and {one}_y are two: give one or the other"
+                )));
+            }
         }
         Ok(map)
     }

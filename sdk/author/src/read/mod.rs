@@ -33,6 +33,8 @@ mod wav;
 use std::io::Read;
 use std::path::Path;
 
+use htex_format::Quantity;
+
 pub use error::ReadError;
 pub use map::{ColumnMap, ColumnRef, MapEntry, Role};
 pub use trace::{TraceColumns, read_trace, trace_from_bytes};
@@ -49,8 +51,10 @@ pub struct ReadOptions {
     pub rate_hz: Option<f64>,
     /// Which CSV columns hold what; columns that it leaves out are known by their names.
     pub map: Option<ColumnMap>,
-    /// Newtons of a full-scale (1.0) sample in WAV and NPY; 1 when absent, with a warning.
-    pub newtons_per_unit: Option<f64>,
+    /// What the texture's signal is.
+    pub quantity: Quantity,
+    /// What a full-scale (1.0) sample is in WAV and NPY, in the quantity's unit; 1 when absent, with a warning.
+    pub scale: Option<f64>,
     /// Time in the file from which on it is read, seconds.
     pub from_s: Option<f64>,
     /// Time in the file up to which it is read, seconds.
@@ -132,13 +136,13 @@ fn check_options(file: &str, options: &ReadOptions) -> Result<(), ReadError> {
             problem,
         })
     };
-    match (options.rate_hz, options.newtons_per_unit) {
+    match (options.rate_hz, options.scale) {
         (Some(rate), _) if check_rate(rate).is_err() => refuse(format!(
             "--rate is {rate}; it must be above 0 and at most {MAX_RATE_HZ} Hz"
         )),
-        (_, Some(scale)) if !scale.is_finite() || scale == 0.0 => refuse(format!(
-            "--newtons-per-unit is {scale}; it must be finite and not 0"
-        )),
+        (_, Some(scale)) if !scale.is_finite() || scale == 0.0 => {
+            refuse(format!("--scale is {scale}; it must be finite and not 0"))
+        }
         _ => Ok(()),
     }
 }
@@ -149,30 +153,43 @@ fn refuse_map(file: &str, options: &ReadOptions) -> Result<(), ReadError> {
         None => Ok(()),
         Some(_) => Err(ReadError::Option {
             file: file.to_owned(),
-            problem: "--map is for CSV; in WAV and NPY the channels are lateral, or lateral x, y, or x, y, normal".into(),
+            problem: "--map is for CSV; in WAV and NPY the channels are lateral, or lateral x, y, or x, y, normal; of a motion \
+                  they are its axes"
+                .into(),
         }),
     }
 }
 
-/// One channel: lateral; two: lateral x, y; three: x, y, normal. Scaled to newtons.
+/// What is said of samples without a scale.
+fn assumption(is_integer: bool, quantity: Quantity) -> String {
+    let unit = quantity.unit();
+    match is_integer {
+        true => format!("Integer full scale is taken as 1 {unit}; give --scale if it is not."),
+        false => format!("Samples are taken as {unit}; give --scale if they are not."),
+    }
+}
+
+/// Of a force, one channel: lateral; two: lateral x, y; three: x, y, normal. Of other quantities the channels are
+/// axes. Scaled to the quantity's unit.
 fn from_channels(
     file: &str,
     rate_hz: f64,
     mut channels: Vec<Vec<f64>>,
-    newtons_per_unit: f64,
+    options: &ReadOptions,
 ) -> Result<Recording, ReadError> {
-    if newtons_per_unit != 1.0 {
+    let scale = options.scale.unwrap_or(1.0);
+    if scale != 1.0 {
         channels
             .iter_mut()
             .flatten()
-            .for_each(|value| *value *= newtons_per_unit);
+            .for_each(|value| *value *= scale);
     }
-    let normal = if channels.len() == 3 {
-        channels.pop()
-    } else {
-        None
+    let normal = match (options.quantity, &channels[..]) {
+        (Quantity::LateralForce, [_, _, _]) => channels.pop(),
+        (Quantity::NormalForce, [axis]) => Some(axis.clone()),
+        _ => None,
     };
-    let recording = Recording::new(file, rate_hz, channels);
+    let recording = Recording::of(options.quantity, file, rate_hz, channels);
     match normal {
         None => recording,
         Some(normal) => recording.and_then(|recording| recording.with_normal(normal)),

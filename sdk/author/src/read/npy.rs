@@ -2,7 +2,7 @@
 
 use npyz::{DType, NpyFile, Order, TypeChar};
 
-use super::{ReadError, ReadOptions, from_channels, refuse_map};
+use super::{ReadError, ReadOptions, assumption, from_channels, refuse_map};
 use crate::recording::Recording;
 
 /// Longest header text, bytes; NumPy writes 118 for such arrays.
@@ -34,20 +34,14 @@ pub(crate) fn read(
         file,
         rate_hz,
         channels(&values, rows, columns, order),
-        options.newtons_per_unit.unwrap_or(1.0),
+        options,
     )?;
-    if options.newtons_per_unit.is_none() {
-        recording.warnings.push(assumption(is_integer).to_owned());
+    if options.scale.is_none() {
+        recording
+            .warnings
+            .push(assumption(is_integer, options.quantity));
     }
     Ok(recording)
-}
-
-fn assumption(is_integer: bool) -> &'static str {
-    if is_integer {
-        "Integer full scale is taken as 1 N; give --newtons-per-unit if it is not."
-    } else {
-        "Samples are taken as newtons; give --newtons-per-unit if they are not."
-    }
 }
 
 /// Keeps from the header's parser what would make it recurse, overflow or allocate without bound.

@@ -1,5 +1,7 @@
 //! Which columns of a table are used, for what, and in which unit.
 
+use htex_format::Quantity;
+
 use super::ReadError;
 use super::columns::{Unit, base_unit, recognise, unit_in};
 use super::map::{ColumnMap, ColumnRef, MapEntry, Role};
@@ -15,16 +17,41 @@ pub(crate) struct Chosen {
     pub(crate) scale: f64,
 }
 
+/// The roles that the axes of a quantity have: of an only one, and of several.
+fn axis_roles(quantity: Quantity) -> (Role, &'static [Role]) {
+    match quantity {
+        Quantity::LateralForce => (Role::Lateral, &[Role::LateralX, Role::LateralY]),
+        Quantity::NormalForce => (Role::Normal, &[]),
+        Quantity::Acceleration | Quantity::Velocity | Quantity::Displacement => {
+            (Role::Signal, &[Role::SignalX, Role::SignalY, Role::SignalZ])
+        }
+    }
+}
+
+/// Every role of an axis, in the order of the axes.
+pub(crate) fn all_axis_roles(quantity: Quantity) -> impl Iterator<Item = Role> {
+    let (one, several) = axis_roles(quantity);
+    [one].into_iter().chain(several.iter().copied())
+}
+
 /// The columns in use, and what had to be assumed.
 #[derive(Debug, Default)]
 pub(crate) struct Selection {
+    quantity: Quantity,
     pub(crate) chosen: Vec<Chosen>,
     pub(crate) warnings: Vec<String>,
 }
 
-/// Takes what the map says, then what the names say, and insists on a lateral force.
-pub(crate) fn select(table: &Table<'_>, map: Option<&ColumnMap>) -> Result<Selection, ReadError> {
-    let mut selection = Selection::default();
+/// Takes what the map says, then what the names say, and insists on an axis of the quantity.
+pub(crate) fn select(
+    table: &Table<'_>,
+    map: Option<&ColumnMap>,
+    quantity: Quantity,
+) -> Result<Selection, ReadError> {
+    let mut selection = Selection {
+        quantity,
+        ..Selection::default()
+    };
     for entry in map.map_or(&[][..], ColumnMap::entries) {
         selection.take_mapped(table, entry)?;
     }
@@ -34,7 +61,7 @@ pub(crate) fn select(table: &Table<'_>, map: Option<&ColumnMap>) -> Result<Selec
         selection.take_single(table);
         Vec::new()
     };
-    selection.insist_on_lateral(table, &refused)?;
+    selection.insist_on_axis(table, &refused)?;
     selection.warnings.extend(
         refused
             .into_iter()
@@ -58,10 +85,25 @@ impl Selection {
         self.chosen.iter().any(|chosen| chosen.column == column)
     }
 
-    fn has_lateral(&self) -> bool {
-        [Role::Lateral, Role::LateralX, Role::LateralY]
-            .into_iter()
-            .any(|role| self.has(role))
+    fn has_axis(&self) -> bool {
+        all_axis_roles(self.quantity).any(|role| self.has(role))
+    }
+
+    /// The role of a map's entry; refuses axes of other quantities.
+    fn mapped_role(&self, table: &Table<'_>, role: Role) -> Result<Role, ReadError> {
+        let is_axis = ![Role::Normal, Role::Speed, Role::Time, Role::X, Role::Y].contains(&role);
+        if !is_axis || all_axis_roles(self.quantity).any(|own| own == role) {
+            return Ok(role);
+        }
+        let own: Vec<&str> = all_axis_roles(self.quantity).map(Role::name).collect();
+        Err(columns_error(
+            table,
+            format!(
+                "the map's {role} is no axis of a recorded {}; its axes are {} (--quantity says what is recorded)",
+                self.quantity.words(),
+                own.join(", ")
+            ),
+        ))
     }
 
     fn take_mapped(&mut self, table: &Table<'_>, entry: &MapEntry) -> Result<(), ReadError> {
@@ -72,14 +114,17 @@ impl Selection {
                 format!("the map uses column {} twice", entry.column),
             ));
         }
-        let role = entry.role;
-        let scale = match (entry.scale, unit_in(&table.name(column), role)) {
+        let role = self.mapped_role(table, entry.role)?;
+        let scale = match (
+            entry.scale,
+            unit_in(&table.name(column), role, self.quantity),
+        ) {
             (Some(scale), _) | (None, Unit::Scale(scale)) => scale,
             (None, Unit::Unsaid) => self.assume_unit(table, column, role),
             (None, unit) => {
                 return Err(columns_error(
                     table,
-                    no_scale(&table.name(column), role, &unit),
+                    no_scale(&table.name(column), role, &unit, self.quantity),
                 ));
             }
         };
@@ -98,11 +143,11 @@ impl Selection {
             let mut found = None;
             for column in self.candidates(table, role) {
                 let name = table.name(column);
-                match recognise(&name) {
+                match recognise(&name, self.quantity) {
                     // A bare x or y is as often a force or an acceleration.
                     Some((Role::X | Role::Y, Unit::Unsaid)) => {}
                     Some((_, unit @ (Unit::Volts | Unit::Unknown(_)))) => {
-                        refused.push(no_scale(&name, role, &unit))
+                        refused.push(no_scale(&name, role, &unit, self.quantity))
                     }
                     Some((_, unit)) => match found.replace((column, unit)) {
                         None => {}
@@ -129,28 +174,30 @@ impl Selection {
     fn candidates(&self, table: &Table<'_>, role: Role) -> Vec<usize> {
         let is_candidate = |column: &usize| {
             !self.claims(*column)
-                && recognise(&table.name(*column)).is_some_and(|(named, _)| named == role)
+                && recognise(&table.name(*column), self.quantity)
+                    .is_some_and(|(named, _)| named == role)
         };
         (0..table.width).filter(is_candidate).collect()
     }
 
-    /// Roles that names may fill: two lateral axes before one; position only where no speed is.
+    /// Roles that names may fill: several axes before one; position only where no speed is.
     fn open_roles(&self, table: &Table<'_>) -> Vec<Role> {
         let named = |role| !self.candidates(table, role).is_empty();
         let mut roles = Vec::new();
-        if !self.has_lateral() {
-            let (x, y) = (named(Role::LateralX), named(Role::LateralY));
-            if (x && y) || !named(Role::Lateral) {
-                roles.extend([Role::LateralX, Role::LateralY]);
+        if !self.has_axis() {
+            let (one, several) = axis_roles(self.quantity);
+            let count = several.iter().filter(|role| named(**role)).count();
+            if count > 1 || !named(one) {
+                roles.extend(several);
             } else {
-                roles.push(Role::Lateral);
+                roles.push(one);
             }
         }
-        roles.extend(
-            [Role::Normal, Role::Time]
-                .into_iter()
-                .filter(|role| !self.has(*role)),
-        );
+        for role in [Role::Normal, Role::Time] {
+            if !self.has(role) && !roles.contains(&role) {
+                roles.push(role);
+            }
+        }
         if !self.has(Role::Speed) && !self.has(Role::X) && !self.has(Role::Y) {
             let speed = named(Role::Speed);
             roles.extend(if speed {
@@ -162,12 +209,13 @@ impl Selection {
         roles
     }
 
-    /// One column without a name can only be the lateral force.
+    /// One column without a name can only be the texture's signal.
     fn take_single(&mut self, table: &Table<'_>) {
         if table.width == 1 && self.chosen.is_empty() {
-            let scale = self.assume_unit(table, 0, Role::Lateral);
+            let (role, _) = axis_roles(self.quantity);
+            let scale = self.assume_unit(table, 0, role);
             self.chosen.push(Chosen {
-                role: Role::Lateral,
+                role,
                 column: 0,
                 scale,
             });
@@ -175,25 +223,50 @@ impl Selection {
     }
 
     fn assume_unit(&mut self, table: &Table<'_>, column: usize, role: Role) -> f64 {
-        let (name, unit) = (table.name(column), base_unit(role));
+        let (name, unit) = (table.name(column), base_unit(role, self.quantity));
         self.warnings.push(format!(
             "Column {name:?} ({role}) names no unit: taken as {unit}."
         ));
         1.0
     }
 
-    fn insist_on_lateral(&self, table: &Table<'_>, refused: &[String]) -> Result<(), ReadError> {
-        if self.has_lateral() {
+    fn insist_on_axis(&self, table: &Table<'_>, refused: &[String]) -> Result<(), ReadError> {
+        if self.has_axis() {
             return Ok(());
         }
+        let (role, _) = axis_roles(self.quantity);
         let problem = if let Some(refused) = refused.first() {
             refused.clone()
         } else if table.header.is_none() {
-            "there is no header row; say which column is which by number, as in --map lateral=#2,normal=#3".to_owned()
+            format!(
+                "there is no header row; say which column is which by number, as in --map {role}=#2"
+            )
+        } else if let Some(other) = self.other_quantity(table) {
+            format!(
+                "no column is known as the {}, but there is one of the {}; give --quantity {other} if that is the texture",
+                self.quantity.words(),
+                other.words()
+            )
         } else {
-            "no column is known as the lateral force; name it with --map lateral=COLUMN (and :SCALE to newtons)".to_owned()
+            format!(
+                "no column is known as the {}; name it with --map {role}=COLUMN (and :SCALE to {})",
+                self.quantity.words(),
+                self.quantity.unit()
+            )
         };
         Err(columns_error(table, problem))
+    }
+
+    /// Another quantity that a column's name is known as.
+    fn other_quantity(&self, table: &Table<'_>) -> Option<Quantity> {
+        let is_there = |quantity: &Quantity| {
+            let is_axis = |role| all_axis_roles(*quantity).any(|axis| axis == role);
+            (0..table.width)
+                .filter_map(|column| recognise(&table.name(column), *quantity))
+                .any(|(role, _)| is_axis(role))
+        };
+        let mut others = Quantity::ALL.iter().copied();
+        others.find(|other| *other != self.quantity && is_there(other))
     }
 
     fn warn_of_unused(&mut self, table: &Table<'_>) {
@@ -243,11 +316,11 @@ fn by_name(table: &Table<'_>, name: &str) -> Vec<usize> {
     }
 }
 
-fn no_scale(name: &str, role: Role, unit: &Unit) -> String {
+fn no_scale(name: &str, role: Role, unit: &Unit, quantity: Quantity) -> String {
     let (unit, target) = match unit {
-        Unit::Volts => ("volts", base_unit(role)),
-        Unit::Unknown(unit) => (unit.as_str(), base_unit(role)),
-        Unit::Scale(_) | Unit::Unsaid => ("no unit", base_unit(role)),
+        Unit::Volts => ("volts", base_unit(role, quantity)),
+        Unit::Unknown(unit) => (unit.as_str(), base_unit(role, quantity)),
+        Unit::Scale(_) | Unit::Unsaid => ("no unit", base_unit(role, quantity)),
     };
     format!(
         "Column {name:?} is in {unit}, not {target}; give its scale to {target}: --map {role}={name}:SCALE"

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use htex_format::Quantity;
+
 use super::ReadError;
 use super::columns::{Unit, base_unit, recognise};
 use super::map::Role;
@@ -84,7 +86,7 @@ fn find(
     role: Role,
     warnings: &mut Vec<String>,
 ) -> Result<Option<(usize, f64)>, ReadError> {
-    let named = |column: usize| match recognise(&table.name(column)) {
+    let named = |column: usize| match recognise(&table.name(column), Quantity::LateralForce) {
         Some((known, unit)) if known == role => Some((column, unit)),
         _ => None,
     };
@@ -98,7 +100,7 @@ fn find(
             return Err(refuse(table, problem));
         }
     };
-    let (name, wanted) = (table.name(*column), base_unit(role));
+    let (name, wanted) = (table.name(*column), base_unit(role, Quantity::LateralForce));
     let scale = match unit {
         Unit::Scale(scale) => *scale,
         Unit::Unsaid => {

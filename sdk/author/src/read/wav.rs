@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use hound::{SampleFormat, WavReader, WavSpec};
 
-use super::{ReadError, ReadOptions, from_channels, refuse_map};
+use super::{ReadError, ReadOptions, assumption, from_channels, refuse_map};
 use crate::recording::Recording;
 
 /// Reads a WAV's bytes; `file` is its name.
@@ -35,29 +35,14 @@ pub(crate) fn read(
             )
         }
     }?;
-    let mut recording = from_channels(
-        file,
-        f64::from(spec.sample_rate),
-        channels,
-        options.newtons_per_unit.unwrap_or(1.0),
-    )?;
-    if options.newtons_per_unit.is_none() {
-        recording
-            .warnings
-            .push(assumption(spec.sample_format).to_owned());
+    let mut recording = from_channels(file, f64::from(spec.sample_rate), channels, options)?;
+    if options.scale.is_none() {
+        recording.warnings.push(assumption(
+            spec.sample_format == SampleFormat::Int,
+            options.quantity,
+        ));
     }
     Ok(recording)
-}
-
-fn assumption(format: SampleFormat) -> &'static str {
-    match format {
-        SampleFormat::Float => {
-            "Samples are taken as newtons; give --newtons-per-unit if they are not."
-        }
-        SampleFormat::Int => {
-            "Integer full scale is taken as 1 N; give --newtons-per-unit if it is not."
-        }
-    }
 }
 
 fn check(file: &str, spec: WavSpec, options: &ReadOptions) -> Result<(), ReadError> {
@@ -65,7 +50,7 @@ fn check(file: &str, spec: WavSpec, options: &ReadOptions) -> Result<(), ReadErr
         return Err(broken(
             file,
             format!(
-                "{} channels; give 1 (lateral), 2 (lateral x, y) or 3 (x, y, normal)",
+                "{} channels; give 1 (lateral), 2 (lateral x, y), 3 (x, y, normal), or up to 3 axes of a motion",
                 spec.channels
             ),
         ));

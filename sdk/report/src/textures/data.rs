@@ -31,7 +31,7 @@ pub struct Texture {
     /// The frequencies of every magnitude below, ascending, hertz.
     pub frequency_hz: Vec<f64>,
     /// The recording's magnitude, newtons.
-    pub recorded_n: Vec<f64>,
+    pub recorded: Vec<f64>,
     /// The models fitted to it.
     pub models: Vec<ModelResult>,
     /// What the reader should know about this texture.
@@ -46,7 +46,7 @@ pub struct ModelResult {
     /// The model's name as written in files: `"sbeta"`. Decides its colour and column.
     pub short_name: String,
     /// The model's magnitude at the texture's frequencies, newtons.
-    pub magnitude_n: Vec<f64>,
+    pub magnitude: Vec<f64>,
     /// Pearson's correlation with the recording's magnitude.
     pub spectral_correlation: f64,
     /// Model over recording in each of the nine bands, decibels.

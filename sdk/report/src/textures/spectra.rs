@@ -85,7 +85,7 @@ fn recording_panel(texture: &Texture, top_mn: f64) -> Element {
     } else {
         "recording"
     };
-    let series = Series::line(title, curve(texture, &texture.recorded_n));
+    let series = Series::line(title, curve(texture, &texture.recorded));
     let note = texture
         .repeatability_rms_db
         .map(|db| format!("varies by {} dB RMS", fixed(db, 1)));
@@ -93,13 +93,13 @@ fn recording_panel(texture: &Texture, top_mn: f64) -> Element {
 }
 
 fn model_panel(texture: &Texture, model: &ModelResult, top_mn: f64) -> Element {
-    let backdrop = Series::line("recording", curve(texture, &texture.recorded_n));
+    let backdrop = Series::line("recording", curve(texture, &texture.recorded));
     let front = match &model.lines {
         Some(lines) => Series::stems(
             &model.model,
             lines.iter().map(|(f, a)| (*f, a * 1e3)).collect(),
         ),
-        None => Series::line(&model.model, curve(texture, &model.magnitude_n)),
+        None => Series::line(&model.model, curve(texture, &model.magnitude)),
     };
     let front = front.colored(model_color(&model.short_name));
     let series = vec![backdrop.behind().colored(BACKDROP), front];
@@ -142,14 +142,14 @@ fn panel(plot: Plot, note: &str) -> Element {
 }
 
 /// (hertz, millinewtons) pairs.
-fn curve(texture: &Texture, magnitude_n: &[f64]) -> Vec<(f64, f64)> {
-    let pairs = texture.frequency_hz.iter().zip(magnitude_n);
+fn curve(texture: &Texture, magnitude: &[f64]) -> Vec<(f64, f64)> {
+    let pairs = texture.frequency_hz.iter().zip(magnitude);
     pairs.map(|(f, n)| (*f, n * 1e3)).collect()
 }
 
 /// The top of the row's vertical axis, millinewtons.
 fn top_mn(texture: &Texture) -> f64 {
-    let recorded = highest_mn(texture.recorded_n.iter().copied());
+    let recorded = highest_mn(texture.recorded.iter().copied());
     let models = texture
         .models
         .iter()
@@ -169,7 +169,7 @@ fn drawn(model: &ModelResult) -> impl Iterator<Item = f64> + '_ {
     let curve = if model.lines.is_some() {
         &[]
     } else {
-        model.magnitude_n.as_slice()
+        model.magnitude.as_slice()
     };
     lines.chain(curve.iter().copied())
 }

@@ -24,7 +24,7 @@ fn need(call: &Call) -> Need {
     match call.device.quantity {
         Quantity::DisplayVoltage => Need::yes("a voltage starts at zero and ends at zero"),
         Quantity::Sound => Need::yes("a sound starts and ends without a click"),
-        Quantity::LateralForce => Need::no("the finger slides all the time"),
+        _ => Need::no("the finger slides all the time"),
     }
 }
 

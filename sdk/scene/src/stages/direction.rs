@@ -25,6 +25,7 @@ fn need(call: &Call) -> Need {
         Quantity::LateralForce if call.live => Need::yes("a live motion may turn round"),
         Quantity::LateralForce if call.turns_round => Need::yes("the finger turns round"),
         Quantity::LateralForce => Need::no("the finger never turns round"),
+        _ => Need::no("only a lateral force points against the stroke"),
     }
 }
 

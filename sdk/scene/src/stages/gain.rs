@@ -1,4 +1,5 @@
-//! From newtons to what the device wants: the level of a preview, or the radicand of a drive.
+//! From the textures' unit to what the device wants: another quantity by a stated gain, the level of a preview, or
+//! the radicand of a drive.
 
 use htex_device::Quantity;
 
@@ -10,8 +11,8 @@ use crate::file::Effect;
 /// 150,000 samples on either side, ten equal sinusoids never.
 pub(crate) const HEADROOM: f64 = 4.5;
 
-/// Quieter than this, newtons RMS, is nothing to bring anywhere: the gain would be no number.
-const LEAST_N: f64 = 1e-20;
+/// Quieter than this, RMS in the textures' unit, is nothing to bring anywhere: the gain would be no number.
+const LEAST_RMS: f64 = 1e-20;
 
 pub(crate) const ENTRY: Entry = Entry {
     effect: Effect::Gain,
@@ -23,7 +24,7 @@ pub(crate) const ENTRY: Entry = Entry {
 /// V = V_g sqrt(y + 1) with y the force over [`HEADROOM`] times its RMS, and V_g = drive / sqrt(2).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Drive {
-    /// V² a newton.
+    /// V² for one of the textures' unit.
     pub(crate) gain: f64,
     /// V².
     pub(crate) shift: f64,
@@ -41,18 +42,14 @@ impl Drive {
 
 /// The gain that brings the scene's reference level to this one; 0 when there is no level.
 fn brings_level_to(level: f64, call: &Call) -> f64 {
-    match call.level_n > LEAST_N {
-        true => level / call.level_n,
+    match call.level_rms > LEAST_RMS {
+        true => level / call.level_rms,
         false => 0.0,
     }
 }
 
 fn need(call: &Call) -> Need {
     match call.device.quantity {
-        Quantity::LateralForce if call.gain_db == 0.0 => {
-            Need::no("the device takes newtons, and no gain is given")
-        }
-        Quantity::LateralForce => Need::yes(format!("a gain of {} dB is given", call.gain_db)),
         Quantity::Sound => Need::yes(format!(
             "the level is brought to {} dB of full scale to be heard",
             call.level_dbfs
@@ -61,6 +58,17 @@ fn need(call: &Call) -> Need {
             "{HEADROOM} times the RMS reaches the drive's largest voltage, {} V",
             call.drive_v
         )),
+        _ if call.quantity_gain != 1.0 => Need::yes(format!(
+            "one {} is played as {} {}",
+            call.quantity.unit(),
+            call.quantity_gain,
+            call.device.quantity.unit()
+        )),
+        _ if call.gain_db == 0.0 => {
+            let unit = call.device.quantity.unit();
+            Need::no(format!("the device takes {unit}, and no gain is given"))
+        }
+        _ => Need::yes(format!("a gain of {} dB is given", call.gain_db)),
     }
 }
 
@@ -68,9 +76,9 @@ fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
     let db = |db: f64| 10f64.powf(db / 20.0);
     let gain = match call.device.quantity {
         _ if neutral => 1.0,
-        Quantity::LateralForce => db(call.gain_db),
         Quantity::Sound => brings_level_to(db(call.level_dbfs), call),
         Quantity::DisplayVoltage => Drive::of(call).gain,
+        _ => call.quantity_gain * db(call.gain_db),
     };
     Box::new(Gain(gain as f32))
 }

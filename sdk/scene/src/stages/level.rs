@@ -14,18 +14,18 @@ pub(crate) struct Level {
 }
 
 impl Level {
-    pub(crate) fn new(part: &Part, level_n: f64) -> Self {
+    pub(crate) fn new(part: &Part, level_rms: f64) -> Self {
         let ramp = (RAMP_S * part.rate_hz).ceil() as u32;
         Self {
             gain: part.gain,
-            level: Glide::new((part.gain * level_n) as f32, ramp),
+            level: Glide::new((part.gain * level_rms) as f32, ramp),
         }
     }
 }
 
 impl Stage for Level {
     fn follow(&mut self, now: &Now) {
-        self.level.set((self.gain * now.level_n) as f32);
+        self.level.set((self.gain * now.level_rms) as f32);
     }
 
     fn render(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {

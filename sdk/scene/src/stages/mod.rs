@@ -50,7 +50,7 @@ pub(crate) trait Stage: Send {
 pub(crate) struct Now {
     pub(crate) finger: Finger,
     /// RMS of the surface at hand, newtons.
-    pub(crate) level_n: f64,
+    pub(crate) level_rms: f64,
     /// Frames until the scene ends.
     pub(crate) ends_in: Option<u64>,
 }

@@ -22,16 +22,16 @@ impl Synthesis {
     /// so.
     pub(crate) fn set_motion(&mut self, speed_mm_s: f64, force_n: f64) -> f64 {
         match self.source.set_motion(speed_mm_s, force_n) {
-            Ok(level_n) => level_n,
+            Ok(level_rms) => level_rms,
             Err(error) => {
                 self.failed.get_or_insert(error);
-                self.source.level_n()
+                self.source.level_rms()
             }
         }
     }
 
-    pub(crate) fn level_n(&self) -> f64 {
-        self.source.level_n()
+    pub(crate) fn level_rms(&self) -> f64 {
+        self.source.level_rms()
     }
 
     /// The first failure since this was last asked.

@@ -36,8 +36,21 @@ pub fn files() -> Vec<(&'static str, Vec<u8>)> {
     let trace = |header: &str, rows: &str| format!("{header}\n{rows}").into_bytes();
     let rows = "0,0,0,0.4\n0.5,40,0,0.4\n1,0,0,0.4\n";
     vec![
-        ("cloth.htex", asset(&["org.htex.sbeta", "org.htex.sslope"])),
-        ("stranger.htex", asset(&["org.example.stranger"])),
+        (
+            "cloth.htex",
+            asset(
+                Quantity::LateralForce,
+                &["org.htex.sbeta", "org.htex.sslope"],
+            ),
+        ),
+        (
+            "tool.htex",
+            asset(Quantity::Acceleration, &["org.htex.sbeta"]),
+        ),
+        (
+            "stranger.htex",
+            asset(Quantity::LateralForce, &["org.example.stranger"]),
+        ),
         ("broken.htex", b"not an asset".to_vec()),
         ("hand.csv", trace("t_s,x_mm,y_mm,force_n", rows)),
         ("assumed.csv", trace("t,x_mm,y_mm,force_n", rows)),
@@ -64,7 +77,7 @@ pub fn files() -> Vec<(&'static str, Vec<u8>)> {
     ]
 }
 
-fn asset(models: &[&str]) -> Vec<u8> {
+fn asset(quantity: Quantity, models: &[&str]) -> Vec<u8> {
     let fields = |model: &str| match model {
         "org.htex.sslope" => vec![
             ("peak_hz", 120.0),
@@ -97,8 +110,8 @@ fn asset(models: &[&str]) -> Vec<u8> {
             license: Some("CC0-1.0".to_owned()),
             author: None,
             tags: Vec::new(),
-            quantity: Quantity::LateralForce,
-            unit: Quantity::LateralForce.unit().to_owned(),
+            quantity,
+            unit: quantity.unit().to_owned(),
             band: Band {
                 low_hz: 20.0,
                 high_hz: 1000.0,
@@ -180,6 +193,7 @@ pub fn cases() -> Vec<Case> {
         )
     };
     let start = || ("/motion/constant/from_mm", json!([10, 10]));
+    let tool = || ("/surfaces/0/asset", json!("tool.htex"));
     let all = [
         ("valid_plain", with(&[])),
         ("valid_live", with(&[("/motion", json!("live"))])),
@@ -220,7 +234,7 @@ pub fn cases() -> Vec<Case> {
             with(&[
                 volts(),
                 ("/device/levels", json!("own")),
-                ("/device/reference_n", json!(0.02)),
+                ("/device/reference_rms", json!(0.02)),
             ]),
         ),
         (
@@ -233,7 +247,7 @@ pub fn cases() -> Vec<Case> {
         ),
         (
             "device_field_unfit_reference",
-            with(&[volts(), ("/device/reference_n", json!(0.02))]),
+            with(&[volts(), ("/device/reference_rms", json!(0.02))]),
         ),
         ("scene_json_too_deep", "[".repeat(17) + &"]".repeat(17)),
         (
@@ -422,6 +436,45 @@ pub fn cases() -> Vec<Case> {
         (
             "device_field_unfit",
             with(&[("/device", json!({ "drive_v": 50, "pitch": 2 }))]),
+        ),
+        (
+            "valid_quantity",
+            with(&[
+                tool(),
+                (
+                    "/device",
+                    json!({ "settings": { "quantity": "acceleration", "path": "o.wav" } }),
+                ),
+            ]),
+        ),
+        (
+            "valid_quantity_gain",
+            with(&[tool(), ("/device", json!({ "quantity_gain": 0.1 }))]),
+        ),
+        ("device_quantity", with(&[tool()])),
+        ("device_quantity_of_a_display", with(&[tool(), volts()])),
+        (
+            "device_quantity_gain",
+            with(&[("/device", json!({ "quantity_gain": 0.1 }))]),
+        ),
+        (
+            "device_quantity_gain_of_a_sound",
+            with(&[
+                tool(),
+                (
+                    "/device",
+                    json!({ "quantity_gain": 0.1, "settings": { "quantity": "sound" } }),
+                ),
+            ]),
+        ),
+        (
+            "quantities_differ",
+            with(&[
+                ("/surfaces", two([50.0, 100.0])),
+                start(),
+                ("/surfaces/1/asset", json!("tool.htex")),
+                ("/surfaces/1/representation", json!("auto")),
+            ]),
         ),
         (
             "device_drive_too_high",

@@ -22,8 +22,8 @@ const PIPELINE: &str = "pipeline";
 const STORE: &str = "every model that fits";
 const LIVES: &str = "fit, store, open, render";
 
-fn recording(rate_hz: f64, lateral_n: Vec<f64>) -> Recording {
-    Recording::new("hard", rate_hz, vec![lateral_n]).unwrap()
+fn recording(rate_hz: f64, axes: Vec<f64>) -> Recording {
+    Recording::new("hard", rate_hz, vec![axes]).unwrap()
 }
 
 /// An asset of a recording in all models.
@@ -247,7 +247,7 @@ const CASES: &[Case] = &[
                 let (Ok(plain), Ok(faint)) = (through([1.0; 5]), faint) else {
                     return f64::NAN;
                 };
-                let pairs = plain.magnitude_n.iter().zip(&faint.magnitude_n);
+                let pairs = plain.magnitude.iter().zip(&faint.magnitude);
                 let raised = pairs.map(|(a, b)| 20.0 * (b / a).log10());
                 raised.fold(0.0, worse)
             };

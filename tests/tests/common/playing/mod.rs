@@ -165,14 +165,14 @@ fn numbers(plan: &Plan, asset: &Asset) -> String {
         let model = Some(&representation.model[..]);
         for motion in plan.conditions.iter().chain(plan.motions) {
             let motion = (motion[0], motion[1]);
-            let (parameters, level_n) = asset.parameters(model, Some(motion)).unwrap();
-            let magnitude = asset.magnitude_n(model, Some(motion), &frequency_hz);
+            let (parameters, level_rms) = asset.parameters(model, Some(motion)).unwrap();
+            let magnitude = asset.magnitude(model, Some(motion), &frequency_hz);
             cases.push(json!({
                 "model": representation.model,
                 "speed_mm_s": motion.0,
                 "force_n": motion.1,
                 "parameters": parameters,
-                "level_rms": level_n,
+                "level_rms": level_rms,
                 "magnitude": rounded(&magnitude.unwrap()),
             }));
         }

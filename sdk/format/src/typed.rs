@@ -107,6 +107,15 @@ impl<'de> Typed<'de, '_> {
     }
 }
 
+/// Methods that take whole numbers, however they are written.
+macro_rules! whole_numbers {
+    ($($name:ident)*) => {
+        $(fn $name<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, TypeError> {
+            self.whole(visitor)
+        })*
+    };
+}
+
 impl<'de> Deserializer<'de> for Typed<'de, '_> {
     type Error = TypeError;
 
@@ -126,28 +135,8 @@ impl<'de> Deserializer<'de> for Typed<'de, '_> {
         self.placed(visited)
     }
 
-    fn deserialize_i64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, TypeError> {
-        self.whole(visitor)
-    }
-
-    fn deserialize_i32<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, TypeError> {
-        self.whole(visitor)
-    }
-
-    fn deserialize_u8<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, TypeError> {
-        self.whole(visitor)
-    }
-
-    fn deserialize_u16<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, TypeError> {
-        self.whole(visitor)
-    }
-
-    fn deserialize_u32<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, TypeError> {
-        self.whole(visitor)
-    }
-
-    fn deserialize_u64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, TypeError> {
-        self.whole(visitor)
+    whole_numbers! {
+        deserialize_i64 deserialize_i32 deserialize_u8 deserialize_u16 deserialize_u32 deserialize_u64
     }
 
     /// A key that may be absent is never `null` instead.

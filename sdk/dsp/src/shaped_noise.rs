@@ -81,8 +81,8 @@ fn frame_read_part(band: Band, hz: f64, spacing_hz: f64) -> f64 {
 }
 
 /// Spacings to either side of a component over which its frames are taken to spread it, and points in each.
-const FRAME_SPREAD: f64 = 6.0;
-const FRAME_STEPS: f64 = 3.0;
+const FRAME_SPREAD: f64 = 4.0;
+const FRAME_STEPS: f64 = 2.0;
 
 /// How a frame comes in over `overlap` samples: `sin(π/2 sin²)`, which has no corners at its ends as a
 /// sine has, so that a steep spectrum's floor stays low. With its mirror image its squares add up to 1.

@@ -57,7 +57,7 @@ fn stored(model: &LoadedModel, options: &[f64], grid: &[f64], magnitude: &[f64])
     let reference = SpectrumRef {
         band: BAND,
         frequency_hz: grid,
-        magnitude: magnitude,
+        magnitude,
     };
     let level = |level| stored_level(model, &fit, &parameters, reference, level).unwrap();
     Some(Stored {

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use htex_device::{Descriptor, Quantity, Setting, SettingKind};
+use htex_device::{Descriptor, FromScene, Quantity, Setting, SettingKind};
 
 /// Largest limit, volts, and largest full scale, in the quantity's unit.
 const MOST: f64 = 1_000.0;
@@ -72,6 +72,7 @@ fn settings() -> Vec<Setting> {
         name: name.to_owned(),
         kind,
         default: default.map(str::to_owned),
+        from_scene: FromScene::Any,
         description: description.to_owned(),
     };
     all.into_iter().map(setting).collect()

@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use htex_device::{Capabilities, Device, DeviceError, Status};
+use htex_files::Unfinished;
 
-use crate::beside::Beside;
 use crate::plan::Plan;
 use crate::sink::Sink;
 
@@ -13,7 +13,7 @@ pub(crate) struct FileDevice {
     capabilities: Capabilities,
     path: String,
     /// None once the device is finished or failed.
-    open: Option<(Sink, Beside)>,
+    open: Option<(Sink, Unfinished)>,
     frames: u64,
     peak: f32,
 }
@@ -22,8 +22,10 @@ impl FileDevice {
     pub(crate) fn create(plan: &Plan, rate_hz: f64) -> Result<Self, DeviceError> {
         plan.check_rate(rate_hz)?;
         let path = plan.path.display().to_string();
-        let created = Beside::create(&plan.path)
-            .and_then(|beside| Ok((Sink::new(beside.writer()?, plan, rate_hz)?, beside)));
+        let created = Unfinished::create(&plan.path).and_then(|mut file| {
+            let writer = file.file().try_clone()?;
+            Ok((Sink::new(writer, plan, rate_hz)?, file))
+        });
         let open = created.map_err(|error| file_error(&path, &error))?;
         Ok(Self {
             capabilities: plan.capabilities(),

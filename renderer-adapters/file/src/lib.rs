@@ -5,7 +5,6 @@
 //! wanted one, which gets its name when the device is finished. A device that is dropped before
 //! leaves nothing behind.
 
-mod beside;
 mod describe;
 mod device;
 mod encoding;

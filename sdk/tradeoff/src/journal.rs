@@ -11,6 +11,9 @@ use crate::TradeoffError;
 use crate::measured::Measured;
 use crate::timing::Timed;
 
+/// How the first line of a journal begins; the key stands behind it.
+const HEAD: &str = "htex tradeoff ";
+
 /// What was finished. A contender is named by its id within its recording.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Entry {
@@ -48,23 +51,30 @@ impl Journal {
     /// Reads what was finished under `key`; a file of another key is begun anew. A line that was
     /// cut off is dropped, and with it what follows.
     pub(crate) fn open(&mut self, key: &str) -> Result<(), TradeoffError> {
-        self.entries = self.read(key);
+        let key = &format!("{HEAD}{key}");
+        self.entries = self.read(key).map_err(|error| self.error(error))?;
         let file = self.rewrite(key).map_err(|error| self.error(error))?;
         self.file = Some(Mutex::new(file));
         Ok(())
     }
 
-    fn read(&self, key: &str) -> Vec<Entry> {
+    /// A file that is none of ours is left alone.
+    fn read(&self, key: &str) -> io::Result<Vec<Entry>> {
         let Ok(file) = File::open(&self.path) else {
-            return Vec::new();
+            return Ok(Vec::new());
         };
         let mut lines = BufReader::new(file).lines().map_while(Result::ok);
-        if lines.next().as_deref() != Some(key) {
-            return Vec::new();
+        let first = lines.next().unwrap_or_default();
+        if !first.is_empty() && !first.starts_with(HEAD) {
+            return Err(io::Error::other(
+                "it is there, and no journal of an interrupted sweep; move it away, or name another output",
+            ));
         }
-        lines
-            .map_while(|line| serde_json::from_str(&line).ok())
-            .collect()
+        if first != key {
+            return Ok(Vec::new());
+        }
+        let entries = lines.map_while(|line| serde_json::from_str(&line).ok());
+        Ok(entries.collect())
     }
 
     /// The file with just what was read, open for more.

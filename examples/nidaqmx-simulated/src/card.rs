@@ -120,6 +120,12 @@ impl Card {
         there.map(|_| ()).ok_or(codes::INVALID_TASK)
     }
 
+    /// Ends all tasks, and puts the outputs at zero, as they are at power-on.
+    pub fn reset(&mut self) {
+        self.tasks.clear();
+        self.put_out(0, &[0.0]);
+    }
+
     /// Takes what there is room for. A task without a clock puts its samples out at once.
     pub fn write(&mut self, id: usize, samples: &[f64], start: bool) -> Answer<usize> {
         self.advance(id, STEP_S)?;

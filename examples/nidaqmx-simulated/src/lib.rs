@@ -6,6 +6,7 @@
 
 mod card;
 mod codes;
+mod fault;
 
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -25,7 +26,7 @@ fn with<T>(run: impl FnOnce(&mut Card) -> T) -> T {
 
 fn from_environment() -> Card {
     let mut card = Card::default();
-    for name in ["record", "clock", "unplug_after"] {
+    for name in ["record", "clock", "unplug_after", "fault"] {
         if let Ok(value) = std::env::var(format!("NIDAQMX_SIM_{}", name.to_uppercase())) {
             set(&mut card, name, &value);
         }
@@ -38,6 +39,7 @@ fn set(card: &mut Card, name: &str, value: &str) {
         "record" => card.record = Some(value.into()),
         "clock" => card.by_calls = value == "calls",
         "unplug_after" => card.unplug_after = value.parse().ok(),
+        "fault" => fault::plan(value),
         _ => eprintln!("nidaqmx-simulated: there is no setting `{name}`"),
     }
 }
@@ -82,7 +84,7 @@ fn device(name: &str) -> Result<(), i32> {
     }
 }
 
-/// Changes a setting of the simulation: `record`, `clock`, `unplug_after`. No part of NI-DAQmx.
+/// Changes a setting of the simulation: `record`, `clock`, `unplug_after`, `fault`. No part of NI-DAQmx.
 #[unsafe(no_mangle)]
 pub unsafe extern "system" fn nidaqmx_simulated_set(name: *const c_char, value: *const c_char) {
     let (name, value) = unsafe { (text(name), text(value)) };
@@ -91,6 +93,9 @@ pub unsafe extern "system" fn nidaqmx_simulated_set(name: *const c_char, value: 
 
 #[unsafe(no_mangle)]
 pub unsafe extern "system" fn DAQmxGetSysDevNames(to: *mut c_char, room: u32) -> i32 {
+    if let Some(code) = fault::injected("DAQmxGetSysDevNames") {
+        return code;
+    }
     let names = if device("Dev1").is_ok() { "Dev1" } else { "" };
     unsafe { copy(names, to, room) }
 }
@@ -101,6 +106,9 @@ pub unsafe extern "system" fn DAQmxGetDevProductType(
     to: *mut c_char,
     room: u32,
 ) -> i32 {
+    if let Some(code) = fault::injected("DAQmxGetDevProductType") {
+        return code;
+    }
     match device(&unsafe { text(name) }) {
         Ok(()) => unsafe { copy("PCIe-6321 (simulated)", to, room) },
         Err(code) => status::<()>(Err(code)),
@@ -113,6 +121,9 @@ pub unsafe extern "system" fn DAQmxGetDevAOPhysicalChans(
     to: *mut c_char,
     room: u32,
 ) -> i32 {
+    if let Some(code) = fault::injected("DAQmxGetDevAOPhysicalChans") {
+        return code;
+    }
     match device(&unsafe { text(name) }) {
         Ok(()) => unsafe { copy(&CHANNELS.join(", "), to, room) },
         Err(code) => status::<()>(Err(code)),
@@ -121,16 +132,25 @@ pub unsafe extern "system" fn DAQmxGetDevAOPhysicalChans(
 
 #[unsafe(no_mangle)]
 pub unsafe extern "system" fn DAQmxGetDevAOMaxRate(name: *const c_char, to: *mut f64) -> i32 {
+    if let Some(code) = fault::injected("DAQmxGetDevAOMaxRate") {
+        return code;
+    }
     unsafe { store(device(&text(name)).map(|()| MAX_RATE_HZ), to) }
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "system" fn DAQmxGetDevAOMinRate(name: *const c_char, to: *mut f64) -> i32 {
+    if let Some(code) = fault::injected("DAQmxGetDevAOMinRate") {
+        return code;
+    }
     unsafe { store(device(&text(name)).map(|()| MIN_RATE_HZ), to) }
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "system" fn DAQmxCreateTask(_: *const c_char, task: *mut *mut c_void) -> i32 {
+    if let Some(code) = fault::injected("DAQmxCreateTask") {
+        return code;
+    }
     unsafe { store(with(Card::create).map(|id| id as *mut c_void), task) }
 }
 
@@ -144,6 +164,9 @@ pub unsafe extern "system" fn DAQmxCreateAOVoltageChan(
     _units: i32,
     _scale: *const c_char,
 ) -> i32 {
+    if let Some(code) = fault::injected("DAQmxCreateAOVoltageChan") {
+        return code;
+    }
     let channel = unsafe { text(channel) };
     status(with(|c| {
         c.add_channel(task as usize, &channel, min_v, max_v)
@@ -159,16 +182,25 @@ pub unsafe extern "system" fn DAQmxCfgSampClkTiming(
     _mode: i32,
     samples: u64,
 ) -> i32 {
+    if let Some(code) = fault::injected("DAQmxCfgSampClkTiming") {
+        return code;
+    }
     status(with(|c| c.set_clock(task as usize, rate_hz, samples)))
 }
 
 #[unsafe(no_mangle)]
 pub extern "system" fn DAQmxCfgOutputBuffer(task: *mut c_void, samples: u32) -> i32 {
+    if let Some(code) = fault::injected("DAQmxCfgOutputBuffer") {
+        return code;
+    }
     status(with(|c| c.set_buffer(task as usize, samples)))
 }
 
 #[unsafe(no_mangle)]
 pub extern "system" fn DAQmxSetWriteRegenMode(task: *mut c_void, mode: i32) -> i32 {
+    if let Some(code) = fault::injected("DAQmxSetWriteRegenMode") {
+        return code;
+    }
     status(with(|c| {
         c.set_regenerates(task as usize, mode != DO_NOT_ALLOW_REGEN)
     }))
@@ -176,26 +208,55 @@ pub extern "system" fn DAQmxSetWriteRegenMode(task: *mut c_void, mode: i32) -> i
 
 #[unsafe(no_mangle)]
 pub extern "system" fn DAQmxStartTask(task: *mut c_void) -> i32 {
+    if let Some(code) = fault::injected("DAQmxStartTask") {
+        return code;
+    }
     status(with(|c| c.start(task as usize)))
 }
 
 #[unsafe(no_mangle)]
 pub extern "system" fn DAQmxStopTask(task: *mut c_void) -> i32 {
+    if let Some(code) = fault::injected("DAQmxStopTask") {
+        return code;
+    }
     status(with(|c| c.stop(task as usize)))
 }
 
 #[unsafe(no_mangle)]
+pub unsafe extern "system" fn DAQmxResetDevice(name: *const c_char) -> i32 {
+    if let Some(code) = fault::injected("DAQmxResetDevice") {
+        return code;
+    }
+    match device(&unsafe { text(name) }) {
+        Ok(()) => {
+            with(Card::reset);
+            0
+        }
+        Err(code) => status::<()>(Err(code)),
+    }
+}
+
+#[unsafe(no_mangle)]
 pub extern "system" fn DAQmxClearTask(task: *mut c_void) -> i32 {
+    if let Some(code) = fault::injected("DAQmxClearTask") {
+        return code;
+    }
     status(with(|c| c.clear(task as usize)))
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "system" fn DAQmxIsTaskDone(task: *mut c_void, to: *mut u32) -> i32 {
+    if let Some(code) = fault::injected("DAQmxIsTaskDone") {
+        return code;
+    }
     unsafe { store(with(|c| c.done(task as usize)).map(u32::from), to) }
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "system" fn DAQmxGetWriteSpaceAvail(task: *mut c_void, to: *mut u32) -> i32 {
+    if let Some(code) = fault::injected("DAQmxGetWriteSpaceAvail") {
+        return code;
+    }
     unsafe { store(with(|c| c.room(task as usize)), to) }
 }
 
@@ -204,6 +265,9 @@ pub unsafe extern "system" fn DAQmxGetWriteTotalSampPerChanGenerated(
     task: *mut c_void,
     to: *mut u64,
 ) -> i32 {
+    if let Some(code) = fault::injected("DAQmxGetWriteTotalSampPerChanGenerated") {
+        return code;
+    }
     unsafe { store(with(|c| c.generated(task as usize)), to) }
 }
 
@@ -218,7 +282,18 @@ pub unsafe extern "system" fn DAQmxWriteAnalogF64(
     written: *mut i32,
     _reserved: *mut u32,
 ) -> i32 {
+    if let Some(code) = fault::injected("DAQmxWriteAnalogF64") {
+        return code;
+    }
     let samples = unsafe { std::slice::from_raw_parts(samples, count.max(0) as usize) };
+    if let Some(code) = fault::short_write() {
+        // What a driver does that has room for a part, or for nothing.
+        let taken = with(|c| c.write(task as usize, &samples[..samples.len() / 2], false));
+        if !written.is_null() {
+            unsafe { written.write(taken.unwrap_or(0) as i32) };
+        }
+        return status::<()>(if code == 0 { Ok(()) } else { Err(code) });
+    }
     let since = Instant::now();
     let mut all = 0;
     let answer = loop {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use htex_device::{Descriptor, Profile, Setting, SettingKind};
+use htex_device::{Descriptor, FromScene, Profile, Setting, SettingKind};
 
 pub(crate) fn descriptor() -> Descriptor {
     Descriptor {
@@ -24,48 +24,56 @@ fn settings() -> Vec<Setting> {
         setting(
             "device",
             text.clone(),
+            FromScene::Never,
             Some("Dev1/ao0"),
             "Analog output, as NI MAX names it.",
         ),
         setting(
             "amplifier_gain",
             number(0.001, 10_000.0),
+            FromScene::Never,
             None,
             "Volts at the display for one volt of the card. Measure it at the carrier's frequency.",
         ),
         setting(
             "limit_v",
             number(0.0, 1_000.0),
+            FromScene::Less,
             None,
             "Largest voltage at the display, volts either way; no sample beyond it is put out.",
         ),
         setting(
             "dac_full_scale_v",
             number(0.1, 100.0),
+            FromScene::Never,
             Some("10"),
             "Largest voltage of the card's output, volts either way.",
         ),
         setting(
             "dac_bits",
             number(1.0, 32.0),
+            FromScene::Never,
             Some("16"),
             "Resolution of the card's output, bits.",
         ),
         setting(
             "carrier_hz",
             number(0.0, 100_000.0),
+            FromScene::Any,
             Some("7000"),
             "Carrier that the signal is to have, hertz; 0: none.",
         ),
         setting(
             "buffer_ms",
             number(10.0, 10_000.0),
+            FromScene::Any,
             Some("200"),
             "Samples kept ready for the card, milliseconds: more is safer, less is quicker.",
         ),
         setting(
             "ramp_ms",
-            number(0.0, 1_000.0),
+            number(1.0, 1_000.0),
+            FromScene::More,
             Some("20"),
             "Ramp before a first, and after a last sample that is not zero, milliseconds; at most \
              half of `buffer_ms`.",
@@ -73,17 +81,25 @@ fn settings() -> Vec<Setting> {
         setting(
             "driver",
             text,
+            FromScene::Never,
             Some(""),
             "File of the NI-DAQmx library; empty: the one that is installed.",
         ),
     ]
 }
 
-fn setting(name: &str, kind: SettingKind, default: Option<&str>, description: &str) -> Setting {
+fn setting(
+    name: &str,
+    kind: SettingKind,
+    from_scene: FromScene,
+    default: Option<&str>,
+    description: &str,
+) -> Setting {
     Setting {
         name: name.to_owned(),
         kind,
         default: default.map(str::to_owned),
+        from_scene,
         description: description.to_owned(),
     }
 }

@@ -11,6 +11,9 @@ const RESERVED: i32 = -50103;
 /// Samples came too late: the buffer, or the memory on the card, ran dry.
 const DRY: [i32; 5] = [-200290, -200291, -200016, -200018, -200621];
 
+/// What is said of a voltage that may be standing.
+pub(crate) const NOT_ZERO: &str = "the output could not be set to zero: switch the amplifier off";
+
 /// An error code of the driver and the driver's words.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Fault {
@@ -35,10 +38,7 @@ impl Fault {
     pub(crate) fn failed_and_not_zero(&self, device: &str) -> DeviceError {
         DeviceError::Failed {
             device: device.to_owned(),
-            what: format!(
-                "NI-DAQmx {}: {}; the output could not be set to zero: switch the amplifier off",
-                self.code, self.words
-            ),
+            what: format!("NI-DAQmx {}: {}; {NOT_ZERO}", self.code, self.words),
         }
     }
 

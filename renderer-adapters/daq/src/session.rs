@@ -1,11 +1,18 @@
 //! What writer and watchdog share of an open device: the running task, and the way to zero.
 
+use std::thread::sleep;
+use std::time::Duration;
+
 use htex_device::{DeviceError, Status, StreamFormat};
 
 use crate::claim::Claim;
 use crate::driver::{Driver, Task};
 use crate::fault::Fault;
 use crate::rig::Rig;
+
+/// Times that zero is tried, and the pause between two, which a transient fault is over in.
+const ATTEMPTS: usize = 5;
+const PAUSE: Duration = Duration::from_millis(10);
 
 pub(crate) struct Session {
     rig: Rig,
@@ -119,6 +126,11 @@ impl Session {
         }
     }
 
+    /// What went wrong and was told to nobody yet.
+    pub(crate) fn untold(&self) -> Option<&DeviceError> {
+        self.error.as_ref()
+    }
+
     /// Frames given to the driver, and frames that came out; both with the lead.
     pub(crate) fn progress(&self) -> (u64, u64) {
         (self.given, self.generated)
@@ -143,7 +155,7 @@ impl Session {
             return self.error.take().map_or(Ok(()), Err);
         }
         let zero = self.end();
-        zero.map_err(|fault| fault.failed(&self.rig.device))
+        zero.map_err(|fault| fault.failed_and_not_zero(&self.rig.device))
     }
 
     pub(crate) fn usable(&mut self) -> Result<(), DeviceError> {
@@ -243,10 +255,33 @@ impl Session {
         zero
     }
 
-    /// Zero by a task of its own, without a clock.
+    /// Zero by a task of its own, without a clock; tried again where it fails, and at last by a reset of the card.
     fn put_zero(&self) -> Result<(), Fault> {
+        let mut zero = self.zero_once();
+        for _ in 1..ATTEMPTS {
+            if zero.is_ok() {
+                return zero;
+            }
+            sleep(PAUSE);
+            zero = self.zero_once();
+        }
+        // A reset ends all tasks of the card and puts its outputs where they are at power-on, which need not be
+        // zero: so zero is written once more.
+        zero.or_else(|fault| {
+            self.driver.reset(&self.rig.device).map_err(|_| fault)?;
+            self.zero_once()
+        })
+    }
+
+    fn zero_once(&self) -> Result<(), Fault> {
         let limit_v = self.rig.limit_v / self.rig.gain;
         let task = Task::new(self.driver, &self.rig.device, limit_v)?;
-        task.write(&[0.0], true).map(|_| ())
+        match task.write(&[0.0], true)? {
+            1 => task.stop(),
+            written => Err(Fault {
+                code: 0,
+                words: format!("{written} of 1 samples were written"),
+            }),
+        }
     }
 }

@@ -114,6 +114,8 @@ impl Device for Stream {
 
 impl Drop for Stream {
     fn drop(&mut self) {
-        let _ = self.session().close();
+        if let Err(error) = self.session().close() {
+            crate::watchdog::say(&error);
+        }
     }
 }

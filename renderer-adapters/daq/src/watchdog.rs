@@ -1,11 +1,20 @@
 //! A thread that asks the driver how it is, so that a device whose writer hangs goes to zero too.
 
+use std::io::Write;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{Builder, JoinHandle};
 use std::time::Duration;
 
+use htex_device::DeviceError;
+
+use crate::fault::NOT_ZERO;
 use crate::session::Session;
+
+/// Says something on standard error, which may be gone.
+pub(crate) fn say(error: &DeviceError) {
+    let _ = writeln!(std::io::stderr(), "htex: {error}");
+}
 
 /// Ends when dropped.
 pub(crate) struct Watchdog {
@@ -19,11 +28,17 @@ impl Watchdog {
         let (end, ended) = channel();
         let session = Arc::clone(session);
         let watch = move || {
+            let mut told = false;
             while ended.recv_timeout(period) == Err(RecvTimeoutError::Timeout) {
-                session
-                    .lock()
-                    .unwrap_or_else(PoisonError::into_inner)
-                    .watch();
+                let mut session = session.lock().unwrap_or_else(PoisonError::into_inner);
+                let was_running = session.is_running();
+                session.watch();
+                // A writer that hangs asks no more: a voltage that may be standing is said here.
+                let error = session.untold().filter(|_| was_running && !told);
+                if let Some(error) = error.filter(|e| e.to_string().contains(NOT_ZERO)) {
+                    say(error);
+                    told = true;
+                }
             }
         };
         let thread = Builder::new()

@@ -64,6 +64,17 @@ impl Driver {
     }
 }
 
+impl Driver {
+    /// Ends all tasks of an output's card.
+    #[allow(unsafe_code)] // The driver's functions are C.
+    pub(crate) fn reset(&self, output: &str) -> Result<(), Fault> {
+        let card = table::c_text(output.split('/').next().unwrap_or_default());
+        // SAFETY: a string that ends in zero.
+        self.table
+            .check(unsafe { (self.table.reset_device)(card.as_ptr()) })
+    }
+}
+
 /// What is listed between commas.
 fn list(text: &str) -> impl Iterator<Item = &str> {
     text.split(',')

@@ -51,6 +51,7 @@ table! {
     start_task = "DAQmxStartTask": (Handle),
     stop_task = "DAQmxStopTask": (Handle),
     clear_task = "DAQmxClearTask": (Handle),
+    reset_device = "DAQmxResetDevice": (*const c_char),
     is_done = "DAQmxIsTaskDone": (Handle, *mut u32),
     get_space = "DAQmxGetWriteSpaceAvail": (Handle, *mut u32),
     get_generated = "DAQmxGetWriteTotalSampPerChanGenerated": (Handle, *mut u64),

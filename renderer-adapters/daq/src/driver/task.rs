@@ -58,6 +58,12 @@ impl Task {
         self.check(unsafe { (self.driver.table.start_task)(self.handle) })
     }
 
+    /// Stops it; an error that it had is said here.
+    pub(crate) fn stop(&self) -> Result<(), Fault> {
+        // SAFETY: the handle is this task's.
+        self.check(unsafe { (self.driver.table.stop_task)(self.handle) })
+    }
+
     /// Takes the samples that fit now, volts; answers how many. `start` starts a task without a
     /// clock.
     pub(crate) fn write(&self, samples: &[f64], start: bool) -> Result<usize, Fault> {

@@ -1,4 +1,5 @@
 //! The simulated card of `examples/nidaqmx-simulated`: built, and each test given one of its own.
+#![allow(dead_code)] // Each suite uses a part of it.
 
 mod library;
 
@@ -46,6 +47,19 @@ impl Card {
         }
     }
 
+    /// How often a function of the driver was called since the last fault was set.
+    pub fn calls(&self, function: &str) -> u64 {
+        type Calls = unsafe extern "system" fn(*const c_char) -> u64;
+        let function = CString::new(function).unwrap();
+        // SAFETY: as above.
+        unsafe {
+            let library = libloading::Library::new(&self.library).unwrap();
+            let calls = library.get::<Calls>("nidaqmx_simulated_calls").unwrap()(function.as_ptr());
+            std::mem::forget(library);
+            calls
+        }
+    }
+
     pub fn settings(&self, given: &[(&str, &str)]) -> Settings {
         let driver = ("driver", self.library.to_str().unwrap());
         let given = [&[driver], given].concat();
@@ -72,9 +86,9 @@ impl Card {
         Daq::new().open(&self.settings(given), &format)
     }
 
-    /// All that came out of `Dev1/ao0` so far, volts of the card.
+    /// All that came out of `Dev1/ao0` so far, volts of the card; nothing may have.
     pub fn recorded(&self) -> Vec<f64> {
-        let lines = fs::read_to_string(self.folder.path().join("Dev1_ao0.txt")).unwrap();
+        let lines = fs::read_to_string(self.folder.path().join("Dev1_ao0.txt")).unwrap_or_default();
         lines.lines().map(|line| line.parse().unwrap()).collect()
     }
 }

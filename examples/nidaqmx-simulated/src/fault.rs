@@ -1,0 +1,120 @@
+//! Faults on demand: at the n-th call of a function.
+
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+
+use crate::{codes, status, with};
+
+/// What happens at a call.
+#[derive(Clone, Copy)]
+enum Kind {
+    /// The call does nothing and answers a code.
+    Error(i32),
+    /// Of a write: half of the samples are taken, and the call answers a code (0: as if all was well).
+    Short(i32),
+    /// The call takes so many milliseconds longer.
+    Hang(u64),
+    /// The card is pulled out.
+    Unplug,
+}
+
+struct Plan {
+    function: String,
+    /// Counted from 1.
+    call: u64,
+    /// The calls after it too.
+    lasts: bool,
+    kind: Kind,
+}
+
+#[derive(Default)]
+struct State {
+    plan: Option<Plan>,
+    calls: BTreeMap<&'static str, u64>,
+}
+
+static STATE: Mutex<Option<State>> = Mutex::new(None);
+
+fn state<T>(run: impl FnOnce(&mut State) -> T) -> T {
+    let mut state = STATE.lock().unwrap_or_else(PoisonError::into_inner);
+    run(state.get_or_insert_with(State::default))
+}
+
+/// Reads `FUNCTION:CALL:KIND`, such as `DAQmxStartTask:2:error=-200077`; `CALL+` also means the calls after it.
+pub fn plan(text: &str) {
+    match parse(text) {
+        Some(plan) => state(|s| *s = State { plan: Some(plan), ..State::default() }),
+        None => eprintln!(
+            "nidaqmx-simulated: `{text}` is no fault: FUNCTION:CALL[+]:error=CODE|short=CODE|hang=MS|unplug"
+        ),
+    }
+}
+
+fn parse(text: &str) -> Option<Plan> {
+    let mut parts = text.split(':');
+    let (function, call, kind) = (parts.next()?, parts.next()?, parts.next()?);
+    let kind = match kind.split_once('=') {
+        Some(("error", code)) => Kind::Error(code.parse().ok()?),
+        Some(("short", code)) => Kind::Short(code.parse().ok()?),
+        Some(("hang", ms)) => Kind::Hang(ms.parse().ok()?),
+        None if kind == "unplug" => Kind::Unplug,
+        _ => return None,
+    };
+    Some(Plan {
+        function: function.to_owned(),
+        call: call.trim_end_matches('+').parse().ok()?,
+        lasts: call.ends_with('+'),
+        kind,
+    })
+}
+
+/// Counts a call; answers the code of one that fails.
+pub fn injected(function: &'static str) -> Option<i32> {
+    match due(function)? {
+        Kind::Error(code) => {
+            status::<()>(Err(code));
+            Some(code)
+        }
+        Kind::Hang(ms) => {
+            std::thread::sleep(Duration::from_millis(ms));
+            None
+        }
+        Kind::Unplug => {
+            with(|card| card.unplug_after = Some(0));
+            Some(status::<()>(Err(codes::NOT_PRESENT)))
+        }
+        // Told where samples are written.
+        Kind::Short(_) => None,
+    }
+}
+
+/// The code of a short write, if this call of the writing function is to be one; it was counted.
+pub fn short_write() -> Option<i32> {
+    state(|s| {
+        let plan = s.plan.as_ref()?;
+        let count = *s.calls.get("DAQmxWriteAnalogF64")?;
+        let is_due = count == plan.call || (plan.lasts && count > plan.call);
+        match plan.kind {
+            Kind::Short(code) if plan.function == "DAQmxWriteAnalogF64" && is_due => Some(code),
+            _ => None,
+        }
+    })
+}
+
+fn due(function: &'static str) -> Option<Kind> {
+    state(|s| {
+        let count = s.calls.entry(function).or_insert(0);
+        *count += 1;
+        let plan = s.plan.as_ref().filter(|plan| plan.function == function)?;
+        let is_due = *count == plan.call || (plan.lasts && *count > plan.call);
+        is_due.then_some(plan.kind)
+    })
+}
+
+/// How often a function was called since the last plan.
+#[unsafe(no_mangle)]
+pub unsafe extern "system" fn nidaqmx_simulated_calls(function: *const std::ffi::c_char) -> u64 {
+    let name = unsafe { crate::text(function) };
+    state(|s| s.calls.iter().find(|(known, _)| **known == name).map_or(0, |(_, count)| *count))
+}

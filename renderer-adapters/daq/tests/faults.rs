@@ -1,0 +1,122 @@
+//! Every fault at every call of the driver: the output ends at zero, or it is said that it does not.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+mod simulated;
+
+use std::time::Duration;
+
+use htex_device::DeviceError;
+use simulated::Card;
+
+const LONG: Duration = Duration::from_secs(20);
+/// The functions of the driver that are called while a device is open.
+const FUNCTIONS: [&str; 13] = [
+    "DAQmxCreateTask",
+    "DAQmxCreateAOVoltageChan",
+    "DAQmxCfgSampClkTiming",
+    "DAQmxCfgOutputBuffer",
+    "DAQmxSetWriteRegenMode",
+    "DAQmxStartTask",
+    "DAQmxStopTask",
+    "DAQmxClearTask",
+    "DAQmxIsTaskDone",
+    "DAQmxGetWriteSpaceAvail",
+    "DAQmxGetWriteTotalSampPerChanGenerated",
+    "DAQmxWriteAnalogF64",
+    "DAQmxResetDevice",
+];
+const NOT_ZERO: &str = "could not be set to zero: switch the amplifier off";
+
+/// A burst at two volts of the card, which ends there: zero is the device's to reach.
+fn play(card: &Card) -> Result<(), DeviceError> {
+    let mut device = card.open(&[("buffer_ms", "50"), ("ramp_ms", "5")])?;
+    for _ in 0..3 {
+        device.write(&[100.0; 700], LONG)?;
+    }
+    device.finish()
+}
+
+/// The same, given up in the middle.
+fn abandon(card: &Card) {
+    if let Ok(mut device) = card.open(&[("buffer_ms", "50"), ("ramp_ms", "5")]) {
+        let _ = device.write(&[100.0; 900], LONG);
+    }
+}
+
+fn ends_at_zero(card: &Card) -> bool {
+    card.recorded().last().is_none_or(|volts| *volts == 0.0)
+}
+
+/// How often each function is called when nothing is wrong.
+fn calls(run: impl Fn(&Card)) -> Vec<(&'static str, u64)> {
+    let card = Card::new();
+    card.set("fault", "none:1:error=0");
+    run(&card);
+    FUNCTIONS
+        .map(|function| (function, card.calls(function)))
+        .to_vec()
+}
+
+/// The first calls, some in the middle, and the last ones.
+fn some(count: u64) -> impl Iterator<Item = u64> {
+    (1..=count + 1).filter(move |call| *call <= 4 || *call + 3 >= count || call % 16 == 0)
+}
+
+#[test]
+fn every_fault_at_every_call_ends_at_zero_or_says_so() {
+    let (mut tried, mut said) = (0, 0);
+    for (function, count) in calls(|card| play(card).unwrap()) {
+        for call in some(count) {
+            let kinds = ["error=-200077", "error=-50103", "error=-200290", "unplug"];
+            let writes = ["short=0", "short=-200292"];
+            let is_write = function == "DAQmxWriteAnalogF64";
+            let kinds = kinds.iter().chain(writes.iter().filter(|_| is_write));
+            for (kind, lasts) in kinds.flat_map(|kind| [(kind, ""), (kind, "+")]) {
+                let fault = format!("{function}:{call}{lasts}:{kind}");
+                let card = Card::new();
+                card.set("fault", &fault);
+                let played = play(&card);
+                let told = played
+                    .as_ref()
+                    .is_err_and(|error| error.to_string().contains(NOT_ZERO));
+                assert!(ends_at_zero(&card) || told, "{fault}: {played:?}");
+                // Told for nothing is told wrongly, but for the voltage that the last zero did not report.
+                tried += 1;
+                said += usize::from(told);
+                // One fault alone never leaves a voltage, but for a card that is gone.
+                assert!(
+                    !lasts.is_empty() || *kind == "unplug" || ends_at_zero(&card),
+                    "{fault}"
+                );
+            }
+        }
+    }
+    println!("{tried} faults, {said} of them said that the output is not at zero");
+    assert!(said > 0 && tried > 300, "{tried} {said}");
+}
+
+#[test]
+fn a_device_that_is_dropped_ends_at_zero_whatever_fails_once() {
+    for (function, count) in calls(abandon) {
+        for call in some(count) {
+            for kind in ["error=-200077", "error=-50103", "short=0", "short=-200292"] {
+                let fault = format!("{function}:{call}:{kind}");
+                let card = Card::new();
+                card.set("fault", &fault);
+                abandon(&card);
+                assert!(ends_at_zero(&card), "{fault}");
+            }
+        }
+    }
+}
+
+/// A driver that hangs for a while in one call: late, and at zero.
+#[test]
+fn a_driver_that_hangs_in_a_call_comes_to_zero_late() {
+    for function in FUNCTIONS {
+        let card = Card::new();
+        card.set("fault", &format!("{function}:2:hang=300"));
+        let _ = play(&card);
+        assert!(ends_at_zero(&card), "{function}");
+    }
+}

@@ -2,8 +2,8 @@
 
 use cpal::traits::DeviceTrait;
 use htex_device::{
-    Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, Setting, SettingKind,
-    Settings, StreamFormat,
+    Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, FromScene, Setting,
+    SettingKind, Settings, StreamFormat,
 };
 
 use crate::card::{self, Card, DEFAULT};
@@ -73,6 +73,7 @@ fn descriptor() -> Descriptor {
         name: "device".to_owned(),
         kind: SettingKind::Text,
         default: Some(DEFAULT.to_owned()),
+        from_scene: FromScene::Any,
         description: "Sound output, as the list of devices names it.".to_owned(),
     };
     let buffer = Setting {
@@ -82,6 +83,7 @@ fn descriptor() -> Descriptor {
             max: 10_000.0,
         },
         default: Some("60".to_owned()),
+        from_scene: FromScene::Any,
         description: "Samples kept ready for the card, milliseconds: more is safer, less is \
                       quicker."
             .to_owned(),

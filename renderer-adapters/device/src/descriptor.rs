@@ -37,8 +37,35 @@ pub struct Setting {
     /// Value when nothing is said; absent: it must be given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub default: Option<String>,
+    /// What a scene, which may come from anyone, may do with it.
+    #[serde(default, skip_serializing_if = "FromScene::is_any")]
+    pub from_scene: FromScene,
     /// What it does.
     pub description: String,
+}
+
+/// What a scene may do with a setting. What describes the hardware is a person's to say: on the command line, or
+/// by the choice of a profile.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum FromScene {
+    /// Set it, unless a person does.
+    #[default]
+    Any,
+    /// Lower the number that a person, or the default, has given: a limit. The smallest of all that are stated
+    /// holds.
+    Less,
+    /// Raise the number that a person, or the default, has given: a ramp.
+    More,
+    /// Nothing.
+    Never,
+}
+
+impl FromScene {
+    fn is_any(&self) -> bool {
+        *self == Self::Any
+    }
 }
 
 /// What a setting may be. Values are text; numbers are written as JSON writes them.

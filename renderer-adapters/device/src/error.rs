@@ -51,6 +51,9 @@ pub enum DeviceError {
         /// What to do.
         advice: String,
     },
+    /// What another process, which holds the device, says of it.
+    #[error("{0}")]
+    Told(String),
     /// The device was there and is gone, or its driver failed.
     #[error("{device} failed: {what}")]
     Failed {

@@ -26,10 +26,10 @@ pub mod shim;
 
 pub use adapter::{Adapter, Device, Status, StreamFormat};
 pub use capabilities::{Capabilities, Quantity, Rates};
-pub use descriptor::{Descriptor, Endpoint, Profile, Setting, SettingKind};
+pub use descriptor::{Descriptor, Endpoint, FromScene, Profile, Setting, SettingKind};
 pub use devices::{DeviceNote, DeviceOrigin, DeviceSearch, Devices, KnownDevice};
 pub use error::DeviceError;
 pub use native::{NativeAdapter, NativeDevice};
 #[cfg(feature = "schemars")]
 pub use schemas::schemas;
-pub use settings::Settings;
+pub use settings::{Ignored, Settings, Stated};

@@ -2,14 +2,35 @@
 
 use std::collections::BTreeMap;
 
-use crate::{Descriptor, DeviceError, Setting, SettingKind};
+use crate::{Descriptor, DeviceError, FromScene, Setting, SettingKind};
 
 /// All settings of an adapter, each with a value that its kind allows.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Settings(BTreeMap<String, String>);
 
+/// What is said of a device, and who says it.
+#[derive(Debug, Clone, Copy)]
+pub struct Stated<'a> {
+    /// A profile that a person chose, by name.
+    pub profile: Option<&'a str>,
+    /// Settings that a person gave.
+    pub given: &'a BTreeMap<String, String>,
+    /// Settings that a scene asks for: [`FromScene`] says what becomes of them.
+    pub asked: &'a BTreeMap<String, String>,
+}
+
+/// A setting that a scene asks for and does not get.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Ignored {
+    /// The setting.
+    pub name: String,
+    /// Why, as a sentence.
+    pub what: String,
+}
+
 impl Settings {
-    /// Settles `given` over `profile` (by name) over the descriptor's defaults.
+    /// Settles `given` over `profile` (by name) over the descriptor's defaults. Of a limit
+    /// ([`FromScene::Less`]) that both state, the smaller one holds.
     ///
     /// # Errors
     /// When the profile or a setting is not known, one is missing, or a value is not allowed.
@@ -18,26 +39,65 @@ impl Settings {
         profile: Option<&str>,
         given: &BTreeMap<String, String>,
     ) -> Result<Self, DeviceError> {
-        let mut values = match profile {
+        let stated = Stated {
+            profile,
+            given,
+            asked: &BTreeMap::new(),
+        };
+        Ok(Self::settle(descriptor, &stated)?.0)
+    }
+
+    /// As [`Self::resolve`], with what a scene asks for; answers what it does not get.
+    ///
+    /// # Errors
+    /// As [`Self::resolve`].
+    pub fn settle(
+        descriptor: &Descriptor,
+        stated: &Stated<'_>,
+    ) -> Result<(Self, Vec<Ignored>), DeviceError> {
+        let mut values = match stated.profile {
             Some(name) => profile_settings(descriptor, name)?,
             None => BTreeMap::new(),
         };
-        values.extend(given.iter().map(|(k, v)| (k.clone(), v.clone())));
-        if let Some(name) = values.keys().find(|name| find(descriptor, name).is_none()) {
-            let known: Vec<&str> = descriptor.settings.iter().map(|s| &s.name[..]).collect();
-            let what = format!("{} has none; it has {}", descriptor.id, known.join(", "));
-            return Err(error(name, what));
+        for (name, value) in stated.given {
+            let setting = known(descriptor, name)?;
+            check(setting, value)?;
+            let holds = setting.from_scene == FromScene::Less
+                && values
+                    .get(name)
+                    .is_some_and(|held| number(held) < number(value));
+            if !holds {
+                values.insert(name.clone(), value.clone());
+            }
         }
         for setting in &descriptor.settings {
             if let (false, Some(default)) = (values.contains_key(&setting.name), &setting.default) {
                 values.insert(setting.name.clone(), default.clone());
             }
-            match values.get(&setting.name) {
-                Some(value) => check(setting, value)?,
-                None => return Err(error(&setting.name, "it must be given".to_owned())),
+        }
+        let mut ignored = Vec::new();
+        for (name, value) in stated.asked {
+            let setting = known(descriptor, name)?;
+            check(setting, value)?;
+            let is_given = stated.given.contains_key(name);
+            match asked(setting, value, values.get(name), is_given) {
+                Ok(true) => {
+                    values.insert(name.clone(), value.clone());
+                }
+                Ok(false) => {}
+                Err(what) => ignored.push(Ignored {
+                    name: name.clone(),
+                    what,
+                }),
             }
         }
-        Ok(Self(values))
+        for setting in &descriptor.settings {
+            match values.get(&setting.name) {
+                Some(value) => check(setting, value)?,
+                None => return Err(error(&setting.name, missing(setting))),
+            }
+        }
+        Ok((Self(values), ignored))
     }
 
     /// The value of a setting; empty when the adapter has none of this name.
@@ -83,8 +143,51 @@ impl Settings {
     }
 }
 
-fn find<'a>(descriptor: &'a Descriptor, name: &str) -> Option<&'a Setting> {
-    descriptor.settings.iter().find(|s| s.name == name)
+fn known<'a>(descriptor: &'a Descriptor, name: &str) -> Result<&'a Setting, DeviceError> {
+    let mut settings = descriptor.settings.iter();
+    settings.find(|s| s.name == name).ok_or_else(|| {
+        let known: Vec<&str> = descriptor.settings.iter().map(|s| &s.name[..]).collect();
+        let what = format!("{} has none; it has {}", descriptor.id, known.join(", "));
+        error(name, what)
+    })
+}
+
+fn missing(setting: &Setting) -> String {
+    match setting.from_scene {
+        FromScene::Never | FromScene::Less => {
+            "it must be given, by a person: a profile, or this setting on the command line"
+                .to_owned()
+        }
+        _ => "it must be given".to_owned(),
+    }
+}
+
+fn number(text: &str) -> f64 {
+    text.parse().unwrap_or(f64::NAN)
+}
+
+/// Whether a scene gets what it asks for; else why not.
+fn asked(
+    setting: &Setting,
+    value: &str,
+    held: Option<&String>,
+    is_given: bool,
+) -> Result<bool, String> {
+    let held = held.map(String::as_str);
+    match (setting.from_scene, held) {
+        (FromScene::Any, _) => Ok(!is_given),
+        (FromScene::Never, _) | (FromScene::Less | FromScene::More, None) => Err(format!(
+            "the scene's {value} is not used: it describes the hardware, which a profile or the command line does"
+        )),
+        (FromScene::Less, Some(held)) if number(value) <= number(held) => Ok(true),
+        (FromScene::More, Some(held)) if number(value) >= number(held) => Ok(true),
+        (FromScene::Less, Some(held)) => Err(format!(
+            "the scene's {value} is not used: {held} holds, and a scene can only lower it"
+        )),
+        (FromScene::More, Some(held)) => Err(format!(
+            "the scene's {value} is not used: {held} holds, and a scene can only raise it"
+        )),
+    }
 }
 
 fn profile_settings(
@@ -133,6 +236,16 @@ mod tests {
     use super::*;
     use crate::Profile;
 
+    fn setting(name: &str, kind: &SettingKind, from_scene: FromScene) -> Setting {
+        Setting {
+            name: name.to_owned(),
+            kind: kind.clone(),
+            default: Some("100".to_owned()),
+            from_scene,
+            description: "A number.".to_owned(),
+        }
+    }
+
     fn descriptor() -> Descriptor {
         let number = SettingKind::Number {
             min: 0.0,
@@ -143,12 +256,12 @@ mod tests {
             name: "Rig".to_owned(),
             version: "1.0.0".to_owned(),
             summary: "A rig.".to_owned(),
-            settings: vec![Setting {
-                name: "limit_v".to_owned(),
-                kind: number,
-                default: Some("100".to_owned()),
-                description: "Limit.".to_owned(),
-            }],
+            settings: vec![
+                setting("limit_v", &number, FromScene::Less),
+                setting("ramp_ms", &number, FromScene::More),
+                setting("gain", &number, FromScene::Never),
+                setting("tone_hz", &number, FromScene::Any),
+            ],
             profiles: vec![Profile {
                 name: "small".to_owned(),
                 summary: "A small one.".to_owned(),
@@ -166,7 +279,9 @@ mod tests {
         assert_eq!(limit(None, &none)?, 100.0);
         assert_eq!(limit(Some("small"), &none)?, 20.0);
         let given = |name: &str, value: &str| BTreeMap::from([(name.to_owned(), value.to_owned())]);
-        assert_eq!(limit(Some("small"), &given("limit_v", "30"))?, 30.0);
+        assert_eq!(limit(None, &given("limit_v", "120"))?, 120.0);
+        assert_eq!(limit(Some("small"), &given("limit_v", "30"))?, 20.0);
+        assert_eq!(limit(Some("small"), &given("limit_v", "10"))?, 10.0);
         for refused in [
             given("limit_v", "151"),
             given("limit_v", "NaN"),
@@ -178,12 +293,54 @@ mod tests {
         Ok(())
     }
 
+    /// Whatever a scene asks for, the hardware is what a person said, the limit no higher and the ramp no shorter.
+    #[test]
+    fn a_scene_asks_for_less_and_never_gets_more() -> Result<(), DeviceError> {
+        let map = |name: &str, value: &str| BTreeMap::from([(name.to_owned(), value.to_owned())]);
+        let none = BTreeMap::new();
+        for (name, value, given, holds) in [
+            ("limit_v", "30", &none, 30.0),
+            ("limit_v", "120", &none, 100.0),
+            ("limit_v", "30", &map("limit_v", "20"), 20.0),
+            ("limit_v", "10", &map("limit_v", "20"), 10.0),
+            ("ramp_ms", "0", &none, 100.0),
+            ("ramp_ms", "120", &none, 120.0),
+            ("gain", "15", &none, 100.0),
+            ("gain", "15", &map("gain", "50"), 50.0),
+            ("tone_hz", "15", &none, 15.0),
+            ("tone_hz", "15", &map("tone_hz", "50"), 50.0),
+        ] {
+            let asked = map(name, value);
+            let stated = Stated {
+                profile: None,
+                given,
+                asked: &asked,
+            };
+            let (settings, ignored) = Settings::settle(&descriptor(), &stated)?;
+            assert_eq!(settings.number(name), holds, "{name} {value}");
+            let gets = holds == value.parse().unwrap_or(f64::NAN);
+            assert_eq!(
+                ignored.is_empty(),
+                gets || name == "tone_hz",
+                "{name} {value}"
+            );
+        }
+        Ok(())
+    }
+
     #[test]
     fn lines_are_read_as_they_were_written() -> Result<(), DeviceError> {
         let settings = Settings::from_lines(&descriptor(), "limit_v=12.5\n")?;
-        assert_eq!(settings.to_lines(&descriptor()), "limit_v=12.5\n");
+        let rest = "ramp_ms=100\ngain=100\ntone_hz=100\n";
+        assert_eq!(
+            settings.to_lines(&descriptor()),
+            format!("limit_v=12.5\n{rest}")
+        );
         let defaults = Settings::from_lines(&descriptor(), "")?;
-        assert_eq!(defaults.to_lines(&descriptor()), "limit_v=100\n");
+        assert_eq!(
+            defaults.to_lines(&descriptor()),
+            format!("limit_v=100\n{rest}")
+        );
         for refused in ["limit_v", "limit_v=1\nlimit_v=1\n", "x=1\n", "limit_v=\n"] {
             assert!(Settings::from_lines(&descriptor(), refused).is_err());
         }

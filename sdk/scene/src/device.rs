@@ -1,10 +1,11 @@
 //! The rules for a scene's device, and what may be chosen instead of it.
 
 use std::collections::BTreeMap;
-use std::path::{Component, Path};
+use std::path::Path;
 
 use htex_device::{
-    Capabilities, Descriptor, DeviceError, Devices, Quantity, SettingKind, Settings,
+    Capabilities, Descriptor, DeviceError, Devices, FromScene, Ignored, Quantity, Setting,
+    SettingKind, Settings, Stated,
 };
 use htex_format::{Findings, Quantity as Held, escape};
 use serde_json::Value;
@@ -24,25 +25,23 @@ pub struct DeviceOverride {
     pub profile: Option<String>,
     /// Settings as the adapter reads them; relative paths are left as they are.
     pub settings: BTreeMap<String, String>,
+    /// The device will not be opened: the scene's own profile and what it says of the hardware are taken as they
+    /// are, to validate, to plan, or to render to a file. Never set it for a device that plays.
+    pub rehearsal: bool,
     /// Another [`DeviceChoice::quantity_gain`].
     pub quantity_gain: Option<f64>,
-    /// What a setting that names a file is when nobody says; absent: the scene's name with `.wav`,
-    /// in the current folder.
+    /// What a setting that names a file is when nobody says; absent: the scene's name with the ending of the
+    /// format, in the current folder.
     pub output: Option<String>,
 }
 
 impl DeviceOverride {
-    /// With an output for the scene or asset in `path`.
-    pub(crate) fn with_output(&self, path: &Path) -> Self {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let stem = [".scene.json", ".json", ".htex"]
-            .iter()
-            .find_map(|ending| name.strip_suffix(ending));
-        let output = format!("{}.wav", stem.unwrap_or(&name));
-        Self {
-            output: Some(self.output.clone().unwrap_or(output)),
-            ..self.clone()
-        }
+    /// The file that is written when nobody names one.
+    fn output(&self, stem: &str, asked: &BTreeMap<String, String>) -> String {
+        let format = asked.get("format").map_or("auto", String::as_str);
+        let ending = if format == "auto" { "wav" } else { format };
+        let usual = || format!("{stem}.{ending}");
+        self.output.clone().unwrap_or_else(usual)
     }
 
     /// Puts adapter and profile into a scene's choice.
@@ -60,11 +59,22 @@ impl DeviceOverride {
     }
 }
 
+/// The name of the scene or asset in `path` without its ending; no hidden file's, whatever it is called.
+pub(crate) fn stem(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let stem = [".scene.json", ".json", ".htex"]
+        .iter()
+        .find_map(|ending| name.strip_suffix(ending));
+    match stem.unwrap_or(&name).trim_start_matches('.') {
+        "" => "scene".to_owned(),
+        stem => stem.to_owned(),
+    }
+}
+
 /// Checks the choice of a device; the settings that it comes to, when they can be used.
 pub(crate) fn check_device(
     choice: &DeviceChoice,
-    change: &DeviceOverride,
-    folder: &Path,
+    (change, stem): (&DeviceOverride, &str),
     devices: &Devices,
     held: Option<Held>,
     findings: &mut Findings,
@@ -77,15 +87,7 @@ pub(crate) fn check_device(
         }
     };
     let descriptor = adapter.descriptor();
-    let mut given = texts(choice, descriptor, folder, findings)?;
-    given.extend(change.settings.clone());
-    for setting in descriptor.settings.iter().filter(|s| s.default.is_none()) {
-        if let (SettingKind::Path, Some(output)) = (&setting.kind, &change.output) {
-            given.entry(setting.name.clone()).or_insert(output.clone());
-        }
-    }
-    let settled = Settings::resolve(descriptor, choice.profile.as_deref(), &given);
-    let settings = settled.map_err(|error| add_error(error, findings)).ok()?;
+    let settings = settle(choice, change, stem, descriptor, findings)?;
     match adapter.capabilities(&settings) {
         Ok(able) => {
             check_fit(choice, &able, findings);
@@ -100,6 +102,68 @@ pub(crate) fn check_device(
     Some(settings)
 }
 
+/// The settings that a person, a profile and a scene come to.
+fn settle(
+    choice: &DeviceChoice,
+    change: &DeviceOverride,
+    stem: &str,
+    descriptor: &Descriptor,
+    findings: &mut Findings,
+) -> Option<Settings> {
+    let mut asked = texts(choice, descriptor, findings)?;
+    let mut given = change.settings.clone();
+    let mut profile = change.profile.as_deref();
+    let is_hardware = |s: &Setting| s.from_scene == FromScene::Never;
+    if change.rehearsal {
+        tell_of_hardware(descriptor, &asked, findings);
+        for (name, value) in std::mem::take(&mut asked) {
+            given.entry(name).or_insert(value);
+        }
+        profile = profile.or(choice.profile.as_deref());
+    } else if !descriptor.settings.iter().any(is_hardware) {
+        profile = profile.or(choice.profile.as_deref());
+    } else if let (None, Some(named)) = (profile, &choice.profile) {
+        findings.add(rule::DEVICE_HARDWARE, "/device/profile", format!(
+            "the scene's profile {named} is not used: it describes the hardware; if that is yours, give --profile {named}"
+        ));
+    }
+    for setting in descriptor.settings.iter().filter(|s| s.default.is_none()) {
+        if setting.kind == SettingKind::Path {
+            given
+                .entry(setting.name.clone())
+                .or_insert_with(|| change.output(stem, &asked));
+        }
+    }
+    let stated = Stated {
+        profile,
+        given: &given,
+        asked: &asked,
+    };
+    let settled = Settings::settle(descriptor, &stated);
+    let (settings, ignored) = settled.map_err(|error| add_error(error, findings)).ok()?;
+    for Ignored { name, what } in ignored {
+        let pointer = format!("/device/settings/{}", escape(&name));
+        findings.add(rule::DEVICE_HARDWARE, pointer, what);
+    }
+    Some(settings)
+}
+
+/// Says of settings that a player will not take from the scene that a rehearsal does.
+fn tell_of_hardware(
+    descriptor: &Descriptor,
+    asked: &BTreeMap<String, String>,
+    findings: &mut Findings,
+) {
+    let is_asked = |s: &&Setting| s.from_scene != FromScene::Any && asked.contains_key(&s.name);
+    for Setting { name, .. } in descriptor.settings.iter().filter(is_asked) {
+        let pointer = format!("/device/settings/{}", escape(name));
+        findings.add(rule::DEVICE_HARDWARE, pointer, format!(
+            "{name} is planned with as the scene states it; a player takes it from a profile or the command line, and \
+             a scene can at most ask for a lower limit or a longer ramp"
+        ));
+    }
+}
+
 fn add_error(error: DeviceError, findings: &mut Findings) {
     let pointer = match &error {
         DeviceError::Setting { name, .. } if name == "profile" => "/device/profile".to_owned(),
@@ -109,34 +173,36 @@ fn add_error(error: DeviceError, findings: &mut Findings) {
     findings.add(rule::DEVICE_SETTING, pointer, error.to_string());
 }
 
-/// The scene's settings as text, paths joined to its folder; none when one of them is not usable.
+/// The scene's settings as text, without files, which it must not name; none when one of them is not usable.
 fn texts(
     choice: &DeviceChoice,
     descriptor: &Descriptor,
-    folder: &Path,
     findings: &mut Findings,
 ) -> Option<BTreeMap<String, String>> {
+    let mut usable = true;
     let mut texts = BTreeMap::new();
     for (name, value) in &choice.settings {
         let pointer = format!("/device/settings/{}", escape(name));
         let Some(text) = text(value) else {
             let message = "a setting is text, a number, true or false; write one of these";
             findings.add(rule::DEVICE_SETTING, pointer, message.to_owned());
+            usable = false;
             continue;
         };
         if name == DRIVER {
             let message = format!("{text} is code to be loaded; name it by --set {DRIVER}={text}");
             findings.add(rule::DEVICE_PATH_UNSAFE, pointer, message);
-        } else if !is_path(descriptor, name) {
-            texts.insert(name.clone(), text);
-        } else if is_inside(&text) {
-            texts.insert(name.clone(), folder.join(text).display().to_string());
+            usable = false;
+        } else if is_path(descriptor, name) {
+            let message = format!(
+                "{text} is not written: a scene names no file; name it by --set {name}=FILE"
+            );
+            findings.add(rule::DEVICE_PATH_UNUSED, pointer, message);
         } else {
-            let message = format!("{text} lies outside the scene's folder; use a path inside it");
-            findings.add(rule::DEVICE_PATH_UNSAFE, pointer, message);
+            texts.insert(name.clone(), text);
         }
     }
-    (texts.len() == choice.settings.len()).then_some(texts)
+    usable.then_some(texts)
 }
 
 fn text(value: &Value) -> Option<String> {
@@ -150,11 +216,6 @@ fn text(value: &Value) -> Option<String> {
 fn is_path(descriptor: &Descriptor, name: &str) -> bool {
     let mut settings = descriptor.settings.iter();
     settings.any(|s| s.name == name && s.kind == SettingKind::Path)
-}
-
-fn is_inside(path: &str) -> bool {
-    let mut parts = Path::new(path).components();
-    parts.all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
 }
 
 fn check_fit(choice: &DeviceChoice, able: &Capabilities, findings: &mut Findings) {

@@ -73,6 +73,21 @@ pub enum SceneError {
         /// The device's rates.
         rates: String,
     },
+    /// The loudest texture is so far above the level that has the drive that the drive would hold more samples than is
+    /// allowed.
+    #[error(
+        "the loudest texture stands {above_db:.1} dB above the level that has the drive, so that {percent:.0} % of its \
+         samples would be held there ({most_percent} % are allowed): raise drive_v, lower the surface's gain, or choose another \
+         representation"
+    )]
+    Clamped {
+        /// Of the loudest texture over the reference, decibels.
+        above_db: f64,
+        /// Part of the samples, percent.
+        percent: f64,
+        /// What is allowed, percent.
+        most_percent: f64,
+    },
     /// The device does not take what the assets hold.
     #[error("{sentence}")]
     Quantity {

@@ -111,15 +111,21 @@ impl Gains {
         Ok(serde_json::from_slice(&bytes)?)
     }
 
-    /// Writes the file, whole or not at all; its folder is made when it is not there.
+    /// Reads the file, changes what it holds, and writes it, whole or not at all; programs that do so at once wait for
+    /// each other. Its folder is made when it is not there.
     ///
     /// # Errors
-    /// What the system says.
-    pub fn save(&self, path: &Path) -> io::Result<()> {
+    /// As [`Self::load`], and what the system says of writing.
+    pub fn update(path: &Path, change: impl FnOnce(&mut Self)) -> io::Result<()> {
         if let Some(folder) = path.parent() {
             fs::create_dir_all(folder)?;
         }
-        let text = serde_json::to_string_pretty(self)? + "\n";
+        // Beside it: the file itself is replaced.
+        let lock = fs::File::create(path.with_extension("lock"))?;
+        lock.lock()?;
+        let mut gains = Self::load(path)?;
+        change(&mut gains);
+        let text = serde_json::to_string_pretty(&gains)? + "\n";
         htex_format::write_file(path, text.as_bytes())
     }
 

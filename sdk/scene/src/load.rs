@@ -11,7 +11,7 @@ use htex_device::{Devices, Settings};
 use htex_format::{Finding, Findings, Quantity, Report, Rule};
 
 use crate::check::check;
-use crate::device::{DeviceOverride, check_device};
+use crate::device::{DeviceOverride, check_device, stem};
 use crate::file::{DeviceChoice, Motion, Scene, Surface, VERSION};
 use crate::response::{self, Inverse, Response};
 use crate::rules as rule;
@@ -69,6 +69,17 @@ pub enum LoadError {
 }
 
 impl LoadedScene {
+    /// The files it was read from, but for its own.
+    pub fn inputs(&self) -> Vec<PathBuf> {
+        let assets = self.scene.surfaces.iter().map(|surface| &surface.asset);
+        let trace = match &self.scene.motion {
+            Motion::Trace(path) => Some(path),
+            _ => None,
+        };
+        let all = assets.chain(trace).chain(&self.scene.device.response);
+        all.map(|path| self.folder.join(path)).collect()
+    }
+
     /// What the assets hold, all of them the same.
     pub fn quantity(&self) -> Quantity {
         let first = self.assets.first();
@@ -100,7 +111,7 @@ impl LoadedScene {
     ) -> Result<Self, LoadError> {
         let mut findings = Findings::default();
         let scene = read_scene(bytes, &Limits::default(), &mut findings);
-        let device = &device.with_output(path);
+        let device = (device, &stem(path)[..]);
         let loaded =
             scene.and_then(|scene| load(scene, folder(path), around, device, &mut findings));
         finish(loaded, findings)
@@ -129,7 +140,7 @@ impl LoadedScene {
         };
         let mut findings = Findings::default();
         check(&scene, &Limits::default(), &mut findings);
-        let device = &device.with_output(asset);
+        let device = (device, &stem(asset)[..]);
         let loaded = load(scene, PathBuf::new(), around, device, &mut findings);
         finish(loaded, findings)
     }
@@ -140,7 +151,11 @@ impl LoadedScene {
 /// # Errors
 /// When the file cannot be read.
 pub fn validate(path: &Path, around: &Surroundings<'_>) -> Result<Report, LoadError> {
-    let findings = match LoadedScene::open(path, around, &DeviceOverride::default()) {
+    let rehearsal = DeviceOverride {
+        rehearsal: true,
+        ..DeviceOverride::default()
+    };
+    let findings = match LoadedScene::open(path, around, &rehearsal) {
         Ok(loaded) => return Ok(report(true, loaded.notes)),
         Err(LoadError::Invalid { findings }) => findings,
         Err(error) => return Err(error),
@@ -187,25 +202,18 @@ fn load(
     mut scene: Scene,
     folder: PathBuf,
     around: &Surroundings<'_>,
-    device: &DeviceOverride,
+    device: (&DeviceOverride, &str),
     findings: &mut Findings,
 ) -> Option<LoadedScene> {
     let assets = open_assets(&scene, &folder, around, findings);
     let trace = open_trace(&scene, &folder, findings);
-    device.apply(&mut scene.device);
+    device.0.apply(&mut scene.device);
     let response = open_response(&scene, &folder, findings);
     let held = assets
         .as_ref()
         .and_then(|all| all.first())
         .map(Asset::quantity);
-    let settings = check_device(
-        &scene.device,
-        device,
-        &folder,
-        around.devices,
-        held,
-        findings,
-    );
+    let settings = check_device(&scene.device, device, around.devices, held, findings);
     let assets = assets?;
     check_quantities(&assets, findings);
     // A motion that is not valid has its finding already.

@@ -120,6 +120,7 @@ pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result
         Levels::Normalised => loudest_rms,
         Levels::Own => representation::reference_rms(scene, &call),
     };
+    check_drive(&call, loudest_rms)?;
     let parts: Vec<Part> = choices.iter().map(|c| c.part.clone()).collect();
     let mut draft = Draft::new(scene, &call, costs);
     draft.all(&parts)?;
@@ -149,6 +150,28 @@ pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result
         mixes,
         device,
     })
+}
+
+/// Largest part of the samples that may be held at the drive, percent: a texture of noise 7 dB above the reference.
+const MOST_CLAMPED_PERCENT: f64 = 5.0;
+
+/// Refuses a texture that is far too strong for the drive. One of the reference level, noise, is held there once in
+/// 75,000 samples.
+fn check_drive(call: &Call, loudest_rms: f64) -> Result<(), SceneError> {
+    let over = loudest_rms / call.level_rms;
+    if call.device.quantity != Quantity::DisplayVoltage || !over.is_finite() {
+        return Ok(());
+    }
+    // Of normal noise, on both sides.
+    let percent = 100.0 * libm::erfc(HEADROOM / over / std::f64::consts::SQRT_2);
+    match percent > MOST_CLAMPED_PERCENT {
+        false => Ok(()),
+        true => Err(SceneError::Clamped {
+            above_db: 20.0 * over.log10(),
+            percent,
+            most_percent: MOST_CLAMPED_PERCENT,
+        }),
+    }
 }
 
 fn chosen(choice: &Choice) -> Chosen {
@@ -382,6 +405,10 @@ impl<'a> Draft<'a> {
                 !self.call.device.quantity.is_physical() || self.call.quantity_gain != 1.0
             }
             Effect::SquareRoot => !self.call.device.quantity.is_physical(),
+            // A voltage comes from zero, goes to zero, and stays within the drive.
+            Effect::Contact | Effect::Limiter => {
+                self.call.device.quantity == Quantity::DisplayVoltage
+            }
             _ => false,
         }
     }

@@ -145,9 +145,18 @@ htex_format::rule_table! {
         "What the samples mean depends on the device.",
         "Correct the name; `htex device list` shows what there is.";
     DEVICE_PATH_UNSAFE Error:
-        "A setting of the scene names a file outside the scene's folder, or a driver.",
-        "A scene may come from anyone: playing it must not reach into other folders or load code.",
-        "Use a relative path without `..`, or give the setting on the command line (`--set`).";
+        "A setting of the scene names a driver.",
+        "A scene may come from anyone: playing it must not load code.",
+        "Give the setting on the command line (`--set`).";
+    DEVICE_PATH_UNUSED Warning:
+        "A setting of the scene names a file to write.",
+        "A scene may come from anyone: what is written where, a person says.",
+        "Name the file by `-o`, or by the setting on the command line (`--set`); take it out of the scene.";
+    DEVICE_HARDWARE Warning:
+        "The scene says what the hardware is, or asks for more than a limit allows.",
+        "A wrong gain or limit puts hundreds of volts more at a finger. What describes the hardware comes from a \
+         profile or from the command line; a scene can only ask for a lower limit or a longer ramp.",
+        "Choose the profile of the rig with `--profile`; take the setting out of the scene.";
     DEVICE_SETTING Error:
         "A profile or a setting of the device cannot be used.",
         "It is not known, missing, or not a value it may have.",

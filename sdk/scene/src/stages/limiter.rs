@@ -1,5 +1,7 @@
-//! Never above the device's limit, whatever comes; samples that are held there are counted. One that
+//! Never above the device's limit, nor above the drive of a display, whatever comes; samples that are held there are counted. One that
 //! is no number is held at zero.
+
+use htex_device::Quantity;
 
 use super::{Entry, Need, Place, Stage, Told};
 use crate::call::Call;
@@ -12,17 +14,36 @@ pub(crate) const ENTRY: Entry = Entry {
 };
 
 fn need(call: &Call) -> Need {
-    match call.device.limit {
-        Some(limit) => {
-            let unit = call.device.quantity.unit();
-            Need::yes(format!("the device takes at most {limit} {unit}"))
+    let unit = call.device.quantity.unit();
+    match (limit(call), call.device.limit) {
+        (Some(drive), Some(most)) if drive < most => {
+            Need::yes(format!("the drive is {drive} {unit} at most"))
         }
-        None => Need::no("the device has no limit"),
+        (Some(limit), _) => Need::yes(format!("the device takes at most {limit} {unit}")),
+        (None, _) => Need::no("the device has no limit"),
+    }
+}
+
+/// What no sample exceeds.
+fn limit(call: &Call) -> Option<f64> {
+    match (call.device.quantity, call.device.limit) {
+        // Of the device's steps the highest within, so that rounding leads to none beyond.
+        (Quantity::DisplayVoltage, Some(limit)) => {
+            let most = limit.min(call.drive_v);
+            let step = call.device.step.unwrap_or(0.0);
+            let steps = (most / step).floor();
+            Some(if step > 0.0 && steps > 0.0 {
+                steps * step
+            } else {
+                most
+            })
+        }
+        (_, limit) => limit,
     }
 }
 
 fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
-    let limit = call.device.limit.filter(|_| !neutral);
+    let limit = limit(call).filter(|_| !neutral);
     Box::new(Limiter {
         limit: limit.map_or(f32::INFINITY, at_most),
         held: 0,

@@ -7,9 +7,11 @@ mod commands;
 mod devices;
 mod failure;
 mod gains;
+mod guardian;
 mod models;
 mod motions;
 mod output;
+mod outputs;
 mod playing;
 mod plugins;
 mod progress;
@@ -17,6 +19,7 @@ mod recording_plot;
 mod recordings;
 mod scenes;
 mod schemas;
+mod signals;
 mod wasm_limits;
 mod wav;
 
@@ -48,13 +51,14 @@ First steps:
 Exit status: 0 ok, 1 findings or failure, 2 wrong usage.";
 
 fn main() -> ExitCode {
-    match Cli::parse().command.run() {
+    let command = Cli::parse().command;
+    match signals::handle().and_then(|()| command.run()) {
         Ok(code) => code,
         Err(failure) => {
             // It may quote the name of a file: nothing in it steers the terminal.
             let text = failure.to_string();
             let lines: Vec<_> = text.lines().map(htex_format::plain).collect();
-            eprintln!("htex: {}", lines.join("\n"));
+            crate::output::tell!("htex: {}", lines.join("\n"));
             failure.exit_code()
         }
     }

@@ -58,7 +58,7 @@ fn read(lines: impl BufRead, mut sender: Producer<Finger>) {
         }
         let Some(finger) = parse(&line) else {
             let number = index + 1;
-            eprintln!(
+            crate::output::tell!(
                 "warning: line {number}, {line:?}, is skipped: a motion is \
                  `speed_mm_s force_n [x_mm y_mm]`, the force not negative"
             );

@@ -7,6 +7,15 @@ use serde::Serialize;
 
 use crate::failure::Failure;
 
+/// A line on standard error, which may be gone: unlike `eprintln!` it does not panic then.
+macro_rules! tell {
+    ($($words:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stderr(), $($words)*);
+    }};
+}
+pub(crate) use tell;
+
 /// Writes text to standard output. A reader that has gone away (`| head`) is not an error.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     match std::io::stdout().lock().write_all(text.as_bytes()) {
@@ -27,14 +36,14 @@ pub(crate) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
 /// Tells the user of something that is no failure.
 pub(crate) fn warn(warnings: &[String]) {
     for warning in warnings {
-        eprintln!("warning: {warning}");
+        tell!("warning: {warning}");
     }
 }
 
 /// Tells the user of something worth knowing.
 pub(crate) fn note(notes: &[String]) {
     for note in notes {
-        eprintln!("note: {note}");
+        tell!("note: {note}");
     }
 }
 

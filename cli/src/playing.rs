@@ -1,43 +1,17 @@
 //! From a renderer to a device, until the end or an interruption.
 
-use std::sync::OnceLock;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
-use htex_device::{Device, StreamFormat};
+use htex_device::{Device, SettingKind, StreamFormat};
 use htex_scene::{Plan, Renderer};
 
 use crate::failure::Failure;
+use crate::guardian::{self, Guarded};
 use crate::scenes::Ready;
 
 /// Longest wait for room in a device; one that takes nothing for so long is stuck.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// What an interrupted program answers by convention.
-const INTERRUPTED: i32 = 130;
-
-static STOP: AtomicBool = AtomicBool::new(false);
-
-/// From now on Ctrl-C is answered by [`interrupted`]; a second one ends the program at once.
-pub(crate) fn catch_interrupts() -> Result<(), Failure> {
-    static CAUGHT: OnceLock<Result<(), String>> = OnceLock::new();
-    let caught = CAUGHT.get_or_init(|| {
-        let handler = || {
-            if STOP.swap(true, Ordering::Relaxed) {
-                std::process::exit(INTERRUPTED);
-            }
-        };
-        ctrlc::set_handler(handler).map_err(|error| error.to_string())
-    });
-    caught
-        .clone()
-        .map_err(|error| Failure::Other(format!("cannot catch Ctrl-C: {error}")))
-}
-
-/// Whether the user wants an end.
-pub(crate) fn interrupted() -> bool {
-    STOP.load(Ordering::Relaxed)
-}
-
 /// An open device and the blocks that go to it.
 pub(crate) struct Output {
     pub(crate) device: Box<dyn Device>,
@@ -46,6 +20,10 @@ pub(crate) struct Output {
     /// When the first block was made, for a device without a clock in a scene without an end.
     pace: Option<Instant>,
     frames: u64,
+    /// What went wrong on the way; the scene then goes to silence, and this is said.
+    failed: Option<String>,
+    /// Whether the device has a clock of its own.
+    clocked: bool,
 }
 
 impl Output {
@@ -56,8 +34,20 @@ impl Output {
             rate_hz: plan.rate_hz,
             block_frames: frames,
         };
-        let device = ready.device.adapter.open(ready.settings(), &format)?;
-        Ok(Self::new(device, frames as usize, plan.rate_hz))
+        let settings = ready.settings();
+        let written = ready.device.descriptor().settings.iter();
+        for file in written.filter(|s| s.kind == SettingKind::Path) {
+            ready.check_output(Path::new(settings.text(&file.name)))?;
+        }
+        let device: Box<dyn Device> = match guardian::is_wanted(&ready.capabilities) {
+            true => Box::new(Guarded::open(&ready.device, settings, &format)?),
+            false => ready.device.adapter.open(settings, &format)?,
+        };
+        let output = Self::new(device, frames as usize, plan.rate_hz);
+        Ok(Self {
+            clocked: ready.capabilities.paced,
+            ..output
+        })
     }
 
     pub(crate) fn new(device: Box<dyn Device>, block_frames: usize, rate_hz: f64) -> Self {
@@ -67,6 +57,8 @@ impl Output {
             rate_hz,
             pace: None,
             frames: 0,
+            failed: None,
+            clocked: false,
         }
     }
 
@@ -82,7 +74,8 @@ impl Output {
     pub(crate) fn step(&mut self, renderer: &mut Renderer) -> Result<bool, Failure> {
         let frames = renderer.render(&mut self.block);
         if let Some(error) = renderer.take_failure() {
-            return Err(Failure::Other(error.to_string()));
+            self.failed.get_or_insert_with(|| error.to_string());
+            renderer.stop();
         }
         self.write(frames)?;
         self.frames += frames as u64;
@@ -111,8 +104,15 @@ impl Output {
         self.frames
     }
 
-    /// Plays what is written, and keeps the result.
+    /// Plays what is written, and keeps the result, unless something failed on the way.
     pub(crate) fn finish(mut self) -> Result<htex_device::Status, Failure> {
+        if let Some(error) = self.failed.take() {
+            // What leads to zero is still to come out; a file is not kept.
+            if self.clocked {
+                self.device.finish()?;
+            }
+            return Err(Failure::Other(error));
+        }
         self.device.finish()?;
         Ok(self.device.status())
     }

@@ -31,6 +31,11 @@ pub(crate) struct PluginArgs {
 }
 
 impl PluginArgs {
+    /// The plugins that are named.
+    pub(crate) fn files(&self) -> &[PathBuf] {
+        &self.plugin
+    }
+
     /// The models there are; what shadows what is told on standard error.
     pub(crate) fn registry(&self) -> Result<Registry, Failure> {
         self.registry_with(&[])

@@ -105,6 +105,11 @@ enum AveragingArg {
 }
 
 impl RecordingArgs {
+    /// The file of a response that is read.
+    pub(crate) fn frf(&self) -> Option<&Path> {
+        self.frf.as_deref()
+    }
+
     pub(crate) fn strict(&self) -> bool {
         self.strict
     }

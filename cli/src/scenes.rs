@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_device::{Capabilities, DeviceError, Devices, KnownDevice, Settings};
+use htex_device::{Capabilities, DeviceError, Devices, KnownDevice, SettingKind, Settings};
 use htex_host::Registry;
 use htex_scene::file::{Constant, Motion};
 use htex_scene::{Costs, DeviceOverride, LoadedScene, Plan, Surroundings};
@@ -13,6 +13,7 @@ use serde_json::Value;
 use crate::devices::{DeviceArgs, SettingArgs};
 use crate::failure::Failure;
 use crate::output::{note, warn};
+use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
 use crate::schemas::Named;
 
@@ -46,9 +47,14 @@ pub(crate) struct ChoiceArgs {
 }
 
 impl ChoiceArgs {
-    /// What is said, `output` being where a file goes when nobody says it.
-    pub(crate) fn to_override(&self, output: Option<&Path>) -> Result<DeviceOverride, Failure> {
+    /// What is said, `output` being where a file goes when nobody says it. A rehearsal opens no device.
+    pub(crate) fn to_override(
+        &self,
+        output: Option<&Path>,
+        rehearsal: bool,
+    ) -> Result<DeviceOverride, Failure> {
         Ok(DeviceOverride {
+            rehearsal,
             adapter: self.device.clone(),
             profile: self.settings.profile().map(str::to_owned),
             settings: self.settings.given()?,
@@ -60,6 +66,27 @@ impl ChoiceArgs {
     /// Refuses a device that is not there because this program was built without it.
     pub(crate) fn check_built(name: &str) -> Result<(), Failure> {
         DeviceArgs::missing(name).map_or(Ok(()), |why| Err(why.into()))
+    }
+
+    /// Refuses to replace a file that nobody named: the scene's name with an ending.
+    pub(crate) fn check_unnamed(&self, ready: &Ready) -> Result<(), Failure> {
+        let given = self.settings.given()?;
+        let settings = ready.device.descriptor().settings.iter();
+        for setting in settings.filter(|s| s.kind == SettingKind::Path) {
+            let path = ready.settings().text(&setting.name);
+            if !given.contains_key(&setting.name) && Path::new(path).symlink_metadata().is_ok() {
+                return Err(Failure::Usage(format!(
+                    "{path} is there already; name the file to write, or to replace, by --set {}=FILE",
+                    setting.name
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a file to write is among the settings that are given.
+    pub(crate) fn names_output(&self) -> Result<bool, Failure> {
+        Ok(self.settings.given()?.contains_key("path"))
     }
 
     pub(crate) fn names_device(&self) -> bool {
@@ -150,6 +177,13 @@ impl Ready {
     pub(crate) fn plan(&self, costs: &Costs) -> Result<Plan, Failure> {
         htex_scene::plan(&self.scene, &self.capabilities, costs)
             .map_err(|error| Failure::scene(&self.file, error))
+    }
+
+    /// Refuses a device that is a file which the scene was read from.
+    pub(crate) fn check_output(&self, output: &Path) -> Result<(), Failure> {
+        let mut inputs = self.scene.inputs();
+        inputs.push(self.file.clone());
+        check_outputs([output], inputs.iter().map(PathBuf::as_path))
     }
 
     /// The device's settings.

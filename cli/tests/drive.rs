@@ -50,7 +50,7 @@ impl Bench {
         let driver = format!("driver={}", simulated::built().display());
         let mut command = self
             .0
-            .command(&[arguments, &[SCENE, "--set", &driver]].concat());
+            .command(&[arguments, &[SCENE, "--profile", PAPER, "--set", &driver]].concat());
         command
             .env("NIDAQMX_SIM_RECORD", self.0.path(""))
             .env("NIDAQMX_SIM_CLOCK", "calls")
@@ -99,7 +99,9 @@ impl Bench {
 fn check_failed(done: &Output, words: &[&str]) {
     let error = String::from_utf8_lossy(&done.stderr);
     assert_eq!(done.status.code(), Some(1), "{error}");
-    let sentences: Vec<&str> = error.lines().filter(|l| l.starts_with("htex: ")).collect();
+    let mut sentences: Vec<&str> = error.lines().filter(|l| l.starts_with("htex: ")).collect();
+    // The process that holds the output says at once what may be standing there; the player says it again.
+    sentences.dedup();
     assert_eq!(sentences.len(), 1, "{error}");
     for word in words {
         assert!(error.contains(word), "{word}: {error}");
@@ -164,38 +166,144 @@ fn what_cannot_be_played_never_touches_the_card() {
     let high = device(("drive_v", 151.0));
     let words = ["DEVICE_DRIVE_TOO_HIGH", "151 V", "150 V"];
     high.fails(&mut high.command(&["play"]), &words);
-    // Nor does a scene without what makes its newtons volts.
-    let raw = Bench::new(json!({ "duration_s": 1, "effects": { "square_root": "off" } }));
-    raw.fails(&mut raw.command(&["play"]), &["`square_root` is off"]);
+    // Nor does a scene without what makes its newtons volts, brings these from zero and back, and holds them at the drive.
+    for effect in ["square_root", "contact", "limiter"] {
+        let raw = Bench::new(json!({ "duration_s": 1, "effects": { effect: "off" } }));
+        raw.fails(
+            &mut raw.command(&["play"]),
+            &[&format!("`{effect}` is off")],
+        );
+        assert!(!raw.0.path(RECORD).exists());
+    }
     let none = Bench::new(json!({ "duration_s": 1 }));
-    let mut play = none
-        .0
-        .command(&["play", SCENE, "--set", "driver=/no/such.so"]);
+    let mut play = none.0.command(&[
+        "play",
+        SCENE,
+        "--profile",
+        PAPER,
+        "--set",
+        "driver=/no/such.so",
+    ]);
     none.fails(&mut play, &["`driver`", "/no/such.so is no NI-DAQmx"]);
-    for bench in [fast, high, raw, none] {
+    for bench in [fast, high, none] {
         assert!(!bench.0.path(RECORD).exists());
     }
 }
 
+/// What a scene says of the hardware is not used: gain, limit, channel, the ramp, the driver, the rig itself.
 #[test]
-fn a_voltage_over_the_limit_is_stopped_by_the_device() {
-    // Nothing but the device is left to hold it: noise goes beyond 4.5 times its RMS at last, with this
-    // seed within two seconds.
-    let bench = Bench::new(json!({
-        "surfaces": [{ "asset": "coarse-fabric.htex", "representation": "ar" }],
-        "device": { "adapter": "daq", "profile": PAPER, "drive_v": 150 },
-        "effects": { "limiter": "off", "quantisation": "off" },
-        "seed": 74,
-        "duration_s": 10,
-    }));
-    let words = ["the limit is 150 V; the output is at zero"];
-    bench.fails(&mut bench.command(&["play"]), &words);
-    bench.is_at_zero();
+fn a_scene_never_overrides_the_rig() {
+    let settings = json!({ "amplifier_gain": 15, "limit_v": 500, "ramp_ms": 1, "device": "Dev1/ao1", "dac_bits": 4 });
+    let device =
+        json!({ "adapter": "daq", "profile": "generic", "settings": settings, "drive_v": 150 });
+    let bench = Bench::new(json!({ "device": device, "duration_s": 2 }));
+    let done = bench.command(&["play"]).output().unwrap();
+    let error = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.success(), "{error}");
+    for word in [
+        "amplifier_gain",
+        "limit_v",
+        "ramp_ms",
+        "device",
+        "dac_bits",
+        "150 holds",
+    ] {
+        assert!(error.contains(word), "{word}: {error}");
+    }
+    assert_eq!(error.matches("DEVICE_HARDWARE").count(), 5, "{error}");
     let most = bench
         .card_v()
         .iter()
         .fold(0.0, |most: f64, v| most.max(v.abs()));
-    assert!(most > 2.0 && most <= 150.0 / GAIN, "{most} V of the card");
+    assert!(most > 1.0 && most <= 150.0 / GAIN, "{most} V of the card");
+    // Without a person's word there is no rig, and nothing is played.
+    let driver = format!("driver={}", simulated::built().display());
+    let alone = Bench::new(json!({ "duration_s": 1 }));
+    let mut play = alone.0.command(&["play", SCENE, "--set", &driver]);
+    play.env("NIDAQMX_SIM_RECORD", alone.0.path(""))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    alone.fails(
+        &mut play,
+        &[
+            "DEVICE_HARDWARE",
+            &format!("--profile {PAPER}"),
+            "amplifier_gain",
+        ],
+    );
+    assert!(!alone.0.path(RECORD).exists());
+    // A lower limit is granted, whoever asks for it; the smallest holds.
+    for (asked, given, holds) in [
+        (Some(40.0), None, 40.0),
+        (Some(400.0), Some("60"), 60.0),
+        (None, Some("400"), 150.0),
+    ] {
+        let mut device = json!({ "adapter": "daq", "drive_v": 150 });
+        if let Some(limit_v) = asked {
+            device["settings"] = json!({ "limit_v": limit_v });
+        }
+        device["drive_v"] = holds.into();
+        let bench = Bench::new(json!({ "device": device, "duration_s": 2 }));
+        let given = given.map(|limit_v| format!("limit_v={limit_v}"));
+        let set: Vec<&str> = given.iter().flat_map(|set| ["--set", set]).collect();
+        let done = bench
+            .command(&[&["play"], &set[..]].concat())
+            .output()
+            .unwrap();
+        assert!(
+            done.status.success(),
+            "{}",
+            String::from_utf8_lossy(&done.stderr)
+        );
+        let most = bench
+            .card_v()
+            .iter()
+            .fold(0.0, |most: f64, v| most.max(v.abs()));
+        assert!(
+            most > 0.6 * holds / GAIN && most <= holds / GAIN,
+            "{holds}: {most} V of the card"
+        );
+    }
+}
+
+/// A model may render what it likes: nothing goes beyond the drive, and a texture far beyond it is refused.
+#[test]
+fn the_drive_is_a_cap_and_what_is_far_beyond_it_is_refused() {
+    let loud = |gain: f64| {
+        Bench::new(json!({
+            "surfaces": [{ "asset": "coarse-fabric.htex", "gain": gain, "representation": "ar" }],
+            "device": { "adapter": "daq", "drive_v": 5, "levels": "own", "reference_rms": 0.01 },
+            "duration_s": 5,
+        }))
+    };
+    let most_v = |bench: &Bench| {
+        bench
+            .card_v()
+            .iter()
+            .fold(0.0, |most: f64, v| most.max(v.abs()))
+    };
+    let bench = loud(1000.0);
+    let words = [
+        "dB above the level that has the drive",
+        "5 % are allowed",
+        "lower the surface's gain",
+    ];
+    bench.fails(&mut bench.command(&["play"]), &words);
+    assert!(!bench.0.path(RECORD).exists());
+    // Some of it is beyond the drive, and is held there.
+    let bench = loud(3.0);
+    let done = bench.command(&["play"]).output().unwrap();
+    assert!(
+        done.status.success(),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
+    assert!(
+        String::from_utf8_lossy(&done.stdout).contains("samples were held at the device's limit")
+    );
+    let most = most_v(&bench);
+    assert!(most > 0.098 && most <= 5.0 / GAIN, "{most} V of the card");
+    bench.is_at_zero();
 }
 
 #[test]
@@ -243,6 +351,86 @@ fn an_interrupted_play_goes_down_to_zero() {
     println!("{before} V, then {ramp:?}");
     assert!(ramp.is_sorted_by(|a, b| a > b), "{ramp:?}");
     assert!(ramp[3] < 0.3 * before, "{before} V, then {ramp:?}");
+}
+
+/// However many signals come, and whichever: the way to zero is gone to its end.
+#[cfg(unix)]
+#[test]
+fn further_signals_do_not_cut_the_way_to_zero_short() {
+    for signals in [
+        &["-INT", "-INT"][..],
+        &["-INT", "-HUP"],
+        &["-TERM", "-INT", "-HUP", "-TERM"],
+    ] {
+        let bench = Bench::new(json!({}));
+        let child = bench.start();
+        for name in signals {
+            signal(&child, name);
+            // One that comes while another waits is lost.
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        let done = child.wait_with_output().unwrap();
+        let error = String::from_utf8_lossy(&done.stderr);
+        assert!(done.status.success(), "{signals:?}: {error}");
+        assert!(
+            error.contains("going to zero; please wait"),
+            "{signals:?}: {error}"
+        );
+        if signals.len() > 2 {
+            assert!(
+                error.contains("switch the amplifier off before"),
+                "{signals:?}: {error}"
+            );
+        }
+        bench.is_at_zero();
+    }
+}
+
+/// What ends or stops the player reaches nobody else: another process holds the output.
+#[cfg(unix)]
+#[test]
+fn a_player_that_is_killed_leaves_zero() {
+    for name in ["-KILL", "-ABRT", "-QUIT", "-STOP"] {
+        let bench = Bench::new(json!({}));
+        let mut child = bench.start();
+        signal(&child, name);
+        std::thread::sleep(Duration::from_millis(900));
+        bench.is_at_zero();
+        let length = bench.card_v().len();
+        if name == "-STOP" {
+            child.kill().unwrap();
+        }
+        child.wait().unwrap();
+        std::thread::sleep(Duration::from_millis(200));
+        bench.is_at_zero();
+        assert!(bench.card_v().len() <= length + 1, "{name}: it played on");
+    }
+}
+
+/// Should the process that holds the output be killed, the player puts it to zero, and says so.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_guardian_that_is_killed_is_replaced_by_zero() {
+    let bench = Bench::new(json!({}));
+    let child = bench.start();
+    let list = Command::new("pgrep")
+        .args(["-P", &child.id().to_string()])
+        .output()
+        .unwrap();
+    let guardian = String::from_utf8_lossy(&list.stdout).trim().to_owned();
+    assert!(
+        Command::new("kill")
+            .args(["-KILL", &guardian])
+            .status()
+            .unwrap()
+            .success(),
+        "{guardian}"
+    );
+    check_failed(
+        &child.wait_with_output().unwrap(),
+        &["has ended; the output was set to zero"],
+    );
+    bench.is_at_zero();
 }
 
 #[test]

@@ -281,10 +281,9 @@ fn interrupt(child: &Child) {
 #[test]
 fn an_interrupted_play_ends_at_zero_and_an_interrupted_render_leaves_nothing() {
     let place = place();
-    let device =
-        json!({ "settings": { "quantity": "display_voltage", "limit_v": 100, "path": "p.wav" } });
+    let device = json!({ "settings": { "quantity": "display_voltage", "limit_v": 100 } });
     scene(&place, json!({ "device": device }));
-    let child = start(&place, &["play", "s.scene.json"]);
+    let child = start(&place, &["play", "s.scene.json", "--set", "path=p.wav"]);
     wait_for_part(&place);
     std::thread::sleep(Duration::from_millis(300));
     interrupt(&child);

@@ -10,6 +10,7 @@ use crate::assets::AssetSummary;
 use crate::failure::Failure;
 use crate::models::{model_requests, tool};
 use crate::output::{note, print, print_json, warn, write_file};
+use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
 use crate::recordings::RecordingArgs;
 
@@ -94,6 +95,13 @@ enum LevelArg {
 
 impl Fit {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        let files = self
+            .recordings
+            .iter()
+            .chain(&self.embed_plugin)
+            .chain(&self.sign_with);
+        let files = files.chain(self.plugins.files()).map(PathBuf::as_path);
+        check_outputs([self.output.as_path()], files.chain(self.reading.frf()))?;
         let registry = self.plugins.registry_with(&self.embed_plugin)?;
         self.check_license()?;
         let request = self.request(&registry)?;

@@ -4,14 +4,15 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use clap::Args;
 use htex_device::Quantity;
-use htex_scene::{Gain as Kept, Renderer};
+use htex_scene::{Gain as Kept, Gains, Renderer};
 
 use crate::commands::play;
 use crate::failure::Failure;
 use crate::gains::{FeltArgs, gains, hash, key, recordings};
 use crate::output::print;
-use crate::playing::{Output, catch_interrupts, interrupted};
+use crate::playing::Output;
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs};
+use crate::signals::{self, interrupted};
 
 /// Steps of the level, decibels.
 const STEP_DB: f64 = 1.0;
@@ -67,7 +68,7 @@ enum Wish {
 
 impl Gain {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
-        let device = self.choice.to_override(None)?;
+        let device = self.choice.to_override(None, false)?;
         if !self.choice.names_device() && crate::scenes::is_asset(&self.file) {
             let sentence = "--device is missing: a gain is for one device";
             return Err(Failure::Usage(sentence.to_owned()));
@@ -82,7 +83,7 @@ impl Gain {
         ready.scene.scene.duration_s = None;
         self.felt.apply(&mut ready)?;
         let key = key(&self.person, self.texture.as_deref(), &ready);
-        let (mut gains, file) = gains()?;
+        let (_, file) = gains()?;
         let Some(found) = adjust(&mut ready, start_v, limit_v)? else {
             return Err(Failure::Other(
                 "ended without a match; nothing was kept".to_owned(),
@@ -103,9 +104,8 @@ impl Gain {
             recordings: recordings(&ready),
             blake3: None,
         };
-        gains.put(kept, &hash(&ready)?);
-        gains
-            .save(&file)
+        let hash = hash(&ready)?;
+        Gains::update(&file, |gains| gains.put(kept, &hash))
             .map_err(|error| Failure::write(&file, error))?;
         print(&text)?;
         Ok(ExitCode::SUCCESS)
@@ -125,7 +125,7 @@ fn limit(ready: &Ready) -> Result<f64, Failure> {
 
 /// Plays until the person is content; none when the input ends or is interrupted before.
 fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<Found>, Failure> {
-    catch_interrupts()?;
+    signals::ask();
     let wishes = wishes();
     let (mut drive_v, mut output, mut kept) = (start_v, None, None);
     let mut goes_on = true;
@@ -138,7 +138,7 @@ fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<Found>
             Some(output) => output,
             none => none.insert(opened(ready, &plan)?),
         };
-        eprintln!(
+        crate::output::tell!(
             "{}   + stronger, - weaker, Enter: it matches",
             volts(drive_v)
         );
@@ -199,7 +199,7 @@ fn wishes() -> Receiver<Wish> {
         for line in std::io::stdin().lines().map_while(Result::ok) {
             let sent = wish(&line).map(|wish| sender.send(wish));
             match sent {
-                None => eprintln!("{line:?} is none of +, -, ++, -- and an empty line"),
+                None => crate::output::tell!("{line:?} is none of +, -, ++, -- and an empty line"),
                 Some(Err(_)) => return,
                 Some(Ok(())) => {}
             }

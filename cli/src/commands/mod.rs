@@ -6,6 +6,7 @@ mod device;
 mod explain;
 mod fit;
 mod gain;
+mod guard;
 mod info;
 mod plan;
 mod play;
@@ -41,6 +42,7 @@ pub(crate) enum Command {
     Render(render::Render),
     Play(play::Play),
     Gain(gain::Gain),
+    Guard(guard::Guard),
     Schema(schema::Schema),
     Plugin(plugin::Plugin),
     Device(device::Device),
@@ -64,6 +66,7 @@ impl Command {
             Self::Render(args) => args.run(),
             Self::Play(args) => args.run(),
             Self::Gain(args) => args.run(),
+            Self::Guard(args) => args.run(),
             Self::Schema(args) => args.run(),
             Self::Plugin(args) => args.run(),
             Self::Device(args) => args.run(),

@@ -41,7 +41,7 @@ impl Plan {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         let ready = self
             .with
-            .open(&self.scene, &self.choice.to_override(None)?)?;
+            .open(&self.scene, &self.choice.to_override(None, true)?)?;
         let costs = if self.measure {
             self.measured()?
         } else {
@@ -49,6 +49,7 @@ impl Plan {
         };
         let plan = ready.plan(&costs)?;
         if let Some(file) = &self.svg {
+            ready.check_output(file)?;
             write_file(
                 file,
                 drawing(&self.scene.display().to_string(), &plan).as_bytes(),

@@ -10,8 +10,9 @@ use crate::failure::Failure;
 use crate::gains::{FeltArgs, apply_kept};
 use crate::motions::{Motions, Moved};
 use crate::output::{note, print};
-use crate::playing::{Output, catch_interrupts, interrupted};
+use crate::playing::Output;
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs, first_motion, is_asset};
+use crate::signals::{self, interrupted};
 
 /// Play a scene or an asset on a device, until its end or Ctrl-C.
 ///
@@ -51,11 +52,12 @@ pub(crate) struct Play {
 impl Play {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         let ready = self.load()?;
+        self.choice.check_unnamed(&ready)?;
         let plan = ready.plan(&costs())?;
         note(&plan.notes);
         let mut renderer =
             Renderer::new(&ready.scene, &plan).map_err(|e| Failure::scene(&self.file, e))?;
-        catch_interrupts()?;
+        signals::ask();
         let mut output = Output::open(&ready, &plan)?;
         let mut motions = self.motion.is_some().then(Motions::from_stdin);
         let endless = motions.is_some() || plan.frames.is_none();
@@ -78,7 +80,7 @@ impl Play {
             let sentence = format!("--seconds {seconds}: more than 0, at most 1e9");
             return Err(Failure::Usage(sentence));
         }
-        let device = self.choice.to_override(None)?;
+        let device = self.choice.to_override(None, false)?;
         let mut ready = open(&self.with, &self.file, self.motion.is_some(), device)?;
         let scene = &mut ready.scene.scene;
         scene.duration_s = self.seconds.or(scene.duration_s);

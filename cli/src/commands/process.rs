@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::output::{note, print, print_json, warn, write_file};
+use crate::outputs::check_outputs;
 use crate::recording_plot::recording_plot;
 use crate::recordings::RecordingArgs;
 
@@ -34,6 +35,10 @@ pub(crate) struct Process {
 
 impl Process {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        let inputs = [self.recording.as_path()]
+            .into_iter()
+            .chain(self.reading.frf());
+        check_outputs(self.svg.as_deref(), inputs)?;
         let take = self.reading.read_one(&self.recording)?;
         let options = self.reading.spectrum_options()?;
         let reading = read_take(&take, &options, self.reading.strict())?;

@@ -10,9 +10,10 @@ use serde_json::json;
 
 use crate::failure::Failure;
 use crate::output::{note, print, print_json};
-use crate::playing::{Output, catch_interrupts, interrupted};
+use crate::playing::Output;
 use crate::progress::bar;
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs};
+use crate::signals::{self, interrupted};
 
 /// Frames a block has.
 const BLOCK: usize = 4096;
@@ -26,7 +27,7 @@ pub(crate) struct Render {
     /// The scene
     scene: PathBuf,
 
-    /// The file to write [default: the scene's own, else its name with .wav]
+    /// The file to write, or to replace [default: the scene's name with .wav, if there is no such file]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 
@@ -49,7 +50,7 @@ impl Render {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         let mut ready = self
             .with
-            .open(&self.scene, &self.choice.to_override(None)?)?;
+            .open(&self.scene, &self.choice.to_override(None, true)?)?;
         self.check_length(&mut ready)?;
         let plan = ready.plan(&costs())?;
         note(&plan.notes);
@@ -58,7 +59,7 @@ impl Render {
         if self.json {
             renderer = renderer.timed();
         }
-        catch_interrupts()?;
+        signals::ask();
         let (file, mut output) = self.open(&ready, plan.rate_hz)?;
         let length_s = plan.frames.unwrap_or(0) as f64 / plan.rate_hz;
         let bar = bar(length_s.ceil() as u64);
@@ -130,6 +131,15 @@ impl Render {
             rate_hz,
             block_frames: BLOCK as u32,
         };
+        let path = Path::new(settings.text("path"));
+        ready.check_output(path)?;
+        let is_named = self.output.is_some() || self.choice.names_output()?;
+        if !is_named && path.symlink_metadata().is_ok() {
+            let path = path.display();
+            return Err(Failure::Usage(format!(
+                "{path} is there already; name the file to write, or to replace, by -o FILE"
+            )));
+        }
         let device = known.adapter.open(&settings, &format)?;
         let file = settings.text("path").to_owned();
         Ok((file, Output::new(device, BLOCK, rate_hz)))

@@ -7,6 +7,7 @@ use htex_author::SetupResponse;
 use htex_author::simulate::{SimulationError, SimulationOptions, Surface, simulate};
 
 use crate::failure::Failure;
+use crate::outputs::check_outputs;
 
 /// Write a simulated recording of a finger sliding over a surface.
 ///
@@ -50,6 +51,10 @@ pub(crate) struct Simulate {
 
 impl Simulate {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        let outputs = [self.output.as_path()]
+            .into_iter()
+            .chain(self.frf.as_deref());
+        check_outputs(outputs, [])?;
         let options = SimulationOptions {
             seed: self.seed,
             rate_hz: self.rate,

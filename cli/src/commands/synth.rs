@@ -7,6 +7,7 @@ use htex::{Effects, Synthesis, VoiceOptions};
 use crate::commands::spectrum::ChoiceArgs;
 use crate::failure::Failure;
 use crate::output::warn;
+use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
 use crate::wav::write_wav;
 
@@ -57,6 +58,7 @@ impl Synth {
             let sentence = format!("--seconds {}: more than 0, at most 1e9", self.seconds);
             return Err(Failure::Usage(sentence));
         }
+        check_outputs([self.output.as_path()], [self.asset.as_path()])?;
         let failure = |error| Failure::asset(&self.asset, error);
         let asset = self.player.open(&self.asset)?;
         let options = VoiceOptions {

@@ -11,6 +11,7 @@ use htex_tradeoff::{Journal, Model, Point, Request, Subject, csv, page, sweep};
 use crate::failure::Failure;
 use crate::models::tool;
 use crate::output::{print, print_json, warn, write_file};
+use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
 use crate::progress::bar;
 use crate::recordings::RecordingArgs;
@@ -84,6 +85,15 @@ impl Tradeoff {
                 format!("-o {output}: points go beside it under that name; name a .html file");
             return Err(Failure::Usage(sentence));
         }
+        let files = self
+            .recordings
+            .iter()
+            .chain(self.plugins.files())
+            .map(PathBuf::as_path);
+        check_outputs(
+            [&*self.output, &csv_file, &json_file, &part_file],
+            files.chain(self.reading.frf()),
+        )?;
         let request = Request {
             models: self.models()?,
             quick: self.quick,
@@ -194,7 +204,9 @@ fn way(origin: &Origin) -> (u8, &'static str) {
 
 /// The command as it was given.
 fn command() -> String {
-    let arguments = std::env::args().skip(1);
+    let arguments = std::env::args_os()
+        .skip(1)
+        .map(|argument| argument.to_string_lossy().into_owned());
     let quoted = arguments.map(|a| {
         if a.contains([' ', '\'']) {
             format!("{a:?}")

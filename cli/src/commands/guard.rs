@@ -1,0 +1,26 @@
+use std::process::ExitCode;
+
+use clap::Args;
+
+use crate::devices::DeviceArgs;
+use crate::failure::Failure;
+use crate::guardian::hold;
+
+/// Hold a device for the process at the other end of standard input and output (`htex play` starts it).
+#[derive(Args)]
+#[command(hide = true)]
+pub(crate) struct Guard {
+    #[command(flatten)]
+    devices: DeviceArgs,
+}
+
+impl Guard {
+    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        // Only the end of the pipe ends it.
+        crate::signals::ignore();
+        let devices = self.devices.devices_quietly()?;
+        let (from, to) = (std::io::stdin().lock(), std::io::stdout().lock());
+        hold(|id| devices.find(id).cloned(), from, to);
+        Ok(ExitCode::SUCCESS)
+    }
+}

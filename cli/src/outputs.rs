@@ -1,0 +1,64 @@
+//! What a command may write over: never what it reads.
+
+use std::fs::Metadata;
+use std::path::Path;
+
+use crate::failure::Failure;
+
+/// Refuses outputs that are inputs, or each other, under whatever names.
+///
+/// Inputs that are not there are whoever reads them to tell.
+pub(crate) fn check_outputs<'a>(
+    outputs: impl IntoIterator<Item = &'a Path>,
+    inputs: impl IntoIterator<Item = &'a Path>,
+) -> Result<(), Failure> {
+    let inputs: Vec<&Path> = inputs.into_iter().collect();
+    let mut before: Vec<&Path> = Vec::new();
+    for output in outputs {
+        if inputs.iter().any(|input| is_same(input, output)) {
+            return Err(Failure::Usage(format!(
+                "{}: it is read here, and would be lost; name another file to write",
+                output.display()
+            )));
+        }
+        if before.iter().any(|other| is_same(other, output)) {
+            return Err(Failure::Usage(format!(
+                "{}: two outputs would be written to it; name another file for one of them",
+                output.display()
+            )));
+        }
+        before.push(output);
+    }
+    Ok(())
+}
+
+/// Whether two paths lead to one file, links followed; of files that are not there, whether they would.
+fn is_same(a: &Path, b: &Path) -> bool {
+    match (std::fs::metadata(a), std::fs::metadata(b)) {
+        (Ok(a_is), Ok(b_is)) => is_one_file((a, &a_is), (b, &b_is)),
+        (Err(_), Err(_)) => place(a).is_some_and(|a| Some(a) == place(b)),
+        _ => false,
+    }
+}
+
+#[cfg(unix)]
+fn is_one_file((_, a): (&Path, &Metadata), (_, b): (&Path, &Metadata)) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    // A terminal or /dev/null may be both.
+    let is_kept = a.is_file() || a.is_dir();
+    is_kept && (a.dev(), a.ino()) == (b.dev(), b.ino())
+}
+
+#[cfg(not(unix))]
+fn is_one_file((a, _): (&Path, &Metadata), (b, _): (&Path, &Metadata)) -> bool {
+    place(a).is_some_and(|a| Some(a) == place(b))
+}
+
+/// The folder as it really is, and the name in it.
+fn place(path: &Path) -> Option<std::path::PathBuf> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    Some(folder.canonicalize().ok()?.join(path.file_name()?))
+}

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use htex_format::{AtCondition, Condition, Field, Quality, Quantity, Representation};
+use htex_format::{AtCondition, Condition, Field, Quality, Quantity, Representation, plain};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -116,23 +116,23 @@ impl AssetSummary {
 
     /// The summary as a person reads it.
     pub(crate) fn to_text(&self) -> String {
-        let mut text = format!("{}: {} bytes\n", self.asset, self.bytes);
+        let mut text = format!("{}: {} bytes\n", plain(&self.asset), self.bytes);
         let kind = if self.simulated { " (simulated)" } else { "" };
         let _ = writeln!(
             text,
             "{}{kind}, {} in {}, {} to {} Hz{}{}",
-            self.name,
+            plain(&self.name),
             self.quantity.words(),
             self.unit,
             self.band_hz[0],
             self.band_hz[1],
             self.author
                 .as_ref()
-                .map(|a| format!(", by {a}"))
+                .map(|a| format!(", by {}", plain(a)))
                 .unwrap_or_default(),
             self.license
                 .as_ref()
-                .map(|l| format!(", licence {l}"))
+                .map(|l| format!(", licence {}", plain(l)))
                 .unwrap_or_default(),
         );
         for (i, condition) in self.conditions.iter().enumerate() {
@@ -161,7 +161,7 @@ impl AssetSummary {
             }
         }
         for line in self.warnings.iter().chain(&self.notes) {
-            let _ = writeln!(text, "note: {line}");
+            let _ = writeln!(text, "note: {}", plain(line));
         }
         text
     }
@@ -186,7 +186,7 @@ fn row(r: &RepresentationSummary, at: &AtSummary, quantity: Quantity) -> String 
     let parameters: Vec<String> = at
         .parameters
         .iter()
-        .map(|(k, v)| parameter_text(k, v))
+        .map(|(k, v)| parameter_text(&plain(k), v))
         .collect();
     format!(
         "  {:8} {:>5}  {:>10}  {:>6}  {:>8}  {:>12}  {:>9}  {:>9}  {:>5}  {}\n",

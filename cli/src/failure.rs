@@ -3,6 +3,11 @@
 use std::path::Path;
 use std::process::ExitCode;
 
+use htex_author::AuthorError;
+use htex_format::plain;
+
+use crate::output::shown;
+
 /// What went wrong, with its place.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
@@ -58,7 +63,7 @@ impl Failure {
 
     pub(crate) fn asset(file: &Path, error: impl Into<htex::Error>) -> Self {
         Self::Asset {
-            file: file.display().to_string(),
+            file: shown(file),
             error: error.into(),
         }
     }
@@ -68,7 +73,7 @@ impl Failure {
         match error {
             htex_scene::LoadError::Io { path, error } => Self::read(&path, error),
             htex_scene::LoadError::Invalid { findings } => Self::Findings {
-                file: file.display().to_string(),
+                file: shown(file),
                 findings,
             },
         }
@@ -77,29 +82,48 @@ impl Failure {
     /// A scene that could not be planned or played.
     pub(crate) fn scene(file: &Path, error: htex_scene::SceneError) -> Self {
         Self::Scene {
-            file: file.display().to_string(),
+            file: shown(file),
             error: Box::new(error),
         }
     }
 
     pub(crate) fn read(file: &Path, error: std::io::Error) -> Self {
         Self::Read {
-            file: file.display().to_string(),
+            file: shown(file),
             error,
         }
     }
 
     pub(crate) fn write(file: &Path, error: std::io::Error) -> Self {
         Self::Write {
-            file: file.display().to_string(),
+            file: shown(file),
             error,
         }
     }
 }
 
+impl Failure {
+    /// What is said of it, line by line. It may quote files and their names: nothing in it steers the terminal, and lines
+    /// end where we end them.
+    pub(crate) fn to_lines(&self) -> Vec<String> {
+        let text = self.to_string();
+        let lines: Vec<&str> = match self {
+            // One a finding, each of them plain.
+            Self::Findings { .. } | Self::Author(AuthorError::Strict { .. }) => {
+                text.lines().collect()
+            }
+            _ => vec![&text],
+        };
+        lines
+            .into_iter()
+            .map(|line| plain(line).into_owned())
+            .collect()
+    }
+}
+
 /// Findings, one a line.
 fn findings_text(findings: &[htex_format::Finding]) -> String {
-    let line = |f: &htex_format::Finding| format!("\n  {} {f}", f.severity);
+    let line = |f: &htex_format::Finding| format!("\n  {} {}", f.severity, plain(&f.to_string()));
     let lines: String = findings.iter().map(line).collect();
     format!("this scene cannot be played (`htex explain CODE` says more){lines}")
 }

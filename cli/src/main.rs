@@ -55,9 +55,7 @@ fn main() -> ExitCode {
     match signals::handle().and_then(|()| command.run()) {
         Ok(code) => code,
         Err(failure) => {
-            // It may quote the name of a file: nothing in it steers the terminal.
-            let text = failure.to_string();
-            let lines: Vec<_> = text.lines().map(htex_format::plain).collect();
+            let lines = failure.to_lines();
             crate::output::tell!("htex: {}", lines.join("\n"));
             failure.exit_code()
         }

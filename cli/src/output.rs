@@ -3,7 +3,10 @@
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
+use htex_format::plain;
 use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
 
 use crate::failure::Failure;
 
@@ -16,8 +19,20 @@ macro_rules! tell {
 }
 pub(crate) use tell;
 
-/// Writes text to standard output. A reader that has gone away (`| head`) is not an error.
+/// Writes text to standard output; what a stranger wrote into a line of it steers no terminal. A reader that has gone
+/// away (`| head`) is not an error.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    let lines: String = text
+        .split_inclusive('\n')
+        .map(|line| match line.strip_suffix('\n') {
+            Some(line) => plain(line) + "\n",
+            None => plain(line),
+        })
+        .collect();
+    write(&lines)
+}
+
+fn write(text: &str) -> Result<(), Failure> {
     match std::io::stdout().lock().write_all(text.as_bytes()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             Err(Failure::write(Path::new("standard output"), error))
@@ -30,20 +45,49 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 pub(crate) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string(value)
         .map_err(|error| Failure::Other(format!("cannot write JSON: {error}")))?;
-    print(&(text + "\n"))
+    write(&(text + "\n"))
+}
+
+/// A value all of whose text is harmless in a line of a terminal.
+pub(crate) fn tamed<T: Serialize + DeserializeOwned + Clone>(value: &T) -> T {
+    let mut json = serde_json::to_value(value).unwrap_or_default();
+    tame(&mut json);
+    serde_json::from_value(json).unwrap_or_else(|_| value.clone())
+}
+
+fn tame(value: &mut Value) {
+    match value {
+        Value::String(text) => *text = plain(text).into_owned(),
+        Value::Array(list) => list.iter_mut().for_each(tame),
+        Value::Object(map) => {
+            let entries = std::mem::take(map).into_iter();
+            *map = entries
+                .map(|(key, mut value)| {
+                    tame(&mut value);
+                    (plain(&key).into_owned(), value)
+                })
+                .collect();
+        }
+        _ => {}
+    }
+}
+
+/// A path in a line of text.
+pub(crate) fn shown(path: &Path) -> String {
+    plain(&path.display().to_string()).into_owned()
 }
 
 /// Tells the user of something that is no failure.
 pub(crate) fn warn(warnings: &[String]) {
     for warning in warnings {
-        tell!("warning: {warning}");
+        tell!("warning: {}", plain(warning));
     }
 }
 
 /// Tells the user of something worth knowing.
 pub(crate) fn note(notes: &[String]) {
     for note in notes {
-        tell!("note: {note}");
+        tell!("note: {}", plain(note));
     }
 }
 

@@ -4,6 +4,7 @@ use std::fs::Metadata;
 use std::path::Path;
 
 use crate::failure::Failure;
+use crate::output::shown;
 
 /// Refuses outputs that are inputs, or each other, under whatever names.
 ///
@@ -18,13 +19,13 @@ pub(crate) fn check_outputs<'a>(
         if inputs.iter().any(|input| is_same(input, output)) {
             return Err(Failure::Usage(format!(
                 "{}: it is read here, and would be lost; name another file to write",
-                output.display()
+                shown(output)
             )));
         }
         if before.iter().any(|other| is_same(other, output)) {
             return Err(Failure::Usage(format!(
                 "{}: two outputs would be written to it; name another file for one of them",
-                output.display()
+                shown(output)
             )));
         }
         before.push(output);

@@ -7,6 +7,7 @@ use std::path::Path;
 use hound::{SampleFormat, WavSpec, WavWriter};
 
 use crate::failure::Failure;
+use crate::output::shown;
 
 /// Most bytes of samples a WAV file can hold.
 const MAX_FRAMES: u64 = (u32::MAX as u64 - 64) / 4;
@@ -22,7 +23,7 @@ pub(crate) fn write_wav(
         let hours = MAX_FRAMES as f64 / f64::from(rate_hz) / 3600.0;
         return Err(Failure::Other(format!(
             "{}: a WAV file holds at most 4 GiB, {hours:.1} h at this rate; take fewer seconds",
-            path.display()
+            shown(path)
         )));
     }
     let spec = WavSpec {

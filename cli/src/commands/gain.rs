@@ -9,7 +9,7 @@ use htex_scene::{Gain as Kept, Gains, Renderer};
 use crate::commands::play;
 use crate::failure::Failure;
 use crate::gains::{FeltArgs, gains, hash, key, recordings};
-use crate::output::print;
+use crate::output::{print, shown};
 use crate::playing::Output;
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs};
 use crate::signals::{self, interrupted};
@@ -94,7 +94,7 @@ impl Gain {
             self.person,
             key.texture,
             volts(found.drive_v),
-            file.display()
+            shown(&file)
         );
         let kept = Kept {
             key,

@@ -9,7 +9,7 @@ use htex_scene::file::Motion;
 use serde_json::json;
 
 use crate::failure::Failure;
-use crate::output::{note, print, print_json};
+use crate::output::{note, print, print_json, shown};
 use crate::playing::Output;
 use crate::progress::bar;
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs};
@@ -107,7 +107,7 @@ impl Render {
             }
             _ => return Ok(()),
         };
-        let file = self.scene.display();
+        let file = shown(&self.scene);
         Err(Failure::Other(format!("{file}: {sentence}")))
     }
 
@@ -135,7 +135,7 @@ impl Render {
         ready.check_output(path)?;
         let is_named = self.output.is_some() || self.choice.names_output()?;
         if !is_named && path.symlink_metadata().is_ok() {
-            let path = path.display();
+            let path = shown(path);
             return Err(Failure::Usage(format!(
                 "{path} is there already; name the file to write, or to replace, by -o FILE"
             )));

@@ -10,7 +10,7 @@ use htex_tradeoff::{Journal, Model, Point, Request, Subject, csv, page, sweep};
 
 use crate::failure::Failure;
 use crate::models::tool;
-use crate::output::{print, print_json, warn, write_file};
+use crate::output::{print, print_json, shown, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
 use crate::progress::bar;
@@ -80,7 +80,7 @@ impl Tradeoff {
         let [csv_file, json_file, part_file] =
             ["csv", "json", "part"].map(|e| self.output.with_extension(e));
         if [&csv_file, &json_file, &part_file].contains(&&self.output) {
-            let output = self.output.display();
+            let output = shown(&self.output);
             let sentence =
                 format!("-o {output}: points go beside it under that name; name a .html file");
             return Err(Failure::Usage(sentence));
@@ -253,5 +253,5 @@ fn to_text(tradeoff: &htex_tradeoff::Tradeoff, output: &Path) -> String {
             text += &format!("  {}: {}\n", knee.of, knee.words);
         }
     }
-    text + &format!("\nThe report, with the pictures: {}\n", output.display())
+    text + &format!("\nThe report, with the pictures: {}\n", shown(output))
 }

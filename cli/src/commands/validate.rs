@@ -9,7 +9,7 @@ use htex_host::Registry;
 use serde_json::Value;
 
 use crate::failure::Failure;
-use crate::output::{print, print_json};
+use crate::output::{print, print_json, shown};
 use crate::recordings::RecordingArgs;
 use crate::scenes::SceneArgs;
 use crate::schemas::{ExtensionSchema, Named};
@@ -141,7 +141,7 @@ fn read_at_most(path: &Path, limits: &Limits) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
     File::open(path)
         .and_then(|file| file.take(limits.file_bytes + 1).read_to_end(&mut bytes))
-        .map_err(|error| Failure::Other(format!("{}: {error}", path.display())))?;
+        .map_err(|error| Failure::Other(format!("{}: {error}", shown(path))))?;
     Ok(bytes)
 }
 
@@ -191,7 +191,7 @@ fn descriptor(document: &Value, problem: Option<String>, schema: Named) -> Resul
 
 fn text(path: &Path, report: &Report) -> String {
     let verdict = if report.valid { "valid" } else { "NOT VALID" };
-    let mut text = format!("{}: {verdict}\n", path.display());
+    let mut text = format!("{}: {verdict}\n", shown(path));
     for finding in &report.findings {
         let severity = match finding.severity {
             Severity::Error => "error",

@@ -136,6 +136,8 @@ pub enum AuthorError {
 
 /// Findings, one a line.
 fn lines(findings: &[htex_format::Finding]) -> String {
-    let line = |f: &htex_format::Finding| format!("\n  {} {f}", f.severity);
+    let line = |f: &htex_format::Finding| {
+        format!("\n  {} {}", f.severity, htex_format::plain(&f.to_string()))
+    };
     findings.iter().map(line).collect()
 }

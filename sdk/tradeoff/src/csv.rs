@@ -63,8 +63,13 @@ pub fn csv(tradeoff: &Tradeoff) -> String {
     out
 }
 
-/// A cell of text, quoted where it must be.
+/// A cell of text, quoted where it must be; one that a spreadsheet would take for a formula begins with an apostrophe, by
+/// which these know text.
 fn text(text: &str) -> String {
+    let text = match text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
+        true => &format!("'{text}"),
+        false => text,
+    };
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {
@@ -78,5 +83,7 @@ mod tests {
     fn text_is_quoted_where_it_must_be() {
         assert_eq!(super::text("a b=1"), "a b=1");
         assert_eq!(super::text("a,\"b\""), "\"a,\"\"b\"\"\"");
+        assert_eq!(super::text("=HYPERLINK(1)"), "'=HYPERLINK(1)");
+        assert_eq!(super::text("-a,b"), "\"'-a,b\"");
     }
 }

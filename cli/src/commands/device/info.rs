@@ -6,7 +6,7 @@ use serde_json::json;
 
 use crate::devices::{DeviceArgs, SettingArgs};
 use crate::failure::Failure;
-use crate::output::{print, print_json};
+use crate::output::{print, print_json, tamed};
 
 /// Show a device's settings and profiles, and what it can do when it is set so.
 #[derive(Args)]
@@ -29,7 +29,7 @@ pub(crate) struct Info {
 impl Info {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         let known = self.devices.named(&self.device)?;
-        let descriptor = known.descriptor();
+        let descriptor = &tamed(known.descriptor());
         let resolved = self.settings.resolve(known.adapter.as_ref());
         let capabilities = resolved.and_then(|s| Ok(known.adapter.capabilities(&s)?));
         if self.json {

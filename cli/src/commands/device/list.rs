@@ -2,11 +2,12 @@ use std::process::ExitCode;
 
 use clap::Args;
 use htex_device::{Devices, KnownDevice};
+use htex_format::plain;
 use serde_json::{Value, json};
 
 use crate::devices::DeviceArgs;
 use crate::failure::Failure;
-use crate::output::{print, print_json};
+use crate::output::{print, print_json, tamed};
 
 /// List all devices: their adapters, what is connected, and what was found but is not used.
 ///
@@ -66,13 +67,13 @@ fn device_json(known: &KnownDevice) -> Value {
 fn text(devices: &Devices) -> String {
     let mut text: String = devices.all().iter().map(device_text).collect();
     for note in devices.notes() {
-        text += &format!("note: {note}\n");
+        text += &format!("note: {}\n", plain(&note.to_string()));
     }
     text
 }
 
 fn device_text(known: &KnownDevice) -> String {
-    let descriptor = known.descriptor();
+    let descriptor = &tamed(known.descriptor());
     let (name, version) = (descriptor.short_name(), &descriptor.version);
     let mut text = format!(
         "  {name:8} {version:8} {:20} {}\n",
@@ -81,7 +82,7 @@ fn device_text(known: &KnownDevice) -> String {
     text += &format!("           {}\n", descriptor.summary);
     match known.adapter.endpoints() {
         Ok(endpoints) => {
-            for there in endpoints {
+            for there in endpoints.iter().map(tamed) {
                 let choice = format!("{}={}", there.setting, there.name);
                 text += &format!("           {choice}  {}\n", there.summary);
             }

@@ -5,7 +5,7 @@ use htex_host::{Descriptor, Field, FitOption, Kind};
 
 use crate::commands::plugin::named::named;
 use crate::failure::Failure;
-use crate::output::{print, print_json};
+use crate::output::{print, print_json, tamed};
 use crate::plugins::PluginArgs;
 
 /// Show what a model says of itself: parameters and fit options, with units and ranges.
@@ -29,7 +29,7 @@ impl Info {
         if self.json {
             print_json(model.descriptor())?;
         } else {
-            print(&text(model.descriptor()))?;
+            print(&text(&tamed(model.descriptor())))?;
         }
         Ok(ExitCode::SUCCESS)
     }

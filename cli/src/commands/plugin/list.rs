@@ -1,6 +1,7 @@
 use std::process::ExitCode;
 
 use clap::Args;
+use htex_format::plain;
 use htex_host::Registry;
 use serde_json::{Value, json};
 
@@ -60,7 +61,7 @@ fn text(registry: &Registry) -> String {
         );
     }
     for note in registry.notes() {
-        text += &format!("note: {note}\n");
+        text += &format!("note: {}\n", plain(&note.to_string()));
     }
     text
 }

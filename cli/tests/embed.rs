@@ -103,6 +103,73 @@ fn a_third_party_model_travels_with_its_asset() {
     );
 }
 
+/// A module that is declared, and even signed, as another model takes the place of none.
+#[test]
+fn a_module_is_the_model_it_is_said_to_be() {
+    let place = Place::new();
+    if !build_bursts(&place) {
+        println!("skipped: no clang with lld to build C to WASM");
+        return;
+    }
+    let csv = place.recording("sandpaper");
+    let fit = [
+        "fit",
+        &csv,
+        "--model",
+        "bursts,sbeta",
+        "--embed-plugin",
+        "bursts.wasm",
+        "-o",
+        "b.htex",
+        "--json",
+    ];
+    place.json(&fit);
+    let honest = htex_format::Asset::open(&place.path("b.htex")).unwrap();
+    let true_version = honest.manifest.plugins[0].version.clone();
+    for (model, version) in [
+        ("org.htex.sbeta", "9.9.9"),
+        ("org.htex.sbeta", &true_version),
+        ("org.example.bursts", "9.9.9"),
+    ] {
+        let mut asset = honest.clone();
+        let plugin = &mut asset.manifest.plugins[0];
+        (plugin.model, plugin.version) = (model.to_owned(), version.to_owned());
+        plugin.file = format!("plugins/{model}.wasm");
+        plugin.signature = None;
+        place.write("liar.htex", asset.to_bytes().unwrap());
+        for used in ["sbeta", "bursts"] {
+            let synth = [
+                "synth",
+                "liar.htex",
+                "--seconds",
+                "1",
+                "--model",
+                used,
+                "-o",
+                "b.wav",
+            ];
+            let run = place.run(&synth);
+            let words =
+                format!("is said to be {model} {version} and is org.example.bursts {true_version}");
+            assert_eq!(run.code(), 1, "{}", run.error());
+            assert!(run.error().contains(&words), "{}", run.error());
+        }
+        // What it does not bring along is played without it.
+        let synth = [
+            "synth",
+            "liar.htex",
+            "--seconds",
+            "1",
+            "--model",
+            "sbeta",
+            "-o",
+            "b.wav",
+        ];
+        let run = place.run(&[&synth[..], &["--no-embedded-plugins"]].concat());
+        assert_eq!(run.code(), 0, "{}", run.error());
+    }
+}
+
 #[test]
 fn a_changed_module_is_refused() {
     let place = Place::new();

@@ -34,6 +34,16 @@ pub enum HostError {
         /// What there is.
         known: String,
     },
+    /// A module is of another model than it is declared to be.
+    #[error("{path} is said to be {declared} and is {found}; get it again from its maker")]
+    OtherModel {
+        /// The file, or the entry of an asset.
+        path: String,
+        /// Id and version that are declared.
+        declared: String,
+        /// Id and version that it has.
+        found: String,
+    },
     /// A file is no model.
     #[error("cannot load {path}: {what}")]
     Load {

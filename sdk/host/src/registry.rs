@@ -77,6 +77,30 @@ impl Registry {
         Ok(())
     }
 
+    /// As [`Self::add_wasm_bytes`], of a model that is declared: a module of any other id or version is not added.
+    ///
+    /// # Errors
+    /// As [`Self::add_wasm_bytes`], and [`HostError::OtherModel`].
+    pub fn add_declared_wasm(
+        &mut self,
+        name: &str,
+        bytes: &[u8],
+        declared: (&str, &str),
+    ) -> Result<(), HostError> {
+        let model = LoadedModel::from_wasm_bytes(name, bytes, &self.limits)?;
+        let is = (model.id(), &model.descriptor().version[..]);
+        if is != declared {
+            let words = |(id, version): (&str, &str)| format!("{id} {version}");
+            return Err(HostError::OtherModel {
+                path: name.to_owned(),
+                declared: words(declared),
+                found: words(is),
+            });
+        }
+        self.add(Rank::Embedded, model);
+        Ok(())
+    }
+
     /// Adds a model behind those of its rank, and notes what it shadows, or what shadows it.
     pub(crate) fn add(&mut self, rank: Rank, model: LoadedModel) {
         let at = self.ranks.partition_point(|other| *other <= rank);

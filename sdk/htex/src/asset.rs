@@ -92,16 +92,12 @@ impl Asset {
     /// behind plugins named by their files). Without this call they are not run.
     ///
     /// # Errors
-    /// When a module cannot be loaded, or is of another model than the asset says.
+    /// When a module cannot be loaded, or is of another model or version than the asset says.
     pub fn with_embedded(mut self) -> Result<Self, Error> {
         for (plugin, module) in self.data.manifest.plugins.iter().zip(&self.data.plugins) {
-            self.registry.add_wasm_bytes(&plugin.file, module)?;
-            if self.registry.find(&plugin.model).is_err() {
-                return Err(Error::WrongPlugin {
-                    file: plugin.file.clone(),
-                    model: plugin.model.clone(),
-                });
-            }
+            let declared = (&plugin.model[..], &plugin.version[..]);
+            self.registry
+                .add_declared_wasm(&plugin.file, module, declared)?;
         }
         Ok(self)
     }

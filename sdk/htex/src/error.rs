@@ -9,14 +9,6 @@ pub enum Error {
     /// A model is missing, or refused a call.
     #[error(transparent)]
     Model(#[from] htex_host::HostError),
-    /// A module in the asset is not of the model it is said to be.
-    #[error("{file} in the asset is not of model {model}; get the asset again from its maker")]
-    WrongPlugin {
-        /// The entry.
-        file: String,
-        /// The model it should be of.
-        model: String,
-    },
     /// The asset has no representation of this model.
     #[error("the asset has no representation `{wanted}`; it has {there}")]
     NoRepresentation {

@@ -105,7 +105,7 @@ impl Guarded {
             rate_hz: format.rate_hz,
             block_frames: format.block_frames,
         };
-        let guarded = Self {
+        let mut guarded = Self {
             pipes: Mutex::new(pipes),
             child,
             known: known.clone(),
@@ -114,7 +114,12 @@ impl Guarded {
             ended: false,
         };
         let opening = serde_json::to_vec(&opening).unwrap_or_default();
-        guarded.ask(b'o', &opening).map(|_| guarded)
+        // A device that was not opened has nothing to be brought to zero, and may be somebody else's.
+        if let Err(error) = guarded.ask(b'o', &opening) {
+            guarded.ended = true;
+            return Err(error);
+        }
+        Ok(guarded)
     }
 
     /// Asks for something and waits for the answer.

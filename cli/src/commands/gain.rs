@@ -53,7 +53,7 @@ pub(crate) struct Gain {
     with: SceneArgs,
 }
 
-/// A drive, volts, and the RMS in newtons that had it.
+/// A drive, volts, and the RMS that had it, in the assets' unit.
 struct Found {
     drive_v: f64,
     reference_rms: f64,

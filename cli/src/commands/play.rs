@@ -149,7 +149,7 @@ fn text(ready: &Ready, plan: &Plan, status: &Status, renderer: &Renderer) -> Str
     );
     let limited = renderer.limited_samples();
     if limited > 0 {
-        text += &format!("{limited} samples were held at the device's limit\n");
+        text += &format!("{limited} samples were held at the drive or the device's limit\n");
     }
     text
 }

@@ -167,7 +167,7 @@ fn text(file: &str, frames: u64, rate_hz: f64, ready: &Ready, renderer: &Rendere
     let mut text = format!("{file}: {seconds:.3} s at {rate_hz} Hz, peak {peak:.4} {unit}\n");
     let limited = renderer.limited_samples();
     if limited > 0 {
-        text += &format!("{limited} samples were held at the device's limit\n");
+        text += &format!("{limited} samples were held at the drive or the device's limit\n");
     }
     text
 }

@@ -266,7 +266,7 @@ pub(crate) struct Part {
     pub(crate) fixed_force_gain: f64,
     /// Factor on the asset's level.
     pub(crate) gain: f64,
-    /// Largest RMS, newtons, compensated.
+    /// Largest RMS, in the asset's unit, compensated.
     pub(crate) level_rms: f64,
 }
 
@@ -407,7 +407,7 @@ fn known(asset: &htex::Asset, model: &str, measure: ErrorMeasure) -> (usize, Exp
     (at.len(), Explored::new(at, &manifest.conditions), worst)
 }
 
-/// The largest level of a representation, newtons.
+/// The largest level of a representation, in the asset's unit.
 fn loudest(asset: &htex::Asset, model: &str, level_rms: f64) -> f64 {
     let manifest = asset.manifest();
     let found = manifest.representations.iter().find(|r| r.model == model);

@@ -329,3 +329,23 @@ pub(crate) fn quantity_misfit(held: Held, device: Quantity, gain: Option<f64>) -
         Some(_) => None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Devices know no textures, so that both have a list of quantities: they agree.
+    #[test]
+    fn devices_have_every_quantity_that_assets_have() {
+        let physical: Vec<(&str, &str)> = Quantity::ALL
+            .iter()
+            .filter(|quantity| quantity.is_physical())
+            .map(|quantity| (quantity.name(), quantity.unit()))
+            .collect();
+        let held: Vec<(&str, &str)> = Held::ALL
+            .iter()
+            .map(|held| (held.name(), held.unit()))
+            .collect();
+        assert_eq!(physical, held);
+    }
+}

@@ -36,7 +36,7 @@ pub struct Gain {
     pub file: String,
     /// Largest voltage of the drive, volts: V_g times sqrt(2).
     pub drive_v: f64,
-    /// RMS that had this drive, newtons: what other representations are measured by where levels are not normalised.
+    /// RMS that had this drive, in the assets' unit: what other representations are measured by where levels are not normalised.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reference_rms: Option<f64>,
     /// Names of the files that the texture was recorded in: they tell two textures of one name apart.

@@ -34,7 +34,7 @@ pub struct Plan {
     pub frames: Option<u64>,
     /// Where the costs come from.
     pub costs: String,
-    /// RMS that is brought to the drive or to the level of a preview, newtons.
+    /// RMS that is brought to the drive or to the level of a preview, in the assets' unit.
     pub reference_rms: f64,
     /// What is worth knowing.
     pub notes: Vec<String>,

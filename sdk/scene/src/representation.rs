@@ -44,7 +44,7 @@ pub(crate) fn choose(
     Ok(parts.into_iter().zip(&all).map(why).collect())
 }
 
-/// The level that stands for the drive where levels are not normalised, newtons: the one given, else that of the
+/// The level that stands for the drive where levels are not normalised, in the assets' unit: the one given, else that of the
 /// strongest representation of the surfaces that are touched, whichever plays them.
 pub(crate) fn reference_rms(scene: &LoadedScene, call: &Call) -> f64 {
     if let Some(given_n) = scene.scene.device.reference_rms {

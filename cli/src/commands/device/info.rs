@@ -29,7 +29,7 @@ pub(crate) struct Info {
 impl Info {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         let known = self.devices.named(&self.device)?;
-        let descriptor = &tamed(known.descriptor());
+        let descriptor = known.descriptor();
         let resolved = self.settings.resolve(known.adapter.as_ref());
         let capabilities = resolved.and_then(|s| Ok(known.adapter.capabilities(&s)?));
         if self.json {
@@ -45,7 +45,10 @@ impl Info {
                 Ok(capabilities) => can_text(&capabilities),
                 Err(problem) => format!("  not known, set so: {problem}\n"),
             };
-            print(&format!("{}\ncan do\n{can}", descriptor_text(descriptor)))?;
+            print(&format!(
+                "{}\ncan do\n{can}",
+                descriptor_text(&tamed(descriptor))
+            ))?;
         }
         Ok(ExitCode::SUCCESS)
     }

@@ -1,4 +1,4 @@
-//! From unit RMS to newtons: the asset's level and the surface's gain.
+//! From unit RMS to the asset's unit: the asset's level and the surface's gain.
 
 use htex_dsp::glide::Glide;
 

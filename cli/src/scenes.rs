@@ -14,7 +14,7 @@ use crate::devices::{DeviceArgs, SettingArgs};
 use crate::failure::Failure;
 use crate::output::{note, warn};
 use crate::outputs::check_outputs;
-use crate::plugins::PlayerArgs;
+use crate::plugins::{PlayerArgs, PluginArgs};
 use crate::schemas::Named;
 
 /// What a finger does that nobody describes: the paper's usual speed (mm/s) and force (newtons).
@@ -153,10 +153,10 @@ impl SceneArgs {
 
     /// Validates a scene file.
     pub(crate) fn validate(file: &Path) -> Result<htex_format::Report, Failure> {
-        let registry = Registry::search(&htex_host::Search::default())?;
+        let registry = PluginArgs::installed()?;
         let around = Surroundings {
             models: &registry,
-            embedded: true,
+            embedded: false,
             devices: &DeviceArgs::default().devices_quietly()?,
         };
         htex_scene::validate(file, &around).map_err(|error| Failure::load(file, error))

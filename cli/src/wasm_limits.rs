@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use htex_host::WasmLimits;
+use htex_host::{WasmCompiler, WasmLimits};
 
 /// One limit and its value.
 #[derive(Debug, Clone, Copy)]
@@ -11,11 +11,14 @@ pub(crate) struct WasmLimit {
     value: u64,
 }
 
+/// The subcommand that compiles.
+const COMPILE: &str = "compile-module";
+
 /// Sets a limit to a value.
 type Set = fn(&mut WasmLimits, u64);
 
 /// Name, largest value, and what it sets.
-const LIMITS: [(&str, u64, Set); 8] = [
+const LIMITS: [(&str, u64, Set); 16] = [
     ("module-mib", 1024, |l, n| {
         l.module_bytes = (n as usize) << 20
     }),
@@ -34,6 +37,30 @@ const LIMITS: [(&str, u64, Set); 8] = [
         l.render = Duration::from_millis(n)
     }),
     ("fuel", u64::MAX / 2, |l, n| l.fuel = Some(n)),
+    ("compile-ms", 86_400_000, |l, n| {
+        l.compile = Duration::from_millis(n)
+    }),
+    ("compile-mib", 65_536, |l, n| {
+        l.compile_bytes = (n as usize) << 20
+    }),
+    ("asset-ms", 86_400_000, |l, n| {
+        l.asset.time = Duration::from_millis(n)
+    }),
+    ("asset-mib", 65_536, |l, n| {
+        l.asset.memory_bytes = (n as usize) << 20
+    }),
+    ("asset-instances", 100_000, |l, n| {
+        l.asset.instances = n as usize
+    }),
+    ("all-ms", 86_400_000, |l, n| {
+        l.all.time = Duration::from_millis(n)
+    }),
+    ("all-mib", 65_536, |l, n| {
+        l.all.memory_bytes = (n as usize) << 20
+    }),
+    ("all-instances", 100_000, |l, n| {
+        l.all.instances = n as usize
+    }),
 ];
 
 impl WasmLimit {
@@ -53,9 +80,12 @@ impl WasmLimit {
         }
     }
 
-    /// The default limits with these changed.
+    /// The default limits with these changed; modules are compiled by another process of this program.
     pub(crate) fn all(given: &[Self]) -> WasmLimits {
         let mut limits = WasmLimits::default();
+        if let Ok(program) = std::env::current_exe() {
+            limits.compiler = WasmCompiler::Program(program, vec![COMPILE.to_owned()]);
+        }
         given
             .iter()
             .for_each(|limit| (limit.set)(&mut limits, limit.value));

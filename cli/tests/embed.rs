@@ -137,35 +137,23 @@ fn a_module_is_the_model_it_is_said_to_be() {
         plugin.file = format!("plugins/{model}.wasm");
         plugin.signature = None;
         place.write("liar.htex", asset.to_bytes().unwrap());
-        for used in ["sbeta", "bursts"] {
-            let synth = [
-                "synth",
-                "liar.htex",
-                "--seconds",
-                "1",
-                "--model",
-                used,
-                "-o",
-                "b.wav",
-            ];
-            let run = place.run(&synth);
-            let words =
-                format!("is said to be {model} {version} and is org.example.bursts {true_version}");
-            assert_eq!(run.code(), 1, "{}", run.error());
-            assert!(run.error().contains(&words), "{}", run.error());
+        let words =
+            format!("is said to be {model} {version} and is org.example.bursts {true_version}");
+        let synth = ["synth", "liar.htex", "--seconds", "1", "-o", "b.wav"];
+        let run = place.run(&[&synth[..], &["--model", model]].concat());
+        assert_eq!(run.code(), 1, "{}", run.error());
+        assert!(run.error().contains(&words), "{}", run.error());
+        // Nothing runs unless it is asked for, and then it is found.
+        let valid = place.run(&["validate", "liar.htex"]);
+        assert_eq!(valid.code(), 0, "{}", valid.text());
+        let loaded = place.run(&["validate", "--embedded-plugins", "liar.htex"]);
+        assert_eq!(loaded.code(), 1, "{}", loaded.text());
+        for part in ["PLUGIN_UNUSABLE at /plugins/0", &words] {
+            assert!(loaded.text().contains(part), "{}", loaded.text());
         }
         // What it does not bring along is played without it.
-        let synth = [
-            "synth",
-            "liar.htex",
-            "--seconds",
-            "1",
-            "--model",
-            "sbeta",
-            "-o",
-            "b.wav",
-        ];
-        let run = place.run(&[&synth[..], &["--no-embedded-plugins"]].concat());
+        let without = ["--model", "sbeta", "--no-embedded-plugins"];
+        let run = place.run(&[&synth[..], &without].concat());
         assert_eq!(run.code(), 0, "{}", run.error());
     }
 }

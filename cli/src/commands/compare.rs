@@ -106,11 +106,13 @@ impl Compare {
             let (parameters, level_rms) = asset
                 .parameters(Some(&representation.model), motion)
                 .map_err(|error| Failure::asset(&self.asset, error))?;
-            let model = asset.registry().find(&representation.model)?;
+            let model = asset
+                .loaded_model(Some(&representation.model))
+                .map_err(|error| Failure::asset(&self.asset, error))?;
             compared.push(Compared {
                 model: representation.model.clone(),
                 level_rms,
-                quality: measure(model, &parameters, level_rms, spectrum.as_ref())?,
+                quality: measure(&model, &parameters, level_rms, spectrum.as_ref())?,
             });
         }
         Ok(compared)

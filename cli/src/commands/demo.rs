@@ -228,7 +228,11 @@ fn picture(
         let short = short_name(&r.model).to_owned();
         let quality = r.first.quality.clone();
         models.push(ModelResult {
-            model: asset.model_name(&r.model)?,
+            model: asset
+                .loaded_model(Some(&r.model))?
+                .descriptor()
+                .name
+                .clone(),
             lines: (short == "speak").then(|| r.first.lines()),
             short_name: short,
             magnitude,

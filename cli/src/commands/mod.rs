@@ -1,6 +1,7 @@
 //! One file a subcommand: its arguments and what it does with them.
 
 mod compare;
+mod compile_module;
 mod demo;
 mod device;
 mod explain;
@@ -43,6 +44,7 @@ pub(crate) enum Command {
     Play(play::Play),
     Gain(gain::Gain),
     Guard(guard::Guard),
+    CompileModule(compile_module::CompileModule),
     Schema(schema::Schema),
     Plugin(plugin::Plugin),
     Device(device::Device),
@@ -67,6 +69,7 @@ impl Command {
             Self::Play(args) => args.run(),
             Self::Gain(args) => args.run(),
             Self::Guard(args) => args.run(),
+            Self::CompileModule(args) => args.run(),
             Self::Schema(args) => args.run(),
             Self::Plugin(args) => args.run(),
             Self::Device(args) => args.run(),

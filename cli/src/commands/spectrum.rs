@@ -67,7 +67,8 @@ impl ChoiceArgs {
         let Some(motion) = self.motion(asset) else {
             return Ok(None);
         };
-        let coverage = asset.coverage(self.model.as_deref(), motion, effects)?;
+        let motions = asset.motions(self.model.as_deref())?;
+        let coverage = motions.coverage(motion.0, motion.1, effects);
         Ok((!coverage.is_inside()).then(|| coverage.to_string()))
     }
 }

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use htex_format::{Findings, Limits, Report, Representation, Severity, explain, validate_with};
-use htex_host::Registry;
+use htex_host::{Registry, Search, WasmLimits};
 use serde_json::Value;
 
 use crate::failure::Failure;
@@ -13,6 +13,7 @@ use crate::output::{print, print_json, shown};
 use crate::recordings::RecordingArgs;
 use crate::scenes::SceneArgs;
 use crate::schemas::{ExtensionSchema, Named};
+use crate::wasm_limits::WasmLimit;
 
 /// Check assets, scenes (*.json), descriptors of models and devices (*.json) and recordings against
 /// their formats and JSON Schemas; exit status 1 if one is not valid.
@@ -31,6 +32,15 @@ pub(crate) struct Validate {
     /// given several times
     #[arg(long, value_name = "com.vendor.NAME/1=FILE")]
     extension_schema: Vec<String>,
+
+    /// Also load the models that assets bring along, in their sandbox, and hold them to what the asset says of them.
+    /// Nothing that an asset brings along is run otherwise
+    #[arg(long)]
+    embedded_plugins: bool,
+
+    /// What a WASM model may use, as for other commands
+    #[arg(long, value_name = "NAME=N", value_parser = WasmLimit::parse, requires = "embedded_plugins")]
+    wasm_limit: Vec<WasmLimit>,
 
     #[command(flatten)]
     reading: RecordingArgs,
@@ -57,7 +67,7 @@ impl Validate {
         }
         for (path, kind) in self.files.iter().zip(kinds) {
             let report = match kind {
-                Kind::Asset => validate_asset(path, &schemas),
+                Kind::Asset => self.validate_asset(path, &schemas),
                 Kind::Document => validate_json(path),
                 Kind::Recording => self.reading.validate(path),
             }?;
@@ -77,6 +87,16 @@ impl Validate {
         } else {
             ExitCode::FAILURE
         })
+    }
+}
+
+impl Validate {
+    fn validate_asset(&self, path: &Path, schemas: &[ExtensionSchema]) -> Result<Report, Failure> {
+        let mut report = validate_asset(path, schemas)?;
+        if self.embedded_plugins && report.valid {
+            hold_plugins(path, &WasmLimit::all(&self.wasm_limit), &mut report)?;
+        }
+        Ok(report)
     }
 }
 
@@ -127,6 +147,28 @@ fn validate_asset(path: &Path, extensions: &[ExtensionSchema]) -> Result<Report,
         }
     }
     Ok(report)
+}
+
+/// Loads what an asset brings along; what cannot be loaded is a finding.
+fn hold_plugins(path: &Path, limits: &WasmLimits, report: &mut Report) -> Result<(), Failure> {
+    let data = htex_format::Asset::open(path).map_err(|error| Failure::asset(path, error))?;
+    let registry = Registry::search(&Search {
+        limits: limits.clone(),
+        ..Search::builtin()
+    })?;
+    let asset = htex::Asset::with_registry(data, registry).with_embedded();
+    let mut findings = Findings::default();
+    for (i, plugin) in asset.manifest().plugins.iter().enumerate() {
+        if let (Err(error), Some(rule)) = (
+            asset.load_embedded(&plugin.model),
+            explain("PLUGIN_UNUSABLE"),
+        ) {
+            findings.add(rule, format!("/plugins/{i}"), error.to_string());
+        }
+    }
+    report.valid &= !findings.has_errors();
+    report.findings.extend(findings.into_list());
+    Ok(())
 }
 
 /// Whether the rules of this version are those of the document: of another one, and of one that says

@@ -333,6 +333,10 @@ rule_table! {
         "A plugin's signature does not hold.",
         "The module, its version or its id is not what the holder of the key signed.",
         "Do not trust the module; get the asset again from its maker.";
+    PLUGIN_UNUSABLE Error:
+        "A plugin's module cannot be loaded, or is of another model or version than the asset says.",
+        "`htex validate --embedded-plugins` loads what an asset brings along, in its sandbox; players find the same when they want it.",
+        "Get the asset again from its maker, or play a representation of a model that you have.";
     EXTENSION_NAME_INVALID Warning:
         "An extension's name is not of the form `com.vendor.NAME/REVISION`.",
         "Names of another form may clash with someone else's.",

@@ -191,6 +191,7 @@ pub const STAGES: &[Stage] = &[
             "SCHEMA_BROKEN",
             "EXTENSION_SCHEMA_BROKEN",
             "DESCRIPTOR_INVALID",
+            "PLUGIN_UNUSABLE",
         ],
         ends: false,
     },

@@ -27,6 +27,9 @@ mod options;
 mod origin;
 mod raw;
 mod registry;
+// Without modules nothing is spent.
+#[cfg_attr(not(feature = "wasm"), allow(dead_code))]
+mod sandbox;
 mod search;
 mod stream;
 mod synthesis;
@@ -40,7 +43,7 @@ pub use descriptor::read_descriptor;
 pub use error::HostError;
 pub use htex_dsp::grid::{Band, GRID_HZ};
 pub use htex_model::{Descriptor, Field, Fit, FitOption, Kind, Status, Store};
-pub use limits::{WasmCache, WasmLimits};
+pub use limits::{WasmCache, WasmCompiler, WasmLimits, WasmTotal};
 pub use model::{FitRequest, LoadedModel};
 pub use note::Note;
 pub use origin::Origin;
@@ -50,3 +53,5 @@ pub use stream::Stream;
 pub use synthesis::{StillSound, Synthesis};
 pub use together::{VOICES_EXTENSION, render_together};
 pub use voice::ModelVoice;
+#[cfg(feature = "wasm")]
+pub use wasm::serve_compiler;

@@ -12,6 +12,7 @@ use htex_model::{Descriptor, Fit, Kind, Status, Values};
 use crate::descriptor::read_descriptor;
 use crate::error::plain;
 use crate::raw::{RawFit, RawModel};
+use crate::sandbox::Sandbox;
 use crate::{HostError, ModelVoice, Origin, WasmLimits};
 
 /// Parameters for which there is room at the first call.
@@ -88,48 +89,59 @@ impl LoadedModel {
     /// # Errors
     /// As [`Self::from_file`].
     pub fn from_file_within(path: &Path, limits: &WasmLimits) -> Result<Self, HostError> {
+        Self::from_file_in(path, &Sandbox::new(limits))
+    }
+
+    /// As [`Self::from_file`], in a sandbox that may have other models too.
+    pub(crate) fn from_file_in(path: &Path, sandbox: &Sandbox) -> Result<Self, HostError> {
         if path
             .extension()
             .is_some_and(|extension| extension == "wasm")
         {
-            return Self::from_wasm_file(path, limits);
+            return Self::from_wasm_file(path, sandbox);
         }
         let raw = crate::native::load(path)?;
         Self::new(Origin::Native(path.to_owned()), Arc::new(raw))
     }
 
     #[cfg(feature = "wasm")]
-    fn from_wasm_file(path: &Path, limits: &WasmLimits) -> Result<Self, HostError> {
-        let raw = crate::wasm::load_file(path, limits)?;
+    fn from_wasm_file(path: &Path, sandbox: &Sandbox) -> Result<Self, HostError> {
+        let raw = crate::wasm::load_file(path, sandbox)?;
         Self::new(Origin::Wasm(path.to_owned()), Arc::new(raw))
     }
 
     #[cfg(not(feature = "wasm"))]
-    fn from_wasm_file(path: &Path, _: &WasmLimits) -> Result<Self, HostError> {
+    fn from_wasm_file(path: &Path, _: &Sandbox) -> Result<Self, HostError> {
         Err(no_wasm(&path.display().to_string()))
     }
 
     /// Loads a model from the bytes of a WASM module that came with `name`.
     ///
     /// # Errors
-    /// When the bytes are no such module, or its model breaks the ABI.
-    #[cfg(feature = "wasm")]
+    /// When the bytes are no such module, its model breaks the ABI, or this program was built without the `wasm`
+    /// feature.
     pub fn from_wasm_bytes(
         name: &str,
         bytes: &[u8],
         limits: &WasmLimits,
     ) -> Result<Self, HostError> {
+        Self::from_wasm_in(name, bytes, &Sandbox::new(limits))
+    }
+
+    /// As [`Self::from_wasm_bytes`], in a sandbox that may have other models too.
+    #[cfg(feature = "wasm")]
+    pub(crate) fn from_wasm_in(
+        name: &str,
+        bytes: &[u8],
+        sandbox: &Sandbox,
+    ) -> Result<Self, HostError> {
         let origin = Origin::Embedded(name.to_owned());
-        let raw = crate::wasm::load(&origin.to_string(), bytes, limits)?;
+        let raw = crate::wasm::load(&origin.to_string(), bytes, sandbox)?;
         Self::new(origin, Arc::new(raw))
     }
 
-    /// Says that this program was built without the WASM loader.
-    ///
-    /// # Errors
-    /// Always.
     #[cfg(not(feature = "wasm"))]
-    pub fn from_wasm_bytes(name: &str, _: &[u8], _: &WasmLimits) -> Result<Self, HostError> {
+    pub(crate) fn from_wasm_in(name: &str, _: &[u8], _: &Sandbox) -> Result<Self, HostError> {
         Err(no_wasm(name))
     }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use semver::{Version, VersionReq};
 
 use crate::builtin;
+use crate::sandbox::Sandbox;
 use crate::{HostError, LoadedModel, Note, Origin, Search, WasmLimits};
 
 /// Models by id. Of several with one id, the one that [`Search`] puts first is used; the others are
@@ -18,7 +19,7 @@ pub struct Registry {
     /// The ranks of `models`, one each, ascending.
     ranks: Vec<Rank>,
     notes: Vec<Note>,
-    limits: WasmLimits,
+    sandbox: Sandbox,
 }
 
 /// What goes before what.
@@ -53,8 +54,22 @@ impl Registry {
             shadowed: Vec::new(),
             ranks: Vec::new(),
             notes: Vec::new(),
-            limits: limits.clone(),
+            sandbox: Sandbox::new(limits),
         }
+    }
+
+    /// The registry of one asset: modules that are added to it share what [`WasmLimits::asset`] allows, within what all
+    /// modules of this registry do.
+    #[must_use]
+    pub fn of_asset(self) -> Self {
+        Self {
+            sandbox: self.sandbox.of_asset(),
+            ..self
+        }
+    }
+
+    pub(crate) fn sandbox(&self) -> &Sandbox {
+        &self.sandbox
     }
 
     pub(crate) fn add_builtin(&mut self) {
@@ -72,7 +87,7 @@ impl Registry {
     /// # Errors
     /// When the bytes are no module, or its model breaks the ABI.
     pub fn add_wasm_bytes(&mut self, name: &str, bytes: &[u8]) -> Result<(), HostError> {
-        let model = LoadedModel::from_wasm_bytes(name, bytes, &self.limits)?;
+        let model = LoadedModel::from_wasm_in(name, bytes, &self.sandbox)?;
         self.add(Rank::Embedded, model);
         Ok(())
     }
@@ -87,7 +102,7 @@ impl Registry {
         bytes: &[u8],
         declared: (&str, &str),
     ) -> Result<(), HostError> {
-        let model = LoadedModel::from_wasm_bytes(name, bytes, &self.limits)?;
+        let model = LoadedModel::from_wasm_in(name, bytes, &self.sandbox)?;
         let is = (model.id(), &model.descriptor().version[..]);
         if is != declared {
             let words = |(id, version): (&str, &str)| format!("{id} {version}");

@@ -57,7 +57,7 @@ impl Search {
     pub(crate) fn run(&self) -> Result<Registry, HostError> {
         let mut registry = Registry::empty(&self.limits);
         for path in &self.files {
-            let model = LoadedModel::from_file_within(path, &self.limits)?;
+            let model = LoadedModel::from_file_in(path, registry.sandbox())?;
             registry.add(Rank::File, model);
         }
         for dir in &self.dirs {
@@ -95,7 +95,7 @@ impl Search {
 
     fn add_all(&self, registry: &mut Registry, rank: Rank, files: Vec<PathBuf>) {
         for path in files {
-            match LoadedModel::from_file_within(&path, &self.limits) {
+            match LoadedModel::from_file_in(&path, registry.sandbox()) {
                 Ok(model) => registry.add(rank, model),
                 Err(error) => registry.note(Note::Broken { path, error }),
             }

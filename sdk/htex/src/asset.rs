@@ -1,7 +1,7 @@
 //! An asset with the models that can play it.
 
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use htex_format::{Manifest, Quantity, Representation};
 use htex_host::{Band, LoadedModel, Registry, StillSound, Synthesis};
@@ -16,6 +16,10 @@ use crate::{Error, Source, Voice};
 pub struct Asset {
     data: Arc<htex_format::Asset>,
     registry: Registry,
+    /// Whether the models that the asset brings along may run.
+    embedded: bool,
+    /// The model of each representation, once it was wanted.
+    models: Arc<[OnceLock<LoadedModel>]>,
 }
 
 /// How a voice is to be made.
@@ -55,17 +59,17 @@ impl Asset {
     /// Opens a file, to be played by the models it brings along and the built-in ones.
     ///
     /// # Errors
-    /// When the file cannot be read, is not a valid asset, or brings a model that cannot be loaded.
+    /// When the file cannot be read, or is not a valid asset.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
-        Self::new(htex_format::Asset::open(path.as_ref())?).with_embedded()
+        Ok(Self::new(htex_format::Asset::open(path.as_ref())?).with_embedded())
     }
 
     /// Opens an asset in memory.
     ///
     /// # Errors
-    /// When the bytes are not a valid asset, or bring a model that cannot be loaded.
+    /// When the bytes are not a valid asset.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
-        Self::new(htex_format::Asset::from_bytes(bytes)?).with_embedded()
+        Ok(Self::new(htex_format::Asset::from_bytes(bytes)?).with_embedded())
     }
 
     /// Takes an asset that is already read, to be played by the built-in models.
@@ -75,8 +79,13 @@ impl Asset {
 
     /// Takes an asset that is already read, to be played by the models of `registry`.
     pub fn with_registry(data: htex_format::Asset, registry: Registry) -> Self {
-        let data = Arc::new(data);
-        Self { data, registry }
+        let models = data.manifest.representations.iter();
+        Self {
+            models: models.map(|_| OnceLock::new()).collect(),
+            data: Arc::new(data),
+            registry: registry.of_asset(),
+            embedded: false,
+        }
     }
 
     /// Opens a file, to be played by the models it brings along and those of `registry`.
@@ -85,21 +94,42 @@ impl Asset {
     /// As [`Self::open`].
     pub fn open_with(path: impl AsRef<Path>, registry: Registry) -> Result<Self, Error> {
         let data = htex_format::Asset::open(path.as_ref())?;
-        Self::with_registry(data, registry).with_embedded()
+        Ok(Self::with_registry(data, registry).with_embedded())
     }
 
-    /// Adds the models the asset brings along, in their sandbox, before those of its registry (but
-    /// behind plugins named by their files). Without this call they are not run.
+    /// Lets the models run that the asset brings along, in their sandbox, before those of its registry (but behind plugins
+    /// named by their files). One is loaded when a representation of its id is wanted first, and what cannot be loaded, or
+    /// is of another model or version than the asset says, is an error there. Without this call they are not run.
+    #[must_use]
+    pub fn with_embedded(mut self) -> Self {
+        self.embedded = true;
+        self.models = self.models.iter().map(|_| OnceLock::new()).collect();
+        self
+    }
+
+    /// Loads a model that the asset brings along, by its id.
     ///
     /// # Errors
-    /// When a module cannot be loaded, or is of another model or version than the asset says.
-    pub fn with_embedded(mut self) -> Result<Self, Error> {
-        for (plugin, module) in self.data.manifest.plugins.iter().zip(&self.data.plugins) {
+    /// When it cannot be loaded, or is of another model or version than the asset says.
+    pub fn load_embedded(&self, id: &str) -> Result<(), Error> {
+        self.registry_with(id).map(drop)
+    }
+
+    /// The registry, and in it the model of this id that the asset brings along, if it does.
+    fn registry_with(&self, id: &str) -> Result<Registry, Error> {
+        let mut registry = self.registry.clone();
+        let plugins = self.data.manifest.plugins.iter().zip(&self.data.plugins);
+        for (plugin, module) in plugins.filter(|(plugin, _)| plugin.model == id) {
             let declared = (&plugin.model[..], &plugin.version[..]);
-            self.registry
-                .add_declared_wasm(&plugin.file, module, declared)?;
+            registry.add_declared_wasm(&plugin.file, module, declared)?;
         }
-        Ok(self)
+        Ok(registry)
+    }
+
+    /// Whether there is a model of this id that could play a representation; none is loaded.
+    pub fn knows_model(&self, id: &str) -> bool {
+        let brought = || self.data.manifest.plugins.iter().any(|p| p.model == id);
+        self.embedded && brought() || self.registry.find(id).is_ok()
     }
 
     /// What the asset says of itself.
@@ -112,7 +142,7 @@ impl Asset {
         self.data.manifest.quantity
     }
 
-    /// The models that can play it.
+    /// The models that can play it, without those it brings along.
     pub fn registry(&self) -> &Registry {
         &self.registry
     }
@@ -157,20 +187,12 @@ impl Asset {
         })
     }
 
-    /// What a voice with these effects makes of a motion, a speed (mm/s) and a force (newtons), and whether it lies
-    /// within what was recorded.
+    /// The motions that a representation was recorded at. No model is loaded.
     ///
     /// # Errors
     /// When there is no such representation.
-    pub fn coverage(
-        &self,
-        model: Option<&str>,
-        motion: (f64, f64),
-        effects: Effects,
-    ) -> Result<Coverage, Error> {
-        let r = self.representation(model)?;
-        let known = self.known(r, &self.model(r)?)?;
-        Ok(known.coverage(motion, effects))
+    pub fn motions(&self, model: Option<&str>) -> Result<Motions, Error> {
+        Ok(self.motions_of(self.representation(model)?))
     }
 
     /// The sound of a voice that is not streamed.
@@ -227,13 +249,12 @@ impl Asset {
         Ok(shape.iter().map(|m| m * level_rms).collect())
     }
 
-    /// The name, for people, of a model that the asset can be played by.
+    /// The model that plays a representation, named by its id or short name, else the best.
     ///
     /// # Errors
     /// As [`Self::voice`].
-    pub fn model_name(&self, model: &str) -> Result<String, Error> {
-        let model = self.model(self.representation(Some(model))?)?;
-        Ok(model.descriptor().name.clone())
+    pub fn loaded_model(&self, model: Option<&str>) -> Result<LoadedModel, Error> {
+        self.model(self.representation(model)?)
     }
 
     /// The full id of the model of a representation named by it or by its short name, else of the
@@ -281,11 +302,16 @@ impl Asset {
     }
 
     fn model(&self, representation: usize) -> Result<LoadedModel, Error> {
-        model_of(
-            &self.registry,
-            &self.data.manifest.representations[representation],
-        )
-        .cloned()
+        let kept = &self.models[representation];
+        if let Some(model) = kept.get() {
+            return Ok(model.clone());
+        }
+        let stored = &self.data.manifest.representations[representation];
+        let model = match self.embedded {
+            true => model_of(&self.registry_with(&stored.model)?, stored)?.clone(),
+            false => model_of(&self.registry, stored)?.clone(),
+        };
+        Ok(kept.get_or_init(|| model).clone())
     }
 
     /// What the asset knows of a representation, its parameters in the order of the model's fields.
@@ -295,7 +321,19 @@ impl Asset {
         let order = field_order(stored, model)?;
         let sets = self.data.parameters[representation].iter();
         let parameters: Result<_, _> = sets.map(|flat| order.arrange(flat)).collect();
-        let at = &stored.at;
+        Ok(Known {
+            motions: self.motions_of(representation),
+            level_rms: stored.at.iter().map(|a| a.level_rms).collect(),
+            parameters: parameters.map_err(|error| Error::Fields {
+                model: stored.model.clone(),
+                problem: error.to_string(),
+            })?,
+        })
+    }
+
+    fn motions_of(&self, representation: usize) -> Motions {
+        let manifest = &self.data.manifest;
+        let at = &manifest.representations[representation].at;
         let point = |condition: usize| {
             let condition = &manifest.conditions[condition];
             [
@@ -304,15 +342,10 @@ impl Asset {
             ]
         };
         let points: Vec<[f64; 2]> = at.iter().map(|a| point(a.condition)).collect();
-        Ok(Known {
+        Motions {
             mesh: Mesh::new(&points),
             explored: self.explored(representation),
-            level_rms: at.iter().map(|a| a.level_rms).collect(),
-            parameters: parameters.map_err(|error| Error::Fields {
-                model: stored.model.clone(),
-                problem: error.to_string(),
-            })?,
-        })
+        }
     }
 
     fn explored(&self, representation: usize) -> Explored {
@@ -349,11 +382,28 @@ fn nearest(all: &[Representation]) -> Option<usize> {
     (0..all.len()).min_by(|&a, &b| error(&all[a]).total_cmp(&error(&all[b])))
 }
 
+/// The motions that a representation was recorded at.
+#[derive(Debug, Clone)]
+pub struct Motions {
+    pub(crate) mesh: Mesh,
+    pub(crate) explored: Explored,
+}
+
+impl Motions {
+    /// What a voice with these effects makes of a motion, a speed (mm/s) and a force (newtons), and whether it lies
+    /// within what was recorded.
+    pub fn coverage(&self, speed_mm_s: f64, force_n: f64, effects: Effects) -> Coverage {
+        let weights = self.mesh.weights(speed_mm_s, force_n);
+        let nearest = self.mesh.motion(&weights);
+        let motion = (speed_mm_s, force_n).into();
+        self.explored.coverage(motion, nearest, effects)
+    }
+}
+
 /// What is known of a representation: parameters and level at each condition.
 #[derive(Debug, Clone)]
 pub(crate) struct Known {
-    pub(crate) mesh: Mesh,
-    pub(crate) explored: Explored,
+    pub(crate) motions: Motions,
     pub(crate) level_rms: Vec<f64>,
     pub(crate) parameters: Vec<Vec<f64>>,
 }
@@ -364,13 +414,6 @@ impl Known {
         self.parameters.iter().map(Vec::len).max().unwrap_or(0)
     }
 
-    /// What a voice makes of a motion.
-    pub(crate) fn coverage(&self, motion: (f64, f64), effects: Effects) -> Coverage {
-        let weights = self.mesh.weights(motion.0, motion.1);
-        let nearest = self.mesh.motion(&weights);
-        self.explored.coverage(motion.into(), nearest, effects)
-    }
-
     /// Parameters and level at a motion; the model decides in which space to mix.
     pub(crate) fn at(
         &self,
@@ -378,7 +421,7 @@ impl Known {
         speed_mm_s: f64,
         force_n: f64,
     ) -> Result<(Vec<f64>, f64), Error> {
-        let weights = self.mesh.weights(speed_mm_s, force_n);
+        let weights = self.motions.mesh.weights(speed_mm_s, force_n);
         let level_rms = weights.iter().map(|(i, w)| w * self.level_rms[i]).sum();
         let sets: Vec<&[f64]> = weights
             .iter()

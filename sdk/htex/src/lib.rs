@@ -22,7 +22,7 @@ mod playable;
 mod source;
 mod voice;
 
-pub use asset::{Asset, VoiceOptions};
+pub use asset::{Asset, Motions, VoiceOptions};
 pub use error::Error;
 pub use exploration::{Coverage, Effects, Explored, Reach, Recorded};
 pub use htex_format::{Finding, Limits, Manifest, Quantity, Severity};

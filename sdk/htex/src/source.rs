@@ -68,12 +68,12 @@ impl Source {
 
     /// The conditions that are known.
     pub fn explored(&self) -> Explored {
-        self.known.explored
+        self.known.motions.explored
     }
 
     /// What a voice with these effects makes of a motion (mm/s, newtons). Does not allocate.
     pub fn coverage(&self, speed_mm_s: f64, force_n: f64, effects: Effects) -> Coverage {
-        self.known.coverage((speed_mm_s, force_n), effects)
+        self.known.motions.coverage(speed_mm_s, force_n, effects)
     }
 
     /// Glides to the spectrum at this scanning speed (mm/s) and normal force (newtons), clamped to
@@ -89,7 +89,7 @@ impl Source {
         if self.motion == (speed_mm_s, force_n) || self.known.parameters.len() < 2 {
             return Ok(self.level_rms);
         }
-        let weights = self.known.mesh.weights(speed_mm_s, force_n);
+        let weights = self.known.motions.mesh.weights(speed_mm_s, force_n);
         self.retune(&weights)?;
         self.motion = (speed_mm_s, force_n);
         let level_rms = |(i, weight): (usize, f64)| weight * self.known.level_rms[i];

@@ -1,6 +1,6 @@
 //! Whether a scene's motion lies within what its textures were recorded at.
 
-use htex::{Asset, Coverage, Effects, Source, VoiceOptions};
+use htex::{Asset, Coverage, Effects, Motions};
 use htex_format::Findings;
 
 use crate::call::topmost;
@@ -21,15 +21,15 @@ pub(crate) fn check(
 ) {
     let fingers = fingers(scene, trace);
     for (i, asset) in assets.iter().enumerate() {
-        // One that cannot be played has its finding already.
-        let Ok(source) = source(asset, &scene.surfaces[i]) else {
+        // One that is not there has its finding already.
+        let Ok(motions) = motions(asset, &scene.surfaces[i]) else {
             continue;
         };
         let here = |finger: &&Finger| match trace {
             Some(_) => topmost(&scene.surfaces, finger) == Some(i),
             None => true,
         };
-        let (share, farthest) = beyond(fingers.iter().filter(here), &source, effects(scene));
+        let (share, farthest) = beyond(fingers.iter().filter(here), &motions, effects(scene));
         if let (true, Some(farthest)) = (share > MOST, farthest) {
             let percent = 100.0 * share;
             let message =
@@ -39,12 +39,9 @@ pub(crate) fn check(
     }
 }
 
-fn source(asset: &Asset, surface: &Surface) -> Result<Source, htex::Error> {
+fn motions(asset: &Asset, surface: &Surface) -> Result<Motions, htex::Error> {
     let name = surface.representation.as_str();
-    asset.source(&VoiceOptions {
-        model: (name != "auto").then_some(name),
-        ..VoiceOptions::default()
-    })
+    asset.motions((name != "auto").then_some(name))
 }
 
 fn effects(scene: &Scene) -> Effects {
@@ -80,12 +77,12 @@ fn fingers(scene: &Scene, trace: Option<&Trace>) -> Vec<Finger> {
 /// Which part of the fingers that slide is played as at another motion, and the farthest of them.
 fn beyond<'a>(
     fingers: impl Iterator<Item = &'a Finger>,
-    source: &Source,
+    motions: &Motions,
     effects: Effects,
 ) -> (f64, Option<Coverage>) {
     let (mut all, mut beyond, mut farthest) = (0.0, 0.0, None::<Coverage>);
     for finger in fingers.filter(|finger| finger.slides()) {
-        let coverage = source.coverage(finger.speed_mm_s, finger.force_n, effects);
+        let coverage = motions.coverage(finger.speed_mm_s, finger.force_n, effects);
         all += 1.0;
         if coverage.excess() > 0.0 {
             beyond += 1.0;

@@ -271,9 +271,9 @@ fn open_asset(
     let opened = htex_format::Asset::open(&path)
         .map_err(htex::Error::from)
         .map(|data| Asset::with_registry(data, around.models.clone()))
-        .and_then(|asset| match around.embedded {
+        .map(|asset| match around.embedded {
             true => asset.with_embedded(),
-            false => Ok(asset),
+            false => asset,
         });
     opened.map_err(|error| match &error {
         htex::Error::Read(htex_format::ReadError::Io { error, .. }) if is_missing(error) => {

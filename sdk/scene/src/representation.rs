@@ -86,9 +86,7 @@ fn candidates(scene: &LoadedScene, call: &Call, surface: usize) -> Result<Candid
             named: true,
         });
     }
-    let known = models
-        .clone()
-        .filter(|id| asset.registry().find(id).is_ok());
+    let known = models.clone().filter(|id| asset.knows_model(id));
     let mut parts = known
         .map(|id| Part::new(scene, call, surface, id))
         .collect::<Result<Vec<_>, _>>()?;

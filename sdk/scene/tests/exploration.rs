@@ -257,7 +257,12 @@ fn a_voice_says_what_it_makes_of_a_motion() {
     assert_eq!(coverage.excess(), 1.0);
 
     // Four conditions, 60 and 120 mm/s by 0.3 and 0.6 N.
-    let of = |motion| grid().coverage(None, motion, Effects::default()).unwrap();
+    let of = |motion: (f64, f64)| {
+        grid()
+            .motions(None)
+            .unwrap()
+            .coverage(motion.0, motion.1, Effects::default())
+    };
     assert!(of((100.0, 0.4)).is_inside() && of((122.0, 0.6)).is_inside());
     let fast = of((240.0, 0.4));
     assert_eq!(fast.force, Reach::Inside);

@@ -149,10 +149,7 @@ fn load(data: htex_format::Asset) {
         ..Search::builtin()
     };
     let registry = Registry::search(&search).expect("nothing is searched");
-    let asset = match Asset::with_registry(data, registry).with_embedded() {
-        Ok(asset) => asset,
-        Err(error) => return sentence(&error),
-    };
+    let asset = Asset::with_registry(data, registry).with_embedded();
     let mut block = [f32::NAN; 64];
     match asset.voice(&Default::default()) {
         Ok(mut voice) => {

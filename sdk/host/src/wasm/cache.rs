@@ -1,8 +1,7 @@
 //! Compiled modules on disk.
 //!
-//! A file is named by the module's hash and the engine's, and begins with the hash of what follows:
-//! damage is found before the engine sees it. The hash is no signature. See
-//! [`WasmCache`] on who is trusted.
+//! A file is named by the module's hash and the engine's, and begins with a keyed hash of its name and of what follows:
+//! damage is found, and what another user put there. See [`WasmCache`] on who is trusted.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io;
@@ -11,73 +10,92 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use wasmtime::{Engine, Module};
 
+use super::key::Key;
+use super::private;
 use crate::{WasmCache, folders};
 
 /// Most files that are kept.
 const MOST_FILES: usize = 64;
 const HASH: usize = blake3::OUT_LEN;
+const EXTENSION: &str = ".cwasm";
 
-/// The compiled module, and whether it was found in the cache.
-pub(super) fn compiled(
-    engine: &Engine,
-    bytes: &[u8],
-    cache: &WasmCache,
-) -> Result<(Module, bool), String> {
-    let file = folder(cache).map(|folder| folder.join(name(engine, bytes)));
-    if let Some(module) = file.as_deref().and_then(|file| kept(engine, file)) {
-        return Ok((module, true));
-    }
-    let module = Module::new(engine, bytes).map_err(|e| format!("no valid module: {e:#}"))?;
-    if let (Some(file), Ok(artifact)) = (file, module.serialize()) {
-        // Without a cache everything works, only slower.
-        let _ = keep(&file, &artifact);
-    }
-    Ok((module, false))
+/// A folder of compiled modules that is this user's alone, and the key of its files.
+pub(super) struct Cache {
+    folder: PathBuf,
+    key: Key,
 }
 
-fn name(engine: &Engine, bytes: &[u8]) -> String {
+impl Cache {
+    /// The cache, its folder and key made if need be; `None` where it is off, or not this user's alone.
+    pub(super) fn of(cache: &WasmCache) -> Option<Self> {
+        let folder = match cache {
+            WasmCache::User => folders::cache()?.join("wasm"),
+            WasmCache::Dir(folder) => folder.clone(),
+            WasmCache::Off => return None,
+        };
+        private::folder(&folder).ok()?;
+        let key = Key::of(&folders::config()?).ok()?;
+        Some(Self { folder, key })
+    }
+
+    /// A kept module, if its file is there, sound and this user's.
+    pub(super) fn find(&self, engine: &Engine, module: &[u8]) -> Option<Module> {
+        let name = name(engine, module);
+        let bytes = std::fs::read(self.folder.join(&name)).ok()?;
+        let (tag, artifact) = bytes.split_at_checked(HASH)?;
+        if self.key.tag(&name, artifact) != *<&[u8; HASH]>::try_from(tag).ok()? {
+            return None;
+        }
+        // SAFETY: the artifact is what `serialize` gave for this module: its tag was made with a key that this user
+        // alone can read. The engine itself refuses artifacts of other versions and settings.
+        unsafe { Module::deserialize(engine, artifact) }.ok()
+    }
+
+    /// Writes a file beside and renames it into place.
+    pub(super) fn keep(&self, engine: &Engine, module: &[u8], artifact: &[u8]) -> io::Result<()> {
+        self.keep_as(&name(engine, module), artifact)
+    }
+
+    fn keep_as(&self, name: &str, artifact: &[u8]) -> io::Result<()> {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let count = COUNT.fetch_add(1, Ordering::Relaxed);
+        let file = self.folder.join(name);
+        let beside = file.with_extension(format!("{}-{count}.part", std::process::id()));
+        let content = [&self.key.tag(name, artifact)[..], artifact].concat();
+        let written =
+            std::fs::write(&beside, content).and_then(|()| std::fs::rename(&beside, file));
+        if written.is_err() {
+            let _ = std::fs::remove_file(&beside);
+        }
+        forget_oldest(&self.folder)?;
+        written
+    }
+}
+
+fn name(engine: &Engine, module: &[u8]) -> String {
     let mut hasher = DefaultHasher::new();
     engine.precompile_compatibility_hash().hash(&mut hasher);
-    format!(
-        "{}-{:016x}.cwasm",
-        blake3::hash(bytes).to_hex(),
-        hasher.finish()
-    )
+    let hash = blake3::hash(module).to_hex();
+    format!("{hash}-{:016x}{EXTENSION}", hasher.finish())
 }
 
-/// A kept module, if its file is there and sound.
-fn kept(engine: &Engine, file: &Path) -> Option<Module> {
-    let bytes = std::fs::read(file).ok()?;
-    let (hash, artifact) = bytes.split_at_checked(HASH)?;
-    if blake3::hash(artifact).as_bytes() != hash {
-        return None;
-    }
-    // SAFETY: the artifact is what `serialize` gave: `folder` answers only a folder that nobody
-    // else may write to, and its hash says that it is whole. The engine itself refuses artifacts
-    // of other versions and settings.
-    unsafe { Module::deserialize(engine, artifact) }.ok()
+/// Whether a file is named as [`name`] names them.
+fn is_own(name: &str) -> bool {
+    let hex = |text: &str, len| text.len() == len && text.bytes().all(|c| c.is_ascii_hexdigit());
+    name.strip_suffix(EXTENSION)
+        .and_then(|name| name.split_once('-'))
+        .is_some_and(|(module, engine)| hex(module, 2 * HASH) && hex(engine, 16))
 }
 
-/// Writes a file beside and renames it into place.
-fn keep(file: &Path, artifact: &[u8]) -> io::Result<()> {
-    static COUNT: AtomicU32 = AtomicU32::new(0);
-    let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    let beside = file.with_extension(format!("{}-{count}.part", std::process::id()));
-    let content = [blake3::hash(artifact).as_bytes(), artifact].concat();
-    let written = std::fs::write(&beside, content).and_then(|()| std::fs::rename(&beside, file));
-    if written.is_err() {
-        let _ = std::fs::remove_file(&beside);
-    }
-    file.parent().map_or(Ok(()), forget_oldest)?;
-    written
-}
-
-/// Removes the files written longest ago, so that the folder does not grow for ever.
+/// Removes the cache's files written longest ago, so that the folder does not grow for ever. Others stay.
 fn forget_oldest(folder: &Path) -> io::Result<()> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder)? {
         let entry = entry?;
-        files.push((entry.metadata()?.modified()?, entry.path()));
+        let is_file = entry.file_type()?.is_file();
+        if is_file && entry.file_name().to_str().is_some_and(is_own) {
+            files.push((entry.metadata()?.modified()?, entry.path()));
+        }
     }
     files.sort();
     for (_, path) in files.iter().rev().skip(MOST_FILES) {
@@ -86,109 +104,128 @@ fn forget_oldest(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// The folder, made if need be; `None` if there is none that this user alone may write to.
-fn folder(cache: &WasmCache) -> Option<PathBuf> {
-    let folder = match cache {
-        WasmCache::User => folders::cache()?.join("wasm"),
-        WasmCache::Dir(folder) => folder.clone(),
-        WasmCache::Off => return None,
-    };
-    make_private(&folder).ok()?.then_some(folder)
-}
-
-#[cfg(unix)]
-fn make_private(folder: &Path) -> io::Result<bool> {
-    use std::os::unix::fs::{DirBuilderExt, PermissionsExt};
-    std::fs::DirBuilder::new()
-        .recursive(true)
-        .mode(0o700)
-        .create(folder)?;
-    let permissions = std::fs::metadata(folder)?.permissions();
-    if permissions.mode() & 0o022 != 0 {
-        return Ok(false);
-    }
-    // Only the owner may do this, so it also tells whose folder it is.
-    std::fs::set_permissions(folder, PermissionsExt::from_mode(0o700))?;
-    Ok(true)
-}
-
-#[cfg(not(unix))]
-fn make_private(folder: &Path) -> io::Result<bool> {
-    // The user's own folders are the user's alone by inheritance.
-    std::fs::create_dir_all(folder).map(|()| true)
-}
-
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 
     const MODULE: &[u8] = b"\0asm\x01\0\0\0";
 
-    /// Whether compiling found the module in the cache.
-    fn found(engine: &Engine, folder: &Path) -> bool {
-        let cache = WasmCache::Dir(folder.to_owned());
-        compiled(engine, MODULE, &cache).unwrap().1
+    struct Place {
+        dir: tempfile::TempDir,
+        engine: Engine,
     }
 
-    fn only_file(folder: &Path) -> PathBuf {
-        let files: Vec<_> = std::fs::read_dir(folder).unwrap().collect();
-        assert_eq!(files.len(), 1, "one file, and none left beside it");
-        files[0].as_ref().unwrap().path()
+    impl Place {
+        fn new() -> Self {
+            let (dir, engine) = (tempfile::tempdir().unwrap(), Engine::default());
+            Self { dir, engine }
+        }
+
+        fn folder(&self) -> PathBuf {
+            self.dir.path().join("wasm")
+        }
+
+        fn cache(&self) -> Option<Cache> {
+            let folder = self.folder();
+            private::folder(&folder).ok()?;
+            let key = Key::of(&self.dir.path().join("config")).ok()?;
+            Some(Cache { folder, key })
+        }
+
+        /// Whether the module is found; it is there afterwards.
+        fn found(&self) -> bool {
+            let cache = self.cache().unwrap();
+            let found = cache.find(&self.engine, MODULE).is_some();
+            let module = Module::new(&self.engine, MODULE).unwrap();
+            let artifact = module.serialize().unwrap();
+            cache.keep(&self.engine, MODULE, &artifact).unwrap();
+            found
+        }
+
+        fn only_file(&self) -> PathBuf {
+            let files: Vec<_> = std::fs::read_dir(self.folder()).unwrap().collect();
+            assert_eq!(files.len(), 1, "one file, and none left beside it");
+            files[0].as_ref().unwrap().path()
+        }
     }
 
     #[test]
-    fn a_module_is_compiled_once_and_damage_is_harmless() {
-        let dir = tempfile::tempdir().unwrap();
-        let folder = dir.path().join("wasm");
-        let engine = Engine::default();
-        assert!(!found(&engine, &folder));
-        assert!(found(&engine, &folder));
-        let file = only_file(&folder);
+    fn a_module_is_kept_and_what_the_key_has_not_made_is_not_used() {
+        let mut place = Place::new();
+        assert!(!place.found());
+        assert!(place.found());
+        let file = place.only_file();
         let whole = std::fs::read(&file).unwrap();
         let mut flipped = whole.clone();
         flipped[whole.len() / 2] ^= 1;
-        let foreign = b"not ours";
-        let foreign = [blake3::hash(foreign).as_bytes(), &foreign[..]].concat();
-        for damaged in [&flipped[..], &whole[..40], b"", &foreign] {
+        let artifact = &whole[HASH..];
+        let unkeyed = [blake3::hash(artifact).as_bytes(), artifact].concat();
+        // A sound file of another module's name.
+        let cache = place.cache().unwrap();
+        let other = cache.key.tag("another", artifact);
+        let renamed = [&other[..], artifact].concat();
+        for damaged in [&flipped[..], &whole[..40], b"", &unkeyed, &renamed] {
             std::fs::write(&file, damaged).unwrap();
-            assert!(!found(&engine, &folder));
-            assert!(found(&engine, &folder), "made again");
+            assert!(!place.found());
+            assert!(place.found(), "made again");
         }
+        // Of another user, who has another key.
+        std::fs::remove_dir_all(place.dir.path().join("config")).unwrap();
+        assert!(!place.found());
         // An engine of other settings has a file of its own.
-        let other = Engine::new(wasmtime::Config::new().consume_fuel(true)).unwrap();
-        assert!(!found(&other, &folder));
+        place.engine = Engine::new(wasmtime::Config::new().consume_fuel(true)).unwrap();
+        assert!(!place.found());
     }
 
     #[test]
-    fn the_folder_does_not_grow_for_ever() {
-        let dir = tempfile::tempdir().unwrap();
-        let folder = dir.path().join("wasm");
-        found(&Engine::default(), &folder);
-        let first = only_file(&folder);
+    fn the_folder_does_not_grow_for_ever_and_only_its_own_files_go() {
+        let place = Place::new();
+        place.found();
+        let first = place.only_file();
+        let theirs = ["notes.txt", "model.cwasm", "1.cwasm"].map(|name| place.folder().join(name));
         let long_ago = std::time::SystemTime::UNIX_EPOCH;
-        let file = std::fs::File::options().write(true).open(&first).unwrap();
-        file.set_modified(long_ago).unwrap();
-        for i in 0..MOST_FILES + 3 {
-            keep(&folder.join(format!("{i}.cwasm")), b"x").unwrap();
+        for path in theirs.iter().chain([&first]) {
+            let open = std::fs::File::options()
+                .write(true)
+                .create(true)
+                .truncate(false)
+                .open(path);
+            open.unwrap().set_modified(long_ago).unwrap();
         }
-        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), MOST_FILES);
+        let cache = place.cache().unwrap();
+        for i in 0..MOST_FILES + 3 {
+            let name = format!("{i:064x}-{i:016x}{EXTENSION}");
+            cache.keep_as(&name, b"x").unwrap();
+        }
+        let left = std::fs::read_dir(place.folder()).unwrap().count();
+        assert_eq!(left, MOST_FILES + theirs.len());
         assert!(!first.exists());
+        assert!(theirs.iter().all(|path| path.exists()));
     }
 
     #[cfg(unix)]
     #[test]
-    fn a_folder_that_others_may_write_to_is_not_used() {
+    fn a_folder_or_a_key_that_others_may_change_or_own_is_not_used() {
         use std::os::unix::fs::PermissionsExt;
-        let dir = tempfile::tempdir().unwrap();
-        let folder = dir.path().join("wasm");
-        let engine = Engine::default();
-        found(&engine, &folder);
-        let mode = |mode| std::fs::set_permissions(&folder, PermissionsExt::from_mode(mode));
-        assert_eq!(
-            std::fs::metadata(&folder).unwrap().permissions().mode() & 0o777,
-            0o700
-        );
-        mode(0o777).unwrap();
-        assert!(!found(&engine, &folder));
+        let place = Place::new();
+        place.found();
+        let set = |path: &Path, mode| {
+            std::fs::set_permissions(path, PermissionsExt::from_mode(mode)).unwrap();
+        };
+        let mode = std::fs::metadata(place.folder()).unwrap().permissions();
+        assert_eq!(mode.mode() & 0o777, 0o700);
+        set(&place.folder(), 0o777);
+        assert!(place.cache().is_none());
+        set(&place.folder(), 0o700);
+        let key = place.dir.path().join("config/wasm.key");
+        set(&key, 0o644);
+        assert!(place.cache().is_none());
+        set(&key, 0o600);
+        assert!(place.cache().is_some());
+        // As root, another user's.
+        if std::os::unix::fs::chown(place.folder(), Some(12345), None).is_ok() {
+            assert!(place.cache().is_none());
+        }
     }
 }

@@ -2,8 +2,9 @@
 
 use std::time::Duration;
 
-use wasmtime::{Config, Engine};
+use wasmtime::{Config, Engine, OptLevel, RegallocAlgorithm};
 
+use super::compile::Effort;
 use crate::WasmLimits;
 
 /// Shortest and longest time between two ticks.
@@ -17,9 +18,8 @@ pub(super) struct WasmEngine {
 }
 
 impl WasmEngine {
-    /// Sets up an engine by the limits, and starts its clock.
-    pub(super) fn new(limits: &WasmLimits) -> Result<Self, String> {
-        let engine = Engine::new(&config(limits)).map_err(|e| format!("{e:#}"))?;
+    /// Starts an engine's clock.
+    pub(super) fn start(engine: Engine, limits: &WasmLimits) -> Result<Self, String> {
         let shortest = limits.call.min(limits.render);
         let tick = (shortest / 8).clamp(TICK.0, TICK.1);
         let clock = engine.weak();
@@ -47,8 +47,14 @@ impl WasmEngine {
     }
 }
 
-fn config(limits: &WasmLimits) -> Config {
+/// An engine without a clock, which is enough to compile.
+pub(super) fn engine(limits: &WasmLimits, effort: Effort) -> Result<Engine, String> {
     let mut config = Config::new();
+    if effort == Effort::Quick {
+        config
+            .cranelift_opt_level(OptLevel::None)
+            .cranelift_regalloc_algorithm(RegallocAlgorithm::SinglePass);
+    }
     config
         .epoch_interruption(true)
         .consume_fuel(limits.fuel.is_some())
@@ -57,5 +63,5 @@ fn config(limits: &WasmLimits) -> Config {
         .wasm_relaxed_simd(false)
         .wasm_memory64(false)
         .wasm_multi_memory(false);
-    config
+    Engine::new(&config).map_err(|e| format!("{e:#}"))
 }

@@ -16,14 +16,9 @@ impl Fault {
     /// A trap, in words that name the limit if there was one.
     pub(super) fn of(error: &wasmtime::Error, limits: &WasmLimits, deadline_ms: u128) -> Self {
         let Some(trap) = error.downcast_ref::<Trap>() else {
-            // Growing memory or a table over its limit is no trap but an error with its own words.
-            return Self(format!(
-                "the module was stopped: {} (memory is limited to {} bytes, tables to {} elements)",
-                // Around it stand the functions that were running, a line each.
-                error.root_cause(),
-                limits.memory_bytes,
-                limits.table_elements
-            ));
+            // What `Usage` refuses is no trap but an error with its own words.
+            // Around it stand the functions that were running, a line each.
+            return Self(format!("the module was stopped: {}", error.root_cause()));
         };
         Self(match trap {
             Trap::Interrupt => {

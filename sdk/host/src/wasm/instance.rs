@@ -1,15 +1,14 @@
 //! One instance of a module: its functions, and a room in its memory for what is passed.
 
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use wasmtime::{
-    Instance as Raw, Memory, Store, StoreLimits, StoreLimitsBuilder, TypedFunc, WasmParams,
-    WasmResults,
-};
+use wasmtime::{Instance as Raw, Memory, Store, TypedFunc, WasmParams, WasmResults};
 
+use super::allowance::Allowance;
 use super::fault::Fault;
 use super::module::WasmModule;
+use super::usage::Usage;
 
 /// Addresses and lengths in the module's memory.
 type Usize = u32;
@@ -53,9 +52,11 @@ type MagnitudeParams = (Usize, Usize, f64, f64, Usize, Usize, Usize);
 /// An instance, alone in its store.
 pub(super) struct Instance {
     module: Arc<WasmModule>,
-    store: Store<StoreLimits>,
+    store: Store<Usage>,
     memory: Memory,
     functions: Functions,
+    /// The time of a voice; other calls take theirs of the modules' budget.
+    allowance: Option<Allowance>,
     /// Where the room is, and its length; nowhere at first.
     room: (Usize, Usize),
 }
@@ -71,20 +72,16 @@ impl Instance {
     /// Makes an instance, which runs the module's start function.
     pub(super) fn new(module: &Arc<WasmModule>) -> Result<Self, Fault> {
         let limits = &module.limits;
-        let used = StoreLimitsBuilder::new()
-            .memory_size(limits.memory_bytes)
-            .table_elements(limits.table_elements)
-            .instances(1)
-            .memories(1)
-            .tables(4)
-            .trap_on_grow_failure(true)
-            .build();
-        let mut store = Store::new(&module.engine.engine, used);
-        store.limiter(|used| used);
-        let fault = |e| Fault::of(&e, limits, limits.call.as_millis());
-        arm(&mut store, module, limits.call).map_err(fault)?;
-        let raw = Raw::new(&mut store, &module.module, &[])
-            .map_err(|e| Fault(format!("at its start: {}", fault(e).0)))?;
+        let usage = Usage::new(limits, &module.budget).map_err(Fault)?;
+        let mut store = Store::new(&module.engine.engine, usage);
+        store.limiter(|usage| usage);
+        let time = limits.call.min(module.budget.time_left().map_err(Fault)?);
+        let fault = |e| Fault::of(&e, limits, time.as_millis());
+        arm(&mut store, module, time).map_err(fault)?;
+        let start = Instant::now();
+        let raw = Raw::new(&mut store, &module.module, &[]);
+        module.budget.spend(start.elapsed());
+        let raw = raw.map_err(|e| Fault(format!("at its start: {}", fault(e).0)))?;
         let memory = raw
             .get_memory(&mut store, "memory")
             .ok_or_else(|| Fault("the module exports no `memory`".to_owned()))?;
@@ -93,8 +90,36 @@ impl Instance {
             functions: Functions::of(&mut store, &raw)?,
             store,
             memory,
+            allowance: None,
             room: (0, 0),
         })
+    }
+
+    /// From now on this is a voice, which renders at a rate and has its own time.
+    pub(super) fn be_a_voice(&mut self, rate_hz: f64) {
+        self.allowance = Some(Allowance::new(rate_hz));
+    }
+
+    /// Adds the time of samples that were rendered.
+    pub(super) fn earn(&mut self, samples: usize) {
+        if let Some(allowance) = &mut self.allowance {
+            allowance.earn(samples);
+        }
+    }
+
+    /// The time that this instance may take.
+    fn time_left(&self) -> Result<Duration, String> {
+        match &self.allowance {
+            Some(allowance) => allowance.left(),
+            None => self.module.budget.time_left(),
+        }
+    }
+
+    fn spend(&mut self, time: Duration) {
+        match &mut self.allowance {
+            Some(allowance) => allowance.spend(time),
+            None => self.module.budget.spend(time),
+        }
     }
 
     /// Calls one of the functions within the deadline.
@@ -104,14 +129,16 @@ impl Instance {
         function: impl Fn(&Functions) -> &TypedFunc<P, R>,
         parameters: P,
     ) -> Result<R, Fault> {
-        let limits = &self.module.limits;
-        let time = match deadline {
-            Deadline::Call => limits.call,
-            Deadline::Render => limits.render,
+        let most = match deadline {
+            Deadline::Call => self.module.limits.call,
+            Deadline::Render => self.module.limits.render,
         };
-        arm(&mut self.store, &self.module, time)
-            .and_then(|()| function(&self.functions).call(&mut self.store, parameters))
-            .map_err(|e| Fault::of(&e, limits, time.as_millis()))
+        let time = most.min(self.time_left().map_err(Fault)?);
+        let start = Instant::now();
+        let result = arm(&mut self.store, &self.module, time)
+            .and_then(|()| function(&self.functions).call(&mut self.store, parameters));
+        self.spend(start.elapsed());
+        result.map_err(|e| Fault::of(&e, &self.module.limits, time.as_millis()))
     }
 
     /// The address of a room of at least `bytes`, a multiple of 8, in the module's memory. It stays
@@ -200,11 +227,7 @@ fn outside() -> Fault {
 }
 
 /// Gives the next call its time and its instructions.
-fn arm(
-    store: &mut Store<StoreLimits>,
-    module: &WasmModule,
-    time: Duration,
-) -> wasmtime::Result<()> {
+fn arm(store: &mut Store<Usage>, module: &WasmModule, time: Duration) -> wasmtime::Result<()> {
     store.set_epoch_deadline(module.engine.ticks(time));
     match module.limits.fuel {
         Some(fuel) => store.set_fuel(fuel),
@@ -213,7 +236,7 @@ fn arm(
 }
 
 impl Functions {
-    fn of(store: &mut Store<StoreLimits>, raw: &Raw) -> Result<Self, Fault> {
+    fn of(store: &mut Store<Usage>, raw: &Raw) -> Result<Self, Fault> {
         Ok(Self {
             abi_version: get(store, raw, "htex_model_abi_version")?,
             descriptor: get(store, raw, "htex_model_descriptor")?,
@@ -234,7 +257,7 @@ impl Functions {
 }
 
 fn get<P: WasmParams, R: WasmResults>(
-    store: &mut Store<StoreLimits>,
+    store: &mut Store<Usage>,
     raw: &Raw,
     name: &str,
 ) -> Result<TypedFunc<P, R>, Fault> {

@@ -1,17 +1,24 @@
 //! Models in WASM modules, in a sandbox.
 //!
 //! A module imports nothing, so it can do nothing but compute: no file, no clock, no thread. What
-//! it may use of memory, stack and time is limited ([`WasmLimits`]). Each voice is an instance of
-//! its own, with its own memory: one that traps leaves the others alone, and rendering takes no
+//! it may use of memory, stack and time is limited ([`WasmLimits`](crate::WasmLimits)), and so is compiling it. Each
+//! voice is an instance of its own, with its own memory: one that traps leaves the others alone, and rendering takes no
 //! lock. All other calls share one instance, made again after a trap.
 
+mod allowance;
 mod cache;
 mod calls;
+mod compile;
 mod engine;
+mod estimate;
 mod fault;
 mod instance;
+mod key;
 mod model;
 mod module;
+mod private;
+mod process;
+mod usage;
 mod voice;
 
 use std::path::Path;
@@ -19,31 +26,29 @@ use std::sync::Arc;
 
 pub(crate) use model::WasmModel;
 use module::WasmModule;
+pub use process::serve_compiler;
 
-use crate::{HostError, WasmLimits};
+use crate::HostError;
+use crate::sandbox::Sandbox;
 
 /// Loads a model from the bytes of a module that came from `origin` (for messages).
-pub(crate) fn load(
-    origin: &str,
-    bytes: &[u8],
-    limits: &WasmLimits,
-) -> Result<WasmModel, HostError> {
+pub(crate) fn load(origin: &str, bytes: &[u8], sandbox: &Sandbox) -> Result<WasmModel, HostError> {
     let error = |what| HostError::Load {
         path: origin.to_owned(),
         what,
     };
-    let module = WasmModule::new(bytes, limits).map_err(error)?;
+    let module = WasmModule::new(bytes, sandbox).map_err(error)?;
     WasmModel::new(origin, Arc::new(module))
 }
 
 /// Loads a model from a file.
-pub(crate) fn load_file(path: &Path, limits: &WasmLimits) -> Result<WasmModel, HostError> {
+pub(crate) fn load_file(path: &Path, sandbox: &Sandbox) -> Result<WasmModel, HostError> {
     let origin = path.display().to_string();
-    let bytes = read(path, limits.module_bytes).map_err(|error| HostError::Load {
+    let bytes = read(path, sandbox.limits.module_bytes).map_err(|error| HostError::Load {
         path: origin.clone(),
         what: error.to_string(),
     })?;
-    load(&origin, &bytes, limits)
+    load(&origin, &bytes, sandbox)
 }
 
 /// Reads a file, and one byte more than a module may have at most.

@@ -5,35 +5,38 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use wasmtime::{ExternType, Module};
 
-use super::cache;
+use super::compile;
 use super::engine::WasmEngine;
 use crate::WasmLimits;
+use crate::sandbox::{Budget, Sandbox};
 
 /// A compiled module and what its instances share.
 pub(super) struct WasmModule {
     pub(super) engine: WasmEngine,
     pub(super) module: Module,
     pub(super) limits: WasmLimits,
+    pub(super) budget: Arc<Budget>,
     voices: AtomicUsize,
 }
 
 impl WasmModule {
     /// Checks and compiles a module, or takes it from the cache.
-    pub(super) fn new(bytes: &[u8], limits: &WasmLimits) -> Result<Self, String> {
+    pub(super) fn new(bytes: &[u8], sandbox: &Sandbox) -> Result<Self, String> {
+        let limits = &sandbox.limits;
         if bytes.len() > limits.module_bytes {
             return Err(format!(
                 "the module is larger than the {} bytes allowed",
                 limits.module_bytes
             ));
         }
-        let engine = WasmEngine::new(limits)?;
-        let (module, _) = cache::compiled(&engine.engine, bytes, &limits.cache)?;
+        let module = compile::compiled(bytes, sandbox)?;
         check_imports(&module)?;
         check_memory(&module)?;
         Ok(Self {
-            engine,
+            engine: WasmEngine::start(module.engine().clone(), limits)?,
             module,
             limits: limits.clone(),
+            budget: Arc::clone(&sandbox.budget),
             voices: AtomicUsize::new(0),
         })
     }

@@ -40,6 +40,7 @@ impl WasmVoice {
         if handle == 0 {
             return Err(fault(Fault("it answered the handle 0".to_owned())));
         }
+        instance.be_a_voice(rate_hz);
         Ok(Self {
             instance,
             handle,
@@ -76,6 +77,7 @@ impl RawVoice for WasmVoice {
             if answer < 0 {
                 return answer;
             }
+            self.instance.earn(block.len());
         }
         0
     }

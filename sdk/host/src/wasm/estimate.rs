@@ -1,0 +1,181 @@
+//! How long compiling a module takes at most, found out before it is compiled.
+//!
+//! The compiler's time and memory grow faster than a module: with the operators of one function, with values that live
+//! across branches, with blocks within blocks. Each of these is a term here. A sum is a bound, within a factor of two on the
+//! machine it was measured on, and no guess at what is usual.
+
+use wasmparser::{
+    BinaryReaderError, FuncValidator, FunctionBody, Operator, OperatorsReader, Parser, Payload,
+    ValidPayload, Validator, ValidatorResources, WasmFeatures,
+};
+
+/// Times that compiling a module takes at most, microseconds.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Estimate {
+    /// With everything the compiler can do for the speed of the code.
+    pub(super) optimised_us: f64,
+    /// With what takes a time proportional to the module, nearly.
+    pub(super) quick_us: f64,
+}
+
+/// Estimates how long a module is compiled.
+///
+/// # Errors
+/// When it is no valid module of WebAssembly 2.0, which is what models may use (specification of the model ABI,
+/// section 7).
+pub(super) fn estimate(module: &[u8]) -> Result<Estimate, String> {
+    let wrong = |e: BinaryReaderError| format!("no valid module: {e}");
+    let mut validator = Validator::new_with_features(WasmFeatures::WASM2);
+    let mut all = Estimate::default();
+    for payload in Parser::new(0).parse_all(module) {
+        let payload = payload.map_err(wrong)?;
+        all.add(section_us(&payload));
+        if let ValidPayload::Func(function, body) = validator.payload(&payload).map_err(wrong)? {
+            let function = function.into_validator(Default::default());
+            let one = function_us(function, &body).map_err(wrong)?;
+            all.optimised_us += one.optimised_us;
+            all.quick_us += one.quick_us;
+        }
+    }
+    Ok(all)
+}
+
+/// What the entries of a section take.
+fn section_us(section: &Payload<'_>) -> f64 {
+    match section {
+        Payload::TypeSection(s) => 25.0 * f64::from(s.count()) + s.range().len() as f64,
+        Payload::GlobalSection(s) => f64::from(s.count()),
+        Payload::ExportSection(s) => f64::from(s.count()),
+        Payload::DataSection(s) => f64::from(s.count()),
+        Payload::ElementSection(s) => s.range().len() as f64,
+        _ => 0.0,
+    }
+}
+
+fn function_us(
+    mut function: FuncValidator<ValidatorResources>,
+    body: &FunctionBody<'_>,
+) -> Result<Estimate, BinaryReaderError> {
+    let mut reader = body.get_binary_reader();
+    function.read_locals(&mut reader)?;
+    reader.set_features(WasmFeatures::WASM2);
+    let mut operators = OperatorsReader::new(reader);
+    let mut cost = Cost::new(f64::from(function.len_locals()));
+    while !operators.eof() {
+        let (operator, at) = operators.read_with_offset()?;
+        cost.add(&operator, &function);
+        function.op(at, &operator)?;
+    }
+    operators.finish()?;
+    Ok(cost.estimate())
+}
+
+/// The cost of a function as far as its operators were seen.
+struct Cost {
+    us: Estimate,
+    locals: f64,
+    operators: f64,
+    blocks: f64,
+    /// Whether each of the blocks around the operator is a loop, the function itself first.
+    around: Vec<bool>,
+}
+
+impl Cost {
+    fn new(locals: f64) -> Self {
+        let mut us = Estimate::default();
+        us.add(40.0 + 0.1 * locals);
+        Self {
+            us,
+            locals,
+            operators: 0.0,
+            blocks: 0.0,
+            around: vec![false],
+        }
+    }
+
+    fn add(&mut self, operator: &Operator<'_>, function: &FuncValidator<ValidatorResources>) {
+        let (takes, gives) = operator.operator_arity(function).unwrap_or_default();
+        let passed = f64::from(takes) + f64::from(gives);
+        let live = 8.0 + self.locals + f64::from(function.operand_stack_height());
+        self.operators += 1.0;
+        self.us.add(more_us(operator));
+        if passed > 4.0 {
+            self.us.add(5.0 * passed);
+        }
+        match operator {
+            Operator::Loop { .. } => self.enter(true, live, passed),
+            Operator::Block { .. } | Operator::If { .. } => self.enter(false, live, passed),
+            Operator::End => drop(self.around.pop()),
+            Operator::Br { relative_depth } | Operator::BrIf { relative_depth } => {
+                self.branch(*relative_depth, live)
+            }
+            Operator::BrTable { targets } => {
+                let all = targets.targets().flatten();
+                all.chain([targets.default()])
+                    .for_each(|to| self.branch(to, live));
+            }
+            _ => {}
+        }
+    }
+
+    fn enter(&mut self, is_loop: bool, live: f64, passed: f64) {
+        let depth = self.around.len() as f64;
+        self.around.push(is_loop);
+        self.blocks += 1.0;
+        if passed > 1.0 {
+            self.us.add(0.5 * passed * self.blocks);
+        }
+        if is_loop {
+            self.us.add(depth / 30.0 + self.blocks / 1000.0);
+        }
+        let loop_more = if is_loop { 0.5 } else { 0.0 };
+        self.us.optimised_us += live * (0.1 + loop_more + 0.03 * depth + 0.0004 * depth * depth);
+        self.us.quick_us += live * (0.7 + 0.00005 * depth);
+    }
+
+    /// Takes along what the loop that it goes to may change.
+    fn branch(&mut self, relative_depth: u32, live: f64) {
+        let at = self.around.len().checked_sub(1 + relative_depth as usize);
+        let to_loop = at.and_then(|at| self.around.get(at)).is_some_and(|is| *is);
+        self.us.add(0.5);
+        self.us.optimised_us += live * if to_loop { 1.0 } else { 0.02 };
+        self.us.quick_us += live * if to_loop { 0.3 } else { 0.02 };
+    }
+
+    fn estimate(self) -> Estimate {
+        let n = self.operators;
+        Estimate {
+            optimised_us: self.us.optimised_us + 2.0 * n + n * n / 400.0,
+            quick_us: self.us.quick_us + 3.0 * n,
+        }
+    }
+}
+
+impl Estimate {
+    fn add(&mut self, us: f64) {
+        self.optimised_us += us;
+        self.quick_us += us;
+    }
+}
+
+/// What an operator takes beyond a simple one, microseconds.
+fn more_us(operator: &Operator<'_>) -> f64 {
+    use Operator as O;
+    match operator {
+        O::TableCopy { .. } | O::TableFill { .. } | O::TableInit { .. } | O::TableGrow { .. } => {
+            170.0
+        }
+        O::CallIndirect { .. }
+        | O::MemoryGrow { .. }
+        | O::MemoryCopy { .. }
+        | O::MemoryFill { .. }
+        | O::MemoryInit { .. }
+        | O::TableGet { .. }
+        | O::TableSet { .. }
+        | O::RefFunc { .. }
+        | O::DataDrop { .. }
+        | O::ElemDrop { .. } => 45.0,
+        O::Call { .. } => 3.0,
+        _ => 0.0,
+    }
+}

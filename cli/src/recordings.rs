@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use htex_author::read::{ColumnMap, ReadOptions, read_recording};
+use htex_author::read::{ColumnMap, MOST_VALUES, ReadOptions, read_recording};
 use htex_author::response::read_response;
 use htex_author::{
     Averaging, Exploration, SegmentChoice, SpectrumOptions, Take, validate_recording,
@@ -49,6 +49,11 @@ pub(crate) struct RecordingArgs {
     /// Reads the recording up to this time, s
     #[arg(long, value_name = "S")]
     to: Option<f64>,
+
+    /// Most numbers of a recording that are kept in memory, where each takes 8 to 40 bytes; columns that are not used
+    /// do not count
+    #[arg(long, value_name = "N", default_value_t = MOST_VALUES)]
+    most_numbers: usize,
 
     /// Where the texture is read: in the middles of whole sweeps, in evenly spaced windows, or (auto) in sweeps if
     /// there are any that speak for at least half of the sliding, a sweep for 2 s at most
@@ -145,7 +150,8 @@ impl RecordingArgs {
     /// Whether any option of reading recordings was given.
     pub(crate) fn is_given(&self) -> bool {
         let condition = self.speed.is_some() || self.force.is_some() || !self.at.is_empty();
-        condition || self.strict || !self.recorded_options().is_empty()
+        let bounded = self.most_numbers != MOST_VALUES;
+        condition || self.strict || bounded || !self.recorded_options().is_empty()
     }
 
     fn read_options(&self) -> Result<ReadOptions, Failure> {
@@ -169,6 +175,7 @@ impl RecordingArgs {
             scale: self.scale,
             from_s: self.from,
             to_s: self.to,
+            most_values: Some(self.most_numbers),
         })
     }
 

@@ -123,6 +123,37 @@ fn no_command_writes_over_what_it_reads() {
     }
 }
 
+/// A file that nobody names has the scene's name and the format's ending, and is not hidden.
+#[test]
+fn an_unnamed_file_is_called_as_its_scene_and_format() {
+    let place = place();
+    let display = json!({ "adapter": "daq", "profile": "pcie-6321_tabor-9200a_sct3250" });
+    for (scene, device, file) in [
+        (
+            "one.two.scene.json",
+            json!({ "settings": { "format": "csv" } }),
+            "one.two.csv",
+        ),
+        (".cloth.scene.json", json!({}), "cloth.wav"),
+        (".display.v2.scene.json", display, "display.v2.wav"),
+    ] {
+        let text = json!({
+            "htex_scene": "1.0",
+            "surfaces": [{ "asset": "cloth.htex" }],
+            "motion": { "constant": { "speed_mm_s": 80, "force_n": 0.4 } },
+            "device": device,
+            "duration_s": 0.1,
+        });
+        place.write(scene, text.to_string());
+        let run = place.run(&["render", scene]);
+        assert_eq!(run.code(), 0, "{}", run.error());
+        assert!(
+            entries(&place).iter().any(|(name, _)| name == file),
+            "{file}"
+        );
+    }
+}
+
 /// The journal of a sweep is no name for a person's file.
 #[test]
 fn a_file_that_is_no_journal_is_left_alone() {

@@ -4,8 +4,8 @@ use std::process::ExitCode;
 
 use clap::Args;
 use htex_device::{Capabilities, Quantity, Settings, StreamFormat};
-use htex_scene::Renderer;
 use htex_scene::file::Motion;
+use htex_scene::{Renderer, output_name};
 use serde_json::json;
 
 use crate::failure::Failure;
@@ -148,9 +148,7 @@ impl Render {
 
 /// Settings of a file that holds what a device of these capabilities would get.
 fn like(able: &Capabilities, scene: &Path) -> BTreeMap<String, String> {
-    let name = scene.file_name().unwrap_or_default().to_string_lossy();
-    let stem = name.split('.').next().unwrap_or_default();
-    let mut given = vec![("path", format!("{stem}.wav"))];
+    let mut given = vec![("path", output_name(scene, "wav"))];
     match able.quantity {
         Quantity::DisplayVoltage => {
             given.push(("quantity", "display_voltage".to_owned()));

@@ -2,7 +2,7 @@
 
 use htex_format::Findings;
 
-use crate::findings::{RECORDING_OFF_TARGET, RECORDING_UNSTEADY, median};
+use crate::findings::{RECORDING_OFF_TARGET, RECORDING_UNSTEADY, quantile};
 use crate::segments::Segments;
 use crate::sums::Sums;
 use crate::{AuthorError, Recording};
@@ -110,11 +110,10 @@ impl Known<'_> {
 
     /// Median of the samples of all segments: what a few readings that no finger makes do not move.
     fn median(&self, segments: &Segments) -> Option<f64> {
-        let parts = segments
-            .starts
-            .iter()
-            .map(|&start| &self.values[start..start + segments.len]);
-        median(&parts.flatten().copied().collect::<Vec<f64>>())
+        let (starts, len) = (&segments.starts, segments.len);
+        quantile(0.5, starts.len() * len, |at| {
+            self.values[starts[at / len] + at % len]
+        })
     }
 
     fn keeps_to(&self, target: f64, [low, high]: [f64; 2]) -> bool {

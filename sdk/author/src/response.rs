@@ -6,8 +6,10 @@ use std::{fmt, io};
 use htex_dsp::grid::Band;
 
 use crate::read::ReadError;
+use crate::read::blocks::Blocks;
+use crate::read::room::Room;
 use crate::read::table::Table;
-use crate::read::text::{as_text, file_name, read_bytes};
+use crate::read::text::{file_name, open};
 
 /// Smallest magnitude above 0, and largest magnitude, frequency (hertz) and phase (radians).
 const SMALLEST: f64 = 1e-9;
@@ -131,7 +133,7 @@ impl fmt::Display for Raised {
 /// What [`read_recording`](crate::read::read_recording) reports of a CSV; and, with the line, a
 /// frequency that is negative or does not ascend, or a negative magnitude.
 pub fn read_response(path: &Path) -> Result<SetupResponse, ReadError> {
-    response_from_bytes(&file_name(path), &read_bytes(path)?)
+    response(Blocks::new(&file_name(path), open(path)?, Room::default()))
 }
 
 /// Reads a setup response in memory; `file` is what it is called.
@@ -139,13 +141,18 @@ pub fn read_response(path: &Path) -> Result<SetupResponse, ReadError> {
 /// # Errors
 /// As [`read_response`].
 pub fn response_from_bytes(file: &str, bytes: &[u8]) -> Result<SetupResponse, ReadError> {
-    let mut table = Table::new(file, as_text(file, bytes)?)?;
+    response(Blocks::new(file, bytes, Room::default()))
+}
+
+fn response(mut blocks: Blocks<'_>) -> Result<SetupResponse, ReadError> {
+    let head = blocks.head()?;
+    let mut table = Table::new(blocks.file, &head)?;
     let mut wanted = vec![
         column(&table, "frequency_hz")?,
         column(&table, "magnitude")?,
     ];
     wanted.extend(column(&table, "phase_rad").ok());
-    let mut columns = table.numbers(&wanted, None)?.columns.into_iter();
+    let mut columns = table.numbers(&wanted, &mut blocks)?.columns.into_iter();
     let frequency_hz = columns.next().unwrap_or_default();
     let magnitude = columns.next().unwrap_or_default();
     check(&table, &frequency_hz, &magnitude)?;

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-/// The text with its control characters, and those that turn or hide text (marks of direction, of no width, other line
-/// ends), written out (`\u{1b}`): a message that quotes a file must not steer the terminal it is read on, nor show what is
+/// The text with its control characters, and those that turn or hide text (marks of direction, of no width, tags, other
+/// line ends), written out (`\u{1b}`): a message that quotes a file must not steer the terminal it is read on, nor show what is
 /// not there.
 ///
 /// ```
@@ -24,9 +24,10 @@ pub fn plain(text: &str) -> Cow<'_, str> {
 }
 
 fn steers(c: char) -> bool {
-    let is_mark = matches!(
-        c,
-        '\u{061c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}'
-    );
+    // All of Unicode's format characters (Cf) but those that are seen, and the plane of tags and selectors.
+    let is_mark = matches!(c, '\u{00ad}' | '\u{061c}' | '\u{180e}' | '\u{feff}')
+        || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}')
+        || matches!(c, '\u{fff9}'..='\u{fffb}' | '\u{1bca0}'..='\u{1bca3}' | '\u{1d173}'..='\u{1d17a}')
+        || matches!(c, '\u{13430}'..='\u{1343f}' | '\u{e0000}'..='\u{e0fff}');
     c.is_control() || is_mark
 }

@@ -168,7 +168,8 @@ impl Side {
     fn weights(&self, q: [f64; 2]) -> Weights {
         let place = self.foot(q).clamp(0.0, 1.0);
         let last = self.feet.len() - 1;
-        let behind = (1..last).find(|i| self.feet[*i] >= place).unwrap_or(last);
+        let inner = &self.feet[1..last];
+        let behind = 1 + inner.partition_point(|foot| *foot < place);
         let (from, to) = (self.feet[behind - 1], self.feet[behind]);
         let part = (place - from) / (to - from);
         Weights {

@@ -11,6 +11,8 @@ use crate::trace::Trace;
 
 /// Part of the time on a surface that may lie beyond what was recorded: strokes turn, and are slow there.
 const MOST: f64 = 0.1;
+/// Most rows of a trace that are looked at, evenly spaced: each is looked up among all conditions.
+const MOST_ROWS: usize = 20_000;
 
 /// Warns of each surface that is played as at another motion than the finger's.
 pub(crate) fn check(
@@ -53,7 +55,7 @@ fn effects(scene: &Scene) -> Effects {
     }
 }
 
-/// The finger at each row of a trace, or as it always is; none when it is live.
+/// The finger at the rows of a trace, or as it always is; none when it is live.
 fn fingers(scene: &Scene, trace: Option<&Trace>) -> Vec<Finger> {
     match (&scene.motion, trace) {
         (Motion::Constant(motion), _) => vec![Finger {
@@ -62,7 +64,8 @@ fn fingers(scene: &Scene, trace: Option<&Trace>) -> Vec<Finger> {
             at_mm: motion.from_mm,
         }],
         (Motion::Trace(_), Some(trace)) => {
-            let points = trace.t_s.iter().map(|t| trace.at(*t));
+            let every = trace.t_s.len().div_ceil(MOST_ROWS).max(1);
+            let points = trace.t_s.iter().step_by(every).map(|t| trace.at(*t));
             let finger = |point: crate::trace::TracePoint| Finger {
                 speed_mm_s: point.speed_mm_s,
                 force_n: point.force_n,

@@ -1,7 +1,6 @@
 //! The rules for a scene's device, and what may be chosen instead of it.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use htex_device::{
     Capabilities, Descriptor, DeviceError, Devices, FromScene, Ignored, Quantity, Setting,
@@ -11,6 +10,8 @@ use htex_format::{Findings, Quantity as Held, escape};
 use serde_json::Value;
 
 use crate::file::{DeviceChoice, Levels};
+use crate::output::named;
+pub(crate) use crate::output::stem;
 use crate::rules as rule;
 
 /// The setting that names a library of code; a scene, which may come from anyone, must not have it.
@@ -36,11 +37,9 @@ pub struct DeviceOverride {
 }
 
 impl DeviceOverride {
-    /// The file that is written when nobody names one.
-    fn output(&self, stem: &str, asked: &BTreeMap<String, String>) -> String {
-        let format = asked.get("format").map_or("auto", String::as_str);
-        let ending = if format == "auto" { "wav" } else { format };
-        let usual = || format!("{stem}.{ending}");
+    /// The file that is written, in a format if one was said, when nobody names one.
+    fn output(&self, stem: &str, format: Option<&String>) -> String {
+        let usual = || named(stem, format.map_or("auto", String::as_str));
         self.output.clone().unwrap_or_else(usual)
     }
 
@@ -56,18 +55,6 @@ impl DeviceOverride {
             choice.profile.clone_from(&self.profile);
         }
         choice.quantity_gain = self.quantity_gain.or(choice.quantity_gain);
-    }
-}
-
-/// The name of the scene or asset in `path` without its ending; no hidden file's, whatever it is called.
-pub(crate) fn stem(path: &Path) -> String {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let stem = [".scene.json", ".json", ".htex"]
-        .iter()
-        .find_map(|ending| name.strip_suffix(ending));
-    match stem.unwrap_or(&name).trim_start_matches('.') {
-        "" => "scene".to_owned(),
-        stem => stem.to_owned(),
     }
 }
 
@@ -129,9 +116,10 @@ fn settle(
     }
     for setting in descriptor.settings.iter().filter(|s| s.default.is_none()) {
         if setting.kind == SettingKind::Path {
+            let format = given.get("format").or(asked.get("format")).cloned();
             given
                 .entry(setting.name.clone())
-                .or_insert_with(|| change.output(stem, &asked));
+                .or_insert_with(|| change.output(stem, format.as_ref()));
         }
     }
     let stated = Stated {

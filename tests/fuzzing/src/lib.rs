@@ -14,6 +14,8 @@ mod descriptor;
 pub mod edges;
 mod manifest;
 mod module;
+mod output;
+mod printed;
 mod promise;
 mod recordings;
 mod response;
@@ -26,6 +28,8 @@ pub use block::parameter_block;
 pub use descriptor::descriptor;
 pub use manifest::manifest;
 pub use module::wasm_module;
+pub use output::output_name;
+pub use printed::printed_text;
 pub use recordings::{csv, npy, wav};
 pub use response::response_csv;
 pub use scene::scene;
@@ -58,6 +62,8 @@ pub const TARGETS: &[Target] = &[
     target("descriptor", descriptor),
     target("wasm_module", wasm_module),
     target("signed_plugin", signed_plugin),
+    target("printed_text", printed_text),
+    target("output_name", output_name),
 ];
 
 const fn target(name: &'static str, run: fn(&[u8]) -> bool) -> Target {

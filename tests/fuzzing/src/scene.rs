@@ -20,20 +20,8 @@ const BLOCKS: usize = 4;
 /// Reads a scene, opens what it names, plans it for each kind of device, and renders its start.
 pub fn scene(input: &[u8]) -> bool {
     read_twice(input);
-    static AROUND: OnceLock<(Registry, Devices)> = OnceLock::new();
-    let (models, devices) = AROUND.get_or_init(|| {
-        (
-            Registry::builtin(),
-            Devices::new(vec![Arc::new(FileAdapter)]),
-        )
-    });
-    let around = Surroundings {
-        models,
-        embedded: false,
-        devices,
-    };
     let place = folder().join("fuzzed.scene.json");
-    match LoadedScene::from_bytes(&place, input, &around, &DeviceOverride::default()) {
+    match LoadedScene::from_bytes(&place, input, &around(), &DeviceOverride::default()) {
         Ok(scene) => {
             explained(&scene.notes);
             devices_of(&scene)
@@ -49,7 +37,24 @@ pub fn scene(input: &[u8]) -> bool {
     }
 }
 
-fn folder() -> PathBuf {
+/// The built-in models, and files.
+pub(crate) fn around() -> Surroundings<'static> {
+    static AROUND: OnceLock<(Registry, Devices)> = OnceLock::new();
+    let (models, devices) = AROUND.get_or_init(|| {
+        (
+            Registry::builtin(),
+            Devices::new(vec![Arc::new(FileAdapter)]),
+        )
+    });
+    Surroundings {
+        models,
+        embedded: false,
+        devices,
+    }
+}
+
+/// Where the assets lie that scenes name.
+pub(crate) fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes")
 }
 

@@ -41,7 +41,31 @@ pub fn seeds() -> Vec<Seed> {
     seeds.extend(texts());
     seeds.extend(samples());
     seeds.extend(modules());
+    seeds.extend(words());
     seeds
+}
+
+/// Texts that steer a terminal, and names of files and formats.
+fn words() -> Vec<Seed> {
+    let texts = [
+        ("escape", "\u{1}x\u{1b}[2J\u{7}\r\nhtex: all is well"),
+        (
+            "marks",
+            "\u{2}a\u{202e}b\u{200b}c\u{2028}d\u{feff}e\u{ad}f\u{e0041}",
+        ),
+        ("harmless", "\u{3}Raue Oberfläche, 砂纸 'P 80' \\ \"x\""),
+    ];
+    let names = [
+        ("usual", "\0swatches.scene.json\ncsv"),
+        ("rehearsed", "\u{1}two.swatches.scene.json\nnpy"),
+        ("hidden", "\0.../..scene.json\n../../x"),
+        ("folder", "\u{1}a\\..\\b/..\nauto"),
+    ];
+    let seed = |target| {
+        move |(name, text): &(&str, &str)| (target, (*name).to_owned(), text.as_bytes().to_vec())
+    };
+    let texts = texts.iter().map(seed("printed_text"));
+    texts.chain(names.iter().map(seed("output_name"))).collect()
 }
 
 /// An asset of one model at two conditions; each number lies in the middle of its range.

@@ -15,7 +15,7 @@ use crate::Recording;
 use levels::Levels;
 
 pub use page::findings_page;
-pub(crate) use quantile::median;
+pub(crate) use quantile::quantile;
 pub(crate) use rules::{
     RECORDING_CLOCK_GAP, RECORDING_CLOCK_JITTER, RECORDING_NOTED, RECORDING_OFF_TARGET,
     RECORDING_UNREADABLE, RECORDING_UNSTEADY, RECORDING_UNUSABLE,

@@ -30,8 +30,9 @@ pub(super) fn judge_axis(
 ) {
     let values = &recording.axes[axis];
     let (name, words) = (recording.axis_name(axis), axis_words(recording, axis));
-    let magnitude = mean(values.iter().map(|value| value.abs()));
+    let magnitude = mean_size(values);
     let shortest = |seconds: f64| ((seconds * recording.rate_hz) as usize).max(2);
+    let usual_speed = recording.speed_mm_s.as_deref().map(mean_size);
     let (mut stuck, mut silent) = (Vec::new(), Vec::new());
     for run in runs(values, shortest(STUCK_S)) {
         let value = values[run.start];
@@ -39,7 +40,7 @@ pub(super) fn judge_axis(
             continue;
         }
         let is_friction = value.abs() > FRICTION * magnitude;
-        match moves(recording, &run) {
+        match usual_speed.and_then(|usual| moves(recording, usual, &run)) {
             Some(true) => stuck.push(run),
             None if is_friction => stuck.push(run),
             None if run.len() >= shortest(SILENT_S) => silent.push(run),
@@ -81,17 +82,15 @@ pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
     }
 }
 
-/// Whether the finger moves in a stretch, where its speed is known.
-fn moves(recording: &Recording, run: &Range<usize>) -> Option<bool> {
-    let speed = recording.speed_mm_s.as_ref()?;
-    let usual = mean(speed.iter().map(|speed| speed.abs()));
-    let here = mean(speed[run.clone()].iter().map(|speed| speed.abs()));
-    (usual > 0.0).then_some(here > RESTS * usual)
+/// Whether the finger moves in a stretch, by its mean speed in all; none where it never does or its speed is not known.
+fn moves(recording: &Recording, usual_speed: f64, run: &Range<usize>) -> Option<bool> {
+    let here = mean_size(&recording.speed_mm_s.as_ref()?[run.clone()]);
+    (usual_speed > 0.0).then_some(here > RESTS * usual_speed)
 }
 
-fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let count = values.len() as f64;
-    values.sum::<f64>() / count
+/// Mean of the magnitudes.
+fn mean_size(values: &[f64]) -> f64 {
+    values.iter().map(|value| value.abs()).sum::<f64>() / values.len() as f64
 }
 
 /// Stretches of one value, of at least so many samples.

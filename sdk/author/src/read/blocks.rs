@@ -1,9 +1,10 @@
-//! A text file of any length, a block of whole lines at a time: memory that is used again costs less
-//! than memory as large as the file.
+//! A file of any length, text a block of whole lines at a time: memory that is used again costs less than memory
+//! as large as the file.
 
-use std::io::Read;
+use std::io::{BufReader, Cursor, Read};
 
 use super::ReadError;
+use super::room::Room;
 use super::text::{Lines, checked, without_mark};
 
 /// Bytes of a block; longer than any line may be.
@@ -13,6 +14,8 @@ const BLOCK: usize = 256 << 10;
 pub(crate) struct Blocks<'a> {
     /// Its name, for messages.
     pub(crate) file: &'a str,
+    /// For the numbers that are kept of it.
+    pub(crate) room: Room,
     source: Box<dyn Read + 'a>,
     buffer: Vec<u8>,
     /// Of the buffer: what was handed out, and what is filled.
@@ -22,9 +25,10 @@ pub(crate) struct Blocks<'a> {
 }
 
 impl<'a> Blocks<'a> {
-    pub(crate) fn new(file: &'a str, source: impl Read + 'a) -> Self {
+    pub(crate) fn new(file: &'a str, source: impl Read + 'a, room: Room) -> Self {
         Self {
             file,
+            room,
             source: Box::new(source),
             buffer: vec![0; BLOCK],
             taken: 0,
@@ -49,11 +53,10 @@ impl<'a> Blocks<'a> {
     }
 
     /// All that is left, as bytes.
-    pub(crate) fn rest(mut self) -> Result<Vec<u8>, ReadError> {
-        let mut bytes = self.front()?.to_vec();
-        let read = self.source.read_to_end(&mut bytes);
-        read.map_err(|source| self.failed(source))?;
-        Ok(bytes)
+    pub(crate) fn rest(mut self) -> Result<impl Read + 'a, ReadError> {
+        self.front()?;
+        self.buffer.truncate(self.filled);
+        Ok(BufReader::new(Cursor::new(self.buffer).chain(self.source)))
     }
 
     /// The next lines, behind `before` others; `None` at the end. A line that is longer than a block comes in

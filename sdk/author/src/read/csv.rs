@@ -30,7 +30,7 @@ pub(crate) fn read(mut blocks: Blocks<'_>, options: &ReadOptions) -> Result<Reco
         .iter()
         .map(|chosen| chosen.column)
         .collect();
-    let mut numbers = table.numbers(&wanted, Some(&mut blocks))?;
+    let mut numbers = table.numbers(&wanted, &mut blocks)?;
     for (values, chosen) in numbers.columns.iter_mut().zip(&selection.chosen) {
         if chosen.scale != 1.0 {
             values.iter_mut().for_each(|value| *value *= chosen.scale);

@@ -31,6 +31,17 @@ pub enum ReadError {
         /// The largest size that is read.
         limit: u64,
     },
+    /// The file holds more numbers than are kept in memory.
+    #[error(
+        "{file}: it holds more than {limit} numbers, which are as many as are kept in memory; cut the recording into \
+         parts, or raise the limit by --most-numbers"
+    )]
+    TooManyValues {
+        /// File name.
+        file: String,
+        /// Most numbers that are kept.
+        limit: usize,
+    },
     /// The file has no rows at all.
     #[error("{file}: the file holds no data; expected a header row and at least 2 rows of numbers")]
     Empty {

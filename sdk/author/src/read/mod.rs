@@ -15,7 +15,7 @@
 //! # Ok::<(), htex_author::read::ReadError>(())
 //! ```
 
-mod blocks;
+pub(crate) mod blocks;
 mod clock;
 mod columns;
 mod csv;
@@ -24,6 +24,7 @@ mod map;
 pub(crate) mod motion;
 mod npy;
 mod number;
+pub(crate) mod room;
 mod select;
 pub(crate) mod table;
 pub(crate) mod text;
@@ -37,11 +38,13 @@ use htex_format::Quantity;
 
 pub use error::ReadError;
 pub use map::{ColumnMap, ColumnRef, MapEntry, Role};
+pub use room::MOST_VALUES;
 pub use trace::{TraceColumns, read_trace, trace_from_bytes};
 
 use crate::recording::{MAX_RATE_HZ, Recording, check_rate};
 
 use blocks::Blocks;
+use room::Room;
 
 /// What a file may leave unsaid.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -59,6 +62,8 @@ pub struct ReadOptions {
     pub from_s: Option<f64>,
     /// Time in the file up to which it is read, seconds.
     pub to_s: Option<f64>,
+    /// Most numbers that are kept of it in memory; [`MOST_VALUES`] when absent. Columns that are not used do not count.
+    pub most_values: Option<usize>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -75,7 +80,7 @@ enum Kind {
 /// # Errors
 /// See [`ReadError`]: each names the file, and the line and column where there is one.
 pub fn read_recording(path: &Path, options: &ReadOptions) -> Result<Recording, ReadError> {
-    read_from(path, || Ok(text::open(path)?.0), options)
+    read_from(path, || text::open(path), options)
 }
 
 /// Reads one recording in memory; `path` is what it is called, and is not opened.
@@ -97,11 +102,12 @@ fn read_from<R: Read>(
 ) -> Result<Recording, ReadError> {
     let file = text::file_name(path);
     check_options(&file, options)?;
-    let mut blocks = Blocks::new(&file, open()?);
+    let most_values = options.most_values.unwrap_or(MOST_VALUES);
+    let mut blocks = Blocks::new(&file, open()?, Room { most_values });
     let recording = match kind(path, blocks.front()?) {
         Kind::Csv => csv::read(blocks, options),
-        Kind::Wav => wav::read(&file, &blocks.rest()?, options),
-        Kind::Npy => npy::read(&file, &blocks.rest()?, options),
+        Kind::Wav => wav::read(blocks, options),
+        Kind::Npy => npy::read(blocks, options),
     }?;
     match (options.from_s, options.to_s) {
         (None, None) => Ok(recording),

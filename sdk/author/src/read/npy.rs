@@ -1,41 +1,37 @@
 //! Recordings as NumPy arrays: `(n,)` or `(n, 1..=3)` of f4, f8, i2 or i4.
 
+use std::io::{ErrorKind, Read};
+
 use npyz::{DType, NpyFile, Order, TypeChar};
 
+use super::blocks::Blocks;
 use super::{ReadError, ReadOptions, assumption, from_channels, refuse_map};
 use crate::recording::Recording;
 
 /// Longest header text, bytes; NumPy writes 118 for such arrays.
 const MAX_HEADER: usize = 4096;
 
-/// Reads an NPY's bytes; `file` is its name.
-pub(crate) fn read(
-    file: &str,
-    bytes: &[u8],
-    options: &ReadOptions,
-) -> Result<Recording, ReadError> {
+/// Reads an NPY, value by value.
+pub(crate) fn read(mut blocks: Blocks<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
+    let file = blocks.file;
     refuse_map(file, options)?;
     let Some(rate_hz) = options.rate_hz else {
         return Err(ReadError::NoRate {
             file: file.to_owned(),
         });
     };
-    check_header(bytes).map_err(|problem| broken(file, problem))?;
-    let npy = NpyFile::new(bytes).map_err(|error| {
+    check_header(blocks.front()?).map_err(|problem| broken(file, problem))?;
+    let room = blocks.room;
+    let npy = NpyFile::new(blocks.rest()?).map_err(|error| {
         // Its parser draws a picture of the place below the first line.
         let text = error.to_string();
         let first = htex_format::plain(text.lines().next().unwrap_or_default().trim_end());
         broken(file, format!("not an NPY file that can be read: {first}"))
     })?;
-    let (rows, columns) = shape(npy.shape()).map_err(|problem| broken(file, problem))?;
-    let order = npy.order();
-    let (values, is_integer) = values(npy).map_err(|problem| broken(file, problem))?;
-    let mut recording = from_channels(
-        file,
-        rate_hz,
-        channels(&values, rows, columns, order),
-        options,
-    )?;
+    let shape = shape(npy.shape()).map_err(|problem| broken(file, problem))?;
+    room.check(file, npy.len())?;
+    let (channels, is_integer) = channels(npy, shape).map_err(|problem| broken(file, problem))?;
+    let mut recording = from_channels(file, rate_hz, channels, options)?;
     if options.scale.is_none() {
         recording
             .warnings
@@ -76,7 +72,10 @@ fn check_header(bytes: &[u8]) -> Result<(), String> {
     Ok(())
 }
 
-fn shape(shape: &[u64]) -> Result<(usize, usize), String> {
+/// Rows and columns.
+type Shape = (usize, usize);
+
+fn shape(shape: &[u64]) -> Result<Shape, String> {
     let (rows, columns) = match shape {
         [rows] => (*rows, 1),
         [rows, columns @ 1..=3] => (*rows, *columns),
@@ -91,20 +90,17 @@ fn shape(shape: &[u64]) -> Result<(usize, usize), String> {
     Ok((rows, columns as usize))
 }
 
-/// All values in the order stored, integers as fractions of full scale; true for integers.
-fn values(npy: NpyFile<&[u8]>) -> Result<(Vec<f64>, bool), String> {
+/// The columns, integers as fractions of full scale; true for integers.
+fn channels(npy: NpyFile<impl Read>, shape: Shape) -> Result<(Vec<Vec<f64>>, bool), String> {
     let DType::Plain(kind) = npy.dtype() else {
         return Err("the array holds records; save a plain float array".into());
     };
     match (kind.type_char(), kind.size_field()) {
-        (TypeChar::Float, 4) => Ok((collect::<f32>(npy, 4, f64::from)?, false)),
-        (TypeChar::Float, 8) => Ok((collect::<f64>(npy, 8, |value| value)?, false)),
-        (TypeChar::Int, 2) => Ok((
-            collect::<i16>(npy, 2, |value| f64::from(value) / 32_768.0)?,
-            true,
-        )),
+        (TypeChar::Float, 4) => Ok((deal(npy, shape, |x: f32| x.into())?, false)),
+        (TypeChar::Float, 8) => Ok((deal(npy, shape, |x: f64| x)?, false)),
+        (TypeChar::Int, 2) => Ok((deal(npy, shape, |x: i16| f64::from(x) / 32_768.0)?, true)),
         (TypeChar::Int, 4) => Ok((
-            collect::<i32>(npy, 4, |value| f64::from(value) / 2_147_483_648.0)?,
+            deal(npy, shape, |x: i32| f64::from(x) / 2_147_483_648.0)?,
             true,
         )),
         _ => Err(format!(
@@ -113,37 +109,42 @@ fn values(npy: NpyFile<&[u8]>) -> Result<(Vec<f64>, bool), String> {
     }
 }
 
-/// Reads `npy.len()` items, after seeing that the file holds them.
-fn collect<T: npyz::Deserialize>(
-    npy: NpyFile<&[u8]>,
-    item_bytes: u64,
+/// Deals the values out to their columns.
+fn deal<T: npyz::Deserialize>(
+    npy: NpyFile<impl Read>,
+    (rows, columns): Shape,
     to_f64: impl Fn(T) -> f64,
-) -> Result<Vec<f64>, String> {
-    let items = npy.len();
-    let header = npy.header().clone();
-    let data = npy.into_inner();
-    let held = data.len() as u64 / item_bytes;
-    if held < items {
-        return Err(format!(
+) -> Result<Vec<Vec<f64>>, String> {
+    let (order, items) = (npy.order(), npy.len());
+    let mut values = npy.data::<T>().map_err(|error| error.to_string())?;
+    let mut dealt = vec![Vec::new(); columns];
+    let mut next = |held: u64| match values.next() {
+        Some(Ok(value)) => Ok(to_f64(value)),
+        Some(Err(error)) if error.kind() != ErrorKind::UnexpectedEof => Err(error.to_string()),
+        _ => Err(format!(
             "the file ends after {held} of {items} values; copy it again"
-        ));
-    }
-    let reader = NpyFile::with_header(header, data)
-        .data::<T>()
-        .map_err(|error| error.to_string())?;
-    reader
-        .map(|item| item.map(&to_f64).map_err(|error| error.to_string()))
-        .collect()
-}
-
-fn channels(values: &[f64], rows: usize, columns: usize, order: Order) -> Vec<Vec<f64>> {
-    let at = |row: usize, column: usize| match order {
-        Order::C => values[row * columns + column],
-        Order::Fortran => values[column * rows + row],
+        )),
     };
-    (0..columns)
-        .map(|column| (0..rows).map(|row| at(row, column)).collect())
-        .collect()
+    let mut held = 0;
+    match order {
+        Order::C => {
+            for _ in 0..rows {
+                for column in &mut dealt {
+                    column.push(next(held)?);
+                    held += 1;
+                }
+            }
+        }
+        Order::Fortran => {
+            for column in &mut dealt {
+                for _ in 0..rows {
+                    column.push(next(held)?);
+                    held += 1;
+                }
+            }
+        }
+    }
+    Ok(dealt)
 }
 
 fn broken(file: &str, problem: String) -> ReadError {

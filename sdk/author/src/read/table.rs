@@ -6,6 +6,7 @@
 use super::ReadError;
 use super::blocks::Blocks;
 use super::number::{parse_number, parse_plain_row};
+use super::room::Room;
 use super::text::Lines;
 
 /// Longest piece of a cell that a message repeats, characters.
@@ -96,29 +97,26 @@ impl<'a> Table<'a> {
         names.join(", ")
     }
 
-    /// Reads the wanted columns (counted from 0, each below `width`), also from the blocks behind the text
-    /// that the table was made of; the other cells are only counted.
+    /// Reads the wanted columns (counted from 0, each below `width`), from the text that the table was made of and the
+    /// blocks behind it; the other cells are only counted.
     pub(crate) fn numbers(
         &mut self,
         wanted: &[usize],
-        mut behind: Option<&mut Blocks<'_>>,
+        behind: &mut Blocks<'_>,
     ) -> Result<Numbers, ReadError> {
         let mut columns = vec![Vec::new(); wanted.len()];
+        let room = behind.room;
         let mut lines = self.rows.clone();
-        let mut read = self.block(&mut lines, wanted, &mut columns);
+        let mut read = self.block(&mut lines, wanted, &mut columns, room);
         let (mut number, mut simulated) = (lines.number, lines.simulated);
-        if let Some(behind) = &mut behind {
-            loop {
-                read.or_else(|error| Err(in_the_middle(error, behind)?))?;
-                let Some(text) = behind.next(number)? else {
-                    break;
-                };
-                let mut lines = Lines::behind(self.file, text, number, simulated);
-                read = self.block(&mut lines, wanted, &mut columns);
-                (number, simulated) = (lines.number, lines.simulated);
-            }
-        } else {
-            read?;
+        loop {
+            read.or_else(|error| Err(in_the_middle(error, behind)?))?;
+            let Some(text) = behind.next(number)? else {
+                break;
+            };
+            let mut lines = Lines::behind(self.file, text, number, simulated);
+            read = self.block(&mut lines, wanted, &mut columns, room);
+            (number, simulated) = (lines.number, lines.simulated);
         }
         let rows = columns.first().map_or(0, Vec::len);
         if rows < 2 {
@@ -130,16 +128,20 @@ impl<'a> Table<'a> {
         Ok(Numbers { columns, simulated })
     }
 
-    /// Reads the rows of a block.
+    /// Reads the rows of a block, as long as there is room.
     fn block(
         &mut self,
         lines: &mut Lines<'_>,
         wanted: &[usize],
         columns: &mut [Vec<f64>],
+        room: Room,
     ) -> Result<(), ReadError> {
         let mut row = vec![0.0; self.width];
         let mut count = columns.first().map_or(0, Vec::len);
         while self.next_numbers(lines, wanted, &mut row)? {
+            // A run takes as much as two numbers.
+            let values = (count + 1) * wanted.len() + 2 * self.runs.len();
+            room.check(self.file, values as u64)?;
             for (values, &column) in columns.iter_mut().zip(wanted) {
                 values.push(row[column]);
             }

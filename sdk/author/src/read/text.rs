@@ -1,4 +1,4 @@
-//! A text file in memory, and its lines with their numbers.
+//! Files of bounded size, and the lines of a text with their numbers.
 
 use std::fs::File;
 use std::io::{Read, Take};
@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::ReadError;
 
-/// The largest file that is read, bytes: about 20 hours of four columns at 1 kHz.
+/// The largest file that is read, bytes. What is kept of it is bounded by [`super::MOST_VALUES`].
 pub(crate) const MAX_BYTES: u64 = 4 << 30;
 /// The longest line, bytes; a row of forces has some tens.
 const MAX_LINE: usize = 64 << 10;
@@ -19,8 +19,8 @@ pub(crate) fn file_name(path: &Path) -> String {
         .into_owned()
 }
 
-/// A file of bounded size, and the size it says it has.
-pub(crate) fn open(path: &Path) -> Result<(Take<File>, u64), ReadError> {
+/// A file of bounded size.
+pub(crate) fn open(path: &Path) -> Result<Take<File>, ReadError> {
     let io = |source| ReadError::Io {
         file: file_name(path),
         source,
@@ -35,25 +35,7 @@ pub(crate) fn open(path: &Path) -> Result<(Take<File>, u64), ReadError> {
         });
     }
     // A pipe or a growing file tells no size before it ends.
-    Ok((file.take(MAX_BYTES), bytes))
-}
-
-/// All bytes of a file of bounded size.
-pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
-    let (mut file, bytes) = open(path)?;
-    let mut content = Vec::with_capacity(bytes as usize);
-    match file.read_to_end(&mut content) {
-        Ok(_) => Ok(content),
-        Err(source) => Err(ReadError::Io {
-            file: file_name(path),
-            source,
-        }),
-    }
-}
-
-/// The bytes as text without a byte order mark; refuses NUL and what is not UTF-8.
-pub(crate) fn as_text<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, ReadError> {
-    checked(file, bytes, 0).map(without_mark)
+    Ok(file.take(MAX_BYTES))
 }
 
 /// Without a byte order mark.

@@ -5,10 +5,12 @@ use std::path::Path;
 use htex_format::Quantity;
 
 use super::ReadError;
+use super::blocks::Blocks;
 use super::columns::{Unit, base_unit, recognise};
 use super::map::Role;
+use super::room::Room;
 use super::table::Table;
-use super::text::{as_text, file_name, read_bytes};
+use super::text::{file_name, open};
 
 /// Shortest time between two rows, seconds.
 const SHORTEST_S: f64 = 1e-9;
@@ -39,7 +41,7 @@ pub struct TraceColumns {
 /// What [`read_recording`](super::read_recording) reports of a CSV; and, with the line, a time that
 /// does not ascend by a nanosecond, or a number beyond 1e9.
 pub fn read_trace(path: &Path) -> Result<TraceColumns, ReadError> {
-    trace_from_bytes(&file_name(path), &read_bytes(path)?)
+    trace(Blocks::new(&file_name(path), open(path)?, Room::default()))
 }
 
 /// Reads a trace in memory; `file` is what it is called.
@@ -47,7 +49,12 @@ pub fn read_trace(path: &Path) -> Result<TraceColumns, ReadError> {
 /// # Errors
 /// As [`read_trace`].
 pub fn trace_from_bytes(file: &str, bytes: &[u8]) -> Result<TraceColumns, ReadError> {
-    let mut table = Table::new(file, as_text(file, bytes)?)?;
+    trace(Blocks::new(file, bytes, Room::default()))
+}
+
+fn trace(mut blocks: Blocks<'_>) -> Result<TraceColumns, ReadError> {
+    let head = blocks.head()?;
+    let mut table = Table::new(blocks.file, &head)?;
     let mut warnings = Vec::new();
     let mut found = Vec::new();
     for role in [Role::Time, Role::X, Role::Y, Role::Normal] {
@@ -58,7 +65,7 @@ pub fn trace_from_bytes(file: &str, bytes: &[u8]) -> Result<TraceColumns, ReadEr
     warn_of_unused(&table, &found, &mut warnings);
     let wanted: Vec<usize> = found.iter().map(|(column, _)| *column).collect();
     let columns = table
-        .numbers(&wanted, None)?
+        .numbers(&wanted, &mut blocks)?
         .columns
         .into_iter()
         .zip(&found);

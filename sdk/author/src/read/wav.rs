@@ -1,23 +1,21 @@
 //! Recordings as WAV: one to three channels, integer or float.
 
-use std::io::Cursor;
-
 use hound::{SampleFormat, WavReader, WavSpec};
 
+use super::blocks::Blocks;
 use super::{ReadError, ReadOptions, assumption, from_channels, refuse_map};
 use crate::recording::Recording;
 
-/// Reads a WAV's bytes; `file` is its name.
-pub(crate) fn read(
-    file: &str,
-    bytes: &[u8],
-    options: &ReadOptions,
-) -> Result<Recording, ReadError> {
+/// Reads a WAV, sample by sample.
+pub(crate) fn read(blocks: Blocks<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
+    let file = blocks.file;
     refuse_map(file, options)?;
-    let reader = WavReader::new(Cursor::new(bytes))
+    let room = blocks.room;
+    let reader = WavReader::new(blocks.rest()?)
         .map_err(|error| broken(file, format!("not a WAV file that can be read: {error}")))?;
     let spec = reader.spec();
     check(file, spec, options)?;
+    room.check(file, reader.len().into())?;
     let channels = match spec.sample_format {
         SampleFormat::Float => collect(
             file,

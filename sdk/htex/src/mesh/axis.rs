@@ -48,8 +48,7 @@ impl Axis {
 
     /// The place of any speed or force. Does not allocate.
     pub(super) fn place(&self, x: f64) -> f64 {
-        let next = self.groups.iter().position(|group| x <= group.high);
-        let next = next.unwrap_or(self.groups.len());
+        let next = self.groups.partition_point(|group| group.high < x);
         let before = next.checked_sub(1).map(|i| &self.groups[i]);
         match (before, self.groups.get(next)) {
             (_, Some(group)) if x >= group.low => group.place,

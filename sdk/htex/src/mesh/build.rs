@@ -1,7 +1,7 @@
 //! From known conditions to triangles, and to the edges of their hull.
 
 use htex_format::Condition;
-use spade::{DelaunayTriangulation, Point2, Triangulation};
+use spade::{DelaunayTriangulation, HierarchyHintGenerator, Point2, Triangulation};
 
 use super::axis::Axis;
 use super::{Face, Mesh, Side};
@@ -11,15 +11,19 @@ pub(super) fn mesh(conditions: &[[f64; 2]]) -> Mesh {
     if !are_apart(&places) {
         (axes, places) = placed(conditions, false);
     }
-    let (mut faces, mut sides) = match triangulate(&places) {
-        Some((faces, edges)) => (
-            faces,
-            edges.iter().map(|e| Side::new(*e, &places)).collect(),
-        ),
-        None => (vec![], line(&places).into_iter().collect::<Vec<_>>()),
+    let (mut faces, mut sides) = match line(&places) {
+        None => (vec![], vec![]),
+        Some(line) => match triangulate(&places, &line) {
+            Some((faces, edges)) => {
+                let side = |ends: &[usize; 2]| Side::new(*ends, &places);
+                (faces, edges.iter().map(side).collect())
+            }
+            None => (vec![], vec![line]),
+        },
     };
+    let edges = Edges::of(&faces);
     for (i, side) in sides.iter_mut().enumerate() {
-        take_slivers(i, side, &mut faces, &places);
+        take_slivers(i, side, &mut faces, &edges, &places);
     }
     Mesh {
         conditions: conditions.to_vec(),
@@ -46,13 +50,49 @@ fn are_apart(places: &[[f64; 2]]) -> bool {
 }
 
 type Triangles = (Vec<Face>, Vec<[usize; 2]>);
+/// Finds its way to a place in a time that hardly grows with the number of places.
+type Delaunay = DelaunayTriangulation<Point2<f64>, (), (), (), HierarchyHintGenerator<f64>>;
+
+/// Places no farther from a line than this, in the largest speed and force, lie on it but for rounding.
+const ROUNDING: f64 = 1e-9;
+/// As many places are triangulated in their own order, whatever it costs: where four lie on a circle, as on a grid, the
+/// order decides on the diagonal.
+const FEW: usize = 1000;
+
+/// The order in which places are triangulated; none where all are on the line of the two that lie farthest apart.
+///
+/// Each place that is added to a line costs as much as there are on it, so of many places three that span a triangle go
+/// first. The others follow as if shuffled: in an order of its own a place can turn as many triangles as there are, after
+/// a shuffle it turns six on average.
+pub(super) fn order(places: &[[f64; 2]], line: &Side) -> Option<Vec<usize>> {
+    let distance = |i: usize| line.distance2(places[i]);
+    let farthest = (0..places.len()).max_by(|a, b| distance(*a).total_cmp(&distance(*b)))?;
+    if distance(farthest) <= ROUNDING * ROUNDING {
+        return None;
+    }
+    let mut order: Vec<usize> = (0..places.len()).collect();
+    if places.len() > FEW {
+        let (first, last) = (line.conditions.first(), line.conditions.last());
+        let is_corner = |i: &usize| Some(i) == first || Some(i) == last || *i == farthest;
+        order.sort_by_cached_key(|i| (!is_corner(i), scattered(*i as u64)));
+    }
+    Some(order)
+}
+
+/// A number that stands for another, and looks like chance (SplitMix64, Steele et al. 2014).
+fn scattered(i: u64) -> u64 {
+    let mut z = i.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
 
 /// Triangles and hull edges; none if the points do not span a triangle.
-fn triangulate(places: &[[f64; 2]]) -> Option<Triangles> {
-    let mut mesh = DelaunayTriangulation::<Point2<f64>>::new();
+fn triangulate(places: &[[f64; 2]], line: &Side) -> Option<Triangles> {
+    let mut mesh = Delaunay::new();
     let mut index = Vec::new();
-    for (i, p) in places.iter().enumerate() {
-        let handle = mesh.insert(Point2::new(p[0], p[1])).ok()?;
+    for i in order(places, line)? {
+        let handle = mesh.insert(Point2::new(places[i][0], places[i][1])).ok()?;
         if handle.index() == index.len() {
             index.push(i);
         }
@@ -74,11 +114,20 @@ fn triangulate(places: &[[f64; 2]]) -> Option<Triangles> {
     (!faces.is_empty()).then_some((faces, edges))
 }
 
-/// Points on a line; none where there are not two places.
-fn line(places: &[[f64; 2]]) -> Option<Side> {
+/// The line of two places at its ends, and the conditions on it; none where there are not two places.
+pub(super) fn line(places: &[[f64; 2]]) -> Option<Side> {
+    let spread = |axis: usize| {
+        let [low, high] = places.iter().fold([f64::INFINITY, 0.0], |[low, high], p| {
+            [low.min(p[axis]), high.max(p[axis])]
+        });
+        high - low
+    };
+    // Along the axis that it runs along more: on the other, rounding may decide.
+    let along = usize::from(spread(1) > spread(0));
     let ordered = |a: &usize, b: &usize| {
         let (a, b) = (places[*a], places[*b]);
-        a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
+        let across = a[1 - along].total_cmp(&b[1 - along]);
+        a[along].total_cmp(&b[along]).then(across)
     };
     let all = 0..places.len();
     let (first, last) = (all.clone().min_by(ordered)?, all.clone().max_by(ordered)?);
@@ -95,38 +144,73 @@ fn line(places: &[[f64; 2]]) -> Option<Side> {
 }
 
 /// Gives a side the slivers that lie on it, one behind the other, and their conditions.
-fn take_slivers(index: usize, side: &mut Side, faces: &mut [Face], places: &[[f64; 2]]) {
-    let mut link = 0;
-    while link + 1 < side.conditions.len() {
-        let ends = [side.conditions[link], side.conditions[link + 1]];
-        let Some((face, condition)) = beside(faces, ends) else {
-            link += 1;
-            continue;
-        };
-        let foot = side.foot(places[condition]);
-        let between = side.feet[link] < foot && foot < side.feet[link + 1];
-        if between && is_same(places[condition], side.at(foot)) {
-            faces[face].side = Some(index);
-            side.conditions.insert(link + 1, condition);
-            side.feet.insert(link + 1, foot);
-        } else {
-            link += 1;
+fn take_slivers(
+    index: usize,
+    side: &mut Side,
+    faces: &mut [Face],
+    edges: &Edges,
+    places: &[[f64; 2]],
+) {
+    let ends = side
+        .conditions
+        .iter()
+        .copied()
+        .zip(side.feet.iter().copied());
+    // What lies ahead along the side, the next on top.
+    let mut ahead: Vec<(usize, f64)> = ends.rev().collect();
+    let mut behind: Vec<(usize, f64)> = ahead.pop().into_iter().collect();
+    while let (Some(from), Some(to)) = (behind.last(), ahead.last()) {
+        let sliver = edges
+            .beside([from.0, to.0], faces)
+            .filter(|(_, condition)| {
+                let foot = side.foot(places[*condition]);
+                from.1 < foot && foot < to.1 && is_same(places[*condition], side.at(foot))
+            });
+        match sliver {
+            Some((face, condition)) => {
+                faces[face].side = Some(index);
+                ahead.push((condition, side.foot(places[condition])));
+            }
+            None => behind.extend(ahead.pop()),
         }
+    }
+    (side.conditions, side.feet) = behind.into_iter().unzip();
+}
+
+/// The triangles over each edge.
+struct Edges(Vec<([usize; 2], usize)>);
+
+impl Edges {
+    fn of(faces: &[Face]) -> Self {
+        let edges = |(i, face): (usize, &Face)| {
+            let [a, b, c] = face.corners;
+            [[a, b], [b, c], [c, a]].map(|ends| (ascending(ends), i))
+        };
+        let mut edges: Vec<_> = faces.iter().enumerate().flat_map(edges).collect();
+        edges.sort_unstable();
+        Self(edges)
+    }
+
+    /// A triangle over an edge that no side has yet, and its third corner.
+    fn beside(&self, ends: [usize; 2], faces: &[Face]) -> Option<(usize, usize)> {
+        let edge = ascending(ends);
+        let first = self.0.partition_point(|(other, _)| *other < edge);
+        let over = self.0[first..]
+            .iter()
+            .take_while(|(other, _)| *other == edge);
+        let (_, face) = over
+            .into_iter()
+            .find(|(_, face)| faces[*face].side.is_none())?;
+        let third = faces[*face]
+            .corners
+            .into_iter()
+            .find(|c| !ends.contains(c))?;
+        Some((*face, third))
     }
 }
 
-/// A triangle over an edge that no side has yet, and its third corner.
-fn beside(faces: &[Face], ends: [usize; 2]) -> Option<(usize, usize)> {
-    let third = |face: &Face| {
-        let has = |end: &usize| face.corners.contains(end);
-        let third = face.corners.iter().find(|c| !ends.contains(c));
-        third.copied().filter(|_| ends.iter().all(has))
-    };
-    let free = |(i, face): (usize, &Face)| match face.side {
-        None => Some((i, third(face)?)),
-        Some(_) => None,
-    };
-    faces.iter().enumerate().find_map(free)
+fn ascending([a, b]: [usize; 2]) -> [usize; 2] {
+    [a.min(b), a.max(b)]
 }
 
 fn is_same(a: [f64; 2], b: [f64; 2]) -> bool {

@@ -56,6 +56,95 @@ fn conditions_that_are_the_same_stay_apart() {
     }
 }
 
+/// As many conditions as an asset has room for, where each one could cost as much as there are: all on one line, on
+/// lines that turn every triangle, on slivers, round one that all triangles share.
+fn many(count: usize) -> Vec<(&'static str, Vec<[f64; 2]>)> {
+    let part = |i: usize| i as f64 / count as f64;
+    let mixed = |i: usize| (i * 7919) % count;
+    let all = |place: &dyn Fn(usize) -> [f64; 2]| (0..count).map(place).collect();
+    let circle = |i: usize| [part(i).cos(), part(i).sin()].map(|x| 2.0 + x);
+    vec![
+        (
+            "one line: one force",
+            all(&|i| [10.0 + part(mixed(i)), 0.4]),
+        ),
+        (
+            "one line: one speed",
+            all(&|i| [80.0, 0.4 + part(mixed(i))]),
+        ),
+        (
+            "one line, bent by rounding",
+            all(&|i| [10.0 + i as f64, 1.0 + 1.1 * i as f64]),
+        ),
+        (
+            "a line and one beside",
+            all(&|i| [10.0 + part(i), if i + 1 == count { 0.9 } else { 0.4 }]),
+        ),
+        (
+            "a cross",
+            all(&|i| {
+                if i % 2 == 0 {
+                    [100.0, 0.2 + part(i)]
+                } else {
+                    [100.0 + part(i), 0.7]
+                }
+            }),
+        ),
+        ("an arc", all(&circle)),
+        (
+            "an arc and its centre",
+            all(&|i| if i == 0 { [2.0; 2] } else { circle(i) }),
+        ),
+        (
+            "a grid",
+            all(&|i| [10.0 + (i % 100) as f64, 1.0 + (i / 100) as f64]),
+        ),
+    ]
+}
+
+/// On a line that is level with no axis, rounding puts conditions to either side.
+#[test]
+fn conditions_on_a_slanted_line_are_each_met() {
+    for steep in [-0.019, 0.011, 1.1] {
+        let points: Vec<[f64; 2]> = (0..50)
+            .map(|i| [10.0 + f64::from(i), 1.0 + steep * f64::from(i)])
+            .collect();
+        for (i, [speed, force]) in points.iter().enumerate() {
+            assert_eq!(at(&Mesh::new(&points), *speed, *force), [(i, 1.0)]);
+        }
+    }
+}
+
+/// What an asset of many conditions costs grows hardly faster than their number: each of these took from 5 s to a
+/// minute, and takes some tenths of a second.
+#[test]
+fn many_conditions_are_each_met_and_none_costs_as_much_as_all() {
+    let count = 40_000;
+    for (what, points) in many(count) {
+        let mesh = Mesh::new(&points);
+        for (i, [speed, force]) in points.iter().enumerate().step_by(count / 50) {
+            assert_eq!(at(&mesh, *speed, *force), [(i, 1.0)], "{what}");
+        }
+    }
+}
+
+/// Each place that is added to a line is compared with all that are on it.
+#[test]
+fn of_many_places_three_that_span_a_triangle_go_first() {
+    for (what, places) in many(2_000) {
+        let order = build::line(&places).and_then(|line| build::order(&places, &line));
+        let Some(order) = order else {
+            assert!(what.starts_with("one line"), "{what}");
+            continue;
+        };
+        let [a, b, c] = [order[0], order[1], order[2]].map(|i| places[i]);
+        assert!(area(a, b, c) != 0.0, "{what}");
+        let mut sorted = order;
+        sorted.sort_unstable();
+        assert!(sorted.into_iter().eq(0..places.len()), "{what}");
+    }
+}
+
 /// Speeds or forces, each some tenths above the one before.
 fn axis(
     count: impl Into<proptest::collection::SizeRange>,

@@ -7,7 +7,7 @@ mod common;
 use std::time::Duration;
 
 use common::{limits, load_within, text};
-use htex_host::{Band, HostError, LoadedModel, WasmLimits};
+use htex_host::{Band, HostError, LoadedModel, Registry, Search, WasmLimits, WasmTotal};
 
 fn magnitude(model: &LoadedModel) -> Result<(), HostError> {
     model.magnitude(&[0.5], Band::TACTILE, &[50.0]).map(drop)
@@ -140,4 +140,93 @@ fn voices() {
     assert!(voice().is_err());
     drop((second, third));
     (0..5).for_each(|_| drop(voice().unwrap()));
+}
+
+/// A voice that is slow within the limit of each call ends all the same.
+#[test]
+fn time_of_a_voice() {
+    let body = "(call $count (i32.const 200000000)) (i64.const 0)";
+    let wat = text("1.0.0", &[("voice_render", body)], "");
+    let model = load_within(
+        &wat,
+        &WasmLimits {
+            render: Duration::from_secs(60),
+            ..limits()
+        },
+    )
+    .unwrap();
+    let mut voice = model.voice(&[0.5], Band::TACTILE, 48_000.0, 1).unwrap();
+    let mut block = [0.0; 16];
+    let error = (0..1_000)
+        .find_map(|_| voice.render(&mut block).err())
+        .unwrap()
+        .to_string();
+    assert!(
+        error.contains("10 times as long as what it renders"),
+        "{error}"
+    );
+}
+
+/// What models of one registry share: each is within its own limits.
+#[test]
+fn time_memory_and_instances_of_all() {
+    let with = |all: WasmTotal| WasmLimits {
+        call: Duration::from_secs(60),
+        all,
+        ..limits()
+    };
+    let enough = limits().all;
+    let registry = |limits: WasmLimits, body: &str| {
+        let search = Search {
+            limits,
+            builtin: false,
+            ..Search::builtin()
+        };
+        let mut registry = Registry::search(&search).unwrap();
+        let mut errors = Vec::new();
+        for i in 0..4 {
+            let wat = text(&format!("1.0.{i}"), &[("abi_version", body)], "");
+            let bytes = wat::parse_str(&wat).unwrap();
+            errors.extend(registry.add_wasm_bytes("test.htex", &bytes).err());
+        }
+        errors
+            .iter()
+            .map(ToString::to_string)
+            .collect::<Vec<_>>()
+            .join("; ")
+    };
+    let sound = "(i32.const 0x48540100)";
+    let grows = format!("(drop (memory.grow (i32.const 160))) {sound}");
+    let counts = format!("(call $count (i32.const 2000000000)) {sound}");
+    assert_eq!(registry(with(enough), sound), "");
+    assert_eq!(registry(with(enough), &grows), "");
+    for (body, all, said) in [
+        (
+            sound,
+            WasmTotal {
+                instances: 3,
+                ..enough
+            },
+            "3 instances at a time",
+        ),
+        (
+            &grows,
+            WasmTotal {
+                memory_bytes: 20 << 20,
+                ..enough
+            },
+            "20971520 bytes of memory together",
+        ),
+        (
+            &counts,
+            WasmTotal {
+                time: Duration::from_millis(100),
+                ..enough
+            },
+            "used up the 100 ms",
+        ),
+    ] {
+        let errors = registry(with(all), body);
+        assert!(errors.contains(said), "{errors}");
+    }
 }

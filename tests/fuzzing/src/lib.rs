@@ -9,9 +9,11 @@
 mod asset;
 mod block;
 mod body;
+mod compile;
 mod container;
 mod descriptor;
 pub mod edges;
+mod heavy;
 mod manifest;
 mod module;
 mod output;
@@ -25,6 +27,7 @@ mod signed;
 
 pub use asset::open_asset;
 pub use block::parameter_block;
+pub use compile::compile_limits;
 pub use descriptor::descriptor;
 pub use manifest::manifest;
 pub use module::wasm_module;
@@ -64,6 +67,7 @@ pub const TARGETS: &[Target] = &[
     target("signed_plugin", signed_plugin),
     target("printed_text", printed_text),
     target("output_name", output_name),
+    target("compile_limits", compile_limits),
 ];
 
 const fn target(name: &'static str, run: fn(&[u8]) -> bool) -> Target {

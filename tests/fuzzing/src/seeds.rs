@@ -268,6 +268,17 @@ fn modules() -> Vec<Seed> {
     let mut seeds: Vec<Seed> = vec![
         ("wasm_module", "sound.wasm".to_owned(), sound.clone()),
         ("wasm_module", "sound-bodies".to_owned(), vec![0]),
+        // Nested conditions, and loops one behind the other.
+        (
+            "compile_limits",
+            "nested".to_owned(),
+            vec![60, 30, 10, 0, 0, 1, 2, 0],
+        ),
+        (
+            "compile_limits",
+            "loops".to_owned(),
+            vec![80, 5, 60, 1, 1, 2, 1, 0, 0, 2, 4],
+        ),
         ("wasm_module", "made-bodies".to_owned(), varied),
         ("signed_plugin", "sound".to_owned(), vec![0, 0, 0, 7]),
         ("signed_plugin", "unsigned".to_owned(), vec![2, 0, 0, 7]),

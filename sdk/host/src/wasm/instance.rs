@@ -138,7 +138,10 @@ impl Instance {
         let result = arm(&mut self.store, &self.module, time)
             .and_then(|()| function(&self.functions).call(&mut self.store, parameters));
         self.spend(start.elapsed());
-        result.map_err(|e| Fault::of(&e, &self.module.limits, time.as_millis()))
+        result.map_err(|e| match self.time_left() {
+            Err(used_up) => Fault(format!("the module was stopped: {used_up}")),
+            Ok(_) => Fault::of(&e, &self.module.limits, time.as_millis()),
+        })
     }
 
     /// The address of a room of at least `bytes`, a multiple of 8, in the module's memory. It stays

@@ -1,0 +1,59 @@
+//! Modules that are made to be compiled for long.
+
+use std::time::{Duration, Instant};
+
+use htex_host::{LoadedModel, WasmCache, WasmLimits};
+
+use crate::body::Bytes;
+use crate::heavy::Heavy;
+use crate::module::model;
+use crate::promise::sentence;
+
+/// What may be taken by the estimate, which counts on a machine three times as slow.
+const ALLOWED: Duration = Duration::from_millis(300);
+/// What may never be taken: the programs are built with counters, and other programs run beside them.
+const NEVER: Duration = Duration::from_secs(6);
+
+/// Loads a sound model with a function in it that a byte each describes: locals, depth, nests, copies, kinds of blocks,
+/// statements. What the limit of compiling lets through is compiled in the time that it may take.
+pub fn compile_limits(input: &[u8]) -> bool {
+    let mut bytes = Bytes(input);
+    let squared = |byte: u8| usize::from(byte) * usize::from(byte) / 32;
+    let mut heavy = Heavy {
+        locals: squared(bytes.next()) / 2,
+        depth: 1 + squared(bytes.next()),
+        nests: 1 + squared(bytes.next()),
+        copies: 1 + usize::from(bytes.next()),
+        ..Heavy::default()
+    };
+    let [blocks, head] = [bytes.next() % 4, bytes.next() % 8].map(usize::from);
+    heavy.blocks = (0..=blocks).map(|_| bytes.next()).collect();
+    heavy.head = (0..head).map(|_| bytes.next()).collect();
+    heavy.end = bytes.0.iter().take(8).copied().collect();
+    if !heavy.is_bounded() {
+        return false;
+    }
+    let text = model::text("1.0.0", &[], &heavy.text());
+    let module = wat::parse_str(&text)
+        .unwrap_or_else(|e| panic!("the maker of functions is wrong: {e}\n{heavy:?}"));
+    let limits = WasmLimits {
+        compile: ALLOWED,
+        cache: WasmCache::Off,
+        ..WasmLimits::default()
+    };
+    let start = Instant::now();
+    let loaded = LoadedModel::from_wasm_bytes("heavy.wasm", &module, &limits);
+    let took = start.elapsed();
+    assert!(
+        took < NEVER,
+        "{took:?} for {} bytes: {heavy:?}",
+        module.len()
+    );
+    match loaded {
+        Ok(_) => true,
+        Err(error) => {
+            sentence(&error);
+            false
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! WASM functions that are small and take long to compile.
+
+/// A function: blocks within blocks, with statements at the head and at the end of each.
+#[derive(Debug, Clone, Default)]
+pub struct Heavy {
+    /// Local variables, 64-bit integers.
+    pub locals: usize,
+    /// Blocks within one another.
+    pub depth: usize,
+    /// Such nests one behind the other.
+    pub nests: usize,
+    /// How many times the function is there.
+    pub copies: usize,
+    /// What the blocks are, in turn: a block, a loop, an `if`.
+    pub blocks: Vec<u8>,
+    /// Statements at the head of each block, by their number in [`Heavy::statement`].
+    pub head: Vec<u8>,
+    /// Statements at the end of each block.
+    pub end: Vec<u8>,
+}
+
+/// How many kinds of statements there are.
+const KINDS: u8 = 14;
+
+impl Heavy {
+    /// Text of the functions, and of what they use. They go into a module with a memory.
+    pub fn text(&self) -> String {
+        let mut function = String::new();
+        let mut n = 0;
+        for _ in 0..self.nests {
+            for at in 0..self.depth {
+                function += match self.blocks.get(at % self.blocks.len().max(1)).unwrap_or(&0) % 3 {
+                    0 => "(block",
+                    1 => "(loop",
+                    _ => "(if (local.get 0) (then",
+                };
+                self.statements(&self.head, &mut n, at + 1, &mut function);
+            }
+            for at in (0..self.depth).rev() {
+                self.statements(&self.end, &mut n, at + 1, &mut function);
+                function += match self.blocks.get(at % self.blocks.len().max(1)).unwrap_or(&0) % 3 {
+                    2 => "))",
+                    _ => ")",
+                };
+            }
+        }
+        // So that no variable is without use.
+        for local in 1..=self.locals {
+            function += &format!("(i64.store (i32.const 0) (local.get {local}))");
+        }
+        let locals = " i64".repeat(self.locals);
+        let function = format!("(func (param i32) (local{locals}) {function})\n");
+        format!(
+            "(type $any (func (param i32) (result i32)))
+             (table $table 2 2 funcref)
+             (func $called (param i32) (result i32) (local.get 0))
+             {}",
+            function.repeat(self.copies)
+        )
+    }
+
+    fn statements(&self, kinds: &[u8], n: &mut usize, depth: usize, text: &mut String) {
+        for kind in kinds {
+            *n += 1;
+            *text += &self.statement(*kind, *n, depth);
+        }
+    }
+
+    /// The `n`th statement, within so many blocks. No two of a kind are the same.
+    fn statement(&self, kind: u8, n: usize, depth: usize) -> String {
+        let local = |n: usize| 1 + n % self.locals.max(1);
+        let (to, from) = (local(n), local(n * 7 + 3));
+        let outermost = depth - 1;
+        match kind % KINDS {
+            0 => format!("(local.set {to} (i64.add (local.get {to}) (i64.const {n})))"),
+            1 => format!("(local.set {to} (i64.xor (local.get {to}) (local.get {from})))"),
+            2 => format!("(br_if {} (local.get 0))", n % depth),
+            3 => format!("(br_if {outermost} (local.get 0))"),
+            4 => "(br_if 0 (local.get 0))".to_owned(),
+            5 => {
+                let all: Vec<String> = (0..depth).map(|to| to.to_string()).collect();
+                format!("(br_table {} (local.get 0))", all.join(" "))
+            }
+            6 => "(local.set 0 (call $called (local.get 0)))".to_owned(),
+            7 => "(local.set 0 (call_indirect (type $any) (local.get 0) (local.get 0)))".to_owned(),
+            8 => format!("(memory.copy (i32.const {n}) (local.get 0) (i32.const 8))"),
+            9 => "(local.set 0 (memory.grow (local.get 0)))".to_owned(),
+            10 => format!("(local.set {to} (i64.load (i32.const {})))", n % 60_000),
+            11 => format!("(local.set {to} (i64.div_u (local.get {from}) (i64.const {n})))"),
+            12 => {
+                format!("(local.set {to} (i64.trunc_f64_s (f64.convert_i64_s (local.get {from}))))")
+            }
+            _ => "(table.copy (local.get 0) (local.get 0) (local.get 0))".to_owned(),
+        }
+    }
+
+    /// Whether the text has a size that can be worked with.
+    pub fn is_bounded(&self) -> bool {
+        let blocks = self.depth * self.nests;
+        let each = 1 + self.head.len() + self.end.len();
+        let targets = self
+            .head
+            .iter()
+            .chain(&self.end)
+            .filter(|k| **k % KINDS == 5)
+            .count();
+        blocks * (each + targets * self.depth) + self.locals * self.copies <= 60_000
+            && self.copies * (blocks * each + self.locals) <= 60_000
+    }
+}

@@ -233,7 +233,7 @@ impl Asset {
 
     /// Magnitudes of a representation at a motion (else its first condition) and frequencies in
     /// hertz; in the asset's unit, in the measure of the texture spectrum. As recorded, or interpolated: what a voice makes of a
-    /// motion beyond that ([`Self::coverage`]) is not in it.
+    /// motion beyond that ([`Self::motions`]) is not in it.
     ///
     /// # Errors
     /// As [`Self::voice`].

@@ -298,3 +298,48 @@ fn devices_stay_devices_and_a_closed_standard_error_is_no_panic() {
         assert_eq!(done.code(), Some(code), "{words}");
     }
 }
+
+/// Names that are no Unicode are those of the files that are read and written.
+#[cfg(target_os = "linux")]
+#[test]
+fn names_that_are_no_unicode_are_kept() {
+    use std::ffi::{OsStr, OsString};
+    use std::os::unix::ffi::OsStrExt;
+    let place = place();
+    let named = |ending: &str| -> OsString {
+        [OsStr::from_bytes(b"caf\xe9"), OsStr::new(ending)]
+            .into_iter()
+            .collect()
+    };
+    let before = std::fs::read_dir(place.path(".")).unwrap().count();
+    std::fs::copy(place.path("vinyl.csv"), place.path(".").join(named(".csv"))).unwrap();
+    std::fs::write(
+        place.path("own.scene.json"),
+        r#"{"htex_scene":"1.0","surfaces":[{"asset":"cloth.htex"}],"motion":{"constant":{"speed_mm_s":80,"force_n":0.4}},"duration_s":0.2}"#,
+    )
+    .unwrap();
+    for (command, input, output) in [
+        ("fit", named(".csv"), named(".htex")),
+        ("info", named(".htex"), OsString::new()),
+        ("validate", named(".htex"), OsString::new()),
+        ("process", named(".csv"), OsString::new()),
+        ("synth", named(".htex"), named(".wav")),
+        ("render", "own.scene.json".into(), named(".npy")),
+    ] {
+        let mut run = place.command(&[command]);
+        run.arg(&input);
+        if !output.is_empty() {
+            run.arg("-o").arg(&output);
+        }
+        let run = run.output().unwrap();
+        let error = String::from_utf8_lossy(&run.stderr);
+        assert_eq!(run.status.code(), Some(0), "{command}: {error}");
+        assert!(
+            output.is_empty() || place.path(".").join(&output).is_file(),
+            "{command}"
+        );
+    }
+    // The four, and the scene.
+    let after = std::fs::read_dir(place.path(".")).unwrap().count();
+    assert_eq!(after, before + 5, "no file of another name");
+}

@@ -1,4 +1,5 @@
 use std::collections::BTreeMap;
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -60,7 +61,11 @@ impl Render {
             renderer = renderer.timed();
         }
         signals::ask();
-        let (file, mut output) = self.open(&ready, plan.rate_hz)?;
+        let Opened {
+            path,
+            aside,
+            mut output,
+        } = self.open(&ready, plan.rate_hz)?;
         let length_s = plan.frames.unwrap_or(0) as f64 / plan.rate_hz;
         let bar = bar(length_s.ceil() as u64);
         while output.step(&mut renderer)? {
@@ -74,6 +79,8 @@ impl Render {
         bar.finish_and_clear();
         let frames = output.frames();
         output.finish()?;
+        aside.map_or(Ok(()), |aside| aside.move_to(&path))?;
+        let file = path.display().to_string();
         if self.json {
             print_json(&json!({
                 "file": file,
@@ -85,7 +92,13 @@ impl Render {
                 "limited_samples": renderer.limited_samples(),
             }))?;
         } else {
-            print(&text(&file, frames, plan.rate_hz, &ready, &renderer))?;
+            print(&text(
+                &shown(&path),
+                frames,
+                plan.rate_hz,
+                &ready,
+                &renderer,
+            ))?;
         }
         Ok(ExitCode::SUCCESS)
     }
@@ -111,8 +124,8 @@ impl Render {
         Err(Failure::Other(format!("{file}: {sentence}")))
     }
 
-    /// Opens the file, under its name for people.
-    fn open(&self, ready: &Ready, rate_hz: f64) -> Result<(String, Output), Failure> {
+    /// Opens the file.
+    fn open(&self, ready: &Ready, rate_hz: f64) -> Result<Opened, Failure> {
         let known = ready.devices.find("org.htex.file")?;
         let is_file = ready.device.descriptor().id == known.descriptor().id;
         let mut given = match is_file {
@@ -123,26 +136,69 @@ impl Render {
                 .collect(),
             false => like(&ready.capabilities, &self.scene),
         };
+        let aside = self.output.as_deref().and_then(Aside::of);
         if let Some(output) = &self.output {
-            given.insert("path".to_owned(), output.display().to_string());
+            let written = aside.as_ref().map_or(output, |aside| &aside.0);
+            given.insert("path".to_owned(), written.display().to_string());
         }
         let settings = Settings::resolve(known.descriptor(), None, &given)?;
         let format = StreamFormat {
             rate_hz,
             block_frames: BLOCK as u32,
         };
-        let path = Path::new(settings.text("path"));
-        ready.check_output(path)?;
+        let path = match &self.output {
+            Some(output) => output.clone(),
+            None => settings.text("path").into(),
+        };
+        ready.check_output(&path)?;
         let is_named = self.output.is_some() || self.choice.names_output()?;
         if !is_named && path.symlink_metadata().is_ok() {
-            let path = shown(path);
+            let path = shown(&path);
             return Err(Failure::Usage(format!(
                 "{path} is there already; name the file to write, or to replace, by -o FILE"
             )));
         }
         let device = known.adapter.open(&settings, &format)?;
-        let file = settings.text("path").to_owned();
-        Ok((file, Output::new(device, BLOCK, rate_hz)))
+        Ok(Opened {
+            path,
+            aside,
+            output: Output::new(device, BLOCK, rate_hz),
+        })
+    }
+}
+
+/// The file that is rendered to.
+struct Opened {
+    path: PathBuf,
+    aside: Option<Aside>,
+    output: Output,
+}
+
+/// A file of another name that is written in place of one whose name is no Unicode: devices take their settings as text.
+struct Aside(PathBuf);
+
+impl Aside {
+    /// The place for a file of this name, if it needs one: with its extension, which says the format.
+    fn of(path: &Path) -> Option<Self> {
+        if path.to_str().is_some() {
+            return None;
+        }
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("wav");
+        let name = format!("htex-render-{}.{extension}", std::process::id());
+        Some(Self(std::env::temp_dir().join(name)))
+    }
+
+    fn move_to(self, path: &Path) -> Result<(), Failure> {
+        let copied = htex_format::replace_file(path, |file| {
+            std::io::copy(&mut File::open(&self.0)?, file).map(drop)
+        });
+        copied.map_err(|error| Failure::Other(format!("{}: {error}", shown(path))))
+    }
+}
+
+impl Drop for Aside {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.0);
     }
 }
 

@@ -87,6 +87,20 @@ impl Bench {
         whole.lines().map(|line| line.parse().unwrap()).collect()
     }
 
+    /// Waits until zero came out and nothing since, however busy the machine is.
+    fn comes_to_zero(&self) {
+        let (start, mut length) = (Instant::now(), 0);
+        while start.elapsed() < Duration::from_secs(30) {
+            let card_v = self.card_v();
+            if card_v.last() == Some(&0.0) && card_v.len() == length {
+                break;
+            }
+            length = card_v.len();
+            std::thread::sleep(Duration::from_millis(500));
+        }
+        self.is_at_zero();
+    }
+
     /// Something came out, and zero is the last of it.
     fn is_at_zero(&self) {
         let card_v = self.card_v();
@@ -395,8 +409,7 @@ fn a_player_that_is_killed_leaves_zero() {
         let bench = Bench::new(json!({}));
         let mut child = bench.start();
         signal(&child, name);
-        std::thread::sleep(Duration::from_millis(900));
-        bench.is_at_zero();
+        bench.comes_to_zero();
         let length = bench.card_v().len();
         if name == "-STOP" {
             child.kill().unwrap();

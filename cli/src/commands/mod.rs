@@ -1,6 +1,7 @@
 //! One file a subcommand: its arguments and what it does with them.
 
 mod compare;
+#[cfg(feature = "wasm")]
 mod compile_module;
 mod demo;
 mod device;
@@ -44,6 +45,7 @@ pub(crate) enum Command {
     Play(play::Play),
     Gain(gain::Gain),
     Guard(guard::Guard),
+    #[cfg(feature = "wasm")]
     CompileModule(compile_module::CompileModule),
     Schema(schema::Schema),
     Plugin(plugin::Plugin),
@@ -69,6 +71,7 @@ impl Command {
             Self::Play(args) => args.run(),
             Self::Gain(args) => args.run(),
             Self::Guard(args) => args.run(),
+            #[cfg(feature = "wasm")]
             Self::CompileModule(args) => args.run(),
             Self::Schema(args) => args.run(),
             Self::Plugin(args) => args.run(),

@@ -408,6 +408,7 @@ fn reason(last_error: impl FnMut(&mut [u8]) -> i64) -> String {
 fn no_wasm(origin: &str) -> HostError {
     HostError::Load {
         path: origin.to_owned(),
-        what: "this program was built without its `wasm` feature".to_owned(),
+        what: "this program was built without the engine of WASM modules; build it with the Cargo feature `wasm`, which \
+               is on by default".to_owned(),
     }
 }

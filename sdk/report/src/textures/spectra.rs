@@ -9,7 +9,7 @@ use crate::plot::Plot;
 use crate::series::Series;
 use crate::svg;
 
-/// Size of one panel, pixels. Panels are never drawn narrower, so that text keeps its size.
+/// Size of one panel, pixels.
 const PANEL: (f64, f64) = (210.0, 190.0);
 
 /// The recording where it stands behind a model.
@@ -55,7 +55,12 @@ fn row(texture: &Texture) -> Element {
         .models
         .iter()
         .map(|model| model_panel(texture, model, top_mn));
-    let panels = Element::new("div").set("class", "panels");
+    // All in one row, or in two rows that are filled alike.
+    let all = 1 + texture.models.len();
+    let half = if all > 4 { all.div_ceil(2) } else { all };
+    let panels = Element::new("div")
+        .set("class", "panels")
+        .set("style", &format!("--all: {all}; --half: {half}"));
     let panels = panels
         .child(&recording_panel(texture, top_mn))
         .children(models);

@@ -405,7 +405,8 @@ fn further_signals_do_not_cut_the_way_to_zero_short() {
 #[cfg(unix)]
 #[test]
 fn a_player_that_is_killed_leaves_zero() {
-    for name in ["-KILL", "-ABRT", "-QUIT", "-STOP"] {
+    // A shell may have its children ignore SIGQUIT, which else ends a program as SIGABRT does.
+    for name in ["-KILL", "-ABRT", "-STOP"] {
         let bench = Bench::new(json!({}));
         let mut child = bench.start();
         signal(&child, name);

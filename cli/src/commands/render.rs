@@ -136,9 +136,12 @@ impl Render {
                 .collect(),
             false => like(&ready.capabilities, &self.scene),
         };
-        let aside = self.output.as_deref().and_then(Aside::of);
+        let aside = match &self.output {
+            Some(output) => Aside::of(output)?,
+            None => None,
+        };
         if let Some(output) = &self.output {
-            let written = aside.as_ref().map_or(output, |aside| &aside.0);
+            let written = aside.as_ref().map_or(output, |aside| &aside.path);
             given.insert("path".to_owned(), written.display().to_string());
         }
         let settings = Settings::resolve(known.descriptor(), None, &given)?;
@@ -175,30 +178,32 @@ struct Opened {
 }
 
 /// A file of another name that is written in place of one whose name is no Unicode: devices take their settings as text.
-struct Aside(PathBuf);
+/// It lies in a folder of its own, which nobody else may write to.
+struct Aside {
+    path: PathBuf,
+    _folder: tempfile::TempDir,
+}
 
 impl Aside {
     /// The place for a file of this name, if it needs one: with its extension, which says the format.
-    fn of(path: &Path) -> Option<Self> {
+    fn of(path: &Path) -> Result<Option<Self>, Failure> {
         if path.to_str().is_some() {
-            return None;
+            return Ok(None);
         }
+        let folder = tempfile::tempdir()
+            .map_err(|error| Failure::Other(format!("no temporary folder: {error}")))?;
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("wav");
-        let name = format!("htex-render-{}.{extension}", std::process::id());
-        Some(Self(std::env::temp_dir().join(name)))
+        Ok(Some(Self {
+            path: folder.path().join(format!("render.{extension}")),
+            _folder: folder,
+        }))
     }
 
     fn move_to(self, path: &Path) -> Result<(), Failure> {
         let copied = htex_format::replace_file(path, |file| {
-            std::io::copy(&mut File::open(&self.0)?, file).map(drop)
+            std::io::copy(&mut File::open(&self.path)?, file).map(drop)
         });
         copied.map_err(|error| Failure::Other(format!("{}: {error}", shown(path))))
-    }
-}
-
-impl Drop for Aside {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_file(&self.0);
     }
 }
 

@@ -64,8 +64,15 @@ const LIMITS: [(&str, u64, Set); 16] = [
 ];
 
 impl WasmLimit {
-    /// Reads `NAME=VALUE`.
+    /// Reads `NAME=VALUE`. A build without the engine knows no limits.
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
+        if cfg!(not(feature = "wasm")) {
+            return Err(
+                "this program was built without the engine of WASM modules, so there is nothing to limit; \
+                 leave the flag out, or build with the Cargo feature `wasm`"
+                    .to_owned(),
+            );
+        }
         let (name, value) = text.split_once('=').unwrap_or((text, ""));
         let Some((_, most, set)) = LIMITS.iter().find(|(known, ..)| *known == name) else {
             let known: Vec<&str> = LIMITS.iter().map(|(name, ..)| *name).collect();

@@ -42,6 +42,14 @@ fn build_bursts(place: &Place) -> bool {
     built
 }
 
+/// Fits a recording by the example and by sBeta to `b.htex`, which brings the example along.
+fn fit_with_bursts(place: &Place, more: &[&str]) -> serde_json::Value {
+    let csv = place.recording("sandpaper");
+    let models = ["fit", &csv, "--model", "bursts,sbeta"];
+    let output = ["--embed-plugin", "bursts.wasm", "-o", "b.htex", "--json"];
+    place.json(&[&models[..], &output, more].concat())
+}
+
 #[test]
 fn a_third_party_model_travels_with_its_asset() {
     let place = Place::new();
@@ -50,17 +58,7 @@ fn a_third_party_model_travels_with_its_asset() {
         return;
     }
     std::fs::write(place.path("key"), [9u8; 32]).unwrap();
-    let csv = place.recording("sandpaper");
-    let fit = [
-        "fit",
-        &csv,
-        "--model",
-        "bursts,sbeta",
-        "--embed-plugin",
-        "bursts.wasm",
-    ];
-    let fit = [&fit[..], &["--sign-with", "key", "-o", "b.htex", "--json"]].concat();
-    let fitted = place.json(&fit);
+    let fitted = fit_with_bursts(&place, &["--sign-with", "key"]);
     assert_eq!(fitted["representations"][0]["model"], "org.example.bursts");
     std::fs::remove_file(place.path("bursts.wasm")).unwrap();
 
@@ -111,21 +109,13 @@ fn a_module_is_the_model_it_is_said_to_be() {
         println!("skipped: no clang with lld to build C to WASM");
         return;
     }
-    let csv = place.recording("sandpaper");
-    let fit = [
-        "fit",
-        &csv,
-        "--model",
-        "bursts,sbeta",
-        "--embed-plugin",
-        "bursts.wasm",
-        "-o",
-        "b.htex",
-        "--json",
-    ];
-    place.json(&fit);
+    fit_with_bursts(&place, &[]);
     let honest = htex_format::Asset::open(&place.path("b.htex")).unwrap();
     let true_version = honest.manifest.plugins[0].version.clone();
+    let played = htex::Asset::new(honest.clone()).with_embedded();
+    assert!(played.load_embedded("org.example.bursts").is_ok());
+    let absent = played.load_embedded("org.htex.sbeta").unwrap_err();
+    assert!(absent.to_string().contains("brings along no model"));
     for (model, version) in [
         ("org.htex.sbeta", "9.9.9"),
         ("org.htex.sbeta", &true_version),

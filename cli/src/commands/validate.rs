@@ -88,9 +88,7 @@ impl Validate {
             ExitCode::FAILURE
         })
     }
-}
 
-impl Validate {
     fn validate_asset(&self, path: &Path, schemas: &[ExtensionSchema]) -> Result<Report, Failure> {
         let mut report = validate_asset(path, schemas)?;
         if self.embedded_plugins && report.valid {

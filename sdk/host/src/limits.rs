@@ -61,7 +61,7 @@ pub enum WasmCompiler {
     #[default]
     Here,
     /// Another process, which is stopped where it takes more time or memory than it may: a program that calls
-    /// [`serve_compiler`](crate::serve_compiler) when it is started with these arguments.
+    /// `htex_host::serve_compiler` when it is started with these arguments.
     Program(PathBuf, Vec<String>),
 }
 

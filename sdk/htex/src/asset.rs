@@ -110,9 +110,19 @@ impl Asset {
     /// Loads a model that the asset brings along, by its id.
     ///
     /// # Errors
-    /// When it cannot be loaded, or is of another model or version than the asset says.
+    /// When the asset brings none of this id, when it cannot be loaded, or is of another model or version than the asset
+    /// says.
     pub fn load_embedded(&self, id: &str) -> Result<(), Error> {
-        self.registry_with(id).map(drop)
+        if self.brings(id) {
+            self.registry_with(id).map(drop)
+        } else {
+            Err(Error::NoEmbeddedModel { id: id.to_owned() })
+        }
+    }
+
+    /// Whether the asset brings along a model of this id.
+    fn brings(&self, id: &str) -> bool {
+        self.data.manifest.plugins.iter().any(|p| p.model == id)
     }
 
     /// The registry, and in it the model of this id that the asset brings along, if it does.
@@ -128,8 +138,7 @@ impl Asset {
 
     /// Whether there is a model of this id that could play a representation; none is loaded.
     pub fn knows_model(&self, id: &str) -> bool {
-        let brought = || self.data.manifest.plugins.iter().any(|p| p.model == id);
-        self.embedded && brought() || self.registry.find(id).is_ok()
+        self.embedded && self.brings(id) || self.registry.find(id).is_ok()
     }
 
     /// What the asset says of itself.

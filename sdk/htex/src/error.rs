@@ -17,6 +17,14 @@ pub enum Error {
         /// What there is.
         there: String,
     },
+    /// The asset brings along no model of this id.
+    #[error(
+        "the asset brings along no model `{id}`; its manifest lists those it brings under `plugins`"
+    )]
+    NoEmbeddedModel {
+        /// What was asked for.
+        id: String,
+    },
     /// The asset was made by a model of another major version.
     #[error(
         "the asset was fitted by {model} {asset}, and version {installed} is installed, which is \

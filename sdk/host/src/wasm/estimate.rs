@@ -76,8 +76,19 @@ struct Cost {
     locals: f64,
     operators: f64,
     blocks: f64,
-    /// Whether each of the blocks around the operator is a loop, the function itself first.
-    around: Vec<bool>,
+    /// Values that may differ between the ways to a place where ways join, over all ways.
+    joined: f64,
+    /// The blocks around the operator, the function itself first.
+    around: Vec<Block>,
+}
+
+/// A block that is not at its end yet.
+struct Block {
+    is_loop: bool,
+    /// Ways to the place where those to this block join: its end, or the head of a loop.
+    ways: f64,
+    /// Assignments to locals within it.
+    assigned: f64,
 }
 
 impl Cost {
@@ -89,7 +100,8 @@ impl Cost {
             locals,
             operators: 0.0,
             blocks: 0.0,
-            around: vec![false],
+            joined: 0.0,
+            around: vec![Block::new(false, 1.0)],
         }
     }
 
@@ -103,9 +115,15 @@ impl Cost {
             self.us.add(5.0 * passed);
         }
         match operator {
-            Operator::Loop { .. } => self.enter(true, live, passed),
-            Operator::Block { .. } | Operator::If { .. } => self.enter(false, live, passed),
-            Operator::End => drop(self.around.pop()),
+            Operator::Loop { .. } => self.enter(Block::new(true, 1.0), live, passed),
+            Operator::Block { .. } => self.enter(Block::new(false, 1.0), live, passed),
+            Operator::If { .. } => self.enter(Block::new(false, 2.0), live, passed),
+            Operator::End => self.leave(),
+            Operator::LocalSet { .. } | Operator::LocalTee { .. } => {
+                if let Some(block) = self.around.last_mut() {
+                    block.assigned += 1.0;
+                }
+            }
             Operator::Br { relative_depth } | Operator::BrIf { relative_depth } => {
                 self.branch(*relative_depth, live)
             }
@@ -118,9 +136,9 @@ impl Cost {
         }
     }
 
-    fn enter(&mut self, is_loop: bool, live: f64, passed: f64) {
-        let depth = self.around.len() as f64;
-        self.around.push(is_loop);
+    fn enter(&mut self, block: Block, live: f64, passed: f64) {
+        let (depth, is_loop) = (self.around.len() as f64, block.is_loop);
+        self.around.push(block);
         self.blocks += 1.0;
         if passed > 1.0 {
             self.us.add(0.5 * passed * self.blocks);
@@ -133,10 +151,25 @@ impl Cost {
         self.us.quick_us += live * (0.7 + 0.00005 * depth);
     }
 
+    /// Where ways join, a local that was assigned in between may have another value on each.
+    fn leave(&mut self) {
+        let Some(block) = self.around.pop() else {
+            return;
+        };
+        self.joined += block.ways * block.assigned.min(self.locals);
+        if let Some(outer) = self.around.last_mut() {
+            outer.assigned += block.assigned;
+        }
+    }
+
     /// Takes along what the loop that it goes to may change.
     fn branch(&mut self, relative_depth: u32, live: f64) {
         let at = self.around.len().checked_sub(1 + relative_depth as usize);
-        let to_loop = at.and_then(|at| self.around.get(at)).is_some_and(|is| *is);
+        let target = at.and_then(|at| self.around.get_mut(at));
+        let to_loop = target.is_some_and(|block| {
+            block.ways += 1.0;
+            block.is_loop
+        });
         self.us.add(0.5);
         self.us.optimised_us += live * if to_loop { 1.0 } else { 0.02 };
         self.us.quick_us += live * if to_loop { 0.3 } else { 0.02 };
@@ -145,8 +178,21 @@ impl Cost {
     fn estimate(self) -> Estimate {
         let n = self.operators;
         Estimate {
-            optimised_us: self.us.optimised_us + 2.0 * n + n * n / 400.0,
+            optimised_us: self.us.optimised_us
+                + 2.0 * n
+                + n * n / 400.0
+                + self.joined * self.joined / 4000.0,
             quick_us: self.us.quick_us + 3.0 * n,
+        }
+    }
+}
+
+impl Block {
+    fn new(is_loop: bool, ways: f64) -> Self {
+        Self {
+            is_loop,
+            ways,
+            assigned: 0.0,
         }
     }
 }

@@ -8,14 +8,20 @@ use alloc::vec::Vec;
 use core::f64::consts::TAU;
 
 use crate::lanes::{LANES, Lanes, Number};
+use crate::wide::{Work, wide};
 
-/// Real signals of one even length out of their spectra.
+/// Real signals of one even length out of their spectra. Holds what depends on the length alone.
 #[derive(Debug, Clone)]
 pub struct InverseRealFft {
     half: usize,
     stages: Vec<Stage>,
     /// `exp(2πi k / len)`, one for each `k` below `half`.
     fold: Twiddles,
+}
+
+/// The memory that transforms of one length work in.
+#[derive(Debug, Clone)]
+pub struct Workspace {
     from: Complexes,
     to: Complexes,
 }
@@ -62,39 +68,81 @@ impl InverseRealFft {
         Self {
             stages: stages.collect(),
             fold: (0..half).map(|k| unit(k, 2 * half)).collect(),
-            from: Complexes::zeros(half),
-            to: Complexes::zeros(half),
             half,
         }
     }
 
-    /// Writes `Σ 2 Re(X_k exp(2πi k n / len))` over `n`, for the bins `X` from `first` on (real and
-    /// imaginary parts), in 1 to `half - 1`. What does not fit counts as zero. Does not allocate.
-    pub fn run(&mut self, first: usize, [re, im]: [&[f32]; 2], out: &mut [f32]) {
-        self.fold(first, re, im);
-        for stage in &self.stages {
-            stage.run(&self.from, &mut self.to);
-            core::mem::swap(&mut self.from, &mut self.to);
+    /// Memory for [`Self::run`].
+    pub fn workspace(&self) -> Workspace {
+        Workspace {
+            from: Complexes::zeros(self.half),
+            to: Complexes::zeros(self.half),
         }
-        let parts = self.from.re.iter().zip(&self.from.im);
-        for (pair, (re, im)) in out.as_chunks_mut::<2>().0.iter_mut().zip(parts) {
-            *pair = [*re, *im];
-        }
+    }
+
+    /// Writes `Σ 2 Re(X_k exp(2πi k n / len))` over `n`, for the bins from `first` on, in 1 to `half - 1`: directions
+    /// (cosines and sines) times amplitudes. What does not fit counts as zero. Does not allocate.
+    pub fn run(
+        &self,
+        workspace: &mut Workspace,
+        first: usize,
+        directions: [&[f32]; 2],
+        amplitude: &[f32],
+        out: &mut [f32],
+    ) {
+        wide(Transform {
+            fft: self,
+            workspace,
+            first,
+            directions,
+            amplitude,
+            out,
+        });
     }
 
     /// Makes of the real signal's spectrum that of the complex one whose parts are its even and odd
     /// samples.
-    fn fold(&mut self, first: usize, re: &[f32], im: &[f32]) {
-        self.from.re.fill(0.0);
-        self.from.im.fill(0.0);
-        for (k, (re, im)) in (first.max(1)..self.half).zip(re.iter().zip(im)) {
+    #[inline(always)]
+    fn fold(&self, to: &mut Complexes, first: usize, [cos, sin]: [&[f32]; 2], amplitude: &[f32]) {
+        to.re.fill(0.0);
+        to.im.fill(0.0);
+        let bins = cos.iter().zip(sin).zip(amplitude);
+        for (k, ((cos, sin), a)) in (first.max(1)..self.half).zip(bins) {
+            let (re, im) = (cos * a, sin * a);
             // X_k adds X + i w X at k, and conj(X) - i w' conj(X) at half - k, where w' = -conj(w).
             let (c, s) = self.fold[k];
             let (turned_re, turned_im) = (-(re * s + im * c), re * c - im * s);
-            self.from.re[k] += re + turned_re;
-            self.from.im[k] += im + turned_im;
-            self.from.re[self.half - k] += re - turned_re;
-            self.from.im[self.half - k] += turned_im - im;
+            to.re[k] += re + turned_re;
+            to.im[k] += im + turned_im;
+            to.re[self.half - k] += re - turned_re;
+            to.im[self.half - k] += turned_im - im;
+        }
+    }
+}
+
+/// One transform.
+struct Transform<'a> {
+    fft: &'a InverseRealFft,
+    workspace: &'a mut Workspace,
+    first: usize,
+    directions: [&'a [f32]; 2],
+    amplitude: &'a [f32],
+    out: &'a mut [f32],
+}
+
+impl Work for Transform<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let Workspace { from, to } = self.workspace;
+        self.fft
+            .fold(from, self.first, self.directions, self.amplitude);
+        for stage in &self.fft.stages {
+            stage.run(from, to);
+            core::mem::swap(from, to);
+        }
+        let parts = from.re.iter().zip(&from.im);
+        for (pair, (re, im)) in self.out.as_chunks_mut::<2>().0.iter_mut().zip(parts) {
+            *pair = [*re, *im];
         }
     }
 }
@@ -120,6 +168,7 @@ impl Stage {
         }
     }
 
+    #[inline(always)]
     fn run(&self, from: &Complexes, to: &mut Complexes) {
         if self.stride.is_multiple_of(LANES) {
             self.run_on::<Lanes>(from, to);
@@ -128,6 +177,7 @@ impl Stage {
         }
     }
 
+    #[inline(always)]
     fn run_on<T: Number>(&self, from: &Complexes, to: &mut Complexes) {
         match self.radix {
             2 => self.run_by::<2, T>(from, to, two),
@@ -278,7 +328,9 @@ mod tests {
                 .collect();
             let mut out = alloc::vec![0.0; 2 * half];
             let (re, im): (Vec<f32>, Vec<f32>) = bins.iter().copied().unzip();
-            InverseRealFft::new(half).run(2, [&re, &im], &mut out);
+            let fft = InverseRealFft::new(half);
+            let ones = alloc::vec![1.0; re.len()];
+            fft.run(&mut fft.workspace(), 2, [&re, &im], &ones, &mut out);
             let size: f64 = bins.iter().map(|(re, im)| f64::from(re.hypot(*im))).sum();
             for (n, y) in out.iter().enumerate() {
                 let term = |(k, &(re, im)): (usize, &(f32, f32))| {

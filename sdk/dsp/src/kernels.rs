@@ -3,33 +3,20 @@
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
+use crate::shared::Shared;
+
 /// Stop-band attenuation of the filters, decibels.
 pub(crate) const ATTENUATION_DB: f64 = 70.0;
 
+/// Length, phases, whether rows are exact, and the bits of the cut-off.
+type Key = (usize, u64, bool, u64);
+
 /// A kernel as [`windowed_sinc`] makes it. With `std`, one that is in use is shared: a thousand
 /// voices then read the same coefficients.
-#[cfg(feature = "std")]
 pub(crate) fn kernel(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Arc<[f32]> {
-    use std::sync::{Mutex, PoisonError, Weak};
-    type Key = (usize, u64, bool, u64);
-    static IN_USE: Mutex<Vec<(Key, Weak<[f32]>)>> = Mutex::new(Vec::new());
+    static KERNELS: Shared<Key, [f32]> = Shared::new();
     let key = (taps, phases, exact, cutoff.to_bits());
-    // The list is whole whatever a panicking thread was doing.
-    let mut in_use = IN_USE.lock().unwrap_or_else(PoisonError::into_inner);
-    let found = in_use.iter().find(|(known, _)| *known == key);
-    if let Some(kernel) = found.and_then(|(_, kernel)| kernel.upgrade()) {
-        return kernel;
-    }
-    let kernel: Arc<[f32]> = windowed_sinc(taps, phases, exact, cutoff).into();
-    in_use.retain(|(_, kernel)| kernel.strong_count() > 0);
-    in_use.push((key, Arc::downgrade(&kernel)));
-    kernel
-}
-
-/// A kernel as [`windowed_sinc`] makes it.
-#[cfg(not(feature = "std"))]
-pub(crate) fn kernel(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Arc<[f32]> {
-    windowed_sinc(taps, phases, exact, cutoff).into()
+    KERNELS.get(key, || windowed_sinc(taps, phases, exact, cutoff).into())
 }
 
 /// Rows of a windowed sinc, one a phase, and one more where rows are interpolated; `cutoff` in
@@ -91,18 +78,4 @@ fn bessel_i0(x: f64) -> f64 {
         k += 1.0;
     }
     sum
-}
-
-#[cfg(all(test, feature = "std"))]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_kernel_in_use_is_shared_and_another_is_another() {
-        let half = kernel(8, 2, true, 0.25);
-        let third = kernel(8, 2, true, 0.33);
-        assert!(Arc::ptr_eq(&half, &kernel(8, 2, true, 0.25)));
-        assert!(Arc::ptr_eq(&third, &kernel(8, 2, true, 0.33)));
-        assert_ne!(half, third);
-    }
 }

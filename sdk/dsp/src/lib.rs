@@ -21,6 +21,7 @@ mod circle;
 pub mod dct;
 mod direct_form;
 pub mod estimation;
+pub mod exponential;
 pub mod fidelity;
 pub mod fir;
 pub mod glide;
@@ -44,6 +45,7 @@ mod random_lanes;
 pub mod resample;
 pub mod seam;
 pub mod shaped_noise;
+mod shared;
 pub mod sine_bank;
 #[cfg(feature = "std")]
 pub mod spectrum;

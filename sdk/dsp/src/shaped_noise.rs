@@ -5,11 +5,13 @@
 //! power is the same at every sample; a frame is one period of its components, so nothing comes back
 //! (numeric definitions: random phase).
 
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use crate::grid::{Band, GRID_HZ, read_part};
-use crate::inverse_fft::{InverseRealFft, smooth_length};
+use crate::inverse_fft::{InverseRealFft, Workspace, smooth_length};
 use crate::noise::Uniform;
+use crate::shared::Shared;
 
 /// Length of half a frame at least, seconds: components stand 2.5 Hz apart, or a little less.
 const HALF_S: f64 = 0.2;
@@ -21,27 +23,20 @@ const FADE_S: f64 = 0.010;
 /// An endless stream of noise whose spectrum follows a magnitude curve, of unit RMS as the bins of the band
 /// read it: what they miss of components at the band's edges ([`read_part`]) is added to all.
 pub struct ShapedNoise {
-    inverse: InverseRealFft,
-    /// How a frame comes in; its mirror image is how the one before goes out.
-    rise: Vec<f32>,
-    /// Samples from the beginning of a frame to that of the next.
-    hop: usize,
-    fade_len: usize,
-    first: usize,
-    component_hz: Vec<f64>,
-    /// The part of each component's power that is read.
-    read: Vec<f64>,
+    frames: Arc<Frames>,
+    /// Half the amplitude of each component.
     amplitude: Vec<f32>,
-    pending: bool,
+    pending: Pending,
     pending_amplitude: Vec<f64>,
     // The generator as it stood before the frame that ends in this hop, and before the one that
     // begins in it: a retune makes both again with the same phases.
     ending: Uniform,
     beginning: Uniform,
     next: Uniform,
-    /// The components of a frame.
-    re: Vec<f32>,
-    im: Vec<f32>,
+    /// Cosines and sines of the phases of the frame that began last.
+    cos: Vec<f32>,
+    sin: Vec<f32>,
+    workspace: Workspace,
     /// The frame that began last, with the end of the one before.
     now: Vec<f32>,
     /// The same with other amplitudes, while they change.
@@ -49,6 +44,32 @@ pub struct ShapedNoise {
     tail: Vec<f32>,
     position: usize,
     fade_position: Option<usize>,
+}
+
+/// What streams of one rate and band share.
+struct Frames {
+    inverse: InverseRealFft,
+    /// How a frame comes in; its mirror image is how the one before goes out.
+    rise: Vec<f32>,
+    /// Samples of a frame.
+    len: usize,
+    /// Samples from the beginning of a frame to that of the next.
+    hop: usize,
+    fade_len: usize,
+    first: usize,
+    component_hz: Vec<f64>,
+    /// The part of each component's power that is read.
+    read: Vec<f64>,
+}
+
+/// A spectrum to change to.
+#[derive(Clone, Copy, PartialEq)]
+enum Pending {
+    None,
+    /// It stands in `pending_amplitude`.
+    Made,
+    /// It is asked for when the change can begin.
+    Wanted,
 }
 
 /// Rate at which a voice of [`ShapedNoise`] works when `wanted_hz` is wanted: a whole fraction of
@@ -92,12 +113,15 @@ fn rise(n: usize, overlap: usize) -> f64 {
     libm::sin(quarter * sine * sine)
 }
 
-impl ShapedNoise {
-    /// Starts the stream of `seed` at `rate_hz`, silent until [`Self::start`] is called.
-    ///
-    /// The rate is at least 20 Hz and at most 10 MHz (clamped).
-    pub fn new(rate_hz: f64, band: Band, seed: u64) -> Self {
-        let rate_hz = rate_hz.clamp(20.0, 1e7);
+impl Frames {
+    /// Those of a rate and a band.
+    fn shared(rate_hz: f64, band: Band) -> Arc<Self> {
+        static FRAMES: Shared<[u64; 3], Frames> = Shared::new();
+        let key = [rate_hz, band.low_hz, band.high_hz].map(f64::to_bits);
+        FRAMES.get(key, || Arc::new(Self::new(rate_hz, band)))
+    }
+
+    fn new(rate_hz: f64, band: Band) -> Self {
         let half = smooth_length(libm::round(rate_hz * HALF_S).max(2.0) as usize);
         let len = 2 * half;
         let overlap = len.div_ceil(OVERLAP);
@@ -108,48 +132,63 @@ impl ShapedNoise {
         let high = libm::floor((band.high_hz + 0.5 * GRID_HZ) / spacing + 1e-9) as usize;
         let high = high.min(half - 1);
         let components = || (low..=high.max(low)).map(|j| j as f64 * spacing);
-        let component_hz: Vec<f64> = components()
-            .map(|hz| hz.clamp(band.low_hz, band.high_hz))
-            .collect();
-        let zeros = |n| alloc::vec![0.0; n];
-        let mut noise = Self {
+        Self {
             inverse: InverseRealFft::new(half),
             rise: (0..overlap).map(|n| rise(n, overlap) as f32).collect(),
+            len,
             hop,
             fade_len: libm::ceil(FADE_S * rate_hz).max(1.0).min(hop as f64) as usize,
             first: low,
-            amplitude: zeros(component_hz.len()),
-            pending_amplitude: alloc::vec![0.0; component_hz.len()],
-            re: zeros(component_hz.len()),
-            im: zeros(component_hz.len()),
+            component_hz: components()
+                .map(|hz| hz.clamp(band.low_hz, band.high_hz))
+                .collect(),
             read: components()
                 .map(|hz| frame_read_part(band, hz, spacing))
                 .collect(),
-            component_hz,
-            pending: false,
+        }
+    }
+}
+
+impl ShapedNoise {
+    /// Starts the stream of `seed` at `rate_hz`, silent until [`Self::start`] is called.
+    ///
+    /// The rate is at least 20 Hz and at most 10 MHz (clamped).
+    pub fn new(rate_hz: f64, band: Band, seed: u64) -> Self {
+        let frames = Frames::shared(rate_hz.clamp(20.0, 1e7), band);
+        let components = frames.component_hz.len();
+        let zeros = |n| alloc::vec![0.0; n];
+        let mut noise = Self {
+            amplitude: zeros(components),
+            pending: Pending::None,
+            pending_amplitude: alloc::vec![0.0; components],
             ending: Uniform::new(seed),
             beginning: Uniform::new(seed),
             next: Uniform::new(seed),
-            now: zeros(len),
-            faded: zeros(len),
-            tail: zeros(overlap),
+            cos: zeros(components),
+            sin: zeros(components),
+            workspace: frames.inverse.workspace(),
+            now: zeros(frames.len),
+            faded: zeros(frames.len),
+            tail: zeros(frames.rise.len()),
             position: 0,
             fade_position: None,
+            frames,
         };
-        noise.next_hop();
-        noise.next_hop();
+        noise.draw_next();
+        noise.draw_next();
         noise
     }
 
     /// Frequencies, hertz, ascending, at which spectra are wanted.
     pub fn component_hz(&self) -> &[f64] {
-        &self.component_hz
+        &self.frames.component_hz
     }
 
     /// Sets the spectrum before the first sample: `magnitude(i, f)` at `component_hz()[i] == f`, in
     /// any scale; negative and non-finite values count as zero.
     pub fn start(&mut self, magnitude: impl Fn(usize, f64) -> f64) {
-        self.prepare(magnitude);
+        self.fill(magnitude);
+        self.normalise();
         self.take_pending();
         self.remake_hop();
         core::mem::swap(&mut self.now, &mut self.faded);
@@ -157,18 +196,45 @@ impl ShapedNoise {
 
     /// Changes to another spectrum over the next 10 ms. Does not allocate.
     pub fn retune(&mut self, magnitude: impl Fn(usize, f64) -> f64) {
-        self.prepare(magnitude);
-        self.pending = true;
+        self.fill(magnitude);
+        self.normalise();
+        self.pending = Pending::Made;
     }
 
-    /// Turns magnitudes into component amplitudes that together read as unit RMS.
-    fn prepare(&mut self, magnitude: impl Fn(usize, f64) -> f64) {
+    /// As [`Self::retune`], with a spectrum that is made when it is needed: now, or, while another change is under
+    /// way, at its end, in [`Self::render_with`]; of several that come meanwhile the last counts. `make` fills in
+    /// magnitudes, one for each of [`Self::component_hz`], and returns whether there are any. False where there are none
+    /// now; the stream then goes on as it is. Does not allocate.
+    pub fn retune_with(&mut self, make: impl FnOnce(&mut [f64]) -> bool) -> bool {
+        if self.fade_position.is_some() {
+            self.pending = Pending::Wanted;
+            return true;
+        }
+        let made = self.make_pending(make);
+        self.pending = if made { Pending::Made } else { Pending::None };
+        made
+    }
+
+    /// Magnitudes from a curve.
+    fn fill(&mut self, magnitude: impl Fn(usize, f64) -> f64) {
+        let places = self.frames.component_hz.iter().enumerate();
+        for ((i, &hz), m) in places.zip(&mut self.pending_amplitude) {
+            *m = magnitude(i, hz);
+        }
+    }
+
+    fn make_pending(&mut self, make: impl FnOnce(&mut [f64]) -> bool) -> bool {
+        make(&mut self.pending_amplitude) && self.normalise()
+    }
+
+    /// Turns magnitudes into component amplitudes that together read as unit RMS; false if there is no power.
+    fn normalise(&mut self) -> bool {
         let mut power = 0.0;
-        for (i, (&f, read)) in self.component_hz.iter().zip(&self.read).enumerate() {
-            let m = magnitude(i, f);
-            let a = if m.is_finite() && m > 0.0 { m } else { 0.0 };
-            self.pending_amplitude[i] = a;
-            power += 0.5 * read * a * a;
+        for (a, read) in self.pending_amplitude.iter_mut().zip(&self.frames.read) {
+            if !a.is_finite() || *a <= 0.0 {
+                *a = 0.0;
+            }
+            power += 0.5 * read * *a * *a;
         }
         let gain = if power > 0.0 {
             1.0 / libm::sqrt(power)
@@ -176,119 +242,135 @@ impl ShapedNoise {
             0.0
         };
         self.pending_amplitude.iter_mut().for_each(|a| *a *= gain);
+        power > 0.0
     }
 
     /// Makes the pending amplitudes the present ones.
     fn take_pending(&mut self) {
         for (a, &pending) in self.amplitude.iter_mut().zip(&self.pending_amplitude) {
-            *a = pending as f32;
+            *a = 0.5 * pending as f32;
         }
     }
 
     /// Fills `out` with the next samples. Does not allocate.
     pub fn render(&mut self, out: &mut [f32]) {
+        self.render_with(out, &mut |_| false);
+    }
+
+    /// As [`Self::render`]; `make` is that of [`Self::retune_with`].
+    pub fn render_with(&mut self, out: &mut [f32], make: &mut dyn FnMut(&mut [f64]) -> bool) {
         let mut rest = out;
         while !rest.is_empty() {
-            if self.position == self.hop {
+            if self.position == self.frames.hop {
                 self.next_hop();
             }
-            if self.pending {
-                self.begin_fade();
+            if self.pending != Pending::None {
+                self.begin_fade(make);
             }
             let run = match self.fade_position {
-                Some(_) => self.run_fade(rest),
+                Some(done) => self.run_fade(done, rest),
                 None => self.run_steady(rest),
             };
             rest = &mut rest[run..];
         }
     }
 
-    /// Samples of this hop as it is, up to its end; answers how many. While a change waits for the
+    /// Samples of this hop as it is, up to its end; returns how many. While a change waits for the
     /// next hop this may be asked for sample by sample, or at once.
     fn run_steady(&mut self, out: &mut [f32]) -> usize {
-        let run = out.len().min(self.hop - self.position);
+        let run = out.len().min(self.frames.hop - self.position);
         out[..run].copy_from_slice(&self.now[self.position..self.position + run]);
         self.position += run;
         run
     }
 
-    /// Samples of a cross-fade; answers how many.
-    fn run_fade(&mut self, out: &mut [f32]) -> usize {
-        let mut run = 0;
-        while run < out.len() && self.fade_position.is_some() {
-            out[run] = self.current();
-            self.position += 1;
-            run += 1;
+    /// Samples of a cross-fade of which so many are done; returns how many.
+    fn run_fade(&mut self, done: usize, out: &mut [f32]) -> usize {
+        let fade_len = self.frames.fade_len;
+        let run = out.len().min(fade_len - done);
+        let old = &self.now[self.position..self.position + run];
+        let new = &self.faded[self.position..self.position + run];
+        for (i, ((out, old), new)) in out.iter_mut().zip(old).zip(new).enumerate() {
+            let weight = (done + i + 1) as f32 / fade_len as f32;
+            *out = old + weight * (new - old);
+        }
+        self.position += run;
+        self.fade_position = Some(done + run);
+        if done + run == fade_len {
+            core::mem::swap(&mut self.now, &mut self.faded);
+            self.fade_position = None;
         }
         run
     }
 
-    fn current(&mut self) -> f32 {
-        let old = self.now[self.position];
-        let Some(done) = self.fade_position else {
-            return old;
-        };
-        let weight = (done + 1) as f32 / self.fade_len as f32;
-        let value = old + weight * (self.faded[self.position] - old);
-        if done + 1 == self.fade_len {
-            core::mem::swap(&mut self.now, &mut self.faded);
-            self.fade_position = None;
-        } else {
-            self.fade_position = Some(done + 1);
-        }
-        value
-    }
-
     /// Starts a cross-fade to the pending spectrum, unless one runs or the hop is too near its end.
-    fn begin_fade(&mut self) {
-        if self.fade_position.is_some() || self.position + self.fade_len > self.hop {
+    fn begin_fade(&mut self, make: &mut dyn FnMut(&mut [f64]) -> bool) {
+        if self.fade_position.is_some() || self.position + self.frames.fade_len > self.frames.hop {
             return;
         }
-        self.pending = false;
-        self.take_pending();
-        self.remake_hop();
-        self.fade_position = Some(0);
+        let made = self.pending == Pending::Made || self.make_pending(make);
+        self.pending = Pending::None;
+        if made {
+            self.take_pending();
+            self.remake_hop();
+            self.fade_position = Some(0);
+        }
     }
 
     /// Moves on to the next frame.
     fn next_hop(&mut self) {
-        self.ending = self.beginning.clone();
-        self.beginning = self.next.clone();
-        self.tail.copy_from_slice(&self.now[self.hop..]);
-        self.next = self.make_frame(self.next.clone());
+        self.tail.copy_from_slice(&self.now[self.frames.hop..]);
+        self.draw_next();
+        self.make_frame();
         self.blend();
         core::mem::swap(&mut self.now, &mut self.faded);
         self.position = 0;
     }
 
+    /// Draws the phases of the next frame.
+    fn draw_next(&mut self) {
+        self.ending = self.beginning.clone();
+        self.beginning = self.next.clone();
+        self.next.fill_directions(&mut self.cos, &mut self.sin);
+    }
+
+    /// Draws the phases of a frame again.
+    fn draw(&mut self, mut phases: Uniform) {
+        phases.fill_directions(&mut self.cos, &mut self.sin);
+    }
+
     /// Makes what can still be heard of this hop again, with the same phases and the present
     /// amplitudes, into `faded`.
     fn remake_hop(&mut self) {
-        if self.position < self.rise.len() {
-            self.make_frame(self.ending.clone());
-            self.tail.copy_from_slice(&self.faded[self.hop..]);
+        let overlaps = self.position < self.frames.rise.len();
+        if overlaps {
+            self.draw(self.ending.clone());
+            self.make_frame();
+            self.tail.copy_from_slice(&self.faded[self.frames.hop..]);
+            self.draw(self.beginning.clone());
         }
-        self.make_frame(self.beginning.clone());
-        self.blend();
+        self.make_frame();
+        if overlaps {
+            self.blend();
+        }
     }
 
-    /// Makes a frame into `faded`; answers the generator behind it.
-    fn make_frame(&mut self, mut phases: Uniform) -> Uniform {
-        phases.fill_directions(&mut self.re, &mut self.im);
-        let parts = self.re.iter_mut().zip(&mut self.im);
-        for ((re, im), a) in parts.zip(&self.amplitude) {
-            *re *= 0.5 * a;
-            *im *= 0.5 * a;
-        }
-        self.inverse
-            .run(self.first, [&self.re, &self.im], &mut self.faded);
-        phases
+    /// Makes a frame of the phases drawn last into `faded`.
+    fn make_frame(&mut self) {
+        self.frames.inverse.run(
+            &mut self.workspace,
+            self.frames.first,
+            [&self.cos, &self.sin],
+            &self.amplitude,
+            &mut self.faded,
+        );
     }
 
     /// Lets the frame in `faded` come in while the one that `tail` ends goes out.
     fn blend(&mut self) {
-        let falling = self.rise.iter().rev().zip(&self.tail);
-        let rising = self.faded.iter_mut().zip(&self.rise);
+        let rise = &self.frames.rise;
+        let falling = rise.iter().rev().zip(&self.tail);
+        let rising = self.faded.iter_mut().zip(rise);
         for ((x, rise), (fall, tail)) in rising.zip(falling) {
             *x = rise * *x + fall * tail;
         }
@@ -347,7 +429,8 @@ mod tests {
     fn a_retune_fades_to_the_voice_that_had_the_spectrum_all_along() {
         let (hop, fade, overlap) = {
             let noise = noise(5);
-            (noise.hop, noise.fade_len, noise.rise.len())
+            let frames = &noise.frames;
+            (frames.hop, frames.fade_len, frames.rise.len())
         };
         let len = 3 * hop;
         let [first, second, third] =

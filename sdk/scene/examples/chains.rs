@@ -10,19 +10,22 @@ mod common;
 use std::time::Instant;
 
 use common::{
-    constant, display, file, grid, integer_file, loudspeaker, planned, scene, single, trace, traced,
+    constant, display, file, grid, integer_file, loudspeaker, nine, planned, scene, single, trace,
+    traced,
 };
 use htex::Registry;
 use htex_device::Capabilities;
-use htex_scene::file::{Budget, Effect, Switch};
-use htex_scene::{Costs, LoadedScene, Renderer, plan};
+use htex_scene::file::{Budget, Effect, Motion, Switch};
+use htex_scene::{Costs, Finger, LoadedScene, Renderer, plan};
 
 const BLOCK: usize = 64;
 const ROUNDS: usize = 150;
 const STRETCH: usize = 32;
+const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
 
 fn main() {
     saved();
+    live();
     budgets();
     voices();
 }
@@ -101,6 +104,56 @@ fn saved() {
     }
 }
 
+/// A finger that moves all the time, looked at before every block: what it costs over a constant one.
+fn live() {
+    println!(
+        "\nns a sample, blocks of 64 at 20 kHz     constant  live, one condition  live, nine conditions"
+    );
+    for model in MODELS {
+        let named = |asset, motion| {
+            let mut scene = scene(asset, motion, 1e4);
+            scene.scene.duration_s = None;
+            scene.scene.surfaces[0].representation = model.to_owned();
+            Renderer::new(&scene, &planned(&scene, &file())).unwrap()
+        };
+        let mut still = [named(single(), constant(80.0, 0.4))];
+        let mut one = [named(single(), Motion::Live)];
+        let mut nine = [named(nine(), Motion::Live)];
+        let mut least = [f64::INFINITY; 3];
+        for _ in 0..ROUNDS / STRETCHES {
+            least[0] = least[0].min(stretches(&mut still));
+            least[1] = least[1].min(stretches(&mut one));
+            least[2] = least[2].min(stretches(&mut nine));
+        }
+        println!(
+            "{model:38} {:8.2} {:20.2} {:22.2}",
+            least[0], least[1], least[2]
+        );
+    }
+}
+
+/// Stretches in a row, so that every part of a path over the grid is in them.
+const STRETCHES: usize = 10;
+
+/// The time of a sample of a live renderer, nanoseconds: the mean over some stretches.
+fn stretches(renderer: &mut [Renderer; 1]) -> f64 {
+    let mut block = [0.0f32; BLOCK];
+    let [renderer] = renderer;
+    let blocks = STRETCHES * STRETCH;
+    let start = Instant::now();
+    for i in 0..blocks {
+        let t = i as f64 / blocks as f64;
+        let finger = Finger {
+            speed_mm_s: 90.0 + 35.0 * (17.0 * t).sin(),
+            force_n: 0.45 + 0.2 * (11.0 * t).cos(),
+            at_mm: None,
+        };
+        renderer.set_motion(finger).unwrap();
+        renderer.render(std::hint::black_box(&mut block));
+    }
+    start.elapsed().as_nanos() as f64 / (blocks * BLOCK) as f64
+}
+
 fn budgets() {
     let costs = Costs::measure(&Registry::builtin(), "this machine").unwrap();
     println!("\nbudget, ns  chosen             planned  rendered  of the budget");
@@ -131,7 +184,7 @@ fn budgets() {
 /// Voices that one core plays at 20 kHz, each a chain of its own with a resampler of its own.
 fn voices() {
     println!("\nmodel    voices in real time at 20 kHz, blocks of 64");
-    for model in ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"] {
+    for model in MODELS {
         println!("{model:8} {:6}", most_voices(model));
     }
 }

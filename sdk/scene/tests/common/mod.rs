@@ -25,6 +25,21 @@ pub fn grid() -> &'static Asset {
     ASSET.get_or_init(|| asset(Simulated::CoarseFabric, &known))
 }
 
+/// An asset of nine conditions, 60, 90 and 120 mm/s by 0.3, 0.45 and 0.6 N.
+pub fn nine() -> &'static Asset {
+    static ASSET: OnceLock<Asset> = OnceLock::new();
+    let known = |i: usize| {
+        let (speed, force) = ((i % 3) as f64, (i / 3) as f64);
+        (60.0 + 30.0 * speed, 0.3 + 0.15 * force)
+    };
+    ASSET.get_or_init(|| {
+        asset(
+            Simulated::CoarseFabric,
+            &[0, 1, 2, 3, 4, 5, 6, 7, 8].map(known),
+        )
+    })
+}
+
 fn asset(surface: Simulated, conditions: &[(f64, f64)]) -> Asset {
     let take = |&(speed_mm_s, force_n): &(f64, f64)| {
         let options = SimulationOptions {

@@ -1,6 +1,8 @@
 //! Least squares of the density to the spectrum's peaks (paper: fminsearch on ten peaks; it names no
 //! cost).
 
+use alloc::vec::Vec;
+
 use htex_dsp::grid::{Band, curve_level_rms};
 use htex_dsp::nelder_mead::{Minimum, Options, minimize};
 use htex_dsp::peaks::{Peak, select_peaks};

@@ -15,6 +15,8 @@ extern crate alloc;
 extern crate std;
 
 pub mod abi;
+#[cfg(any(test, all(target_family = "wasm", not(feature = "std"))))]
+mod arena;
 #[cfg(any(feature = "std", target_family = "wasm"))]
 mod arguments;
 mod decimal;

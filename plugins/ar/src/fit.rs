@@ -61,7 +61,7 @@ fn from_spectrum(input: &FitInput<'_>, order: usize, rate_hz: f64) -> Result<Fit
         });
     }
     // One-sided P = 2 E |H|² / rate, magnitude² = 2 P ENBW.
-    let gain = libm::sqrt(4.0 * model.error * BIN_ENBW_HZ / rate_hz);
+    let gain = htex_dsp::root::sqrt(4.0 * model.error * BIN_ENBW_HZ / rate_hz);
     Ok(Fit {
         parameters: flat(&coefficients, rate_hz),
         level_rms: largest * gain * level,

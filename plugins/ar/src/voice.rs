@@ -215,7 +215,7 @@ impl Target {
         };
         // Noise of variance s² has one-sided density 2 s² / rate, read as magnitude² = 2 P ENBW.
         let level = finite_level(passed.level_rms(|f| filter.at(f)))?;
-        let gain = libm::sqrt(rate_hz / (4.0 * 1.5 * GRID_HZ)) / level;
+        let gain = htex_dsp::root::sqrt(rate_hz / (4.0 * 1.5 * GRID_HZ)) / level;
         Ok(Self { reflection, gain })
     }
 }

@@ -146,7 +146,7 @@ impl Model for BandEnergies {
         let made: Vec<f64> = spectrum.magnitude.iter().map(|m| m * m).collect();
         // The bands together have the recording's energy.
         let energy = |power: &[f64]| total_energy(&axis, input.frequency_hz, power);
-        let gain = libm::sqrt(energy(&power) / energy(&made));
+        let gain = htex_dsp::root::sqrt(energy(&power) / energy(&made));
         let count = [below.len() as f64];
         let rest = [step_db, axis.layout.number()];
         Ok(Fit {
@@ -273,7 +273,7 @@ impl Spectrum {
         self.level = level_rms(&self.magnitude);
         sharpen(&self.power, &mut self.played);
         for power in &mut self.played {
-            *power = libm::sqrt(*power);
+            *power = htex_dsp::root::sqrt(*power);
         }
     }
 

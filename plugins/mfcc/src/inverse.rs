@@ -115,6 +115,8 @@ impl Inverse {
             }
             Way::NonNegative(solver) => solver.solve(energy, magnitude, scratch),
         }
-        magnitude.iter_mut().for_each(|m| *m = libm::sqrt(*m));
+        magnitude
+            .iter_mut()
+            .for_each(|m| *m = htex_dsp::root::sqrt(*m));
     }
 }

@@ -7,7 +7,7 @@ extern crate alloc;
 
 mod fit;
 
-use htex_dsp::beta::{BetaDensity, log_unit};
+use htex_dsp::beta::{BetaDensity, LogAxis};
 use htex_dsp::grid::{Band, GRID_HZ, curve_level_rms};
 use htex_model::{
     Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Values, mix,
@@ -150,6 +150,7 @@ impl Curve for Shape {
 pub(crate) struct Profile {
     density: BetaDensity,
     band: Band,
+    axis: LogAxis,
     low_hz: f64,
     high_hz: f64,
 }
@@ -160,6 +161,7 @@ impl Profile {
         Self {
             density: BetaDensity::new(alpha, beta),
             band,
+            axis: LogAxis::new(band),
             low_hz: band.low_hz + inset(alpha),
             high_hz: band.high_hz - inset(beta),
         }
@@ -167,6 +169,6 @@ impl Profile {
 
     pub(crate) fn at(&self, frequency_hz: f64) -> f64 {
         let inside = frequency_hz.clamp(self.low_hz, self.high_hz);
-        self.density.at(log_unit(inside, self.band))
+        self.density.at(self.axis.at(inside))
     }
 }

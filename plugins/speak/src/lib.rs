@@ -166,7 +166,7 @@ impl Model for SpectralPeak {
         heard().for_each(|(set, _)| out.extend(set.list(FREQUENCY)));
         out.push(count as f64);
         for (set, weight) in heard() {
-            let fade = libm::sqrt(*weight);
+            let fade = htex_dsp::root::sqrt(*weight);
             set.list(AMPLITUDE).iter().for_each(|a| out.push(a * fade));
         }
         out.push(sets.first().map_or(0.0, |s| s.scalar(PHASE)));
@@ -297,12 +297,12 @@ impl<'a> Lines<'a> {
             .map(|(i, f)| self.played(i) * hann_kernel((frequency_hz - f) / GRID_HZ))
             .map(|m| m * m)
             .sum();
-        libm::sqrt(power) / self.level
+        htex_dsp::root::sqrt(power) / self.level
     }
 }
 
 fn level(amplitudes: impl Iterator<Item = f64>) -> f64 {
-    libm::sqrt(amplitudes.map(|a| 0.5 * a * a).sum())
+    htex_dsp::root::sqrt(amplitudes.map(|a| 0.5 * a * a).sum())
 }
 
 /// Main lobe of the periodic Hann window's transform, 1 at its middle, `bins` away.

@@ -186,5 +186,5 @@ impl Curve for Shape {
 
 /// Magnitude of a Butterworth low-pass of any positive order at `ratio` times its cut-off.
 fn butterworth(ratio: f64, order: f64) -> f64 {
-    1.0 / libm::sqrt(1.0 + libm::pow(ratio, 2.0 * order))
+    1.0 / htex_dsp::root::sqrt(1.0 + libm::pow(ratio, 2.0 * order))
 }

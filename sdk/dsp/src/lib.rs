@@ -42,6 +42,7 @@ mod polyphase;
 pub mod quad;
 mod random_lanes;
 pub mod resample;
+pub mod root;
 pub mod seam;
 pub mod shaped_noise;
 pub mod sine_bank;

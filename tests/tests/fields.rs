@@ -3,7 +3,7 @@
 
 use htex::{Asset, Band, Error, Registry, VoiceOptions};
 use htex_format::{Field, FieldMismatch, Store, match_fields};
-use htex_model::Descriptor;
+use htex_model::{Descriptor, StaticDescriptor, StaticField};
 use htex_tests::workspace;
 
 fn conformance(name: &str) -> Asset {
@@ -69,11 +69,13 @@ fn fields_that_are_not_the_models_are_refused_with_their_names() {
 
 #[test]
 fn a_field_with_a_default_may_be_absent() {
-    let model = Descriptor::new("org.example.x", "X", "1.1.0", "An example.")
-        .list("line_hz", "Hz", (0.0, 1e3), 8, "Lines.")
-        .scalar("tilt", "1", (-1.0, 1.0), "Tilt.")
-        .defaulted(0.25)
-        .scalar("gain", "1", (0.0, 1.0), "Gain.");
+    const MODEL: StaticDescriptor =
+        StaticDescriptor::new("org.example.x", "X", "1.1.0", "An example.").fields(&[
+            StaticField::list("line_hz", "Hz", (0.0, 1e3), 8, "Lines."),
+            StaticField::scalar("tilt", "1", (-1.0, 1.0), "Tilt.").defaulted(0.25),
+            StaticField::scalar("gain", "1", (0.0, 1.0), "Gain."),
+        ]);
+    let model = Descriptor::from(&MODEL);
     let field = |name: &str, unit: &str, list| Field {
         name: name.to_owned(),
         unit: unit.to_owned(),

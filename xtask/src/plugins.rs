@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::wasm::{TARGET, Toolchain};
+use crate::wasm::{PROFILE, TARGET, Toolchain};
 
 /// The models' short names.
 pub const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
@@ -17,7 +17,7 @@ pub fn native() -> Result<PathBuf, String> {
     let target = target();
     let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     for model in MODELS {
-        build(Command::new(cargo()), &target, model, &[])?;
+        build(Command::new(cargo()), &target, model, &["--release"])?;
         let file = format!("{prefix}htex_{model}{suffix}");
         place(&target.join("release").join(&file), &file)?;
     }
@@ -42,9 +42,15 @@ pub fn wasm_by(way: &str) -> Result<PathBuf, String> {
     let toolchain = Toolchain::find(way)?;
     for model in MODELS {
         let (cargo, target) = toolchain.cargo(&target());
-        build(cargo, &target, model, toolchain.arguments())?;
+        let profile = ["--profile", PROFILE];
+        build(
+            cargo,
+            &target,
+            model,
+            &[&profile, toolchain.arguments()].concat(),
+        )?;
         let file = format!("htex_{model}.wasm");
-        place(&target.join(TARGET).join("release").join(&file), &file)?;
+        place(&target.join(TARGET).join(PROFILE).join(&file), &file)?;
     }
     Ok(folder())
 }
@@ -65,14 +71,7 @@ pub fn wasm_is_installed() -> bool {
 fn build(mut cargo: Command, target: &Path, model: &str, more: &[&str]) -> Result<(), String> {
     let package = format!("htex-{model}");
     let status = cargo
-        .args([
-            "rustc",
-            "--quiet",
-            "--release",
-            "--lib",
-            "--package",
-            &package,
-        ])
+        .args(["rustc", "--quiet", "--lib", "--package", &package])
         .args(more)
         .args(["--features", "plugin", "--crate-type", "cdylib"])
         .env("CARGO_TARGET_DIR", target)

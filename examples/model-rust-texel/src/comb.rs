@@ -2,7 +2,7 @@
 
 use htex_dsp::GRID_HZ;
 use htex_dsp::sine_bank::Sine;
-use htex_model::{Band, Error, Values};
+use htex_model::{Band, Error, Values, text};
 
 use crate::{AMPLITUDE, JITTER, PITCH, SPEED};
 
@@ -47,10 +47,15 @@ impl<'a> Comb<'a> {
         if comb.rms > 1e-100 {
             return Ok(comb);
         }
-        Err(Error::parameters(format!(
-            "no harmonic of {} Hz with an amplitude lies between {} and {} Hz",
-            comb.fundamental_hz, band.low_hz, band.high_hz
-        )))
+        Err(Error::parameters(text![
+            "no harmonic of ",
+            comb.fundamental_hz,
+            " Hz with an amplitude lies between ",
+            band.low_hz,
+            " and ",
+            band.high_hz,
+            " Hz",
+        ]))
     }
 
     /// Calls `line(index, frequency_hz, amplitude)` for each line that sounds.

@@ -1,6 +1,9 @@
 //! From a spectrum to the comb in it: a harmonic sum finds the fundamental, the bins nearest to each
 //! harmonic give its amplitude, how far they lie from it gives the jitter.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use htex_model::{Error, Fit, FitInput, Model, Values};
 
 use crate::Texel;
@@ -66,9 +69,8 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
 
 /// Lines at the band's very edges are silent: a comb of no other is none.
 fn playable(parameters: &[f64], input: &FitInput<'_>) -> Result<(), Error> {
-    let descriptor = Texel::descriptor();
     let comb =
-        Values::read(&descriptor, parameters).and_then(|v| Comb::new(&v, input.band).map(|_| ()));
+        Values::read(&Texel::DESCRIPTOR, parameters).and_then(|v| Comb::new(&v, input.band).map(|_| ()));
     comb.map_err(|error| Error::cannot_fit(error.message))
 }
 

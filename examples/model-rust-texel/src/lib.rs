@@ -4,6 +4,9 @@
 //!
 //! Neither pitch nor speed is ever quite even: each harmonic is a small cluster of sinusoids, as wide
 //! as `jitter` says, so that no two strokes sound the same.
+#![no_std]
+
+extern crate alloc;
 
 mod comb;
 mod fit;
@@ -12,7 +15,10 @@ use comb::{Comb, HARMONICS, LINES};
 use htex_dsp::noise::Uniform;
 use htex_dsp::shaped_noise::economical_rate_hz;
 use htex_dsp::sine_bank::{Sine, SineBank};
-use htex_model::{Band, Descriptor, Error, Fit, FitInput, Model, Numbers, Values, Voice, mix};
+use htex_model::{
+    Band, Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Values,
+    Voice, mix,
+};
 
 const PITCH: usize = 0;
 const SPEED: usize = 1;
@@ -31,36 +37,36 @@ htex_model::export_model!(Texel, symbols: "plugin");
 impl Model for Texel {
     type Voice = TexelVoice;
 
-    fn descriptor() -> Descriptor {
-        Descriptor::new(
-            "org.example.texel",
-            "Single-pitch texel",
-            env!("CARGO_PKG_VERSION"),
-            "One repeating element of the surface: its pitch, and how strong each harmonic is.",
-        )
-        .scalar("pitch_mm", "mm", PITCH_MM, "Length of the element.")
-        .scalar("speed_mm_s", "mm/s", SPEED_MM_S, "Speed of the finger.")
-        .scalar(
+    const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
+        "org.example.texel",
+        "Single-pitch texel",
+        env!("CARGO_PKG_VERSION"),
+        "One repeating element of the surface: its pitch, and how strong each harmonic is.",
+    )
+    .fields(&[
+        StaticField::scalar("pitch_mm", "mm", PITCH_MM, "Length of the element."),
+        StaticField::scalar("speed_mm_s", "mm/s", SPEED_MM_S, "Speed of the finger."),
+        StaticField::scalar(
             "jitter",
             "1",
             JITTERS,
             "Spread of the frequencies, as a part of each; never less than 1 Hz.",
-        )
-        .list(
+        ),
+        StaticField::list(
             "amplitude",
             "1",
             (0.0, 1.0),
             HARMONICS as u32,
             "Harmonics from the fundamental on, over the strongest.",
-        )
-        .option(
-            "speed_mm_s",
-            "mm/s",
-            SPEED_MM_S,
-            100.0,
-            "Speed of the recording: what turns its fundamental into a pitch.",
-        )
-    }
+        ),
+    ])
+    .options(&[StaticOption::number(
+        "speed_mm_s",
+        "mm/s",
+        SPEED_MM_S,
+        100.0,
+        "Speed of the recording: what turns its fundamental into a pitch.",
+    )]);
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         fit::fit(input)

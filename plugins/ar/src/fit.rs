@@ -1,10 +1,12 @@
 //! Estimation of the coefficients.
 
+use alloc::vec::Vec;
+
 use htex_dsp::estimation::{burg, covariance};
 use htex_dsp::grid::{Band, GRID_HZ, level_rms};
 use htex_dsp::linear_prediction::{LinearPrediction, levinson_durbin, within_radius};
 use htex_dsp::resample::Resampler;
-use htex_model::{Error, Fit, FitInput};
+use htex_model::{Error, Fit, FitInput, text};
 
 use crate::{Filter, flat};
 
@@ -59,7 +61,7 @@ fn from_spectrum(input: &FitInput<'_>, order: usize, rate_hz: f64) -> Result<Fit
         });
     }
     // One-sided P = 2 E |H|² / rate, magnitude² = 2 P ENBW.
-    let gain = libm::sqrt(4.0 * model.error * BIN_ENBW_HZ / rate_hz);
+    let gain = htex_dsp::root::sqrt(4.0 * model.error * BIN_ENBW_HZ / rate_hz);
     Ok(Fit {
         parameters: flat(&coefficients, rate_hz),
         level_rms: largest * gain * level,
@@ -120,11 +122,21 @@ fn resolved(coefficients: &[f64], rate_hz: f64) -> Vec<f64> {
     within_radius(coefficients, radius)
 }
 
+fn unusable_rates(from_hz: f64, rate_hz: f64) -> Error {
+    Error::argument(text![
+        "no conversion from ",
+        from_hz,
+        " Hz to the model rate of ",
+        rate_hz,
+        " Hz: rates differ by a factor of at most 10,000",
+    ])
+}
+
 /// The signal over `scale`, at the model rate.
 fn resampled(input: &FitInput<'_>, rate_hz: f64, scale: f64) -> Result<Vec<f64>, Error> {
     let from_hz = input.signal_rate_hz;
     let resampler = Resampler::new(from_hz, rate_hz, input.band.high_hz)
-        .map_err(|error| Error::argument(error.to_string()))?;
+        .map_err(|_| unusable_rates(from_hz, rate_hz))?;
     let Some(mut resampler) = resampler else {
         return Ok(input.signal.iter().map(|x| x / scale).collect());
     };

@@ -1,14 +1,23 @@
 //! Autoregression: the spectrum as that of white noise through an all-pole filter (paper,
 //! Auto-regression; after Culbertson et al. 2014).
+#![no_std]
+
+#[macro_use]
+extern crate alloc;
 
 mod fit;
 mod together;
 mod voice;
 
+use alloc::vec::Vec;
+
 use htex_dsp::grid::{Band, curve_level_rms};
 use htex_dsp::line_spectrum::{coefficients_of_lines, lines_of_reflection};
 use htex_dsp::linear_prediction::{ar_magnitude, is_stable, step_down_in_place};
-use htex_model::{Descriptor, Error, Fit, FitInput, Model, Numbers, Store, Values, mix};
+use htex_model::{
+    Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Store,
+    Values, mix,
+};
 
 pub use voice::AutoregressionVoice;
 
@@ -26,46 +35,48 @@ htex_model::export_model!(Autoregression, symbols: "plugin");
 impl Model for Autoregression {
     type Voice = AutoregressionVoice;
 
-    fn descriptor() -> Descriptor {
-        Descriptor::new(
-            "org.htex.ar",
-            "AR",
-            env!("CARGO_PKG_VERSION"),
-            "White noise through an all-pole filter: the filter's coefficients.",
-        )
-        .list(
+    const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
+        "org.htex.ar",
+        "AR",
+        env!("CARGO_PKG_VERSION"),
+        "White noise through an all-pole filter: the filter's coefficients.",
+    )
+    .fields(&[
+        StaticField::list(
             "coefficients",
             "1",
             (-1e6, 1e6),
             MAX_ORDER as u32,
             "A_1 to A_p of x[t] = sum A_i x[t-i] + e[t], at the model rate.",
         )
-        .stored(Store::F64)
-        .scalar(
+        .stored(Store::F64),
+        StaticField::scalar(
             "model_rate_hz",
             "Hz",
             (50.0, 1e6),
             "Rate at which the filter runs.",
-        )
-        .integer_option(
+        ),
+    ])
+    .options(&[
+        StaticOption::integer(
             "order",
             (1, MAX_ORDER as u32),
             6,
             "Filter order p (paper: six).",
-        )
-        .option(
+        ),
+        StaticOption::number(
             "rate_hz",
             "Hz",
             (50.0, 1e6),
             2000.0,
             "Model rate; at most twice the band's upper edge is used by a narrower band.",
-        )
-        .choice(
+        ),
+        StaticOption::choice(
             "method",
             &["yule-walker", "burg", "covariance"],
             "Estimated from the averaged power spectrum, or from the overlap-added segments.",
-        )
-    }
+        ),
+    ]);
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         fit::fit(input)

@@ -6,7 +6,7 @@ use htex_dsp::grid::{Band, GRID_HZ};
 use htex_dsp::linear_prediction::step_down_in_place;
 use htex_dsp::noise::{GROUP as NOISE_GROUP, GaussianNoise};
 use htex_dsp::pipeline::Pipeline;
-use htex_model::{Error, Values, Voice};
+use htex_model::{Error, Values, Voice, text};
 
 use crate::{COEFFICIENTS, Filter, MAX_ORDER, MODEL_RATE, finite_level, together, unstable};
 
@@ -51,10 +51,13 @@ impl AutoregressionVoice {
         seed: u64,
     ) -> Result<Self, Error> {
         if rate_hz != parameters.scalar(MODEL_RATE) {
-            return Err(Error::argument(format!(
-                "the filter runs at its model rate of {} Hz, not at {rate_hz} Hz",
-                parameters.scalar(MODEL_RATE)
-            )));
+            return Err(Error::argument(text![
+                "the filter runs at its model rate of ",
+                parameters.scalar(MODEL_RATE),
+                " Hz, not at ",
+                rate_hz,
+                " Hz",
+            ]));
         }
         // A filter without energy in the band may have some beside it.
         Filter::new(parameters)?.level(band)?;
@@ -177,11 +180,13 @@ impl Voice for AutoregressionVoice {
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         let order = parameters.list(COEFFICIENTS).len();
         if parameters.scalar(MODEL_RATE) != self.rate_hz || order > self.filter.order() {
-            return Err(Error::argument(format!(
-                "a voice of order {} at {} Hz keeps its model rate, and its order or a smaller one",
+            return Err(Error::argument(text![
+                "a voice of order ",
                 self.filter.order(),
-                self.rate_hz
-            )));
+                " at ",
+                self.rate_hz,
+                " Hz keeps its model rate, and its order or a smaller one",
+            ]));
         }
         self.target = Target::new(parameters, &self.passed)?;
         self.ramp_left = self.ramp_len;
@@ -210,7 +215,7 @@ impl Target {
         };
         // Noise of variance s² has one-sided density 2 s² / rate, read as magnitude² = 2 P ENBW.
         let level = finite_level(passed.level_rms(|f| filter.at(f)))?;
-        let gain = libm::sqrt(rate_hz / (4.0 * 1.5 * GRID_HZ)) / level;
+        let gain = htex_dsp::root::sqrt(rate_hz / (4.0 * 1.5 * GRID_HZ)) / level;
         Ok(Self { reflection, gain })
     }
 }

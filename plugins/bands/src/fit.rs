@@ -5,6 +5,8 @@
 //! Noise keeps its energies to a hundredth of a decibel; the second part decides where no spectrum has
 //! them, or only one with knots hundreds of decibels apart, as beside a line.
 
+use alloc::vec::Vec;
+
 use crate::FLOOR_DB;
 use crate::axis::{Axis, Point};
 

@@ -3,12 +3,21 @@
 //! Nine such energies tell how real a rendered texture feels (paper, Results); thirty keep a spectrum within
 //! about 0.3 dB of the recording in third-octave bands. Stored is the plainest curve that has these
 //! energies: straight between knots at the bands' apexes, in decibels over the axis the bands are even on.
+#![no_std]
+
+#[macro_use]
+extern crate alloc;
 
 mod axis;
 mod fit;
 
+use alloc::vec::Vec;
+
 use htex_dsp::grid::{Band, GRID_HZ, level_rms};
-use htex_model::{Descriptor, Error, Fit, FitInput, Model, Numbers, Store, Values, mix};
+use htex_model::{
+    Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Store,
+    Values, mix, text,
+};
 use htex_shaped::{Curve, ShapedVoice};
 
 use axis::{Axis, Layout, Point};
@@ -39,6 +48,14 @@ pub const FLOOR_DB: f64 = 120.0;
 /// Rounds in which a voice's spectrum is sharpened.
 const SHARPENINGS: usize = 2;
 
+const fn steps(scale: f64) -> Store {
+    Store::U8 {
+        scale,
+        offset: 0.0,
+        log: false,
+    }
+}
+
 /// The model.
 pub struct BandEnergies;
 
@@ -47,62 +64,57 @@ htex_model::export_model!(BandEnergies, symbols: "plugin");
 impl Model for BandEnergies {
     type Voice = ShapedVoice<Spectrum>;
 
-    fn descriptor() -> Descriptor {
-        let steps = |scale| Store::U8 {
-            scale,
-            offset: 0.0,
-            log: false,
-        };
-        let packed = Store::Packed {
-            scale: 1.0,
-            offset: 0.0,
-            log: false,
-        };
-        Descriptor::new(
-            "org.htex.bands",
-            "Bands",
-            env!("CARGO_PKG_VERSION"),
-            "Straight lines in decibels between knots at the apexes of bands whose energies they keep.",
-        )
-        .keeping_level()
-        .list(
+    const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
+        "org.htex.bands",
+        "Bands",
+        env!("CARGO_PKG_VERSION"),
+        "Straight lines in decibels between knots at the apexes of bands whose energies they keep.",
+    )
+    .keeping_level()
+    .fields(&[
+        StaticField::list(
             "below_highest",
             "1",
             (0.0, MAX_STEPS),
             MAX_BANDS,
             "Level of each knot, in steps below the highest; one to 64 knots.",
         )
-        .stored(packed)
-        .scalar("step_db", "dB", STEP_RANGE_DB, "The step.")
-        .stored(steps(STEP_UNIT_DB))
-        .scalar(
+        .stored(Store::Packed {
+            scale: 1.0,
+            offset: 0.0,
+            log: false,
+        }),
+        StaticField::scalar("step_db", "dB", STEP_RANGE_DB, "The step.").stored(steps(STEP_UNIT_DB)),
+        StaticField::scalar(
             "layout",
             "1",
             (0.0, 1.0),
             "0: knots within the band, even in ln f; 1: from edge to edge, even in ln(f + 20 Hz).",
         )
-        .stored(steps(1.0))
-        .integer_option(
+        .stored(steps(1.0)),
+    ])
+    .options(&[
+        StaticOption::integer(
             "bands",
             (1, MAX_BANDS),
             DEFAULT_BANDS,
             "Bands, overlapping by half. 9: those of the paper; 19 divide them evenly.",
-        )
-        .option(
+        ),
+        StaticOption::number(
             "step_db",
             "dB",
             STEP_RANGE_DB,
             DEFAULT_STEP_DB,
             "Knots are rounded to whole steps of this, itself rounded to 0.05 dB; coarser where 255 \
              steps would not reach the lowest knot, which counts as at most 120 dB down.",
-        )
-        .choice(
+        ),
+        StaticOption::choice(
             "layout",
             &["auto", "within", "edges"],
             "Where the outermost knots stand: within the band as the paper's, or at its edges. `auto`: \
              at the edges from 20 bands on.",
-        )
-    }
+        ),
+    ]);
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         let top = input.magnitude.iter().copied().fold(0.0, f64::max);
@@ -134,7 +146,7 @@ impl Model for BandEnergies {
         let made: Vec<f64> = spectrum.magnitude.iter().map(|m| m * m).collect();
         // The bands together have the recording's energy.
         let energy = |power: &[f64]| total_energy(&axis, input.frequency_hz, power);
-        let gain = libm::sqrt(energy(&power) / energy(&made));
+        let gain = htex_dsp::root::sqrt(energy(&power) / energy(&made));
         let count = [below.len() as f64];
         let rest = [step_db, axis.layout.number()];
         Ok(Fit {
@@ -222,10 +234,15 @@ impl Spectrum {
             ));
         }
         if band.bins() == 0 {
-            return Err(Error::parameters(format!(
-                "no bin of the {GRID_HZ} Hz grid lies in the band {} to {} Hz",
-                band.low_hz, band.high_hz
-            )));
+            return Err(Error::parameters(text![
+                "no bin of the ",
+                GRID_HZ,
+                " Hz grid lies in the band ",
+                band.low_hz,
+                " to ",
+                band.high_hz,
+                " Hz",
+            ]));
         }
         let zeros = || vec![0.0; band.bins()];
         let mut spectrum = Self {
@@ -256,7 +273,7 @@ impl Spectrum {
         self.level = level_rms(&self.magnitude);
         sharpen(&self.power, &mut self.played);
         for power in &mut self.played {
-            *power = libm::sqrt(*power);
+            *power = htex_dsp::root::sqrt(*power);
         }
     }
 

@@ -1,13 +1,15 @@
 //! The way back from band energies to a spectrum.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use alloc::vec::Vec;
+
+use alloc::sync::Arc;
 
 use htex_dsp::dct::inverse_dct_ii;
 use htex_dsp::grid::Band;
 use htex_dsp::least_squares::PseudoInverse;
 use htex_dsp::mel::MelBank;
 use htex_dsp::non_negative::{NonNegative, Scratch};
-use htex_model::Values;
+use htex_model::{Lock, Values};
 
 use crate::{BANDS, INVERSE, whole};
 
@@ -16,7 +18,7 @@ const KEPT: usize = 8;
 const NNLS: u8 = 1;
 const INTERPOLATE: u8 = 2;
 
-static CACHE: Mutex<Vec<Arc<Inverse>>> = Mutex::new(Vec::new());
+static CACHE: Lock<Vec<Arc<Inverse>>> = Lock::new(Vec::new());
 
 /// From cepstrum to magnitudes on the band's grid, for one mel bank and one kind of inverse.
 pub(crate) struct Inverse {
@@ -35,7 +37,9 @@ enum Way {
 impl Inverse {
     /// Makes an inverse, or finds one made before.
     pub(crate) fn shared(bands: usize, kind: u8, band: Band) -> Arc<Self> {
-        let mut cache = CACHE.lock().unwrap_or_else(PoisonError::into_inner);
+        let Some(mut cache) = CACHE.lock() else {
+            return Arc::new(Self::new(bands, kind, band));
+        };
         let same = |i: &Arc<Self>| (i.bands, i.kind, i.band) == (bands, kind, band);
         if let Some(found) = cache.iter().position(same) {
             return Arc::clone(&cache[found]);
@@ -111,6 +115,8 @@ impl Inverse {
             }
             Way::NonNegative(solver) => solver.solve(energy, magnitude, scratch),
         }
-        magnitude.iter_mut().for_each(|m| *m = libm::sqrt(*m));
+        magnitude
+            .iter_mut()
+            .for_each(|m| *m = htex_dsp::root::sqrt(*m));
     }
 }

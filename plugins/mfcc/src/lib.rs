@@ -1,15 +1,23 @@
 //! Mel-frequency cepstral coefficients: the logarithm of the energies in mel bands, smoothed by
 //! keeping the first terms of its cosine transform (paper, Mel Frequency Cepstral Coefficients).
+#![no_std]
+
+#[macro_use]
+extern crate alloc;
 
 mod inverse;
 
-use std::sync::Arc;
+use alloc::sync::Arc;
+use alloc::vec::Vec;
 
 use htex_dsp::dct::dct_ii;
 use htex_dsp::grid::{Band, GRID_HZ, level_rms};
 use htex_dsp::mel::MelBank;
 use htex_dsp::non_negative::Scratch;
-use htex_model::{Descriptor, Error, Fit, FitInput, Model, Numbers, Store, Values, mix};
+use htex_model::{
+    Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Store,
+    Values, mix,
+};
 use htex_shaped::{Curve, ShapedVoice};
 
 use inverse::Inverse;
@@ -26,6 +34,12 @@ const MAX_BANDS: u32 = 128;
 /// Band energies count as at least this, newtons squared (numeric definitions: MFCC).
 const FLOOR: f64 = 1e-20;
 
+const WHOLE: Store = Store::U8 {
+    scale: 1.0,
+    offset: 0.0,
+    log: false,
+};
+
 /// The model.
 pub struct MelCepstrum;
 
@@ -34,58 +48,55 @@ htex_model::export_model!(MelCepstrum, symbols: "plugin");
 impl Model for MelCepstrum {
     type Voice = ShapedVoice<Spectrum>;
 
-    fn descriptor() -> Descriptor {
-        let whole = Store::U8 {
-            scale: 1.0,
-            offset: 0.0,
-            log: false,
-        };
-        Descriptor::new(
-            "org.htex.mfcc",
-            "MFCC",
-            env!("CARGO_PKG_VERSION"),
-            "Log energies in mel bands, kept as the first terms of their cosine transform.",
-        )
-        .list(
+    const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
+        "org.htex.mfcc",
+        "MFCC",
+        env!("CARGO_PKG_VERSION"),
+        "Log energies in mel bands, kept as the first terms of their cosine transform.",
+    )
+    .fields(&[
+        StaticField::list(
             "cepstrum",
             "1",
             (-1e5, 1e5),
             MAX_BANDS,
             "c_0 to c_(n-1) of the orthonormal DCT-II of the natural log energies.",
-        )
-        .scalar(
+        ),
+        StaticField::scalar(
             "bands",
             "1",
-            (2.0, f64::from(MAX_BANDS)),
+            (2.0, MAX_BANDS as f64),
             "Number of mel bands.",
         )
-        .stored(whole)
-        .scalar(
+        .stored(WHOLE),
+        StaticField::scalar(
             "inverse",
             "1",
             (0.0, 2.0),
             "Way back to a spectrum: 0 pseudo-inverse, 1 non-negative least squares, 2 triangles.",
         )
-        .stored(whole)
-        .integer_option(
+        .stored(WHOLE),
+    ])
+    .options(&[
+        StaticOption::integer(
             "coefficients",
             (1, MAX_BANDS),
             10,
             "Coefficients kept (paper: ten).",
-        )
-        .integer_option(
+        ),
+        StaticOption::integer(
             "bands",
             (2, MAX_BANDS),
             26,
             "Mel bands between the edges of the band.",
-        )
-        .choice(
+        ),
+        StaticOption::choice(
             "inverse",
             &["pinv", "nnls", "interpolate"],
             "Pseudo-inverse of the bank clipped at zero, non-negative least squares, or \
              interpolation between the bands' apexes.",
-        )
-    }
+        ),
+    ]);
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         if input.magnitude.iter().all(|&m| m == 0.0) {

@@ -1,6 +1,8 @@
 //! Least squares of the density to the spectrum's peaks (paper: fminsearch on ten peaks; it names no
 //! cost).
 
+use alloc::vec::Vec;
+
 use htex_dsp::grid::{Band, curve_level_rms};
 use htex_dsp::nelder_mead::{Minimum, Options, minimize};
 use htex_dsp::peaks::{Peak, select_peaks};
@@ -131,7 +133,7 @@ fn fit_points(points: &[Peak], band: Band, bound: f64, distance: Distance) -> (f
     let cost = |x: &[f64; 2]| distance.best_scale(points, &profile(x)).1;
     let options = Options::default();
     let search = |(alpha, beta): (f64, f64)| {
-        let start = [alpha, beta].map(|s: f64| libm::sqrt((s - bound).max(0.0)));
+        let start = [alpha, beta].map(|s: f64| htex_dsp::root::sqrt((s - bound).max(0.0)));
         minimize(cost, start, &options)
     };
     let better = |best: Minimum<2>, next: Minimum<2>| match next.value < best.value {

@@ -1,11 +1,18 @@
 //! Spectral beta: the spectrum's profile as a beta density on the normalised logarithmic frequency
 //! axis, two numbers (paper, Spectral beta).
+#![no_std]
+
+#[macro_use]
+extern crate alloc;
 
 mod fit;
 
-use htex_dsp::beta::{BetaDensity, log_unit};
+use htex_dsp::beta::{BetaDensity, LogAxis};
 use htex_dsp::grid::{Band, GRID_HZ, curve_level_rms};
-use htex_model::{Descriptor, Error, Fit, FitInput, Model, Numbers, Values, mix};
+use htex_model::{
+    Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Values, mix,
+    text,
+};
 use htex_shaped::{Curve, ShapedVoice};
 
 const ALPHA: usize = 0;
@@ -19,42 +26,44 @@ htex_model::export_model!(SpectralBeta, symbols: "plugin");
 impl Model for SpectralBeta {
     type Voice = ShapedVoice<Shape>;
 
-    fn descriptor() -> Descriptor {
-        Descriptor::new(
-            "org.htex.sbeta",
-            "sBeta",
-            env!("CARGO_PKG_VERSION"),
-            "The spectrum's profile as a beta density over the logarithm of frequency: two numbers.",
-        )
-        .scalar("alpha", "1", (1e-3, 1e6), "First shape parameter: the rise from the low edge.")
-        .scalar("beta", "1", (1e-3, 1e6), "Second shape parameter: the fall to the high edge.")
-        .integer_option(
+    const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
+        "org.htex.sbeta",
+        "sBeta",
+        env!("CARGO_PKG_VERSION"),
+        "The spectrum's profile as a beta density over the logarithm of frequency: two numbers.",
+    )
+    .fields(&[
+        StaticField::scalar("alpha", "1", (1e-3, 1e6), "First shape parameter: the rise from the low edge."),
+        StaticField::scalar("beta", "1", (1e-3, 1e6), "Second shape parameter: the fall to the high edge."),
+    ])
+    .options(&[
+        StaticOption::integer(
             "points",
             (3, 64),
             10,
             "Spectral peaks the density is fitted to (paper: ten).",
-        )
-        .option(
+        ),
+        StaticOption::number(
             "jnd",
             "1",
             (0.0, 1.0),
             0.12,
             "Least relative distance of two such peaks (paper: 12 %).",
-        )
-        .option(
+        ),
+        StaticOption::number(
             "lower_bound",
             "1",
             (0.0, 1.0),
             1.0,
             "Smallest alpha and beta; below 1 the density may be infinite at an edge.",
-        )
-        .choice(
+        ),
+        StaticOption::choice(
             "error",
             &["magnitude", "decibel"],
             "What is least at the points: the squared difference of magnitudes, which the strongest \
              peaks decide, or that of decibels, to which all peaks count alike (the paper names none).",
-        )
-    }
+        ),
+    ]);
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         fit::fit(input)
@@ -115,10 +124,15 @@ impl Curve for Shape {
         if self.level > 0.0 && self.level.is_finite() {
             return Ok(());
         }
-        Err(Error::parameters(format!(
-            "alpha {alpha} and beta {beta} put all energy between two bins of the {GRID_HZ} Hz grid; \
-             take smaller ones"
-        )))
+        Err(Error::parameters(text![
+            "alpha ",
+            alpha,
+            " and beta ",
+            beta,
+            " put all energy between two bins of the ",
+            GRID_HZ,
+            " Hz grid; take smaller ones",
+        ]))
     }
 
     fn at(&self, frequency_hz: f64) -> f64 {
@@ -136,6 +150,7 @@ impl Curve for Shape {
 pub(crate) struct Profile {
     density: BetaDensity,
     band: Band,
+    axis: LogAxis,
     low_hz: f64,
     high_hz: f64,
 }
@@ -146,6 +161,7 @@ impl Profile {
         Self {
             density: BetaDensity::new(alpha, beta),
             band,
+            axis: LogAxis::new(band),
             low_hz: band.low_hz + inset(alpha),
             high_hz: band.high_hz - inset(beta),
         }
@@ -153,6 +169,6 @@ impl Profile {
 
     pub(crate) fn at(&self, frequency_hz: f64) -> f64 {
         let inside = frequency_hz.clamp(self.low_hz, self.high_hz);
-        self.density.at(log_unit(inside, self.band))
+        self.density.at(self.axis.at(inside))
     }
 }

@@ -1,12 +1,18 @@
 //! Spectral peaks: the spectrum as a few sinusoids, each a just-noticeable difference from the next
 //! (paper, Spectral peak, eq. for y_sp).
+#![no_std]
+
+extern crate alloc;
+
+use alloc::vec::Vec;
 
 use htex_dsp::grid::GRID_HZ;
 use htex_dsp::noise::Uniform;
 use htex_dsp::peaks::select_peaks;
 use htex_dsp::sine_bank::{Sine, SineBank};
 use htex_model::{
-    Band, Descriptor, Error, Fit, FitInput, Model, Numbers, Store, Values, Voice, mix,
+    Band, Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Store,
+    Values, Voice, mix, text,
 };
 
 const FREQUENCY: usize = 0;
@@ -22,6 +28,19 @@ const MAX_PEAKS: usize = 64;
 /// rounding errors beside a tone at the band's edge.
 const FAINTEST: f64 = 1e-7;
 
+/// Frequencies in 1/32 Hz hold the 5 Hz grid exactly.
+const HERTZ: Store = Store::U16 {
+    scale: 0.03125,
+    offset: 0.0,
+    log: false,
+};
+/// Amplitudes in steps of 0.003 dB.
+const RATIO: Store = Store::U16 {
+    scale: 0.0003,
+    offset: -18.0,
+    log: true,
+};
+
 /// The model.
 pub struct SpectralPeak;
 
@@ -30,41 +49,30 @@ htex_model::export_model!(SpectralPeak, symbols: "plugin");
 impl Model for SpectralPeak {
     type Voice = SpectralPeakVoice;
 
-    fn descriptor() -> Descriptor {
-        // Frequencies in 1/32 Hz hold the 5 Hz grid exactly; amplitudes in steps of 0.003 dB.
-        let hertz = Store::U16 {
-            scale: 0.03125,
-            offset: 0.0,
-            log: false,
-        };
-        let ratio = Store::U16 {
-            scale: 0.0003,
-            offset: -18.0,
-            log: true,
-        };
-        Descriptor::new(
-            "org.htex.speak",
-            "sPeak",
-            env!("CARGO_PKG_VERSION"),
-            "The strongest spectral peaks, each distinguishable from the next, as sinusoids.",
-        )
-        .list(
+    const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
+        "org.htex.speak",
+        "sPeak",
+        env!("CARGO_PKG_VERSION"),
+        "The strongest spectral peaks, each distinguishable from the next, as sinusoids.",
+    )
+    .fields(&[
+        StaticField::list(
             "frequency_hz",
             "Hz",
             (0.0, 2000.0),
             MAX_PEAKS as u32,
             "Frequencies of the sinusoids; those outside the band are not played.",
         )
-        .stored(hertz)
-        .list(
+        .stored(HERTZ),
+        StaticField::list(
             "amplitude",
             "1",
             (0.0, 4.0),
             MAX_PEAKS as u32,
             "Their amplitudes over the level; half the squares of those in the band sum to one.",
         )
-        .stored(ratio)
-        .scalar(
+        .stored(RATIO),
+        StaticField::scalar(
             "random_phase",
             "1",
             (0.0, 1.0),
@@ -74,22 +82,24 @@ impl Model for SpectralPeak {
             scale: 1.0,
             offset: 0.0,
             log: false,
-        })
-        .integer_option(
+        }),
+    ])
+    .options(&[
+        StaticOption::integer(
             "count",
             (1, MAX_PEAKS as u32),
             10,
             "Most peaks kept (paper: ten).",
-        )
-        .option(
+        ),
+        StaticOption::number(
             "jnd",
             "1",
             (0.0, 1.0),
             0.12,
             "Least relative distance of two peaks (paper: 12 %).",
-        )
-        .choice("phase", &["zero", "seed"], "Where the sinusoids start.")
-    }
+        ),
+        StaticOption::choice("phase", &["zero", "seed"], "Where the sinusoids start."),
+    ]);
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         let count = input.options[COUNT] as usize;
@@ -144,15 +154,19 @@ impl Model for SpectralPeak {
         let heard = || sets.iter().zip(weights).filter(|(_, w)| **w > 0.0);
         let count: usize = heard().map(|(set, _)| set.list(FREQUENCY).len()).sum();
         if count > MAX_PEAKS {
-            return Err(Error::argument(format!(
-                "the sets have {count} lines together; {MAX_PEAKS} are allowed"
-            )));
+            return Err(Error::argument(text![
+                "the sets have ",
+                count,
+                " lines together; ",
+                MAX_PEAKS,
+                " are allowed",
+            ]));
         }
         out.push(count as f64);
         heard().for_each(|(set, _)| out.extend(set.list(FREQUENCY)));
         out.push(count as f64);
         for (set, weight) in heard() {
-            let fade = libm::sqrt(*weight);
+            let fade = htex_dsp::root::sqrt(*weight);
             set.list(AMPLITUDE).iter().for_each(|a| out.push(a * fade));
         }
         out.push(sets.first().map_or(0.0, |s| s.scalar(PHASE)));
@@ -246,20 +260,24 @@ impl<'a> Lines<'a> {
             level: 0.0,
         };
         if lines.frequency_hz.len() != lines.amplitude.len() {
-            return Err(Error::parameters(format!(
-                "{} frequencies and {} amplitudes: there must be as many",
+            return Err(Error::parameters(text![
                 lines.frequency_hz.len(),
-                lines.amplitude.len()
-            )));
+                " frequencies and ",
+                lines.amplitude.len(),
+                " amplitudes: there must be as many",
+            ]));
         }
         lines.level = level((0..lines.amplitude.len()).map(|i| lines.played(i)));
         if lines.level > 0.0 {
             return Ok(lines);
         }
-        Err(Error::parameters(format!(
-            "no line in the band {} to {} Hz has an amplitude above zero",
-            band.low_hz, band.high_hz
-        )))
+        Err(Error::parameters(text![
+            "no line in the band ",
+            band.low_hz,
+            " to ",
+            band.high_hz,
+            " Hz has an amplitude above zero",
+        ]))
     }
 
     /// Amplitude of a line as it is played: 0 outside the band, where a texture has no magnitude.
@@ -279,12 +297,12 @@ impl<'a> Lines<'a> {
             .map(|(i, f)| self.played(i) * hann_kernel((frequency_hz - f) / GRID_HZ))
             .map(|m| m * m)
             .sum();
-        libm::sqrt(power) / self.level
+        htex_dsp::root::sqrt(power) / self.level
     }
 }
 
 fn level(amplitudes: impl Iterator<Item = f64>) -> f64 {
-    libm::sqrt(amplitudes.map(|a| 0.5 * a * a).sum())
+    htex_dsp::root::sqrt(amplitudes.map(|a| 0.5 * a * a).sum())
 }
 
 /// Main lobe of the periodic Hann window's transform, 1 at its middle, `bins` away.

@@ -1,6 +1,8 @@
 //! Slopes to either side of the dominant peak (paper: from 20 Hz to the peak, from the peak to
 //! 1 kHz), in decibels a decade.
 
+use alloc::vec::Vec;
+
 use htex_model::{Error, Fit, FitInput};
 use htex_shaped::Curve;
 

@@ -4,11 +4,18 @@
 //! The orders are whole with the paper's rounding to 20 dB a decade, and may be fractional with a
 //! finer one or between two conditions. White noise is therefore shaped in the frequency domain by
 //! the Butterworth magnitude, which is defined for both, rather than by a recursive filter.
+#![no_std]
+
+#[macro_use]
+extern crate alloc;
 
 mod fit;
 
 use htex_dsp::grid::{Band, curve_level_rms};
-use htex_model::{Descriptor, Error, Fit, FitInput, Model, Numbers, Store, Values, mix};
+use htex_model::{
+    Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Store,
+    Values, mix, text,
+};
 use htex_shaped::{Curve, ShapedVoice};
 
 const PEAK: usize = 0;
@@ -20,6 +27,14 @@ const ORDER_STEP: f64 = 0.05;
 /// Highest filter order: 400 dB a decade.
 pub const MAX_ORDER: f64 = 20.0;
 
+const fn steps(scale: f64) -> Store {
+    Store::U16 {
+        scale,
+        offset: 0.0,
+        log: false,
+    }
+}
+
 /// The model.
 pub struct SpectralSlope;
 
@@ -28,38 +43,50 @@ htex_model::export_model!(SpectralSlope, symbols: "plugin");
 impl Model for SpectralSlope {
     type Voice = ShapedVoice<Shape>;
 
-    fn descriptor() -> Descriptor {
-        let steps = |scale| Store::U16 {
-            scale,
-            offset: 0.0,
-            log: false,
-        };
-        Descriptor::new(
-            "org.htex.sslope",
-            "sSlope",
-            env!("CARGO_PKG_VERSION"),
-            "An asymmetric band-pass around the dominant peak: its frequency and two filter orders.",
+    const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
+        "org.htex.sslope",
+        "sSlope",
+        env!("CARGO_PKG_VERSION"),
+        "An asymmetric band-pass around the dominant peak: its frequency and two filter orders.",
+    )
+    .fields(&[
+        StaticField::scalar(
+            "peak_hz",
+            "Hz",
+            (1.0, 2000.0),
+            "Dominant peak and cut-off of both filters.",
         )
-        .scalar("peak_hz", "Hz", (1.0, 2000.0), "Dominant peak and cut-off of both filters.")
-        .stored(steps(0.03125))
-        .scalar("order_high_pass", "1", (0.05, MAX_ORDER), "Order r_a of the Butterworth high-pass.")
-        .stored(steps(ORDER_STEP))
-        .scalar("order_low_pass", "1", (0.05, MAX_ORDER), "Order r_b of the Butterworth low-pass.")
-        .stored(steps(ORDER_STEP))
-        .option(
+        .stored(steps(0.03125)),
+        StaticField::scalar(
+            "order_high_pass",
+            "1",
+            (0.05, MAX_ORDER),
+            "Order r_a of the Butterworth high-pass.",
+        )
+        .stored(steps(ORDER_STEP)),
+        StaticField::scalar(
+            "order_low_pass",
+            "1",
+            (0.05, MAX_ORDER),
+            "Order r_b of the Butterworth low-pass.",
+        )
+        .stored(steps(ORDER_STEP)),
+    ])
+    .options(&[
+        StaticOption::number(
             "rounding_db_per_decade",
             "dB/decade",
             (1.0, 20.0),
             20.0,
             "Slopes are rounded to whole multiples of this (paper: 20).",
-        )
-        .choice(
+        ),
+        StaticOption::choice(
             "slopes",
             &["least-squares", "end-points", "anchored"],
             "How slopes are measured: a line through all bins, through both ends, or through the \
              peak.",
-        )
-    }
+        ),
+    ]);
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         fit::fit(input)
@@ -123,10 +150,15 @@ impl Shape {
         if self.level > 0.0 {
             return Ok(());
         }
-        Err(Error::parameters(format!(
-            "a peak at {} Hz leaves nothing in the band {} to {} Hz",
-            self.peak_hz, self.band.low_hz, self.band.high_hz
-        )))
+        Err(Error::parameters(text![
+            "a peak at ",
+            self.peak_hz,
+            " Hz leaves nothing in the band ",
+            self.band.low_hz,
+            " to ",
+            self.band.high_hz,
+            " Hz",
+        ]))
     }
 }
 
@@ -154,5 +186,5 @@ impl Curve for Shape {
 
 /// Magnitude of a Butterworth low-pass of any positive order at `ratio` times its cut-off.
 fn butterworth(ratio: f64, order: f64) -> f64 {
-    1.0 / libm::sqrt(1.0 + libm::pow(ratio, 2.0 * order))
+    1.0 / htex_dsp::root::sqrt(1.0 + libm::pow(ratio, 2.0 * order))
 }

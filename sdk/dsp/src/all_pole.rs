@@ -126,7 +126,7 @@ impl AllPole {
         let sum: f64 = a.iter().map(|a| a.abs()).sum();
         let remaining = |k: &f64| (1.0 - k) * (1.0 + k);
         let power: f64 = self.lattice.reflection().iter().map(remaining).product();
-        if sum <= MAX_DIRECT_ERROR * libm::sqrt(power) {
+        if sum <= MAX_DIRECT_ERROR * crate::root::sqrt(power) {
             self.direct = Some(Direct::new(&a, &self.past));
         }
     }

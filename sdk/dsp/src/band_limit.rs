@@ -92,7 +92,7 @@ impl PassedPower {
             .map(|(hz, part)| (part, curve(*hz)))
             .map(|(part, m)| part * m * m)
             .sum();
-        libm::sqrt(power / 3.0)
+        crate::root::sqrt(power / 3.0)
     }
 }
 

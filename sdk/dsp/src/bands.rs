@@ -95,7 +95,7 @@ fn ratio_db(model: f64, reference: f64) -> f64 {
 /// Times its square, the model's band energies compare by shape alone.
 pub fn energy_matching_gain(reference_magnitude: &[f64], model_magnitude: &[f64]) -> f64 {
     let total = |magnitude: &[f64]| magnitude.iter().map(|m| m * m).sum::<f64>();
-    let gain = libm::sqrt(total(reference_magnitude) / total(model_magnitude));
+    let gain = crate::root::sqrt(total(reference_magnitude) / total(model_magnitude));
     if gain.is_finite() && gain > 0.0 {
         gain
     } else {
@@ -108,7 +108,7 @@ pub fn rms(values: &[f64]) -> f64 {
     if values.is_empty() {
         return 0.0;
     }
-    libm::sqrt(values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64)
+    crate::root::sqrt(values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64)
 }
 
 /// Pearson correlation of two equally long slices (the longer is cut), in `[-1, 1]`.
@@ -130,7 +130,7 @@ pub fn pearson_correlation(a: &[f64], b: &[f64]) -> f64 {
     let (a, b) = (deviations(a), deviations(b));
     // Each side is scaled by its largest deviation, so that no square under- or overflows.
     let product: f64 = a.iter().zip(&b).map(|(x, y)| x * y).sum();
-    let norm = |values: &[f64]| libm::sqrt(values.iter().map(|v| v * v).sum());
+    let norm = |values: &[f64]| crate::root::sqrt(values.iter().map(|v| v * v).sum());
     let correlation = product / (norm(&a) * norm(&b));
     if correlation.is_nan() {
         0.0

@@ -11,7 +11,29 @@ use crate::Band;
 /// assert_eq!(log_unit(1000.0, Band::TACTILE), 1.0);
 /// ```
 pub fn log_unit(f_hz: f64, band: Band) -> f64 {
-    libm::log(f_hz / band.low_hz) / libm::log(band.high_hz / band.low_hz)
+    LogAxis::new(band).at(f_hz)
+}
+
+/// The axis of [`log_unit`], for many frequencies of one band.
+#[derive(Debug, Clone, Copy)]
+pub struct LogAxis {
+    low_hz: f64,
+    log_ratio: f64,
+}
+
+impl LogAxis {
+    /// The axis of a band.
+    pub fn new(band: Band) -> Self {
+        Self {
+            low_hz: band.low_hz,
+            log_ratio: libm::log(band.high_hz / band.low_hz),
+        }
+    }
+
+    /// Place of `f_hz`, as [`log_unit`] has it.
+    pub fn at(&self, f_hz: f64) -> f64 {
+        libm::log(f_hz / self.low_hz) / self.log_ratio
+    }
 }
 
 /// Density of the beta distribution, `u^(α-1) (1-u)^(β-1) / B(α, β)`, 0 outside `[0, 1]`.

@@ -43,7 +43,7 @@ impl Biquad {
                 squared_magnitude(c0, -c1, c2, cosine * cosine)
             }
         };
-        libm::sqrt(squared(self.b0, self.b1, self.b2) / squared(1.0, self.a1, self.a2))
+        crate::root::sqrt(squared(self.b0, self.b1, self.b2) / squared(1.0, self.a1, self.a2))
     }
 
     /// Whether both poles lie inside the unit circle.

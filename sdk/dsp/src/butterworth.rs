@@ -49,7 +49,7 @@ pub fn high_pass(order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {
 
 /// `|H|` of the analogue low-pass: `1 / sqrt(1 + (f / fc)^(2 order))`.
 pub fn analog_low_pass_magnitude(f_hz: f64, fc_hz: f64, order: usize) -> f64 {
-    1.0 / libm::sqrt(1.0 + libm::pow(f_hz / fc_hz, 2.0 * order as f64))
+    1.0 / crate::root::sqrt(1.0 + libm::pow(f_hz / fc_hz, 2.0 * order as f64))
 }
 
 /// `|H|` of the analogue high-pass: `1 / sqrt(1 + (fc / f)^(2 order))`, 0 at 0 Hz.

@@ -21,7 +21,7 @@ pub(crate) fn chebyshev(
         return None;
     }
     let n = order as f64;
-    let ripple = libm::sqrt(libm::pow(10.0, 0.1 * ripple_db) - 1.0);
+    let ripple = crate::root::sqrt(libm::pow(10.0, 0.1 * ripple_db) - 1.0);
     // The poles of an analogue low-pass whose ripples end at 1; where it is 3 dB down.
     let spread = libm::asinh(1.0 / ripple) / n;
     let down = libm::cosh(libm::acosh(1.0 / ripple) / n);

@@ -39,7 +39,7 @@ pub fn inverse_dct_ii(coefficients: &[f64], out: &mut [f64]) {
 
 fn scale(k: usize, n: usize) -> f64 {
     let numerator = if k == 0 { 1.0 } else { 2.0 };
-    libm::sqrt(numerator / n as f64)
+    crate::root::sqrt(numerator / n as f64)
 }
 
 /// `cos(π k (2i + 1) / 2n)`, its argument reduced in whole numbers first.

@@ -98,7 +98,7 @@ impl From<(f64, f64)> for Band {
 ///
 /// Unit: that of the magnitudes.
 pub fn level_rms(magnitude: &[f64]) -> f64 {
-    libm::sqrt(magnitude.iter().map(|m| m * m).sum::<f64>() / 3.0)
+    crate::root::sqrt(magnitude.iter().map(|m| m * m).sum::<f64>() / 3.0)
 }
 
 /// [`level_rms`] of a curve read on the band's grid, without storing it.
@@ -107,7 +107,7 @@ pub fn curve_level_rms(band: Band, curve: impl Fn(f64) -> f64) -> f64 {
         .map(|bin| curve(bin as f64 * GRID_HZ))
         .map(|m| m * m)
         .sum();
-    libm::sqrt(power / 3.0)
+    crate::root::sqrt(power / 3.0)
 }
 
 #[cfg(test)]

@@ -199,19 +199,38 @@ impl Stage {
         let out_re = to.re.chunks_exact_mut(R * s);
         let out = out_re.zip(to.im.chunks_exact_mut(R * s));
         for ((p, twiddle), (out_re, out_im)) in twiddles.iter().enumerate().zip(out) {
-            for q in (0..s).step_by(T::LEN) {
-                let place = |j: usize| s * (p + parts * j) + q;
-                let re = core::array::from_fn(|j| T::load(&from.re[place(j)..]));
-                let im = core::array::from_fn(|j| T::load(&from.im[place(j)..]));
-                let (re, im) = butterfly(re, im);
+            let rows = |x| core::array::from_fn(|j| groups::<T>(x, s * (p + parts * j), s));
+            let (re, im): ([_; R], [_; R]) = (rows(&from.re), rows(&from.im));
+            let out_re = rows_mut::<R, T>(out_re, s);
+            let out_im = rows_mut::<R, T>(out_im, s);
+            for q in 0..s / T::LEN {
+                let at = |rows: [&[T::Group]; R]| core::array::from_fn(|j| T::load(rows[j][q]));
+                let (re, im) = butterfly(at(re), at(im));
                 for k in 0..R {
                     let (cos, sin) = twiddle[k];
-                    (re[k] * cos - im[k] * sin).store(&mut out_re[s * k + q..]);
-                    (im[k] * cos + re[k] * sin).store(&mut out_im[s * k + q..]);
+                    out_re[k][q] = (re[k] * cos - im[k] * sin).store();
+                    out_im[k][q] = (im[k] * cos + re[k] * sin).store();
                 }
             }
         }
     }
+}
+
+/// The groups of `len` numbers from `first` on. What the bounds of all rows of a loop are known by is
+/// this length: nothing is checked at each number.
+#[inline(always)]
+fn groups<T: Number>(from: &[f32], first: usize, len: usize) -> &[T::Group] {
+    &T::groups(&from[first..first + len])[..len / T::LEN]
+}
+
+/// `R` rows of `len` numbers each.
+#[inline(always)]
+fn rows_mut<const R: usize, T: Number>(to: &mut [f32], len: usize) -> [&mut [T::Group]; R] {
+    let mut rows = to.chunks_exact_mut(len);
+    core::array::from_fn(|_| {
+        let row = T::groups_mut(rows.next().unwrap_or_default());
+        &mut row[..len / T::LEN]
+    })
 }
 
 #[inline(always)]

@@ -66,7 +66,7 @@ impl Kaiser {
         if x.abs() > 1.0 {
             return 0.0;
         }
-        self.scale * bessel_i0(self.beta * libm::sqrt(1.0 - x * x))
+        self.scale * bessel_i0(self.beta * crate::root::sqrt(1.0 - x * x))
     }
 }
 

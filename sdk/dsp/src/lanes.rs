@@ -7,22 +7,36 @@ pub(crate) trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f32, Output = Self>
 {
     const LEN: usize;
-    /// From the front of a slice that is long enough.
-    fn load(from: &[f32]) -> Self;
-    fn store(self, to: &mut [f32]);
+    /// As many numbers as stand side by side.
+    type Group: Copy;
+    fn groups(from: &[f32]) -> &[Self::Group];
+    fn groups_mut(to: &mut [f32]) -> &mut [Self::Group];
+    fn load(from: Self::Group) -> Self;
+    fn store(self) -> Self::Group;
 }
 
 impl Number for f32 {
     const LEN: usize = 1;
+    type Group = f32;
 
     #[inline(always)]
-    fn load(from: &[f32]) -> Self {
-        from[0]
+    fn groups(from: &[f32]) -> &[f32] {
+        from
     }
 
     #[inline(always)]
-    fn store(self, to: &mut [f32]) {
-        to[0] = self;
+    fn groups_mut(to: &mut [f32]) -> &mut [f32] {
+        to
+    }
+
+    #[inline(always)]
+    fn load(from: f32) -> Self {
+        from
+    }
+
+    #[inline(always)]
+    fn store(self) -> f32 {
+        self
     }
 }
 
@@ -34,17 +48,26 @@ pub(crate) struct Lanes(pub(crate) [f32; LANES]);
 
 impl Number for Lanes {
     const LEN: usize = LANES;
+    type Group = [f32; LANES];
 
     #[inline(always)]
-    fn load(from: &[f32]) -> Self {
-        let mut lanes = [0.0; LANES];
-        lanes.copy_from_slice(&from[..LANES]);
-        Self(lanes)
+    fn groups(from: &[f32]) -> &[[f32; LANES]] {
+        from.as_chunks().0
     }
 
     #[inline(always)]
-    fn store(self, to: &mut [f32]) {
-        to[..LANES].copy_from_slice(&self.0);
+    fn groups_mut(to: &mut [f32]) -> &mut [[f32; LANES]] {
+        to.as_chunks_mut().0
+    }
+
+    #[inline(always)]
+    fn load(from: [f32; LANES]) -> Self {
+        Self(from)
+    }
+
+    #[inline(always)]
+    fn store(self) -> [f32; LANES] {
+        self.0
     }
 }
 

@@ -119,7 +119,7 @@ impl Factors {
 /// Cosine and sine that make `a` and `b` orthogonal; `None` if they are.
 fn jacobi_rotation(a: &[f64], b: &[f64]) -> Option<(f64, f64)> {
     let (aa, bb, ab) = (dot(a, a), dot(b, b), dot(a, b));
-    let limit = ORTHOGONAL * libm::sqrt(aa) * libm::sqrt(bb);
+    let limit = ORTHOGONAL * crate::root::sqrt(aa) * crate::root::sqrt(bb);
     // False if either is NaN.
     (ab.abs() > limit).then(|| {
         let zeta = (bb - aa) / (2.0 * ab);
@@ -141,7 +141,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 fn norm(a: &[f64]) -> f64 {
-    libm::sqrt(dot(a, a))
+    crate::root::sqrt(dot(a, a))
 }
 
 #[cfg(test)]

@@ -43,6 +43,7 @@ mod polyphase;
 pub mod quad;
 mod random_lanes;
 pub mod resample;
+pub mod root;
 pub mod seam;
 pub mod shaped_noise;
 mod shared;

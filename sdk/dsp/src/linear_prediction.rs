@@ -265,7 +265,7 @@ pub fn white_noise_gain(coefficients: &[f64]) -> Option<f64> {
 /// RMS of the model's output for white noise of unit RMS: `sqrt(1 / Π(1 - k²))`.
 pub fn reflection_gain(reflection: &[f64]) -> f64 {
     let error: f64 = reflection.iter().map(|k| (1.0 - k) * (1.0 + k)).product();
-    1.0 / libm::sqrt(error)
+    1.0 / crate::root::sqrt(error)
 }
 
 /// Turns the coefficients of order m - 1 (all but the last element) into those of order m.

@@ -1,5 +1,6 @@
 //! Seeded random numbers: uniform phases and Gaussian noise.
 
+use crate::root::sqrt_f32;
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -189,7 +190,7 @@ fn radii<const N: usize>(bits: [u32; N]) -> [f32; N] {
         radii[i] = -2.0 * ln(uniform);
     }
     for square in &mut radii {
-        *square = sqrt(*square);
+        *square = sqrt_f32(*square);
     }
     radii
 }
@@ -213,15 +214,6 @@ fn ln(x: f32) -> f32 {
         + m2 * (1.167_699_9e-1 + m * -1.151_461e-1)
         + m4 * 7.037_684e-2;
     (cubic + m4 * seventh) * (m * m2) + (m - 0.5 * m2) + exponent * core::f32::consts::LN_2
-}
-
-/// The same bits everywhere: the square root is rounded right.
-#[inline(always)]
-fn sqrt(x: f32) -> f32 {
-    #[cfg(feature = "std")]
-    return x.sqrt();
-    #[cfg(not(feature = "std"))]
-    libm::sqrtf(x)
 }
 
 #[cfg(test)]

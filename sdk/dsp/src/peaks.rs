@@ -1,7 +1,9 @@
 //! Spectral peaks and the selection that keeps only those a finger can tell apart (paper,
 //! Spectral peaks).
 
+use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;
+use core::cmp::{Ordering, Reverse};
 
 /// Just noticeable difference of vibration frequency, as a fraction of the lower frequency.
 pub const FREQUENCY_JND: f64 = 0.12;
@@ -55,30 +57,47 @@ pub fn select_peaks(
     jnd: f64,
 ) -> Vec<Peak> {
     let magnitude = &magnitude[..magnitude.len().min(frequency_hz.len())];
+    let mut candidates = strongest_first(magnitude);
     let mut kept: Vec<Peak> = Vec::new();
-    for candidate in strongest_first(frequency_hz, magnitude) {
+    while let Some(Candidate(magnitude, Reverse(bin))) = candidates.pop() {
         if kept.len() == max_count {
             break;
         }
-        if kept.iter().all(|peak| distinct(&candidate, peak, jnd)) {
-            kept.push(candidate);
+        let peak = Peak {
+            frequency_hz: frequency_hz[bin],
+            magnitude,
+        };
+        if kept.iter().all(|other| distinct(&peak, other, jnd)) {
+            let place = kept.partition_point(|other| other.frequency_hz < peak.frequency_hz);
+            kept.insert(place, peak);
         }
     }
-    kept.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
     kept
 }
 
-fn strongest_first(frequency_hz: &[f64], magnitude: &[f64]) -> Vec<Peak> {
-    let mut peaks: Vec<Peak> = local_maxima(magnitude)
-        .into_iter()
-        .map(|i| Peak {
-            frequency_hz: frequency_hz[i],
-            magnitude: magnitude[i],
-        })
-        .collect();
-    // Stable, and the maxima come in ascending frequency: a tie goes to the lower one.
-    peaks.sort_by(|a, b| b.magnitude.total_cmp(&a.magnitude));
-    peaks
+/// A local maximum's magnitude and bin: the stronger one is the greater one, of equals the lower.
+#[derive(PartialEq)]
+struct Candidate(f64, Reverse<usize>);
+
+impl Eq for Candidate {}
+
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Candidate {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_magnitude = self.0.total_cmp(&other.0);
+        by_magnitude.then(self.1.cmp(&other.1))
+    }
+}
+
+/// A heap takes less code than a sort, and few of many maxima are wanted.
+fn strongest_first(magnitude: &[f64]) -> BinaryHeap<Candidate> {
+    let candidate = |bin| Candidate(magnitude[bin], Reverse(bin));
+    local_maxima(magnitude).into_iter().map(candidate).collect()
 }
 
 fn distinct(a: &Peak, b: &Peak, jnd: f64) -> bool {

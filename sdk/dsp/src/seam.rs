@@ -43,7 +43,7 @@ impl Loop {
     #[must_use]
     pub fn with_rms(mut self, rms: f64) -> Self {
         let squares = self.samples.iter().map(|&x| f64::from(x) * f64::from(x));
-        let own = libm::sqrt(squares.sum::<f64>() / self.samples.len().max(1) as f64);
+        let own = crate::root::sqrt(squares.sum::<f64>() / self.samples.len().max(1) as f64);
         if own > 0.0 {
             let gain = (rms / own) as f32;
             self.samples.iter_mut().for_each(|x| *x *= gain);

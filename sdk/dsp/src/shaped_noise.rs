@@ -237,7 +237,7 @@ impl ShapedNoise {
             power += 0.5 * read * *a * *a;
         }
         let gain = if power > 0.0 {
-            1.0 / libm::sqrt(power)
+            1.0 / crate::root::sqrt(power)
         } else {
             0.0
         };

@@ -330,7 +330,7 @@ impl LoadedModel {
             return Err(self.broken(call, format!("{len} parameters")));
         }
         numbers.truncate(len);
-        let fits = Values::read(&self.descriptor, &numbers).map(|_| ());
+        let fits = Values::read(&*self.descriptor, &numbers).map(|_| ());
         fits.map_err(|error| self.broken(call, error.message))?;
         Ok(numbers)
     }

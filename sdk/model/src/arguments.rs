@@ -1,25 +1,28 @@
 //! What a model is asked with, checked: the same refusals in every model.
 
-use alloc::format;
-
 use crate::abi::{MAX_BAND_HZ, MAX_RATE_HZ, MIN_BINS, MIN_RATE_HZ};
 use crate::voices_1::MAX_VOICES;
-use crate::{Band, Descriptor, Error, FitInput, Status, Values};
+use crate::{Band, Error, FitInput, StaticDescriptor, Status, Values, text};
 
 /// Voices that are rendered together: not too many, and none of them twice.
 pub(crate) fn check_handles(handles: &[i64]) -> Result<(), Error> {
     if handles.len() > MAX_VOICES {
         let count = handles.len();
-        return Err(Error::argument(format!(
-            "{count} voices in one call; at most {MAX_VOICES} are allowed"
-        )));
+        return Err(Error::argument(text![
+            count,
+            " voices in one call; at most ",
+            MAX_VOICES,
+            " are allowed",
+        ]));
     }
     let again = |(i, handle)| handles[..i].contains(handle);
     match handles.iter().enumerate().find(|pair| again(*pair)) {
         None => Ok(()),
-        Some((i, _)) => Err(Error::argument(format!(
-            "`voices`[{i}] stands there a second time"
-        ))),
+        Some((i, _)) => Err(Error::argument(text![
+            "`voices`[",
+            i,
+            "] stands there a second time",
+        ])),
     }
 }
 
@@ -27,30 +30,43 @@ pub(crate) fn band((low_hz, high_hz): (f64, f64)) -> Result<Band, Error> {
     if low_hz > 0.0 && low_hz < high_hz && high_hz <= MAX_BAND_HZ {
         return Ok(Band { low_hz, high_hz });
     }
-    Err(Error::argument(format!(
-        "band {low_hz} to {high_hz} Hz: 0 < low < high <= 1 MHz is allowed"
-    )))
+    Err(Error::argument(text![
+        "band ",
+        low_hz,
+        " to ",
+        high_hz,
+        " Hz: 0 < low < high <= 1 MHz is allowed",
+    ]))
 }
 
 pub(crate) fn check_rate(rate_hz: f64) -> Result<(), Error> {
     if (MIN_RATE_HZ..=MAX_RATE_HZ).contains(&rate_hz) {
         return Ok(());
     }
-    Err(Error::argument(format!(
-        "rate {rate_hz} Hz: 1 Hz to 10 MHz is allowed"
-    )))
+    Err(Error::argument(text![
+        "rate ",
+        rate_hz,
+        " Hz: 1 Hz to 10 MHz is allowed",
+    ]))
 }
 
 pub(crate) fn finite(name: &str, numbers: &[f64]) -> Result<(), Error> {
     match numbers.iter().position(|x| !x.is_finite()) {
         None => Ok(()),
-        Some(i) => Err(Error::argument(format!(
-            "`{name}`[{i}] is not a finite number"
-        ))),
+        Some(i) => Err(Error::argument(text![
+            "`",
+            name,
+            "`[",
+            i,
+            "] is not a finite number",
+        ])),
     }
 }
 
-pub(crate) fn check_fit_input(input: &FitInput<'_>, descriptor: &Descriptor) -> Result<(), Error> {
+pub(crate) fn check_fit_input(
+    input: &FitInput<'_>,
+    descriptor: &StaticDescriptor,
+) -> Result<(), Error> {
     finite("frequency_hz", input.frequency_hz)?;
     finite("magnitude", input.magnitude)?;
     finite("signal", input.signal)?;
@@ -70,20 +86,30 @@ pub(crate) fn check_fit_input(input: &FitInput<'_>, descriptor: &Descriptor) -> 
     check_options(input.options, descriptor)
 }
 
-fn check_options(values: &[f64], descriptor: &Descriptor) -> Result<(), Error> {
+fn check_options(values: &[f64], descriptor: &StaticDescriptor) -> Result<(), Error> {
     let invalid = |message| Err(Error::new(Status::InvalidOption, message));
     if values.len() != descriptor.options.len() {
         let (want, got) = (descriptor.options.len(), values.len());
-        return invalid(format!("{want} option values are wanted, {got} came"));
+        return invalid(text![want, " option values are wanted, ", got, " came"]);
     }
     for (option, &value) in descriptor.options.iter().zip(values) {
         let whole = !option.integer || value as i64 as f64 == value;
         if !(option.min..=option.max).contains(&value) || !whole {
             let kind = if option.integer { "whole numbers " } else { "" };
-            return invalid(format!(
-                "option `{}` is {value}; {kind}{} to {} {} is allowed",
-                option.name, option.min, option.max, option.unit
-            ));
+            return invalid(text![
+                "option `",
+                option.name,
+                "` is ",
+                value,
+                "; ",
+                kind,
+                option.min,
+                " to ",
+                option.max,
+                " ",
+                option.unit,
+                " is allowed",
+            ]);
         }
     }
     Ok(())
@@ -99,7 +125,7 @@ pub(crate) fn check_weights(weights: &[f64]) -> Result<(), Error> {
 }
 
 pub(crate) fn read_sets<'a>(
-    descriptor: &Descriptor,
+    descriptor: &StaticDescriptor,
     mut flat: &'a [f64],
     sets: &mut [Values<'a>],
 ) -> Result<(), Error> {

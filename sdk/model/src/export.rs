@@ -17,7 +17,8 @@
 /// # }
 /// # impl Model for Flat {
 /// #     type Voice = FlatVoice;
-/// #     fn descriptor() -> Descriptor { Descriptor::new("org.example.flat", "Flat", "1.0.0", "None.") }
+/// #     const DESCRIPTOR: StaticDescriptor =
+/// #         StaticDescriptor::new("org.example.flat", "Flat", "1.0.0", "None.");
 /// #     fn fit(_: &FitInput<'_>) -> Result<Fit, Error> { Err(Error::cannot_fit("never")) }
 /// #     fn magnitude(_: &Values<'_>, _: Band, _: &[f64], m: &mut [f64]) -> Result<(), Error> { m.fill(1.0); Ok(()) }
 /// #     fn interpolate(_: &[Values<'_>], _: &[f64], _: &mut Numbers<'_>) -> Result<(), Error> { Ok(()) }
@@ -31,7 +32,11 @@
 #[macro_export]
 macro_rules! export_model {
     ($model:ty, symbols: $feature:literal) => {
-        static HTEX_MODEL_STATE: $crate::shim::State<$model> = $crate::shim::State::new();
+        static HTEX_MODEL_STATE: $crate::shim::State<$model> = {
+            const DESCRIPTOR: $crate::StaticDescriptor = <$model as $crate::Model>::DESCRIPTOR;
+            static JSON: [u8; $crate::json::length(&DESCRIPTOR)] = $crate::json::text(&DESCRIPTOR);
+            $crate::shim::State::new(&JSON)
+        };
 
         /// The model's C functions.
         pub static TABLE: $crate::abi::ModelTable = $crate::abi::ModelTable {

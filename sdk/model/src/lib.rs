@@ -15,28 +15,46 @@ extern crate alloc;
 extern crate std;
 
 pub mod abi;
-#[cfg(feature = "std")]
+#[cfg(any(test, all(target_family = "wasm", not(feature = "std"))))]
+mod arena;
+#[cfg(any(feature = "std", target_family = "wasm"))]
 mod arguments;
+mod decimal;
+#[cfg(feature = "host")]
 mod descriptor;
 mod error;
-#[cfg(feature = "std")]
+mod exact;
+#[cfg(any(feature = "std", target_family = "wasm"))]
 mod export;
 mod id;
+pub mod json;
 pub mod mix;
+#[cfg(all(target_family = "wasm", not(feature = "std")))]
+mod module;
 mod numbers;
-#[cfg(feature = "std")]
+#[cfg(any(feature = "std", target_family = "wasm"))]
+mod platform;
+#[cfg(any(feature = "std", target_family = "wasm"))]
 pub mod shim;
+mod static_descriptor;
+mod store;
+pub mod text;
 mod traits;
 mod values;
-#[cfg(feature = "std")]
+#[cfg(any(feature = "std", target_family = "wasm"))]
 mod voices;
 pub mod voices_1;
 
 #[cfg(feature = "schemars")]
 pub use descriptor::descriptor_schema;
-pub use descriptor::{Descriptor, Field, FitOption, Kind, Store};
+#[cfg(feature = "host")]
+pub use descriptor::{Descriptor, Field, FitOption};
 pub use error::{Error, Status};
 pub use id::is_model_id;
 pub use numbers::Numbers;
+#[cfg(any(feature = "std", target_family = "wasm"))]
+pub use platform::Lock;
+pub use static_descriptor::{StaticDescriptor, StaticField, StaticOption};
+pub use store::{Kind, Store};
 pub use traits::{Band, Fit, FitInput, Model, Voice};
-pub use values::{Values, flatten};
+pub use values::{Fields, Range, Values, flatten};

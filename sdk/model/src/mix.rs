@@ -37,18 +37,16 @@ pub fn linear(sets: &[Values<'_>], weights: &[f64], out: &mut Numbers<'_>) -> Re
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Descriptor;
+    use crate::{StaticDescriptor, StaticField};
+
+    const DESCRIPTOR: StaticDescriptor =
+        StaticDescriptor::new("org.example.x", "X", "1.0.0", "An example.")
+            .fields(&[StaticField::scalar("x", "1", (0.0, 0.7), "Something.")]);
 
     #[test]
     fn rounding_stays_inside_the_range() {
-        let descriptor = Descriptor::new("org.example.x", "X", "1.0.0", "An example.").scalar(
-            "x",
-            "1",
-            (0.0, 0.7),
-            "Something.",
-        );
         let flat = [0.7];
-        let set = || Values::read(&descriptor, &flat).unwrap();
+        let set = || Values::read(&DESCRIPTOR, &flat).unwrap();
         let sets = [set(), set(), set()];
         for i in 1..1000 {
             let first = f64::from(i) / 1001.0;

@@ -3,38 +3,26 @@
 //! Called by the functions that [`export_model!`](crate::export_model) makes; not by hand.
 
 use alloc::alloc::Layout;
-use alloc::format;
-use alloc::string::{String, ToString};
 use alloc::vec::Vec;
-use std::cell::RefCell;
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::OnceLock;
+use core::marker::PhantomData;
 
 use crate::abi::ALLOC_ALIGN;
 use crate::arguments::{
     band, check_fit_input, check_handles, check_rate, check_weights, finite, read_sets,
 };
+use crate::platform::{caught, with_last_error};
 use crate::voices::Voices;
 use crate::voices_1::{MAX_VOICES, VoicesTable};
-use crate::{Descriptor, Error, FitInput, Model, Numbers, Status, Values, Voice};
+use crate::{Error, FitInput, Model, Numbers, Status, Values, Voice, text};
 
 /// Sets that can be mixed without allocating.
 const FEW_SETS: usize = 8;
 
-std::thread_local! {
-    static LAST_ERROR: RefCell<String> = const { RefCell::new(String::new()) };
-}
-
-/// What one exported model keeps: its description and its voices.
+/// What one exported model keeps: its description as JSON, and its voices.
 pub struct State<M: Model> {
-    described: OnceLock<(Descriptor, String)>,
+    json: &'static [u8],
     voices: Voices<M::Voice>,
-}
-
-impl<M: Model> Default for State<M> {
-    fn default() -> Self {
-        Self::new()
-    }
+    model: PhantomData<fn() -> M>,
 }
 
 /// A pointer and a length from the other side.
@@ -57,7 +45,7 @@ impl<'a, T> Input<'a, T> {
 
     fn get(self, name: &str) -> Result<&'a [T], Error> {
         self.0
-            .ok_or_else(|| Error::argument(format!("`{name}` is not a usable array")))
+            .ok_or_else(|| Error::argument(text!["`", name, "` is not a usable array"]))
     }
 }
 
@@ -80,7 +68,7 @@ impl<'a, T> Output<'a, T> {
 
     fn get(self, name: &str) -> Result<&'a mut [T], Error> {
         self.0
-            .ok_or_else(|| Error::argument(format!("`{name}` is not a usable buffer")))
+            .ok_or_else(|| Error::argument(text!["`", name, "` is not a usable buffer"]))
     }
 }
 
@@ -102,37 +90,27 @@ pub struct FitCall<'a> {
 }
 
 impl<M: Model> State<M> {
-    /// Nothing described, no voices.
-    pub const fn new() -> Self {
+    /// No voices yet; the model's descriptor as JSON.
+    pub const fn new(json: &'static [u8]) -> Self {
         Self {
-            described: OnceLock::new(),
+            json,
             voices: Voices::new(),
+            model: PhantomData,
         }
-    }
-
-    fn described(&self) -> Result<&(Descriptor, String), Error> {
-        if let Some(described) = self.described.get() {
-            return Ok(described);
-        }
-        let descriptor = M::descriptor();
-        let json = serde_json::to_string(&descriptor)
-            .map_err(|e| Error::new(Status::Failed, format!("descriptor: {e}")))?;
-        Ok(self.described.get_or_init(|| (descriptor, json)))
     }
 
     fn values<'a>(&self, parameters: Input<'a, f64>) -> Result<Values<'a>, Error> {
-        Values::read(&self.described()?.0, parameters.get("parameters")?)
+        Values::read(&M::DESCRIPTOR, parameters.get("parameters")?)
     }
 
     /// See [`crate::abi::DescriptorJson`].
     pub fn descriptor(&self, out: Output<'_, u8>) -> i64 {
-        answer(|| Ok(copy_text(&self.described()?.1, out.get("out")?)))
+        answer(|| Ok(copy(self.json, out.get("out")?)))
     }
 
     /// See [`crate::abi::FitFn`].
     pub fn fit(&self, call: FitCall<'_>) -> i64 {
         answer(|| {
-            let descriptor = &self.described()?.0;
             let input = FitInput {
                 band: band(call.band)?,
                 frequency_hz: call.frequency_hz.get("frequency_hz")?,
@@ -141,9 +119,9 @@ impl<M: Model> State<M> {
                 signal_rate_hz: call.signal_rate_hz,
                 options: call.options.get("options")?,
             };
-            check_fit_input(&input, descriptor)?;
+            check_fit_input(&input, &M::DESCRIPTOR)?;
             let fit = M::fit(&input)?;
-            Values::read(descriptor, &fit.parameters)?;
+            Values::read(&M::DESCRIPTOR, &fit.parameters)?;
             if !fit.level_rms.is_finite() || fit.level_rms < 0.0 {
                 return Err(Error::cannot_fit("the fitted level is not a number"));
             }
@@ -151,10 +129,7 @@ impl<M: Model> State<M> {
             if let Some(level) = level.first_mut() {
                 *level = fit.level_rms;
             }
-            Ok(copy_numbers(
-                &fit.parameters,
-                call.parameters.get("parameters")?,
-            ))
+            Ok(copy(&fit.parameters, call.parameters.get("parameters")?))
         })
     }
 
@@ -184,7 +159,6 @@ impl<M: Model> State<M> {
         parameters: Output<'_, f64>,
     ) -> i64 {
         answer(|| {
-            let descriptor = &self.described()?.0;
             let weights = weights.get("weights")?;
             check_weights(weights)?;
             let flat = sets.get("sets")?;
@@ -197,11 +171,11 @@ impl<M: Model> State<M> {
                     &mut many[..]
                 }
             };
-            read_sets(descriptor, flat, sets)?;
+            read_sets(&M::DESCRIPTOR, flat, sets)?;
             let mut mixed = Numbers::new(parameters.get("parameters")?);
             M::interpolate(sets, weights, &mut mixed)?;
             if mixed.count() == mixed.written().len() {
-                Values::read(descriptor, mixed.written())?;
+                Values::read(&M::DESCRIPTOR, mixed.written())?;
             }
             Ok(mixed.count() as i64)
         })
@@ -329,9 +303,10 @@ fn room(len: usize) -> Option<Layout> {
 
 /// See [`crate::abi::LastError`].
 pub fn last_error(out: Output<'_, u8>) -> i64 {
-    let text = LAST_ERROR.with(|last| last.try_borrow().map(|t| t.clone()).unwrap_or_default());
-    out.0
-        .map_or(Status::InvalidArgument as i64, |out| copy_text(&text, out))
+    let Some(out) = out.0 else {
+        return Status::InvalidArgument as i64;
+    };
+    with_last_error(|text| copy(text.as_bytes(), out)).unwrap_or(0)
 }
 
 /// See [`crate::abi::ExtensionFn`].
@@ -342,23 +317,8 @@ pub fn extension(id: Input<'_, u8>) -> i64 {
 
 /// Runs a call; an error or a panic becomes a status and the last-error text.
 fn answer(call: impl FnOnce() -> Result<i64, Error>) -> i64 {
-    let result = catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| {
-        let text = panic
-            .downcast_ref::<&str>()
-            .map(ToString::to_string)
-            .or_else(|| panic.downcast_ref::<String>().cloned())
-            .unwrap_or_default();
-        Err(Error::new(
-            Status::Panicked,
-            format!("the model panicked: {text}"),
-        ))
-    });
-    result.unwrap_or_else(|error| {
-        LAST_ERROR.with(|last| {
-            if let Ok(mut last) = last.try_borrow_mut() {
-                *last = error.message;
-            }
-        });
+    caught(call).unwrap_or_else(|error| {
+        with_last_error(|text| *text = error.message);
         error.status as i64
     })
 }
@@ -367,22 +327,18 @@ fn bad_handle() -> Error {
     Error::new(Status::BadHandle, "no such voice; it may have been freed")
 }
 
-fn copy_text(text: &str, out: &mut [u8]) -> i64 {
-    let n = text.len().min(out.len());
-    out[..n].copy_from_slice(&text.as_bytes()[..n]);
-    text.len() as i64
-}
-
-fn copy_numbers(numbers: &[f64], out: &mut [f64]) -> i64 {
-    let n = numbers.len().min(out.len());
-    out[..n].copy_from_slice(&numbers[..n]);
-    numbers.len() as i64
+/// Copies what there is space for; returns how many there are.
+fn copy<T: Copy>(from: &[T], out: &mut [T]) -> i64 {
+    for (out, from) in out.iter_mut().zip(from) {
+        *out = *from;
+    }
+    from.len() as i64
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Band;
+    use crate::{Band, StaticDescriptor};
 
     /// A model whose voices count.
     struct Counting;
@@ -390,9 +346,8 @@ mod tests {
 
     impl Model for Counting {
         type Voice = Counter;
-        fn descriptor() -> Descriptor {
-            Descriptor::new("org.example.counting", "Counting", "1.0.0", "Counts.")
-        }
+        const DESCRIPTOR: StaticDescriptor =
+            StaticDescriptor::new("org.example.counting", "Counting", "1.0.0", "Counts.");
         fn fit(_: &FitInput<'_>) -> Result<crate::Fit, Error> {
             Err(Error::cannot_fit("never"))
         }
@@ -422,7 +377,7 @@ mod tests {
     /// One array of handles that is not right, and no voice moves on.
     #[test]
     fn voices_are_rendered_together_or_not_at_all() {
-        let state = State::<Counting>::new();
+        let state = State::<Counting>::new(b"");
         let none = Input(Some(&[][..]));
         let new = |seed| state.voice_new(none, (20.0, 1_000.0), 2_000.0, seed);
         let (a, b) = (new(100), new(200));

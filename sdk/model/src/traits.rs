@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use crate::{Descriptor, Error, Numbers, Values};
+use crate::{Error, Numbers, StaticDescriptor, Values};
 
 /// The band a spectrum covers, inclusive, hertz: `0 < low_hz < high_hz`, both finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,8 +54,8 @@ pub trait Model: 'static {
     /// What plays the parameters.
     type Voice: Voice;
 
-    /// What the model says of itself. Called once.
-    fn descriptor() -> Descriptor;
+    /// What the model says of itself.
+    const DESCRIPTOR: StaticDescriptor;
 
     /// Finds the parameters of a spectrum.
     ///

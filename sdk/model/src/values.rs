@@ -1,19 +1,78 @@
 //! The flat array of parameters, read by field.
 
-use alloc::format;
 use alloc::vec::Vec;
 
 use crate::abi::{MAX_FIELDS, MAX_LIST_LEN};
-use crate::{Descriptor, Error, Field, Kind};
+use crate::text;
+use crate::{Error, Kind, StaticDescriptor};
+
+/// Names and ranges of parameters: of the constants that a model is written with, and of what a host
+/// reads of it.
+pub trait Fields {
+    /// The model's id.
+    fn id(&self) -> &str;
+
+    /// How many fields there are.
+    fn count(&self) -> usize;
+
+    /// Field `i`, which is below [`Self::count`].
+    fn range(&self, i: usize) -> Range<'_>;
+}
+
+/// What the numbers of a field are checked by.
+#[derive(Debug, Clone, Copy)]
+pub struct Range<'a> {
+    /// Name, units included.
+    pub name: &'a str,
+    /// Unit symbol; `1` for a pure number.
+    pub unit: &'a str,
+    /// One number or several.
+    pub kind: Kind,
+    /// Smallest value allowed.
+    pub min: f64,
+    /// Largest value allowed.
+    pub max: f64,
+}
+
+macro_rules! fields_of {
+    ($descriptor:ty) => {
+        impl Fields for $descriptor {
+            fn id(&self) -> &str {
+                &self.id
+            }
+
+            fn count(&self) -> usize {
+                self.fields.len()
+            }
+
+            fn range(&self, i: usize) -> Range<'_> {
+                let field = &self.fields[i];
+                Range {
+                    name: &field.name,
+                    unit: &field.unit,
+                    kind: field.kind,
+                    min: field.min,
+                    max: field.max,
+                }
+            }
+        }
+    };
+}
+
+fields_of!(StaticDescriptor);
+#[cfg(feature = "host")]
+fields_of!(crate::Descriptor);
 
 /// Parameters, checked against a descriptor, without a copy.
 ///
 /// ```
-/// use htex_model::{Descriptor, Values};
-/// let d = Descriptor::new("org.example.x", "X", "1.0.0", "An example.")
-///     .list("amplitude", "1", (0.0, 1.0), 4, "Amplitudes.")
-///     .scalar("peak_hz", "Hz", (20.0, 1000.0), "Peak.");
-/// let (values, used) = Values::read_first(&d, &[2.0, 0.5, 0.25, 80.0])?;
+/// use htex_model::{StaticDescriptor, StaticField, Values};
+/// const D: StaticDescriptor = StaticDescriptor::new("org.example.x", "X", "1.0.0", "An example.")
+///     .fields(&[
+///         StaticField::list("amplitude", "1", (0.0, 1.0), 4, "Amplitudes."),
+///         StaticField::scalar("peak_hz", "Hz", (20.0, 1000.0), "Peak."),
+///     ]);
+/// let (values, used) = Values::read_first(&D, &[2.0, 0.5, 0.25, 80.0])?;
 /// assert_eq!((values.list(0), values.scalar(1), used), (&[0.5, 0.25][..], 80.0, 4));
 /// # Ok::<(), htex_model::Error>(())
 /// ```
@@ -26,7 +85,7 @@ pub struct Values<'a> {
 
 impl<'a> Values<'a> {
     /// No parameters: a place for some.
-    #[cfg(feature = "std")]
+    #[cfg(any(feature = "std", target_family = "wasm"))]
     pub(crate) const NONE: Self = Self {
         flat: &[],
         spans: [(0, 0); MAX_FIELDS],
@@ -36,32 +95,36 @@ impl<'a> Values<'a> {
     ///
     /// # Errors
     /// Names the field that is missing, too long, out of range or not finite.
-    pub fn read(descriptor: &Descriptor, flat: &'a [f64]) -> Result<Self, Error> {
+    pub fn read(descriptor: &impl Fields, flat: &'a [f64]) -> Result<Self, Error> {
         let (values, used) = Self::read_first(descriptor, flat)?;
         if used == flat.len() {
             return Ok(values);
         }
         let extra = flat.len() - used;
-        Err(Error::parameters(format!(
-            "{} numbers stand behind the last parameter field of {}",
-            extra, descriptor.id
-        )))
+        Err(Error::parameters(text![
+            extra,
+            " numbers stand behind the last parameter field of ",
+            descriptor.id(),
+        ]))
     }
 
     /// Reads the set of parameters at the start of an array; says how many numbers it took.
     ///
     /// # Errors
     /// As [`Self::read`].
-    pub fn read_first(descriptor: &Descriptor, flat: &'a [f64]) -> Result<(Self, usize), Error> {
-        if descriptor.fields.len() > MAX_FIELDS {
-            return Err(Error::parameters(format!(
-                "{} has more than {MAX_FIELDS} parameter fields",
-                descriptor.id
-            )));
+    pub fn read_first(descriptor: &impl Fields, flat: &'a [f64]) -> Result<(Self, usize), Error> {
+        if descriptor.count() > MAX_FIELDS {
+            return Err(Error::parameters(text![
+                descriptor.id(),
+                " has more than ",
+                MAX_FIELDS,
+                " parameter fields",
+            ]));
         }
         let mut spans = [(0, 0); MAX_FIELDS];
         let mut at = 0;
-        for (field, span) in descriptor.fields.iter().zip(&mut spans) {
+        for (i, span) in spans.iter_mut().enumerate().take(descriptor.count()) {
+            let field = &descriptor.range(i);
             let len = match field.kind {
                 Kind::Scalar => 1,
                 Kind::List { max_len } => {
@@ -71,11 +134,15 @@ impl<'a> Values<'a> {
                 }
             };
             let Some(numbers) = flat.get(at..at + len) else {
-                return Err(Error::parameters(format!(
-                    "parameter `{}` wants {len} numbers and {} are left",
+                return Err(Error::parameters(text![
+                    "parameter `",
                     field.name,
-                    flat.len().saturating_sub(at)
-                )));
+                    "` wants ",
+                    len,
+                    " numbers and ",
+                    flat.len().saturating_sub(at),
+                    " are left",
+                ]));
             };
             check_range(field, numbers)?;
             *span = (at as u32, (at + len) as u32);
@@ -103,10 +170,10 @@ impl<'a> Values<'a> {
 }
 
 /// Writes fields' numbers as one flat array (the other way round from [`Values`]).
-pub fn flatten(descriptor: &Descriptor, fields: &[&[f64]]) -> Vec<f64> {
+pub fn flatten(descriptor: &impl Fields, fields: &[&[f64]]) -> Vec<f64> {
     let mut flat = Vec::new();
-    for (field, numbers) in descriptor.fields.iter().zip(fields) {
-        if let Kind::List { .. } = field.kind {
+    for (i, numbers) in fields.iter().enumerate().take(descriptor.count()) {
+        if let Kind::List { .. } = descriptor.range(i).kind {
             flat.push(numbers.len() as f64);
         }
         flat.extend_from_slice(numbers);
@@ -114,18 +181,24 @@ pub fn flatten(descriptor: &Descriptor, fields: &[&[f64]]) -> Vec<f64> {
     flat
 }
 
-fn list_length(field: &Field, value: Option<f64>, max_len: u32) -> Result<usize, Error> {
+fn list_length(field: &Range<'_>, value: Option<f64>, max_len: u32) -> Result<usize, Error> {
     let max = f64::from(max_len.min(MAX_LIST_LEN));
     match value {
         Some(n) if (0.0..=max).contains(&n) && whole_part(n) == n => Ok(n as usize),
-        Some(n) => Err(Error::parameters(format!(
-            "parameter `{}` says its length is {n}; a whole number from 0 to {max} is allowed",
-            field.name
-        ))),
-        None => Err(Error::parameters(format!(
-            "parameter `{}` is missing",
-            field.name
-        ))),
+        Some(n) => Err(Error::parameters(text![
+            "parameter `",
+            field.name,
+            "` says its length is ",
+            n,
+            "; a whole number from 0 to ",
+            max,
+            " is allowed",
+        ])),
+        None => Err(Error::parameters(text![
+            "parameter `",
+            field.name,
+            "` is missing",
+        ])),
     }
 }
 
@@ -133,15 +206,26 @@ fn whole_part(x: f64) -> f64 {
     x as u64 as f64
 }
 
-fn check_range(field: &Field, numbers: &[f64]) -> Result<(), Error> {
+fn check_range(field: &Range<'_>, numbers: &[f64]) -> Result<(), Error> {
     match numbers
         .iter()
         .position(|x| !(field.min..=field.max).contains(x))
     {
         None => Ok(()),
-        Some(i) => Err(Error::parameters(format!(
-            "parameter `{}`[{i}] is {}; {} to {} {} is allowed",
-            field.name, numbers[i], field.min, field.max, field.unit
-        ))),
+        Some(i) => Err(Error::parameters(text![
+            "parameter `",
+            field.name,
+            "`[",
+            i,
+            "] is ",
+            numbers[i],
+            "; ",
+            field.min,
+            " to ",
+            field.max,
+            " ",
+            field.unit,
+            " is allowed",
+        ])),
     }
 }

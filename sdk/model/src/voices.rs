@@ -1,17 +1,25 @@
 //! Voices behind handles: a stale handle is refused, a live one is found without a lock.
 
-use std::cell::UnsafeCell;
-use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::{Mutex, OnceLock, PoisonError};
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+use core::cell::UnsafeCell;
+use core::sync::atomic::{AtomicU32, Ordering};
 
-const CHUNK: usize = 1024;
+use crate::platform::{Lock, Once};
+
+/// Slots that are made at a time: few in a module, whose instances have a voice or two.
+const CHUNK: usize = if cfg!(target_family = "wasm") {
+    16
+} else {
+    1024
+};
 const CHUNKS: usize = 64;
 
-/// Up to 65,536 voices. A handle holds a slot's index and the slot's generation, which changes at
+/// Up to 65,536 voices, 1,024 in a module. A handle holds a slot's index and the slot's generation, which changes at
 /// every birth and death.
 pub struct Voices<V> {
-    chunks: [OnceLock<Box<[Slot<V>]>>; CHUNKS],
-    free: Mutex<Free>,
+    chunks: [Once<Box<[Slot<V>]>>; CHUNKS],
+    free: Lock<Free>,
 }
 
 struct Slot<V> {
@@ -39,8 +47,8 @@ impl<V> Voices<V> {
     /// No voices yet.
     pub const fn new() -> Self {
         Self {
-            chunks: [const { OnceLock::new() }; CHUNKS],
-            free: Mutex::new(Free {
+            chunks: [const { Once::new() }; CHUNKS],
+            free: Lock::new(Free {
                 freed: Vec::new(),
                 never_used: 0,
             }),
@@ -49,7 +57,7 @@ impl<V> Voices<V> {
 
     /// Takes a voice in; `None` when there are too many.
     pub fn insert(&self, voice: V) -> Option<i64> {
-        let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut free = self.free.lock()?;
         let index = match free.freed.pop() {
             Some(index) => index,
             None if (free.never_used as usize) < CHUNK * CHUNKS => {
@@ -87,7 +95,7 @@ impl<V> Voices<V> {
 
     /// Takes the voice out.
     pub fn remove(&self, handle: i64) -> Option<V> {
-        let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut free = self.free.lock()?;
         let slot = self.live_slot(handle)?;
         slot.generation.fetch_add(1, Ordering::Release);
         free.freed.push((handle & 0xffff_ffff) as u32 - 1);

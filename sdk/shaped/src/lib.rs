@@ -1,6 +1,7 @@
 //! Models that describe a spectrum by a curve and play it as shaped noise: what they share.
 //!
 //! A model brings the [`Curve`]; this crate makes of it the magnitude at unit RMS and the voice.
+#![no_std]
 
 use htex_dsp::grid::Band;
 use htex_dsp::shaped_noise::{ShapedNoise, economical_rate_hz};

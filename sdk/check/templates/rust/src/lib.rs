@@ -2,11 +2,19 @@
 //! `1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)²)`, played as noise of that shape.
 //!
 //! `cargo build --release` makes the native library; with `--target wasm32-unknown-unknown`, the
-//! WASM module.
+//! WASM module, which links no standard library: so it fits into an asset.
+#![no_std]
+
+extern crate alloc;
+
+use alloc::vec;
+use alloc::vec::Vec;
 
 use htex_dsp::grid::{Band, curve_level_rms};
 use htex_dsp::nelder_mead::{Options, minimize};
-use htex_model::{Descriptor, Error, Fit, FitInput, Model, Numbers, Values, mix};
+use htex_model::{
+    Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, Values, mix,
+};
 use htex_shaped::{Curve, ShapedVoice};
 
 const CENTRE: usize = 0;
@@ -22,21 +30,21 @@ htex_model::export_model!(Resonance, symbols: "plugin");
 impl Model for Resonance {
     type Voice = ShapedVoice<Shape>;
 
-    fn descriptor() -> Descriptor {
-        Descriptor::new(
-            "{{ID}}",
-            "{{NAME}}",
-            env!("CARGO_PKG_VERSION"),
-            "One resonance: where it lies and how wide it is.",
-        )
-        .scalar("centre_hz", "Hz", CENTRE_HZ, "Frequency of the resonance.")
-        .scalar(
+    const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
+        "{{ID}}",
+        "{{NAME}}",
+        env!("CARGO_PKG_VERSION"),
+        "One resonance: where it lies and how wide it is.",
+    )
+    .fields(&[
+        StaticField::scalar("centre_hz", "Hz", CENTRE_HZ, "Frequency of the resonance."),
+        StaticField::scalar(
             "bandwidth_hz",
             "Hz",
             BANDWIDTH_HZ,
             "Width between the points 3 dB below it.",
-        )
-    }
+        ),
+    ]);
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         let largest = input.magnitude.iter().copied().fold(0.0, f64::max);
@@ -120,7 +128,7 @@ impl Curve for Shape {
     fn at(&self, frequency_hz: f64) -> f64 {
         let f = frequency_hz / self.centre_hz;
         let detuned = (f - 1.0 / f) * self.centre_hz / self.bandwidth_hz;
-        1.0 / (1.0 + detuned * detuned).sqrt()
+        1.0 / libm::sqrt(1.0 + detuned * detuned)
     }
 
     fn level(&self) -> f64 {
@@ -140,7 +148,7 @@ fn best_shape(frequency_hz: &[f64], magnitude: &[f64], band: Band) -> Shape {
         let shape = shape(x);
         let scale = scale(frequency_hz, magnitude, &shape);
         let pairs = frequency_hz.iter().zip(magnitude);
-        pairs.map(|(&f, m)| (scale * shape.at(f) - m).powi(2)).sum()
+        pairs.map(|(&f, m)| scale * shape.at(f) - m).map(|d| d * d).sum()
     };
     let (low, high) = (libm::log(band.low_hz), libm::log(band.high_hz));
     let starts = [0.2, 0.4, 0.6, 0.8].map(|part| [low + part * (high - low), libm::log(100.0)]);

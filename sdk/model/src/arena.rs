@@ -1,0 +1,155 @@
+//! Memory of a module: blocks in classes of size, each class with a list of what was freed. It takes a
+//! tenth of the code of a general allocator.
+//!
+//! Classes stand a quarter of an octave apart or less, so a block is at most a quarter larger than asked
+//! for. Freed blocks are used again in their class alone: a model allocates the same sizes again and again.
+
+use core::alloc::Layout;
+use core::ptr::null_mut;
+
+/// What WASM memory grows by, bytes.
+pub(crate) const PAGE_BYTES: usize = 65_536;
+/// Bytes of the smallest block, and the alignment of all: enough for every number and vector.
+const ALIGN: usize = 16;
+/// Classes an octave.
+const STEPS: usize = 4;
+const CLASSES: usize = STEPS * (usize::BITS as usize + 1);
+
+/// Blocks of memory that grows and never moves.
+pub(crate) struct Arena {
+    /// The block of each class that was freed last; each holds the address of the one before.
+    freed: [*mut u8; CLASSES],
+    /// New memory that is not in a block yet.
+    fresh: *mut u8,
+    fresh_len: usize,
+}
+
+impl Arena {
+    /// No memory yet.
+    pub(crate) const fn new() -> Self {
+        Self {
+            freed: [null_mut(); CLASSES],
+            fresh: null_mut(),
+            fresh_len: 0,
+        }
+    }
+
+    /// A block for a layout; `None` where `grow`, which returns new pages, has none, or the alignment is
+    /// above 16 bytes.
+    pub(crate) fn take(
+        &mut self,
+        layout: Layout,
+        grow: impl FnOnce(usize) -> Option<*mut u8>,
+    ) -> Option<*mut u8> {
+        if layout.align() > ALIGN {
+            return None;
+        }
+        let (class, len) = class(layout.size())?;
+        let block = self.freed[class];
+        if block.is_null() {
+            return self.take_fresh(len, grow);
+        }
+        // SAFETY: a freed block, in which `give_back` wrote the address of the one before.
+        self.freed[class] = unsafe { block.cast::<*mut u8>().read() };
+        Some(block)
+    }
+
+    fn take_fresh(
+        &mut self,
+        len: usize,
+        grow: impl FnOnce(usize) -> Option<*mut u8>,
+    ) -> Option<*mut u8> {
+        if len > self.fresh_len {
+            let pages = len.div_ceil(PAGE_BYTES);
+            let new = grow(pages)?;
+            if new != self.fresh.wrapping_add(self.fresh_len) {
+                (self.fresh, self.fresh_len) = (new, 0);
+            }
+            self.fresh_len += pages * PAGE_BYTES;
+        }
+        let block = self.fresh;
+        self.fresh = block.wrapping_add(len);
+        self.fresh_len -= len;
+        Some(block)
+    }
+
+    /// Takes a block back.
+    ///
+    /// # Safety
+    /// [`Self::take`] returned the block for this layout, and nothing uses it any more.
+    pub(crate) unsafe fn give_back(&mut self, block: *mut u8, layout: Layout) {
+        let Some((class, _)) = class(layout.size()) else {
+            return;
+        };
+        // SAFETY: a block of ours, aligned and larger than an address.
+        unsafe { block.cast::<*mut u8>().write(self.freed[class]) };
+        self.freed[class] = block;
+    }
+}
+
+/// The class of blocks that hold `size` bytes, and how many bytes they have.
+fn class(size: usize) -> Option<(usize, usize)> {
+    let size = size.max(ALIGN);
+    let octave = size.ilog2() as usize;
+    let step = (1 << octave) / STEPS;
+    let steps = size.div_ceil(step);
+    let len = steps.checked_mul(step)?.checked_next_multiple_of(ALIGN)?;
+    Some((STEPS * octave + steps - STEPS, len))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    /// Blocks of all sizes, taken and given back in disorder, never overlap, keep what is written to them,
+    /// are aligned, and are used again.
+    #[test]
+    fn blocks_are_apart_and_used_again() {
+        const PAGES: usize = 512;
+        let mut memory = std::vec![[0u128; PAGE_BYTES / 16]; PAGES];
+        let start = memory.as_mut_ptr().cast::<u8>();
+        let mut used = 0;
+        let mut arena = Arena::new();
+        let mut live: Vec<(*mut u8, Layout, u8)> = Vec::new();
+        let mut random = 1_u64;
+        for round in 0..20_000_u32 {
+            random = random.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(1);
+            let draw = (random >> 33) as usize;
+            if live.len() > 100 {
+                let (block, layout, mark) = live.swap_remove(draw % live.len());
+                // SAFETY: a live block of this layout.
+                let bytes = unsafe { core::slice::from_raw_parts(block, layout.size()) };
+                assert!(bytes.iter().all(|&byte| byte == mark));
+                // SAFETY: as it was taken.
+                unsafe { arena.give_back(block, layout) };
+                continue;
+            }
+            let size = (draw & 0xff_ffff) >> (draw % 24);
+            let layout = Layout::from_size_align(size, 1 << (draw % 5)).unwrap();
+            let block = arena.take(layout, |pages| {
+                used += pages;
+                (used <= PAGES).then(|| start.wrapping_add((used - pages) * PAGE_BYTES))
+            });
+            let Some(block) = block else { continue };
+            assert!((block as usize).is_multiple_of(ALIGN));
+            // SAFETY: as many bytes as were asked for.
+            unsafe { block.write_bytes(round as u8, size) };
+            live.push((block, layout, round as u8));
+        }
+        assert!(live.len() > 50);
+    }
+
+    #[test]
+    fn classes_hold_what_is_asked_for_and_a_quarter_more_at_most() {
+        for size in (0..10_000).chain([1 << 20, (1 << 30) + 1]) {
+            let (number, len) = class(size).unwrap();
+            assert!(number < CLASSES && len >= size, "{size}");
+            assert!(
+                len <= (size + size / 4).next_multiple_of(ALIGN).max(ALIGN),
+                "{size}"
+            );
+        }
+        assert!(class(usize::MAX).is_none());
+    }
+}

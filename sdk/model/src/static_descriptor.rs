@@ -1,0 +1,215 @@
+//! What an author writes of a model: constants, of which [`export_model!`](crate::export_model) makes
+//! the JSON text of the ABI while the model is compiled.
+
+use crate::{Kind, Store};
+
+/// A model's description.
+///
+/// ```
+/// use htex_model::{StaticDescriptor, StaticField, StaticOption};
+/// const DESCRIPTOR: StaticDescriptor =
+///     StaticDescriptor::new("org.example.x", "X", "1.0.0", "An example.")
+///         .fields(&[StaticField::scalar("peak_hz", "Hz", (20.0, 1000.0), "Peak.")])
+///         .options(&[StaticOption::integer("points", (3, 64), 10, "Peaks that are fitted.")]);
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct StaticDescriptor {
+    /// Reverse-DNS identifier, e.g. `org.htex.sbeta`; never changes.
+    pub id: &'static str,
+    /// Name for people, e.g. `sBeta`.
+    pub name: &'static str,
+    /// Semantic version of the model's parameters and sound.
+    pub version: &'static str,
+    /// One sentence: what the model keeps of a spectrum.
+    pub summary: &'static str,
+    /// Parameters, in the order of the flat array.
+    pub fields: &'static [StaticField],
+    /// Fit options, in the order of their array.
+    pub options: &'static [StaticOption],
+    /// The level of a fit is part of what the model keeps of a spectrum.
+    pub keeps_level: bool,
+}
+
+/// One parameter field.
+#[derive(Debug, Clone, Copy)]
+pub struct StaticField {
+    /// Name, units included, e.g. `peak_hz`.
+    pub name: &'static str,
+    /// Unit symbol; `1` for a pure number.
+    pub unit: &'static str,
+    /// One number or several.
+    pub kind: Kind,
+    /// Smallest value allowed.
+    pub min: f64,
+    /// Largest value allowed.
+    pub max: f64,
+    /// How an asset stores the values.
+    pub store: Store,
+    /// Value for assets of earlier minor versions, which lack the field; a scalar's alone.
+    pub default: Option<f64>,
+    /// What the field means.
+    pub description: &'static str,
+}
+
+/// One fit option: a number, or one of several named choices (the number is its index).
+#[derive(Debug, Clone, Copy)]
+pub struct StaticOption {
+    /// Name as given on the command line.
+    pub name: &'static str,
+    /// Unit symbol; `1` for a pure number.
+    pub unit: &'static str,
+    /// Smallest value allowed.
+    pub min: f64,
+    /// Largest value allowed.
+    pub max: f64,
+    /// Value when nothing is said.
+    pub default: f64,
+    /// Only whole numbers are allowed.
+    pub integer: bool,
+    /// Names of the values 0, 1, …; empty for a plain number.
+    pub choices: &'static [&'static str],
+    /// What the option does, and where its default comes from.
+    pub description: &'static str,
+}
+
+impl StaticDescriptor {
+    /// A description without fields or options.
+    pub const fn new(
+        id: &'static str,
+        name: &'static str,
+        version: &'static str,
+        summary: &'static str,
+    ) -> Self {
+        Self {
+            id,
+            name,
+            version,
+            summary,
+            fields: &[],
+            options: &[],
+            keeps_level: false,
+        }
+    }
+
+    /// With these parameters, 1 to 32.
+    pub const fn fields(self, fields: &'static [StaticField]) -> Self {
+        Self { fields, ..self }
+    }
+
+    /// With these fit options.
+    pub const fn options(self, options: &'static [StaticOption]) -> Self {
+        Self { options, ..self }
+    }
+
+    /// With the level of a fit as part of what the model keeps.
+    pub const fn keeping_level(self) -> Self {
+        Self {
+            keeps_level: true,
+            ..self
+        }
+    }
+}
+
+impl StaticField {
+    /// A parameter of one number in `min..=max`, stored as 32-bit float unless [`Self::stored`] says
+    /// otherwise.
+    pub const fn scalar(
+        name: &'static str,
+        unit: &'static str,
+        (min, max): (f64, f64),
+        description: &'static str,
+    ) -> Self {
+        Self {
+            name,
+            unit,
+            kind: Kind::Scalar,
+            min,
+            max,
+            store: Store::F32,
+            default: None,
+            description,
+        }
+    }
+
+    /// A parameter of up to `max_len` numbers in `min..=max`.
+    pub const fn list(
+        name: &'static str,
+        unit: &'static str,
+        range: (f64, f64),
+        max_len: u32,
+        description: &'static str,
+    ) -> Self {
+        Self {
+            kind: Kind::List { max_len },
+            ..Self::scalar(name, unit, range, description)
+        }
+    }
+
+    /// Stored in this way.
+    pub const fn stored(self, store: Store) -> Self {
+        Self { store, ..self }
+    }
+
+    /// With this value in assets of earlier minor versions; of a scalar alone.
+    pub const fn defaulted(self, value: f64) -> Self {
+        Self {
+            default: Some(value),
+            ..self
+        }
+    }
+}
+
+impl StaticOption {
+    /// A number in `min..=max`.
+    pub const fn number(
+        name: &'static str,
+        unit: &'static str,
+        (min, max): (f64, f64),
+        default: f64,
+        description: &'static str,
+    ) -> Self {
+        Self {
+            name,
+            unit,
+            min,
+            max,
+            default,
+            integer: false,
+            choices: &[],
+            description,
+        }
+    }
+
+    /// A whole number in `min..=max`.
+    pub const fn integer(
+        name: &'static str,
+        (min, max): (u32, u32),
+        default: u32,
+        description: &'static str,
+    ) -> Self {
+        Self {
+            integer: true,
+            ..Self::number(
+                name,
+                "1",
+                (min as f64, max as f64),
+                default as f64,
+                description,
+            )
+        }
+    }
+
+    /// One of these; the first is the default.
+    pub const fn choice(
+        name: &'static str,
+        choices: &'static [&'static str],
+        description: &'static str,
+    ) -> Self {
+        let last = choices.len().saturating_sub(1) as f64;
+        Self {
+            integer: true,
+            choices,
+            ..Self::number(name, "1", (0.0, last), 0.0, description)
+        }
+    }
+}

@@ -6,19 +6,21 @@
 extern crate alloc;
 
 mod fit;
+mod lines;
 mod together;
 mod voice;
 
 use alloc::vec::Vec;
 
 use htex_dsp::grid::{Band, curve_level_rms};
-use htex_dsp::line_spectrum::{coefficients_of_lines, lines_of_reflection};
-use htex_dsp::linear_prediction::{ar_magnitude, is_stable, step_down_in_place};
+use htex_dsp::line_spectrum::coefficients_of_lines;
+use htex_dsp::linear_prediction::{ar_magnitude, is_stable};
 use htex_model::{
     Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Store,
     Values, mix,
 };
 
+use lines::write_lines;
 pub use voice::AutoregressionVoice;
 
 const COEFFICIENTS: usize = 0;
@@ -122,22 +124,19 @@ impl Model for Autoregression {
             .map(|s| s.list(COEFFICIENTS).len())
             .max()
             .unwrap_or(0);
-        let (mut mixed, mut reflection, mut coefficients) =
-            ([0.0; MAX_ORDER], [0.0; MAX_ORDER], [0.0; MAX_ORDER]);
-        let mixed = &mut mixed[..order];
+        let mut all = [[0.0; MAX_ORDER]; 4];
+        let [mixed, padded, lines, coefficients] = all.each_mut().map(|all| &mut all[..order]);
         for (set, &weight) in sets.iter().zip(weights) {
             let own = set.list(COEFFICIENTS);
-            let reflection = &mut reflection[..order];
-            reflection.fill(0.0);
-            reflection[..own.len()].copy_from_slice(own);
-            if !step_down_in_place(reflection) {
+            padded.fill(0.0);
+            padded[..own.len()].copy_from_slice(own);
+            if !write_lines(padded, lines) {
                 return Err(unstable());
             }
-            for (sum, w) in mixed.iter_mut().zip(lines_of_reflection(reflection)) {
+            for (sum, w) in mixed.iter_mut().zip(&*lines) {
                 *sum += weight * w;
             }
         }
-        let coefficients = &mut coefficients[..order];
         if !coefficients_of_lines(mixed, coefficients) {
             return Err(unstable());
         }

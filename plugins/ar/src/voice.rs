@@ -1,5 +1,7 @@
 //! White noise through the filter.
 
+use alloc::sync::Arc;
+
 use htex_dsp::all_pole::{AllPole, GROUP, Group};
 use htex_dsp::band_limit::{PassedPower, band_limit};
 use htex_dsp::grid::{Band, GRID_HZ};
@@ -22,7 +24,7 @@ const BLOCK: usize = 32;
 pub struct AutoregressionVoice {
     rate_hz: f64,
     /// What passes `edges`.
-    passed: PassedPower,
+    passed: Arc<PassedPower>,
     pub(crate) noise: GaussianNoise,
     pub(crate) filter: AllPole,
     pub(crate) edges: Pipeline,
@@ -61,7 +63,7 @@ impl AutoregressionVoice {
         }
         // A filter without energy in the band may have some beside it.
         Filter::new(parameters)?.level(band)?;
-        let passed = PassedPower::new(band, rate_hz);
+        let passed = PassedPower::shared(band, rate_hz);
         let target = Target::new(parameters, &passed)?;
         let mut voice = Self {
             rate_hz,
@@ -209,12 +211,8 @@ impl Target {
         if !step_down_in_place(used) {
             return Err(unstable());
         }
-        let filter = Filter {
-            coefficients,
-            rate_hz,
-        };
         // Noise of variance s² has one-sided density 2 s² / rate, read as magnitude² = 2 P ENBW.
-        let level = finite_level(passed.level_rms(|f| filter.at(f)))?;
+        let level = finite_level(passed.all_pole_level_rms(coefficients))?;
         let gain = htex_dsp::root::sqrt(rate_hz / (4.0 * 1.5 * GRID_HZ)) / level;
         Ok(Self { reflection, gain })
     }

@@ -11,14 +11,17 @@ extern crate alloc;
 mod axis;
 mod fit;
 
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 
+use htex_dsp::exponential::exponentials;
 use htex_dsp::grid::{Band, GRID_HZ, level_rms};
+use htex_dsp::shaped_noise::ComponentsKey;
 use htex_model::{
     Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Store,
     Values, mix, text,
 };
-use htex_shaped::{Curve, ShapedVoice};
+use htex_shaped::{Curve, Places, ShapedVoice};
 
 use axis::{Axis, Layout, Point};
 use fit::{Fitter, below_highest_db, total_energy};
@@ -213,6 +216,9 @@ fn step_db(wanted_db: f64, below_db: &[f64]) -> f64 {
 pub struct Spectrum {
     axis: Axis,
     points: Vec<Point>,
+    /// What the parameters say: steps below the highest, and the step.
+    below: Vec<f64>,
+    step_db: f64,
     /// Logarithms of magnitude; 0 is the highest that can be.
     knots: Vec<f64>,
     magnitude: Vec<f64>,
@@ -220,9 +226,13 @@ pub struct Spectrum {
     /// What a voice plays: it is read through a window, as recordings are, and then looks like
     /// `magnitude`.
     played: Vec<f64>,
+    /// `played` before a round of sharpening.
+    before: Vec<f64>,
     /// RMS of `magnitude`.
     level: f64,
     first_bin: usize,
+    /// Where a voice's frequencies lie among the bins.
+    places: Option<Arc<Places>>,
 }
 
 impl Spectrum {
@@ -247,31 +257,37 @@ impl Spectrum {
         let zeros = || vec![0.0; band.bins()];
         let mut spectrum = Self {
             axis,
+            below: below.to_vec(),
+            step_db,
+            places: None,
             points: band.grid_hz().iter().map(|&f| axis.point(f)).collect(),
             knots: vec![0.0; below.len()],
             magnitude: zeros(),
             power: zeros(),
             played: zeros(),
+            before: zeros(),
             level: 0.0,
             first_bin: band.first_bin(),
         };
-        spectrum.make(below, step_db);
+        spectrum.make(|logs| logs.iter_mut().for_each(|x| *x = libm::exp(*x)));
+        spectrum.level = level_rms(&spectrum.magnitude);
         Ok(spectrum)
     }
 
-    /// Does not allocate.
-    fn make(&mut self, below: &[f64], step_db: f64) {
-        let least = below.iter().copied().fold(f64::INFINITY, f64::min);
-        for (knot, below) in self.knots.iter_mut().zip(below) {
-            *knot = -step_db * (below - least) * core::f64::consts::LN_10 / 20.0;
+    /// Makes what is played of the parameters. Does not allocate.
+    fn make(&mut self, exponentials: impl Fn(&mut [f64])) {
+        let least = self.below.iter().copied().fold(f64::INFINITY, f64::min);
+        for (knot, below) in self.knots.iter_mut().zip(&self.below) {
+            *knot = -self.step_db * (below - least) * core::f64::consts::LN_10 / 20.0;
         }
-        let bins = self.points.iter().zip(&mut self.magnitude);
-        for ((point, magnitude), power) in bins.zip(&mut self.power) {
-            *magnitude = libm::exp(point.between(&self.knots));
+        for (point, log) in self.points.iter().zip(&mut self.magnitude) {
+            *log = point.between(&self.knots);
+        }
+        exponentials(&mut self.magnitude);
+        for (magnitude, power) in self.magnitude.iter().zip(&mut self.power) {
             *power = *magnitude * *magnitude;
         }
-        self.level = level_rms(&self.magnitude);
-        sharpen(&self.power, &mut self.played);
+        sharpen(&self.power, &mut self.before, &mut self.played);
         for power in &mut self.played {
             *power = htex_dsp::root::sqrt(*power);
         }
@@ -298,7 +314,8 @@ impl Curve for Spectrum {
         if below.len() != self.knots.len() || Self::layout(parameters) != self.axis.layout {
             return Err(Error::argument("a voice keeps its bands"));
         }
-        self.make(below, parameters.scalar(STEP));
+        self.below.copy_from_slice(below);
+        self.step_db = parameters.scalar(STEP);
         Ok(())
     }
 
@@ -314,22 +331,44 @@ impl Curve for Spectrum {
     fn level(&self) -> f64 {
         self.level
     }
+
+    fn prepare(&mut self, frequency_hz: &[f64], key: ComponentsKey) {
+        self.places = Some(Places::shared(frequency_hz, key, self.axis.band));
+    }
+
+    fn fill(&mut self, _: &[f64], magnitude: &mut [f64]) {
+        self.make(exponentials);
+        if let Some(places) = &self.places {
+            places.read(&self.played, magnitude);
+        }
+    }
 }
 
 /// Writes the power that reads as `power` through the Hann window, nearly: noise of even power is read
 /// in its own bin by two thirds, and by a sixth in each neighbour (Richardson and Lucy's steps).
-fn sharpen(power: &[f64], sharp: &mut [f64]) {
+fn sharpen(power: &[f64], before: &mut [f64], sharp: &mut [f64]) {
     let last = power.len() - 1;
     sharp.copy_from_slice(power);
     for _ in 0..SHARPENINGS {
-        let mut before = sharp[0];
-        for bin in 0..=last {
-            let here = sharp[bin];
-            let read = (before + 4.0 * here + sharp[(bin + 1).min(last)]) / 6.0;
-            before = here;
-            if read > 0.0 {
-                sharp[bin] = here * (power[bin] / read);
-            }
+        before.copy_from_slice(sharp);
+        sharp[0] = sharpened(power[0], [before[0], before[0], before[last.min(1)]]);
+        sharp[last] = sharpened(
+            power[last],
+            [before[last.saturating_sub(1)], before[last], before[last]],
+        );
+        let inner = sharp.iter_mut().skip(1).zip(power.iter().skip(1));
+        for ((sharp, power), neighbours) in inner.zip(before.array_windows()) {
+            *sharp = sharpened(*power, *neighbours);
         }
+    }
+}
+
+/// The power of a bin, in whose place and beside which three powers stand, after a round.
+fn sharpened(power: f64, [below, here, above]: [f64; 3]) -> f64 {
+    let read = (below + 4.0 * here + above) / 6.0;
+    if read > 0.0 {
+        here * (power / read)
+    } else {
+        here
     }
 }

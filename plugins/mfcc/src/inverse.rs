@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use alloc::sync::Arc;
 
-use htex_dsp::dct::inverse_dct_ii;
+use htex_dsp::dct::InverseDct;
 use htex_dsp::grid::Band;
 use htex_dsp::least_squares::PseudoInverse;
 use htex_dsp::mel::MelBank;
@@ -25,11 +25,12 @@ pub(crate) struct Inverse {
     bands: usize,
     kind: u8,
     band: Band,
+    cosines: InverseDct,
     way: Way,
 }
 
 enum Way {
-    /// Power = matrix · energies, a row a bin, clipped at 0.
+    /// Power = matrix · energies, clipped at 0: a row a band, of its powers in all bins.
     Matrix(Vec<f64>),
     NonNegative(NonNegative),
 }
@@ -63,6 +64,7 @@ impl Inverse {
             bands,
             kind,
             band,
+            cosines: InverseDct::new(bands),
             way,
         }
     }
@@ -72,16 +74,12 @@ impl Inverse {
         let pseudo = (kind != INTERPOLATE)
             .then(|| PseudoInverse::new(&bank.filters().to_dense(), bands, bins));
         let mut matrix = vec![0.0; bins * bands];
-        let mut column = vec![0.0; bins];
-        for i in 0..bands {
+        for (i, row) in matrix.chunks_mut(bins.max(1)).enumerate() {
             let mut unit = vec![0.0; bands];
             unit[i] = 1.0;
             match &pseudo {
-                Some(inverse) => inverse.apply(&unit, &mut column),
-                None => bank.interpolate(&unit, &mut column),
-            }
-            for (row, value) in matrix.chunks_mut(bands).zip(&column) {
-                row[i] = *value;
+                Some(inverse) => inverse.apply(&unit, row),
+                None => bank.interpolate(&unit, row),
             }
         }
         matrix
@@ -104,14 +102,20 @@ impl Inverse {
         scratch: &mut Scratch,
         magnitude: &mut [f64],
     ) {
-        inverse_dct_ii(cepstrum, energy);
+        self.cosines.run(cepstrum, energy);
         energy.iter_mut().for_each(|e| *e = libm::exp(*e));
         match &self.way {
             Way::Matrix(matrix) => {
-                for (power, row) in magnitude.iter_mut().zip(matrix.chunks(self.bands)) {
-                    let sum: f64 = row.iter().zip(&*energy).map(|(w, e)| w * e).sum();
-                    *power = sum.max(0.0);
+                magnitude.fill(0.0);
+                let rows = matrix.chunks(magnitude.len().max(1));
+                for (row, energy) in rows.zip(&*energy) {
+                    for (power, part) in magnitude.iter_mut().zip(row) {
+                        *power += part * energy;
+                    }
                 }
+                magnitude
+                    .iter_mut()
+                    .for_each(|power| *power = power.max(0.0));
             }
             Way::NonNegative(solver) => solver.solve(energy, magnitude, scratch),
         }

@@ -14,11 +14,12 @@ use htex_dsp::dct::dct_ii;
 use htex_dsp::grid::{Band, GRID_HZ, level_rms};
 use htex_dsp::mel::MelBank;
 use htex_dsp::non_negative::Scratch;
+use htex_dsp::shaped_noise::ComponentsKey;
 use htex_model::{
     Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Store,
     Values, mix,
 };
-use htex_shaped::{Curve, ShapedVoice};
+use htex_shaped::{Curve, Places, ShapedVoice};
 
 use inverse::Inverse;
 
@@ -171,42 +172,47 @@ pub(crate) fn whole(parameters: &Values<'_>, field: usize) -> usize {
 /// The magnitude a cepstrum stands for, on the grid.
 pub struct Spectrum {
     inverse: Arc<Inverse>,
+    band: Band,
+    cepstrum: Vec<f64>,
     energy: Vec<f64>,
     scratch: Scratch,
     magnitude: Vec<f64>,
     /// RMS of `magnitude`.
     level: f64,
-    first_bin: usize,
+    /// Where a voice's frequencies lie among the bins.
+    places: Option<Arc<Places>>,
 }
 
 impl Spectrum {
     fn of(inverse: Arc<Inverse>, band: Band, cepstrum: &[f64]) -> Result<Self, Error> {
         let mut spectrum = Self {
+            band,
+            cepstrum: cepstrum.to_vec(),
             energy: vec![0.0; inverse.bands()],
             scratch: Scratch::new(inverse.bands()),
             magnitude: vec![0.0; band.bins()],
             level: 0.0,
-            first_bin: band.first_bin(),
+            places: None,
             inverse,
         };
-        spectrum.make(cepstrum)?;
-        Ok(spectrum)
-    }
-
-    fn make(&mut self, cepstrum: &[f64]) -> Result<(), Error> {
-        self.inverse.magnitude(
-            cepstrum,
-            &mut self.energy,
-            &mut self.scratch,
-            &mut self.magnitude,
-        );
-        self.level = level_rms(&self.magnitude);
-        if self.level > 0.0 && self.level.is_finite() {
-            return Ok(());
+        spectrum.make();
+        spectrum.level = level_rms(&spectrum.magnitude);
+        if spectrum.level > 0.0 && spectrum.level.is_finite() {
+            return Ok(spectrum);
         }
         Err(Error::parameters(
             "the cepstrum's band energies are not finite, or all zero",
         ))
+    }
+
+    /// Makes the magnitudes of the cepstrum. Does not allocate.
+    fn make(&mut self) {
+        self.inverse.magnitude(
+            &self.cepstrum,
+            &mut self.energy,
+            &mut self.scratch,
+            &mut self.magnitude,
+        );
     }
 }
 
@@ -221,13 +227,21 @@ impl Curve for Spectrum {
         if !self.inverse.is(parameters) {
             return Err(Error::argument("a voice keeps its mel bank and inverse"));
         }
-        self.make(parameters.list(CEPSTRUM))
+        let cepstrum = parameters.list(CEPSTRUM);
+        if cepstrum.len() > self.energy.len() {
+            return Err(Error::argument(
+                "a cepstrum has at most one coefficient for each mel band",
+            ));
+        }
+        self.cepstrum.clear();
+        self.cepstrum.extend_from_slice(cepstrum);
+        Ok(())
     }
 
     /// Between bins: on the straight line between them.
     fn at(&self, frequency_hz: f64) -> f64 {
         let last = self.magnitude.len() - 1;
-        let place = (frequency_hz / GRID_HZ - self.first_bin as f64).clamp(0.0, last as f64);
+        let place = (frequency_hz / GRID_HZ - self.band.first_bin() as f64).clamp(0.0, last as f64);
         let below = place as usize;
         let above = (below + 1).min(last);
         let (a, b) = (self.magnitude[below], self.magnitude[above]);
@@ -236,5 +250,17 @@ impl Curve for Spectrum {
 
     fn level(&self) -> f64 {
         self.level
+    }
+
+    fn prepare(&mut self, frequency_hz: &[f64], key: ComponentsKey) {
+        self.cepstrum.reserve(self.inverse.bands());
+        self.places = Some(Places::shared(frequency_hz, key, self.band));
+    }
+
+    fn fill(&mut self, _: &[f64], magnitude: &mut [f64]) {
+        self.make();
+        if let Some(places) = &self.places {
+            places.read(&self.magnitude, magnitude);
+        }
     }
 }

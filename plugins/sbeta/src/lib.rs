@@ -7,8 +7,13 @@ extern crate alloc;
 
 mod fit;
 
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
 use htex_dsp::beta::{BetaDensity, LogAxis};
 use htex_dsp::grid::{Band, GRID_HZ, curve_level_rms};
+use htex_dsp::shaped_noise::ComponentsKey;
+use htex_dsp::shared::Shared;
 use htex_model::{
     Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Values, mix,
     text,
@@ -101,28 +106,33 @@ impl Model for SpectralBeta {
 }
 
 /// The density over frequency, and its RMS in the band.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct Shape {
     profile: Profile,
     level: f64,
+    logs: Option<Arc<Logs>>,
 }
+
+/// Logarithms of a voice's places on the axis, `u`, and of `1 - u`.
+struct Logs {
+    log: Vec<f64>,
+    log_rest: Vec<f64>,
+}
+
+/// Stands for the logarithm of 0: times any exponent but 0 it is beyond what an exponential can be of.
+const LOG_ZERO: f64 = -1e300;
 
 impl Curve for Shape {
     fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
-        let mut shape = Self {
-            profile: Profile::new(1.0, 1.0, band),
-            level: 1.0,
-        };
-        shape.set(parameters)?;
-        Ok(shape)
-    }
-
-    fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         let (alpha, beta) = (parameters.scalar(ALPHA), parameters.scalar(BETA));
-        self.profile = Profile::new(alpha, beta, self.profile.band);
-        self.level = curve_level_rms(self.profile.band, |f| self.at(f));
-        if self.level > 0.0 && self.level.is_finite() {
-            return Ok(());
+        let profile = Profile::new(alpha, beta, band);
+        let level = curve_level_rms(band, |f| profile.at(f));
+        if level > 0.0 && level.is_finite() {
+            return Ok(Self {
+                profile,
+                level,
+                logs: None,
+            });
         }
         Err(Error::parameters(text![
             "alpha ",
@@ -135,12 +145,45 @@ impl Curve for Shape {
         ]))
     }
 
+    fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+        let (alpha, beta) = (parameters.scalar(ALPHA), parameters.scalar(BETA));
+        self.profile = Profile::new(alpha, beta, self.profile.band);
+        Ok(())
+    }
+
     fn at(&self, frequency_hz: f64) -> f64 {
         self.profile.at(frequency_hz)
     }
 
     fn level(&self) -> f64 {
         self.level
+    }
+
+    fn prepare(&mut self, frequency_hz: &[f64], key: ComponentsKey) {
+        static LOGS: Shared<ComponentsKey, Logs> = Shared::new();
+        let axis = self.profile.axis;
+        let finite = |log: f64| log.max(LOG_ZERO);
+        let logs = || {
+            let places = || frequency_hz.iter().map(|hz| axis.at(*hz));
+            Arc::new(Logs {
+                log: places().map(|u| finite(libm::log(u))).collect(),
+                log_rest: places().map(|u| finite(libm::log1p(-u))).collect(),
+            })
+        };
+        self.logs = Some(LOGS.get(key, logs));
+    }
+
+    fn fill(&mut self, frequency_hz: &[f64], magnitude: &mut [f64]) {
+        let Some(logs) = &self.logs else {
+            return;
+        };
+        let profile = &self.profile;
+        profile.density.fill(&logs.log, &logs.log_rest, magnitude);
+        let all = frequency_hz.iter().zip(magnitude);
+        let is_inset = |hz: &f64| *hz < profile.low_hz || *hz > profile.high_hz;
+        for (hz, m) in all.filter(|(hz, _)| is_inset(hz)) {
+            *m = profile.at(*hz);
+        }
     }
 }
 

@@ -11,7 +11,12 @@ extern crate alloc;
 
 mod fit;
 
+use alloc::sync::Arc;
+
+use htex_dsp::exponential::exponentials;
 use htex_dsp::grid::{Band, curve_level_rms};
+use htex_dsp::shaped_noise::ComponentsKey;
+use htex_dsp::shared::Shared;
 use htex_model::{
     Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Store,
     Values, mix, text,
@@ -130,7 +135,12 @@ pub struct Shape {
     low_pass: f64,
     band: Band,
     level: f64,
+    /// Logarithms of a voice's frequencies, hertz.
+    logs: Option<Arc<[f64]>>,
 }
+
+/// Frequencies whose magnitudes are made at once.
+const AT_ONCE: usize = 64;
 
 impl Shape {
     fn of(peak_hz: f64, orders: (f64, f64), band: Band) -> Result<Self, Error> {
@@ -140,6 +150,7 @@ impl Shape {
             low_pass: orders.1,
             band,
             level: 1.0,
+            logs: None,
         };
         shape.measure()?;
         Ok(shape)
@@ -169,7 +180,9 @@ impl Curve for Shape {
     }
 
     fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
-        *self = Self::new(parameters, self.band)?;
+        self.peak_hz = parameters.scalar(PEAK);
+        self.high_pass = parameters.scalar(HIGH_PASS);
+        self.low_pass = parameters.scalar(LOW_PASS);
         Ok(())
     }
 
@@ -181,6 +194,33 @@ impl Curve for Shape {
 
     fn level(&self) -> f64 {
         self.level
+    }
+
+    fn prepare(&mut self, frequency_hz: &[f64], key: ComponentsKey) {
+        static LOGS: Shared<ComponentsKey, [f64]> = Shared::new();
+        let logs = || frequency_hz.iter().map(|hz| libm::log(*hz)).collect();
+        self.logs = Some(LOGS.get(key, logs));
+    }
+
+    fn fill(&mut self, _: &[f64], magnitude: &mut [f64]) {
+        let Some(logs) = &self.logs else {
+            return;
+        };
+        let peak = libm::log(self.peak_hz);
+        let (low_pass, high_pass) = (2.0 * self.low_pass, -2.0 * self.high_pass);
+        let mut passed = [0.0; AT_ONCE];
+        for (magnitude, logs) in magnitude.chunks_mut(AT_ONCE).zip(logs.chunks(AT_ONCE)) {
+            let passed = &mut passed[..logs.len()];
+            for ((low, high), log) in magnitude.iter_mut().zip(&mut *passed).zip(logs) {
+                let above = log - peak;
+                (*low, *high) = (low_pass * above, high_pass * above);
+            }
+            exponentials(magnitude);
+            exponentials(passed);
+            for (m, high) in magnitude.iter_mut().zip(&*passed) {
+                *m = 1.0 / htex_dsp::root::sqrt((1.0 + *m) * (1.0 + high));
+            }
+        }
     }
 }
 

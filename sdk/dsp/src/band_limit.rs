@@ -1,5 +1,6 @@
 //! Steep filters at the edges of the band, for noise that is made wider than it.
 
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use crate::biquad::Biquad;
@@ -7,6 +8,8 @@ use crate::butterworth::Kind;
 use crate::chebyshev::chebyshev;
 use crate::grid::{Band, GRID_HZ, read_part};
 use crate::pipeline::Pipeline;
+use crate::shared::Shared;
+use crate::wide::{Work, wide};
 
 /// 80 dB a decade, and as steep at the edge as a Butterworth filter of twice the order: half a bin
 /// outside the band lets through next to nothing of its power.
@@ -48,9 +51,29 @@ fn sections(band: Band, rate_hz: f64) -> Vec<Biquad> {
 pub struct PassedPower {
     /// Frequency, hertz, and what is heard there of a bin, 0 to about 1.
     points: Vec<(f64, f64)>,
+    /// The same points, some side by side: cosine and sine of a sample's turn there, and what is heard.
+    turns: Vec<Turns>,
 }
 
+/// Points side by side; those beyond the last are heard not at all.
+#[derive(Debug, Clone, Copy)]
+struct Turns {
+    cos: [f64; TURNS],
+    sin: [f64; TURNS],
+    part: [f64; TURNS],
+}
+
+/// Points side by side.
+const TURNS: usize = 8;
+
 impl PassedPower {
+    /// As [`Self::new`]; those of one band and rate share it.
+    pub fn shared(band: Band, rate_hz: f64) -> Arc<Self> {
+        static PASSED: Shared<[u64; 3], PassedPower> = Shared::new();
+        let key = [band.low_hz, band.high_hz, rate_hz].map(f64::to_bits);
+        PASSED.get(key, || Arc::new(Self::new(band, rate_hz)))
+    }
+
     /// What passes the filters of a band at a rate and is read.
     pub fn new(band: Band, rate_hz: f64) -> Self {
         Self::read_by(band, rate_hz, |hz| read_part(band, hz))
@@ -78,8 +101,13 @@ impl PassedPower {
                 .map(|hz| (hz, power(hz) * read(hz) / count as f64))
                 .collect::<Vec<_>>()
         };
+        let points: Vec<(f64, f64)> = (first_bin..=last_bin).flat_map(heard).collect();
         Self {
-            points: (first_bin..=last_bin).flat_map(heard).collect(),
+            turns: points
+                .chunks(TURNS)
+                .map(|p| Turns::of(p, rate_hz))
+                .collect(),
+            points,
         }
     }
 
@@ -94,11 +122,81 @@ impl PassedPower {
             .sum();
         crate::root::sqrt(power / 3.0)
     }
+
+    /// [`Self::level_rms`] of white noise of unit magnitude behind the filter `1 / (1 - Σ A_i z⁻ⁱ)` at this rate. Does
+    /// not allocate.
+    pub fn all_pole_level_rms(&self, coefficients: &[f64]) -> f64 {
+        let mut power = 0.0;
+        wide(AllPolePower {
+            turns: &self.turns,
+            coefficients,
+            power: &mut power,
+        });
+        crate::root::sqrt(power / 3.0)
+    }
+}
+
+impl Turns {
+    fn of(points: &[(f64, f64)], rate_hz: f64) -> Self {
+        let mut turns = Self {
+            cos: [1.0; TURNS],
+            sin: [0.0; TURNS],
+            part: [0.0; TURNS],
+        };
+        for (i, (hz, part)) in points.iter().enumerate() {
+            let angle = core::f64::consts::TAU * hz / rate_hz;
+            (turns.sin[i], turns.cos[i]) = libm::sincos(angle);
+            turns.part[i] = *part;
+        }
+        turns
+    }
+}
+
+/// The power of an all-pole filter's magnitude over all points.
+struct AllPolePower<'a> {
+    turns: &'a [Turns],
+    coefficients: &'a [f64],
+    power: &'a mut f64,
+}
+
+impl Work for AllPolePower<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let mut sums = [0.0; TURNS];
+        for Turns { cos, sin, part } in self.turns {
+            // Horner's rule for Σ A_i z⁻ⁱ, with z⁻¹ = cos - i sin.
+            let (mut re, mut im) = ([0.0; TURNS], [0.0; TURNS]);
+            for a in self.coefficients.iter().rev() {
+                for i in 0..TURNS {
+                    let sum = re[i] + a;
+                    (re[i], im[i]) = (sum * cos[i] + im[i] * sin[i], im[i] * cos[i] - sum * sin[i]);
+                }
+            }
+            for i in 0..TURNS {
+                let re = 1.0 - re[i];
+                let heard = part[i] / (re * re + im[i] * im[i]);
+                // Where nothing is heard, a pole on the circle counts for nothing either.
+                sums[i] += if part[i] > 0.0 { heard } else { 0.0 };
+            }
+        }
+        *self.power = sums.iter().sum();
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linear_prediction::ar_magnitude;
+
+    #[test]
+    fn the_level_of_a_filter_is_that_of_its_curve() {
+        let passed = PassedPower::new(Band::TACTILE, 2_050.0);
+        for coefficients in [&[][..], &[0.9], &[1.2, -0.8, 0.3, -0.1, 0.05, 0.02, -0.3]] {
+            let expected = passed.level_rms(|hz| ar_magnitude(coefficients, hz, 2_050.0));
+            let found = passed.all_pole_level_rms(coefficients);
+            assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+        }
+    }
 
     /// White noise of unit variance: half its power a hertz below the Nyquist frequency times the mean
     /// power of the filters' response, which the energy of the answer to an impulse is, too.

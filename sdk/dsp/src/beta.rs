@@ -76,6 +76,16 @@ impl BetaDensity {
         let right = times_log(self.beta - 1.0, libm::log1p(-u));
         libm::exp(left + right - self.log_scale)
     }
+
+    /// The density at places given by `ln u` and `ln (1 - u)`, finite, with the accuracy of
+    /// [`exponentials`](crate::exponential::exponentials). As many as there are of all three.
+    pub fn fill(&self, log: &[f64], log_rest: &[f64], density: &mut [f64]) {
+        let (left, right) = (self.alpha - 1.0, self.beta - 1.0);
+        for ((d, log), log_rest) in density.iter_mut().zip(log).zip(log_rest) {
+            *d = left * log + right * log_rest - self.log_scale;
+        }
+        crate::exponential::exponentials(density);
+    }
 }
 
 /// [`BetaDensity`] at one place.

@@ -2,6 +2,7 @@
 //!
 //! Sums are written out: at tens of bands an FFT gains nothing.
 
+use alloc::vec::Vec;
 use core::f64::consts::PI;
 
 /// The first `out.len()` coefficients of the orthonormal DCT-II of `values`
@@ -26,14 +27,34 @@ pub fn dct_ii(values: &[f64], out: &mut [f64]) {
 /// assert!((back[1] - 5.0).abs() < 1e-14);
 /// ```
 pub fn inverse_dct_ii(coefficients: &[f64], out: &mut [f64]) {
-    let n = out.len();
-    for (i, value) in out.iter_mut().enumerate() {
-        *value = coefficients
-            .iter()
-            .take(n)
-            .enumerate()
-            .map(|(k, c)| scale(k, n) * c * cosine(k, i, n))
-            .sum();
+    InverseDct::new(out.len()).run(coefficients, out);
+}
+
+/// [`inverse_dct_ii`] to a fixed number of values, many times.
+#[derive(Debug, Clone)]
+pub struct InverseDct {
+    scale: Vec<f64>,
+    /// A row of cosines for each value.
+    cosines: Vec<f64>,
+}
+
+impl InverseDct {
+    /// To `values` values.
+    pub fn new(values: usize) -> Self {
+        let row = |i: usize| (0..values).map(move |k| cosine(k, i, values));
+        Self {
+            scale: (0..values).map(|k| scale(k, values)).collect(),
+            cosines: (0..values).flat_map(row).collect(),
+        }
+    }
+
+    /// As [`inverse_dct_ii`]; values beyond the fixed number stay as they are. Does not allocate.
+    pub fn run(&self, coefficients: &[f64], out: &mut [f64]) {
+        let rows = self.cosines.chunks(self.scale.len().max(1));
+        for (value, row) in out.iter_mut().zip(rows) {
+            let terms = coefficients.iter().zip(&self.scale).zip(row);
+            *value = terms.map(|((c, scale), cosine)| scale * c * cosine).sum();
+        }
     }
 }
 

@@ -7,7 +7,7 @@
 use alloc::vec::Vec;
 use core::f64::consts::TAU;
 
-use crate::lanes::{LANES, Lanes, Number};
+use crate::lanes::{Lanes, Number};
 use crate::wide::{Work, wide};
 
 /// Real signals of one even length out of their spectra. Holds what depends on the length alone.
@@ -34,6 +34,8 @@ struct Stage {
     stride: usize,
     /// `exp(2πi p k / length)` for each `p`, and `k` in 0 to `radix - 1`.
     twiddles: Twiddles,
+    /// The same in the order of a first stage, which goes along `p`: all `p` of each `k`, cosines and sines apart.
+    along: Complexes,
 }
 
 /// Real and imaginary parts apart, as vector instructions want them.
@@ -160,39 +162,95 @@ impl Complexes {
 impl Stage {
     fn new(radix: usize, length: usize, stride: usize) -> Self {
         let twiddle = |i: usize| unit(i / radix * (i % radix), length);
+        let parts = length / radix;
+        let along = |i: usize| unit(i % parts * (i / parts), length);
+        let (re, im) = match stride {
+            1 => (0..length).map(along).unzip(),
+            _ => Default::default(),
+        };
         Self {
             radix,
             length,
             stride,
             twiddles: (0..length).map(twiddle).collect(),
+            along: Complexes { re, im },
         }
     }
 
     #[inline(always)]
     fn run(&self, from: &Complexes, to: &mut Complexes) {
-        if self.stride.is_multiple_of(LANES) {
-            self.run_on::<Lanes>(from, to);
-        } else {
-            self.run_on::<f32>(from, to);
+        match self.stride {
+            1 => self.run_first(from, to),
+            s if s.is_multiple_of(8) => self.run_on::<Lanes<8>>(from, to),
+            s if s.is_multiple_of(4) => self.run_on::<Lanes<4>>(from, to),
+            _ => self.run_on::<f32>(from, to),
         }
     }
 
     #[inline(always)]
     fn run_on<T: Number>(&self, from: &Complexes, to: &mut Complexes) {
         match self.radix {
-            2 => self.run_by::<2, T>(from, to, two),
-            3 => self.run_by::<3, T>(from, to, three),
-            4 => self.run_by::<4, T>(from, to, four),
-            _ => self.run_by::<5, T>(from, to, five),
+            2 => self.run_by::<2, T, Two>(from, to),
+            3 => self.run_by::<3, T, Three>(from, to),
+            4 => self.run_by::<4, T, Four>(from, to),
+            _ => self.run_by::<5, T, Five>(from, to),
+        }
+    }
+
+    /// The stage of stride 1, whose neighbours are those of `p`.
+    #[inline(always)]
+    fn run_first(&self, from: &Complexes, to: &mut Complexes) {
+        match self.radix {
+            2 => self.run_along::<2, Two>(from, to),
+            3 => self.run_along::<3, Three>(from, to),
+            4 => self.run_along::<4, Four>(from, to),
+            _ => self.run_along::<5, Five>(from, to),
         }
     }
 
     #[inline(always)]
-    fn run_by<const R: usize, T: Number>(
+    fn run_along<const R: usize, B: Butterfly<R>>(&self, from: &Complexes, to: &mut Complexes) {
+        let eights = self.length / R / 8 * 8;
+        self.part_along::<R, Lanes<8>, B>(from, to, 0..eights);
+        self.part_along::<R, f32, B>(from, to, eights..self.length / R);
+    }
+
+    /// As many neighbours as there are in a `T` at a time.
+    #[inline(always)]
+    fn part_along<const R: usize, T: Number, B: Butterfly<R>>(
         &self,
         from: &Complexes,
         to: &mut Complexes,
-        butterfly: impl Fn([T; R], [T; R]) -> ([T; R], [T; R]),
+        range: core::ops::Range<usize>,
+    ) {
+        let parts = self.length / R;
+        for p in range.step_by(T::LEN) {
+            let (mut re, mut im) = ([T::default(); R], [T::default(); R]);
+            for j in 0..R {
+                re[j] = load::<T>(&from.re, p + parts * j);
+                im[j] = load::<T>(&from.im, p + parts * j);
+            }
+            let (re, im) = B::turn(re, im);
+            let out_re = &mut to.re[R * p..R * (p + T::LEN)];
+            let out_im = &mut to.im[R * p..R * (p + T::LEN)];
+            for k in 0..R {
+                let cos = load::<T>(&self.along.re, p + parts * k);
+                let sin = load::<T>(&self.along.im, p + parts * k);
+                let new_re = re[k].times(cos) - im[k].times(sin);
+                let new_im = im[k].times(cos) + re[k].times(sin);
+                for i in 0..T::LEN {
+                    out_re[R * i + k] = new_re.number(i);
+                    out_im[R * i + k] = new_im.number(i);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn run_by<const R: usize, T: Number, B: Butterfly<R>>(
+        &self,
+        from: &Complexes,
+        to: &mut Complexes,
     ) {
         let (s, parts) = (self.stride, self.length / R);
         let twiddles = self.twiddles.as_chunks::<R>().0;
@@ -204,8 +262,12 @@ impl Stage {
             let out_re = rows_mut::<R, T>(out_re, s);
             let out_im = rows_mut::<R, T>(out_im, s);
             for q in 0..s / T::LEN {
-                let at = |rows: [&[T::Group]; R]| core::array::from_fn(|j| T::load(rows[j][q]));
-                let (re, im) = butterfly(at(re), at(im));
+                let (mut now_re, mut now_im) = ([T::default(); R], [T::default(); R]);
+                for j in 0..R {
+                    now_re[j] = T::load(re[j][q]);
+                    now_im[j] = T::load(im[j][q]);
+                }
+                let (re, im) = B::turn(now_re, now_im);
                 for k in 0..R {
                     let (cos, sin) = twiddle[k];
                     out_re[k][q] = (re[k] * cos - im[k] * sin).store();
@@ -215,6 +277,23 @@ impl Stage {
         }
     }
 }
+
+/// The numbers from `at` on.
+#[inline(always)]
+fn load<T: Number>(from: &[f32], at: usize) -> T {
+    T::load(T::groups(&from[at..at + T::LEN])[0])
+}
+
+/// A transform of `R` numbers, real and imaginary parts apart. A trait, as functions that are passed are not always
+/// compiled into the one that has the wide registers.
+trait Butterfly<const R: usize> {
+    fn turn<T: Number>(re: [T; R], im: [T; R]) -> ([T; R], [T; R]);
+}
+
+struct Two;
+struct Three;
+struct Four;
+struct Five;
 
 /// The groups of `len` numbers from `first` on. What the bounds of all rows of a loop are known by is
 /// this length: nothing is checked at each number.
@@ -233,64 +312,72 @@ fn rows_mut<const R: usize, T: Number>(to: &mut [f32], len: usize) -> [&mut [T::
     })
 }
 
-#[inline(always)]
-fn two<T: Number>([a, b]: [T; 2], [ai, bi]: [T; 2]) -> ([T; 2], [T; 2]) {
-    ([a + b, a - b], [ai + bi, ai - bi])
+impl Butterfly<2> for Two {
+    #[inline(always)]
+    fn turn<T: Number>([a, b]: [T; 2], [ai, bi]: [T; 2]) -> ([T; 2], [T; 2]) {
+        ([a + b, a - b], [ai + bi, ai - bi])
+    }
 }
 
-#[inline(always)]
-fn three<T: Number>(re: [T; 3], im: [T; 3]) -> ([T; 3], [T; 3]) {
-    const SIN: f32 = 0.866_025_4;
-    let (sum, sum_i) = (re[1] + re[2], im[1] + im[2]);
-    let (turned, turned_i) = ((im[2] - im[1]) * SIN, (re[1] - re[2]) * SIN);
-    let (mean, mean_i) = (re[0] - sum * 0.5, im[0] - sum_i * 0.5);
-    (
-        [re[0] + sum, mean + turned, mean - turned],
-        [im[0] + sum_i, mean_i + turned_i, mean_i - turned_i],
-    )
+impl Butterfly<3> for Three {
+    #[inline(always)]
+    fn turn<T: Number>(re: [T; 3], im: [T; 3]) -> ([T; 3], [T; 3]) {
+        const SIN: f32 = 0.866_025_4;
+        let (sum, sum_i) = (re[1] + re[2], im[1] + im[2]);
+        let (turned, turned_i) = ((im[2] - im[1]) * SIN, (re[1] - re[2]) * SIN);
+        let (mean, mean_i) = (re[0] - sum * 0.5, im[0] - sum_i * 0.5);
+        (
+            [re[0] + sum, mean + turned, mean - turned],
+            [im[0] + sum_i, mean_i + turned_i, mean_i - turned_i],
+        )
+    }
 }
 
-#[inline(always)]
-fn four<T: Number>(re: [T; 4], im: [T; 4]) -> ([T; 4], [T; 4]) {
-    let (even, even_i) = two([re[0], re[2]], [im[0], im[2]]);
-    let (odd, odd_i) = two([re[1], re[3]], [im[1], im[3]]);
-    (
-        [
-            even[0] + odd[0],
-            even[1] - odd_i[1],
-            even[0] - odd[0],
-            even[1] + odd_i[1],
-        ],
-        [
-            even_i[0] + odd_i[0],
-            even_i[1] + odd[1],
-            even_i[0] - odd_i[0],
-            even_i[1] - odd[1],
-        ],
-    )
+impl Butterfly<4> for Four {
+    #[inline(always)]
+    fn turn<T: Number>(re: [T; 4], im: [T; 4]) -> ([T; 4], [T; 4]) {
+        let (even, even_i) = Two::turn([re[0], re[2]], [im[0], im[2]]);
+        let (odd, odd_i) = Two::turn([re[1], re[3]], [im[1], im[3]]);
+        (
+            [
+                even[0] + odd[0],
+                even[1] - odd_i[1],
+                even[0] - odd[0],
+                even[1] + odd_i[1],
+            ],
+            [
+                even_i[0] + odd_i[0],
+                even_i[1] + odd[1],
+                even_i[0] - odd_i[0],
+                even_i[1] - odd[1],
+            ],
+        )
+    }
 }
 
-#[inline(always)]
-fn five<T: Number>(re: [T; 5], im: [T; 5]) -> ([T; 5], [T; 5]) {
-    let (sum, sum_i) = (sums(re), sums(im));
-    let (mean, mean_i) = (fifths(re[0], sum), fifths(im[0], sum_i));
-    let (t, t_i) = (turned(im), turned(re));
-    (
-        [
-            re[0] + (sum[0] + sum[1]),
-            mean[0] - t[0],
-            mean[1] - t[1],
-            mean[1] + t[1],
-            mean[0] + t[0],
-        ],
-        [
-            im[0] + (sum_i[0] + sum_i[1]),
-            mean_i[0] + t_i[0],
-            mean_i[1] + t_i[1],
-            mean_i[1] - t_i[1],
-            mean_i[0] - t_i[0],
-        ],
-    )
+impl Butterfly<5> for Five {
+    #[inline(always)]
+    fn turn<T: Number>(re: [T; 5], im: [T; 5]) -> ([T; 5], [T; 5]) {
+        let (sum, sum_i) = (sums(re), sums(im));
+        let (mean, mean_i) = (fifths(re[0], sum), fifths(im[0], sum_i));
+        let (t, t_i) = (turned(im), turned(re));
+        (
+            [
+                re[0] + (sum[0] + sum[1]),
+                mean[0] - t[0],
+                mean[1] - t[1],
+                mean[1] + t[1],
+                mean[0] + t[0],
+            ],
+            [
+                im[0] + (sum_i[0] + sum_i[1]),
+                mean_i[0] + t_i[0],
+                mean_i[1] + t_i[1],
+                mean_i[1] - t_i[1],
+                mean_i[0] - t_i[0],
+            ],
+        )
+    }
 }
 
 #[inline(always)]

@@ -44,6 +44,12 @@ fn windowed_sinc(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Vec<f32>
     all
 }
 
+/// Kaiser's estimate of the taps a transition of `width` (cycles per sample) needs.
+pub(crate) fn kaiser_length(width: f64) -> usize {
+    let n = (ATTENUATION_DB - 7.95) / (2.285 * core::f64::consts::TAU * width);
+    libm::ceil(n).min(1e6) as usize + 1
+}
+
 fn sinc(x: f64) -> f64 {
     let a = core::f64::consts::PI * x;
     if x == 0.0 { 1.0 } else { libm::sin(a) / a }

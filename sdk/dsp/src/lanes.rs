@@ -4,7 +4,7 @@ use core::ops::{Add, Mul, Sub};
 
 /// One number, or several side by side.
 pub(crate) trait Number:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f32, Output = Self>
+    Copy + Default + Add<Output = Self> + Sub<Output = Self> + Mul<f32, Output = Self>
 {
     const LEN: usize;
     /// As many numbers as stand side by side.
@@ -13,6 +13,9 @@ pub(crate) trait Number:
     fn groups_mut(to: &mut [f32]) -> &mut [Self::Group];
     fn load(from: Self::Group) -> Self;
     fn store(self) -> Self::Group;
+    fn number(self, i: usize) -> f32;
+    /// The product of each with its like.
+    fn times(self, other: Self) -> Self;
 }
 
 impl Number for f32 {
@@ -38,71 +41,101 @@ impl Number for f32 {
     fn store(self) -> f32 {
         self
     }
-}
-
-pub(crate) const LANES: usize = 4;
-
-/// What compilers make vector registers of.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Lanes(pub(crate) [f32; LANES]);
-
-impl Number for Lanes {
-    const LEN: usize = LANES;
-    type Group = [f32; LANES];
 
     #[inline(always)]
-    fn groups(from: &[f32]) -> &[[f32; LANES]] {
+    fn number(self, _: usize) -> f32 {
+        self
+    }
+
+    #[inline(always)]
+    fn times(self, other: f32) -> f32 {
+        self * other
+    }
+}
+
+/// What compilers make vector registers of.
+#[derive(Clone, Copy)]
+pub(crate) struct Lanes<const N: usize>(pub(crate) [f32; N]);
+
+impl<const N: usize> Default for Lanes<N> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self([0.0; N])
+    }
+}
+
+impl<const N: usize> Number for Lanes<N> {
+    const LEN: usize = N;
+    type Group = [f32; N];
+
+    #[inline(always)]
+    fn groups(from: &[f32]) -> &[[f32; N]] {
         from.as_chunks().0
     }
 
     #[inline(always)]
-    fn groups_mut(to: &mut [f32]) -> &mut [[f32; LANES]] {
+    fn groups_mut(to: &mut [f32]) -> &mut [[f32; N]] {
         to.as_chunks_mut().0
     }
 
     #[inline(always)]
-    fn load(from: [f32; LANES]) -> Self {
+    fn load(from: [f32; N]) -> Self {
         Self(from)
     }
 
     #[inline(always)]
-    fn store(self) -> [f32; LANES] {
+    fn store(self) -> [f32; N] {
         self.0
     }
-}
-
-impl Add for Lanes {
-    type Output = Self;
 
     #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self(core::array::from_fn(|i| self.0[i] + other.0[i]))
+    fn number(self, i: usize) -> f32 {
+        self.0[i]
+    }
+
+    #[inline(always)]
+    fn times(mut self, other: Self) -> Self {
+        for i in 0..N {
+            self.0[i] *= other.0[i];
+        }
+        self
     }
 }
 
-impl Sub for Lanes {
+// Loops, as closures are not always compiled into the function that has the wide registers.
+
+impl<const N: usize> Add for Lanes<N> {
     type Output = Self;
 
     #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self(core::array::from_fn(|i| self.0[i] - other.0[i]))
+    fn add(mut self, other: Self) -> Self {
+        for i in 0..N {
+            self.0[i] += other.0[i];
+        }
+        self
     }
 }
 
-impl Mul<f32> for Lanes {
+impl<const N: usize> Sub for Lanes<N> {
     type Output = Self;
 
     #[inline(always)]
-    fn mul(self, factor: f32) -> Self {
-        Self(self.0.map(|x| x * factor))
+    fn sub(mut self, other: Self) -> Self {
+        for i in 0..N {
+            self.0[i] -= other.0[i];
+        }
+        self
     }
 }
 
-impl Mul for Lanes {
+impl<const N: usize> Mul<f32> for Lanes<N> {
     type Output = Self;
 
     #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        Self(core::array::from_fn(|i| self.0[i] * other.0[i]))
+    fn mul(mut self, factor: f32) -> Self {
+        for i in 0..N {
+            self.0[i] *= factor;
+        }
+        self
     }
 }

@@ -46,7 +46,7 @@ pub mod resample;
 pub mod root;
 pub mod seam;
 pub mod shaped_noise;
-mod shared;
+pub mod shared;
 pub mod sine_bank;
 #[cfg(feature = "std")]
 pub mod spectrum;

@@ -93,7 +93,7 @@ impl Polyphase {
 }
 
 /// Dot product in eight lanes; both slices have the same length, a multiple of eight.
-#[inline]
+#[inline(always)]
 pub(crate) fn dot(a: &[f32], b: &[f32]) -> f32 {
     let mut lanes = [0.0f32; 8];
     for (x, y) in a.chunks_exact(8).zip(b.chunks_exact(8)) {

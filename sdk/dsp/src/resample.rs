@@ -171,7 +171,7 @@ impl Spec {
 
     fn taps(&self) -> usize {
         let width = (self.stop_hz - self.pass_hz).max(1e-6) / self.source_hz();
-        let least = kaiser_length(width).clamp(8, MAX_TAPS);
+        let least = kernels::kaiser_length(width).clamp(8, MAX_TAPS);
         least.next_multiple_of(if self.is_whole() { 2 } else { 8 })
     }
 }
@@ -218,12 +218,6 @@ impl Stage {
             Self::Rational(stage) => stage.process(out, source),
         }
     }
-}
-
-/// Kaiser's estimate of the taps a transition of `width` (cycles per sample) needs.
-fn kaiser_length(width: f64) -> usize {
-    let n = (kernels::ATTENUATION_DB - 7.95) / (2.285 * core::f64::consts::TAU * width);
-    libm::ceil(n).min(1e6) as usize + 1
 }
 
 fn gcd(a: u64, b: u64) -> u64 {

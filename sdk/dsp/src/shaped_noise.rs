@@ -46,8 +46,12 @@ pub struct ShapedNoise {
     fade_position: Option<usize>,
 }
 
+/// The bits of a rate and of a band's edges.
+pub type ComponentsKey = [u64; 3];
+
 /// What streams of one rate and band share.
 struct Frames {
+    key: ComponentsKey,
     inverse: InverseRealFft,
     /// How a frame comes in; its mirror image is how the one before goes out.
     rise: Vec<f32>,
@@ -116,12 +120,12 @@ fn rise(n: usize, overlap: usize) -> f64 {
 impl Frames {
     /// Those of a rate and a band.
     fn shared(rate_hz: f64, band: Band) -> Arc<Self> {
-        static FRAMES: Shared<[u64; 3], Frames> = Shared::new();
+        static FRAMES: Shared<ComponentsKey, Frames> = Shared::new();
         let key = [rate_hz, band.low_hz, band.high_hz].map(f64::to_bits);
-        FRAMES.get(key, || Arc::new(Self::new(rate_hz, band)))
+        FRAMES.get(key, || Arc::new(Self::new(key, rate_hz, band)))
     }
 
-    fn new(rate_hz: f64, band: Band) -> Self {
+    fn new(key: ComponentsKey, rate_hz: f64, band: Band) -> Self {
         let half = smooth_length(libm::round(rate_hz * HALF_S).max(2.0) as usize);
         let len = 2 * half;
         let overlap = len.div_ceil(OVERLAP);
@@ -133,6 +137,7 @@ impl Frames {
         let high = high.min(half - 1);
         let components = || (low..=high.max(low)).map(|j| j as f64 * spacing);
         Self {
+            key,
             inverse: InverseRealFft::new(half),
             rise: (0..overlap).map(|n| rise(n, overlap) as f32).collect(),
             len,
@@ -184,6 +189,11 @@ impl ShapedNoise {
         &self.frames.component_hz
     }
 
+    /// Numbers that are the same for streams of the same [`Self::component_hz`]: the key of tables over them.
+    pub fn components_key(&self) -> ComponentsKey {
+        self.frames.key
+    }
+
     /// Sets the spectrum before the first sample: `magnitude(i, f)` at `component_hz()[i] == f`, in
     /// any scale; negative and non-finite values count as zero.
     pub fn start(&mut self, magnitude: impl Fn(usize, f64) -> f64) {
@@ -202,10 +212,10 @@ impl ShapedNoise {
     }
 
     /// As [`Self::retune`], with a spectrum that is made when it is needed: now, or, while another change is under
-    /// way, at its end, in [`Self::render_with`]; of several that come meanwhile the last counts. `make` fills in
-    /// magnitudes, one for each of [`Self::component_hz`], and returns whether there are any. False where there are none
-    /// now; the stream then goes on as it is. Does not allocate.
-    pub fn retune_with(&mut self, make: impl FnOnce(&mut [f64]) -> bool) -> bool {
+    /// way, at its end, in [`Self::render_with`]; of several that come meanwhile the last counts. `make` is given
+    /// [`Self::component_hz`] and writes a magnitude for each, in any scale; negative and non-finite values count as zero.
+    /// Returns false where all are zero now; the stream then goes on as it is. Does not allocate.
+    pub fn retune_with(&mut self, make: impl FnOnce(&[f64], &mut [f64])) -> bool {
         if self.fade_position.is_some() {
             self.pending = Pending::Wanted;
             return true;
@@ -223,8 +233,9 @@ impl ShapedNoise {
         }
     }
 
-    fn make_pending(&mut self, make: impl FnOnce(&mut [f64]) -> bool) -> bool {
-        make(&mut self.pending_amplitude) && self.normalise()
+    fn make_pending(&mut self, make: impl FnOnce(&[f64], &mut [f64])) -> bool {
+        make(&self.frames.component_hz, &mut self.pending_amplitude);
+        self.normalise()
     }
 
     /// Turns magnitudes into component amplitudes that together read as unit RMS; false if there is no power.
@@ -254,11 +265,11 @@ impl ShapedNoise {
 
     /// Fills `out` with the next samples. Does not allocate.
     pub fn render(&mut self, out: &mut [f32]) {
-        self.render_with(out, &mut |_| false);
+        self.render_with(out, &mut |_, magnitude| magnitude.fill(0.0));
     }
 
     /// As [`Self::render`]; `make` is that of [`Self::retune_with`].
-    pub fn render_with(&mut self, out: &mut [f32], make: &mut dyn FnMut(&mut [f64]) -> bool) {
+    pub fn render_with(&mut self, out: &mut [f32], make: &mut dyn FnMut(&[f64], &mut [f64])) {
         let mut rest = out;
         while !rest.is_empty() {
             if self.position == self.frames.hop {
@@ -304,7 +315,7 @@ impl ShapedNoise {
     }
 
     /// Starts a cross-fade to the pending spectrum, unless one runs or the hop is too near its end.
-    fn begin_fade(&mut self, make: &mut dyn FnMut(&mut [f64]) -> bool) {
+    fn begin_fade(&mut self, make: &mut dyn FnMut(&[f64], &mut [f64])) {
         if self.fade_position.is_some() || self.position + self.frames.fade_len > self.frames.hop {
             return;
         }

@@ -4,17 +4,18 @@ use alloc::sync::Arc;
 
 /// Tables by their keys. Without `std` each user has its own.
 #[cfg(feature = "std")]
-pub(crate) struct Shared<K, V: ?Sized>(std::sync::Mutex<alloc::vec::Vec<(K, std::sync::Weak<V>)>>);
+pub struct Shared<K, V: ?Sized>(std::sync::Mutex<alloc::vec::Vec<(K, std::sync::Weak<V>)>>);
 
 #[cfg(feature = "std")]
 impl<K: PartialEq, V: ?Sized> Shared<K, V> {
     /// None yet.
-    pub(crate) const fn new() -> Self {
+    #[allow(clippy::new_without_default)] // It is a static.
+    pub const fn new() -> Self {
         Self(std::sync::Mutex::new(alloc::vec::Vec::new()))
     }
 
     /// The table of a key, made if nobody uses it.
-    pub(crate) fn get(&self, key: K, make: impl FnOnce() -> Arc<V>) -> Arc<V> {
+    pub fn get(&self, key: K, make: impl FnOnce() -> Arc<V>) -> Arc<V> {
         // The list is whole whatever a panicking thread was doing.
         let mut in_use = self
             .0
@@ -33,17 +34,18 @@ impl<K: PartialEq, V: ?Sized> Shared<K, V> {
 
 /// No tables.
 #[cfg(not(feature = "std"))]
-pub(crate) struct Shared<K, V: ?Sized>(core::marker::PhantomData<(fn(K), fn() -> Arc<V>)>);
+pub struct Shared<K, V: ?Sized>(core::marker::PhantomData<(fn(K), fn() -> Arc<V>)>);
 
 #[cfg(not(feature = "std"))]
 impl<K, V: ?Sized> Shared<K, V> {
     /// None.
-    pub(crate) const fn new() -> Self {
+    #[allow(clippy::new_without_default)] // It is a static.
+    pub const fn new() -> Self {
         Self(core::marker::PhantomData)
     }
 
     /// Makes the table.
-    pub(crate) fn get(&self, _: K, make: impl FnOnce() -> Arc<V>) -> Arc<V> {
+    pub fn get(&self, _: K, make: impl FnOnce() -> Arc<V>) -> Arc<V> {
         make()
     }
 }

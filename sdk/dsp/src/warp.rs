@@ -3,30 +3,31 @@
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use crate::kernels;
-use crate::polyphase::dot;
+use crate::kernels::{self, kaiser_length};
+use crate::wide::{Work, wide};
 
-/// Samples of the source that one output looks at: stop band of about 60 dB.
-const TAPS: usize = 32;
-/// Rows of the kernel's table; between two rows it is interpolated.
-const PHASES: usize = 256;
+/// Most samples of the source that one output looks at: stop band of about 60 dB from its Nyquist frequency on.
+const MOST_TAPS: usize = 32;
+/// Taps are a multiple of this.
+const LANES: usize = 8;
+/// Bits of a place that choose the row of the kernel's table; between two rows it is interpolated.
+const PHASE_BITS: u32 = 8;
+/// Outputs that are read at once, at most.
 const CHUNK: usize = 64;
 /// Rows for a reader that stands by. A row between two is 60 dB near at 0.4 of the source's rate, 98 dB at 0.05, and
 /// the table is made in an eighth of the time.
-const FEW_PHASES: usize = 32;
-/// Samples of a window that stand before the place that is read.
-const BEFORE: usize = TAPS / 2 - 1;
+const FEW_PHASE_BITS: u32 = 5;
 
 /// Reads its source at a changing ratio, by windowed-sinc interpolation. Pulled like
 /// [`crate::resample::Resampler`]; gives the same samples for any block size.
 #[derive(Debug, Clone)]
 pub struct Warp {
     taps: usize,
-    phases: usize,
-    /// `phases + 1` rows of `taps`; not read when there is one tap.
+    phase_bits: u32,
+    /// A row of `taps` for each phase, and one more; not read when there is one tap.
     kernel: Arc<[f32]>,
-    /// Place of the next output behind `start`, samples of the source, 0 to 1.
-    place: f64,
+    /// Place of the next output behind `start`, in parts of 2⁻⁶⁴ samples of the source.
+    place: u64,
     history: Vec<f32>,
     start: usize,
     filled: usize,
@@ -35,36 +36,32 @@ pub struct Warp {
 }
 
 impl Warp {
-    /// Reads by interpolation; a change of ratio is heard half a kernel (16 source samples) late.
-    pub fn new() -> Self {
-        Self::of(
-            TAPS,
-            PHASES,
-            kernels::kernel(TAPS, PHASES as u64, false, 0.5),
-        )
+    /// Reads by interpolation a source that holds nothing above `top` of its rate (0 to 0.5); a change of ratio is heard
+    /// half a kernel (4 to 16 source samples) late.
+    pub fn new(top: f64) -> Self {
+        Self::of(taps(top), PHASE_BITS)
     }
 
     /// Reads at a ratio of 1 only, without any delay: what goes in comes out.
     pub fn through() -> Self {
-        Self::of(1, 1, Arc::from(&[1.0f32][..]))
+        Self::of(1, 0)
     }
 
     /// Hands its source on, without delay and bit by bit, as long as the ratio is 1. At the first other ratio it
-    /// begins to read by interpolation, from the place where it stands, and goes on so.
-    pub fn when_needed() -> Self {
-        Self {
-            filled: BEFORE,
-            reads: false,
-            ..Self::of(TAPS, FEW_PHASES, small_kernel())
-        }
+    /// begins to read by interpolation, as [`Self::new`] does, from the place where it stands, and goes on so.
+    pub fn when_needed(top: f64) -> Self {
+        let mut warp = Self::of(taps(top), FEW_PHASE_BITS);
+        warp.filled = warp.before();
+        warp.reads = false;
+        warp
     }
 
-    fn of(taps: usize, phases: usize, kernel: Arc<[f32]>) -> Self {
+    fn of(taps: usize, phase_bits: u32) -> Self {
         Self {
             taps,
-            phases,
-            kernel,
-            place: 0.0,
+            phase_bits,
+            kernel: kernels::kernel(taps, 1 << phase_bits, false, 0.5),
+            place: 0,
             history: alloc::vec![0.0; taps + CHUNK],
             start: 0,
             filled: 0,
@@ -72,8 +69,14 @@ impl Warp {
         }
     }
 
+    /// Samples of a window that stand before the place that is read.
+    fn before(&self) -> usize {
+        self.taps / 2 - 1
+    }
+
     /// Fills `out`; each sample stands `ratio` source samples (0 to 1,000) after the one before.
-    /// Aliases where `ratio` is above 1, unless the source has nothing there. Does not allocate.
+    /// Aliases where `ratio` is above 1, unless the source has nothing there. Pulls what `out` needs and no more. Does
+    /// not allocate.
     pub fn process(&mut self, ratio: f64, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
         if !self.reads {
             if ratio == 1.0 {
@@ -82,69 +85,149 @@ impl Warp {
             }
             self.reads = true;
         }
-        for sample in out {
-            while self.start + self.taps > self.filled {
-                self.refill(source);
-            }
-            *sample = self.read();
-            self.place += ratio;
-            let whole = self.place as usize;
-            self.place -= whole as f64;
-            self.start += whole;
+        let whole = ratio as usize;
+        // 2⁶⁴ parts; below 1 the product cannot round to all of them.
+        let step = (
+            whole,
+            ((ratio - whole as f64) * 18_446_744_073_709_551_616.0) as u64,
+        );
+        let mut rest = out;
+        while !rest.is_empty() {
+            let done = self.piece(step, rest, source);
+            rest = &mut rest[done..];
         }
+    }
+
+    /// As many samples as windows are in reach of one pull; returns how many.
+    fn piece(
+        &mut self,
+        (whole, part): (usize, u64),
+        out: &mut [f32],
+        source: &mut dyn FnMut(&mut [f32]),
+    ) -> usize {
+        self.skip(source);
+        let mut places = [Place::default(); CHUNK];
+        let (mut count, mut last) = (0, 0);
+        for place in places.iter_mut().take(out.len()) {
+            if self.start + self.taps > self.history.len() {
+                break;
+            }
+            last = self.start;
+            *place = Place {
+                start: last,
+                between: self.place,
+            };
+            count += 1;
+            let carry;
+            (self.place, carry) = self.place.overflowing_add(part);
+            self.start += whole + usize::from(carry);
+        }
+        self.pull(last + self.taps, source);
+        wide(Windows {
+            warp: self,
+            places: &places[..count],
+            out: &mut out[..count],
+        });
+        count
     }
 
     /// Keeps what stands before the next sample.
     fn remember(&mut self, block: &[f32]) {
-        let new = block.len().min(BEFORE);
-        self.history.copy_within(new..BEFORE, 0);
-        self.history[BEFORE - new..BEFORE].copy_from_slice(&block[block.len() - new..]);
+        let before = self.before();
+        let new = block.len().min(before);
+        self.history.copy_within(new..before, 0);
+        self.history[before - new..before].copy_from_slice(&block[block.len() - new..]);
     }
 
-    fn read(&self) -> f32 {
-        let window = &self.history[self.start..self.start + self.taps];
-        if self.taps == 1 {
-            return window[0];
+    /// Drops what is behind the next window, and reads and throws away what is before it.
+    fn skip(&mut self, source: &mut dyn FnMut(&mut [f32])) {
+        while self.start > self.filled {
+            let end = self.history.len().min(self.start - self.filled);
+            source(&mut self.history[..end]);
+            (self.start, self.filled) = (self.start - self.filled - end, 0);
         }
-        let place = self.place * self.phases as f64;
-        let i = (place as usize).min(self.phases - 1);
-        let t = (place - i as f64) as f32;
-        let row = |i: usize| &self.kernel[i * self.taps..(i + 1) * self.taps];
-        let (a, b) = (dot(row(i), window), dot(row(i + 1), window));
-        a + t * (b - a)
+        self.history.copy_within(self.start..self.filled, 0);
+        (self.filled, self.start) = (self.filled - self.start, 0);
     }
 
-    /// Drops what is behind, and pulls a few samples. A source that is far ahead is read and thrown away
-    /// in pieces.
-    fn refill(&mut self, source: &mut dyn FnMut(&mut [f32])) {
-        let keep_from = self.start.min(self.filled);
-        self.history.copy_within(keep_from..self.filled, 0);
-        self.filled -= keep_from;
-        self.start -= keep_from;
-        let wanted = (self.start + self.taps - self.filled).max(8);
-        let end = (self.filled + wanted).min(self.history.len());
-        source(&mut self.history[self.filled..end]);
-        self.filled = end;
+    /// Fills the history up to `end`.
+    fn pull(&mut self, end: usize, source: &mut dyn FnMut(&mut [f32])) {
+        if end > self.filled {
+            source(&mut self.history[self.filled..end]);
+            self.filled = end;
+        }
     }
 }
 
-/// The kernel of a reader that stands by. With `std` it is made once a program: most voices never read by it, and
-/// each would have to be ready.
-fn small_kernel() -> Arc<[f32]> {
-    let make = || kernels::kernel(TAPS, FEW_PHASES as u64, false, 0.5);
-    #[cfg(feature = "std")]
-    {
-        static KERNEL: std::sync::OnceLock<Arc<[f32]>> = std::sync::OnceLock::new();
-        KERNEL.get_or_init(make).clone()
-    }
-    #[cfg(not(feature = "std"))]
-    make()
+/// Samples that an output looks at where the source ends at `top` of its rate: the images of it begin at `1 - top`.
+fn taps(top: f64) -> usize {
+    let taps = kaiser_length((1.0 - 2.0 * top).max(1e-6)).next_multiple_of(LANES);
+    taps.min(MOST_TAPS)
 }
 
-impl Default for Warp {
-    fn default() -> Self {
-        Self::new()
+/// Where a sample is read: the window's beginning in the history, and how far it is to the next.
+#[derive(Debug, Clone, Copy, Default)]
+struct Place {
+    start: usize,
+    between: u64,
+}
+
+/// Samples to be read in their windows.
+struct Windows<'a> {
+    warp: &'a Warp,
+    places: &'a [Place],
+    out: &'a mut [f32],
+}
+
+impl Work for Windows<'_> {
+    #[inline(always)]
+    fn run(self) {
+        match self.warp.taps {
+            1 => self.copy(),
+            8 => self.read::<8>(),
+            16 => self.read::<16>(),
+            24 => self.read::<24>(),
+            _ => self.read::<MOST_TAPS>(),
+        }
     }
+}
+
+impl Windows<'_> {
+    #[inline(always)]
+    fn copy(self) {
+        for (sample, place) in self.out.iter_mut().zip(self.places) {
+            *sample = self.warp.history[place.start];
+        }
+    }
+
+    #[inline(always)]
+    fn read<const TAPS: usize>(self) {
+        let bits = self.warp.phase_bits;
+        let rows = self.warp.kernel.as_chunks::<TAPS>().0;
+        for (sample, place) in self.out.iter_mut().zip(self.places) {
+            let row = (place.between >> (64 - bits)) as usize;
+            let between = (place.between << bits >> 40) as f32 / (1u32 << 24) as f32;
+            let window = &self.warp.history[place.start..][..TAPS];
+            *sample = dot_between([&rows[row], &rows[row + 1]], between, window);
+        }
+    }
+}
+
+/// The dot product of a window and a row that lies between two, in eight lanes.
+#[inline(always)]
+fn dot_between<const TAPS: usize>(
+    [row, next]: [&[f32; TAPS]; 2],
+    between: f32,
+    window: &[f32],
+) -> f32 {
+    let mut lanes = [0.0f32; LANES];
+    for start in (0..TAPS).step_by(LANES) {
+        for (i, lane) in lanes.iter_mut().enumerate() {
+            let (a, b) = (row[start + i], next[start + i]);
+            *lane += (a + between * (b - a)) * window[start + i];
+        }
+    }
+    (lanes[0] + lanes[4]) + (lanes[1] + lanes[5]) + ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]))
 }
 
 #[cfg(test)]
@@ -163,9 +246,9 @@ mod tests {
 
     #[test]
     fn a_sine_keeps_its_amplitude_and_follows_the_ratio() {
-        let mut warp = Warp::new();
+        let mut warp = Warp::new(0.5);
         let mut source = sine(0.05);
-        let (mut place, mut worst) = (TAPS as f64 / 2.0 - 1.0, 0.0f64);
+        let (mut place, mut worst) = (MOST_TAPS as f64 / 2.0 - 1.0, 0.0f64);
         for i in 0..4_000 {
             let ratio = 0.2 + 1.3 * f64::from(i % 700) / 700.0;
             let mut out = [0.0f32];
@@ -191,7 +274,7 @@ mod tests {
     #[test]
     fn it_begins_to_read_where_it_stands() {
         let rendered = |sizes: &[usize]| {
-            let (mut warp, mut source) = (Warp::when_needed(), sine(0.05));
+            let (mut warp, mut source) = (Warp::when_needed(0.5), sine(0.05));
             let mut out = [0.0f32; 600];
             let (still, moving) = out.split_at_mut(100);
             for (part, ratio) in [(still, 1.0), (moving, 1.3)] {
@@ -221,11 +304,11 @@ mod tests {
 
     #[test]
     fn it_may_skip_far_ahead() {
-        let mut warp = Warp::new();
+        let mut warp = Warp::new(0.5);
         let mut out = [0.0f32; 8];
         warp.process(1_000.0, &mut out, &mut sine(0.001));
         // A whole period on each time.
-        let expected = libm::sin(core::f64::consts::TAU * 0.001 * (TAPS as f64 / 2.0 - 1.0));
+        let expected = libm::sin(core::f64::consts::TAU * 0.001 * (MOST_TAPS as f64 / 2.0 - 1.0));
         let near = |x: &f32| (f64::from(*x) - expected).abs() < 1e-3;
         assert!(out.iter().all(near), "{out:?}");
     }

@@ -41,7 +41,7 @@ impl Follow {
             fastest: highest.max(base),
             ratio: base,
             gain: 1.0,
-            warp: scales.then(Warp::when_needed),
+            warp: scales.then(|| Warp::when_needed((0.5 * base / highest).min(0.5))),
             contact: Glide::new(1.0, ramp),
         };
         if motion.is_some_and(|motion| !follow.set_motion(motion)) {

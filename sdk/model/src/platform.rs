@@ -9,7 +9,7 @@ mod here {
     use alloc::string::{String, ToString};
     use core::cell::RefCell;
     use std::panic::{AssertUnwindSafe, catch_unwind};
-    use std::sync::{Mutex, MutexGuard, PoisonError};
+    use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 
     pub(crate) use std::sync::OnceLock as Once;
 
@@ -32,6 +32,15 @@ mod here {
         /// that is known.
         pub fn lock(&self) -> Option<MutexGuard<'_, T>> {
             Some(self.0.lock().unwrap_or_else(PoisonError::into_inner))
+        }
+
+        /// The value; `None` where another has it now. Does not wait.
+        pub fn try_lock(&self) -> Option<MutexGuard<'_, T>> {
+            match self.0.try_lock() {
+                Ok(value) => Some(value),
+                Err(TryLockError::Poisoned(poisoned)) => Some(poisoned.into_inner()),
+                Err(TryLockError::WouldBlock) => None,
+            }
         }
     }
 
@@ -80,6 +89,11 @@ mod here {
         /// that is known.
         pub fn lock(&self) -> Option<RefMut<'_, T>> {
             self.0.try_borrow_mut().ok()
+        }
+
+        /// The value; `None` where another has it now. Does not wait.
+        pub fn try_lock(&self) -> Option<RefMut<'_, T>> {
+            self.lock()
         }
     }
 

@@ -259,6 +259,8 @@ pub(crate) struct Part {
     /// Rate behind speed scaling, in the rate of the model.
     pub(crate) oversampling: f64,
     pub(crate) mix_rate_hz: f64,
+    /// Highest frequency of the voice, hertz.
+    pub(crate) voice_top_hz: f64,
     /// Highest frequency at the rate of the mix, hertz.
     pub(crate) top_hz: f64,
     /// How much faster than recorded all of it is read.
@@ -294,6 +296,7 @@ impl Part {
             rate_hz: 0.0,
             oversampling: 1.0,
             mix_rate_hz: 0.0,
+            voice_top_hz: asset.band().high_hz,
             top_hz: asset.band().high_hz,
             fixed_ratio: call.pitch,
             fixed_force_gain: 1.0,
@@ -309,6 +312,7 @@ impl Part {
         };
         let source = part.source(scene, call).map_err(failed)?;
         part.rate_hz = source.rate_hz();
+        part.divide_rate(call.rate_hz);
         part.mix_rate_hz = part.rate_hz * part.oversampling;
         let shape = part.compensated(call, asset).map_err(failed)?;
         part.level_rms = loudest(asset, model, source.level_rms()) * part.gain * force_gain * shape;
@@ -351,6 +355,15 @@ impl Part {
         };
         self.oversampling = fastest.ceil().max(1.0);
         self.top_hz *= fastest.max(1.0);
+    }
+
+    /// Oversamples more where a changing speed is read at a rate that is then a whole part of the device's: raising
+    /// that takes a fraction of what another conversion does.
+    fn divide_rate(&mut self, device_hz: f64) {
+        let parts = (device_hz / (self.rate_hz * self.fixed_ratio * self.oversampling)).floor();
+        if self.oversampling > 1.0 && parts >= 1.0 {
+            self.oversampling = device_hz / parts / (self.rate_hz * self.fixed_ratio);
+        }
     }
 
     /// A constant force in the gain; answers the largest gain that forces make.

@@ -204,6 +204,7 @@ fn example_part() -> Part {
         rate_hz: 2_000.0,
         oversampling: 2.0,
         mix_rate_hz: 4_000.0,
+        voice_top_hz: 1_000.0,
         top_hz: 2_000.0,
         fixed_ratio: 1.0,
         fixed_force_gain: 1.0,

@@ -3,9 +3,15 @@
 //! A model brings the [`Curve`]; this crate makes of it the magnitude at unit RMS and the voice.
 #![no_std]
 
+extern crate alloc;
+
+mod places;
+
 use htex_dsp::grid::Band;
-use htex_dsp::shaped_noise::{ShapedNoise, economical_rate_hz};
+use htex_dsp::shaped_noise::{ComponentsKey, ShapedNoise, economical_rate_hz};
 use htex_model::{Error, Values, Voice};
+
+pub use places::Places;
 
 /// A magnitude curve that parameters stand for.
 pub trait Curve: Sized + Send + 'static {
@@ -26,6 +32,18 @@ pub trait Curve: Sized + Send + 'static {
 
     /// RMS of the curve on the band's grid, above 0.
     fn level(&self) -> f64;
+
+    /// Gets ready for [`Self::fill`] at these frequencies, hertz; tables over them may be kept by the key.
+    fn prepare(&mut self, _frequency_hz: &[f64], _key: ComponentsKey) {}
+
+    /// Writes the curve at the frequencies it was prepared for, in any scale. A voice asks for it at most once in 10 ms,
+    /// and not after each [`Self::set`]: what takes time may wait for it, and what is then no spectrum is all zero or not
+    /// finite. `[render thread, no allocation]`
+    fn fill(&mut self, frequency_hz: &[f64], magnitude: &mut [f64]) {
+        for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
+            *m = self.at(f);
+        }
+    }
 }
 
 /// Writes a curve's magnitude at unit RMS; zero outside the band.
@@ -74,21 +92,28 @@ impl<C: Curve> ShapedVoice<C> {
         seed: u64,
     ) -> Result<Self, Error> {
         let band = band.edges().into();
-        let curve = C::new(parameters, band)?;
+        let mut curve = C::new(parameters, band)?;
         let mut noise = ShapedNoise::new(rate_hz, band, seed);
         noise.start(|_, f| curve.at(f));
+        curve.prepare(noise.component_hz(), noise.components_key());
         Ok(Self { curve, noise })
     }
 }
 
 impl<C: Curve> Voice for ShapedVoice<C> {
     fn render(&mut self, out: &mut [f32]) {
-        self.noise.render(out);
+        let Self { curve, noise } = self;
+        noise.render_with(out, &mut |hz, magnitude| curve.fill(hz, magnitude));
     }
 
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
-        self.curve.set(parameters)?;
-        self.noise.retune(|_, f| self.curve.at(f));
-        Ok(())
+        let Self { curve, noise } = self;
+        curve.set(parameters)?;
+        match noise.retune_with(|hz, magnitude| curve.fill(hz, magnitude)) {
+            true => Ok(()),
+            false => Err(Error::parameters(
+                "these parameters describe no spectrum: nothing in the band, or nothing finite",
+            )),
+        }
     }
 }

@@ -43,7 +43,7 @@ fn build(_: &Call, part: &Part, neutral: bool) -> Box<dyn Stage> {
     Box::new(SpeedScaling {
         known: part.explored,
         warp: match scales {
-            true => Warp::new(),
+            true => Warp::new(part.voice_top_hz / part.rate_hz),
             false => Warp::through(),
         },
         scales,

@@ -282,7 +282,7 @@ const CASES: &[Case] = &[
         "render",
         none("finite, no larger than 1.2 times the source"),
         || {
-            let mut warp = Warp::new();
+            let mut warp = Warp::new(0.5);
             let mut n = 0.0;
             let mut source = |block: &mut [f32]| {
                 for x in block {

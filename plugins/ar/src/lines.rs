@@ -1,0 +1,95 @@
+//! Line spectral frequencies of filters that are mixed again and again.
+//!
+//! To find them takes some ten times as long as all else that a change of parameters takes, and a finger that moves
+//! between conditions mixes the same few filters all the time.
+
+use htex_dsp::line_spectrum::lines_of_reflection;
+use htex_dsp::linear_prediction::step_down_in_place;
+use htex_model::Lock;
+
+use crate::MAX_ORDER;
+
+/// Longest filter that is kept.
+const KEPT_ORDER: usize = 32;
+/// Filters that are kept: so many places for each of some hashes.
+const HASHES: usize = 16;
+const PLACES: usize = 4;
+
+static KEPT: Lock<Kept> = Lock::new(Kept::NONE);
+
+/// Filters and their lines, the oldest of a hash to be replaced next.
+struct Kept {
+    filters: [[Filter; PLACES]; HASHES],
+    oldest: [u8; HASHES],
+}
+
+#[derive(Clone, Copy)]
+struct Filter {
+    order: usize,
+    coefficients: [f64; KEPT_ORDER],
+    lines: [f64; KEPT_ORDER],
+}
+
+impl Kept {
+    const NONE: Self = {
+        let none = Filter {
+            order: 0,
+            coefficients: [0.0; KEPT_ORDER],
+            lines: [0.0; KEPT_ORDER],
+        };
+        Self {
+            filters: [[none; PLACES]; HASHES],
+            oldest: [0; HASHES],
+        }
+    };
+}
+
+/// Writes the lines of a filter, as many as it has coefficients, radians; false if it is not stable. Whether they were
+/// kept makes no difference but in time. Does not allocate or wait.
+pub(crate) fn write_lines(coefficients: &[f64], lines: &mut [f64]) -> bool {
+    let order = coefficients.len();
+    let kept = match (1..=KEPT_ORDER).contains(&order) {
+        true => KEPT.try_lock(),
+        false => None,
+    };
+    let Some(mut kept) = kept else {
+        return find_lines(coefficients, lines);
+    };
+    let hash = hash(coefficients);
+    let same = |f: &&Filter| f.order == order && f.coefficients[..order] == *coefficients;
+    if let Some(found) = kept.filters[hash].iter().find(same) {
+        lines.copy_from_slice(&found.lines[..order]);
+        return true;
+    }
+    if !find_lines(coefficients, lines) {
+        return false;
+    }
+    let place = usize::from(kept.oldest[hash]) % PLACES;
+    kept.oldest[hash] = (place as u8) + 1;
+    let new = &mut kept.filters[hash][place];
+    new.order = order;
+    new.coefficients[..order].copy_from_slice(coefficients);
+    new.lines[..order].copy_from_slice(lines);
+    true
+}
+
+fn find_lines(coefficients: &[f64], lines: &mut [f64]) -> bool {
+    let mut reflection = [0.0; MAX_ORDER];
+    let reflection = &mut reflection[..coefficients.len()];
+    reflection.copy_from_slice(coefficients);
+    if !step_down_in_place(reflection) {
+        return false;
+    }
+    for (line, found) in lines.iter_mut().zip(lines_of_reflection(reflection)) {
+        *line = found;
+    }
+    true
+}
+
+/// Of the bits of all coefficients.
+fn hash(coefficients: &[f64]) -> usize {
+    let mix = |hash: u64, a: &f64| {
+        (hash.rotate_left(5) ^ a.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    };
+    (coefficients.iter().fold(0, mix) >> 32) as usize % HASHES
+}

@@ -1,0 +1,48 @@
+//! Frequencies of a voice among the bins of a grid.
+
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+use htex_dsp::grid::{Band, GRID_HZ};
+use htex_dsp::shaped_noise::ComponentsKey;
+use htex_dsp::shared::Shared;
+
+/// Where the frequencies of a voice lie between the bins of the band's grid. Voices of one rate and band share it.
+pub struct Places(Vec<Place>);
+
+/// On the way from a bin to the next.
+struct Place {
+    below: u32,
+    part: f64,
+}
+
+impl Places {
+    /// Those of frequencies, hertz, by their key.
+    pub fn shared(frequency_hz: &[f64], key: ComponentsKey, band: Band) -> Arc<Self> {
+        static PLACES: Shared<ComponentsKey, Places> = Shared::new();
+        PLACES.get(key, || Arc::new(Self::new(frequency_hz, band)))
+    }
+
+    fn new(frequency_hz: &[f64], band: Band) -> Self {
+        let first = band.first_bin() as f64;
+        let last = band.bins().saturating_sub(1) as f64;
+        let place = |hz: &f64| {
+            let place = (hz / GRID_HZ - first).clamp(0.0, last);
+            Place {
+                below: place as u32,
+                part: place - f64::from(place as u32),
+            }
+        };
+        Self(frequency_hz.iter().map(place).collect())
+    }
+
+    /// Writes the values of a curve that is given on the grid and straight between bins.
+    pub fn read(&self, grid: &[f64], values: &mut [f64]) {
+        let last = grid.len().saturating_sub(1);
+        for (value, place) in values.iter_mut().zip(&self.0) {
+            let below = (place.below as usize).min(last);
+            let (a, b) = (grid[below], grid[(below + 1).min(last)]);
+            *value = a + place.part * (b - a);
+        }
+    }
+}

@@ -273,10 +273,13 @@ fn fit(
     Ok(copy(&fit.parameters, call.parameters.get("parameters")?))
 }
 
+/// [`Model::interpolate`].
+type Interpolate = fn(&[Values<'_>], &[f64], &mut Numbers<'_>) -> Result<(), Error>;
+
 /// Mixes by the model's own function.
 fn interpolate(
     descriptor: &StaticDescriptor,
-    own: fn(&[Values<'_>], &[f64], &mut Numbers<'_>) -> Result<(), Error>,
+    own: Interpolate,
     sets: Input<'_, f64>,
     weights: Input<'_, f64>,
     parameters: Output<'_, f64>,

@@ -4,6 +4,7 @@
 pub mod measure;
 pub mod surface;
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
@@ -11,6 +12,13 @@ use serde_json::Value;
 /// The workspace's folder.
 pub fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// Bytes that some data takes as a zlib stream of level 9.
+pub fn deflated_bytes(data: &[u8]) -> usize {
+    let mut stream = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
+    stream.write_all(data).unwrap();
+    stream.finish().unwrap().len()
 }
 
 /// One golden case: an input, what must come out, and how nearly.

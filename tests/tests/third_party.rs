@@ -8,7 +8,10 @@ use std::process::Command;
 
 use htex_host::{Band, Fit, FitRequest, HostError, LoadedModel, Status, Stream};
 use htex_tests::measure::{RATE_HZ, distance_db, measured_spectrum, rms};
-use htex_tests::{smooth_spectrum, workspace};
+use htex_tests::{deflated_bytes, smooth_spectrum, workspace};
+
+/// Most deflated bytes of a module as the template gives it, without any flag.
+const TEMPLATE_BYTES: usize = 42_000;
 
 /// Where what these tests build is kept between runs.
 const BUILDS: &str = env!("CARGO_TARGET_TMPDIR");
@@ -79,6 +82,16 @@ fn the_template_in_rust() {
     let model = load(&build_rust(&project, None));
     assert_eq!(model.id(), "com.example.trial");
     holds(&model, 0.02);
+    if has_wasm_target() {
+        let module = build_rust(&project, Some(WASM));
+        is_the_same(&model, &load(&module));
+        let bytes = deflated_bytes(&fs::read(&module).unwrap());
+        println!("{:20} {bytes} bytes deflated", model.id());
+        assert!(
+            bytes < TEMPLATE_BYTES,
+            "the template's module: {bytes} bytes"
+        );
+    }
 }
 
 // ---- what each must do ----

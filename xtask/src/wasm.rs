@@ -13,7 +13,7 @@ pub(crate) const PROFILE: &str = "module";
 /// a third less code in loops that are as fast.
 const FLAGS: (&str, &str) = (
     "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS",
-    "-Ctarget-feature=+simd128 -Cllvm-args=-inline-threshold=50",
+    "-Ctarget-feature=+simd128 -Cllvm-args=-inline-threshold=100",
 );
 
 const NO_TOOLCHAIN: &str = "no way to build WASM modules was found: `rustup target add \

@@ -7,6 +7,8 @@
 
 #[macro_use]
 extern crate alloc;
+#[cfg(test)]
+extern crate std;
 
 mod axis;
 mod fit;

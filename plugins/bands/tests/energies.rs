@@ -31,7 +31,7 @@ fn fit(magnitude: &[f64], band: Band, options: [f64; 3]) -> Result<Fit, Error> {
 
 /// The shape's magnitude on the grid.
 fn shape(parameters: &[f64], band: Band) -> Vec<f64> {
-    let descriptor = BandEnergies::descriptor();
+    let descriptor = BandEnergies::DESCRIPTOR;
     let values = Values::read(&descriptor, parameters).unwrap();
     let grid = band.grid_hz();
     let mut magnitude = vec![f64::NAN; grid.len()];
@@ -186,7 +186,7 @@ fn lines_over_noise_nearly_keep_the_energies_of_nine_bands() {
 /// Noise is read in its own bin by two thirds, and by a sixth in each neighbour.
 #[test]
 fn what_a_voice_plays_reads_as_stated() {
-    let (band, descriptor) = (Band::TACTILE, BandEnergies::descriptor());
+    let (band, descriptor) = (Band::TACTILE, BandEnergies::DESCRIPTOR);
     let parameters = [
         9.0, 0.0, 10.0, 20.0, 12.0, 24.0, 36.0, 30.0, 40.0, 60.0, 0.5, 0.0,
     ];
@@ -246,7 +246,7 @@ fn silence_is_refused_and_scale_is_of_no_account() {
 
 #[test]
 fn mixes_are_of_decibels_and_of_the_same_bands() {
-    let descriptor = BandEnergies::descriptor();
+    let descriptor = BandEnergies::DESCRIPTOR;
     let read = |parameters: &'static [f64]| Values::read(&descriptor, parameters).unwrap();
     let mix = |a: &'static [f64], b: &'static [f64]| {
         let mut room = [0.0; 8];

@@ -121,7 +121,7 @@ pub(crate) fn rounded(number: f64) -> Decimal {
         exponent -= 1;
     }
     let mut digits = (size + 0.5) as u64;
-    while digits != 0 && digits % 10 == 0 {
+    while digits != 0 && digits.is_multiple_of(10) {
         digits /= 10;
         exponent += 1;
     }

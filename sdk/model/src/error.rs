@@ -62,16 +62,19 @@ impl Error {
     }
 
     /// The spectrum holds nothing this model can be fitted to.
+    #[cold]
     pub fn cannot_fit(message: impl Into<String>) -> Self {
         Self::new(Status::CannotFit, message)
     }
 
     /// An argument is not usable.
+    #[cold]
     pub fn argument(message: impl Into<String>) -> Self {
         Self::new(Status::InvalidArgument, message)
     }
 
     /// Parameters are not usable.
+    #[cold]
     pub fn parameters(message: impl Into<String>) -> Self {
         Self::new(Status::InvalidParameters, message)
     }

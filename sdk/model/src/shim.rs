@@ -13,7 +13,7 @@ use crate::arguments::{
 use crate::platform::{caught, with_last_error};
 use crate::voices::Voices;
 use crate::voices_1::{MAX_VOICES, VoicesTable};
-use crate::{Error, FitInput, Model, Numbers, Status, Values, Voice, text};
+use crate::{Error, Fit, FitInput, Model, Numbers, StaticDescriptor, Status, Values, Voice, text};
 
 /// Sets that can be mixed without allocating.
 const FEW_SETS: usize = 8;
@@ -44,8 +44,7 @@ impl<'a, T> Input<'a, T> {
     }
 
     fn get(self, name: &str) -> Result<&'a [T], Error> {
-        self.0
-            .ok_or_else(|| Error::argument(text!["`", name, "` is not a usable array"]))
+        self.0.ok_or_else(|| unusable(name, "array"))
     }
 }
 
@@ -67,9 +66,12 @@ impl<'a, T> Output<'a, T> {
     }
 
     fn get(self, name: &str) -> Result<&'a mut [T], Error> {
-        self.0
-            .ok_or_else(|| Error::argument(text!["`", name, "` is not a usable buffer"]))
+        self.0.ok_or_else(|| unusable(name, "buffer"))
     }
+}
+
+fn unusable(name: &str, kind: &str) -> Error {
+    Error::argument(text!["`", name, "` is not a usable ", kind])
 }
 
 fn fits<T>(len: usize) -> bool {
@@ -100,7 +102,7 @@ impl<M: Model> State<M> {
     }
 
     fn values<'a>(&self, parameters: Input<'a, f64>) -> Result<Values<'a>, Error> {
-        Values::read(&M::DESCRIPTOR, parameters.get("parameters")?)
+        values(&M::DESCRIPTOR, parameters)
     }
 
     /// See [`crate::abi::DescriptorJson`].
@@ -110,27 +112,7 @@ impl<M: Model> State<M> {
 
     /// See [`crate::abi::FitFn`].
     pub fn fit(&self, call: FitCall<'_>) -> i64 {
-        answer(|| {
-            let input = FitInput {
-                band: band(call.band)?,
-                frequency_hz: call.frequency_hz.get("frequency_hz")?,
-                magnitude: call.magnitude.get("magnitude")?,
-                signal: call.signal.get("signal")?,
-                signal_rate_hz: call.signal_rate_hz,
-                options: call.options.get("options")?,
-            };
-            check_fit_input(&input, &M::DESCRIPTOR)?;
-            let fit = M::fit(&input)?;
-            Values::read(&M::DESCRIPTOR, &fit.parameters)?;
-            if !fit.level_rms.is_finite() || fit.level_rms < 0.0 {
-                return Err(Error::cannot_fit("the fitted level is not a number"));
-            }
-            let level = call.level_rms.get("level_rms")?;
-            if let Some(level) = level.first_mut() {
-                *level = fit.level_rms;
-            }
-            Ok(copy(&fit.parameters, call.parameters.get("parameters")?))
-        })
+        answer(|| fit(&M::DESCRIPTOR, M::fit, call))
     }
 
     /// See [`crate::abi::MagnitudeFn`].
@@ -158,27 +140,7 @@ impl<M: Model> State<M> {
         weights: Input<'_, f64>,
         parameters: Output<'_, f64>,
     ) -> i64 {
-        answer(|| {
-            let weights = weights.get("weights")?;
-            check_weights(weights)?;
-            let flat = sets.get("sets")?;
-            // Hosts mix two or three sets, and may do so while they render: nothing is allocated.
-            let (mut few, mut many) = ([Values::NONE; FEW_SETS], Vec::new());
-            let sets = match few.get_mut(..weights.len()) {
-                Some(few) => few,
-                None => {
-                    many.resize(weights.len().min(flat.len()), Values::NONE);
-                    &mut many[..]
-                }
-            };
-            read_sets(&M::DESCRIPTOR, flat, sets)?;
-            let mut mixed = Numbers::new(parameters.get("parameters")?);
-            M::interpolate(sets, weights, &mut mixed)?;
-            if mixed.count() == mixed.written().len() {
-                Values::read(&M::DESCRIPTOR, mixed.written())?;
-            }
-            Ok(mixed.count() as i64)
-        })
+        answer(|| interpolate(&M::DESCRIPTOR, M::interpolate, sets, weights, parameters))
     }
 
     /// See [`crate::abi::VoiceRateFn`].
@@ -276,6 +238,73 @@ impl<M: Model> State<M> {
     }
 }
 
+fn values<'a>(
+    descriptor: &StaticDescriptor,
+    parameters: Input<'a, f64>,
+) -> Result<Values<'a>, Error> {
+    Values::read(descriptor, parameters.get("parameters")?)
+}
+
+/// Fits by the model's own function. Not generic, so that it stands once in a module, at this crate's level
+/// of optimisation.
+fn fit(
+    descriptor: &StaticDescriptor,
+    own: fn(&FitInput<'_>) -> Result<Fit, Error>,
+    call: FitCall<'_>,
+) -> Result<i64, Error> {
+    let input = FitInput {
+        band: band(call.band)?,
+        frequency_hz: call.frequency_hz.get("frequency_hz")?,
+        magnitude: call.magnitude.get("magnitude")?,
+        signal: call.signal.get("signal")?,
+        signal_rate_hz: call.signal_rate_hz,
+        options: call.options.get("options")?,
+    };
+    check_fit_input(&input, descriptor)?;
+    let fit = own(&input)?;
+    Values::read(descriptor, &fit.parameters)?;
+    if !fit.level_rms.is_finite() || fit.level_rms < 0.0 {
+        return Err(Error::cannot_fit("the fitted level is not a number"));
+    }
+    let level = call.level_rms.get("level_rms")?;
+    if let Some(level) = level.first_mut() {
+        *level = fit.level_rms;
+    }
+    Ok(copy(&fit.parameters, call.parameters.get("parameters")?))
+}
+
+/// [`Model::interpolate`].
+type Interpolate = fn(&[Values<'_>], &[f64], &mut Numbers<'_>) -> Result<(), Error>;
+
+/// Mixes by the model's own function.
+fn interpolate(
+    descriptor: &StaticDescriptor,
+    own: Interpolate,
+    sets: Input<'_, f64>,
+    weights: Input<'_, f64>,
+    parameters: Output<'_, f64>,
+) -> Result<i64, Error> {
+    let weights = weights.get("weights")?;
+    check_weights(weights)?;
+    let flat = sets.get("sets")?;
+    // Hosts mix two or three sets, and may do so while they render: nothing is allocated.
+    let (mut few, mut many) = ([Values::NONE; FEW_SETS], Vec::new());
+    let sets = match few.get_mut(..weights.len()) {
+        Some(few) => few,
+        None => {
+            many.resize(weights.len().min(flat.len()), Values::NONE);
+            &mut many[..]
+        }
+    };
+    read_sets(descriptor, flat, sets)?;
+    let mut mixed = Numbers::new(parameters.get("parameters")?);
+    own(sets, weights, &mut mixed)?;
+    if mixed.count() == mixed.written().len() {
+        Values::read(descriptor, mixed.written())?;
+    }
+    Ok(mixed.count() as i64)
+}
+
 /// See [`crate::abi::AllocFn`].
 pub fn alloc(len: usize) -> *mut u8 {
     match room(len) {
@@ -317,10 +346,13 @@ pub fn extension(id: Input<'_, u8>) -> i64 {
 
 /// Runs a call; an error or a panic becomes a status and the last-error text.
 fn answer(call: impl FnOnce() -> Result<i64, Error>) -> i64 {
-    caught(call).unwrap_or_else(|error| {
-        with_last_error(|text| *text = error.message);
-        error.status as i64
-    })
+    caught(call).unwrap_or_else(failed)
+}
+
+/// Keeps an error's text; returns its status.
+fn failed(error: Error) -> i64 {
+    with_last_error(|text| *text = error.message);
+    error.status as i64
 }
 
 fn bad_handle() -> Error {
@@ -338,7 +370,7 @@ fn copy<T: Copy>(from: &[T], out: &mut [T]) -> i64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Band, StaticDescriptor};
+    use crate::Band;
 
     /// A model whose voices count.
     struct Counting;

@@ -41,6 +41,7 @@ impl From<f64> for Part<'_> {
 }
 
 /// The parts one behind the other. [`text!`](crate::text!) is shorter to write.
+#[cold]
 pub fn concat(parts: &[Part<'_>]) -> String {
     let mut text = String::new();
     for part in parts {

@@ -95,7 +95,7 @@ impl<'a> Values<'a> {
     ///
     /// # Errors
     /// Names the field that is missing, too long, out of range or not finite.
-    pub fn read(descriptor: &impl Fields, flat: &'a [f64]) -> Result<Self, Error> {
+    pub fn read(descriptor: &dyn Fields, flat: &'a [f64]) -> Result<Self, Error> {
         let (values, used) = Self::read_first(descriptor, flat)?;
         if used == flat.len() {
             return Ok(values);
@@ -112,7 +112,7 @@ impl<'a> Values<'a> {
     ///
     /// # Errors
     /// As [`Self::read`].
-    pub fn read_first(descriptor: &impl Fields, flat: &'a [f64]) -> Result<(Self, usize), Error> {
+    pub fn read_first(descriptor: &dyn Fields, flat: &'a [f64]) -> Result<(Self, usize), Error> {
         if descriptor.count() > MAX_FIELDS {
             return Err(Error::parameters(text![
                 descriptor.id(),

@@ -1,0 +1,43 @@
+//! Models as WASM modules stay small enough to travel in assets.
+#![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
+
+use htex_tests::deflated_bytes;
+use xtask::plugins;
+
+/// Most deflated bytes of each model's module: what it had when it was measured, and about a fiftieth more
+/// for other compilers. Who raises one says in `docs/modules.md` what the bytes are for.
+const BOUNDS: [(&str, usize); 6] = [
+    ("ar", 44_600),
+    ("mfcc", 37_700),
+    ("speak", 21_300),
+    ("sbeta", 34_500),
+    ("sslope", 28_800),
+    ("bands", 33_400),
+];
+
+#[test]
+fn modules_stay_small() {
+    let folder = match plugins::wasm() {
+        Ok(folder) => folder,
+        Err(reason) if std::env::var_os("HTEX_REQUIRE_WASM").is_some_and(|v| v == "1") => {
+            panic!("{reason}")
+        }
+        Err(reason) => return println!("skipped: {reason}"),
+    };
+    assert_eq!(BOUNDS.map(|(model, _)| model), plugins::MODELS);
+    for (model, bound) in BOUNDS {
+        let module = std::fs::read(folder.join(format!("htex_{model}.wasm"))).unwrap();
+        let bytes = deflated_bytes(&module);
+        println!("{model:8} {:7} bytes, deflated {bytes:6}", module.len());
+        assert!(
+            bytes <= bound,
+            "{model}: {bytes} deflated bytes; {bound} are allowed"
+        );
+        // No program that writes numbers or JSON, and no panic's text, is linked in.
+        for foreign in ["serde", "core::fmt", "panicked at", "called `Option"] {
+            let foreign = foreign.as_bytes();
+            let found = module.windows(foreign.len()).any(|part| part == foreign);
+            assert!(!found, "{model} holds {:?}", str::from_utf8(foreign));
+        }
+    }
+}

@@ -1,5 +1,5 @@
 //! What the pages in `docs` name is there: tests, files, functions, options and their defaults.
-#![allow(clippy::unwrap_used)] // Helpers of tests are tests.
+#![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
 use std::collections::BTreeSet;
 use std::path::Path;

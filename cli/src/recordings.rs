@@ -60,8 +60,8 @@ pub(crate) struct RecordingArgs {
     #[arg(long, value_enum, default_value = "auto")]
     segments: SegmentsArg,
 
-    /// How segments are averaged; `rms` reads noise at its level, `magnitude` is the paper's mean and
-    /// reads noise 1.05 dB lower, `complex` keeps only what is in phase in all segments
+    /// How segments are averaged; `rms` reads noise at its level, `magnitude` is the mean that the paper is
+    /// taken to use and reads noise 1.05 dB lower, `complex` keeps only what is in phase in all segments
     #[arg(long, value_enum, default_value = "rms")]
     averaging: AveragingArg,
 

@@ -42,10 +42,15 @@ const FAULTS: &[(&str, &str, Outcome)] = &[
     ("TOGETHER", "voices-together", Outcome::Failed),
     ("FREED_HANDLE", "handles", Outcome::Failed),
     ("CLICK", "retune", Outcome::Failed),
+    ("RETUNE_IGNORED", "retune-follows", Outcome::Failed),
     ("INTERPOLATE_ENDS", "interpolate", Outcome::Failed),
     ("ACCEPTS_NAN", "bad-parameters", Outcome::Failed),
     ("ACCEPTS_BAND", "bad-band", Outcome::Failed),
     ("ACCEPTS_RATE", "bad-rate", Outcome::Failed),
+    #[cfg(target_os = "linux")]
+    ("RENDER_ALLOCATES", "allocation", Outcome::Failed),
+    #[cfg(target_os = "linux")]
+    ("RETUNE_ALLOCATES", "allocation", Outcome::Failed),
     ("LEAK", "memory", Outcome::Failed),
     ("VOICES_LEAK", "memory", Outcome::Failed),
 ];
@@ -186,10 +191,47 @@ fn each_fault_is_found_by_its_own_check() {
     }
     let unbroken = CHECKS
         .iter()
+        .filter(|c| cfg!(target_os = "linux") || c.name != "allocation")
         .filter(|c| !FAULTS.iter().any(|(_, name, _)| name == &c.name));
     let unbroken: Vec<&str> = unbroken.map(|check| check.name).collect();
     // A twin needs two models; a cost is only ever a warning.
     assert_eq!(unbroken, ["cost", "twin"]);
+}
+
+/// A module that takes memory while it renders, from C; `None` where there is no compiler for it.
+fn growing_module(folder: &Path) -> Option<PathBuf> {
+    let runs = |program| Command::new(program).arg("--version").output().is_ok();
+    if !(runs("clang") && runs("wasm-ld")) {
+        return None;
+    }
+    let out = folder.join("grows.wasm");
+    let status = Command::new("clang")
+        .args(["--target=wasm32", "-std=c11", "-O2", "-Wall", "-Werror"])
+        .args([
+            "-ffp-contract=off",
+            "-fno-math-errno",
+            "-fvisibility=hidden",
+        ])
+        .args(["-ffreestanding", "-nostdlib", "-Wl,--no-entry"])
+        .arg("-I")
+        .arg(workspace().join("spec/include"))
+        .arg(workspace().join("tests/bad-plugins/grows.c"))
+        .args(["-o".as_ref(), out.as_os_str()])
+        .status();
+    assert!(status.unwrap().success(), "grows.c does not compile");
+    Some(out)
+}
+
+#[test]
+fn a_module_that_takes_memory_while_it_renders_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some(file) = growing_module(folder.path()) else {
+        println!("skipped: clang and lld are not installed");
+        return;
+    };
+    let report = checked(&file, 120);
+    println!("{}", report.to_text());
+    assert_eq!(report.bad(), ["allocation"], "{}", report.to_text());
 }
 
 #[test]

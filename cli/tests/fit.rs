@@ -167,7 +167,7 @@ fn a_fit_that_misses_its_bands_is_told_with_what_does_better() {
 }
 
 #[test]
-fn every_knob_the_paper_names_changes_the_fit() {
+fn knobs_change_the_fit() {
     let place = Place::new();
     let csv = place.recording("fine-fabric");
     let parameters = |model: &str, options: &[&str]| {

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 #include "htex_model.h"
 #include "htex_voices_1.h"
@@ -222,7 +223,12 @@ int64_t htex_model_voice_render(int64_t handle, float *out, size_t frames) {
         if (voice->click) out[i] += 30, voice->click = 0;
     }
 #ifdef FAULT_LEAK
-    kept = memset(malloc(1024), 1, 1024);
+    /* From the system itself, which the count of the allocator's calls does not see. */
+    kept = mmap(NULL, 4096, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (kept != MAP_FAILED) memset(kept, 1, 4096);
+#elif defined FAULT_RENDER_ALLOCATES
+    kept = malloc(1024);
+    free(kept);
 #endif
     return answer;
 }
@@ -231,8 +237,18 @@ int64_t htex_model_voice_render(int64_t handle, float *out, size_t frames) {
 int64_t htex_model_voice_retune(int64_t handle, const double *parameters, size_t parameters_len) {
     struct voice *voice = live(handle);
     if (!voice) return HTEX_BAD_HANDLE;
+#ifdef FAULT_RETUNE_IGNORED
+    /* Looks at the parameters, and plays on with the old ones. */
+    double hz = 100, magnitude;
+    int64_t answer = GOOD(htex_model_magnitude)(parameters, parameters_len, 20, 1000, &hz, &magnitude, 1);
+#else
     int64_t answer = GOOD(htex_model_voice_retune)(voice->good, tolerant(parameters, parameters_len),
                                                    parameters_len);
+#endif
+#ifdef FAULT_RETUNE_ALLOCATES
+    kept = strdup("parameters");
+    free(kept);
+#endif
 #ifdef FAULT_CLICK
     if (answer == 0) voice->click = 1;
 #endif

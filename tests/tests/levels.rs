@@ -87,7 +87,7 @@ fn off_db(level: f64, wanted: f64) -> f64 {
     (20.0 * (level / wanted).log10()).abs()
 }
 
-/// What the paper's definitions say the level is, for the stored shape, each computed by another way
+/// What each model's definition says the level of its fit is, for the stored shape, each computed by another way
 /// than the model's own; one of them where a fit may end in several ways.
 fn wanted(model: &LoadedModel, grid: &[f64], magnitude: &[f64], stored: &Stored) -> Vec<f64> {
     let bin = |hz: f64| (hz / 5.0) as usize - 4;

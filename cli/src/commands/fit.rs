@@ -38,7 +38,7 @@ pub(crate) struct Fit {
     option: Vec<String>,
 
     /// Level of a representation: the recording's RMS in the band, so that it plays as strong as the
-    /// recording, or that of its own fit, as in the paper. Bands, which keeps energies, always has
+    /// recording, or that of its own fit. Bands, which keeps energies, always has
     /// that of its fit
     #[arg(long, value_enum, default_value = "recording")]
     level: LevelArg,

@@ -14,7 +14,7 @@ const EDGES_FROM: usize = 20;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Layout {
     /// Evenly in the logarithm of frequency, within the band: at the apexes of triangles that
-    /// overlap by half and whose outermost feet are the band's edges (paper: nine critical bands).
+    /// overlap by half and whose outermost feet are the band's edges (paper, Linear regression).
     Within,
     /// From edge to edge, evenly in `ln(f + 20 Hz)`.
     Edges,

@@ -53,7 +53,7 @@ impl Model for SpectralBeta {
             "1",
             (0.0, 1.0),
             0.12,
-            "Least relative distance of two such peaks (paper: 12 %).",
+            "Least relative distance of two such peaks (paper: 12 %, for sPeak).",
         ),
         StaticOption::number(
             "lower_bound",

@@ -4,7 +4,7 @@ use htex_device::{Capabilities, DeviceError, Quantity, Rates, Settings};
 
 use crate::driver::Driver;
 
-/// The rate of the paper's signals, hertz.
+/// The rate at which the paper records forces, hertz; it gives none for its output.
 const DEFAULT_RATE_HZ: f64 = 20_000.0;
 /// Frames a block is best made of.
 const BLOCK_FRAMES: u32 = 256;

@@ -13,7 +13,7 @@ pub enum Level {
     /// ([`htex_host::Descriptor::keeps_level`]) keeps that of its fit.
     #[default]
     Recording,
-    /// That of the model's own fit (the paper's definitions), for the parameters as they are stored.
+    /// That of the model's own fit, for the parameters as they are stored. (The paper gives no rule for levels.)
     Fitted,
 }
 

@@ -7,8 +7,8 @@ use htex_dsp::fidelity::{log_spectral_distance_db, third_octave_error_rms_db};
 
 use crate::spectrum::SpectrumRef;
 
-/// Agreement of one spectrum with a reference: the paper's measures (spectral correlation, nine critical
-/// bands), and two that no model is fitted to.
+/// Agreement of one spectrum with a reference: the paper's spectral correlation; errors in the nine bands of its
+/// regression, in decibels (the paper takes standardised absolute differences); and two that no model is fitted to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agreement {
     /// Pearson correlation of the linear magnitudes.

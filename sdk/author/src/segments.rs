@@ -14,8 +14,8 @@ const HALF_AVERAGE_S: f64 = 0.025;
 /// A recording has sweeps if between them its friction falls below this part of the threshold; above it
 /// the finger slides.
 const REST_LEVEL: f64 = 0.5;
-/// Sliding that a sweep's one segment stands for at most, seconds: ten segments. The paper's sweeps, 100 mm
-/// at 80 mm/s, last 1.25 s.
+/// Sliding that a sweep's one segment stands for at most, seconds: ten segments. A sweep across
+/// the paper's samples, 100 mm at 80 mm/s, lasts 1.25 s at most.
 const SPOKEN_FOR_S: f64 = 2.0;
 /// Least part of the sliding that the segments must stand for, or sweeps leave most of it unread.
 const SPOKEN_FOR: f64 = 0.5;

@@ -24,8 +24,8 @@ const GRID_TOLERANCE: f64 = 1e-3;
 /// How segments are averaged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Averaging {
-    /// Mean of the magnitudes (paper, Texture processing). Reads noise 1.05 dB, a factor of √π/2, below
-    /// its RMS: the mean of a Rayleigh distribution.
+    /// Mean of the magnitudes: one reading of "averaged the FFTs" (paper, Texture processing). Reads noise
+    /// 1.05 dB, a factor of √π/2, below its RMS: the mean of a Rayleigh distribution.
     Magnitude,
     /// Root of the mean power: reads noise and tones at their RMS.
     #[default]

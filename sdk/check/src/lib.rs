@@ -9,8 +9,10 @@
 //! assert!(CHECKS.iter().any(|check| check.name == "level"));
 //! assert!(model_checks_page().contains("| level |"));
 //! ```
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)] // But in `allocator`.
 
+#[cfg(all(target_os = "linux", target_pointer_width = "64"))]
+mod allocator;
 mod bench;
 mod case;
 mod checks;

@@ -2,7 +2,7 @@
 
 use crate::case::Case;
 use crate::checks::{
-    abi, change, fit, magnitude, refusal, repeat, resources, sound, together, twin,
+    abi, allocation, change, fit, magnitude, refusal, repeat, resources, sound, together, twin,
 };
 use crate::finding::Found;
 
@@ -117,6 +117,12 @@ checks! {
         "A retune does not click.",
         "Three sets of parameters in turn, every 500 samples at 20 kHz: no second difference is more \
          than twice the sharpest of the steady sounds.";
+    "retune-follows" needs ["spectrum", "retune"] change::follows:
+        "After a retune the sound has the spectrum of the new parameters.",
+        "One voice is retuned to each fitted reference in turn. A second later, a minute of it is within 1 dB RMS of the \
+         magnitude of the new parameters, judged as in `spectrum`: a model that passes there with a fresh voice passes here. \
+         A reference counts if its magnitude is at least 3 dB RMS from that of the one before, by the same measure; if \
+         there is none, there is nothing to follow.";
     "interpolate" needs ["magnitude", "render"] change::interpolate:
         "Mixing meets its ends, and everything between can be played.",
         "Weights 1 and 0 give the magnitudes of the sets themselves within 1e-6 of the largest. Eleven \
@@ -134,6 +140,13 @@ checks! {
     "bad-rate" needs ["render"] refusal::rate:
         "Rates that are none are refused.",
         "NaN, 0, -1, infinity and 1e12 Hz in `voice_rate` and `voice_new`.";
+    "allocation" needs ["render", "retune"] allocation::none:
+        "Rendering and retuning do not allocate.",
+        "After 64 blocks with retunes through all fitted references, 1,000 more in sizes of 1, 64, 256 and 1,000. Native, on \
+         64-bit Linux: calls of the C library's `malloc`, `calloc`, `realloc`, `aligned_alloc`, `posix_memalign` and `free`, by the \
+         model or a library that it calls, in the thread that renders; none is allowed. Not seen: threads of the model's own, and an \
+         allocator of its own that takes pages from the system by itself. WASM: the module's memory must not grow. What it takes \
+         and gives back within its memory is not seen; its native twin shows that.";
     "memory" needs ["render"] resources::memory:
         "Memory does not grow.",
         "Resident memory of the process over 10,000 blocks of 256 samples with retunes, and over 2,000 \

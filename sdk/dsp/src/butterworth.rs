@@ -1,5 +1,5 @@
-//! Butterworth low-pass and high-pass filters of order 1 to 20 (paper, Spectral slope), analogue
-//! magnitudes and digital second-order sections.
+//! Butterworth low-pass and high-pass filters of order 1 to 20, analogue magnitudes and digital
+//! second-order sections. The paper (Spectral slope) uses a high-pass and a low-pass and names no family.
 //!
 //! The digital design is the bilinear transform with the cut-off prewarped, as
 //! `scipy.signal.butter(..., output="sos")` does it: at the cut-off the magnitude is 1/√2 exactly.

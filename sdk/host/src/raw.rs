@@ -54,6 +54,10 @@ pub(crate) trait RawVoice: Send {
     fn together(&self) -> Option<Together> {
         None
     }
+    /// Bytes of the memory that the voice has to itself; `None` outside a sandbox.
+    fn memory_bytes(&self) -> Option<usize> {
+        None
+    }
     fn last_error(&self, out: &mut [u8]) -> i64;
 }
 

@@ -81,6 +81,12 @@ impl ModelVoice {
         }
     }
 
+    /// For checkers of models: size of the WASM memory that this voice has to itself, bytes; `None` for a native
+    /// voice, which shares the process's.
+    pub fn memory_bytes(&self) -> Option<usize> {
+        self.raw.memory_bytes()
+    }
+
     /// For checkers of models: frees the voice early and keeps its handle, so that later calls show
     /// whether the model refuses a handle that was freed. An app drops the voice instead.
     ///

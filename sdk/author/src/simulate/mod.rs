@@ -1,7 +1,8 @@
 //! Simulated recordings: a finger that sweeps to and fro over one of five surfaces.
 //!
-//! For tests, examples and first steps without a rig. The surfaces resemble the five of the paper in
-//! level and in where their energy lies; they are no measurement, and every file says so.
+//! For tests, examples and first steps without a rig. The surfaces have the order of
+//! levels, and the energy at the frequencies, that the paper's Results describe of its five; they are not
+//! measured, and every file says so.
 //!
 //! A hand moves and presses unevenly; the friction coefficient varies along the surface
 //! as a fixed relief that the finger reads at its position, so its spectrum moves with the speed and

@@ -2,10 +2,11 @@
 
 use htex_host::Band;
 
-use crate::case::Case;
+use crate::case::{Case, RATE_HZ};
 use crate::checks::magnitude::fine_grid;
+use crate::checks::sound::{SECONDS, SPECTRUM_DB, spectrum_distance_db};
 use crate::finding::{Finding, Found};
-use crate::signal::sharpest_bend;
+use crate::signal::{distance_db, sharpest_bend};
 
 /// Samples at the rate of the recordings: two seconds.
 const SAMPLES: usize = 40_000;
@@ -13,6 +14,9 @@ const SAMPLES: usize = 40_000;
 const BETWEEN: usize = 500;
 /// How much sharper than the steady sounds a retune may bend.
 const SHARPER: f32 = 2.0;
+/// Distance of two magnitudes from which on a retune from one to the other must be measured, dB RMS: three times what a
+/// sound may be off.
+const APART_DB: f64 = 3.0;
 /// Distance of a mixture's magnitude at its ends, relative to the largest.
 const AT_ENDS: f64 = 1e-6;
 /// Largest sample of a sound of unit RMS.
@@ -51,6 +55,49 @@ pub(crate) fn retune(case: &Case) -> Found {
         ))
     };
     Ok(finding.with("bend_ratio", f64::from(ratio)))
+}
+
+/// After a retune the sound has the spectrum of the new parameters.
+pub(crate) fn follows(case: &Case) -> Found {
+    let sets = case.fitted()?;
+    let magnitudes = sets.iter().map(|set| case.magnitude(&set.parameters));
+    let magnitudes = magnitudes.collect::<Result<Vec<_>, _>>()?;
+    let mut stream = case.stream(&sets[0].parameters, case.seed)?;
+    let (mut worst, mut judged) = (0.0f64, 0.0);
+    let mut settling = vec![0.0; RATE_HZ as usize];
+    let mut sound = vec![0.0; (SECONDS * RATE_HZ) as usize];
+    for i in 1..=sets.len() {
+        let (before, now) = (i - 1, i % sets.len());
+        stream.retune(&sets[now].parameters)?;
+        stream.render(&mut settling)?;
+        let apart = distance_db(&magnitudes[before], &magnitudes[now]);
+        if apart.is_nan() || apart < APART_DB {
+            continue;
+        }
+        stream.render(&mut sound)?;
+        let distance = spectrum_distance_db(&sound, &magnitudes[now]);
+        // Written so that a distance that is not a number fails.
+        if !matches!(distance.partial_cmp(&SPECTRUM_DB), Some(o) if o.is_le()) {
+            return Err(Finding::failed(format!(
+                "retuned from `{}` to `{}`, the sound is {distance:.2} dB RMS from the magnitude of the new \
+                 parameters; {SPECTRUM_DB} dB is allowed",
+                sets[before].reference, sets[now].reference
+            ))
+            .with("distance_db", distance));
+        }
+        worst = worst.max(distance);
+        judged += 1.0;
+    }
+    if judged == 0.0 {
+        return Ok(Finding::skipped(format!(
+            "no two reference spectra next to each other have magnitudes {APART_DB} dB apart"
+        )));
+    }
+    let message =
+        format!("after {judged} retunes the sound is within {worst:.2} dB RMS of the magnitude");
+    Ok(Finding::passed(message)
+        .with("distance_db", worst)
+        .with("retunes", judged))
 }
 
 /// Mixtures meet their ends and can be played.

@@ -1,6 +1,7 @@
 //! The checks, grouped by what they look at.
 
 pub(crate) mod abi;
+pub(crate) mod allocation;
 pub(crate) mod change;
 pub(crate) mod fit;
 pub(crate) mod magnitude;

@@ -11,7 +11,7 @@ use crate::signal::{
 };
 
 /// How long sounds are judged, seconds: a minute of noise reads each bin within 0.2 dB.
-const SECONDS: f64 = 60.0;
+pub(crate) const SECONDS: f64 = 60.0;
 /// How long sounds are searched for ill samples, seconds.
 const SEARCHED: usize = 20;
 /// Relative error of an RMS that is always allowed.
@@ -19,7 +19,7 @@ const LEVEL: f64 = 0.02;
 /// Standard deviations of noise that are allowed.
 const SPREADS: f64 = 4.0;
 /// Distance of the sound's spectrum from the magnitude that is allowed, dB RMS.
-const SPECTRUM_DB: f64 = 1.0;
+pub(crate) const SPECTRUM_DB: f64 = 1.0;
 
 fn about(fitted: &Fitted, what: &str) -> Finding {
     Finding::failed(format!("spectrum `{}`: {what}", fitted.reference))
@@ -113,15 +113,20 @@ pub(crate) fn level(case: &Case) -> Found {
     Ok(Finding::passed(message).with("sound_rms_error", worst))
 }
 
+/// Distance of a sound at [`RATE_HZ`] from a magnitude, or from what noise of that density reads through the window, dB
+/// RMS: the window blurs a flank at the band's edge by more than is allowed.
+pub(crate) fn spectrum_distance_db(sound: &[f32], magnitude: &[f64]) -> f64 {
+    let heard = measured_spectrum(sound);
+    let blurred = distance_db(&heard, &read_as_noise(magnitude));
+    distance_db(&heard, magnitude).min(blurred)
+}
+
 /// The sound's spectrum against the magnitude.
 pub(crate) fn spectrum(case: &Case) -> Found {
     let mut worst: f64 = 0.0;
     for fitted in case.fitted()? {
         let magnitude = case.magnitude(&fitted.parameters)?;
-        let heard = measured_spectrum(&listen(case, &fitted)?);
-        // The window blurs a flank at the band's edge by more than is allowed.
-        let blurred = distance_db(&heard, &read_as_noise(&magnitude));
-        let distance = distance_db(&heard, &magnitude).min(blurred);
+        let distance = spectrum_distance_db(&listen(case, &fitted)?, &magnitude);
         // Written so that a distance that is no number fails.
         if !matches!(distance.partial_cmp(&SPECTRUM_DB), Some(o) if o.is_le()) {
             let what = format!(

@@ -144,6 +144,11 @@ impl Instance {
         })
     }
 
+    /// Size of the module's memory, bytes.
+    pub(super) fn memory_bytes(&self) -> usize {
+        self.memory.data_size(&self.store)
+    }
+
     /// The address of a room of at least `bytes`, a multiple of 8, in the module's memory. It stays
     /// where it is until a larger one is asked for.
     pub(super) fn room(&mut self, bytes: usize) -> Result<Usize, Fault> {

@@ -106,6 +106,10 @@ impl RawVoice for WasmVoice {
         self.answer(result)
     }
 
+    fn memory_bytes(&self) -> Option<usize> {
+        Some(self.instance.memory_bytes())
+    }
+
     fn last_error(&self, out: &mut [u8]) -> i64 {
         copy_text(&self.last_error, out)
     }

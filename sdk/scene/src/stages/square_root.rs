@@ -1,5 +1,6 @@
 //! Shift and square root: the friction an electrovibration display adds goes with the square of its
-//! voltage (the paper's V = V_g sqrt(y + |min y|) cos(2 pi f_c t)).
+//! voltage: V = V_g sqrt(y + |min y|) cos(2 pi f_c t). (The paper, Electrovibration rendering, prints
+//! min|y|, with which the radicand can be negative.)
 //!
 //! The minimum of a stream is not known beforehand. The shift is [`HEADROOM`] times the RMS of the
 //! scene's loudest surface instead; what is still below, is held at zero and counted.

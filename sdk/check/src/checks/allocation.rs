@@ -1,0 +1,89 @@
+//! Allocation while a voice plays.
+
+use htex_host::ModelVoice;
+
+use crate::case::{Case, Fitted};
+use crate::finding::{Finding, Found};
+
+/// Blocks in which a voice may still set itself up.
+const WARM_UP: usize = 64;
+const BLOCKS: usize = 1_000;
+const FRAMES: [usize; 4] = [1, 64, 256, 1_000];
+/// Blocks between two retunes.
+const BETWEEN: usize = 4;
+
+/// Rendering and retuning do not allocate.
+pub(crate) fn none(case: &Case) -> Found {
+    let sets = case.fitted()?;
+    let mut voice = case.voice(&sets[0].parameters, case.seed)?;
+    let mut out = vec![0.0; FRAMES[FRAMES.len() - 1]];
+    play(&mut voice, &sets, &mut out, WARM_UP)?;
+    match voice.memory_bytes() {
+        Some(before) => {
+            play(&mut voice, &sets, &mut out, BLOCKS)?;
+            Ok(grown(voice.memory_bytes().unwrap_or(before) - before))
+        }
+        None => native(case, &sets, &mut voice, &mut out),
+    }
+}
+
+fn play(
+    voice: &mut ModelVoice,
+    sets: &[Fitted],
+    out: &mut [f32],
+    blocks: usize,
+) -> Result<(), Finding> {
+    for i in 0..blocks {
+        if i % BETWEEN == 0 {
+            voice.retune(&sets[i / BETWEEN % sets.len()].parameters)?;
+        }
+        voice.render(&mut out[..FRAMES[i % FRAMES.len()]])?;
+    }
+    Ok(())
+}
+
+fn grown(bytes: usize) -> Finding {
+    let finding = match bytes {
+        0 => Finding::passed(format!(
+            "the module's memory keeps its size over {BLOCKS} blocks"
+        )),
+        _ => Finding::failed(format!(
+            "the module's memory grows by {} KiB in {BLOCKS} blocks; make all buffers with the voice",
+            bytes / 1024
+        )),
+    };
+    finding.with("memory_bytes", bytes as f64)
+}
+
+#[cfg(all(target_os = "linux", target_pointer_width = "64"))]
+fn native(case: &Case, sets: &[Fitted], voice: &mut ModelVoice, out: &mut [f32]) -> Found {
+    let allocator = crate::allocator::AllocatorCalls::watch();
+    if allocator.places() == 0 {
+        return Ok(Finding::skipped(
+            "no library of this process calls the C library's allocator by name",
+        ));
+    }
+    let (made, of_a_voice) = allocator.during(|| case.voice(&sets[0].parameters, case.seed));
+    drop(made?);
+    let (played, calls) = allocator.during(|| play(voice, sets, out, BLOCKS));
+    played?;
+    let finding = match calls {
+        0 => Finding::passed(format!(
+            "{BLOCKS} blocks call the allocator not once, making a voice {of_a_voice} times"
+        )),
+        _ => Finding::failed(format!(
+            "{BLOCKS} blocks with {} retunes call the allocator {calls} times; make all buffers with the voice",
+            BLOCKS / BETWEEN
+        )),
+    };
+    Ok(finding
+        .with("calls", calls as f64)
+        .with("calls_of_a_new_voice", of_a_voice as f64))
+}
+
+#[cfg(not(all(target_os = "linux", target_pointer_width = "64")))]
+fn native(_: &Case, _: &[Fitted], _: &mut ModelVoice, _: &mut [f32]) -> Found {
+    Ok(Finding::skipped(
+        "calls of the allocator are counted on 64-bit Linux only",
+    ))
+}

@@ -1,0 +1,130 @@
+//! What the pages in `docs` name is there: tests, files, functions, options and their defaults.
+#![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use htex_host::{LoadedModel, Registry};
+use htex_tests::workspace;
+
+/// Names of all functions in the workspace's Rust sources.
+fn functions(folder: &Path, names: &mut BTreeSet<String>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap();
+        if path.is_dir() && name != "target" && !name.starts_with('.') {
+            functions(&path, names);
+        } else if name.ends_with(".rs") {
+            let text = std::fs::read_to_string(&path).unwrap();
+            let after = text.split("fn ").skip(1);
+            names.extend(after.filter_map(|rest| rest.split(['(', '<']).next().map(str::to_owned)));
+        }
+    }
+}
+
+fn known_functions() -> BTreeSet<String> {
+    let mut known = BTreeSet::new();
+    functions(&workspace(), &mut known);
+    known
+}
+
+fn page(name: &str) -> String {
+    std::fs::read_to_string(workspace().join(name)).unwrap()
+}
+
+/// What stands between backticks.
+fn code(text: &str) -> impl Iterator<Item = &str> {
+    text.split('`').skip(1).step_by(2)
+}
+
+#[test]
+fn the_tests_that_the_pages_name_are_there() {
+    let root = workspace();
+    let mut known = known_functions();
+    known.extend(
+        htex_fuzzing::TARGETS
+            .iter()
+            .map(|target| target.name.to_owned()),
+    );
+    let mut seen = 0;
+    for name in [
+        "docs/threats.md",
+        "docs/driving-a-display.md",
+        "docs/paper.md",
+    ] {
+        let text = page(name);
+        let rows = text
+            .lines()
+            .filter(|line| line.starts_with("| ") && !line.contains("shown by"));
+        for row in rows {
+            let shown = row.trim_end_matches(" |").rsplit(" | ").next().unwrap();
+            for test in code(shown) {
+                let is_there = match test.contains('/') {
+                    true => root.join(test).is_file(),
+                    false => known.contains(test) || test.starts_with('-'),
+                };
+                assert!(is_there, "{name}: {test} is not there: {row}");
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen > 80, "{seen} tests are named");
+}
+
+#[test]
+fn the_paths_and_functions_that_the_page_of_the_paper_names_are_there() {
+    let (root, text, known) = (workspace(), page("docs/paper.md"), known_functions());
+    let (mut paths, mut functions) = (0, 0);
+    for name in code(&text) {
+        if let Some(function) = name.strip_suffix("()") {
+            assert!(known.contains(function), "there is no function {function}");
+            functions += 1;
+        } else if name.contains('/') || root.join(name).exists() {
+            assert!(root.join(name).exists(), "there is no {name}");
+            paths += 1;
+        }
+    }
+    assert!(
+        paths > 40 && functions > 10,
+        "{paths} paths, {functions} functions"
+    );
+}
+
+/// An option's default as a user writes it.
+fn default(model: &LoadedModel, option: &str) -> String {
+    let options = &model.descriptor().options;
+    let option = options.iter().find(|o| o.name == option);
+    let option = option.unwrap_or_else(|| panic!("{} has no option of that name", model.id()));
+    match option.choices.get(option.default as usize) {
+        Some(choice) => choice.clone(),
+        None => option.default.to_string(),
+    }
+}
+
+#[test]
+fn the_numbers_of_the_paper_are_the_options_defaults() {
+    let (registry, text) = (Registry::builtin(), page("docs/paper.md"));
+    let mut seen = BTreeSet::new();
+    for name in code(&text) {
+        let Some((option, value)) = name.split_once('=') else {
+            continue;
+        };
+        let Some((model, option)) = option.split_once('.') else {
+            continue;
+        };
+        let mut models = registry.models().iter();
+        let model = models.find(|m| m.short_name() == model).unwrap();
+        assert_eq!(default(model, option), value, "{name}");
+        seen.insert(name);
+    }
+    for number in [
+        "ar.order=6",
+        "mfcc.coefficients=10",
+        "speak.count=10",
+        "speak.jnd=0.12",
+        "sbeta.points=10",
+        "sslope.rounding_db_per_decade=20",
+    ] {
+        assert!(seen.contains(number), "the page does not give {number}");
+    }
+}

@@ -198,7 +198,13 @@ fn what_cannot_be_played_never_touches_the_card() {
         "--set",
         "driver=/no/such.so",
     ]);
-    none.fails(&mut play, &["`driver`", "/no/such.so is no NI-DAQmx"]);
+    none.fails(
+        &mut play,
+        &[
+            "`driver`",
+            "`/no/such.so` cannot be loaded as the NI-DAQmx library",
+        ],
+    );
     for bench in [fast, high, none] {
         assert!(!bench.0.path(RECORD).exists());
     }
@@ -446,6 +452,32 @@ fn a_guardian_that_is_killed_is_replaced_by_zero() {
         &["has ended; the output was set to zero"],
     );
     bench.is_at_zero();
+}
+
+/// A bare name is a file of the current folder; one that is not there is searched by the system's loader, and the error
+/// says so.
+#[test]
+fn a_driver_is_found_by_its_bare_name() {
+    let place = Place::new();
+    let name = simulated::built().file_name().unwrap();
+    std::fs::copy(simulated::built(), place.path(name.to_str().unwrap())).unwrap();
+    let driver = format!("driver={}", name.display());
+    let problem = |driver: &str| {
+        let device = ["device", "info", "daq", "--json", "--profile", PAPER];
+        place.json(&[&device[..], &["--set", driver]].concat())["problem"].clone()
+    };
+    assert_eq!(problem(&driver), Value::Null);
+
+    let absent = problem("driver=libabsent.so.1").to_string();
+    for words in ["libabsent.so.1", "current folder", "LD_LIBRARY_PATH"] {
+        assert!(absent.contains(words), "{absent}");
+    }
+    let file = place.write("text.so", "no library");
+    let (problem, reason) = (
+        problem("driver=text.so").to_string(),
+        format!("{}: ", file.display()),
+    );
+    assert!(problem.contains(&reason), "{problem}");
 }
 
 #[test]

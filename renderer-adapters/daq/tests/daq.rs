@@ -211,7 +211,9 @@ fn what_is_missing_is_named() {
         .unwrap()
         .to_string();
     assert!(
-        none.starts_with("setting `driver`: /no/such/library is no NI-DAQmx"),
+        none.starts_with(
+            "setting `driver`: `/no/such/library` cannot be loaded as the NI-DAQmx library: "
+        ),
         "{none}"
     );
     if let Err(error) = Daq::new().endpoints() {

@@ -6,6 +6,8 @@ use htex_device::Status;
 use htex_scene::file::Motion;
 use htex_scene::{DeviceOverride, Plan, Renderer};
 
+#[cfg(not(feature = "audio"))]
+use crate::devices::with_sound;
 use crate::failure::Failure;
 use crate::gains::{FeltArgs, apply_kept};
 use crate::motions::{Motions, Moved};
@@ -18,6 +20,10 @@ use crate::signals::{self, interrupted};
 ///
 /// An asset is played at the speed and force of its first condition, by ear when no device is named.
 #[derive(Args)]
+#[cfg_attr(
+    not(feature = "audio"),
+    command(after_help = concat!("This build has no sound: ", with_sound!(), "."))
+)]
 pub(crate) struct Play {
     /// The scene or the asset
     file: PathBuf,

@@ -9,6 +9,7 @@ use std::process::Command;
 use htex_host::{Band, Fit, FitRequest, HostError, LoadedModel, Status, Stream};
 use htex_tests::measure::{RATE_HZ, distance_db, measured_spectrum, rms};
 use htex_tests::{smooth_spectrum, workspace};
+use xtask::needs;
 
 /// Where what these tests build is kept between runs.
 const BUILDS: &str = env!("CARGO_TARGET_TMPDIR");
@@ -270,19 +271,11 @@ const WASM: &str = "wasm32-unknown-unknown";
 
 fn has_clang() -> bool {
     let runs = |program| Command::new(program).arg("--version").output().is_ok();
-    says(runs("clang") && runs("wasm-ld"), "clang and lld")
+    needs::WASM_CLANG.met(runs("clang") && runs("wasm-ld"))
 }
 
 fn has_wasm_target() -> bool {
-    let libraries = run(Command::new("rustc").args(["--print", "target-libdir", "--target", WASM]));
-    says(Path::new(libraries.trim()).exists(), WASM)
-}
-
-fn says(there: bool, what: &str) -> bool {
-    if !there {
-        println!("{what} is not installed: no WASM module is built");
-    }
-    there
+    needs::WASM_TARGET.met(xtask::plugins::wasm_is_installed())
 }
 
 fn fit(model: &LoadedModel, magnitude: &[f64], signal: &[f64]) -> Result<Fit, HostError> {
@@ -324,6 +317,8 @@ fn filled_in(text: &str) -> String {
     let sdk = workspace().join("sdk").canonicalize().unwrap();
     text.replace("{{NAME}}", "trial")
         .replace("{{ID}}", "com.example.trial")
+        .replace("{{LABEL}}", "Trial")
+        .replace("{{TYPE}}", "Trial")
         .replace("{{SDK_PATH}}", sdk.to_str().unwrap())
 }
 

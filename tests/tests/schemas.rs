@@ -22,6 +22,7 @@ const REFUSED: &[&str] = &[
     "conditions_empty",
     "field_duplicate",
     "field_name_empty",
+    "doi_invalid",
     "findings_truncated",
     "json_too_deep",
     "json_type",

@@ -86,7 +86,10 @@ impl Play {
             let sentence = format!("--seconds {seconds}: more than 0, at most 1e9");
             return Err(Failure::Usage(sentence));
         }
-        let device = self.choice.to_override(None, false)?;
+        let device = DeviceOverride {
+            live: self.motion.is_some(),
+            ..self.choice.to_override(None, false)?
+        };
         let mut ready = open(&self.with, &self.file, self.motion.is_some(), device)?;
         let scene = &mut ready.scene.scene;
         scene.duration_s = self.seconds.or(scene.duration_s);

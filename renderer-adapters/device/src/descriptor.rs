@@ -190,11 +190,10 @@ impl Setting {
                 "setting `{name}` has a `live_default` and no `default`"
             ));
         }
-        let defaults = self.default.iter().chain(&self.live_default);
-        let checked = defaults
-            .map(|value| crate::settings::check(self, value))
-            .collect();
-        Result::<(), _>::map_err(checked, |error| format!("the default: {error}"))
+        let mut defaults = self.default.iter().chain(&self.live_default);
+        defaults
+            .try_for_each(|value| crate::settings::check(self, value))
+            .map_err(|error| format!("the default: {error}"))
     }
 }
 

@@ -33,7 +33,7 @@ pub(crate) enum Command {
     Demo(demo::Demo),
     Simulate(simulate::Simulate),
     Process(process::Process),
-    Fit(fit::Fit),
+    Fit(Box<fit::Fit>),
     Info(info::Info),
     Edit(edit::Edit),
     Validate(validate::Validate),

@@ -19,6 +19,16 @@ pub(crate) struct AssetSummary {
     #[serde(skip_serializing_if = "Option::is_none")]
     author: Option<String>,
     tags: Vec<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    description: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    source: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    doi: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sensor: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    finger: Option<String>,
     simulated: bool,
     quantity: Quantity,
     unit: &'static str,
@@ -89,6 +99,11 @@ impl AssetSummary {
             license: manifest.license.clone(),
             author: manifest.author.clone(),
             tags: manifest.tags.clone(),
+            description: manifest.description.clone(),
+            source: manifest.source.clone(),
+            doi: manifest.doi.clone(),
+            sensor: manifest.sensor.clone(),
+            finger: manifest.finger.clone(),
             simulated: manifest.provenance.simulated,
             quantity: manifest.quantity,
             unit: manifest.quantity.unit(),
@@ -135,6 +150,7 @@ impl AssetSummary {
                 .map(|l| format!(", licence {}", plain(l)))
                 .unwrap_or_default(),
         );
+        text += &self.metadata_text();
         for (i, condition) in self.conditions.iter().enumerate() {
             let _ = writeln!(text, "condition {i}: {}", condition_text(condition));
         }
@@ -164,6 +180,34 @@ impl AssetSummary {
             let _ = writeln!(text, "note: {}", plain(line));
         }
         text
+    }
+}
+
+impl AssetSummary {
+    /// What is said of the surface and of its recording, a line each.
+    fn metadata_text(&self) -> String {
+        let tags = Some(self.tags.join(", ")).filter(|tags| !tags.is_empty());
+        let lines = [
+            ("description", &self.description),
+            ("tags", &tags),
+            ("source", &self.source),
+            ("doi", &self.doi),
+            ("sensor", &self.sensor),
+            ("finger", &self.finger),
+        ];
+        let said = lines
+            .into_iter()
+            .filter_map(|(name, text)| Some((name, text.as_ref()?)));
+        said.map(|(name, text)| format!("{name}: {}\n", plain(text)))
+            .collect()
+    }
+}
+
+impl RepresentationSummary {
+    /// What is known of it at a condition.
+    pub(crate) fn at(&self, condition: usize) -> Option<&AtSummary> {
+        let all = self.at.iter().chain([&self.first]);
+        all.into_iter().find(|at| at.condition == condition)
     }
 }
 

@@ -25,11 +25,23 @@ fn builtin() -> Vec<Arc<dyn Adapter>> {
     ]
 }
 
+/// How to get sound.
+macro_rules! with_sound {
+    () => {
+        "`cargo install --path cli --features audio` builds one with sound, which on Linux needs libasound2-dev"
+    };
+}
+#[cfg(not(feature = "audio"))]
+pub(crate) use with_sound;
+
 /// Why there is no sound where none was built in; of no other device.
 fn no_sound(name: &str) -> Option<DeviceError> {
     let sound = cfg!(not(feature = "audio")) && matches!(name, "audio" | "org.htex.audio");
-    let why = "this htex is built without sound; build it with `--features audio`, which on Linux \
-               wants libasound2-dev";
+    let why = concat!(
+        "this htex is built without sound; ",
+        with_sound!(),
+        ". `--device` names another device, and `htex synth` and `htex render` write files"
+    );
     sound.then(|| DeviceError::Missing(why.to_owned()))
 }
 

@@ -54,7 +54,7 @@ impl Failure {
             | Self::Model(Option { .. } | UnknownModel { .. })
             | Self::Device(Setting { .. } | Rate { .. } | Unknown { .. })
             | Self::Asset {
-                error: htex::Error::Model(UnknownModel { .. }),
+                error: htex::Error::Model(UnknownModel { .. }) | htex::Error::EmbeddedOff { .. },
                 ..
             } => ExitCode::from(2),
             _ => ExitCode::FAILURE,

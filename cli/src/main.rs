@@ -8,6 +8,7 @@ mod devices;
 mod failure;
 mod gains;
 mod guardian;
+mod metadata;
 mod models;
 mod motions;
 mod output;
@@ -17,6 +18,7 @@ mod plugins;
 mod progress;
 mod recording_plot;
 mod recordings;
+mod report;
 mod scenes;
 mod schemas;
 mod signals;
@@ -34,21 +36,30 @@ use commands::Command;
 /// A recording of a finger sliding over a surface goes in; a `.htex` file of a few hundred bytes
 /// comes out, with models of its spectrum and the measure of how near each comes.
 #[derive(Parser)]
-#[command(name = "htex", version, max_term_width = 100, after_help = FIRST_STEPS)]
+#[command(name = "htex", version, max_term_width = 100, after_help = first_steps())]
 struct Cli {
     #[command(subcommand)]
     command: Command,
 }
 
-const FIRST_STEPS: &str = "\
+fn first_steps() -> String {
+    let play = if cfg!(feature = "audio") {
+        "play it by ear, or on a device"
+    } else {
+        "play it on a device (--device); by ear only in a build with `--features audio`"
+    };
+    format!(
+        "\
 First steps:
   htex demo out                       simulate five surfaces, fit all models, write out/report.html
   htex fit rec.csv -o cloth.htex      fit all models to a recording of yours
   htex info cloth.htex                what the file holds, and how good it is
   htex synth cloth.htex -o cloth.wav  play it to a file
-  htex play cloth.htex                play it by ear, or on a device
+  htex play cloth.htex                {play}
 
-Exit status: 0 ok, 1 findings or failure, 2 wrong usage.";
+Exit status: 0 ok, 1 findings or failure, 2 wrong usage."
+    )
+}
 
 fn main() -> ExitCode {
     let command = Cli::parse().command;

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use htex_device::{Device, SettingKind, StreamFormat};
+use htex_scene::file::Motion;
 use htex_scene::{Plan, Renderer};
 
 use crate::failure::Failure;
@@ -12,6 +13,20 @@ use crate::scenes::Ready;
 
 /// Longest wait for room in a device; one that takes nothing for so long is stuck.
 const PATIENCE: Duration = Duration::from_secs(5);
+/// Longest block of a motion that is given as the scene plays, seconds.
+const LIVE_BLOCK_S: f64 = 0.005;
+
+/// Frames of a block: the device's, or fewer where the finger is waited for.
+fn block_frames(ready: &Ready, plan: &Plan) -> u32 {
+    let usual = ready.capabilities.block_frames.max(1);
+    match ready.scene.scene.motion {
+        Motion::Live => usual
+            .min((LIVE_BLOCK_S * plan.rate_hz).ceil() as u32)
+            .max(1),
+        _ => usual,
+    }
+}
+
 /// An open device and the blocks that go to it.
 pub(crate) struct Output {
     pub(crate) device: Box<dyn Device>,
@@ -29,7 +44,7 @@ pub(crate) struct Output {
 impl Output {
     /// Opens the device of a scene.
     pub(crate) fn open(ready: &Ready, plan: &Plan) -> Result<Self, Failure> {
-        let frames = ready.capabilities.block_frames.max(1);
+        let frames = block_frames(ready, plan);
         let format = StreamFormat {
             rate_hz: plan.rate_hz,
             block_frames: frames,

@@ -55,6 +55,7 @@ impl ChoiceArgs {
     ) -> Result<DeviceOverride, Failure> {
         Ok(DeviceOverride {
             rehearsal,
+            live: false,
             adapter: self.device.clone(),
             profile: self.settings.profile().map(str::to_owned),
             settings: self.settings.given()?,

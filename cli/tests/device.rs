@@ -99,6 +99,31 @@ fn bad(place: &Place, good: &Path, fault: &str) -> String {
     out.to_str().unwrap().to_owned()
 }
 
+/// A bare name is a file of the current folder; the system's loader does not search for it.
+#[test]
+fn a_device_is_found_by_its_bare_name() {
+    let place = Place::new();
+    let file = strip(&place);
+    let name = file.file_name().unwrap().to_str().unwrap();
+    assert_eq!(checked(&place, &[name])["ok"], true);
+    for arguments in [
+        ["device", "info", name].as_slice(),
+        &["device", "list", "--device-file", name],
+    ] {
+        let run = place.run(arguments);
+        assert_eq!(run.code(), 0, "{}", run.error());
+        assert!(run.text().contains("strip"), "{}", run.text());
+    }
+    std::fs::write(&file, "no library").unwrap();
+    let wrong = place.run(&["device", "info", name]);
+    let reason = format!("{}: ", file.display());
+    assert!(
+        wrong.code() == 1 && wrong.error().contains(&reason),
+        "{}",
+        wrong.error()
+    );
+}
+
 /// The report on a device.
 fn checked(place: &Place, arguments: &[&str]) -> Value {
     let all = [&["device", "check", "--json"], arguments].concat();

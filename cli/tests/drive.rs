@@ -2,131 +2,19 @@
 //! all that can go wrong.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
+#[path = "common/bench.rs"]
+mod bench;
 mod common;
 #[path = "../../renderer-adapters/daq/tests/simulated/library.rs"]
 mod simulated;
 
 use std::path::Path;
-use std::process::{Child, Command, Output, Stdio};
-use std::time::{Duration, Instant};
+use std::process::{Command, Stdio};
+use std::time::Duration;
 
+use bench::{Bench, EXAMPLES, GAIN, PAPER, RATE_HZ, RECORD, SCENE, check_failed, signal};
 use common::Place;
 use serde_json::{Value, json};
-
-const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/scenes");
-const PAPER: &str = "pcie-6321_tabor-9200a_sct3250";
-/// Of the paper's amplifier.
-const GAIN: f64 = 50.0;
-const RATE_HZ: f64 = 20_000.0;
-const SCENE: &str = "s.scene.json";
-const RECORD: &str = "Dev1_ao0.txt";
-
-/// A folder with a card, a scene for it, and what came out of it.
-struct Bench(Place);
-
-impl Bench {
-    /// With a scene of one surface on the paper's rig, with `more` over it.
-    fn new(more: Value) -> Self {
-        let place = Place::new();
-        for name in ["coarse-fabric.htex", "vinyl.htex", "hand.csv"] {
-            place.write(name, std::fs::read(format!("{EXAMPLES}/{name}")).unwrap());
-        }
-        let mut scene = json!({
-            "htex_scene": "1.0",
-            "surfaces": [{ "asset": "coarse-fabric.htex" }],
-            "motion": { "constant": { "speed_mm_s": 80, "force_n": 0.4 } },
-            "device": { "adapter": "daq", "profile": PAPER },
-            "seed": 1,
-        });
-        for (key, value) in more.as_object().unwrap() {
-            scene[key] = value.clone();
-        }
-        place.write(SCENE, scene.to_string());
-        Self(place)
-    }
-
-    /// A command with the simulated driver; its clock goes by calls, so that no test hangs on time.
-    fn command(&self, arguments: &[&str]) -> Command {
-        let driver = format!("driver={}", simulated::built().display());
-        let mut command = self
-            .0
-            .command(&[arguments, &[SCENE, "--profile", PAPER, "--set", &driver]].concat());
-        command
-            .env("NIDAQMX_SIM_RECORD", self.0.path(""))
-            .env("NIDAQMX_SIM_CLOCK", "calls")
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped());
-        command
-    }
-
-    /// Plays without end by the clock on the wall, and waits until it can be felt.
-    fn start(&self) -> Child {
-        let mut command = self.command(&["play"]);
-        let child = command.env("NIDAQMX_SIM_CLOCK", "wall").spawn().unwrap();
-        let start = Instant::now();
-        while self.card_v().iter().all(|v| *v == 0.0) {
-            assert!(
-                start.elapsed() < Duration::from_secs(60),
-                "nothing comes out"
-            );
-            std::thread::sleep(Duration::from_millis(20));
-        }
-        child
-    }
-
-    /// Plays and expects that it fails, with this in its one sentence.
-    fn fails(&self, command: &mut Command, words: &[&str]) {
-        check_failed(&command.output().unwrap(), words);
-    }
-
-    /// Volts of the card that came out so far; nothing when it was never touched. A line that is
-    /// being written is not there yet.
-    fn card_v(&self) -> Vec<f64> {
-        let text = std::fs::read_to_string(self.0.path(RECORD)).unwrap_or_default();
-        let whole = text.rfind('\n').map_or("", |end| &text[..end]);
-        whole.lines().map(|line| line.parse().unwrap()).collect()
-    }
-
-    /// Waits until zero came out and nothing since, however busy the machine is.
-    fn comes_to_zero(&self) {
-        let (start, mut length) = (Instant::now(), 0);
-        while start.elapsed() < Duration::from_secs(30) {
-            let card_v = self.card_v();
-            if card_v.last() == Some(&0.0) && card_v.len() == length {
-                break;
-            }
-            length = card_v.len();
-            std::thread::sleep(Duration::from_millis(500));
-        }
-        self.is_at_zero();
-    }
-
-    /// Something came out, and zero is the last of it.
-    fn is_at_zero(&self) {
-        let card_v = self.card_v();
-        assert!(card_v.iter().any(|v| *v != 0.0), "it was never felt");
-        assert_eq!(card_v.last(), Some(&0.0));
-    }
-}
-
-/// Exit status 1, and one sentence with these words.
-fn check_failed(done: &Output, words: &[&str]) {
-    let error = String::from_utf8_lossy(&done.stderr);
-    assert_eq!(done.status.code(), Some(1), "{error}");
-    let mut sentences: Vec<&str> = error.lines().filter(|l| l.starts_with("htex: ")).collect();
-    // The process that holds the output says at once what may be standing there; the player says it again.
-    sentences.dedup();
-    assert_eq!(sentences.len(), 1, "{error}");
-    for word in words {
-        assert!(error.contains(word), "{word}: {error}");
-    }
-}
-
-fn signal(child: &Child, name: &str) {
-    let id = child.id().to_string();
-    let sent = Command::new("kill").args([name, &id]).status();
-    assert!(sent.unwrap().success());
-}
 
 /// Volts at the display, as a file has them.
 fn samples(file: &Path) -> Vec<f32> {
@@ -198,7 +86,13 @@ fn what_cannot_be_played_never_touches_the_card() {
         "--set",
         "driver=/no/such.so",
     ]);
-    none.fails(&mut play, &["`driver`", "/no/such.so is no NI-DAQmx"]);
+    none.fails(
+        &mut play,
+        &[
+            "`driver`",
+            "`/no/such.so` cannot be loaded as the NI-DAQmx library",
+        ],
+    );
     for bench in [fast, high, none] {
         assert!(!bench.0.path(RECORD).exists());
     }
@@ -446,6 +340,32 @@ fn a_guardian_that_is_killed_is_replaced_by_zero() {
         &["has ended; the output was set to zero"],
     );
     bench.is_at_zero();
+}
+
+/// A bare name is a file of the current folder; one that is not there is searched by the system's loader, and the error
+/// says so.
+#[test]
+fn a_driver_is_found_by_its_bare_name() {
+    let place = Place::new();
+    let name = simulated::built().file_name().unwrap();
+    std::fs::copy(simulated::built(), place.path(name.to_str().unwrap())).unwrap();
+    let driver = format!("driver={}", name.display());
+    let problem = |driver: &str| {
+        let device = ["device", "info", "daq", "--json", "--profile", PAPER];
+        place.json(&[&device[..], &["--set", driver]].concat())["problem"].clone()
+    };
+    assert_eq!(problem(&driver), Value::Null);
+
+    let absent = problem("driver=libabsent.so.1").to_string();
+    for words in ["libabsent.so.1", "current folder", "LD_LIBRARY_PATH"] {
+        assert!(absent.contains(words), "{absent}");
+    }
+    let file = place.write("text.so", "no library");
+    let (problem, reason) = (
+        problem("driver=text.so").to_string(),
+        format!("{}: ", file.display()),
+    );
+    assert!(problem.contains(&reason), "{problem}");
 }
 
 #[test]

@@ -28,6 +28,33 @@ fn passes(file: &str) {
     assert!(checked.status.success(), "{text}");
 }
 
+/// A project has a README and its own names, and holds no path of the machine that htex was built on.
+#[test]
+fn a_new_model_has_names_of_its_own() {
+    for lang in ["c", "rust"] {
+        let folder = tempfile::tempdir().unwrap();
+        let dir = written(lang, &folder.path().join(lang));
+        let readme = std::fs::read_to_string(format!("{dir}/README.md")).unwrap();
+        assert!(readme.starts_with("# My model\n"), "{readme}");
+        let mut all = String::new();
+        for file in [
+            "README.md",
+            "Cargo.toml",
+            "src/lib.rs",
+            "model.c",
+            "build.sh",
+        ] {
+            all += &std::fs::read_to_string(format!("{dir}/{file}")).unwrap_or_default();
+        }
+        for names in ["{{", "Resonance", "\"/", "resonance.so"] {
+            assert!(!all.contains(names), "{lang}: {names}");
+        }
+        for own in ["org.example.my-model", "My model"] {
+            assert!(all.contains(own), "{lang}: {own}");
+        }
+    }
+}
+
 #[test]
 fn a_new_model_in_c() {
     let folder = tempfile::tempdir().unwrap();
@@ -55,8 +82,7 @@ fn a_new_model_in_rust() {
         "{dir}/target/release/libmy_model{}",
         std::env::consts::DLL_SUFFIX
     ));
-    if !xtask::plugins::wasm_is_installed() {
-        println!("skipped: the compiler in use cannot build WASM modules");
+    if !xtask::needs::WASM_TARGET.met(xtask::plugins::wasm_is_installed()) {
         return;
     }
     build(&["--target", "wasm32-unknown-unknown"]);

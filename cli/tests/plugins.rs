@@ -80,6 +80,30 @@ fn a_plugin_is_fitted_shown_and_played() {
     assert_eq!(found["models"].as_array().unwrap().len(), 7);
 }
 
+/// A bare name is a file of the current folder; the system's loader does not search for it.
+#[test]
+fn a_plugin_is_found_by_its_bare_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let plugin = resonance(folder.path());
+    let file = Path::new(&plugin);
+    let name = file.file_name().unwrap().to_str().unwrap();
+    let here = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_htex"));
+        let command = command.args(arguments).current_dir(file.parent().unwrap());
+        command.output().unwrap()
+    };
+    assert!(text(&here(&["plugin", "check", name])).contains("passed"));
+    assert!(text(&here(&["plugin", "info", name])).contains("bandwidth_hz"));
+    assert!(text(&here(&["plugin", "list", "--plugin", name])).contains("org.example.resonance"));
+
+    std::fs::write(file, "no library").unwrap();
+    let wrong = here(&["plugin", "info", name]);
+    let error = String::from_utf8_lossy(&wrong.stderr);
+    assert_eq!(wrong.status.code(), Some(1));
+    // The loader's own reason, with the file that it tried.
+    assert!(error.contains(&format!("{plugin}: ")), "{error}");
+}
+
 #[test]
 fn a_plugin_that_is_none_is_an_error_with_its_file() {
     let wrong = htex(&["plugin", "list", "--plugin", "no-such-model.so"]);

@@ -122,6 +122,34 @@ fn csv_at_1_khz_with_speed_force_accel_friction() {
     assert_eq!(run.code(), 0, "{}", run.error());
 }
 
+/// What is said of several recordings is said once, with their number and names.
+#[test]
+fn warnings_of_several_recordings_are_one() {
+    let place = Place::new();
+    let names = ["a.csv", "b.csv", "c.csv"];
+    let mut csv = String::from("lateral_n,temperature\n");
+    for f in friction(10_000.0, 3.0) {
+        writeln!(csv, "{f:.6},21").unwrap();
+    }
+    for name in names {
+        place.write(name, &csv);
+    }
+    let mut arguments = vec!["fit", "--rate", "10000", "--model", "sbeta", "-o", "t.htex"];
+    arguments.extend(names);
+    let run = place.run(&arguments);
+    let warnings: Vec<String> = run.error().lines().map(str::to_owned).collect();
+    let of_all = warnings
+        .iter()
+        .filter(|line| line.contains("Columns not used: temperature"));
+    let of_all: Vec<&String> = of_all.collect();
+    assert_eq!(of_all.len(), 1, "{warnings:?}");
+    assert!(
+        of_all[0].contains("3 recordings (a.csv, b.csv, c.csv): "),
+        "{}",
+        of_all[0]
+    );
+}
+
 #[test]
 fn wav_at_44_100_hz() {
     let place = Place::new();

@@ -146,11 +146,9 @@ fn valid_conformance_files_are_played() {
 /// Decodes the assets and computes their magnitudes in Python, from the text of the specification.
 #[test]
 fn a_reader_written_from_the_text_agrees() {
-    let Some(python) = python() else {
-        println!(
-            "skipped: no Python with NumPy and SciPy. To have it: python3 -m venv target/peers && \
-             target/peers/bin/pip install -r tests/peers/player-requirements.txt"
-        );
+    let python = python();
+    let there = xtask::needs::SCIPY.met(python.is_some());
+    let Some(python) = python.filter(|_| there) else {
         return;
     };
     let output = Command::new(&python)

@@ -12,6 +12,7 @@ use htex_tests::{deflated_bytes, smooth_spectrum, workspace};
 
 /// Most deflated bytes of a module as the template gives it, without any flag.
 const TEMPLATE_BYTES: usize = 42_000;
+use xtask::needs;
 
 /// Where what these tests build is kept between runs.
 const BUILDS: &str = env!("CARGO_TARGET_TMPDIR");
@@ -283,19 +284,11 @@ const WASM: &str = "wasm32-unknown-unknown";
 
 fn has_clang() -> bool {
     let runs = |program| Command::new(program).arg("--version").output().is_ok();
-    says(runs("clang") && runs("wasm-ld"), "clang and lld")
+    needs::WASM_CLANG.met(runs("clang") && runs("wasm-ld"))
 }
 
 fn has_wasm_target() -> bool {
-    let libraries = run(Command::new("rustc").args(["--print", "target-libdir", "--target", WASM]));
-    says(Path::new(libraries.trim()).exists(), WASM)
-}
-
-fn says(there: bool, what: &str) -> bool {
-    if !there {
-        println!("{what} is not installed: no WASM module is built");
-    }
-    there
+    needs::WASM_TARGET.met(xtask::plugins::wasm_is_installed())
 }
 
 fn fit(model: &LoadedModel, magnitude: &[f64], signal: &[f64]) -> Result<Fit, HostError> {
@@ -337,6 +330,8 @@ fn filled_in(text: &str) -> String {
     let sdk = workspace().join("sdk").canonicalize().unwrap();
     text.replace("{{NAME}}", "trial")
         .replace("{{ID}}", "com.example.trial")
+        .replace("{{LABEL}}", "Trial")
+        .replace("{{TYPE}}", "Trial")
         .replace("{{SDK_PATH}}", sdk.to_str().unwrap())
 }
 

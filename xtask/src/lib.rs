@@ -2,5 +2,6 @@
 
 pub mod bench;
 pub mod fuzz;
+pub mod needs;
 pub mod plugins;
 mod wasm;

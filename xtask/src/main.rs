@@ -8,8 +8,8 @@ const TASKS: &str = "\
 cargo xtask ci        all that continuous integration runs
 cargo xtask plugins   builds the models as plugins into target/htex-plugins, native and WASM;
                       --native-only or --wasm-only builds the one kind; --wasm-toolchain WAY (or
-                      HTEX_WASM_TOOLCHAIN) builds modules with the toolchain that is installed, by
-                      rustup, by debian (its own compiler), or auto: the first that works
+                      HTEX_WASM_TOOLCHAIN) builds modules with the toolchain that is installed, with debian's own
+                      compiler, or auto: the first that is there
 cargo xtask bench     what htex costs beside plain loops in C and NumPy, SciPy, librosa, in one run;
                       --json FILE writes the numbers too
 cargo xtask fuzz      fuzzes the TARGETS named, or all of fuzz/fuzz_targets, each for --seconds N (60)

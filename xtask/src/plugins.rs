@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::needs;
 use crate::wasm::{PROFILE, TARGET, Toolchain};
 
 /// The models' short names.
@@ -30,11 +31,20 @@ pub fn native() -> Result<PathBuf, String> {
 /// # Errors
 /// That no toolchain can be had, and what to do; or which model could not be built.
 pub fn wasm() -> Result<PathBuf, String> {
-    let way = std::env::var("HTEX_WASM_TOOLCHAIN").unwrap_or_default();
-    wasm_by(if way.is_empty() { "auto" } else { &way })
+    wasm_by(&way())
 }
 
-/// As [`wasm`], with the toolchain of the name: `installed`, `rustup`, `debian`, or `auto`.
+/// The toolchain that `HTEX_WASM_TOOLCHAIN` names.
+fn way() -> String {
+    let way = std::env::var("HTEX_WASM_TOOLCHAIN").unwrap_or_default();
+    if way.is_empty() {
+        "auto".to_owned()
+    } else {
+        way
+    }
+}
+
+/// As [`wasm`], with the toolchain of the name: `installed`, `debian`, or `auto`.
 ///
 /// # Errors
 /// As [`wasm`], and when there is no way of this name.
@@ -66,6 +76,20 @@ pub fn check_way(way: &str) -> Result<(), String> {
 /// Whether the compiler in use builds WASM modules as it is.
 pub fn wasm_is_installed() -> bool {
     Toolchain::find("installed").is_ok()
+}
+
+/// The folder of the models as WASM modules, for a test; `None`, and told of at the end, where no toolchain for them is
+/// there.
+///
+/// # Panics
+/// When a model cannot be built, and as [`Need::met`](crate::needs::Need::met).
+#[must_use]
+#[allow(clippy::panic)] // It fails a test.
+pub fn wasm_if_there() -> Option<PathBuf> {
+    if !needs::WASM_TARGET.met(Toolchain::find(&way()).is_ok()) {
+        return None;
+    }
+    Some(wasm().unwrap_or_else(|error| panic!("{error}")))
 }
 
 fn build(mut cargo: Command, target: &Path, model: &str, more: &[&str]) -> Result<(), String> {

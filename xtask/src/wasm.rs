@@ -16,8 +16,8 @@ const FLAGS: (&str, &str) = (
     "-Ctarget-feature=+simd128 -Cllvm-args=-inline-threshold=100",
 );
 
-const NO_TOOLCHAIN: &str = "no way to build WASM modules was found: `rustup target add \
-    wasm32-unknown-unknown`, or on Debian install rustc-web, cargo-web and rust-web-src";
+const NO_TOOLCHAIN: &str = "no toolchain for WASM modules was found: `rustup target add \
+    wasm32-unknown-unknown`, or on Debian `apt-get install rustc-web cargo-web rust-web-src`";
 
 /// A way to build WASM modules.
 pub(crate) enum Toolchain {
@@ -28,15 +28,13 @@ pub(crate) enum Toolchain {
 }
 
 impl Toolchain {
-    /// The way of this name, or the first that works. What it needs is installed if this machine
-    /// allows that, but for `installed`.
+    /// The toolchain of this name, or the first that is there. Nothing is installed.
     pub(crate) fn find(way: &str) -> Result<Self, String> {
         Self::check_way(way)?;
         let found = match way {
             "installed" => installed(),
-            "rustup" => rustup(),
             "debian" => debian(),
-            _ => installed().or_else(rustup).or_else(debian),
+            _ => installed().or_else(debian),
         };
         found.ok_or_else(|| NO_TOOLCHAIN.to_owned())
     }
@@ -44,10 +42,9 @@ impl Toolchain {
     /// Whether there is a way of this name.
     pub(crate) fn check_way(way: &str) -> Result<(), String> {
         match way {
-            "auto" | "installed" | "rustup" | "debian" => Ok(()),
+            "auto" | "installed" | "debian" => Ok(()),
             other => Err(format!(
-                "`{other}` is no way to build WASM modules; there are auto, installed, rustup and \
-                 debian"
+                "`{other}` is no way to build WASM modules; there are auto, installed and debian"
             )),
         }
     }
@@ -94,17 +91,7 @@ fn installed() -> Option<Toolchain> {
     has_target().then_some(Toolchain::Ready)
 }
 
-fn rustup() -> Option<Toolchain> {
-    let added = succeeds("rustup", &["target", "add", TARGET]);
-    installed().filter(|_| added)
-}
-
 fn debian() -> Option<Toolchain> {
-    if !is_debian_ready() {
-        let packages = ["rustc-web", "cargo-web", "rust-web-src"];
-        let install = ["install", "-y", "--no-install-recommends"];
-        succeeds("apt-get", &[&install[..], &packages].concat());
-    }
     let linker = linker().filter(|_| is_debian_ready())?;
     Some(Toolchain::Debian { linker })
 }
@@ -131,11 +118,6 @@ fn linker() -> Option<PathBuf> {
     [own, PathBuf::from("/usr/bin/wasm-ld")]
         .into_iter()
         .find(|linker| linker.exists())
-}
-
-fn succeeds(program: &str, arguments: &[&str]) -> bool {
-    let status = Command::new(program).args(arguments).status();
-    status.is_ok_and(|status| status.success())
 }
 
 /// What a program prints, if it succeeds.

@@ -7,23 +7,25 @@ use htex::VoiceOptions;
 use htex_author::read::{ReadOptions, read_recording};
 use htex_author::simulate::{SimulationError, SimulationOptions, Surface, simulate};
 use htex_author::{
-    AssetRequest, AuthorError, Exploration, FittedAsset, SetupResponse, SpectrumOptions, Take,
-    fit_asset,
+    AssetRequest, AuthorError, Exploration, SetupResponse, SpectrumOptions, Take, fit_asset,
 };
 use htex_host::Registry;
-use htex_report::{ModelResult, Texture, TextureReport, texture_report};
+use htex_report::{Texture, TextureReport, spectra_picture, texture_report};
 use serde::Serialize;
 
 use super::simulate::write_response;
-use crate::assets::{AssetSummary, RepresentationSummary, motion_text, short_name};
+use crate::assets::{AssetSummary, RepresentationSummary, short_name};
 use crate::failure::Failure;
 use crate::models::{model_requests, tool};
 use crate::output::{print, print_json, write_file};
 use crate::progress::bar;
+use crate::report::Reported;
 use crate::wav::write_wav;
 
 const WAV_RATE_HZ: u32 = 20_000;
 const WAV_SECONDS: u64 = 5;
+/// The models in the picture of all spectra.
+const PICTURED: [&str; 2] = ["bands", "ar"];
 /// The simulated rig's response.
 const RIG: &str = "rig.csv";
 /// The condition the surfaces are explored at (paper, Texture recording).
@@ -35,8 +37,8 @@ const CONDITION: Exploration = Exploration {
 /// Run the whole way on five simulated surfaces: recordings, assets, sounds and a report.
 ///
 /// Needs nothing but this program. Writes NAME.csv (the simulated recording), NAME.htex,
-/// NAME-MODEL.wav, rig.csv (the simulated rig's response, by which recordings are divided) and
-/// report.html into DIR.
+/// NAME-MODEL.wav, rig.csv (the simulated rig's response, by which recordings are divided), report.html and spectra.svg
+/// (all recordings, with Bands and AR over them) into DIR.
 #[derive(Args)]
 pub(crate) struct Demo {
     /// Where to write; made if it is not there
@@ -68,7 +70,9 @@ impl Demo {
         bar.finish_and_clear();
         let report = self.dir.join("report.html");
         let rows: Vec<Row> = done.iter().flat_map(DemoTexture::rows).collect();
-        let textures = done.into_iter().map(|d| d.texture).collect();
+        let textures: Vec<Texture> = done.into_iter().map(|d| d.texture).collect();
+        let picture = spectra_picture(&textures, &PICTURED);
+        write_file(&self.dir.join("spectra.svg"), picture.as_bytes())?;
         write_file(&report, texture_report(&self.page(textures)).as_bytes())?;
         if self.json {
             print_json(&rows)?;
@@ -105,7 +109,14 @@ impl Demo {
         }
         let summary = AssetSummary::new(&path, bytes.len() as u64, &fitted.asset);
         let recording_bytes = std::fs::metadata(&csv).map_or(0, |m| m.len());
-        let texture = picture(&name, recording_bytes, &fitted, &asset, &summary)
+        let reported = Reported {
+            fitted: &fitted,
+            asset: &asset,
+            summary: &summary,
+            recording_bytes,
+        };
+        let texture = reported
+            .texture(0)
             .map_err(|error| Failure::asset(&path, error))?;
         Ok(DemoTexture { texture, summary })
     }
@@ -210,59 +221,6 @@ fn play(asset: &htex::Asset, model: &str, file: &Path, wav: &Path) -> Result<(),
     let frames = WAV_SECONDS * u64::from(WAV_RATE_HZ);
     write_wav(wav, WAV_RATE_HZ, frames, |block| {
         voice.render(block).map_err(failure)
-    })
-}
-
-/// What the report shows of a texture.
-fn picture(
-    name: &str,
-    recording_bytes: u64,
-    fitted: &FittedAsset,
-    asset: &htex::Asset,
-    summary: &AssetSummary,
-) -> Result<Texture, htex::Error> {
-    let spectrum = &fitted.spectra[0];
-    let mut models = Vec::new();
-    for r in &summary.representations {
-        let magnitude = asset.magnitude(Some(&r.model), None, &spectrum.frequency_hz)?;
-        let short = short_name(&r.model).to_owned();
-        let quality = r.first.quality.clone();
-        models.push(ModelResult {
-            model: asset
-                .loaded_model(Some(&r.model))?
-                .descriptor()
-                .name
-                .clone(),
-            lines: (short == "speak").then(|| r.first.lines()),
-            short_name: short,
-            magnitude,
-            spectral_correlation: quality
-                .as_ref()
-                .map_or(f64::NAN, |q| q.spectral_correlation),
-            band_error_rms_db: quality.as_ref().map_or(f64::NAN, |q| q.band_error_rms_db),
-            third_octave_error_rms_db: quality.as_ref().and_then(|q| q.third_octave_error_rms_db),
-            log_spectral_distance_db: quality.as_ref().and_then(|q| q.log_spectral_distance_db),
-            samples_band_error_rms_db: quality.as_ref().and_then(|q| q.samples_band_error_rms_db),
-            band_error_db: quality.map(|q| q.band_error_db).unwrap_or_default(),
-            payload_bytes: r.payload_bytes,
-        });
-    }
-    let manifest = asset.manifest();
-    Ok(Texture {
-        name: name.to_owned(),
-        simulated: manifest.provenance.simulated,
-        condition: manifest
-            .conditions
-            .first()
-            .map(motion_text)
-            .unwrap_or_default(),
-        recording_bytes,
-        asset_bytes: summary.bytes,
-        repeatability_rms_db: summary.repeatability_rms_db,
-        frequency_hz: spectrum.frequency_hz.clone(),
-        recorded: spectrum.magnitude.clone(),
-        models,
-        warnings: summary.warnings.clone(),
     })
 }
 

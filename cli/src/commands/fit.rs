@@ -2,17 +2,20 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use htex_author::{AssetRequest, Level, fit_asset};
-use htex_format::{Plugin, Severity, check_license};
+use htex_author::{AssetRequest, FittedAsset, Level, fit_asset};
+use htex_format::Plugin;
 use htex_host::{LoadedModel, Origin, Registry};
+use htex_report::{TextureReport, texture_report};
 
 use crate::assets::AssetSummary;
 use crate::failure::Failure;
+use crate::metadata::MetadataArgs;
 use crate::models::{model_requests, tool};
 use crate::output::{note, print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
 use crate::recordings::RecordingArgs;
+use crate::report::Reported;
 
 /// Fit models to recordings of one texture and write the asset.
 ///
@@ -47,22 +50,6 @@ pub(crate) struct Fit {
     #[arg(short, long, value_name = "HTEX")]
     output: PathBuf,
 
-    /// Name of the texture [default: the output's file name]
-    #[arg(long)]
-    name: Option<String>,
-
-    /// Licence of the asset, as an SPDX expression, e.g. CC-BY-4.0
-    #[arg(long)]
-    license: Option<String>,
-
-    /// Who made it
-    #[arg(long)]
-    author: Option<String>,
-
-    /// Words to find it by, comma-separated
-    #[arg(long, value_delimiter = ',')]
-    tags: Vec<String>,
-
     /// Keep the recorded spectrum in the asset (788 bytes a condition, before compression)
     #[arg(long)]
     keep_reference: bool,
@@ -75,6 +62,13 @@ pub(crate) struct Fit {
     /// Sign embedded modules with this ed25519 secret key: a file of 32 bytes
     #[arg(long, value_name = "FILE", requires = "embed_plugin")]
     sign_with: Option<PathBuf>,
+
+    /// Draw the spectra and errors of all models into this HTML page, as `htex demo` does
+    #[arg(long, value_name = "HTML")]
+    report: Option<PathBuf>,
+
+    #[command(flatten)]
+    metadata: MetadataArgs,
 
     #[command(flatten)]
     plugins: PluginArgs,
@@ -101,12 +95,17 @@ impl Fit {
             .chain(&self.embed_plugin)
             .chain(&self.sign_with);
         let files = files.chain(self.plugins.files()).map(PathBuf::as_path);
-        check_outputs([self.output.as_path()], files.chain(self.reading.frf()))?;
+        let outputs = [&self.output].into_iter().chain(&self.report);
+        check_outputs(
+            outputs.map(PathBuf::as_path),
+            files.chain(self.reading.frf()),
+        )?;
         let registry = self.plugins.registry_with(&self.embed_plugin)?;
-        self.check_license()?;
+        self.metadata.check()?;
         let request = self.request(&registry)?;
         let takes = self.reading.read(&self.recordings)?;
         let mut fitted = fit_asset(&takes, &request)?;
+        self.metadata.apply(&mut fitted.asset.manifest);
         self.embed(&mut fitted.asset, &registry)?;
         let bytes = fitted
             .asset
@@ -116,6 +115,9 @@ impl Fit {
         let mut summary = AssetSummary::new(&self.output, bytes.len() as u64, &fitted.asset);
         for (r, ms) in summary.representations.iter_mut().zip(&fitted.fit_ms) {
             r.fit_ms = Some(*ms);
+        }
+        if let Some(file) = &self.report {
+            self.write_report(file, &fitted, &summary, registry)?;
         }
         if self.json {
             summary.notes.extend(fitted.notes);
@@ -127,6 +129,31 @@ impl Fit {
             print(&summary.to_text())?;
         }
         Ok(ExitCode::SUCCESS)
+    }
+
+    fn write_report(
+        &self,
+        file: &Path,
+        fitted: &FittedAsset,
+        summary: &AssetSummary,
+        registry: Registry,
+    ) -> Result<(), Failure> {
+        let asset = htex::Asset::with_registry(fitted.asset.clone(), registry);
+        let sizes = self.recordings.iter().map(std::fs::metadata);
+        let reported = Reported {
+            fitted,
+            asset: &asset,
+            summary,
+            recording_bytes: sizes.map(|size| size.map_or(0, |m| m.len())).sum(),
+        };
+        let textures = reported.textures();
+        let page = TextureReport {
+            title: format!("{}: recording and models", fitted.asset.manifest.name),
+            textures: textures.map_err(|error| Failure::asset(&self.output, error))?,
+            command: command_line(),
+            ..TextureReport::default()
+        };
+        write_file(file, texture_report(&page).as_bytes())
     }
 
     /// Puts the modules of fitted models into the asset.
@@ -163,18 +190,6 @@ impl Fit {
         Ok(())
     }
 
-    /// Says early what the asset's validation would say of the licence at the end.
-    fn check_license(&self) -> Result<(), Failure> {
-        let Some(Err((rule, message))) = self.license.as_deref().map(check_license) else {
-            return Ok(());
-        };
-        if rule.severity == Severity::Error {
-            return Err(Failure::Usage(format!("--license: {message}")));
-        }
-        warn(&[format!("--license: {message}")]);
-        Ok(())
-    }
-
     fn request(&self, registry: &Registry) -> Result<AssetRequest, Failure> {
         let mut recorded_options = self.reading.recorded_options();
         for option in &self.option {
@@ -190,10 +205,7 @@ impl Fit {
             .file_stem()
             .map(|s| s.to_string_lossy().into_owned());
         Ok(AssetRequest {
-            name: self.name.clone().or(stem).unwrap_or_default(),
-            license: self.license.clone(),
-            author: self.author.clone(),
-            tags: self.tags.clone(),
+            name: stem.unwrap_or_default(),
             models: model_requests(registry, &self.model, &self.option)?,
             spectrum: self.reading.spectrum_options()?,
             level: match self.level {
@@ -205,8 +217,21 @@ impl Fit {
             keep_reference: self.keep_reference,
             recorded_options,
             tool: tool(),
+            ..AssetRequest::default()
         })
     }
+}
+
+/// This run's command line; words with other characters than a path has are quoted.
+fn command_line() -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./:=,+%@".contains(c);
+    let quoted = |word: std::ffi::OsString| match word.to_string_lossy() {
+        word if !word.is_empty() && word.chars().all(is_plain) => word.into_owned(),
+        word => format!("'{}'", word.replace('\'', r"'\''")),
+    };
+    let words = std::env::args_os().skip(1).map(quoted);
+    let words: Vec<String> = std::iter::once("htex".to_owned()).chain(words).collect();
+    words.join(" ")
 }
 
 /// The models that come with this program: a plugin runs only where it is asked for.

@@ -5,6 +5,7 @@ mod compare;
 mod compile_module;
 mod demo;
 mod device;
+mod edit;
 mod explain;
 mod fit;
 mod gain;
@@ -32,8 +33,9 @@ pub(crate) enum Command {
     Demo(demo::Demo),
     Simulate(simulate::Simulate),
     Process(process::Process),
-    Fit(fit::Fit),
+    Fit(Box<fit::Fit>),
     Info(info::Info),
+    Edit(edit::Edit),
     Validate(validate::Validate),
     Explain(explain::Explain),
     Spectrum(spectrum::Spectrum),
@@ -60,6 +62,7 @@ impl Command {
             Self::Process(args) => args.run(),
             Self::Fit(args) => args.run(),
             Self::Info(args) => args.run(),
+            Self::Edit(args) => args.run(),
             Self::Validate(args) => args.run(),
             Self::Explain(args) => args.run(),
             Self::Spectrum(args) => args.run(),

@@ -6,6 +6,8 @@ use htex_device::Status;
 use htex_scene::file::Motion;
 use htex_scene::{DeviceOverride, Plan, Renderer};
 
+#[cfg(not(feature = "audio"))]
+use crate::devices::with_sound;
 use crate::failure::Failure;
 use crate::gains::{FeltArgs, apply_kept};
 use crate::motions::{Motions, Moved};
@@ -18,6 +20,10 @@ use crate::signals::{self, interrupted};
 ///
 /// An asset is played at the speed and force of its first condition, by ear when no device is named.
 #[derive(Args)]
+#[cfg_attr(
+    not(feature = "audio"),
+    command(after_help = concat!("This build has no sound: ", with_sound!(), "."))
+)]
 pub(crate) struct Play {
     /// The scene or the asset
     file: PathBuf,
@@ -80,7 +86,10 @@ impl Play {
             let sentence = format!("--seconds {seconds}: more than 0, at most 1e9");
             return Err(Failure::Usage(sentence));
         }
-        let device = self.choice.to_override(None, false)?;
+        let device = DeviceOverride {
+            live: self.motion.is_some(),
+            ..self.choice.to_override(None, false)?
+        };
         let mut ready = open(&self.with, &self.file, self.motion.is_some(), device)?;
         let scene = &mut ready.scene.scene;
         scene.duration_s = self.seconds.or(scene.duration_s);

@@ -73,6 +73,7 @@ fn descriptor() -> Descriptor {
         name: "device".to_owned(),
         kind: SettingKind::Text,
         default: Some(DEFAULT.to_owned()),
+        live_default: None,
         from_scene: FromScene::Any,
         description: "Sound output, as the list of devices names it.".to_owned(),
     };
@@ -83,6 +84,7 @@ fn descriptor() -> Descriptor {
             max: 10_000.0,
         },
         default: Some("60".to_owned()),
+        live_default: None,
         from_scene: FromScene::Any,
         description: "Samples kept ready for the card, milliseconds: more is safer, less is \
                       quicker."

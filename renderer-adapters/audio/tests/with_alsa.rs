@@ -1,4 +1,4 @@
-//! The tests of the feature `cpal`, where ALSA can be built against: `cargo test --workspace` builds
+//! The tests of the feature `cpal`, where ALSA can be built against: `cargo test` builds
 //! without it, so that a machine without ALSA passes all the rest.
 #![cfg(all(not(feature = "cpal"), target_os = "linux"))]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
@@ -11,8 +11,7 @@ fn playback_through_alsa() {
     let alsa = Command::new("pkg-config")
         .args(["--exists", "alsa"])
         .status();
-    if !alsa.is_ok_and(|status| status.success()) {
-        println!("libasound2-dev (or pkg-config) is not installed: no playback through ALSA");
+    if !xtask::needs::ALSA.met(alsa.is_ok_and(|status| status.success())) {
         return;
     }
     let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();

@@ -63,20 +63,22 @@ fn settings() -> Vec<Setting> {
             Some("7000"),
             "Carrier that the signal is to have, hertz; 0: none.",
         ),
-        setting(
-            "buffer_ms",
-            number(10.0, 10_000.0),
-            FromScene::Any,
-            Some("200"),
-            "Samples kept ready for the card, milliseconds: more is safer, less is quicker.",
-        ),
+        Setting {
+            live_default: Some("20".to_owned()),
+            ..setting(
+                "buffer_ms",
+                number(10.0, 10_000.0),
+                FromScene::Any,
+                Some("200"),
+                "Samples kept ready for the card, milliseconds: more is safer, less is quicker.",
+            )
+        },
         setting(
             "ramp_ms",
             number(1.0, 1_000.0),
             FromScene::More,
             Some("20"),
-            "Ramp before a first, and after a last sample that is not zero, milliseconds; at most \
-             half of `buffer_ms`.",
+            "Ramp before a first, and after a last sample that is not zero, milliseconds.",
         ),
         setting(
             "driver",
@@ -99,6 +101,7 @@ fn setting(
         name: name.to_owned(),
         kind,
         default: default.map(str::to_owned),
+        live_default: None,
         from_scene,
         description: description.to_owned(),
     }

@@ -42,13 +42,12 @@ impl Rig {
             buffer_s: settings.number("buffer_ms") / 1e3,
             ramp_s: settings.number("ramp_ms") / 1e3,
         };
-        match rig.ramp_s > rig.buffer_s / 2.0 {
-            true => Err(refuse("ramp_ms", "it is at most half of `buffer_ms`")),
-            false if !rig.device.contains('/') => {
+        match rig.limit_v > 0.0 {
+            _ if !rig.device.contains('/') => {
                 Err(refuse("device", "an output is wanted, such as `Dev1/ao0`"))
             }
-            false if rig.limit_v <= 0.0 => Err(refuse("limit_v", "it is above zero")),
-            false => Ok(rig),
+            false => Err(refuse("limit_v", "it is above zero")),
+            true => Ok(rig),
         }
     }
 
@@ -72,6 +71,15 @@ impl Rig {
             paced: true,
             block_frames: BLOCK_FRAMES,
         })
+    }
+
+    /// What to do about samples that come too late.
+    pub(crate) fn larger_buffer(&self) -> String {
+        let buffer_ms = self.buffer_s * 1e3;
+        format!(
+            "write sooner, or keep more ready: --set buffer_ms={} (now {buffer_ms} ms)",
+            2.0 * buffer_ms
+        )
     }
 
     /// The card's voltage for a voltage at the display; nothing when it is over the limit or not a

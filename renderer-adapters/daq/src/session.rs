@@ -20,7 +20,9 @@ pub(crate) struct Session {
     claim: Option<Claim>,
     driver: &'static Driver,
     rate_hz: f64,
-    /// Frames the driver's buffer holds.
+    /// Most frames of the stream that are given and have not come out, in the driver's buffer and on the card.
+    ahead: usize,
+    /// Frames the driver's buffer holds: a ramp before the stream may be longer than `ahead`.
     capacity: usize,
     /// None before the first sample and after the end.
     task: Option<Task>,
@@ -45,10 +47,14 @@ impl Session {
         driver: &'static Driver,
         format: &StreamFormat,
     ) -> Result<Self, DeviceError> {
-        let buffered = (rig.buffer_s * format.rate_hz).ceil() as usize;
+        let frames = |seconds: f64| (seconds * format.rate_hz).ceil() as usize;
+        let ahead = frames(rig.buffer_s)
+            .max(2 * format.block_frames as usize)
+            .max(2);
         let session = Self {
             claim: Some(Claim::take(&rig)?),
-            capacity: buffered.max(2 * format.block_frames as usize).max(2),
+            capacity: ahead.max(frames(rig.ramp_s)),
+            ahead,
             rate_hz: format.rate_hz,
             rig,
             driver,
@@ -77,13 +83,26 @@ impl Session {
         if self.task.is_none() {
             self.start(*first_v)?;
         }
-        let taken = self.give(&volts)?;
+        let fitting = self.room()?.min(volts.len());
+        let taken = self.give(&volts[..fitting])?;
         for sample in &samples[..taken] {
             self.status.peak = self.status.peak.max(f64::from(sample.abs()));
         }
         self.last_v = volts[..taken].last().copied().unwrap_or(self.last_v);
         self.status.frames_written += taken as u64;
+        self.status.latency_s = self.waiting_s();
         Ok(taken)
+    }
+
+    /// Frames of the stream that may be given now. What waits is counted by what came out: the driver reports space in
+    /// its buffer as soon as samples have moved on to the card's own memory, which may hold a second of them.
+    fn room(&mut self) -> Result<usize, DeviceError> {
+        let generated = self.task.as_ref().map(Task::generated).transpose();
+        self.generated = generated
+            .map_err(|fault| self.fail(&fault))?
+            .unwrap_or(self.generated);
+        let waiting = self.given.saturating_sub(self.generated);
+        Ok(self.ahead.saturating_sub(waiting as usize))
     }
 
     /// The ramp from the stream's last sample to zero, volts.
@@ -144,9 +163,21 @@ impl Session {
         let played = self.generated.saturating_sub(self.lead);
         Status {
             frames_played: played.min(self.status.frames_written),
-            latency_s: self.given.saturating_sub(self.generated) as f64 / self.rate_hz,
+            latency_s: self.latency_s(),
             ..self.status
         }
+    }
+
+    /// How long a sample waits until it comes out, seconds; after the end, how long the last one waited.
+    fn latency_s(&self) -> f64 {
+        match self.task {
+            Some(_) => self.waiting_s(),
+            None => self.status.latency_s,
+        }
+    }
+
+    fn waiting_s(&self) -> f64 {
+        self.given.saturating_sub(self.generated) as f64 / self.rate_hz
     }
 
     /// Stops, puts zero out and takes nothing more; what went wrong before is said here.
@@ -166,11 +197,11 @@ impl Session {
         }
     }
 
-    /// Starts the clock on zeros (half a buffer, so that the first write is not late) that end in
+    /// Starts the clock on zeros (half of what is kept ahead, so that the first write is not late) that end in
     /// a ramp to the first sample if that is not zero.
     fn start(&mut self, first_v: f64) -> Result<(), DeviceError> {
         let ramp = self.ramp(first_v);
-        let mut lead = vec![0.0; (self.capacity / 2).saturating_sub(ramp.len())];
+        let mut lead = vec![0.0; (self.ahead / 2).saturating_sub(ramp.len())];
         lead.extend(ramp);
         let started = self.started(&lead);
         self.task = Some(started.map_err(|fault| self.fail(&fault))?);
@@ -225,7 +256,7 @@ impl Session {
             Ok(()) if fault.is_dry() => DeviceError::Underflow {
                 device: self.rig.device.clone(),
                 frames: self.status().frames_played,
-                advice: "write sooner, or set a larger `buffer_ms`".to_owned(),
+                advice: self.rig.larger_buffer(),
             },
             Ok(()) => fault.failed(&self.rig.device),
         }

@@ -37,6 +37,9 @@ pub struct Setting {
     /// Value when nothing is said; absent: it must be given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub default: Option<String>,
+    /// Value in place of `default` while the motion is given as the scene plays: such as a shorter buffer.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub live_default: Option<String>,
     /// What a scene, which may come from anyone, may do with it.
     #[serde(default, skip_serializing_if = "FromScene::is_any")]
     pub from_scene: FromScene,
@@ -182,9 +185,15 @@ impl Setting {
             }
             _ => {}
         }
-        let default = self.default.as_deref();
-        let checked = default.map_or(Ok(()), |value| crate::settings::check(self, value));
-        checked.map_err(|error| format!("the default: {error}"))
+        if self.default.is_none() && self.live_default.is_some() {
+            return Err(format!(
+                "setting `{name}` has a `live_default` and no `default`"
+            ));
+        }
+        let mut defaults = self.default.iter().chain(&self.live_default);
+        defaults
+            .try_for_each(|value| crate::settings::check(self, value))
+            .map_err(|error| format!("the default: {error}"))
     }
 }
 

@@ -41,10 +41,8 @@ impl Library {
             what,
         };
         // SAFETY: running a library's initialisers is what the user asked for by naming it.
-        let library =
-            unsafe { libloading::Library::new(path) }.map_err(|e| error(e.to_string()))?;
-        // Never unloaded: see above.
-        let library: &'static libloading::Library = Box::leak(Box::new(library));
+        let library = unsafe { htex_library::Library::from_file(path) };
+        let library = library.map_err(|e| error(e.to_string()))?;
         // SAFETY: the marker comes first, and says that the other symbols have these types.
         let abi_version: AbiVersion =
             unsafe { symbol(library, "htex_device_abi_version", &error)? };
@@ -148,13 +146,11 @@ fn check_marker(marker: u32) -> Result<(), String> {
 /// # Safety
 /// The symbol has the type `T`.
 unsafe fn symbol<T: Copy>(
-    library: &'static libloading::Library,
+    library: htex_library::Library,
     name: &str,
     error: &impl Fn(String) -> DeviceError,
 ) -> Result<T, DeviceError> {
     // SAFETY: the caller's promise.
-    let found = unsafe { library.get::<T>(name) };
-    found
-        .map(|symbol| *symbol)
-        .map_err(|_| error(format!("the library has no `{name}`; it is no htex device")))
+    let found = unsafe { library.symbol(name) };
+    found.ok_or_else(|| error(format!("the library has no `{name}`; it is no htex device")))
 }

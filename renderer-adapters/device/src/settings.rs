@@ -17,6 +17,8 @@ pub struct Stated<'a> {
     pub given: &'a BTreeMap<String, String>,
     /// Settings that a scene asks for: [`FromScene`] says what becomes of them.
     pub asked: &'a BTreeMap<String, String>,
+    /// Whether the motion is given as the scene plays: [`Setting::live_default`] then stands for the default.
+    pub live: bool,
 }
 
 /// A setting that a scene asks for and does not get.
@@ -43,6 +45,7 @@ impl Settings {
             profile,
             given,
             asked: &BTreeMap::new(),
+            live: false,
         };
         Ok(Self::settle(descriptor, &stated)?.0)
     }
@@ -71,7 +74,9 @@ impl Settings {
             }
         }
         for setting in &descriptor.settings {
-            if let (false, Some(default)) = (values.contains_key(&setting.name), &setting.default) {
+            let live = setting.live_default.as_ref().filter(|_| stated.live);
+            let default = live.or(setting.default.as_ref());
+            if let (false, Some(default)) = (values.contains_key(&setting.name), default) {
                 values.insert(setting.name.clone(), default.clone());
             }
         }
@@ -241,6 +246,7 @@ mod tests {
             name: name.to_owned(),
             kind: kind.clone(),
             default: Some("100".to_owned()),
+            live_default: None,
             from_scene,
             description: "A number.".to_owned(),
         }
@@ -315,6 +321,7 @@ mod tests {
                 profile: None,
                 given,
                 asked: &asked,
+                live: false,
             };
             let (settings, ignored) = Settings::settle(&descriptor(), &stated)?;
             assert_eq!(settings.number(name), holds, "{name} {value}");

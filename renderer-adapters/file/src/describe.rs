@@ -72,6 +72,7 @@ fn settings() -> Vec<Setting> {
         name: name.to_owned(),
         kind,
         default: default.map(str::to_owned),
+        live_default: None,
         from_scene: FromScene::Any,
         description: description.to_owned(),
     };

@@ -5,6 +5,7 @@ use htex_format::{Condition, Source};
 use crate::fit::source_of;
 use crate::reading::read_take;
 use crate::spectrum::SegmentSpectra;
+use crate::warnings::Warnings;
 use crate::{AuthorError, Exploration, Recording, SpectrumOptions, TextureSpectrum};
 
 /// A recording and what is known of its condition beforehand.
@@ -42,12 +43,12 @@ pub(crate) fn group_takes(
     strict: bool,
 ) -> Result<Grouped, AuthorError> {
     let (mut gatherings, mut sources) = (Vec::<Gathering>::new(), Vec::new());
-    let (mut warnings, mut notes) = (Vec::new(), Vec::new());
+    let (mut warnings, mut notes) = (Warnings::default(), Warnings::default());
     for take in takes {
         let reading = read_take(take, options, strict)?;
         let (condition, part) = (reading.condition, reading.part);
-        warnings.extend(reading.warnings);
-        notes.extend(reading.notes);
+        warnings.add(&take.recording.source, reading.warnings);
+        notes.add(&take.recording.source, reading.notes);
         sources.push(source_of(take, part.spectra.len()));
         match gatherings.iter_mut().find(|g| same(g.condition, condition)) {
             Some(gathering) => gathering.parts.push(part),
@@ -85,8 +86,8 @@ pub(crate) fn group_takes(
         groups,
         conditions,
         sources,
-        warnings,
-        notes,
+        warnings: warnings.into_sentences(),
+        notes: notes.into_sentences(),
     })
 }
 

@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
 use htex_format::{
-    Asset, AtCondition, Condition, Manifest, Provenance, Quality, Quantity, Reference,
-    Representation, Source, VERSION, round_parameters,
+    Asset, AtCondition, Condition, FIRST_VERSION, Manifest, Provenance, Quality, Quantity,
+    Reference, Representation, Source, round_parameters,
 };
 use htex_host::{HostError, LoadedModel};
 
@@ -253,11 +253,16 @@ fn assemble(
     let to_f32 = |s: &TextureSpectrum| s.magnitude.iter().map(|&m| m as f32).collect();
     Asset {
         manifest: Manifest {
-            htex: VERSION.to_owned(),
+            htex: FIRST_VERSION.to_owned(),
             name: request.name.clone(),
             license: request.license.clone(),
             author: request.author.clone(),
             tags: request.tags.clone(),
+            description: None,
+            source: None,
+            doi: None,
+            sensor: None,
+            finger: None,
             quantity,
             unit: quantity.unit().to_owned(),
             band: htex_format::Band {

@@ -24,6 +24,7 @@ pub mod simulate;
 mod spectrum;
 mod stored;
 mod sums;
+mod warnings;
 
 pub use conditions::Take;
 pub use error::AuthorError;

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::check_plugins::check_plugins;
 use crate::check_representation::check_representations;
+use crate::doi::check_doi;
 use crate::license::check_license;
 use crate::manifest::{Band, Condition, Manifest};
 use crate::pointer::escape;
@@ -65,6 +66,9 @@ fn check_words(manifest: &Manifest, findings: &mut Findings) {
     let license = manifest.license.as_deref().map(check_license);
     if let Some(Err((rule, message))) = license {
         findings.add(rule, "/license", message);
+    }
+    if let Some(Err(message)) = manifest.doi.as_deref().map(check_doi) {
+        findings.add(rule::DOI_INVALID, "/doi", message);
     }
     let (unit, wanted) = (&manifest.unit, manifest.quantity.unit());
     findings.require(unit == wanted, rule::UNIT_UNKNOWN, "/unit", || {

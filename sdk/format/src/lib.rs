@@ -12,6 +12,7 @@ mod check_plugins;
 mod check_representation;
 mod container;
 mod document;
+mod doi;
 mod error;
 mod fields;
 mod finding;
@@ -41,6 +42,7 @@ pub use asset::Asset;
 pub use block::{round_parameters, stored_bytes};
 pub use check_manifest::is_extension_name;
 pub use document::{Document, DocumentRules, Opened};
+pub use doi::check_doi;
 pub use error::{ReadError, WriteError, summary};
 pub use fields::{FieldMismatch, FieldOrder, KnownModel, match_fields, stored_unit};
 pub use finding::{Finding, Severity};
@@ -49,8 +51,8 @@ pub use json_text::parse_json;
 pub use license::check_license;
 pub use limits::Limits;
 pub use manifest::{
-    AtCondition, Band, Condition, Field, Manifest, Plugin, Provenance, Quality, Reference,
-    Representation, SAME_CONDITION, Signature, Source, Steps, Store, VERSION,
+    AtCondition, Band, Condition, FIRST_VERSION, Field, Manifest, Plugin, Provenance, Quality,
+    Reference, Representation, SAME_CONDITION, Signature, Source, Steps, Store, VERSION,
 };
 pub use measure::ErrorMeasure;
 pub use page::{manifest_schema, report_schema, rules_page, validation_page};

@@ -11,11 +11,14 @@ use serde_json::Value;
 
 use crate::Quantity;
 use crate::schema_words::{
-    ENTRY_NAME, MODEL_ID, SEMANTIC_VERSION, open_variants, own_entries, quantities_and_units,
+    DOI, ENTRY_NAME, MODEL_ID, SEMANTIC_VERSION, open_variants, own_entries, quantities_and_units,
 };
 
-/// The version of the format this crate writes.
-pub const VERSION: &str = "1.0";
+/// The newest version of the format that this crate knows. It writes the lowest that has the keys of an asset:
+/// [`Manifest::declare_version`].
+pub const VERSION: &str = "1.1";
+/// The first version: what an asset is of that has no later keys.
+pub const FIRST_VERSION: &str = "1.0";
 
 /// The asset: one surface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -37,6 +40,22 @@ pub struct Manifest {
     /// Words to find it by.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
+    /// What the surface is, in words (1.1).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub description: Option<String>,
+    /// Where the recordings come from: a dataset, a laboratory, an address (1.1).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+    /// DOI of the recordings or of the paper that describes them, without `https://doi.org/` (1.1).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(regex(pattern = DOI))]
+    pub doi: Option<String>,
+    /// What measured the signal: the kind and the model of the sensor (1.1).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sensor: Option<String>,
+    /// What slid over the surface: a bare finger, an artificial fingertip, a tool (1.1).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub finger: Option<String>,
     /// What the samples mean.
     pub quantity: Quantity,
     /// Their unit: [`Quantity::unit`].
@@ -69,6 +88,22 @@ pub struct Manifest {
     #[serde(flatten)]
     #[schemars(skip)]
     pub other: BTreeMap<String, Value>,
+}
+
+impl Manifest {
+    /// Raises `htex` to the lowest minor version that has all keys of the manifest.
+    pub fn declare_version(&mut self) {
+        let words = [
+            &self.description,
+            &self.source,
+            &self.doi,
+            &self.sensor,
+            &self.finger,
+        ];
+        if self.htex == FIRST_VERSION && words.iter().any(|word| word.is_some()) {
+            self.htex = VERSION.to_owned();
+        }
+    }
 }
 
 /// A frequency band, inclusive.

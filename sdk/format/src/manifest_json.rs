@@ -7,7 +7,7 @@ use crate::limits::Limits;
 use crate::pointer::escape;
 use crate::report::Findings;
 use crate::rules as rule;
-use crate::{Manifest, Quantity};
+use crate::{Manifest, Quantity, VERSION};
 
 const DOCUMENT: Document = Document {
     text: "manifest",
@@ -15,7 +15,7 @@ const DOCUMENT: Document = Document {
     thing: "asset",
     version_key: "htex",
     major: 1,
-    minor: 0,
+    minor: 1,
     rules: DocumentRules {
         too_deep: rule::JSON_TOO_DEEP,
         syntax: rule::JSON_SYNTAX,
@@ -37,7 +37,8 @@ pub(crate) fn parse(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> O
         let mut pointers: Vec<String> = other.chain(unknown).collect();
         pointers.sort_unstable();
         for pointer in pointers {
-            let message = "version 1.0 has no such key; correct it or use an extension".to_owned();
+            let message =
+                format!("version {VERSION} has no such key; correct it or use an extension");
             findings.add(rule::JSON_UNKNOWN_KEY, pointer, message);
         }
     }

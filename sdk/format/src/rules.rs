@@ -181,6 +181,10 @@ rule_table! {
         "`license` is not an SPDX licence expression.",
         "Programs sort assets by it, and people rely on it. The form is fixed, so it is an error.",
         "Write an expression such as `CC-BY-4.0` or `MIT OR Apache-2.0`; a licence of your own is `LicenseRef-NAME`.";
+    DOI_INVALID Error:
+        "`doi` is not a DOI.",
+        "Programs make a link of it. The form is fixed, so it is an error.",
+        "Write `10.`, the registrant's digits, a slash and the name, such as `10.5281/zenodo.1234567`, without `https://doi.org/`.";
     LICENSE_UNKNOWN Warning:
         "`license` names a licence that is not in the reader's SPDX list.",
         "It may be misspelt, upper and lower case included. The list grows, so it is a warning.",

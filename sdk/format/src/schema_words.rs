@@ -16,6 +16,9 @@ pub(crate) const SEMANTIC_VERSION: &str = concat!(
     r"(\+[0-9a-zA-Z-]+(\.[0-9a-zA-Z-]+)*)?$"
 );
 
+/// A DOI, as [`crate::check_doi`] has it.
+pub(crate) const DOI: &str = r"^10\.[0-9]{4,9}(\.[0-9]+)*/[!-~]+$";
+
 /// The name of an entry: parts of ASCII characters from space to `~`, without `\\`, `:` and `/`.
 pub(crate) const ENTRY_NAME: &str = r"^[ -.0-9;-\[\]-~]+(/[ -.0-9;-\[\]-~]+)*$";
 

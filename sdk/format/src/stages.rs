@@ -86,6 +86,7 @@ pub const STAGES: &[Stage] = &[
             "LICENSE_MISSING",
             "LICENSE_INVALID",
             "LICENSE_UNKNOWN",
+            "DOI_INVALID",
             "UNIT_UNKNOWN",
             "BAND_INVALID",
         ],

@@ -5,12 +5,12 @@
 
 use std::path::Path;
 
+use htex_library::Library;
 use htex_model::abi::{
     AbiVersion, DescriptorJson, ExtensionFn, FitFn, InterpolateFn, LastError, MagnitudeFn,
     ModelTable, VoiceFreeFn, VoiceNewFn, VoiceRateFn, VoiceRenderFn, VoiceRetuneFn,
 };
 use htex_model::voices_1::{VoicesRenderFn, VoicesTable};
-use libloading::Library;
 
 use crate::HostError;
 use crate::table::TableModel;
@@ -26,9 +26,7 @@ pub(crate) fn load(path: &Path) -> Result<TableModel, HostError> {
         what,
     };
     // SAFETY: running a library's initialisers is what the user asked for by naming it.
-    let library = unsafe { Library::new(path) }.map_err(|e| error(e.to_string()))?;
-    // Never unloaded: see above.
-    let library: &'static Library = Box::leak(Box::new(library));
+    let library = unsafe { Library::from_file(path) }.map_err(|e| error(e.to_string()))?;
     // SAFETY: the marker comes first, and says that the other symbols have these types.
     let abi_version: AbiVersion = unsafe { symbol(library, "htex_model_abi_version", &error)? };
     crate::model::check_marker(&origin, abi_version())?;
@@ -65,13 +63,11 @@ pub(crate) fn load(path: &Path) -> Result<TableModel, HostError> {
 /// # Safety
 /// The symbol has the type `T`.
 unsafe fn symbol<T: Copy>(
-    library: &'static Library,
+    library: Library,
     name: &str,
     error: &impl Fn(String) -> HostError,
 ) -> Result<T, HostError> {
     // SAFETY: the caller's promise.
-    let found = unsafe { library.get::<T>(name) };
-    found
-        .map(|symbol| *symbol)
-        .map_err(|_| error(format!("the library has no `{name}`; it is no htex model")))
+    let found = unsafe { library.symbol(name) };
+    found.ok_or_else(|| error(format!("the library has no `{name}`; it is no htex model")))
 }

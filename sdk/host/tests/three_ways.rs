@@ -11,21 +11,6 @@ use xtask::plugins;
 const RATE_HZ: f64 = 20_000.0;
 const SEED: u64 = 7;
 
-/// The folder of the WASM modules; `None`, said aloud, if this machine cannot build any and
-/// `HTEX_REQUIRE_WASM` is not 1.
-fn wasm_folder() -> Option<PathBuf> {
-    match plugins::wasm() {
-        Ok(folder) => Some(folder),
-        Err(reason) if std::env::var_os("HTEX_REQUIRE_WASM").is_some_and(|v| v == "1") => {
-            panic!("{reason}")
-        }
-        Err(reason) => {
-            println!("skipped: {reason}");
-            None
-        }
-    }
-}
-
 fn native(folder: &Path, name: &str) -> PathBuf {
     use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
     folder.join(format!("{DLL_PREFIX}htex_{name}{DLL_SUFFIX}"))
@@ -95,7 +80,7 @@ fn difference(a: &[f32], b: &[f32]) -> f64 {
 fn the_same_samples_three_ways() {
     let registry = Registry::builtin();
     let native_folder = plugins::native().unwrap();
-    let wasm_folder = wasm_folder();
+    let wasm_folder = plugins::wasm_if_there();
     for name in plugins::MODELS {
         let builtin = registry.find(name).unwrap();
         let mut others = vec![LoadedModel::from_file(&native(&native_folder, name)).unwrap()];
@@ -134,7 +119,9 @@ fn the_same_samples_three_ways() {
 /// that rendering in real time needs.
 #[test]
 fn what_each_way_costs() {
-    let Some(folder) = wasm_folder() else { return };
+    let Some(folder) = plugins::wasm_if_there() else {
+        return;
+    };
     let native_folder = plugins::native().unwrap();
     let registry = Registry::builtin();
     println!("ns a sample at blocks of 64 / 256, and us a call of 64");

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
 use htex_format::{Manifest, Quantity, Representation};
-use htex_host::{Band, LoadedModel, Registry, StillSound, Synthesis};
+use htex_host::{Band, HostError, LoadedModel, Registry, StillSound, Synthesis};
 
 use crate::exploration::{Coverage, Effects, Explored};
 use crate::mesh::Mesh;
@@ -318,9 +318,20 @@ impl Asset {
         let stored = &self.data.manifest.representations[representation];
         let model = match self.embedded {
             true => model_of(&self.registry_with(&stored.model)?, stored)?.clone(),
-            false => model_of(&self.registry, stored)?.clone(),
+            false => self.installed(stored)?,
         };
         Ok(kept.get_or_init(|| model).clone())
+    }
+
+    /// The model of a representation from the registry alone.
+    fn installed(&self, stored: &Representation) -> Result<LoadedModel, Error> {
+        let id = &stored.model;
+        match model_of(&self.registry, stored) {
+            Err(Error::Model(HostError::UnknownModel { .. })) if self.brings(id) => {
+                Err(Error::EmbeddedOff { id: id.clone() })
+            }
+            found => found.cloned(),
+        }
     }
 
     /// What the asset knows of a representation, its parameters in the order of the model's fields.

@@ -25,6 +25,16 @@ pub enum Error {
         /// What was asked for.
         id: String,
     },
+    /// The asset brings along the only model that could play a representation, and such models are not run
+    /// ([`crate::Asset::with_embedded`] runs them).
+    #[error(
+        "no model `{id}` is installed; the asset brings it along, and models of assets are not run here: allow them \
+         (leave out `--no-embedded-plugins`), or install the model"
+    )]
+    EmbeddedOff {
+        /// The model's id.
+        id: String,
+    },
     /// The asset was made by a model of another major version.
     #[error(
         "the asset was fitted by {model} {asset}, and version {installed} is installed, which is \

@@ -44,6 +44,7 @@ fn texture(index: usize) -> Texture {
     Texture {
         name: name.to_owned(),
         simulated: true,
+        unit: "N".to_owned(),
         condition: "80 mm/s, 0.40 N".to_owned(),
         recording_bytes: 1_600_044 + 40_000 * index as u64,
         asset_bytes: 2_810 + 7 * index as u64,

@@ -35,5 +35,5 @@ pub use page::{Page, code_block, details, figures, list, paragraph};
 pub use plot::Plot;
 pub use series::{Line, Series};
 pub use table::{Cell, HeatScale, Row, Table};
-pub use textures::{ModelResult, Texture, TextureReport, texture_report};
+pub use textures::{ModelResult, Texture, TextureReport, spectra_picture, texture_report};
 pub use ticks::{Tick, ticks};

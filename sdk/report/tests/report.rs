@@ -63,6 +63,7 @@ fn hostile_report(values: &[f64]) -> TextureReport {
     let texture = Texture {
         name: HOSTILE.to_owned(),
         simulated: values.len().is_multiple_of(2),
+        unit: HOSTILE.to_owned(),
         condition: HOSTILE.to_owned(),
         repeatability_rms_db: values.first().copied(),
         frequency_hz: values.iter().map(|v| v.abs()).collect(),

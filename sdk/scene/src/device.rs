@@ -29,6 +29,8 @@ pub struct DeviceOverride {
     /// The device will not be opened: the scene's own profile and what it says of the hardware are taken as they
     /// are, to validate, to plan, or to render to a file. Never set it for a device that plays.
     pub rehearsal: bool,
+    /// The motion is given as the scene plays: settings that nobody states have their live defaults.
+    pub live: bool,
     /// Another [`DeviceChoice::quantity_gain`].
     pub quantity_gain: Option<f64>,
     /// What a setting that names a file is when nobody says; absent: the scene's name with the ending of the
@@ -126,6 +128,7 @@ fn settle(
         profile,
         given: &given,
         asked: &asked,
+        live: change.live,
     };
     let settled = Settings::settle(descriptor, &stated);
     let (settings, ignored) = settled.map_err(|error| add_error(error, findings)).ok()?;

@@ -39,11 +39,16 @@ pub(crate) fn manifest(model: &LoadedModel, conditions: usize) -> Manifest {
         quality: None,
     };
     Manifest {
-        htex: htex_format::VERSION.to_owned(),
+        htex: htex_format::FIRST_VERSION.to_owned(),
         name: "fuzzed".to_owned(),
         license: Some("CC0-1.0".to_owned()),
         author: None,
         tags: Vec::new(),
+        description: None,
+        source: None,
+        doi: None,
+        sensor: None,
+        finger: None,
         quantity: htex_format::Quantity::LateralForce,
         unit: htex_format::Quantity::LateralForce.unit().to_owned(),
         band: Band {

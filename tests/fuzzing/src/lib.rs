@@ -3,6 +3,7 @@
 //!
 //! The programs in `fuzz/` call these functions, and so does the test that runs all seeds and
 //! regressions (`tests/tests/regressions.rs`): a finding is the same in both.
+#![cfg(feature = "wasm")]
 #![forbid(unsafe_code)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // A panic is a finding.
 

@@ -80,7 +80,10 @@ fn setting(setting: &Setting) -> String {
         SettingKind::Text => "text".to_owned(),
     };
     let default = match &setting.default {
-        Some(default) => format!("[{default}]"),
+        Some(default) => match &setting.live_default {
+            Some(live) => format!("[{default}; {live} with --motion]"),
+            None => format!("[{default}]"),
+        },
         None => "(must be given)".to_owned(),
     };
     let (name, description) = (&setting.name, &setting.description);

@@ -11,6 +11,10 @@ const SDK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../sdk");
 
 const RUST: &[(&str, &str)] = &[
     (
+        "README.md",
+        include_str!("../../../../sdk/check/templates/rust/README.md.in"),
+    ),
+    (
         "Cargo.toml",
         include_str!("../../../../sdk/check/templates/rust/Cargo.toml.in"),
     ),
@@ -21,6 +25,10 @@ const RUST: &[(&str, &str)] = &[
 ];
 
 const C: &[(&str, &str)] = &[
+    (
+        "README.md",
+        include_str!("../../../../sdk/check/templates/c/README.md.in"),
+    ),
     (
         "model.c",
         include_str!("../../../../sdk/check/templates/c/model.c"),
@@ -64,8 +72,39 @@ enum Lang {
     C,
 }
 
+impl Lang {
+    /// The files of a project, and their templates.
+    fn files(self) -> &'static [(&'static str, &'static str)] {
+        match self {
+            Self::Rust => RUST,
+            Self::C => C,
+        }
+    }
+}
+
 impl New {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        let dir = self.dir.clone().unwrap_or_else(|| (&self.name).into());
+        self.check(&dir)?;
+        let sdk = (self.lang == Lang::Rust).then(|| self.sdk()).transpose()?;
+        make_folder(&dir)?;
+        let values = self.values(&sdk_from(&dir, sdk)?);
+        for (file, template) in self.lang.files() {
+            let fill = |text: String, (key, value): &(&str, String)| text.replace(key, value);
+            let text = values.iter().fold((*template).to_owned(), fill);
+            write(&dir.join(file), &text)?;
+        }
+        let dir = dir.display();
+        print(&match self.lang {
+            Lang::Rust => format!("{dir}\nbuild: cargo build --release  (in {dir})\n"),
+            Lang::C => format!("{dir}\nbuild: sh {dir}/build.sh\n"),
+        })?;
+        print(&format!("then:  {dir}/README.md\n"))?;
+        Ok(ExitCode::SUCCESS)
+    }
+
+    /// Refuses a name that is none, and a folder that is there.
+    fn check(&self, dir: &Path) -> Result<(), Failure> {
         let name = &self.name;
         let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-';
         if !name.bytes().all(plain) || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
@@ -74,54 +113,70 @@ impl New {
                 "`{name}` is no name of a model: {rule}"
             )));
         }
-        let dir = self.dir.clone().unwrap_or_else(|| name.into());
         if dir.exists() {
             let dir = dir.display();
             return Err(Failure::Usage(format!(
                 "{dir} is there already; --dir names another"
             )));
         }
-        let (files, next) = match self.lang {
-            Lang::Rust => (
-                RUST,
-                format!("cargo build --release  (in {})", dir.display()),
-            ),
-            Lang::C => (C, format!("sh {}/build.sh", dir.display())),
-        };
-        let sdk = self.sdk_path()?;
-        for (file, template) in files {
-            let text = template
-                .replace("{{NAME}}", name)
-                .replace("{{ID}}", &format!("org.example.{name}"))
-                .replace("{{SDK_PATH}}", &sdk);
-            write(&dir.join(file), &text)?;
-        }
-        print(&format!(
-            "{}\nbuild: {next}\ncheck: htex plugin check FILE\n",
-            dir.display()
-        ))?;
-        Ok(ExitCode::SUCCESS)
+        Ok(())
+    }
+
+    /// The placeholders of the templates (`sdk/check/templates/README.md`), and what takes their place.
+    fn values(&self, sdk: &str) -> [(&'static str, String); 7] {
+        let name = &self.name;
+        let crate_name = name.replace('-', "_");
+        let library =
+            std::env::consts::DLL_PREFIX.to_owned() + &crate_name + std::env::consts::DLL_SUFFIX;
+        [
+            ("{{ID}}", format!("org.example.{name}")),
+            ("{{NAME}}", name.clone()),
+            ("{{LABEL}}", capital(&name.replace('-', " "))),
+            ("{{TYPE}}", name.split('-').map(capital).collect()),
+            ("{{CRATE}}", crate_name),
+            ("{{LIBRARY}}", library),
+            ("{{SDK_PATH}}", sdk.to_owned()),
+        ]
     }
 
     /// The folder `sdk`, from which a project in Rust takes its dependencies.
-    fn sdk_path(&self) -> Result<String, Failure> {
-        if self.lang == Lang::C {
-            return Ok(String::new());
-        }
+    fn sdk(&self) -> Result<PathBuf, Failure> {
         let sdk = self.sdk.as_deref().unwrap_or(Path::new(SDK));
-        let found = sdk.canonicalize().map_err(|error| {
+        sdk.canonicalize().map_err(|error| {
             let sdk = sdk.display();
             Failure::Usage(format!(
                 "{sdk}: {error}; --sdk names the folder `sdk` of the sources"
             ))
-        })?;
-        Ok(found.display().to_string())
+        })
     }
+}
+
+/// The word with a capital first letter.
+fn capital(word: &str) -> String {
+    let (first, rest) = word.split_at(word.len().min(1));
+    first.to_uppercase() + rest
+}
+
+/// The path from a project to the SDK, relative as long as both are on one drive; empty where none is needed.
+fn sdk_from(dir: &Path, sdk: Option<PathBuf>) -> Result<String, Failure> {
+    let Some(sdk) = sdk else {
+        return Ok(String::new());
+    };
+    let dir = dir
+        .canonicalize()
+        .map_err(|error| Failure::read(dir, error))?;
+    let path = pathdiff::diff_paths(&sdk, dir).unwrap_or(sdk);
+    // Cargo takes slashes on every system; a backslash would begin an escape.
+    Ok(path.display().to_string().replace('\\', "/"))
+}
+
+fn make_folder(folder: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|error| Failure::write(folder, error))
 }
 
 fn write(file: &Path, text: &str) -> Result<(), Failure> {
     if let Some(folder) = file.parent() {
-        std::fs::create_dir_all(folder).map_err(|error| Failure::write(folder, error))?;
+        make_folder(folder)?;
     }
     write_file(file, text.as_bytes())
 }

@@ -1,5 +1,6 @@
 //! NI-DAQmx, loaded when it is asked for.
 
+mod found;
 mod table;
 mod task;
 
@@ -12,12 +13,6 @@ use crate::fault::Fault;
 use table::Table;
 
 pub(crate) use task::Task;
-
-/// The library's names, tried in turn.
-#[cfg(windows)]
-const NAMES: &[&str] = &["nicaiu.dll"];
-#[cfg(not(windows))]
-const NAMES: &[&str] = &["libnidaqmx.so.1", "libnidaqmx.so"];
 
 /// Loaded libraries by the setting that named them. A driver has threads of its own, so none is
 /// ever unloaded.
@@ -35,10 +30,9 @@ impl Driver {
             return Ok(driver);
         }
         let table = match path {
-            "" => NAMES.iter().find_map(|name| Table::load(name).ok()),
-            _ => Some(Table::load(path).map_err(|what| not_loaded(path, what))?),
+            "" => found::installed()?,
+            _ => found::named(path)?,
         };
-        let table = table.ok_or_else(|| DeviceError::Missing(not_installed()))?;
         let driver: &'static Self = Box::leak(Box::new(Self { table }));
         loaded.insert(path.to_owned(), driver);
         Ok(driver)
@@ -80,23 +74,4 @@ fn list(text: &str) -> impl Iterator<Item = &str> {
     text.split(',')
         .map(str::trim)
         .filter(|name| !name.is_empty())
-}
-
-fn not_loaded(path: &str, what: String) -> DeviceError {
-    DeviceError::Setting {
-        name: "driver".to_owned(),
-        what: format!("{path} is no NI-DAQmx library: {what}"),
-    }
-}
-
-fn not_installed() -> String {
-    let package = match cfg!(target_os = "linux") {
-        true => "the package `ni-daqmx` from ni.com/linux",
-        false => "NI-DAQmx from ni.com/downloads",
-    };
-    format!(
-        "NI-DAQmx is not installed: there is no {}. Install {package}, or name the library by the \
-         setting `driver`",
-        NAMES[0]
-    )
 }

@@ -4,7 +4,7 @@
 use std::ffi::{CString, c_char, c_void};
 use std::ptr::null_mut;
 
-use libloading::Library;
+use htex_library::Library;
 
 use crate::fault::Fault;
 
@@ -21,15 +21,15 @@ macro_rules! table {
         }
 
         impl Table {
-            /// Loads a library, and keeps it for good.
-            pub(super) fn load(path: &str) -> Result<Self, String> {
-                // SAFETY: running a driver's initialisers is what was asked for.
-                let library = unsafe { Library::new(path) }.map_err(|e| e.to_string())?;
-                let library: &'static Library = Box::leak(Box::new(library));
+            /// The functions of a library.
+            ///
+            /// # Errors
+            /// Names a function that the library lacks.
+            pub(super) fn of(library: Library) -> Result<Self, String> {
                 $(
                     // SAFETY: the name is NI-DAQmx's, and its header states the type.
-                    let $name = unsafe { library.get::<unsafe extern "system" fn($($argument),*) -> i32>($symbol) };
-                    let $name = *$name.map_err(|_| format!("it has no `{}`", $symbol))?;
+                    let $name = unsafe { library.symbol($symbol) };
+                    let $name = $name.ok_or_else(|| format!("it has no `{}`", $symbol))?;
                 )*
                 Ok(Self { $($name,)* })
             }

@@ -79,9 +79,27 @@ impl Card {
         rate_hz: f64,
         given: &[(&str, &str)],
     ) -> Result<Box<dyn Device>, DeviceError> {
+        self.open_as(rate_hz, 256, given)
+    }
+
+    /// With blocks of this many frames.
+    pub fn open_blocks(
+        &self,
+        block_frames: u32,
+        given: &[(&str, &str)],
+    ) -> Result<Box<dyn Device>, DeviceError> {
+        self.open_as(RATE_HZ, block_frames, given)
+    }
+
+    fn open_as(
+        &self,
+        rate_hz: f64,
+        block_frames: u32,
+        given: &[(&str, &str)],
+    ) -> Result<Box<dyn Device>, DeviceError> {
         let format = StreamFormat {
             rate_hz,
-            block_frames: 256,
+            block_frames,
         };
         Daq::new().open(&self.settings(given), &format)
     }

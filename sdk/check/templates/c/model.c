@@ -1,4 +1,4 @@
-/* {{ID}}: one resonance. White noise runs through a two-pole band-pass filter; the spectrum is the
+/* {{LABEL}} ({{ID}}), to begin with one resonance. White noise runs through a two-pole band-pass filter; the spectrum is the
  * filter's own: 1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)^2).
  *
  * Against htex_model.h alone: no C library, so that the same file is a native library and a WASM
@@ -16,8 +16,8 @@ enum { CENTRE, BANDWIDTH, PARAMETERS };
 static const double MIN[PARAMETERS] = {5.0, 20.0}, MAX[PARAMETERS] = {2000.0, 2000.0};
 
 static const char DESCRIPTOR[] =
-    "{\"id\":\"{{ID}}\",\"name\":\"{{NAME}}\",\"version\":\"1.0.0\","
-    "\"summary\":\"One resonance: where it lies and how wide it is.\","
+    "{\"id\":\"{{ID}}\",\"name\":\"{{LABEL}}\",\"version\":\"1.0.0\","
+    "\"summary\":\"{{LABEL}}: one resonance, where it lies and how wide it is.\","
     "\"fields\":["
     "{\"name\":\"centre_hz\",\"unit\":\"Hz\",\"kind\":{\"type\":\"scalar\"},"
     "\"min\":5,\"max\":2000,\"store\":{\"type\":\"f32\"},"

@@ -110,13 +110,24 @@ fn valid() -> Vec<Named> {
             with_manifest(|m| m["license"] = json!("LicenseRef-Example OR CC0-1.0")),
         ),
         (
+            "valid_metadata",
+            with_manifest(|m| {
+                m["htex"] = json!("1.1");
+                m["description"] = json!("Coarse cotton, plain weave, 12 threads per cm");
+                m["source"] = json!("Example University, touch laboratory");
+                m["doi"] = json!("10.5281/zenodo.1234567");
+                m["sensor"] = json!("six-axis force and torque sensor");
+                m["finger"] = json!("bare index finger");
+            }),
+        ),
+        (
             "valid_field_order",
             with_manifest(|m| {
                 let fields = m["representations"][0]["fields"].as_array_mut();
                 fields.unwrap().reverse();
             }),
         ),
-        ("valid_newer_store", with_store_key("1.1")),
+        ("valid_newer_store", with_store_key("1.2")),
         ("valid_field_of_newer_model", with_newer_model()),
         (
             "valid_newer_minor",

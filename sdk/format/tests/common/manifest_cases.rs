@@ -59,6 +59,10 @@ pub(super) fn manifests() -> Vec<Named> {
         ("unit_unknown_acceleration", |m| {
             m["quantity"] = json!("acceleration")
         }),
+        ("doi_invalid", |m| {
+            m["htex"] = json!("1.1");
+            m["doi"] = json!("https://doi.org/10.5281/zenodo.1234567");
+        }),
         ("license_invalid", |m| m["license"] = json!("CC BY 4.0")),
         ("license_unknown", |m| m["license"] = json!("CC-BY-9.0")),
         ("field_unknown", |m| {

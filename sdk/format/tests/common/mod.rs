@@ -21,11 +21,16 @@ pub fn asset(conditions: usize, fitted: Vec<Fitted>) -> Asset {
     let (representations, parameters) = fitted.into_iter().unzip();
     Asset {
         manifest: Manifest {
-            htex: VERSION.to_owned(),
+            htex: FIRST_VERSION.to_owned(),
             name: "Cotton, coarse weave".to_owned(),
             license: Some("CC-BY-4.0".to_owned()),
             author: Some("Haptics Laboratory, Example University".to_owned()),
             tags: ["cotton", "textile", "rough"].map(str::to_owned).to_vec(),
+            description: None,
+            source: None,
+            doi: None,
+            sensor: None,
+            finger: None,
             quantity: Quantity::LateralForce,
             unit: Quantity::LateralForce.unit().to_owned(),
             band: Band {

@@ -20,6 +20,8 @@ pub struct Texture {
     pub name: String,
     /// Whether it was computed and not recorded; the page says so wherever it is named.
     pub simulated: bool,
+    /// The unit of its magnitudes: `"N"`, `"m/s2"`, `"m/s"`, `"m"`.
+    pub unit: String,
     /// Speed and force: `"80 mm/s, 0.40 N"`.
     pub condition: String,
     /// Size of the recording's file, bytes.
@@ -30,7 +32,7 @@ pub struct Texture {
     pub repeatability_rms_db: Option<f64>,
     /// The frequencies of every magnitude below, ascending, hertz.
     pub frequency_hz: Vec<f64>,
-    /// The recording's magnitude, newtons.
+    /// The recording's magnitude, in the texture's unit.
     pub recorded: Vec<f64>,
     /// The models fitted to it.
     pub models: Vec<ModelResult>,
@@ -45,7 +47,7 @@ pub struct ModelResult {
     pub model: String,
     /// The model's name as written in files: `"sbeta"`. Decides its colour and column.
     pub short_name: String,
-    /// The model's magnitude at the texture's frequencies, newtons.
+    /// The model's magnitude at the texture's frequencies, in the texture's unit.
     pub magnitude: Vec<f64>,
     /// Pearson's correlation with the recording's magnitude.
     pub spectral_correlation: f64,
@@ -61,7 +63,7 @@ pub struct ModelResult {
     pub samples_band_error_rms_db: Option<f64>,
     /// Size of the parameters, bytes.
     pub payload_bytes: usize,
-    /// Frequency (hertz) and amplitude (newtons) of each sinusoid, for a model that is made of
+    /// Frequency (hertz) and amplitude (in the texture's unit) of each sinusoid, for a model that is made of
     /// them; drawn instead of the magnitude.
     pub lines: Option<Vec<(f64, f64)>>,
 }
@@ -89,6 +91,18 @@ impl Texture {
             format!("{} (simulated)", self.name)
         } else {
             self.name.clone()
+        }
+    }
+
+    /// How many of the unit of its plots are in the texture's unit, and that unit: one in which textures have
+    /// numbers that are easy to read.
+    pub(crate) fn plotted(&self) -> (f64, &str) {
+        match self.unit.as_str() {
+            "N" => (1e3, "mN"),
+            "m/s2" => (1.0, "m/s²"),
+            "m/s" => (1e3, "mm/s"),
+            "m" => (1e6, "µm"),
+            other => (1.0, other),
         }
     }
 

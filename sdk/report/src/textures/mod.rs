@@ -2,10 +2,12 @@
 
 mod data;
 mod matrices;
+mod picture;
 mod sizes;
 mod spectra;
 
 pub use data::{ModelResult, Texture, TextureReport};
+pub use picture::spectra_picture;
 
 use crate::markup::Element;
 use crate::page::{Page, code_block, list, paragraph};
@@ -57,7 +59,7 @@ fn how_to_read(page: &mut Page) {
     page.html(&paragraph(
         "Each row of spectra is one texture: first the recording (dark grey), then each model in \
          its own colour over the same recording (light grey). The horizontal axis is frequency \
-         from 20 to 1000 Hz, logarithmic; the vertical axis is the magnitude of friction in \
+         from 20 to 1000 Hz, logarithmic; the vertical axis is the magnitude, of a force in \
          millinewtons, from zero and the same along a row, not between rows. A model that is a \
          set of sinusoids is drawn as uprights, one for each. Point at a curve for its values.",
     ));

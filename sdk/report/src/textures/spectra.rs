@@ -50,11 +50,11 @@ fn key_entry(color: &str, name: &str) -> Element {
 }
 
 fn row(texture: &Texture) -> Element {
-    let top_mn = top_mn(texture);
+    let top = top(texture, &texture.models);
     let models = texture
         .models
         .iter()
-        .map(|model| model_panel(texture, model, top_mn));
+        .map(|model| model_panel(texture, model, top));
     // All in one row, or in two rows that are filled alike.
     let all = 1 + texture.models.len();
     let half = if all > 4 { all.div_ceil(2) } else { all };
@@ -62,7 +62,7 @@ fn row(texture: &Texture) -> Element {
         .set("class", "panels")
         .set("style", &format!("--all: {all}; --half: {half}"));
     let panels = panels
-        .child(&recording_panel(texture, top_mn))
+        .child(&recording_panel(texture, top))
         .children(models);
     Element::new("section")
         .set("class", "row")
@@ -84,7 +84,7 @@ fn row_heading(texture: &Texture) -> Element {
     )
 }
 
-fn recording_panel(texture: &Texture, top_mn: f64) -> Element {
+fn recording_panel(texture: &Texture, top: f64) -> Element {
     let title = if texture.simulated {
         "simulated recording"
     } else {
@@ -94,41 +94,55 @@ fn recording_panel(texture: &Texture, top_mn: f64) -> Element {
     let note = texture
         .repeatability_rms_db
         .map(|db| format!("varies by {} dB RMS", fixed(db, 1)));
-    panel(plot(title, vec![series], top_mn), &note.unwrap_or_default())
+    panel(
+        plot(texture, title, vec![series], top),
+        &note.unwrap_or_default(),
+    )
 }
 
-fn model_panel(texture: &Texture, model: &ModelResult, top_mn: f64) -> Element {
+fn model_panel(texture: &Texture, model: &ModelResult, top: f64) -> Element {
+    panel(
+        overlay(&model.model, texture, model, top),
+        &model_note(texture, model, top),
+    )
+}
+
+/// A model over the recording.
+pub(super) fn overlay(title: &str, texture: &Texture, model: &ModelResult, top: f64) -> Plot {
     let backdrop = Series::line("recording", curve(texture, &texture.recorded));
+    let (scale, _) = texture.plotted();
     let front = match &model.lines {
         Some(lines) => Series::stems(
             &model.model,
-            lines.iter().map(|(f, a)| (*f, a * 1e3)).collect(),
+            lines.iter().map(|(f, a)| (*f, a * scale)).collect(),
         ),
         None => Series::line(&model.model, curve(texture, &model.magnitude)),
     };
     let front = front.colored(model_color(&model.short_name));
-    let series = vec![backdrop.behind().colored(BACKDROP), front];
-    panel(
-        plot(&model.model, series, top_mn),
-        &model_note(model, top_mn),
+    plot(
+        texture,
+        title,
+        vec![backdrop.behind().colored(BACKDROP), front],
+        top,
     )
 }
 
-fn model_note(model: &ModelResult, top_mn: f64) -> String {
+fn model_note(texture: &Texture, model: &ModelResult, top: f64) -> String {
     let correlation = fixed(model.spectral_correlation, 2);
     let error = fixed(model.band_error_rms_db, 1);
     let note = format!("r = {correlation}, error {error} dB RMS");
-    match highest_mn(drawn(model)) {
-        Some(highest) if highest > top_mn => {
-            format!("{note}; rises to {} mN, cut off", brief(highest))
+    let (scale, unit) = texture.plotted();
+    match highest(drawn(model), scale) {
+        Some(highest) if highest > top => {
+            format!("{note}; rises to {} {unit}, cut off", brief(highest))
         }
         _ => note,
     }
 }
 
-fn plot(title: &str, series: Vec<Series>, top_mn: f64) -> Plot {
+fn plot(texture: &Texture, title: &str, series: Vec<Series>, top: f64) -> Plot {
     let x = Axis::log("frequency / Hz").with_range(20.0, 1000.0);
-    let y = Axis::linear("magnitude / mN").with_range(0.0, top_mn);
+    let y = Axis::linear(&format!("magnitude / {}", texture.plotted().1)).with_range(0.0, top);
     Plot {
         series,
         width: PANEL.0,
@@ -146,25 +160,26 @@ fn panel(plot: Plot, note: &str) -> Element {
     figure.child(&Element::new("figcaption").text(note))
 }
 
-/// (hertz, millinewtons) pairs.
+/// (hertz, magnitude in the unit of the plots) pairs.
 fn curve(texture: &Texture, magnitude: &[f64]) -> Vec<(f64, f64)> {
     let pairs = texture.frequency_hz.iter().zip(magnitude);
-    pairs.map(|(f, n)| (*f, n * 1e3)).collect()
+    let (scale, _) = texture.plotted();
+    pairs.map(|(f, n)| (*f, n * scale)).collect()
 }
 
-/// The top of the row's vertical axis, millinewtons.
-fn top_mn(texture: &Texture) -> f64 {
-    let recorded = highest_mn(texture.recorded.iter().copied());
-    let models = texture
-        .models
-        .iter()
-        .filter_map(|model| highest_mn(drawn(model)));
+/// The top of the vertical axis of some models of a texture, in the unit of the plots.
+pub(super) fn top<'a>(texture: &Texture, models: impl IntoIterator<Item = &'a ModelResult>) -> f64 {
+    let (scale, _) = texture.plotted();
+    let recorded = highest(texture.recorded.iter().copied(), scale);
+    let models = models
+        .into_iter()
+        .filter_map(|model| highest(drawn(model), scale));
     let models = models.fold(0.0, f64::max);
     let highest = recorded.map_or(models, |r| models.min(OVERSHOOT * r).max(r));
     if highest > 0.0 { 1.05 * highest } else { 1.0 }
 }
 
-/// What a panel draws of a model, newtons.
+/// What a panel draws of a model, in the texture's unit.
 fn drawn(model: &ModelResult) -> impl Iterator<Item = f64> + '_ {
     let lines = model
         .lines
@@ -179,7 +194,8 @@ fn drawn(model: &ModelResult) -> impl Iterator<Item = f64> + '_ {
     lines.chain(curve.iter().copied())
 }
 
-fn highest_mn(values_n: impl Iterator<Item = f64>) -> Option<f64> {
-    let positive = values_n.filter(|v| v.is_finite() && *v > 0.0);
-    positive.reduce(f64::max).map(|highest| highest * 1e3)
+/// The highest value above 0, times the scale.
+fn highest(values: impl Iterator<Item = f64>, scale: f64) -> Option<f64> {
+    let positive = values.filter(|v| v.is_finite() && *v > 0.0);
+    positive.reduce(f64::max).map(|highest| highest * scale)
 }

@@ -110,6 +110,11 @@ fn asset(quantity: Quantity, models: &[&str]) -> Vec<u8> {
             license: Some("CC0-1.0".to_owned()),
             author: None,
             tags: Vec::new(),
+            description: None,
+            source: None,
+            doi: None,
+            sensor: None,
+            finger: None,
             quantity,
             unit: quantity.unit().to_owned(),
             band: Band {

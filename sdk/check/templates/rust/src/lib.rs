@@ -1,4 +1,4 @@
-//! {{ID}}: one resonance. The spectrum is that of a two-pole band-pass filter,
+//! {{LABEL}} ({{ID}}), to begin with one resonance. The spectrum is that of a two-pole band-pass filter,
 //! `1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)²)`, played as noise of that shape.
 //!
 //! `cargo build --release` makes the native library; with `--target wasm32-unknown-unknown`, the
@@ -23,18 +23,18 @@ const CENTRE_HZ: (f64, f64) = (5.0, 2000.0);
 const BANDWIDTH_HZ: (f64, f64) = (20.0, 2000.0);
 
 /// The model.
-pub struct Resonance;
+pub struct {{TYPE}};
 
-htex_model::export_model!(Resonance, symbols: "plugin");
+htex_model::export_model!({{TYPE}}, symbols: "plugin");
 
-impl Model for Resonance {
+impl Model for {{TYPE}} {
     type Voice = ShapedVoice<Shape>;
 
     const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
         "{{ID}}",
-        "{{NAME}}",
+        "{{LABEL}}",
         env!("CARGO_PKG_VERSION"),
-        "One resonance: where it lies and how wide it is.",
+        "{{LABEL}}: one resonance, where it lies and how wide it is.",
     )
     .fields(&[
         StaticField::scalar("centre_hz", "Hz", CENTRE_HZ, "Frequency of the resonance."),

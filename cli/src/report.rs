@@ -1,0 +1,89 @@
+//! What a report shows of a fitted asset.
+
+use htex_author::FittedAsset;
+use htex_report::{ModelResult, Texture};
+
+use crate::assets::{AssetSummary, RepresentationSummary, motion_text, short_name};
+
+/// A fitted asset, as its report needs it.
+pub(crate) struct Reported<'a> {
+    pub(crate) fitted: &'a FittedAsset,
+    /// The asset with the models that play it.
+    pub(crate) asset: &'a htex::Asset,
+    pub(crate) summary: &'a AssetSummary,
+    /// Size of the recordings' files together, bytes.
+    pub(crate) recording_bytes: u64,
+}
+
+impl Reported<'_> {
+    /// The texture at each of its conditions.
+    pub(crate) fn textures(&self) -> Result<Vec<Texture>, htex::Error> {
+        let conditions = 0..self.asset.manifest().conditions.len();
+        let mut textures: Vec<Texture> = conditions
+            .map(|condition| self.texture(condition))
+            .collect::<Result<_, _>>()?;
+        if textures.len() > 1 {
+            for texture in &mut textures {
+                let condition = std::mem::take(&mut texture.condition);
+                texture.name = format!("{}, {condition}", texture.name);
+            }
+        }
+        // They are about the asset as a whole.
+        for texture in textures.iter_mut().skip(1) {
+            texture.warnings.clear();
+        }
+        Ok(textures)
+    }
+
+    /// The texture at one condition.
+    pub(crate) fn texture(&self, condition: usize) -> Result<Texture, htex::Error> {
+        let (manifest, spectrum) = (self.asset.manifest(), &self.fitted.spectra[condition]);
+        let mut models = Vec::new();
+        for representation in &self.summary.representations {
+            models.extend(self.model(representation, condition)?);
+        }
+        let known = &manifest.conditions[condition];
+        Ok(Texture {
+            name: manifest.name.clone(),
+            simulated: manifest.provenance.simulated,
+            unit: manifest.quantity.unit().to_owned(),
+            condition: motion_text(known),
+            recording_bytes: self.recording_bytes,
+            asset_bytes: self.summary.bytes,
+            repeatability_rms_db: known.repeatability_rms_db,
+            frequency_hz: spectrum.frequency_hz.clone(),
+            recorded: spectrum.magnitude.clone(),
+            models,
+            warnings: manifest.provenance.warnings.clone(),
+        })
+    }
+
+    /// What a model made of the texture at a condition; none where it was not fitted there.
+    fn model(
+        &self,
+        representation: &RepresentationSummary,
+        condition: usize,
+    ) -> Result<Option<ModelResult>, htex::Error> {
+        let Some(at) = representation.at(condition) else {
+            return Ok(None);
+        };
+        let (id, quality) = (Some(&representation.model[..]), at.quality.as_ref());
+        let known = &self.asset.manifest().conditions[condition];
+        let motion = known.speed_mm_s.zip(known.force_n);
+        let grid = &self.fitted.spectra[condition].frequency_hz;
+        let short_name = short_name(&representation.model).to_owned();
+        Ok(Some(ModelResult {
+            model: self.asset.loaded_model(id)?.descriptor().name.clone(),
+            magnitude: self.asset.magnitude(id, motion, grid)?,
+            spectral_correlation: quality.map_or(f64::NAN, |q| q.spectral_correlation),
+            band_error_rms_db: quality.map_or(f64::NAN, |q| q.band_error_rms_db),
+            third_octave_error_rms_db: quality.and_then(|q| q.third_octave_error_rms_db),
+            log_spectral_distance_db: quality.and_then(|q| q.log_spectral_distance_db),
+            samples_band_error_rms_db: quality.and_then(|q| q.samples_band_error_rms_db),
+            band_error_db: quality.map_or(Vec::new(), |q| q.band_error_db.to_vec()),
+            payload_bytes: representation.payload_bytes,
+            lines: (short_name == "speak").then(|| at.lines()),
+            short_name,
+        }))
+    }
+}

@@ -1,0 +1,125 @@
+//! A card, the simulated one, with a scene for it: played by `htex`, and what came out.
+#![allow(dead_code)] // Each suite uses a part of it.
+
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+
+use crate::common::Place;
+use crate::simulated;
+
+pub const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/scenes");
+pub const PAPER: &str = "pcie-6321_tabor-9200a_sct3250";
+/// Of the paper's amplifier.
+pub const GAIN: f64 = 50.0;
+pub const RATE_HZ: f64 = 20_000.0;
+pub const SCENE: &str = "s.scene.json";
+pub const RECORD: &str = "Dev1_ao0.txt";
+
+/// A folder with a card, a scene for it, and what came out of it.
+pub struct Bench(pub Place);
+
+impl Bench {
+    /// With a scene of one surface on the paper's rig, with `more` over it.
+    pub fn new(more: Value) -> Self {
+        let place = Place::new();
+        for name in ["coarse-fabric.htex", "vinyl.htex", "hand.csv"] {
+            place.write(name, std::fs::read(format!("{EXAMPLES}/{name}")).unwrap());
+        }
+        let mut scene = json!({
+            "htex_scene": "1.0",
+            "surfaces": [{ "asset": "coarse-fabric.htex" }],
+            "motion": { "constant": { "speed_mm_s": 80, "force_n": 0.4 } },
+            "device": { "adapter": "daq", "profile": PAPER },
+            "seed": 1,
+        });
+        for (key, value) in more.as_object().unwrap() {
+            scene[key] = value.clone();
+        }
+        place.write(SCENE, scene.to_string());
+        Self(place)
+    }
+
+    /// A command with the simulated driver; its clock goes by calls, so that no test hangs on time.
+    pub fn command(&self, arguments: &[&str]) -> Command {
+        let driver = format!("driver={}", simulated::built().display());
+        let mut command = self
+            .0
+            .command(&[arguments, &[SCENE, "--profile", PAPER, "--set", &driver]].concat());
+        command
+            .env("NIDAQMX_SIM_RECORD", self.0.path(""))
+            .env("NIDAQMX_SIM_CLOCK", "calls")
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
+        command
+    }
+
+    /// Plays without end by the clock on the wall, and waits until it can be felt.
+    pub fn start(&self) -> Child {
+        let mut command = self.command(&["play"]);
+        let child = command.env("NIDAQMX_SIM_CLOCK", "wall").spawn().unwrap();
+        let start = Instant::now();
+        while self.card_v().iter().all(|v| *v == 0.0) {
+            assert!(
+                start.elapsed() < Duration::from_secs(60),
+                "nothing comes out"
+            );
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        child
+    }
+
+    /// Plays and expects that it fails, with this in its one sentence.
+    pub fn fails(&self, command: &mut Command, words: &[&str]) {
+        check_failed(&command.output().unwrap(), words);
+    }
+
+    /// Volts of the card that came out so far; nothing when it was never touched. A line that is
+    /// being written is not there yet.
+    pub fn card_v(&self) -> Vec<f64> {
+        let text = std::fs::read_to_string(self.0.path(RECORD)).unwrap_or_default();
+        let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+        whole.lines().map(|line| line.parse().unwrap()).collect()
+    }
+
+    /// Waits until zero came out and nothing since, however busy the machine is.
+    pub fn comes_to_zero(&self) {
+        let (start, mut length) = (Instant::now(), 0);
+        while start.elapsed() < Duration::from_secs(30) {
+            let card_v = self.card_v();
+            if card_v.last() == Some(&0.0) && card_v.len() == length {
+                break;
+            }
+            length = card_v.len();
+            std::thread::sleep(Duration::from_millis(500));
+        }
+        self.is_at_zero();
+    }
+
+    /// Something came out, and zero is the last of it.
+    pub fn is_at_zero(&self) {
+        let card_v = self.card_v();
+        assert!(card_v.iter().any(|v| *v != 0.0), "it was never felt");
+        assert_eq!(card_v.last(), Some(&0.0));
+    }
+}
+
+/// Exit status 1, and one sentence with these words.
+pub fn check_failed(done: &Output, words: &[&str]) {
+    let error = String::from_utf8_lossy(&done.stderr);
+    assert_eq!(done.status.code(), Some(1), "{error}");
+    let mut sentences: Vec<&str> = error.lines().filter(|l| l.starts_with("htex: ")).collect();
+    // The process that holds the output says at once what may be standing there; the player says it again.
+    sentences.dedup();
+    assert_eq!(sentences.len(), 1, "{error}");
+    for word in words {
+        assert!(error.contains(word), "{word}: {error}");
+    }
+}
+
+pub fn signal(child: &Child, name: &str) {
+    let id = child.id().to_string();
+    let sent = Command::new("kill").args([name, &id]).status();
+    assert!(sent.unwrap().success());
+}

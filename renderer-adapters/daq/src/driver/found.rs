@@ -1,0 +1,76 @@
+//! Where the driver's library is: the one that is installed, or the one that the setting `driver` names.
+#![allow(unsafe_code)] // A loader: running a driver's initialisers is what was asked for.
+
+use std::path::Path;
+
+use htex_device::DeviceError;
+use htex_library::{Library, LoadError};
+
+use super::table::Table;
+
+/// The names of the installed library, tried in turn.
+#[cfg(windows)]
+const NAMES: &[&str] = &["nicaiu.dll"];
+#[cfg(not(windows))]
+const NAMES: &[&str] = &["libnidaqmx.so.1", "libnidaqmx.so"];
+
+/// The library that the system's loader finds under NI-DAQmx's own names.
+pub(super) fn installed() -> Result<Table, DeviceError> {
+    let mut reasons = Vec::new();
+    for name in NAMES {
+        match of_system(name) {
+            Ok(table) => return Ok(table),
+            Err(reason) => reasons.push(reason),
+        }
+    }
+    Err(DeviceError::Missing(not_installed(&reasons.join("; "))))
+}
+
+/// The library that a setting names: a path, or a bare name, which is a file of the current folder, else a library of
+/// the system.
+pub(super) fn named(path: &str) -> Result<Table, DeviceError> {
+    let file = Path::new(path);
+    let is_bare = file.components().count() == 1 && !file.is_absolute();
+    let (table, searched) = if is_bare && !file.is_file() {
+        (of_system(path), SEARCHED)
+    } else {
+        (of_file(file), "")
+    };
+    table.map_err(|reason| DeviceError::Setting {
+        name: "driver".to_owned(),
+        what: format!("`{path}` cannot be loaded as the NI-DAQmx library: {reason}{searched}"),
+    })
+}
+
+/// Where a bare name was looked for.
+const SEARCHED: &str = if cfg!(windows) {
+    "; the current folder has no such file, and the system finds none in its folders and those of PATH"
+} else {
+    "; the current folder has no such file, and the system's loader was asked for it (LD_LIBRARY_PATH, the cache of \
+     ldconfig, /lib, /usr/lib)"
+};
+
+fn of_file(path: &Path) -> Result<Table, String> {
+    // SAFETY: a person named this library as a driver.
+    table(unsafe { Library::from_file(path) })
+}
+
+fn of_system(name: &str) -> Result<Table, String> {
+    // SAFETY: NI-DAQmx's own name, or one that a person gave.
+    table(unsafe { Library::from_system(name) })
+}
+
+fn table(library: Result<Library, LoadError>) -> Result<Table, String> {
+    Table::of(library.map_err(|error| error.to_string())?)
+}
+
+fn not_installed(reasons: &str) -> String {
+    let package = if cfg!(target_os = "linux") {
+        "the package `ni-daqmx` from ni.com/linux"
+    } else {
+        "NI-DAQmx from ni.com/downloads"
+    };
+    format!(
+        "NI-DAQmx is not installed: {reasons}. Install {package}, or name the library by the setting `driver`"
+    )
+}

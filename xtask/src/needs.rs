@@ -1,0 +1,108 @@
+//! What tests use beyond Rust and a C compiler where it is there. No test installs anything: `.ci/run` does.
+
+use std::fs;
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Something that a test does without where it is absent.
+pub struct Need {
+    /// What it is.
+    pub what: &'static str,
+    /// How to have it.
+    pub how: &'static str,
+    /// Whether `HTEX_REQUIRE_WASM=1` makes it an error to be without.
+    pub for_wasm: bool,
+}
+
+/// Builds Rust to WASM modules.
+pub const WASM_TARGET: Need = Need {
+    what: "a Rust toolchain for WASM modules",
+    how: "rustup target add wasm32-unknown-unknown, or on Debian apt-get install rustc-web cargo-web rust-web-src",
+    for_wasm: true,
+};
+
+/// Builds C to WASM modules.
+pub const WASM_CLANG: Need = Need {
+    what: "a C compiler for WASM modules",
+    how: "apt-get install clang lld",
+    for_wasm: true,
+};
+
+/// Sound on Linux.
+pub const ALSA: Need = Need {
+    what: "ALSA",
+    how: "apt-get install libasound2-dev pkg-config",
+    for_wasm: false,
+};
+
+/// Another player, written in Python.
+pub const SCIPY: Need = Need {
+    what: "Python with NumPy and SciPy",
+    how: "python3 -m venv target/peers && target/peers/bin/pip install -r tests/peers/player-requirements.txt",
+    for_wasm: false,
+};
+
+/// Another validator of JSON Schemas.
+pub const AJV: Need = Need {
+    what: "Ajv",
+    how: "npm install --prefix target/node ajv@8",
+    for_wasm: false,
+};
+
+impl Need {
+    /// Whether the need is met, as `there` says. Where it is not, the running test is told of at the end of `cargo test`
+    /// ([`told`]).
+    ///
+    /// # Panics
+    /// Where the need is not met, is one of WASM, and the environment has `HTEX_REQUIRE_WASM=1`.
+    #[must_use]
+    #[allow(clippy::panic)] // It fails a test.
+    pub fn met(&self, there: bool) -> bool {
+        let Self { what, how, .. } = self;
+        let test = std::thread::current().name().unwrap_or("a test").to_owned();
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        let record = format!("{test} {what}").replace(|c| !is_plain(c), "-");
+        let record = folder().join(record);
+        if there {
+            let _ = fs::remove_file(record);
+            return true;
+        }
+        let is_required = std::env::var_os("HTEX_REQUIRE_WASM").is_some_and(|v| v == "1");
+        if self.for_wasm && is_required {
+            panic!("{what} is absent; to have it: {how}");
+        }
+        let sentence = format!("{test}: without {what}; to have it: {how}\n");
+        let kept = fs::create_dir_all(folder()).and_then(|()| fs::write(record, &sentence));
+        if kept.is_err() {
+            say(&sentence);
+        }
+        false
+    }
+}
+
+/// What was skipped since this was last asked, one sentence a test, by the tests' names.
+///
+/// # Errors
+/// When the records cannot be read or removed.
+pub fn told() -> std::io::Result<Vec<String>> {
+    if !folder().exists() {
+        return Ok(Vec::new());
+    }
+    let mut sentences = Vec::new();
+    for record in fs::read_dir(folder())? {
+        let record = record?.path();
+        sentences.push(fs::read_to_string(&record)?);
+        fs::remove_file(record)?;
+    }
+    sentences.sort();
+    Ok(sentences)
+}
+
+/// Writes to standard error itself: the test harness keeps what the macros print of a test that passes.
+pub fn say(text: &str) {
+    let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
+fn folder() -> PathBuf {
+    crate::plugins::target().join("skipped")
+}

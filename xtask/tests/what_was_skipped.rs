@@ -1,0 +1,28 @@
+//! Tells what the suites before this one did without. Cargo runs packages by their names, and the suites of a package by
+//! theirs: this one is the last.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+use xtask::needs;
+
+/// A need that is not met is told of, by the test's name, and one that is met is not.
+#[test]
+fn what_was_skipped() {
+    let before = needs::told().unwrap();
+    assert!(!needs::AJV.met(false));
+    let own = needs::told().unwrap();
+    assert!(
+        own.len() == 1 && own[0].contains("what_was_skipped") && own[0].contains(needs::AJV.how)
+    );
+    assert!(!needs::AJV.met(false) && needs::AJV.met(true));
+    assert_eq!(needs::told().unwrap().len(), 0);
+    tell(&before);
+}
+
+fn tell(sentences: &[String]) {
+    if !sentences.is_empty() {
+        needs::say(&format!(
+            "\nskipped in part or as a whole:\n{}",
+            sentences.concat()
+        ));
+    }
+}

@@ -7,12 +7,12 @@ use xtask::plugins;
 /// Most deflated bytes of each model's module: what it had when it was measured, and about a fiftieth more
 /// for other compilers. Who raises one says in `docs/modules.md` what the bytes are for.
 const BOUNDS: [(&str, usize); 6] = [
-    ("ar", 44_600),
-    ("mfcc", 37_700),
+    ("ar", 46_200),
+    ("mfcc", 39_000),
     ("speak", 21_300),
-    ("sbeta", 34_500),
-    ("sslope", 28_800),
-    ("bands", 33_400),
+    ("sbeta", 35_800),
+    ("sslope", 30_000),
+    ("bands", 35_600),
 ];
 
 #[test]

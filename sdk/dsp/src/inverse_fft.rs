@@ -10,6 +10,9 @@ use core::f64::consts::TAU;
 use crate::lanes::{Lanes, Number};
 use crate::wide::{Work, wide};
 
+/// Whether code for wider registers than WASM has, which takes bytes of its own, is worth them.
+const WIDE: bool = !cfg!(target_family = "wasm");
+
 /// Real signals of one even length out of their spectra. Holds what depends on the length alone.
 #[derive(Debug, Clone)]
 pub struct InverseRealFft {
@@ -165,7 +168,7 @@ impl Stage {
         let parts = length / radix;
         let along = |i: usize| unit(i % parts * (i / parts), length);
         let (re, im) = match stride {
-            1 => (0..length).map(along).unzip(),
+            1 if WIDE => (0..length).map(along).unzip(),
             _ => Default::default(),
         };
         Self {
@@ -180,8 +183,8 @@ impl Stage {
     #[inline(always)]
     fn run(&self, from: &Complexes, to: &mut Complexes) {
         match self.stride {
-            1 => self.run_first(from, to),
-            s if s.is_multiple_of(8) => self.run_on::<Lanes<8>>(from, to),
+            1 if WIDE => self.run_first(from, to),
+            s if WIDE && s.is_multiple_of(8) => self.run_on::<Lanes<8>>(from, to),
             s if s.is_multiple_of(4) => self.run_on::<Lanes<4>>(from, to),
             _ => self.run_on::<f32>(from, to),
         }

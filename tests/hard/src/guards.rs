@@ -92,8 +92,8 @@ pub const GUARDS: &[Guard] = &[
     ),
     guard(
         "plugins/mfcc/src/inverse.rs",
-        "*power = sum.max(0.0);",
-        "*power = sum;",
+        "*power = power.max(0.0)",
+        "*power = *power",
         "cepstrum recordings",
     ),
     guard(

@@ -1,7 +1,10 @@
 //! Where the knots stand, and the straight lines between them.
 
+use alloc::sync::Arc;
+
 use htex_dsp::beta::log_unit;
 use htex_dsp::grid::Band;
+use htex_dsp::shared::Shared;
 
 /// Added to frequencies on the axis of [`Layout::Edges`], hertz. Below it knots are nearly as far apart in
 /// hertz, above it in octaves: 30 knots over 20 to 1000 Hz stand 4.9 Hz apart at 20 Hz, where bins are
@@ -69,6 +72,13 @@ impl Axis {
                 log_unit(frequency_hz + CORNER_HZ, raised) * (self.knots - 1) as f64
             }
         }
+    }
+
+    /// How the bins of the band see the knots. Voices of one axis share it.
+    pub(crate) fn grid_points(&self) -> Arc<[Point]> {
+        static POINTS: Shared<Axis, [Point]> = Shared::new();
+        let points = || self.band.grid_hz().iter().map(|&f| self.point(f)).collect();
+        POINTS.get(*self, points)
     }
 
     /// How a frequency of the band sees the knots.

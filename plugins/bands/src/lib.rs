@@ -218,7 +218,7 @@ fn step_db(wanted_db: f64, below_db: &[f64]) -> f64 {
 /// The curve that the parameters stand for, on the grid.
 pub struct Spectrum {
     axis: Axis,
-    points: Vec<Point>,
+    points: Arc<[Point]>,
     /// What the parameters say: steps below the highest, and the step.
     below: Vec<f64>,
     step_db: f64,
@@ -263,7 +263,7 @@ impl Spectrum {
             below: below.to_vec(),
             step_db,
             places: None,
-            points: band.grid_hz().iter().map(|&f| axis.point(f)).collect(),
+            points: axis.grid_points(),
             knots: vec![0.0; below.len()],
             magnitude: zeros(),
             power: zeros(),

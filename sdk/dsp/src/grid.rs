@@ -55,19 +55,38 @@ impl Band {
 /// A component is read in all bins, as 1.5 times its own power; where some of these lie outside the band, that
 /// part is not read. Noise that is to read as a level in the band is made stronger by it.
 pub fn read_part(band: Band, frequency_hz: f64) -> f64 {
-    let at = frequency_hz / GRID_HZ;
-    let (first, last) = (band.first_bin() as f64, band.last_bin() as f64);
-    if at >= first + WINDOW_BINS && at <= last - WINDOW_BINS {
-        return 1.0;
+    ReadPart::new(band).at(frequency_hz)
+}
+
+/// [`read_part`] for many components of one band.
+pub(crate) struct ReadPart {
+    first: f64,
+    last: f64,
+}
+
+impl ReadPart {
+    pub(crate) fn new(band: Band) -> Self {
+        Self {
+            first: band.first_bin() as f64,
+            last: band.last_bin() as f64,
+        }
     }
-    let nearest = libm::round(at);
-    let turn = libm::sin(core::f64::consts::PI * (at - nearest)) / core::f64::consts::PI;
-    let low = first.max(nearest - WINDOW_BINS) as i64;
-    let high = last.min(nearest + WINDOW_BINS) as i64;
-    let read: f64 = (low..=high)
-        .map(|bin| hann_power(bin as f64 - at, turn))
-        .sum();
-    read / 1.5
+
+    pub(crate) fn at(&self, frequency_hz: f64) -> f64 {
+        let at = frequency_hz / GRID_HZ;
+        let Self { first, last } = *self;
+        if at >= first + WINDOW_BINS && at <= last - WINDOW_BINS {
+            return 1.0;
+        }
+        let nearest = libm::round(at);
+        let turn = libm::sin(core::f64::consts::PI * (at - nearest)) / core::f64::consts::PI;
+        let low = first.max(nearest - WINDOW_BINS) as i64;
+        let high = last.min(nearest + WINDOW_BINS) as i64;
+        let read: f64 = (low..=high)
+            .map(|bin| hann_power(bin as f64 - at, turn))
+            .sum();
+        read / 1.5
+    }
 }
 
 /// Bins to either side of a component beyond which the Hann window reads next to nothing: 2e-5 of its power in all.

@@ -8,7 +8,7 @@
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use crate::grid::{Band, GRID_HZ, read_part};
+use crate::grid::{Band, GRID_HZ, ReadPart};
 use crate::inverse_fft::{InverseRealFft, Workspace, smooth_length};
 use crate::noise::Uniform;
 use crate::shared::Shared;
@@ -21,7 +21,7 @@ const OVERLAP: usize = 8;
 const FADE_S: f64 = 0.010;
 
 /// An endless stream of noise whose spectrum follows a magnitude curve, of unit RMS as the bins of the band
-/// read it: what they miss of components at the band's edges ([`read_part`]) is added to all.
+/// read it: what they miss of components at the band's edges ([`read_part`](crate::grid::read_part)) is added to all.
 pub struct ShapedNoise {
     frames: Arc<Frames>,
     /// Half the amplitude of each component.
@@ -85,9 +85,9 @@ pub fn economical_rate_hz(wanted_hz: f64, band: Band) -> f64 {
 
 /// The part of a component's power that the band's bins read, spread as a frame of finite length spreads it:
 /// by the spectrum of its weights, which are taken as a rectangle of the length that frames follow each other by.
-fn frame_read_part(band: Band, hz: f64, spacing_hz: f64) -> f64 {
-    if read_part(band, hz - FRAME_SPREAD * spacing_hz) == 1.0
-        && read_part(band, hz + FRAME_SPREAD * spacing_hz) == 1.0
+fn frame_read_part(part: &ReadPart, hz: f64, spacing_hz: f64) -> f64 {
+    if part.at(hz - FRAME_SPREAD * spacing_hz) == 1.0
+        && part.at(hz + FRAME_SPREAD * spacing_hz) == 1.0
     {
         return 1.0;
     }
@@ -99,7 +99,7 @@ fn frame_read_part(band: Band, hz: f64, spacing_hz: f64) -> f64 {
         let x = core::f64::consts::PI * offset_hz / lobe_hz;
         let amplitude = if step == 0 { 1.0 } else { libm::sin(x) / x };
         let weight = amplitude * amplitude;
-        read += weight * read_part(band, hz + offset_hz);
+        read += weight * part.at(hz + offset_hz);
         all += weight;
     }
     read / all
@@ -135,6 +135,7 @@ impl Frames {
         let low = libm::ceil((band.low_hz - 0.5 * GRID_HZ) / spacing - 1e-9).max(1.0) as usize;
         let high = libm::floor((band.high_hz + 0.5 * GRID_HZ) / spacing + 1e-9) as usize;
         let high = high.min(half - 1);
+        let part = ReadPart::new(band);
         let components = || (low..=high.max(low)).map(|j| j as f64 * spacing);
         Self {
             key,
@@ -148,7 +149,7 @@ impl Frames {
                 .map(|hz| hz.clamp(band.low_hz, band.high_hz))
                 .collect(),
             read: components()
-                .map(|hz| frame_read_part(band, hz, spacing))
+                .map(|hz| frame_read_part(&part, hz, spacing))
                 .collect(),
         }
     }

@@ -1,33 +1,56 @@
-//! Tables that depend on a few numbers alone, made once and shared while they are in use.
+//! Tables that depend on a few numbers alone, made once, shared while they are in use, and kept a while after.
 
 use alloc::sync::Arc;
 
+/// Tables of one kind that are kept when nobody uses them: an app that opens texture after texture makes them once.
+#[cfg(feature = "std")]
+const KEPT: usize = 4;
+
 /// Tables by their keys. Without `std` each user has its own.
 #[cfg(feature = "std")]
-pub struct Shared<K, V: ?Sized>(std::sync::Mutex<alloc::vec::Vec<(K, std::sync::Weak<V>)>>);
+pub struct Shared<K, V: ?Sized>(std::sync::Mutex<Tables<K, V>>);
+
+#[cfg(feature = "std")]
+struct Tables<K, V: ?Sized> {
+    in_use: alloc::vec::Vec<(K, std::sync::Weak<V>)>,
+    /// Those that were asked for last, the last one at the end.
+    kept: alloc::vec::Vec<Arc<V>>,
+}
 
 #[cfg(feature = "std")]
 impl<K: PartialEq, V: ?Sized> Shared<K, V> {
-    /// None yet.
+    /// No tables yet.
     #[allow(clippy::new_without_default)] // It is a static.
     pub const fn new() -> Self {
-        Self(std::sync::Mutex::new(alloc::vec::Vec::new()))
+        Self(std::sync::Mutex::new(Tables {
+            in_use: alloc::vec::Vec::new(),
+            kept: alloc::vec::Vec::new(),
+        }))
     }
 
-    /// The table of a key, made if nobody uses it.
+    /// The table of a key, made if it is neither in use nor kept.
     pub fn get(&self, key: K, make: impl FnOnce() -> Arc<V>) -> Arc<V> {
-        // The list is whole whatever a panicking thread was doing.
-        let mut in_use = self
+        // The lists are whole whatever a panicking thread was doing.
+        let mut tables = self
             .0
             .lock()
             .unwrap_or_else(std::sync::PoisonError::into_inner);
+        let Tables { in_use, kept } = &mut *tables;
         let found = in_use.iter().find(|(known, _)| *known == key);
-        if let Some(table) = found.and_then(|(_, table)| table.upgrade()) {
-            return table;
+        let table = match found.and_then(|(_, table)| table.upgrade()) {
+            Some(table) => table,
+            None => {
+                let table = make();
+                in_use.retain(|(_, table)| table.strong_count() > 0);
+                in_use.push((key, Arc::downgrade(&table)));
+                table
+            }
+        };
+        kept.retain(|other| !Arc::ptr_eq(other, &table));
+        if kept.len() == KEPT {
+            kept.remove(0);
         }
-        let table = make();
-        in_use.retain(|(_, table)| table.strong_count() > 0);
-        in_use.push((key, Arc::downgrade(&table)));
+        kept.push(table.clone());
         table
     }
 }
@@ -55,12 +78,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_table_in_use_is_shared_and_another_is_another() {
+    fn tables_are_shared_while_in_use_and_the_last_ones_are_kept() {
         let tables = Shared::new();
-        let one = tables.get(1, || Arc::new(10));
-        assert!(Arc::ptr_eq(&one, &tables.get(1, || Arc::new(11))));
-        assert_eq!(*tables.get(2, || Arc::new(20)), 20);
-        drop(one);
-        assert_eq!(*tables.get(1, || Arc::new(12)), 12);
+        let get = |key, value| *tables.get(key, || Arc::new(value));
+        let used = tables.get(1, || Arc::new(10));
+        for key in 2..=5 {
+            assert_eq!(get(key, 10 * key), 10 * key);
+        }
+        assert!(Arc::ptr_eq(&used, &tables.get(1, || Arc::new(11))));
+        // The last four asked for are 3, 4, 5 and 1.
+        assert_eq!(get(3, 31), 30);
+        assert_eq!(get(2, 21), 21);
+        drop(used);
+        // Now they are 5, 1, 3, 2.
+        assert_eq!(get(1, 12), 10);
+        assert_eq!(get(4, 41), 41);
     }
 }

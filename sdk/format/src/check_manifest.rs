@@ -81,17 +81,17 @@ fn check_words(manifest: &Manifest, findings: &mut Findings) {
 
 fn check_sources(manifest: &Manifest, findings: &mut Findings) {
     for (i, source) in manifest.provenance.recordings.iter().enumerate() {
-        let at = format!("/provenance/recordings/{i}");
+        let at = format_args!("/provenance/recordings/{i}");
         let rate = source.rate_hz;
         let positive = rate.is_finite() && rate > 0.0;
         findings.require(
             positive,
             rule::SOURCE_INVALID,
-            format!("{at}/rate_hz"),
+            format_args!("{at}/rate_hz"),
             || format!("{rate} Hz is no sampling rate; write the recording's"),
         );
         let plain = !source.file.contains(['/', '\\']);
-        findings.require(plain, rule::SOURCE_PATH, format!("{at}/file"), || {
+        findings.require(plain, rule::SOURCE_PATH, format_args!("{at}/file"), || {
             format!("{:?} has a folder; write the file name alone", source.file)
         });
     }
@@ -106,7 +106,7 @@ fn check_conditions(conditions: &[Condition], findings: &mut Findings) {
     );
     let mut seen = BTreeSet::new();
     for (i, condition) in conditions.iter().enumerate() {
-        let at = format!("/conditions/{i}");
+        let at = format_args!("/conditions/{i}");
         let numbers = [
             ("speed_mm_s", condition.speed_mm_s),
             ("force_n", condition.force_n),
@@ -117,7 +117,7 @@ fn check_conditions(conditions: &[Condition], findings: &mut Findings) {
             findings.require(
                 possible,
                 rule::CONDITION_INVALID,
-                format!("{at}/{key}"),
+                format_args!("{at}/{key}"),
                 || format!("{number:?} is negative or not finite; leave out what is not known"),
             );
         }
@@ -132,7 +132,7 @@ fn check_conditions(conditions: &[Condition], findings: &mut Findings) {
 
 fn check_extensions(manifest: &Manifest, findings: &mut Findings) {
     for name in manifest.extensions.keys() {
-        let pointer = format!("/extensions/{}", escape(name));
+        let pointer = format_args!("/extensions/{}", escape(name));
         findings.require(
             is_extension_name(name),
             rule::EXTENSION_NAME_INVALID,

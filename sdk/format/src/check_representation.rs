@@ -1,6 +1,7 @@
 //! What a representation's words and numbers must be.
 
 use std::collections::BTreeSet;
+use std::fmt::Arguments;
 
 use htex_model::is_model_id;
 
@@ -25,21 +26,21 @@ pub(crate) fn check_representations(manifest: &Manifest, findings: &mut Findings
     );
     let mut models = BTreeSet::new();
     for (i, representation) in manifest.representations.iter().enumerate() {
-        let at = format!("/representations/{i}");
+        let at = format_args!("/representations/{i}");
         let model = &representation.model;
         findings.require(
             models.insert(model),
             rule::MODEL_DUPLICATE,
-            format!("{at}/model"),
+            format_args!("{at}/model"),
             || format!("{model:?} has an earlier representation; merge them"),
         );
-        check_model(representation, &at, findings);
-        check_fields(representation, &at, findings);
-        check_conditions(representation, manifest, &at, findings);
+        check_model(representation, at, findings);
+        check_fields(representation, at, findings);
+        check_conditions(representation, manifest, at, findings);
     }
 }
 
-fn check_model(representation: &Representation, at: &str, findings: &mut Findings) {
+fn check_model(representation: &Representation, at: Arguments<'_>, findings: &mut Findings) {
     let Representation {
         model,
         model_version,
@@ -48,31 +49,31 @@ fn check_model(representation: &Representation, at: &str, findings: &mut Finding
     findings.require(
         is_model_id(model),
         rule::MODEL_ID_INVALID,
-        format!("{at}/model"),
+        format_args!("{at}/model"),
         || format!("{model:?} is no model id; write one like org.example.mymodel"),
     );
     let semantic = semver::Version::parse(model_version).is_ok();
-    let pointer = format!("{at}/model_version");
+    let pointer = format_args!("{at}/model_version");
     findings.require(semantic, rule::MODEL_VERSION_INVALID, pointer, || {
         format!("{model_version:?} is no semantic version; write one like 1.0.0")
     });
 }
 
-fn check_fields(representation: &Representation, at: &str, findings: &mut Findings) {
+fn check_fields(representation: &Representation, at: Arguments<'_>, findings: &mut Findings) {
     let mut names = BTreeSet::new();
     for (i, field) in representation.fields.iter().enumerate() {
-        let at = format!("{at}/fields/{i}");
+        let at = format_args!("{at}/fields/{i}");
         let name = &field.name;
         findings.require(
             !name.is_empty(),
             rule::FIELD_NAME_EMPTY,
-            format!("{at}/name"),
+            format_args!("{at}/name"),
             || "the field has no name; write the model's".to_owned(),
         );
         findings.require(
             names.insert(name),
             rule::FIELD_DUPLICATE,
-            format!("{at}/name"),
+            format_args!("{at}/name"),
             || format!("{name:?} is the name of an earlier field"),
         );
         let works = match field.store {
@@ -81,7 +82,7 @@ fn check_fields(representation: &Representation, at: &str, findings: &mut Findin
             Store::U8(steps) => steps.work(u8::MAX.into()),
             Store::Packed(steps) => field.list && steps.work(u8::MAX.into()),
         };
-        findings.require(works, rule::STORE_INVALID, format!("{at}/store"), || {
+        findings.require(works, rule::STORE_INVALID, format_args!("{at}/store"), || {
             "scale is not above 0, a step's value is not finite or, in the logarithm, no normal \
              number, steps are too fine for their offset, or a number is packed that is no list"
                 .to_owned()
@@ -114,25 +115,25 @@ impl Steps {
 fn check_conditions(
     representation: &Representation,
     manifest: &Manifest,
-    at: &str,
+    at: Arguments<'_>,
     findings: &mut Findings,
 ) {
     findings.require(
         !representation.at.is_empty(),
         rule::AT_EMPTY,
-        format!("{at}/at"),
+        format_args!("{at}/at"),
         || "the model is fitted at no condition; fit it or leave it out".to_owned(),
     );
     let conditions = manifest.conditions.len();
     let mut seen = BTreeSet::new();
     for (i, fitted) in representation.at.iter().enumerate() {
-        let at = format!("{at}/at/{i}");
+        let at = format_args!("{at}/at/{i}");
         let index = fitted.condition;
-        let pointer = format!("{at}/condition");
+        let pointer = format_args!("{at}/condition");
         findings.require(
             index < conditions,
             rule::CONDITION_INDEX_INVALID,
-            &*pointer,
+            pointer,
             || format!("there is no condition {index}; there are {conditions}, counted from 0"),
         );
         findings.require(
@@ -141,27 +142,27 @@ fn check_conditions(
             pointer,
             || format!("condition {index} stands here twice; keep one"),
         );
-        check_fit(fitted, manifest.quantity, &at, findings);
+        check_fit(fitted, manifest.quantity, at, findings);
     }
 }
 
-fn check_fit(fitted: &AtCondition, quantity: Quantity, at: &str, findings: &mut Findings) {
+fn check_fit(fitted: &AtCondition, quantity: Quantity, at: Arguments<'_>, findings: &mut Findings) {
     let (level, largest, unit) = (fitted.level_rms, quantity.largest_level(), quantity.unit());
     findings.require(
         is_size(level) && level <= largest,
         rule::LEVEL_INVALID,
-        format!("{at}/level_rms"),
+        format_args!("{at}/level_rms"),
         || format!("{level} {unit} is no level; it lies in 0 to {largest}"),
     );
     if let Some(quality) = &fitted.quality {
-        check_quality(quality, &format!("{at}/quality"), findings);
+        check_quality(quality, format_args!("{at}/quality"), findings);
     }
 }
 
-fn check_quality(quality: &Quality, at: &str, findings: &mut Findings) {
+fn check_quality(quality: &Quality, at: Arguments<'_>, findings: &mut Findings) {
     let errors = &quality.band_error_db;
     let nine = errors.len() == BANDS && errors.iter().all(|e| e.is_finite());
-    let pointer = format!("{at}/band_error_db");
+    let pointer = format_args!("{at}/band_error_db");
     findings.require(nine, rule::QUALITY_INVALID, pointer, || {
         format!(
             "there are {} band errors; write {BANDS} finite numbers",
@@ -177,9 +178,12 @@ fn check_quality(quality: &Quality, at: &str, findings: &mut Findings) {
     ];
     for (key, number) in correlations {
         let holds = number.is_none_or(|x| (-1.0..=1.0).contains(&x));
-        findings.require(holds, rule::QUALITY_INVALID, format!("{at}/{key}"), || {
-            format!("{number:?} is no correlation; it lies in -1 to 1")
-        });
+        findings.require(
+            holds,
+            rule::QUALITY_INVALID,
+            format_args!("{at}/{key}"),
+            || format!("{number:?} is no correlation; it lies in -1 to 1"),
+        );
     }
     let sizes = [
         ("band_error_rms_db", Some(quality.band_error_rms_db)),
@@ -210,7 +214,7 @@ fn check_quality(quality: &Quality, at: &str, findings: &mut Findings) {
         findings.require(
             number.is_none_or(is_size),
             rule::QUALITY_INVALID,
-            format!("{at}/{key}"),
+            format_args!("{at}/{key}"),
             || format!("{number:?} is no RMS; it is finite and not negative"),
         );
     }

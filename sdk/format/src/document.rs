@@ -143,19 +143,30 @@ impl Document {
 /// Greatest number of arrays and objects open at once.
 fn depth(bytes: &[u8]) -> usize {
     let (mut open, mut deepest) = (0usize, 0);
-    let (mut in_string, mut escaped) = (false, false);
-    for &byte in bytes {
+    let mut bytes = bytes.iter();
+    while let Some(&byte) = bytes.next() {
         match byte {
-            _ if escaped => escaped = false,
-            b'\\' if in_string => escaped = true,
-            b'"' => in_string = !in_string,
-            b'[' | b'{' if !in_string => open += 1,
-            b']' | b'}' if !in_string => open = open.saturating_sub(1),
+            b'"' => skip_string(&mut bytes),
+            b'[' | b'{' => {
+                open += 1;
+                deepest = deepest.max(open);
+            }
+            b']' | b'}' => open = open.saturating_sub(1),
             _ => {}
         }
-        deepest = deepest.max(open);
     }
     deepest
+}
+
+/// Skips the rest of a string.
+fn skip_string(bytes: &mut std::slice::Iter<'_, u8>) {
+    while let Some(&byte) = bytes.next() {
+        match byte {
+            b'"' => return,
+            b'\\' => _ = bytes.next(),
+            _ => {}
+        }
+    }
 }
 
 /// `MAJOR.MINOR` without signs or leading zeros.

@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::fmt;
 
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde_json::map::Entry;
 use serde_json::{Map, Number, Value};
 
 use crate::pointer::Place;
@@ -110,13 +111,18 @@ impl<'de> Visitor<'de> for Strict<'_> {
     fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Value, A::Error> {
         let mut map = Map::new();
         while let Some(key) = entries.next_key::<String>()? {
-            let place = &Place::Key(self.place, &key);
-            if map.contains_key(&key) {
-                self.twice.replace(Some(place.pointer()));
-                return Err(A::Error::custom("a key stands twice"));
+            match map.entry(key) {
+                Entry::Occupied(entry) => {
+                    let place = Place::Key(self.place, entry.key());
+                    self.twice.replace(Some(place.pointer()));
+                    return Err(A::Error::custom("a key stands twice"));
+                }
+                Entry::Vacant(entry) => {
+                    let place = &Place::Key(self.place, entry.key());
+                    let value = entries.next_value_seed(Strict { place, ..self })?;
+                    entry.insert(value);
+                }
             }
-            let value = entries.next_value_seed(Strict { place, ..self })?;
-            map.insert(key, value);
         }
         Ok(Value::Object(map))
     }

@@ -68,16 +68,16 @@ impl Findings {
         }
     }
 
-    /// Adds the finding unless `holds`.
+    /// Adds the finding unless `holds`. The pointer and the message are written only then.
     pub fn require(
         &mut self,
         holds: bool,
         rule: &Rule,
-        pointer: impl Into<String>,
+        pointer: impl std::fmt::Display,
         message: impl FnOnce() -> String,
     ) {
         if !holds {
-            self.add(rule, pointer, message());
+            self.add(rule, pointer.to_string(), message());
         }
     }
 

@@ -1,9 +1,21 @@
 //! Models linked into this program, called through their tables.
 
-use crate::table::TableModel;
+use std::sync::{Arc, LazyLock};
 
-/// The built-in models, in the order in which they are shown.
-pub(crate) fn models() -> [TableModel; 6] {
+use crate::table::TableModel;
+use crate::{LoadedModel, Origin};
+
+/// The built-in models, in the order in which they are shown. They are loaded once.
+pub(crate) fn models() -> &'static [LoadedModel] {
+    static MODELS: LazyLock<Vec<LoadedModel>> = LazyLock::new(|| {
+        let load = |table| LoadedModel::new(Origin::Builtin, Arc::new(table));
+        // A built-in model that cannot be loaded is not there; the tests count them.
+        tables().into_iter().flat_map(load).collect()
+    });
+    &MODELS
+}
+
+fn tables() -> [TableModel; 6] {
     [
         TableModel::new(&htex_ar::TABLE, Some(&htex_ar::VOICES)),
         TableModel::new(&htex_mfcc::TABLE, Some(&htex_mfcc::VOICES)),

@@ -1,5 +1,6 @@
 //! What the shortest chain saves, whether budgets are met, and how many voices one core plays:
-//! `cargo run --release -p htex-scene --example chains`.
+//! `cargo run --release -p htex-scene --example chains`, or one table of them: `saved`, `live`, `budgets`, `voices`
+//! behind `--`.
 //!
 //! Times are the least of many short stretches, all of a table interleaved in one run.
 #![allow(clippy::unwrap_used)] // A program for developers: a failure may end it.
@@ -24,10 +25,18 @@ const STRETCH: usize = 32;
 const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
 
 fn main() {
-    saved();
-    live();
-    budgets();
-    voices();
+    let only = std::env::args().nth(1);
+    let tables: [(&str, fn()); 4] = [
+        ("saved", saved),
+        ("live", live),
+        ("budgets", budgets),
+        ("voices", voices),
+    ];
+    for (name, table) in tables {
+        if only.as_deref().is_none_or(|only| only == name) {
+            table();
+        }
+    }
 }
 
 /// Six scenes as people have them.
@@ -181,36 +190,85 @@ fn budgets() {
     }
 }
 
-/// Voices that one core plays at 20 kHz, each a chain of its own with a resampler of its own.
+/// What a sample of one of many voices costs, each a chain of its own with a resampler of its own, and how many
+/// voices one core plays at 20 kHz by the cost among 5,000. Voices begin at different times, as fingers do.
 fn voices() {
-    println!("\nmodel    voices in real time at 20 kHz, blocks of 64");
+    println!(
+        "\nns a sample, blocks of 64 at 20 kHz   1 voice  1,000  5,000  10,000  \
+         in real time  slowest block of 5,000"
+    );
     for model in MODELS {
-        println!("{model:8} {:6}", most_voices(model));
+        row(&format!("{model}, scene"), |seed| {
+            let mut renderer = scene_voice(model, seed);
+            move |block: &mut [f32]| {
+                renderer.render(block);
+            }
+        });
+        row(&format!("{model}, app"), |seed| {
+            let mut voice = app_voice(model, seed);
+            move |block: &mut [f32]| voice.render(block).unwrap()
+        });
     }
 }
 
-fn most_voices(model: &str) -> usize {
-    let mut many: Vec<Renderer> = Vec::new();
-    let mut block = [0.0f32; BLOCK];
-    let period_s = BLOCK as f64 / 20_000.0;
-    loop {
-        for _ in 0..250 {
-            let mut scene = scene(single(), constant(80.0, 0.4), 1e4);
-            scene.scene.surfaces[0].representation = model.to_owned();
-            scene.scene.seed = many.len() as u64;
-            many.push(Renderer::new(&scene, &planned(&scene, &file())).unwrap());
+fn row<V: FnMut(&mut [f32])>(name: &str, make: impl Fn(u64) -> V) {
+    let mut many: Vec<V> = Vec::new();
+    let mut costs = Vec::new();
+    for count in [1, 1_000, 5_000, 10_000] {
+        while many.len() < count {
+            let mut voice = make(many.len() as u64);
+            // Within the time in which each makes a frame.
+            voice(&mut vec![0.0; BLOCK * (many.len() * 61 % FRAME_BLOCKS)]);
+            many.push(voice);
         }
-        // Half a second of sound: as long as real time, on the whole.
-        let periods = (0.5 / period_s) as usize;
-        let start = Instant::now();
-        for _ in 0..periods {
-            for voice in &mut many {
-                voice.render(std::hint::black_box(&mut block));
-            }
-        }
-        let took = start.elapsed().as_secs_f64() / (periods as f64 * period_s);
-        if took > 1.0 {
-            return (many.len() as f64 / took) as usize;
-        }
+        costs.push(among(&mut many));
     }
+    let (ns, slowest_ms) = costs[2];
+    println!(
+        "{name:36} {:8.2} {:6.2} {ns:6.2} {:7.2}  {:12.0}  {slowest_ms:6.2} ms of 3.20",
+        costs[0].0,
+        costs[1].0,
+        costs[3].0,
+        1e9 / (20_000.0 * ns)
+    );
+}
+
+fn scene_voice(model: &str, seed: u64) -> Renderer {
+    let mut scene = scene(single(), constant(80.0, 0.4), 1e4);
+    scene.scene.surfaces[0].representation = model.to_owned();
+    scene.scene.seed = seed;
+    Renderer::new(&scene, &planned(&scene, &file())).unwrap()
+}
+
+fn app_voice(model: &str, seed: u64) -> htex::Voice {
+    let options = htex::VoiceOptions {
+        model: Some(model),
+        seed,
+        ..Default::default()
+    };
+    single().voice(&options).unwrap()
+}
+
+/// Blocks in 0.36 s of sound, in which each voice makes a frame.
+const FRAME_BLOCKS: usize = 112;
+
+/// The time of a sample of voices that take turns, nanoseconds, and that of the slowest block of all, milliseconds: the
+/// least of some stretches.
+fn among<V: FnMut(&mut [f32])>(voices: &mut [V]) -> (f64, f64) {
+    let mut block = [0.0f32; BLOCK];
+    let mut least = (f64::INFINITY, f64::INFINITY);
+    for _ in 0..(8_000 / voices.len()).clamp(4, 400) {
+        let (mut slowest_s, start) = (0.0f64, Instant::now());
+        for _ in 0..FRAME_BLOCKS {
+            let start = Instant::now();
+            for voice in &mut *voices {
+                voice(std::hint::black_box(&mut block));
+            }
+            slowest_s = slowest_s.max(start.elapsed().as_secs_f64());
+        }
+        let samples = (FRAME_BLOCKS * BLOCK * voices.len()) as f64;
+        let ns = 1e9 * start.elapsed().as_secs_f64() / samples;
+        least = (least.0.min(ns), least.1.min(1e3 * slowest_s));
+    }
+    least
 }

@@ -2,6 +2,7 @@
 //! scene calls for and says why each is in or out; the renderer runs just that chain.
 #![forbid(unsafe_code)]
 
+mod ahead;
 mod beyond;
 mod call;
 mod check;

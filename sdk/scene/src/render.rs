@@ -1,6 +1,7 @@
 //! The chain of a plan, running.
 
 use crate::SceneError;
+use crate::ahead::Ahead;
 use crate::call::{Call, topmost};
 use crate::file::{Effect, Surface};
 use crate::load::LoadedScene;
@@ -27,6 +28,7 @@ pub struct Renderer {
     left: usize,
     /// The finger is looked at.
     follows: bool,
+    ahead: Ahead,
     timed: bool,
     peak: f32,
 }
@@ -106,6 +108,7 @@ impl Renderer {
             frame: 0,
             left: 0,
             follows: !plan.constant || ends,
+            ahead: Ahead::new(plan.constant && !ends, scene.scene.seed),
             timed: false,
             peak: 0.0,
         })
@@ -157,6 +160,45 @@ impl Renderer {
     /// at the end of the scene. Gives the same samples for all sizes of `out`. A surface whose model
     /// fails is silent, and the others play on; [`Self::take_failure`] tells.
     pub fn render(&mut self, out: &mut [f32]) -> usize {
+        if self.follows {
+            self.render_blocks(out)
+        } else {
+            self.render_ahead(out)
+        }
+    }
+
+    /// Nothing changes: however few samples are wanted, many are made at once, so that renderers in turn go through
+    /// the memory of their chains once for many blocks.
+    fn render_ahead(&mut self, out: &mut [f32]) -> usize {
+        let mut done = 0;
+        loop {
+            let left = self.frames_left().unwrap_or(u64::MAX);
+            let wanted = (out.len() - done).min(usize::try_from(left).unwrap_or(usize::MAX));
+            if wanted == 0 {
+                break;
+            }
+            if self.ahead.is_empty() {
+                self.fill_ahead(left);
+            }
+            let taken = self.ahead.take(&mut out[done..done + wanted]);
+            self.frame += taken as u64;
+            done += taken;
+        }
+        out[done..].fill(0.0);
+        done
+    }
+
+    /// Renders ahead, at most `left` samples.
+    fn fill_ahead(&mut self, left: u64) {
+        let mut samples = self.ahead.begin(left);
+        for piece in samples.chunks_mut(PIECE) {
+            self.piece(piece);
+        }
+        self.ahead.end(samples);
+    }
+
+    /// Looks at the finger before every control block.
+    fn render_blocks(&mut self, out: &mut [f32]) -> usize {
         let mut done = 0;
         while done < out.len() {
             if self.left == 0 {
@@ -192,10 +234,6 @@ impl Renderer {
 
     /// Looks at the finger, and tells the stages.
     fn look(&mut self) {
-        if !self.follows {
-            self.left = PIECE;
-            return;
-        }
         self.left = self.call.control;
         let finger = match self.course {
             Course::Live => self.live,
@@ -227,7 +265,8 @@ impl Renderer {
         lanes.chain(behind).collect()
     }
 
-    /// Largest magnitude so far, in the unit of the device.
+    /// Largest magnitude so far, in the unit of the device. Where nothing changes, samples are made up to 1,024 ahead, and
+    /// are in this and in the numbers below from then on.
     pub fn peak(&self) -> f64 {
         f64::from(self.peak)
     }

@@ -1,6 +1,6 @@
 //! What the shortest chain saves, whether budgets are met, and how many voices one core plays:
-//! `cargo run --release -p htex-scene --example chains`, or one table of them: `saved`, `live`, `budgets`, `voices`
-//! behind `--`.
+//! `cargo run --release -p htex-scene --example chains`, or one table of them: `saved`, `live`, `budgets`, `voices`,
+//! `fingers` behind `--`.
 //!
 //! Times are the least of many short stretches, all of a table interleaved in one run.
 #![allow(clippy::unwrap_used)] // A program for developers: a failure may end it.
@@ -26,11 +26,12 @@ const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
 
 fn main() {
     let only = std::env::args().nth(1);
-    let tables: [(&str, fn()); 4] = [
+    let tables: [(&str, fn()); 5] = [
         ("saved", saved),
         ("live", live),
         ("budgets", budgets),
         ("voices", voices),
+        ("fingers", fingers),
     ];
     for (name, table) in tables {
         if only.as_deref().is_none_or(|only| only == name) {
@@ -152,12 +153,7 @@ fn stretches(renderer: &mut [Renderer; 1]) -> f64 {
     let start = Instant::now();
     for i in 0..blocks {
         let t = i as f64 / blocks as f64;
-        let finger = Finger {
-            speed_mm_s: 90.0 + 35.0 * (17.0 * t).sin(),
-            force_n: 0.45 + 0.2 * (11.0 * t).cos(),
-            at_mm: None,
-        };
-        renderer.set_motion(finger).unwrap();
+        renderer.set_motion(finger(t)).unwrap();
         renderer.render(std::hint::black_box(&mut block));
     }
     start.elapsed().as_nanos() as f64 / (blocks * BLOCK) as f64
@@ -271,4 +267,42 @@ fn among<V: FnMut(&mut [f32])>(voices: &mut [V]) -> (f64, f64) {
         least = (least.0.min(ns), least.1.min(1e3 * slowest_s));
     }
     least
+}
+
+/// A thousand live voices of each model over nine conditions, each under a finger of its own that moves all the time and began at a
+/// time of its own.
+fn fingers() {
+    println!("\n1,000 live voices over nine conditions, blocks of 64 at 20 kHz: part of one core");
+    for model in MODELS {
+        let mut many: Vec<_> = (0..1_000).map(|i| live_voice(model, i)).collect();
+        for (i, voice) in many.iter_mut().enumerate() {
+            (0..i * 61 % FRAME_BLOCKS).for_each(|_| voice(&mut [0.0; BLOCK]));
+        }
+        let (ns, slowest_ms) = among(&mut many);
+        let part = ns * 1e-9 * 20_000.0 * many.len() as f64;
+        println!("{model:8} {part:6.2}, slowest block {slowest_ms:5.2} ms of 3.20");
+    }
+}
+
+fn live_voice(model: &str, seed: u64) -> impl FnMut(&mut [f32]) {
+    let mut scene = scene(nine(), Motion::Live, 1e4);
+    scene.scene.duration_s = None;
+    scene.scene.seed = seed;
+    scene.scene.surfaces[0].representation = model.to_owned();
+    let mut renderer = Renderer::new(&scene, &planned(&scene, &file())).unwrap();
+    let mut block = seed as f64;
+    move |out| {
+        renderer.set_motion(finger(block / 320.0)).unwrap();
+        renderer.render(out);
+        block += 1.0;
+    }
+}
+
+/// A finger somewhere on its way over the nine conditions.
+fn finger(t: f64) -> Finger {
+    Finger {
+        speed_mm_s: 90.0 + 35.0 * (17.0 * t).sin(),
+        force_n: 0.45 + 0.2 * (11.0 * t).cos(),
+        at_mm: None,
+    }
 }

@@ -40,6 +40,18 @@ impl Motion {
     }
 }
 
+impl Motion {
+    /// The nearest motion in the ranges of the extension; NaN stays.
+    #[must_use]
+    pub fn clamped(self) -> Self {
+        Self {
+            speed_mm_s: self.speed_mm_s.clamp(-MAX_SPEED_MM_S, MAX_SPEED_MM_S),
+            force_n: self.force_n.clamp(0.0, MAX_FORCE_N),
+            position_mm: self.position_mm.clamp(-MAX_POSITION_MM, MAX_POSITION_MM),
+        }
+    }
+}
+
 /// The motion at which a recording was made, as far as it is known.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FitCondition {

@@ -15,6 +15,7 @@ const FAULTS: &[(&str, &str, Outcome)] = &[
     ("MARKER", "marker", Outcome::Failed),
     ("EXPORT_MISSING", "exports", Outcome::Failed),
     ("EXTENSION_MISSING", "exports", Outcome::Failed),
+    ("MOTION_MISSING", "exports", Outcome::Failed),
     ("DESCRIPTOR_JSON", "descriptor", Outcome::Failed),
     ("DESCRIPTOR_DEFAULT", "descriptor", Outcome::Failed),
     ("EXTENSIONS", "extensions", Outcome::Failed),
@@ -51,6 +52,10 @@ const FAULTS: &[(&str, &str, Outcome)] = &[
     ("RENDER_ALLOCATES", "allocation", Outcome::Failed),
     #[cfg(target_os = "linux")]
     ("RETUNE_ALLOCATES", "allocation", Outcome::Failed),
+    ("ACCEPTS_MOTION", "motion", Outcome::Failed),
+    ("MOTION_BLOCKS", "motion", Outcome::Failed),
+    #[cfg(target_os = "linux")]
+    ("MOTION_ALLOCATES", "motion", Outcome::Failed),
     ("LEAK", "memory", Outcome::Failed),
     ("VOICES_LEAK", "memory", Outcome::Failed),
 ];

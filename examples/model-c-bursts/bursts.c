@@ -1,26 +1,28 @@
-/* org.example.bursts: filtered noise bursts, as a fingertip makes that catches and slips. White
+/* org.example.bursts: filtered noise bursts, as a fingertip makes that catches and slips: so many on each
+ * millimetre of its way, which the voice is told by the extension htex.motion/1. White
  * noise is switched on and off and then runs through a two-pole band-pass filter. Switched white
  * noise is still white, so the spectrum is the filter's own, whatever the bursts:
  * 1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)^2).
  *
- * Against htex_model.h alone: no C library, so that the same file is a native library and a WASM
+ * Against htex_model.h and htex_motion_1.h alone: no C library, so that the same file is a native library and a WASM
  * module, of the same samples. See build.sh.
  */
 #include <stdatomic.h>
 
 #include "htex_model.h"
 #include "htex_model_wasm.h"
+#include "htex_motion_1.h"
 
 /* ---- what the model says of itself ---- */
 
-enum { CENTRE, BANDWIDTH, RATE, DUTY, JITTER, PARAMETERS };
+enum { CENTRE, BANDWIDTH, PER_MM, DUTY, JITTER, SPEED, FORCE, PARAMETERS };
 
-static const double MIN[PARAMETERS] = {5.0, 20.0, 2.0, 0.05, 0.0};
-static const double MAX[PARAMETERS] = {2000.0, 2000.0, 100.0, 1.0, 1.0};
+static const double MIN[PARAMETERS] = {5.0, 20.0, 0.001, 0.05, 0.0, 1.0, 0.0};
+static const double MAX[PARAMETERS] = {2000.0, 2000.0, 100.0, 1.0, 1.0, 2000.0, 1000.0};
 
 static const char DESCRIPTOR[] =
-    "{\"id\":\"org.example.bursts\",\"name\":\"Filtered noise bursts\",\"version\":\"1.0.0\","
-    "\"summary\":\"Noise of one resonance, in bursts: where it lies, and when they come.\","
+    "{\"id\":\"org.example.bursts\",\"name\":\"Filtered noise bursts\",\"version\":\"2.0.0\","
+    "\"summary\":\"Noise of one resonance, in bursts: where it lies, and where on the way they come.\","
     "\"fields\":["
     "{\"name\":\"centre_hz\",\"unit\":\"Hz\",\"kind\":{\"type\":\"scalar\"},"
     "\"min\":5,\"max\":2000,\"store\":{\"type\":\"f32\"},"
@@ -28,15 +30,21 @@ static const char DESCRIPTOR[] =
     "{\"name\":\"bandwidth_hz\",\"unit\":\"Hz\",\"kind\":{\"type\":\"scalar\"},"
     "\"min\":20,\"max\":2000,\"store\":{\"type\":\"f32\"},"
     "\"description\":\"Width between the points 3 dB below it.\"},"
-    "{\"name\":\"bursts_per_s\",\"unit\":\"Hz\",\"kind\":{\"type\":\"scalar\"},"
-    "\"min\":2,\"max\":100,\"store\":{\"type\":\"f32\"},"
-    "\"description\":\"Bursts a second, in the mean.\"},"
+    "{\"name\":\"bursts_per_mm\",\"unit\":\"1/mm\",\"kind\":{\"type\":\"scalar\"},"
+    "\"min\":0.001,\"max\":100,\"store\":{\"type\":\"f64\"},"
+    "\"description\":\"Bursts on a millimetre of the finger's way, in the mean.\"},"
     "{\"name\":\"duty\",\"unit\":\"1\",\"kind\":{\"type\":\"scalar\"},"
     "\"min\":0.05,\"max\":1,\"store\":{\"type\":\"f32\"},"
-    "\"description\":\"Part of the time that bursts take; 1 is steady noise.\"},"
+    "\"description\":\"Part of the way that bursts take; 1 is steady noise.\"},"
     "{\"name\":\"jitter\",\"unit\":\"1\",\"kind\":{\"type\":\"scalar\"},"
     "\"min\":0,\"max\":1,\"store\":{\"type\":\"f32\"},"
-    "\"description\":\"Pauses vary by this part of their length; 0 is periodic.\"}],"
+    "\"description\":\"Pauses vary by this part of their length; 0 is periodic.\"},"
+    "{\"name\":\"speed_mm_s\",\"unit\":\"mm/s\",\"kind\":{\"type\":\"scalar\"},"
+    "\"min\":1,\"max\":2000,\"store\":{\"type\":\"f32\"},"
+    "\"description\":\"Speed of the recording.\"},"
+    "{\"name\":\"force_n\",\"unit\":\"N\",\"kind\":{\"type\":\"scalar\"},"
+    "\"min\":0,\"max\":1000,\"store\":{\"type\":\"f32\"},"
+    "\"description\":\"Normal force of the recording; 0 where it is not known.\"}],"
     "\"options\":[]}";
 
 /* ---- errors ---- */
@@ -90,8 +98,9 @@ static int64_t check_set(const double *p)
 {
     static const char *const text[PARAMETERS] = {
         "centre_hz: 5 to 2000 Hz is allowed", "bandwidth_hz: 20 to 2000 Hz is allowed",
-        "bursts_per_s: 2 to 100 is allowed", "duty: 0.05 to 1 is allowed",
-        "jitter: 0 to 1 is allowed"};
+        "bursts_per_mm: 0.001 to 100 is allowed", "duty: 0.05 to 1 is allowed",
+        "jitter: 0 to 1 is allowed", "speed_mm_s: 1 to 2000 mm/s is allowed",
+        "force_n: 0 to 1000 N is allowed"};
     for (int i = 0; i < PARAMETERS; i++)
         if (!within(p[i], MIN[i], MAX[i]))
             return fail(HTEX_INVALID_PARAMETERS, text[i]);
@@ -103,7 +112,7 @@ static int64_t check_parameters(const double *p, size_t len)
     if (!usable(p, len, sizeof *p))
         return fail(HTEX_INVALID_ARGUMENT, "`parameters` is not a usable array");
     if (len != PARAMETERS)
-        return fail(HTEX_INVALID_PARAMETERS, "five parameters are wanted, from centre_hz to jitter");
+        return fail(HTEX_INVALID_PARAMETERS, "seven parameters are wanted, from centre_hz to force_n");
     return check_set(p);
 }
 
@@ -217,7 +226,7 @@ enum { EDGE_SECTIONS = 4, VOICES = 256 };
 /* The resonance, its noise scaled so that what comes out has unit RMS. */
 struct tone { struct biquad filter; double gain; };
 
-/* Frames that a burst and a pause take, and how much pauses vary. */
+/* Way that a burst and a pause take, mm, and how much pauses vary. */
 struct timing { double burst, pause, jitter; };
 
 struct voice {
@@ -225,8 +234,11 @@ struct voice {
     double rate_hz;
     uint64_t random, random_timing;
     struct timing timing;
-    double switch_in;
+    double switch_in_mm;
     int sounding;
+    /* Speed and force of the recording, and those that were told; the level follows in 10 ms. */
+    double recorded_mm_s, recorded_n, speed_mm_s, force_n, level;
+    int told;
     struct tone now, next, pending;
     int fading, waiting;
     double faded, fade_frames;
@@ -273,26 +285,46 @@ static struct tone tone_of(const double *p, const struct voice *v)
     return tone;
 }
 
-static struct timing timing_of(const double *p, double rate_hz)
+static struct timing timing_of(const double *p)
 {
-    double period = rate_hz / p[RATE];
+    double period = 1.0 / p[PER_MM];
     struct timing timing = {period * p[DUTY], period * (1.0 - p[DUTY]), p[JITTER]};
     return timing;
 }
 
-/* Whether noise is on at this frame. A change of the timing counts from the next switch on. */
+/* The way to the next frame, mm, in either direction; half a burst and its pause at most, as faster ones cannot be told
+ * apart. */
+static double way_mm(const struct voice *v)
+{
+    double mm = (v->told ? v->speed_mm_s : v->recorded_mm_s) / v->rate_hz;
+    double most = 0.5 * (v->timing.burst + v->timing.pause);
+    mm = mm < 0.0 ? -mm : mm;
+    return mm < most ? mm : most;
+}
+
+/* Whether noise is on at this frame: never under a finger that rests. A change of the timing counts from the
+ * next switch on. */
 static int sounding(struct voice *v)
 {
-    while (v->switch_in <= 0.0) {
+    double mm = way_mm(v);
+    while (v->switch_in_mm <= 0.0) {
         v->sounding = !v->sounding;
         if (v->sounding)
-            v->switch_in += v->timing.burst;
+            v->switch_in_mm += v->timing.burst;
         else
-            v->switch_in += v->timing.pause
-                            * (1.0 + v->timing.jitter * noise(&v->random_timing) / 1.7320508075688772);
+            v->switch_in_mm += v->timing.pause
+                               * (1.0 + v->timing.jitter * noise(&v->random_timing) / 1.7320508075688772);
     }
-    v->switch_in -= 1.0;
-    return v->sounding;
+    v->switch_in_mm -= mm;
+    return v->sounding && mm > 0.0;
+}
+
+/* Level in proportion to the force, where that of the recording is known. */
+static double level(struct voice *v)
+{
+    double goal = v->told && v->recorded_n > 0.0 ? v->force_n / v->recorded_n : 1.0;
+    v->level += ((goal < 16.0 ? goal : 16.0) - v->level) * 3.0 / v->fade_frames;
+    return v->level = without_subnormals(v->level);
 }
 
 static void make_edges(struct voice *v)
@@ -333,18 +365,25 @@ static float next_sample(struct voice *v)
     }
     for (int i = 0; i < EDGE_SECTIONS; i++)
         y = tick(&v->high_cut[i], tick(&v->low_cut[i], y));
-    return (float)without_subnormals(y);
+    y *= level(v);
+    /* The smallest normal number of a float. */
+    return within(y, -0x1p-126, 0x1p-126) ? 0.0f : (float)y;
 }
 
 static void start(struct voice *v, const double *p, uint64_t seed)
 {
     v->random = seed * 0xd1342543de82ef95u + 1; /* apart from the step of noise() */
-    v->fade_frames = 0.010 * v->rate_hz > 1.0 ? 0.010 * v->rate_hz : 1.0;
+    v->fade_frames = 0.010 * v->rate_hz > 3.0 ? 0.010 * v->rate_hz : 3.0;
     v->fading = v->waiting = 0;
     v->random_timing = ~v->random;
-    v->timing = timing_of(p, v->rate_hz);
+    v->timing = timing_of(p);
+    v->recorded_mm_s = p[SPEED];
+    v->recorded_n = p[FORCE];
+    v->speed_mm_s = v->force_n = 0.0;
+    v->told = 0;
+    v->level = 1.0;
     v->sounding = 1;
-    v->switch_in = v->timing.burst * (0.5 + noise(&v->random_timing) / 3.4641016151377544);
+    v->switch_in_mm = v->timing.burst * (0.5 + noise(&v->random_timing) / 3.4641016151377544);
     v->now = tone_of(p, v);
     make_edges(v);
     /* The filters settle before the first sample is heard. */
@@ -356,6 +395,9 @@ static void start(struct voice *v, const double *p, uint64_t seed)
 /* ---- fit ---- */
 
 enum { SHAPE = 2 /* parameters of the filter */ };
+
+/* Speed of a recording that does not tell its own, mm/s. */
+static const double USUAL_SPEED_MM_S = 100.0;
 
 struct spectrum { const double *hz, *magnitude; size_t bins; double largest; };
 
@@ -447,13 +489,13 @@ static double covariance(const double *x, size_t len, size_t lag)
 
 /* The rhythm of the signal: where the covariance of its envelope comes back. At one period it is
  * (1/duty - 1) mean^2, without what the noise itself adds at lag 0. Steady noise if none stands out,
- * or if there is less than half a second to tell from. */
+ * or if there is less than half a second to tell from. The speed is in `p` already. */
 static void find_bursts(double *p, const double *signal, size_t len, double rate_hz)
 {
     enum { BLOCKS = 2048, LEAST = 250, SHORTEST = 5, LONGEST = 250 };
     double power[BLOCKS], lags[LONGEST + 2], largest = 0.0;
     size_t frames = (size_t)(0.002 * rate_hz), blocks = frames > 0 ? len / frames : 0;
-    p[RATE] = 20.0;
+    p[PER_MM] = clamp(20.0 / p[SPEED], MIN[PER_MM], MAX[PER_MM]);
     p[DUTY] = 1.0;
     p[JITTER] = 0.0;
     if (blocks < LEAST)
@@ -477,7 +519,7 @@ static void find_bursts(double *p, const double *signal, size_t len, double rate
         return;
     double before = lags[period - 1], at = lags[period], after = lags[period + 1];
     double exact = (double)period + 0.5 * (before - after) / (before - 2.0 * at + after);
-    p[RATE] = clamp(rate_hz / ((double)frames * exact), MIN[RATE], MAX[RATE]);
+    p[PER_MM] = clamp(rate_hz / ((double)frames * exact) / p[SPEED], MIN[PER_MM], MAX[PER_MM]);
     p[DUTY] = clamp(1.0 / (1.0 + largest / (mean * mean)), MIN[DUTY], MAX[DUTY]);
 }
 
@@ -525,12 +567,22 @@ int64_t htex_model_last_error(uint8_t *out, size_t capacity)
     return usable(out, capacity, 1) ? copy_text(last_error, out, capacity) : HTEX_INVALID_ARGUMENT;
 }
 
-int64_t htex_model_fit(double band_low_hz, double band_high_hz, const double *frequency_hz,
-                       const double *magnitude, size_t bins, const double *signal,
-                       size_t signal_len, double signal_rate_hz, const double *options,
-                       size_t options_len, double *parameters, size_t capacity, double *level_rms)
+/* Whether a number is not known, and so NaN. */
+static int is_unknown(double x)
+{
+    return x != x;
+}
+
+int64_t htex_motion_1_fit(double band_low_hz, double band_high_hz, const double *frequency_hz,
+                          const double *magnitude, size_t bins, const double *signal,
+                          size_t signal_len, double signal_rate_hz, const double *options,
+                          size_t options_len, double speed_mm_s, double force_n, double *parameters,
+                          size_t capacity, double *level_rms)
 {
     (void)options;
+    if (!(is_unknown(speed_mm_s) || within(speed_mm_s, 0.0, HTEX_MOTION_1_MAX_SPEED_MM_S))
+        || !(is_unknown(force_n) || within(force_n, 0.0, HTEX_MOTION_1_MAX_FORCE_N)))
+        return fail(HTEX_INVALID_ARGUMENT, "the recording's speed or force is negative or too large");
     int64_t status = check_band(band_low_hz, band_high_hz);
     if (status == HTEX_OK)
         status = check_spectrum(frequency_hz, magnitude, bins);
@@ -552,6 +604,8 @@ int64_t htex_model_fit(double band_low_hz, double band_high_hz, const double *fr
     if (s.largest == 0.0)
         return fail(HTEX_CANNOT_FIT, "the spectrum is silent: there is nothing to fit");
     double p[PARAMETERS], power = 0.0;
+    p[SPEED] = speed_mm_s > 0.0 ? clamp(speed_mm_s, MIN[SPEED], MAX[SPEED]) : USUAL_SPEED_MM_S;
+    p[FORCE] = is_unknown(force_n) ? 0.0 : clamp(force_n, MIN[FORCE], MAX[FORCE]);
     search(p, band, s);
     find_bursts(p, signal, signal_len, signal_rate_hz);
     for (size_t i = 0; i < bins; i++)
@@ -561,6 +615,16 @@ int64_t htex_model_fit(double band_low_hz, double band_high_hz, const double *fr
     for (size_t i = 0; i < PARAMETERS && i < capacity; i++)
         parameters[i] = p[i];
     return PARAMETERS;
+}
+
+int64_t htex_model_fit(double band_low_hz, double band_high_hz, const double *frequency_hz,
+                       const double *magnitude, size_t bins, const double *signal,
+                       size_t signal_len, double signal_rate_hz, const double *options,
+                       size_t options_len, double *parameters, size_t capacity, double *level_rms)
+{
+    return htex_motion_1_fit(band_low_hz, band_high_hz, frequency_hz, magnitude, bins, signal, signal_len,
+                             signal_rate_hz, options, options_len, __builtin_nan(""), __builtin_nan(""),
+                             parameters, capacity, level_rms);
 }
 
 int64_t htex_model_magnitude(const double *parameters, size_t parameters_len, double band_low_hz,
@@ -592,7 +656,7 @@ int64_t htex_model_interpolate(const double *sets, size_t sets_len, const double
         || !usable(parameters, capacity, sizeof *parameters))
         return fail(HTEX_INVALID_ARGUMENT, "`sets`, `weights` or `parameters` is not usable");
     if (sets_len / PARAMETERS != weights_len || sets_len % PARAMETERS != 0)
-        return fail(HTEX_INVALID_PARAMETERS, "five parameters are wanted for each weight");
+        return fail(HTEX_INVALID_PARAMETERS, "seven parameters are wanted for each weight");
     for (size_t n = 0; n < weights_len; n++) {
         const double *set = sets + n * PARAMETERS;
         if (!within(weights[n], 0.0, 1.0))
@@ -674,7 +738,9 @@ int64_t htex_model_voice_retune(int64_t voice, const double *parameters, size_t 
     if (status != HTEX_OK)
         return status;
     v->pending = tone_of(parameters, v);
-    v->timing = timing_of(parameters, v->rate_hz);
+    v->timing = timing_of(parameters);
+    v->recorded_mm_s = parameters[SPEED];
+    v->recorded_n = parameters[FORCE];
     v->waiting = 1;
     return HTEX_OK;
 }
@@ -692,9 +758,31 @@ int64_t htex_model_voice_free(int64_t voice)
     return HTEX_OK;
 }
 
+int64_t htex_motion_1_set(int64_t voice, double speed_mm_s, double force_n, double position_mm)
+{
+    struct slot *slot = find(voice);
+    if (slot == NULL)
+        return fail(HTEX_BAD_HANDLE, "no such voice; it may have been freed");
+    if (!within(speed_mm_s, -HTEX_MOTION_1_MAX_SPEED_MM_S, HTEX_MOTION_1_MAX_SPEED_MM_S))
+        return fail(HTEX_INVALID_ARGUMENT, "speed_mm_s: at most 10^6 mm/s is allowed");
+    if (!within(force_n, 0.0, HTEX_MOTION_1_MAX_FORCE_N))
+        return fail(HTEX_INVALID_ARGUMENT, "force_n: 0 to 10^6 N is allowed");
+    if (!within(position_mm, -HTEX_MOTION_1_MAX_POSITION_MM, HTEX_MOTION_1_MAX_POSITION_MM))
+        return fail(HTEX_INVALID_ARGUMENT, "position_mm: at most 10^12 mm is allowed");
+    /* Bursts come with the way, wherever it leads. */
+    slot->voice.speed_mm_s = speed_mm_s;
+    slot->voice.force_n = force_n;
+    slot->voice.told = 1;
+    return HTEX_OK;
+}
+
 int64_t htex_model_extension(const uint8_t *id, size_t id_len)
 {
-    (void)id;
-    (void)id_len;
-    return 0;
+    static const char motion[] = "htex.motion/1";
+    if (id == NULL || id_len != sizeof motion - 1)
+        return 0;
+    for (size_t i = 0; i < id_len; i++)
+        if (id[i] != (uint8_t)motion[i])
+            return 0;
+    return 1;
 }

@@ -11,6 +11,7 @@
 #include <sys/mman.h>
 
 #include "htex_model.h"
+#include "htex_motion_1.h"
 #include "htex_voices_1.h"
 
 static void *good_symbol(const char *name) {
@@ -30,7 +31,14 @@ struct voice {
     int64_t good;
     uint64_t rendered;
     int click;
+    int told;
 };
+
+/* Faults of the extension are those of a model that has it. */
+#if defined FAULT_MOTION_MISSING || defined FAULT_ACCEPTS_MOTION || defined FAULT_MOTION_ALLOCATES \
+    || defined FAULT_MOTION_BLOCKS
+#define HAS_MOTION
+#endif
 #define VOICES 65536
 static struct voice voices[VOICES];
 static int64_t voices_made;
@@ -220,6 +228,9 @@ int64_t htex_model_voice_render(int64_t handle, float *out, size_t frames) {
 #elif defined FAULT_SHARED_STATE
         out[i] += 1e-3f * (float)(__atomic_fetch_add(&shared, 1, __ATOMIC_SEQ_CST) % 97);
 #endif
+#ifdef FAULT_MOTION_BLOCKS
+        if (voice->told && i == 0) out[i] += 1e-3f;
+#endif
         if (voice->click) out[i] += 30, voice->click = 0;
     }
 #ifdef FAULT_LEAK
@@ -268,6 +279,10 @@ int64_t htex_model_extension(const uint8_t *id, size_t id_len) {
 #ifdef FAULT_EXTENSIONS
     return 1;
 #else
+#ifdef HAS_MOTION
+    static const char motion[] = "htex.motion/1";
+    if (id_len == sizeof motion - 1 && memcmp(id, motion, id_len) == 0) return 1;
+#endif
     return GOOD(htex_model_extension)(id, id_len);
 #endif
 }
@@ -286,3 +301,33 @@ int64_t htex_voices_1_render(const int64_t *handles, size_t count, float *out, s
     return 0;
 }
 #endif
+
+#ifndef FAULT_MOTION_MISSING
+/* The good model does nothing with a motion. */
+int64_t htex_motion_1_set(int64_t handle, double speed_mm_s, double force_n, double position_mm) {
+    struct voice *voice = live(handle);
+    if (!voice) return HTEX_BAD_HANDLE;
+#ifndef FAULT_ACCEPTS_MOTION
+    if (!(fabs(speed_mm_s) <= HTEX_MOTION_1_MAX_SPEED_MM_S)) return HTEX_INVALID_ARGUMENT;
+    if (!(fabs(position_mm) <= HTEX_MOTION_1_MAX_POSITION_MM)) return HTEX_INVALID_ARGUMENT;
+    if (!(force_n >= 0 && force_n <= HTEX_MOTION_1_MAX_FORCE_N)) return HTEX_INVALID_ARGUMENT;
+#endif
+#ifdef FAULT_MOTION_ALLOCATES
+    kept = strdup("motion");
+    free(kept);
+#elif defined FAULT_MOTION_BLOCKS
+    voice->told = 1;
+#endif
+    return HTEX_OK;
+}
+#endif
+
+int64_t htex_motion_1_fit(double band_low_hz, double band_high_hz, const double *frequency_hz,
+                          const double *magnitude, size_t bins, const double *signal, size_t signal_len,
+                          double signal_rate_hz, const double *options, size_t options_len,
+                          double speed_mm_s, double force_n, double *parameters, size_t capacity,
+                          double *level_rms) {
+    if (speed_mm_s < 0 || force_n < 0 || isinf(speed_mm_s) || isinf(force_n)) return HTEX_INVALID_ARGUMENT;
+    return htex_model_fit(band_low_hz, band_high_hz, frequency_hz, magnitude, bins, signal, signal_len,
+                          signal_rate_hz, options, options_len, parameters, capacity, level_rms);
+}

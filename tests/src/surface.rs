@@ -1,4 +1,4 @@
-//! The frozen surfaces of the two ABIs, and of an extension, as canonical text: a line for each constant, status and
+//! The frozen surfaces of the two ABIs, and of two extensions, as canonical text: a line for each constant, status and
 //! function, read from the Rust side and from the C header.
 
 use std::collections::BTreeMap;
@@ -53,6 +53,18 @@ pub const VOICES: Surface = Surface {
     export: "HTEX_EXPORT(",
     code: "sdk/model/src/voices_1.rs",
     table: "VoicesTable",
+    more: &[],
+    statuses: None,
+};
+
+/// The extension of the model ABI by which voices and fits are told the motion.
+pub const MOTION: Surface = Surface {
+    header: "htex_motion_1.h",
+    function: "htex_motion_1_",
+    constant: "HTEX_MOTION_1_",
+    export: "HTEX_EXPORT(",
+    code: "sdk/model/src/motion_1.rs",
+    table: "MotionTable",
     more: &[],
     statuses: None,
 };

@@ -7,8 +7,9 @@ use htex_model::abi::{
     ABI_MAJOR, ABI_MARKER, ABI_MINOR, ALLOC_ALIGN, GRID_HZ, MAX_BAND_HZ, MAX_FIELDS, MAX_LIST_LEN,
     MAX_PARAMETERS, MAX_RATE_HZ, MAX_TEXT_BYTES, MIN_BINS, MIN_RATE_HZ,
 };
+use htex_model::motion_1::{MAX_FORCE_N, MAX_POSITION_MM, MAX_SPEED_MM_S};
 use htex_model::voices_1::MAX_VOICES;
-use htex_tests::surface::{Constants, MODEL, VOICES};
+use htex_tests::surface::{Constants, MODEL, MOTION, Surface, VOICES};
 use htex_tests::workspace;
 
 /// FNV-1a of the listing of each minor version of this major, oldest first. Lines are only added.
@@ -56,14 +57,40 @@ fn header_and_rust_say_the_same() {
 #[test]
 fn the_extension_for_voices_is_frozen() {
     let constants = [("HTEX_VOICES_1_MAX_VOICES", MAX_VOICES.to_string())];
+    hold_extension(&VOICES, "voices", 0xdcb1_d85e_348f_32df, constants);
+}
+
+#[test]
+fn the_extension_for_motion_is_frozen() {
+    let constants = [
+        (
+            "HTEX_MOTION_1_MAX_SPEED_MM_S",
+            format!("{MAX_SPEED_MM_S:?}"),
+        ),
+        ("HTEX_MOTION_1_MAX_FORCE_N", format!("{MAX_FORCE_N:?}")),
+        (
+            "HTEX_MOTION_1_MAX_POSITION_MM",
+            format!("{MAX_POSITION_MM:?}"),
+        ),
+    ];
+    hold_extension(&MOTION, "motion", 0x88de_3dcd_e71b_8f39, constants);
+}
+
+/// Revision 1 of an extension: its listing by the hash, header and Rust side alike.
+fn hold_extension<const N: usize>(
+    surface: &Surface,
+    kind: &str,
+    hash: u64,
+    constants: [(&str, String); N],
+) {
     let constants = constants
         .map(|(name, value)| (name.to_owned(), value))
         .into();
-    let now = VOICES.listing(&constants);
-    let thaw = "A revision of an extension never changes: make another, htex.voices/2.";
-    VOICES.hold_frozen("voices", &[("1", 0xdcb1_d85e_348f_32df)], &now, thaw);
-    VOICES.hold_header(&constants);
-    VOICES.compile(&constants);
+    let now = surface.listing(&constants);
+    let thaw = "A revision of an extension never changes: make another, htex.NAME/2.";
+    surface.hold_frozen(kind, &[("1", hash)], &now, thaw);
+    surface.hold_header(&constants);
+    surface.compile(&constants);
 }
 
 #[test]

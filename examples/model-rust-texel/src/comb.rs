@@ -1,7 +1,6 @@
 //! The comb of lines that parameters stand for: what is seen of it, and what plays it.
 
 use htex_dsp::GRID_HZ;
-use htex_dsp::sine_bank::Sine;
 use htex_model::{Band, Error, Values, text};
 
 use crate::{AMPLITUDE, JITTER, PITCH, SPEED};
@@ -22,7 +21,8 @@ pub(crate) const LINES: usize = HARMONICS * QUANTILES.len();
 /// Least spread, hertz: nearer lines would beat so slowly that a minute has no steady level.
 const LEAST_SPREAD_HZ: f64 = 1.0;
 
-/// The comb in a band. Lines nearer than a bin to an edge are silent: they would be read outside.
+/// The comb in a band, at the speed of the recording. Lines nearer than a bin to an edge are silent: they would be
+/// read outside.
 pub(crate) struct Comb<'a> {
     fundamental_hz: f64,
     jitter: f64,
@@ -41,7 +41,11 @@ impl<'a> Comb<'a> {
             rms: 1.0,
         };
         let mut power = 0.0;
-        comb.for_each_line(|_, _, amplitude| power += 0.5 * amplitude * amplitude);
+        comb.for_each_line(|_, f, amplitude| {
+            if sounds(f, band) {
+                power += 0.5 * amplitude * amplitude;
+            }
+        });
         comb.rms = libm::sqrt(power);
         // Fainter amplitudes have squares that fade into nothing.
         if comb.rms > 1e-100 {
@@ -58,7 +62,7 @@ impl<'a> Comb<'a> {
         ]))
     }
 
-    /// Calls `line(index, frequency_hz, amplitude)` for each line that sounds.
+    /// Calls `line(index, frequency_hz, amplitude)` for each line, those outside the band too.
     fn for_each_line(&self, mut line: impl FnMut(usize, f64, f64)) {
         let share = 1.0 / libm::sqrt(QUANTILES.len() as f64);
         for (i, &amplitude) in self.amplitude.iter().take(HARMONICS).enumerate() {
@@ -66,10 +70,7 @@ impl<'a> Comb<'a> {
             let spread_hz = (self.jitter * centre_hz).max(LEAST_SPREAD_HZ);
             for (j, z) in QUANTILES.iter().enumerate() {
                 let f = centre_hz + spread_hz * z;
-                let low_hz = self.band.low_hz + GRID_HZ;
-                if (low_hz..=self.band.high_hz - GRID_HZ).contains(&f) {
-                    line(i * QUANTILES.len() + j, f, share * amplitude);
-                }
+                line(i * QUANTILES.len() + j, f, share * amplitude);
             }
         }
     }
@@ -78,20 +79,23 @@ impl<'a> Comb<'a> {
     pub(crate) fn seen_at(&self, frequency_hz: f64) -> f64 {
         let mut power = 0.0;
         self.for_each_line(|_, f, amplitude| {
-            let m = amplitude * hann_kernel((frequency_hz - f) / GRID_HZ);
-            power += m * m;
+            if sounds(f, self.band) {
+                let m = amplitude * hann_kernel((frequency_hz - f) / GRID_HZ);
+                power += m * m;
+            }
         });
         libm::sqrt(power) / self.rms
     }
 
-    /// Sets frequencies and amplitudes, of unit RMS together; phases stay.
-    pub(crate) fn write_sines(&self, sines: &mut [Sine; LINES]) {
-        sines.iter_mut().for_each(|sine| sine.amplitude = 0.0);
-        self.for_each_line(|i, f, amplitude| {
-            sines[i].frequency_hz = f;
-            sines[i].amplitude = amplitude / self.rms;
-        });
+    /// Calls `line(index, cycles_per_mm, amplitude)` for each line of a surface of unit RMS.
+    pub(crate) fn for_each_ridge(&self, speed_mm_s: f64, mut line: impl FnMut(usize, f64, f64)) {
+        self.for_each_line(|i, f, amplitude| line(i, f / speed_mm_s, amplitude / self.rms));
     }
+}
+
+/// Whether a line of this frequency is heard.
+pub(crate) fn sounds(frequency_hz: f64, band: Band) -> bool {
+    (band.low_hz + GRID_HZ..=band.high_hz - GRID_HZ).contains(&frequency_hz)
 }
 
 /// Main lobe of the periodic Hann window's transform, 1 at its middle, `bins` away.

@@ -6,10 +6,11 @@ use alloc::vec::Vec;
 
 use htex_model::{Error, Fit, FitInput, Model, Values};
 
-use crate::Texel;
 use crate::comb::{Comb, HARMONICS};
+use crate::{FORCE_N, SPEED_MM_S, Texel};
 
-const SPEED_OPTION: usize = 0;
+/// Speed of a recording that does not tell its own, mm/s.
+const USUAL_SPEED_MM_S: f64 = 100.0;
 /// Nearer harmonics are not told apart on a grid of 5 Hz.
 const LEAST_FUNDAMENTAL_HZ: f64 = 20.0;
 /// Step of the search, hertz: a twentieth of a bin.
@@ -51,10 +52,19 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     let amplitude = harmonics[..count]
         .iter()
         .map(|h| libm::sqrt(h.power / strongest));
-    let speed_mm_s = input.options[SPEED_OPTION];
+    let known = input.condition.speed_mm_s.filter(|&speed| speed > 0.0);
+    let speed_mm_s = known
+        .unwrap_or(USUAL_SPEED_MM_S)
+        .clamp(SPEED_MM_S.0, SPEED_MM_S.1);
+    let force_n = input
+        .condition
+        .force_n
+        .unwrap_or(0.0)
+        .clamp(FORCE_N.0, FORCE_N.1);
     let mut parameters = vec![
         speed_mm_s / fundamental_hz,
         speed_mm_s,
+        force_n,
         jitter(&harmonics, fundamental_hz),
         count as f64,
     ];
@@ -69,8 +79,8 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
 
 /// Lines at the band's very edges are silent: a comb of no other is none.
 fn playable(parameters: &[f64], input: &FitInput<'_>) -> Result<(), Error> {
-    let comb =
-        Values::read(&Texel::DESCRIPTOR, parameters).and_then(|v| Comb::new(&v, input.band).map(|_| ()));
+    let comb = Values::read(&Texel::DESCRIPTOR, parameters)
+        .and_then(|v| Comb::new(&v, input.band).map(|_| ()));
     comb.map_err(|error| Error::cannot_fit(error.message))
 }
 

@@ -1,38 +1,41 @@
 //! Single-pitch texel: a surface of one repeating element, such as a grating or a weave. Sliding over
-//! a pitch of `pitch_mm` at `speed_mm_s` shakes the finger at the fundamental `speed/pitch` and at its
+//! a pitch of `pitch_mm` at a speed shakes the finger at the fundamental `speed/pitch` and at its
 //! multiples.
 //!
-//! Neither pitch nor speed is ever quite even: each harmonic is a small cluster of sinusoids, as wide
-//! as `jitter` says, so that no two strokes sound the same.
+//! No pitch is ever quite even: each harmonic is a small cluster of sinusoids over the path, as wide as `jitter`
+//! says. The voice is told where the finger is (`htex.motion/1`), so the same place feels the same on the way there
+//! and back.
 #![no_std]
 
 extern crate alloc;
 
 mod comb;
 mod fit;
+mod path;
+mod voice;
 
 use comb::{Comb, HARMONICS, LINES};
-use htex_dsp::noise::Uniform;
 use htex_dsp::shaped_noise::economical_rate_hz;
-use htex_dsp::sine_bank::{Sine, SineBank};
 use htex_model::{
-    Band, Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Values,
-    Voice, mix,
+    Band, Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, Values, mix,
 };
+pub use voice::TexelVoice;
 
 const PITCH: usize = 0;
 const SPEED: usize = 1;
-const JITTER: usize = 2;
-const AMPLITUDE: usize = 3;
+const FORCE: usize = 2;
+const JITTER: usize = 3;
+const AMPLITUDE: usize = 4;
 
 const PITCH_MM: (f64, f64) = (0.0009765625, 1024.0); // 32-bit floats, as assets store them
 const SPEED_MM_S: (f64, f64) = (1.0, 2000.0);
+const FORCE_N: (f64, f64) = (0.0, 1000.0);
 const JITTERS: (f64, f64) = (0.0, 0.0625);
 
 /// The model.
 pub struct Texel;
 
-htex_model::export_model!(Texel, symbols: "plugin");
+htex_model::export_model!(Texel, symbols: "plugin", extensions: [motion]);
 
 impl Model for Texel {
     type Voice = TexelVoice;
@@ -45,7 +48,13 @@ impl Model for Texel {
     )
     .fields(&[
         StaticField::scalar("pitch_mm", "mm", PITCH_MM, "Length of the element."),
-        StaticField::scalar("speed_mm_s", "mm/s", SPEED_MM_S, "Speed of the finger."),
+        StaticField::scalar("speed_mm_s", "mm/s", SPEED_MM_S, "Speed of the recording."),
+        StaticField::scalar(
+            "force_n",
+            "N",
+            FORCE_N,
+            "Normal force of the recording; 0 where it is not known.",
+        ),
         StaticField::scalar(
             "jitter",
             "1",
@@ -59,14 +68,7 @@ impl Model for Texel {
             HARMONICS as u32,
             "Harmonics from the fundamental on, over the strongest.",
         ),
-    ])
-    .options(&[StaticOption::number(
-        "speed_mm_s",
-        "mm/s",
-        SPEED_MM_S,
-        100.0,
-        "Speed of the recording: what turns its fundamental into a pitch.",
-    )]);
+    ]);
 
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         fit::fit(input)
@@ -86,7 +88,7 @@ impl Model for Texel {
         Ok(())
     }
 
-    /// Pitch, speed and harmonics move in a straight line; a harmonic that one set lacks is silent
+    /// Pitch, speed, force and harmonics move in a straight line; a harmonic that one set lacks is silent
     /// there.
     fn interpolate(
         sets: &[Values<'_>],
@@ -101,7 +103,7 @@ impl Model for Texel {
         let mut room = [0.0; AMPLITUDE + 1 + LINES];
         let mixed = &mut room[..AMPLITUDE + 1 + longest.unwrap_or(0)];
         for (set, weight) in sets.iter().zip(weights) {
-            for field in [PITCH, SPEED, JITTER] {
+            for field in [PITCH, SPEED, FORCE, JITTER] {
                 mixed[field] += weight * set.scalar(field);
             }
             let amplitudes = mixed[AMPLITUDE + 1..].iter_mut();
@@ -115,6 +117,7 @@ impl Model for Texel {
         amplitudes.for_each(|a| *a = a.min(1.0));
         mixed[PITCH] = mixed[PITCH].clamp(PITCH_MM.0, PITCH_MM.1);
         mixed[SPEED] = mixed[SPEED].clamp(SPEED_MM_S.0, SPEED_MM_S.1);
+        mixed[FORCE] = mixed[FORCE].clamp(FORCE_N.0, FORCE_N.1);
         mixed[JITTER] = mixed[JITTER].clamp(JITTERS.0, JITTERS.1);
         out.extend(mixed);
         Ok(())
@@ -130,40 +133,6 @@ impl Model for Texel {
         rate_hz: f64,
         seed: u64,
     ) -> Result<Self::Voice, Error> {
-        let comb = Comb::new(parameters, band)?;
-        let mut phases = Uniform::new(seed);
-        let mut sines = [SILENT; LINES];
-        for sine in &mut sines {
-            sine.phase_cycles = phases.next_unit();
-        }
-        comb.write_sines(&mut sines);
-        let bank = SineBank::new(rate_hz, LINES, &sines);
-        Ok(TexelVoice { band, sines, bank })
-    }
-}
-
-const SILENT: Sine = Sine {
-    frequency_hz: 0.0,
-    amplitude: 0.0,
-    phase_cycles: 0.0,
-};
-
-/// A bank of sinusoids, one for each line of each harmonic.
-pub struct TexelVoice {
-    band: Band,
-    sines: [Sine; LINES],
-    bank: SineBank,
-}
-
-impl Voice for TexelVoice {
-    fn render(&mut self, out: &mut [f32]) {
-        self.bank.render(out);
-    }
-
-    /// Frequencies glide and amplitudes ramp over 10 ms; phases go on.
-    fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
-        Comb::new(parameters, self.band)?.write_sines(&mut self.sines);
-        self.bank.retune(&self.sines);
-        Ok(())
+        TexelVoice::new(parameters, band, rate_hz, seed)
     }
 }

@@ -4,7 +4,7 @@
 use htex_bands::{BandEnergies, FLOOR_DB, Spectrum};
 use htex_dsp::bands::{BandBank, band_error_db, rms};
 use htex_dsp::grid::{Band, level_rms};
-use htex_model::{Error, Fit, FitInput, Model, Numbers, Status, Values, Voice};
+use htex_model::{Error, Fit, FitCondition, FitInput, Model, Numbers, Status, Values, Voice};
 use htex_shaped::Curve;
 use proptest::prelude::*;
 
@@ -26,6 +26,7 @@ fn fit(magnitude: &[f64], band: Band, options: [f64; 3]) -> Result<Fit, Error> {
         signal: &[],
         signal_rate_hz: 20_000.0,
         options: &options,
+        condition: FitCondition::default(),
     })
 }
 

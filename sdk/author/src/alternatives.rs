@@ -4,10 +4,11 @@
 use htex_format::Quality;
 use htex_host::{FitOption, LoadedModel};
 
+use crate::agreement;
+use crate::conditions::Group;
 use crate::fit::ModelRequest;
 use crate::level::{Level, stored_level};
 use crate::stored::stored_fields;
-use crate::{TextureSpectrum, agreement};
 
 /// Nine-band RMS error above which a representation is told to miss its bands, decibels.
 const MISSES_DB: f64 = 12.0;
@@ -23,19 +24,19 @@ struct Tried {
 pub(crate) fn warning(
     choice: &ModelRequest,
     qualities: &[&Quality],
-    spectra: &[&TextureSpectrum],
+    groups: &[Group],
     models: &[LoadedModel],
     level: Level,
 ) -> Option<String> {
-    let conditions = qualities.iter().zip(spectra);
+    let conditions = qualities.iter().zip(groups);
     let error_db = |quality: &Quality| quality.band_error_rms_db;
-    let (quality, spectrum) = conditions.max_by(|a, b| error_db(a.0).total_cmp(&error_db(b.0)))?;
+    let (quality, group) = conditions.max_by(|a, b| error_db(a.0).total_cmp(&error_db(b.0)))?;
     let misses_db = error_db(quality);
     if misses_db <= MISSES_DB {
         return None;
     }
     let try_one = |model: &LoadedModel, options: Vec<f64>, name: String| {
-        let error_db = error_of(model, &options, spectrum, level)?;
+        let error_db = error_of(model, &options, group, level)?;
         (error_db < misses_db).then_some(Tried { name, error_db })
     };
     let own = other_options(choice).into_iter();
@@ -95,14 +96,10 @@ fn other_values(option: &FitOption) -> Vec<f64> {
 }
 
 /// Nine-band RMS error of a model's stored fit, from its magnitudes; none when it cannot be fitted.
-fn error_of(
-    model: &LoadedModel,
-    options: &[f64],
-    spectrum: &TextureSpectrum,
-    level: Level,
-) -> Option<f64> {
-    let reference = spectrum.as_ref();
-    let fit = model.fit(&spectrum.fit_request(options)).ok()?;
+fn error_of(model: &LoadedModel, options: &[f64], group: &Group, level: Level) -> Option<f64> {
+    let reference = group.spectrum.as_ref();
+    let request = group.spectrum.fit_request(options);
+    let fit = model.fit_at(&request, group.condition).ok()?;
     let fields = stored_fields(model.descriptor());
     let stored = htex_format::round_parameters(&fields, &fit.parameters).ok()?;
     let level_rms = stored_level(model, &fit, &stored, reference, level).ok()?;

@@ -1,6 +1,7 @@
 //! Which recordings belong to one exploration condition.
 
 use htex_format::{Condition, Source};
+use htex_host::FitCondition;
 
 use crate::fit::source_of;
 use crate::reading::read_take;
@@ -20,6 +21,8 @@ pub struct Take {
 /// One condition's spectrum.
 pub(crate) struct Group {
     pub(crate) spectrum: TextureSpectrum,
+    /// The motion it was recorded at, as far as it is known.
+    pub(crate) condition: FitCondition,
 }
 
 /// All conditions.
@@ -62,12 +65,19 @@ pub(crate) fn group_takes(
     let (mut groups, mut conditions) = (Vec::new(), Vec::new());
     for gathering in gatherings {
         let spectrum = TextureSpectrum::average(&gathering.parts, options.averaging)?;
-        conditions.push(Condition {
+        let condition = FitCondition {
             speed_mm_s: gathering.condition.speed_mm_s.map(four_digits),
             force_n: gathering.condition.force_n.map(four_digits),
+        };
+        conditions.push(Condition {
+            speed_mm_s: condition.speed_mm_s,
+            force_n: condition.force_n,
             repeatability_rms_db: spectrum.repeatability_rms_db,
         });
-        groups.push(Group { spectrum });
+        groups.push(Group {
+            spectrum,
+            condition,
+        });
     }
     let first = groups.first().map(|group| group.spectrum.quantity);
     if groups

@@ -141,7 +141,10 @@ fn fit_model(
     for (condition, group) in groups.iter().enumerate() {
         let reference = group.spectrum.as_ref();
         let start = Instant::now();
-        let fit = model.fit(&group.spectrum.fit_request(&choice.options))?;
+        let fit = model.fit_at(
+            &group.spectrum.fit_request(&choice.options),
+            group.condition,
+        )?;
         fit_ms += start.elapsed().as_secs_f64() * 1e3;
         let stored = round_parameters(&fields, &fit.parameters)?;
         let level_rms = stored_level(model, &fit, &stored, reference, level)?;
@@ -178,7 +181,6 @@ fn misses(
 ) -> Option<String> {
     let at = &fitted.representation.at;
     let qualities: Vec<&Quality> = at.iter().filter_map(|at| at.quality.as_ref()).collect();
-    let spectra: Vec<&TextureSpectrum> = groups.iter().map(|group| &group.spectrum).collect();
     let mut models: Vec<LoadedModel> = request.models.iter().map(|m| m.model.clone()).collect();
     let known = |models: &[LoadedModel], id: &str| models.iter().any(|m| m.id() == id);
     for model in &request.alternatives {
@@ -186,7 +188,7 @@ fn misses(
             models.push(model.clone());
         }
     }
-    warning(choice, &qualities, &spectra, &models, request.level)
+    warning(choice, &qualities, groups, &models, request.level)
 }
 
 /// Agreement of parameters and level with a recorded spectrum, by magnitude and by samples.

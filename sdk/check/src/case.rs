@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use htex_host::{Band, FitRequest, HostError, LoadedModel, Status, Stream};
+use htex_host::{Band, FitCondition, FitRequest, HostError, LoadedModel, Status, Stream};
 use htex_model::Fit;
 
 use crate::finding::Finding;
@@ -46,14 +46,35 @@ impl Case {
 
     /// Fits a spectrum on a grid of its own.
     pub(crate) fn fit_in(&self, band: Band, grid: &[f64], m: &[f64]) -> Result<Fit, HostError> {
-        self.model.fit(&FitRequest {
+        self.fit_any((band, grid), m, FitCondition::default())
+    }
+
+    /// Fits a reference spectrum of a recording at a motion.
+    pub(crate) fn fit_at(
+        &self,
+        reference: &Reference,
+        condition: FitCondition,
+    ) -> Result<Fit, HostError> {
+        let grid = Band::TACTILE.grid_hz();
+        let spectrum: Vec<f64> = grid.iter().map(|&hz| (reference.curve)(hz)).collect();
+        self.fit_any((Band::TACTILE, &grid), &spectrum, condition)
+    }
+
+    fn fit_any(
+        &self,
+        (band, frequency_hz): (Band, &[f64]),
+        magnitude: &[f64],
+        condition: FitCondition,
+    ) -> Result<Fit, HostError> {
+        let request = FitRequest {
             band,
-            frequency_hz: grid,
-            magnitude: m,
+            frequency_hz,
+            magnitude,
             signal: &[],
             signal_rate_hz: RATE_HZ,
             options: &self.model.descriptor().default_options(),
-        })
+        };
+        self.model.fit_at(&request, condition)
     }
 
     /// Parameters of every reference spectrum that the model can describe; at least one.

@@ -2,7 +2,8 @@
 
 use crate::case::Case;
 use crate::checks::{
-    abi, allocation, change, fit, magnitude, refusal, repeat, resources, sound, together, twin,
+    abi, allocation, change, fit, magnitude, motion, refusal, repeat, resources, sound, together,
+    twin,
 };
 use crate::finding::Found;
 
@@ -147,6 +148,14 @@ checks! {
          model or a library that it calls, in the thread that renders; none is allowed. Not seen: threads of the model's own, and an \
          allocator of its own that takes pages from the system by itself. WASM: the module's memory must not grow. What it takes \
          and gives back within its memory is not seen; its native twin shows that.";
+    "motion" needs ["render", "retune"] motion::keeps_its_promises:
+        "A voice that is told the motion takes any in range, and refuses others.",
+        "Of a model with the extension `htex.motion/1`; others pass. NaN, infinities and 1e13 in each number, a force of -0.1 and a \
+         freed voice: a status, and the voice plays on as before. 4,000 samples of a constant motion in blocks of 1, 7, 64, 1,000 \
+         and all: the same. A retune and a motion before the same sample: the same in either order. 40,000 samples of a way there \
+         and back, told every 50: finite, and nothing allocated, seen as in `allocation`. The references are fitted at a condition \
+         that is known, known by half, and unknown; a negative or infinite speed or force is refused. That the model exports the \
+         extension's functions is part of `exports`.";
     "memory" needs ["render"] resources::memory:
         "Memory does not grow.",
         "Resident memory of the process over 10,000 blocks of 256 samples with retunes, and over 2,000 \

@@ -42,9 +42,11 @@ mod wasm;
 pub use descriptor::read_descriptor;
 pub use error::HostError;
 pub use htex_dsp::grid::{Band, GRID_HZ};
-pub use htex_model::{Descriptor, Field, Fit, FitOption, Kind, Status, Store};
+pub use htex_model::{
+    Descriptor, Field, Fit, FitCondition, FitOption, Kind, Motion, Status, Store,
+};
 pub use limits::{WasmCache, WasmCompiler, WasmLimits, WasmTotal};
-pub use model::{FitRequest, LoadedModel};
+pub use model::{FitRequest, LoadedModel, MOTION_EXTENSION};
 pub use note::Note;
 pub use origin::Origin;
 pub use registry::Registry;

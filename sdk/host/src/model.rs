@@ -7,7 +7,7 @@ use htex_dsp::grid::Band;
 use htex_model::abi::{
     ABI_MAJOR, ABI_MARKER, MAX_PARAMETERS, MAX_RATE_HZ, MAX_TEXT_BYTES, MIN_RATE_HZ,
 };
-use htex_model::{Descriptor, Fit, Kind, Status, Values};
+use htex_model::{Descriptor, Fit, FitCondition, Kind, Status, Values};
 
 use crate::descriptor::read_descriptor;
 use crate::error::plain;
@@ -15,6 +15,8 @@ use crate::raw::{RawFit, RawModel};
 use crate::sandbox::Sandbox;
 use crate::{HostError, ModelVoice, Origin, WasmLimits};
 
+/// The extension of models that are told the motion.
+pub const MOTION_EXTENSION: &str = htex_model::motion_1::MotionTable::ID;
 /// Parameters for which there is room at the first call.
 const USUAL_PARAMETERS: usize = 256;
 
@@ -171,6 +173,19 @@ impl LoadedModel {
     /// # Errors
     /// [`HostError::Call`] with the model's reason.
     pub fn fit(&self, request: &FitRequest<'_>) -> Result<Fit, HostError> {
+        self.fit_at(request, FitCondition::default())
+    }
+
+    /// As [`Self::fit`], of a recording at a motion, which is told to models that follow the motion
+    /// ([`Self::follows_motion`]) and makes no difference to others.
+    ///
+    /// # Errors
+    /// As [`Self::fit`]; of a model that follows the motion also when a speed or force is negative or not finite.
+    pub fn fit_at(
+        &self,
+        request: &FitRequest<'_>,
+        condition: FitCondition,
+    ) -> Result<Fit, HostError> {
         let call = "fit";
         if request.frequency_hz.len() != request.magnitude.len() {
             let what = "as many magnitudes as frequencies are wanted".to_owned();
@@ -183,6 +198,7 @@ impl LoadedModel {
             signal: request.signal,
             signal_rate_hz: request.signal_rate_hz,
             options: request.options,
+            condition,
         };
         let mut level_rms = f64::NAN;
         let parameters = self.numbers(call, |out| self.raw.fit(&raw, out, &mut level_rms))?;
@@ -295,6 +311,12 @@ impl LoadedModel {
         }
     }
 
+    /// Whether the model has the extension `htex.motion/1`: its voices are told the motion
+    /// ([`ModelVoice::set_motion`]) and follow it themselves, and its fits are told the recording's.
+    pub fn follows_motion(&self) -> bool {
+        self.raw.follows_motion()
+    }
+
     /// A length, or the error that a negative answer stands for.
     fn check(&self, call: &'static str, answer: i64) -> Result<usize, HostError> {
         if answer >= 0 {
@@ -335,7 +357,7 @@ impl LoadedModel {
         Ok(numbers)
     }
 
-    fn error(&self, call: &'static str, status: Status, message: String) -> HostError {
+    pub(crate) fn error(&self, call: &'static str, status: Status, message: String) -> HostError {
         HostError::Call {
             model: self.id().to_owned(),
             call,

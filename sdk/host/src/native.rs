@@ -10,6 +10,7 @@ use htex_model::abi::{
     AbiVersion, DescriptorJson, ExtensionFn, FitFn, InterpolateFn, LastError, MagnitudeFn,
     ModelTable, VoiceFreeFn, VoiceNewFn, VoiceRateFn, VoiceRenderFn, VoiceRetuneFn,
 };
+use htex_model::motion_1::{MotionFitFn, MotionSetFn, MotionTable};
 use htex_model::voices_1::{VoicesRenderFn, VoicesTable};
 
 use crate::HostError;
@@ -47,15 +48,26 @@ pub(crate) fn load(path: &Path) -> Result<TableModel, HostError> {
             extension: symbol::<ExtensionFn>(library, "htex_model_extension", &error)?,
         }
     }));
-    let id = VoicesTable::ID.as_bytes();
     // SAFETY: a live slice.
-    if unsafe { (table.extension)(id.as_ptr(), id.len()) } != 1 {
-        return Ok(TableModel::new(table, None));
+    let has = |id: &str| unsafe { (table.extension)(id.as_ptr(), id.len()) } == 1;
+    let mut voices = None;
+    if has(VoicesTable::ID) {
+        // SAFETY: a library with this extension exports this name with this type.
+        let render = unsafe { symbol::<VoicesRenderFn>(library, "htex_voices_1_render", &error)? };
+        voices = Some(&*Box::leak(Box::new(VoicesTable { render })));
     }
-    // SAFETY: a library with this extension exports this name with this type.
-    let render = unsafe { symbol::<VoicesRenderFn>(library, "htex_voices_1_render", &error)? };
-    let voices = Box::leak(Box::new(VoicesTable { render }));
-    Ok(TableModel::new(table, Some(voices)))
+    let model = TableModel::new(table, voices);
+    if !has(MotionTable::ID) {
+        return Ok(model);
+    }
+    // SAFETY: a library with this extension exports these names with these types.
+    let motion = Box::leak(Box::new(unsafe {
+        MotionTable {
+            set: symbol::<MotionSetFn>(library, "htex_motion_1_set", &error)?,
+            fit: symbol::<MotionFitFn>(library, "htex_motion_1_fit", &error)?,
+        }
+    }));
+    Ok(model.with_motion(motion))
 }
 
 /// The address of a symbol.

@@ -1,8 +1,8 @@
 //! The flat calls of the model ABI over slices: what a loader provides.
 
-use htex_model::Band;
 use htex_model::abi::ModelTable;
 use htex_model::voices_1::VoicesRenderFn;
+use htex_model::{Band, FitCondition, Motion};
 
 /// Arguments of a fit, as they cross the ABI.
 pub(crate) struct RawFit<'a> {
@@ -12,6 +12,8 @@ pub(crate) struct RawFit<'a> {
     pub(crate) signal: &'a [f64],
     pub(crate) signal_rate_hz: f64,
     pub(crate) options: &'a [f64],
+    /// For models that follow the motion.
+    pub(crate) condition: FitCondition,
 }
 
 /// One model's functions, wherever they live. Answers are those of `htex_model::abi`: a length or
@@ -30,6 +32,8 @@ pub(crate) trait RawModel: Send + Sync {
     ) -> i64;
     fn interpolate(&self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64;
     fn extension(&self, id: &[u8]) -> i64;
+    /// Whether the model has the extension `htex.motion/1`.
+    fn follows_motion(&self) -> bool;
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64;
     /// Makes a voice, or answers a status.
     fn voice_new(
@@ -45,6 +49,8 @@ pub(crate) trait RawModel: Send + Sync {
 pub(crate) trait RawVoice: Send {
     fn render(&mut self, out: &mut [f32]) -> i64;
     fn retune(&mut self, parameters: &[f64]) -> i64;
+    /// Tells the motion at the next sample; does nothing where the model has no `htex.motion/1`.
+    fn set_motion(&mut self, motion: Motion) -> i64;
     /// The model's `interpolate`, in this voice's thread: without a lock.
     fn interpolate(&mut self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64;
     /// Asks the model to free the voice. The handle is kept: calls after this one reach the model,

@@ -1,8 +1,9 @@
 //! A model behind a table of native functions: built in, or of a native library.
 
-use htex_model::Band;
 use htex_model::abi::ModelTable;
+use htex_model::motion_1::MotionTable;
 use htex_model::voices_1::VoicesTable;
+use htex_model::{Band, Motion};
 
 use crate::raw::{RawFit, RawModel, RawVoice, Together};
 
@@ -10,13 +11,27 @@ use crate::raw::{RawFit, RawModel, RawVoice, Together};
 #[derive(Clone, Copy)]
 pub(crate) struct TableModel {
     table: &'static ModelTable,
-    /// Where the model has the extension.
+    /// Where the model has the extension `htex.voices/1`.
     voices: Option<&'static VoicesTable>,
+    /// Where the model has the extension `htex.motion/1`.
+    motion: Option<&'static MotionTable>,
 }
 
 impl TableModel {
     pub(crate) fn new(table: &'static ModelTable, voices: Option<&'static VoicesTable>) -> Self {
-        Self { table, voices }
+        Self {
+            table,
+            voices,
+            motion: None,
+        }
+    }
+
+    /// The model with the extension `htex.motion/1`.
+    pub(crate) fn with_motion(self, motion: &'static MotionTable) -> Self {
+        Self {
+            motion: Some(motion),
+            ..self
+        }
     }
 }
 
@@ -39,14 +54,38 @@ impl RawModel for TableModel {
     }
 
     fn fit(&self, call: &RawFit<'_>, parameters: &mut [f64], level_rms: &mut f64) -> i64 {
-        // SAFETY: live slices; `magnitude` is as long as `frequency_hz`, which `LoadedModel` checks.
+        let bins = call.frequency_hz.len().min(call.magnitude.len());
+        if let Some(motion) = self.motion {
+            let (speed_mm_s, force_n) = call.condition.numbers();
+            // SAFETY: live slices; the shorter of the spectrum's two lengths is used for both.
+            return unsafe {
+                (motion.fit)(
+                    call.band.low_hz,
+                    call.band.high_hz,
+                    call.frequency_hz.as_ptr(),
+                    call.magnitude.as_ptr(),
+                    bins,
+                    call.signal.as_ptr(),
+                    call.signal.len(),
+                    call.signal_rate_hz,
+                    call.options.as_ptr(),
+                    call.options.len(),
+                    speed_mm_s,
+                    force_n,
+                    parameters.as_mut_ptr(),
+                    parameters.len(),
+                    level_rms,
+                )
+            };
+        }
+        // SAFETY: live slices; the shorter of the spectrum's two lengths is used for both.
         unsafe {
             (self.table.fit)(
                 call.band.low_hz,
                 call.band.high_hz,
                 call.frequency_hz.as_ptr(),
                 call.magnitude.as_ptr(),
-                call.frequency_hz.len().min(call.magnitude.len()),
+                bins,
                 call.signal.as_ptr(),
                 call.signal.len(),
                 call.signal_rate_hz,
@@ -97,6 +136,10 @@ impl RawModel for TableModel {
     fn extension(&self, id: &[u8]) -> i64 {
         // SAFETY: a live slice.
         unsafe { (self.table.extension)(id.as_ptr(), id.len()) }
+    }
+
+    fn follows_motion(&self) -> bool {
+        self.motion.is_some()
     }
 
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64 {
@@ -154,6 +197,21 @@ impl RawVoice for TableVoice {
         // SAFETY: a live slice; `&mut self` keeps the handle to one thread at a time.
         unsafe {
             (self.model.table.voice_retune)(self.handle, parameters.as_ptr(), parameters.len())
+        }
+    }
+
+    fn set_motion(&mut self, motion: Motion) -> i64 {
+        let Some(table) = self.model.motion else {
+            return 0;
+        };
+        // SAFETY: `&mut self` keeps the handle to one thread at a time.
+        unsafe {
+            (table.set)(
+                self.handle,
+                motion.speed_mm_s,
+                motion.force_n,
+                motion.position_mm,
+            )
         }
     }
 

@@ -1,5 +1,7 @@
 //! A voice of a model.
 
+use htex_model::{Motion, Status};
+
 use crate::raw::{RawVoice, Together};
 use crate::{HostError, LoadedModel};
 
@@ -79,6 +81,28 @@ impl ModelVoice {
                 Err(self.model.broken("interpolate", what))
             }
         }
+    }
+
+    /// Tells the motion at the next sample to a voice whose model follows it ([`LoadedModel::follows_motion`]); does
+    /// nothing to others. Does not allocate, lock or block for a well-made model.
+    ///
+    /// # Errors
+    /// When a number is not finite or beyond its range, or the model refuses it; the voice then plays on as before.
+    pub fn set_motion(&mut self, motion: Motion) -> Result<(), HostError> {
+        let call = "motion_1_set";
+        let refused =
+            |e: htex_model::Error| self.model.error(call, Status::InvalidArgument, e.message);
+        motion.check().map_err(refused)?;
+        self.set_any_motion(motion)
+    }
+
+    /// For checkers of models: as [`Self::set_motion`], of any numbers, so that the model shows what it refuses.
+    ///
+    /// # Errors
+    /// What the model returns.
+    pub fn set_any_motion(&mut self, motion: Motion) -> Result<(), HostError> {
+        let answer = self.raw.set_motion(motion);
+        self.check("motion_1_set", answer)
     }
 
     /// For checkers of models: size of the WASM memory that this voice has to itself, bytes; `None` for a native

@@ -187,8 +187,12 @@ impl Asset {
             return Ok(1.0);
         };
         crate::source::check_motion(speed, force)?;
-        let scales = options.effects.speed_scaling && crate::exploration::slides(speed, force);
-        let explored = self.explored(self.representation(options.model)?);
+        let r = self.representation(options.model)?;
+        let streamed = options.synthesis == Synthesis::Streamed;
+        let follows = streamed && self.model(r)?.follows_motion();
+        let slides = crate::exploration::slides(speed, force);
+        let scales = options.effects.speed_scaling && slides && !follows;
+        let explored = self.explored(r);
         Ok(if scales {
             explored.speed_ratio(speed)
         } else {

@@ -56,6 +56,12 @@ pub enum Error {
         /// Every field that differs, and how.
         problem: String,
     },
+    /// A position that is not a number.
+    #[error("position of {position_mm} mm; it must be finite")]
+    Position {
+        /// Position along the finger's path, mm.
+        position_mm: f64,
+    },
     /// A speed or force that is negative or not a number.
     #[error("motion of {speed_mm_s} mm/s at {force_n} N; both must be finite and not negative")]
     Motion {

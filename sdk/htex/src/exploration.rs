@@ -223,6 +223,8 @@ pub enum Reach {
         /// Factor on all frequencies for a speed, on the level for a force.
         factor: f64,
     },
+    /// The model follows it itself ([`crate::Voice::follows_motion`]).
+    Followed,
     /// The texture is played as at another value, the nearest that is known.
     Clamped {
         /// What was asked for.
@@ -252,7 +254,7 @@ impl Coverage {
 impl Reach {
     fn excess(&self) -> f64 {
         match *self {
-            Self::Inside | Self::Unknown => 0.0,
+            Self::Inside | Self::Unknown | Self::Followed => 0.0,
             Self::Scaled {
                 asked,
                 recorded,
@@ -280,7 +282,7 @@ impl fmt::Display for Coverage {
             (self.force, "N", "the level is"),
         ] {
             match reach {
-                Reach::Inside | Reach::Unknown => continue,
+                Reach::Inside | Reach::Unknown | Reach::Followed => continue,
                 Reach::Scaled {
                     asked,
                     recorded,

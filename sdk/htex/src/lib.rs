@@ -20,6 +20,7 @@ mod follow;
 mod mesh;
 mod playable;
 mod source;
+mod travel;
 mod voice;
 
 pub use asset::{Asset, Motions, VoiceOptions};

@@ -1,6 +1,6 @@
 //! What a voice is made of: a texture's shape at the model's own rate, and its level.
 
-use htex_host::{Band, LoadedModel, ModelVoice};
+use htex_host::{Band, LoadedModel, ModelVoice, Motion};
 
 use crate::Error;
 use crate::asset::Known;
@@ -25,6 +25,10 @@ pub struct Source {
     top_hz: f64,
     motion: (f64, f64),
     level_rms: f64,
+    /// The model follows the motion itself.
+    follows: bool,
+    /// Samples so far.
+    frames: u64,
 }
 
 impl Source {
@@ -48,6 +52,8 @@ impl Source {
             top_hz: band.high_hz,
             motion,
             level_rms,
+            follows: model.follows_motion(),
+            frames: 0,
         })
     }
 
@@ -64,6 +70,41 @@ impl Source {
     /// RMS of the texture at the present motion, in the asset's unit.
     pub fn level_rms(&self) -> f64 {
         self.level_rms
+    }
+
+    /// Whether the model follows the motion itself: it is told by [`Self::set_finger`], and neither its frequencies nor its
+    /// level are to be scaled by a motion.
+    pub fn follows_motion(&self) -> bool {
+        self.follows
+    }
+
+    /// The speed, mm/s, and force, newtons, that the spectrum is of.
+    pub(crate) fn motion(&self) -> (f64, f64) {
+        self.motion
+    }
+
+    /// Seconds of samples so far.
+    pub fn rendered_s(&self) -> f64 {
+        self.frames as f64 / self.rate_hz
+    }
+
+    /// Tells a model that follows the motion itself where the finger is `at_s` seconds after this source's first sample,
+    /// which may lie behind what was rendered already: a resampler reads ahead. The speed is negative where the position
+    /// falls; what is beyond the model ABI's ranges is clamped to them. Does nothing to other models. Does not allocate,
+    /// lock or do I/O for models that keep to the ABI.
+    ///
+    /// # Errors
+    /// When a number is not finite, or the model refuses the motion; the source then plays on as before.
+    pub fn set_finger(&mut self, finger: Motion, at_s: f64) -> Result<(), Error> {
+        if !self.follows {
+            return Ok(());
+        }
+        let ahead_s = self.rendered_s() - at_s;
+        let motion = Motion {
+            position_mm: finger.position_mm + ahead_s * finger.speed_mm_s,
+            ..finger
+        };
+        Ok(self.voice.set_motion(motion.clamped())?)
     }
 
     /// The conditions that are known.
@@ -125,7 +166,11 @@ impl Source {
         frames: usize,
         out: &mut [f32],
     ) -> Result<(), Error> {
-        let voices = sources.into_iter().map(|source| &mut source.voice);
+        let rows = out.len().checked_div(frames).unwrap_or_default();
+        let voices = sources.into_iter().enumerate().map(|(row, source)| {
+            source.frames += if row < rows { frames as u64 } else { 0 };
+            &mut source.voice
+        });
         Ok(htex_host::render_together(voices, frames, out)?)
     }
 
@@ -134,6 +179,7 @@ impl Source {
     /// # Errors
     /// When the model fails; `out` is then silent.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), Error> {
+        self.frames += out.len() as u64;
         Ok(self.voice.render(out)?)
     }
 }

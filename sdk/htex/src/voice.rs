@@ -6,7 +6,8 @@ use htex_host::{HostError, StillSound};
 
 use crate::exploration::{Coverage, Reach};
 use crate::follow::Follow;
-use crate::{Error, Source, VoiceOptions};
+use crate::travel::Travel;
+use crate::{Effects, Error, Source, VoiceOptions};
 
 /// Length of a change of level, seconds.
 const RAMP_S: f64 = 0.010;
@@ -31,6 +32,10 @@ pub struct Voice {
     still: Option<StillSound>,
     level_rms: Glide,
     follow: Follow,
+    /// Where the finger is, for a model that follows it; and the frames so far.
+    travel: Option<Travel>,
+    frames: u64,
+    rate_hz: f64,
 }
 
 impl Voice {
@@ -46,7 +51,17 @@ impl Voice {
         let ramp = (RAMP_S * rate_hz).ceil().max(1.0) as u32;
         // A still sound is at the voice's rate already, as recorded.
         let base = if still.is_some() { 1.0 } else { base };
-        let known = (source.explored(), options.effects);
+        // A sound that stays as it is can follow nothing itself.
+        let travel = (source.follows_motion() && still.is_none())
+            .then(|| Travel::new(source.motion().0, rate_hz));
+        let effects = match travel {
+            None => options.effects,
+            Some(_) => Effects {
+                contact: options.effects.contact,
+                ..Effects::NONE
+            },
+        };
+        let known = (source.explored(), effects);
         let follow = Follow::new(
             known,
             options.motion,
@@ -55,13 +70,20 @@ impl Voice {
             rate_hz,
         );
         let resampler = Resampler::new(source.rate_hz() * base, rate_hz, source.top_hz() * base);
-        Ok(Self {
+        let mut voice = Self {
             resampler: resampler.map_err(HostError::from)?,
             level_rms: Glide::new((source.level_rms() * follow.gain()) as f32, ramp),
             source,
             still,
             follow,
-        })
+            travel,
+            frames: 0,
+            rate_hz,
+        };
+        if let Some((speed, force)) = options.motion {
+            voice.tell((speed, force), None)?;
+        }
+        Ok(voice)
     }
 
     /// Follows the finger to this scanning speed (mm/s) and normal force (newtons). Spectrum and level glide to those
@@ -78,7 +100,26 @@ impl Voice {
     /// When a value is negative or not a number, or the model cannot mix; the voice then plays on
     /// as before.
     pub fn set_motion(&mut self, speed_mm_s: f64, force_n: f64) -> Result<(), Error> {
+        self.set_motion_at(speed_mm_s, force_n, None)
+    }
+
+    /// As [`Self::set_motion`], at a position along the finger's path (mm, of either sign), which falls on the way back.
+    /// A model that follows the motion itself ([`Self::follows_motion`]) feels the same at the same position; where none is
+    /// given, the finger goes on from the last one at its speed, at first forward from 0. Others have no use for it.
+    ///
+    /// # Errors
+    /// As [`Self::set_motion`], and when the position is not finite.
+    pub fn set_motion_at(
+        &mut self,
+        speed_mm_s: f64,
+        force_n: f64,
+        position_mm: Option<f64>,
+    ) -> Result<(), Error> {
         crate::source::check_motion(speed_mm_s, force_n)?;
+        if let Some(position_mm) = position_mm.filter(|position| !position.is_finite()) {
+            return Err(Error::Position { position_mm });
+        }
+        self.tell((speed_mm_s, force_n), position_mm)?;
         if self.follow.set_motion((speed_mm_s, force_n)) {
             let level_rms = self.source.set_motion(speed_mm_s, force_n)?;
             self.level_rms.set((level_rms * self.follow.gain()) as f32);
@@ -86,10 +127,34 @@ impl Voice {
         Ok(())
     }
 
+    /// Whether the model follows the motion itself (the extension `htex.motion/1`): then frequencies do not go with the
+    /// speed, nor the level with the force, but as the model has it. A voice that is not streamed follows as any other.
+    pub fn follows_motion(&self) -> bool {
+        self.travel.is_some()
+    }
+
+    /// Tells the model the motion, if it follows it itself.
+    fn tell(&mut self, (speed, force_n): (f64, f64), position: Option<f64>) -> Result<(), Error> {
+        let Some(travel) = &mut self.travel else {
+            return Ok(());
+        };
+        let Some(finger) = travel.set(speed, force_n, position) else {
+            return Ok(());
+        };
+        self.source
+            .set_finger(finger, self.frames as f64 / self.rate_hz)
+    }
+
     /// What this voice makes of a motion, and whether it lies within what was recorded. Does not allocate.
     pub fn coverage(&self, speed_mm_s: f64, force_n: f64) -> Coverage {
         let effects = self.follow.effects();
         let mut coverage = self.source.coverage(speed_mm_s, force_n, effects);
+        if self.follows_motion() {
+            for reach in [&mut coverage.speed, &mut coverage.force] {
+                let beyond = matches!(reach, Reach::Clamped { .. } | Reach::Unknown);
+                *reach = if beyond { Reach::Followed } else { *reach };
+            }
+        }
         if let Reach::Scaled { factor, .. } = &mut coverage.speed {
             *factor = factor.min(self.follow.fastest());
         }
@@ -104,6 +169,10 @@ impl Voice {
         let result = self.render_shape(out);
         self.level_rms.apply(out);
         self.follow.apply_contact(out);
+        self.frames += out.len() as u64;
+        if let Some(travel) = &mut self.travel {
+            travel.advance(out.len());
+        }
         result
     }
 

@@ -6,6 +6,10 @@
 /// when the crate is built with that Cargo feature: for a native library or a WASM module, where
 /// one binary holds one model. A WASM module also gets the two memory functions of the ABI.
 ///
+/// With `extensions: [motion]` behind it, as in `export_model!(Stick, symbols: "plugin", extensions: [motion])`,
+/// the model has the extension `htex.motion/1`: its voice implements [`MotionVoice`](crate::MotionVoice), and the
+/// extension's functions are in `pub static MOTION`.
+///
 /// ```
 /// # #![allow(clippy::needless_doctest_main)]
 /// # use htex_model::*;
@@ -32,6 +36,13 @@
 #[macro_export]
 macro_rules! export_model {
     ($model:ty, symbols: $feature:literal) => {
+        $crate::export_model!(@model $model, $feature, false);
+    };
+    ($model:ty, symbols: $feature:literal, extensions: [motion]) => {
+        $crate::export_model!(@model $model, $feature, true);
+        $crate::export_model!(@motion $feature);
+    };
+    (@model $model:ty, $feature:literal, $motion:literal) => {
         static HTEX_MODEL_STATE: $crate::shim::State<$model> = {
             const DESCRIPTOR: $crate::StaticDescriptor = <$model as $crate::Model>::DESCRIPTOR;
             static JSON: [u8; $crate::json::length(&DESCRIPTOR)] = $crate::json::text(&DESCRIPTOR);
@@ -217,7 +228,7 @@ macro_rules! export_model {
                 id_len: usize,
             ) -> i64 {
                 // SAFETY: the caller's text, by the ABI.
-                shim::extension(unsafe { Input::new(id, id_len) })
+                shim::extension(unsafe { Input::new(id, id_len) }, $motion)
             }
 
             #[cfg_attr(
@@ -248,6 +259,70 @@ macro_rules! export_model {
             pub(super) unsafe extern "C" fn htex_model_free(pointer: *mut u8, len: usize) {
                 // SAFETY: what `htex_model_alloc` answered to this length, by the ABI.
                 unsafe { shim::free(pointer, len) }
+            }
+        }
+    };
+    (@motion $feature:literal) => {
+        /// What the extension `htex.motion/1` adds.
+        pub static MOTION: $crate::motion_1::MotionTable = $crate::motion_1::MotionTable {
+            set: htex_motion_exports::htex_motion_1_set,
+            fit: htex_motion_exports::htex_motion_1_fit,
+        };
+
+        /// The C functions of `htex.motion/1`; `htex_model::motion_1` says what each does.
+        #[allow(missing_docs, clippy::missing_safety_doc, clippy::too_many_arguments)]
+        mod htex_motion_exports {
+            use super::HTEX_MODEL_STATE as STATE;
+            use $crate::shim::{FitCall, Input, Output};
+
+            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+            pub(super) unsafe extern "C" fn htex_motion_1_set(
+                voice: i64,
+                speed_mm_s: f64,
+                force_n: f64,
+                position_mm: f64,
+            ) -> i64 {
+                let motion = $crate::Motion {
+                    speed_mm_s,
+                    force_n,
+                    position_mm,
+                };
+                // SAFETY: one thread a voice, by the extension.
+                unsafe { STATE.motion_set(voice, motion) }
+            }
+
+            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+            pub(super) unsafe extern "C" fn htex_motion_1_fit(
+                band_low_hz: f64,
+                band_high_hz: f64,
+                frequency_hz: *const f64,
+                magnitude: *const f64,
+                bins: usize,
+                signal: *const f64,
+                signal_len: usize,
+                signal_rate_hz: f64,
+                options: *const f64,
+                options_len: usize,
+                speed_mm_s: f64,
+                force_n: f64,
+                parameters: *mut f64,
+                capacity: usize,
+                level_rms: *mut f64,
+            ) -> i64 {
+                // SAFETY: the caller's arrays, by the extension.
+                let call = unsafe {
+                    FitCall {
+                        band: (band_low_hz, band_high_hz),
+                        frequency_hz: Input::new(frequency_hz, bins),
+                        magnitude: Input::new(magnitude, bins),
+                        signal: Input::new(signal, signal_len),
+                        signal_rate_hz,
+                        options: Input::new(options, options_len),
+                        parameters: Output::new(parameters, capacity),
+                        level_rms: Output::new(level_rms, 1),
+                    }
+                };
+                STATE.motion_fit(call, speed_mm_s, force_n)
             }
         }
     };

@@ -31,6 +31,8 @@ pub mod json;
 pub mod mix;
 #[cfg(all(target_family = "wasm", not(feature = "std")))]
 mod module;
+mod motion;
+pub mod motion_1;
 mod numbers;
 #[cfg(any(feature = "std", target_family = "wasm"))]
 mod platform;
@@ -51,6 +53,7 @@ pub use descriptor::descriptor_schema;
 pub use descriptor::{Descriptor, Field, FitOption};
 pub use error::{Error, Status};
 pub use id::is_model_id;
+pub use motion::{FitCondition, Motion, MotionVoice};
 pub use numbers::Numbers;
 #[cfg(any(feature = "std", target_family = "wasm"))]
 pub use platform::Lock;

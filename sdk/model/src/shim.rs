@@ -10,10 +10,14 @@ use crate::abi::ALLOC_ALIGN;
 use crate::arguments::{
     band, check_fit_input, check_handles, check_rate, check_weights, finite, read_sets,
 };
+use crate::motion_1::MotionTable;
 use crate::platform::{caught, with_last_error};
 use crate::voices::Voices;
 use crate::voices_1::{MAX_VOICES, VoicesTable};
-use crate::{Error, Fit, FitInput, Model, Numbers, StaticDescriptor, Status, Values, Voice, text};
+use crate::{
+    Error, Fit, FitCondition, FitInput, Model, Motion, MotionVoice, Numbers, StaticDescriptor,
+    Status, Values, Voice, text,
+};
 
 /// Sets that can be mixed without allocating.
 const FEW_SETS: usize = 8;
@@ -112,7 +116,15 @@ impl<M: Model> State<M> {
 
     /// See [`crate::abi::FitFn`].
     pub fn fit(&self, call: FitCall<'_>) -> i64 {
-        answer(|| fit(&M::DESCRIPTOR, M::fit, call))
+        answer(|| fit(&M::DESCRIPTOR, M::fit, call, FitCondition::default()))
+    }
+
+    /// See [`crate::motion_1::MotionFitFn`].
+    pub fn motion_fit(&self, call: FitCall<'_>, speed_mm_s: f64, force_n: f64) -> i64 {
+        answer(|| {
+            let condition = FitCondition::from_numbers(speed_mm_s, force_n)?;
+            fit(&M::DESCRIPTOR, M::fit, call, condition)
+        })
     }
 
     /// See [`crate::abi::MagnitudeFn`].
@@ -238,6 +250,22 @@ impl<M: Model> State<M> {
     }
 }
 
+impl<M: Model<Voice: MotionVoice>> State<M> {
+    /// See [`crate::motion_1::MotionSetFn`].
+    ///
+    /// # Safety
+    /// No other thread uses or frees this voice meanwhile.
+    pub unsafe fn motion_set(&self, handle: i64, motion: Motion) -> i64 {
+        answer(|| {
+            motion.check()?;
+            // SAFETY: the caller's promise.
+            let voice = unsafe { self.voices.get(handle) }.ok_or_else(bad_handle)?;
+            voice.set_motion(motion);
+            Ok(0)
+        })
+    }
+}
+
 fn values<'a>(
     descriptor: &StaticDescriptor,
     parameters: Input<'a, f64>,
@@ -251,6 +279,7 @@ fn fit(
     descriptor: &StaticDescriptor,
     own: fn(&FitInput<'_>) -> Result<Fit, Error>,
     call: FitCall<'_>,
+    condition: FitCondition,
 ) -> Result<i64, Error> {
     let input = FitInput {
         band: band(call.band)?,
@@ -259,6 +288,7 @@ fn fit(
         signal: call.signal.get("signal")?,
         signal_rate_hz: call.signal_rate_hz,
         options: call.options.get("options")?,
+        condition,
     };
     check_fit_input(&input, descriptor)?;
     let fit = own(&input)?;
@@ -338,10 +368,11 @@ pub fn last_error(out: Output<'_, u8>) -> i64 {
     with_last_error(|text| copy(text.as_bytes(), out)).unwrap_or(0)
 }
 
-/// See [`crate::abi::ExtensionFn`].
-pub fn extension(id: Input<'_, u8>) -> i64 {
-    let known = id.0 == Some(VoicesTable::ID.as_bytes());
-    i64::from(known && !cfg!(target_family = "wasm"))
+/// See [`crate::abi::ExtensionFn`]; `motion` says whether the model has `htex.motion/1`.
+pub fn extension(id: Input<'_, u8>, motion: bool) -> i64 {
+    let is = |known: &str| id.0 == Some(known.as_bytes());
+    let voices = is(VoicesTable::ID) && !cfg!(target_family = "wasm");
+    i64::from(voices || motion && is(MotionTable::ID))
 }
 
 /// Runs a call; an error or a panic becomes a status and the last-error text.
@@ -372,7 +403,7 @@ mod tests {
     use super::*;
     use crate::Band;
 
-    /// A model whose voices count.
+    /// A model whose voices count, from where the finger is.
     struct Counting;
     struct Counter(f32);
 
@@ -403,6 +434,80 @@ mod tests {
         }
         fn retune(&mut self, _: &Values<'_>) -> Result<(), Error> {
             Ok(())
+        }
+    }
+
+    impl MotionVoice for Counter {
+        fn set_motion(&mut self, motion: Motion) {
+            self.0 = motion.position_mm as f32;
+        }
+    }
+
+    #[test]
+    fn a_bad_motion_leaves_the_voice_as_it_was() {
+        let state = State::<Counting>::new(b"");
+        let handle = state.voice_new(Input(Some(&[])), (20.0, 1_000.0), 2_000.0, 100);
+        let good = Motion {
+            speed_mm_s: -80.0,
+            force_n: 0.4,
+            position_mm: -7.0,
+        };
+        // SAFETY: one thread.
+        let set = |handle, motion| unsafe { state.motion_set(handle, motion) };
+        let next = || {
+            let mut out = [0.0];
+            // SAFETY: one thread.
+            let answer = unsafe { state.voice_render(handle, Output(Some(&mut out))) };
+            assert_eq!(answer, 0);
+            out[0]
+        };
+        let invalid = Status::InvalidArgument as i64;
+        for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1.1e12] {
+            let fields: [fn(&mut Motion) -> &mut f64; 3] = [
+                |m| &mut m.speed_mm_s,
+                |m| &mut m.force_n,
+                |m| &mut m.position_mm,
+            ];
+            for field in fields {
+                let mut motion = good;
+                *field(&mut motion) = x;
+                assert_eq!(set(handle, motion), invalid, "{motion:?}");
+            }
+        }
+        let pulled = Motion {
+            force_n: -0.1,
+            ..good
+        };
+        assert_eq!(set(handle, pulled), invalid);
+        assert_eq!(set(handle + 1, good), Status::BadHandle as i64);
+        assert_eq!(next(), 100.0);
+        assert_eq!(set(handle, good), 0);
+        assert_eq!(next(), -7.0);
+    }
+
+    #[test]
+    fn extensions_are_those_the_model_has() {
+        let has = |id: &str, motion| extension(Input(Some(id.as_bytes())), motion);
+        assert_eq!(
+            [has("htex.motion/1", true), has("htex.motion/1", false)],
+            [1, 0]
+        );
+        assert_eq!(
+            [has("htex.voices/1", true), has("htex.voices/1", false)],
+            [1, 1]
+        );
+        assert_eq!([has("htex.motion/2", true), has("", true)], [0, 0]);
+    }
+
+    #[test]
+    fn what_is_not_known_of_a_condition_is_nan() {
+        let read = |speed, force| FitCondition::from_numbers(speed, force);
+        let known = read(80.0, f64::NAN).unwrap();
+        assert_eq!((known.speed_mm_s, known.force_n), (Some(80.0), None));
+        assert!(known.numbers().1.is_nan());
+        for (speed, force) in [(-1.0, 0.4), (80.0, -0.1), (f64::INFINITY, 0.4), (80.0, 1e7)] {
+            let status = read(speed, force).unwrap_err().status;
+            assert_eq!(status, Status::InvalidArgument, "{speed} {force}");
         }
     }
 

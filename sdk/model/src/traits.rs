@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use crate::{Error, Numbers, StaticDescriptor, Values};
+use crate::{Error, FitCondition, Numbers, StaticDescriptor, Values};
 
 /// The band a spectrum covers, inclusive, hertz: `0 < low_hz < high_hz`, both finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,6 +35,9 @@ pub struct FitInput<'a> {
     pub signal_rate_hz: f64,
     /// One value for each of the descriptor's options, in range.
     pub options: &'a [f64],
+    /// The motion at which the recording was made. Known to models with the extension `htex.motion/1` alone, and to
+    /// them where their host knows it.
+    pub condition: FitCondition,
 }
 
 /// What a fit gives.

@@ -248,6 +248,8 @@ pub(crate) struct Part {
     pub(crate) known: usize,
     /// Known speeds and forces.
     pub(crate) explored: Explored,
+    /// The model follows the motion itself.
+    pub(crate) follows_motion: bool,
     pub(crate) speed_mm_s: Span,
     pub(crate) force_n: Span,
     pub(crate) always_touched: bool,
@@ -282,12 +284,19 @@ impl Part {
     ) -> Result<Self, SceneError> {
         let (asset, touch) = (&scene.assets[surface], &call.touches[surface]);
         let (known, explored, error_db) = known(asset, model, scene.scene.budget.error);
+        let failed = |source| SceneError::Surface {
+            surface,
+            asset: scene.scene.surfaces[surface].asset.clone(),
+            source,
+        };
+        let loaded = asset.loaded_model(Some(model)).map_err(failed)?;
         let mut part = Self {
             surface,
             model: model.to_owned(),
             error_db,
             known,
             explored,
+            follows_motion: loaded.follows_motion(),
             speed_mm_s: touch.speed_mm_s,
             force_n: touch.force_n,
             always_touched: touch.always,
@@ -305,11 +314,6 @@ impl Part {
         };
         part.scale_speed(scene);
         let force_gain = part.scale_force(scene);
-        let failed = |source| SceneError::Surface {
-            surface,
-            asset: scene.scene.surfaces[surface].asset.clone(),
-            source,
-        };
         let source = part.source(scene, call).map_err(failed)?;
         part.rate_hz = source.rate_hz();
         part.divide_rate(call.rate_hz);
@@ -339,7 +343,7 @@ impl Part {
     /// The speed in the rates: a constant one in the resampler's, a changing one in the warp's.
     fn scale_speed(&mut self, scene: &LoadedScene) {
         let off = scene.scene.effects.get(&Effect::SpeedScaling) == Some(&Switch::Off);
-        if off || !self.explored.speed.is_one() {
+        if off || self.follows_motion || !self.explored.speed.is_one() {
             return;
         }
         let ratio = |speed: f64| self.explored.speed_ratio(speed);
@@ -369,7 +373,7 @@ impl Part {
     /// A constant force in the gain; answers the largest gain that forces make.
     fn scale_force(&mut self, scene: &LoadedScene) -> f64 {
         let off = scene.scene.effects.get(&Effect::ForceScaling) == Some(&Switch::Off);
-        if off || !self.explored.force.is_one() {
+        if off || self.follows_motion || !self.explored.force.is_one() {
             return 1.0;
         }
         let changes = self.force_n.changes(&self.explored.force);

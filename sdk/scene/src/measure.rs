@@ -186,6 +186,7 @@ fn example_part() -> Part {
         model: String::new(),
         error_db: 0.0,
         known: 1,
+        follows_motion: false,
         explored: Explored {
             speed: Recorded::One {
                 low: 80.0,

@@ -4,12 +4,12 @@ use crate::SceneError;
 use crate::ahead::Ahead;
 use crate::call::{Call, topmost};
 use crate::file::{Effect, Surface};
+use crate::lane::{FingerOnPath, Lane};
 use crate::load::LoadedScene;
 use crate::motion::{Course, Finger};
+use crate::path::Path;
 use crate::plan::{Mix, Plan, PlannedPart};
-use crate::stages::{
-    Chain, Crossfade, EFFECTS, Level, Now, Place, Slot, Stage, StageRun, Synthesis, Told,
-};
+use crate::stages::{Chain, Now, Place, Slot, StageRun, Told};
 
 /// Samples that surfaces are mixed in at a time.
 const PIECE: usize = 256;
@@ -18,6 +18,7 @@ const PIECE: usize = 256;
 pub struct Renderer {
     surfaces: Vec<Surface>,
     course: Course,
+    path: Path,
     call: Timing,
     mixes: Vec<MixChain>,
     device: Chain,
@@ -48,27 +49,6 @@ struct MixChain {
     piece: Vec<f32>,
 }
 
-/// One surface.
-struct Lane {
-    surface: usize,
-    asset: std::path::PathBuf,
-    synthesis: Synthesis,
-    synthesis_run: Count,
-    /// True: neutral.
-    interpolation: Option<(Count, bool)>,
-    chain: Chain,
-    crossfade: Option<(Crossfade, Count)>,
-    /// It is touched, or still fading.
-    sounds: bool,
-}
-
-/// How often a stage without samples of its own ran, and its time.
-#[derive(Default)]
-struct Count {
-    blocks: u64,
-    ns: u64,
-}
-
 impl Renderer {
     /// Builds what the plan has, and nothing else.
     ///
@@ -92,9 +72,11 @@ impl Renderer {
             .device
             .iter()
             .any(|(entry, _)| entry.effect == Effect::Contact);
+        let course = Course::of(scene);
         Ok(Self {
             surfaces: scene.scene.surfaces.clone(),
-            course: Course::of(scene),
+            path: Path::of(&course),
+            course,
             call: Timing {
                 rate_hz: call.rate_hz,
                 control: call.control,
@@ -140,7 +122,12 @@ impl Renderer {
             });
         }
         self.live = finger;
+        self.path.moved(&finger, self.seconds());
         Ok(())
+    }
+
+    fn seconds(&self) -> f64 {
+        self.frame as f64 / self.call.rate_hz
     }
 
     /// Ends the scene as soon as it can go to silence.
@@ -190,6 +177,12 @@ impl Renderer {
 
     /// Renders ahead, at most `left` samples.
     fn fill_ahead(&mut self, left: u64) {
+        // A finger that goes on as it began is told once.
+        if self.frame == 0 {
+            let (_, told) = self.finger();
+            let lanes = self.mixes.iter_mut().flat_map(|mix| &mut mix.lanes);
+            lanes.for_each(|lane| lane.tell(&told));
+        }
         let mut samples = self.ahead.begin(left);
         for piece in samples.chunks_mut(PIECE) {
             self.piece(piece);
@@ -232,13 +225,25 @@ impl Renderer {
         self.peak = peak;
     }
 
+    /// The finger now, and where it is on its path.
+    fn finger(&self) -> (Finger, FingerOnPath) {
+        let t_s = self.seconds();
+        let finger = match self.course {
+            Course::Live => self.live,
+            ref course => course.at(t_s),
+        };
+        let told = FingerOnPath {
+            t_s,
+            force_n: finger.force_n,
+            point: self.path.at(t_s),
+        };
+        (finger, told)
+    }
+
     /// Looks at the finger, and tells the stages.
     fn look(&mut self) {
         self.left = self.call.control;
-        let finger = match self.course {
-            Course::Live => self.live,
-            ref course => course.at(self.frame as f64 / self.call.rate_hz),
-        };
+        let (finger, told) = self.finger();
         let now = Now {
             finger,
             level_rms: 0.0,
@@ -249,6 +254,7 @@ impl Renderer {
             mix.chain.follow(&now);
             for lane in &mut mix.lanes {
                 lane.follow(&now, touched == Some(lane.surface), self.timed);
+                lane.tell(&told);
             }
         }
         self.device.follow(&now);
@@ -358,7 +364,11 @@ impl MixChain {
 /// The sum of the lanes that are to be felt.
 fn sum_of(lanes: &mut [Lane], piece: &mut [f32], timed: bool, out: &mut [f32]) {
     let mut first = true;
-    for lane in lanes.iter_mut().filter(|lane| lane.sounds) {
+    for lane in lanes {
+        if !lane.sounds {
+            lane.skip(out.len());
+            continue;
+        }
         if first {
             lane.render(timed, out);
             first = false;
@@ -370,116 +380,5 @@ fn sum_of(lanes: &mut [Lane], piece: &mut [f32], timed: bool, out: &mut [f32]) {
     }
     if first {
         out.fill(0.0);
-    }
-}
-
-impl Lane {
-    fn new(scene: &LoadedScene, call: &Call, planned: &PlannedPart) -> Result<Self, SceneError> {
-        let part = &planned.part;
-        let asset = &scene.scene.surfaces[part.surface].asset;
-        let source = part.source(scene, call);
-        let source = source.map_err(|source| SceneError::Surface {
-            surface: part.surface,
-            asset: asset.clone(),
-            source,
-        })?;
-        let synthesis = Synthesis::new(source);
-        let mut chain = Chain::default();
-        for entry in EFFECTS {
-            let Some(&neutral) = planned.effects.get(&entry.effect) else {
-                continue;
-            };
-            if let Place::Surface {
-                build: Some(build), ..
-            } = &entry.place
-            {
-                let stage = build(call, part, neutral);
-                chain
-                    .slots
-                    .push(Slot::new(entry.name, Some(part.surface), stage));
-            }
-        }
-        // The level comes behind what changes the rate, and before what changes the level.
-        let scaled = planned.effects.contains_key(&Effect::SpeedScaling);
-        let level = Level::new(part, synthesis.level_rms());
-        let level = Slot::new("level", Some(part.surface), Box::new(level));
-        chain.slots.insert(usize::from(scaled), level);
-        let crossfade = planned.effects.get(&Effect::Crossfade).map(|neutral| {
-            let fade = Crossfade::new(part.mix_rate_hz, *neutral);
-            (fade, Count::default())
-        });
-        Ok(Self {
-            surface: part.surface,
-            asset: asset.clone(),
-            synthesis,
-            synthesis_run: Count::default(),
-            interpolation: planned
-                .effects
-                .get(&Effect::Interpolation)
-                .map(|neutral| (Count::default(), *neutral)),
-            chain,
-            crossfade,
-            sounds: true,
-        })
-    }
-
-    fn follow(&mut self, now: &Now, touched: bool, timed: bool) {
-        if let Some((crossfade, _)) = &mut self.crossfade {
-            crossfade.set(touched);
-            // Decided here alone: the samples do not depend on the sizes of blocks.
-            self.sounds = touched || !crossfade.is_silent();
-        }
-        if let (Some((count, neutral)), true) = (&mut self.interpolation, touched) {
-            let (speed, force) = (now.finger.speed_mm_s.abs(), now.finger.force_n);
-            let moves = !*neutral && now.finger.slides();
-            count.run(timed, || {
-                if moves {
-                    self.synthesis.set_motion(speed, force);
-                }
-            });
-        }
-        self.chain.follow(&Now {
-            level_rms: self.synthesis.level_rms(),
-            ..*now
-        });
-    }
-
-    fn render(&mut self, timed: bool, out: &mut [f32]) {
-        let (synthesis, count) = (&mut self.synthesis, &mut self.synthesis_run);
-        self.chain.render(timed, out, &mut |block| {
-            count.run(timed, || synthesis.render(block, &mut |_| {}));
-        });
-        if let Some((fade, count)) = &mut self.crossfade {
-            count.run(timed, || fade.apply(out));
-        }
-    }
-
-    fn runs(&self, frames: Option<u64>) -> Vec<StageRun> {
-        let run = |name, count: &Count| StageRun {
-            name,
-            surface: Some(self.surface),
-            blocks: count.blocks,
-            ns_per_sample: frames.map(|frames| count.ns as f64 / frames.max(1) as f64),
-        };
-        let synthesis = run("synthesis", &self.synthesis_run);
-        let interpolation = self.interpolation.as_ref();
-        let crossfade = self.crossfade.as_ref();
-        std::iter::once(synthesis)
-            .chain(interpolation.map(|(count, _)| run("interpolation", count)))
-            .chain(self.chain.slots.iter().map(|slot| slot.run(frames)))
-            .chain(crossfade.map(|(_, count)| run("crossfade", count)))
-            .collect()
-    }
-}
-
-impl Count {
-    fn run(&mut self, timed: bool, what: impl FnOnce()) {
-        self.blocks += 1;
-        if !timed {
-            return what();
-        }
-        let start = std::time::Instant::now();
-        what();
-        self.ns += start.elapsed().as_nanos() as u64;
     }
 }

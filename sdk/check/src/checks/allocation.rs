@@ -55,6 +55,39 @@ fn grown(bytes: usize) -> Finding {
     finding.with("memory_bytes", bytes as f64)
 }
 
+/// Fails where a voice that is set up allocates while `play` runs, as far as that is seen.
+pub(crate) fn none_while(
+    voice: &mut ModelVoice,
+    play: impl FnOnce(&mut ModelVoice) -> Result<(), Finding>,
+) -> Result<(), Finding> {
+    let before = voice.memory_bytes();
+    let (played, calls) = counted(|| play(voice));
+    played?;
+    let grown = voice.memory_bytes().zip(before);
+    if calls == 0 && grown.is_none_or(|(now, before)| now == before) {
+        return Ok(());
+    }
+    let what = match grown {
+        Some((now, before)) => {
+            format!("the module's memory grows by {} KiB", (now - before) / 1024)
+        }
+        None => format!("the allocator is called {calls} times"),
+    };
+    Err(Finding::failed(format!(
+        "{what} while the motion is told; make all buffers with the voice"
+    )))
+}
+
+#[cfg(all(target_os = "linux", target_pointer_width = "64"))]
+fn counted<T>(run: impl FnOnce() -> T) -> (T, u64) {
+    crate::allocator::AllocatorCalls::watch().during(run)
+}
+
+#[cfg(not(all(target_os = "linux", target_pointer_width = "64")))]
+fn counted<T>(run: impl FnOnce() -> T) -> (T, u64) {
+    (run(), 0)
+}
+
 #[cfg(all(target_os = "linux", target_pointer_width = "64"))]
 fn native(case: &Case, sets: &[Fitted], voice: &mut ModelVoice, out: &mut [f32]) -> Found {
     let allocator = crate::allocator::AllocatorCalls::watch();

@@ -5,6 +5,7 @@ pub(crate) mod allocation;
 pub(crate) mod change;
 pub(crate) mod fit;
 pub(crate) mod magnitude;
+pub(crate) mod motion;
 pub(crate) mod refusal;
 pub(crate) mod repeat;
 pub(crate) mod resources;

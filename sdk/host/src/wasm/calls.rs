@@ -1,6 +1,6 @@
 //! The calls of the model ABI on an instance: arrays go into its room, answers come out of it.
 
-use htex_model::Band;
+use htex_model::{Band, Motion};
 
 use super::fault::Fault;
 use super::instance::{Deadline, Instance};
@@ -47,25 +47,29 @@ impl Instance {
         let level = self.write(options, call.options)?;
         let out = self.write(level, &[f64::NAN])?;
         let (low, high) = call.band.edges();
-        let answer = self.call(
-            Deadline::Call,
-            |f| &f.fit,
-            (
-                low,
-                high,
-                frequency,
-                magnitude,
-                bins as u32,
-                signal,
-                call.signal.len() as u32,
-                call.signal_rate_hz,
-                options,
-                call.options.len() as u32,
-                out,
-                parameters.len() as u32,
-                level,
-            ),
-        )?;
+        let (signals, knobs) = (call.signal.len() as u32, call.options.len() as u32);
+        let (rate_hz, room) = (call.signal_rate_hz, parameters.len() as u32);
+        let bins = bins as u32;
+        let answer = if self.follows_motion() {
+            let (speed, force) = call.condition.numbers();
+            self.call_if(
+                Deadline::Call,
+                |f| Some(&f.motion.as_ref()?.fit),
+                (
+                    low, high, frequency, magnitude, bins, signal, signals, rate_hz, options,
+                    knobs, speed, force, out, room, level,
+                ),
+            )?
+        } else {
+            self.call(
+                Deadline::Call,
+                |f| &f.fit,
+                (
+                    low, high, frequency, magnitude, bins, signal, signals, rate_hz, options,
+                    knobs, out, room, level,
+                ),
+            )?
+        };
         self.read(level, std::slice::from_mut(level_rms))?;
         self.read(out, parameters)?;
         Ok(answer)
@@ -171,6 +175,22 @@ impl Instance {
     pub(super) fn voice_retune(&mut self, voice: i64, parameters: &[f64]) -> Result<i64, Fault> {
         let (at, len) = self.pass(parameters)?;
         self.call(Deadline::Render, |f| &f.voice_retune, (voice, at, len))
+    }
+
+    pub(super) fn motion_set(&mut self, voice: i64, motion: Motion) -> Result<i64, Fault> {
+        if !self.follows_motion() {
+            return Ok(0);
+        }
+        let Motion {
+            speed_mm_s,
+            force_n,
+            position_mm,
+        } = motion;
+        self.call_if(
+            Deadline::Render,
+            |f| Some(&f.motion.as_ref()?.set),
+            (voice, speed_mm_s, force_n, position_mm),
+        )
     }
 
     pub(super) fn voice_free(&mut self, voice: i64) -> Result<i64, Fault> {

@@ -27,8 +27,16 @@ pub(super) struct Functions {
     pub(super) voice_retune: TypedFunc<(i64, Usize, Usize), i64>,
     pub(super) voice_free: TypedFunc<i64, i64>,
     pub(super) extension: TypedFunc<(Usize, Usize), i64>,
+    /// Where the model has the extension `htex.motion/1`.
+    pub(super) motion: Option<MotionFunctions>,
     alloc: TypedFunc<Usize, Usize>,
     free: TypedFunc<(Usize, Usize), ()>,
+}
+
+/// The functions of `htex.motion/1`, as `htex_model::motion_1` has them.
+pub(super) struct MotionFunctions {
+    pub(super) set: TypedFunc<(i64, f64, f64, f64), i64>,
+    pub(super) fit: TypedFunc<MotionFitParams, i64>,
 }
 
 type FitParams = (
@@ -42,6 +50,24 @@ type FitParams = (
     f64,
     Usize,
     Usize,
+    Usize,
+    Usize,
+    Usize,
+);
+
+type MotionFitParams = (
+    f64,
+    f64,
+    Usize,
+    Usize,
+    Usize,
+    Usize,
+    Usize,
+    f64,
+    Usize,
+    Usize,
+    f64,
+    f64,
     Usize,
     Usize,
     Usize,
@@ -87,7 +113,7 @@ impl Instance {
             .ok_or_else(|| Fault("the module exports no `memory`".to_owned()))?;
         Ok(Self {
             module: Arc::clone(module),
-            functions: Functions::of(&mut store, &raw)?,
+            functions: Functions::of(&mut store, &raw, module.follows_motion())?,
             store,
             memory,
             allowance: None,
@@ -129,19 +155,39 @@ impl Instance {
         function: impl Fn(&Functions) -> &TypedFunc<P, R>,
         parameters: P,
     ) -> Result<R, Fault> {
+        self.call_if(deadline, |functions| Some(function(functions)), parameters)
+    }
+
+    /// As [`Self::call`], of a function that only some models have.
+    pub(super) fn call_if<P: WasmParams, R: WasmResults>(
+        &mut self,
+        deadline: Deadline,
+        function: impl Fn(&Functions) -> Option<&TypedFunc<P, R>>,
+        parameters: P,
+    ) -> Result<R, Fault> {
         let most = match deadline {
             Deadline::Call => self.module.limits.call,
             Deadline::Render => self.module.limits.render,
         };
         let time = most.min(self.time_left().map_err(Fault)?);
+        let Some(function) = function(&self.functions) else {
+            return Err(Fault(
+                "the module has not the extension of this call".to_owned(),
+            ));
+        };
         let start = Instant::now();
         let result = arm(&mut self.store, &self.module, time)
-            .and_then(|()| function(&self.functions).call(&mut self.store, parameters));
+            .and_then(|()| function.call(&mut self.store, parameters));
         self.spend(start.elapsed());
         result.map_err(|e| match self.time_left() {
             Err(used_up) => Fault(format!("the module was stopped: {used_up}")),
             Ok(_) => Fault::of(&e, &self.module.limits, time.as_millis()),
         })
+    }
+
+    /// Whether the module has the extension `htex.motion/1`.
+    pub(super) fn follows_motion(&self) -> bool {
+        self.functions.motion.is_some()
     }
 
     /// Size of the module's memory, bytes.
@@ -244,8 +290,12 @@ fn arm(store: &mut Store<Usage>, module: &WasmModule, time: Duration) -> wasmtim
 }
 
 impl Functions {
-    fn of(store: &mut Store<Usage>, raw: &Raw) -> Result<Self, Fault> {
+    fn of(store: &mut Store<Usage>, raw: &Raw, motion: bool) -> Result<Self, Fault> {
+        let motion = motion
+            .then(|| MotionFunctions::of(store, raw))
+            .transpose()?;
         Ok(Self {
+            motion,
             abi_version: get(store, raw, "htex_model_abi_version")?,
             descriptor: get(store, raw, "htex_model_descriptor")?,
             last_error: get(store, raw, "htex_model_last_error")?,
@@ -260,6 +310,15 @@ impl Functions {
             extension: get(store, raw, "htex_model_extension")?,
             alloc: get(store, raw, "htex_model_alloc")?,
             free: get(store, raw, "htex_model_free")?,
+        })
+    }
+}
+
+impl MotionFunctions {
+    fn of(store: &mut Store<Usage>, raw: &Raw) -> Result<Self, Fault> {
+        Ok(Self {
+            set: get(store, raw, "htex_motion_1_set")?,
+            fit: get(store, raw, "htex_motion_1_fit")?,
         })
     }
 }

@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use htex_model::motion_1::MotionTable;
 use htex_model::{Band, Status};
 
 use super::fault::Fault;
@@ -40,10 +41,19 @@ impl WasmModel {
             message: fault.0,
         })?;
         crate::model::check_marker(origin, marker)?;
+        // A module that fails at the question has no extension, and an instance that failed is not used again.
+        let shared = match instance.extension(MotionTable::ID.as_bytes()) {
+            Ok(1) => {
+                module.want_motion();
+                Some(Instance::new(&module).map_err(load)?)
+            }
+            Ok(_) => Some(instance),
+            Err(_) => None,
+        };
         Ok(Self {
             module,
             marker,
-            shared: Mutex::new(Some(instance)),
+            shared: Mutex::new(shared),
         })
     }
 
@@ -115,6 +125,10 @@ impl RawModel for WasmModel {
 
     fn extension(&self, id: &[u8]) -> i64 {
         self.status(|instance| instance.extension(id))
+    }
+
+    fn follows_motion(&self) -> bool {
+        self.module.follows_motion()
     }
 
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64 {

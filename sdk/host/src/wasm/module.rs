@@ -1,7 +1,7 @@
 //! A module: checked, compiled, ready to be instantiated.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use wasmtime::{ExternType, Module};
 
@@ -17,6 +17,7 @@ pub(super) struct WasmModule {
     pub(super) limits: WasmLimits,
     pub(super) budget: Arc<Budget>,
     voices: AtomicUsize,
+    follows_motion: AtomicBool,
 }
 
 impl WasmModule {
@@ -38,7 +39,18 @@ impl WasmModule {
             limits: limits.clone(),
             budget: Arc::clone(&sandbox.budget),
             voices: AtomicUsize::new(0),
+            follows_motion: AtomicBool::new(false),
         })
+    }
+
+    /// Whether instances have the functions of `htex.motion/1`: no, until it is said.
+    pub(super) fn follows_motion(&self) -> bool {
+        self.follows_motion.load(Ordering::Relaxed)
+    }
+
+    /// From now on instances must have the functions of `htex.motion/1`.
+    pub(super) fn want_motion(&self) {
+        self.follows_motion.store(true, Ordering::Relaxed);
     }
 
     /// Takes one of the places for voices; `None` when all are taken.

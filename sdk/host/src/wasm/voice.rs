@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use htex_model::Band;
+use htex_model::{Band, Motion};
 
 use super::calls::BLOCK;
 use super::fault::Fault;
@@ -87,6 +87,14 @@ impl RawVoice for WasmVoice {
             return Fault::STATUS;
         }
         let result = self.instance.voice_retune(self.handle, parameters);
+        self.answer(result)
+    }
+
+    fn set_motion(&mut self, motion: Motion) -> i64 {
+        if self.faulted {
+            return Fault::STATUS;
+        }
+        let result = self.instance.motion_set(self.handle, motion);
         self.answer(result)
     }
 

@@ -3,7 +3,7 @@
 use htex::{Explored, Recorded};
 use htex_dsp::glide::Glide;
 
-use super::{Entry, Need, Now, Place, Stage};
+use super::{Entry, FOLLOWS, Need, Now, Place, Stage};
 use crate::call::{Call, Part};
 use crate::file::Effect;
 
@@ -22,6 +22,7 @@ pub(crate) const ENTRY: Entry = Entry {
 fn need(_: &Call, part: &Part) -> Need {
     let known = part.explored.force;
     match known {
+        _ if part.follows_motion => Need::no(FOLLOWS),
         Recorded::Unknown => Need::no("the asset does not say at which force it was recorded"),
         Recorded::Several { .. } => {
             Need::no("the asset knows several forces, and is interpolated between them")

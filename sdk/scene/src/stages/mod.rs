@@ -55,6 +55,9 @@ pub(crate) struct Now {
     pub(crate) ends_in: Option<u64>,
 }
 
+/// Why a surface is not scaled by the motion.
+pub(crate) const FOLLOWS: &str = "the model follows the motion itself";
+
 /// What the stages had to do to the samples.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Told {

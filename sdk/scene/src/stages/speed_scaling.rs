@@ -4,7 +4,7 @@
 use htex::{Explored, Recorded};
 use htex_dsp::warp::Warp;
 
-use super::{Entry, Need, Now, Place, Stage};
+use super::{Entry, FOLLOWS, Need, Now, Place, Stage};
 use crate::call::{Call, Part};
 use crate::file::Effect;
 
@@ -20,6 +20,7 @@ pub(crate) const ENTRY: Entry = Entry {
 fn need(_: &Call, part: &Part) -> Need {
     let known = part.explored.speed;
     match known {
+        _ if part.follows_motion => Need::no(FOLLOWS),
         Recorded::Unknown => Need::no("the asset does not say at which speed it was recorded"),
         Recorded::Several { .. } => {
             Need::no("the asset knows several speeds, and is interpolated between them")

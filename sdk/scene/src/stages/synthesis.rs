@@ -1,6 +1,7 @@
 //! The samples themselves: a voice of the surface's model, of unit RMS.
 
 use htex::Source;
+use htex_host::Motion;
 
 use super::Stage;
 
@@ -27,6 +28,14 @@ impl Synthesis {
                 self.failed.get_or_insert(error);
                 self.source.level_rms()
             }
+        }
+    }
+
+    /// Tells a model that follows the motion itself where the finger is, so many seconds after the first sample. A model
+    /// that refuses it plays on as before, and says so.
+    pub(crate) fn set_finger(&mut self, finger: Motion, at_s: f64) {
+        if let Err(error) = self.source.set_finger(finger, at_s) {
+            self.failed.get_or_insert(error);
         }
     }
 

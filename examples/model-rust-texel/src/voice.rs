@@ -1,0 +1,248 @@
+//! The surface under the finger: sinusoids over the path, read where the finger is.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use htex_dsp::noise::Uniform;
+use htex_model::{Band, Error, Motion, MotionVoice, Values, Voice};
+
+use crate::comb::{Comb, LINES, sounds};
+use crate::path::{Path, Way};
+use crate::{FORCE, SPEED};
+
+/// Largest gain of a force.
+const MOST_GAIN: f64 = 16.0;
+
+/// A value that goes to each new target in a straight line.
+#[derive(Clone, Copy, Default)]
+struct Ramp {
+    value: f64,
+    target: f64,
+    step: f64,
+    left: f64,
+}
+
+impl Ramp {
+    fn at(value: f64) -> Self {
+        Self {
+            value,
+            target: value,
+            ..Self::default()
+        }
+    }
+
+    fn set(&mut self, target: f64, samples: f64) {
+        if target != self.target {
+            self.target = target;
+            self.left = samples;
+            self.step = (target - self.value) / samples;
+        }
+    }
+
+    /// The value, which then goes one sample on.
+    fn next(&mut self) -> f64 {
+        let value = self.value;
+        if self.left > 0.0 {
+            self.left -= 1.0;
+            self.value = match self.left > 0.0 {
+                true => value + self.step,
+                false => self.target,
+            };
+        }
+        value
+    }
+}
+
+/// One sinusoid of the surface.
+#[derive(Clone, Copy, Default)]
+struct Ridge {
+    /// Phase under the finger, cycles, 0 to 1.
+    phase: f64,
+    per_mm: Ramp,
+    amplitude: Ramp,
+    /// As the parameters have it: cycles a mm, and the amplitude while it is heard.
+    wanted_per_mm: f64,
+    height: f64,
+}
+
+/// The surface and the finger on it. Phases go with the way of the finger, so the same place is the same sample on
+/// the way there and back, until a retune changes the surface.
+pub struct TexelVoice {
+    band: Band,
+    ridges: Vec<Ridge>,
+    path: Path,
+    /// Speed and force of the recording; 0 for a force that is not known.
+    speed_mm_s: f64,
+    force_n: f64,
+    /// The motion, once it is told.
+    told: Option<Motion>,
+    /// What came since the last sample, in any order.
+    retuned: bool,
+    moved: bool,
+    gain: Ramp,
+    /// Falls to 0 before a jump of the finger, and rises behind it.
+    contact: Ramp,
+}
+
+impl TexelVoice {
+    pub(crate) fn new(
+        parameters: &Values<'_>,
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Self, Error> {
+        let mut phases = Uniform::new(seed);
+        let mut ridges = vec![Ridge::default(); LINES];
+        for ridge in &mut ridges {
+            ridge.phase = phases.next_unit();
+        }
+        let mut voice = Self {
+            band,
+            ridges,
+            path: Path::new(parameters.scalar(SPEED), rate_hz),
+            speed_mm_s: 0.0,
+            force_n: 0.0,
+            told: None,
+            retuned: false,
+            moved: false,
+            gain: Ramp::at(1.0),
+            contact: Ramp::at(1.0),
+        };
+        voice.retune(parameters)?;
+        voice.take_changes();
+        voice.settle();
+        Ok(voice)
+    }
+
+    /// Ends all ramps: nothing is heard yet.
+    fn settle(&mut self) {
+        for ridge in &mut self.ridges {
+            ridge.per_mm = Ramp::at(ridge.per_mm.target);
+            ridge.amplitude = Ramp::at(ridge.amplitude.target);
+        }
+        self.gain = Ramp::at(self.gain.target);
+    }
+
+    /// Begins to change to what came since the last sample.
+    fn take_changes(&mut self) {
+        let samples = self.path.blend();
+        if core::mem::take(&mut self.retuned) {
+            for ridge in &mut self.ridges {
+                if ridge.amplitude.value == 0.0 && ridge.amplitude.left == 0.0 {
+                    // Not heard: it may change at once.
+                    ridge.per_mm = Ramp::at(ridge.wanted_per_mm);
+                } else {
+                    ridge.per_mm.set(ridge.wanted_per_mm, samples);
+                }
+            }
+            if self.told.is_none() {
+                self.path.set_speed(self.speed_mm_s);
+            }
+        }
+        let way = match (core::mem::take(&mut self.moved), self.told) {
+            (true, Some(motion)) => self.path.tell(motion),
+            _ => Way::Smooth,
+        };
+        self.hear(samples);
+        match way {
+            Way::Smooth => {}
+            Way::Start(way_mm) => {
+                self.settle();
+                self.move_by(way_mm);
+            }
+            Way::Jump => self.contact.set(0.0, samples),
+        }
+    }
+
+    /// Which sinusoids are heard at the speed, and how strong all are at the force.
+    fn hear(&mut self, samples: f64) {
+        let speed_mm_s = self.told.map_or(self.speed_mm_s, |m| m.speed_mm_s.abs());
+        for ridge in &mut self.ridges {
+            let heard = sounds(ridge.wanted_per_mm * speed_mm_s, self.band);
+            let amplitude = if heard { ridge.height } else { 0.0 };
+            ridge.amplitude.set(amplitude, samples);
+        }
+        let force = self.told.filter(|_| self.force_n > 0.0);
+        let gain = force.map_or(1.0, |m| (m.force_n / self.force_n).min(MOST_GAIN));
+        self.gain.set(gain, samples);
+    }
+
+    fn move_by(&mut self, way_mm: f64) {
+        for ridge in &mut self.ridges {
+            let phase = ridge.phase + ridge.per_mm.value * way_mm;
+            ridge.phase = phase - libm::floor(phase);
+        }
+    }
+
+    fn next_sample(&mut self) -> f32 {
+        if self.contact.target == 0.0 && self.contact.left == 0.0 {
+            let way_mm = self.path.leap();
+            self.move_by(way_mm);
+            self.contact.set(1.0, self.path.blend());
+        }
+        let way_mm = self.path.advance();
+        let mut sum = 0.0;
+        for ridge in &mut self.ridges {
+            let amplitude = ridge.amplitude.next();
+            if amplitude != 0.0 {
+                sum += amplitude * sine(ridge.phase);
+            }
+            let phase = ridge.phase + ridge.per_mm.next() * way_mm;
+            ridge.phase = phase - libm::floor(phase);
+        }
+        let sample = (sum * self.gain.next() * self.contact.next()) as f32;
+        // No processor meets slow subnormal numbers.
+        if sample.abs() < f32::MIN_POSITIVE {
+            0.0
+        } else {
+            sample
+        }
+    }
+}
+
+impl Voice for TexelVoice {
+    fn render(&mut self, out: &mut [f32]) {
+        if !out.is_empty() && (self.retuned || self.moved) {
+            self.take_changes();
+        }
+        for sample in out {
+            *sample = self.next_sample();
+        }
+    }
+
+    /// Pitches glide and amplitudes ramp over 10 ms; phases go on.
+    fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+        let comb = Comb::new(parameters, self.band)?;
+        self.speed_mm_s = parameters.scalar(SPEED);
+        self.force_n = parameters.scalar(FORCE);
+        self.ridges.iter_mut().for_each(|ridge| ridge.height = 0.0);
+        comb.for_each_ridge(self.speed_mm_s, |i, per_mm, height| {
+            (self.ridges[i].wanted_per_mm, self.ridges[i].height) = (per_mm, height);
+        });
+        self.retuned = true;
+        Ok(())
+    }
+}
+
+impl MotionVoice for TexelVoice {
+    fn set_motion(&mut self, motion: Motion) {
+        self.told = Some(motion);
+        self.moved = true;
+    }
+}
+
+/// Sine of an angle of 0 to 1 cycle, by its series: within 1e-7, and the same bits on every machine.
+fn sine(cycles: f64) -> f64 {
+    let centred = if cycles < 0.5 { cycles } else { cycles - 1.0 };
+    let folded = if centred > 0.25 {
+        0.5 - centred
+    } else if centred < -0.25 {
+        -0.5 - centred
+    } else {
+        centred
+    };
+    let x = core::f64::consts::TAU * folded;
+    let y = x * x;
+    let series = 1.0 / 362_880.0 - y / 39_916_800.0;
+    x * (1.0 - y * (1.0 / 6.0 - y * (1.0 / 120.0 - y * (1.0 / 5_040.0 - y * series))))
+}

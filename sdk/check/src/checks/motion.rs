@@ -1,0 +1,216 @@
+//! The extension by which a voice is told the motion.
+
+use htex_host::{FitCondition, MOTION_EXTENSION, ModelVoice, Motion, Status};
+
+use crate::case::{Case, is_cannot_fit};
+use crate::checks::allocation;
+use crate::finding::{Finding, Found};
+use crate::signal::first_difference;
+use crate::spectra::REFERENCES;
+
+const FRAMES: usize = 4_000;
+const BLOCKS: [usize; 4] = [1, 7, 64, 1_000];
+/// Samples between two motions on a way there and back.
+const BETWEEN: usize = 50;
+const MOTION: Motion = Motion {
+    speed_mm_s: 80.0,
+    force_n: 0.5,
+    position_mm: 3.0,
+};
+
+/// The promises of `htex.motion/1`.
+pub(crate) fn keeps_its_promises(case: &Case) -> Found {
+    if !case.model.follows_motion() {
+        return Ok(Finding::passed(format!(
+            "the model has no extension `{MOTION_EXTENSION}`"
+        )));
+    }
+    let parameters = case.parameters()?;
+    bad_motions_are_refused(case, &parameters)?;
+    blocks_make_no_difference(case, &parameters)?;
+    order_makes_no_difference(case, &parameters)?;
+    fits_take_conditions(case)?;
+    let mut voice = case.voice(&parameters, case.seed)?;
+    there_and_back(&mut voice, FRAMES)?;
+    allocation::none_while(&mut voice, |voice| there_and_back(voice, 10 * FRAMES))?;
+    Ok(Finding::passed(format!(
+        "bad motions are refused, {FRAMES} samples of a motion are the same in any blocks, and nothing is allocated"
+    )))
+}
+
+/// A bad motion is a status, and the voice plays on as before; so is a handle that was freed.
+fn bad_motions_are_refused(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
+    let voices = || -> Result<ModelVoice, Finding> {
+        let mut voice = case.voice(parameters, case.seed)?;
+        voice.set_motion(MOTION)?;
+        Ok(voice)
+    };
+    let (mut told, mut spared) = (voices()?, voices()?);
+    for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e13, -1e13] {
+        let bad = [
+            (
+                "speed_mm_s",
+                Motion {
+                    speed_mm_s: x,
+                    ..MOTION
+                },
+            ),
+            (
+                "force_n",
+                Motion {
+                    force_n: x,
+                    ..MOTION
+                },
+            ),
+            (
+                "position_mm",
+                Motion {
+                    position_mm: x,
+                    ..MOTION
+                },
+            ),
+        ];
+        for (name, motion) in bad {
+            refused(told.set_any_motion(motion), &format!("{name} of {x}"))?;
+        }
+    }
+    let pulled = Motion {
+        force_n: -0.1,
+        ..MOTION
+    };
+    refused(told.set_any_motion(pulled), "force_n of -0.1")?;
+    let rows = [&mut told, &mut spared].map(|voice| -> Result<Vec<f32>, Finding> {
+        let mut out = vec![0.0; FRAMES];
+        voice.render(&mut out)?;
+        Ok(out)
+    });
+    let [told_row, spared_row] = rows;
+    if let Some(at) = first_difference(&told_row?, &spared_row?) {
+        let what = format!("sample {at} differs after motions that were refused");
+        return Err(Finding::failed(what));
+    }
+    told.free_and_keep_handle()?;
+    refused(told.set_any_motion(MOTION), "a voice that was freed")
+}
+
+fn refused(result: Result<(), htex_host::HostError>, what: &str) -> Result<(), Finding> {
+    match result {
+        Err(htex_host::HostError::Call { status, .. }) if status != Status::Panicked => Ok(()),
+        Ok(()) => Err(Finding::failed(format!(
+            "`htex_motion_1_set` takes {what}; it must return a status below 0"
+        ))),
+        Err(error) => Err(Finding::failed(format!("{what}: {error}"))),
+    }
+}
+
+/// The same samples of a constant motion in any blocks; told again or not.
+fn blocks_make_no_difference(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
+    let render = |block: usize| -> Result<Vec<f32>, Finding> {
+        let mut voice = case.voice(parameters, case.seed)?;
+        voice.set_motion(MOTION)?;
+        let mut out = vec![0.0; FRAMES];
+        for part in out.chunks_mut(block) {
+            voice.render(part)?;
+        }
+        Ok(out)
+    };
+    let whole = render(FRAMES)?;
+    for block in BLOCKS {
+        if let Some(at) = first_difference(&whole, &render(block)?) {
+            return Err(Finding::failed(format!(
+                "a constant motion, blocks of {block} against one of {FRAMES}: sample {at} differs"
+            ))
+            .with("sample", at as f64));
+        }
+    }
+    Ok(())
+}
+
+/// A retune and a motion before the same sample, in either order.
+fn order_makes_no_difference(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
+    let other = case.two_sets()?.map_or(parameters.to_vec(), |sets| sets.1);
+    let render = |motion_first: bool| -> Result<Vec<f32>, Finding> {
+        let mut voice = case.voice(parameters, case.seed)?;
+        let mut out = vec![0.0; FRAMES];
+        let (before, behind) = out.split_at_mut(FRAMES / 2);
+        voice.render(before)?;
+        let motion = Motion {
+            speed_mm_s: -40.0,
+            ..MOTION
+        };
+        if motion_first {
+            voice.set_motion(motion)?;
+        }
+        // A voice may refuse, for one that has another rate; both then play on.
+        let _ = voice.retune(&other);
+        if !motion_first {
+            voice.set_motion(motion)?;
+        }
+        voice.render(behind)?;
+        Ok(out)
+    };
+    match first_difference(&render(true)?, &render(false)?) {
+        None => Ok(()),
+        Some(at) => Err(Finding::failed(format!(
+            "a retune before a motion against a motion before a retune: sample {at} differs"
+        ))),
+    }
+}
+
+/// A finger that goes there and back, faster and slower, and rests.
+fn there_and_back(voice: &mut ModelVoice, samples: usize) -> Result<(), Finding> {
+    let mut out = [0.0; BETWEEN];
+    for i in 0..samples / BETWEEN {
+        let angle = i as f64 * 0.1;
+        voice.set_motion(Motion {
+            speed_mm_s: 100.0 * angle.cos(),
+            force_n: 0.5 + 0.5 * (0.7 * angle).sin(),
+            position_mm: 10.0 * angle.sin(),
+        })?;
+        voice.render(&mut out)?;
+    }
+    voice.set_motion(Motion {
+        speed_mm_s: 0.0,
+        force_n: 0.0,
+        position_mm: 0.0,
+    })?;
+    Ok(voice.render(&mut out)?)
+}
+
+/// Fits of known, partly known and unknown conditions; the last is the fit of a host without the extension.
+fn fits_take_conditions(case: &Case) -> Result<(), Finding> {
+    let known = |speed_mm_s, force_n| FitCondition {
+        speed_mm_s,
+        force_n,
+    };
+    let conditions = [
+        known(Some(80.0), Some(0.4)),
+        known(Some(80.0), None),
+        known(None, Some(0.4)),
+        known(None, None),
+    ];
+    for reference in REFERENCES {
+        for condition in conditions {
+            match case.fit_at(reference, condition) {
+                Err(error) if !is_cannot_fit(&error) => {
+                    let name = reference.name;
+                    let what = format!("spectrum `{name}` at {condition:?}: {error}");
+                    return Err(Finding::failed(what));
+                }
+                _ => {}
+            }
+        }
+    }
+    for (speed_mm_s, force_n) in [(-1.0, 0.4), (80.0, -1.0), (f64::INFINITY, 0.4)] {
+        let condition = known(Some(speed_mm_s), Some(force_n));
+        let taken = REFERENCES.iter().find(
+            |reference| !matches!(case.fit_at(reference, condition), Err(e) if !is_cannot_fit(&e)),
+        );
+        if taken.is_some() {
+            return Err(Finding::failed(format!(
+                "`htex_motion_1_fit` takes {speed_mm_s} mm/s and {force_n} N; it must return HTEX_INVALID_ARGUMENT"
+            )));
+        }
+    }
+    Ok(())
+}

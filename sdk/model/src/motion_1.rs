@@ -1,0 +1,53 @@
+//! The extension `htex.motion/1`: voices that are told how the finger moves, and fits that are told at which
+//! motion the recording was made.
+//!
+//! A model without it knows its parameters alone, and a host scales frequencies with the speed and the level with
+//! the force. A model with it does both itself, and is the place for what depends on the way travelled:
+//! stick-slip, or a surface that feels the same at the same place. Native libraries and WASM modules may have it.
+
+/// Largest speed of a finger, mm/s, in either direction.
+pub const MAX_SPEED_MM_S: f64 = 1_000_000.0;
+/// Largest normal force of a finger, newtons.
+pub const MAX_FORCE_N: f64 = 1_000_000.0;
+/// Largest distance of a finger from where its path begins, mm, in either direction.
+pub const MAX_POSITION_MM: f64 = 1_000_000_000_000.0;
+
+/// Tells a voice the motion at its next sample: the speed along the finger's path (mm/s, negative while the
+/// position falls), the normal force (newtons, not negative) and the position along the path (mm, of either
+/// sign). Until the next call the finger goes on at this speed. Returns a status; after a negative one the
+/// voice plays on as before. `[render thread, no allocation; one thread at a time for one voice]`
+pub type MotionSetFn =
+    unsafe extern "C" fn(voice: i64, speed_mm_s: f64, force_n: f64, position_mm: f64) -> i64;
+/// As `htex_model_fit`, of a recording at a speed (mm/s) and a normal force (newtons), neither negative; NaN
+/// where one is not known. `[any thread]`
+pub type MotionFitFn = unsafe extern "C" fn(
+    band_low_hz: f64,
+    band_high_hz: f64,
+    frequency_hz: *const f64,
+    magnitude: *const f64,
+    bins: usize,
+    signal: *const f64,
+    signal_len: usize,
+    signal_rate_hz: f64,
+    options: *const f64,
+    options_len: usize,
+    speed_mm_s: f64,
+    force_n: f64,
+    parameters: *mut f64,
+    capacity: usize,
+    level_rms: *mut f64,
+) -> i64;
+
+/// What the extension adds to the exports.
+#[derive(Clone, Copy)]
+#[repr(C)]
+#[allow(missing_docs)] // The types say what the functions do.
+pub struct MotionTable {
+    pub set: MotionSetFn,
+    pub fit: MotionFitFn,
+}
+
+impl MotionTable {
+    /// The extension's id.
+    pub const ID: &str = "htex.motion/1";
+}

@@ -1,0 +1,192 @@
+//! One surface of a running scene: its voice, and the stages before surfaces are mixed.
+
+use crate::SceneError;
+use crate::call::Call;
+use crate::file::Effect;
+use crate::load::LoadedScene;
+use crate::path::PathPoint;
+use crate::plan::PlannedPart;
+use crate::stages::{
+    Chain, Crossfade, EFFECTS, Level, Now, Place, Slot, Stage, StageRun, Synthesis,
+};
+
+/// One surface.
+pub(crate) struct Lane {
+    pub(crate) surface: usize,
+    pub(crate) asset: std::path::PathBuf,
+    pub(crate) synthesis: Synthesis,
+    synthesis_run: Count,
+    /// True: neutral.
+    interpolation: Option<(Count, bool)>,
+    chain: Chain,
+    crossfade: Option<(Crossfade, Count)>,
+    /// It is touched, or still fading.
+    pub(crate) sounds: bool,
+    /// Of a model that follows the motion itself.
+    follower: Option<Follower>,
+}
+
+/// The time of a voice that is told where the finger is.
+struct Follower {
+    /// How many times as fast as real time its samples are read.
+    pitch: f64,
+    rate_hz: f64,
+    /// Frames in which it was not rendered.
+    skipped: u64,
+}
+
+/// The finger at a time of the scene.
+pub(crate) struct FingerOnPath {
+    pub(crate) t_s: f64,
+    pub(crate) force_n: f64,
+    pub(crate) point: PathPoint,
+}
+
+/// How often a stage without samples of its own ran, and its time.
+#[derive(Default)]
+struct Count {
+    blocks: u64,
+    ns: u64,
+}
+
+impl Lane {
+    pub(crate) fn new(
+        scene: &LoadedScene,
+        call: &Call,
+        planned: &PlannedPart,
+    ) -> Result<Self, SceneError> {
+        let part = &planned.part;
+        let asset = &scene.scene.surfaces[part.surface].asset;
+        let source = part.source(scene, call);
+        let source = source.map_err(|source| SceneError::Surface {
+            surface: part.surface,
+            asset: asset.clone(),
+            source,
+        })?;
+        let synthesis = Synthesis::new(source);
+        let mut chain = Chain::default();
+        for entry in EFFECTS {
+            let Some(&neutral) = planned.effects.get(&entry.effect) else {
+                continue;
+            };
+            if let Place::Surface {
+                build: Some(build), ..
+            } = &entry.place
+            {
+                let stage = build(call, part, neutral);
+                chain
+                    .slots
+                    .push(Slot::new(entry.name, Some(part.surface), stage));
+            }
+        }
+        // The level comes behind what changes the rate, and before what changes the level.
+        let scaled = planned.effects.contains_key(&Effect::SpeedScaling);
+        let level = Level::new(part, synthesis.level_rms());
+        let level = Slot::new("level", Some(part.surface), Box::new(level));
+        chain.slots.insert(usize::from(scaled), level);
+        let crossfade = planned.effects.get(&Effect::Crossfade).map(|neutral| {
+            let fade = Crossfade::new(part.mix_rate_hz, *neutral);
+            (fade, Count::default())
+        });
+        Ok(Self {
+            surface: part.surface,
+            asset: asset.clone(),
+            synthesis,
+            synthesis_run: Count::default(),
+            interpolation: planned
+                .effects
+                .get(&Effect::Interpolation)
+                .map(|neutral| (Count::default(), *neutral)),
+            chain,
+            crossfade,
+            sounds: true,
+            follower: part.follows_motion.then_some(Follower {
+                pitch: part.fixed_ratio,
+                rate_hz: part.mix_rate_hz,
+                skipped: 0,
+            }),
+        })
+    }
+
+    pub(crate) fn follow(&mut self, now: &Now, touched: bool, timed: bool) {
+        if let Some((crossfade, _)) = &mut self.crossfade {
+            crossfade.set(touched);
+            // Decided here alone: the samples do not depend on the sizes of blocks.
+            self.sounds = touched || !crossfade.is_silent();
+        }
+        if let (Some((count, neutral)), true) = (&mut self.interpolation, touched) {
+            let (speed, force) = (now.finger.speed_mm_s.abs(), now.finger.force_n);
+            let moves = !*neutral && now.finger.slides();
+            count.run(timed, || {
+                if moves {
+                    self.synthesis.set_motion(speed, force);
+                }
+            });
+        }
+        self.chain.follow(&Now {
+            level_rms: self.synthesis.level_rms(),
+            ..*now
+        });
+    }
+
+    /// Tells a model that follows the motion itself, while it is heard. Read faster, all its way is as many times as far.
+    pub(crate) fn tell(&mut self, finger: &FingerOnPath) {
+        let Some(follower) = self.follower.as_ref().filter(|_| self.sounds) else {
+            return;
+        };
+        let skipped_s = follower.skipped as f64 / follower.rate_hz;
+        let motion = htex_host::Motion {
+            speed_mm_s: finger.point.speed_mm_s,
+            force_n: finger.force_n,
+            position_mm: finger.point.position_mm * follower.pitch,
+        };
+        let at_s = finger.t_s * follower.pitch - skipped_s;
+        self.synthesis.set_finger(motion, at_s);
+    }
+
+    /// Leaves out samples that nobody hears.
+    pub(crate) fn skip(&mut self, frames: usize) {
+        if let Some(follower) = &mut self.follower {
+            follower.skipped += frames as u64;
+        }
+    }
+
+    pub(crate) fn render(&mut self, timed: bool, out: &mut [f32]) {
+        let (synthesis, count) = (&mut self.synthesis, &mut self.synthesis_run);
+        self.chain.render(timed, out, &mut |block| {
+            count.run(timed, || synthesis.render(block, &mut |_| {}));
+        });
+        if let Some((fade, count)) = &mut self.crossfade {
+            count.run(timed, || fade.apply(out));
+        }
+    }
+
+    pub(crate) fn runs(&self, frames: Option<u64>) -> Vec<StageRun> {
+        let run = |name, count: &Count| StageRun {
+            name,
+            surface: Some(self.surface),
+            blocks: count.blocks,
+            ns_per_sample: frames.map(|frames| count.ns as f64 / frames.max(1) as f64),
+        };
+        let synthesis = run("synthesis", &self.synthesis_run);
+        let interpolation = self.interpolation.as_ref();
+        let crossfade = self.crossfade.as_ref();
+        std::iter::once(synthesis)
+            .chain(interpolation.map(|(count, _)| run("interpolation", count)))
+            .chain(self.chain.slots.iter().map(|slot| slot.run(frames)))
+            .chain(crossfade.map(|(_, count)| run("crossfade", count)))
+            .collect()
+    }
+}
+
+impl Count {
+    fn run(&mut self, timed: bool, what: impl FnOnce()) {
+        self.blocks += 1;
+        if !timed {
+            return what();
+        }
+        let start = std::time::Instant::now();
+        what();
+        self.ns += start.elapsed().as_nanos() as u64;
+    }
+}

@@ -1,0 +1,88 @@
+//! Third parties' models, built from their sources.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use htex_host::LoadedModel;
+use htex_tests::workspace;
+use xtask::needs;
+
+/// Where what these tests build is kept between runs.
+const BUILDS: &str = env!("CARGO_TARGET_TMPDIR");
+pub const WASM: &str = "wasm32-unknown-unknown";
+
+pub fn has_clang() -> bool {
+    let runs = |program| Command::new(program).arg("--version").output().is_ok();
+    needs::WASM_CLANG.met(runs("clang") && runs("wasm-ld"))
+}
+
+pub fn has_wasm_target() -> bool {
+    needs::WASM_TARGET.met(xtask::plugins::wasm_is_installed())
+}
+
+pub fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(BUILDS).join(name);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// Runs a C project's `build.sh`; returns what it built.
+pub fn build_c(project: &Path, kind: &str) -> PathBuf {
+    let built = run(Command::new("sh").arg(project.join("build.sh")).arg(kind));
+    project.join(built.trim())
+}
+
+/// Builds a Rust project, for this machine or another target; returns its library.
+pub fn build_rust(project: &Path, target: Option<&str>) -> PathBuf {
+    let folder = folder("third-party-target");
+    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
+    run(Command::new(cargo)
+        .args(["build", "--release", "--quiet", "--manifest-path"])
+        .arg(project.join("Cargo.toml"))
+        .arg("--target-dir")
+        .arg(&folder)
+        .args(target.iter().flat_map(|target| ["--target", target])));
+    let manifest = fs::read_to_string(project.join("Cargo.toml")).unwrap();
+    let name = manifest.split('"').nth(1).unwrap().replace('-', "_");
+    let (prefix, suffix) = match target {
+        Some(_) => ("", ".wasm"),
+        None => (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX),
+    };
+    let library = format!("{prefix}{name}{suffix}");
+    folder
+        .join(target.unwrap_or_default())
+        .join("release")
+        .join(library)
+}
+
+/// What a program prints; its errors if it fails.
+fn run(command: &mut Command) -> String {
+    let output = command.output().unwrap();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{command:?}: {errors}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// A copy of the example in C, ready to be built.
+pub fn bursts_project() -> PathBuf {
+    let project = folder("model-c-bursts");
+    for file in ["bursts.c", "build.sh"] {
+        let from = workspace().join("examples/model-c-bursts").join(file);
+        let text = fs::read_to_string(from).unwrap();
+        let include = workspace().join("spec/include").canonicalize().unwrap();
+        let text = text.replace("../../spec/include", include.to_str().unwrap());
+        fs::write(project.join(file), text).unwrap();
+    }
+    project
+}
+
+/// The example in Rust.
+pub fn texel_project() -> PathBuf {
+    workspace().join("examples/model-rust-texel")
+}
+
+/// Loads a model that must be one.
+pub fn load(path: &Path) -> LoadedModel {
+    LoadedModel::from_file(path).unwrap()
+}

@@ -33,6 +33,13 @@ pub struct ShapedNoise {
     ending: Uniform,
     beginning: Uniform,
     next: Uniform,
+    /// The generator after the frame of the next hop, which stands in `faded`, when it is made already.
+    prepared: Option<Uniform>,
+    /// Position in a hop from which on the next hop is made, as the seed has it: streams that start together do not all
+    /// make their frames in the same block.
+    prepare_at: usize,
+    /// A change of spectrum began in this hop: others may follow, and would undo what is prepared.
+    changes: bool,
     /// Cosines and sines of the phases of the frame that began last.
     cos: Vec<f32>,
     sin: Vec<f32>,
@@ -117,6 +124,12 @@ fn rise(n: usize, overlap: usize) -> f64 {
     libm::sin(quarter * sine * sine)
 }
 
+/// A position in a hop; multiples of the golden ratio spread those of neighbouring seeds evenly.
+fn prepare_at(seed: u64, hop: usize) -> usize {
+    let part = seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
+    ((part * hop as u64) >> 32) as usize
+}
+
 impl Frames {
     /// Those of a rate and a band.
     fn shared(rate_hz: f64, band: Band) -> Arc<Self> {
@@ -170,6 +183,9 @@ impl ShapedNoise {
             ending: Uniform::new(seed),
             beginning: Uniform::new(seed),
             next: Uniform::new(seed),
+            prepared: None,
+            prepare_at: prepare_at(seed, frames.hop),
+            changes: false,
             cos: zeros(components),
             sin: zeros(components),
             workspace: frames.inverse.workspace(),
@@ -290,6 +306,9 @@ impl ShapedNoise {
     /// Samples of this hop as it is, up to its end; returns how many. While a change waits for the
     /// next hop this may be asked for sample by sample, or at once.
     fn run_steady(&mut self, out: &mut [f32]) -> usize {
+        if self.position >= self.prepare_at && !self.changes && self.prepared.is_none() {
+            self.prepare();
+        }
         let run = out.len().min(self.frames.hop - self.position);
         out[..run].copy_from_slice(&self.now[self.position..self.position + run]);
         self.position += run;
@@ -324,19 +343,42 @@ impl ShapedNoise {
         self.pending = Pending::None;
         if made {
             self.take_pending();
+            self.discard_prepared();
             self.remake_hop();
             self.fade_position = Some(0);
+            self.changes = true;
         }
     }
 
-    /// Moves on to the next frame.
+    /// Moves on to the next hop.
     fn next_hop(&mut self) {
-        self.tail.copy_from_slice(&self.now[self.frames.hop..]);
-        self.draw_next();
-        self.make_frame();
-        self.blend();
+        if self.prepared.is_none() {
+            self.prepare();
+        }
+        if let Some(after) = self.prepared.take() {
+            self.ending = core::mem::replace(&mut self.beginning, self.next.clone());
+            self.next = after;
+        }
         core::mem::swap(&mut self.now, &mut self.faded);
         self.position = 0;
+        self.changes = false;
+    }
+
+    /// Makes the next hop in `faded`.
+    fn prepare(&mut self) {
+        self.tail.copy_from_slice(&self.now[self.frames.hop..]);
+        let mut phases = self.next.clone();
+        phases.fill_directions(&mut self.cos, &mut self.sin);
+        self.prepared = Some(phases);
+        self.make_frame();
+        self.blend();
+    }
+
+    /// Takes the directions of the frame that began last back, when those of the next one are drawn already.
+    fn discard_prepared(&mut self) {
+        if self.prepared.take().is_some() {
+            self.draw(self.beginning.clone());
+        }
     }
 
     /// Draws the phases of the next frame.
@@ -390,94 +432,4 @@ impl ShapedNoise {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn noise(seed: u64) -> ShapedNoise {
-        falling(seed, 200.0)
-    }
-
-    fn falling(seed: u64, scale_hz: f64) -> ShapedNoise {
-        started(seed, |_, f| libm::exp(-f / scale_hz))
-    }
-
-    fn started(seed: u64, magnitude: impl Fn(usize, f64) -> f64) -> ShapedNoise {
-        let mut noise = ShapedNoise::new(2_500.0, Band::TACTILE, seed);
-        noise.start(magnitude);
-        noise
-    }
-
-    fn rendered(mut noise: ShapedNoise, len: usize) -> Vec<f32> {
-        let mut out = alloc::vec![0.0; len];
-        noise.render(&mut out);
-        out
-    }
-
-    #[test]
-    fn power_is_one_and_stationary() {
-        let mut noise = noise(3);
-        let mut out = alloc::vec![0.0f32; 2_500_000];
-        noise.render(&mut out);
-        let power = |phase: usize| {
-            let part = out.iter().skip(phase).step_by(500);
-            let n = part.clone().count() as f64;
-            part.map(|x| f64::from(*x).powi(2)).sum::<f64>() / n
-        };
-        // 5,000 independent samples a position within the hop: standard error 2 %.
-        for phase in [0, 125, 250, 499] {
-            assert!(
-                (power(phase) - 1.0).abs() < 0.1,
-                "{phase}: {}",
-                power(phase)
-            );
-        }
-        // More than 1 by what the bins of the band miss at its lower edge.
-        let total = out.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / out.len() as f64;
-        assert!((1.0..1.03).contains(&total), "{total}");
-    }
-
-    /// Block sizes do not matter either.
-    #[test]
-    fn a_retune_fades_to_the_voice_that_had_the_spectrum_all_along() {
-        let (hop, fade, overlap) = {
-            let noise = noise(5);
-            let frames = &noise.frames;
-            (frames.hop, frames.fade_len, frames.rise.len())
-        };
-        let len = 3 * hop;
-        let [first, second, third] =
-            [200.0, 50.0, 400.0].map(|scale_hz| rendered(falling(5, scale_hz), len));
-        // Where frames overlap, behind that, and too near to the next frame.
-        for at in [10, overlap - 3, overlap + 50, hop - 5, hop + 7] {
-            let begun = if at < hop && at + fade > hop { hop } else { at };
-            let mut voice = falling(5, 200.0);
-            let mut out = alloc::vec![0.0f32; len];
-            out[..at].chunks_mut(7).for_each(|part| voice.render(part));
-            voice.retune(|_, f| libm::exp(-f / 50.0));
-            voice.render(&mut out[at..begun + 3]);
-            // This has to wait for the other.
-            voice.retune(|_, f| libm::exp(-f / 400.0));
-            voice.render(&mut out[begun + 3..]);
-            for (n, y) in out.iter().enumerate() {
-                let part =
-                    |from: usize| ((n + 1).saturating_sub(from) as f32 / fade as f32).min(1.0);
-                let mixed = first[n] + part(begun) * (second[n] - first[n]);
-                let expected = mixed + part(begun + fade) * (third[n] - mixed);
-                assert!((y - expected).abs() < 1e-5, "{at}: {n}: {y} {expected}");
-            }
-        }
-    }
-
-    #[test]
-    fn what_is_no_magnitude_counts_as_none() {
-        let with = |odd: f64| {
-            let magnitude = move |i: usize, _| if i.is_multiple_of(3) { odd } else { 1.0 };
-            rendered(started(1, magnitude), 1_000)
-        };
-        let without = with(0.0);
-        for odd in [f64::NAN, f64::INFINITY, -1.0] {
-            assert_eq!(with(odd), without);
-        }
-        assert_eq!(rendered(started(1, |_, _| 0.0), 1_000), [0.0; 1_000]);
-    }
-}
+mod tests;

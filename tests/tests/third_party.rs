@@ -120,7 +120,7 @@ fn follows_the_speed(model: &LoadedModel) {
     let rate_hz = model.voice_rate_hz(&p, Band::TACTILE, RATE_HZ).unwrap();
     let played = |speed_mm_s: Option<f64>| {
         let mut voice = model.voice(&p, Band::TACTILE, rate_hz, 1).unwrap();
-        for speed_mm_s in speed_mm_s {
+        if let Some(speed_mm_s) = speed_mm_s {
             let (force_n, position_mm) = (0.4, 0.0);
             voice
                 .set_motion(Motion {

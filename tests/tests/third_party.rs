@@ -9,7 +9,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use builds::*;
-use htex_host::{Band, Fit, FitRequest, HostError, LoadedModel, Status, Stream};
+use htex_host::{Band, Fit, FitRequest, HostError, LoadedModel, Motion, Status, Stream};
 use htex_tests::measure::{RATE_HZ, distance_db, measured_spectrum, rms};
 use htex_tests::{deflated_bytes, smooth_spectrum, workspace};
 
@@ -35,7 +35,7 @@ fn the_template_in_c() {
         let text = fs::read_to_string(templates().join("c").join(file)).unwrap();
         fs::write(project.join(file), filled_in(&text)).unwrap();
     }
-    for header in ["htex_model.h", "htex_model_wasm.h"] {
+    for header in ["htex_model.h", "htex_model_wasm.h", "htex_motion_1.h"] {
         let from = workspace().join("spec/include").join(header);
         fs::copy(from, project.join(header)).unwrap();
     }
@@ -44,6 +44,19 @@ fn the_template_in_c() {
     holds(&model, 0.03);
     if has_clang() {
         is_the_same(&model, &load(&build_c(&project, "wasm")));
+    }
+    assert!(!model.follows_motion());
+    let build = project.join("build.sh");
+    let text = fs::read_to_string(&build).unwrap();
+    fs::write(
+        &build,
+        text.replace("trial.", "moved.")
+            .replace("-std=c11", "-std=c11 -DFOLLOWS_MOTION=1"),
+    )
+    .unwrap();
+    follows_the_speed(&load(&build_c(&project, "native")));
+    if has_clang() {
+        follows_the_speed(&load(&build_c(&project, "wasm")));
     }
 }
 
@@ -66,6 +79,7 @@ fn the_template_in_rust() {
     for (from, to) in [
         ("Cargo.toml.in", "Cargo.toml"),
         ("src/lib.rs", "src/lib.rs"),
+        ("src/follow.rs", "src/follow.rs"),
     ] {
         let text = fs::read_to_string(templates().join("rust").join(from)).unwrap();
         fs::write(project.join(to), filled_in(&text)).unwrap();
@@ -84,6 +98,46 @@ fn the_template_in_rust() {
             bytes < TEMPLATE_BYTES,
             "the template's module: {bytes} bytes"
         );
+    }
+    assert!(!model.follows_motion());
+    let manifest = fs::read_to_string(project.join("Cargo.toml")).unwrap();
+    let moved = manifest.replace("\"trial\"", "\"moved\"").replace(
+        "default = [\"plugin\"]",
+        "default = [\"plugin\", \"motion\"]",
+    );
+    fs::write(project.join("Cargo.toml"), moved).unwrap();
+    follows_the_speed(&load(&build_rust(&project, None)));
+    if has_wasm_target() {
+        follows_the_speed(&load(&build_rust(&project, Some(WASM))));
+    }
+}
+
+/// Twice the speed, twice the level; without a motion as at 100 mm/s.
+fn follows_the_speed(model: &LoadedModel) {
+    assert!(model.follows_motion());
+    holds(model, 0.03);
+    let p = fit(model, &spectra()[0].1, &[]).unwrap().parameters;
+    let rate_hz = model.voice_rate_hz(&p, Band::TACTILE, RATE_HZ).unwrap();
+    let played = |speed_mm_s: Option<f64>| {
+        let mut voice = model.voice(&p, Band::TACTILE, rate_hz, 1).unwrap();
+        if let Some(speed_mm_s) = speed_mm_s {
+            let (force_n, position_mm) = (0.4, 0.0);
+            voice
+                .set_motion(Motion {
+                    speed_mm_s,
+                    force_n,
+                    position_mm,
+                })
+                .unwrap();
+        }
+        let mut out = vec![0.0; 20_000];
+        voice.render(&mut out).unwrap();
+        rms(&out[1_000..])
+    };
+    let still = played(None);
+    for (speed_mm_s, gain) in [(-100.0, 1.0), (200.0, 2.0), (0.0, 0.0)] {
+        let found = played(Some(speed_mm_s)) / still;
+        assert!((found - gain).abs() < 1e-3, "{speed_mm_s} mm/s: {found}");
     }
 }
 

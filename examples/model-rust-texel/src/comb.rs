@@ -21,8 +21,8 @@ pub(crate) const LINES: usize = HARMONICS * QUANTILES.len();
 /// Least spread, hertz: nearer lines would beat so slowly that a minute has no steady level.
 const LEAST_SPREAD_HZ: f64 = 1.0;
 
-/// The comb in a band, at the speed of the recording. Lines nearer than a bin to an edge are silent: they would be
-/// read outside.
+/// The comb in a band, at the speed of the recording. Lines nearer than a bin to an edge are silent: they would be read
+/// outside.
 pub(crate) struct Comb<'a> {
     fundamental_hz: f64,
     jitter: f64,
@@ -42,9 +42,8 @@ impl<'a> Comb<'a> {
         };
         let mut power = 0.0;
         comb.for_each_line(|_, f, amplitude| {
-            if sounds(f, band) {
-                power += 0.5 * amplitude * amplitude;
-            }
+            let amplitude = amplitude * heard(f, band);
+            power += 0.5 * amplitude * amplitude;
         });
         comb.rms = libm::sqrt(power);
         // Fainter amplitudes have squares that fade into nothing.
@@ -79,10 +78,8 @@ impl<'a> Comb<'a> {
     pub(crate) fn seen_at(&self, frequency_hz: f64) -> f64 {
         let mut power = 0.0;
         self.for_each_line(|_, f, amplitude| {
-            if sounds(f, self.band) {
-                let m = amplitude * hann_kernel((frequency_hz - f) / GRID_HZ);
-                power += m * m;
-            }
+            let m = amplitude * heard(f, self.band) * hann_kernel((frequency_hz - f) / GRID_HZ);
+            power += m * m;
         });
         libm::sqrt(power) / self.rms
     }
@@ -93,9 +90,11 @@ impl<'a> Comb<'a> {
     }
 }
 
-/// Whether a line of this frequency is heard.
-pub(crate) fn sounds(frequency_hz: f64, band: Band) -> bool {
-    (band.low_hz + GRID_HZ..=band.high_hz - GRID_HZ).contains(&frequency_hz)
+/// How much of a line of this frequency is heard: nothing within a bin of the band's edges, and all from two bins on, so
+/// that a finger that slides faster moves lines in and out without a step.
+pub(crate) fn heard(frequency_hz: f64, band: Band) -> f64 {
+    let inside_hz = (frequency_hz - band.low_hz).min(band.high_hz - frequency_hz);
+    (inside_hz / GRID_HZ - 1.0).clamp(0.0, 1.0)
 }
 
 /// Main lobe of the periodic Hann window's transform, 1 at its middle, `bins` away.

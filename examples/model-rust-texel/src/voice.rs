@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use htex_dsp::noise::Uniform;
 use htex_model::{Band, Error, Motion, MotionVoice, Values, Voice};
 
-use crate::comb::{Comb, LINES, sounds};
+use crate::comb::{Comb, LINES, heard};
 use crate::path::{Path, Way};
 use crate::{FORCE, SPEED};
 
@@ -58,20 +58,21 @@ impl Ramp {
 struct Ridge {
     /// Phase under the finger, cycles, 0 to 1.
     phase: f64,
+    /// Cycles a mm, and the amplitude where the speed brings it into the band.
     per_mm: Ramp,
-    amplitude: Ramp,
-    /// As the parameters have it: cycles a mm, and the amplitude while it is heard.
-    wanted_per_mm: f64,
-    height: f64,
+    height: Ramp,
+    /// Both, as the parameters have them.
+    wanted: (f64, f64),
 }
 
 /// The surface and the finger on it. Phases go with the way of the finger, so the same place is the same sample on
 /// the way there and back, until a retune changes the surface.
 pub struct TexelVoice {
     band: Band,
+    rate_hz: f64,
     ridges: Vec<Ridge>,
     path: Path,
-    /// Speed and force of the recording; 0 for a force that is not known.
+    /// Of the recording; 0 for a force that is not known.
     speed_mm_s: f64,
     force_n: f64,
     /// The motion, once it is told.
@@ -98,6 +99,7 @@ impl TexelVoice {
         }
         let mut voice = Self {
             band,
+            rate_hz,
             ridges,
             path: Path::new(parameters.scalar(SPEED), rate_hz),
             speed_mm_s: 0.0,
@@ -118,7 +120,7 @@ impl TexelVoice {
     fn settle(&mut self) {
         for ridge in &mut self.ridges {
             ridge.per_mm = Ramp::at(ridge.per_mm.target);
-            ridge.amplitude = Ramp::at(ridge.amplitude.target);
+            ridge.height = Ramp::at(ridge.height.target);
         }
         self.gain = Ramp::at(self.gain.target);
     }
@@ -128,12 +130,13 @@ impl TexelVoice {
         let samples = self.path.blend();
         if core::mem::take(&mut self.retuned) {
             for ridge in &mut self.ridges {
-                if ridge.amplitude.value == 0.0 && ridge.amplitude.left == 0.0 {
-                    // Not heard: it may change at once.
-                    ridge.per_mm = Ramp::at(ridge.wanted_per_mm);
-                } else {
-                    ridge.per_mm.set(ridge.wanted_per_mm, samples);
+                let (per_mm, height) = ridge.wanted;
+                if ridge.height.value == 0.0 && ridge.height.left == 0.0 {
+                    // Not there yet: it may begin with any pitch.
+                    ridge.per_mm = Ramp::at(per_mm);
                 }
+                ridge.per_mm.set(per_mm, samples);
+                ridge.height.set(height, samples);
             }
             if self.told.is_none() {
                 self.path.set_speed(self.speed_mm_s);
@@ -143,7 +146,7 @@ impl TexelVoice {
             (true, Some(motion)) => self.path.tell(motion),
             _ => Way::Smooth,
         };
-        self.hear(samples);
+        self.press(samples);
         match way {
             Way::Smooth => {}
             Way::Start(way_mm) => {
@@ -154,14 +157,8 @@ impl TexelVoice {
         }
     }
 
-    /// Which sinusoids are heard at the speed, and how strong all are at the force.
-    fn hear(&mut self, samples: f64) {
-        let speed_mm_s = self.told.map_or(self.speed_mm_s, |m| m.speed_mm_s.abs());
-        for ridge in &mut self.ridges {
-            let heard = sounds(ridge.wanted_per_mm * speed_mm_s, self.band);
-            let amplitude = if heard { ridge.height } else { 0.0 };
-            ridge.amplitude.set(amplitude, samples);
-        }
+    /// Begins to change to the level at the force.
+    fn press(&mut self, samples: f64) {
         let force = self.told.filter(|_| self.force_n > 0.0);
         let gain = force.map_or(1.0, |m| (m.force_n / self.force_n).min(MOST_GAIN));
         self.gain.set(gain, samples);
@@ -181,13 +178,15 @@ impl TexelVoice {
             self.contact.set(1.0, self.path.blend());
         }
         let way_mm = self.path.advance();
+        let speed_mm_s = way_mm.abs() * self.rate_hz;
         let mut sum = 0.0;
         for ridge in &mut self.ridges {
-            let amplitude = ridge.amplitude.next();
+            let (height, per_mm) = (ridge.height.next(), ridge.per_mm.next());
+            let amplitude = height * heard(per_mm * speed_mm_s, self.band);
             if amplitude != 0.0 {
                 sum += amplitude * sine(ridge.phase);
             }
-            let phase = ridge.phase + ridge.per_mm.next() * way_mm;
+            let phase = ridge.phase + per_mm * way_mm;
             ridge.phase = phase - libm::floor(phase);
         }
         let sample = (sum * self.gain.next() * self.contact.next()) as f32;
@@ -215,9 +214,10 @@ impl Voice for TexelVoice {
         let comb = Comb::new(parameters, self.band)?;
         self.speed_mm_s = parameters.scalar(SPEED);
         self.force_n = parameters.scalar(FORCE);
-        self.ridges.iter_mut().for_each(|ridge| ridge.height = 0.0);
+        let silent = |ridge: &mut Ridge| ridge.wanted.1 = 0.0;
+        self.ridges.iter_mut().for_each(silent);
         comb.for_each_ridge(self.speed_mm_s, |i, per_mm, height| {
-            (self.ridges[i].wanted_per_mm, self.ridges[i].height) = (per_mm, height);
+            self.ridges[i].wanted = (per_mm, height);
         });
         self.retuned = true;
         Ok(())

@@ -1,6 +1,6 @@
 //! Counts calls of the C library's allocator by the libraries that this process has loaded.
 //!
-//! The dynamic linker writes the addresses of `malloc` and its kin into a table of each loaded library (its
+//! The dynamic linker writes the addresses of `malloc` and related functions into a table of each loaded library (its
 //! relocations by symbol). [`AllocatorCalls::watch`] replaces those addresses by functions that count and then call the
 //! allocator. It changes every library of the process, the C library and the C++ runtime among them, so that `new`,
 //! `strdup` and a Rust library's `Vec` are counted, each in its own thread. It leaves the program itself as it is: what the
@@ -128,7 +128,7 @@ struct Relocation {
     addend: i64,
 }
 
-/// What a library's dynamic section says of its relocations.
+/// The relocations of a library's dynamic section.
 struct Library {
     base: usize,
     dynamic: *const Dynamic,

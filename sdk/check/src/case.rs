@@ -138,7 +138,7 @@ impl Case {
         Ok(out)
     }
 
-    /// A voice at the rate the model wants to render at.
+    /// A voice at the rate that the model returns for [`RATE_HZ`].
     pub(crate) fn voice(
         &self,
         parameters: &[f64],
@@ -156,7 +156,7 @@ impl Case {
     }
 }
 
-/// Whether the model said that this spectrum holds nothing for it.
+/// Whether the model cannot be fitted to this spectrum.
 pub(crate) fn is_cannot_fit(error: &HostError) -> bool {
     matches!(
         error,
@@ -167,7 +167,7 @@ pub(crate) fn is_cannot_fit(error: &HostError) -> bool {
     )
 }
 
-/// Whether the model answered a status other than that it panicked.
+/// Whether the model returned a status other than `Panicked`.
 pub(crate) fn is_refusal(error: &HostError) -> bool {
     matches!(error, HostError::Call { status, .. } if *status != Status::Panicked)
 }

@@ -49,12 +49,12 @@ pub struct Finding {
     pub outcome: Outcome,
     /// What was found.
     pub message: String,
-    /// What was measured, by name; the unit stands in the name.
+    /// What was measured, by name; the unit is in the name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub numbers: BTreeMap<String, f64>,
 }
 
-/// What a check answers: both arms are findings, so that `?` ends a check.
+/// The result of a check: both arms are findings, so that `?` ends a check.
 pub type Found = Result<Finding, Finding>;
 
 impl Finding {

@@ -1,8 +1,8 @@
 //! A checker that model authors can trust: every promise of the model ABI is one check, and each
-//! check runs in a process of its own, so that a crash or an endless loop is an answer too.
+//! check runs in a process of its own, so that a crash or an endless loop is a finding too.
 //!
 //! [`CHECKS`] is the list; [`check`] runs it over a model file; [`run_one`] runs one of them in
-//! this process, which is what a debugger wants.
+//! this process, for a debugger.
 //!
 //! ```
 //! use htex_check::{CHECKS, model_checks_page};

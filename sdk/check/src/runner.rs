@@ -23,7 +23,7 @@ const MOST_OUTPUT: u64 = 1 << 20;
 pub struct Runner {
     /// The program.
     pub program: PathBuf,
-    /// What stands before the file.
+    /// Arguments before the file.
     pub arguments: Vec<OsString>,
 }
 
@@ -162,7 +162,7 @@ pub fn run_process(command: &mut Command, timeout: Duration) -> Finding {
             let message = format!("it did not end within {seconds} s");
             Finding::new(Outcome::TimedOut, message).with("timeout_s", seconds)
         }
-        Some(status) => answer(&text(out)).unwrap_or_else(|| crashed(status, &text(err))),
+        Some(status) => finding(&text(out)).unwrap_or_else(|| crashed(status, &text(err))),
     }
 }
 
@@ -201,7 +201,7 @@ fn wait(child: &mut Child, timeout: Duration) -> Option<ExitStatus> {
 }
 
 /// The last line that is a finding: a model may print lines of its own.
-fn answer(out: &str) -> Option<Finding> {
+fn finding(out: &str) -> Option<Finding> {
     out.lines()
         .rev()
         .find_map(|line| serde_json::from_str(line).ok())

@@ -6,7 +6,7 @@ pub(crate) struct Reference {
     pub(crate) curve: fn(f64) -> f64,
 }
 
-/// Five shapes that touch knows: what real surfaces look like, in the simplest form.
+/// Five shapes of the spectra of real surfaces, simplified.
 pub(crate) const REFERENCES: &[Reference] = &[
     Reference {
         name: "two bumps",
@@ -30,7 +30,7 @@ pub(crate) const REFERENCES: &[Reference] = &[
     },
 ];
 
-/// What a fit must survive: it fits, or answers a status.
+/// What a fit must survive: it fits, or returns a status.
 pub(crate) const HARD: &[Reference] = &[
     Reference {
         name: "silence",

@@ -46,17 +46,17 @@ checks! {
          and no two alike; finite ranges the right way round; stores with positive, finite steps; \
          option defaults in range, whole where they must be.";
     "extensions" needs ["exports"] abi::extensions:
-        "An extension nobody has heard of is not there.",
-        "Made-up ids, an empty one and a very long one are asked for; the answer must be 0.";
+        "An unknown extension is not there.",
+        "Made-up ids, an empty one and a very long one are asked for; the result must be 0.";
     "fit" needs ["descriptor"] fit::reference:
         "Reference spectra are fitted.",
         "Five spectra: two smooth bumps, falling, rising, broad with ripple, few peaks. Each is \
-         fitted or answered by CANNOT_FIT, and at least one is fitted; parameters obey the \
+         fitted, or the model returns CANNOT_FIT, and at least one is fitted; parameters obey the \
          descriptor; the level is above 0; fitting again gives the same numbers.";
     "fit-hard" needs ["fit"] fit::hard:
-        "Hard spectra are fitted or answered by a status.",
+        "Hard spectra are fitted, or the model returns a status.",
         "Silence, one line, flat, 1e-200 and 1e100 times the usual, all energy in the lowest bin, and \
-         a grid of two bins. A panic is no answer.";
+         a grid of two bins. A panic fails.";
     "magnitude" needs ["fit"] magnitude::sane:
         "Magnitudes are finite and not negative.",
         "On the 5 Hz grid, every 0.5 Hz, at the band's edges and outside of it, for every reference.";
@@ -82,7 +82,7 @@ checks! {
          that is more. A magnitude of separate lines adds power where lines share a bin: it is judged \
          by its sound alone.";
     "spectrum" needs ["magnitude", "render"] sound::spectrum:
-        "The sound has the spectrum that the magnitude says.",
+        "The sound has the spectrum of the magnitude.",
         "A minute, segments of 0.2 s averaged by power, levels matched: within 1 dB RMS over the bins \
          that hold 99 % of the energy, of the magnitude or of what noise of that density reads through the \
          window, which differ at steep flanks. A line spectrum is thereby judged at its lines.";
@@ -112,7 +112,7 @@ checks! {
          bit.";
     "handles" needs ["render"] repeat::handles:
         "A freed handle is refused.",
-        "Rendering, retuning and freeing by a handle that was freed answer a status; so it is after \
+        "Rendering, retuning and freeing by a handle that was freed return a status; so it is after \
          the next voice was made.";
     "retune" needs ["render"] change::retune:
         "A retune does not click.",
@@ -133,13 +133,13 @@ checks! {
         "Parameters that break the descriptor are refused.",
         "For each field a value below and above its range, NaN, infinity, and for lists impossible \
          lengths; too few numbers, too many, none. `magnitude`, `voice_rate`, `voice_new` and \
-         `voice_retune` answer a status; a voice whose retune was refused plays on as before.";
+         `voice_retune` return a status; a voice whose retune was refused plays on as before.";
     "bad-band" needs ["magnitude", "render"] refusal::band:
-        "Bands that are none are refused.",
+        "Invalid bands are refused.",
         "Upside down, empty, from 0, negative, NaN, infinite, beyond 1 MHz, in `fit`, `magnitude`, \
          `voice_rate` and `voice_new`.";
     "bad-rate" needs ["render"] refusal::rate:
-        "Rates that are none are refused.",
+        "Invalid rates are refused.",
         "NaN, 0, -1, infinity and 1e12 Hz in `voice_rate` and `voice_new`.";
     "allocation" needs ["render", "retune"] allocation::none:
         "Rendering and retuning do not allocate.",

@@ -246,3 +246,102 @@ impl Drop for TableVoice {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use htex_model::{
+        Error, Fit, FitCondition, FitInput, Model, MotionVoice, Numbers, StaticDescriptor,
+        StaticField, Values, Voice,
+    };
+
+    use super::*;
+    use crate::{FitRequest, LoadedModel, Origin};
+
+    /// A model whose samples are positions, and whose parameter is the recording's speed.
+    struct Ruler;
+    struct Finger(f32);
+
+    htex_model::export_model!(Ruler, symbols: "plugin", extensions: [motion]);
+
+    impl Model for Ruler {
+        type Voice = Finger;
+        const DESCRIPTOR: StaticDescriptor =
+            StaticDescriptor::new("org.example.ruler", "Ruler", "1.0.0", "Positions.").fields(&[
+                StaticField::scalar("speed_mm_s", "mm/s", (0.0, 1e3), "Speed."),
+            ]);
+
+        fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
+            Ok(Fit {
+                parameters: vec![input.condition.speed_mm_s.unwrap_or(1.0)],
+                level_rms: input.condition.force_n.unwrap_or(1.0),
+            })
+        }
+
+        fn magnitude(_: &Values<'_>, _: Band, _: &[f64], m: &mut [f64]) -> Result<(), Error> {
+            m.fill(0.0);
+            Ok(())
+        }
+
+        fn interpolate(sets: &[Values<'_>], _: &[f64], out: &mut Numbers<'_>) -> Result<(), Error> {
+            out.extend(sets[0].flat());
+            Ok(())
+        }
+
+        fn voice(_: &Values<'_>, _: Band, _: f64, _: u64) -> Result<Finger, Error> {
+            Ok(Finger(0.0))
+        }
+    }
+
+    impl Voice for Finger {
+        fn render(&mut self, out: &mut [f32]) {
+            out.fill(self.0);
+        }
+
+        fn retune(&mut self, _: &Values<'_>) -> Result<(), Error> {
+            Ok(())
+        }
+    }
+
+    impl MotionVoice for Finger {
+        fn set_motion(&mut self, motion: Motion) {
+            self.0 = motion.position_mm as f32;
+        }
+    }
+
+    #[test]
+    fn a_built_in_model_is_told_the_motion_where_its_table_has_the_extension() {
+        let plain = TableModel::new(&TABLE, Some(&VOICES));
+        let motion = Motion {
+            speed_mm_s: 80.0,
+            force_n: 0.4,
+            position_mm: 12.0,
+        };
+        let condition = FitCondition {
+            speed_mm_s: Some(80.0),
+            force_n: Some(0.4),
+        };
+        for (table, follows) in [(plain.with_motion(&MOTION), true), (plain, false)] {
+            let model = LoadedModel::new(Origin::Builtin, Arc::new(table)).unwrap();
+            assert_eq!(model.follows_motion(), follows);
+            let band = crate::Band::TACTILE;
+            let request = FitRequest {
+                band,
+                frequency_hz: &[50.0, 100.0, 150.0],
+                magnitude: &[1.0; 3],
+                signal: &[],
+                signal_rate_hz: 1.0,
+                options: &[],
+            };
+            let fit = model.fit_at(&request, condition).unwrap();
+            let known = if follows { (80.0, 0.4) } else { (1.0, 1.0) };
+            assert_eq!((fit.parameters[0], fit.level_rms), known);
+            let mut voice = model.voice(&fit.parameters, band, 2_000.0, 1).unwrap();
+            voice.set_motion(motion).unwrap();
+            let mut out = [0.0];
+            voice.render(&mut out).unwrap();
+            assert_eq!(out[0], if follows { 12.0 } else { 0.0 });
+        }
+    }
+}

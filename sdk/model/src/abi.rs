@@ -1,19 +1,19 @@
 //! The frozen surface: numbers and signatures that cross between a host and a model.
 //!
 //! Only scalars and pointer + length cross. `usize` is the machine's own size: 8 bytes native, 4 in
-//! a WASM module. Functions that give text or parameters take the caller's buffer and answer the
-//! length needed; a caller with too small a buffer calls again. Negative answers are
+//! a WASM module. Functions that give text or parameters take the caller's buffer and return the
+//! length needed; a caller with too small a buffer calls again. Negative return values are
 //! [`crate::Status`] codes.
 //!
 //! A native library exports the functions of [`ModelTable`]. A WASM module exports these, its
-//! `memory`, and two more by which the host gets room in that memory for what it passes:
+//! `memory`, and two more by which the host allocates memory there for the arrays that it passes:
 //! `htex_model_alloc` ([`AllocFn`]) and `htex_model_free` ([`FreeFn`]). It imports nothing.
 
 /// Major part of the version: a host loads only models of its own major.
 pub const ABI_MAJOR: u32 = 1;
 /// Minor part: grows with optional exports.
 pub const ABI_MINOR: u32 = 0;
-/// The marker a model answers: a fixed upper half, then major and minor in a byte each.
+/// The marker a model returns: a fixed upper half, then major and minor in a byte each.
 pub const ABI_MARKER: u32 = 0x4854_0000 | (ABI_MAJOR << 8) | ABI_MINOR;
 
 /// Most parameters one set may have, lengths of lists included.
@@ -34,16 +34,16 @@ pub const MIN_RATE_HZ: f64 = 1.0;
 pub const MAX_RATE_HZ: f64 = 10_000_000.0;
 /// Spacing of the grid on which spectra are fitted and a shape has unit RMS, hertz.
 pub const GRID_HZ: f64 = 5.0;
-/// Alignment, bytes, of what `htex_model_alloc` answers: enough for every number that crosses.
+/// Alignment, bytes, of what `htex_model_alloc` returns: enough for every number that crosses.
 pub const ALLOC_ALIGN: usize = 16;
 
-/// Answers [`ABI_MARKER`]. `[any thread]`
+/// Returns [`ABI_MARKER`]. `[any thread]`
 pub type AbiVersion = extern "C" fn() -> u32;
-/// Writes the descriptor as UTF-8 JSON to `out[0..capacity]`; answers its length. `[any thread]`
+/// Writes the descriptor as UTF-8 JSON to `out[0..capacity]`; returns its length. `[any thread]`
 pub type DescriptorJson = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
-/// Writes the text of the calling thread's last error; answers its length. `[any thread]`
+/// Writes the text of the calling thread's last error; returns its length. `[any thread]`
 pub type LastError = unsafe extern "C" fn(out: *mut u8, capacity: usize) -> i64;
-/// Fits; writes parameters and the level (RMS, newtons); answers how many parameters there are.
+/// Fits; writes parameters and the level (RMS, newtons); returns how many parameters there are.
 /// `[any thread]`
 pub type FitFn = unsafe extern "C" fn(
     band_low_hz: f64,
@@ -60,7 +60,7 @@ pub type FitFn = unsafe extern "C" fn(
     capacity: usize,
     level_rms: *mut f64,
 ) -> i64;
-/// Writes the shape's magnitude at `bins` frequencies; answers a status. `[any thread]`
+/// Writes the shape's magnitude at `bins` frequencies; returns a status. `[any thread]`
 pub type MagnitudeFn = unsafe extern "C" fn(
     parameters: *const f64,
     parameters_len: usize,
@@ -70,7 +70,7 @@ pub type MagnitudeFn = unsafe extern "C" fn(
     magnitude: *mut f64,
     bins: usize,
 ) -> i64;
-/// Mixes `weights_len` sets that stand one behind the other in `sets`; answers how many parameters
+/// Mixes `weights_len` sets, concatenated in `sets`; returns how many parameters
 /// the mix has. `[any thread]`
 pub type InterpolateFn = unsafe extern "C" fn(
     sets: *const f64,
@@ -80,7 +80,7 @@ pub type InterpolateFn = unsafe extern "C" fn(
     parameters: *mut f64,
     capacity: usize,
 ) -> i64;
-/// Answers the rate at which a voice would render, or a negative status. `[any thread]`
+/// Returns the rate at which a voice would render, or a negative status. `[any thread]`
 pub type VoiceRateFn = unsafe extern "C" fn(
     parameters: *const f64,
     parameters_len: usize,
@@ -88,7 +88,7 @@ pub type VoiceRateFn = unsafe extern "C" fn(
     band_high_hz: f64,
     wanted_hz: f64,
 ) -> f64;
-/// Makes a voice; answers its handle, greater than zero. `[any thread]`
+/// Makes a voice; returns its handle, greater than zero. `[any thread]`
 pub type VoiceNewFn = unsafe extern "C" fn(
     parameters: *const f64,
     parameters_len: usize,
@@ -97,23 +97,23 @@ pub type VoiceNewFn = unsafe extern "C" fn(
     rate_hz: f64,
     seed: u64,
 ) -> i64;
-/// Renders `frames` samples; answers a status. `[render thread, no allocation; one thread at a time
+/// Renders `frames` samples; returns a status. `[render thread, no allocation; one thread at a time
 /// for one voice]`
 pub type VoiceRenderFn = unsafe extern "C" fn(voice: i64, out: *mut f32, frames: usize) -> i64;
-/// Retunes; answers a status. `[render thread, no allocation; one thread at a time for one voice]`
+/// Retunes; returns a status. `[render thread, no allocation; one thread at a time for one voice]`
 pub type VoiceRetuneFn =
     unsafe extern "C" fn(voice: i64, parameters: *const f64, parameters_len: usize) -> i64;
-/// Frees a voice; answers a status. `[any thread, not while the voice renders]`
+/// Frees a voice; returns a status. `[any thread, not while the voice renders]`
 pub type VoiceFreeFn = extern "C" fn(voice: i64) -> i64;
-/// Answers 1 if the extension named by UTF-8 `id` (`htex.NAME/REV`, `com.vendor.NAME/REV`) is
-/// there, else 0. `[any thread]`
+/// Returns 1 if the model has the extension named by UTF-8 `id` (`htex.NAME/REV`, `com.vendor.NAME/REV`),
+/// else 0. `[any thread]`
 pub type ExtensionFn = unsafe extern "C" fn(id: *const u8, id_len: usize) -> i64;
 
-/// Of a WASM module only, `htex_model_alloc`: makes room for `len` bytes, zeroed and aligned to
-/// [`ALLOC_ALIGN`]; answers null when there is none, or when `len` is 0. The host owns the room
+/// Of a WASM module only, `htex_model_alloc`: allocates `len` bytes, zeroed and aligned to
+/// [`ALLOC_ALIGN`]; returns null when memory is exhausted, or when `len` is 0. The host owns the block
 /// until it passes it to `htex_model_free`. `[not while another call is in flight]`
 pub type AllocFn = extern "C" fn(len: usize) -> *mut u8;
-/// Of a WASM module only, `htex_model_free`: takes back what `htex_model_alloc` answered to the
+/// Of a WASM module only, `htex_model_free`: frees what `htex_model_alloc` returned for the
 /// same `len`; null is allowed and does nothing. `[not while another call is in flight]`
 pub type FreeFn = unsafe extern "C" fn(pointer: *mut u8, len: usize);
 
@@ -121,7 +121,7 @@ pub type FreeFn = unsafe extern "C" fn(pointer: *mut u8, len: usize);
 /// the same names (`htex_model_…`) in a native library.
 #[derive(Clone, Copy)]
 #[repr(C)]
-#[allow(missing_docs)] // Each type says what its function does.
+#[allow(missing_docs)] // The types document the functions.
 pub struct ModelTable {
     pub abi_version: AbiVersion,
     pub descriptor: DescriptorJson,

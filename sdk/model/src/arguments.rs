@@ -1,4 +1,4 @@
-//! What a model is asked with, checked: the same refusals in every model.
+//! Checks of arguments: every model refuses the same ones.
 
 use crate::abi::{MAX_BAND_HZ, MAX_RATE_HZ, MIN_BINS, MIN_RATE_HZ};
 use crate::voices_1::MAX_VOICES;

@@ -1,4 +1,4 @@
-//! What a model says of itself, as a host reads it.
+//! A model's descriptor, as a host reads it.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -74,7 +74,7 @@ pub struct FitOption {
     pub min: f64,
     /// Largest value allowed.
     pub max: f64,
-    /// Value when nothing is said.
+    /// Default value.
     pub default: f64,
     /// Only whole numbers are allowed.
     #[serde(default)]
@@ -87,7 +87,7 @@ pub struct FitOption {
 }
 
 impl Descriptor {
-    /// The value each option takes when nothing is said.
+    /// The default of each option.
     pub fn default_options(&self) -> Vec<f64> {
         self.options.iter().map(|o| o.default).collect()
     }

@@ -2,7 +2,7 @@
 
 use alloc::string::String;
 
-/// What a call answers. Frozen numbers: they are part of the ABI.
+/// What a call returns. Frozen numbers: they are part of the ABI.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(i32)]
 pub enum Status {
@@ -43,12 +43,12 @@ impl Status {
     }
 }
 
-/// A status with a sentence that says what was wrong, where, and what to do.
+/// A status with a message: what was wrong, where, and what to do.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Error {
     /// The code that crosses the ABI.
     pub status: Status,
-    /// The sentence that stands behind it.
+    /// The message behind it.
     pub message: String,
 }
 

@@ -70,7 +70,7 @@ macro_rules! export_model {
             render: htex_model_exports::htex_voices_1_render,
         };
 
-        /// The C functions by their ABI names; `htex_model::abi` says what each does.
+        /// The C functions by their ABI names; documented in `htex_model::abi`.
         #[allow(missing_docs, clippy::missing_safety_doc, clippy::too_many_arguments)]
         mod htex_model_exports {
             use super::HTEX_MODEL_STATE as STATE;
@@ -257,7 +257,7 @@ macro_rules! export_model {
             #[cfg(target_family = "wasm")]
             #[cfg_attr(feature = $feature, unsafe(no_mangle))]
             pub(super) unsafe extern "C" fn htex_model_free(pointer: *mut u8, len: usize) {
-                // SAFETY: what `htex_model_alloc` answered to this length, by the ABI.
+                // SAFETY: what `htex_model_alloc` returned for this length, by the ABI.
                 unsafe { shim::free(pointer, len) }
             }
         }
@@ -269,7 +269,7 @@ macro_rules! export_model {
             fit: htex_motion_exports::htex_motion_1_fit,
         };
 
-        /// The C functions of `htex.motion/1`; `htex_model::motion_1` says what each does.
+        /// The C functions of `htex.motion/1`; documented in `htex_model::motion_1`.
         #[allow(missing_docs, clippy::missing_safety_doc, clippy::too_many_arguments)]
         mod htex_motion_exports {
             use super::HTEX_MODEL_STATE as STATE;

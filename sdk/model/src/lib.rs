@@ -1,13 +1,13 @@
-//! The texture model ABI: what every model exports, in the words of C, and the safe traits from
+//! The texture model ABI: what every model exports, as C functions, and the safe traits from
 //! which Rust models get those exports.
 //!
-//! A *model* describes a magnitude spectrum by a few parameters. It is a pure thing with five
-//! verbs: describe, fit, magnitude, interpolate, voice ([`Model`], [`Voice`]). Across the ABI
+//! A *model* describes a magnitude spectrum by a few parameters. It has five pure
+//! functions: describe, fit, magnitude, interpolate, voice ([`Model`], [`Voice`]). Across the ABI
 //! parameters travel as one flat array of `f64` laid out by the descriptor's fields: a scalar takes
 //! one value, a list its length and then its values ([`Values`]). Spectra are *shapes*: of unit
 //! RMS in the asset's band, so that a level in newtons can stand apart from them.
 //!
-//! A Rust author implements the traits and says [`export_model!`]; the macro makes the table of C
+//! A Rust author implements the traits and calls [`export_model!`]; the macro makes the table of C
 //! functions ([`abi::ModelTable`]) through which every host calls the model, built in or not.
 #![cfg_attr(not(feature = "std"), no_std)]
 extern crate alloc;

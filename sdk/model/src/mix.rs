@@ -52,9 +52,9 @@ mod tests {
             let first = f64::from(i) / 1001.0;
             let second = (1.0 - first) / 3.0;
             let weights = [first, second, 1.0 - first - second];
-            let mut room = [0.0];
-            linear(&sets, &weights, &mut Numbers::new(&mut room)).unwrap();
-            assert_eq!(room, [0.7], "{weights:?}");
+            let mut mixed = [0.0];
+            linear(&sets, &weights, &mut Numbers::new(&mut mixed)).unwrap();
+            assert_eq!(mixed, [0.7], "{weights:?}");
         }
     }
 }

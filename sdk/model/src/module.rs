@@ -34,7 +34,7 @@ unsafe impl GlobalAlloc for Memory {
     }
 }
 
-/// The first byte of as many new pages behind the memory; `None` when there are none to be had.
+/// The first byte of as many new pages behind the memory; `None` when memory is exhausted.
 fn grow(pages: usize) -> Option<*mut u8> {
     let before = memory_grow::<0>(pages);
     (before != usize::MAX).then(|| (before * PAGE_BYTES) as *mut u8)

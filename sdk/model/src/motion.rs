@@ -85,7 +85,7 @@ impl FitCondition {
 }
 
 /// A voice that follows the finger itself, by the extension `htex.motion/1`. A model has the extension when
-/// [`export_model!`](crate::export_model) is told `extensions: [motion]`, which wants this trait of its voice.
+/// [`export_model!`](crate::export_model) is told `extensions: [motion]`, which requires this trait of its voice.
 ///
 /// A host then scales neither frequencies with the speed nor the level with the force. A voice that was never told
 /// a motion plays as its parameters say, at the motion of their recording.

@@ -41,7 +41,7 @@ pub type MotionFitFn = unsafe extern "C" fn(
 /// What the extension adds to the exports.
 #[derive(Clone, Copy)]
 #[repr(C)]
-#[allow(missing_docs)] // The types say what the functions do.
+#[allow(missing_docs)] // The types document the functions.
 pub struct MotionTable {
     pub set: MotionSetFn,
     pub fit: MotionFitFn,

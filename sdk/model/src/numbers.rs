@@ -1,29 +1,29 @@
-//! Room for numbers that a model answers.
+//! Output buffer for numbers that a model writes.
 
-/// Numbers that a model writes one after the other, as many as there is room for; the others are
-/// only counted, so that the caller can make room for them.
+/// Numbers that a model writes one after the other, as many as fit into the buffer; the others are
+/// only counted, so that the caller can provide a larger one.
 ///
 /// ```
-/// let mut room = [0.0; 2];
-/// let mut numbers = htex_model::Numbers::new(&mut room);
+/// let mut buffer = [0.0; 2];
+/// let mut numbers = htex_model::Numbers::new(&mut buffer);
 /// numbers.extend(&[1.0, 2.0, 3.0]);
 /// assert_eq!((numbers.count(), numbers.written()), (3, &[1.0, 2.0][..]));
 /// ```
 #[derive(Debug)]
 pub struct Numbers<'a> {
-    room: &'a mut [f64],
+    buffer: &'a mut [f64],
     count: usize,
 }
 
 impl<'a> Numbers<'a> {
     /// None yet.
-    pub fn new(room: &'a mut [f64]) -> Self {
-        Self { room, count: 0 }
+    pub fn new(buffer: &'a mut [f64]) -> Self {
+        Self { buffer, count: 0 }
     }
 
     /// Writes one more.
     pub fn push(&mut self, number: f64) {
-        if let Some(place) = self.room.get_mut(self.count) {
+        if let Some(place) = self.buffer.get_mut(self.count) {
             *place = number;
         }
         self.count += 1;
@@ -39,8 +39,8 @@ impl<'a> Numbers<'a> {
         self.count
     }
 
-    /// Those that there was room for.
+    /// Those that fit into the buffer.
     pub fn written(&self) -> &[f64] {
-        &self.room[..self.count.min(self.room.len())]
+        &self.buffer[..self.count.min(self.buffer.len())]
     }
 }

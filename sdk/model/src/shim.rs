@@ -1,4 +1,4 @@
-//! From the traits to the C functions: checks what comes in, catches what must not get out.
+//! From the traits to the C functions: checks arguments, catches panics.
 //!
 //! Called by the functions that [`export_model!`](crate::export_model) makes; not by hand.
 
@@ -34,7 +34,7 @@ pub struct State<M: Model> {
 pub struct Input<'a, T>(Option<&'a [T]>);
 
 impl<'a, T> Input<'a, T> {
-    /// Refuses null and misaligned pointers when there is something to read.
+    /// Refuses null and misaligned pointers when `len` is above 0.
     ///
     /// # Safety
     /// `pointer` is null, or `len` values can be read there for `'a`.
@@ -56,7 +56,7 @@ impl<'a, T> Input<'a, T> {
 pub struct Output<'a, T>(Option<&'a mut [T]>);
 
 impl<'a, T> Output<'a, T> {
-    /// Refuses null and misaligned pointers when there is room to write.
+    /// Refuses null and misaligned pointers when `len` is above 0.
     ///
     /// # Safety
     /// `pointer` is null, or `len` initialised values can be written there for `'a`, by us alone.
@@ -111,17 +111,17 @@ impl<M: Model> State<M> {
 
     /// See [`crate::abi::DescriptorJson`].
     pub fn descriptor(&self, out: Output<'_, u8>) -> i64 {
-        answer(|| Ok(copy(self.json, out.get("out")?)))
+        guarded(|| Ok(copy(self.json, out.get("out")?)))
     }
 
     /// See [`crate::abi::FitFn`].
     pub fn fit(&self, call: FitCall<'_>) -> i64 {
-        answer(|| fit(&M::DESCRIPTOR, M::fit, call, FitCondition::default()))
+        guarded(|| fit(&M::DESCRIPTOR, M::fit, call, FitCondition::default()))
     }
 
     /// See [`crate::motion_1::MotionFitFn`].
     pub fn motion_fit(&self, call: FitCall<'_>, speed_mm_s: f64, force_n: f64) -> i64 {
-        answer(|| {
+        guarded(|| {
             let condition = FitCondition::from_numbers(speed_mm_s, force_n)?;
             fit(&M::DESCRIPTOR, M::fit, call, condition)
         })
@@ -135,7 +135,7 @@ impl<M: Model> State<M> {
         frequency_hz: Input<'_, f64>,
         magnitude: Output<'_, f64>,
     ) -> i64 {
-        answer(|| {
+        guarded(|| {
             let frequency_hz = frequency_hz.get("frequency_hz")?;
             let values = self.values(parameters)?;
             finite("frequency_hz", frequency_hz)?;
@@ -152,13 +152,13 @@ impl<M: Model> State<M> {
         weights: Input<'_, f64>,
         parameters: Output<'_, f64>,
     ) -> i64 {
-        answer(|| interpolate(&M::DESCRIPTOR, M::interpolate, sets, weights, parameters))
+        guarded(|| interpolate(&M::DESCRIPTOR, M::interpolate, sets, weights, parameters))
     }
 
     /// See [`crate::abi::VoiceRateFn`].
     pub fn voice_rate(&self, parameters: Input<'_, f64>, band_hz: (f64, f64), wanted: f64) -> f64 {
         let mut rate_hz = 0.0;
-        let status = answer(|| {
+        let status = guarded(|| {
             check_rate(wanted)?;
             rate_hz = M::voice_rate_hz(&self.values(parameters)?, band(band_hz)?, wanted);
             check_rate(rate_hz).map(|()| 0)
@@ -174,7 +174,7 @@ impl<M: Model> State<M> {
         rate_hz: f64,
         seed: u64,
     ) -> i64 {
-        answer(|| {
+        guarded(|| {
             check_rate(rate_hz)?;
             let voice = M::voice(&self.values(parameters)?, band(band_hz)?, rate_hz, seed)?;
             self.voices.insert(voice).ok_or_else(|| {
@@ -191,7 +191,7 @@ impl<M: Model> State<M> {
     /// # Safety
     /// No other thread uses or frees this voice meanwhile.
     pub unsafe fn voice_render(&self, handle: i64, out: Output<'_, f32>) -> i64 {
-        answer(|| {
+        guarded(|| {
             let out = out.get("out")?;
             // SAFETY: the caller's promise.
             let voice = unsafe { self.voices.get(handle) }.ok_or_else(bad_handle)?;
@@ -210,12 +210,12 @@ impl<M: Model> State<M> {
         frames: usize,
         out: Output<'_, f32>,
     ) -> i64 {
-        answer(|| {
+        guarded(|| {
             let (handles, out) = (handles.get("voices")?, out.get("out")?);
             check_handles(handles)?;
             let mut voices = [core::ptr::null_mut::<M::Voice>(); MAX_VOICES];
             for (voice, &handle) in voices.iter_mut().zip(handles) {
-                // SAFETY: the caller's promise; no handle stands here twice.
+                // SAFETY: the caller's promise; no handle occurs twice.
                 *voice = unsafe { self.voices.get(handle) }.ok_or_else(bad_handle)?;
             }
             let voices = voices.as_mut_ptr().cast::<&mut M::Voice>();
@@ -232,7 +232,7 @@ impl<M: Model> State<M> {
     /// # Safety
     /// No other thread uses or frees this voice meanwhile.
     pub unsafe fn voice_retune(&self, handle: i64, parameters: Input<'_, f64>) -> i64 {
-        answer(|| {
+        guarded(|| {
             let values = self.values(parameters)?;
             // SAFETY: the caller's promise.
             let voice = unsafe { self.voices.get(handle) }.ok_or_else(bad_handle)?;
@@ -243,7 +243,7 @@ impl<M: Model> State<M> {
 
     /// See [`crate::abi::VoiceFreeFn`].
     pub fn voice_free(&self, handle: i64) -> i64 {
-        answer(|| {
+        guarded(|| {
             self.voices.remove(handle).ok_or_else(bad_handle)?;
             Ok(0)
         })
@@ -256,7 +256,7 @@ impl<M: Model<Voice: MotionVoice>> State<M> {
     /// # Safety
     /// No other thread uses or frees this voice meanwhile.
     pub unsafe fn motion_set(&self, handle: i64, motion: Motion) -> i64 {
-        answer(|| {
+        guarded(|| {
             motion.check()?;
             // SAFETY: the caller's promise.
             let voice = unsafe { self.voices.get(handle) }.ok_or_else(bad_handle)?;
@@ -273,7 +273,7 @@ fn values<'a>(
     Values::read(descriptor, parameters.get("parameters")?)
 }
 
-/// Fits by the model's own function. Not generic, so that it stands once in a module, at this crate's level
+/// Fits by the model's own function. Not generic, so that a module holds it once, at this crate's level
 /// of optimisation.
 fn fit(
     descriptor: &StaticDescriptor,
@@ -337,7 +337,7 @@ fn interpolate(
 
 /// See [`crate::abi::AllocFn`].
 pub fn alloc(len: usize) -> *mut u8 {
-    match room(len) {
+    match layout(len) {
         // SAFETY: the layout's size is not zero.
         Some(layout) => unsafe { alloc::alloc::alloc_zeroed(layout) },
         None => core::ptr::null_mut(),
@@ -347,15 +347,15 @@ pub fn alloc(len: usize) -> *mut u8 {
 /// See [`crate::abi::FreeFn`].
 ///
 /// # Safety
-/// `pointer` is null, or what [`alloc`](alloc()) answered to the same `len` and not yet freed.
+/// `pointer` is null, or what [`alloc`](alloc()) returned for the same `len`, not yet freed.
 pub unsafe fn free(pointer: *mut u8, len: usize) {
-    if let (false, Some(layout)) = (pointer.is_null(), room(len)) {
+    if let (false, Some(layout)) = (pointer.is_null(), layout(len)) {
         // SAFETY: the caller's promise; the layout is that of the allocation.
         unsafe { alloc::alloc::dealloc(pointer, layout) }
     }
 }
 
-fn room(len: usize) -> Option<Layout> {
+fn layout(len: usize) -> Option<Layout> {
     let layout = Layout::from_size_align(len, ALLOC_ALIGN).ok()?;
     (len > 0).then_some(layout)
 }
@@ -376,7 +376,7 @@ pub fn extension(id: Input<'_, u8>, motion: bool) -> i64 {
 }
 
 /// Runs a call; an error or a panic becomes a status and the last-error text.
-fn answer(call: impl FnOnce() -> Result<i64, Error>) -> i64 {
+fn guarded(call: impl FnOnce() -> Result<i64, Error>) -> i64 {
     caught(call).unwrap_or_else(failed)
 }
 
@@ -511,7 +511,7 @@ mod tests {
         }
     }
 
-    /// One array of handles that is not right, and no voice moves on.
+    /// With one invalid array of handles no voice renders.
     #[test]
     fn voices_are_rendered_together_or_not_at_all() {
         let state = State::<Counting>::new(b"");
@@ -561,7 +561,7 @@ mod tests {
             let bytes = unsafe { core::slice::from_raw_parts_mut(pointer, len) };
             assert!(bytes.iter().all(|&b| b == 0));
             bytes.fill(0xff);
-            // SAFETY: as it was answered.
+            // SAFETY: as it was allocated.
             unsafe { free(pointer, len) };
         }
         for impossible in [0, usize::MAX, isize::MAX as usize] {

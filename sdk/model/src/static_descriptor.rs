@@ -62,7 +62,7 @@ pub struct StaticOption {
     pub min: f64,
     /// Largest value allowed.
     pub max: f64,
-    /// Value when nothing is said.
+    /// Default value.
     pub default: f64,
     /// Only whole numbers are allowed.
     pub integer: bool,

@@ -57,7 +57,7 @@ pub trait Model: 'static {
     /// What plays the parameters.
     type Voice: Voice;
 
-    /// What the model says of itself.
+    /// The model's descriptor.
     const DESCRIPTOR: StaticDescriptor;
 
     /// Finds the parameters of a spectrum.
@@ -95,7 +95,7 @@ pub trait Model: 'static {
     }
 
     /// Makes a voice that renders the shape at unit RMS at `rate_hz`, which is what
-    /// [`Self::voice_rate_hz`] answered.
+    /// [`Self::voice_rate_hz`] returned.
     ///
     /// # Errors
     /// When no voice can be made of these parameters at this rate.
@@ -114,8 +114,8 @@ pub trait Voice: Send + 'static {
     fn render(&mut self, out: &mut [f32]);
 
     /// Fills `out` with the next `frames` samples of each of some voices, one voice behind the other: what
-    /// [`Self::render`] gives of each, to the bit. A model that is quicker at several voices side by side
-    /// than at one after the other has its own way here.
+    /// [`Self::render`] gives of each, to the bit. A model that renders several voices faster together than one after
+    /// the other overrides this.
     /// `[render thread, no allocation, no lock, no I/O]`
     fn render_together(voices: &mut [&mut Self], frames: usize, out: &mut [f32])
     where

@@ -108,7 +108,7 @@ impl<'a> Values<'a> {
         ]))
     }
 
-    /// Reads the set of parameters at the start of an array; says how many numbers it took.
+    /// Reads the set of parameters at the start of an array; returns how many numbers it took.
     ///
     /// # Errors
     /// As [`Self::read`].

@@ -22,6 +22,10 @@ const RUST: &[(&str, &str)] = &[
         "src/lib.rs",
         include_str!("../../../../sdk/check/templates/rust/src/lib.rs"),
     ),
+    (
+        "src/follow.rs",
+        include_str!("../../../../sdk/check/templates/rust/src/follow.rs"),
+    ),
 ];
 
 const C: &[(&str, &str)] = &[
@@ -44,6 +48,10 @@ const C: &[(&str, &str)] = &[
     (
         "htex_model_wasm.h",
         include_str!("../../../../spec/include/htex_model_wasm.h"),
+    ),
+    (
+        "htex_motion_1.h",
+        include_str!("../../../../spec/include/htex_motion_1.h"),
     ),
 ];
 

@@ -117,5 +117,5 @@ pub(crate) fn extensions(case: &Case) -> Found {
             )));
         }
     }
-    Ok(Finding::passed("five made-up extensions are answered by no").with("asked", 5.0))
+    Ok(Finding::passed("five made-up extensions are not there").with("asked", 5.0))
 }

@@ -85,7 +85,7 @@ pub(crate) fn grid(case: &Case) -> Found {
     Ok(Finding::passed(message).with("relative_difference", worst))
 }
 
-/// Asks for chunks of the grid, each in descending order, and puts the answers in place.
+/// Asks for chunks of the grid, each in descending order, and puts the results in place.
 fn by_chunks<E>(
     grid: &[f64],
     len: usize,

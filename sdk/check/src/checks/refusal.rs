@@ -7,9 +7,9 @@ use crate::case::{Case, RATE_HZ, is_refusal};
 use crate::finding::{Finding, Found};
 use crate::signal::first_difference;
 
-/// Fails unless a call was answered by a status.
-fn refused<T>(call: &str, what: &str, answer: Result<T, HostError>) -> Result<(), Finding> {
-    match answer {
+/// Fails unless a call returned a status.
+fn refused<T>(call: &str, what: &str, result: Result<T, HostError>) -> Result<(), Finding> {
+    match result {
         Err(error) if is_refusal(&error) => Ok(()),
         Err(error) => Err(Finding::failed(format!("`{call}` with {what}: {error}"))),
         Ok(_) => Err(Finding::failed(format!("`{call}` accepts {what}"))),
@@ -95,7 +95,7 @@ fn broken_sets(case: &Case, good: &[f64]) -> Result<Vec<(String, Vec<f64>)>, Fin
     Ok(broken)
 }
 
-/// Bands that are none.
+/// Invalid bands.
 pub(crate) fn band(case: &Case) -> Found {
     let good = case.parameters()?;
     let spectrum = [0.01, 0.02, 0.03, 0.02, 0.01];
@@ -135,7 +135,7 @@ pub(crate) fn band(case: &Case) -> Found {
     )))
 }
 
-/// Rates that are none.
+/// Invalid rates.
 pub(crate) fn rate(case: &Case) -> Found {
     let good = case.parameters()?;
     let rates = [f64::NAN, 0.0, -1.0, f64::INFINITY, 1e12];

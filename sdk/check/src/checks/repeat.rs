@@ -126,8 +126,8 @@ pub(crate) fn handles(case: &Case) -> Found {
             ("voice_retune", voice.retune(&parameters)),
             ("voice_free", voice.free_and_keep_handle()),
         ];
-        for (call, answer) in calls {
-            match answer {
+        for (call, result) in calls {
+            match result {
                 Err(HostError::Call {
                     status: Status::BadHandle,
                     ..

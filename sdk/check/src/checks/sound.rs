@@ -1,4 +1,4 @@
-//! What a voice sounds like, against what the magnitude says.
+//! The samples of a voice against its magnitude.
 
 use htex_dsp::grid::level_rms;
 use htex_host::{Band, Stream};
@@ -89,7 +89,7 @@ pub(crate) fn level(case: &Case) -> Found {
         let magnitude = case.magnitude(&fitted.parameters)?;
         let sound = listen(case, &fitted)?;
         let (told, read) = (level_rms(&magnitude), level_rms(&measured_spectrum(&sound)));
-        // Written so that a level that is no number is heard.
+        // Written so that NaN fails.
         let in_all = rms(&sound);
         let is_nearer = (read - 1.0).abs() < (in_all - 1.0).abs();
         let heard = if is_nearer { read } else { in_all };
@@ -127,7 +127,7 @@ pub(crate) fn spectrum(case: &Case) -> Found {
     for fitted in case.fitted()? {
         let magnitude = case.magnitude(&fitted.parameters)?;
         let distance = spectrum_distance_db(&listen(case, &fitted)?, &magnitude);
-        // Written so that a distance that is no number fails.
+        // Written so that NaN fails.
         if !matches!(distance.partial_cmp(&SPECTRUM_DB), Some(o) if o.is_le()) {
             let what = format!(
                 "the sound is {distance:.2} dB RMS from the magnitude; {SPECTRUM_DB} dB is allowed"
@@ -157,7 +157,7 @@ pub(crate) fn narrow_band(case: &Case) -> Found {
         let heard = &measured_spectrum(&out)[first..first + grid.len()];
         for (level, place) in [(level_rms(heard), "in it"), (rms(&out), "in all")] {
             let off_db = 20.0 * level.log10();
-            // Written so that a level that is no number fails.
+            // Written so that NaN fails.
             if !matches!(off_db.abs().partial_cmp(&NARROW_DB), Some(o) if o.is_le()) {
                 let what = format!(
                     "in the band {} to {} Hz the sound's RMS {place} is {off_db:.2} dB off 1; {NARROW_DB} dB \

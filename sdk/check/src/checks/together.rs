@@ -33,8 +33,8 @@ pub(crate) fn agrees(case: &Case) -> Found {
     for (block, frames) in FRAMES.into_iter().enumerate() {
         if block == RETUNED_AT {
             // A voice may refuse, for one that has another rate; both then play on.
-            let answers = [&mut alone, &mut together].map(|v| v[RETUNED].retune(&second).is_ok());
-            if answers[0] != answers[1] {
+            let retuned = [&mut alone, &mut together].map(|v| v[RETUNED].retune(&second).is_ok());
+            if retuned[0] != retuned[1] {
                 return Err(Finding::failed(
                     "one of two voices of the same history refuses to be retuned",
                 ));

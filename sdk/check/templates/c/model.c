@@ -1,13 +1,20 @@
 /* {{LABEL}} ({{ID}}), to begin with one resonance. White noise runs through a two-pole band-pass filter; the spectrum is the
  * filter's own: 1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)^2).
  *
- * Against htex_model.h alone: no C library, so that the same file is a native library and a WASM
+ * Against htex_model.h and htex_motion_1.h alone: no C library, so that the same file is a native library and a WASM
  * module, of the same samples. See build.sh.
  */
 #include <stdatomic.h>
 
 #include "htex_model.h"
 #include "htex_model_wasm.h"
+#include "htex_motion_1.h"
+
+/* 1: the voice is told the finger's motion (the extension htex.motion/1) and follows it itself; a host then scales
+ * neither frequencies with the speed nor the level with the force. 0: the host does both. */
+#ifndef FOLLOWS_MOTION
+#define FOLLOWS_MOTION 0
+#endif
 
 /* ---- what the model says of itself ---- */
 
@@ -209,6 +216,8 @@ struct voice {
     struct tone now, next, pending;
     int fading, waiting;
     double faded, fade_frames;
+    /* How much of the texture is felt, and where that goes in 10 ms. */
+    double level, goal;
     struct biquad low_cut[EDGE_SECTIONS], high_cut[EDGE_SECTIONS];
 };
 
@@ -290,14 +299,18 @@ static float next_sample(struct voice *v)
     }
     for (int i = 0; i < EDGE_SECTIONS; i++)
         y = tick(&v->high_cut[i], tick(&v->low_cut[i], y));
-    return (float)without_subnormals(y);
+    v->level = without_subnormals(v->level + (v->goal - v->level) * 3.0 / v->fade_frames);
+    y *= v->level;
+    /* The smallest normal number of a float. */
+    return within(y, -0x1p-126, 0x1p-126) ? 0.0f : (float)y;
 }
 
 static void start(struct voice *v, const double *p, uint64_t seed)
 {
     v->random = seed * 0xd1342543de82ef95u + 1; /* apart from the step of noise() */
-    v->fade_frames = 0.010 * v->rate_hz > 1.0 ? 0.010 * v->rate_hz : 1.0;
+    v->fade_frames = 0.010 * v->rate_hz > 3.0 ? 0.010 * v->rate_hz : 3.0;
     v->fading = v->waiting = 0;
+    v->level = v->goal = 1.0;
     v->now = tone_of(p, v);
     make_edges(v);
     /* The filters settle before the first sample is heard. */
@@ -584,7 +597,50 @@ int64_t htex_model_voice_free(int64_t voice)
 
 int64_t htex_model_extension(const uint8_t *id, size_t id_len)
 {
+#if FOLLOWS_MOTION
+    static const char motion[] = "htex.motion/1";
+    size_t same = 0;
+    while (id != NULL && same < id_len && same < sizeof motion - 1 && id[same] == (uint8_t)motion[same])
+        same++;
+    return same == id_len && same == sizeof motion - 1;
+#else
     (void)id;
     (void)id_len;
     return 0;
+#endif
 }
+
+/* ---- the extension htex.motion/1 ---- */
+
+#if FOLLOWS_MOTION
+
+/* What the voice makes of the motion, to begin with: the faster the finger, the stronger the texture, as it was
+ * recorded at 100 mm/s. The position is where a model comes in that is tied to the place. */
+int64_t htex_motion_1_set(int64_t voice, double speed_mm_s, double force_n, double position_mm)
+{
+    struct slot *slot = find(voice);
+    if (slot == NULL)
+        return fail(HTEX_BAD_HANDLE, "no such voice; it may have been freed");
+    if (!within(speed_mm_s, -HTEX_MOTION_1_MAX_SPEED_MM_S, HTEX_MOTION_1_MAX_SPEED_MM_S)
+        || !within(force_n, 0.0, HTEX_MOTION_1_MAX_FORCE_N)
+        || !within(position_mm, -HTEX_MOTION_1_MAX_POSITION_MM, HTEX_MOTION_1_MAX_POSITION_MM))
+        return fail(HTEX_INVALID_ARGUMENT, "speed, force or position is not finite, or beyond its range");
+    slot->voice.goal = clamp((speed_mm_s < 0.0 ? -speed_mm_s : speed_mm_s) / 100.0, 0.0, 4.0);
+    return HTEX_OK;
+}
+
+/* NaN is a speed or force that is not known. This model has no parameter that depends on them. */
+int64_t htex_motion_1_fit(double band_low_hz, double band_high_hz, const double *frequency_hz,
+                          const double *magnitude, size_t bins, const double *signal,
+                          size_t signal_len, double signal_rate_hz, const double *options,
+                          size_t options_len, double speed_mm_s, double force_n, double *parameters,
+                          size_t capacity, double *level_rms)
+{
+    if (!(speed_mm_s != speed_mm_s || within(speed_mm_s, 0.0, HTEX_MOTION_1_MAX_SPEED_MM_S))
+        || !(force_n != force_n || within(force_n, 0.0, HTEX_MOTION_1_MAX_FORCE_N)))
+        return fail(HTEX_INVALID_ARGUMENT, "the recording's speed or force is negative or too large");
+    return htex_model_fit(band_low_hz, band_high_hz, frequency_hz, magnitude, bins, signal, signal_len,
+                          signal_rate_hz, options, options_len, parameters, capacity, level_rms);
+}
+
+#endif

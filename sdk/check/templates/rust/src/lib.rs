@@ -7,6 +7,9 @@
 
 extern crate alloc;
 
+#[cfg(feature = "motion")]
+mod follow;
+
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -25,10 +28,18 @@ const BANDWIDTH_HZ: (f64, f64) = (20.0, 2000.0);
 /// The model.
 pub struct {{TYPE}};
 
+#[cfg(not(feature = "motion"))]
 htex_model::export_model!({{TYPE}}, symbols: "plugin");
+#[cfg(feature = "motion")]
+htex_model::export_model!({{TYPE}}, symbols: "plugin", extensions: [motion]);
+
+#[cfg(not(feature = "motion"))]
+type Sound = ShapedVoice<Shape>;
+#[cfg(feature = "motion")]
+type Sound = follow::Following;
 
 impl Model for {{TYPE}} {
-    type Voice = ShapedVoice<Shape>;
+    type Voice = Sound;
 
     const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
         "{{ID}}",
@@ -91,7 +102,10 @@ impl Model for {{TYPE}} {
         rate_hz: f64,
         seed: u64,
     ) -> Result<Self::Voice, Error> {
-        ShapedVoice::new(parameters, band, rate_hz, seed)
+        let sound = ShapedVoice::new(parameters, band, rate_hz, seed)?;
+        #[cfg(feature = "motion")]
+        let sound = follow::Following::new(sound, rate_hz);
+        Ok(sound)
     }
 }
 

@@ -29,7 +29,7 @@ pub(crate) fn chebyshev(
     let mut sections: Vec<Biquad> = (0..order / 2)
         .map(|k| {
             let (sine, cosine) =
-                libm::sincos(core::f64::consts::PI * (2 * k + 1) as f64 / (2.0 * n));
+                crate::trig::sincos(core::f64::consts::PI * (2 * k + 1) as f64 / (2.0 * n));
             let (real, imaginary) = (libm::sinh(spread) * sine, libm::cosh(spread) * cosine);
             let radius = libm::hypot(real, imaginary);
             let cut = match kind {

@@ -61,7 +61,7 @@ pub fn read_part(band: Band, frequency_hz: f64) -> f64 {
         return 1.0;
     }
     let nearest = libm::round(at);
-    let turn = libm::sin(core::f64::consts::PI * (at - nearest)) / core::f64::consts::PI;
+    let turn = crate::trig::sin(core::f64::consts::PI * (at - nearest)) / core::f64::consts::PI;
     let low = first.max(nearest - WINDOW_BINS) as i64;
     let high = last.min(nearest + WINDOW_BINS) as i64;
     let read: f64 = (low..=high)

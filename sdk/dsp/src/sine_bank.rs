@@ -219,9 +219,10 @@ impl SineBank {
 impl Oscillators {
     /// Where a rotation stands, and by what it turns a sample.
     fn anchor(&mut self, i: usize) {
-        (self.sin[i], self.cos[i]) = libm::sincos(fixed_to_radians(self.phase[i]));
-        (self.turn_sin[i], self.turn_cos[i]) = libm::sincos(fixed_to_radians(self.increment[i]));
-        (self.bend_sin[i], self.bend_cos[i]) = libm::sincos(fixed_to_radians(self.bend[i]));
+        (self.sin[i], self.cos[i]) = crate::trig::sincos(fixed_to_radians(self.phase[i]));
+        (self.turn_sin[i], self.turn_cos[i]) =
+            crate::trig::sincos(fixed_to_radians(self.increment[i]));
+        (self.bend_sin[i], self.bend_cos[i]) = crate::trig::sincos(fixed_to_radians(self.bend[i]));
     }
 
     /// The samples around an anchor, and the factor of their recurrence.

@@ -25,7 +25,7 @@ pub(crate) fn chebyshev(
     // The poles of an analogue low-pass whose ripples end at 1; where it is 3 dB down.
     let spread = libm::asinh(1.0 / ripple) / n;
     let down = libm::cosh(libm::acosh(1.0 / ripple) / n);
-    let tangent = libm::tan(core::f64::consts::PI * edge_hz / rate_hz);
+    let tangent = crate::trig::tan(core::f64::consts::PI * edge_hz / rate_hz);
     let mut sections: Vec<Biquad> = (0..order / 2)
         .map(|k| {
             let (sine, cosine) =

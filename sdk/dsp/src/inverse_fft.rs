@@ -147,7 +147,8 @@ impl Work for Transform<'_> {
         for stage in &self.fft.stages {
             stage.run(from, to);
         }
-        let parts = from.re.iter().zip(&from.im);
+        let half = self.fft.half;
+        let parts = from.re[..half].iter().zip(&from.im[..half]);
         for (pair, (re, im)) in self.out.as_chunks_mut::<2>().0.iter_mut().zip(parts) {
             *pair = [*re, *im];
         }
@@ -175,10 +176,14 @@ impl Stage {
         };
         let twiddle = |i: usize| {
             let (first, k) = (i / radix * groups * WIDTH, i % radix);
+            let (mut of, mut one) = (first / stride, unit(first / stride * k, length));
             let mut both = [Lanes::default(); 2];
             for lane in 0..WIDTH {
                 let p = (first + lane) / stride;
-                (both[0].0[lane], both[1].0[lane]) = unit(p * k, length);
+                if p != of {
+                    (of, one) = (p, unit(p * k, length));
+                }
+                (both[0].0[lane], both[1].0[lane]) = one;
             }
             both
         };
@@ -254,15 +259,25 @@ impl Stage {
     #[cfg_attr(target_family = "wasm", inline(never))]
     #[cfg_attr(not(target_family = "wasm"), inline(always))]
     fn spread(&self, groups: &[f32], out: &mut [f32]) {
-        let (radix, stride) = (self.radix, self.stride);
+        // Results of one `p` stand and stay side by side.
+        match self.stride {
+            s if WIDTH > 4 && s.is_multiple_of(4) => self.spread_by::<4>(groups, out),
+            s if s.is_multiple_of(2) => self.spread_by::<2>(groups, out),
+            _ => self.spread_by::<1>(groups, out),
+        }
+    }
+
+    /// [`Self::spread`] of `N` results at a time.
+    #[inline(always)]
+    fn spread_by<const N: usize>(&self, groups: &[f32], out: &mut [f32]) {
+        let (groups, out) = (groups.as_chunks::<N>().0, out.as_chunks_mut::<N>().0);
+        let (radix, stride, width) = (self.radix, self.stride / N, WIDTH / N);
         let mut i = 0;
-        for out in out
-            .chunks_exact_mut(radix * stride)
-            .take(self.count / stride)
-        {
+        let points = out.chunks_exact_mut(radix * stride);
+        for out in points.take(self.count / self.stride) {
             for q in 0..stride {
-                let results = &groups[i / WIDTH * WIDTH * radix + i % WIDTH..];
-                let results = results.iter().step_by(WIDTH);
+                let results = &groups[i / width * width * radix + i % width..];
+                let results = results.iter().step_by(width);
                 for (out, result) in out[q..].iter_mut().step_by(stride).zip(results) {
                     *out = *result;
                 }

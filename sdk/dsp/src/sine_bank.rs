@@ -264,8 +264,8 @@ impl Oscillators {
             *wave = [before, now];
         }
         let mut chunk = [0.0; CHUNK];
-        for (sample, sum) in chunk.iter_mut().zip(sum.as_flattened()) {
-            *sample = *sum as f32;
+        for (samples, sum) in chunk.as_chunks_mut::<LANES>().0.iter_mut().zip(&sum) {
+            *samples = sum.map(|sum| sum as f32);
         }
         chunk
     }

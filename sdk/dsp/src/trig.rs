@@ -1,4 +1,4 @@
-//! Sines and cosines of bounded angles: those of `libm`, bit for bit, without its reduction of large arguments, which
+//! Sines, cosines and tangents of bounded angles: those of `libm`, bit for bit, without its reduction of large arguments, which
 //! takes 2 kB of a WASM module.
 //!
 //! The series and the reduction are those of FreeBSD's msun, as in `libm`:
@@ -44,9 +44,24 @@ pub fn sincos(x: f64) -> (f64, f64) {
     }
 }
 
+/// The tangent of an angle in radians; NaN where it is not finite.
+pub fn tan(x: f64) -> f64 {
+    let high = high_word(x);
+    if high < TINY_TANGENT {
+        return x;
+    }
+    if high <= QUARTER_PI {
+        return tangent(x, 0.0, false);
+    }
+    let (quarter_turns, y, rest) = reduced(x, high);
+    tangent(y, rest, quarter_turns & 1 == 1)
+}
+
 /// High words of π/4, and of 2⁻²⁷ √2, below which the sine is the angle.
 const QUARTER_PI: u32 = 0x3fe9_21fb;
 const TINY: u32 = 0x3e46_a09e;
+/// The high word of 2⁻²⁷, below which the tangent is the angle.
+const TINY_TANGENT: u32 = 0x3e40_0000;
 /// High words of the angles up to which it is by how many quarter turns they are reduced: 3π/4, 5π/4, 7π/4, 9π/4.
 const TURNS: [u32; 4] = [0x4002_d97c, 0x400f_6a7a, 0x4015_fdbc, 0x401c_463b];
 /// High words that whole quarter turns have, where more digits of π/2 are needed: π/2, π, 3π/2, 2π.
@@ -137,6 +152,55 @@ fn cosine(x: f64, rest: f64) -> f64 {
     w + (((1.0 - w) - half) + (z * r - x * rest))
 }
 
+/// The tangent of `x + rest`, up to π/4, or -1 over it.
+fn tangent(mut x: f64, mut rest: f64, inverse: bool) -> f64 {
+    const T: [f64; 13] = [
+        3.333_333_333_333_341e-1,
+        1.333_333_333_332_012_5e-1,
+        5.396_825_397_622_605e-2,
+        2.186_948_829_485_954_2e-2,
+        8.863_239_823_599_3e-3,
+        3.592_079_107_591_312_4e-3,
+        1.456_209_454_325_290_3e-3,
+        5.880_412_408_202_641e-4,
+        2.464_631_348_184_699e-4,
+        7.817_944_429_395_571e-5,
+        7.140_724_913_826_082e-5,
+        -1.855_863_748_552_754_6e-5,
+        2.590_730_518_636_337e-5,
+    ];
+    const PI_4: [f64; 2] = [core::f64::consts::FRAC_PI_4, 3.061_616_997_868_383e-17];
+    /// The high word of an angle of 0.6744, from which on the series is that of π/4 less the angle.
+    const LARGE: u32 = 0x3fe5_9428;
+    let sign = f64::copysign(1.0, x);
+    let is_large = high_word(x) >= LARGE;
+    if is_large {
+        x = (PI_4[0] - sign * x) + (PI_4[1] - sign * rest);
+        rest = 0.0;
+    }
+    let z = x * x;
+    let w = z * z;
+    let odd = T[1] + w * (T[3] + w * (T[5] + w * (T[7] + w * (T[9] + w * T[11]))));
+    let even = z * (T[2] + w * (T[4] + w * (T[6] + w * (T[8] + w * (T[10] + w * T[12])))));
+    let cube = z * x;
+    let r = rest + z * (cube * (odd + even) + rest) + cube * T[0];
+    let w = x + r;
+    if is_large {
+        let s = if inverse { -1.0 } else { 1.0 };
+        return sign * (s - 2.0 * (x + (r - w * w / (w + s))));
+    }
+    if !inverse {
+        return w;
+    }
+    // A quotient of rounded numbers is off by two units of the last digit.
+    let short = |x: f64| f64::from_bits(x.to_bits() & 0xffff_ffff_0000_0000);
+    let w0 = short(w);
+    let v = r - (w0 - x);
+    let a = -1.0 / w;
+    let a0 = short(a);
+    a0 + a * (1.0 + a0 * w0 + a0 * v)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -149,6 +213,7 @@ mod tests {
             let found = sincos(x);
             let bits = |(s, c): (f64, f64)| [s.to_bits(), c.to_bits()];
             assert_eq!(bits(found), bits((sine, cosine)), "{x:e}");
+            assert_eq!(tan(x).to_bits(), libm::tan(x).to_bits(), "{x:e}");
             assert_eq!(
                 bits((sin(x), cos(x))),
                 bits((libm::sin(x), libm::cos(x))),

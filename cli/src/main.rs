@@ -11,6 +11,8 @@ mod guardian;
 mod metadata;
 mod models;
 mod motions;
+#[cfg(not(feature = "schemas"))]
+mod no_schemas;
 mod output;
 mod outputs;
 mod playing;

@@ -4,10 +4,23 @@ use std::path::{Path, PathBuf};
 
 use htex_device::SettingKind;
 use htex_format::{Finding, Findings, Report, Severity, explain};
+#[cfg(feature = "schemas")]
 use htex_schema::{Schema, Violation};
 use serde_json::{Map, Value, json};
 
 use crate::failure::Failure;
+#[cfg(not(feature = "schemas"))]
+use crate::no_schemas::{Schema, Violation};
+
+/// What to say where documents cannot be held to schemas.
+pub(crate) const ABSENT: Option<&str> = if cfg!(feature = "schemas") {
+    None
+} else {
+    Some(
+        "this program was built without its validator of JSON Schemas; build it with the Cargo feature `schemas`, which \
+         is on by default",
+    )
+};
 
 /// Findings that a report holds, before it says that there are more.
 const KEPT: usize = 100;
@@ -110,6 +123,9 @@ pub(crate) struct ExtensionSchema {
 impl ExtensionSchema {
     pub(crate) fn read(argument: &str) -> Result<Self, Failure> {
         let wrong = |what: String| Failure::Usage(format!("--extension-schema {argument}: {what}"));
+        if let Some(absent) = ABSENT {
+            return Err(wrong(absent.to_owned()));
+        }
         let form = || wrong("it looks like com.vendor.NAME/1=FILE".to_owned());
         let (name, file) = argument.split_once('=').ok_or_else(form)?;
         if !htex_format::is_extension_name(name) {

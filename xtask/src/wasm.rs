@@ -9,11 +9,13 @@ pub(crate) const TARGET: &str = "wasm32-unknown-unknown";
 /// The profile of modules, in the workspace's manifest; also the folder they are built in.
 pub(crate) const PROFILE: &str = "module";
 
-/// Vectors of 128 bits, which every engine has; and calls of larger functions stay calls, as at level `s`:
-/// a third less code in loops that are as fast.
+/// Vectors of 128 bits, which every engine has. Calls of larger functions stay calls, and loops whose number of rounds is
+/// not known stay one loop: without copies for several rounds, for the first one, and for vectors. Loops that are to use
+/// vectors work on arrays.
 const FLAGS: (&str, &str) = (
     "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS",
-    "-Ctarget-feature=+simd128 -Cllvm-args=-inline-threshold=100",
+    "-Ctarget-feature=+simd128 -Cno-vectorize-loops -Cllvm-args=-inline-threshold=75 \
+     -Cllvm-args=-unroll-runtime=false -Cllvm-args=-unroll-allow-partial=false -Cllvm-args=-unroll-allow-peeling=false",
 );
 
 const NO_TOOLCHAIN: &str = "no toolchain for WASM modules was found: `rustup target add \

@@ -9,10 +9,10 @@ use htex_host::{Registry, Search, WasmLimits};
 use serde_json::Value;
 
 use crate::failure::Failure;
-use crate::output::{print, print_json, shown};
+use crate::output::{print, print_json, shown, warn};
 use crate::recordings::RecordingArgs;
 use crate::scenes::SceneArgs;
-use crate::schemas::{ExtensionSchema, Named};
+use crate::schemas::{ABSENT, ExtensionSchema, Named};
 use crate::wasm_limits::WasmLimit;
 
 /// Check assets, scenes (*.json), descriptors of models and devices (*.json) and recordings against
@@ -64,6 +64,9 @@ impl Validate {
             let sentence =
                 "the options for reading recordings go with a recording, and none is given";
             return Err(Failure::Usage(sentence.to_owned()));
+        }
+        if let (Some(absent), true) = (ABSENT, kinds.iter().any(|kind| *kind != Kind::Recording)) {
+            warn(&[format!("documents are held to their rules alone: {absent}")]);
         }
         for (path, kind) in self.files.iter().zip(kinds) {
             let report = match kind {

@@ -74,7 +74,7 @@ fn autocorrelation(input: &FitInput<'_>, largest: f64, lag_s: f64, rate_hz: f64)
     bins.filter(|(f, _)| **f <= 0.5 * rate_hz)
         .map(|(f, m)| {
             let power = (m / largest) * (m / largest) / 3.0;
-            power * libm::cos(core::f64::consts::TAU * f * lag_s)
+            power * htex_dsp::trig::cos(core::f64::consts::TAU * f * lag_s)
         })
         .sum()
 }

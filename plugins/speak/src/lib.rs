@@ -318,7 +318,7 @@ fn hann_kernel(bins: f64) -> f64 {
         return 0.5;
     }
     let a = core::f64::consts::PI * d;
-    libm::sin(a) / (a * (1.0 - d * d))
+    htex_dsp::trig::sin(a) / (a * (1.0 - d * d))
 }
 
 fn flat(frequency_hz: &[f64], amplitude: &[f64], phase: f64) -> Vec<f64> {

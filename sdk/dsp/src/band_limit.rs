@@ -145,7 +145,7 @@ impl Turns {
         };
         for (i, (hz, part)) in points.iter().enumerate() {
             let angle = core::f64::consts::TAU * hz / rate_hz;
-            (turns.sin[i], turns.cos[i]) = libm::sincos(angle);
+            (turns.sin[i], turns.cos[i]) = crate::trig::sincos(angle);
             turns.part[i] = *part;
         }
         turns

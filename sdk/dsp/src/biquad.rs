@@ -34,7 +34,7 @@ impl Biquad {
 
     /// `|H|` at `f_hz` for the sampling rate `rate_hz`.
     pub fn magnitude(&self, f_hz: f64, rate_hz: f64) -> f64 {
-        let (sine, cosine) = libm::sincos(PI * f_hz / rate_hz);
+        let (sine, cosine) = crate::trig::sincos(PI * f_hz / rate_hz);
         let squared = |c0: f64, c1: f64, c2: f64| {
             if sine.abs() < cosine.abs() {
                 squared_magnitude(c0, c1, c2, sine * sine)

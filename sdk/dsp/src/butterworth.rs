@@ -72,7 +72,7 @@ fn design(kind: Kind, order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections
         // Poles at angles π/2 ± (2k + 1)π/(2n) from the imaginary axis; 1/(2Q) is the cosine of a
         // pole's angle to the negative real axis, largest Q (k = 0) last.
         let k = order / 2 - 1 - pair;
-        let half_inverse_q = libm::sin(PI * (2 * k + 1) as f64 / (2 * order) as f64);
+        let half_inverse_q = crate::trig::sin(PI * (2 * k + 1) as f64 / (2 * order) as f64);
         sections[len] = second_order(kind, omega, half_inverse_q);
         len += 1;
     }
@@ -87,7 +87,7 @@ pub(crate) fn in_range(edge_hz: f64, rate_hz: f64) -> bool {
 /// Bilinear transform of `1 / (s + 1)` or `s / (s + 1)`, written with sine and cosine of half the
 /// cut-off angle: near Nyquist the usual tangent overflows, these do not.
 fn first_order(kind: Kind, omega: f64) -> Biquad {
-    let (sine, cosine) = libm::sincos(omega / 2.0);
+    let (sine, cosine) = crate::trig::sincos(omega / 2.0);
     let scale = 1.0 / (sine + cosine);
     let (b0, b1) = match kind {
         Kind::LowPass => (sine * scale, sine * scale),
@@ -104,9 +104,9 @@ fn first_order(kind: Kind, omega: f64) -> Biquad {
 
 /// Bilinear transform of `1 / (s² + s/Q + 1)` or `s² / (s² + s/Q + 1)`.
 pub(crate) fn second_order(kind: Kind, omega: f64, half_inverse_q: f64) -> Biquad {
-    let alpha = libm::sin(omega) * half_inverse_q;
+    let alpha = crate::trig::sin(omega) * half_inverse_q;
     let scale = 1.0 / (1.0 + alpha);
-    let (sine, cosine) = libm::sincos(omega / 2.0);
+    let (sine, cosine) = crate::trig::sincos(omega / 2.0);
     let (b0, sign) = match kind {
         Kind::LowPass => (sine * sine * scale, 1.0),
         Kind::HighPass => (cosine * cosine * scale, -1.0),
@@ -115,7 +115,7 @@ pub(crate) fn second_order(kind: Kind, omega: f64, half_inverse_q: f64) -> Biqua
         b0,
         b1: 2.0 * sign * b0,
         b2: b0,
-        a1: -2.0 * libm::cos(omega) * scale,
+        a1: -2.0 * crate::trig::cos(omega) * scale,
         a2: (1.0 - alpha) * scale,
     }
 }

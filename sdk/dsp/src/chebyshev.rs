@@ -25,11 +25,11 @@ pub(crate) fn chebyshev(
     // The poles of an analogue low-pass whose ripples end at 1; where it is 3 dB down.
     let spread = libm::asinh(1.0 / ripple) / n;
     let down = libm::cosh(libm::acosh(1.0 / ripple) / n);
-    let tangent = libm::tan(core::f64::consts::PI * edge_hz / rate_hz);
+    let tangent = crate::trig::tan(core::f64::consts::PI * edge_hz / rate_hz);
     let mut sections: Vec<Biquad> = (0..order / 2)
         .map(|k| {
             let (sine, cosine) =
-                libm::sincos(core::f64::consts::PI * (2 * k + 1) as f64 / (2.0 * n));
+                crate::trig::sincos(core::f64::consts::PI * (2 * k + 1) as f64 / (2.0 * n));
             let (real, imaginary) = (libm::sinh(spread) * sine, libm::cosh(spread) * cosine);
             let radius = libm::hypot(real, imaginary);
             let cut = match kind {

@@ -66,5 +66,5 @@ fn scale(k: usize, n: usize) -> f64 {
 /// `cos(π k (2i + 1) / 2n)`, its argument reduced in whole numbers first.
 fn cosine(k: usize, i: usize, n: usize) -> f64 {
     let turn = k.wrapping_mul(2 * i + 1) % (4 * n);
-    libm::cos(PI * turn as f64 / (2 * n) as f64)
+    crate::trig::cos(PI * turn as f64 / (2 * n) as f64)
 }

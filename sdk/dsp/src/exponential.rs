@@ -6,6 +6,8 @@ use crate::wide::{Work, wide};
 
 /// Added to a number of size below 2⁵¹, it leaves the nearest whole number in the low bits of the sum.
 const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
+/// Numbers that are worked on side by side: in a module, whose loops are not made to by the compiler (`xtask/src/wasm.rs`).
+const GROUP: usize = if cfg!(target_family = "wasm") { 4 } else { 1 };
 /// Where exponentials are cut off: the largest and smallest that are normal numbers of both signs of the exponent.
 const RANGE: (f64, f64) = (-700.0, 700.0);
 /// Taylor coefficients from the highest on; up to half of ln 2 less than 3e-10 is left out.
@@ -40,7 +42,15 @@ struct Exponentials<'a>(&'a mut [f64]);
 impl Work for Exponentials<'_> {
     #[inline(always)]
     fn run(self) {
-        for x in self.0 {
+        let (groups, rest) = self.0.as_chunks_mut::<GROUP>();
+        for group in groups {
+            let mut now = *group;
+            for x in &mut now {
+                *x = exponential(*x);
+            }
+            *group = now;
+        }
+        for x in rest {
             *x = exponential(*x);
         }
     }

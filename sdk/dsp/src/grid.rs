@@ -79,7 +79,7 @@ impl ReadPart {
             return 1.0;
         }
         let nearest = libm::round(at);
-        let turn = libm::sin(core::f64::consts::PI * (at - nearest)) / core::f64::consts::PI;
+        let turn = crate::trig::sin(core::f64::consts::PI * (at - nearest)) / core::f64::consts::PI;
         let low = first.max(nearest - WINDOW_BINS) as i64;
         let high = last.min(nearest + WINDOW_BINS) as i64;
         let read: f64 = (low..=high)

@@ -7,11 +7,9 @@
 use alloc::vec::Vec;
 use core::f64::consts::TAU;
 
-use crate::lanes::{Lanes, Number};
+use crate::butterflies::{Butterfly, Five, Four, Three, Two};
+use crate::lanes::{Lanes, WIDTH};
 use crate::wide::{Work, wide};
-
-/// Whether code for wider registers than WASM has, which takes bytes of its own, is worth them.
-const WIDE: bool = !cfg!(target_family = "wasm");
 
 /// Real signals of one even length out of their spectra. Holds what depends on the length alone.
 #[derive(Debug, Clone)]
@@ -29,16 +27,19 @@ pub struct Workspace {
     to: Complexes,
 }
 
-/// One radix: `length` points, `stride` of them at a time.
+/// One radix. Butterfly `i` reads the points `i + count j`, for each `j` below the radix, and writes the points
+/// `radix stride p + stride k + q`, for each `k`, where `i = stride p + q`.
 #[derive(Debug, Clone)]
 struct Stage {
     radix: usize,
-    length: usize,
     stride: usize,
-    /// `exp(2πi p k / length)` for each `p`, and `k` in 0 to `radix - 1`.
-    twiddles: Twiddles,
-    /// The same in the order of a first stage, which goes along `p`: all `p` of each `k`, cosines and sines apart.
-    along: Complexes,
+    /// Butterflies of the stage.
+    count: usize,
+    /// Groups of [`WIDTH`] butterflies that follow each other and have the same twiddles. A stage whose stride is not a
+    /// multiple of the width has 1, and writes its results in groups that are then spread.
+    groups: usize,
+    /// `exp(2πi p k / length)` for each such group and each `k`: cosines, then sines.
+    twiddles: Vec<[Lanes; 2]>,
 }
 
 /// Real and imaginary parts apart, as vector instructions want them.
@@ -49,6 +50,8 @@ struct Complexes {
 }
 
 type Twiddles = Vec<(f32, f32)>;
+
+const LARGEST_RADIX: usize = 5;
 
 /// The least length from `least` on that has no prime factor above 5.
 ///
@@ -143,9 +146,9 @@ impl Work for Transform<'_> {
             .fold(from, self.first, self.directions, self.amplitude);
         for stage in &self.fft.stages {
             stage.run(from, to);
-            core::mem::swap(from, to);
         }
-        let parts = from.re.iter().zip(&from.im);
+        let half = self.fft.half;
+        let parts = from.re[..half].iter().zip(&from.im[..half]);
         for (pair, (re, im)) in self.out.as_chunks_mut::<2>().0.iter_mut().zip(parts) {
             *pair = [*re, *im];
         }
@@ -153,8 +156,9 @@ impl Work for Transform<'_> {
 }
 
 impl Complexes {
+    /// Numbers for `len` points, and for the lanes beside the last ones of each row of a stage.
     fn zeros(len: usize) -> Self {
-        let zeros = || alloc::vec![0.0; len];
+        let zeros = || alloc::vec![0.0; len + LARGEST_RADIX * (WIDTH - 1)];
         Self {
             re: zeros(),
             im: zeros(),
@@ -164,251 +168,160 @@ impl Complexes {
 
 impl Stage {
     fn new(radix: usize, length: usize, stride: usize) -> Self {
-        let twiddle = |i: usize| unit(i / radix * (i % radix), length);
-        let parts = length / radix;
-        let along = |i: usize| unit(i % parts * (i / parts), length);
-        let (re, im) = match stride {
-            1 if WIDE => (0..length).map(along).unzip(),
-            _ => Default::default(),
+        let count = length / radix * stride;
+        let groups = if stride.is_multiple_of(WIDTH) {
+            stride / WIDTH
+        } else {
+            1
+        };
+        let twiddle = |i: usize| {
+            let (first, k) = (i / radix * groups * WIDTH, i % radix);
+            let (mut of, mut one) = (first / stride, unit(first / stride * k, length));
+            let mut both = [Lanes::default(); 2];
+            for lane in 0..WIDTH {
+                let p = (first + lane) / stride;
+                if p != of {
+                    (of, one) = (p, unit(p * k, length));
+                }
+                (both[0].0[lane], both[1].0[lane]) = one;
+            }
+            both
         };
         Self {
             radix,
-            length,
             stride,
-            twiddles: (0..length).map(twiddle).collect(),
-            along: Complexes { re, im },
+            count,
+            groups,
+            twiddles: (0..radix * count.div_ceil(groups * WIDTH))
+                .map(twiddle)
+                .collect(),
+        }
+    }
+
+    /// Transforms the points in `from`, which uses `to` as well.
+    #[inline(always)]
+    fn run(&self, from: &mut Complexes, to: &mut Complexes) {
+        match self.radix {
+            2 => self.run_by::<2, Two>(from, to),
+            3 => self.run_by::<3, Three>(from, to),
+            4 => self.run_by::<4, Four>(from, to),
+            _ => self.run_by::<5, Five>(from, to),
+        }
+        if self.stride.is_multiple_of(WIDTH) {
+            core::mem::swap(from, to);
         }
     }
 
     #[inline(always)]
-    fn run(&self, from: &Complexes, to: &mut Complexes) {
+    fn run_by<const R: usize, B: Butterfly<R>>(&self, from: &mut Complexes, to: &mut Complexes) {
+        self.turn::<R, B>(from, to);
         match self.stride {
-            1 if WIDE => self.run_first(from, to),
-            s if WIDE && s.is_multiple_of(8) => self.run_on::<Lanes<8>>(from, to),
-            s if s.is_multiple_of(4) => self.run_on::<Lanes<4>>(from, to),
-            _ => self.run_on::<f32>(from, to),
-        }
-    }
-
-    #[inline(always)]
-    fn run_on<T: Number>(&self, from: &Complexes, to: &mut Complexes) {
-        match self.radix {
-            2 => self.run_by::<2, T, Two>(from, to),
-            3 => self.run_by::<3, T, Three>(from, to),
-            4 => self.run_by::<4, T, Four>(from, to),
-            _ => self.run_by::<5, T, Five>(from, to),
-        }
-    }
-
-    /// The stage of stride 1, whose neighbours are those of `p`.
-    #[inline(always)]
-    fn run_first(&self, from: &Complexes, to: &mut Complexes) {
-        match self.radix {
-            2 => self.run_along::<2, Two>(from, to),
-            3 => self.run_along::<3, Three>(from, to),
-            4 => self.run_along::<4, Four>(from, to),
-            _ => self.run_along::<5, Five>(from, to),
-        }
-    }
-
-    #[inline(always)]
-    fn run_along<const R: usize, B: Butterfly<R>>(&self, from: &Complexes, to: &mut Complexes) {
-        let eights = self.length / R / 8 * 8;
-        self.part_along::<R, Lanes<8>, B>(from, to, 0..eights);
-        self.part_along::<R, f32, B>(from, to, eights..self.length / R);
-    }
-
-    /// As many neighbours as there are in a `T` at a time.
-    #[inline(always)]
-    fn part_along<const R: usize, T: Number, B: Butterfly<R>>(
-        &self,
-        from: &Complexes,
-        to: &mut Complexes,
-        range: core::ops::Range<usize>,
-    ) {
-        let parts = self.length / R;
-        for p in range.step_by(T::LEN) {
-            let (mut re, mut im) = ([T::default(); R], [T::default(); R]);
-            for j in 0..R {
-                re[j] = load::<T>(&from.re, p + parts * j);
-                im[j] = load::<T>(&from.im, p + parts * j);
+            1 => {
+                spread_first::<R>(&to.re, &mut from.re);
+                spread_first::<R>(&to.im, &mut from.im);
             }
-            let (re, im) = B::turn(re, im);
-            let out_re = &mut to.re[R * p..R * (p + T::LEN)];
-            let out_im = &mut to.im[R * p..R * (p + T::LEN)];
-            for k in 0..R {
-                let cos = load::<T>(&self.along.re, p + parts * k);
-                let sin = load::<T>(&self.along.im, p + parts * k);
-                let new_re = re[k].times(cos) - im[k].times(sin);
-                let new_im = im[k].times(cos) + re[k].times(sin);
-                for i in 0..T::LEN {
-                    out_re[R * i + k] = new_re.number(i);
-                    out_im[R * i + k] = new_im.number(i);
-                }
+            s if !s.is_multiple_of(WIDTH) => {
+                self.spread(&to.re, &mut from.re);
+                self.spread(&to.im, &mut from.im);
             }
+            _ => {}
         }
     }
 
     #[inline(always)]
-    fn run_by<const R: usize, T: Number, B: Butterfly<R>>(
-        &self,
-        from: &Complexes,
-        to: &mut Complexes,
-    ) {
-        let (s, parts) = (self.stride, self.length / R);
+    fn turn<const R: usize, B: Butterfly<R>>(&self, from: &Complexes, to: &mut Complexes) {
+        let run = self.groups * WIDTH;
         let twiddles = self.twiddles.as_chunks::<R>().0;
-        let out_re = to.re.chunks_exact_mut(R * s);
-        let out = out_re.zip(to.im.chunks_exact_mut(R * s));
-        for ((p, twiddle), (out_re, out_im)) in twiddles.iter().enumerate().zip(out) {
-            let rows = |x| core::array::from_fn(|j| groups::<T>(x, s * (p + parts * j), s));
+        let out_re = to.re.chunks_exact_mut(R * run);
+        let out = out_re.zip(to.im.chunks_exact_mut(R * run));
+        for ((i, twiddle), (out_re, out_im)) in twiddles.iter().enumerate().zip(out) {
+            let rows = |x| core::array::from_fn(|j| groups(x, run * i + self.count * j, run));
             let (re, im): ([_; R], [_; R]) = (rows(&from.re), rows(&from.im));
-            let out_re = rows_mut::<R, T>(out_re, s);
-            let out_im = rows_mut::<R, T>(out_im, s);
-            for q in 0..s / T::LEN {
-                let (mut now_re, mut now_im) = ([T::default(); R], [T::default(); R]);
+            let out_re = rows_mut::<R>(out_re, run);
+            let out_im = rows_mut::<R>(out_im, run);
+            for q in 0..self.groups {
+                let (mut now_re, mut now_im) = ([Lanes::default(); R], [Lanes::default(); R]);
                 for j in 0..R {
-                    now_re[j] = T::load(re[j][q]);
-                    now_im[j] = T::load(im[j][q]);
+                    now_re[j] = Lanes(re[j][q]);
+                    now_im[j] = Lanes(im[j][q]);
                 }
                 let (re, im) = B::turn(now_re, now_im);
                 for k in 0..R {
-                    let (cos, sin) = twiddle[k];
-                    out_re[k][q] = (re[k] * cos - im[k] * sin).store();
-                    out_im[k][q] = (im[k] * cos + re[k] * sin).store();
+                    let [cos, sin] = twiddle[k];
+                    out_re[k][q] = (re[k] * cos - im[k] * sin).0;
+                    out_im[k][q] = (im[k] * cos + re[k] * sin).0;
                 }
+            }
+        }
+    }
+
+    /// From groups of [`WIDTH`] results, all `k` of each behind one another, to the places of the points.
+    #[cfg_attr(target_family = "wasm", inline(never))]
+    #[cfg_attr(not(target_family = "wasm"), inline(always))]
+    fn spread(&self, groups: &[f32], out: &mut [f32]) {
+        // Results of one `p` stand and stay side by side.
+        match self.stride {
+            s if WIDTH > 4 && s.is_multiple_of(4) => self.spread_by::<4>(groups, out),
+            s if s.is_multiple_of(2) => self.spread_by::<2>(groups, out),
+            _ => self.spread_by::<1>(groups, out),
+        }
+    }
+
+    /// [`Self::spread`] of `N` results at a time.
+    #[inline(always)]
+    fn spread_by<const N: usize>(&self, groups: &[f32], out: &mut [f32]) {
+        let (groups, out) = (groups.as_chunks::<N>().0, out.as_chunks_mut::<N>().0);
+        let (radix, stride, width) = (self.radix, self.stride / N, WIDTH / N);
+        let mut i = 0;
+        let points = out.chunks_exact_mut(radix * stride);
+        for out in points.take(self.count / self.stride) {
+            for q in 0..stride {
+                let results = &groups[i / width * width * radix + i % width..];
+                let results = results.iter().step_by(width);
+                for (out, result) in out[q..].iter_mut().step_by(stride).zip(results) {
+                    *out = *result;
+                }
+                i += 1;
             }
         }
     }
 }
 
-/// The numbers from `at` on.
-#[inline(always)]
-fn load<T: Number>(from: &[f32], at: usize) -> T {
-    T::load(T::groups(&from[at..at + T::LEN])[0])
+/// [`Stage::spread`] of a first stage, whose stride is 1.
+#[cfg_attr(target_family = "wasm", inline(never))]
+#[cfg_attr(not(target_family = "wasm"), inline(always))]
+fn spread_first<const R: usize>(groups: &[f32], out: &mut [f32]) {
+    let groups = groups.as_chunks::<WIDTH>().0.as_chunks::<R>().0;
+    let out = out.as_chunks_mut::<R>().0.as_chunks_mut::<WIDTH>().0;
+    for (out, group) in out.iter_mut().zip(groups) {
+        for k in 0..R {
+            for i in 0..WIDTH {
+                out[i][k] = group[k][i];
+            }
+        }
+    }
 }
-
-/// A transform of `R` numbers, real and imaginary parts apart. A trait, as functions that are passed are not always
-/// compiled into the one that has the wide registers.
-trait Butterfly<const R: usize> {
-    fn turn<T: Number>(re: [T; R], im: [T; R]) -> ([T; R], [T; R]);
-}
-
-struct Two;
-struct Three;
-struct Four;
-struct Five;
 
 /// The groups of `len` numbers from `first` on. What the bounds of all rows of a loop are known by is
 /// this length: nothing is checked at each number.
 #[inline(always)]
-fn groups<T: Number>(from: &[f32], first: usize, len: usize) -> &[T::Group] {
-    &T::groups(&from[first..first + len])[..len / T::LEN]
+fn groups(from: &[f32], first: usize, len: usize) -> &[[f32; WIDTH]] {
+    &from[first..first + len].as_chunks().0[..len / WIDTH]
 }
 
 /// `R` rows of `len` numbers each.
 #[inline(always)]
-fn rows_mut<const R: usize, T: Number>(to: &mut [f32], len: usize) -> [&mut [T::Group]; R] {
+fn rows_mut<const R: usize>(to: &mut [f32], len: usize) -> [&mut [[f32; WIDTH]]; R] {
     let mut rows = to.chunks_exact_mut(len);
     core::array::from_fn(|_| {
-        let row = T::groups_mut(rows.next().unwrap_or_default());
-        &mut row[..len / T::LEN]
+        let row = rows.next().unwrap_or_default().as_chunks_mut().0;
+        &mut row[..len / WIDTH]
     })
-}
-
-impl Butterfly<2> for Two {
-    #[inline(always)]
-    fn turn<T: Number>([a, b]: [T; 2], [ai, bi]: [T; 2]) -> ([T; 2], [T; 2]) {
-        ([a + b, a - b], [ai + bi, ai - bi])
-    }
-}
-
-impl Butterfly<3> for Three {
-    #[inline(always)]
-    fn turn<T: Number>(re: [T; 3], im: [T; 3]) -> ([T; 3], [T; 3]) {
-        const SIN: f32 = 0.866_025_4;
-        let (sum, sum_i) = (re[1] + re[2], im[1] + im[2]);
-        let (turned, turned_i) = ((im[2] - im[1]) * SIN, (re[1] - re[2]) * SIN);
-        let (mean, mean_i) = (re[0] - sum * 0.5, im[0] - sum_i * 0.5);
-        (
-            [re[0] + sum, mean + turned, mean - turned],
-            [im[0] + sum_i, mean_i + turned_i, mean_i - turned_i],
-        )
-    }
-}
-
-impl Butterfly<4> for Four {
-    #[inline(always)]
-    fn turn<T: Number>(re: [T; 4], im: [T; 4]) -> ([T; 4], [T; 4]) {
-        let (even, even_i) = Two::turn([re[0], re[2]], [im[0], im[2]]);
-        let (odd, odd_i) = Two::turn([re[1], re[3]], [im[1], im[3]]);
-        (
-            [
-                even[0] + odd[0],
-                even[1] - odd_i[1],
-                even[0] - odd[0],
-                even[1] + odd_i[1],
-            ],
-            [
-                even_i[0] + odd_i[0],
-                even_i[1] + odd[1],
-                even_i[0] - odd_i[0],
-                even_i[1] - odd[1],
-            ],
-        )
-    }
-}
-
-impl Butterfly<5> for Five {
-    #[inline(always)]
-    fn turn<T: Number>(re: [T; 5], im: [T; 5]) -> ([T; 5], [T; 5]) {
-        let (sum, sum_i) = (sums(re), sums(im));
-        let (mean, mean_i) = (fifths(re[0], sum), fifths(im[0], sum_i));
-        let (t, t_i) = (turned(im), turned(re));
-        (
-            [
-                re[0] + (sum[0] + sum[1]),
-                mean[0] - t[0],
-                mean[1] - t[1],
-                mean[1] + t[1],
-                mean[0] + t[0],
-            ],
-            [
-                im[0] + (sum_i[0] + sum_i[1]),
-                mean_i[0] + t_i[0],
-                mean_i[1] + t_i[1],
-                mean_i[1] - t_i[1],
-                mean_i[0] - t_i[0],
-            ],
-        )
-    }
-}
-
-#[inline(always)]
-fn sums<T: Number>(x: [T; 5]) -> [T; 2] {
-    [x[1] + x[4], x[2] + x[3]]
-}
-
-/// By the cosines of one and of two fifths of a turn.
-#[inline(always)]
-fn fifths<T: Number>(first: T, [a, b]: [T; 2]) -> [T; 2] {
-    const COS: [f32; 2] = [0.309_017, -0.809_017];
-    [
-        first + (a * COS[0] + b * COS[1]),
-        first + (a * COS[1] + b * COS[0]),
-    ]
-}
-
-/// By the sines of one and of two fifths of a turn.
-#[inline(always)]
-fn turned<T: Number>(x: [T; 5]) -> [T; 2] {
-    const SIN: [f32; 2] = [0.951_056_54, 0.587_785_25];
-    let [a, b] = [x[1] - x[4], x[2] - x[3]];
-    [a * SIN[0] + b * SIN[1], a * SIN[1] - b * SIN[0]]
 }
 
 /// `exp(2πi k / length)` as cosine and sine.
 fn unit(k: usize, length: usize) -> (f32, f32) {
-    let (sin, cos) = libm::sincos(TAU * (k % length) as f64 / length as f64);
+    let (sin, cos) = crate::trig::sincos(TAU * (k % length) as f64 / length as f64);
     (cos as f32, sin as f32)
 }
 

@@ -52,7 +52,11 @@ pub(crate) fn kaiser_length(width: f64) -> usize {
 
 fn sinc(x: f64) -> f64 {
     let a = core::f64::consts::PI * x;
-    if x == 0.0 { 1.0 } else { libm::sin(a) / a }
+    if x == 0.0 {
+        1.0
+    } else {
+        crate::trig::sin(a) / a
+    }
 }
 
 /// Kaiser's window.

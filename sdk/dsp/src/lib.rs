@@ -15,6 +15,7 @@ pub mod band_limit;
 pub mod bands;
 pub mod beta;
 pub mod biquad;
+mod butterflies;
 pub mod butterworth;
 mod chebyshev;
 mod circle;
@@ -51,6 +52,7 @@ pub mod sine_bank;
 #[cfg(feature = "std")]
 pub mod spectrum;
 pub mod triangles;
+pub mod trig;
 mod upsample;
 pub mod warp;
 mod wide;

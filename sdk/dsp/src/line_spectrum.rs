@@ -73,7 +73,7 @@ fn angle_of_phase(reflection: &[f64], target: f64, from: f64) -> f64 {
 /// the lag θ to `ω + θ + 2 arg(1 - k e^{-iθ})`; for |k| < 1 that argument stays within ±π/2.
 fn all_pass_lag(reflection: &[f64], omega: f64) -> (f64, f64) {
     reflection.iter().fold((omega, 1.0), |(theta, slope), k| {
-        let (sine, cosine) = libm::sincos(theta);
+        let (sine, cosine) = crate::trig::sincos(theta);
         let turn = 2.0 * libm::atan2(k * sine, 1.0 - k * cosine);
         let power = 1.0 - 2.0 * k * cosine + k * k;
         let stretch = 1.0 + 2.0 * k * (cosine - k) / power;
@@ -120,7 +120,7 @@ fn with_zeros_at(fixed: &[f64], lsf: &[f64], first: usize) -> [f64; MOST_LINES +
     product[..fixed.len()].copy_from_slice(fixed);
     let (mut len, count) = (fixed.len(), (lsf.len() + 1 - first) / 2);
     for i in spread_order(count) {
-        let middle = -2.0 * libm::cos(lsf[first + 2 * i]);
+        let middle = -2.0 * crate::trig::cos(lsf[first + 2 * i]);
         len += 2;
         for j in (1..len).rev() {
             let two_below = if j > 1 { product[j - 2] } else { 0.0 };

@@ -128,7 +128,8 @@ pub fn levinson_durbin(autocorrelation: &[f64], order: usize) -> LinearPredictio
 /// total power. Bins of zero power, as outside the band, are what the model then sees there.
 pub fn autocorrelation_from_power(power: &[f64], order: usize) -> Vec<f64> {
     let nyquist = power.len().saturating_sub(1).max(1);
-    let cosine = |turn: usize| libm::cos(PI * (turn % (2 * nyquist)) as f64 / nyquist as f64);
+    let cosine =
+        |turn: usize| crate::trig::cos(PI * (turn % (2 * nyquist)) as f64 / nyquist as f64);
     (0..=order)
         .map(|m| {
             power
@@ -250,7 +251,7 @@ pub fn ar_magnitude(coefficients: &[f64], f_hz: f64, rate_hz: f64) -> f64 {
     let omega = 2.0 * PI * f_hz / rate_hz;
     let (mut re, mut im) = (1.0, 0.0);
     for (i, a) in coefficients.iter().enumerate() {
-        let (sine, cosine) = libm::sincos(omega * (i + 1) as f64);
+        let (sine, cosine) = crate::trig::sincos(omega * (i + 1) as f64);
         re -= a * cosine;
         im += a * sine;
     }

@@ -104,7 +104,11 @@ fn frame_read_part(part: &ReadPart, hz: f64, spacing_hz: f64) -> f64 {
     for step in -steps..=steps {
         let offset_hz = step as f64 / FRAME_STEPS * spacing_hz;
         let x = core::f64::consts::PI * offset_hz / lobe_hz;
-        let amplitude = if step == 0 { 1.0 } else { libm::sin(x) / x };
+        let amplitude = if step == 0 {
+            1.0
+        } else {
+            crate::trig::sin(x) / x
+        };
         let weight = amplitude * amplitude;
         read += weight * part.at(hz + offset_hz);
         all += weight;
@@ -120,8 +124,8 @@ const FRAME_STEPS: f64 = 2.0;
 /// sine has, so that a steep spectrum's floor stays low. With its mirror image its squares add up to 1.
 fn rise(n: usize, overlap: usize) -> f64 {
     let quarter = core::f64::consts::FRAC_PI_2;
-    let sine = libm::sin(quarter * (n as f64 + 0.5) / overlap as f64);
-    libm::sin(quarter * sine * sine)
+    let sine = crate::trig::sin(quarter * (n as f64 + 0.5) / overlap as f64);
+    crate::trig::sin(quarter * sine * sine)
 }
 
 /// A position in a hop; multiples of the golden ratio spread those of neighbouring seeds evenly.

@@ -219,9 +219,10 @@ impl SineBank {
 impl Oscillators {
     /// Where a rotation stands, and by what it turns a sample.
     fn anchor(&mut self, i: usize) {
-        (self.sin[i], self.cos[i]) = libm::sincos(fixed_to_radians(self.phase[i]));
-        (self.turn_sin[i], self.turn_cos[i]) = libm::sincos(fixed_to_radians(self.increment[i]));
-        (self.bend_sin[i], self.bend_cos[i]) = libm::sincos(fixed_to_radians(self.bend[i]));
+        (self.sin[i], self.cos[i]) = crate::trig::sincos(fixed_to_radians(self.phase[i]));
+        (self.turn_sin[i], self.turn_cos[i]) =
+            crate::trig::sincos(fixed_to_radians(self.increment[i]));
+        (self.bend_sin[i], self.bend_cos[i]) = crate::trig::sincos(fixed_to_radians(self.bend[i]));
     }
 
     /// The samples around an anchor, and the factor of their recurrence.
@@ -263,8 +264,8 @@ impl Oscillators {
             *wave = [before, now];
         }
         let mut chunk = [0.0; CHUNK];
-        for (sample, sum) in chunk.iter_mut().zip(sum.as_flattened()) {
-            *sample = *sum as f32;
+        for (samples, sum) in chunk.as_chunks_mut::<LANES>().0.iter_mut().zip(&sum) {
+            *samples = sum.map(|sum| sum as f32);
         }
         chunk
     }

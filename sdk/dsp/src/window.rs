@@ -44,6 +44,6 @@ pub fn equivalent_noise_bandwidth_bins(window: &[f64]) -> f64 {
 /// `sin²(π i / period)`, mirrored about the middle so that the window is exactly symmetric.
 fn sine_squared(i: usize, period: usize) -> f64 {
     let i = i.min(period - i);
-    let sine = libm::sin(PI * i as f64 / period as f64);
+    let sine = crate::trig::sin(PI * i as f64 / period as f64);
     sine * sine
 }

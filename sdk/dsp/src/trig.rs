@@ -1,0 +1,258 @@
+//! Sines, cosines and tangents of bounded angles: those of `libm`, bit for bit, without its reduction of large arguments, which
+//! takes 2 kB of a WASM module.
+//!
+//! The series and the reduction are those of FreeBSD's msun, as in `libm`:
+//! Copyright (C) 1993 by Sun Microsystems, Inc. All rights reserved. Developed at SunPro, a Sun Microsystems, Inc.
+//! business. Permission to use, copy, modify, and distribute this software is freely granted, provided that this notice
+//! is preserved.
+
+/// Angles below this have the bits of `libm`, radians; the error of larger ones grows with them.
+pub const LARGEST: f64 = 1_647_099.0;
+
+/// The sine of an angle in radians; NaN where it is not finite.
+///
+/// ```
+/// use htex_dsp::trig::{LARGEST, sin};
+/// for x in [-0.0, 1e-9, 0.7, 2.0, -5.5, 1e6, LARGEST] {
+///     assert_eq!(sin(x).to_bits(), libm::sin(x).to_bits());
+/// }
+/// ```
+pub fn sin(x: f64) -> f64 {
+    sincos(x).0
+}
+
+/// The cosine of an angle in radians; NaN where it is not finite.
+pub fn cos(x: f64) -> f64 {
+    sincos(x).1
+}
+
+/// Sine and cosine of an angle in radians; NaN where it is not finite.
+#[inline(never)]
+pub fn sincos(x: f64) -> (f64, f64) {
+    let high = high_word(x);
+    if high <= QUARTER_PI {
+        let sine = if high < TINY { x } else { short_sine(x) };
+        return (sine, cosine(x, 0.0));
+    }
+    let (quarter_turns, y, rest) = reduced(x, high);
+    let (s, c) = (sine(y, rest), cosine(y, rest));
+    match quarter_turns & 3 {
+        0 => (s, c),
+        1 => (c, -s),
+        2 => (-s, -c),
+        _ => (-c, s),
+    }
+}
+
+/// The tangent of an angle in radians; NaN where it is not finite.
+pub fn tan(x: f64) -> f64 {
+    let high = high_word(x);
+    if high < TINY_TANGENT {
+        return x;
+    }
+    if high <= QUARTER_PI {
+        return tangent(x, 0.0, false);
+    }
+    let (quarter_turns, y, rest) = reduced(x, high);
+    tangent(y, rest, quarter_turns & 1 == 1)
+}
+
+/// High words of π/4, and of 2⁻²⁷ √2, below which the sine is the angle.
+const QUARTER_PI: u32 = 0x3fe9_21fb;
+const TINY: u32 = 0x3e46_a09e;
+/// The high word of 2⁻²⁷, below which the tangent is the angle.
+const TINY_TANGENT: u32 = 0x3e40_0000;
+/// High words of the angles up to which it is by how many quarter turns they are reduced: 3π/4, 5π/4, 7π/4, 9π/4.
+const TURNS: [u32; 4] = [0x4002_d97c, 0x400f_6a7a, 0x4015_fdbc, 0x401c_463b];
+/// High words that whole quarter turns have, where more digits of π/2 are needed: π/2, π, 3π/2, 2π.
+const WHOLE: [u32; 4] = [0x3ff9_21fb, 0x4009_21fb, 0x4012_d97c, 0x4019_21fb];
+
+/// Exponent and first digits, without the sign.
+fn high_word(x: f64) -> u32 {
+    (x.to_bits() >> 32) as u32 & 0x7fff_ffff
+}
+
+/// An angle above π/4 as quarter turns and what is left, in two parts.
+fn reduced(x: f64, high: u32) -> (i32, f64, f64) {
+    const ROUND: f64 = 1.5 / f64::EPSILON;
+    /// π/2 in parts of 33 bits, and what is left behind each.
+    const PARTS: [[f64; 2]; 3] = [
+        [1.570_796_326_734_125_6, 6.077_100_506_506_192e-11],
+        [6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21],
+        [2.022_266_248_711_166_5e-21, 8.478_427_660_368_9e-32],
+    ];
+    let near = TURNS.iter().position(|most| high <= *most);
+    let turns = match near {
+        Some(i) => f64::copysign((i + 1) as f64, x),
+        None => (x * core::f64::consts::FRAC_2_PI + ROUND) - ROUND,
+    };
+    let mut r = x - turns * PARTS[0][0];
+    let mut w = turns * PARTS[0][1];
+    let mut y = r - w;
+    if near.is_none() || WHOLE.contains(&high) {
+        // What has cancelled comes back out of further digits.
+        for ([part, rest], lost) in PARTS[1..].iter().zip([16, 49]) {
+            let exponent = |x: f64| (high_word(x) >> 20) as i32;
+            if exponent(x) - exponent(y) <= lost {
+                break;
+            }
+            let before = r;
+            w = turns * part;
+            r = before - w;
+            w = turns * rest - ((before - r) - w);
+            y = r - w;
+        }
+    }
+    (turns as i32, y, (r - y) - w)
+}
+
+const SINE: [f64; 6] = [
+    -1.666_666_666_666_663_2e-1,
+    8.333_333_333_322_49e-3,
+    -1.984_126_982_985_795e-4,
+    2.755_731_370_707_006_8e-6,
+    -2.505_076_025_340_686_3e-8,
+    1.589_690_995_211_55e-10,
+];
+
+/// The sine of an angle up to π/4.
+fn short_sine(x: f64) -> f64 {
+    let (z, r) = sine_series(x);
+    x + z * x * (SINE[0] + z * r)
+}
+
+/// The sine of `x + rest`, up to π/4.
+fn sine(x: f64, rest: f64) -> f64 {
+    let (z, r) = sine_series(x);
+    let v = z * x;
+    x - ((z * (0.5 * rest - v * r) - rest) - v * SINE[0])
+}
+
+fn sine_series(x: f64) -> (f64, f64) {
+    let z = x * x;
+    let r = SINE[1] + z * (SINE[2] + z * SINE[3]) + z * (z * z) * (SINE[4] + z * SINE[5]);
+    (z, r)
+}
+
+/// The cosine of `x + rest`, up to π/4.
+fn cosine(x: f64, rest: f64) -> f64 {
+    const C: [f64; 6] = [
+        4.166_666_666_666_66e-2,
+        -1.388_888_888_887_411e-3,
+        2.480_158_728_947_673e-5,
+        -2.755_731_435_139_066_3e-7,
+        2.087_572_321_298_175e-9,
+        -1.135_964_755_778_819_5e-11,
+    ];
+    let z = x * x;
+    let w = z * z;
+    let r = z * (C[0] + z * (C[1] + z * C[2])) + w * w * (C[3] + z * (C[4] + z * C[5]));
+    let half = 0.5 * z;
+    let w = 1.0 - half;
+    w + (((1.0 - w) - half) + (z * r - x * rest))
+}
+
+/// The tangent of `x + rest`, up to π/4, or -1 over it.
+fn tangent(mut x: f64, mut rest: f64, inverse: bool) -> f64 {
+    const T: [f64; 13] = [
+        3.333_333_333_333_341e-1,
+        1.333_333_333_332_012_5e-1,
+        5.396_825_397_622_605e-2,
+        2.186_948_829_485_954_2e-2,
+        8.863_239_823_599_3e-3,
+        3.592_079_107_591_312_4e-3,
+        1.456_209_454_325_290_3e-3,
+        5.880_412_408_202_641e-4,
+        2.464_631_348_184_699e-4,
+        7.817_944_429_395_571e-5,
+        7.140_724_913_826_082e-5,
+        -1.855_863_748_552_754_6e-5,
+        2.590_730_518_636_337e-5,
+    ];
+    const PI_4: [f64; 2] = [core::f64::consts::FRAC_PI_4, 3.061_616_997_868_383e-17];
+    /// The high word of an angle of 0.6744, from which on the series is that of π/4 less the angle.
+    const LARGE: u32 = 0x3fe5_9428;
+    let sign = f64::copysign(1.0, x);
+    let is_large = high_word(x) >= LARGE;
+    if is_large {
+        x = (PI_4[0] - sign * x) + (PI_4[1] - sign * rest);
+        rest = 0.0;
+    }
+    let z = x * x;
+    let w = z * z;
+    let odd = T[1] + w * (T[3] + w * (T[5] + w * (T[7] + w * (T[9] + w * T[11]))));
+    let even = z * (T[2] + w * (T[4] + w * (T[6] + w * (T[8] + w * (T[10] + w * T[12])))));
+    let cube = z * x;
+    let r = rest + z * (cube * (odd + even) + rest) + cube * T[0];
+    let w = x + r;
+    if is_large {
+        let s = if inverse { -1.0 } else { 1.0 };
+        return sign * (s - 2.0 * (x + (r - w * w / (w + s))));
+    }
+    if !inverse {
+        return w;
+    }
+    // A quotient of rounded numbers is off by two units of the last digit.
+    let short = |x: f64| f64::from_bits(x.to_bits() & 0xffff_ffff_0000_0000);
+    let w0 = short(w);
+    let v = r - (w0 - x);
+    let a = -1.0 / w;
+    let a0 = short(a);
+    a0 + a * (1.0 + a0 * w0 + a0 * v)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::Uniform;
+    use core::f64::consts::FRAC_PI_2;
+
+    fn assert_same(x: f64) {
+        for x in [x, -x] {
+            let (sine, cosine) = libm::sincos(x);
+            let found = sincos(x);
+            let bits = |(s, c): (f64, f64)| [s.to_bits(), c.to_bits()];
+            assert_eq!(bits(found), bits((sine, cosine)), "{x:e}");
+            assert_eq!(tan(x).to_bits(), libm::tan(x).to_bits(), "{x:e}");
+            assert_eq!(
+                bits((sin(x), cos(x))),
+                bits((libm::sin(x), libm::cos(x))),
+                "{x:e}"
+            );
+        }
+    }
+
+    /// At whole and half quarter turns the ways to reduce an angle change, and digits cancel.
+    #[test]
+    fn the_bits_are_those_of_libm_around_all_quarter_turns() {
+        let mut uniform = Uniform::new(1);
+        for half_quarters in (0..200).chain((0..20_000).map(|i| 100 + 104 * i)) {
+            let at = f64::from(half_quarters) * 0.5 * FRAC_PI_2;
+            for step in -40i64..=40 {
+                for bits in [0, 28, 30, 32, 34, 36] {
+                    let x = f64::from_bits(at.to_bits().wrapping_add_signed(step << bits));
+                    if x.abs() <= LARGEST {
+                        assert_same(x);
+                    }
+                }
+            }
+            assert_same((at + uniform.next_unit()).min(LARGEST));
+        }
+    }
+
+    #[test]
+    fn the_bits_are_those_of_libm_at_all_scales() {
+        let mut uniform = Uniform::new(2);
+        for i in 0..300_000 {
+            let scale = libm::exp2(f64::from(i % 60) - 40.0);
+            assert_same((scale * (1.0 + uniform.next_unit())).min(LARGEST));
+        }
+        for x in [0.0, f64::MIN_POSITIVE, 5e-324, LARGEST] {
+            assert_same(x);
+        }
+        for x in [f64::NAN, f64::INFINITY] {
+            let (sine, cosine) = sincos(x);
+            assert!(sine.is_nan() && cosine.is_nan());
+        }
+    }
+}

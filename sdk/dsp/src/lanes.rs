@@ -1,4 +1,4 @@
-//! Numbers side by side, of which compilers make vector instructions.
+//! Numbers side by side, compiled to vector instructions.
 
 use core::ops::{Add, Mul, Sub};
 
@@ -7,14 +7,14 @@ pub(crate) trait Number:
     Copy + Default + Add<Output = Self> + Sub<Output = Self> + Mul<f32, Output = Self>
 {
     const LEN: usize;
-    /// As many numbers as stand side by side.
+    /// Array of the numbers side by side.
     type Group: Copy;
     fn groups(from: &[f32]) -> &[Self::Group];
     fn groups_mut(to: &mut [f32]) -> &mut [Self::Group];
     fn load(from: Self::Group) -> Self;
     fn store(self) -> Self::Group;
     fn number(self, i: usize) -> f32;
-    /// The product of each with its like.
+    /// Element-wise product.
     fn times(self, other: Self) -> Self;
 }
 
@@ -53,7 +53,7 @@ impl Number for f32 {
     }
 }
 
-/// What compilers make vector registers of.
+/// Several numbers, compiled to one vector register.
 #[derive(Clone, Copy)]
 pub(crate) struct Lanes<const N: usize>(pub(crate) [f32; N]);
 

@@ -1,4 +1,4 @@
-//! Estimation of the coefficients.
+//! Estimation of the filter coefficients.
 
 use alloc::vec::Vec;
 
@@ -15,8 +15,8 @@ const RATE: usize = 1;
 const METHOD: usize = 2;
 /// Equivalent noise bandwidth of a bin, hertz: magnitude² = 2 · P · this.
 const BIN_ENBW_HZ: f64 = 1.5 * GRID_HZ;
-/// Half-power width of the narrowest resonance a fit gives, hertz: a spectrum in bins shows none
-/// narrower, and the level of one that is cannot be read from bins.
+/// Half-power width of the narrowest resonance of a fit, hertz. A spectrum in bins cannot resolve narrower
+/// ones, and their level cannot be measured from bins.
 const NARROWEST_HZ: f64 = GRID_HZ;
 
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
@@ -26,7 +26,7 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         ));
     }
     let order = input.options[ORDER] as usize;
-    // A band that ends below the tactile one was recorded at twice its end.
+    // A band that ends below the tactile one was recorded at twice its upper edge.
     let rate_hz = if input.band.high_hz < Band::TACTILE.high_hz {
         input.options[RATE].min(2.0 * input.band.high_hz)
     } else {
@@ -54,7 +54,7 @@ fn from_spectrum(input: &FitInput<'_>, order: usize, rate_hz: f64) -> Result<Fit
     };
     let level = filter.level(input.band.edges().into())?;
     if coefficients != model.coefficients {
-        // The error is that of another filter.
+        // The error belongs to the filter before it was changed.
         return Ok(Fit {
             parameters: flat(&coefficients, rate_hz),
             level_rms: recorded_level(input),
@@ -68,7 +68,7 @@ fn from_spectrum(input: &FitInput<'_>, order: usize, rate_hz: f64) -> Result<Fit
     })
 }
 
-/// Autocorrelation at `lag_s` of the power in the bins below the Nyquist frequency.
+/// Autocorrelation at `lag_s` seconds, from the power in the bins below the Nyquist frequency.
 fn autocorrelation(input: &FitInput<'_>, largest: f64, lag_s: f64, rate_hz: f64) -> f64 {
     let bins = input.frequency_hz.iter().zip(input.magnitude);
     bins.filter(|(f, _)| **f <= 0.5 * rate_hz)
@@ -79,8 +79,8 @@ fn autocorrelation(input: &FitInput<'_>, largest: f64, lag_s: f64, rate_hz: f64)
         .sum()
 }
 
-/// Estimates on the signal at the model rate. Overlap-adding windowed segments changes their power,
-/// so the level is the recording's own in the band.
+/// Estimates from the signal at the model rate. Overlap-adding windowed segments changes their power, so the
+/// level is that of the recording in the band.
 fn from_signal(
     input: &FitInput<'_>,
     rate_hz: f64,
@@ -116,7 +116,7 @@ fn recorded_level(input: &FitInput<'_>) -> f64 {
     largest * level_rms(&relative)
 }
 
-/// The filter without resonances narrower than [`NARROWEST_HZ`].
+/// Widens resonances narrower than [`NARROWEST_HZ`].
 fn resolved(coefficients: &[f64], rate_hz: f64) -> Vec<f64> {
     let radius = libm::exp(-core::f64::consts::PI * NARROWEST_HZ / rate_hz);
     within_radius(coefficients, radius)
@@ -132,7 +132,7 @@ fn unusable_rates(from_hz: f64, rate_hz: f64) -> Error {
     ])
 }
 
-/// The signal over `scale`, at the model rate.
+/// Resamples the signal, divided by `scale`, to the model rate.
 fn resampled(input: &FitInput<'_>, rate_hz: f64, scale: f64) -> Result<Vec<f64>, Error> {
     let from_hz = input.signal_rate_hz;
     let resampler = Resampler::new(from_hz, rate_hz, input.band.high_hz)

@@ -1,4 +1,4 @@
-//! Autoregression: the spectrum as that of white noise through an all-pole filter (paper,
+//! Autoregressive model: the spectrum is that of white noise filtered by an all-pole filter (paper,
 //! Auto-regression; after Culbertson et al. 2014).
 #![no_std]
 
@@ -103,7 +103,7 @@ impl Model for Autoregression {
         Ok(())
     }
 
-    /// Mixes line spectral frequencies, between which the filter is always stable.
+    /// Interpolates line spectral frequencies; every weighted mean of them gives a stable filter.
     fn interpolate(
         sets: &[Values<'_>],
         weights: &[f64],
@@ -201,7 +201,7 @@ impl<'a> Filter<'a> {
     }
 }
 
-/// A level by which a magnitude or a sound can be divided.
+/// Checks that a level is usable as a divisor of magnitudes and samples.
 fn finite_level(level: f64) -> Result<f64, Error> {
     if level > 0.0 && level.is_finite() {
         return Ok(level);

@@ -1,7 +1,7 @@
-//! Line spectral frequencies of filters that are mixed again and again.
+//! A cache of line spectral frequencies of filters.
 //!
-//! To find them takes some ten times as long as all else that a change of parameters takes, and a finger that moves
-//! between conditions mixes the same few filters all the time.
+//! Computing them takes about ten times as long as the rest of a parameter change, and a motion between
+//! conditions mixes the same few filters repeatedly.
 
 use htex_dsp::line_spectrum::lines_of_reflection;
 use htex_dsp::linear_prediction::step_down_in_place;
@@ -9,15 +9,15 @@ use htex_model::Lock;
 
 use crate::MAX_ORDER;
 
-/// Longest filter that is kept.
+/// Largest order of a cached filter.
 const KEPT_ORDER: usize = 32;
-/// Filters that are kept: so many places for each of some hashes.
+/// Number of cached filters: `HASHES` buckets of a few filters each.
 const HASHES: usize = 16;
 const PLACES: usize = 4;
 
 static KEPT: Lock<Kept> = Lock::new(Kept::NONE);
 
-/// Filters and their lines, the oldest of a hash to be replaced next.
+/// The filters of one bucket with their line spectral frequencies; the oldest is replaced next.
 struct Kept {
     filters: [[Filter; PLACES]; HASHES],
     oldest: [u8; HASHES],
@@ -44,8 +44,8 @@ impl Kept {
     };
 }
 
-/// Writes the lines of a filter, as many as it has coefficients, radians; false if it is not stable. Whether they were
-/// kept makes no difference but in time. Does not allocate or wait.
+/// Writes the line spectral frequencies of a filter, radians, as many as it has coefficients; false if it is
+/// not stable. The result does not depend on whether they are cached. Does not allocate or wait.
 pub(crate) fn write_lines(coefficients: &[f64], lines: &mut [f64]) -> bool {
     let order = coefficients.len();
     let kept = match (1..=KEPT_ORDER).contains(&order) {
@@ -86,7 +86,7 @@ fn find_lines(coefficients: &[f64], lines: &mut [f64]) -> bool {
     true
 }
 
-/// Of the bits of all coefficients.
+/// Hash of the bits of all coefficients.
 fn hash(coefficients: &[f64]) -> usize {
     let mix = |hash: u64, a: &f64| {
         (hash.rotate_left(5) ^ a.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15)

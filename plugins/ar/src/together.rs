@@ -1,4 +1,4 @@
-//! Four voices side by side.
+//! Rendering of four voices side by side.
 
 use htex_dsp::all_pole::{AllPoles, GROUP};
 use htex_dsp::noise::GaussianNoise;
@@ -8,16 +8,16 @@ use htex_model::Voice;
 
 use crate::AutoregressionVoice;
 
-/// Groups of samples made at once.
+/// Groups of samples per step.
 const BLOCK: usize = 64;
-/// Fewest groups for which putting voices side by side pays.
+/// Minimum number of groups for which rendering side by side is faster.
 const LEAST: usize = 16;
 
-/// Fills a row of each of four voices.
+/// Fills one row for each of four voices.
 pub(crate) fn render(voices: &mut [&mut AutoregressionVoice; VOICES], rows: [&mut [f32]; VOICES]) {
     let frames = rows[0].len();
     let [first, others @ ..] = &*voices;
-    // What is left of the last group comes first, and then whole groups.
+    // First the rest of the last group, then whole groups.
     let head = (GROUP - first.taken).min(frames);
     let body = (frames - head) / GROUP * GROUP;
     let steady = |voice: &AutoregressionVoice| voice.ramp_left == 0;
@@ -45,7 +45,7 @@ fn alone(voices: &mut [&mut AutoregressionVoice; VOICES], rows: [&mut [f32]; VOI
     }
 }
 
-/// Whole groups of each voice; false, with nothing done, where their filters cannot stand side by side.
+/// Renders whole groups of each voice; returns false without effect if the filters cannot run side by side.
 fn groups(
     voices: &mut [&mut AutoregressionVoice; VOICES],
     rows: &mut [&mut [f32]; VOICES],
@@ -58,7 +58,7 @@ fn groups(
         return false;
     };
     let gains = Quad([a.gain, b.gain, c.gain, d.gain]);
-    // The room of the output holds the noise first.
+    // The output buffer first holds the noise.
     let [r0, r1, r2, r3] = rows;
     GaussianNoise::fill_both([&mut a.noise, &mut b.noise], [r0, r1]);
     GaussianNoise::fill_both([&mut c.noise, &mut d.noise], [r2, r3]);

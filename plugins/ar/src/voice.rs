@@ -1,4 +1,4 @@
-//! White noise through the filter.
+//! The voice: white noise through the all-pole filter.
 
 use alloc::sync::Arc;
 
@@ -12,18 +12,19 @@ use htex_model::{Error, Values, Voice, text};
 
 use crate::{COEFFICIENTS, Filter, MAX_ORDER, MODEL_RATE, finite_level, together, unstable};
 
-/// Length of a change of parameters, seconds.
+/// Duration of a change of parameters, seconds.
 const RAMP_S: f64 = 0.010;
-/// Rendered before the first sample, seconds and samples at most: the filter starts in its stride.
+/// Duration rendered before the first sample, seconds, with a limit in samples: the filter's transient has
+/// decayed by then.
 const SETTLE_S: f64 = 0.5;
 const SETTLE_SAMPLES: f64 = 4096.0;
-/// Groups of samples made at once.
+/// Groups of samples per step.
 const BLOCK: usize = 32;
 
 /// An endless stream of filtered noise.
 pub struct AutoregressionVoice {
     rate_hz: f64,
-    /// What passes `edges`.
+    /// Power that passes `edges`.
     passed: Arc<PassedPower>,
     pub(crate) noise: GaussianNoise,
     pub(crate) filter: AllPole,
@@ -33,7 +34,7 @@ pub struct AutoregressionVoice {
     step: Target,
     ramp_len: u32,
     pub(crate) ramp_left: u32,
-    /// What is left of the last group.
+    /// Unused samples of the last group.
     ready: [f32; GROUP],
     pub(crate) taken: usize,
 }
@@ -61,7 +62,7 @@ impl AutoregressionVoice {
                 " Hz",
             ]));
         }
-        // A filter without energy in the band may have some beside it.
+        // A filter without energy in the band may have some just outside it.
         Filter::new(parameters)?.level(band)?;
         let passed = PassedPower::shared(band, rate_hz);
         let target = Target::new(parameters, &passed)?;
@@ -84,7 +85,7 @@ impl AutoregressionVoice {
         Ok(voice)
     }
 
-    /// The next samples, in whole groups.
+    /// Renders the next samples in whole groups.
     fn groups(&mut self, out: &mut [[f32; GROUP]]) {
         let changing = out.len().min((self.ramp_left as usize).div_ceil(GROUP));
         let (changing, steady) = out.split_at_mut(changing);
@@ -94,7 +95,7 @@ impl AutoregressionVoice {
         let mut block = [[0.0; GROUP]; BLOCK];
         for out in steady.chunks_mut(BLOCK) {
             let block = &mut block[..out.len()];
-            // The room of the output holds the noise first.
+            // The output buffer first holds the noise.
             self.noise.fill(out.as_flattened_mut());
             let noise = out.as_flattened().iter();
             for (x, noise) in block.as_flattened_mut().iter_mut().zip(noise) {
@@ -105,7 +106,7 @@ impl AutoregressionVoice {
         }
     }
 
-    /// A group of parameters that change.
+    /// Renders a group of samples while parameters change.
     fn changing(&mut self) -> [f32; GROUP] {
         let mut out = [[0.0; GROUP]];
         self.noise.fill(out.as_flattened_mut());
@@ -120,7 +121,7 @@ impl AutoregressionVoice {
         out[0]
     }
 
-    /// Cuts the filter's output to the band.
+    /// Limits the filter's output to the band.
     fn finish(&mut self, block: &mut [Group], out: &mut [[f32; GROUP]]) {
         self.edges
             .process(block.as_flattened_mut().as_chunks_mut().0);
@@ -130,7 +131,7 @@ impl AutoregressionVoice {
         }
     }
 
-    /// Moves one step towards the target.
+    /// Advances the ramp by one sample.
     fn ramp(&mut self) {
         self.ramp_left -= 1;
         let done = self.ramp_left == 0;
@@ -187,7 +188,7 @@ impl Voice for AutoregressionVoice {
                 self.filter.order(),
                 " at ",
                 self.rate_hz,
-                " Hz keeps its model rate, and its order or a smaller one",
+                " Hz accepts filters of this rate and at most this order only",
             ]));
         }
         self.target = Target::new(parameters, &self.passed)?;

@@ -1,4 +1,4 @@
-//! Where the knots stand, and the straight lines between them.
+//! Positions of the knots, and linear interpolation between them.
 
 use alloc::sync::Arc;
 
@@ -6,25 +6,25 @@ use htex_dsp::beta::log_unit;
 use htex_dsp::grid::Band;
 use htex_dsp::shared::Shared;
 
-/// Added to frequencies on the axis of [`Layout::Edges`], hertz. Below it knots are nearly as far apart in
-/// hertz, above it in octaves: 30 knots over 20 to 1000 Hz stand 4.9 Hz apart at 20 Hz, where bins are
-/// 5 Hz apart. Of 0 to 60 Hz the values around 20 Hz had the least third-octave error.
+/// Added to frequencies on the axis of [`Layout::Edges`], hertz. Knots are nearly equally spaced in hertz
+/// below it and in octaves above it: 30 knots over 20 to 1000 Hz are 4.9 Hz apart at 20 Hz, where the bin
+/// spacing is 5 Hz. Of values from 0 to 60 Hz, those around 20 Hz gave the smallest third-octave error.
 const CORNER_HZ: f64 = 20.0;
-/// From so many bands on, knots reach the band's edges unless a layout is asked for.
+/// Number of bands from which the default layout is [`Layout::Edges`].
 const EDGES_FROM: usize = 20;
 
-/// How knots are spread over the band.
+/// Distribution of the knots over the band.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Layout {
-    /// Evenly in the logarithm of frequency, within the band: at the apexes of triangles that
-    /// overlap by half and whose outermost feet are the band's edges (paper, Linear regression).
+    /// Equally spaced in the logarithm of frequency, within the band: at the apexes of half-overlapping
+    /// triangles whose outermost feet are the band's edges (paper, Linear regression).
     Within,
-    /// From edge to edge, evenly in `ln(f + 20 Hz)`.
+    /// From edge to edge, equally spaced in `ln(f + 20 Hz)`.
     Edges,
 }
 
 impl Layout {
-    /// The layout of so many bands when none is asked for.
+    /// The default layout for this number of bands.
     pub(crate) fn of(bands: usize) -> Self {
         if bands < EDGES_FROM {
             Self::Within
@@ -33,7 +33,7 @@ impl Layout {
         }
     }
 
-    /// The number that stands for it among the parameters.
+    /// The value of the layout's parameter.
     pub(crate) fn number(self) -> f64 {
         match self {
             Self::Within => 0.0,
@@ -41,7 +41,8 @@ impl Layout {
         }
     }
 
-    /// The layout of a number; those of mixtures lie between.
+    /// The layout of a parameter value. Interpolation between conditions gives values in between; the nearer
+    /// layout is used.
     pub(crate) fn from_number(number: f64) -> Self {
         if number < 0.5 {
             Self::Within
@@ -51,7 +52,7 @@ impl Layout {
     }
 }
 
-/// A frequency axis on which the knots stand at 0, 1, 2, ...
+/// A frequency axis on which knot `i` is at position `i`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Axis {
     pub(crate) knots: usize,
@@ -60,7 +61,7 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// Where a frequency of the band lies.
+    /// Position of a frequency of the band on the axis.
     fn place(&self, frequency_hz: f64) -> f64 {
         match self.layout {
             Layout::Within => log_unit(frequency_hz, self.band) * (self.knots + 1) as f64 - 1.0,
@@ -74,14 +75,14 @@ impl Axis {
         }
     }
 
-    /// How the bins of the band see the knots. Voices of one axis share it.
+    /// Interpolation weights of the band's bins. Shared by voices with the same axis.
     pub(crate) fn grid_points(&self) -> Arc<[Point]> {
         static POINTS: Shared<Axis, [Point]> = Shared::new();
         let points = || self.band.grid_hz().iter().map(|&f| self.point(f)).collect();
         POINTS.get(*self, points)
     }
 
-    /// How a frequency of the band sees the knots.
+    /// Interpolation weights of a frequency of the band.
     pub(crate) fn point(&self, frequency_hz: f64) -> Point {
         let (place, last) = (self.place(frequency_hz), (self.knots - 1) as f64);
         let inside = place.clamp(0.0, last);
@@ -95,19 +96,19 @@ impl Axis {
     }
 }
 
-/// A frequency on the way from `knot` to `next`, `share` of its value from the first.
+/// Interpolation weights at a frequency: `share` of knot `knot`, the rest of knot `next`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Point {
     pub(crate) knot: usize,
     pub(crate) next: usize,
     pub(crate) share: f64,
-    /// Sum of the triangles' weights: below 1 beyond the outermost knots, 0 at the edges of a band
-    /// whose knots stand within it.
+    /// Sum of the triangles' weights: below 1 outside the outermost knots, and 0 at the edges of a band with
+    /// [`Layout::Within`].
     pub(crate) weight: f64,
 }
 
 impl Point {
-    /// The value here of what is straight between knots, and level beyond the outermost.
+    /// Value here of a curve that is linear between knots and constant outside the outermost ones.
     pub(crate) fn between(&self, knots: &[f64]) -> f64 {
         self.share * knots[self.knot] + (1.0 - self.share) * knots[self.next]
     }

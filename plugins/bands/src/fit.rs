@@ -1,36 +1,37 @@
-//! The knots whose band energies come nearest to a recording's.
+//! Fit of the knots to a recording's band energies.
 //!
-//! Minimised is the sum over the bands of the squared logarithm of the energy over the wanted one, and
-//! of 1e-4 times the squared distance of each knot from its band's mean level, in the logarithm of power.
-//! Noise keeps its energies to a hundredth of a decibel; the second part decides where no spectrum has
-//! them, or only one with knots hundreds of decibels apart, as beside a line.
+//! The cost is the sum over the bands of the squared logarithm of the ratio of fitted to wanted energy, plus
+//! 1e-4 times the squared distance of each knot from its band's mean level, in the logarithm of power.
+//! Energies of noise are met to a hundredth of a decibel. The second term determines the solution where no
+//! spectrum has the wanted energies, or only one whose knots differ by hundreds of decibels, as next to a
+//! line.
 
 use alloc::vec::Vec;
 
 use crate::FLOOR_DB;
 use crate::axis::{Axis, Point};
 
-/// Weight of the knots' squared distances from their bands' mean levels.
+/// Weight of the squared distances of the knots from their bands' mean levels.
 const STIFFNESS: f64 = 1e-4;
-/// Steps of Levenberg and Marquardt's method at most; noise takes three to six.
+/// Maximum number of Levenberg–Marquardt steps; noise takes three to six.
 const STEPS: usize = 100;
-/// A step that betters the sum by less than this part of it is the last.
+/// The search ends with a step that reduces the cost by less than this fraction.
 const TOLERANCE: f64 = 1e-13;
-/// Damping at the start, and the most: no step that betters the sum is left.
+/// Initial damping, and the damping at which the search ends because no step reduces the cost.
 const DAMPING: (f64, f64) = (1e-3, 1e8);
-/// Most change of the logarithm of power at a knot in one step.
+/// Maximum change of the logarithm of power at a knot in one step.
 const STRIDE: f64 = 3.0;
 
-/// Knots, and what their fit takes.
+/// A fitting problem: the knots' axis, the wanted energies, and the mean levels.
 pub(crate) struct Fitter {
     points: Vec<Point>,
-    /// Logarithms of the energies wanted; none of a band that no bin falls into.
+    /// Logarithms of the wanted energies; `None` for a band without bins.
     wanted: Vec<Option<f64>>,
-    /// Logarithms of the mean power in each band; of one without a bin, that of the band before.
+    /// Logarithms of the mean power in each band; a band without bins has the value of the band before.
     mean: Vec<f64>,
 }
 
-/// A trial: the logarithms of power at the knots, and how far their energies are off.
+/// A trial solution: the logarithms of power at the knots, and the errors of their energies.
 struct Trial {
     knots: Vec<f64>,
     power: Vec<f64>,
@@ -40,7 +41,8 @@ struct Trial {
 }
 
 impl Fitter {
-    /// Bands of `axis`, and the power on the band's grid; none if no band has energy.
+    /// Makes the problem from the bands of `axis` and the power on the band's grid; `None` if no band has
+    /// energy.
     pub(crate) fn new(axis: &Axis, grid_hz: &[f64], power: &[f64]) -> Option<Self> {
         let points: Vec<Point> = grid_hz.iter().map(|&f| axis.point(f)).collect();
         let energy = energies(&points, power, axis.knots);
@@ -60,7 +62,7 @@ impl Fitter {
         })
     }
 
-    /// Logarithms of power at the knots.
+    /// Returns the logarithms of power at the knots.
     pub(crate) fn fit(&self) -> Vec<f64> {
         let mut best = self.trial(self.mean.clone());
         let mut damping = DAMPING.0;
@@ -133,7 +135,7 @@ impl Fitter {
         (system, slope)
     }
 
-    /// Derivatives of the energies by the knot before, the own and the next one.
+    /// Derivatives of each energy by the knot before, its own knot and the next one.
     fn derivatives(&self, trial: &Trial) -> Vec<[f64; 3]> {
         let mut by = vec![[0.0; 3]; trial.knots.len()];
         for (point, power) in self.points.iter().zip(&trial.power) {
@@ -149,7 +151,7 @@ impl Fitter {
     }
 }
 
-/// Levels as if the power were even in each band.
+/// Mean levels of the bands: those of power that is constant within each band.
 fn mean_levels(wanted: &[Option<f64>], weight: &[f64]) -> Vec<f64> {
     let level = |(wanted, weight): (&Option<f64>, &f64)| wanted.map(|w| w - libm::log(*weight));
     let levels: Vec<Option<f64>> = wanted.iter().zip(weight).map(level).collect();
@@ -189,7 +191,7 @@ fn step(knots: &[f64], system: &Pentadiagonal, slope: &[f64], damping: f64) -> V
         .collect()
 }
 
-/// A symmetric matrix: its diagonal, and the two above.
+/// A symmetric pentadiagonal matrix: its diagonal and the two diagonals above.
 struct Pentadiagonal([Vec<f64>; 3]);
 
 impl Pentadiagonal {
@@ -197,7 +199,7 @@ impl Pentadiagonal {
         Self([(); 3].map(|()| vec![0.0; size]))
     }
 
-    /// Adds the product of a row, whose numbers begin at column `first`, with itself.
+    /// Adds the outer product of a row, whose elements begin at column `first`, with itself.
     fn add_row(&mut self, first: usize, row: &[f64]) {
         for (i, a) in row.iter().enumerate() {
             for (above, b) in row[i..].iter().enumerate() {
@@ -206,7 +208,7 @@ impl Pentadiagonal {
         }
     }
 
-    /// Solves `(self + damping) x = right` by a decomposition into L D L'.
+    /// Solves `(self + damping) x = right` by an L D Lᵀ decomposition.
     fn damped_solution(&self, damping: f64, right: &[f64]) -> Vec<f64> {
         let size = right.len();
         let [diagonal, first, second] = &self.0;
@@ -240,13 +242,13 @@ impl Pentadiagonal {
     }
 }
 
-/// Energy that the bands have together, of power on the grid.
+/// Total energy of the bands for a power spectrum on the grid.
 pub(crate) fn total_energy(axis: &Axis, grid_hz: &[f64], power: &[f64]) -> f64 {
     let weighed = |(f, power): (&f64, &f64)| axis.point(*f).weight * power;
     grid_hz.iter().zip(power).map(weighed).sum()
 }
 
-/// Decibels of each knot below the highest, at most [`FLOOR_DB`].
+/// Distance of each knot from the highest, decibels, at most [`FLOOR_DB`].
 pub(crate) fn below_highest_db(knots: &[f64]) -> Vec<f64> {
     let highest = knots.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let below = |knot: &f64| (highest - knot) * 10.0 / core::f64::consts::LN_10;
@@ -260,9 +262,9 @@ mod tests {
     use crate::axis::Layout;
     use htex_dsp::grid::Band;
 
-    /// The decomposition against the product, and the fit's gradient against differences.
+    /// Checks the decomposition against the product, and the gradient against finite differences.
     #[test]
-    fn the_system_is_that_of_the_sum() {
+    fn system_and_gradient_match_finite_differences() {
         let band = Band::TACTILE;
         for (knots, layout) in [
             (1, Layout::Within),

@@ -1,9 +1,10 @@
-//! Band energies: how strong a spectrum is in log-spaced bands, three to six bits a band.
+//! Band energies: the energy of a spectrum in log-spaced bands, in three to six bits per band.
 //!
-//! Not a model of the paper, and not rated by anybody. In the paper's regression of ratings on energy
-//! differences, r², which it calls low, levels off at nine such bands (Linear regression); thirty keep a
-//! spectrum within about 0.3 dB of the recording in third-octave bands. Stored is the plainest curve that has these
-//! energies: straight between knots at the bands' apexes, in decibels over the axis the bands are even on.
+//! Not a model of the paper, and not evaluated in perception experiments. In the paper's regression of
+//! ratings on energy differences, r², which the paper calls low, levels off at nine such bands (Linear
+//! regression); thirty bands keep a spectrum within about 0.3 dB of the recording in third-octave bands.
+//! Stored is the piecewise linear curve with these energies: in decibels, with knots at the bands' apexes,
+//! over the axis on which the bands are equally spaced.
 #![no_std]
 
 #[macro_use]
@@ -37,21 +38,21 @@ const BANDS_OPTION: usize = 0;
 const STEP_OPTION: usize = 1;
 const LAYOUT_OPTION: usize = 2;
 
-/// Thirty bands in steps of 1 dB took 21 bytes, 23 at most, for 15 simulated recordings, and came within
-/// 0.33 dB (median) in third-octave bands; 9 bands come within 3.7 dB, 64 within 0.18 dB in 35 bytes.
+/// Thirty bands in steps of 1 dB took 21 bytes, 23 at most, for 15 simulated recordings, with a median
+/// third-octave error of 0.33 dB; 9 bands have an error of 3.7 dB, 64 bands 0.18 dB in 35 bytes.
 const DEFAULT_BANDS: u32 = 30;
 const DEFAULT_STEP_DB: f64 = 1.0;
 const MAX_BANDS: u32 = 64;
-/// Most steps below the highest knot: what a byte holds.
+/// Maximum number of steps below the highest knot: the range of a byte.
 const MAX_STEPS: f64 = 255.0;
-/// A file keeps the step as so many of these, dB.
+/// Resolution of the step in a file, dB.
 const STEP_UNIT_DB: f64 = 0.05;
 const STEP_RANGE_DB: (f64, f64) = (STEP_UNIT_DB, 6.0);
-/// No band counts as further below the loudest than this, and no knot below the highest: a band
-/// without energy is 120 dB below, as in the measure of band errors, which adds 1e-12 of the largest.
+/// Largest distance of a band from the loudest one and of a knot from the highest one, dB. A band without
+/// energy is 120 dB below, as in the band-error measure, which adds 1e-12 of the largest energy.
 pub const FLOOR_DB: f64 = 120.0;
 
-/// Rounds in which a voice's spectrum is sharpened.
+/// Rounds of sharpening of a voice's spectrum.
 const SHARPENINGS: usize = 2;
 
 const fn steps(scale: f64) -> Store {
@@ -150,7 +151,7 @@ impl Model for BandEnergies {
         let below: Vec<f64> = below_db.iter().map(round).collect();
         let spectrum = Spectrum::of(&below, step_db, axis)?;
         let made: Vec<f64> = spectrum.magnitude.iter().map(|m| m * m).collect();
-        // The bands together have the recording's energy.
+        // The total energy of the bands equals the recording's.
         let energy = |power: &[f64]| total_energy(&axis, input.frequency_hz, power);
         let gain = htex_dsp::root::sqrt(energy(&power) / energy(&made));
         let count = [below.len() as f64];
@@ -179,7 +180,7 @@ impl Model for BandEnergies {
         Ok(())
     }
 
-    /// Mixes decibels.
+    /// Interpolates the knots in decibels.
     fn interpolate(
         sets: &[Values<'_>],
         weights: &[f64],
@@ -208,33 +209,33 @@ impl Model for BandEnergies {
     }
 }
 
-/// The step that is wanted, as a file keeps it, or the least that reaches down to the quietest band.
+/// The wanted step rounded to the file's resolution, or the smallest step that reaches the quietest band.
 fn step_db(wanted_db: f64, below_db: &[f64]) -> f64 {
     let reach_db = below_db.iter().copied().fold(0.0, f64::max);
     let least = libm::ceil(reach_db / (MAX_STEPS * STEP_UNIT_DB) - 1e-9);
     libm::round(wanted_db / STEP_UNIT_DB).max(least) * STEP_UNIT_DB
 }
 
-/// The curve that the parameters stand for, on the grid.
+/// The curve of a set of parameters, on the grid.
 pub struct Spectrum {
     axis: Axis,
     points: Arc<[Point]>,
-    /// What the parameters say: steps below the highest, and the step.
+    /// The parameters: steps below the highest knot, and the step.
     below: Vec<f64>,
     step_db: f64,
-    /// Logarithms of magnitude; 0 is the highest that can be.
+    /// Logarithms of magnitude; 0 is the largest possible value.
     knots: Vec<f64>,
     magnitude: Vec<f64>,
     power: Vec<f64>,
-    /// What a voice plays: it is read through a window, as recordings are, and then looks like
-    /// `magnitude`.
+    /// Power spectrum of the voice, sharpened so that measured through the window, as recordings are, it
+    /// equals `magnitude`.
     played: Vec<f64>,
     /// `played` before a round of sharpening.
     before: Vec<f64>,
     /// RMS of `magnitude`.
     level: f64,
     first_bin: usize,
-    /// Where a voice's frequencies lie among the bins.
+    /// Positions of a voice's frequencies between the bins.
     places: Option<Arc<Places>>,
 }
 
@@ -243,7 +244,7 @@ impl Spectrum {
         let band = axis.band;
         if below.is_empty() {
             return Err(Error::parameters(
-                "`below_highest` is empty; at least one knot is wanted",
+                "`below_highest` is empty; it needs at least one knot",
             ));
         }
         if band.bins() == 0 {
@@ -277,7 +278,7 @@ impl Spectrum {
         Ok(spectrum)
     }
 
-    /// Makes what is played of the parameters. Does not allocate.
+    /// Computes the played spectrum from the parameters. Does not allocate.
     fn make(&mut self, exponentials: impl Fn(&mut [f64])) {
         let least = self.below.iter().copied().fold(f64::INFINITY, f64::min);
         for (knot, below) in self.knots.iter_mut().zip(&self.below) {
@@ -315,14 +316,14 @@ impl Curve for Spectrum {
     fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         let below = parameters.list(BELOW);
         if below.len() != self.knots.len() || Self::layout(parameters) != self.axis.layout {
-            return Err(Error::argument("a voice keeps its bands"));
+            return Err(Error::argument("a voice cannot change its bands"));
         }
         self.below.copy_from_slice(below);
         self.step_db = parameters.scalar(STEP);
         Ok(())
     }
 
-    /// Between bins: on the straight line between them.
+    /// Linear between bins.
     fn at(&self, frequency_hz: f64) -> f64 {
         let last = self.played.len() - 1;
         let place = (frequency_hz / GRID_HZ - self.first_bin as f64).clamp(0.0, last as f64);
@@ -347,8 +348,9 @@ impl Curve for Spectrum {
     }
 }
 
-/// Writes the power that reads as `power` through the Hann window, nearly: noise of even power is read
-/// in its own bin by two thirds, and by a sixth in each neighbour (Richardson and Lucy's steps).
+/// Writes a power spectrum that approximately measures as `power` through the Hann window. The window
+/// distributes the power of noise over bins: two thirds in its own and a sixth in each neighbour. Sharpening
+/// inverts this by Richardson–Lucy steps.
 fn sharpen(power: &[f64], before: &mut [f64], sharp: &mut [f64]) {
     let last = power.len() - 1;
     sharp.copy_from_slice(power);
@@ -366,7 +368,7 @@ fn sharpen(power: &[f64], before: &mut [f64], sharp: &mut [f64]) {
     }
 }
 
-/// The power of a bin, in whose place and beside which three powers stand, after a round.
+/// Power of a bin after a round; `[below, here, above]` is the power before in the bin and its neighbours.
 fn sharpened(power: f64, [below, here, above]: [f64; 3]) -> f64 {
     let read = (below + 4.0 * here + above) / 6.0;
     if read > 0.0 {

@@ -1,4 +1,4 @@
-//! What the model promises: bands keep their energies, and nothing is made up between them.
+//! Properties of the model: bands keep their energies, and the curve adds no structure between knots.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_bands::{BandEnergies, FLOOR_DB, Spectrum};
@@ -40,7 +40,7 @@ fn shape(parameters: &[f64], band: Band) -> Vec<f64> {
     magnitude
 }
 
-/// What shape and level together play, on the grid.
+/// Magnitude of shape and level together on the grid.
 fn played(fit: &Fit, band: Band) -> Vec<f64> {
     let shape = shape(&fit.parameters, band);
     shape.iter().map(|m| m * fit.level_rms).collect()
@@ -55,7 +55,7 @@ fn errors_db(magnitude: &[f64], fit: &Fit, band: Band, bands: usize) -> Vec<f64>
     )
 }
 
-/// Magnitudes of averaged noise under a straight envelope: what recordings look like.
+/// Magnitudes of averaged noise with a piecewise linear envelope, as in recordings.
 fn noisy(band: Band) -> impl Strategy<Value = Vec<f64>> {
     let bins = proptest::collection::vec(0.3..2.0, band.bins());
     (bins, -2.0..2.0).prop_map(move |(bins, slope): (Vec<f64>, f64)| {
@@ -71,8 +71,8 @@ fn noisy(band: Band) -> impl Strategy<Value = Vec<f64>> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..Default::default() })]
 
-    /// Rounding moves a knot by up to half a step, and the gain that restores the total energy by up to half a step
-    /// more.
+    /// Rounding moves a knot by up to half a step; the gain that restores the total energy adds up to half a
+    /// step.
     #[test]
     fn few_bands_keep_their_energies_to_a_step(
         magnitude in noisy(Band::TACTILE), bands in 1usize..=19, step_db in 0.05..2.0,
@@ -85,8 +85,8 @@ proptest! {
         }
     }
 
-    /// In the two lowest of nine bands, below 45 Hz, single bins count: where they lie 16 dB apart, a curve that is
-    /// straight in decibels does not have all their energies.
+    /// In the two lowest of nine bands, below 45 Hz, a band has few bins. If these differ by 16 dB, a curve
+    /// that is linear in decibels cannot match all energies.
     #[test]
     fn many_bands_keep_nine_energies_and_the_level(magnitude in noisy(Band::TACTILE), bands in 20usize..=64) {
         let fit = fit(&magnitude, Band::TACTILE, [bands as f64, 0.5, 0.0]).unwrap();
@@ -98,7 +98,7 @@ proptest! {
     }
 
     #[test]
-    fn between_two_knots_the_curve_goes_one_way_or_stays(
+    fn the_curve_is_monotonic_between_knots(
         below in proptest::collection::vec(0.0..255.0, 1..=40),
         step_db in 0.05..6.0,
     ) {
@@ -126,9 +126,9 @@ proptest! {
     }
 }
 
-/// Straight in decibels over ln f within the band, and over ln(f + 20 Hz) from edge to edge.
+/// Linear in decibels over ln f within the band, and over ln(f + 20 Hz) from edge to edge.
 #[test]
-fn knots_stand_where_the_layout_says() {
+fn knots_are_at_the_positions_of_the_layout() {
     let band = Band::TACTILE;
     let within = shape(
         &[
@@ -171,22 +171,22 @@ fn lines_over_noise_nearly_keep_the_energies_of_nine_bands() {
     let mut rms_db = Vec::new();
     for bin in 2..band.bins() - 2 {
         let mut magnitude = vec![0.01; band.bins()];
-        // A line as the window shows it, 40 dB above the noise.
+        // A line 40 dB above the noise, as seen through the window.
         magnitude[bin - 1] = 0.5;
         magnitude[bin] = 1.0;
         magnitude[bin + 1] = 0.5;
         let fit = fit(&magnitude, band, [9.0, 0.5, WITHIN]).unwrap();
         rms_db.push(rms(&errors_db(&magnitude, &fit, band, 9)));
     }
-    // Those at the band's edges have energies that only knots hundreds of decibels apart would give.
+    // Bands at the edges have energies that only knots hundreds of decibels apart would match.
     rms_db.sort_by(f64::total_cmp);
     let (median, most) = (rms_db[rms_db.len() / 2], rms_db[rms_db.len() - 1]);
     assert!(median < 0.3 && most < 4.0, "{median} dB, {most} dB");
 }
 
-/// Noise is read in its own bin by two thirds, and by a sixth in each neighbour.
+/// The window measures two thirds of a bin's noise power in the bin and a sixth in each neighbour.
 #[test]
-fn what_a_voice_plays_reads_as_stated() {
+fn the_voice_measures_as_the_stated_magnitude() {
     let (band, descriptor) = (Band::TACTILE, BandEnergies::DESCRIPTOR);
     let parameters = [
         9.0, 0.0, 10.0, 20.0, 12.0, 24.0, 36.0, 30.0, 40.0, 60.0, 0.5, 0.0,
@@ -201,7 +201,7 @@ fn what_a_voice_plays_reads_as_stated() {
     for (read, stated) in power.windows(3).zip(&stated[1..]) {
         let read = (read[0] + 4.0 * read[1] + read[2]) / 6.0;
         let off = 10.0 * (read / (stated * stated)).log10();
-        // Twice as far without sharpening.
+        // Without sharpening the difference is twice as large.
         assert!(off.abs() < 0.25, "{off} dB");
     }
 }
@@ -214,20 +214,20 @@ fn a_step_too_fine_for_the_range_is_coarsened() {
         let fit = fit(&magnitude, band, [9.0, wanted_db, WITHIN]).unwrap();
         fit.parameters[10]
     };
-    // Energies that are nearly even.
+    // Nearly equal energies.
     assert_eq!(step_db(-0.3, 0.07), 0.05);
     assert_eq!(step_db(-0.3, 0.5), 0.5);
-    // 12.75 dB are not enough for 70 dB.
+    // 255 steps of 0.05 dB are 12.75 dB, too little for a range of 70 dB.
     let coarse = step_db(-3.0, 0.05);
     assert!((0.3..0.4).contains(&coarse), "{coarse}");
 }
 
 #[test]
-fn silence_is_refused_and_scale_is_of_no_account() {
+fn silence_is_refused_and_scale_does_not_matter() {
     let band = Band::TACTILE;
     let error = fit(&[0.0; 197], band, [9.0, 0.5, WITHIN]).unwrap_err();
     assert_eq!(error.status, Status::CannotFit);
-    // At both edges of the band the triangles weigh nothing.
+    // At both edges of the band the triangles' weights are zero.
     let mut edges = [0.0; 197];
     (edges[0], edges[196]) = (1.0, 1.0);
     let error = fit(&edges, band, [9.0, 0.5, WITHIN]).unwrap_err();
@@ -246,7 +246,7 @@ fn silence_is_refused_and_scale_is_of_no_account() {
 }
 
 #[test]
-fn mixes_are_of_decibels_and_of_the_same_bands() {
+fn interpolation_is_in_decibels_between_equal_bands() {
     let descriptor = BandEnergies::DESCRIPTOR;
     let read = |parameters: &'static [f64]| Values::read(&descriptor, parameters).unwrap();
     let mix = |a: &'static [f64], b: &'static [f64]| {

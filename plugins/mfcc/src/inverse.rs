@@ -1,4 +1,4 @@
-//! The way back from band energies to a spectrum.
+//! Conversion of band energies to a spectrum.
 
 use alloc::vec::Vec;
 
@@ -13,14 +13,14 @@ use htex_model::{Lock, Values};
 
 use crate::{BANDS, INVERSE, whole};
 
-/// Inverses kept for the next voice: making one takes longer than making a voice of it.
+/// Cached inverses: computing one takes longer than creating a voice with it.
 const KEPT: usize = 8;
 const NNLS: u8 = 1;
 const INTERPOLATE: u8 = 2;
 
 static CACHE: Lock<Vec<Arc<Inverse>>> = Lock::new(Vec::new());
 
-/// From cepstrum to magnitudes on the band's grid, for one mel bank and one kind of inverse.
+/// Converts a cepstrum to magnitudes on the band's grid, for one mel bank and one kind of inverse.
 pub(crate) struct Inverse {
     bands: usize,
     kind: u8,
@@ -30,13 +30,13 @@ pub(crate) struct Inverse {
 }
 
 enum Way {
-    /// Power = matrix · energies, clipped at 0: a row a band, of its powers in all bins.
+    /// Power = matrix · energies, clipped at 0; one row per band with its power in all bins.
     Matrix(Vec<f64>),
     NonNegative(NonNegative),
 }
 
 impl Inverse {
-    /// Makes an inverse, or finds one made before.
+    /// Returns a cached inverse, or computes it.
     pub(crate) fn shared(bands: usize, kind: u8, band: Band) -> Arc<Self> {
         let Some(mut cache) = CACHE.lock() else {
             return Arc::new(Self::new(bands, kind, band));
@@ -69,7 +69,7 @@ impl Inverse {
         }
     }
 
-    /// The powers of one unit of energy in each band.
+    /// Power in all bins of one unit of energy in each band, row by row.
     fn matrix(bank: &MelBank, kind: u8, bands: usize, bins: usize) -> Vec<f64> {
         let pseudo = (kind != INTERPOLATE)
             .then(|| PseudoInverse::new(&bank.filters().to_dense(), bands, bins));
@@ -89,12 +89,12 @@ impl Inverse {
         self.bands
     }
 
-    /// Whether parameters ask for this inverse.
+    /// Whether the parameters select this inverse.
     pub(crate) fn is(&self, parameters: &Values<'_>) -> bool {
         whole(parameters, BANDS) == self.bands && whole(parameters, INVERSE) as u8 == self.kind
     }
 
-    /// Magnitudes of a cepstrum; `energy` is of the bands' number. Does not allocate.
+    /// Writes the magnitudes of a cepstrum; `energy` has one element per band. Does not allocate.
     pub(crate) fn magnitude(
         &self,
         cepstrum: &[f64],

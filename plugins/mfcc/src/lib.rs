@@ -1,5 +1,5 @@
-//! Mel-frequency cepstral coefficients: the logarithm of the energies in mel bands, smoothed by
-//! keeping the first terms of its cosine transform (paper, Mel Frequency Cepstral Coefficients).
+//! Mel-frequency cepstral coefficients: the logarithm of the energies in mel bands, smoothed by truncating
+//! its cosine transform (paper, Mel Frequency Cepstral Coefficients).
 #![no_std]
 
 #[macro_use]
@@ -32,7 +32,7 @@ const BANDS_OPTION: usize = 1;
 const INVERSE_OPTION: usize = 2;
 
 const MAX_BANDS: u32 = 128;
-/// Band energies count as at least this, newtons squared (numeric definitions: MFCC).
+/// Lower limit of band energies, newtons squared (numeric definitions: MFCC).
 const FLOOR: f64 = 1e-20;
 
 const WHOLE: Store = Store::U8 {
@@ -135,7 +135,7 @@ impl Model for MelCepstrum {
         htex_shaped::magnitude::<Spectrum>(parameters, band, frequency_hz, magnitude)
     }
 
-    /// Mixes cepstra, that is, log energies.
+    /// Interpolates cepstra, that is, log energies.
     fn interpolate(
         sets: &[Values<'_>],
         weights: &[f64],
@@ -164,12 +164,12 @@ impl Model for MelCepstrum {
     }
 }
 
-/// The whole number nearest to a scalar.
+/// A scalar parameter rounded to a whole number.
 pub(crate) fn whole(parameters: &Values<'_>, field: usize) -> usize {
     libm::round(parameters.scalar(field)) as usize
 }
 
-/// The magnitude a cepstrum stands for, on the grid.
+/// The magnitude of a cepstrum on the grid.
 pub struct Spectrum {
     inverse: Arc<Inverse>,
     band: Band,
@@ -179,7 +179,7 @@ pub struct Spectrum {
     magnitude: Vec<f64>,
     /// RMS of `magnitude`.
     level: f64,
-    /// Where a voice's frequencies lie among the bins.
+    /// Positions of a voice's frequencies between the bins.
     places: Option<Arc<Places>>,
 }
 
@@ -205,7 +205,7 @@ impl Spectrum {
         ))
     }
 
-    /// Makes the magnitudes of the cepstrum. Does not allocate.
+    /// Computes the magnitudes from the cepstrum. Does not allocate.
     fn make(&mut self) {
         self.inverse.magnitude(
             &self.cepstrum,
@@ -225,7 +225,9 @@ impl Curve for Spectrum {
 
     fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         if !self.inverse.is(parameters) {
-            return Err(Error::argument("a voice keeps its mel bank and inverse"));
+            return Err(Error::argument(
+                "a voice cannot change its mel bank or its inverse",
+            ));
         }
         let cepstrum = parameters.list(CEPSTRUM);
         if cepstrum.len() > self.energy.len() {
@@ -238,7 +240,7 @@ impl Curve for Spectrum {
         Ok(())
     }
 
-    /// Between bins: on the straight line between them.
+    /// Linear between bins.
     fn at(&self, frequency_hz: f64) -> f64 {
         let last = self.magnitude.len() - 1;
         let place = (frequency_hz / GRID_HZ - self.band.first_bin() as f64).clamp(0.0, last as f64);

@@ -1,5 +1,5 @@
-//! Least squares of the density to the spectrum's peaks (paper: fminsearch on ten peaks; it names no
-//! cost).
+//! Least-squares fit of the density to the spectrum's peaks (paper: fminsearch on ten peaks, cost function
+//! not stated).
 
 use alloc::vec::Vec;
 
@@ -19,19 +19,21 @@ const ERROR: usize = 3;
 const STARTS: [(f64, f64); 4] = [(2.0, 2.0), (1.5, 3.0), (3.0, 1.5), (4.0, 4.0)];
 /// Smallest parameter the descriptor allows.
 const SMALLEST: f64 = 1e-3;
-/// Largest parameter the search tries: beyond it the density is narrower than a bin.
+/// Largest parameter of the search: beyond it the density is narrower than a bin.
 const LARGEST: f64 = 1e4;
-/// Fewer peaks than parameters (two shapes and a scale) leave the fit undetermined.
+/// The fit has three unknowns, two shapes and a scale: fewer peaks leave it undetermined.
 const FEWEST_PEAKS: usize = 3;
-/// A fit that stands higher than this, over the spectrum's largest bin, has its energy where no peak
-/// held it down: it is fitted again to bins all over the band, and brought down to the largest one.
+/// Limit for a fit's maximum, relative to the spectrum's largest bin. A fit above it has its energy where
+/// there is no peak to constrain it; it is fitted again to bins spread over the band and scaled down to the
+/// largest bin.
 const HIGHEST: f64 = 2.0;
-/// Part of the points' squared magnitude left over by a density that misses them.
+/// Residual, as part of the points' squared magnitude, from which a density counts as not matching the
+/// points.
 const NOTHING_EXPLAINED: f64 = 0.99;
-/// Points and densities this far below their largest count as no lower, in decibels.
+/// Lower limit, relative to the largest, of points and densities compared in decibels.
 const FAINTEST: f64 = 1e-6;
 
-/// What is least at the points, relative to their own.
+/// Measure minimised at the points, relative to their own size.
 #[derive(Clone, Copy)]
 enum Distance {
     /// Squared differences of magnitudes.
@@ -69,7 +71,7 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     })
 }
 
-/// A density, the RMS of its magnitude, and its highest bin, over the spectrum's largest.
+/// A density, the RMS of its magnitude, and its maximum over the bins, relative to the spectrum's largest.
 struct Fitted {
     alpha: f64,
     beta: f64,
@@ -85,8 +87,9 @@ impl Fitted {
             0 => Distance::Magnitude,
             _ => Distance::Decibel,
         };
-        // The scale is that of the shape that files store, in single precision: a parameter of 1 + 1e-16
-        // has no density at its edge, and one of 1 may have its most there.
+        // The scale belongs to the parameters as files store them, in single precision: near 1 rounding
+        // changes the density at an edge completely, as it is zero there for 1 + 1e-16 and may have its
+        // maximum there for 1.
         let (alpha, beta) = fit_points(points, band, bound, distance);
         let [alpha, beta] = [alpha, beta].map(|parameter| f64::from(parameter as f32));
         let profile = Profile::new(alpha, beta, band);
@@ -102,8 +105,8 @@ impl Fitted {
     }
 }
 
-/// As many bins as points are wanted, evenly spaced in log frequency, and the largest bin, which may be
-/// the only one that holds anything.
+/// As many bins as points are wanted, evenly spaced in log frequency, and the largest bin, which may be the
+/// only nonzero one.
 fn spread_bins(input: &FitInput<'_>, magnitude: &[f64]) -> Vec<Peak> {
     let band: Band = input.band.edges().into();
     let ratio = band.high_hz / band.low_hz;
@@ -126,7 +129,7 @@ fn spread_bins(input: &FitInput<'_>, magnitude: &[f64]) -> Vec<Peak> {
     bins.into_iter().map(point).collect()
 }
 
-/// Alpha and beta, each at least `bound`, of least distance to the points.
+/// Returns the alpha and beta, each at least `bound`, with the smallest distance to the points.
 fn fit_points(points: &[Peak], band: Band, bound: f64, distance: Distance) -> (f64, f64) {
     let shape = |x: f64| (bound + x * x).min(LARGEST);
     let profile = |x: &[f64; 2]| Profile::new(shape(x[0]), shape(x[1]), band);
@@ -142,7 +145,7 @@ fn fit_points(points: &[Peak], band: Band, bound: f64, distance: Distance) -> (f
     };
     let mut best = STARTS.into_iter().map(search).reduce(better);
     if best.is_none_or(|best| best.value > NOTHING_EXPLAINED) {
-        // At an edge a density of parameters above 1 is 0, and knows no way up.
+        // At an edge a density with parameters above 1 is 0 and has no gradient.
         let at_edges = [(bound, 4.0), (4.0, bound)].into_iter().map(search);
         best = best.into_iter().chain(at_edges).reduce(better);
     }
@@ -150,8 +153,8 @@ fn fit_points(points: &[Peak], band: Band, bound: f64, distance: Distance) -> (f
 }
 
 impl Distance {
-    /// The scale of least distance, in closed form, and that distance; NaN, which no search takes,
-    /// where the density is not finite or zero at all points.
+    /// The optimal scale in closed form, and its distance; NaN, which the search rejects, if the density is
+    /// not finite or is zero at all points.
     fn best_scale(self, points: &[Peak], profile: &Profile) -> (f64, f64) {
         match self {
             Self::Magnitude => least_squares(points, profile),
@@ -160,7 +163,7 @@ impl Distance {
     }
 }
 
-/// By the squared differences of magnitudes, over the points' own squares.
+/// By the squared differences of magnitudes, relative to the sum of the points' squares.
 fn least_squares(points: &[Peak], profile: &Profile) -> (f64, f64) {
     let (mut pp, mut pm, mut mm) = (0.0, 0.0, 0.0);
     for point in points {
@@ -178,8 +181,8 @@ fn least_squares(points: &[Peak], profile: &Profile) -> (f64, f64) {
     (scale, residual / mm)
 }
 
-/// By the mean squared difference of natural logarithms. The band's edges, where a density may be 0
-/// however well it fits beside them, have no say.
+/// By the mean squared difference of natural logarithms. The band's edges, where a density may be 0 however
+/// well it fits elsewhere, are excluded.
 fn least_decibels(points: &[Peak], profile: &Profile) -> (f64, f64) {
     let Band { low_hz, high_hz } = profile.band;
     let inside = |point: &&Peak| low_hz < point.frequency_hz && point.frequency_hz < high_hz;

@@ -1,5 +1,5 @@
-//! Spectral beta: the spectrum's profile as a beta density on the normalised logarithmic frequency
-//! axis, two numbers (paper, Spectral beta).
+//! Spectral beta: the envelope of the spectrum as a beta density on the normalised logarithmic frequency
+//! axis, two parameters (paper, Spectral beta).
 #![no_std]
 
 #[macro_use]
@@ -113,13 +113,14 @@ pub struct Shape {
     logs: Option<Arc<Logs>>,
 }
 
-/// Logarithms of a voice's places on the axis, `u`, and of `1 - u`.
+/// Logarithms of a voice's positions on the axis, `u`, and of `1 - u`.
 struct Logs {
     log: Vec<f64>,
     log_rest: Vec<f64>,
 }
 
-/// Stands for the logarithm of 0: times any exponent but 0 it is beyond what an exponential can be of.
+/// Finite substitute for the logarithm of 0: multiplied by any exponent but 0 it is outside the range of
+/// exponentials.
 const LOG_ZERO: f64 = -1e300;
 
 impl Curve for Shape {
@@ -187,8 +188,8 @@ impl Curve for Shape {
     }
 }
 
-/// The beta density at the frequencies of a band. Where it is infinite, at an edge with a parameter
-/// below 1, the value a quarter of a bin inside stands for what a bin that wide would read.
+/// The beta density at the frequencies of a band. Where it is infinite, at an edge with a parameter below 1,
+/// it is replaced by its value a quarter of a bin inside, close to what a bin of that width measures.
 #[derive(Clone, Copy)]
 pub(crate) struct Profile {
     density: BetaDensity,

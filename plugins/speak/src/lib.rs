@@ -1,5 +1,5 @@
-//! Spectral peaks: the spectrum as a few sinusoids, each a just-noticeable difference from the next
-//! (paper, Spectral peak, eq. for y_sp).
+//! Spectral peaks: the spectrum as a few sinusoids, at least a just-noticeable difference apart (paper,
+//! Spectral peak, eq. for y_sp).
 #![no_std]
 
 extern crate alloc;
@@ -22,13 +22,13 @@ const COUNT: usize = 0;
 const JND: usize = 1;
 const PHASE_OPTION: usize = 2;
 
-/// Most sinusoids of one set of parameters.
+/// Maximum number of sinusoids in one set of parameters.
 const MAX_PEAKS: usize = 64;
-/// Peaks this far below the largest bin are left out: they cannot be felt, nor stored, and may be the
-/// rounding errors beside a tone at the band's edge.
+/// Peaks below this, relative to the largest bin, are ignored: they are imperceptible, cannot be stored, and
+/// may be rounding errors next to a tone at the band's edge.
 const FAINTEST: f64 = 1e-7;
 
-/// Frequencies in 1/32 Hz hold the 5 Hz grid exactly.
+/// Frequencies in 1/32 Hz, which represents the 5 Hz grid exactly.
 const HERTZ: Store = Store::U16 {
     scale: 0.03125,
     offset: 0.0,
@@ -141,7 +141,8 @@ impl Model for SpectralPeak {
         Ok(())
     }
 
-    /// Sets of as many lines glide line by line; others fade over, line by line, at constant power.
+    /// Sets with the same number of lines glide line by line; others cross-fade line by line at constant
+    /// power.
     fn interpolate(
         sets: &[Values<'_>],
         weights: &[f64],
@@ -216,11 +217,11 @@ pub struct SpectralPeakVoice {
 }
 
 impl SpectralPeakVoice {
-    /// Takes over the lines; says how many there are.
+    /// Sets the lines; returns their number.
     fn set(&mut self, lines: &Lines<'_>) -> usize {
         let count = lines.frequency_hz.len().min(MAX_PEAKS);
         for i in 0..count {
-            // A line that is not played keeps its place, and its phase.
+            // A line that is not played keeps its index and its phase.
             self.sines[i] = Sine {
                 frequency_hz: lines.frequency_hz[i],
                 amplitude: lines.played(i) / lines.level,
@@ -243,7 +244,7 @@ impl Voice for SpectralPeakVoice {
     }
 }
 
-/// The sinusoids, and the RMS of those in the band together.
+/// The sinusoids, and the total RMS of those in the band.
 struct Lines<'a> {
     frequency_hz: &'a [f64],
     amplitude: &'a [f64],
@@ -280,7 +281,7 @@ impl<'a> Lines<'a> {
         ]))
     }
 
-    /// Amplitude of a line as it is played: 0 outside the band, where a texture has no magnitude.
+    /// Amplitude of a line as it is played: 0 outside the band, where textures have no magnitude.
     fn played(&self, line: usize) -> f64 {
         let inside = self.band.low_hz..=self.band.high_hz;
         match inside.contains(&self.frequency_hz[line]) {
@@ -289,8 +290,8 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// Unit-level magnitude as read through the Hann window at `frequency_hz`: A on a line, A/2 a
-    /// bin beside it; lines add in power.
+    /// Unit-level magnitude at `frequency_hz` as measured through the Hann window: A on a line, A/2 a bin
+    /// beside it; lines add in power.
     fn seen_at(&self, frequency_hz: f64) -> f64 {
         let lines = self.frequency_hz.iter().enumerate();
         let power: f64 = lines
@@ -305,7 +306,7 @@ fn level(amplitudes: impl Iterator<Item = f64>) -> f64 {
     htex_dsp::root::sqrt(amplitudes.map(|a| 0.5 * a * a).sum())
 }
 
-/// Main lobe of the periodic Hann window's transform, 1 at its middle, `bins` away.
+/// Main lobe of the periodic Hann window's transform at a distance of `bins`; 1 at its centre.
 fn hann_kernel(bins: f64) -> f64 {
     let d = bins.abs();
     if d >= 2.0 {

@@ -1,5 +1,5 @@
-//! Slopes to either side of the dominant peak (paper: from 20 Hz to the peak, from the peak to
-//! 1 kHz), in decibels a decade.
+//! Slopes on either side of the dominant peak (paper: from 20 Hz to the peak, from the peak to 1 kHz), in
+//! decibels per decade.
 
 use alloc::vec::Vec;
 
@@ -10,9 +10,9 @@ use crate::{MAX_ORDER, ORDER_STEP, Shape};
 
 const ROUNDING: usize = 0;
 const METHOD: usize = 1;
-/// One order of a filter, decibels a decade.
+/// Slope of one filter order, decibels per decade.
 const DB_PER_ORDER: f64 = 20.0;
-/// Bins without energy count as this far below the peak, so that a slope stays a number.
+/// Level of bins without energy relative to the peak, which keeps slopes finite.
 const FLOOR_DB: f64 = -400.0;
 
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
@@ -43,7 +43,7 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     let shape = Shape::of(peak_hz, orders, input.band.edges().into())?;
     Ok(Fit {
         parameters: vec![peak_hz, orders.0, orders.1],
-        // The recording's magnitude at the peak.
+        // Magnitude of the recording at the peak.
         level_rms: top * (shape.level() / shape.at(peak_hz)),
     })
 }
@@ -56,8 +56,8 @@ fn decibels(ratio: f64) -> f64 {
     }
 }
 
-/// The order of a slope, rounded half away from zero to whole steps, at least one step, as files store
-/// it.
+/// The order of a slope, rounded half away from zero to whole steps, at least one, and to the resolution of
+/// files.
 fn round_order(slope_db_per_decade: f64, step_db_per_decade: f64) -> f64 {
     let steps = libm::round(slope_db_per_decade / step_db_per_decade).max(1.0);
     let order = (steps * step_db_per_decade / DB_PER_ORDER).min(MAX_ORDER);

@@ -1,9 +1,9 @@
-//! Spectral slope: an asymmetric band-pass around the dominant peak, three numbers (paper, Spectral
+//! Spectral slope: an asymmetric band-pass around the dominant peak, three parameters (paper, Spectral
 //! slope).
 //!
-//! The orders are whole with the paper's rounding to 20 dB a decade, and may be fractional with a
-//! finer one or between two conditions. White noise is therefore shaped in the frequency domain by
-//! the Butterworth magnitude, which is defined for both, rather than by a recursive filter.
+//! The orders are integers with the paper's rounding to 20 dB per decade, and may be fractional with finer
+//! rounding or between two conditions. White noise is therefore shaped in the frequency domain by the
+//! Butterworth magnitude, which is defined for both, and not by a recursive filter.
 #![no_std]
 
 #[macro_use]
@@ -27,9 +27,9 @@ const PEAK: usize = 0;
 const HIGH_PASS: usize = 1;
 const LOW_PASS: usize = 2;
 
-/// Files store an order in twentieths: 1 dB a decade.
+/// Files store an order in steps of 1/20: 1 dB per decade.
 const ORDER_STEP: f64 = 0.05;
-/// Highest filter order: 400 dB a decade.
+/// Highest filter order: 400 dB per decade.
 pub const MAX_ORDER: f64 = 20.0;
 
 const fn steps(scale: f64) -> Store {
@@ -139,7 +139,7 @@ pub struct Shape {
     logs: Option<Arc<[f64]>>,
 }
 
-/// Frequencies whose magnitudes are made at once.
+/// Frequencies whose magnitudes are computed at a time.
 const AT_ONCE: usize = 64;
 
 impl Shape {
@@ -186,7 +186,7 @@ impl Curve for Shape {
         Ok(())
     }
 
-    /// One half at the peak.
+    /// The value at the peak is one half.
     fn at(&self, frequency_hz: f64) -> f64 {
         let above = frequency_hz / self.peak_hz;
         butterworth(above, self.low_pass) * butterworth(1.0 / above, self.high_pass)

@@ -1,4 +1,5 @@
-//! The all-pole filter: quick while its coefficients stand still, stable while they change.
+//! All-pole filter: a fast direct form while its coefficients are constant, a lattice, which stays stable,
+//! while they change.
 
 pub use crate::direct_form::GROUP;
 use crate::direct_form::{Direct, MAX_ORDER as MAX_DIRECT_ORDER};
@@ -6,21 +7,21 @@ use crate::lattice::AllPoleLattice;
 use crate::linear_prediction::{step_down_in_place, step_up};
 use crate::quad::{Quad, VOICES};
 
-/// As many samples as are filtered together.
+/// [`GROUP`] samples, which are filtered together.
 pub type Group = [f64; GROUP];
 
-/// Rounding of the direct form, relative to the output, is at most about 1e-16 times the sum of its
-/// coefficients' sizes times the filter's gain for noise; up to this product samples of single
-/// precision do not show it.
+/// Limit for the direct form. Its rounding error, relative to the output, is at most about 1e-16 times the
+/// sum of the absolute coefficients times the filter's gain for noise. Up to this product the error is below
+/// the resolution of single-precision samples.
 const MAX_DIRECT_ERROR: f64 = 1e7;
 
-/// `H(z) = 1 / (1 - Σ A_i z⁻ⁱ)` with coefficients that can be moved (f64 state).
+/// `H(z) = 1 / (1 - Σ A_i z⁻ⁱ)` with coefficients that can change while it runs (f64 state).
 ///
-/// While they stand still the filter takes four samples at a time (transposed direct form II, its
-/// recursion written out for four). While they move it is a lattice, which is stable for as long
-/// as each reflection coefficient is. Nothing is heard of the change from one to the other: a
-/// lattice whose coefficients have not moved for as many samples as it has stages holds nothing
-/// but the outputs since.
+/// While the coefficients are constant, the filter computes four samples at a time (transposed direct form
+/// II, the recursion unrolled for four samples). While they change it runs as a lattice, which is stable as
+/// long as each reflection coefficient is inside (-1, 1). The switch is inaudible: a lattice whose
+/// coefficients have been constant for as many samples as it has stages has a state that depends on its last
+/// outputs alone.
 ///
 /// ```
 /// use htex_dsp::all_pole::AllPole;
@@ -33,21 +34,21 @@ const MAX_DIRECT_ERROR: f64 = 1e7;
 #[derive(Debug, Clone)]
 pub struct AllPole {
     lattice: AllPoleLattice,
-    /// Samples until the lattice holds nothing but the last outputs.
+    /// Samples until the state of the lattice depends on the last outputs alone.
     unsettled: usize,
-    /// The last outputs, the newest last.
+    /// The last outputs, the newest at the end.
     past: [f64; MAX_DIRECT_ORDER],
-    /// The direct form, while it is in charge.
+    /// The direct form, while it is in use.
     direct: Option<Direct>,
 }
 
-/// Four filters whose coefficients stand still, side by side: each gives what it would give alone, bit
-/// for bit.
+/// Four filters with constant coefficients, computed side by side. Each output is bit-identical to that of
+/// the filter run alone.
 #[derive(Debug)]
 pub struct AllPoles<'a>([&'a mut AllPole; VOICES]);
 
 impl AllPole {
-    /// A filter at rest; `None` if a pole lies on or outside the unit circle.
+    /// Returns a filter with zero state; `None` if a pole lies on or outside the unit circle.
     pub fn new(coefficients: &[f64]) -> Option<Self> {
         let mut reflection = coefficients.to_vec();
         if !step_down_in_place(&mut reflection) {
@@ -63,12 +64,13 @@ impl AllPole {
         Some(filter)
     }
 
-    /// The order, fixed for the filter's life.
+    /// Order of the filter; constant.
     pub fn order(&self) -> usize {
         self.lattice.order()
     }
 
-    /// The reflection coefficients, to be moved between samples, inside (-1, 1). Does not allocate.
+    /// The reflection coefficients. They may be changed between samples and must stay inside (-1, 1). Does
+    /// not allocate.
     pub fn reflection_mut(&mut self) -> &mut [f64] {
         if self.direct.take().is_some() {
             self.lattice.set_past(&self.past);
@@ -77,7 +79,7 @@ impl AllPole {
         self.lattice.reflection_mut()
     }
 
-    /// Filters one sample as a lattice, while coefficients move.
+    /// Filters one sample as a lattice; for use while coefficients change.
     pub fn tick(&mut self, input: f64) -> f64 {
         if self.direct.is_some() {
             self.reflection_mut();
@@ -113,7 +115,7 @@ impl AllPole {
         }
     }
 
-    /// Goes over to the direct form, if it may be used.
+    /// Switches to the direct form if its rounding error is small enough.
     fn settle(&mut self) {
         let order = self.order();
         if order > MAX_DIRECT_ORDER {
@@ -133,7 +135,7 @@ impl AllPole {
 }
 
 impl<'a> AllPoles<'a> {
-    /// These filters side by side; `None` where one of them is a lattice, as while its coefficients move.
+    /// Combines four filters; `None` if one of them still runs as a lattice because its coefficients changed.
     pub fn new(filters: [&'a mut AllPole; VOICES]) -> Option<Self> {
         let direct = filters.iter().all(|filter| filter.direct.is_some());
         direct.then_some(Self(filters))
@@ -157,7 +159,7 @@ impl<'a> AllPoles<'a> {
     }
 }
 
-/// Keeps the last of some more outputs.
+/// Appends outputs to `past` and drops the oldest ones.
 fn remember(past: &mut [f64; MAX_DIRECT_ORDER], outputs: &[f64]) {
     if let Some(last) = outputs.last_chunk() {
         *past = *last;
@@ -173,9 +175,9 @@ mod tests {
     use crate::noise::GaussianNoise;
     use alloc::vec::Vec;
 
-    /// Standing still, moving, and standing still again: the same as a lattice all the time.
+    /// Alternates constant and changing coefficients; the output equals that of a lattice throughout.
     #[test]
-    fn moving_and_standing_still_are_one_filter() {
+    fn switching_forms_matches_the_lattice() {
         for coefficients in [&[1.2, -0.8, 0.3, -0.1, 0.05, 0.02, -0.3][..], &[0.9]] {
             let mut filter = AllPole::new(coefficients).unwrap();
             let mut lattice = filter.lattice.clone();
@@ -218,9 +220,9 @@ mod tests {
         }
     }
 
-    /// What is too long for the direct form, or would lose digits in it, stays a lattice.
+    /// Filters whose order or rounding error is too large for the direct form stay lattices.
     #[test]
-    fn the_direct_form_is_left_where_it_would_not_do() {
+    fn the_direct_form_is_used_only_where_it_is_accurate() {
         let coefficients_of = |poles: usize, radius: f64| {
             let mut polynomial = alloc::vec![1.0];
             for _ in 0..poles {
@@ -247,9 +249,9 @@ mod tests {
         }
     }
 
-    /// Side by side each gives the bits it gives alone, in all lengths; a lattice cannot stand there.
+    /// Four filters side by side give the bits of each alone, for all block lengths; a lattice is rejected.
     #[test]
-    fn four_filters_are_one_and_one() {
+    fn four_filters_are_bit_identical_to_single_ones() {
         let order = |n: usize| -> Vec<f64> { (0..n).map(|i| 0.5 / (i + n) as f64).collect() };
         for orders in [
             [1, 2, 2, 1],
@@ -279,7 +281,7 @@ mod tests {
                     let same = |(y, x): (&[Quad; GROUP], &Group)| y.map(|y| y.0[voice]) == *x;
                     assert!(block.iter().zip(expected).all(same), "{orders:?} {voice}");
                 }
-                // What a lattice would go on from.
+                // The outputs a lattice would continue from.
                 for (own, alone) in beside.iter().zip(&alone) {
                     assert_eq!(own.past, alone.past);
                 }

@@ -1,4 +1,4 @@
-//! Steep filters at the edges of the band, for noise that is made wider than it.
+//! Steep filters at the edges of the band, for noise that is generated wider than the band.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -11,20 +11,20 @@ use crate::pipeline::Pipeline;
 use crate::shared::Shared;
 use crate::wide::{Work, wide};
 
-/// 80 dB a decade, and as steep at the edge as a Butterworth filter of twice the order: half a bin
-/// outside the band lets through next to nothing of its power.
+/// 80 dB a decade, as steep at the edge as a Butterworth filter of twice the order: half a bin outside the
+/// band almost no power passes.
 const ORDER: usize = 4;
 const RIPPLE_DB: f64 = 0.2;
-/// Bins to either side of an edge over which the filter's response changes within a bin.
+/// Bins on either side of an edge in which the response changes within one bin.
 const EDGE_BINS: usize = 3;
-/// Points at which the response is read in such a bin.
+/// Points per bin at which the response is evaluated there.
 const EDGE_POINTS: usize = 4;
-/// Distance from an edge, as a part of its frequency, beyond which 30 dB and more are taken off.
+/// Distance from an edge, relative to its frequency, beyond which the attenuation is at least 30 dB.
 const BESIDE: f64 = 0.5;
 
-/// Chebyshev filters, within 0.1 dB inside `band` and 3 dB down half a grid bin outside both of its
-/// edges, at `rate_hz`. An edge at or above the Nyquist frequency needs no filter and gets none. Some
-/// samples late ([`Pipeline`]).
+/// Returns Chebyshev filters for `band` at the sampling rate `rate_hz`: within 0.1 dB inside the band and 3
+/// dB down half a grid bin outside each edge. An edge at or above the Nyquist frequency gets no filter. The
+/// output is delayed by some samples ([`Pipeline`]).
 pub fn band_limit(band: Band, rate_hz: f64) -> Pipeline {
     Pipeline::new(&sections(band, rate_hz))
 }
@@ -40,22 +40,23 @@ fn sections(band: Band, rate_hz: f64) -> Vec<Biquad> {
         .collect()
 }
 
-/// The part of a noise's power that passes [`band_limit`] and that the band's bins read ([`read_part`]), for each
-/// bin of the grid in the band and some beside it, near the edges for parts of bins. A bin that the Nyquist
-/// frequency divides counts up to it.
+/// For each grid bin in the band and some beside it: the part of a noise's power that passes [`band_limit`]
+/// and is measured by the bins of the band ([`read_part`]). Near the edges bins are subdivided. A bin that
+/// contains the Nyquist frequency counts up to it.
 ///
-/// The level of filtered noise is read with it. Without it noise would come out too weak, by the filters'
-/// ripple, by the part of the highest bin that lies above the Nyquist frequency, and by what the window misses at
-/// the band's edges.
+/// It corrects the level of filtered noise. Without the correction noise would be too weak: by the filters'
+/// ripple, by the part of the highest bin above the Nyquist frequency, and by the power that the window
+/// misses at the band's edges.
 #[derive(Debug, Clone)]
 pub struct PassedPower {
-    /// Frequency, hertz, and what is heard there of a bin, 0 to about 1.
+    /// Frequency in hertz, and the part of the power measured there, 0 to about 1.
     points: Vec<(f64, f64)>,
-    /// The same points, some side by side: cosine and sine of a sample's turn there, and what is heard.
+    /// The same points in groups of [`TURNS`]: cosine and sine of the phase advance per sample, and the part
+    /// of the power.
     turns: Vec<Turns>,
 }
 
-/// Points side by side; those beyond the last are heard not at all.
+/// A group of points; unused ones have weight zero.
 #[derive(Debug, Clone, Copy)]
 struct Turns {
     cos: [f64; TURNS],
@@ -63,18 +64,18 @@ struct Turns {
     part: [f64; TURNS],
 }
 
-/// Points side by side.
+/// Points per group.
 const TURNS: usize = 8;
 
 impl PassedPower {
-    /// As [`Self::new`]; those of one band and rate share it.
+    /// As [`Self::new`]; values of the same band and rate share one table.
     pub fn shared(band: Band, rate_hz: f64) -> Arc<Self> {
         static PASSED: Shared<[u64; 3], PassedPower> = Shared::new();
         let key = [band.low_hz, band.high_hz, rate_hz].map(f64::to_bits);
         PASSED.get(key, || Arc::new(Self::new(band, rate_hz)))
     }
 
-    /// What passes the filters of a band at a rate and is read.
+    /// Computes the table for a band, hertz, and a sampling rate, hertz.
     pub fn new(band: Band, rate_hz: f64) -> Self {
         Self::read_by(band, rate_hz, |hz| read_part(band, hz))
     }
@@ -175,7 +176,7 @@ impl Work for AllPolePower<'_> {
             for i in 0..TURNS {
                 let re = 1.0 - re[i];
                 let heard = part[i] / (re * re + im[i] * im[i]);
-                // Where nothing is heard, a pole on the circle counts for nothing either.
+                // Where the weight is zero, a pole on the circle contributes nothing either.
                 sums[i] += if part[i] > 0.0 { heard } else { 0.0 };
             }
         }
@@ -198,10 +199,10 @@ mod tests {
         }
     }
 
-    /// White noise of unit variance: half its power a hertz below the Nyquist frequency times the mean
-    /// power of the filters' response, which the energy of the answer to an impulse is, too.
+    /// White noise of unit variance: half its power per hertz below the Nyquist frequency, times the mean
+    /// power of the filters' response. The energy of the impulse response equals the same mean.
     #[test]
-    fn the_power_that_passes_is_the_energy_of_an_impulses_answer() {
+    fn passed_power_equals_the_energy_of_the_impulse_response() {
         for (low_hz, high_hz, rate_hz) in [
             (20.0, 1000.0, 2_000.0),
             (20.0, 1000.0, 2_050.0),

@@ -12,11 +12,11 @@ use crate::triangles::TriangleBank;
 /// Bands in the standard comparison.
 pub const BAND_COUNT: usize = 9;
 
-/// Added to both energies before a ratio is taken, relative to the largest reference band: an
-/// empty band then reads a large but finite error.
+/// Added to both energies before a ratio is taken, relative to the largest reference band, so that an empty
+/// band gives a large but finite error.
 const RELATIVE_FLOOR: f64 = 1e-12;
 
-/// Triangular bands, log-spaced, overlapping by half, straight in the logarithm of frequency.
+/// Triangular bands, log-spaced, half overlapping, with flanks linear in the logarithm of frequency.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BandBank {
     edges_hz: Vec<f64>,
@@ -24,7 +24,7 @@ pub struct BandBank {
 }
 
 impl BandBank {
-    /// `count` bands over `band`, weighed at `frequencies_hz` (ascending, positive).
+    /// Makes `count` bands over `band`, with weights at `frequencies_hz` (ascending, positive).
     ///
     /// ```
     /// use htex_dsp::{Band, bands::{BAND_COUNT, BandBank}};
@@ -34,7 +34,7 @@ impl BandBank {
     /// ```
     pub fn new(count: usize, band: Band, frequencies_hz: &[f64]) -> Self {
         let last = count + 1;
-        // On an axis on which the edges are the whole numbers, no edge suffers from rounding.
+        // On this axis the edges are whole numbers, so they have no rounding error.
         let edges: Vec<f64> = (0..=last).map(|i| i as f64).collect();
         let axis: Vec<f64> = frequencies_hz
             .iter()
@@ -50,12 +50,13 @@ impl BandBank {
         }
     }
 
-    /// The `count + 2` edges, hertz: band `i` has its feet at `i` and `i + 2`, its apex at `i + 1`.
+    /// The `count + 2` edges, hertz: band `i` extends from edge `i` to edge `i + 2` with its apex at edge `i
+    /// + 1`.
     pub fn edges_hz(&self) -> &[f64] {
         &self.edges_hz
     }
 
-    /// The weights.
+    /// The weights, one filter per band.
     pub fn filters(&self) -> &TriangleBank {
         &self.bank
     }
@@ -69,9 +70,9 @@ impl BandBank {
     }
 }
 
-/// Error of each band, `10 log10((model + tiny) / (reference + tiny))` dB, from band *energies*;
-/// `tiny` is 1e-12 of the largest reference band. All-zero energies on both sides read 0 dB; a
-/// model with energy against an all-zero reference reads +∞.
+/// Error of each band in dB, `10 log10((model + tiny) / (reference + tiny))`, from band *energies*; `tiny` is
+/// 1e-12 of the largest reference band. If all energies on both sides are zero, the errors are 0 dB; a model
+/// with energy against an all-zero reference gives +∞.
 pub fn band_error_db(reference: &[f64], model: &[f64]) -> Vec<f64> {
     let tiny = RELATIVE_FLOOR * reference.iter().copied().fold(0.0, f64::max);
     reference
@@ -89,10 +90,10 @@ fn ratio_db(model: f64, reference: f64) -> f64 {
     }
 }
 
-/// The gain that gives a model's *magnitudes* the reference's total energy in the band:
-/// `sqrt(Σ reference² / Σ model²)`. 1 if either is zero or not finite.
+/// Returns the gain that gives a model's *magnitudes* the total energy of the reference: `sqrt(Σ reference² /
+/// Σ model²)`; 1 if either sum is zero or not finite.
 ///
-/// Times its square, the model's band energies compare by shape alone.
+/// Multiply the model's band energies by its square to compare spectral shapes independently of level.
 pub fn energy_matching_gain(reference_magnitude: &[f64], model_magnitude: &[f64]) -> f64 {
     let total = |magnitude: &[f64]| magnitude.iter().map(|m| m * m).sum::<f64>();
     let gain = crate::root::sqrt(total(reference_magnitude) / total(model_magnitude));
@@ -111,10 +112,10 @@ pub fn rms(values: &[f64]) -> f64 {
     crate::root::sqrt(values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64)
 }
 
-/// Pearson correlation of two equally long slices (the longer is cut), in `[-1, 1]`.
+/// Pearson correlation of two slices, in `[-1, 1]`; a longer slice is cut to the length of the other.
 ///
-/// Never NaN for finite input: where either side does not vary there is nothing to correlate, and
-/// the result is 0, except that two slices with the same values give 1.
+/// Never NaN for finite input. If either slice is constant the correlation is undefined and the result is 0,
+/// except that two equal slices give 1.
 ///
 /// ```
 /// use htex_dsp::bands::pearson_correlation;
@@ -128,7 +129,7 @@ pub fn pearson_correlation(a: &[f64], b: &[f64]) -> f64 {
         return 1.0;
     }
     let (a, b) = (deviations(a), deviations(b));
-    // Each side is scaled by its largest deviation, so that no square under- or overflows.
+    // Each side is scaled by its largest deviation, so that squares neither under- nor overflow.
     let product: f64 = a.iter().zip(&b).map(|(x, y)| x * y).sum();
     let norm = |values: &[f64]| crate::root::sqrt(values.iter().map(|v| v * v).sum());
     let correlation = product / (norm(&a) * norm(&b));
@@ -139,7 +140,7 @@ pub fn pearson_correlation(a: &[f64], b: &[f64]) -> f64 {
     }
 }
 
-/// Deviations from the mean, divided by the largest; all zero where the values do not vary.
+/// Deviations from the mean, divided by the largest one; all zero if the values are constant.
 fn deviations(values: &[f64]) -> Vec<f64> {
     let varies = values.windows(2).any(|pair| pair[0] != pair[1]);
     let mean = values.iter().sum::<f64>() / values.len() as f64;
@@ -155,7 +156,7 @@ mod tests {
     #[test]
     fn degenerate_comparisons_are_defined() {
         assert_eq!(pearson_correlation(&[0.1; 7], &[0.1; 7]), 1.0);
-        // Ten times a tenth is not quite one: the mean is not quite any of the values.
+        // Ten times 0.1 is not exactly 1, so the mean equals none of the values.
         assert_eq!(pearson_correlation(&[0.1; 10], &[0.3; 10]), 0.0);
         assert_eq!(pearson_correlation(&[], &[1.0]), 1.0);
         assert!((pearson_correlation(&[1e-200, 2e-200], &[2e200, 1e200]) + 1.0).abs() < 1e-12);

@@ -2,8 +2,8 @@
 
 use crate::Band;
 
-/// Place of `f_hz` on the band's logarithmic axis: 0 at the lower edge, 1 at the upper,
-/// `ln(f / low) / ln(high / low)`. Outside the band it lies outside `[0, 1]`.
+/// Position of `f_hz` on the band's normalised logarithmic axis: 0 at the lower edge, 1 at the upper edge,
+/// `ln(f / low) / ln(high / low)`. Outside `[0, 1]` for frequencies outside the band.
 ///
 /// ```
 /// use htex_dsp::{Band, beta::log_unit};
@@ -14,7 +14,7 @@ pub fn log_unit(f_hz: f64, band: Band) -> f64 {
     LogAxis::new(band).at(f_hz)
 }
 
-/// The axis of [`log_unit`], for many frequencies of one band.
+/// The axis of [`log_unit`], precomputed for one band.
 #[derive(Debug, Clone, Copy)]
 pub struct LogAxis {
     low_hz: f64,
@@ -22,7 +22,7 @@ pub struct LogAxis {
 }
 
 impl LogAxis {
-    /// The axis of a band.
+    /// Returns the axis of a band.
     pub fn new(band: Band) -> Self {
         Self {
             low_hz: band.low_hz,
@@ -30,7 +30,7 @@ impl LogAxis {
         }
     }
 
-    /// Place of `f_hz`, as [`log_unit`] has it.
+    /// Position of `f_hz`, as [`log_unit`].
     pub fn at(&self, f_hz: f64) -> f64 {
         libm::log(f_hz / self.low_hz) / self.log_ratio
     }
@@ -38,8 +38,15 @@ impl LogAxis {
 
 /// Density of the beta distribution, `u^(α-1) (1-u)^(β-1) / B(α, β)`, 0 outside `[0, 1]`.
 ///
-/// At an edge the value is the limit: 0 for an exponent above 1, finite for exactly 1, +∞ below 1.
-/// Relative error: about 1e-13 for parameters below 100, 1e-8 at a million.
+/// At an edge the value is the limit: 0 for a parameter above 1, finite for exactly 1, +∞ below 1. Relative
+/// error: about 1e-13 for parameters below 100, 1e-8 at a million.
+///
+/// ```
+/// use htex_dsp::beta::BetaDensity;
+/// let density = BetaDensity::new(2.0, 2.0);
+/// assert!((density.at(0.5) - 1.5).abs() < 1e-12);
+/// assert_eq!(density.at(0.0), 0.0);
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct BetaDensity {
     alpha: f64,
@@ -49,7 +56,8 @@ pub struct BetaDensity {
 }
 
 impl BetaDensity {
-    /// `alpha` and `beta` must be positive and finite, else the density is NaN everywhere.
+    /// Makes the density. `alpha` and `beta` must be positive and finite, otherwise the density is NaN
+    /// everywhere.
     pub fn new(alpha: f64, beta: f64) -> Self {
         let valid = [alpha, beta].iter().all(|p| *p > 0.0 && p.is_finite());
         let log_scale = if valid {
@@ -77,8 +85,8 @@ impl BetaDensity {
         libm::exp(left + right - self.log_scale)
     }
 
-    /// The density at places given by `ln u` and `ln (1 - u)`, finite, with the accuracy of
-    /// [`exponentials`](crate::exponential::exponentials). As many as there are of all three.
+    /// Writes the density at points given by finite `ln u` and `ln (1 - u)`, with the accuracy of
+    /// [`exponentials`](crate::exponential::exponentials). The shortest slice sets the number of points.
     pub fn fill(&self, log: &[f64], log_rest: &[f64], density: &mut [f64]) {
         let (left, right) = (self.alpha - 1.0, self.beta - 1.0);
         for ((d, log), log_rest) in density.iter_mut().zip(log).zip(log_rest) {
@@ -88,12 +96,12 @@ impl BetaDensity {
     }
 }
 
-/// [`BetaDensity`] at one place.
+/// [`BetaDensity`] at one point.
 pub fn beta_pdf(u: f64, alpha: f64, beta: f64) -> f64 {
     BetaDensity::new(alpha, beta).at(u)
 }
 
-/// `factor * log`, where a factor of zero wins over a logarithm of -∞.
+/// `factor * log`, where a factor of zero gives zero even for a logarithm of -∞.
 fn times_log(factor: f64, log: f64) -> f64 {
     if factor == 0.0 { 0.0 } else { factor * log }
 }

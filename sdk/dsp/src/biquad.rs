@@ -3,8 +3,8 @@
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
-/// State smaller than this is set to zero: no arithmetic then meets a denormal, which some
-/// processors handle a hundred times slower. It lies 200 decades below anything felt.
+/// State smaller than this is set to zero, which avoids denormals: some processors handle them a hundred
+/// times slower. The threshold is some 200 decades below any perceptible amplitude.
 const SMALLEST_STATE: f64 = 1e-200;
 
 /// One section: `H(z) = (b0 + b1 z⁻¹ + b2 z⁻²) / (1 + a1 z⁻¹ + a2 z⁻²)`.
@@ -32,14 +32,14 @@ impl Biquad {
         a2: 0.0,
     };
 
-    /// `|H|` at `f_hz` for the sampling rate `rate_hz`.
+    /// Magnitude `|H|` at `f_hz` for the sampling rate `rate_hz`, both in hertz.
     pub fn magnitude(&self, f_hz: f64, rate_hz: f64) -> f64 {
         let (sine, cosine) = crate::trig::sincos(PI * f_hz / rate_hz);
         let squared = |c0: f64, c1: f64, c2: f64| {
             if sine.abs() < cosine.abs() {
                 squared_magnitude(c0, c1, c2, sine * sine)
             } else {
-                // Seen from Nyquist: z -> -z turns the sign of the odd coefficient.
+                // Computed from the Nyquist frequency down: z -> -z changes the sign of the odd coefficient.
                 squared_magnitude(c0, -c1, c2, cosine * cosine)
             }
         };
@@ -52,15 +52,14 @@ impl Biquad {
     }
 }
 
-/// `|c0 + c1 z⁻¹ + c2 z⁻²|²` from `phi = sin²(ω/2)`: keeps its digits near ω = 0, where the direct
-/// sum cancels.
+/// `|c0 + c1 z⁻¹ + c2 z⁻²|²` from `phi = sin²(ω/2)`. Accurate near ω = 0, where the direct sum cancels.
 fn squared_magnitude(c0: f64, c1: f64, c2: f64, phi: f64) -> f64 {
     let sum = c0 + c1 + c2;
     let linear = c0 * c1 + 4.0 * c0 * c2 + c1 * c2;
     (sum * sum - 4.0 * linear * phi + 16.0 * c0 * c2 * phi * phi).max(0.0)
 }
 
-/// A block through `N` sections, whose state meanwhile stays in registers.
+/// Filters a block by `N` sections, with their state in registers.
 fn run<const N: usize>(sections: &mut [Section; N], block: &mut [f64]) {
     let mut own = *sections;
     for sample in block {
@@ -69,12 +68,12 @@ fn run<const N: usize>(sections: &mut [Section; N], block: &mut [f64]) {
     *sections = own;
 }
 
-/// More sections were given than a [`Cascade`] was made for.
+/// Error: more sections than the capacity of a [`Cascade`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TooManySections {
     /// Sections given.
     pub given: usize,
-    /// Sections there is room for.
+    /// Capacity of the cascade, sections.
     pub capacity: usize,
 }
 
@@ -90,7 +89,7 @@ impl core::fmt::Display for TooManySections {
 
 impl core::error::Error for TooManySections {}
 
-/// A section with its memory (transposed direct form II).
+/// A section with its state (transposed direct form II).
 #[derive(Debug, Clone, Copy)]
 struct Section {
     biquad: Biquad,
@@ -126,7 +125,7 @@ pub(crate) fn without_denormals(state: f64) -> f64 {
     }
 }
 
-/// Sections in series, with f64 state. After construction nothing allocates.
+/// Sections in series, with f64 state. Does not allocate after construction.
 ///
 /// The output does not depend on how the input is cut into blocks.
 ///
@@ -146,7 +145,7 @@ pub struct Cascade {
 }
 
 impl Cascade {
-    /// A cascade of `sections`, at rest, with room for just these.
+    /// A cascade of `sections` with zero state; its capacity is their number.
     pub fn new(sections: &[Biquad]) -> Self {
         Self {
             sections: sections.iter().map(|&b| Section::at_rest(b)).collect(),
@@ -154,7 +153,7 @@ impl Cascade {
         }
     }
 
-    /// An empty cascade (it passes its input) with room for `capacity` sections.
+    /// An empty cascade, which passes its input unchanged, for up to `capacity` sections.
     pub fn with_capacity(capacity: usize) -> Self {
         Self {
             sections: Vec::with_capacity(capacity),
@@ -162,11 +161,11 @@ impl Cascade {
         }
     }
 
-    /// Replaces the coefficients and keeps the state of the sections that stay, so that a small
-    /// change makes no click. Sections that are new start at rest. Does not allocate.
+    /// Replaces the coefficients and keeps the state of the existing sections, so that a small change causes
+    /// no click. Added sections start with zero state. Does not allocate.
     ///
     /// # Errors
-    /// If there are more sections than the cascade was made for; it is then unchanged.
+    /// If there are more sections than the capacity; the cascade is then unchanged.
     pub fn set_sections(&mut self, sections: &[Biquad]) -> Result<(), TooManySections> {
         if sections.len() > self.capacity {
             return Err(TooManySections {
@@ -195,8 +194,8 @@ impl Cascade {
 
     /// Filters a block in place.
     pub fn process(&mut self, block: &mut [f64]) {
-        // Several sections at a time, sample by sample: while one waits for its own last answer,
-        // the others go on.
+        // Several sections at a time, sample by sample: the processor works on one section while another
+        // waits for its own last output.
         let (fours, rest) = self.sections.as_chunks_mut::<4>();
         for four in fours {
             run(four, block);
@@ -210,14 +209,14 @@ impl Cascade {
         }
     }
 
-    /// Puts every section at rest.
+    /// Sets the state of every section to zero.
     pub fn reset(&mut self) {
         for section in &mut self.sections {
             (section.s1, section.s2) = (0.0, 0.0);
         }
     }
 
-    /// `|H|` of the whole cascade at `f_hz` for the sampling rate `rate_hz`.
+    /// Magnitude `|H|` of the whole cascade at `f_hz` for the sampling rate `rate_hz`, both in hertz.
     pub fn magnitude(&self, f_hz: f64, rate_hz: f64) -> f64 {
         self.sections
             .iter()
@@ -274,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn replacing_coefficients_keeps_state_and_capacity_bites() {
+    fn replacing_coefficients_keeps_state_and_respects_capacity() {
         let mut cascade = Cascade::with_capacity(2);
         let delay = Biquad {
             b0: 0.0,

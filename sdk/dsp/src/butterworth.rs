@@ -9,10 +9,10 @@ use core::ops::Deref;
 
 use crate::biquad::Biquad;
 
-/// Highest order that can be designed: 400 dB a decade, more than a spectrum's range.
+/// Highest order that can be designed: 400 dB a decade, more than the dynamic range of a spectrum.
 pub const MAX_ORDER: usize = 20;
 
-/// The second-order sections of one filter, lowest Q first; derefs to a slice. Holds no heap.
+/// The second-order sections of one filter, lowest Q first; dereferences to a slice. Does not allocate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sections {
     sections: [Biquad; MAX_ORDER / 2],
@@ -27,7 +27,7 @@ impl Deref for Sections {
     }
 }
 
-/// What a filter lets pass.
+/// Pass band of a filter.
 #[derive(Clone, Copy)]
 pub(crate) enum Kind {
     LowPass,
@@ -47,12 +47,12 @@ pub fn high_pass(order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {
     design(Kind::HighPass, order, fc_hz, rate_hz)
 }
 
-/// `|H|` of the analogue low-pass: `1 / sqrt(1 + (f / fc)^(2 order))`.
+/// Magnitude `|H|` of the analogue low-pass: `1 / sqrt(1 + (f / fc)^(2 order))`.
 pub fn analog_low_pass_magnitude(f_hz: f64, fc_hz: f64, order: usize) -> f64 {
     1.0 / crate::root::sqrt(1.0 + libm::pow(f_hz / fc_hz, 2.0 * order as f64))
 }
 
-/// `|H|` of the analogue high-pass: `1 / sqrt(1 + (fc / f)^(2 order))`, 0 at 0 Hz.
+/// Magnitude `|H|` of the analogue high-pass: `1 / sqrt(1 + (fc / f)^(2 order))`, 0 at 0 Hz.
 pub fn analog_high_pass_magnitude(f_hz: f64, fc_hz: f64, order: usize) -> f64 {
     analog_low_pass_magnitude(fc_hz, f_hz, order)
 }
@@ -69,8 +69,8 @@ fn design(kind: Kind, order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections
         len = 1;
     }
     for pair in 0..order / 2 {
-        // Poles at angles π/2 ± (2k + 1)π/(2n) from the imaginary axis; 1/(2Q) is the cosine of a
-        // pole's angle to the negative real axis, largest Q (k = 0) last.
+        // Poles at angles π/2 ± (2k + 1)π/(2n) from the imaginary axis; 1/(2Q) is the cosine of a pole's
+        // angle to the negative real axis. The largest Q (k = 0) comes last.
         let k = order / 2 - 1 - pair;
         let half_inverse_q = crate::trig::sin(PI * (2 * k + 1) as f64 / (2 * order) as f64);
         sections[len] = second_order(kind, omega, half_inverse_q);
@@ -84,8 +84,8 @@ pub(crate) fn in_range(edge_hz: f64, rate_hz: f64) -> bool {
     edge_hz > 0.0 && edge_hz < rate_hz / 2.0 && rate_hz.is_finite()
 }
 
-/// Bilinear transform of `1 / (s + 1)` or `s / (s + 1)`, written with sine and cosine of half the
-/// cut-off angle: near Nyquist the usual tangent overflows, these do not.
+/// Bilinear transform of `1 / (s + 1)` or `s / (s + 1)`, written with the sine and cosine of half the cut-off
+/// angle, which stay finite near Nyquist, where the usual tangent overflows.
 fn first_order(kind: Kind, omega: f64) -> Biquad {
     let (sine, cosine) = crate::trig::sincos(omega / 2.0);
     let scale = 1.0 / (sine + cosine);
@@ -135,7 +135,7 @@ mod tests {
                     assert!(sections.iter().all(Biquad::is_stable), "{order} {fc}");
                     let magnitude = Cascade::new(&sections).magnitude(fc, 20_000.0);
                     let error = magnitude * core::f64::consts::SQRT_2 - 1.0;
-                    // A thousandth of a hertz below Nyquist f64 coefficients do not resolve poles.
+                    // A thousandth of a hertz below Nyquist, f64 coefficients cannot resolve the poles.
                     assert!(fc > 9999.5 || error.abs() < 1e-6, "{order} {fc} {error}");
                 }
             }
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_designed_is_refused() {
+    fn orders_and_cutoffs_out_of_range_are_refused() {
         assert!(low_pass(0, 100.0, 2000.0).is_none());
         assert!(low_pass(21, 100.0, 2000.0).is_none());
         assert!(low_pass(2, 1000.0, 2000.0).is_none());

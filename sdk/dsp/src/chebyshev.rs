@@ -1,13 +1,13 @@
-//! Chebyshev filters of type I, digital second-order sections.
+//! Chebyshev filters of type I as digital second-order sections.
 
 use alloc::vec::Vec;
 
 use crate::biquad::Biquad;
 use crate::butterworth::{Kind, in_range, second_order};
 
-/// Sections of a filter that is within half of `ripple_db` of 1 in its pass band and 3 dB down at
-/// `edge_hz`, at the sampling rate `rate_hz` (bilinear transform, the edge prewarped). `order` is even,
-/// `ripple_db` in (0, 3).
+/// Returns the sections of a filter whose magnitude is within half of `ripple_db` of 1 in the pass band and 3
+/// dB down at `edge_hz`, at the sampling rate `rate_hz` (bilinear transform, prewarped edge). `order` must be
+/// even and `ripple_db` in (0, 3).
 ///
 /// `None` if the edge is not strictly between 0 and the Nyquist frequency `rate_hz / 2`.
 pub(crate) fn chebyshev(
@@ -22,7 +22,7 @@ pub(crate) fn chebyshev(
     }
     let n = order as f64;
     let ripple = crate::root::sqrt(libm::pow(10.0, 0.1 * ripple_db) - 1.0);
-    // The poles of an analogue low-pass whose ripples end at 1; where it is 3 dB down.
+    // Poles of an analogue low-pass whose ripple band ends at 1, scaled to be 3 dB down at the edge.
     let spread = libm::asinh(1.0 / ripple) / n;
     let down = libm::cosh(libm::acosh(1.0 / ripple) / n);
     let tangent = crate::trig::tan(core::f64::consts::PI * edge_hz / rate_hz);
@@ -39,7 +39,7 @@ pub(crate) fn chebyshev(
             second_order(kind, 2.0 * libm::atan(cut), real / radius)
         })
         .collect();
-    // Each section is 1 at the far end of the pass band, where all are at the bottom of the ripples.
+    // Each section has magnitude 1 at the far end of the pass band, where the ripple is at its minimum.
     let middle = libm::pow(10.0, -ripple_db / 40.0);
     if let Some(section) = sections.first_mut() {
         section.b0 *= middle;
@@ -54,9 +54,10 @@ mod tests {
     use super::*;
     use crate::biquad::Cascade;
 
-    /// The square of the magnitude is `1 / (1 + ε² T_n²(f))`, at frequencies as the tangent bends them.
+    /// The squared magnitude is `1 / (1 + ε² T_n²(f))` at frequencies warped by the bilinear transform's
+    /// tangent.
     #[test]
-    fn the_magnitude_is_the_polynomials() {
+    fn the_magnitude_follows_the_chebyshev_polynomial() {
         let (order, ripple_db, rate_hz) = (4, 0.2, 4_000.0);
         for (kind, edge_hz) in [(Kind::HighPass, 17.5), (Kind::LowPass, 1_002.5)] {
             let sections = chebyshev(kind, order, ripple_db, edge_hz, rate_hz).unwrap();

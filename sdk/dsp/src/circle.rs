@@ -1,10 +1,10 @@
-//! Points on the unit circle.
+//! Pseudo-random points on the unit circle.
 
-/// Radians of a step of a signed number of 32 bits whose whole range is half a turn.
+/// Angle in radians of one step of a signed 32-bit number whose full range spans half a turn.
 const QUARTER: f32 = core::f32::consts::FRAC_PI_2 / (1u32 << 31) as f32;
 const TERMS: usize = 7;
-/// Taylor coefficients of the cosine, and of the sine over its angle, in the square of the angle.
-/// Up to a quarter turn less than 1e-8 is left out.
+/// Taylor coefficients, in the square of the angle, of the cosine and of the sine divided by its angle. Up to
+/// a quarter turn the truncation error is below 1e-8.
 const TAYLOR: [[f32; 2]; TERMS] = taylor();
 
 const fn taylor() -> [[f32; 2]; TERMS] {
@@ -21,10 +21,10 @@ const fn taylor() -> [[f32; 2]; TERMS] {
     terms
 }
 
-/// Cosines and sines, exact to 3e-7, of angles made of random bits: uniform on the circle.
+/// Cosines and sines of angles made from random bits, uniform on the circle; error below 3e-7.
 ///
-/// The bits, signed, are an angle in the right half plane; the lowest one turns both signs. So two short
-/// series do, and nothing branches.
+/// The signed bits give an angle in the right half plane; the lowest bit flips both signs. Two short series
+/// suffice and there are no branches.
 #[inline(always)]
 pub(crate) fn directions<const N: usize>(bits: [u32; N]) -> ([f32; N], [f32; N]) {
     let mut angle = [0.0; N];

@@ -1,6 +1,6 @@
 //! The orthonormal cosine transform that turns log band energies into cepstral coefficients.
 //!
-//! Sums are written out: at tens of bands an FFT gains nothing.
+//! Plain sums: for tens of bands an FFT is not faster.
 
 use alloc::vec::Vec;
 use core::f64::consts::PI;
@@ -30,7 +30,14 @@ pub fn inverse_dct_ii(coefficients: &[f64], out: &mut [f64]) {
     InverseDct::new(out.len()).run(coefficients, out);
 }
 
-/// [`inverse_dct_ii`] to a fixed number of values, many times.
+/// [`inverse_dct_ii`] with a precomputed table for a fixed number of output values.
+///
+/// ```
+/// use htex_dsp::dct::InverseDct;
+/// let mut values = [0.0; 4];
+/// InverseDct::new(4).run(&[2.0], &mut values);
+/// assert_eq!(values, [1.0; 4]);
+/// ```
 #[derive(Debug, Clone)]
 pub struct InverseDct {
     scale: Vec<f64>,
@@ -39,7 +46,7 @@ pub struct InverseDct {
 }
 
 impl InverseDct {
-    /// To `values` values.
+    /// Makes the table for `values` output values.
     pub fn new(values: usize) -> Self {
         let row = |i: usize| (0..values).map(move |k| cosine(k, i, values));
         Self {
@@ -48,7 +55,8 @@ impl InverseDct {
         }
     }
 
-    /// As [`inverse_dct_ii`]; values beyond the fixed number stay as they are. Does not allocate.
+    /// As [`inverse_dct_ii`]; elements beyond the fixed number of values are left unchanged. Does not
+    /// allocate.
     pub fn run(&self, coefficients: &[f64], out: &mut [f64]) {
         let rows = self.cosines.chunks(self.scale.len().max(1));
         for (value, row) in out.iter_mut().zip(rows) {
@@ -63,7 +71,7 @@ fn scale(k: usize, n: usize) -> f64 {
     crate::root::sqrt(numerator / n as f64)
 }
 
-/// `cos(π k (2i + 1) / 2n)`, its argument reduced in whole numbers first.
+/// `cos(π k (2i + 1) / 2n)`; the argument is first reduced in integers.
 fn cosine(k: usize, i: usize, n: usize) -> f64 {
     let turn = k.wrapping_mul(2 * i + 1) % (4 * n);
     crate::trig::cos(PI * turn as f64 / (2 * n) as f64)

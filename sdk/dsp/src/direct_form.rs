@@ -10,8 +10,8 @@ pub const GROUP: usize = 4;
 /// Orders up to this have a direct form with all state in registers.
 pub(crate) const MAX_ORDER: usize = 16;
 
-/// Four samples of the transposed direct form II: what each of the four inputs, with the state that
-/// meets it, leaves in the outputs and in the state behind them. Numbers behind the order are zero.
+/// Transposed direct form II unrolled for four samples: the contribution of each of the four inputs, together
+/// with the state it meets, to the outputs and to the next state. Entries beyond the order are zero.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Direct {
     outputs: [[f64; GROUP]; GROUP],
@@ -20,7 +20,7 @@ pub(crate) struct Direct {
 }
 
 impl Direct {
-    /// The form of these coefficients, behind some outputs, the newest last.
+    /// Makes the form from coefficients and the last outputs, the newest at the end.
     pub(crate) fn new(a: &[f64; MAX_ORDER], past: &[f64; MAX_ORDER]) -> Self {
         let mut direct = Self {
             outputs: [[0.0; GROUP]; GROUP],
@@ -33,16 +33,16 @@ impl Direct {
                 *y = tick(a, state, f64::from(u8::from(n == at)));
             }
         }
-        // All that the filter holds are its last outputs.
+        // The state of the filter follows from its last outputs.
         for &y in past {
-            // An input that makes the output just this.
+            // The input that gives this output.
             let input = y - direct.state[0];
             tick(a, &mut direct.state, input);
         }
         direct
     }
 
-    /// Filters a block in place, by a filter of this order or a smaller one.
+    /// Filters a block in place. `order` is at least the order of the filter.
     pub(crate) fn process(&mut self, order: usize, groups: &mut [[f64; GROUP]]) {
         match order {
             0..=2 => wide(One::<2>(self, groups)),
@@ -54,7 +54,7 @@ impl Direct {
         }
     }
 
-    /// As [`Self::process`], four voices side by side.
+    /// As [`Self::process`], for four voices side by side.
     pub(crate) fn process_four(
         four: [&mut Self; VOICES],
         order: usize,
@@ -70,7 +70,7 @@ impl Direct {
         }
     }
 
-    /// All that stands in the first `N` places, where the order is no higher.
+    /// The first `N` entries of all tables, for an order up to `N`.
     #[inline(always)]
     fn short<const N: usize>(&self) -> Short<f64, N> {
         let mut states = [[0.0; N]; GROUP];
@@ -99,7 +99,7 @@ fn first<const N: usize>(of: &[f64; MAX_ORDER]) -> [f64; N] {
     first
 }
 
-/// A voice's block.
+/// One voice and its block.
 struct One<'a, const N: usize>(&'a mut Direct, &'a mut [[f64; GROUP]]);
 
 impl<const N: usize> Work for One<'_, N> {
@@ -112,7 +112,7 @@ impl<const N: usize> Work for One<'_, N> {
     }
 }
 
-/// A block of each of four voices.
+/// Filters one block of each of four voices.
 fn run_four<const N: usize>(mut four: [&mut Direct; VOICES], groups: &mut [[Quad; GROUP]]) {
     let mut short = Short::<Quad, N> {
         outputs: [Quad::ZERO; GROUP],
@@ -126,7 +126,8 @@ fn run_four<const N: usize>(mut four: [&mut Direct; VOICES], groups: &mut [[Quad
     }
 }
 
-/// Apart from what puts the voices side by side: compilers would shuffle lanes all along otherwise.
+/// A separate function from the one that interleaves the voices: otherwise compilers shuffle lanes inside the
+/// loop.
 struct Four<'a, const N: usize>(&'a mut Short<Quad, N>, &'a mut [[Quad; GROUP]]);
 
 impl<const N: usize> Work for Four<'_, N> {
@@ -136,14 +137,14 @@ impl<const N: usize> Work for Four<'_, N> {
     }
 }
 
-/// [`Direct`] in `N` coefficients, of one voice or of four.
+/// [`Direct`] with `N` coefficients, for one voice or for four.
 struct Short<T: Lane, const N: usize> {
     outputs: T::Outputs,
     states: [[T; N]; GROUP],
     state: [T; N],
 }
 
-/// Puts four voices side by side.
+/// Interleaves four voices.
 struct Beside<'a, const N: usize>(&'a mut Short<Quad, N>, [&'a Direct; VOICES]);
 
 impl<const N: usize> Work for Beside<'_, N> {
@@ -159,10 +160,10 @@ impl<const N: usize> Work for Beside<'_, N> {
     }
 }
 
-/// What stands in the lanes of vector registers: samples of one voice, or voices.
+/// Contents of the lanes of vector registers: samples of one voice, or one sample of each voice.
 trait Lane: Real {
     type Outputs: Copy;
-    /// The outputs of what each input meets.
+    /// The four outputs, from the four inputs combined with the state.
     fn outputs(left: &Self::Outputs, met: &[Self; GROUP]) -> [Self; GROUP];
 }
 
@@ -176,10 +177,10 @@ impl Lane for f64 {
 }
 
 impl Lane for Quad {
-    /// Of the first input: those of the others are the same, later.
+    /// Of the first input; those of the other inputs are the same, shifted.
     type Outputs = [Quad; GROUP];
 
-    /// The same sums, without what is multiplied by 0 or 1.
+    /// The same sums without multiplications by 0 or 1.
     #[inline(always)]
     fn outputs(&[_, h1, h2, h3]: &Self::Outputs, met: &[Self; GROUP]) -> [Self; GROUP] {
         let [a, b, c, d] = *met;
@@ -192,7 +193,7 @@ impl Lane for Quad {
     }
 }
 
-// Loops, not closures: these would not be compiled for the wider registers.
+// Loops, not closures: closures would not be compiled for the wider registers.
 impl<T: Lane, const N: usize> Short<T, N> {
     /// Filters a block in place.
     #[inline(always)]
@@ -214,7 +215,7 @@ impl<T: Lane, const N: usize> Short<T, N> {
     }
 }
 
-/// What each number of `met` leaves, added up.
+/// Sums the contributions of each element of `met`.
 #[inline(always)]
 fn sum<T: Real, const N: usize>(left: &[[T; N]; GROUP], met: &[T; GROUP]) -> [T; N] {
     let mut sum = [T::ZERO; N];
@@ -225,7 +226,7 @@ fn sum<T: Real, const N: usize>(left: &[[T; N]; GROUP], met: &[T; GROUP]) -> [T;
     sum
 }
 
-/// One sample: the output, and the state behind it.
+/// Filters one sample: returns the output and updates the state.
 fn tick(a: &[f64], state: &mut [f64], input: f64) -> f64 {
     let y = input + state[0];
     for i in 0..a.len() {

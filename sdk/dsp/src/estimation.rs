@@ -1,7 +1,8 @@
 //! Linear prediction from signals: Yule–Walker, Burg and covariance.
 //!
-//! Each takes several segments of one process and pools their sums, so that no window and no seam
-//! comes in; a single signal is `&[signal]`. Segments no longer than the order add nothing.
+//! Each method takes several segments of one process and pools their sums, so neither a window nor the
+//! boundaries between segments enter; pass a single signal as `&[signal]`. Segments no longer than the order
+//! contribute nothing.
 
 use alloc::vec::Vec;
 
@@ -10,8 +11,8 @@ use crate::linear_prediction::{
     LinearPrediction, Stages, coefficients_to_reflection, levinson_durbin, stabilize,
 };
 
-/// Biased autocorrelation, lags `0..=order`: `r[m] = Σ x[n] x[n + m] / N`, sums and N pooled.
-/// All zero where there are no samples.
+/// Biased autocorrelation, lags `0..=order`: `r[m] = Σ x[n] x[n + m] / N`, with sums and N pooled over the
+/// segments. All zero if there are no samples.
 pub fn autocorrelation(segments: &[&[f64]], order: usize) -> Vec<f64> {
     let total: usize = segments.iter().map(|segment| segment.len()).sum();
     (0..=order)
@@ -35,8 +36,8 @@ pub fn yule_walker(segments: &[&[f64]], order: usize) -> LinearPrediction {
     levinson_durbin(&autocorrelation(segments, order), order)
 }
 
-/// Burg's estimate: each reflection coefficient makes the sum of forward and backward error power
-/// least (Burg 1975). Sharper than Yule–Walker on short signals, and stable as well.
+/// Burg's estimate: each reflection coefficient minimises the sum of forward and backward error power (Burg
+/// 1975). Resolves short signals better than Yule–Walker, and is always stable.
 pub fn burg(segments: &[&[f64]], order: usize) -> LinearPrediction {
     let mut errors: Vec<BurgErrors> = segments.iter().map(|s| BurgErrors::new(s)).collect();
     let mut stages = Stages::new(order, autocorrelation(segments, 0)[0]);
@@ -54,7 +55,7 @@ pub fn burg(segments: &[&[f64]], order: usize) -> LinearPrediction {
     stages.finish()
 }
 
-/// Forward error at n and backward error at n - 1, of one segment.
+/// Forward error at n and backward error at n - 1 of one segment.
 struct BurgErrors {
     forward: Vec<f64>,
     backward: Vec<f64>,
@@ -76,7 +77,7 @@ impl BurgErrors {
         })
     }
 
-    /// To the next stage: both errors change, and the backward one falls a sample behind.
+    /// Advances to the next stage: updates both errors and delays the backward one by a sample.
     fn advance(&mut self, k: f64) {
         for (forward, backward) in self.forward.iter_mut().zip(&mut self.backward) {
             let (f, b) = (*forward, *backward);
@@ -90,10 +91,9 @@ impl BurgErrors {
     }
 }
 
-/// Covariance estimate: least squares of the forward error over the samples that have all their
-/// predecessors. Exact for noiseless resonances, but may be unstable: it is then drawn inside by
-/// [`stabilize`] and marked `adjusted`. `error` is the residual power over the number of samples
-/// predicted, before that.
+/// Covariance estimate: least squares of the forward error over the samples that have all their predecessors.
+/// Exact for noiseless resonances, but possibly unstable; it is then made stable by [`stabilize`] and marked
+/// `adjusted`. `error` is the residual power per predicted sample before that.
 pub fn covariance(segments: &[&[f64]], order: usize) -> LinearPrediction {
     let long: Vec<&[f64]> = segments
         .iter()
@@ -185,7 +185,7 @@ mod tests {
         let grown = covariance(&[&decaying(1.01)], 2);
         assert!(grown.adjusted && is_stable(&grown.coefficients));
         assert!((grown.coefficients[1] + 1.0 / 1.0201).abs() < 1e-6);
-        // Two poles are all that there is to find.
+        // The signal has two poles only.
         let more = covariance(&[&decaying(0.98)], 3);
         assert!(more.adjusted && more.usable_stages == 2);
     }

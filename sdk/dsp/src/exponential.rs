@@ -1,16 +1,16 @@
-//! Exponentials of many numbers at once.
+//! Exponentials of slices of numbers, vectorised.
 
 use core::f64::consts::{LN_2, LOG2_E};
 
 use crate::wide::{Work, wide};
 
-/// Added to a number of size below 2⁵¹, it leaves the nearest whole number in the low bits of the sum.
+/// Adding this to a number of magnitude below 2⁵¹ leaves the nearest integer in the low bits of the sum.
 const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
 /// Numbers that are worked on side by side: in a module, whose loops are not made to by the compiler (`xtask/src/wasm.rs`).
 const GROUP: usize = if cfg!(target_family = "wasm") { 4 } else { 1 };
-/// Where exponentials are cut off: the largest and smallest that are normal numbers of both signs of the exponent.
+/// Range to which inputs are clamped; exponentials at both ends are normal numbers.
 const RANGE: (f64, f64) = (-700.0, 700.0);
-/// Taylor coefficients from the highest on; up to half of ln 2 less than 3e-10 is left out.
+/// Taylor coefficients, highest first; for arguments up to half of ln 2 the truncation error is below 3e-10.
 const TAYLOR: [f64; 9] = taylor();
 
 const fn taylor() -> [f64; 9] {
@@ -25,8 +25,8 @@ const fn taylor() -> [f64; 9] {
     terms
 }
 
-/// Replaces each number by its exponential, with a relative error below 1e-9. Numbers beyond ±700 count as ±700, and NaN
-/// as -700. Nothing branches, so compilers use all lanes; the bits are the same on every machine.
+/// Replaces each number by its exponential, with a relative error below 1e-9. Inputs are clamped to ±700; NaN
+/// counts as -700. Branch-free, so that compilers vectorise it; bit-identical on every machine.
 ///
 /// ```
 /// let mut numbers = [0.0, 1.0];
@@ -56,10 +56,10 @@ impl Work for Exponentials<'_> {
     }
 }
 
-/// `2^k exp(r)`, where `k` is the nearest whole number to `x / ln 2`.
+/// `2^k exp(r)`, where `k` is the integer nearest to `x / ln 2`.
 #[inline(always)]
 fn exponential(x: f64) -> f64 {
-    // Not `clamp`, which keeps NaN.
+    // Not `clamp`, which would keep NaN.
     #[allow(clippy::manual_clamp)]
     let x = x.max(RANGE.0).min(RANGE.1);
     let rounded = x * LOG2_E + ROUND;
@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn they_are_those_of_the_library() {
+    fn exponentials_match_the_math_library() {
         let numbers: alloc::vec::Vec<f64> =
             (-70_000..=70_000).map(|i| 0.01 * f64::from(i)).collect();
         let mut found = numbers.clone();

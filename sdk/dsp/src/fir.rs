@@ -1,4 +1,4 @@
-//! Filters of finite impulse response, of linear phase, with a wanted magnitude.
+//! Linear-phase FIR filters with a given magnitude.
 
 use alloc::vec::Vec;
 
@@ -6,23 +6,23 @@ use crate::polyphase::dot;
 
 const CHUNK: usize = 256;
 
-/// A streaming filter of linear phase.
+/// A streaming linear-phase FIR filter.
 #[derive(Debug, Clone)]
 pub struct Fir {
     /// Symmetric, padded with zeros to a multiple of eight.
     kernel: Vec<f32>,
-    /// The last `kernel.len() - 1` samples, and room for a chunk behind them.
+    /// The last `kernel.len() - 1` samples, followed by buffer space for one chunk.
     history: Vec<f32>,
 }
 
 impl Fir {
-    /// A filter of `taps` coefficients (made odd) whose magnitude comes near `magnitude(hertz)`, which
-    /// is asked for from 0 to half of `rate_hz`. Sampled in frequency and smoothed by a Hann window:
-    /// it resolves about `4 · rate_hz / taps` hertz. It delays by half its length.
+    /// Makes a filter of `taps` coefficients (rounded up to an odd number) that approximates
+    /// `magnitude(hertz)` from 0 to half of `rate_hz`. Frequency sampling with a Hann window: the resolution
+    /// is about `4 · rate_hz / taps` hertz. The delay is half the length.
     pub fn with_magnitude(taps: usize, rate_hz: f64, magnitude: impl Fn(f64) -> f64) -> Self {
         let taps = taps.max(1) | 1;
         let half = taps / 2;
-        // A fine grid, so that the truncated series does not fold.
+        // A fine frequency grid, so that the truncated impulse response does not alias in time.
         let bins = (4 * taps).max(64);
         let sampled: Vec<f64> = (0..=bins)
             .map(|k| magnitude(0.5 * rate_hz * k as f64 / bins as f64))
@@ -44,13 +44,13 @@ impl Fir {
         Self::new(kernel)
     }
 
-    /// A filter that changes nothing and delays by nothing.
+    /// An identity filter: no change, no delay.
     pub fn through() -> Self {
         Self::new(alloc::vec![1.0])
     }
 
     fn new(mut kernel: Vec<f32>) -> Self {
-        // The newest sample meets the last coefficient.
+        // The newest sample is multiplied by the last coefficient.
         kernel.reverse();
         let padded = kernel.len().next_multiple_of(8);
         let mut front = alloc::vec![0.0; padded - kernel.len()];
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn through_is_through() {
+    fn the_identity_filter_changes_nothing() {
         let mut block: Vec<f32> = (0..600).map(|n| n as f32).collect();
         let before = block.clone();
         Fir::through().process(&mut block);

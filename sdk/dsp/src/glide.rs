@@ -1,6 +1,13 @@
-//! A gain that changes without a click.
+//! A gain that changes linearly, without clicks.
 
-/// A gain that goes to each new target in a straight line of a fixed length.
+/// A gain that moves to each new target along a straight line of fixed length.
+///
+/// ```
+/// use htex_dsp::glide::Glide;
+/// let mut gain = Glide::new(0.0, 4);
+/// gain.set(1.0);
+/// assert_eq!([(); 5].map(|()| gain.advance()), [0.25, 0.5, 0.75, 1.0, 1.0]);
+/// ```
 #[derive(Debug, Clone)]
 pub struct Glide {
     value: f32,
@@ -11,7 +18,7 @@ pub struct Glide {
 }
 
 impl Glide {
-    /// Stands at `value`; later changes take `len` samples (at least one).
+    /// A constant gain of `value`; later changes take `len` samples (at least one).
     pub fn new(value: f32, len: u32) -> Self {
         Self {
             value,
@@ -22,17 +29,17 @@ impl Glide {
         }
     }
 
-    /// Whether the gain stands still at `value`.
+    /// Whether the gain is constant at `value`.
     pub fn rests_at(&self, value: f32) -> bool {
         self.left == 0 && self.value == value
     }
 
-    /// Begins to go to `target`; a target that is not new changes nothing.
+    /// Starts a change to `target`; no effect if `target` is already the target.
     pub fn set(&mut self, target: f32) {
         self.set_within(target, self.len);
     }
 
-    /// As [`Self::set`], in `len` samples (at least one) instead of the usual length.
+    /// As [`Self::set`], but over `len` samples (at least one).
     pub fn set_within(&mut self, target: f32, len: u32) {
         if target != self.target {
             self.target = target;
@@ -41,7 +48,7 @@ impl Glide {
         }
     }
 
-    /// Goes one sample on, and answers the gain there.
+    /// Advances by one sample and returns the new gain.
     #[inline]
     pub fn advance(&mut self) -> f32 {
         if self.left > 0 {
@@ -55,7 +62,7 @@ impl Glide {
         self.value
     }
 
-    /// Multiplies the next samples; the first by the gain as it stands.
+    /// Multiplies `block` by the gain, the first sample by the current one.
     pub fn apply(&mut self, block: &mut [f32]) {
         let moving = block.len().min(self.left as usize);
         let (moving, steady) = block.split_at_mut(moving);
@@ -75,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_goes_straight_lands_exactly_and_stays() {
+    fn the_gain_is_linear_and_ends_exactly_at_the_target() {
         let mut glide = Glide::new(1.0, 4);
         glide.set(0.0);
         assert!(!glide.rests_at(1.0));

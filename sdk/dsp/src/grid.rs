@@ -1,4 +1,4 @@
-//! The frequency grid every texture spectrum stands on.
+//! The frequency grid of texture spectra.
 
 use alloc::vec::Vec;
 
@@ -49,16 +49,17 @@ impl Band {
     }
 }
 
-/// The part of a component's power that the bins of a band read through the periodic Hann window: 1 well
-/// inside the band, 5/6 at its edge bins, a half between an edge bin and the first one outside, 0 far outside.
+/// Part of a component's power that the bins of a band measure through the periodic Hann window: 1 well
+/// inside the band, 5/6 at its edge bins, 1/2 midway between an edge bin and the first one outside, 0 far
+/// outside.
 ///
-/// A component is read in all bins, as 1.5 times its own power; where some of these lie outside the band, that
-/// part is not read. Noise that is to read as a level in the band is made stronger by it.
+/// Over all bins the window measures 1.5 times a component's power; bins outside the band do not contribute.
+/// Noise that is to have a given level in the band is amplified to compensate.
 pub fn read_part(band: Band, frequency_hz: f64) -> f64 {
     ReadPart::new(band).at(frequency_hz)
 }
 
-/// [`read_part`] for many components of one band.
+/// [`read_part`] precomputed for one band.
 pub(crate) struct ReadPart {
     first: f64,
     last: f64,
@@ -89,11 +90,12 @@ impl ReadPart {
     }
 }
 
-/// Bins to either side of a component beyond which the Hann window reads next to nothing: 2e-5 of its power in all.
+/// Bins on either side of a component beyond which the Hann window measures almost nothing: 2e-5 of its power
+/// in total.
 const WINDOW_BINS: f64 = 4.0;
 
-/// Power that the Hann window reads `x` bins beside a component of unit power: the square of
-/// `sinc(x) / (1 - x²)`; `turn` is `sin(πx) / π` but for its sign.
+/// Power that the Hann window measures `x` bins from a component of unit power: the square of `sinc(x) / (1 -
+/// x²)`; `turn` is `sin(πx) / π` up to its sign.
 fn hann_power(x: f64, turn: f64) -> f64 {
     let x = libm::fabs(x);
     let amplitude = if x < 1e-6 {
@@ -112,15 +114,15 @@ impl From<(f64, f64)> for Band {
     }
 }
 
-/// RMS of a texture spectrum given on the grid: each bin is read through the periodic Hann window,
-/// so its power is `magnitude² / (2 · 1.5)` (equivalent noise bandwidth 1.5 bins).
+/// RMS of a texture spectrum given on the grid. Each bin is measured through the periodic Hann window, so its
+/// power is `magnitude² / (2 · 1.5)` (equivalent noise bandwidth 1.5 bins).
 ///
 /// Unit: that of the magnitudes.
 pub fn level_rms(magnitude: &[f64]) -> f64 {
     crate::root::sqrt(magnitude.iter().map(|m| m * m).sum::<f64>() / 3.0)
 }
 
-/// [`level_rms`] of a curve read on the band's grid, without storing it.
+/// [`level_rms`] of a curve evaluated on the band's grid, without storing the values.
 pub fn curve_level_rms(band: Band, curve: impl Fn(f64) -> f64) -> f64 {
     let power: f64 = (band.first_bin()..=band.last_bin())
         .map(|bin| curve(bin as f64 * GRID_HZ))
@@ -134,9 +136,9 @@ mod tests {
     use super::*;
     use crate::spectrum::SegmentAnalyzer;
 
-    /// Against the analyzer itself, with components on bins and between them.
+    /// Compared with the analyser itself, with components on bins and between them.
     #[test]
-    fn the_part_that_is_read_is_what_the_window_reads() {
+    fn read_part_matches_the_analyser() {
         let (band, len) = (Band::TACTILE, 2_000);
         let rate_hz = len as f64 * GRID_HZ;
         let mut analyzer = SegmentAnalyzer::new(len);
@@ -144,7 +146,7 @@ mod tests {
         for hz in [
             9.0, 12.5, 15.0, 17.5, 18.7, 20.0, 22.5, 31.0, 500.0, 998.0, 1000.0, 1002.5, 1011.0,
         ] {
-            // Two phases a quarter of a turn apart: what noise of this frequency reads in the mean.
+            // Two phases a quarter turn apart, whose mean power is that of noise of this frequency.
             let power: f64 = [0.0, 0.25]
                 .map(|turn| {
                     let wave = |n: usize| {

@@ -1,8 +1,7 @@
-//! From a half spectrum to a real signal, the same bits on every machine.
+//! Inverse FFT of a half spectrum to a real signal, bit-identical on every machine.
 //!
-//! A library's transform picks the instructions of the processor it finds, and so its rounding. This
-//! one (Stockham, radices 2 to 5) is plain arithmetic on arrays that compilers turn into vector
-//! instructions, in a native library as in a WASM module.
+//! Library FFTs choose instructions, and thereby rounding, by the processor. This one (Stockham, radices 2 to
+//! 5) is plain arithmetic on arrays, which compilers vectorise in native libraries and WASM modules alike.
 
 use alloc::vec::Vec;
 use core::f64::consts::TAU;
@@ -11,7 +10,15 @@ use crate::butterflies::{Butterfly, Five, Four, Three, Two};
 use crate::lanes::{Lanes, WIDTH};
 use crate::wide::{Work, wide};
 
-/// Real signals of one even length out of their spectra. Holds what depends on the length alone.
+/// Inverse real FFT of one even length, with its precomputed tables.
+///
+/// ```
+/// use htex_dsp::inverse_fft::InverseRealFft;
+/// let fft = InverseRealFft::new(4);
+/// let mut out = [0.0; 8];
+/// fft.run(&mut fft.workspace(), 1, [&[1.0], &[0.0]], &[0.5], &mut out);
+/// assert!((out[0] - 1.0).abs() < 1e-6 && (out[4] + 1.0).abs() < 1e-6);
+/// ```
 #[derive(Debug, Clone)]
 pub struct InverseRealFft {
     half: usize,
@@ -20,7 +27,7 @@ pub struct InverseRealFft {
     fold: Twiddles,
 }
 
-/// The memory that transforms of one length work in.
+/// Working memory for transforms of one length.
 #[derive(Debug, Clone)]
 pub struct Workspace {
     from: Complexes,
@@ -53,7 +60,7 @@ type Twiddles = Vec<(f32, f32)>;
 
 const LARGEST_RADIX: usize = 5;
 
-/// The least length from `least` on that has no prime factor above 5.
+/// The smallest number from `least` on without a prime factor above 5.
 ///
 /// ```
 /// assert_eq!(htex_dsp::inverse_fft::smooth_length(519), 540);
@@ -64,7 +71,7 @@ pub fn smooth_length(least: usize) -> usize {
 }
 
 impl InverseRealFft {
-    /// A transform to `2 * half` samples; `half` is a [`smooth_length`], else the next one is taken.
+    /// A transform to `2 * half` samples. If `half` is not a [`smooth_length`], the next one is used.
     pub fn new(half: usize) -> Self {
         let half = smooth_length(half);
         let (mut length, mut stride) = (half, 1);
@@ -80,7 +87,7 @@ impl InverseRealFft {
         }
     }
 
-    /// Memory for [`Self::run`].
+    /// Allocates the memory for [`Self::run`].
     pub fn workspace(&self) -> Workspace {
         Workspace {
             from: Complexes::zeros(self.half),
@@ -88,8 +95,9 @@ impl InverseRealFft {
         }
     }
 
-    /// Writes `Σ 2 Re(X_k exp(2πi k n / len))` over `n`, for the bins from `first` on, in 1 to `half - 1`: directions
-    /// (cosines and sines) times amplitudes. What does not fit counts as zero. Does not allocate.
+    /// Writes `Σ 2 Re(X_k exp(2πi k n / len))` over `n`. The bins from `first` on, in 1 to `half - 1`, are
+    /// directions (cosines and sines) times amplitudes; other bins are zero and surplus values are ignored.
+    /// Does not allocate.
     pub fn run(
         &self,
         workspace: &mut Workspace,
@@ -108,7 +116,7 @@ impl InverseRealFft {
         });
     }
 
-    /// Makes of the real signal's spectrum that of the complex one whose parts are its even and odd
+    /// Computes from the real signal's spectrum that of the complex signal whose parts are its even and odd
     /// samples.
     #[inline(always)]
     fn fold(&self, to: &mut Complexes, first: usize, [cos, sin]: [&[f32]; 2], amplitude: &[f32]) {
@@ -343,7 +351,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn is_the_sum_it_stands_for() {
+    fn the_transform_equals_the_direct_sum() {
         for half in [4, 6, 10, 15, 16, 45, 48, 120, 500] {
             let bins: Vec<(f32, f32)> = (2..half)
                 .map(|k| (1.0 / k as f32, 0.3 - 0.01 * k as f32))

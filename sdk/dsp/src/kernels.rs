@@ -8,19 +8,18 @@ use crate::shared::Shared;
 /// Stop-band attenuation of the filters, decibels.
 pub(crate) const ATTENUATION_DB: f64 = 70.0;
 
-/// Length, phases, whether rows are exact, and the bits of the cut-off.
+/// Length, number of phases, whether the rows are exact, and the bits of the cut-off.
 type Key = (usize, u64, bool, u64);
 
-/// A kernel as [`windowed_sinc`] makes it. With `std`, one that is in use is shared: a thousand
-/// voices then read the same coefficients.
+/// Returns the kernel of [`windowed_sinc`]. With `std`, kernels in use are shared: all voices of the same
+/// rates read the same coefficients.
 pub(crate) fn kernel(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Arc<[f32]> {
     static KERNELS: Shared<Key, [f32]> = Shared::new();
     let key = (taps, phases, exact, cutoff.to_bits());
     KERNELS.get(key, || windowed_sinc(taps, phases, exact, cutoff).into())
 }
 
-/// Rows of a windowed sinc, one a phase, and one more where rows are interpolated; `cutoff` in
-/// cycles per sample.
+/// Windowed sinc, one row per phase, plus one row if rows are interpolated; `cutoff` in cycles per sample.
 fn windowed_sinc(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Vec<f32> {
     let rows = phases + u64::from(!exact);
     let beta = 0.1102 * (ATTENUATION_DB - 8.7);
@@ -31,12 +30,12 @@ fn windowed_sinc(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Vec<f32>
         let shift = row as f64 / phases as f64;
         let mut values: Vec<f64> = (0..taps)
             .map(|j| {
-                // Input j of the window stands at time j - (taps/2 - 1) relative to the base.
+                // Input j of the window is at time j - (taps/2 - 1) relative to the base.
                 let t = j as f64 - (half - 1.0) - shift;
                 sinc(2.0 * cutoff * t) * window.at(t / half)
             })
             .collect();
-        // Unit gain at DC in every phase, so that a constant stays one.
+        // Unit gain at DC in every phase, so that a constant input gives a constant output.
         let sum: f64 = values.iter().sum();
         values.iter_mut().for_each(|v| *v /= sum);
         all.extend(values.iter().map(|&v| v as f32));
@@ -44,7 +43,7 @@ fn windowed_sinc(taps: usize, phases: u64, exact: bool, cutoff: f64) -> Vec<f32>
     all
 }
 
-/// Kaiser's estimate of the taps a transition of `width` (cycles per sample) needs.
+/// Kaiser's estimate of the taps needed for a transition of `width` (cycles per sample).
 pub(crate) fn kaiser_length(width: f64) -> usize {
     let n = (ATTENUATION_DB - 7.95) / (2.285 * core::f64::consts::TAU * width);
     libm::ceil(n).min(1e6) as usize + 1
@@ -71,7 +70,7 @@ impl Kaiser {
         Self { beta, scale }
     }
 
-    /// The window at -1 to 1.
+    /// The window at `x` in -1 to 1.
     fn at(&self, x: f64) -> f64 {
         if x.abs() > 1.0 {
             return 0.0;

@@ -1,4 +1,4 @@
-//! Numbers side by side, of which compilers make vector instructions.
+//! Numbers side by side, compiled to vector instructions.
 
 use core::ops::{Add, Mul, Sub};
 

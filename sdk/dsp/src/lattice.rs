@@ -1,5 +1,5 @@
-//! The all-pole filter as a lattice: stable for as long as each reflection coefficient is, even
-//! while they change, which a direct form is not.
+//! All-pole lattice filter: unlike a direct form, stable while its coefficients change, as long as each
+//! reflection coefficient is inside (-1, 1).
 
 use alloc::vec::Vec;
 
@@ -20,7 +20,7 @@ pub struct AllPoleLattice {
 }
 
 impl AllPoleLattice {
-    /// A filter at rest. Coefficients inside (-1, 1) make it stable.
+    /// A filter with zero state. Stable for coefficients inside (-1, 1).
     pub fn new(reflection: &[f64]) -> Self {
         Self {
             reflection: reflection.to_vec(),
@@ -28,17 +28,17 @@ impl AllPoleLattice {
         }
     }
 
-    /// The order, fixed for the filter's life.
+    /// Order of the filter; constant.
     pub fn order(&self) -> usize {
         self.reflection.len()
     }
 
-    /// The coefficients.
+    /// The reflection coefficients.
     pub fn reflection(&self) -> &[f64] {
         &self.reflection
     }
 
-    /// The coefficients, to be changed in place between samples; the state stays.
+    /// The reflection coefficients, to be changed in place between samples; the state is kept.
     pub fn reflection_mut(&mut self) -> &mut [f64] {
         &mut self.reflection
     }
@@ -52,8 +52,8 @@ impl AllPoleLattice {
 
     /// Filters a block in place.
     pub fn process(&mut self, block: &mut [f64]) {
-        // Stages whose coefficient is zero, above the others, change nothing: so a few lengths, with
-        // all state in registers, do for every order.
+        // Stages with zero coefficients above the others change nothing, so a few fixed lengths, with all
+        // state in registers, cover every order.
         match self.order() {
             0..=2 => self.run::<2>(block),
             3..=4 => self.run::<4>(block),
@@ -65,7 +65,7 @@ impl AllPoleLattice {
         }
     }
 
-    /// As [`Self::run_any`] in `N` stages or fewer.
+    /// As [`Self::run_any`], for `N` stages or fewer.
     fn run<const N: usize>(&mut self, block: &mut [f64]) {
         let order = self.order();
         let (mut k, mut delayed) = ([0.0; N], [0.0; N]);
@@ -86,16 +86,16 @@ impl AllPoleLattice {
             .for_each(|x| *x = without_denormals(*x));
     }
 
-    /// Keeps the state behind a block; what has died away is zero before it is so small that
-    /// arithmetic gets slow.
+    /// Stores the state after a block. Small values become zero before they reach denormals, which slow down
+    /// arithmetic.
     fn keep(&mut self, delayed: &[f64]) {
         for (kept, x) in self.delayed.iter_mut().zip(delayed) {
             *kept = without_denormals(*x);
         }
     }
 
-    /// Takes the state of a filter whose coefficients have stood still, from its last outputs, the
-    /// newest last, at least as many as its order.
+    /// Sets the state of a filter with constant coefficients from its last outputs, the newest at the end;
+    /// `past` has at least as many elements as the order.
     pub(crate) fn set_past(&mut self, past: &[f64]) {
         self.reset();
         for &y in past {
@@ -109,7 +109,7 @@ impl AllPoleLattice {
         }
     }
 
-    /// Puts the filter at rest.
+    /// Sets the state to zero.
     pub fn reset(&mut self) {
         self.delayed.fill(0.0);
     }

@@ -1,23 +1,23 @@
-//! Small dense least squares: the pseudo-inverse, and a fit that stays above zero.
+//! Small dense least squares by the pseudo-inverse.
 //!
-//! Matrices are row after row.
+//! Matrices are stored row by row.
 
 use alloc::vec::Vec;
 
-/// Sweeps after which Jacobi's method stops; it converges quadratically, in about ten.
+/// Maximum number of Jacobi sweeps; the method converges quadratically, in about ten.
 const MAX_SWEEPS: usize = 60;
 
-/// Columns count as orthogonal when the cosine between them is below this.
+/// Columns count as orthogonal when the cosine of their angle is below this.
 const ORTHOGONAL: f64 = 1e-15;
 
-/// The Moore–Penrose inverse of a matrix, kept to be applied often.
+/// The Moore–Penrose inverse of a matrix, stored for repeated use.
 ///
-/// Singular values up to `max(rows, columns) · 2⁻⁵²` times the largest count as zero, so that empty
-/// or dependent rows do no harm.
+/// Singular values up to `max(rows, columns) · 2⁻⁵²` times the largest count as zero, so that zero or
+/// dependent rows are handled.
 ///
 /// ```
 /// use htex_dsp::least_squares::PseudoInverse;
-/// // One equation, two unknowns: x + y = 4. The smallest solution shares it out.
+/// // One equation, two unknowns: x + y = 4. The solution of least norm has x = y.
 /// let inverse = PseudoInverse::new(&[1.0, 1.0], 1, 2);
 /// let mut x = [0.0; 2];
 /// inverse.apply(&[4.0], &mut x);
@@ -35,7 +35,7 @@ impl PseudoInverse {
     /// Inverts a matrix of `rows` by `columns`; elements missing from `matrix` count as zero.
     pub fn new(matrix: &[f64], rows: usize, columns: usize) -> Self {
         let element = |r: usize, c: usize| matrix.get(r * columns + c).copied().unwrap_or(0.0);
-        // The singular vectors are found by turning the shorter side's vectors against each other.
+        // Finds the singular vectors by rotating pairs of the shorter side's vectors.
         let wide = rows < columns;
         let vectors: Vec<Vec<f64>> = if wide {
             let row = |r| (0..columns).map(|c| element(r, c)).collect();
@@ -68,7 +68,7 @@ impl PseudoInverse {
         }
     }
 
-    /// Singular values that were not counted as zero.
+    /// Number of singular values that do not count as zero.
     pub fn rank(&self) -> usize {
         self.rank
     }
@@ -81,7 +81,8 @@ impl PseudoInverse {
     }
 }
 
-/// One-sided Jacobi: `vectors` orthogonal, each of length sigma, and the rotation that made them.
+/// Result of the one-sided Jacobi method: orthogonal `vectors`, each of length sigma, and the rotation that
+/// makes them.
 struct Factors {
     vectors: Vec<Vec<f64>>,
     rotation: Vec<Vec<f64>>,
@@ -116,11 +117,11 @@ impl Factors {
     }
 }
 
-/// Cosine and sine that make `a` and `b` orthogonal; `None` if they are.
+/// Cosine and sine of the rotation that makes `a` and `b` orthogonal; `None` if they already are.
 fn jacobi_rotation(a: &[f64], b: &[f64]) -> Option<(f64, f64)> {
     let (aa, bb, ab) = (dot(a, a), dot(b, b), dot(a, b));
     let limit = ORTHOGONAL * crate::root::sqrt(aa) * crate::root::sqrt(bb);
-    // False if either is NaN.
+    // The comparison is false if either is NaN.
     (ab.abs() > limit).then(|| {
         let zeta = (bb - aa) / (2.0 * ab);
         let tangent = libm::copysign(1.0, zeta) / (zeta.abs() + libm::hypot(1.0, zeta));
@@ -149,7 +150,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn dependent_and_empty_rows_do_no_harm() {
+    fn dependent_and_zero_rows_are_handled() {
         let matrix = [1.0, 2.0, 3.0, 2.0, 4.0, 6.0, 0.0, 0.0, 0.0];
         let inverse = PseudoInverse::new(&matrix, 3, 3);
         assert_eq!(inverse.rank(), 1);

@@ -7,7 +7,7 @@
 //!
 //! Frequencies are in hertz, rates in hertz, angles in radians, magnitudes in the unit of the
 //! signal unless a name says otherwise.
-#![deny(unsafe_code)] // But for two calls in `wide`.
+#![deny(unsafe_code)] // Exception: two calls in `wide`.
 #![cfg_attr(not(feature = "std"), no_std)]
 extern crate alloc;
 pub mod all_pole;

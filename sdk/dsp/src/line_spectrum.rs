@@ -1,24 +1,24 @@
-//! Line spectral frequencies: the angles at which a stable all-pole model, made symmetric or
-//! antisymmetric, has its zeros (Itakura 1975). They interlace, so any weighted mean of two
-//! models' frequencies is again a stable model: the safe way to interpolate.
+//! Line spectral frequencies: the angles of the zeros of the symmetric and antisymmetric polynomials of a
+//! stable all-pole model (Itakura 1975). They interlace, so any weighted mean of two models' frequencies is
+//! again a stable model, which makes them safe to interpolate.
 
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
 use crate::linear_prediction::coefficients_to_reflection;
 
-/// Every third step of a search halves its bracket: so many steps halve `[0, π]` 56 times, below the
-/// spacing of f64 there.
+/// Step limit of a search: at least every third step halves the bracket, so this many steps halve `[0, π]` 56
+/// times, below the f64 resolution there.
 const MOST_STEPS: usize = 3 * 56;
-/// Relative difference of phases that is rounding.
+/// Relative phase difference that is attributed to rounding.
 const NEAR: f64 = 4.0 * f64::EPSILON;
 
-/// The p line spectral frequencies, radians, ascending inside (0, π); `None` if the model is
+/// Returns the p line spectral frequencies, radians, ascending inside (0, π); `None` if the model is
 /// unstable.
 ///
-/// They are where the phase of the lattice's all-pass, which falls steadily from 0 at ω = 0 to
-/// -(p + 1)π at ω = π, passes a multiple of π. That phase is a sum over the reflection coefficients
-/// with no ambiguity, so that each is found by Newton's steps inside a bracket at any order.
+/// They are the angles at which the phase of the lattice's all-pass, which decreases monotonically from 0 at
+/// ω = 0 to -(p + 1)π at ω = π, passes a multiple of π. The phase is an unambiguous sum over the reflection
+/// coefficients, so Newton's method inside a bracket finds each angle at any order.
 ///
 /// ```
 /// use htex_dsp::line_spectrum::{from_line_spectral_frequencies, line_spectral_frequencies};
@@ -37,7 +37,7 @@ pub fn line_spectral_frequencies_of_reflection(reflection: &[f64]) -> Vec<f64> {
     lines_of_reflection(reflection).collect()
 }
 
-/// As [`line_spectral_frequencies_of_reflection`], one after the other. Does not allocate.
+/// As [`line_spectral_frequencies_of_reflection`], as an iterator. Does not allocate.
 pub fn lines_of_reflection(reflection: &[f64]) -> impl Iterator<Item = f64> {
     let mut from = 0.0;
     (1..=reflection.len()).map(move |i| {
@@ -46,7 +46,7 @@ pub fn lines_of_reflection(reflection: &[f64]) -> impl Iterator<Item = f64> {
     })
 }
 
-/// The ω in `[from, π]` at which the phase reaches `target`.
+/// The ω in `[from, π]` at which the phase equals `target`.
 fn angle_of_phase(reflection: &[f64], target: f64, from: f64) -> f64 {
     let (mut low, mut high) = (from, PI);
     let mut at = 0.5 * (low + high);
@@ -69,8 +69,8 @@ fn angle_of_phase(reflection: &[f64], target: f64, from: f64) -> f64 {
     at
 }
 
-/// Phase lag of `z⁻¹ B_p(z) / A_p(z)` at ω, where `B` is `A` reversed, and its slope. One stage maps
-/// the lag θ to `ω + θ + 2 arg(1 - k e^{-iθ})`; for |k| < 1 that argument stays within ±π/2.
+/// Phase lag of `z⁻¹ B_p(z) / A_p(z)` at ω, where `B` is `A` reversed, and its slope. One stage maps the lag
+/// θ to `ω + θ + 2 arg(1 - k e^{-iθ})`; for |k| < 1 that argument is within ±π/2.
 fn all_pass_lag(reflection: &[f64], omega: f64) -> (f64, f64) {
     reflection.iter().fold((omega, 1.0), |(theta, slope), k| {
         let (sine, cosine) = crate::trig::sincos(theta);
@@ -81,15 +81,14 @@ fn all_pass_lag(reflection: &[f64], omega: f64) -> (f64, f64) {
     })
 }
 
-/// Prediction coefficients from line spectral frequencies in radians; `None` unless they ascend
-/// strictly inside (0, π), which is what makes the model stable, or if there are more than
-/// [`MOST_LINES`].
+/// Prediction coefficients from line spectral frequencies in radians; `None` unless they are strictly
+/// ascending inside (0, π), the condition for a stable model, and at most [`MOST_LINES`].
 pub fn from_line_spectral_frequencies(lsf: &[f64]) -> Option<Vec<f64>> {
     let mut coefficients = alloc::vec![0.0; lsf.len()];
     coefficients_of_lines(lsf, &mut coefficients).then_some(coefficients)
 }
 
-/// As [`from_line_spectral_frequencies`], into an array of the same length; false instead of `None`.
+/// As [`from_line_spectral_frequencies`], into an array of the same length; returns false instead of `None`.
 /// Does not allocate.
 pub fn coefficients_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
     let inside = lsf.iter().all(|&w| w > 0.0 && w < PI);
@@ -111,10 +110,10 @@ pub fn coefficients_of_lines(lsf: &[f64], coefficients: &mut [f64]) -> bool {
     true
 }
 
-/// Most line spectral frequencies that are turned back into a model.
+/// Maximum number of line spectral frequencies that can be converted back to a model.
 pub const MOST_LINES: usize = 128;
 
-/// `fixed(z) Π (1 - 2 cos ω z⁻¹ + z⁻²)` over every second line from `first` on.
+/// `fixed(z) Π (1 - 2 cos ω z⁻¹ + z⁻²)` over every second line from `first`.
 fn with_zeros_at(fixed: &[f64], lsf: &[f64], first: usize) -> [f64; MOST_LINES + 3] {
     let mut product = [0.0; MOST_LINES + 3];
     product[..fixed.len()].copy_from_slice(fixed);
@@ -130,8 +129,8 @@ fn with_zeros_at(fixed: &[f64], lsf: &[f64], first: usize) -> [f64; MOST_LINES +
     product
 }
 
-/// `0..n` with its bits reversed: neighbours come far apart. Multiplied in ascending order, the
-/// first factors would pile up binomial coefficients that the last ones must cancel.
+/// `0..n` in bit-reversed order, which separates neighbours. In ascending order the product of the first
+/// factors would contain large binomial coefficients, which the last factors would cancel.
 fn spread_order(n: usize) -> impl Iterator<Item = usize> {
     let bits = n.next_power_of_two().trailing_zeros();
     let reversed = move |i: usize| {

@@ -8,8 +8,9 @@
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
-/// Largest reflection coefficient an estimate is given, in size. A stage that would exceed it sees
-/// a signal predicted completely (a pure line, or rounding): a resonance of 10¹⁰ samples is left.
+/// Largest absolute value of an estimated reflection coefficient. A stage that would exceed it has a
+/// completely predicted signal (a pure sinusoid, or rounding); the limit corresponds to a resonance of 10¹⁰
+/// samples.
 pub const MAX_REFLECTION: f64 = 1.0 - 1e-10;
 
 /// An all-pole model, always stable.
@@ -21,16 +22,16 @@ pub struct LinearPrediction {
     pub reflection: Vec<f64>,
     /// Power of the prediction error, in the squared unit of the signal.
     pub error: f64,
-    /// Stages the data determined. Fewer than p where the signal was predicted completely before:
-    /// the last usable one was limited to [`MAX_REFLECTION`], the later ones are zero.
+    /// Stages that the data determine. Fewer than p if the signal is completely predicted earlier: the last
+    /// usable coefficient is then limited to [`MAX_REFLECTION`] and the later ones are zero.
     pub usable_stages: usize,
-    /// Whether the estimate was changed to be stable (see `usable_stages`, and
-    /// [`stabilize`] for the covariance method).
+    /// Whether the estimate was changed to be stable (see `usable_stages`, and [`stabilize`] for the
+    /// covariance method).
     pub adjusted: bool,
 }
 
 impl LinearPrediction {
-    /// The model of a signal without power: no prediction, no error.
+    /// The model of a signal without power: zero coefficients, zero error.
     pub(crate) fn silent(order: usize) -> Self {
         Self {
             coefficients: alloc::vec![0.0; order],
@@ -42,14 +43,14 @@ impl LinearPrediction {
     }
 }
 
-/// Grows a model stage by stage, and stops before it becomes unstable.
+/// Builds a model stage by stage and stops before it becomes unstable.
 pub(crate) struct Stages {
     model: LinearPrediction,
     open: bool,
 }
 
 impl Stages {
-    /// Starts from a signal of mean square `power`.
+    /// Starts from the mean square `power` of the signal.
     pub(crate) fn new(order: usize, power: f64) -> Self {
         let mut model = LinearPrediction::silent(order);
         let open = power > 0.0 && power.is_finite();
@@ -59,22 +60,22 @@ impl Stages {
         Self { model, open }
     }
 
-    /// Power of the error so far.
+    /// Prediction error power after the stages so far.
     pub(crate) fn error(&self) -> f64 {
         self.model.error
     }
 
-    /// The coefficients so far, one a stage.
+    /// The prediction coefficients so far, one per stage.
     pub(crate) fn coefficients(&self) -> &[f64] {
         &self.model.coefficients[..self.model.usable_stages]
     }
 
-    /// Whether another stage may follow.
+    /// Whether another stage can be added.
     pub(crate) fn is_open(&self) -> bool {
         self.open && self.model.usable_stages < self.model.coefficients.len()
     }
 
-    /// Adds a stage; what is too close to ±1 is limited and closes the model.
+    /// Adds a stage. A coefficient too close to ±1 is limited, and no stage follows.
     pub(crate) fn push(&mut self, reflection: f64) {
         if !self.is_open() || reflection.is_nan() {
             self.open = false;
@@ -98,8 +99,8 @@ impl Stages {
 
 /// Solves the Yule–Walker equations for autocorrelation lags `0..=order` (Levinson–Durbin).
 ///
-/// Missing lags count as zero. Any autocorrelation gives a stable model; one without power, or
-/// with a lag that is not finite, gives zeros from there on.
+/// Missing lags count as zero. Any autocorrelation gives a stable model; without power, or from the first lag
+/// that is not finite, the coefficients are zero.
 ///
 /// ```
 /// use htex_dsp::linear_prediction::levinson_durbin;
@@ -121,11 +122,11 @@ pub fn levinson_durbin(autocorrelation: &[f64], order: usize) -> LinearPredictio
     stages.finish()
 }
 
-/// Autocorrelation lags `0..=order` from the power in equally spaced bins from 0 Hz to Nyquist,
-/// both included: `r[m] = Σ P_k cos(π k m / (bins - 1))`.
+/// Autocorrelation lags `0..=order` from the power in equally spaced bins from 0 Hz to Nyquist inclusive:
+/// `r[m] = Σ P_k cos(π k m / (bins - 1))`.
 ///
-/// The power is one-sided (a bin holds what its negative frequency has too), so `r[0]` is the
-/// total power. Bins of zero power, as outside the band, are what the model then sees there.
+/// The power is one-sided (a bin includes the power of its negative frequency), so `r[0]` is the total power.
+/// Bins outside the band have zero power, and the model approximates zero there.
 pub fn autocorrelation_from_power(power: &[f64], order: usize) -> Vec<f64> {
     let nyquist = power.len().saturating_sub(1).max(1);
     let cosine =
@@ -152,22 +153,22 @@ pub fn reflection_to_coefficients(reflection: &[f64]) -> Vec<f64> {
 
 /// Reflection coefficients of a stable model; `None` if it is unstable or not finite.
 ///
-/// Each stage divides by `1 - k` and `1 + k`: with several poles very near the unit circle digits are
+/// Each stage divides by `1 - k` and `1 + k`: with several poles very close to the unit circle precision is
 /// lost.
 pub fn coefficients_to_reflection(coefficients: &[f64]) -> Option<Vec<f64>> {
     let mut a = coefficients.to_vec();
     step_down_in_place(&mut a).then_some(a)
 }
 
-/// As [`coefficients_to_reflection`], in place and without allocating; `false` if the model is
-/// unstable or not finite, and `a` is then of no use.
+/// As [`coefficients_to_reflection`], in place and without allocating; `false` if the model is unstable or
+/// not finite, in which case the contents of `a` are unspecified.
 pub fn step_down_in_place(a: &mut [f64]) -> bool {
     for m in (0..a.len()).rev() {
         let k = a[m];
         if k.is_nan() || k.abs() >= 1.0 {
             return false;
         }
-        // Each stage leaves its own reflection coefficient at its place.
+        // Each stage leaves its reflection coefficient in its own element.
         step_down(&mut a[..m], k);
     }
     true
@@ -178,9 +179,9 @@ pub fn is_stable(coefficients: &[f64]) -> bool {
     coefficients_to_reflection(coefficients).is_some()
 }
 
-/// Draws the poles of an unstable model inside: `A_i g^i` with the g that sets the outermost pole
-/// to its mirror image in the unit circle, where its magnitude peaks alike. A stable model comes
-/// back as it is; one that is not finite becomes zeros.
+/// Makes an unstable model stable by scaling its poles: `A_i g^i` with the g that moves the outermost pole to
+/// its mirror image in the unit circle, where its magnitude peak is the same. Stable models are returned
+/// unchanged; a model that is not finite becomes zeros.
 pub fn stabilize(coefficients: &[f64]) -> Vec<f64> {
     if is_stable(coefficients) {
         return coefficients.to_vec();
@@ -193,14 +194,14 @@ pub fn stabilize(coefficients: &[f64]) -> Vec<f64> {
     if is_stable(&mirrored) {
         mirrored
     } else {
-        // Poles on the circle itself: their mirror image is no better.
+        // Poles on the circle itself: their mirror images lie on the circle too.
         scale_poles(coefficients, stable * stable * (1.0 - 1e-6))
     }
 }
 
-/// Holds every pole's radius to `radius` (below 1): the model as it is if none lies farther out, else
-/// `A_i g^i` with the g that sets the outermost one there. Also mends what rounding of the
-/// coefficients has put outside the unit circle. One that is not finite becomes zeros.
+/// Limits the radius of every pole to `radius` (below 1): returns the model unchanged if no pole lies farther
+/// out, else `A_i g^i` with the g that moves the outermost pole to that radius. Also corrects poles that
+/// rounding of the coefficients moved outside the unit circle. A model that is not finite becomes zeros.
 ///
 /// ```
 /// use htex_dsp::linear_prediction::within_radius;
@@ -218,8 +219,8 @@ pub fn within_radius(coefficients: &[f64], radius: f64) -> Vec<f64> {
     scale_poles(coefficients, largest * radius)
 }
 
-/// The largest factor of the poles up to `unstable` that is stable, 1 / outermost radius, by
-/// bisection: 0 always is.
+/// Largest factor up to `unstable` by which the poles can be scaled with a stable result, 1 / outermost
+/// radius, by bisection: factor 0 is always stable.
 fn largest_stable_factor(coefficients: &[f64], mut unstable: f64) -> f64 {
     let mut stable = 0.0;
     for _ in 0..60 {
@@ -245,8 +246,8 @@ pub fn scale_poles(coefficients: &[f64], factor: f64) -> Vec<f64> {
         .collect()
 }
 
-/// `|H|` at `f_hz` for a model at the rate `rate_hz`: the magnitude for white noise of unit
-/// magnitude. Grows without bound towards a pole on the unit circle.
+/// Magnitude `|H|` at `f_hz` for a model at the rate `rate_hz`, both in hertz: the output magnitude for white
+/// noise of unit magnitude. Unbounded towards a pole on the unit circle.
 pub fn ar_magnitude(coefficients: &[f64], f_hz: f64, rate_hz: f64) -> f64 {
     let omega = 2.0 * PI * f_hz / rate_hz;
     let (mut re, mut im) = (1.0, 0.0);
@@ -283,8 +284,8 @@ pub(crate) fn step_up(a: &mut [f64], k: f64) {
     }
 }
 
-/// Inverse of [`step_up`] on all but the last coefficient: `(front + k back) / (1 - k²)`, by way of sum
-/// and difference, neither of which loses digits where |k| is nearly 1.
+/// Inverse of [`step_up`] on all but the last coefficient: `(front + k back) / (1 - k²)`, computed from sum
+/// and difference, which stay precise when |k| is nearly 1.
 fn step_down(previous: &mut [f64], k: f64) {
     let m = previous.len();
     let (of_sum, of_difference) = (0.5 / (1.0 - k), 0.5 / (1.0 + k));
@@ -314,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn silence_and_nonsense_predict_nothing() {
+    fn silence_and_non_finite_input_give_zero_coefficients() {
         for r in [&[0.0, 0.0][..], &[], &[f64::NAN, 1.0], &[-1.0, 2.0]] {
             let model = levinson_durbin(r, 3);
             assert_eq!(model.coefficients, [0.0; 3]);
@@ -323,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn the_outermost_pole_lands_on_its_mirror_image() {
+    fn stabilize_moves_the_outermost_pole_to_its_mirror_image() {
         // Poles at 1.25 and 0.5.
         let stable = stabilize(&[1.75, -0.625]);
         assert!(is_stable(&stable));

@@ -1,4 +1,4 @@
-//! The mel filter bank (paper, Mel-frequency cepstral coefficients), in HTK's spelling.
+//! The mel filter bank (paper, Mel-frequency cepstral coefficients) with HTK's mel formula.
 
 use alloc::vec::Vec;
 
@@ -15,8 +15,16 @@ pub fn mel_to_hz(mel: f64) -> f64 {
     700.0 * (libm::pow(10.0, mel / 2595.0) - 1.0)
 }
 
-/// Triangular filters with apex 1, straight in hertz, between edges equally spaced in mel.
-/// Agrees with `librosa.filters.mel(htk=True, norm=None)`.
+/// Triangular filters with apex 1, linear in hertz, between edges equally spaced in mel. Matches
+/// `librosa.filters.mel(htk=True, norm=None)`.
+///
+/// ```
+/// use htex_dsp::{Band, mel::MelBank};
+/// let grid_hz = Band::TACTILE.grid_hz();
+/// let bank = MelBank::new(10, Band::TACTILE, &grid_hz);
+/// assert_eq!(bank.energies(&[1.0; 197]).len(), 10);
+/// assert!((bank.edges_hz()[0] - 20.0).abs() < 1e-9);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct MelBank {
     edges_hz: Vec<f64>,
@@ -25,9 +33,9 @@ pub struct MelBank {
 }
 
 impl MelBank {
-    /// `bands` filters over `band`, weighed at `frequencies_hz` (ascending).
+    /// Makes `bands` filters over `band`, with weights at `frequencies_hz` (ascending).
     ///
-    /// Where filters are narrower than the grid some may be empty: their energy is always 0.
+    /// Filters narrower than the grid spacing may be empty: their energy is always 0.
     pub fn new(bands: usize, band: Band, frequencies_hz: &[f64]) -> Self {
         let edges_hz = mel_edges(bands, band);
         Self {
@@ -42,7 +50,7 @@ impl MelBank {
         &self.edges_hz
     }
 
-    /// The frequencies the filters are weighed at, hertz.
+    /// The frequencies of the weights, hertz.
     pub fn frequencies_hz(&self) -> &[f64] {
         &self.frequencies_hz
     }
@@ -59,13 +67,13 @@ impl MelBank {
         energies
     }
 
-    /// A power spectrum from band energies by interpolation: at each filter's apex the power is
-    /// the filter's energy over the sum of its weights; between apexes it is linear in hertz,
-    /// beyond the first and last it stays. Empty filters are passed over. `power` has as many
-    /// elements as the bank has frequencies.
+    /// Writes a power spectrum interpolated from band energies. At each filter's apex the power is the
+    /// filter's energy divided by the sum of its weights; between apexes it is linear in hertz, beyond the
+    /// first and last apex constant. Empty filters are skipped. `power` has as many elements as the bank has
+    /// frequencies.
     ///
-    /// Smoother than the pseudo-inverse and never negative; `energies` of the result are not
-    /// exactly the ones given.
+    /// Smoother than the pseudo-inverse and never negative; the `energies` of the result differ slightly from
+    /// the ones given.
     pub fn interpolate(&self, energies: &[f64], power: &mut [f64]) {
         let apexes: Vec<(f64, f64)> = self
             .bank
@@ -94,7 +102,8 @@ fn mel_edges(bands: usize, band: Band) -> Vec<f64> {
         .collect()
 }
 
-/// Value at `x` of the polyline through `points` (ascending), held beyond its ends; 0 if empty.
+/// Value at `x` of the polyline through `points` (ascending), constant beyond its ends; 0 if there are no
+/// points.
 fn interpolate_linearly(points: &[(f64, f64)], x: f64) -> f64 {
     let above = points.partition_point(|point| point.0 <= x);
     match (

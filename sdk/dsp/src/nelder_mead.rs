@@ -1,23 +1,23 @@
-//! Nelder–Mead simplex minimisation with the standard coefficients, as SciPy's `fmin` and
-//! MATLAB's `fminsearch` run it (Lagarias et al. 1998).
+//! Nelder–Mead simplex minimisation with the standard coefficients, as in SciPy's `fmin` and MATLAB's
+//! `fminsearch` (Lagarias et al. 1998).
 
-/// When to stop, and how large the first simplex is.
+/// Stopping criteria, and the size of the initial simplex.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// Stop when no vertex lies farther than this from the best, along any axis (and `f_tolerance`).
+    /// Stop when no vertex is farther than this from the best one along any axis and `f_tolerance` is met.
     pub x_tolerance: f64,
-    /// Stop when no vertex value lies farther than this above the best (and `x_tolerance`).
+    /// Stop when no vertex value exceeds the best one by more than this and `x_tolerance` is met.
     pub f_tolerance: f64,
-    /// The function is called at most this often.
+    /// Maximum number of function calls.
     pub max_evaluations: usize,
-    /// First step along each axis, as a fraction of the start's coordinate.
+    /// Initial step along each axis, as a fraction of the start's coordinate.
     pub initial_step: f64,
-    /// First step along an axis whose start coordinate is zero.
+    /// Initial step along an axis whose start coordinate is zero.
     pub initial_step_at_zero: f64,
 }
 
 impl Default for Options {
-    /// SciPy's first simplex; tolerances near what f64 resolves around a smooth minimum.
+    /// SciPy's initial simplex; tolerances near the f64 resolution at a smooth minimum.
     fn default() -> Self {
         Self {
             x_tolerance: 1e-10,
@@ -32,20 +32,20 @@ impl Default for Options {
 /// The best point found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Minimum<const N: usize> {
-    /// Where.
+    /// Position.
     pub x: [f64; N],
-    /// The function there; +∞ if it was NaN everywhere it was tried.
+    /// Function value there; +∞ if it was NaN at every evaluated point.
     pub value: f64,
-    /// How often the function was called.
+    /// Number of function calls.
     pub evaluations: usize,
     /// Whether both tolerances were met before the evaluations ran out.
     pub converged: bool,
 }
 
-/// Minimises `f` from `start`. NaN counts as +∞, so `f` may refuse a region by returning either.
+/// Minimises `f` from `start`. NaN counts as +∞, so `f` may exclude a region by returning either.
 ///
-/// Deterministic: the same function, start and options visit the same points. Evaluations ending
-/// early is not an error: the best point so far is returned.
+/// Deterministic: the same function, start and options evaluate the same points. Reaching `max_evaluations`
+/// is not an error: the best point so far is returned.
 ///
 /// ```
 /// use htex_dsp::nelder_mead::{Options, minimize};
@@ -123,7 +123,7 @@ impl<F: FnMut(&[f64; N]) -> f64, const N: usize> Search<F, N> {
     }
 
     fn sort(&mut self) {
-        // Insertion sort: stable, so ties keep their age, and free of allocation.
+        // Insertion sort: stable, so ties keep their order, and does not allocate.
         for i in 1..N {
             for j in (1..=i).rev() {
                 if self.others[j].value < self.others[j - 1].value {
@@ -165,7 +165,7 @@ impl<F: FnMut(&[f64; N]) -> f64, const N: usize> Search<F, N> {
         x
     }
 
-    /// One move: reflect, then expand, contract or shrink.
+    /// One iteration: reflect, then expand, contract or shrink.
     fn step(&mut self, max_evaluations: usize) {
         let Some(worst) = self.others.last().copied() else {
             self.evaluations = max_evaluations;
@@ -253,7 +253,8 @@ mod tests {
         assert!((found.x[0] - 1.0).abs() < 1e-6 && (found.x[1] - 1.0).abs() < 1e-6);
     }
 
-    /// As often called, and as low in the end, as SciPy 1.17's `fmin` of these tolerances.
+    /// Needs at most as many evaluations, and finds as low a minimum, as SciPy 1.17's `fmin` with these
+    /// tolerances.
     fn is_as_scipy<const N: usize>(
         f: impl FnMut(&[f64; N]) -> f64,
         start: [f64; N],
@@ -273,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn it_goes_the_way_of_scipy() {
+    fn minima_match_scipy() {
         is_as_scipy(valley, [-1.2, 1.0], 1e-4, (159, 8.177_661_197_416_674e-10));
         is_as_scipy(|x| (x[0] - 0.3).abs(), [3.0], 1e-2, (22, 0.0));
         let far = [4.0, -3.0, 2.0];
@@ -297,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn nan_is_a_wall_and_the_budget_is_kept() {
+    fn nan_excludes_a_region_and_the_evaluation_limit_holds() {
         let mut calls = 0;
         let walled = |x: &[f64; 1]| {
             calls += 1;

@@ -8,12 +8,19 @@ use crate::circle::directions;
 use crate::random_lanes::{LANES, RandomLanes};
 use crate::wide::{Work, very_wide, wide};
 
-/// A seeded stream of uniform numbers; the same seed gives the same bits on every machine.
+/// A seeded generator of uniform numbers; the same seed gives the same bits on every machine.
+///
+/// ```
+/// use htex_dsp::noise::Uniform;
+/// let (mut a, mut b) = (Uniform::new(7), Uniform::new(7));
+/// let x = a.next_unit();
+/// assert!((0.0..1.0).contains(&x) && x == b.next_unit());
+/// ```
 #[derive(Debug, Clone)]
 pub struct Uniform(Xoshiro256PlusPlus);
 
 impl Uniform {
-    /// Starts the stream of `seed`.
+    /// A generator with this seed.
     pub fn new(seed: u64) -> Self {
         Self(Xoshiro256PlusPlus::seed_from_u64(seed))
     }
@@ -28,8 +35,8 @@ impl Uniform {
         self.0.next_u64()
     }
 
-    /// Cosines and sines of angles that are uniform on the circle, exact to 3e-7; as many as there
-    /// is room for in both.
+    /// Writes cosines and sines of angles uniform on the circle, with errors below 3e-7. The shorter slice
+    /// sets the number.
     pub fn fill_directions(&mut self, cos: &mut [f32], sin: &mut [f32]) {
         for (cos, sin) in cos.chunks_mut(DIRECTIONS).zip(sin.chunks_mut(DIRECTIONS)) {
             let mut bits = [0; DIRECTIONS];
@@ -44,24 +51,32 @@ impl Uniform {
     }
 }
 
-/// Directions that are made at once.
+/// Directions per step.
 const DIRECTIONS: usize = 4;
 
-/// Samples of Gaussian noise that are made at once; a stream is quickest in whole groups.
+/// Samples of Gaussian noise generated together; rendering is fastest in whole groups.
 pub const GROUP: usize = 2 * LANES;
 
-/// White Gaussian noise of zero mean and unit variance, by Box and Muller's transform in single
-/// precision: no number is larger than 6.6.
+/// White Gaussian noise of zero mean and unit variance, by the Box–Muller transform in single precision; no
+/// absolute value exceeds 6.6.
+///
+/// ```
+/// use htex_dsp::noise::GaussianNoise;
+/// let mut block = [0.0; 1000];
+/// GaussianNoise::new(1).fill(&mut block);
+/// let power = block.iter().map(|x| x * x).sum::<f32>() / 1000.0;
+/// assert!((power - 1.0).abs() < 0.2);
+/// ```
 #[derive(Debug, Clone)]
 pub struct GaussianNoise {
     random: RandomLanes,
-    /// What is left of the last group.
+    /// Unused samples of the last group.
     ready: [f32; GROUP],
     taken: usize,
 }
 
 impl GaussianNoise {
-    /// Starts the stream of `seed`.
+    /// A generator with this seed.
     pub fn new(seed: u64) -> Self {
         Self {
             random: RandomLanes::new(seed),
@@ -70,17 +85,17 @@ impl GaussianNoise {
         }
     }
 
-    /// The next sample; [`Self::fill`] is several times faster.
+    /// Returns the next sample; [`Self::fill`] is several times faster.
     pub fn next_sample(&mut self) -> f32 {
         let mut one = [0.0];
         self.fill(&mut one);
         one[0]
     }
 
-    /// Fills a block of each of two streams, which may be quicker than one after the other; the samples
-    /// are those of [`Self::fill`]. Does not allocate.
+    /// Fills a block of each of two streams, which may be faster than one after the other; the samples are
+    /// those of [`Self::fill`]. Does not allocate.
     pub fn fill_both([a, b]: [&mut Self; 2], [x, y]: [&mut [f32]; 2]) {
-        // Up to the end of a group that both are in.
+        // First up to the nearer end of the two current groups.
         let head = (GROUP - a.taken.max(b.taken)).min(x.len()).min(y.len());
         let ((x_head, x), (y_head, y)) = (x.split_at_mut(head), y.split_at_mut(head));
         a.fill(x_head);
@@ -90,7 +105,7 @@ impl GaussianNoise {
         b.fill(&mut y[done..]);
     }
 
-    /// Fills a block with the next samples; quickest in multiples of [`GROUP`]. Does not allocate.
+    /// Fills a block with the next samples; fastest in multiples of [`GROUP`]. Does not allocate.
     pub fn fill(&mut self, out: &mut [f32]) {
         let kept = out.len().min(GROUP - self.taken);
         let (first, rest) = out.split_at_mut(kept);
@@ -109,8 +124,8 @@ impl GaussianNoise {
     }
 }
 
-/// Fills whole groups of two streams that both begin one, where registers are wide enough for both;
-/// answers how many samples of each.
+/// Fills whole groups of two streams that are both at the start of a group, if registers are wide enough for
+/// both; returns the number of samples filled in each.
 fn fill_two([a, b]: [&mut GaussianNoise; 2], [x, y]: [&mut [f32]; 2]) -> usize {
     if a.taken < GROUP || b.taken < GROUP {
         return 0;
@@ -124,13 +139,13 @@ fn fill_two([a, b]: [&mut GaussianNoise; 2], [x, y]: [&mut [f32]; 2]) -> usize {
     }
 }
 
-/// Groups of normal numbers.
+/// Groups of normally distributed numbers.
 struct Normals<'a>(&'a mut RandomLanes, &'a mut [[f32; GROUP]]);
 
 impl Work for Normals<'_> {
     #[inline(always)]
     fn run(self) {
-        // A generator of its own, which nothing else can see, stays in registers.
+        // A local copy of the generator can stay in registers.
         let mut random = self.0.clone();
         for group in self.1 {
             let radius = radii(random.next_bits());
@@ -144,10 +159,10 @@ impl Work for Normals<'_> {
     }
 }
 
-/// Groups that are made before they are parted: compilers would compute in halves otherwise.
+/// Groups computed before the two streams are separated: otherwise compilers compute in half registers.
 const PARTED: usize = 8;
 
-/// Groups of normal numbers of two streams.
+/// Groups of normally distributed numbers of two streams.
 struct TwoNormals<'a>(
     [&'a mut RandomLanes; 2],
     &'a mut [[f32; GROUP]],
@@ -159,9 +174,9 @@ impl Work for TwoNormals<'_> {
     fn run(self) {
         let Self([first, second], x, y) = self;
         let mut random = RandomLanes::beside(first, second);
-        let mut room = [[[0.0; 2 * LANES]; 2]; PARTED];
+        let mut buffer = [[[0.0; 2 * LANES]; 2]; PARTED];
         for (x, y) in x.chunks_mut(PARTED).zip(y.chunks_mut(PARTED)) {
-            for [first, second] in &mut room[..x.len()] {
+            for [first, second] in &mut buffer[..x.len()] {
                 let radius = radii(random.next_bits());
                 let (cos, sin) = directions(random.next_bits());
                 for i in 0..2 * LANES {
@@ -169,7 +184,7 @@ impl Work for TwoNormals<'_> {
                     second[i] = radius[i] * sin[i];
                 }
             }
-            for ((x, y), [first, second]) in x.iter_mut().zip(y).zip(&room) {
+            for ((x, y), [first, second]) in x.iter_mut().zip(y).zip(&buffer) {
                 x[..LANES].copy_from_slice(&first[..LANES]);
                 x[LANES..].copy_from_slice(&second[..LANES]);
                 y[..LANES].copy_from_slice(&first[LANES..]);
@@ -180,12 +195,12 @@ impl Work for TwoNormals<'_> {
     }
 }
 
-/// Distances from the centre of points whose two coordinates are normal numbers.
+/// Radii of points whose two coordinates are normally distributed.
 #[inline(always)]
 fn radii<const N: usize>(bits: [u32; N]) -> [f32; N] {
     let mut radii = [0.0; N];
     for i in 0..N {
-        // In (0, 1]: a step above 0, 31 bits as those have a sign.
+        // In (0, 1], in steps of 2⁻³¹: the bits are signed, which leaves 31.
         let uniform = ((bits[i] >> 1) as i32 as f32 + 1.0) * (1.0 / (1u32 << 31) as f32);
         radii[i] = -2.0 * ln(uniform);
     }
@@ -195,10 +210,10 @@ fn radii<const N: usize>(bits: [u32; N]) -> [f32; N] {
     radii
 }
 
-/// Natural logarithm of a number up to 1, exact to 2e-7 of itself and 2e-7 more.
+/// Natural logarithm of a number up to 1, with an error below 2e-7 relative plus 2e-7 absolute.
 ///
-/// Of `m 2ᵉ` with `m` from √½ to √2. The series of `m` (Moshier, Cephes) is added up in pairs that need
-/// not wait for each other.
+/// Splits the number into `m 2ᵉ` with `m` in √½ to √2. The series for `m` (Moshier, Cephes) is summed in
+/// independent pairs.
 #[inline(always)]
 fn ln(x: f32) -> f32 {
     const SQRT_HALF: u32 = core::f32::consts::FRAC_1_SQRT_2.to_bits();
@@ -233,9 +248,9 @@ mod tests {
         assert_eq!(ln(1.0), 0.0);
     }
 
-    /// Two streams filled in one go are the two streams, wherever they are in their groups.
+    /// Two streams filled together equal the two streams filled alone, at any position within their groups.
     #[test]
-    fn two_streams_are_one_and_one() {
+    fn two_streams_filled_together_are_bit_identical() {
         let mut alone = [GaussianNoise::new(1), GaussianNoise::new(2)];
         let mut both = alone.clone();
         for (first, second) in [
@@ -249,8 +264,8 @@ mod tests {
             (7, 8),
             (96, 96),
         ] {
-            let room = || [alloc::vec![0.0; first], alloc::vec![0.0; second]];
-            let (mut expected, mut found) = (room(), room());
+            let buffer = || [alloc::vec![0.0; first], alloc::vec![0.0; second]];
+            let (mut expected, mut found) = (buffer(), buffer());
             for (noise, out) in alone.iter_mut().zip(&mut expected) {
                 noise.fill(out);
             }
@@ -261,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn directions_lie_on_the_circle_all_around() {
+    fn directions_are_uniform_on_the_circle() {
         let mut uniform = Uniform::new(1);
         let mut sums = [0.0; 4];
         let (mut cos, mut sin) = (alloc::vec![0.0; 100_003], alloc::vec![0.0; 100_003]);
@@ -277,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn gaussian_moments_are_those_of_the_normal_law() {
+    fn gaussian_moments_match_the_normal_distribution() {
         let mut noise = GaussianNoise::new(7);
         let n = 1_000_000;
         let (mut m1, mut m2, mut m4) = (0.0, 0.0, 0.0);
@@ -297,7 +312,7 @@ mod tests {
             }
         }
         let n = n as f64;
-        // Standard errors: 0.001, 0.0014, 0.0098; five of each.
+        // Standard errors: 0.001, 0.0014, 0.0098; tolerances are five of each.
         assert!((m1 / n).abs() < 0.005);
         assert!((m2 / n - 1.0).abs() < 0.007);
         assert!((m4 / n - 3.0).abs() < 0.05);

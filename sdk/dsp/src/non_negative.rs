@@ -1,25 +1,25 @@
-//! Power from the energies of triangular filters, none of it negative.
+//! Non-negative power spectra from the energies of triangular filters.
 
 use alloc::vec::Vec;
 
 use crate::triangles::TriangleBank;
 
-/// Weight of the power's own square: what makes the solution unique, and moves energies that can be met
-/// by about a millionth.
+/// Weight of the squared norm of the power. It makes the solution unique and changes attainable energies by
+/// about a millionth.
 pub const RIDGE: f64 = 1e-6;
-/// Newton's steps at most; energies of recordings take three to eight.
+/// Maximum number of Newton steps; energies of recordings take three to eight.
 const STEPS: usize = 100;
-/// Halvings of a step at most.
+/// Maximum number of halvings of a step.
 const HALVINGS: usize = 40;
-/// Slope along a step, over that at its start, that is rounding.
+/// Slope along a step, relative to that at its start, that is attributed to rounding.
 const FLAT: f64 = 1e-9;
 
-/// The powers `p >= 0` that minimise `|W p - e|² + RIDGE |p|²` for a bank `W` of triangular filters and
-/// energies `e`: there is one such solution.
+/// Finds the powers `p >= 0` that minimise `|W p - e|² + RIDGE |p|²` for a bank `W` of triangular filters and
+/// energies `e`. The solution is unique.
 ///
-/// It has the form `p = max(0, Wᵀ s)` with one number `s` a filter, and `s` solves
-/// `RIDGE s + W max(0, Wᵀ s) = e`: straight pieces, on each of which Newton's method is exact. Its matrix is
-/// tridiagonal, since only neighbouring filters overlap.
+/// It has the form `p = max(0, Wᵀ s)` with one number `s` per filter, and `s` solves `RIDGE s + W max(0, Wᵀ
+/// s) = e`, which is piecewise linear: Newton's method is exact on each piece. Its matrix is tridiagonal,
+/// since only neighbouring filters overlap.
 ///
 /// ```
 /// use htex_dsp::non_negative::{NonNegative, Scratch};
@@ -35,18 +35,18 @@ pub struct NonNegative {
     rows: usize,
 }
 
-/// What filters weigh a place by: the filter `first` and the next one.
+/// Weights of one frequency: in the filter `first` and in the next one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Column {
     first: usize,
     weight: [f64; 2],
 }
 
-/// Memory of [`NonNegative::solve`], for one number of filters.
+/// Working memory of [`NonNegative::solve`] for one number of filters.
 #[derive(Debug, Clone)]
 pub struct Scratch {
     wanted: Vec<f64>,
-    /// The solution so far, and the step from it.
+    /// The current solution, and the step from it.
     at: Vec<f64>,
     step: Vec<f64>,
     residual: Vec<f64>,
@@ -55,7 +55,7 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// For so many filters.
+    /// Memory for `rows` filters.
     pub fn new(rows: usize) -> Self {
         let zeros = || alloc::vec![0.0; rows];
         Self {
@@ -70,7 +70,7 @@ impl Scratch {
 }
 
 impl NonNegative {
-    /// Takes the weights of a bank.
+    /// Copies the weights of a bank.
     pub fn new(bank: &TriangleBank) -> Self {
         let rows = bank.rows();
         let column = |c: usize| {
@@ -85,8 +85,8 @@ impl NonNegative {
         }
     }
 
-    /// Writes the power of `energies`, which are not negative; `scratch` is for as many filters. An energy
-    /// of a filter that weighs no place has no say. Does not allocate.
+    /// Writes the power of `energies`, which must not be negative; `scratch` must be made for the same number
+    /// of filters. The energy of a filter without weights is ignored. Does not allocate.
     pub fn solve(&self, energies: &[f64], power: &mut [f64], scratch: &mut Scratch) {
         let largest = energies.iter().copied().fold(0.0, f64::max);
         self.start(energies, largest, scratch);
@@ -100,7 +100,7 @@ impl NonNegative {
         }
     }
 
-    /// Energies relative to the largest, and the solution as if powers could be negative.
+    /// Scales the energies by the largest and solves without the constraint as a starting point.
     fn start(&self, energies: &[f64], largest: f64, scratch: &mut Scratch) {
         scratch.wanted.fill(0.0);
         for column in &self.columns {
@@ -115,7 +115,7 @@ impl NonNegative {
         solve_tridiagonal(&mut scratch.diagonal, &scratch.beside, &mut scratch.at);
     }
 
-    /// One step of Newton's method, halved until the slope along it is not upwards; false at the solution.
+    /// One Newton step, halved until the slope along it is no longer positive; false at the solution.
     fn advance(&self, scratch: &mut Scratch) -> bool {
         scratch.measure(&self.columns, 0.0);
         let Scratch { residual, step, .. } = scratch;
@@ -125,7 +125,7 @@ impl NonNegative {
         scratch.derive_here(&self.columns);
         solve_tridiagonal(&mut scratch.diagonal, &scratch.beside, &mut scratch.step);
         let slope = scratch.slope();
-        // Written so that a slope that is no number ends the search.
+        // Written so that a NaN slope ends the search.
         if !matches!(slope.partial_cmp(&0.0), Some(core::cmp::Ordering::Less)) {
             return false;
         }
@@ -146,14 +146,14 @@ impl NonNegative {
         moved
     }
 
-    /// Filters.
+    /// Number of filters.
     pub fn rows(&self) -> usize {
         self.rows
     }
 }
 
 impl Column {
-    /// `Wᵀ s` at this place.
+    /// `Wᵀ s` at this frequency.
     fn between(&self, values: &[f64]) -> f64 {
         let next = values.get(self.first + 1).copied().unwrap_or(0.0);
         self.weight[0] * values[self.first] + self.weight[1] * next
@@ -161,7 +161,7 @@ impl Column {
 }
 
 impl Scratch {
-    /// The residual at `at + part * step`.
+    /// Computes the residual at `at + part * step`.
     fn measure(&mut self, columns: &[Column], part: f64) {
         for i in 0..self.at.len() {
             let s = self.at[i] + part * self.step[i];
@@ -179,7 +179,7 @@ impl Scratch {
         }
     }
 
-    /// Slope of what is minimised along the step.
+    /// Slope of the cost along the step.
     fn slope(&self) -> f64 {
         self.residual
             .iter()
@@ -188,14 +188,14 @@ impl Scratch {
             .sum()
     }
 
-    /// The residual's derivative where the solution stands.
+    /// Derivative of the residual at the current solution.
     fn derive_here(&mut self, columns: &[Column]) {
         let at = core::mem::take(&mut self.at);
         self.derive(columns, |column| column.between(&at) > 0.0);
         self.at = at;
     }
 
-    /// The residual's derivative with power at the places that `active` tells.
+    /// Derivative of the residual, over the frequencies for which `active` is true.
     fn derive(&mut self, columns: &[Column], active: impl Fn(&Column) -> bool) {
         self.diagonal.fill(RIDGE);
         self.beside.fill(0.0);
@@ -210,7 +210,7 @@ impl Scratch {
     }
 }
 
-/// Solves a symmetric, positive definite, tridiagonal system in place; `beside[i]` couples `i` and `i + 1`.
+/// Solves a symmetric positive definite tridiagonal system in place; `beside[i]` couples `i` and `i + 1`.
 fn solve_tridiagonal(diagonal: &mut [f64], beside: &[f64], values: &mut [f64]) {
     for i in 1..values.len() {
         let ratio = beside[i - 1] / diagonal[i - 1];
@@ -231,8 +231,8 @@ mod tests {
     use crate::mel::MelBank;
     use crate::noise::Uniform;
 
-    /// Where power is, the cost is level; where there is none, it rises: what a minimum of a convex cost
-    /// is known by.
+    /// Optimality conditions of a convex cost: its gradient is zero where the power is positive, and not
+    /// negative where the power is zero.
     #[test]
     fn the_solution_is_the_minimum() {
         let grid = Band::TACTILE.grid_hz();
@@ -242,7 +242,7 @@ mod tests {
             let (solver, mut scratch) = (NonNegative::new(mel.filters()), Scratch::new(bands));
             let mut power = alloc::vec![0.0; grid.len()];
             for round in 0..20 {
-                // Up to 100 dB apart, so that most energies cannot be met.
+                // Up to 100 dB apart, so that most energies are unattainable.
                 let spread = f64::from(round);
                 let energies: Vec<f64> = (0..bands)
                     .map(|_| libm::exp(spread * uniform.next_unit()))

@@ -1,11 +1,10 @@
-//! Spectral peaks and the selection that keeps only those a finger can tell apart (paper,
-//! Spectral peaks).
+//! Spectral peaks, and the selection of those that differ perceptibly in frequency (paper, Spectral peaks).
 
 use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;
 use core::cmp::{Ordering, Reverse};
 
-/// Just noticeable difference of vibration frequency, as a fraction of the lower frequency.
+/// Just noticeable difference (JND) of vibration frequency, as a fraction of the lower frequency.
 pub const FREQUENCY_JND: f64 = 0.12;
 
 /// One peak of a spectrum.
@@ -17,9 +16,9 @@ pub struct Peak {
     pub magnitude: f64,
 }
 
-/// Indices of the strict interior local maxima, ascending. A plateau counts once, at its middle
-/// (the lower of two), and only if both its sides fall; the first and last value are never maxima.
-/// Agrees with `scipy.signal.find_peaks`.
+/// Indices of the strict interior local maxima, ascending. A plateau counts once, at its middle (the lower of
+/// two), and only if the values fall on both sides; the first and last value are never maxima. Matches
+/// `scipy.signal.find_peaks`.
 ///
 /// ```
 /// use htex_dsp::peaks::local_maxima;
@@ -44,12 +43,12 @@ pub fn local_maxima(values: &[f64]) -> Vec<usize> {
     maxima
 }
 
-/// The strongest local maxima that stand at least `jnd` apart, ascending in frequency.
+/// Selects the strongest local maxima that are at least `jnd` apart, ascending in frequency.
 ///
-/// Taken strongest first (a tie goes to the lower frequency); a peak at f is kept if
-/// `|f - g| / min(f, g) >= jnd` for every g kept before it, until `max_count` are kept.
-/// `frequency_hz` is ascending and as long as `magnitude`; what is longer is cut.
-/// A spectrum without a local maximum gives an empty list.
+/// Candidates are taken strongest first (the lower frequency wins a tie); a peak at f is kept if `|f - g| /
+/// min(f, g) >= jnd` for every g kept before it, until `max_count` are kept. `frequency_hz` is ascending, in
+/// hertz, and as long as `magnitude`; the longer slice is cut. A spectrum without local maxima gives an empty
+/// list.
 pub fn select_peaks(
     frequency_hz: &[f64],
     magnitude: &[f64],
@@ -75,7 +74,7 @@ pub fn select_peaks(
     kept
 }
 
-/// A local maximum's magnitude and bin: the stronger one is the greater one, of equals the lower.
+/// Magnitude and bin of a local maximum, ordered by magnitude; of equal magnitudes the lower bin is greater.
 #[derive(PartialEq)]
 struct Candidate(f64, Reverse<usize>);
 
@@ -94,7 +93,7 @@ impl Ord for Candidate {
     }
 }
 
-/// A heap takes less code than a sort, and few of many maxima are wanted.
+/// A heap has less code than a sort, and few of the maxima are needed.
 fn strongest_first(magnitude: &[f64]) -> BinaryHeap<Candidate> {
     let candidate = |bin| Candidate(magnitude[bin], Reverse(bin));
     local_maxima(magnitude).into_iter().map(candidate).collect()

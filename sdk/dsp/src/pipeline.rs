@@ -1,4 +1,4 @@
-//! Filter sections in series, side by side in vector registers.
+//! Cascaded filter sections, pipelined to run side by side in vector registers.
 
 use alloc::vec::Vec;
 
@@ -6,15 +6,15 @@ use crate::biquad::Biquad;
 use crate::quad::{Quad, Real, VOICES, beside, part};
 use crate::wide::{Work, wide};
 
-/// Sections side by side, and where few are left.
+/// Sections per row, except a shorter last row.
 const LANES: usize = 4;
 const FEW: usize = 2;
-/// Samples taken at once.
+/// Samples processed per step.
 const PAIR: usize = 2;
 
-/// Sections in series, as [`crate::biquad::Cascade`], but each works on the two samples that the one
-/// before it finished last: all are computed at once, and the output comes later, by six samples for
-/// every four sections. For streams where a delay of a few samples is nothing.
+/// Sections in series, as [`crate::biquad::Cascade`], but pipelined: each section works on the two samples
+/// that the section before it finished last. All sections compute at the same time, and the output is delayed
+/// by six samples per four sections. For streams in which a delay of a few samples does not matter.
 ///
 /// ```
 /// use htex_dsp::{biquad::Biquad, pipeline::Pipeline};
@@ -29,20 +29,21 @@ pub struct Pipeline {
     last: Option<Row<f64, FEW>>,
 }
 
-/// Four pipelines of as many sections side by side: each gives what it would give alone, bit for bit.
+/// Four pipelines with the same number of sections, computed side by side. Each output is bit-identical to
+/// that of the pipeline run alone.
 #[derive(Debug)]
 pub struct Pipelines<'a>([&'a mut Pipeline; VOICES]);
 
-/// Sections side by side: transposed direct form II, written out for two samples, so that the new state
-/// is a sum of what the inputs and what the old state leave, and these need not wait for each other.
+/// Sections side by side: transposed direct form II unrolled for two samples, so that the new state is the
+/// sum of the contributions of the inputs and of the old state, which are independent of each other.
 #[derive(Debug, Clone, Copy)]
 struct Row<T, const N: usize> {
-    /// Product of all `b0`, by which the other numerators are divided.
+    /// Product of all `b0`; the other numerator coefficients are divided by it.
     gain: T,
-    /// What the first and the second input leave in the two numbers of the state.
+    /// Contributions of the first and the second input to the two state variables.
     first: [[T; N]; 2],
     second: [[T; N]; 2],
-    /// What the first and the second number of the state leave in both, the second with its sign changed.
+    /// Contributions of the first and the second state variable to both, the second with its sign changed.
     kept: [[T; N]; 2],
     crossed: [[T; N]; 2],
     state: State<T, N>,
@@ -56,8 +57,8 @@ struct State<T, const N: usize> {
 }
 
 impl Pipeline {
-    /// A pipeline of `sections`, whose `b0` are not 0, at rest. Rows are filled up with sections that pass
-    /// their input.
+    /// Makes a pipeline of `sections` with zero state; every `b0` must be nonzero. Rows are padded with
+    /// sections that pass their input.
     pub fn new(sections: &[Biquad]) -> Self {
         let (rows, last) = match sections.len() % LANES {
             few @ 1..=FEW => sections.split_at(sections.len() - few),
@@ -81,7 +82,7 @@ impl Pipeline {
 }
 
 impl<'a> Pipelines<'a> {
-    /// These pipelines side by side; `None` where they have not all as many rows of sections.
+    /// Combines four pipelines; `None` if they differ in their number of rows.
     pub fn new(pipelines: [&'a mut Pipeline; VOICES]) -> Option<Self> {
         let shape = |pipeline: &Pipeline| (pipeline.rows.len(), pipeline.last.is_some());
         let [first, others @ ..] = &pipelines;
@@ -104,7 +105,7 @@ impl<'a> Pipelines<'a> {
     }
 }
 
-/// Runs a row of each of four pipelines.
+/// Runs one row of each of four pipelines.
 fn run_four<const N: usize>(mut rows: [&mut Row<f64, N>; VOICES], pairs: &mut [[Quad; PAIR]]) {
     let mut row = Row::NONE;
     wide(Beside(&mut row, rows.each_ref().map(|row| &**row)));
@@ -114,7 +115,7 @@ fn run_four<const N: usize>(mut rows: [&mut Row<f64, N>; VOICES], pairs: &mut [[
     }
 }
 
-/// Puts four rows side by side.
+/// Interleaves four rows.
 struct Beside<'a, const N: usize>(&'a mut Row<Quad, N>, [&'a Row<f64, N>; VOICES]);
 
 impl<const N: usize> Work for Beside<'_, N> {
@@ -137,7 +138,8 @@ impl<const N: usize> Work for Beside<'_, N> {
     }
 }
 
-/// Apart from what puts the rows side by side: compilers would shuffle lanes all along otherwise.
+/// A separate function from the one that interleaves the rows: otherwise compilers shuffle lanes inside the
+/// loop.
 struct Run<'a, const N: usize>(&'a mut Row<Quad, N>, &'a mut [[Quad; PAIR]]);
 
 impl<const N: usize> Work for Run<'_, N> {
@@ -189,7 +191,7 @@ impl<const N: usize> Row<Quad, N> {
 }
 
 impl<const N: usize> State<Quad, N> {
-    /// The state of a voice.
+    /// The state of one voice.
     #[inline(always)]
     fn part(&self, voice: usize) -> State<f64, N> {
         State {
@@ -200,7 +202,7 @@ impl<const N: usize> State<Quad, N> {
     }
 }
 
-// Loops, not closures: these would not be compiled for the wider registers.
+// Loops, not closures: closures would not be compiled for the wider registers.
 impl<T: Real, const N: usize> Row<T, N> {
     #[inline(always)]
     fn run(&mut self, pairs: &mut [[T; PAIR]]) {
@@ -208,7 +210,7 @@ impl<T: Real, const N: usize> Row<T, N> {
         for pair in pairs {
             *pair = self.tick(&mut state, *pair);
         }
-        // What has died away is zero before it is so small that arithmetic gets slow.
+        // Small values become zero before they reach denormals, which slow down arithmetic.
         self.state = State {
             s1: state.s1.map(T::without_denormals),
             s2: state.s2.map(T::without_denormals),
@@ -234,7 +236,7 @@ impl<T: Real, const N: usize> Row<T, N> {
     }
 }
 
-/// What each section takes: the input, or what the one before it gave.
+/// Inputs of all sections: the input of the row, or the last output of the section before.
 #[inline(always)]
 #[allow(clippy::manual_memcpy)] // A copied slice goes through memory, and takes a quarter longer.
 fn behind<T: Copy, const N: usize>(input: T, given: &[T; N]) -> [T; N] {
@@ -252,9 +254,9 @@ mod tests {
     use crate::butterworth::high_pass;
     use crate::noise::GaussianNoise;
 
-    /// The same as sections one after the other, some samples late.
+    /// Equals sections run one after the other, with a delay.
     #[test]
-    fn a_pipeline_is_a_late_cascade() {
+    fn a_pipeline_is_a_delayed_cascade() {
         for (order, late) in [(1, 2), (4, 2), (5, 6), (8, 6), (12, 8), (14, 12)] {
             let sections = high_pass(order, 17.5, 2_000.0).unwrap();
             let (mut pipeline, mut cascade) = (Pipeline::new(&sections), Cascade::new(&sections));
@@ -271,9 +273,9 @@ mod tests {
         }
     }
 
-    /// Side by side each gives the bits it gives alone; other numbers of rows cannot stand there.
+    /// Four pipelines side by side give the bits of each alone; different numbers of rows are rejected.
     #[test]
-    fn four_pipelines_are_one_and_one() {
+    fn four_pipelines_are_bit_identical_to_single_ones() {
         for order in [2, 4, 6, 8, 12] {
             let edges = [10.0, 17.5, 20.0, 40.0];
             let mut alone = edges.map(|f| Pipeline::new(&high_pass(order, f, 2_000.0).unwrap()));

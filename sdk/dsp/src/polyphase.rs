@@ -1,10 +1,10 @@
-//! Changing a rate by a ratio L/M of whole numbers, or nearly: the general case of
+//! Sample-rate conversion by a rational ratio L/M, exact or approximate: the general case of
 //! [`crate::resample`].
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-/// Rows of a kernel that is interpolated, less one.
+/// Number of phases of an interpolated kernel; it has one row more.
 pub(crate) const INTERPOLATED_PHASES: u64 = 512;
 const CHUNK: usize = 256;
 
@@ -13,11 +13,11 @@ const CHUNK: usize = 256;
 pub(crate) struct Polyphase {
     /// L.
     up: usize,
-    /// Whole and remaining part of M/L.
+    /// Integer and remaining part of M/L.
     step: (usize, usize),
     taps: usize,
-    /// Phase-major; one row more than there are phases where rows are interpolated. Shared by all
-    /// converters of the same rates.
+    /// Phase-major; one row more than phases if rows are interpolated. Shared by all converters of the same
+    /// rates.
     kernel: Arc<[f32]>,
     exact: bool,
     phase: usize,
@@ -28,8 +28,8 @@ pub(crate) struct Polyphase {
 }
 
 impl Polyphase {
-    /// `step` is the whole and the remaining part of M/L; `taps` is a multiple of eight. The kernel
-    /// has a row for each phase, or one row more than [`INTERPOLATED_PHASES`].
+    /// `step` is the integer and the remaining part of M/L; `taps` is a multiple of eight. The kernel has one
+    /// row per phase, or [`INTERPOLATED_PHASES`] rows plus one.
     pub(crate) fn new(up: usize, step: (usize, usize), taps: usize, kernel: Arc<[f32]>) -> Self {
         Self {
             up,
@@ -61,10 +61,10 @@ impl Polyphase {
         }
     }
 
-    /// Pulls a few more samples; moves those still needed to the front when there is no room.
+    /// Pulls a few more samples; when the buffer is full, first moves those still needed to its start.
     fn refill(&mut self, source: &mut dyn FnMut(&mut [f32])) {
         while self.start + self.taps > self.filled {
-            // Small pulls keep the latency of a change of parameters small.
+            // Small pulls keep parameter changes low in latency.
             let wanted = (self.start + self.taps - self.filled).max(8);
             if self.filled + wanted > self.history.len() {
                 let keep_from = self.start.min(self.filled);

@@ -1,19 +1,19 @@
-//! Numbers of four voices side by side: a filter whose samples wait for each other keeps all lanes of a
-//! vector register busy with voices instead.
+//! Numbers of four voices side by side. Recursive filters, whose samples depend on each other, fill the lanes
+//! of a vector register with voices instead of samples.
 
 use core::ops::{Add, Mul, Sub};
 
 use crate::biquad;
 use crate::wide::{Work, wide};
 
-/// Voices side by side.
+/// Number of voices side by side.
 pub const VOICES: usize = 4;
 
-/// A number of each of four voices.
+/// One number for each of four voices.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quad(pub [f64; VOICES]);
 
-/// What a filter computes with: the same operations in the same order, for one voice or for four.
+/// Number type of a filter: the same operations in the same order, for one voice or for four.
 pub(crate) trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
 {
@@ -31,18 +31,19 @@ impl Real for f64 {
 }
 
 impl Quad {
-    /// Each voice's row, in single precision, times its gain; as many as there is room for in both.
+    /// Interleaves one single-precision row per voice, multiplied by its gain. The shortest slice sets the
+    /// length.
     pub fn gather(rows: [&[f32]; VOICES], gains: Self, to: &mut [Self]) {
         wide(Gather(rows, gains, to));
     }
 
-    /// Each voice's numbers to its row, in single precision; as many as there is room for in both.
+    /// Writes each voice's numbers to its row in single precision. The shortest slice sets the length.
     pub fn scatter(from: &[Self], rows: [&mut [f32]; VOICES]) {
         wide(Scatter(from, rows));
     }
 }
 
-/// The first `N` of `M` numbers of each of four voices, side by side.
+/// Interleaves the first `N` of `M` numbers of each of four voices.
 #[inline(always)]
 pub(crate) fn beside<const N: usize, const M: usize>(
     [a, b, c, d]: [&[f64; M]; VOICES],
@@ -54,7 +55,7 @@ pub(crate) fn beside<const N: usize, const M: usize>(
     quads
 }
 
-/// The numbers of one of the voices.
+/// The numbers of one voice.
 #[inline(always)]
 pub(crate) fn part<const N: usize>(quads: &[Quad; N], voice: usize) -> [f64; N] {
     let mut own = [0.0; N];

@@ -1,12 +1,12 @@
-//! Random bits from generators that stand side by side in vector registers.
+//! Random generators side by side in vector registers.
 
 use crate::noise::Uniform;
 
-/// Generators, and numbers that are made at once.
+/// Number of generators, and of numbers per step.
 pub(crate) const LANES: usize = 8;
 
-/// Eight generators xoshiro128++ (Blackman and Vigna 2021), whose states a seed draws: each would take
-/// 2¹²⁸ numbers to come back.
+/// Eight xoshiro128++ generators (Blackman and Vigna 2021), whose states are drawn from a seed. The period of
+/// each is 2¹²⁸ - 1.
 #[derive(Debug, Clone)]
 pub(crate) struct RandomLanes<const N: usize = LANES>([[u32; N]; 4]);
 
@@ -18,7 +18,7 @@ impl RandomLanes {
 }
 
 impl RandomLanes<{ 2 * LANES }> {
-    /// Those of two side by side.
+    /// Combines two sets of generators side by side.
     #[inline(always)]
     pub(crate) fn beside(first: &RandomLanes, second: &RandomLanes) -> Self {
         let mut both = Self([[0; 2 * LANES]; 4]);
@@ -29,7 +29,7 @@ impl RandomLanes<{ 2 * LANES }> {
         both
     }
 
-    /// Gives them back.
+    /// Writes the states back to the two sets.
     #[inline(always)]
     pub(crate) fn part(&self, first: &mut RandomLanes, second: &mut RandomLanes) {
         for (k, both) in self.0.iter().enumerate() {
@@ -66,7 +66,7 @@ mod tests {
     use rand_xoshiro::Xoshiro128PlusPlus;
 
     #[test]
-    fn each_is_the_generator_that_others_have_written_too() {
+    fn each_lane_matches_the_reference_generator() {
         let mut lanes = RandomLanes::new(3);
         let seed = |i: usize| {
             let mut bytes = [0; 16];

@@ -1,8 +1,8 @@
 //! Streaming sample-rate conversion by polyphase windowed-sinc filters.
 //!
-//! A texture voice renders at a low rate of its own; this brings it to the device's. The converter
-//! is pulled: it asks its source for just the samples it needs, never allocates while it runs, and
-//! gives the same samples for any block size.
+//! A texture voice renders at a low rate of its own; the converter brings it to the device's rate. The
+//! converter pulls exactly the samples it needs from its source, never allocates while it runs, and gives the
+//! same samples for any block size.
 
 use alloc::vec::Vec;
 
@@ -10,16 +10,16 @@ use crate::kernels;
 use crate::polyphase::{INTERPOLATED_PHASES, Polyphase};
 use crate::upsample::Upsampler;
 
-/// Phases beyond which a table is interpolated instead of exact.
+/// Number of phases beyond which the kernel table is interpolated instead of exact.
 const MAX_EXACT_PHASES: u64 = 1024;
-/// Half the width of the transition around the source's Nyquist frequency, as a part of it.
+/// Half the width of the transition band around the source's Nyquist frequency, relative to that frequency.
 const TRANSITION: f64 = 0.02;
-/// Sides of the kernel beyond which a request is refused, to bound memory.
+/// Kernel length beyond which rates are refused, to bound memory.
 const MAX_TAPS: usize = 16_384;
-/// Most that the rates differ by.
+/// Maximum ratio of the rates.
 const MAX_RATIO: u64 = 10_000;
 
-/// Rates between which no converter is made.
+/// Error: no converter exists between these rates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UnusableRates {
     /// Rate of the source, hertz.
@@ -56,8 +56,8 @@ pub struct Resampler {
 }
 
 impl Resampler {
-    /// A converter from `from_hz` to `to_hz` for a source that holds nothing of interest above
-    /// `top_hz`; `None` when the rates are the same (to a millihertz) and nothing is to be done.
+    /// Makes a converter from `from_hz` to `to_hz` for a source without content above `top_hz`, all in hertz;
+    /// `None` if the rates are equal (to a millihertz) and no conversion is needed.
     ///
     /// # Errors
     /// Rates outside 1 mHz to 10 MHz, or that differ by more than a factor of 10,000.
@@ -67,8 +67,8 @@ impl Resampler {
         Ok((!stages.is_empty()).then_some(Self { stages }))
     }
 
-    /// Multiplications and additions that an output sample of such a converter takes, on average;
-    /// `None` when none is needed.
+    /// Multiply-accumulates per output sample of such a converter, on average; `None` if no conversion is
+    /// needed.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -81,7 +81,7 @@ impl Resampler {
         let mut macs = 0.0;
         for spec in &specs {
             let rate = spec.to as f64 / 1000.0 / to_hz;
-            // Doubling a rate copies every other sample.
+            // When a rate is doubled, every other sample is a copy.
             let rows = match spec.up() {
                 2 => 0.5,
                 _ if spec.is_exact() => 1.0,
@@ -92,14 +92,14 @@ impl Resampler {
         Ok((!specs.is_empty()).then_some(macs))
     }
 
-    /// Fills `out`, pulling source samples through `source`, which must fill the whole slice it is
+    /// Fills `out`, pulling source samples through `source`, which must fill the whole slice that it is
     /// given. Does not allocate.
     pub fn process(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
         run(&mut self.stages, out, source);
     }
 }
 
-/// What a stage is to do: rates in millihertz, edges of its transition in hertz.
+/// Specification of a stage: rates in millihertz, edges of its transition band in hertz.
 struct Spec {
     from: u64,
     to: u64,
@@ -107,13 +107,13 @@ struct Spec {
     stop_hz: f64,
 }
 
-/// The stages of a converter; none when none is needed.
+/// The stages of a converter; empty if no conversion is needed.
 fn specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, UnusableRates> {
     let unusable = UnusableRates { from_hz, to_hz };
     let (Some(from), Some(mut to)) = (millihertz(from_hz), millihertz(to_hz)) else {
         return Err(unusable);
     };
-    // A whole part of a rate is seldom a whole number of millihertz.
+    // A divided rate is seldom a whole number of millihertz.
     let ratio = libm::round(to_hz / from_hz);
     if ratio >= 2.0 && (to_hz / from_hz / ratio - 1.0).abs() < 1e-9 {
         to = from * ratio as u64;
@@ -131,7 +131,7 @@ fn specs(from_hz: f64, to_hz: f64, top_hz: f64) -> Result<Vec<Spec>, UnusableRat
         stop_hz,
     };
     let nyquist = 0.5 * from_hz.min(to_hz);
-    // Wide transition where the source leaves room between its top and its first image.
+    // The transition band is wide if the source's highest content is far below its first image.
     let pass = top_hz.min(nyquist * (1.0 - TRANSITION));
     let stop = (from_hz.min(to_hz) - pass).max(nyquist * (1.0 + TRANSITION));
     let narrow = stop - pass < 0.5 * nyquist;
@@ -155,12 +155,12 @@ impl Spec {
         self.from / gcd(self.from, self.to)
     }
 
-    /// Whether the rate is raised by a whole number.
+    /// Whether the rate is raised by an integer factor.
     fn is_whole(&self) -> bool {
         self.down() == 1 && self.is_exact()
     }
 
-    /// Whether each phase has a row of its own.
+    /// Whether each phase has its own row.
     fn is_exact(&self) -> bool {
         self.up() <= MAX_EXACT_PHASES
     }
@@ -242,7 +242,7 @@ mod tests {
         for block in out.chunks_mut(33) {
             resampler.process(block, &mut source);
         }
-        // Each stage's first output stands at the centre of its first window.
+        // Each stage's first output is at the centre of its first window.
         let stages = specs(from_hz, to_hz, 1000.0)
             .unwrap()
             .into_iter()
@@ -288,14 +288,14 @@ mod tests {
     }
 
     #[test]
-    fn a_steep_filter_costs_little_where_it_can_be_made_at_a_low_rate() {
+    fn a_steep_filter_is_cheap_at_a_low_rate() {
         let macs = |to_hz| {
             Resampler::macs_per_output(2_000.0, to_hz, 1_000.0)
                 .unwrap()
                 .unwrap()
         };
         let taps = specs(2_000.0, 4_000.0, 1_000.0).unwrap()[0].taps() as f64;
-        // Every other sample is a copy; five times as many are made of those with few taps.
+        // Every other sample is a copy; the second stage makes five times as many samples with few taps.
         assert_eq!(macs(4_000.0), 0.5 * taps);
         assert!(macs(20_000.0) < 0.2 * macs(4_000.0) + 12.0);
     }

@@ -1,4 +1,4 @@
-//! Square roots by the machine's own instruction, which rounds as every correct square root does.
+//! Square roots by the machine's instruction, which rounds correctly and so gives the same bits everywhere.
 
 /// The square root.
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]

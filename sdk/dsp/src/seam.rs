@@ -1,11 +1,19 @@
-//! A piece of sound that is played again and again, without a seam.
+//! Seamless loops of samples.
 
 use alloc::vec::Vec;
 
-/// Pieces that differ more than this (correlation) would need a gain without bound.
+/// Correlation below which two pieces cannot be cross-faded, as the gain would be unbounded.
 const LEAST_CORRELATION: f32 = -0.9;
 
-/// An endless repetition of some samples, closed by a cross-fade that keeps their power.
+/// An endless loop of samples, joined by a cross-fade that preserves their power.
+///
+/// ```
+/// use htex_dsp::seam::Loop;
+/// let mut loop_ = Loop::new(vec![0.0, 1.0, 0.0, -1.0], 0);
+/// let mut out = [0.0; 6];
+/// loop_.render(&mut out);
+/// assert_eq!(out, [0.0, 1.0, 0.0, -1.0, 0.0, 1.0]);
+/// ```
 #[derive(Debug, Clone)]
 pub struct Loop {
     samples: Vec<f32>,
@@ -13,12 +21,12 @@ pub struct Loop {
 }
 
 impl Loop {
-    /// Closes `samples`, whose last `fade` ones (at most half of them) are faded over the first
-    /// ones: what comes back is that much shorter than what is given.
+    /// Makes a loop of `samples`. The last `fade` of them (at most half) are cross-faded over the first ones,
+    /// so that the loop is shorter than `samples` by `fade`.
     ///
-    /// The gains are a sine and a cosine over the square root of the power that the two pieces have
-    /// together, given their correlation: noise keeps its power, and a sound whose period the loop
-    /// is stays as it was.
+    /// The cross-fade gains are a sine and a cosine divided by the square root of the power of the sum, given
+    /// the correlation of the two pieces: noise keeps its power, and a sound with the period of the loop is
+    /// unchanged.
     pub fn new(mut samples: Vec<f32>, fade: usize) -> Self {
         let fade = fade.min(samples.len() / 2);
         let len = samples.len() - fade;
@@ -34,12 +42,12 @@ impl Loop {
         Self { samples, next: 0 }
     }
 
-    /// The samples of one round.
+    /// The samples of one period.
     pub fn samples(&self) -> &[f32] {
         &self.samples
     }
 
-    /// This loop at another RMS; silence stays silent.
+    /// The loop scaled to another RMS; a silent loop stays silent.
     #[must_use]
     pub fn with_rms(mut self, rms: f64) -> Self {
         let squares = self.samples.iter().map(|&x| f64::from(x) * f64::from(x));
@@ -51,7 +59,7 @@ impl Loop {
         self
     }
 
-    /// Fills `out` with the next samples; with silence where there are none. Does not allocate.
+    /// Fills `out` with the next samples, or with silence if the loop is empty. Does not allocate.
     pub fn render(&mut self, out: &mut [f32]) {
         if self.samples.is_empty() {
             out.fill(0.0);
@@ -67,7 +75,7 @@ impl Loop {
     }
 }
 
-/// Correlation of two pieces of one length, about zero.
+/// Correlation of two pieces of the same length, without removing means.
 fn correlation(a: &[f32], b: &[f32]) -> f32 {
     let sum = |x: &[f32], y: &[f32]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f32>();
     let both = libm::sqrtf(sum(a, a) * sum(b, b));
@@ -109,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn a_period_stays_as_it_was() {
+    fn a_periodic_signal_is_unchanged() {
         let sine = |n: usize| libm::sinf(core::f32::consts::TAU * 7.0 * n as f32 / LEN as f32);
         let mut closed = Loop::new((0..LEN + FADE).map(sine).collect(), FADE);
         let mut out = [0.0; 2 * LEN];
@@ -120,8 +128,8 @@ mod tests {
     }
 
     #[test]
-    fn it_runs_on_across_the_seam_and_repeats_for_any_block() {
-        // A slow sound of no period: a jump at the seam would stand out.
+    fn the_loop_is_continuous_for_any_block_size() {
+        // A slow signal that is not periodic: a jump at the seam would be visible.
         let slow = |n: usize| libm::sinf(0.0123 * n as f32 + 0.4);
         let closed = Loop::new((0..LEN + FADE).map(slow).collect(), FADE);
         let mut whole = [0.0; 3 * LEN];

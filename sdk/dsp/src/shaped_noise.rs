@@ -1,9 +1,9 @@
 //! Random-phase noise with a given spectrum, streamed by overlap-add.
 //!
-//! Frames of uniformly random phases follow each other with an eighth of overlap, where one goes out as
-//! the next comes in. Frames are independent and the squares of the two weights add up to 1, so the
-//! power is the same at every sample; a frame is one period of its components, so nothing comes back
-//! (numeric definitions: random phase).
+//! Frames of uniformly random phases overlap by an eighth, in which one frame fades out while the next fades
+//! in. Frames are independent and the squares of the two weights add up to 1, so the power is the same at
+//! every sample. A frame is one period of its components, so nothing repeats (numeric definitions: random
+//! phase).
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -13,15 +13,16 @@ use crate::inverse_fft::{InverseRealFft, Workspace, smooth_length};
 use crate::noise::Uniform;
 use crate::shared::Shared;
 
-/// Length of half a frame at least, seconds: components stand 2.5 Hz apart, or a little less.
+/// Minimum length of half a frame, seconds: components are at most 2.5 Hz apart.
 const HALF_S: f64 = 0.2;
-/// Frames overlap by one part in this.
+/// Frames overlap by one part in this many.
 const OVERLAP: usize = 8;
-/// Length of the cross-fade after a retune, seconds.
+/// Duration of the cross-fade after a retune, seconds.
 const FADE_S: f64 = 0.010;
 
-/// An endless stream of noise whose spectrum follows a magnitude curve, of unit RMS as the bins of the band
-/// read it: what they miss of components at the band's edges ([`read_part`](crate::grid::read_part)) is added to all.
+/// An endless stream of noise whose spectrum follows a magnitude curve, with unit RMS as measured by the bins
+/// of the band: all components are amplified to compensate for the power at the band's edges that the bins
+/// miss ([`read_part`](crate::grid::read_part)).
 pub struct ShapedNoise {
     frames: Arc<Frames>,
     /// Half the amplitude of each component.
@@ -33,12 +34,12 @@ pub struct ShapedNoise {
     ending: Uniform,
     beginning: Uniform,
     next: Uniform,
-    /// The generator after the frame of the next hop, which stands in `faded`, when it is made already.
+    /// Generator state after the next hop's frame, if that hop is already in `faded`.
     prepared: Option<Uniform>,
-    /// Position in a hop from which on the next hop is made, as the seed has it: streams that start together do not all
-    /// make their frames in the same block.
+    /// Position in a hop from which on the next hop is computed. It depends on the seed, so that streams that start
+    /// together do not all compute their frames in the same block.
     prepare_at: usize,
-    /// A change of spectrum began in this hop: others may follow, and would undo what is prepared.
+    /// Whether a change of spectrum began in this hop: another one may follow and would discard a prepared hop.
     changes: bool,
     /// Cosines and sines of the phases of the frame that began last.
     cos: Vec<f32>,
@@ -46,52 +47,52 @@ pub struct ShapedNoise {
     workspace: Workspace,
     /// The frame that began last, with the end of the one before.
     now: Vec<f32>,
-    /// The same with other amplitudes, while they change.
+    /// The same with the new amplitudes, during a cross-fade.
     faded: Vec<f32>,
     tail: Vec<f32>,
     position: usize,
     fade_position: Option<usize>,
 }
 
-/// The bits of a rate and of a band's edges.
+/// Key of a rate and a band: the bits of the rate and of the band's edges.
 pub type ComponentsKey = [u64; 3];
 
-/// What streams of one rate and band share.
+/// Data shared by streams of the same rate and band.
 struct Frames {
     key: ComponentsKey,
     inverse: InverseRealFft,
-    /// How a frame comes in; its mirror image is how the one before goes out.
+    /// Fade-in weights of a frame; their mirror image fades out the frame before.
     rise: Vec<f32>,
-    /// Samples of a frame.
+    /// Length of a frame, samples.
     len: usize,
-    /// Samples from the beginning of a frame to that of the next.
+    /// Samples from the start of a frame to that of the next.
     hop: usize,
     fade_len: usize,
     first: usize,
     component_hz: Vec<f64>,
-    /// The part of each component's power that is read.
+    /// Part of each component's power that is measured.
     read: Vec<f64>,
 }
 
-/// A spectrum to change to.
+/// State of a requested change of the spectrum.
 #[derive(Clone, Copy, PartialEq)]
 enum Pending {
     None,
-    /// It stands in `pending_amplitude`.
+    /// The amplitudes are in `pending_amplitude`.
     Made,
-    /// It is asked for when the change can begin.
+    /// The amplitudes are computed when the change can begin.
     Wanted,
 }
 
-/// Rate at which a voice of [`ShapedNoise`] works when `wanted_hz` is wanted: a whole fraction of
-/// it that still holds the band with room for an easy interpolation filter.
+/// Rate in hertz at which a voice of [`ShapedNoise`] renders if `wanted_hz` is wanted: an integer fraction of
+/// it that contains the band and leaves a wide transition band for interpolation.
 pub fn economical_rate_hz(wanted_hz: f64, band: Band) -> f64 {
     let parts = libm::floor(wanted_hz / (3.7 * band.high_hz)).max(1.0);
     wanted_hz / parts
 }
 
-/// The part of a component's power that the band's bins read, spread as a frame of finite length spreads it:
-/// by the spectrum of its weights, which are taken as a rectangle of the length that frames follow each other by.
+/// Part of a component's power that the band's bins measure, including the spectral spread of a finite frame.
+/// The spread is that of a rectangle as long as the hop between frames.
 fn frame_read_part(part: &ReadPart, hz: f64, spacing_hz: f64) -> f64 {
     if part.at(hz - FRAME_SPREAD * spacing_hz) == 1.0
         && part.at(hz + FRAME_SPREAD * spacing_hz) == 1.0
@@ -116,26 +117,27 @@ fn frame_read_part(part: &ReadPart, hz: f64, spacing_hz: f64) -> f64 {
     read / all
 }
 
-/// Spacings to either side of a component over which its frames are taken to spread it, and points in each.
+/// Number of component spacings on either side of a component over which its frames spread it, and points per
+/// spacing.
 const FRAME_SPREAD: f64 = 4.0;
 const FRAME_STEPS: f64 = 2.0;
 
-/// How a frame comes in over `overlap` samples: `sin(π/2 sin²)`, which has no corners at its ends as a
-/// sine has, so that a steep spectrum's floor stays low. With its mirror image its squares add up to 1.
+/// Fade-in weight at sample `n` of `overlap`: `sin(π/2 sin²)`. Unlike a sine it is smooth at both ends, which
+/// keeps the noise floor of steep spectra low. With its mirror image the squares add up to 1.
 fn rise(n: usize, overlap: usize) -> f64 {
     let quarter = core::f64::consts::FRAC_PI_2;
     let sine = crate::trig::sin(quarter * (n as f64 + 0.5) / overlap as f64);
     crate::trig::sin(quarter * sine * sine)
 }
 
-/// A position in a hop; multiples of the golden ratio spread those of neighbouring seeds evenly.
+/// [`ShapedNoise::prepare_at`] of a seed: multiples of the golden ratio spread consecutive seeds evenly.
 fn prepare_at(seed: u64, hop: usize) -> usize {
     let part = seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
     ((part * hop as u64) >> 32) as usize
 }
 
 impl Frames {
-    /// Those of a rate and a band.
+    /// The shared data of a rate and a band.
     fn shared(rate_hz: f64, band: Band) -> Arc<Self> {
         static FRAMES: Shared<ComponentsKey, Frames> = Shared::new();
         let key = [rate_hz, band.low_hz, band.high_hz].map(f64::to_bits);
@@ -148,7 +150,7 @@ impl Frames {
         let overlap = len.div_ceil(OVERLAP);
         let hop = len - overlap;
         let spacing = rate_hz / len as f64;
-        // Each bin of the texture spectrum stands for half a bin to either side.
+        // Each bin of the texture spectrum represents half a bin on either side.
         let low = libm::ceil((band.low_hz - 0.5 * GRID_HZ) / spacing - 1e-9).max(1.0) as usize;
         let high = libm::floor((band.high_hz + 0.5 * GRID_HZ) / spacing + 1e-9) as usize;
         let high = high.min(half - 1);
@@ -173,7 +175,7 @@ impl Frames {
 }
 
 impl ShapedNoise {
-    /// Starts the stream of `seed` at `rate_hz`, silent until [`Self::start`] is called.
+    /// Makes a stream with this seed at `rate_hz`, silent until [`Self::start`] is called.
     ///
     /// The rate is at least 20 Hz and at most 10 MHz (clamped).
     pub fn new(rate_hz: f64, band: Band, seed: u64) -> Self {
@@ -205,12 +207,12 @@ impl ShapedNoise {
         noise
     }
 
-    /// Frequencies, hertz, ascending, at which spectra are wanted.
+    /// Frequencies of the components, hertz, ascending.
     pub fn component_hz(&self) -> &[f64] {
         &self.frames.component_hz
     }
 
-    /// Numbers that are the same for streams of the same [`Self::component_hz`]: the key of tables over them.
+    /// Key of tables over the components: equal for streams with the same [`Self::component_hz`].
     pub fn components_key(&self) -> ComponentsKey {
         self.frames.key
     }
@@ -225,17 +227,18 @@ impl ShapedNoise {
         core::mem::swap(&mut self.now, &mut self.faded);
     }
 
-    /// Changes to another spectrum over the next 10 ms. Does not allocate.
+    /// Cross-fades to another spectrum over the next 10 ms. Does not allocate.
     pub fn retune(&mut self, magnitude: impl Fn(usize, f64) -> f64) {
         self.fill(magnitude);
         self.normalise();
         self.pending = Pending::Made;
     }
 
-    /// As [`Self::retune`], with a spectrum that is made when it is needed: now, or, while another change is under
-    /// way, at its end, in [`Self::render_with`]; of several that come meanwhile the last counts. `make` is given
-    /// [`Self::component_hz`] and writes a magnitude for each, in any scale; negative and non-finite values count as zero.
-    /// Returns false where all are zero now; the stream then goes on as it is. Does not allocate.
+    /// As [`Self::retune`], with a spectrum that is computed when it is needed: immediately, or, during
+    /// another change, at its end, in [`Self::render_with`]. Of several requests in between only the last one
+    /// counts. `make` receives [`Self::component_hz`] and writes a magnitude for each, in any scale; negative
+    /// and non-finite values count as zero. Returns false if all magnitudes are zero in the immediate case;
+    /// the stream then continues unchanged. Does not allocate.
     pub fn retune_with(&mut self, make: impl FnOnce(&[f64], &mut [f64])) -> bool {
         if self.fade_position.is_some() {
             self.pending = Pending::Wanted;
@@ -246,7 +249,7 @@ impl ShapedNoise {
         made
     }
 
-    /// Magnitudes from a curve.
+    /// Computes magnitudes from a curve.
     fn fill(&mut self, magnitude: impl Fn(usize, f64) -> f64) {
         let places = self.frames.component_hz.iter().enumerate();
         for ((i, &hz), m) in places.zip(&mut self.pending_amplitude) {
@@ -259,7 +262,8 @@ impl ShapedNoise {
         self.normalise()
     }
 
-    /// Turns magnitudes into component amplitudes that together read as unit RMS; false if there is no power.
+    /// Scales magnitudes to component amplitudes that together measure as unit RMS; false if there is no
+    /// power.
     fn normalise(&mut self) -> bool {
         let mut power = 0.0;
         for (a, read) in self.pending_amplitude.iter_mut().zip(&self.frames.read) {
@@ -277,7 +281,7 @@ impl ShapedNoise {
         power > 0.0
     }
 
-    /// Makes the pending amplitudes the present ones.
+    /// Replaces the current amplitudes by the pending ones.
     fn take_pending(&mut self) {
         for (a, &pending) in self.amplitude.iter_mut().zip(&self.pending_amplitude) {
             *a = 0.5 * pending as f32;
@@ -289,7 +293,7 @@ impl ShapedNoise {
         self.render_with(out, &mut |_, magnitude| magnitude.fill(0.0));
     }
 
-    /// As [`Self::render`]; `make` is that of [`Self::retune_with`].
+    /// As [`Self::render`]; `make` is the function of [`Self::retune_with`].
     pub fn render_with(&mut self, out: &mut [f32], make: &mut dyn FnMut(&[f64], &mut [f64])) {
         let mut rest = out;
         while !rest.is_empty() {
@@ -307,8 +311,8 @@ impl ShapedNoise {
         }
     }
 
-    /// Samples of this hop as it is, up to its end; returns how many. While a change waits for the
-    /// next hop this may be asked for sample by sample, or at once.
+    /// Renders samples of the current hop up to its end; returns their number. The result does not depend on
+    /// the block size, even while a change waits for the next hop.
     fn run_steady(&mut self, out: &mut [f32]) -> usize {
         if self.position >= self.prepare_at && !self.changes && self.prepared.is_none() {
             self.prepare();
@@ -319,7 +323,7 @@ impl ShapedNoise {
         run
     }
 
-    /// Samples of a cross-fade of which so many are done; returns how many.
+    /// Renders samples of a cross-fade of which `done` are finished; returns their number.
     fn run_fade(&mut self, done: usize, out: &mut [f32]) -> usize {
         let fade_len = self.frames.fade_len;
         let run = out.len().min(fade_len - done);
@@ -338,7 +342,8 @@ impl ShapedNoise {
         run
     }
 
-    /// Starts a cross-fade to the pending spectrum, unless one runs or the hop is too near its end.
+    /// Starts a cross-fade to the pending spectrum, unless one is in progress or too little of the hop is
+    /// left.
     fn begin_fade(&mut self, make: &mut dyn FnMut(&[f64], &mut [f64])) {
         if self.fade_position.is_some() || self.position + self.frames.fade_len > self.frames.hop {
             return;
@@ -354,7 +359,7 @@ impl ShapedNoise {
         }
     }
 
-    /// Moves on to the next hop.
+    /// Advances to the next frame.
     fn next_hop(&mut self) {
         if self.prepared.is_none() {
             self.prepare();
@@ -368,7 +373,7 @@ impl ShapedNoise {
         self.changes = false;
     }
 
-    /// Makes the next hop in `faded`.
+    /// Computes the next hop in `faded`.
     fn prepare(&mut self) {
         self.tail.copy_from_slice(&self.now[self.frames.hop..]);
         let mut phases = self.next.clone();
@@ -378,7 +383,7 @@ impl ShapedNoise {
         self.blend();
     }
 
-    /// Takes the directions of the frame that began last back, when those of the next one are drawn already.
+    /// Discards a prepared hop and draws the phases of the current frame again.
     fn discard_prepared(&mut self) {
         if self.prepared.take().is_some() {
             self.draw(self.beginning.clone());
@@ -392,13 +397,13 @@ impl ShapedNoise {
         self.next.fill_directions(&mut self.cos, &mut self.sin);
     }
 
-    /// Draws the phases of a frame again.
+    /// Generates the phases of a frame from a copy of the generator.
     fn draw(&mut self, mut phases: Uniform) {
         phases.fill_directions(&mut self.cos, &mut self.sin);
     }
 
-    /// Makes what can still be heard of this hop again, with the same phases and the present
-    /// amplitudes, into `faded`.
+    /// Computes the rest of the current hop again into `faded`, with the same phases and the current
+    /// amplitudes.
     fn remake_hop(&mut self) {
         let overlaps = self.position < self.frames.rise.len();
         if overlaps {
@@ -413,7 +418,7 @@ impl ShapedNoise {
         }
     }
 
-    /// Makes a frame of the phases drawn last into `faded`.
+    /// Computes a frame from the last phases into `faded`.
     fn make_frame(&mut self) {
         self.frames.inverse.run(
             &mut self.workspace,
@@ -424,7 +429,7 @@ impl ShapedNoise {
         );
     }
 
-    /// Lets the frame in `faded` come in while the one that `tail` ends goes out.
+    /// Fades in the frame in `faded` and fades out the one that ends in `tail`.
     fn blend(&mut self) {
         let rise = &self.frames.rise;
         let falling = rise.iter().rev().zip(&self.tail);

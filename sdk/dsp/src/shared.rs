@@ -1,25 +1,26 @@
-//! Tables that depend on a few numbers alone, made once, shared while they are in use, and kept a while after.
+//! Tables that depend on a few parameters alone: computed once, shared while in use, and the last few cached.
 
 use alloc::sync::Arc;
 
-/// Tables of one kind that are kept when nobody uses them: an app that opens texture after texture makes them once.
+/// Number of unused tables of one kind that stay cached, so that an app that opens one texture after another
+/// computes them once.
 #[cfg(feature = "std")]
 const KEPT: usize = 4;
 
-/// Tables by their keys. Without `std` each user has its own.
+/// A cache of tables by key. Without `std` nothing is shared: each user has a table of its own.
 #[cfg(feature = "std")]
 pub struct Shared<K, V: ?Sized>(std::sync::Mutex<Tables<K, V>>);
 
 #[cfg(feature = "std")]
 struct Tables<K, V: ?Sized> {
     in_use: alloc::vec::Vec<(K, std::sync::Weak<V>)>,
-    /// Those that were asked for last, the last one at the end.
+    /// The tables requested last, the most recent at the end.
     kept: alloc::vec::Vec<Arc<V>>,
 }
 
 #[cfg(feature = "std")]
 impl<K: PartialEq, V: ?Sized> Shared<K, V> {
-    /// No tables yet.
+    /// An empty cache.
     #[allow(clippy::new_without_default)] // It is a static.
     pub const fn new() -> Self {
         Self(std::sync::Mutex::new(Tables {
@@ -28,9 +29,9 @@ impl<K: PartialEq, V: ?Sized> Shared<K, V> {
         }))
     }
 
-    /// The table of a key, made if it is neither in use nor kept.
+    /// Returns the table of a key; calls `make` if it is neither in use nor cached.
     pub fn get(&self, key: K, make: impl FnOnce() -> Arc<V>) -> Arc<V> {
-        // The lists are whole whatever a panicking thread was doing.
+        // A panic in another thread leaves the lists valid.
         let mut tables = self
             .0
             .lock()
@@ -55,13 +56,13 @@ impl<K: PartialEq, V: ?Sized> Shared<K, V> {
     }
 }
 
-/// No tables.
+/// A cache that stores nothing.
 #[cfg(not(feature = "std"))]
 pub struct Shared<K, V: ?Sized>(core::marker::PhantomData<(fn(K), fn() -> Arc<V>)>);
 
 #[cfg(not(feature = "std"))]
 impl<K, V: ?Sized> Shared<K, V> {
-    /// None.
+    /// An empty cache.
     #[allow(clippy::new_without_default)] // It is a static.
     pub const fn new() -> Self {
         Self(core::marker::PhantomData)
@@ -86,7 +87,7 @@ mod tests {
             assert_eq!(get(key, 10 * key), 10 * key);
         }
         assert!(Arc::ptr_eq(&used, &tables.get(1, || Arc::new(11))));
-        // The last four asked for are 3, 4, 5 and 1.
+        // The last four requested are 3, 4, 5 and 1.
         assert_eq!(get(3, 31), 30);
         assert_eq!(get(2, 21), 21);
         drop(used);

@@ -1,21 +1,20 @@
-//! A bank of sine oscillators whose phase never drifts.
+//! A bank of sine oscillators without phase drift.
 //!
-//! Each oscillator counts its phase in 64-bit fixed point (one cycle is 2^64), so that a day of
-//! samples is as exact as the first. Between anchors a recurrence makes the samples; at each anchor
-//! it restarts from the counted phase. While nothing changes, an oscillator makes eight samples at
-//! once out of the sixteen before: `y[n + 8] = 2 cos(8 w) y[n] - y[n - 8]`, each lane by itself, which
-//! is what vector instructions are good at. While amplitudes and frequencies change, oscillators
-//! turn sample by sample.
+//! Each oscillator counts its phase in 64-bit fixed point (one cycle is 2^64), so that the phase after a day
+//! of samples is as accurate as at the start. Between anchors a recurrence generates the samples; at each
+//! anchor it restarts from the counted phase. While nothing changes, an oscillator generates eight samples at
+//! a time from the previous sixteen: `y[n + 8] = 2 cos(8 w) y[n] - y[n - 8]`, each lane independently, which
+//! suits vector instructions. While amplitudes or frequencies change, oscillators rotate sample by sample.
 
 use alloc::vec::Vec;
 
-/// Samples between two anchors, in which the recurrences lose less than 1e-10 of an amplitude.
+/// Samples between two anchors; within them the recurrences drift by less than 1e-10 of an amplitude.
 const ANCHOR_INTERVAL: u32 = 4096;
-/// Samples that an oscillator makes at once.
+/// Samples that an oscillator generates at a time.
 const LANES: usize = 8;
-/// Samples made ahead while nothing changes; anchors stand between two chunks.
+/// Samples generated ahead while nothing changes; anchors are at chunk boundaries.
 const CHUNK: usize = 64;
-/// Length of a change of amplitudes and frequencies, seconds.
+/// Duration of a change of amplitudes and frequencies, seconds.
 const RAMP_S: f64 = 0.010;
 const CYCLE: f64 = 18_446_744_073_709_551_616.0; // 2^64
 
@@ -38,7 +37,7 @@ struct Oscillators {
     sin: Vec<f64>,
     turn_cos: Vec<f64>,
     turn_sin: Vec<f64>,
-    /// Change of `increment` a sample, while frequencies glide (two's complement).
+    /// Change of `increment` per sample while the frequency glides (two's complement).
     bend: Vec<u64>,
     bend_cos: Vec<f64>,
     bend_sin: Vec<f64>,
@@ -52,14 +51,23 @@ struct Oscillators {
     recur: Vec<f64>,
 }
 
-/// Oscillators summed to one signal.
+/// A sum of oscillators.
+///
+/// ```
+/// use htex_dsp::sine_bank::{Sine, SineBank};
+/// let sine = Sine { frequency_hz: 100.0, amplitude: 1.0, phase_cycles: 0.0 };
+/// let mut bank = SineBank::new(20_000.0, 1, &[sine]);
+/// let mut block = [0.0; 101];
+/// bank.render(&mut block);
+/// assert!((block[0] - 1.0).abs() < 1e-6 && (block[100] + 1.0).abs() < 1e-6);
+/// ```
 #[derive(Debug, Clone)]
 pub struct SineBank {
     rate_hz: f64,
     ramp_len: u32,
     ramp_left: u32,
     since_anchor: u32,
-    /// Oscillators from here on are silent, and stay so.
+    /// Index from which all oscillators are silent.
     heard: usize,
     chunk: [f32; CHUNK],
     osc: Oscillators,
@@ -106,8 +114,8 @@ impl SineBank {
         bank
     }
 
-    /// Changes to `sines` from the next sample on: over 10 ms amplitudes ramp and frequencies
-    /// glide, phases go on. Oscillators are matched by index. Does not allocate.
+    /// Changes to `sines` from the next sample on. Amplitudes and frequencies ramp linearly over 10 ms;
+    /// phases are continuous. Oscillators are matched by index. Does not allocate.
     pub fn retune(&mut self, sines: &[Sine]) {
         self.advance();
         self.heard = self.heard.max(sines.len()).min(self.osc.phase.len());
@@ -116,7 +124,7 @@ impl SineBank {
             let silent = self.osc.amplitude[i] == 0.0;
             self.set(i, sines.get(i));
             if silent {
-                // Nothing is heard: it may start anywhere.
+                // The oscillator is silent, so any phase is allowed.
                 self.osc.increment[i] = self.osc.goal[i];
                 self.osc.phase[i] = sines.get(i).map_or(0, |s| cycles_to_fixed(s.phase_cycles));
             }
@@ -154,7 +162,7 @@ impl SineBank {
         });
     }
 
-    /// Brings the counted phases and increments up to the current sample.
+    /// Advances the counted phases and increments to the current sample.
     fn advance(&mut self) {
         let n = u64::from(self.since_anchor);
         for i in 0..self.heard {
@@ -178,7 +186,7 @@ impl SineBank {
         }
     }
 
-    /// Samples of what stays as it is, up to the end of the chunk; answers how many.
+    /// Renders samples of a constant sound up to the end of the chunk; returns their number.
     fn run_steady(&mut self, out: &mut [f32]) -> usize {
         let at = self.since_anchor as usize % CHUNK;
         if at == 0 {
@@ -190,7 +198,7 @@ impl SineBank {
         run
     }
 
-    /// Samples of a change, up to its end or the next anchor; answers how many.
+    /// Renders samples of a ramp up to its end or the next anchor; returns their number.
     fn run_ramp(&mut self, out: &mut [f32]) -> usize {
         let left = self.ramp_left.min(ANCHOR_INTERVAL - self.since_anchor);
         let run = out.len().min(left as usize);
@@ -217,7 +225,7 @@ impl SineBank {
 }
 
 impl Oscillators {
-    /// Where a rotation stands, and by what it turns a sample.
+    /// Current point of the rotation, and its angle per sample.
     fn anchor(&mut self, i: usize) {
         (self.sin[i], self.cos[i]) = crate::trig::sincos(fixed_to_radians(self.phase[i]));
         (self.turn_sin[i], self.turn_cos[i]) =
@@ -225,7 +233,7 @@ impl Oscillators {
         (self.bend_sin[i], self.bend_cos[i]) = crate::trig::sincos(fixed_to_radians(self.bend[i]));
     }
 
-    /// The samples around an anchor, and the factor of their recurrence.
+    /// The samples around an anchor, and the factor of the recurrence.
     fn anchor_wave(&mut self, i: usize) {
         let start = (
             self.amplitude[i] * self.cos[i],
@@ -248,7 +256,7 @@ impl Oscillators {
         self.recur[i] = 2.0 * stride.0;
     }
 
-    /// The next samples of the first `heard` oscillators, which do not change.
+    /// The next samples of the first `heard` oscillators, which are constant.
     fn steady_chunk(&mut self, heard: usize) -> [f32; CHUNK] {
         let mut sum = [[0.0; LANES]; CHUNK / LANES];
         for (wave, &recur) in self.wave[..heard].iter_mut().zip(&self.recur) {
@@ -270,7 +278,7 @@ impl Oscillators {
         chunk
     }
 
-    /// One sample of the first `n` oscillators, whose amplitudes and frequencies then change.
+    /// One sample of the first `n` oscillators; their amplitudes and frequencies are then advanced.
     #[inline]
     fn changing_sample(&mut self, n: usize) -> f64 {
         let (cos, sin) = (&mut self.cos[..n], &mut self.sin[..n]);
@@ -288,7 +296,7 @@ impl Oscillators {
     }
 }
 
-/// A point turned by an angle, both as cosine and sine.
+/// A point rotated by an angle, both given as cosine and sine.
 #[inline]
 fn turned((cos, sin): (f64, f64), (by_cos, by_sin): (f64, f64)) -> (f64, f64) {
     (cos * by_cos - sin * by_sin, sin * by_cos + cos * by_sin)
@@ -355,7 +363,7 @@ mod tests {
             .map(|w| (w[1] - w[0]).abs())
             .fold(0.0, f32::max);
         assert!(step < 0.09, "{step}");
-        // All oscillators of the bank, whole periods of both sines but for a thousandth.
+        // All oscillators of the bank; whole periods of both sines up to a thousandth.
         bank.retune(&two_sines());
         let mut out = alloc::vec![0.0f32; 20_200];
         bank.render(&mut out);

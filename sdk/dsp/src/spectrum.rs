@@ -1,5 +1,4 @@
-//! Complex spectra of recorded segments, and what is done to them before they become a texture
-//! spectrum.
+//! Complex spectra of recorded segments, before they are averaged to a texture spectrum.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -10,10 +9,10 @@ pub use realfft::num_complex::Complex;
 
 use crate::window::hann_periodic;
 
-/// Buffers do not fit the analyser.
+/// Error: a buffer's length does not match the analyser.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WrongLength {
-    /// What is too long or too short.
+    /// The buffer with the wrong length.
     pub what: &'static str,
     /// Length needed.
     pub expected: usize,
@@ -77,8 +76,7 @@ impl SegmentAnalyzer {
         self.fft.make_output_vec()
     }
 
-    /// What a windowed bin's magnitude is multiplied by to read a sinusoid's amplitude:
-    /// `2 / Σw`, that is `4 / len`.
+    /// Factor from a windowed bin's magnitude to the amplitude of a sinusoid: `2 / Σw`, which is `4 / len`.
     pub fn amplitude_scale(&self) -> f64 {
         2.0 / self.window.iter().sum::<f64>()
     }
@@ -101,7 +99,7 @@ impl SegmentAnalyzer {
         self.transform_input(bins)
     }
 
-    /// Transforms as is: no mean removal, no window. Otherwise as [`Self::analyze`].
+    /// Transforms the segment unchanged: no mean removal, no window. Otherwise as [`Self::analyze`].
     ///
     /// # Errors
     /// If `segment` or `bins` has another length than the analyser's.
@@ -141,8 +139,9 @@ impl SegmentAnalyzer {
     }
 }
 
-/// Axes folded into one: magnitude `sqrt(|X|² + |Y|² + …)`, phase of `X + Y + …` (DFT321, Landin et
-/// al. 2010). Where the sum vanishes the phase is 0. One axis is left as it is; the shortest decides the length.
+/// Combines the spectra of several axes: magnitude `sqrt(|X|² + |Y|² + …)`, phase of `X + Y + …` (DFT321,
+/// Landin et al. 2010). Where the sum is zero the phase is 0. A single axis is unchanged; the shortest one
+/// sets the length.
 pub fn dft321(axes: &[Vec<Complex<f64>>]) -> Vec<Complex<f64>> {
     let bins = axes.iter().map(Vec::len).min().unwrap_or(0);
     match axes {
@@ -165,9 +164,9 @@ fn fold_bin(axes: impl Iterator<Item = Complex<f64>> + Clone) -> Complex<f64> {
     }
 }
 
-/// Response of a force sensor's mount as a damped resonator,
-/// `1 / (1 - (f/f₀)² + 2 i ζ f/f₀)`: 1 at 0 Hz, `-i / 2ζ` at resonance. For
-/// simulations and tests; the paper measures its setup's response with an impact hammer.
+/// Response of a force sensor's mount as a damped resonator, `1 / (1 - (f/f₀)² + 2 i ζ f/f₀)`: 1 at 0 Hz, `-i
+/// / 2ζ` at resonance. Frequencies in hertz, dimensionless result. For simulations and tests; the paper
+/// measures the response of its setup with an impact hammer.
 pub fn resonator_response(f_hz: f64, resonance_hz: f64, damping_ratio: f64) -> Complex<f64> {
     let r = f_hz / resonance_hz;
     Complex::new(1.0, 0.0) / Complex::new(1.0 - r * r, 2.0 * damping_ratio * r)

@@ -1,5 +1,5 @@
-//! Banks of overlapping triangular filters over any axis; [`MelBank`](crate::mel::MelBank) and
-//! [`BandBank`](crate::bands::BandBank) are both made of one.
+//! Banks of overlapping triangular filters over any axis, used by [`MelBank`](crate::mel::MelBank) and
+//! [`BandBank`](crate::bands::BandBank).
 
 use alloc::vec::Vec;
 
@@ -10,8 +10,8 @@ struct Triangle {
     weights: Vec<f64>,
 }
 
-/// Triangular filters with apex 1; filter `i` has its feet at edges `i` and `i + 2` and its apex
-/// at edge `i + 1`. A matrix of `rows()` filters by `columns()` frequencies, stored sparsely.
+/// Triangular filters with apex 1. Filter `i` extends from edge `i` to edge `i + 2` with its apex at edge `i
+/// + 1`. A sparse matrix of `rows()` filters by `columns()` frequencies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TriangleBank {
     triangles: Vec<Triangle>,
@@ -19,8 +19,8 @@ pub struct TriangleBank {
 }
 
 impl TriangleBank {
-    /// A bank with `edges.len() - 2` filters at the places `axis`, both ascending and in the same
-    /// unit, in which the flanks are straight. A filter that falls between two places is empty.
+    /// Makes a bank of `edges.len() - 2` filters at the positions `axis`. Both are ascending and in the same
+    /// unit, in which the flanks are linear. A filter between two neighbouring positions is empty.
     pub fn new(edges: &[f64], axis: &[f64]) -> Self {
         let triangles = edges
             .windows(3)
@@ -61,8 +61,8 @@ impl TriangleBank {
             .collect()
     }
 
-    /// `out = bank · values`: `values` has `columns()` elements, `out` has `rows()`; what is
-    /// missing counts as zero, what is too long is left alone.
+    /// `out = bank · values`: `values` has `columns()` elements, `out` has `rows()`. Missing values count as
+    /// zero; surplus elements are ignored.
     pub fn apply(&self, values: &[f64], out: &mut [f64]) {
         for (sum, triangle) in out.iter_mut().zip(&self.triangles) {
             let under = values.get(triangle.first..).unwrap_or(&[]);
@@ -81,7 +81,7 @@ impl TriangleBank {
         }
     }
 
-    /// The full matrix, row after row.
+    /// The full matrix, row by row.
     pub fn to_dense(&self) -> Vec<f64> {
         let mut dense = alloc::vec![0.0; self.rows() * self.columns];
         for (row, triangle) in dense.chunks_mut(self.columns.max(1)).zip(&self.triangles) {
@@ -115,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sparse_and_dense_agree_and_empty_filters_are_harmless() {
+    fn sparse_and_dense_agree_with_empty_filters() {
         let bank = TriangleBank::new(&[0.0, 0.2, 0.4, 2.0, 3.0], &[0.0, 1.0, 2.0, 3.0]);
         assert_eq!(bank.row_sums()[0], 0.0);
         let dense = bank.to_dense();

@@ -1,20 +1,20 @@
-//! Raising a rate by a whole number: the usual case of [`crate::resample`].
+//! Sample-rate conversion by an integer factor: the usual case of [`crate::resample`].
 //!
-//! A few steps of the source are turned into all their outputs at once. The outputs of one phase stand
-//! side by side in vector registers, so no sum runs across a register, and what comes out does not
-//! depend on the sizes in which it is asked for.
+//! A few source samples are converted to all their outputs at a time. The outputs of one phase are side by
+//! side in vector registers, so no sum runs across the lanes of a register, and the output does not depend on
+//! the block sizes.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use crate::wide::{Work, wide};
 
-/// Source samples taken at once: few, as a change of parameters is heard after them, and twice as many
-/// where they take no longer for it.
+/// Source samples pulled at a time. Few, as they delay a change of parameters; twice as many where their
+/// duration is half as long.
 const FEW: usize = 8;
 const MANY: usize = 16;
 const MANY_HZ: f64 = 3_500.0;
-/// Products that are added up before the sum of all.
+/// Products summed before they are added to the total.
 const PART: usize = 12;
 
 #[derive(Debug, Clone)]
@@ -24,10 +24,10 @@ pub(crate) struct Upsampler {
     taps: usize,
     /// One row of `taps` for each of the `up` phases.
     kernel: Arc<[f32]>,
-    /// Where the row of phase 0 has its 1, when all else in it is 0.
+    /// Index of the only nonzero coefficient, 1, in the row of phase 0, if there is one.
     copies: Option<usize>,
-    /// The samples that `steps` windows of `taps` see, and as many before them as make pulls whole
-    /// numbers of `steps`: a stage in between that pulls so too is then never ahead.
+    /// The samples covered by `steps` windows of `taps`, preceded by as many as make the length of a pull a
+    /// multiple of `steps`, so that an intermediate stage that pulls in the same way never runs ahead.
     history: Vec<f32>,
     primed: bool,
     ready: Vec<f32>,
@@ -35,7 +35,7 @@ pub(crate) struct Upsampler {
 }
 
 impl Upsampler {
-    /// `taps` is even, and the kernel has `up` rows of them.
+    /// `taps` is even, and the kernel has `up` rows of `taps` coefficients.
     pub(crate) fn new(up: usize, taps: usize, kernel: Arc<[f32]>, source_hz: f64) -> Self {
         let steps = if source_hz < MANY_HZ { FEW } else { MANY };
         let ready = alloc::vec![0.0; up * steps];
@@ -72,7 +72,7 @@ impl Upsampler {
     }
 
     fn advance(&mut self, source: &mut dyn FnMut(&mut [f32])) {
-        // The first output stands at the centre of a window that is full.
+        // The first output is at the centre of the first full window.
         if self.primed {
             self.history.copy_within(self.steps.., 0);
             let kept = self.history.len() - self.steps;
@@ -89,7 +89,7 @@ impl Upsampler {
     }
 }
 
-/// All outputs of the windows that are seen.
+/// All outputs of the current windows.
 struct Outputs<'a, const STEPS: usize>(&'a mut Upsampler);
 
 impl<const STEPS: usize> Work for Outputs<'_, STEPS> {
@@ -110,8 +110,8 @@ impl<const STEPS: usize> Work for Outputs<'_, STEPS> {
     }
 }
 
-/// A row at `STEPS` neighbouring places. It is added up in parts: a long sum in single precision would
-/// lose digits, and parts need not wait for each other.
+/// Applies a row at `STEPS` neighbouring positions. The sum is split into parts: a long single-precision sum
+/// would lose precision, and the parts are independent of each other.
 #[inline(always)]
 fn filter<const STEPS: usize>(row: &[f32], history: &[f32]) -> [f32; STEPS] {
     let mut sums = [0.0f32; STEPS];
@@ -130,7 +130,7 @@ fn filter<const STEPS: usize>(row: &[f32], history: &[f32]) -> [f32; STEPS] {
     sums
 }
 
-/// The place of the only coefficient that is not 0 (to rounding), and is 1.
+/// Index of the only coefficient that is not 0 within rounding, if it is 1.
 fn only_one(row: &[f32]) -> Option<usize> {
     let one = row.iter().position(|x| (x - 1.0).abs() < 1e-7)?;
     let others = row.iter().enumerate().filter(|(i, _)| *i != one);

@@ -1,4 +1,4 @@
-//! Reading a stream faster or slower, by a ratio that may change all the time.
+//! Variable-rate playback of a stream: reads it faster or slower at a ratio that may change at any sample.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -6,49 +6,60 @@ use alloc::vec::Vec;
 use crate::kernels::{self, kaiser_length};
 use crate::wide::{Work, wide};
 
-/// Most samples of the source that one output looks at: stop band of about 60 dB from its Nyquist frequency on.
+/// Maximum number of source samples per output; the stop-band attenuation is about 60 dB from the source's
+/// Nyquist frequency on.
 const MOST_TAPS: usize = 32;
-/// Taps are a multiple of this.
+/// The number of taps is a multiple of this.
 const LANES: usize = 8;
-/// Bits of a place that choose the row of the kernel's table; between two rows it is interpolated.
+/// Bits of a position that select the row of the kernel table; between two rows the kernel is interpolated.
 const PHASE_BITS: u32 = 8;
-/// Outputs that are read at once, at most.
+/// Maximum number of outputs read at a time.
 const CHUNK: usize = 64;
-/// Rows for a reader that stands by. A row between two is 60 dB near at 0.4 of the source's rate, 98 dB at 0.05, and
-/// the table is made in an eighth of the time.
+/// Row bits of a reader that starts on demand. The interpolation error between its rows is -60 dB at 0.4 of
+/// the source's rate and -98 dB at 0.05, and the table takes an eighth of the time to compute.
 const FEW_PHASE_BITS: u32 = 5;
 
-/// Reads its source at a changing ratio, by windowed-sinc interpolation. Pulled like
+/// Reads its source at a variable ratio by windowed-sinc interpolation. Pull-based like
 /// [`crate::resample::Resampler`]; gives the same samples for any block size.
+///
+/// ```
+/// use htex_dsp::warp::Warp;
+/// let mut n = 0.0;
+/// let mut ramp = |block: &mut [f32]| for sample in block { *sample = n; n += 1.0; };
+/// let mut out = [0.0; 3];
+/// Warp::through().process(1.0, &mut out, &mut ramp);
+/// assert_eq!(out, [0.0, 1.0, 2.0]);
+/// ```
 #[derive(Debug, Clone)]
 pub struct Warp {
     taps: usize,
     phase_bits: u32,
-    /// A row of `taps` for each phase, and one more; not read when there is one tap.
+    /// One row of `taps` coefficients per phase, plus one row; unused if there is one tap.
     kernel: Arc<[f32]>,
-    /// Place of the next output behind `start`, in parts of 2⁻⁶⁴ samples of the source.
+    /// Position of the next output after `start`, in units of 2⁻⁶⁴ source samples.
     place: u64,
     history: Vec<f32>,
     start: usize,
     filled: usize,
-    /// Whether it reads; else it hands its source on.
+    /// Whether it interpolates; otherwise it passes its source through.
     reads: bool,
 }
 
 impl Warp {
-    /// Reads by interpolation a source that holds nothing above `top` of its rate (0 to 0.5); a change of ratio is heard
-    /// half a kernel (4 to 16 source samples) late.
+    /// Makes a reader for a source without content above `top` times its rate (0 to 0.5). A change of ratio
+    /// takes effect with a delay of half a kernel (4 to 16 source samples).
     pub fn new(top: f64) -> Self {
         Self::of(taps(top), PHASE_BITS)
     }
 
-    /// Reads at a ratio of 1 only, without any delay: what goes in comes out.
+    /// Makes a reader for a ratio of 1 only: it passes its source through without delay.
     pub fn through() -> Self {
         Self::of(1, 0)
     }
 
-    /// Hands its source on, without delay and bit by bit, as long as the ratio is 1. At the first other ratio it
-    /// begins to read by interpolation, as [`Self::new`] does, from the place where it stands, and goes on so.
+    /// Makes a reader that passes its source through, bit-identical and without delay, while the ratio is 1.
+    /// From the first other ratio on it interpolates, as [`Self::new`] does, starting at the current
+    /// position.
     pub fn when_needed(top: f64) -> Self {
         let mut warp = Self::of(taps(top), FEW_PHASE_BITS);
         warp.filled = warp.before();
@@ -69,13 +80,13 @@ impl Warp {
         }
     }
 
-    /// Samples of a window that stand before the place that is read.
+    /// Samples of a window before the position that is read.
     fn before(&self) -> usize {
         self.taps / 2 - 1
     }
 
-    /// Fills `out`; each sample stands `ratio` source samples (0 to 1,000) after the one before.
-    /// Aliases where `ratio` is above 1, unless the source has nothing there. Pulls what `out` needs and no more. Does
+    /// Fills `out`; each sample is `ratio` source samples (0 to 1,000) after the one before. A `ratio` above
+    /// 1 aliases source content above the output's Nyquist frequency. Pulls no more than `out` needs. Does
     /// not allocate.
     pub fn process(&mut self, ratio: f64, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
         if !self.reads {
@@ -86,7 +97,7 @@ impl Warp {
             self.reads = true;
         }
         let whole = ratio as usize;
-        // 2⁶⁴ parts; below 1 the product cannot round to all of them.
+        // In units of 2⁻⁶⁴; below 1 the product cannot round up to 2⁶⁴.
         let step = (
             whole,
             ((ratio - whole as f64) * 18_446_744_073_709_551_616.0) as u64,
@@ -98,7 +109,7 @@ impl Warp {
         }
     }
 
-    /// As many samples as windows are in reach of one pull; returns how many.
+    /// Reads as many samples as have their windows within one pull; returns their number.
     fn piece(
         &mut self,
         (whole, part): (usize, u64),
@@ -131,7 +142,7 @@ impl Warp {
         count
     }
 
-    /// Keeps what stands before the next sample.
+    /// Stores the samples that precede the next one.
     fn remember(&mut self, block: &[f32]) {
         let before = self.before();
         let new = block.len().min(before);
@@ -139,7 +150,7 @@ impl Warp {
         self.history[before - new..before].copy_from_slice(&block[block.len() - new..]);
     }
 
-    /// Drops what is behind the next window, and reads and throws away what is before it.
+    /// Drops samples before the next window; reads and discards source samples up to it.
     fn skip(&mut self, source: &mut dyn FnMut(&mut [f32])) {
         while self.start > self.filled {
             let end = self.history.len().min(self.start - self.filled);
@@ -159,20 +170,20 @@ impl Warp {
     }
 }
 
-/// Samples that an output looks at where the source ends at `top` of its rate: the images of it begin at `1 - top`.
+/// Window length for a source without content above `top` of its rate: its images begin at `1 - top`.
 fn taps(top: f64) -> usize {
     let taps = kaiser_length((1.0 - 2.0 * top).max(1e-6)).next_multiple_of(LANES);
     taps.min(MOST_TAPS)
 }
 
-/// Where a sample is read: the window's beginning in the history, and how far it is to the next.
+/// Position of a sample: start of its window in the history, and the fraction of the way to the next sample.
 #[derive(Debug, Clone, Copy, Default)]
 struct Place {
     start: usize,
     between: u64,
 }
 
-/// Samples to be read in their windows.
+/// Samples to be read, with their windows.
 struct Windows<'a> {
     warp: &'a Warp,
     places: &'a [Place],
@@ -213,7 +224,7 @@ impl Windows<'_> {
     }
 }
 
-/// The dot product of a window and a row that lies between two, in eight lanes.
+/// Dot product of a window and an interpolated row, in eight lanes.
 #[inline(always)]
 fn dot_between<const TAPS: usize>(
     [row, next]: [&[f32; TAPS]; 2],
@@ -261,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn at_ratio_one_it_can_be_no_change_at_all() {
+    fn pass_through_at_ratio_one_is_bit_identical() {
         let (mut direct, mut through) = ([0.0f32; 100], [0.0f32; 100]);
         sine(0.123)(&mut direct);
         let (mut warp, mut source) = (Warp::through(), sine(0.123));
@@ -272,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn it_begins_to_read_where_it_stands() {
+    fn interpolation_starts_at_the_current_position() {
         let rendered = |sizes: &[usize]| {
             let (mut warp, mut source) = (Warp::when_needed(0.5), sine(0.05));
             let mut out = [0.0f32; 600];
@@ -303,11 +314,11 @@ mod tests {
     }
 
     #[test]
-    fn it_may_skip_far_ahead() {
+    fn large_ratios_skip_samples() {
         let mut warp = Warp::new(0.5);
         let mut out = [0.0f32; 8];
         warp.process(1_000.0, &mut out, &mut sine(0.001));
-        // A whole period on each time.
+        // Each output is a whole period after the one before.
         let expected = libm::sin(core::f64::consts::TAU * 0.001 * (MOST_TAPS as f64 / 2.0 - 1.0));
         let near = |x: &f32| (f64::from(*x) - expected).abs() < 1e-3;
         assert!(out.iter().all(near), "{out:?}");

@@ -1,12 +1,12 @@
-//! The processor's wider registers, where it has them.
+//! Run-time selection of AVX2 and AVX-512 code on x86-64.
 
-/// Something to do in registers as wide as there are; `run` is always inlined.
+/// A computation that is compiled for several register widths; `run` is always inlined.
 pub(crate) trait Work {
     fn run(self);
 }
 
-/// Does some work, compiled for registers of 256 bits where the processor has them. The same operations
-/// in the same order, several numbers at a time: the same bits, sooner.
+/// Runs `work` compiled for AVX2 (256-bit registers) if the processor has it, else as compiled for the
+/// target. The result is bit-identical: the same operations in the same order, on several numbers at a time.
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 #[inline]
 #[allow(unsafe_code)]
@@ -16,21 +16,21 @@ pub(crate) fn wide(work: impl Work) {
         work.run();
     }
     if std::is_x86_feature_detected!("avx2") {
-        // SAFETY: the processor was just asked.
+        // SAFETY: AVX2 was detected above.
         return unsafe { with_avx2(work) };
     }
     work.run();
 }
 
-/// Does some work.
+/// Runs `work`; other targets have one version only.
 #[cfg(not(all(feature = "std", target_arch = "x86_64")))]
 #[inline(always)]
 pub(crate) fn wide(work: impl Work) {
     work.run();
 }
 
-/// Does some work in registers of 512 bits where the processor has them, else gives it back: work of
-/// that width is better done in two halves then.
+/// Runs `work` compiled for AVX-512 (512-bit registers) if the processor has it, else returns it: work of
+/// that width is faster as two halves then.
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 #[inline]
 #[allow(unsafe_code)]
@@ -46,12 +46,12 @@ pub(crate) fn very_wide<W: Work>(work: W) -> Result<(), W> {
     if !there {
         return Err(work);
     }
-    // SAFETY: the processor was just asked.
+    // SAFETY: all four features were detected above.
     unsafe { with_avx512(work) };
     Ok(())
 }
 
-/// Gives the work back.
+/// Returns the work; other targets have no 512-bit version.
 #[cfg(not(all(feature = "std", target_arch = "x86_64")))]
 #[inline(always)]
 pub(crate) fn very_wide<W: Work>(work: W) -> Result<(), W> {

@@ -1,8 +1,7 @@
-//! Hann windows in the three spellings in use, and their equivalent noise bandwidth.
+//! Hann windows in the three common definitions, and their equivalent noise bandwidth.
 //!
-//! Each is `0.5 - 0.5 cos(2π x) = sin²(π x)`; they differ in where `x` starts and ends. The
-//! periodic one is the default for spectra: a sinusoid on the grid then leaks into exactly its two
-//! neighbours, at half its height.
+//! Each is `0.5 - 0.5 cos(2π x) = sin²(π x)`; they differ in the range of `x`. The periodic window is the
+//! default for spectra: a sinusoid on the grid leaks into its two neighbouring bins only, at half its height.
 
 use alloc::vec::Vec;
 use core::f64::consts::PI;
@@ -41,7 +40,7 @@ pub fn equivalent_noise_bandwidth_bins(window: &[f64]) -> f64 {
     window.len() as f64 * sum_of_squares / (sum * sum)
 }
 
-/// `sin²(π i / period)`, mirrored about the middle so that the window is exactly symmetric.
+/// `sin²(π i / period)`, computed by reflection at the middle, so that the window is exactly symmetric.
 fn sine_squared(i: usize, period: usize) -> f64 {
     let i = i.min(period - i);
     let sine = crate::trig::sin(PI * i as f64 / period as f64);

@@ -81,7 +81,7 @@ fn numbers(value: &Value) -> Vec<f64> {
     }
 }
 
-/// The cases of one file whose names start with one of `prefixes`; never none.
+/// The cases of one file whose names start with one of `prefixes`; fails if there are none.
 fn cases(file: &str, prefixes: &[&str]) -> Vec<Case> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden");
     let text = std::fs::read_to_string(format!("{folder}/{file}.json")).unwrap();
@@ -292,8 +292,8 @@ fn cepstra_there_and_back() {
         let mut back = vec![0.0; spectrum.len()];
         inverse.apply(&energies, &mut back);
         back.iter_mut().for_each(|p| *p = p.max(0.0).sqrt());
-        // At the band's two ends every weight is zero, and so is the result; the vector has the
-        // square root of its edges' rounding there, 2e-10.
+        // At the band's two ends every weight is zero, and so is the result; the golden vector has the square
+        // root of the rounding error of its edges there, 2e-10.
         let ends = [0, spectrum.len() - 1];
         let mut with_ends = back.clone();
         for i in ends {
@@ -338,7 +338,7 @@ fn beta_density() {
     }
 }
 
-/// The fit in full, as a hard exercise for the simplex search.
+/// The complete fit, a difficult problem for the simplex search.
 #[test]
 fn beta_fits() {
     let options = Options {

@@ -1,5 +1,5 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
-//! Laws that hold for every input, tried on random ones.
+//! Properties that hold for every input, checked on random inputs.
 
 use htex_dsp::biquad::Cascade;
 use htex_dsp::butterworth;
@@ -24,7 +24,7 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Power spectra with anything in them: holes, lines, 200 dB of range.
+/// Power spectra with zeros, lines and 200 dB of dynamic range.
 fn power_spectrum() -> impl Strategy<Value = Vec<f64>> {
     let bin = prop_oneof![
         Just(0.0),
@@ -67,7 +67,7 @@ proptest! {
     }
 
     #[test]
-    fn line_spectral_frequencies_ascend_and_lead_back(k in vec(-0.9..0.9f64, 1..=10)) {
+    fn line_spectral_frequencies_ascend_and_convert_back(k in vec(-0.9..0.9f64, 1..=10)) {
         let a = reflection_to_coefficients(&k);
         let lsf = line_spectral_frequencies(&a).unwrap();
         prop_assert!(lsf.windows(2).all(|pair| pair[0] < pair[1]));
@@ -118,11 +118,11 @@ proptest! {
     }
 
     #[test]
-    fn pseudo_inverse_undoes_what_the_matrix_can_reach(
+    fn pseudo_inverse_inverts_attainable_right_sides(
         matrix in vec(-1.0..1.0f64, 24),
         y in vec(-1.0..1.0f64, 4),
     ) {
-        // Wide and of full rank (save by a freak): pinv leads back to every right side.
+        // Wide, and almost surely of full rank: the pseudo-inverse solves every right side.
         let inverse = PseudoInverse::new(&matrix, 4, 6);
         prop_assume!(inverse.rank() == 4);
         let mut x = [0.0; 6];

@@ -1,6 +1,6 @@
-//! Models that describe a spectrum by a curve and play it as shaped noise: what they share.
+//! Shared code of models that describe a spectrum by a curve and play it as noise.
 //!
-//! A model brings the [`Curve`]; this crate makes of it the magnitude at unit RMS and the voice.
+//! A model supplies the [`Curve`]; this crate provides the magnitude at unit RMS and the voice.
 #![no_std]
 
 extern crate alloc;
@@ -13,32 +13,33 @@ use htex_model::{Error, Values, Voice};
 
 pub use places::Places;
 
-/// A magnitude curve that parameters stand for.
+/// A magnitude curve defined by a model's parameters.
 pub trait Curve: Sized + Send + 'static {
-    /// The curve of some parameters in a band.
+    /// Makes the curve of `parameters` in a band.
     ///
     /// # Errors
-    /// When they describe no spectrum: nothing, or nothing finite, in the band.
+    /// If the parameters describe no spectrum: the curve is zero or not finite in the band.
     fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error>;
 
-    /// Changes to other parameters. `[render thread, no allocation]`
+    /// Changes the parameters. `[render thread, no allocation]`
     ///
     /// # Errors
-    /// As [`Self::new`]; the curve may then be of no further use.
+    /// As [`Self::new`]; the curve may be unusable afterwards.
     fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error>;
 
-    /// The curve at a frequency in the band, in any scale, finite and not negative.
+    /// Value of the curve at a frequency in the band, in any scale, finite and not negative.
     fn at(&self, frequency_hz: f64) -> f64;
 
     /// RMS of the curve on the band's grid, above 0.
     fn level(&self) -> f64;
 
-    /// Gets ready for [`Self::fill`] at these frequencies, hertz; tables over them may be kept by the key.
+    /// Prepares [`Self::fill`] for these frequencies, hertz. Tables over them may be shared by `key`.
     fn prepare(&mut self, _frequency_hz: &[f64], _key: ComponentsKey) {}
 
-    /// Writes the curve at the frequencies it was prepared for, in any scale. A voice asks for it at most once in 10 ms,
-    /// and not after each [`Self::set`]: what takes time may wait for it, and what is then no spectrum is all zero or not
-    /// finite. `[render thread, no allocation]`
+    /// Writes the curve at the prepared frequencies, in any scale. A voice calls it at most once in 10 ms,
+    /// not after every [`Self::set`], so slow computations belong here rather than in `set`. If the
+    /// parameters describe no spectrum, the values are all zero or not finite. `[render thread, no
+    /// allocation]`
     fn fill(&mut self, frequency_hz: &[f64], magnitude: &mut [f64]) {
         for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
             *m = self.at(f);
@@ -46,10 +47,10 @@ pub trait Curve: Sized + Send + 'static {
     }
 }
 
-/// Writes a curve's magnitude at unit RMS; zero outside the band.
+/// Writes a curve's magnitude at unit RMS; zero for frequencies outside the band.
 ///
 /// # Errors
-/// When the parameters describe no spectrum.
+/// If the parameters describe no spectrum.
 pub fn magnitude<C: Curve>(
     parameters: &Values<'_>,
     band: htex_model::Band,
@@ -69,12 +70,13 @@ pub fn magnitude<C: Curve>(
     Ok(())
 }
 
-/// The rate a shaped voice renders at: low, and a whole fraction of the wanted one.
+/// Rate in hertz at which a shaped voice renders: an integer fraction of `wanted_hz`, as low as the band
+/// allows.
 pub fn voice_rate_hz(band: htex_model::Band, wanted_hz: f64) -> f64 {
     economical_rate_hz(wanted_hz, band.edges().into())
 }
 
-/// Noise of random phases under a curve.
+/// Random-phase noise with the spectrum of a curve.
 pub struct ShapedVoice<C> {
     curve: C,
     noise: ShapedNoise,
@@ -84,7 +86,7 @@ impl<C: Curve> ShapedVoice<C> {
     /// A voice of unit RMS.
     ///
     /// # Errors
-    /// When the parameters describe no spectrum.
+    /// If the parameters describe no spectrum.
     pub fn new(
         parameters: &Values<'_>,
         band: htex_model::Band,

@@ -1,4 +1,4 @@
-//! Frequencies of a voice among the bins of a grid.
+//! Positions of a voice's frequencies between the bins of a grid.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -7,17 +7,18 @@ use htex_dsp::grid::{Band, GRID_HZ};
 use htex_dsp::shaped_noise::ComponentsKey;
 use htex_dsp::shared::Shared;
 
-/// Where the frequencies of a voice lie between the bins of the band's grid. Voices of one rate and band share it.
+/// Positions of a voice's frequencies between the bins of the band's grid. Shared by voices of the same rate
+/// and band.
 pub struct Places(Vec<Place>);
 
-/// On the way from a bin to the next.
+/// A position between two neighbouring bins.
 struct Place {
     below: u32,
     part: f64,
 }
 
 impl Places {
-    /// Those of frequencies, hertz, by their key.
+    /// Returns the positions of frequencies, hertz, by their key.
     pub fn shared(frequency_hz: &[f64], key: ComponentsKey, band: Band) -> Arc<Self> {
         static PLACES: Shared<ComponentsKey, Places> = Shared::new();
         PLACES.get(key, || Arc::new(Self::new(frequency_hz, band)))
@@ -36,7 +37,7 @@ impl Places {
         Self(frequency_hz.iter().map(place).collect())
     }
 
-    /// Writes the values of a curve that is given on the grid and straight between bins.
+    /// Writes the values of a curve given on the grid, with linear interpolation between bins.
     pub fn read(&self, grid: &[f64], values: &mut [f64]) {
         let last = grid.len().saturating_sub(1);
         for (value, place) in values.iter_mut().zip(&self.0) {

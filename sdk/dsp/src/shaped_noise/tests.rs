@@ -32,7 +32,7 @@ fn power_is_one_and_stationary() {
         let n = part.clone().count() as f64;
         part.map(|x| f64::from(*x).powi(2)).sum::<f64>() / n
     };
-    // 5,000 independent samples a position within the hop: standard error 2 %.
+    // 5,000 independent samples for each position in the hop: standard error 2 %.
     for phase in [0, 125, 250, 499] {
         assert!(
             (power(phase) - 1.0).abs() < 0.1,
@@ -40,14 +40,14 @@ fn power_is_one_and_stationary() {
             power(phase)
         );
     }
-    // More than 1 by what the bins of the band miss at its lower edge.
+    // Above 1 by the power that the bins of the band miss at its lower edge.
     let total = out.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / out.len() as f64;
     assert!((1.0..1.03).contains(&total), "{total}");
 }
 
-/// Wherever in a hop the next one is made, before a change of spectrum or after it.
+/// At any position in a hop, before a change of spectrum and after it.
 #[test]
-fn a_frame_made_early_is_the_frame() {
+fn a_frame_made_early_is_the_same_frame() {
     let hop = noise(0).frames.hop;
     let played = |prepare_at: usize, retunes: &[usize]| {
         let mut noise = noise(11);
@@ -80,9 +80,9 @@ fn a_frame_made_early_is_the_frame() {
     }
 }
 
-/// Block sizes do not matter either.
+/// The result does not depend on block sizes either.
 #[test]
-fn a_retune_fades_to_the_voice_that_had_the_spectrum_all_along() {
+fn a_retune_fades_to_the_voice_of_the_new_spectrum() {
     let (hop, fade, overlap) = {
         let noise = noise(5);
         let frames = &noise.frames;
@@ -91,7 +91,7 @@ fn a_retune_fades_to_the_voice_that_had_the_spectrum_all_along() {
     let len = 3 * hop;
     let [first, second, third] =
         [200.0, 50.0, 400.0].map(|scale_hz| rendered(falling(5, scale_hz), len));
-    // Where frames overlap, behind that, and too near to the next frame.
+    // Retunes inside the overlap of frames, after it, and too close to the next frame.
     for at in [10, overlap - 3, overlap + 50, hop - 5, hop + 7] {
         let begun = if at < hop && at + fade > hop { hop } else { at };
         let mut voice = falling(5, 200.0);
@@ -112,7 +112,7 @@ fn a_retune_fades_to_the_voice_that_had_the_spectrum_all_along() {
 }
 
 #[test]
-fn what_is_no_magnitude_counts_as_none() {
+fn invalid_magnitudes_count_as_zero() {
     let with = |odd: f64| {
         let magnitude = move |i: usize, _| if i.is_multiple_of(3) { odd } else { 1.0 };
         rendered(started(1, magnitude), 1_000)

@@ -178,7 +178,7 @@ const CASES: &[Case] = &[
         "a filter of a higher order; one of another model rate",
         "AR",
         "retune",
-        "InvalidArgument: a voice of order 1 at 2000 Hz keeps its model rate, and its order or a smaller one",
+        "InvalidArgument: a voice of order 1 at 2000 Hz accepts filters of this rate and at most this order only",
         || {
             let higher = retune_refused("ar", &[1.0, 0.5, 2_000.0], &[2.0, 0.5, 0.1, 2_000.0]);
             let faster = retune_refused("ar", &[1.0, 0.5, 2_000.0], &[1.0, 0.5, 4_000.0]);
@@ -203,7 +203,7 @@ const CASES: &[Case] = &[
         "a cepstrum of other bands; one of another inverse",
         "MFCC",
         "retune",
-        "InvalidArgument: a voice keeps its mel bank and inverse",
+        "InvalidArgument: a voice cannot change its mel bank or its inverse",
         || {
             let bands = retune_refused("mfcc", &[1.0, 1.0, 26.0, 0.0], &[1.0, 1.0, 20.0, 0.0]);
             let inverse = retune_refused("mfcc", &[1.0, 1.0, 26.0, 0.0], &[1.0, 1.0, 26.0, 2.0]);
@@ -218,7 +218,7 @@ const CASES: &[Case] = &[
         "three bands instead of two",
         "bands",
         "retune",
-        "InvalidArgument: a voice keeps its bands",
+        "InvalidArgument: a voice cannot change its bands",
         || {
             retune_refused(
                 "bands",

@@ -9,7 +9,6 @@
 pub mod big;
 mod cases;
 pub mod exact;
-pub mod guards;
 pub mod long;
 mod page;
 pub mod seen;

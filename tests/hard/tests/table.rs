@@ -14,21 +14,6 @@ fn the_page_is_up_to_date() {
     );
 }
 
-/// The example that takes guards out finds each of them, once.
-#[test]
-fn guards_are_where_they_are_said_to_be() {
-    for guard in htex_hard_cases::guards::GUARDS {
-        let path = format!("{}/../../{}", env!("CARGO_MANIFEST_DIR"), guard.file);
-        let code = std::fs::read_to_string(&path).unwrap();
-        assert_eq!(
-            code.matches(guard.with).count(),
-            1,
-            "{path}: {}",
-            guard.with
-        );
-    }
-}
-
 /// Runs the cases of a section, each in turn; prints what was measured.
 fn hold(title: &str) {
     let sections = sections();

@@ -117,7 +117,7 @@ fn checked_by_seeds(file: &Path) {
     let sounds = ["level", "spectrum", "narrow-band"].map(String::from);
     for seed in [0, 1, 2, u64::MAX] {
         let report = check_some(file, 120, seed, Some(sounds.to_vec()));
-        assert!(report.ok, "seed {seed}: {}", report.to_text());
+        assert!(report.ok, "seed {seed}: {}", report);
     }
 }
 
@@ -126,9 +126,9 @@ fn check_some(file: &Path, timeout_s: u64, seed: u64, only: Option<Vec<String>>)
         runner: Runner {
             program: env!("CARGO_BIN_EXE_htex").into(),
             arguments: vec!["plugin".into(), "check-one".into()],
+            timeout: Duration::from_secs(timeout_s),
         },
         seed,
-        timeout: Duration::from_secs(timeout_s),
         only,
         against: None,
     };
@@ -141,10 +141,10 @@ fn sound_models_pass() {
         let file = library(model);
         checked_by_seeds(&file);
         let report = checked(&file, 120);
-        println!("{}", report.to_text());
-        assert!(report.ok, "{}", report.to_text());
+        println!("{report}");
+        assert!(report.ok, "{}", report);
         // What may be skipped for a sound model lying alone: its twin.
-        assert_eq!(report.count(Outcome::Skipped), 1, "{}", report.to_text());
+        assert_eq!(report.count(Outcome::Skipped), 1, "{}", report);
     }
 }
 
@@ -159,8 +159,8 @@ fn sound_modules_pass_too() {
         let file = folder.join(format!("htex_{model}.wasm"));
         checked_by_seeds(&file);
         let report = checked(&file, 120);
-        println!("{}", report.to_text());
-        assert!(report.ok, "{}", report.to_text());
+        println!("{report}");
+        assert!(report.ok, "{}", report);
     }
 }
 
@@ -169,7 +169,7 @@ fn each_fault_is_found_by_its_own_check() {
     let folder = tempfile::tempdir().unwrap();
     let good = library("sbeta");
     let sound = checked(&bad(folder.path(), &good, "NONE"), 120);
-    assert!(sound.ok, "without a fault: {}", sound.to_text());
+    assert!(sound.ok, "without a fault: {}", sound);
     for (fault, name, outcome) in FAULTS {
         let file = bad(folder.path(), &good, fault);
         let timeout_s = if *outcome == Outcome::TimedOut {
@@ -178,7 +178,7 @@ fn each_fault_is_found_by_its_own_check() {
             120
         };
         let report = checked(&file, timeout_s);
-        assert_eq!(report.bad(), [*name], "{fault}: {}", report.to_text());
+        assert_eq!(report.bad(), [*name], "{fault}: {}", report);
         let found = report.checks.iter().find(|c| c.check == *name).unwrap();
         println!("{fault:20} {name:15} {}", found.finding.message);
         assert_eq!(found.finding.outcome, *outcome, "{fault}");
@@ -224,8 +224,8 @@ fn a_module_that_takes_memory_while_it_renders_is_found() {
         return;
     };
     let report = checked(&file, 120);
-    println!("{}", report.to_text());
-    assert_eq!(report.bad(), ["allocation"], "{}", report.to_text());
+    println!("{report}");
+    assert_eq!(report.bad(), ["allocation"], "{}", report);
 }
 
 #[test]

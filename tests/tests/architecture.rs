@@ -17,7 +17,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("htex-report", &[]),
     ("htex-device", &["htex-library", "htex-schema"]),
     ("adapter", &["htex-device", "htex-files", "htex-library"]),
-    ("htex-device-check", &["htex-check", "htex-device"]),
+    ("htex-check-runner", &[]),
+    ("htex-device-check", &["htex-check-runner", "htex-device"]),
     ("htex-shaped", &["htex-dsp", "htex-model"]),
     ("plugin", &["htex-dsp", "htex-model", "htex-shaped"]),
     (
@@ -25,7 +26,10 @@ const ARROWS: &[(&str, &[&str])] = &[
         &["htex-dsp", "htex-library", "htex-model", "plugin"],
     ),
     ("htex-author", &["htex-dsp", "htex-format", "htex-host"]),
-    ("htex-check", &["htex-dsp", "htex-host", "htex-model"]),
+    (
+        "htex-check",
+        &["htex-check-runner", "htex-dsp", "htex-host", "htex-model"],
+    ),
     ("htex", &["htex-dsp", "htex-format", "htex-host"]),
     (
         "htex-scene",
@@ -55,6 +59,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex",
             "htex-author",
             "htex-check",
+            "htex-check-runner",
             "adapter",
             "htex-device",
             "htex-device-check",

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
-use htex_check::Finding;
+use htex_check_runner::Finding;
 use htex_device::{
     Adapter, Capabilities, Device, DeviceError, NativeAdapter, Rates, SettingKind, Settings,
     StreamFormat,
@@ -30,8 +30,8 @@ pub enum Subject {
     Builtin(Arc<dyn Adapter>),
 }
 
-/// A device that was loaded, and how it is to be set.
-pub(crate) struct Case {
+/// A loaded device, and its settings.
+pub struct Case {
     pub(crate) adapter: Arc<dyn Adapter>,
     /// The same adapter, where it is a library's.
     pub(crate) native: Option<NativeAdapter>,
@@ -92,7 +92,7 @@ impl Case {
             let missing = || Finding::skipped(format!("give its setting: --set {name}=…"));
             given.insert(name.clone(), value.ok_or_else(missing)?);
         }
-        Settings::resolve(descriptor, profile, &given).map_err(failed)
+        Ok(Settings::resolve(descriptor, profile, &given)?)
     }
 
     /// A file that is not there, of a kind that is known to many.
@@ -113,7 +113,7 @@ impl Case {
         let can = self.adapter.capabilities(&self.settings()?);
         can.map_err(|error| match error {
             DeviceError::Missing(what) => Finding::skipped(what),
-            error => failed(error),
+            error => error.into(),
         })
     }
 
@@ -121,7 +121,7 @@ impl Case {
     pub(crate) fn open(&self) -> Result<(Box<dyn Device>, Settings), Finding> {
         let settings = self.settings()?;
         let rate_hz = self.capabilities()?.default_rate_hz;
-        let device = self.open_at(&settings, rate_hz).map_err(failed)?;
+        let device = self.open_at(&settings, rate_hz)?;
         Ok((device, settings))
     }
 
@@ -152,7 +152,7 @@ impl Case {
 pub(crate) fn write_all(device: &mut dyn Device, samples: &[f32]) -> Result<(), Finding> {
     let (mut left, mut empty) = (samples, 0);
     while !left.is_empty() {
-        let taken = device.write(left, PATIENCE).map_err(failed)?;
+        let taken = device.write(left, PATIENCE)?;
         empty = if taken == 0 { empty + 1 } else { 0 };
         if empty == EMPTY_WRITES {
             let seconds = PATIENCE.as_secs() * u64::from(EMPTY_WRITES);
@@ -178,8 +178,4 @@ pub(crate) fn rates(can: &Capabilities) -> Vec<f64> {
     rates.sort_by(f64::total_cmp);
     rates.dedup();
     rates
-}
-
-pub(crate) fn failed(error: DeviceError) -> Finding {
-    Finding::failed(error.to_string())
 }

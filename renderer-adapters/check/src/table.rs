@@ -1,34 +1,9 @@
 //! Every check, in one table.
 
-use htex_check::Found;
-
 use crate::case::Case;
 use crate::checks::{describe, end, limit, open, write};
 
-/// One check.
-pub struct Check {
-    /// Stable name, as `--only` and `--reproduce` take it.
-    pub name: &'static str,
-    /// What is promised, in a sentence.
-    pub summary: &'static str,
-    /// Checks that must not be broken for this one to mean something.
-    pub needs: &'static [&'static str],
-    pub(crate) run: fn(&Case) -> Found,
-}
-
-macro_rules! checks {
-    ($($name:literal needs [$($need:literal),*] $run:path: $summary:literal;)*) => {
-        /// All checks, in the order in which they run: what others need comes first.
-        pub const CHECKS: &[Check] = &[$(Check {
-            name: $name,
-            summary: $summary,
-            needs: &[$($need),*],
-            run: $run,
-        }),*];
-    };
-}
-
-checks! {
+htex_check_runner::checks! { Case;
     "marker" needs [] describe::loaded:
         "The marker names this ABI's major version.";
     "exports" needs ["marker"] describe::loaded:
@@ -36,7 +11,7 @@ checks! {
     "descriptor" needs ["exports"] describe::descriptor:
         "The descriptor is JSON of the schema: names, ranges, defaults and profiles make sense.";
     "extensions" needs ["exports"] describe::extensions:
-        "An extension nobody has heard of is not there.";
+        "Unknown extensions are absent.";
     "endpoints" needs ["descriptor"] describe::endpoints:
         "What is connected can be asked; a missing driver says so.";
     "capabilities" needs ["descriptor"] describe::capabilities:
@@ -66,9 +41,4 @@ checks! {
     "memory" needs ["write"] write::memory:
         "Memory does not grow over 10,000 blocks of 256 frames (10 s of a device with a clock), nor \
          over 100 devices opened and closed: at most 2 MiB. On Linux.";
-}
-
-/// The check of a name.
-pub(crate) fn find(name: &str) -> Option<&'static Check> {
-    CHECKS.iter().find(|check| check.name == name)
 }

@@ -1,9 +1,9 @@
 //! The marker, the exports, and what a device says of itself.
 
-use htex_check::{Finding, Found};
+use htex_check_runner::{Finding, Found, made_up_extensions};
 use htex_device::{DeviceError, NativeAdapter, SettingKind};
 
-use crate::case::{Case, failed};
+use crate::case::Case;
 
 /// The check that a loading error belongs to.
 pub(crate) fn owner(error: &DeviceError) -> &'static str {
@@ -36,27 +36,10 @@ pub(crate) fn descriptor(case: &Case) -> Found {
     Ok(Finding::passed(message).with("settings", settings as f64))
 }
 
-/// Made-up extensions are not there.
+/// Made-up extensions are absent.
 pub(crate) fn extensions(case: &Case) -> Found {
     let native = library(case)?;
-    let long = "x".repeat(100_000);
-    for id in [
-        "htex.no-such-thing/1",
-        "com.example.unheard-of/7",
-        "",
-        "\u{1f}é",
-        &long,
-    ] {
-        if native.has_extension(id).map_err(failed)? {
-            let id: String = id.chars().take(40).collect();
-            return Err(Finding::failed(format!(
-                "it says yes to the extension `{id}`"
-            )));
-        }
-    }
-    Ok(Finding::passed(
-        "five made-up extensions are answered by no",
-    ))
+    made_up_extensions(|id| native.has_extension(id))
 }
 
 /// What is connected can be asked; nothing, or no driver, is an answer.
@@ -75,7 +58,7 @@ pub(crate) fn endpoints(case: &Case) -> Found {
             None => Ok(Finding::passed(format!("{} are connected", all.len()))),
         },
         Err(DeviceError::Missing(what)) => Ok(Finding::warning(what)),
-        Err(error) => Err(failed(error)),
+        Err(error) => Err(error.into()),
     }
 }
 

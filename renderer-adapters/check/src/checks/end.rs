@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use htex_check::{Finding, Found};
+use htex_check_runner::{Finding, Found};
 use htex_device::{Adapter, Device, DeviceError, StreamFormat};
 
-use crate::case::{Case, failed, write_all};
+use crate::case::{Case, write_all};
 use crate::checks::describe::library;
 
 /// All comes out; nothing can be written afterwards.
@@ -14,7 +14,7 @@ pub(crate) fn finishes(case: &Case) -> Found {
     let tone = case.tone(1_000)?;
     write_all(device.as_mut(), &tone)?;
     let files = files(case);
-    device.finish().map_err(failed)?;
+    device.finish()?;
     let status = device.status();
     if status.frames_played != 1_000 {
         let played = status.frames_played;
@@ -72,12 +72,10 @@ pub(crate) fn handles(case: &Case) -> Found {
         rate_hz: can.default_rate_hz,
         block_frames: can.block_frames,
     };
-    let mut closed = native
-        .open_native(&case.settings()?, &format)
-        .map_err(failed)?;
-    closed.close_and_keep_handle().map_err(failed)?;
+    let mut closed = native.open_native(&case.settings()?, &format)?;
+    closed.close_and_keep_handle()?;
     for another in [false, true] {
-        let open = || native.open(&case.settings()?, &format).map_err(failed);
+        let open = || Ok::<_, Finding>(native.open(&case.settings()?, &format)?);
         let _open = another.then(open).transpose()?;
         let calls = [
             ("write", closed.write(&[0.0], Duration::ZERO).map(drop)),

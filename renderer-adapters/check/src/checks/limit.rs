@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use htex_check::{Finding, Found};
+use htex_check_runner::{Finding, Found};
 use htex_device::DeviceError;
 
 use crate::case::{Case, write_all};

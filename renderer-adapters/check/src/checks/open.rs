@@ -1,9 +1,9 @@
 //! Opening.
 
-use htex_check::{Finding, Found};
+use htex_check_runner::{Finding, Found};
 use htex_device::DeviceError;
 
-use crate::case::{Case, failed, rates, write_all};
+use crate::case::{Case, rates, write_all};
 
 /// It opens at each of its rates, and takes silence.
 pub(crate) fn opens(case: &Case) -> Found {
@@ -50,17 +50,13 @@ pub(crate) fn bad_rate(case: &Case) -> Found {
 /// Two at the same time, or a clear refusal.
 pub(crate) fn two(case: &Case) -> Found {
     let (mut first, settings) = case.open()?;
-    let rate_hz = case
-        .adapter
-        .capabilities(&settings)
-        .map_err(failed)?
-        .default_rate_hz;
+    let rate_hz = case.adapter.capabilities(&settings)?.default_rate_hz;
     let tone = case.tone(64)?;
     let mut second = match case.open_at(&case.settings()?, rate_hz) {
         Err(DeviceError::Busy(why)) => {
             return Ok(Finding::passed(format!("one at a time: {why}")));
         }
-        other => other.map_err(failed)?,
+        other => other?,
     };
     write_all(first.as_mut(), &tone)?;
     write_all(second.as_mut(), &tone[..10])?;

@@ -49,11 +49,11 @@ fn seeds_are_read_and_used() {
     }
 }
 
+/// Only that the files exist is tested: the bytes of some depend on the platform's compiler.
 #[test]
-fn every_model_and_kind_of_file_has_its_seed() {
-    for (target, name, _) in seeds::seeds() {
-        let file = workspace().join("fuzz/seeds").join(target).join(&name);
-        assert!(file.exists(), "{target}/{name}: run `cargo xtask generate`");
+fn generated_seeds_are_there() {
+    for (target, name, bytes) in seeds::seeds() {
+        xtask::generated::file_with(format!("fuzz/seeds/{target}/{name}"), &bytes, |_| true);
     }
 }
 

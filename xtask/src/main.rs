@@ -25,7 +25,7 @@ fn main() -> ExitCode {
         ["bench", ref options @ ..] => xtask::bench::run(options),
         ["fuzz", ref options @ ..] => fuzz_targets(options),
         ["ci"] => run("bash", &[".ci/run"]),
-        ["generate"] => generate(),
+        ["generate"] => xtask::generated::generate(),
         _ => usage(),
     }
 }
@@ -33,41 +33,6 @@ fn main() -> ExitCode {
 fn usage() -> ExitCode {
     eprintln!("{TASKS}");
     ExitCode::from(2)
-}
-
-/// Makes what the specification has from the code.
-fn generate() -> ExitCode {
-    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
-    let made: &[&[&str]] = &[
-        &["htex-format", "--example", "conformance"],
-        &[
-            "htex-model",
-            "--features",
-            "schemars",
-            "--example",
-            "descriptor_schema",
-        ],
-        &["htex-check", "--example", "model_checks"],
-        &["htex-tests", "--example", "playing"],
-        &["htex-scene", "--example", "scene_pages"],
-        &["htex-author", "--example", "recording_pages"],
-        &["htex-hard-cases", "--example", "hard_cases_page"],
-        &[
-            "htex-device",
-            "--features",
-            "schemars",
-            "--example",
-            "device_schemas",
-        ],
-        &["htex-fuzzing", "--example", "seeds"],
-    ];
-    for what in made {
-        let code = run(&cargo, &[&["run", "--package"], *what].concat());
-        if code != ExitCode::SUCCESS {
-            return code;
-        }
-    }
-    ExitCode::SUCCESS
 }
 
 /// Fuzzes; fails when something was found.

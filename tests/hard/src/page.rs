@@ -7,8 +7,7 @@ use crate::{Case, Promise, sections};
 const HEAD: &str = "\
 # Hard cases
 
-Generated from the table in `tests/hard/src/cases` by `cargo run -p htex-hard-cases --example
-hard_cases_page`.
+Generated from the table in `tests/hard/src/cases` by `cargo xtask generate`.
 
 Inputs at which arithmetic breaks, and what is promised of each: a result that is finite and no farther
 than a bound from a reference, or a refusal by name. *Exact* references are rational numbers without

@@ -111,10 +111,7 @@ const NOT_PLAYED: [&str; 2] = ["valid_plugin.htex", "valid_field_of_newer_model.
 /// What is valid can be played, too.
 #[test]
 fn valid_conformance_files_are_played() {
-    let folders = [
-        workspace().join("spec/conformance"),
-        cases_folder(),
-    ];
+    let folders = [workspace().join("spec/conformance"), cases_folder()];
     let mut played = 0;
     for entry in folders
         .iter()

@@ -23,6 +23,7 @@ mod signal;
 mod spectra;
 mod start;
 mod table;
+pub mod templates;
 
 pub use bench::{BLOCKS, BlockCost, Cost, Subject, Timing, bench};
 pub use htex_check_runner::{Finding, Outcome, Runner, UnknownCheck};

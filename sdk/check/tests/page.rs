@@ -1,10 +1,19 @@
-//! `spec/model-checks.md`, and the order of the table that it lists.
+//! `spec/model-checks.md`, the order of the table that it lists, and the templates' headers.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_check::{CHECKS, model_checks_page};
 
 #[test]
 fn generated_page_is_fresh() {
     xtask::generated::file("spec/model-checks.md", model_checks_page().as_bytes());
+}
+
+#[test]
+fn generated_headers_of_the_templates_are_those_of_the_specification() {
+    for header in ["htex_model.h", "htex_model_wasm.h"] {
+        let bytes = std::fs::read(format!("../../spec/include/{header}")).unwrap();
+        xtask::generated::file(format!("sdk/check/templates/include/{header}"), &bytes);
+    }
 }
 
 #[test]

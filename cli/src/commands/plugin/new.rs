@@ -2,50 +2,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
+use htex_check::templates;
 
 use crate::failure::Failure;
 use crate::output::{print, write_file};
 
 /// The folder `sdk` of the sources this program was built from.
 const SDK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../sdk");
-
-const RUST: &[(&str, &str)] = &[
-    (
-        "README.md",
-        include_str!("../../../../sdk/check/templates/rust/README.md.in"),
-    ),
-    (
-        "Cargo.toml",
-        include_str!("../../../../sdk/check/templates/rust/Cargo.toml.in"),
-    ),
-    (
-        "src/lib.rs",
-        include_str!("../../../../sdk/check/templates/rust/src/lib.rs"),
-    ),
-];
-
-const C: &[(&str, &str)] = &[
-    (
-        "README.md",
-        include_str!("../../../../sdk/check/templates/c/README.md.in"),
-    ),
-    (
-        "model.c",
-        include_str!("../../../../sdk/check/templates/c/model.c"),
-    ),
-    (
-        "build.sh",
-        include_str!("../../../../sdk/check/templates/c/build.sh"),
-    ),
-    (
-        "htex_model.h",
-        include_str!("../../../../spec/include/htex_model.h"),
-    ),
-    (
-        "htex_model_wasm.h",
-        include_str!("../../../../spec/include/htex_model_wasm.h"),
-    ),
-];
 
 /// Write the project of a new model: one that builds with one command and passes `check`.
 #[derive(Args)]
@@ -76,8 +39,8 @@ impl Lang {
     /// The files of a project, and their templates.
     fn files(self) -> &'static [(&'static str, &'static str)] {
         match self {
-            Self::Rust => RUST,
-            Self::C => C,
+            Self::Rust => templates::RUST,
+            Self::C => templates::C,
         }
     }
 }

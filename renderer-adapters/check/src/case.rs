@@ -1,4 +1,4 @@
-//! The device under test, and what several checks ask of it.
+//! The device under test, and operations that several checks use.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -15,9 +15,9 @@ use tempfile::TempDir;
 
 /// A hundredth of the limit, or of the unit where there is none.
 const QUIET: f64 = 0.01;
-/// Frequency of what is played, hertz.
+/// Frequency of the tone, hertz.
 const TONE_HZ: f64 = 100.0;
-/// Writes that may take nothing, one behind the other, each waiting [`PATIENCE`].
+/// Most consecutive writes that may take nothing, each waiting [`PATIENCE`].
 const EMPTY_WRITES: u32 = 5;
 const PATIENCE: Duration = Duration::from_secs(1);
 
@@ -68,7 +68,7 @@ impl Case {
         })
     }
 
-    /// The settings given, and for what must be given besides: a new file, or the first endpoint.
+    /// The given settings, and for required ones that are missing a new file or the first endpoint.
     pub(crate) fn settings(&self) -> Result<Settings, Finding> {
         self.settings_of(self.profile.as_deref())
     }
@@ -95,7 +95,7 @@ impl Case {
         Ok(Settings::resolve(descriptor, profile, &given)?)
     }
 
-    /// A file that is not there, of a kind that is known to many.
+    /// The path of a new WAV file.
     fn new_file(&self) -> String {
         let count = self.files.fetch_add(1, Ordering::Relaxed);
         let path = self.folder.path().join(format!("check-{count}.wav"));
@@ -108,7 +108,7 @@ impl Case {
         first.map(|endpoint| endpoint.name)
     }
 
-    /// What the device can do; where its driver or the device is missing there is nothing to check.
+    /// The device's capabilities; the check is skipped where the driver or the device is missing.
     pub(crate) fn capabilities(&self) -> Result<Capabilities, Finding> {
         let can = self.adapter.capabilities(&self.settings()?);
         can.map_err(|error| match error {
@@ -117,7 +117,7 @@ impl Case {
         })
     }
 
-    /// A device at its best rate, and its settings.
+    /// A device at its default rate, and its settings.
     pub(crate) fn open(&self) -> Result<(Box<dyn Device>, Settings), Finding> {
         let settings = self.settings()?;
         let rate_hz = self.capabilities()?.default_rate_hz;
@@ -138,7 +138,7 @@ impl Case {
         self.adapter.open(settings, &format)
     }
 
-    /// A quiet tone at the best rate.
+    /// A quiet tone at the default rate.
     pub(crate) fn tone(&self, frames: usize) -> Result<Vec<f32>, Finding> {
         let can = self.capabilities()?;
         let amplitude = QUIET * can.limit.unwrap_or(1.0);
@@ -161,14 +161,14 @@ pub(crate) fn write_all(device: &mut dyn Device, samples: &[f32]) -> Result<(), 
             )));
         }
         let Some(rest) = left.get(taken..) else {
-            return Err(Finding::failed("it takes more than it was offered"));
+            return Err(Finding::failed("it takes more samples than it was offered"));
         };
         left = rest;
     }
     Ok(())
 }
 
-/// The rates to try: all of a list, both ends of a range, and the best.
+/// The rates to try: all of a list, both ends of a range, and the default.
 pub(crate) fn rates(can: &Capabilities) -> Vec<f64> {
     let mut rates = match &can.rates {
         Rates::List(all) => all.clone(),

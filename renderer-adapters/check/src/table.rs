@@ -1,4 +1,4 @@
-//! Every check, in one table.
+//! The table of checks.
 
 use crate::case::Case;
 use crate::checks::{describe, end, limit, open, write};
@@ -13,17 +13,17 @@ htex_check_runner::checks! { Case;
     "extensions" needs ["exports"] describe::extensions:
         "Unknown extensions are absent.";
     "endpoints" needs ["descriptor"] describe::endpoints:
-        "What is connected can be asked; a missing driver says so.";
+        "Endpoints can be listed; a missing driver is reported.";
     "capabilities" needs ["descriptor"] describe::capabilities:
         "Capabilities are finite and agree, for each profile; a voltage has a limit.";
     "bad-settings" needs ["capabilities"] describe::bad_settings:
-        "Settings it does not have, and values out of range, are refused.";
+        "Unknown settings and values out of range are refused.";
     "open" needs ["capabilities"] open::opens:
-        "It opens at each rate of a list, at both ends of a range, and at the best rate.";
+        "It opens at each rate of a list, at both ends of a range, and at the default rate.";
     "bad-rate" needs ["open"] open::bad_rate:
-        "Rates that are none of its own are refused.";
+        "Rates that it does not have are refused.";
     "write" needs ["open"] write::blocks:
-        "Blocks of any size, none too, are taken in the end.";
+        "Blocks of any size, including empty ones, are taken in the end.";
     "status" needs ["write"] write::status:
         "It counts the frames it took and their peak.";
     "over-limit" needs ["status"] limit::over:

@@ -10,7 +10,7 @@ use crate::output::{print, write_file};
 /// The folder `sdk` of the sources this program was built from.
 const SDK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../sdk");
 
-/// Write the project of a new model: one that builds with one command and passes `check`.
+/// Write the project of a new model, which builds with one command and passes `check`.
 #[derive(Args)]
 pub(crate) struct New {
     /// Name of the model: lower-case letters, digits and hyphens
@@ -66,26 +66,26 @@ impl New {
         Ok(ExitCode::SUCCESS)
     }
 
-    /// Refuses a name that is none, and a folder that is there.
+    /// Refuses an invalid name, and a folder that exists.
     fn check(&self, dir: &Path) -> Result<(), Failure> {
         let name = &self.name;
         let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-';
         if !name.bytes().all(plain) || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
             let rule = "lower-case letters, digits and hyphens, a letter first";
             return Err(Failure::Usage(format!(
-                "`{name}` is no name of a model: {rule}"
+                "`{name}` is not a valid name: {rule}"
             )));
         }
         if dir.exists() {
             let dir = dir.display();
             return Err(Failure::Usage(format!(
-                "{dir} is there already; --dir names another"
+                "{dir} exists; name another with --dir"
             )));
         }
         Ok(())
     }
 
-    /// The placeholders of the templates (`sdk/check/templates/README.md`), and what takes their place.
+    /// The placeholders of the templates (`sdk/check/templates/README.md`), and their values.
     fn values(&self, sdk: &str) -> [(&'static str, String); 7] {
         let name = &self.name;
         let crate_name = name.replace('-', "_");

@@ -1,4 +1,4 @@
-//! The ends a device can come to.
+//! Finishing, aborting and closing.
 
 use std::time::Duration;
 
@@ -8,7 +8,7 @@ use htex_device::{Adapter, Device, DeviceError, StreamFormat};
 use crate::case::{Case, write_all};
 use crate::checks::describe::library;
 
-/// All comes out; nothing can be written afterwards.
+/// All frames are played; nothing can be written afterwards.
 pub(crate) fn finishes(case: &Case) -> Found {
     let (mut device, _) = case.open()?;
     let tone = case.tone(1_000)?;
@@ -39,7 +39,7 @@ pub(crate) fn finishes(case: &Case) -> Found {
         ));
     }
     Ok(Finding::passed(
-        "all frames came out, and the end is the end",
+        "all frames came out, and writes afterwards are refused",
     ))
 }
 

@@ -1,4 +1,4 @@
-//! Writing, and what is said of it.
+//! Writing, and the status.
 
 use std::time::Duration;
 
@@ -35,7 +35,7 @@ pub(crate) fn blocks(case: &Case) -> Found {
     )))
 }
 
-/// It counts what it took.
+/// Frames and peak are counted.
 pub(crate) fn status(case: &Case) -> Found {
     let (mut device, settings) = case.open()?;
     let before = device.status();

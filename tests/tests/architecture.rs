@@ -1,11 +1,11 @@
-//! Which crate may point at which: the arrows of ARCHITECTURE.md.
+//! Allowed dependencies between crates: the table of ARCHITECTURE.md.
 
 use std::collections::BTreeSet;
 
 use cargo_metadata::{DependencyKind, MetadataCommand};
 use htex_tests::workspace;
 
-/// A crate of ours, and the crates of ours that it may use. The models are `plugin`, the
+/// A crate, and the crates of the workspace that it may depend on. The models are `plugin`, the
 /// device families `adapter`.
 const ARROWS: &[(&str, &[&str])] = &[
     ("htex-dsp", &[]),
@@ -148,7 +148,7 @@ fn dependencies_follow_the_arrows() {
     }
 }
 
-/// Who only opens and plays assets does without a validator of JSON Schemas.
+/// An application that only opens and plays assets links no validator of JSON Schemas.
 #[test]
 fn only_the_command_and_tests_hold_documents_to_schemas() {
     let metadata = MetadataCommand::new()

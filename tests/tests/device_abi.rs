@@ -1,4 +1,4 @@
-//! The device ABI stays what it is: Rust side, C header and the frozen listing say the same.
+//! The device ABI is frozen: Rust side, C header and the frozen listing agree.
 #![allow(clippy::unwrap_used)] // Test code: a failure is a failed test.
 
 use htex_device::abi::{

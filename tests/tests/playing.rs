@@ -1,5 +1,5 @@
-//! What `spec/models` and `spec/playing-conformance` hold is what the models are and give, and a reader
-//! written from the specification reads it too.
+//! `spec/models` and `spec/playing-conformance` agree with the models, and a reader
+//! written from the specification agrees with them.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 #[path = "common/playing/mod.rs"]
@@ -104,11 +104,11 @@ fn every_model_has_cases() {
     assert!(counts.values().sum::<i32>() >= 200, "{counts:?}");
 }
 
-/// Valid files that this player does not play: one brings an empty module along, one has a field that a newer version
-/// of the model knows.
+/// Valid files that this player does not play: one embeds an empty module, one has a field of a newer version
+/// of the model.
 const NOT_PLAYED: [&str; 2] = ["valid_plugin.htex", "valid_field_of_newer_model.htex"];
 
-/// What is valid can be played, too.
+/// Valid files can be played.
 #[test]
 fn valid_conformance_files_are_played() {
     let folders = [workspace().join("spec/conformance"), cases_folder()];
@@ -158,7 +158,7 @@ fn a_reader_written_from_the_text_agrees() {
     assert!(output.status.success(), "{said}");
 }
 
-/// The Python with NumPy and SciPy that the environment names, else of the bench, else of the machine.
+/// The Python with NumPy and SciPy that the environment names, else that of the benchmark, else the system's.
 fn python() -> Option<PathBuf> {
     let named = std::env::var_os("HTEX_PYTHON").map(PathBuf::from);
     let own = workspace().join("target/peers/bin/python");

@@ -1,4 +1,4 @@
-//! Every row of the table holds, and the page is that of the table.
+//! Every row of the table holds, and the page is generated from the table.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_hard_cases::sections;
@@ -10,7 +10,7 @@ fn generated_page_is_fresh() {
     xtask::generated::file("spec/hard-cases.md", page.as_bytes());
 }
 
-/// Runs the cases of a section, each in turn; prints what was measured.
+/// Runs the cases of a section; prints the measured errors.
 fn hold(title: &str) {
     let sections = sections();
     let section = sections.iter().find(|s| s.title == title).unwrap();
@@ -33,7 +33,7 @@ macro_rules! sections {
             hold($title);
         })*
 
-        /// A section without a test here would be a table of promises that nobody keeps.
+        /// Every section has a test here.
         #[test]
         fn every_section_is_held() {
             let held = [$($title),*];

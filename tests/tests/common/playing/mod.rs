@@ -1,5 +1,5 @@
-//! Numbers that a player is tested against: the models' descriptors, assets with parameters of every
-//! model, and what is to be read of them.
+//! Reference data for players: the models' descriptors, assets with parameters of every
+//! model, and the values to be read from them.
 
 mod parameters;
 
@@ -11,7 +11,7 @@ use xtask::generated::File;
 
 use parameters::parameters;
 
-/// An asset to be made: its band, where it is known, and where it is read in between.
+/// An asset to be made: its band, its conditions, and the motions at which it is read.
 struct Plan {
     name: &'static str,
     band_hz: [f64; 2],
@@ -74,7 +74,7 @@ const PLANS: [Plan; 5] = [
     },
 ];
 
-/// Frequencies beside the grid and beside the band at which magnitudes are told as well, hertz.
+/// Further frequencies of magnitudes, beside the grid and outside the band, hertz.
 const BESIDE_HZ: [f64; 8] = [10.0, 19.99, 33.3, 101.25, 317.7, 437.5, 998.5, 1_000.5];
 
 /// The folder of the models' descriptors.
@@ -97,7 +97,7 @@ pub fn files() -> Vec<File> {
     files
 }
 
-/// A model's descriptor as it crosses the ABI, and where it is kept.
+/// A model's descriptor as it crosses the ABI, and its path.
 fn descriptor(model: &LoadedModel) -> File {
     let text = serde_json::to_string_pretty(model.descriptor()).unwrap() + "\n";
     (format!("{MODELS}/{}.json", model.id()), text.into_bytes())
@@ -149,7 +149,7 @@ fn asset(registry: &Registry, number: usize, plan: &Plan) -> Vec<u8> {
     asset.to_bytes().unwrap()
 }
 
-/// What is read of an asset, a line of JSON a case.
+/// The values read from an asset, a line of JSON for each case.
 fn numbers(plan: &Plan, asset: &Asset) -> String {
     let mut frequency_hz = asset.band().grid_hz();
     frequency_hz.extend(BESIDE_HZ);
@@ -179,7 +179,7 @@ fn numbers(plan: &Plan, asset: &Asset) -> String {
     )
 }
 
-/// Twelve digits: more than players are held to.
+/// Rounded to twelve digits, more than players must match.
 fn rounded(values: &[f64]) -> Vec<f64> {
     let round = |x: &f64| format!("{x:.11e}").parse().unwrap();
     values.iter().map(round).collect()

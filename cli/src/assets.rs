@@ -1,4 +1,4 @@
-//! What the commands say of an asset, in JSON and as a table.
+//! The summary of an asset, as JSON and as a table.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -7,7 +7,7 @@ use htex_format::{AtCondition, Condition, Field, Quality, Quantity, Representati
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-/// An asset, as `fit` and `info` tell it.
+/// The summary of an asset that `fit` and `info` print.
 #[derive(Serialize)]
 pub(crate) struct AssetSummary {
     pub(crate) asset: String,
@@ -42,7 +42,7 @@ pub(crate) struct AssetSummary {
     pub(crate) notes: Vec<String>,
 }
 
-/// A model that the asset brings along.
+/// A model embedded in the asset.
 #[derive(Serialize)]
 struct PluginSummary {
     model: String,
@@ -79,7 +79,7 @@ pub(crate) struct AtSummary {
 }
 
 impl AssetSummary {
-    /// Tells of the asset in `file`, of `bytes` bytes.
+    /// The summary of the asset in `file`, of `bytes` bytes.
     pub(crate) fn new(file: &Path, bytes: u64, asset: &htex_format::Asset) -> Self {
         let manifest = &asset.manifest;
         let representations = manifest
@@ -124,7 +124,7 @@ impl AssetSummary {
         }
     }
 
-    /// Adds what a reader should know.
+    /// Adds warnings for the reader.
     pub(crate) fn note(&mut self, note: String) {
         self.notes.push(note);
     }
@@ -184,7 +184,7 @@ impl AssetSummary {
 }
 
 impl AssetSummary {
-    /// What is said of the surface and of its recording, a line each.
+    /// The metadata of the surface and its recording, a line each.
     fn metadata_text(&self) -> String {
         let tags = Some(self.tags.join(", ")).filter(|tags| !tags.is_empty());
         let lines = [
@@ -204,14 +204,14 @@ impl AssetSummary {
 }
 
 impl RepresentationSummary {
-    /// What is known of it at a condition.
+    /// The summary at one condition.
     pub(crate) fn at(&self, condition: usize) -> Option<&AtSummary> {
         let all = self.at.iter().chain([&self.first]);
         all.into_iter().find(|at| at.condition == condition)
     }
 }
 
-/// The models an asset brings along; signatures of a valid asset hold.
+/// The models embedded in an asset; signatures of a valid asset are valid.
 fn plugins(asset: &htex_format::Asset) -> Vec<PluginSummary> {
     let both = asset.manifest.plugins.iter().zip(&asset.plugins);
     both.map(|(plugin, module)| PluginSummary {
@@ -288,7 +288,7 @@ pub(crate) fn short_name(id: &str) -> &str {
 }
 
 impl RepresentationSummary {
-    /// None for a representation at no condition, which no valid asset has.
+    /// `None` for a representation without conditions, which is not valid.
     fn new(r: &Representation, sets: &[Vec<f64>], payload_bytes: usize) -> Option<Self> {
         let at: Vec<AtSummary> =
             r.at.iter()

@@ -1,40 +1,88 @@
-//! What the checkers of models and of devices have in common.
+//! What the commands that check models and devices share.
 
+use std::fmt::Display;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use htex_check::Finding;
+use clap::Args;
+use htex_check_runner::{Finding, Report, Runner};
+use serde::Serialize;
 
 use crate::failure::Failure;
 use crate::output::{print, print_json};
 
-/// Tells what a single check found.
-pub(crate) fn tell_one(name: &str, finding: &Finding, json: bool) -> Result<ExitCode, Failure> {
-    if json {
-        print_json(finding)?;
-    } else {
-        let word = finding.outcome.word();
-        print(&format!("{name}: {word}: {}\n", finding.message))?;
-    }
-    Ok(exit_code(finding.outcome.is_bad()))
+/// How checks are run and reported.
+#[derive(Args)]
+pub(crate) struct CheckArgs {
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+
+    /// Longest time of one check, s
+    #[arg(long, default_value_t = 60.0, value_name = "S")]
+    timeout: f64,
+
+    /// Run this one check in a single process, e.g. under a debugger
+    #[arg(long, value_name = "NAME", conflicts_with = "timeout")]
+    pub(crate) reproduce: Option<String>,
 }
 
-/// The time a check may take, from `--timeout`.
-pub(crate) fn timeout(seconds: f64) -> Result<Duration, Failure> {
+impl CheckArgs {
+    /// Runs this program for each check, with these arguments first.
+    pub(crate) fn runner(
+        &self,
+        arguments: impl IntoIterator<Item = std::ffi::OsString>,
+    ) -> Result<Runner, Failure> {
+        Ok(Runner {
+            program: this_program()?,
+            arguments: arguments.into_iter().collect(),
+            timeout: timeout(self.timeout)?,
+        })
+    }
+
+    /// Prints the finding of a single check.
+    pub(crate) fn print_one(&self, name: &str, finding: &Finding) -> Result<ExitCode, Failure> {
+        if self.json {
+            print_json(finding)?;
+        } else {
+            let word = finding.outcome.word();
+            print(&format!("{name}: {word}: {}\n", finding.message))?;
+        }
+        Ok(exit_code(finding.outcome.is_bad()))
+    }
+
+    /// Prints a report; `again` is the command that runs one check of it in a single process.
+    pub(crate) fn print_report<Subject: Display + Serialize>(
+        &self,
+        report: &Report<Subject>,
+        again: impl Fn(&str) -> String,
+    ) -> Result<ExitCode, Failure> {
+        if self.json {
+            print_json(report)?;
+        } else {
+            print(&report.to_string())?;
+            if let Some(first) = report.bad().first() {
+                print(&format!("again, in one process: {}\n", again(first)))?;
+            }
+        }
+        Ok(exit_code(!report.ok))
+    }
+}
+
+fn timeout(seconds: f64) -> Result<Duration, Failure> {
     Duration::try_from_secs_f64(seconds)
         .ok()
         .filter(|timeout| !timeout.is_zero() && timeout.as_secs() < 1_000_000)
         .ok_or_else(|| Failure::Usage(format!("--timeout {seconds}: seconds, more than 0")))
 }
 
-/// The program that runs each check: this one.
-pub(crate) fn this_program() -> Result<PathBuf, Failure> {
+fn this_program() -> Result<PathBuf, Failure> {
     std::env::current_exe()
         .map_err(|error| Failure::Other(format!("cannot find this program: {error}")))
 }
 
-pub(crate) fn exit_code(bad: bool) -> ExitCode {
+fn exit_code(bad: bool) -> ExitCode {
     if bad {
         ExitCode::FAILURE
     } else {

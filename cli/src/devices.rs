@@ -25,7 +25,7 @@ fn builtin() -> Vec<Arc<dyn Adapter>> {
     ]
 }
 
-/// How to get sound.
+/// How to have sound.
 macro_rules! with_sound {
     () => {
         "`cargo install --path cli --features audio` builds one with sound, which on Linux needs libasound2-dev"
@@ -34,7 +34,7 @@ macro_rules! with_sound {
 #[cfg(not(feature = "audio"))]
 pub(crate) use with_sound;
 
-/// Why there is no sound where none was built in; of no other device.
+/// The reason why sound is absent from this build; `None` for other devices.
 fn no_sound(name: &str) -> Option<DeviceError> {
     let sound = cfg!(not(feature = "audio")) && matches!(name, "audio" | "org.htex.audio");
     let why = concat!(
@@ -60,7 +60,7 @@ pub(crate) struct DeviceArgs {
 }
 
 impl DeviceArgs {
-    /// The devices there are; what shadows what is told on standard error.
+    /// The devices that are found; those that shadow others are reported on standard error.
     pub(crate) fn devices(&self) -> Result<Devices, Failure> {
         let devices = self.devices_quietly()?;
         let notes: Vec<String> = devices.notes().iter().map(ToString::to_string).collect();
@@ -68,7 +68,7 @@ impl DeviceArgs {
         Ok(devices)
     }
 
-    /// As [`Self::devices`], without telling.
+    /// As [`Self::devices`], without reports.
     pub(crate) fn devices_quietly(&self) -> Result<Devices, Failure> {
         let search = DeviceSearch {
             files: self.device_file.clone(),
@@ -78,12 +78,12 @@ impl DeviceArgs {
         Ok(Devices::search(builtin(), &search)?)
     }
 
-    /// Why there is no device of this name, when it could have been built in.
+    /// The reason why a device of this name is absent, if it is a matter of the build.
     pub(crate) fn missing(name: &str) -> Option<DeviceError> {
         no_sound(name)
     }
 
-    /// The device in a file, when there is one of this name; else that of this short name or id.
+    /// The device in the file of this name if there is one, else that of this short name or id.
     pub(crate) fn named(&self, name: &str) -> Result<KnownDevice, Failure> {
         let file = Path::new(name);
         if !file.is_file() {
@@ -118,7 +118,7 @@ impl DeviceArgs {
     }
 }
 
-/// How a device is set.
+/// The settings of a device.
 #[derive(Args)]
 #[command(next_help_heading = "Devices")]
 pub(crate) struct SettingArgs {
@@ -137,7 +137,7 @@ impl SettingArgs {
         self.profile.as_deref()
     }
 
-    /// What was given.
+    /// The settings that were given.
     pub(crate) fn given(&self) -> Result<BTreeMap<String, String>, Failure> {
         let pair = |text: &String| {
             let (name, value) = text

@@ -1,4 +1,4 @@
-//! The one sentence a failed command ends with.
+//! The error that a failed command ends with.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -8,7 +8,7 @@ use htex_format::plain;
 
 use crate::output::shown;
 
-/// What went wrong, with its place.
+/// An error, with its place.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
     #[error(transparent)]
@@ -37,7 +37,7 @@ pub(crate) enum Failure {
     Read { file: String, error: std::io::Error },
     #[error("cannot write {file}: {error}")]
     Write { file: String, error: std::io::Error },
-    /// The command line asks for something that cannot be asked for.
+    /// The command line is invalid.
     #[error("{0}")]
     Usage(String),
     #[error("{0}")]
@@ -103,12 +103,12 @@ impl Failure {
 }
 
 impl Failure {
-    /// What is said of it, line by line. It may quote files and their names: nothing in it steers the terminal, and lines
-    /// end where we end them.
+    /// The message, line by line. It may quote files and their names: control characters are escaped, and lines
+    /// end only where this program ends them.
     pub(crate) fn to_lines(&self) -> Vec<String> {
         let text = self.to_string();
         let lines: Vec<&str> = match self {
-            // One a finding, each of them plain.
+            // One line for each finding, with control characters escaped.
             Self::Findings { .. } | Self::Author(AuthorError::Strict { .. }) => {
                 text.lines().collect()
             }
@@ -121,7 +121,7 @@ impl Failure {
     }
 }
 
-/// Findings, one a line.
+/// Findings, one on each line.
 fn findings_text(findings: &[htex_format::Finding]) -> String {
     let line = |f: &htex_format::Finding| format!("\n  {} {}", f.severity, plain(&f.to_string()));
     let lines: String = findings.iter().map(line).collect();

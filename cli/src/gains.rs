@@ -1,4 +1,4 @@
-//! Gains of people, and what they are felt with, shared by `gain` and `play`.
+//! Gains of people and the levels of scenes, shared by `gain` and `play`.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use crate::output::warn;
 use crate::scenes::Ready;
 
-/// How a texture is felt, in place of what a scene says.
+/// Representation and levels, in place of the scene's.
 #[derive(Args)]
 pub(crate) struct FeltArgs {
     /// The representation that plays every surface, by its model's short name or id
@@ -52,7 +52,7 @@ impl FeltArgs {
 /// Where gains are kept.
 pub(crate) fn gains_file() -> Result<PathBuf, Failure> {
     Gains::user_file().ok_or_else(|| {
-        Failure::Other("there is no folder for gains; set HTEX_CONFIG_DIR to one".to_owned())
+        Failure::Other("no folder for gains was found; set HTEX_CONFIG_DIR".to_owned())
     })
 }
 
@@ -63,7 +63,7 @@ pub(crate) fn gains() -> Result<(Gains, PathBuf), Failure> {
     Ok((gains, file))
 }
 
-/// What a gain of this person is kept under; `texture` is what the textures are called, if not by their own names.
+/// The key of this person's gain; `texture` replaces the textures' own names.
 pub(crate) fn key(person: &str, texture: Option<&str>, ready: &Ready) -> GainKey {
     let device = &ready.scene.scene.device;
     GainKey {
@@ -74,7 +74,7 @@ pub(crate) fn key(person: &str, texture: Option<&str>, ready: &Ready) -> GainKey
     }
 }
 
-/// The hash by which gains of old were kept.
+/// The hash that identified a texture in earlier versions.
 pub(crate) fn hash(ready: &Ready) -> Result<String, Failure> {
     Gains::hash_of(&ready.file).map_err(|error| Failure::read(&ready.file, error))
 }
@@ -88,7 +88,7 @@ fn manifests(ready: &Ready) -> impl Iterator<Item = &Manifest> {
     ready.scene.assets.iter().map(|asset| asset.manifest())
 }
 
-/// Drives a scene as is kept for a person.
+/// Applies a person's kept gain to a scene.
 pub(crate) fn apply_kept(
     person: &str,
     texture: Option<&str>,

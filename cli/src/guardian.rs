@@ -1,8 +1,8 @@
-//! A process of its own that holds a display's output, so that nothing that ends this one leaves a voltage standing.
+//! A separate process that holds a display's output, so that no end of this process leaves a voltage at the display.
 //!
-//! What kills, stops or hangs the player reaches only the player: the guardian is in a group of its own, hears of no
-//! key of the terminal, and ends when its pipe does. It then plays what it has (at most the device's buffer), goes to
-//! zero, and exits; a device that runs dry goes to zero by itself. Should the guardian end first, the player puts the
+//! A signal that kills, stops or hangs the player reaches only the player: the guardian is in a process group of its own, receives no
+//! signals of the terminal's keys, and ends when its pipe does. It then plays what it has (at most the device's buffer), sets the output to
+//! zero, and exits; a device whose buffer runs dry sets its output to zero itself. If the guardian ends first, the player sets the
 //! output to zero.
 
 use std::io::{BufReader, BufWriter, Read, Write};
@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 /// Longest message, bytes: a second at a million samples a second.
 const LONGEST: u32 = 4 << 20;
 
-/// What the player says first.
+/// The first message of the player.
 #[derive(Serialize, Deserialize)]
 struct Opening {
     device: String,
@@ -28,7 +28,7 @@ struct Opening {
     block_frames: u32,
 }
 
-/// What the guardian answers.
+/// Replies of the guardian.
 #[derive(Serialize, Deserialize)]
 enum Answer {
     Done(u64),
@@ -36,13 +36,13 @@ enum Answer {
     Failed(String),
 }
 
-/// What the player asks for, by a byte; samples follow a time in milliseconds.
+/// Requests of the player, a byte each; samples follow a time in milliseconds.
 const WRITE: u8 = b'w';
 const STATUS: u8 = b's';
 const FINISH: u8 = b'f';
 const ABORT: u8 = b'a';
 
-/// Whether a device's output is one that may hurt when it is left standing.
+/// Whether a device's output may hurt when it keeps its last value.
 pub(crate) fn is_wanted(able: &Capabilities) -> bool {
     able.paced && able.quantity == Quantity::DisplayVoltage
 }
@@ -114,7 +114,7 @@ impl Guarded {
             ended: false,
         };
         let opening = serde_json::to_vec(&opening).unwrap_or_default();
-        // A device that was not opened has nothing to be brought to zero, and may be somebody else's.
+        // A device that was not opened has no output to set to zero, and may belong to another process.
         if let Err(error) = guarded.ask(b'o', &opening) {
             guarded.ended = true;
             return Err(error);
@@ -122,7 +122,7 @@ impl Guarded {
         Ok(guarded)
     }
 
-    /// Asks for something and waits for the answer.
+    /// Sends a request and waits for the reply.
     fn ask(&self, tag: u8, body: &[u8]) -> Result<Answer, DeviceError> {
         let mut held = self.pipes.lock().unwrap_or_else(PoisonError::into_inner);
         let Some(pipes) = held.as_mut() else {
@@ -140,7 +140,7 @@ impl Guarded {
         }
     }
 
-    /// The guardian is gone: opening the device puts its output to zero.
+    /// The guardian has ended: opening the device sets its output to zero.
     fn zero_from_here(&self) -> DeviceError {
         let gone = "the process that held the output has ended";
         match self.known.adapter.open(&self.settings, &self.format) {
@@ -159,7 +159,7 @@ impl Guarded {
     }
 }
 
-/// This program again, as the guardian of a device.
+/// The command that starts this program as the guardian of a device.
 fn start(known: &KnownDevice) -> std::io::Result<Child> {
     let mut command = Command::new(std::env::current_exe()?);
     command.arg("guard");
@@ -202,7 +202,7 @@ impl Drop for Guarded {
         if !self.ended {
             let _ = self.end(ABORT);
         }
-        // Its end of the pipe ends the guardian.
+        // Closing the pipe ends the guardian.
         *self.pipes.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
         let _ = self.child.wait();
     }
@@ -242,7 +242,7 @@ pub(crate) fn hold(
         let said = said.unwrap_or_else(|error| Answer::Failed(error.to_string()));
         heard = answer(&mut to, &said);
     }
-    // Nobody is there any more: what was written comes out and ends at zero. Failing that, the drop sees to it.
+    // The player has ended: what was written is played and ends at zero. If that fails, dropping the device sets it to zero.
     let _ = device.finish();
 }
 
@@ -251,7 +251,7 @@ fn open(
     body: &[u8],
 ) -> Result<Box<dyn Device>, DeviceError> {
     let opening: Opening = serde_json::from_slice(body)
-        .map_err(|error| DeviceError::Told(format!("this is no player: {error}")))?;
+        .map_err(|error| DeviceError::Told(format!("invalid first message: {error}")))?;
     let known = find(&opening.device)?;
     let settings = Settings::from_lines(known.descriptor(), &opening.settings)?;
     let format = StreamFormat {

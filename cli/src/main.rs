@@ -35,8 +35,8 @@ use commands::Command;
 
 /// Texture assets for touch: fit, inspect, measure and play them.
 ///
-/// A recording of a finger sliding over a surface goes in; a `.htex` file of a few hundred bytes
-/// comes out, with models of its spectrum and the measure of how near each comes.
+/// Turns a recording of a finger sliding over a surface into a `.htex` file of a few hundred bytes,
+/// with models of its spectrum and the measured error of each.
 #[derive(Parser)]
 #[command(name = "htex", version, max_term_width = 100, after_help = first_steps())]
 struct Cli {

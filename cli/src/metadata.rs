@@ -1,4 +1,4 @@
-//! Arguments that say what a texture is: its metadata.
+//! Arguments for a texture's metadata.
 
 use clap::Args;
 use htex_format::{Manifest, Severity, check_doi, check_license};
@@ -6,7 +6,7 @@ use htex_format::{Manifest, Severity, check_doi, check_license};
 use crate::failure::Failure;
 use crate::output::warn;
 
-/// What a texture is, who made it, and how it was recorded.
+/// Metadata: what a texture is, who made it, and how it was recorded.
 #[derive(Args)]
 #[command(next_help_heading = "Metadata")]
 pub(crate) struct MetadataArgs {
@@ -26,7 +26,7 @@ pub(crate) struct MetadataArgs {
     #[arg(long, value_name = "TEXT")]
     description: Option<String>,
 
-    /// Words to find it by, comma-separated; may be given several times
+    /// Tags, comma-separated; may be given several times
     #[arg(
         long,
         visible_alias = "tags",
@@ -53,14 +53,14 @@ pub(crate) struct MetadataArgs {
 }
 
 impl MetadataArgs {
-    /// Whether anything was given.
+    /// Whether any metadata was given.
     pub(crate) fn is_given(&self) -> bool {
         let texts = [&self.name, &self.author, &self.license, &self.description];
         let more = [&self.source, &self.doi, &self.sensor, &self.finger];
         self.tag.is_some() || texts.into_iter().chain(more).any(Option::is_some)
     }
 
-    /// Says early what the asset's validation would say at the end.
+    /// Reports early the errors that the asset's validation would find.
     pub(crate) fn check(&self) -> Result<(), Failure> {
         if self
             .name
@@ -93,7 +93,7 @@ impl MetadataArgs {
         Ok(())
     }
 
-    /// Puts what was given into a manifest; an empty text removes what was there.
+    /// Writes the given metadata into a manifest; an empty text removes an entry.
     pub(crate) fn apply(&self, manifest: &mut Manifest) {
         if let Some(name) = &self.name {
             manifest.name.clone_from(name);

@@ -1,4 +1,4 @@
-//! Models and their options, as the command line names them.
+//! Models and their options on the command line.
 
 use htex_author::ModelRequest;
 use htex_host::{LoadedModel, Registry};

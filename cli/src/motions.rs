@@ -1,4 +1,4 @@
-//! A live motion, read from lines and handed to the loop that plays, without a lock.
+//! A live motion, read from lines and passed to the playing loop without a lock.
 
 use std::io::BufRead;
 use std::thread;
@@ -9,34 +9,34 @@ use rtrb::{Consumer, Producer, RingBuffer};
 
 /// Motions that may wait for the player.
 const ROOM: usize = 1024;
-/// How long the reader waits for room.
+/// Time between two tries of the reader when the queue is full.
 const WAIT: Duration = Duration::from_millis(1);
 
-/// Motions as they come in.
+/// The queue of incoming motions.
 pub(crate) struct Motions(Consumer<Finger>);
 
-/// What has come since the last look.
+/// What has arrived since the last call.
 pub(crate) enum Moved {
     /// The newest motion.
     To(Finger),
     /// Nothing new.
     Not,
-    /// There will be no more.
+    /// The input has ended.
     Ended,
 }
 
 impl Motions {
-    /// Reads lines `speed_mm_s force_n [x_mm y_mm]` from standard input in a thread of its own. A line
-    /// that is none is told of, with its number, and passed over.
+    /// Reads lines `speed_mm_s force_n [x_mm y_mm]` from standard input in a thread of its own. An
+    /// invalid line is reported with its number and skipped.
     pub(crate) fn from_stdin() -> Self {
         let (sender, receiver) = RingBuffer::new(ROOM);
         thread::spawn(move || read(std::io::stdin().lock(), sender));
         Self(receiver)
     }
 
-    /// What has come since the last look.
+    /// What has arrived since the last call.
     pub(crate) fn look(&mut self) -> Moved {
-        // Asked before the ring is emptied, so that nothing is missed that came before the end.
+        // Read before the ring is emptied, so that no motion before the end is missed.
         let is_ended = self.0.is_abandoned();
         let mut newest = None;
         while let Ok(finger) = self.0.pop() {
@@ -70,7 +70,7 @@ fn read(lines: impl BufRead, mut sender: Producer<Finger>) {
             }
             thread::sleep(WAIT);
         }
-        // There is room, and only this thread fills it.
+        // There is space, and only this thread fills it.
         let _ = sender.push(finger);
     }
 }

@@ -1,4 +1,4 @@
-//! What goes to standard output and standard error.
+//! Standard output and standard error.
 
 use std::io::{ErrorKind, Write};
 use std::path::Path;
@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use crate::failure::Failure;
 
-/// A line on standard error, which may be gone: unlike `eprintln!` it does not panic then.
+/// Prints a line on standard error; unlike `eprintln!` it does not panic when that is closed.
 macro_rules! tell {
     ($($words:tt)*) => {{
         use std::io::Write as _;
@@ -19,8 +19,8 @@ macro_rules! tell {
 }
 pub(crate) use tell;
 
-/// Writes text to standard output; what a stranger wrote into a line of it steers no terminal. A reader that has gone
-/// away (`| head`) is not an error.
+/// Writes text to standard output with control characters escaped, since it may quote untrusted files. A reader that has ended
+/// (`| head`) is not an error.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let lines: String = text
         .split_inclusive('\n')
@@ -48,7 +48,7 @@ pub(crate) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     write(&(text + "\n"))
 }
 
-/// A value all of whose text is harmless in a line of a terminal.
+/// The value with control characters in its texts escaped.
 pub(crate) fn tamed<T: Serialize + DeserializeOwned + Clone>(value: &T) -> T {
     let mut json = serde_json::to_value(value).unwrap_or_default();
     tame(&mut json);
@@ -72,26 +72,26 @@ fn tame(value: &mut Value) {
     }
 }
 
-/// A path in a line of text.
+/// A path with control characters escaped.
 pub(crate) fn shown(path: &Path) -> String {
     plain(&path.display().to_string()).into_owned()
 }
 
-/// Tells the user of something that is no failure.
+/// Prints a warning.
 pub(crate) fn warn(warnings: &[String]) {
     for warning in warnings {
         tell!("warning: {}", plain(warning));
     }
 }
 
-/// Tells the user of something worth knowing.
+/// Prints a note.
 pub(crate) fn note(notes: &[String]) {
     for note in notes {
         tell!("note: {}", plain(note));
     }
 }
 
-/// Writes a file beside its place and moves it there.
+/// Writes a file under a temporary name beside it and renames it.
 pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     htex_format::write_file(path, bytes).map_err(|error| Failure::write(path, error))
 }

@@ -1,4 +1,4 @@
-//! What a command may write over: never what it reads.
+//! Protects a command's inputs from being overwritten by its outputs.
 
 use std::fs::Metadata;
 use std::path::Path;
@@ -6,9 +6,9 @@ use std::path::Path;
 use crate::failure::Failure;
 use crate::output::shown;
 
-/// Refuses outputs that are inputs, or each other, under whatever names.
+/// Refuses outputs that are inputs, or each other, under any name.
 ///
-/// Inputs that are not there are whoever reads them to tell.
+/// Inputs that do not exist are reported by the code that reads them.
 pub(crate) fn check_outputs<'a>(
     outputs: impl IntoIterator<Item = &'a Path>,
     inputs: impl IntoIterator<Item = &'a Path>,
@@ -33,7 +33,7 @@ pub(crate) fn check_outputs<'a>(
     Ok(())
 }
 
-/// Whether two paths lead to one file, links followed; of files that are not there, whether they would.
+/// Whether two paths lead to the same file, following links; for files that do not exist, whether they would.
 fn is_same(a: &Path, b: &Path) -> bool {
     match (std::fs::metadata(a), std::fs::metadata(b)) {
         (Ok(a_is), Ok(b_is)) => is_one_file((a, &a_is), (b, &b_is)),
@@ -55,7 +55,7 @@ fn is_one_file((a, _): (&Path, &Metadata), (b, _): (&Path, &Metadata)) -> bool {
     place(a).is_some_and(|a| Some(a) == place(b))
 }
 
-/// The folder as it really is, and the name in it.
+/// The canonical folder, and the name in it.
 fn place(path: &Path) -> Option<std::path::PathBuf> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,

@@ -11,12 +11,12 @@ use crate::failure::Failure;
 use crate::guardian::{self, Guarded};
 use crate::scenes::Ready;
 
-/// Longest wait for room in a device; one that takes nothing for so long is stuck.
+/// Longest wait for space in a device; one that takes nothing for this long is reported as stuck.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// Longest block of a motion that is given as the scene plays, seconds.
+/// Longest block with a live motion, seconds.
 const LIVE_BLOCK_S: f64 = 0.005;
 
-/// Frames of a block: the device's, or fewer where the finger is waited for.
+/// Frames in a block: the device's, or fewer with a live motion.
 fn block_frames(ready: &Ready, plan: &Plan) -> u32 {
     let usual = ready.capabilities.block_frames.max(1);
     match ready.scene.scene.motion {
@@ -27,7 +27,7 @@ fn block_frames(ready: &Ready, plan: &Plan) -> u32 {
     }
 }
 
-/// An open device and the blocks that go to it.
+/// An open device and the renderer that feeds it.
 pub(crate) struct Output {
     pub(crate) device: Box<dyn Device>,
     block: Vec<f32>,
@@ -35,7 +35,7 @@ pub(crate) struct Output {
     /// When the first block was made, for a device without a clock in a scene without an end.
     pace: Option<Instant>,
     frames: u64,
-    /// What went wrong on the way; the scene then goes to silence, and this is said.
+    /// The first error; the scene then fades to silence, and the error is reported.
     failed: Option<String>,
     /// Whether the device has a clock of its own.
     clocked: bool,
@@ -77,7 +77,7 @@ impl Output {
         }
     }
 
-    /// Takes blocks of at most 10 ms no faster than they last, as a device with a clock would.
+    /// Takes blocks of at most 10 ms in real time, as a device with a clock would.
     pub(crate) fn paced(mut self) -> Self {
         let most = (self.rate_hz / 100.0).ceil().max(1.0) as usize;
         self.block.truncate(most);
@@ -119,10 +119,10 @@ impl Output {
         self.frames
     }
 
-    /// Plays what is written, and keeps the result, unless something failed on the way.
+    /// Plays what was written, and keeps the result unless there was an error.
     pub(crate) fn finish(mut self) -> Result<htex_device::Status, Failure> {
         if let Some(error) = self.failed.take() {
-            // What leads to zero is still to come out; a file is not kept.
+            // The fade to zero still has to be played; a file is not kept.
             if self.clocked {
                 self.device.finish()?;
             }

@@ -1,4 +1,4 @@
-//! Arguments that say where models come from, shared by the commands that use them.
+//! Arguments for the search of models, shared by the commands that use them.
 
 use std::path::{Path, PathBuf};
 
@@ -33,12 +33,12 @@ pub(crate) struct PluginArgs {
 }
 
 impl PluginArgs {
-    /// The plugins that are named.
+    /// The named plugins.
     pub(crate) fn files(&self) -> &[PathBuf] {
         &self.plugin
     }
 
-    /// The models there are; what shadows what is told on standard error.
+    /// The models that are found; those that shadow others are reported on standard error.
     pub(crate) fn registry(&self) -> Result<Registry, Failure> {
         self.registry_with(&[])
     }
@@ -51,12 +51,12 @@ impl PluginArgs {
         Ok(registry)
     }
 
-    /// As [`Self::registry`], without telling.
+    /// As [`Self::registry`], without reports.
     pub(crate) fn registry_quietly(&self) -> Result<Registry, Failure> {
         self.search(&[])
     }
 
-    /// The models there are when nobody names any, without telling.
+    /// The models that are found without arguments, without reports.
     pub(crate) fn installed() -> Result<Registry, Failure> {
         Ok(Registry::search(&Search {
             limits: WasmLimit::all(&[]),
@@ -64,7 +64,7 @@ impl PluginArgs {
         })?)
     }
 
-    /// What a WASM model may use.
+    /// The limits of WASM models.
     pub(crate) fn limits(&self) -> WasmLimits {
         WasmLimit::all(&self.wasm_limit)
     }
@@ -79,24 +79,24 @@ impl PluginArgs {
     }
 }
 
-/// Where models come from when an asset is played, which may bring its own.
+/// Where models come from when an asset is played, which may embed its own.
 #[derive(Args)]
 pub(crate) struct PlayerArgs {
     #[command(flatten)]
     plugins: PluginArgs,
 
-    /// Do not run models that the asset brings along (they run in a sandbox)
+    /// Do not run models embedded in the asset (they run in a sandbox)
     #[arg(long)]
     no_embedded_plugins: bool,
 }
 
 impl PlayerArgs {
-    /// The models there are, without those that assets bring along.
+    /// The models that are found, without those that assets embed.
     pub(crate) fn registry(&self) -> Result<Registry, Failure> {
         self.plugins.registry()
     }
 
-    /// Whether models that assets bring along may run.
+    /// Whether embedded models may run.
     pub(crate) fn embedded(&self) -> bool {
         !self.no_embedded_plugins
     }

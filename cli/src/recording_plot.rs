@@ -1,4 +1,4 @@
-//! A recording as a picture: what is read of it, and what is left out.
+//! A picture of a recording: the segments that are read, and those left out.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Arguments that say how recordings are read, shared by the commands that read them.
+//! Arguments for reading recordings, shared by the commands that read them.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use htex_format::{Quantity, Report};
 
 use crate::failure::Failure;
 
-/// How a recording is read.
+/// Options of reading recordings.
 #[derive(Args)]
 #[command(next_help_heading = "Reading recordings")]
 pub(crate) struct RecordingArgs {
@@ -119,7 +119,7 @@ impl RecordingArgs {
         self.strict
     }
 
-    /// Reads recordings and puts each beside what was said of its condition.
+    /// Reads recordings, each with the condition that was given for it.
     pub(crate) fn read(&self, files: &[PathBuf]) -> Result<Vec<Take>, Failure> {
         let options = self.read_options()?;
         let given = self.conditions(files.len())?;
@@ -140,7 +140,7 @@ impl RecordingArgs {
         Ok(Take { recording, given })
     }
 
-    /// What is found in one recording.
+    /// The findings in one recording.
     pub(crate) fn validate(&self, file: &Path) -> Result<Report, Failure> {
         let given = self.conditions(1)?.pop().unwrap_or_default();
         let (read, options) = (self.read_options()?, self.spectrum_options()?);
@@ -195,7 +195,7 @@ impl RecordingArgs {
         })
     }
 
-    /// What was not left at its default, for the asset's provenance.
+    /// The options that differ from their defaults, for the asset's provenance.
     pub(crate) fn recorded_options(&self) -> BTreeMap<String, String> {
         let name = |value: &dyn std::fmt::Display| Some(value.to_string());
         let file = |path: &PathBuf| path.file_name().map(|f| f.to_string_lossy().into_owned());
@@ -241,13 +241,13 @@ impl RecordingArgs {
     }
 }
 
-/// The name of a choice that is not the default.
+/// The name of a choice if it is not the default.
 fn value_name<T: ValueEnum + PartialEq>(value: T, default: T) -> Option<String> {
     let chosen = (value != default).then_some(value)?;
     chosen.to_possible_value().map(|v| v.get_name().to_owned())
 }
 
-/// Reads `speed=80,force=0.4`; what it leaves out stays as it was.
+/// Reads `speed=80,force=0.4`; a quantity that is left out stays as it was.
 fn parse_condition(text: &str, mut condition: Exploration) -> Result<Exploration, Failure> {
     let wrong = |what: &str| {
         Failure::Usage(format!(
@@ -261,7 +261,7 @@ fn parse_condition(text: &str, mut condition: Exploration) -> Result<Exploration
         let value: f64 = value
             .trim()
             .parse()
-            .map_err(|_| wrong("a value is no number"))?;
+            .map_err(|_| wrong("a value is not a number"))?;
         match key.trim() {
             "speed" | "speed_mm_s" => condition.speed_mm_s = Some(value),
             "force" | "force_n" => condition.force_n = Some(value),

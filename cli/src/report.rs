@@ -1,11 +1,11 @@
-//! What a report shows of a fitted asset.
+//! The parts of a report about a fitted asset.
 
 use htex_author::FittedAsset;
 use htex_report::{ModelResult, Texture};
 
 use crate::assets::{AssetSummary, RepresentationSummary, motion_text, short_name};
 
-/// A fitted asset, as its report needs it.
+/// A fitted asset with what its report needs.
 pub(crate) struct Reported<'a> {
     pub(crate) fitted: &'a FittedAsset,
     /// The asset with the models that play it.
@@ -58,7 +58,7 @@ impl Reported<'_> {
         })
     }
 
-    /// What a model made of the texture at a condition; none where it was not fitted there.
+    /// A model's curve at a condition; `None` where it was not fitted there.
     fn model(
         &self,
         representation: &RepresentationSummary,

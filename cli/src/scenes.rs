@@ -1,4 +1,4 @@
-//! Arguments that say what a scene is played with, shared by the commands that play scenes.
+//! Arguments for models and devices of scenes, shared by the commands that play scenes.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use crate::outputs::check_outputs;
 use crate::plugins::{PlayerArgs, PluginArgs};
 use crate::schemas::Named;
 
-/// What a finger does that nobody describes: the paper's usual speed (mm/s) and force (newtons).
+/// Default motion: the paper's usual speed (mm/s) and force (newtons).
 pub(crate) const USUAL: (f64, f64) = (80.0, 0.4);
 
 /// Models and devices for a scene.
@@ -30,7 +30,7 @@ pub(crate) struct SceneArgs {
     devices: DeviceArgs,
 }
 
-/// Which device, and how it is set.
+/// A device and its settings.
 #[derive(Args)]
 pub(crate) struct ChoiceArgs {
     /// The device, by short name or id, in place of the scene's; its settings are then the defaults
@@ -47,7 +47,7 @@ pub(crate) struct ChoiceArgs {
 }
 
 impl ChoiceArgs {
-    /// What is said, `output` being where a file goes when nobody says it. A rehearsal opens no device.
+    /// The device and settings that were given; `output` is the default file. A rehearsal opens no device.
     pub(crate) fn to_override(
         &self,
         output: Option<&Path>,
@@ -64,12 +64,12 @@ impl ChoiceArgs {
         })
     }
 
-    /// Refuses a device that is not there because this program was built without it.
+    /// Refuses a device that this build lacks.
     pub(crate) fn check_built(name: &str) -> Result<(), Failure> {
         DeviceArgs::missing(name).map_or(Ok(()), |why| Err(why.into()))
     }
 
-    /// Refuses to replace a file that nobody named: the scene's name with an ending.
+    /// Refuses to replace a file that was not named: the default, which is the scene's name with an extension.
     pub(crate) fn check_unnamed(&self, ready: &Ready) -> Result<(), Failure> {
         let given = self.settings.given()?;
         let settings = ready.device.descriptor().settings.iter();
@@ -77,7 +77,7 @@ impl ChoiceArgs {
             let path = ready.settings().text(&setting.name);
             if !given.contains_key(&setting.name) && Path::new(path).symlink_metadata().is_ok() {
                 return Err(Failure::Usage(format!(
-                    "{path} is there already; name the file to write, or to replace, by --set {}=FILE",
+                    "{path} exists; name the file to write, or to replace, by --set {}=FILE",
                     setting.name
                 )));
             }
@@ -85,7 +85,7 @@ impl ChoiceArgs {
         Ok(())
     }
 
-    /// Whether a file to write is among the settings that are given.
+    /// Whether the given settings name a file to write.
     pub(crate) fn names_output(&self) -> Result<bool, Failure> {
         Ok(self.settings.given()?.contains_key("path"))
     }
@@ -163,7 +163,7 @@ impl SceneArgs {
         htex_scene::validate(file, &around).map_err(|error| Failure::load(file, error))
     }
 
-    /// The schema of the settings of a scene's device, where it is known here.
+    /// The schema of the settings of a scene's device, if the device is known.
     pub(crate) fn settings_schema(scene: &Value) -> Result<Option<Named>, Failure> {
         let name = scene.pointer("/device/adapter").and_then(Value::as_str);
         let devices = DeviceArgs::default().devices_quietly()?;
@@ -193,8 +193,8 @@ impl Ready {
     }
 }
 
-/// What a device can do. A display's that is not there is known from its settings, as far as a plan or
-/// a file needs it.
+/// The capabilities of a device. Those of a display that is not connected are derived from its settings, as far as a plan or
+/// a file needs them.
 fn capabilities(
     device: &KnownDevice,
     settings: &Settings,
@@ -214,7 +214,7 @@ fn capabilities(
     given.insert("path".to_owned(), "display.wav".to_owned());
     let like = Settings::resolve(file.descriptor(), None, &given)?;
     let able = file.adapter.capabilities(&like).map_err(|_| missing)?;
-    let sentence = "the device is not there: limit and carrier are those of its settings, rates those of a file";
+    let sentence = "the device is not connected: limit and carrier are those of its settings, rates those of a file";
     note(&[sentence.to_owned()]);
     Ok(able)
 }
@@ -243,7 +243,7 @@ pub(crate) fn costs_file() -> Option<PathBuf> {
     htex_host::folders::cache().map(|folder| folder.join("costs.json"))
 }
 
-/// Costs measured here, else those that the program brings along.
+/// Costs measured on this machine, else the built-in ones.
 pub(crate) fn costs() -> Costs {
     let kept = costs_file().and_then(|file| Costs::load(&file));
     kept.unwrap_or_else(Costs::embedded)

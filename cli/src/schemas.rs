@@ -1,4 +1,4 @@
-//! What JSON Schemas say of documents, beside the findings of their own rules.
+//! Violations of JSON Schemas, beside the findings of the rules.
 
 use std::path::{Path, PathBuf};
 
@@ -22,7 +22,7 @@ pub(crate) const ABSENT: Option<&str> = if cfg!(feature = "schemas") {
     )
 };
 
-/// Findings that a report holds, before it says that there are more.
+/// Most findings in a report.
 const KEPT: usize = 100;
 
 /// A schema of this project, by its file in `spec/schemas`.
@@ -56,7 +56,7 @@ impl Named {
         Ok(Self { file, schema })
     }
 
-    /// Adds what the schema says: to the finding that says the same, else as a finding of its own.
+    /// Adds the schema's violations: each to the finding about the same place, else as a finding of its own.
     pub(crate) fn hold(&self, document: &Value, report: &mut Report) {
         for violation in self.schema.violations(document) {
             let rule = format!("{}#{}", self.file, violation.rule);
@@ -71,8 +71,7 @@ impl Named {
     }
 }
 
-/// Whether a finding at one place says what a schema says at the other: at the same place, further
-/// inside, or around it.
+/// Whether a finding and a violation are about the same place: equal pointers, or one inside the other.
 fn covers(finding: &str, violation: &str) -> bool {
     let inside = |inner: &str, outer: &str| {
         let rest = inner.strip_prefix(outer);
@@ -113,7 +112,7 @@ fn push(
     }));
 }
 
-/// The schema that an extension's author gives: `com.vendor.NAME/REVISION=FILE`.
+/// The schema of an extension's author: `com.vendor.NAME/REVISION=FILE`.
 pub(crate) struct ExtensionSchema {
     name: String,
     file: PathBuf,
@@ -160,7 +159,7 @@ fn file_name(file: &Path) -> String {
     name.to_string_lossy().into_owned()
 }
 
-/// The schema of a device's settings, as a scene gives them: text, numbers, true and false.
+/// The schema of a device's settings in a scene: strings, numbers and booleans.
 pub(crate) fn settings(device: &htex_device::Descriptor) -> Result<Named, Failure> {
     let mut properties = Map::new();
     for setting in &device.settings {

@@ -1,24 +1,24 @@
-//! What Ctrl-C, a terminal that hangs up, and a request to end do.
+//! Handling of Ctrl-C, of a closed terminal, and of a request to end.
 
 use std::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
 
 use crate::failure::Failure;
 use crate::output::tell;
 
-/// What an interrupted program answers by convention.
+/// Exit status of an interrupted program, by convention.
 const INTERRUPTED: i32 = 130;
 
-/// Ends the program at once, files that are being written removed.
+/// Ends the program at once and removes unfinished files.
 const ENDS: u8 = 0;
-/// Is asked for by [`interrupted`]: what plays goes to zero first.
+/// Sets the flag that [`interrupted`] returns: playback goes to zero first.
 const IS_ASKED_FOR: u8 = 1;
-/// Nothing: only the end of its pipe ends a guardian.
+/// Ignored: only the end of its pipe ends a guardian.
 const IGNORED: u8 = 2;
 
 static MEANING: AtomicU8 = AtomicU8::new(ENDS);
 static SIGNALS: AtomicUsize = AtomicUsize::new(0);
 
-/// From now on signals end the program, and leave no unfinished file.
+/// From now on signals end the program and remove unfinished files.
 pub(crate) fn handle() -> Result<(), Failure> {
     let handler = || match MEANING.load(Ordering::Relaxed) {
         ENDS => {
@@ -39,18 +39,18 @@ pub(crate) fn handle() -> Result<(), Failure> {
         .map_err(|error| Failure::Other(format!("cannot catch Ctrl-C: {error}")))
 }
 
-/// From now on a signal is answered by [`interrupted`]. The way to zero is never cut short: a second signal says that it
-/// is being gone, and each further one what may be standing.
+/// From now on a signal sets [`interrupted`]. The ramp to zero is never cut short: a second signal prints that the ramp
+/// is running, and each further one which voltage may remain.
 pub(crate) fn ask() {
     MEANING.store(IS_ASKED_FOR, Ordering::Relaxed);
 }
 
-/// From now on signals do nothing.
+/// From now on signals are ignored.
 pub(crate) fn ignore() {
     MEANING.store(IGNORED, Ordering::Relaxed);
 }
 
-/// Whether the user wants an end.
+/// Whether a signal has asked for the end.
 pub(crate) fn interrupted() -> bool {
     SIGNALS.load(Ordering::Relaxed) > 0
 }

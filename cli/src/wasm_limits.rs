@@ -1,4 +1,4 @@
-//! Limits of WASM models by name, as a person gives them.
+//! Limits of WASM models by name, for the command line.
 
 use std::time::Duration;
 
@@ -17,7 +17,7 @@ const COMPILE: &str = "compile-module";
 /// Sets a limit to a value.
 type Set = fn(&mut WasmLimits, u64);
 
-/// Name, largest value, and what it sets.
+/// Name, largest value, and the limit that is set.
 const LIMITS: [(&str, u64, Set); 16] = [
     ("module-mib", 1024, |l, n| {
         l.module_bytes = (n as usize) << 20
@@ -77,7 +77,7 @@ impl WasmLimit {
         let Some((_, most, set)) = LIMITS.iter().find(|(known, ..)| *known == name) else {
             let known: Vec<&str> = LIMITS.iter().map(|(name, ..)| *name).collect();
             return Err(format!(
-                "there is no limit `{name}`; there are {}",
+                "unknown limit `{name}`; known are {}",
                 known.join(", ")
             ));
         };

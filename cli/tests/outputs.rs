@@ -206,14 +206,10 @@ fn a_scene_names_no_output() {
                 .next()
                 .is_none()
         );
-        // A second time it is there already.
+        // The second time it exists.
         let again = place.run(&["play", ".s.scene.json"]);
         assert_eq!(again.code(), 2, "{}", again.error());
-        assert!(
-            again.error().contains("s.raw is there already"),
-            "{}",
-            again.error()
-        );
+        assert!(again.error().contains("s.raw exists"), "{}", again.error());
         std::fs::remove_file(place.path("s.raw")).unwrap();
     }
     let rendered = ["render", "s.scene.json"];

@@ -1,4 +1,4 @@
-//! What several suites need: golden vectors and their rule of agreement.
+//! Shared by several suites: golden vectors and their tolerances.
 #![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
 
 pub mod measure;
@@ -14,14 +14,14 @@ pub fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// Bytes that some data takes as a zlib stream of level 9.
+/// Size of data as a zlib stream of level 9, bytes.
 pub fn deflated_bytes(data: &[u8]) -> usize {
     let mut stream = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
     stream.write_all(data).unwrap();
     stream.finish().unwrap().len()
 }
 
-/// One golden case: an input, what must come out, and how nearly.
+/// One golden case: an input, the expected output, and its tolerance.
 pub struct Golden(Value);
 
 impl Golden {
@@ -78,7 +78,7 @@ impl Golden {
         numbers(self.0["expected"].pointer(pointer).unwrap_or(&Value::Null))
     }
 
-    /// Holds `got` to the expected values: `|got - expected| <= atol + rtol·|expected|`.
+    /// Compares `got` with the expected values: `|got - expected| <= atol + rtol·|expected|`.
     pub fn hold(&self, pointer: &str, got: &[f64]) {
         let expected = self.expected(pointer);
         let tolerance = |key: &str| self.0[key].as_f64().unwrap();

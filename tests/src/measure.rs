@@ -1,4 +1,4 @@
-//! What a voice's samples hold, to be compared with what its model says.
+//! Measurements of a voice's samples, for comparison with its model's magnitude.
 
 use htex_dsp::Band;
 use htex_dsp::spectrum::SegmentAnalyzer;

@@ -1,4 +1,4 @@
-//! What the bands model promises of recordings: third-octave bands to half a decibel in 24 bytes, through
+//! Promises of the bands model on recordings: third-octave bands to half a decibel in 24 bytes, through
 //! the file; nine energies to half a step; and more bands for more bytes.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
@@ -9,7 +9,7 @@ use htex_author::{
 use htex_format::{Asset, Quality};
 use htex_host::Registry;
 
-/// The model's block at one condition, after a journey through a file.
+/// The model's block at one condition, written to a file and read back.
 struct Kept {
     bytes: usize,
     parameters: Vec<f64>,
@@ -55,7 +55,7 @@ fn keep(take: &Take, options: &[(&str, &str)]) -> Kept {
     }
 }
 
-/// Recordings that no number of the model was chosen by: other pieces of the surfaces, other motions.
+/// Recordings that were not used to choose the model's constants: other pieces of the surfaces, other motions.
 fn unseen() -> Vec<SimulationOptions> {
     let motions = [
         (80.0, 0.4, 31),
@@ -104,7 +104,7 @@ fn third_octaves_of_unseen_recordings_in_24_and_48_bytes() {
             // Twenty seconds of noise scatter by 0.2 dB themselves, and lines play a little wider.
             let played_db = quality.samples_band_error_rms_db.unwrap();
             assert!(played_db <= 0.8, "{quality:?}");
-            // What the file keeps is what was fitted.
+            // The file keeps the fitted values.
             assert_eq!(quality.rounding_error_db.unwrap_or(0.0), 0.0);
         }
     }

@@ -1,5 +1,5 @@
-//! Values, cells and bytes of the seeds of the fuzz targets, at every edge: what a fuzzer finds by
-//! chance. Modules and signatures are left to it: an execution of those takes too long.
+//! The fuzz targets on all inputs that differ from their seeds in an extreme value, cell or byte.
+//! Modules and signatures are left to the fuzzer: an execution of those takes too long.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 use std::path::Path;
@@ -31,7 +31,7 @@ fn all_edges(target: &str, edges: Edges) {
     assert!(taken > 0 && taken < runs, "{target}: {taken} of {runs}");
 }
 
-/// Keeps the input, and says how to keep it for good.
+/// Keeps the input of a failure, and prints how to add it to the regressions.
 fn kept(target: &str, input: &[u8]) -> String {
     let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("edge-of-{target}"));
     std::fs::write(&file, input).unwrap();

@@ -1,4 +1,4 @@
-//! Stored fields are played by their names.
+//! Stored fields are matched by their names.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use htex::{Asset, Band, Error, Registry, VoiceOptions};

@@ -1,4 +1,4 @@
-//! Levels belong to the shapes that files store.
+//! Levels are those of the shapes as stored.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_author::{Level, SpectrumRef, stored_fields, stored_level};
@@ -42,7 +42,7 @@ struct Stored {
     shape: Vec<f64>,
 }
 
-/// None where the model has nothing to fit: sPeak, of a spectrum without a peak.
+/// `None` where the model has nothing to fit: sPeak, of a spectrum without a peak.
 fn stored(model: &LoadedModel, options: &[f64], grid: &[f64], magnitude: &[f64]) -> Option<Stored> {
     let request = FitRequest {
         band: BAND,
@@ -87,8 +87,8 @@ fn off_db(level: f64, wanted: f64) -> f64 {
     (20.0 * (level / wanted).log10()).abs()
 }
 
-/// What each model's definition says the level of its fit is, for the stored shape, each computed by another way
-/// than the model's own; one of them where a fit may end in several ways.
+/// The level of each model's fit by its definition, for the stored shape, computed in another way
+/// than by the model; one of them where a fit may end in several ways.
 fn wanted(model: &LoadedModel, grid: &[f64], magnitude: &[f64], stored: &Stored) -> Vec<f64> {
     let bin = |hz: f64| (hz / 5.0) as usize - 4;
     match model.short_name() {
@@ -184,7 +184,7 @@ fn sbeta() {
 
 #[test]
 fn sslope() {
-    // No multiple of the steps in which files keep orders.
+    // Not a multiple of the steps in which files store orders.
     hold("sslope", &[("rounding_db_per_decade", "1.37")]);
 }
 

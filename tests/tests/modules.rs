@@ -4,8 +4,8 @@
 use htex_tests::deflated_bytes;
 use xtask::plugins;
 
-/// Most deflated bytes of each model's module: what it had when it was measured, and about a fiftieth more
-/// for other compilers. Who raises one says in `docs/modules.md` what the bytes are for.
+/// Most deflated bytes of each model's module: the measured size and about 2 % for other compilers. A change that raises
+/// one states the reason in `docs/modules.md`.
 const BOUNDS: [(&str, usize); 6] = [
     ("ar", 40_700),
     ("mfcc", 30_700),
@@ -33,7 +33,7 @@ fn modules_stay_small() {
             bytes <= bound,
             "{model}: {bytes} deflated bytes; {bound} are allowed"
         );
-        // No program that writes numbers or JSON, and no panic's text, is linked in.
+        // No code that formats numbers or JSON, and no text of a panic, is linked in.
         for foreign in ["serde", "core::fmt", "panicked at", "called `Option"] {
             let foreign = foreign.as_bytes();
             let found = module.windows(foreign.len()).any(|part| part == foreign);

@@ -1,4 +1,4 @@
-//! What the pages in `docs` name is there: tests, files, functions, options and their defaults.
+//! Tests, files, functions, options and defaults that the pages in `docs` name exist.
 #![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
 use std::collections::BTreeSet;
@@ -32,7 +32,7 @@ fn page(name: &str) -> String {
     std::fs::read_to_string(workspace().join(name)).unwrap()
 }
 
-/// What stands between backticks.
+/// The texts between backticks.
 fn code(text: &str) -> impl Iterator<Item = &str> {
     text.split('`').skip(1).step_by(2)
 }
@@ -63,7 +63,7 @@ fn the_tests_that_the_pages_name_are_there() {
                     true => root.join(test).is_file(),
                     false => known.contains(test) || test.starts_with('-'),
                 };
-                assert!(is_there, "{name}: {test} is not there: {row}");
+                assert!(is_there, "{name}: {test} does not exist: {row}");
                 seen += 1;
             }
         }

@@ -1,5 +1,5 @@
-//! What `spec/models` and `spec/playing-conformance` hold is what the models are and give, and a reader
-//! written from the specification reads it too.
+//! `spec/models` and `spec/playing-conformance` agree with the models, and a reader
+//! written from the specification agrees with them.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 #[path = "common/playing/mod.rs"]
@@ -11,27 +11,27 @@ use std::process::Command;
 
 use htex_tests::workspace;
 use serde_json::Value;
+use xtask::generated::{file_with, only};
 
 /// Relative difference that compilers and versions of a library may make.
 const NEAR: f64 = 1e-9;
 
 #[test]
-fn the_files_are_fresh() {
+fn generated_files_are_fresh() {
     let files = playing::files();
     for (path, bytes) in &files {
-        let kept = fs::read(path).unwrap_or_default();
-        let fresh = match path.extension().is_some_and(|e| e == "json") {
-            true => near(&parsed(&kept), &parsed(bytes)),
-            false => kept == *bytes,
-        };
-        assert!(fresh, "{} is stale: cargo xtask generate", path.display());
+        file_with(path, bytes, |kept| match path.ends_with(".json") {
+            true => near(&parsed(kept), &parsed(bytes)),
+            false => kept == bytes,
+        });
     }
-    for folder in [playing::models_folder(), playing::cases_folder()] {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            assert!(files.iter().any(|file| file.0 == path), "{path:?} is stale");
-        }
+    for folder in [playing::MODELS, playing::CASES] {
+        only(folder, files.iter().map(|(path, _)| path.as_str()));
     }
+}
+
+fn cases_folder() -> PathBuf {
+    workspace().join(playing::CASES)
 }
 
 fn parsed(text: &[u8]) -> Value {
@@ -95,7 +95,7 @@ fn grouped(x: f64) -> String {
 fn every_model_has_cases() {
     let mut counts = std::collections::BTreeMap::new();
     let numbers = playing::files().into_iter();
-    for (_, bytes) in numbers.filter(|(path, _)| path.starts_with(playing::cases_folder())) {
+    for (_, bytes) in numbers.filter(|(path, _)| path.starts_with(playing::CASES)) {
         for case in parsed(&bytes)["cases"].as_array().into_iter().flatten() {
             *counts.entry(case["model"].to_string()).or_insert(0) += 1;
         }
@@ -104,17 +104,14 @@ fn every_model_has_cases() {
     assert!(counts.values().sum::<i32>() >= 200, "{counts:?}");
 }
 
-/// Valid files that this player does not play: one brings an empty module along, one has a field that a newer version
-/// of the model knows.
+/// Valid files that this player does not play: one embeds an empty module, one has a field of a newer version
+/// of the model.
 const NOT_PLAYED: [&str; 2] = ["valid_plugin.htex", "valid_field_of_newer_model.htex"];
 
-/// What is valid can be played, too.
+/// Valid files can be played.
 #[test]
 fn valid_conformance_files_are_played() {
-    let folders = [
-        workspace().join("spec/conformance"),
-        playing::cases_folder(),
-    ];
+    let folders = [workspace().join("spec/conformance"), cases_folder()];
     let mut played = 0;
     for entry in folders
         .iter()
@@ -122,7 +119,7 @@ fn valid_conformance_files_are_played() {
     {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        let sound = name.starts_with("valid") || path.starts_with(playing::cases_folder());
+        let sound = name.starts_with("valid") || path.starts_with(cases_folder());
         if !sound || !name.ends_with(".htex") || NOT_PLAYED.contains(&&name[..]) {
             continue;
         }
@@ -153,7 +150,7 @@ fn a_reader_written_from_the_text_agrees() {
     };
     let output = Command::new(&python)
         .arg(workspace().join("tests/peers/player.py"))
-        .arg(playing::cases_folder())
+        .arg(cases_folder())
         .output()
         .unwrap();
     print!("{}", String::from_utf8_lossy(&output.stdout));
@@ -161,7 +158,7 @@ fn a_reader_written_from_the_text_agrees() {
     assert!(output.status.success(), "{said}");
 }
 
-/// The Python with NumPy and SciPy that the environment names, else of the bench, else of the machine.
+/// The Python with NumPy and SciPy that the environment names, else that of the benchmark, else the system's.
 fn python() -> Option<PathBuf> {
     let named = std::env::var_os("HTEX_PYTHON").map(PathBuf::from);
     let own = workspace().join("target/peers/bin/python");

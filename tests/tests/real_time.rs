@@ -1,4 +1,4 @@
-//! What runs in the audio or haptic thread neither allocates nor frees.
+//! Code that runs in the audio or haptic thread does not allocate or free.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -16,7 +16,7 @@ thread_local! {
     static CALLS: Cell<usize> = const { Cell::new(0) };
 }
 
-/// Counts what a thread asks of the system's allocator.
+/// Counts a thread's calls of the system's allocator.
 struct Counting;
 
 // SAFETY: every call goes to the system's allocator as it came.
@@ -72,7 +72,7 @@ fn recorded_at(speeds_mm_s: &[f64]) -> Vec<u8> {
         }
     };
     let model = |model: &htex_host::LoadedModel| ModelRequest {
-        // The inverse with most work in it.
+        // The most expensive inverse.
         options: match model.short_name() {
             "mfcc" => model.options(&[("inverse", "nnls")]).unwrap(),
             _ => model.descriptor().default_options(),
@@ -89,7 +89,7 @@ fn recorded_at(speeds_mm_s: &[f64]) -> Vec<u8> {
     fitted.asset.to_bytes().unwrap()
 }
 
-/// Parameters of a model, of both conditions, as its own voice is retuned between them.
+/// Parameters of a model at both conditions, between which its voice is retuned.
 #[test]
 fn retuning_does_not_allocate() {
     let asset = asset();
@@ -216,7 +216,7 @@ fn following_the_finger_does_not_allocate_in_a_sandbox() {
     }
 }
 
-/// A scene's renderer, whatever its stages have to do.
+/// Renders a scene.
 #[test]
 fn a_scene_is_rendered_without_allocating() {
     let asset = asset();
@@ -252,7 +252,7 @@ fn a_scene_is_rendered_without_allocating() {
     }
 }
 
-/// Two surfaces side by side, every effect in, and a finger that does what it likes.
+/// Two surfaces side by side, every effect on, and an arbitrary motion.
 fn live_scene(asset: &Asset, model: &str) -> LoadedScene {
     let surface = |from: f64| file::Surface {
         region: Some(Region {

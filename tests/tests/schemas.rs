@@ -1,5 +1,5 @@
-//! The published schemas, and every conformance file beside them: by the `jsonschema` crate here, and
-//! by Ajv where Node and the package are.
+//! Validates every conformance file against the published schemas: by the `jsonschema` crate, and
+//! by Ajv where Node and the package are installed.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -12,8 +12,8 @@ use htex_schema::Schema;
 use htex_tests::workspace;
 use serde_json::{Value, json};
 
-/// Broken files that a schema refuses; what stands together, across objects or in other entries, it
-/// cannot see.
+/// Invalid files that a schema refuses. A schema cannot see rules across objects or in other
+/// entries.
 const REFUSED: &[&str] = &[
     "at_empty",
     "condition_duplicate",
@@ -56,7 +56,7 @@ const REFUSED: &[&str] = &[
     "version_unsupported",
 ];
 
-/// Broken scenes that a schema refuses.
+/// Invalid scenes that a schema refuses.
 const REFUSED_SCENES: &[&str] = &[
     "budget_invalid",
     "device_field_invalid",
@@ -85,7 +85,7 @@ fn json_of(path: &Path) -> Value {
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// The files of a folder whose names end so, without the end.
+/// The names in a folder with this ending, without it.
 fn stems(folder: &str, end: &str) -> Vec<String> {
     let all = fs::read_dir(spec(folder)).unwrap();
     let names = all.map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -188,7 +188,7 @@ fn schemas_name_themselves_and_use_the_standards_words_alone() {
     }
 }
 
-/// What Ajv is asked: every schema compiled in its strict mode, every document held to its own.
+/// The input for Ajv: every schema, compiled in its strict mode, and every document with its schema.
 fn questions(documents: &[(&str, &Documents)]) -> Value {
     let schemas: BTreeSet<String> = stems("schemas", ".json").into_iter().collect();
     let schemas: Vec<Value> = schemas

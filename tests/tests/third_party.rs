@@ -1,5 +1,5 @@
-//! Models as third parties write them, from source to sound: the examples and the templates are
-//! built, loaded, fitted and played.
+//! Models of third parties: the examples and the templates are built, loaded, fitted and
+//! played.
 #![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
 
 #[path = "common/builds.rs"]
@@ -13,7 +13,7 @@ use htex_host::{Band, Fit, FitRequest, HostError, LoadedModel, Motion, Status, S
 use htex_tests::measure::{RATE_HZ, distance_db, measured_spectrum, rms};
 use htex_tests::{deflated_bytes, smooth_spectrum, workspace};
 
-/// Most deflated bytes of a module as the template gives it, without any flag.
+/// Most deflated bytes of the template's module, built without flags.
 const TEMPLATE_BYTES: usize = 42_000;
 
 #[test]
@@ -84,7 +84,7 @@ fn the_template_in_rust() {
         let text = fs::read_to_string(templates().join("rust").join(from)).unwrap();
         fs::write(project.join(to), filled_in(&text)).unwrap();
     }
-    // The versions that are at hand.
+    // The versions of the lock file.
     fs::copy(workspace().join("Cargo.lock"), project.join("Cargo.lock")).unwrap();
     let model = load(&build_rust(&project, None));
     assert_eq!(model.id(), "com.example.trial");
@@ -176,8 +176,8 @@ fn comb_spectrum(grid: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// All that is asked of a model: its voice has its magnitude and level, follows its seed and no
-/// block size, changes without a click; spectra of nothing, and wrong parameters, are answered.
+/// The requirements of a model: its voice has its magnitude and level, depends on its seed and not on the
+/// block size, and changes without a click; empty spectra and wrong parameters are refused.
 fn holds(model: &LoadedModel, level_tolerance: f64) {
     for (name, magnitude) in spectra() {
         let fit = fit(model, &magnitude, &[]).unwrap();
@@ -312,7 +312,7 @@ fn the_pitch_is_found(model: &LoadedModel) {
     assert!((found[1] / found[0] - 65.0).abs() < 0.1);
 }
 
-/// A WASM module fits and plays to the bit what the library of the same source does.
+/// A WASM module fits and plays bit for bit like the library of the same source.
 fn is_the_same(native: &LoadedModel, wasm: &LoadedModel) {
     for (name, magnitude) in spectra() {
         let [a, b] = [native, wasm].map(|model| fit(model, &magnitude, &[]).unwrap());

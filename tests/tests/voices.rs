@@ -1,5 +1,5 @@
-//! What every voice must do, whatever the model: match its own magnitude and level, ignore block
-//! sizes, follow its seed, and change without a click.
+//! Requirements of the voice of every model: it matches its magnitude and level, does not depend on block
+//! sizes, follows its seed, and changes without a click.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_dsp::grid::level_rms;
@@ -7,7 +7,7 @@ use htex_host::{Band, FitRequest, LoadedModel, Registry, Stream, render_together
 use htex_tests::measure::{RATE_HZ, distance_db, measured_spectrum};
 use htex_tests::smooth_spectrum;
 
-/// Every built-in model with parameters fitted to a spectrum with some life in it.
+/// Every built-in model with parameters fitted to a varied spectrum.
 fn fitted() -> Vec<(LoadedModel, Vec<f64>)> {
     let band = Band::TACTILE;
     let grid = band.grid_hz();
@@ -133,7 +133,7 @@ fn a_retuned_voice_plays_what_one_made_so_plays() {
             .unwrap();
         let make = |set: &[f64]| model.voice(set, Band::TACTILE, rate_hz, SEED).unwrap();
         let mut voice = make(&parameters);
-        // Long enough for a change, and for what filters keep of the time before it, to be over.
+        // Long enough for a change and the state of filters before it to have decayed.
         let frames = (0.5 * rate_hz) as usize;
         let (mut retuned, mut worst) = (vec![0.0; frames], 0.0f64);
         for i in 0..100 {
@@ -141,7 +141,7 @@ fn a_retuned_voice_plays_what_one_made_so_plays() {
             let mixed = model
                 .interpolate(&[&parameters, &other], &[part, 1.0 - part])
                 .unwrap();
-            // Of changes that come while another is under way, the last counts.
+            // Of changes that arrive during another, the last one counts.
             voice.retune(&other).unwrap();
             voice.render(&mut retuned[..5]).unwrap();
             voice.retune(&parameters).unwrap();
@@ -161,7 +161,7 @@ fn a_retuned_voice_plays_what_one_made_so_plays() {
     }
 }
 
-/// Voices that are rendered in one call give the bits that each gives alone: whatever is left of their last
+/// Voices that are rendered in one call give the same bits as each alone: with any remainder of their last
 /// blocks, while some of them change, and beside voices of other models.
 #[test]
 fn voices_together_are_voices_alone() {

@@ -1,9 +1,9 @@
-//! The bench beside plain loops in C and the libraries people use.
+//! The benchmark beside plain loops in C and Python libraries.
 
 use std::path::PathBuf;
 use std::process::{Command, ExitCode, Stdio};
 
-/// Builds the bench and the command, finds Python, and runs.
+/// Builds the benchmark and the command, finds Python, and runs the benchmark.
 pub fn run(options: &[&str]) -> ExitCode {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
     let mut build = Command::new(&cargo);
@@ -40,7 +40,7 @@ pub fn run(options: &[&str]) -> ExitCode {
     }
 }
 
-/// The environment made for this, else the first Python that has what is needed.
+/// The Python of `target/peers`, else `python3`, if it has NumPy and SciPy.
 fn python() -> Option<PathBuf> {
     let own = crate::plugins::target().join("peers/bin/python");
     [own, "python3".into()].into_iter().find(|python| {

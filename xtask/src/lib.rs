@@ -1,7 +1,8 @@
-//! Tasks that tests use too.
+//! Tasks of developers and of tests.
 
 pub mod bench;
 pub mod fuzz;
+pub mod generated;
 pub mod needs;
 pub mod plugins;
 mod wasm;

@@ -1,22 +1,22 @@
-//! What a person would otherwise have to remember.
+//! Tasks of developers: `cargo xtask`.
 
 use std::process::{Command, ExitCode};
 
 use xtask::{fuzz, plugins};
 
 const TASKS: &str = "\
-cargo xtask ci        all that continuous integration runs
+cargo xtask ci        runs all steps of continuous integration
 cargo xtask plugins   builds the models as plugins into target/htex-plugins, native and WASM;
                       --native-only or --wasm-only builds the one kind; --wasm-toolchain WAY (or
                       HTEX_WASM_TOOLCHAIN) builds modules with the toolchain that is installed, with debian's own
                       compiler, or auto: the first that is there
-cargo xtask bench     what htex costs beside plain loops in C and NumPy, SciPy, librosa, in one run;
+cargo xtask bench     measures htex beside plain loops in C and NumPy, SciPy, librosa, in one run;
                       --json FILE writes the numbers too
 cargo xtask fuzz      fuzzes the TARGETS named, or all of fuzz/fuzz_targets, each for --seconds N (60)
                       or --executions N, --jobs N (2) at a time; with --address under the address
                       sanitizer, which needs a nightly toolchain; see fuzz/README.md
-cargo xtask generate  makes what spec/ has from the code again: schemas, pages, conformance files,
-                      seeds of the fuzz targets";
+cargo xtask generate  writes the generated files of spec/: schemas, pages, conformance files; and
+                      the seeds of the fuzz targets";
 
 fn main() -> ExitCode {
     let tasks: Vec<String> = std::env::args().skip(1).collect();
@@ -25,7 +25,7 @@ fn main() -> ExitCode {
         ["bench", ref options @ ..] => xtask::bench::run(options),
         ["fuzz", ref options @ ..] => fuzz_targets(options),
         ["ci"] => run("bash", &[".ci/run"]),
-        ["generate"] => generate(),
+        ["generate"] => xtask::generated::generate(),
         _ => usage(),
     }
 }
@@ -33,41 +33,6 @@ fn main() -> ExitCode {
 fn usage() -> ExitCode {
     eprintln!("{TASKS}");
     ExitCode::from(2)
-}
-
-/// Makes what the specification has from the code.
-fn generate() -> ExitCode {
-    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
-    let made: &[&[&str]] = &[
-        &["htex-format", "--example", "conformance"],
-        &[
-            "htex-model",
-            "--features",
-            "schemars",
-            "--example",
-            "descriptor_schema",
-        ],
-        &["htex-check", "--example", "model_checks"],
-        &["htex-tests", "--example", "playing"],
-        &["htex-scene", "--example", "scene_pages"],
-        &["htex-author", "--example", "recording_pages"],
-        &["htex-hard-cases", "--example", "hard_cases_page"],
-        &[
-            "htex-device",
-            "--features",
-            "schemars",
-            "--example",
-            "device_schemas",
-        ],
-        &["htex-fuzzing", "--example", "seeds"],
-    ];
-    for what in made {
-        let code = run(&cargo, &[&["run", "--package"], *what].concat());
-        if code != ExitCode::SUCCESS {
-            return code;
-        }
-    }
-    ExitCode::SUCCESS
 }
 
 /// Fuzzes; fails when something was found.
@@ -89,7 +54,7 @@ fn fuzz_targets(options: &[&str]) -> ExitCode {
     }
 }
 
-/// Builds what the options ask for, and prints where it is.
+/// Builds the models as the options say, and prints their folder.
 fn build_plugins(options: &[&str]) -> ExitCode {
     let (options, way) = match options {
         [rest @ .., "--wasm-toolchain", way] => (rest, Some(*way)),

@@ -1,14 +1,14 @@
-//! What tests use beyond Rust and a C compiler where it is there. No test installs anything: `.ci/run` does.
+//! Software that tests use if it is installed, beyond Rust and a C compiler. No test installs anything: `.ci/run` does.
 
 use std::fs;
 use std::io::Write;
 use std::path::PathBuf;
 
-/// Something that a test does without where it is absent.
+/// Software without which a test is skipped.
 pub struct Need {
-    /// What it is.
+    /// Its name.
     pub what: &'static str,
-    /// How to have it.
+    /// How to install it.
     pub how: &'static str,
     /// Whether `HTEX_REQUIRE_WASM=1` makes it an error to be without.
     pub for_wasm: bool,
@@ -50,11 +50,11 @@ pub const AJV: Need = Need {
 };
 
 impl Need {
-    /// Whether the need is met, as `there` says. Where it is not, the running test is told of at the end of `cargo test`
+    /// Returns `there`, whether the software is installed. If it is not, the running test is listed at the end of `cargo test`
     /// ([`told`]).
     ///
     /// # Panics
-    /// Where the need is not met, is one of WASM, and the environment has `HTEX_REQUIRE_WASM=1`.
+    /// When software for WASM is absent and the environment has `HTEX_REQUIRE_WASM=1`.
     #[must_use]
     #[allow(clippy::panic)] // It fails a test.
     pub fn met(&self, there: bool) -> bool {
@@ -80,7 +80,7 @@ impl Need {
     }
 }
 
-/// What was skipped since this was last asked, one sentence a test, by the tests' names.
+/// Tests skipped since the last call, one sentence each, sorted by name.
 ///
 /// # Errors
 /// When the records cannot be read or removed.
@@ -98,7 +98,7 @@ pub fn told() -> std::io::Result<Vec<String>> {
     Ok(sentences)
 }
 
-/// Writes to standard error itself: the test harness keeps what the macros print of a test that passes.
+/// Writes to standard error directly: the test harness captures the macros' output of a test that passes.
 pub fn say(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }

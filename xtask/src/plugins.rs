@@ -9,11 +9,11 @@ use crate::wasm::{PROFILE, TARGET, Toolchain};
 /// The models' short names.
 pub const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
 
-/// Builds every model as a native library; answers the folder they are in, `htex-plugins` in the
-/// target folder. What is built and newer than its sources is not built again.
+/// Builds every model as a native library; returns their folder, `htex-plugins` in the
+/// target folder. A library newer than its sources is not built again.
 ///
 /// # Errors
-/// Which model could not be built; the compiler has printed why.
+/// The model that could not be built; the compiler has printed the reason.
 pub fn native() -> Result<PathBuf, String> {
     let target = target();
     let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
@@ -26,10 +26,10 @@ pub fn native() -> Result<PathBuf, String> {
 }
 
 /// Builds every model as a WASM module, with the toolchain that `HTEX_WASM_TOOLCHAIN` names;
-/// answers the folder they are in, as [`native`] does.
+/// returns their folder, as [`native`] does.
 ///
 /// # Errors
-/// That no toolchain can be had, and what to do; or which model could not be built.
+/// When no toolchain is found, with instructions; or the model that could not be built.
 pub fn wasm() -> Result<PathBuf, String> {
     wasm_by(&way())
 }
@@ -47,7 +47,7 @@ fn way() -> String {
 /// As [`wasm`], with the toolchain of the name: `installed`, `debian`, or `auto`.
 ///
 /// # Errors
-/// As [`wasm`], and when there is no way of this name.
+/// As [`wasm`], and when the name is unknown.
 pub fn wasm_by(way: &str) -> Result<PathBuf, String> {
     let toolchain = Toolchain::find(way)?;
     for model in MODELS {
@@ -68,18 +68,18 @@ pub fn wasm_by(way: &str) -> Result<PathBuf, String> {
 /// Whether there is a toolchain of this name.
 ///
 /// # Errors
-/// The names there are, when it is none of them.
+/// The known names, when the name is unknown.
 pub fn check_way(way: &str) -> Result<(), String> {
     Toolchain::check_way(way)
 }
 
-/// Whether the compiler in use builds WASM modules as it is.
+/// Whether the current toolchain builds WASM modules.
 pub fn wasm_is_installed() -> bool {
     Toolchain::find("installed").is_ok()
 }
 
-/// The folder of the models as WASM modules, for a test; `None`, and told of at the end, where no toolchain for them is
-/// there.
+/// The folder of the models as WASM modules, for a test; `None`, and listed at the end, where no toolchain for them is
+/// installed.
 ///
 /// # Panics
 /// When a model cannot be built, and as [`Need::met`](crate::needs::Need::met).
@@ -108,7 +108,7 @@ fn build(mut cargo: Command, target: &Path, model: &str, more: &[&str]) -> Resul
     }
 }
 
-/// Copies a built file to where plugins are kept, beside and renamed into place.
+/// Copies a built file to the folder of plugins, by a temporary name and a rename.
 fn place(built: &Path, name: &str) -> Result<(), String> {
     let (folder, beside) = (folder(), format!("{name}.{}", std::process::id()));
     std::fs::create_dir_all(&folder)
@@ -122,7 +122,7 @@ pub(crate) fn cargo() -> std::ffi::OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
 
-fn workspace() -> PathBuf {
+pub(crate) fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 

@@ -1,12 +1,12 @@
-//! Finding a way to build for `wasm32-unknown-unknown`.
+//! Toolchains for `wasm32-unknown-unknown`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What modules are built for.
+/// The target of modules.
 pub(crate) const TARGET: &str = "wasm32-unknown-unknown";
 
-/// The profile of modules, in the workspace's manifest; also the folder they are built in.
+/// The profile of modules in the workspace's manifest, and the name of their build folder.
 pub(crate) const PROFILE: &str = "module";
 
 /// Vectors of 128 bits, which every engine has. Calls of larger functions stay calls, and loops whose number of rounds is
@@ -21,7 +21,7 @@ const FLAGS: (&str, &str) = (
 const NO_TOOLCHAIN: &str = "no toolchain for WASM modules was found: `rustup target add \
     wasm32-unknown-unknown`, or on Debian `apt-get install rustc-web cargo-web rust-web-src`";
 
-/// A way to build WASM modules.
+/// A toolchain for WASM modules.
 pub(crate) enum Toolchain {
     /// The toolchain in use has the target's standard library.
     Ready,
@@ -30,7 +30,7 @@ pub(crate) enum Toolchain {
 }
 
 impl Toolchain {
-    /// The toolchain of this name, or the first that is there. Nothing is installed.
+    /// The toolchain of this name, or the first that is installed. Nothing is installed.
     pub(crate) fn find(way: &str) -> Result<Self, String> {
         Self::check_way(way)?;
         let found = match way {
@@ -41,12 +41,12 @@ impl Toolchain {
         found.ok_or_else(|| NO_TOOLCHAIN.to_owned())
     }
 
-    /// Whether there is a way of this name.
+    /// Whether the name of a toolchain is known.
     pub(crate) fn check_way(way: &str) -> Result<(), String> {
         match way {
             "auto" | "installed" | "debian" => Ok(()),
             other => Err(format!(
-                "`{other}` is no way to build WASM modules; there are auto, installed and debian"
+                "unknown WASM toolchain `{other}`; known are auto, installed and debian"
             )),
         }
     }
@@ -68,13 +68,13 @@ impl Toolchain {
                     .env("RUSTC_BOOTSTRAP", "1")
                     .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker)
                     .env_remove("RUSTUP_TOOLCHAIN");
-                // Another compiler's files would only displace those of the one in use.
+                // A folder of its own: files of two compilers would displace each other.
                 (command, target.join("debian"))
             }
         }
     }
 
-    /// What must stand behind `rustc`.
+    /// Arguments behind `rustc`.
     pub(crate) fn arguments(&self) -> &'static [&'static str] {
         match self {
             Self::Ready => &["--target", TARGET],

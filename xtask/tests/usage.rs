@@ -1,12 +1,15 @@
-//! What cannot be asked for is refused before anything is built.
+//! Invalid options are refused before anything is built.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::process::Command;
 
 #[test]
-fn a_toolchain_that_there_is_not_is_wrong_usage() {
+fn an_unknown_toolchain_is_a_usage_error() {
     let cases: [(&[&str], &str); 3] = [
-        (&["--wasm-toolchain", "moon"], "`moon` is no way"),
+        (
+            &["--wasm-toolchain", "moon"],
+            "unknown WASM toolchain `moon`",
+        ),
         (
             &["--native-only", "--wasm-toolchain", "debian"],
             "cargo xtask",

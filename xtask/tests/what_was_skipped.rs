@@ -1,10 +1,10 @@
-//! Tells what the suites before this one did without. Cargo runs packages by their names, and the suites of a package by
-//! theirs: this one is the last.
+//! Lists what the suites before this one skipped. Cargo runs packages in the order of their names, and the suites of a package
+//! likewise: this one is the last.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use xtask::needs;
 
-/// A need that is not met is told of, by the test's name, and one that is met is not.
+/// Absent software is listed by the test's name; installed software is not.
 #[test]
 fn what_was_skipped() {
     let before = needs::told().unwrap();

@@ -4,11 +4,11 @@ use clap::Args;
 
 use crate::failure::Failure;
 
-/// Compile the WASM module of standard input for the process at the other end (what loads models starts it).
+/// Compile the WASM module on standard input for the process that started this one (internal).
 #[derive(Args)]
 #[command(hide = true)]
 pub(crate) struct CompileModule {
-    /// As that process gives them
+    /// Limits, as that process passes them
     arguments: Vec<String>,
 }
 

@@ -41,7 +41,7 @@ const CONDITION: Exploration = Exploration {
 /// (all recordings, with Bands and AR over them) into DIR.
 #[derive(Args)]
 pub(crate) struct Demo {
-    /// Where to write; made if it is not there
+    /// Folder to write to; created if it does not exist
     dir: PathBuf,
 
     /// Seed of the simulated recordings

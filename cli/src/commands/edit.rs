@@ -13,7 +13,7 @@ use crate::outputs::check_outputs;
 
 /// Change an asset's metadata without a new fit.
 ///
-/// What is not given stays as it is; an empty text (--author "") removes what was there, and --tag replaces all words.
+/// Metadata that is not given is kept; an empty text (--author "") removes the entry, and --tag replaces all tags.
 /// Parameters, recorded spectra and embedded models, with their signatures, are kept byte by byte.
 #[derive(Args)]
 pub(crate) struct Edit {
@@ -56,7 +56,7 @@ impl Edit {
         Ok(ExitCode::SUCCESS)
     }
 
-    /// Refuses an asset of which something would be lost: entries that its manifest does not name, and keys inside it
+    /// Refuses an asset that would lose data: entries that its manifest does not name, and keys inside it
     /// that this program does not know.
     fn check_kept(&self, asset: &htex_format::Asset) -> Result<(), Failure> {
         let bytes = std::fs::read(&self.asset).map_err(|e| Failure::read(&self.asset, e))?;

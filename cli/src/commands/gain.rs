@@ -18,14 +18,14 @@ use crate::signals::{self, interrupted};
 const STEP_DB: f64 = 1.0;
 const LARGE_STEP_DB: f64 = 4.0;
 
-/// Find how strong a person wants to feel a surface on a display, by adjustment, and keep it.
+/// Find the gain at which a person wants to feel a surface on a display, by adjustment, and keep it.
 ///
 /// The surface plays without end; `+` and `-`, each with Enter, make it 1 dB stronger and weaker, `++` and
-/// `--` 4 dB, and Enter alone says that it matches. As in the paper it starts at the maximum: the device's
+/// `--` 4 dB, and Enter alone accepts it. As in the paper it starts at the maximum: the device's
 /// limit. `htex play --person` then uses what was found. Ctrl-C keeps nothing.
 ///
-/// A gain is kept for a person, a texture and a device. All representations share it, and so do assets fitted anew: a
-/// texture is known by its name and author. The paper finds it with `--model ar` and plays all models with it.
+/// A gain is kept for a person, a texture and a device. All representations share it, and so do assets that are fitted again: a
+/// texture is identified by its name and author. The paper finds it with `--model ar` and plays all models with it.
 #[derive(Args)]
 pub(crate) struct Gain {
     /// The asset or the scene
@@ -59,7 +59,7 @@ struct Found {
     reference_rms: f64,
 }
 
-/// What a line asks for.
+/// The request of an input line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Wish {
     Change(f64),
@@ -117,13 +117,13 @@ fn limit(ready: &Ready) -> Result<f64, Failure> {
     match (able.quantity, able.limit) {
         (Quantity::DisplayVoltage, Some(limit_v)) => Ok(limit_v),
         _ => Err(Failure::Other(format!(
-            "{} is no electrovibration display; a gain is the voltage of one",
+            "{} is not an electrovibration display; a gain is the voltage of one",
             ready.device.descriptor().name
         ))),
     }
 }
 
-/// Plays until the person is content; none when the input ends or is interrupted before.
+/// Plays until the person accepts the gain; `None` when the input ends or is interrupted before.
 fn adjust(ready: &mut Ready, start_v: f64, limit_v: f64) -> Result<Option<Found>, Failure> {
     signals::ask();
     let wishes = wishes();
@@ -170,7 +170,7 @@ fn opened(ready: &Ready, plan: &htex_scene::Plan) -> Result<Output, Failure> {
     })
 }
 
-/// Plays until there is a wish, and on to silence.
+/// Plays until there is a request, then fades to silence.
 fn play_until_wish(
     renderer: &mut Renderer,
     output: &mut Output,
@@ -192,14 +192,14 @@ fn play_until_wish(
     Ok(answer)
 }
 
-/// Wishes from the lines of standard input; a line that is none is told of.
+/// Requests from the lines of standard input; an invalid line is reported.
 fn wishes() -> Receiver<Wish> {
     let (sender, receiver) = channel();
     std::thread::spawn(move || {
         for line in std::io::stdin().lines().map_while(Result::ok) {
             let sent = wish(&line).map(|wish| sender.send(wish));
             match sent {
-                None => crate::output::tell!("{line:?} is none of +, -, ++, -- and an empty line"),
+                None => crate::output::tell!("{line:?} is not +, -, ++, -- or an empty line"),
                 Some(Err(_)) => return,
                 Some(Ok(())) => {}
             }
@@ -219,7 +219,7 @@ fn wish(line: &str) -> Option<Wish> {
     })
 }
 
-/// A drive for people: its largest voltage, and V_g.
+/// The drive as text: its largest voltage, and V_g.
 fn volts(drive_v: f64) -> String {
     format!(
         "{drive_v:.1} V at most, V_g {:.2} V",

@@ -6,7 +6,7 @@ use crate::devices::DeviceArgs;
 use crate::failure::Failure;
 use crate::guardian::hold;
 
-/// Hold a device for the process at the other end of standard input and output (`htex play` starts it).
+/// Hold a device for the process that started this one (internal; `htex play` starts it).
 #[derive(Args)]
 #[command(hide = true)]
 pub(crate) struct Guard {
@@ -16,7 +16,7 @@ pub(crate) struct Guard {
 
 impl Guard {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
-        // Only the end of the pipe ends it.
+        // Only the end of the pipe ends this process.
         crate::signals::ignore();
         let devices = self.devices.devices_quietly()?;
         let (from, to) = (std::io::stdin().lock(), std::io::stdout().lock());

@@ -8,7 +8,7 @@ use crate::assets::AssetSummary;
 use crate::failure::Failure;
 use crate::output::{print, print_json};
 
-/// Show what an asset holds and how near each model comes to the recording.
+/// Show an asset's contents and each model's distance from the recording.
 ///
 /// Columns: level (RMS, in the asset's unit); Pearson correlation with the recorded spectrum; RMS over nine critical
 /// bands of the energy difference, from the model's magnitudes and from samples it played; bytes of

@@ -1,4 +1,4 @@
-//! One file a subcommand: its arguments and what it does with them.
+//! The subcommands, one file each: arguments and execution.
 
 mod compare;
 #[cfg(feature = "wasm")]

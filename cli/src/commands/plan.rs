@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::output::{print, print_json, warn, write_file};
 use crate::scenes::{ChoiceArgs, SceneArgs, costs, costs_file};
 
-/// Show which stages a scene needs and which it does not, why, and what each costs.
+/// Show which stages a scene needs and which not, with reasons and costs.
 ///
 /// Nothing is played. Costs are nanoseconds for a sample of the device.
 #[derive(Args)]
@@ -68,13 +68,13 @@ impl Plan {
         let costs = Costs::measure(&self.with.models()?, &machine)?;
         match costs_file() {
             Some(file) => costs.save(&file).map_err(|e| Failure::write(&file, e))?,
-            None => warn(&["there is no cache folder to keep the costs in".to_owned()]),
+            None => warn(&["no cache folder was found to keep the costs in".to_owned()]),
         }
         Ok(costs)
     }
 }
 
-/// A stage's name, with the index of its surface where it has one.
+/// A stage's name, with the index of its surface if it belongs to one.
 fn name(name: &str, surface: Option<usize>) -> String {
     surface.map_or_else(|| name.to_owned(), |i| format!("{name} [{i}]"))
 }

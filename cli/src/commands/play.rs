@@ -18,7 +18,7 @@ use crate::signals::{self, interrupted};
 
 /// Play a scene or an asset on a device, until its end or Ctrl-C.
 ///
-/// An asset is played at the speed and force of its first condition, by ear when no device is named.
+/// An asset is played at the speed and force of its first condition, as sound when no device is named.
 #[derive(Args)]
 #[cfg_attr(
     not(feature = "audio"),
@@ -41,7 +41,7 @@ pub(crate) struct Play {
     #[arg(long, value_name = "NAME")]
     person: Option<String>,
 
-    /// What the texture was called when the gain was found, if not by its own name
+    /// Name under which the gain was found, if not the texture's own
     #[arg(long, value_name = "NAME", requires = "person")]
     texture: Option<String>,
 
@@ -109,7 +109,7 @@ impl Play {
     }
 }
 
-/// Opens a scene, or makes one of an asset, which is heard when no device is named.
+/// Opens a scene, or makes one of an asset, which is played as sound when no device is named.
 pub(crate) fn open(
     with: &SceneArgs,
     file: &std::path::Path,
@@ -133,10 +133,10 @@ pub(crate) fn open(
     with.of_asset(file, motion, None, &device)
 }
 
-/// Moves the finger; true when there will be no more motions.
+/// Applies the newest motion; true when the input has ended.
 fn follow(motions: &mut Motions, renderer: &mut Renderer) -> bool {
     match motions.look() {
-        // Only sound motions come through.
+        // The reader passes on valid motions only.
         Moved::To(finger) => renderer.set_motion(finger).is_err(),
         Moved::Not => false,
         Moved::Ended => true,

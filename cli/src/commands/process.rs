@@ -24,7 +24,7 @@ pub(crate) struct Process {
     #[command(flatten)]
     reading: RecordingArgs,
 
-    /// Draw the recording with the seconds that are read, and those left out, as an SVG picture
+    /// Draw the recording with the segments that are read, and those left out, as an SVG picture
     #[arg(long, value_name = "SVG")]
     svg: Option<PathBuf>,
 
@@ -63,7 +63,7 @@ impl Process {
     }
 }
 
-/// Where segments come from.
+/// The source of the segments.
 fn origin(reading: &Reading) -> &'static str {
     match reading.part.segments.from_sweeps {
         true => "sweeps",
@@ -71,7 +71,7 @@ fn origin(reading: &Reading) -> &'static str {
     }
 }
 
-/// The stretches that are read, seconds in the file.
+/// The segments that are read, seconds in the file.
 fn stretches_s(recording: &Recording, reading: &Reading) -> Vec<[f64; 2]> {
     let stretches = reading.part.segments.stretches().into_iter();
     stretches
@@ -79,7 +79,7 @@ fn stretches_s(recording: &Recording, reading: &Reading) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// How many segments are read, where they lie, and how far the motion spreads over them.
+/// Number and place of the segments that are read, and the spread of the motion over them.
 fn seconds_read(recording: &Recording, reading: &Reading) -> String {
     let stretches = stretches_s(recording, reading);
     let named: Vec<String> = stretches

@@ -16,10 +16,10 @@ use crate::progress::bar;
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs};
 use crate::signals::{self, interrupted};
 
-/// Frames a block has.
+/// Frames in a block.
 const BLOCK: usize = 4096;
 
-/// Render a scene to a file: just what its device would get, as fast as it goes.
+/// Render a scene to a file: exactly the samples that its device would get, faster than real time where possible.
 ///
 /// WAV, CSV, NPY or raw samples, by the file's extension, in the unit of the scene's device: newtons,
 /// the volts a display is driven with, or sound.
@@ -103,7 +103,7 @@ impl Render {
         Ok(ExitCode::SUCCESS)
     }
 
-    /// Sets the length asked for, and refuses a scene without end.
+    /// Sets the requested length, and refuses a scene without end.
     fn check_length(&self, ready: &mut Ready) -> Result<(), Failure> {
         let scene = &mut ready.scene.scene;
         if let Some(seconds) = self.seconds {
@@ -158,7 +158,7 @@ impl Render {
         if !is_named && path.symlink_metadata().is_ok() {
             let path = shown(&path);
             return Err(Failure::Usage(format!(
-                "{path} is there already; name the file to write, or to replace, by -o FILE"
+                "{path} exists; name the file to write, or to replace, by -o FILE"
             )));
         }
         let device = known.adapter.open(&settings, &format)?;
@@ -177,15 +177,15 @@ struct Opened {
     output: Output,
 }
 
-/// A file of another name that is written in place of one whose name is no Unicode: devices take their settings as text.
-/// It lies in a folder of its own, which nobody else may write to.
+/// A temporary file in place of one whose name is not Unicode: devices take their settings as text.
+/// It lies in a folder of its own, which only this user may write to.
 struct Aside {
     path: PathBuf,
     _folder: tempfile::TempDir,
 }
 
 impl Aside {
-    /// The place for a file of this name, if it needs one: with its extension, which says the format.
+    /// A temporary place for a file of this name, if it needs one; it keeps the extension, which determines the format.
     fn of(path: &Path) -> Result<Option<Self>, Failure> {
         if path.to_str().is_some() {
             return Ok(None);

@@ -11,8 +11,8 @@ use crate::outputs::check_outputs;
 
 /// Write a simulated recording of a finger sliding over a surface.
 ///
-/// A physically motivated signal for trying things out: to-and-fro sweeps, friction, a texture read
-/// at the finger's position, setup resonance, sensor noise. It is no measurement, and says so.
+/// A physically motivated signal for experiments: to-and-fro sweeps, friction, a texture read
+/// at the finger's position, setup resonance, sensor noise. It is not a measurement, and is labelled so.
 #[derive(Args)]
 pub(crate) struct Simulate {
     /// The surface: sandpaper, fine-fabric, coarse-fabric, corrugated-paper or vinyl

@@ -29,7 +29,7 @@ pub(crate) struct Spectrum {
     json: bool,
 }
 
-/// Which representation, and at which motion.
+/// A representation and a motion.
 #[derive(Args)]
 pub(crate) struct ChoiceArgs {
     /// The representation, by its model's short name or id [default: least nine-band error]
@@ -46,8 +46,8 @@ pub(crate) struct ChoiceArgs {
 }
 
 impl ChoiceArgs {
-    /// The motion asked for; what was not said comes from the asset's first condition,
-    /// else is the paper's usual.
+    /// The requested motion; what is missing comes from the asset's first condition,
+    /// else is the paper's default.
     pub(crate) fn motion(&self, asset: &htex::Asset) -> Option<(f64, f64)> {
         let first = asset.manifest().conditions.first();
         let speed = self.speed.or(first.and_then(|c| c.speed_mm_s));
@@ -58,7 +58,7 @@ impl ChoiceArgs {
 }
 
 impl ChoiceArgs {
-    /// What becomes of the motion asked for, where it is not one that was recorded.
+    /// A note on how a motion that was not recorded is played.
     pub(crate) fn beyond(
         &self,
         asset: &htex::Asset,

@@ -23,8 +23,8 @@ pub(crate) struct Synth {
     #[command(flatten)]
     player: PlayerArgs,
 
-    /// Play the texture as it was recorded, whatever the speed and force: without it, frequencies go with the speed
-    /// and the level with the force where just one was recorded, and a finger that rests feels nothing
+    /// Play the texture as it was recorded, whatever the speed and force. Without it, frequencies scale with the speed
+    /// and the level with the force where only one was recorded, and a resting finger feels nothing
     #[arg(long)]
     as_recorded: bool,
 

@@ -16,11 +16,11 @@ use crate::plugins::PluginArgs;
 use crate::progress::bar;
 use crate::recordings::RecordingArgs;
 
-/// Measure what accuracy costs: every model and knob against bytes and time, on your recordings.
+/// Measure accuracy against bytes and time on your recordings, over models and knobs.
 ///
-/// Each recording is measured by itself, and the medians of all beside. Writes a page with pictures,
-/// and beside it the same points as CSV and JSON. A sweep that was interrupted goes on where it
-/// stopped when the same command is given again.
+/// Measures each recording and the medians of all. Writes a page with pictures,
+/// and beside it the same points as CSV and JSON. An interrupted sweep continues
+/// when the same command is given again.
 #[derive(Args)]
 pub(crate) struct Tradeoff {
     /// Recordings: CSV, WAV or NPY
@@ -39,7 +39,7 @@ pub(crate) struct Tradeoff {
     #[arg(long)]
     quick: bool,
 
-    /// The error that pictures, fronts and knees go by
+    /// The error that pictures, fronts and knees use
     #[arg(long, value_enum, default_value = "nine-band")]
     error: ErrorArg,
 
@@ -164,7 +164,7 @@ impl Tradeoff {
         let mut subjects: Vec<Subject> = Vec::new();
         for take in &takes {
             let mut subject = Subject::new(take, &options, self.reading.strict())?;
-            // Files of one name in several folders.
+            // Files of the same name in several folders.
             let same = |s: &&Subject| s.name.split(" #").next() == Some(&subject.name);
             let before = subjects.iter().filter(same).count();
             if before > 0 {

@@ -28,13 +28,13 @@ pub(crate) struct Validate {
     #[arg(required = true)]
     files: Vec<PathBuf>,
 
-    /// Hold the extension of this name to a JSON Schema (draft 2020-12); nothing is fetched. May be
+    /// Validate the extension of this name against a JSON Schema (draft 2020-12); nothing is fetched. May be
     /// given several times
     #[arg(long, value_name = "com.vendor.NAME/1=FILE")]
     extension_schema: Vec<String>,
 
-    /// Also load the models that assets bring along, in their sandbox, and hold them to what the asset says of them.
-    /// Nothing that an asset brings along is run otherwise
+    /// Also load the models that assets embed, in their sandbox, and compare them with the asset's fields.
+    /// Without this, nothing embedded in an asset is run
     #[arg(long)]
     embedded_plugins: bool,
 
@@ -109,7 +109,7 @@ enum Kind {
     Recording,
 }
 
-/// What a file is to be looked at as: by its name, else by its first bytes.
+/// The kind of a file, by its name, else by its first bytes.
 fn kind(path: &Path) -> Kind {
     let called = |name: &str| {
         path.extension()
@@ -124,12 +124,12 @@ fn kind(path: &Path) -> Kind {
     }
 }
 
-/// Whether nothing was found that `--strict` refuses.
+/// Whether `--strict` accepts the findings.
 fn is_clean(report: &Report) -> bool {
     report.findings.iter().all(|f| f.severity == Severity::Info)
 }
 
-/// Validates an asset; of one that is too large, no more is read than shows it.
+/// Validates an asset; one that is too large is not read to its end.
 fn validate_asset(path: &Path, extensions: &[ExtensionSchema]) -> Result<Report, Failure> {
     let limits = Limits::default();
     let bytes = read_at_most(path, &limits)?;
@@ -150,7 +150,7 @@ fn validate_asset(path: &Path, extensions: &[ExtensionSchema]) -> Result<Report,
     Ok(report)
 }
 
-/// Loads what an asset brings along; what cannot be loaded is a finding.
+/// Loads the embedded models of an asset; one that cannot be loaded is a finding.
 fn hold_plugins(path: &Path, limits: &WasmLimits, report: &mut Report) -> Result<(), Failure> {
     let data = htex_format::Asset::open(path).map_err(|error| Failure::asset(path, error))?;
     let registry = Registry::search(&Search {
@@ -172,14 +172,13 @@ fn hold_plugins(path: &Path, limits: &WasmLimits, report: &mut Report) -> Result
     Ok(())
 }
 
-/// Whether the rules of this version are those of the document: of another one, and of one that says
-/// no version, they may not be.
+/// Whether the rules of this version apply to the document: its version is this one.
 fn is_of_major_1(document: &Value, key: &str) -> bool {
     let version = document.get(key).and_then(Value::as_str);
     version.is_some_and(|version| version.starts_with("1."))
 }
 
-/// The file's bytes, or as many as show that it is too large.
+/// The file's bytes; of a file that is too large, one more than allowed.
 fn read_at_most(path: &Path, limits: &Limits) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
     File::open(path)

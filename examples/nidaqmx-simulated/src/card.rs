@@ -14,16 +14,16 @@ pub const MAX_RATE_HZ: f64 = 900_000.0;
 pub const MIN_RATE_HZ: f64 = 100e6 / u32::MAX as f64;
 pub const CHANNELS: [&str; 2] = ["Dev1/ao0", "Dev1/ao1"];
 
-/// How far the clock goes at a call when it goes by calls, seconds.
+/// Step of the clock at a call when it advances by calls, seconds.
 const STEP_S: f64 = 0.002;
 
 #[derive(Default)]
 pub struct Card {
-    /// Folder to which what comes out is recorded: a file a channel, volts, one a line.
+    /// Folder to which the output is recorded: a file for each channel, in volts, one value a line.
     pub record: Option<PathBuf>,
-    /// The clock goes by calls that ask for the state, not by the clock on the wall.
+    /// Whether the clock advances by calls that read the state, not in real time.
     pub by_calls: bool,
-    /// Samples after which the card is pulled out.
+    /// Samples after which the card is removed.
     pub unplug_after: Option<u64>,
     tasks: BTreeMap<usize, Task>,
     made: usize,
@@ -106,7 +106,7 @@ impl Card {
         Ok(())
     }
 
-    /// What came out last stays at the output.
+    /// The output keeps its last value.
     pub fn stop(&mut self, id: usize) -> Answer<()> {
         self.advance(id, 0.0)?;
         let task = self.task(id)?;
@@ -120,13 +120,13 @@ impl Card {
         there.map(|_| ()).ok_or(codes::INVALID_TASK)
     }
 
-    /// Ends all tasks, and puts the outputs at zero, as they are at power-on.
+    /// Ends all tasks and sets the outputs to zero, their power-on state.
     pub fn reset(&mut self) {
         self.tasks.clear();
         self.put_out(0, &[0.0]);
     }
 
-    /// Takes what there is room for. A task without a clock puts its samples out at once.
+    /// Takes the samples that fit. A task without a clock outputs its samples at once.
     pub fn write(&mut self, id: usize, samples: &[f64], start: bool) -> Answer<usize> {
         self.advance(id, STEP_S)?;
         let task = self.task(id)?;
@@ -180,7 +180,7 @@ impl Card {
         self.tasks.get_mut(&id).ok_or(codes::INVALID_TASK)
     }
 
-    /// Lets the clock take what is due now; `step_s` is how far a call moves a clock that goes by
+    /// Lets the clock take the samples that are due; `step_s` is the step of a clock that advances by
     /// calls.
     fn advance(&mut self, id: usize, step_s: f64) -> Answer<()> {
         self.plugged()?;

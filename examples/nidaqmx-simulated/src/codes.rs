@@ -1,4 +1,4 @@
-//! Error codes of NI-DAQmx and what they say, as far as the simulation has them.
+//! The error codes of NI-DAQmx that the simulation uses, and their messages.
 
 pub const NOT_PRESENT: i32 = -88705;
 pub const RESERVED: i32 = -50103;

@@ -1,4 +1,4 @@
-//! Faults on demand: at the n-th call of a function.
+//! Faults at the n-th call of a function.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -6,16 +6,16 @@ use std::time::Duration;
 
 use crate::{codes, status, with};
 
-/// What happens at a call.
+/// The fault of a call.
 #[derive(Clone, Copy)]
 enum Kind {
-    /// The call does nothing and answers a code.
+    /// The call does nothing and returns a code.
     Error(i32),
-    /// Of a write: half of the samples are taken, and the call answers a code (0: as if all was well).
+    /// Of a write: half of the samples are taken, and the call returns a code (0: success).
     Short(i32),
     /// The call takes so many milliseconds longer.
     Hang(u64),
-    /// The card is pulled out.
+    /// The card is removed.
     Unplug,
 }
 
@@ -23,7 +23,7 @@ struct Plan {
     function: String,
     /// Counted from 1.
     call: u64,
-    /// The calls after it too.
+    /// Also the calls after it.
     lasts: bool,
     kind: Kind,
 }
@@ -69,7 +69,7 @@ fn parse(text: &str) -> Option<Plan> {
     })
 }
 
-/// Counts a call; answers the code of one that fails.
+/// Counts a call; returns the code of one that fails.
 pub fn injected(function: &'static str) -> Option<i32> {
     match due(function)? {
         Kind::Error(code) => {
@@ -84,12 +84,12 @@ pub fn injected(function: &'static str) -> Option<i32> {
             with(|card| card.unplug_after = Some(0));
             Some(status::<()>(Err(codes::NOT_PRESENT)))
         }
-        // Told where samples are written.
+        // Handled where samples are written.
         Kind::Short(_) => None,
     }
 }
 
-/// The code of a short write, if this call of the writing function is to be one; it was counted.
+/// The code of a short write, if this call, which was counted, is to be one.
 pub fn short_write() -> Option<i32> {
     state(|s| {
         let plan = s.plan.as_ref()?;
@@ -112,7 +112,7 @@ fn due(function: &'static str) -> Option<Kind> {
     })
 }
 
-/// How often a function was called since the last plan.
+/// Number of calls of a function since the last plan.
 #[unsafe(no_mangle)]
 pub unsafe extern "system" fn nidaqmx_simulated_calls(function: *const std::ffi::c_char) -> u64 {
     let name = unsafe { crate::text(function) };

@@ -1,7 +1,7 @@
 //! The C functions of NI-DAQmx that an analog output needs, over a simulated PCIe-6321.
 //!
-//! Each function takes and answers what National Instruments' `NIDAQmx.h` states. What comes out of
-//! the card is recorded; see README.md.
+//! Each function has the arguments and results that National Instruments' `NIDAQmx.h` states. The card's
+//! output is recorded; see README.md.
 #![allow(clippy::missing_safety_doc, clippy::too_many_arguments)] // The header states both.
 
 mod card;
@@ -40,7 +40,7 @@ fn set(card: &mut Card, name: &str, value: &str) {
         "clock" => card.by_calls = value == "calls",
         "unplug_after" => card.unplug_after = value.parse().ok(),
         "fault" => fault::plan(value),
-        _ => eprintln!("nidaqmx-simulated: there is no setting `{name}`"),
+        _ => eprintln!("nidaqmx-simulated: unknown setting `{name}`"),
     }
 }
 
@@ -52,7 +52,7 @@ fn status<T>(answer: Result<T, i32>) -> i32 {
     code
 }
 
-/// Stores an answer where the caller wants it.
+/// Stores a result at the caller's pointer.
 unsafe fn store<T>(answer: Result<T, i32>, to: *mut T) -> i32 {
     status(answer.map(|value| unsafe { to.write(value) }))
 }
@@ -63,7 +63,7 @@ unsafe fn text(from: *const c_char) -> String {
         .into_owned()
 }
 
-/// Copies a string; with no room given, answers how much it takes, as the driver does.
+/// Copies a string; for a buffer of size 0, returns the size needed, as the driver does.
 unsafe fn copy(text: &str, to: *mut c_char, room: u32) -> i32 {
     let text = CString::new(text).unwrap_or_default();
     let bytes = text.as_bytes_with_nul();
@@ -84,7 +84,7 @@ fn device(name: &str) -> Result<(), i32> {
     }
 }
 
-/// Changes a setting of the simulation: `record`, `clock`, `unplug_after`, `fault`. No part of NI-DAQmx.
+/// Changes a setting of the simulation: `record`, `clock`, `unplug_after`, `fault`. Not part of NI-DAQmx.
 #[unsafe(no_mangle)]
 pub unsafe extern "system" fn nidaqmx_simulated_set(name: *const c_char, value: *const c_char) {
     let (name, value) = unsafe { (text(name), text(value)) };
@@ -287,7 +287,7 @@ pub unsafe extern "system" fn DAQmxWriteAnalogF64(
     }
     let samples = unsafe { std::slice::from_raw_parts(samples, count.max(0) as usize) };
     if let Some(code) = fault::short_write() {
-        // What a driver does that has room for a part, or for nothing.
+        // The behaviour of a driver whose buffer has space for a part, or for nothing.
         let taken = with(|c| c.write(task as usize, &samples[..samples.len() / 2], false));
         if !written.is_null() {
             unsafe { written.write(taken.unwrap_or(0) as i32) };

@@ -1,4 +1,4 @@
-//! The adapter: what it says of itself, and the way to a card.
+//! The adapter: its descriptor, and opening a card.
 
 use cpal::traits::DeviceTrait;
 use htex_device::{
@@ -15,7 +15,7 @@ pub struct Audio {
 }
 
 impl Audio {
-    /// The adapter. Nothing is opened until a device is asked for.
+    /// The adapter. Opens nothing.
     pub fn new() -> Self {
         Self {
             descriptor: descriptor(),

@@ -11,9 +11,9 @@ const FORMATS: [SampleFormat; 4] = [
     SampleFormat::I16,
     SampleFormat::U8,
 ];
-/// Frames a block is best made of.
+/// Preferred frames in a block.
 const BLOCK_FRAMES: u32 = 256;
-/// Highest rate that is told of, hertz: plugins of ALSA claim any.
+/// Highest rate that is reported, hertz: plugins of ALSA claim any.
 const MAX_RATE_HZ: f64 = 768_000.0;
 /// The name of the card that the system prefers.
 pub(crate) const DEFAULT: &str = "default";
@@ -25,14 +25,14 @@ pub(crate) struct Card {
 }
 
 impl Card {
-    /// The card of this name, which must be there and able to play.
+    /// The card of this name, which must be connected and have an output.
     pub(crate) fn find(name: &str) -> Result<Self, DeviceError> {
         let host = cpal::default_host();
         let device = match name {
             DEFAULT => host.default_output_device(),
             _ => outputs()?.into_iter().find(|d| id(d) == name),
         };
-        let device = device.ok_or_else(|| missing(name, "there is none of this name"))?;
+        let device = device.ok_or_else(|| missing(name, "there is no card of this name"))?;
         let configs = device.supported_output_configs();
         let configs: Vec<_> = configs
             .map_err(|error| missing(name, &error.to_string()))?
@@ -110,7 +110,7 @@ pub(crate) fn outputs() -> Result<Vec<cpal::Device>, DeviceError> {
         .collect())
 }
 
-/// What a card is called here; empty when the system says nothing.
+/// The name of a card; empty when the system gives none.
 pub(crate) fn id(device: &cpal::Device) -> String {
     device.id().map(|id| id.to_string()).unwrap_or_default()
 }

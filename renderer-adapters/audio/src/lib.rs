@@ -1,10 +1,10 @@
 //! Sound cards: texture as sound, 1 is full scale.
 //!
 //! The adapter needs the feature `cpal`, which on Linux is built against ALSA (`libasound2-dev`).
-//! Without it this crate is empty, so that a machine without ALSA builds all the rest.
+//! Without it this crate is empty, so that a machine without ALSA builds all other crates.
 //!
 //! Samples wait in a ring of `buffer_ms`, and the sound card's own thread takes them from there
-//! (`player.rs`): it takes no lock, allocates nothing and waits for nothing. A ring that runs dry is
+//! (`player.rs`): it takes no lock, does not allocate and does not wait. A ring that runs dry is
 //! counted and fades to silence; playback goes on when samples come again.
 #![forbid(unsafe_code)]
 

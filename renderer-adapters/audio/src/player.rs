@@ -1,25 +1,25 @@
-//! What runs in the sound card's thread.
+//! The part that runs in the sound card's thread.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
 
 use rtrb::Consumer;
 
-/// How long a fade is when samples are missing, seconds.
+/// Length of a fade when samples are missing, seconds.
 const FADE_S: f64 = 0.005;
 
-/// What is wanted of the player.
+/// State that the writer asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Wish {
     /// Play; a missing sample is an underrun.
     Play = 0,
-    /// Play what is there, then be silent.
+    /// Play the samples in the ring, then silence.
     Drain = 1,
     /// Fade out now.
     Stop = 2,
 }
 
-/// What the sound card's thread and the writer tell each other.
+/// State shared by the sound card's thread and the writer.
 #[derive(Debug, Default)]
 pub(crate) struct Shared {
     wish: AtomicU8,
@@ -27,7 +27,7 @@ pub(crate) struct Shared {
     pub(crate) taken: AtomicU64,
     /// Times the ring was found empty.
     pub(crate) underruns: AtomicU64,
-    /// From a frame's being handed over to its coming out, frames.
+    /// Latency from taking a frame to its output, frames.
     pub(crate) delay: AtomicU64,
     /// After [`Wish::Drain`] or [`Wish::Stop`]: the last sound has left the card.
     pub(crate) silent: AtomicBool,
@@ -41,7 +41,7 @@ impl Shared {
     }
 }
 
-/// Takes samples from the ring. Allocates nothing and waits for nothing.
+/// Takes samples from the ring. Does not allocate or wait.
 pub(crate) struct Player {
     ring: Consumer<f32>,
     shared: Arc<Shared>,
@@ -77,7 +77,7 @@ impl Player {
     ) {
         let wish = self.shared.wish.load(Ordering::Acquire);
         let channels = channels.max(1);
-        // A block more than the delay, which some systems only estimate.
+        // One block more than the delay, since some systems only estimate it.
         let silent = self.quiet > delay + (out.len() / channels) as u64;
         for frame in out.chunks_mut(channels) {
             frame.fill(convert(self.next(wish)));

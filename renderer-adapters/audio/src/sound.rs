@@ -13,9 +13,9 @@ use rtrb::{Producer, RingBuffer};
 use crate::card::Card;
 use crate::player::{Player, Shared, Wish};
 
-/// Between two looks for room.
+/// Time between two checks for space.
 const LOOK: Duration = Duration::from_millis(2);
-/// After this long without a call from the card, it is taken to stand still.
+/// Time without a call from the card after which it is regarded as stopped.
 const STILL: Duration = Duration::from_secs(2);
 
 pub(crate) struct Sound {
@@ -24,10 +24,10 @@ pub(crate) struct Sound {
     rate_hz: f64,
     ring: Producer<f32>,
     shared: Arc<Shared>,
-    /// None after the end.
+    /// `None` after the end.
     stream: Option<cpal::Stream>,
     playing: bool,
-    /// What the card's thread says went wrong.
+    /// The error of the card's thread.
     failure: Arc<Mutex<Option<String>>>,
     written: u64,
     peak: f64,
@@ -68,7 +68,7 @@ impl Sound {
         })
     }
 
-    /// Lets the card's thread run.
+    /// Starts the card's thread.
     fn play(&mut self) -> Result<(), DeviceError> {
         if let (false, Some(stream)) = (self.playing, &self.stream) {
             let played = stream.play();
@@ -132,7 +132,7 @@ impl Device for Sound {
             self.peak = self.peak.max(f64::from(peak));
             self.written += pushed.len() as u64;
             left = rest;
-            // Half a buffer is kept, however the writer is paced.
+            // Half a buffer is kept full, whatever the pace of the writer.
             if 2 * self.ring.slots() <= self.ring.buffer().capacity() {
                 self.play()?;
             }
@@ -161,7 +161,7 @@ impl Device for Sound {
 
     fn finish(&mut self) -> Result<(), DeviceError> {
         self.usable()?;
-        // The end is known before the card's thread may find the ring empty.
+        // The end is announced before the card's thread may find the ring empty.
         self.shared.wish(Wish::Drain);
         if self.written > 0 {
             self.play()?;
@@ -178,7 +178,7 @@ impl Drop for Sound {
     }
 }
 
-/// What is done with the errors of the card's thread: gaps are counted, what it goes on after is
+/// Handles errors of the card's thread: gaps are counted, errors after which it continues are
 /// left alone, the rest is told.
 fn reporter(
     shared: Arc<Shared>,

@@ -1,4 +1,4 @@
-//! Playback through ALSA itself: its `file` device records what was played.
+//! Playback through ALSA: its `file` device records the samples.
 #![cfg(all(feature = "cpal", target_os = "linux"))]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 

@@ -1,4 +1,4 @@
-//! The device under test, and what several checks ask of it.
+//! The device under test, and operations that several checks use.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
-use htex_check::Finding;
+use htex_check_runner::Finding;
 use htex_device::{
     Adapter, Capabilities, Device, DeviceError, NativeAdapter, Rates, SettingKind, Settings,
     StreamFormat,
@@ -15,9 +15,9 @@ use tempfile::TempDir;
 
 /// A hundredth of the limit, or of the unit where there is none.
 const QUIET: f64 = 0.01;
-/// Frequency of what is played, hertz.
+/// Frequency of the tone, hertz.
 const TONE_HZ: f64 = 100.0;
-/// Writes that may take nothing, one behind the other, each waiting [`PATIENCE`].
+/// Most consecutive writes that may take nothing, each waiting [`PATIENCE`].
 const EMPTY_WRITES: u32 = 5;
 const PATIENCE: Duration = Duration::from_secs(1);
 
@@ -30,8 +30,8 @@ pub enum Subject {
     Builtin(Arc<dyn Adapter>),
 }
 
-/// A device that was loaded, and how it is to be set.
-pub(crate) struct Case {
+/// A loaded device, and its settings.
+pub struct Case {
     pub(crate) adapter: Arc<dyn Adapter>,
     /// The same adapter, where it is a library's.
     pub(crate) native: Option<NativeAdapter>,
@@ -68,7 +68,7 @@ impl Case {
         })
     }
 
-    /// The settings given, and for what must be given besides: a new file, or the first endpoint.
+    /// The given settings, and for required ones that are missing a new file or the first endpoint.
     pub(crate) fn settings(&self) -> Result<Settings, Finding> {
         self.settings_of(self.profile.as_deref())
     }
@@ -92,10 +92,10 @@ impl Case {
             let missing = || Finding::skipped(format!("give its setting: --set {name}=…"));
             given.insert(name.clone(), value.ok_or_else(missing)?);
         }
-        Settings::resolve(descriptor, profile, &given).map_err(failed)
+        Ok(Settings::resolve(descriptor, profile, &given)?)
     }
 
-    /// A file that is not there, of a kind that is known to many.
+    /// The path of a new WAV file.
     fn new_file(&self) -> String {
         let count = self.files.fetch_add(1, Ordering::Relaxed);
         let path = self.folder.path().join(format!("check-{count}.wav"));
@@ -108,20 +108,20 @@ impl Case {
         first.map(|endpoint| endpoint.name)
     }
 
-    /// What the device can do; where its driver or the device is missing there is nothing to check.
+    /// The device's capabilities; the check is skipped where the driver or the device is missing.
     pub(crate) fn capabilities(&self) -> Result<Capabilities, Finding> {
         let can = self.adapter.capabilities(&self.settings()?);
         can.map_err(|error| match error {
             DeviceError::Missing(what) => Finding::skipped(what),
-            error => failed(error),
+            error => error.into(),
         })
     }
 
-    /// A device at its best rate, and its settings.
+    /// A device at its default rate, and its settings.
     pub(crate) fn open(&self) -> Result<(Box<dyn Device>, Settings), Finding> {
         let settings = self.settings()?;
         let rate_hz = self.capabilities()?.default_rate_hz;
-        let device = self.open_at(&settings, rate_hz).map_err(failed)?;
+        let device = self.open_at(&settings, rate_hz)?;
         Ok((device, settings))
     }
 
@@ -138,7 +138,7 @@ impl Case {
         self.adapter.open(settings, &format)
     }
 
-    /// A quiet tone at the best rate.
+    /// A quiet tone at the default rate.
     pub(crate) fn tone(&self, frames: usize) -> Result<Vec<f32>, Finding> {
         let can = self.capabilities()?;
         let amplitude = QUIET * can.limit.unwrap_or(1.0);
@@ -152,7 +152,7 @@ impl Case {
 pub(crate) fn write_all(device: &mut dyn Device, samples: &[f32]) -> Result<(), Finding> {
     let (mut left, mut empty) = (samples, 0);
     while !left.is_empty() {
-        let taken = device.write(left, PATIENCE).map_err(failed)?;
+        let taken = device.write(left, PATIENCE)?;
         empty = if taken == 0 { empty + 1 } else { 0 };
         if empty == EMPTY_WRITES {
             let seconds = PATIENCE.as_secs() * u64::from(EMPTY_WRITES);
@@ -161,14 +161,14 @@ pub(crate) fn write_all(device: &mut dyn Device, samples: &[f32]) -> Result<(), 
             )));
         }
         let Some(rest) = left.get(taken..) else {
-            return Err(Finding::failed("it takes more than it was offered"));
+            return Err(Finding::failed("it takes more samples than it was offered"));
         };
         left = rest;
     }
     Ok(())
 }
 
-/// The rates to try: all of a list, both ends of a range, and the best.
+/// The rates to try: all of a list, both ends of a range, and the default.
 pub(crate) fn rates(can: &Capabilities) -> Vec<f64> {
     let mut rates = match &can.rates {
         Rates::List(all) => all.clone(),
@@ -178,8 +178,4 @@ pub(crate) fn rates(can: &Capabilities) -> Vec<f64> {
     rates.sort_by(f64::total_cmp);
     rates.dedup();
     rates
-}
-
-pub(crate) fn failed(error: DeviceError) -> Finding {
-    Finding::failed(error.to_string())
 }

@@ -1,10 +1,9 @@
-//! A checker that device authors can trust: every promise of the device ABI is one check, and each
-//! check runs in a process of its own, so that a crash or an endless loop is an answer too.
+//! The checker of devices: one check for each promise of the device ABI, run by [`htex_check_runner`] in a process of its own,
+//! so that a crash or an endless loop becomes a finding.
 //!
-//! [`CHECKS`] is the list; [`check`] runs it over a device; [`run_one`] runs one of them in this
-//! process. A device is called as a scene calls it, through [`htex_device::Adapter`]; what only a
-//! library can do wrong is skipped for a built-in one. Devices are driven at a hundredth of their
-//! limit, and beyond it once: nobody touches one while it is checked.
+//! [`CHECKS`] is the table; [`check`] runs it over a device; [`run_one`] runs one check in this process. A device is called
+//! as a scene calls it, through [`htex_device::Adapter`]; checks of a library's exports are skipped for a built-in device.
+//! Devices are driven at a hundredth of their limit, and offered samples beyond it: nobody may touch one while it is checked.
 #![forbid(unsafe_code)]
 
 mod case;
@@ -14,6 +13,7 @@ mod runner;
 mod table;
 
 pub use case::Subject;
-pub use report::DeviceReport;
-pub use runner::{Options, check, run_one};
-pub use table::{CHECKS, Check};
+pub use htex_check_runner::{Finding, Runner, UnknownCheck};
+pub use report::{DeviceName, Report};
+pub use runner::{check, run_one};
+pub use table::CHECKS;

@@ -1,34 +1,9 @@
-//! Every check, in one table.
-
-use htex_check::Found;
+//! The table of checks.
 
 use crate::case::Case;
 use crate::checks::{describe, end, limit, open, write};
 
-/// One check.
-pub struct Check {
-    /// Stable name, as `--only` and `--reproduce` take it.
-    pub name: &'static str,
-    /// What is promised, in a sentence.
-    pub summary: &'static str,
-    /// Checks that must not be broken for this one to mean something.
-    pub needs: &'static [&'static str],
-    pub(crate) run: fn(&Case) -> Found,
-}
-
-macro_rules! checks {
-    ($($name:literal needs [$($need:literal),*] $run:path: $summary:literal;)*) => {
-        /// All checks, in the order in which they run: what others need comes first.
-        pub const CHECKS: &[Check] = &[$(Check {
-            name: $name,
-            summary: $summary,
-            needs: &[$($need),*],
-            run: $run,
-        }),*];
-    };
-}
-
-checks! {
+htex_check_runner::checks! { Case;
     "marker" needs [] describe::loaded:
         "The marker names this ABI's major version.";
     "exports" needs ["marker"] describe::loaded:
@@ -36,19 +11,19 @@ checks! {
     "descriptor" needs ["exports"] describe::descriptor:
         "The descriptor is JSON of the schema: names, ranges, defaults and profiles make sense.";
     "extensions" needs ["exports"] describe::extensions:
-        "An extension nobody has heard of is not there.";
+        "Unknown extensions are absent.";
     "endpoints" needs ["descriptor"] describe::endpoints:
-        "What is connected can be asked; a missing driver says so.";
+        "Endpoints can be listed; a missing driver is reported.";
     "capabilities" needs ["descriptor"] describe::capabilities:
         "Capabilities are finite and agree, for each profile; a voltage has a limit.";
     "bad-settings" needs ["capabilities"] describe::bad_settings:
-        "Settings it does not have, and values out of range, are refused.";
+        "Unknown settings and values out of range are refused.";
     "open" needs ["capabilities"] open::opens:
-        "It opens at each rate of a list, at both ends of a range, and at the best rate.";
+        "It opens at each rate of a list, at both ends of a range, and at the default rate.";
     "bad-rate" needs ["open"] open::bad_rate:
-        "Rates that are none of its own are refused.";
+        "Rates that it does not have are refused.";
     "write" needs ["open"] write::blocks:
-        "Blocks of any size, none too, are taken in the end.";
+        "Blocks of any size, including empty ones, are taken in the end.";
     "status" needs ["write"] write::status:
         "It counts the frames it took and their peak.";
     "over-limit" needs ["status"] limit::over:
@@ -66,9 +41,4 @@ checks! {
     "memory" needs ["write"] write::memory:
         "Memory does not grow over 10,000 blocks of 256 frames (10 s of a device with a clock), nor \
          over 100 devices opened and closed: at most 2 MiB. On Linux.";
-}
-
-/// The check of a name.
-pub(crate) fn find(name: &str) -> Option<&'static Check> {
-    CHECKS.iter().find(|check| check.name == name)
 }

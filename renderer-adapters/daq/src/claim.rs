@@ -8,10 +8,10 @@ use htex_device::DeviceError;
 
 use crate::rig::Rig;
 
-/// Driver and output of all open devices.
+/// Driver and output of each open device.
 static CLAIMED: Mutex<BTreeSet<(String, String)>> = Mutex::new(BTreeSet::new());
 
-/// Given back when dropped.
+/// Released when dropped.
 pub(crate) struct Claim((String, String));
 
 impl Claim {

@@ -1,4 +1,4 @@
-//! What the adapter says of itself: settings and the profiles of rigs.
+//! The adapter's descriptor: settings and the profiles of rigs.
 
 use std::collections::BTreeMap;
 

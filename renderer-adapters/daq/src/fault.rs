@@ -1,4 +1,4 @@
-//! Errors of NI-DAQmx, and what they mean here. The codes are those of `NIDAQmx.h`.
+//! Errors of NI-DAQmx, and their device errors. The codes are those of `NIDAQmx.h`.
 
 use htex_device::DeviceError;
 
@@ -11,10 +11,10 @@ const RESERVED: i32 = -50103;
 /// Samples came too late: the buffer, or the memory on the card, ran dry.
 const DRY: [i32; 5] = [-200290, -200291, -200016, -200018, -200621];
 
-/// What is said of a voltage that may be standing.
+/// The warning about a voltage that may remain at the display.
 pub(crate) const NOT_ZERO: &str = "the output could not be set to zero: switch the amplifier off";
 
-/// An error code of the driver and the driver's words.
+/// An error code of the driver and its message.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Fault {
     pub(crate) code: i32,
@@ -34,7 +34,7 @@ impl Fault {
         }
     }
 
-    /// The error of a device that was running and no longer answers.
+    /// The error of a device that was running and no longer responds.
     pub(crate) fn failed_and_not_zero(&self, device: &str) -> DeviceError {
         DeviceError::Failed {
             device: device.to_owned(),
@@ -50,7 +50,7 @@ impl Fault {
                 "{device} is in use by another program or device (NI-DAQmx {code}: {words})"
             )),
             code if GONE.contains(&code) => DeviceError::Missing(format!(
-                "{device} is not there (NI-DAQmx {code}: {words}); see NI MAX or `nilsdev`"
+                "{device} is not connected (NI-DAQmx {code}: {words}); see NI MAX or `nilsdev`"
             )),
             _ => self.failed(device),
         }

@@ -1,14 +1,14 @@
 //! The analog output of a National Instruments card, and the amplifier behind it: electrovibration.
 //!
 //! Samples are volts *at the display*, the carrier included; this adapter divides by the amplifier's
-//! gain and streams through NI-DAQmx, which is loaded when it is asked for and not linked.
+//! gain and streams through NI-DAQmx, which is loaded at run time and not linked.
 //!
-//! What holds the voltage down:
-//! - a sample beyond `limit_v` is never put out, and the driver's own channel limits say the same;
+//! The voltage is limited by:
+//! - a sample beyond `limit_v` is never output, and the driver's own channel limits are set to the same;
 //! - the output goes to zero before a stream, after it, on every error, and when the device is
-//!   dropped; a stream that runs dry is noticed by a thread of the device's own, whether or not
-//!   anybody writes again;
-//! - a stream that does not begin or end at zero is led there by a ramp of `ramp_ms` *before its
+//!   dropped; a thread of the device notices a stream that runs dry, whether or not
+//!   samples are written again;
+//! - a stream that does not begin or end at zero gets a ramp of `ramp_ms` *before its
 //!   first and after its last* sample. Samples themselves are never changed.
 #![deny(unsafe_code)]
 
@@ -34,7 +34,7 @@ pub struct Daq {
 }
 
 impl Daq {
-    /// The adapter. Nothing is loaded until a device is asked for.
+    /// The adapter. The driver is loaded at the first use.
     pub fn new() -> Self {
         Self {
             descriptor: descriptor::descriptor(),

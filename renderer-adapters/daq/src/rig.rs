@@ -1,4 +1,4 @@
-//! Card, amplifier and limits, as the settings state them.
+//! Card, amplifier and limits, from the settings.
 
 use htex_device::{Capabilities, DeviceError, Quantity, Rates, Settings};
 
@@ -6,9 +6,9 @@ use crate::driver::Driver;
 
 /// The rate at which the paper records forces, hertz; it gives none for its output.
 const DEFAULT_RATE_HZ: f64 = 20_000.0;
-/// Frames a block is best made of.
+/// Preferred frames in a block.
 const BLOCK_FRAMES: u32 = 256;
-/// How far above the limit a sample still counts as the limit, relative: rounding to f32.
+/// Relative tolerance of the limit: rounding to f32.
 const ROUNDING: f64 = 1e-6;
 
 #[derive(Debug, Clone)]
@@ -18,7 +18,7 @@ pub(crate) struct Rig {
     pub(crate) driver: String,
     /// Volts at the display for one volt of the card.
     pub(crate) gain: f64,
-    /// At the display, volts.
+    /// Limit at the display, volts.
     pub(crate) limit_v: f64,
     /// Distance of two neighbouring voltages at the display, volts.
     pub(crate) step_v: f64,
@@ -51,7 +51,7 @@ impl Rig {
         }
     }
 
-    /// What card and amplifier can do together.
+    /// The capabilities of card and amplifier together.
     pub(crate) fn capabilities(&self, driver: &Driver) -> Result<Capabilities, DeviceError> {
         let card = self.device.split('/').next().unwrap_or_default();
         let outputs = driver.outputs().map_err(|f| f.failed(&self.device))?;
@@ -73,7 +73,7 @@ impl Rig {
         })
     }
 
-    /// What to do about samples that come too late.
+    /// Advice about samples that come too late.
     pub(crate) fn larger_buffer(&self) -> String {
         let buffer_ms = self.buffer_s * 1e3;
         format!(
@@ -82,7 +82,7 @@ impl Rig {
         )
     }
 
-    /// The card's voltage for a voltage at the display; nothing when it is over the limit or not a
+    /// The card's voltage for a voltage at the display; `None` when it is over the limit or not a
     /// number.
     pub(crate) fn card_v(&self, display_v: f64) -> Option<f64> {
         let within = display_v.abs() <= self.limit_v * (1.0 + ROUNDING);
@@ -92,8 +92,13 @@ impl Rig {
 
 fn not_there(device: &str, there: &[&str]) -> String {
     match there.is_empty() {
-        true => format!("`{device}` is not there: NI-DAQmx knows no card; see NI MAX or `nilsdev`"),
-        false => format!("`{device}` is not there; there is {}", there.join(", ")),
+        true => {
+            format!("`{device}` is not connected: NI-DAQmx knows no card; see NI MAX or `nilsdev`")
+        }
+        false => format!(
+            "`{device}` is not connected; connected is {}",
+            there.join(", ")
+        ),
     }
 }
 

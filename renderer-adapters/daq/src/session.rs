@@ -1,4 +1,4 @@
-//! What writer and watchdog share of an open device: the running task, and the way to zero.
+//! The state that writer and watchdog of an open device share: the running task, and the return to zero.
 
 use std::thread::sleep;
 use std::time::Duration;
@@ -10,26 +10,26 @@ use crate::driver::{Driver, Task};
 use crate::fault::Fault;
 use crate::rig::Rig;
 
-/// Times that zero is tried, and the pause between two, which a transient fault is over in.
+/// Tries to output zero, and the pause between two, in which a transient fault passes.
 const ATTEMPTS: usize = 5;
 const PAUSE: Duration = Duration::from_millis(10);
 
 pub(crate) struct Session {
     rig: Rig,
-    /// None after the end.
+    /// `None` after the end.
     claim: Option<Claim>,
     driver: &'static Driver,
     rate_hz: f64,
-    /// Most frames of the stream that are given and have not come out, in the driver's buffer and on the card.
+    /// Most frames of the stream that wait in the driver's buffer and on the card.
     ahead: usize,
     /// Frames the driver's buffer holds: a ramp before the stream may be longer than `ahead`.
     capacity: usize,
-    /// None before the first sample and after the end.
+    /// `None` before the first sample and after the end.
     task: Option<Task>,
-    /// Said once, by the next call.
+    /// An error that the next call returns, once.
     error: Option<DeviceError>,
     closed: bool,
-    /// Frames put before the stream: zeros, and a ramp if there is one.
+    /// Frames in front of the stream: zeros, and a ramp if there is one.
     lead: u64,
     /// Frames given to the driver, the lead included.
     given: u64,
@@ -94,7 +94,7 @@ impl Session {
         Ok(taken)
     }
 
-    /// Frames of the stream that may be given now. What waits is counted by what came out: the driver reports space in
+    /// Frames of the stream that may be given now. Waiting frames are counted by those that came out: the driver reports space in
     /// its buffer as soon as samples have moved on to the card's own memory, which may hold a second of them.
     fn room(&mut self) -> Result<usize, DeviceError> {
         let generated = self.task.as_ref().map(Task::generated).transpose();
@@ -113,7 +113,7 @@ impl Session {
         tail
     }
 
-    /// Gives the driver what fits of volts that are no part of the stream.
+    /// Gives the driver as many volts as fit that are not part of the stream.
     pub(crate) fn give(&mut self, volts: &[f64]) -> Result<usize, DeviceError> {
         self.usable()?;
         let task = self.task.as_ref();
@@ -129,7 +129,7 @@ impl Session {
         Ok(given)
     }
 
-    /// Asks the driver how it is; an error puts the output to zero.
+    /// Reads the driver's state; an error sets the output to zero.
     pub(crate) fn watch(&mut self) {
         let Some(task) = &self.task else { return };
         match task
@@ -145,7 +145,7 @@ impl Session {
         }
     }
 
-    /// What went wrong and was told to nobody yet.
+    /// An error that was not returned yet.
     pub(crate) fn untold(&self) -> Option<&DeviceError> {
         self.error.as_ref()
     }
@@ -168,7 +168,7 @@ impl Session {
         }
     }
 
-    /// How long a sample waits until it comes out, seconds; after the end, how long the last one waited.
+    /// Latency of a sample, seconds; after the end, that of the last one.
     fn latency_s(&self) -> f64 {
         match self.task {
             Some(_) => self.waiting_s(),
@@ -180,7 +180,7 @@ impl Session {
         self.given.saturating_sub(self.generated) as f64 / self.rate_hz
     }
 
-    /// Stops, puts zero out and takes nothing more; what went wrong before is said here.
+    /// Stops, sets the output to zero and takes no more samples; returns an earlier error.
     pub(crate) fn close(&mut self) -> Result<(), DeviceError> {
         if self.closed {
             return self.error.take().map_or(Ok(()), Err);
@@ -197,7 +197,7 @@ impl Session {
         }
     }
 
-    /// Starts the clock on zeros (half of what is kept ahead, so that the first write is not late) that end in
+    /// Starts the clock with zeros (half of the frames kept ahead, so that the first write is not late) that end in
     /// a ramp to the first sample if that is not zero.
     fn start(&mut self, first_v: f64) -> Result<(), DeviceError> {
         let ramp = self.ramp(first_v);
@@ -221,7 +221,7 @@ impl Session {
         Ok(task)
     }
 
-    /// From zero towards `to_v`, both left out; nothing if that is zero within the card's step.
+    /// A ramp from zero to `to_v` without its ends; empty if `to_v` is zero within the card's step.
     fn ramp(&self, to_v: f64) -> Vec<f64> {
         if to_v.abs() * self.rig.gain < self.rig.step_v {
             return Vec::new();
@@ -244,7 +244,7 @@ impl Session {
         Ok(volts)
     }
 
-    /// Puts the output to zero and answers what to say of it.
+    /// Sets the output to zero and returns the warning if that failed.
     fn fail(&mut self, fault: &Fault) -> DeviceError {
         let zero = self.end();
         if fault.is_dry() {
@@ -262,7 +262,7 @@ impl Session {
         }
     }
 
-    /// Puts the output to zero because of a sample.
+    /// Sets the output to zero because of a sample.
     fn refuse(&mut self, frame: u64, value: f64) -> DeviceError {
         match self.end() {
             Err(fault) => fault.failed_and_not_zero(&self.rig.device),
@@ -275,7 +275,7 @@ impl Session {
         }
     }
 
-    /// Ends the task, if one runs, and puts the output to zero, for good.
+    /// Ends the task, if one runs, and sets the output to zero for good.
     fn end(&mut self) -> Result<(), Fault> {
         self.closed = true;
         if let Some(task) = self.task.take() {
@@ -286,7 +286,7 @@ impl Session {
         zero
     }
 
-    /// Zero by a task of its own, without a clock; tried again where it fails, and at last by a reset of the card.
+    /// Outputs zero by a separate task without a clock; retries on failure, at last after a reset of the card.
     fn put_zero(&self) -> Result<(), Fault> {
         let mut zero = self.zero_once();
         for _ in 1..ATTEMPTS {
@@ -296,8 +296,8 @@ impl Session {
             sleep(PAUSE);
             zero = self.zero_once();
         }
-        // A reset ends all tasks of the card and puts its outputs where they are at power-on, which need not be
-        // zero: so zero is written once more.
+        // A reset ends all tasks of the card and sets its outputs to their power-on state, which need not be
+        // zero: so zero is written again.
         zero.or_else(|fault| {
             self.driver.reset(&self.rig.device).map_err(|_| fault)?;
             self.zero_once()

@@ -1,4 +1,4 @@
-//! An open device: waits for room, and for the end.
+//! An open device: waits for space, and for the end.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
@@ -11,9 +11,9 @@ use crate::rig::Rig;
 use crate::session::Session;
 use crate::watchdog::Watchdog;
 
-/// Between two looks for room.
+/// Time between two checks for space.
 const LOOK: Duration = Duration::from_millis(2);
-/// After this long without a sample coming out, the clock is taken to stand still.
+/// Time without output after which the clock is regarded as stopped.
 const STILL: Duration = Duration::from_secs(2);
 
 /// Zeros kept ready behind the end of a stream.
@@ -49,7 +49,7 @@ impl Stream {
         self.session.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Gives the tail, and then zeros, until the tail has come out: the clock never finds the
+    /// Gives the tail, and then zeros until the tail has come out, so that the clock never finds the
     /// buffer empty.
     fn drain(&self) -> Result<(), DeviceError> {
         let mut tail = self.session().tail();

@@ -1,4 +1,4 @@
-//! A thread that asks the driver how it is, so that a device whose writer hangs goes to zero too.
+//! A thread that polls the driver, so that the output goes to zero even if the writer hangs.
 
 use std::io::Write;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
@@ -11,7 +11,7 @@ use htex_device::DeviceError;
 use crate::fault::NOT_ZERO;
 use crate::session::Session;
 
-/// Says something on standard error, which may be gone.
+/// Prints on standard error, which may be closed.
 pub(crate) fn say(error: &DeviceError) {
     let _ = writeln!(std::io::stderr(), "htex: {error}");
 }
@@ -33,7 +33,7 @@ impl Watchdog {
                 let mut session = session.lock().unwrap_or_else(PoisonError::into_inner);
                 let was_running = session.is_running();
                 session.watch();
-                // A writer that hangs asks no more: a voltage that may be standing is said here.
+                // A writer that hangs makes no more calls: the warning about a remaining voltage is printed here.
                 let error = session.untold().filter(|_| was_running && !told);
                 if let Some(error) = error.filter(|e| e.to_string().contains(NOT_ZERO)) {
                     say(error);

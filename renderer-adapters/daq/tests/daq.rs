@@ -1,5 +1,4 @@
-//! Playback through the simulated card: what comes out, to the bit, and what comes out when
-//! something is wrong.
+//! Playback through the simulated card: bit-exact output, and the output after errors.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod simulated;
@@ -127,7 +126,7 @@ fn a_hung_writer_ends_at_zero() {
     let card = Card::new();
     let mut device = card.open(&[("buffer_ms", "50")]).unwrap();
     device.write(&[100.0; 800], LONG).unwrap();
-    // Nobody calls; the device's own thread sees the buffer run dry.
+    // Without a call, the device's own thread sees the buffer run dry.
     let waited = (0..2_000).any(|_| {
         std::thread::sleep(Duration::from_millis(10));
         card.recorded().ends_with(&[2.0, 0.0])
@@ -228,7 +227,7 @@ fn what_is_missing_is_named() {
         .unwrap()
         .to_string();
     assert!(
-        other.contains("`Dev2/ao0` is not there; there is Dev1/ao0, Dev1/ao1"),
+        other.contains("`Dev2/ao0` is not connected; connected is Dev1/ao0, Dev1/ao1"),
         "{other}"
     );
     let none = card

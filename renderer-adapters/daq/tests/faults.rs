@@ -1,4 +1,4 @@
-//! Every fault at every call of the driver: the output ends at zero, or it is said that it does not.
+//! Every fault at every call of the driver: the output ends at zero, or an error says that it may not.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod simulated;
@@ -27,7 +27,7 @@ const FUNCTIONS: [&str; 13] = [
 ];
 const NOT_ZERO: &str = "could not be set to zero: switch the amplifier off";
 
-/// A burst at two volts of the card, which ends there: zero is the device's to reach.
+/// A burst that ends at two volts of the card: the device must bring it to zero.
 fn play(card: &Card) -> Result<(), DeviceError> {
     let mut device = card.open(&[("buffer_ms", "50"), ("ramp_ms", "5")])?;
     for _ in 0..3 {
@@ -47,7 +47,7 @@ fn ends_at_zero(card: &Card) -> bool {
     card.recorded().last().is_none_or(|volts| *volts == 0.0)
 }
 
-/// How often each function is called when nothing is wrong.
+/// Number of calls of each function without a fault.
 fn calls(run: impl Fn(&Card)) -> Vec<(&'static str, u64)> {
     let card = Card::new();
     card.set("fault", "none:1:error=0");
@@ -80,10 +80,10 @@ fn every_fault_at_every_call_ends_at_zero_or_says_so() {
                     .as_ref()
                     .is_err_and(|error| error.to_string().contains(NOT_ZERO));
                 assert!(ends_at_zero(&card) || told, "{fault}: {played:?}");
-                // Told for nothing is told wrongly, but for the voltage that the last zero did not report.
+                // A warning without cause is wrong, except where the last write of zero failed to report success.
                 tried += 1;
                 said += usize::from(told);
-                // One fault alone never leaves a voltage, but for a card that is gone.
+                // A single fault never leaves a voltage, except on a card that was removed.
                 assert!(
                     !lasts.is_empty() || *kind == "unplug" || ends_at_zero(&card),
                     "{fault}"

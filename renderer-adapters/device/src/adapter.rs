@@ -10,25 +10,25 @@ use crate::{Capabilities, Descriptor, DeviceError, Endpoint, Settings};
 
 /// A family of devices.
 pub trait Adapter: Send + Sync {
-    /// What the adapter says of itself; the same at each call. `[any thread]`
+    /// The adapter's descriptor; the same at each call. `[any thread]`
     fn descriptor(&self) -> &Descriptor;
 
-    /// The devices that are there now; none is no error. `[any thread]`
+    /// The devices that are connected now; an empty list is not an error. `[any thread]`
     ///
     /// # Errors
     /// When a driver is missing: the message says what to install.
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError>;
 
-    /// What a device opened with these settings can do. Opens nothing. `[any thread]`
+    /// The capabilities of a device with these settings. Opens nothing. `[any thread]`
     ///
     /// # Errors
-    /// When a setting is not usable, or the device is not there.
+    /// When a setting is not usable, or the device is not connected.
     fn capabilities(&self, settings: &Settings) -> Result<Capabilities, DeviceError>;
 
     /// Opens a device, silent and at zero. `[any thread]`
     ///
     /// # Errors
-    /// As [`Self::capabilities`], and when the rate is none of its rates.
+    /// As [`Self::capabilities`], and when the device does not have the rate.
     fn open(
         &self,
         settings: &Settings,
@@ -39,8 +39,8 @@ pub trait Adapter: Send + Sync {
 /// An open device. Dropping it without [`Device::finish`] aborts: the output goes to zero, and a
 /// file that was being written is not left behind.
 pub trait Device: Send {
-    /// Takes samples of the device's quantity, as many as there is room for within `timeout` (zero:
-    /// those that fit now); answers how many. The first samples start the device.
+    /// Takes samples of the device's quantity, as many as fit within `timeout` (zero:
+    /// those that fit now); returns their number. The first samples start the device.
     /// `[one thread at a time; may wait]`
     ///
     /// # Errors
@@ -48,18 +48,18 @@ pub trait Device: Send {
     /// output is then at zero, and stays there.
     fn write(&mut self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError>;
 
-    /// What happened so far. `[one thread at a time]`
+    /// The counts so far. `[one thread at a time]`
     fn status(&self) -> Status;
 
     /// Plays what was written to its end, goes to zero, and keeps the result (a file appears under
     /// its name). Nothing can be written afterwards. `[one thread at a time; may wait]`
     ///
     /// # Errors
-    /// When that could not be done; the output is at zero all the same.
+    /// When that failed; the output is at zero even then.
     fn finish(&mut self) -> Result<(), DeviceError>;
 }
 
-/// The stream a device is opened for: one channel; a device of several plays it on all it drives.
+/// The stream a device is opened for: one channel; a device with several channels plays it on all.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StreamFormat {
     /// Samples a second.
@@ -68,7 +68,7 @@ pub struct StreamFormat {
     pub block_frames: u32,
 }
 
-/// What happened to a device since it was opened.
+/// Counts since a device was opened.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Status {
     /// Frames taken.
@@ -77,13 +77,13 @@ pub struct Status {
     pub frames_played: u64,
     /// Times the device ran dry.
     pub underruns: u64,
-    /// From writing a sample to its coming out, seconds.
+    /// Latency from writing a sample to its output, seconds.
     pub latency_s: f64,
     /// Largest magnitude written, in the device's unit.
     pub peak: f64,
 }
 
-/// As the numbers cross the ABI; counts are exact below 2⁵³.
+/// The status as the ABI's numbers; counts are exact below 2⁵³.
 impl From<Status> for [f64; STATUS_NUMBERS] {
     fn from(status: Status) -> Self {
         let mut numbers = [0.0; STATUS_NUMBERS];

@@ -1,19 +1,19 @@
-//! What a device can do.
+//! Capabilities of a device.
 
 use serde::{Deserialize, Serialize};
 
 use crate::DeviceError;
 use crate::abi::{MAX_BLOCK_FRAMES, MAX_RATE_HZ, MIN_RATE_HZ};
 
-/// What a device can do; crosses the ABI as JSON.
+/// Capabilities of a device; they cross the ABI as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Capabilities {
-    /// What its samples mean.
+    /// Quantity of its samples.
     pub quantity: Quantity,
     /// Rates it runs at.
     pub rates: Rates,
-    /// The rate it runs at best, hertz.
+    /// Default rate, hertz.
     pub default_rate_hz: f64,
     /// Largest magnitude it takes, in the quantity's unit; absent: no limit. A voltage always has
     /// one.
@@ -25,23 +25,23 @@ pub struct Capabilities {
     /// Frequency of the carrier that an electrovibration display wants, hertz.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub carrier_hz: Option<f64>,
-    /// A clock takes the samples; else they go as fast as they are made (a file).
+    /// Whether a clock takes the samples; else they are taken as fast as they are made (a file).
     pub paced: bool,
-    /// Frames a block is best made of.
+    /// Preferred frames in a block.
     pub block_frames: u32,
 }
 
 impl Capabilities {
-    /// Whether these are numbers a device can have, and agree with each other.
+    /// Checks that the numbers are in range and agree with each other.
     ///
     /// # Errors
-    /// A sentence that says what is wrong.
+    /// A sentence with the fault.
     pub fn check(&self) -> Result<(), String> {
         self.rates.check()?;
         if !self.rates.has(self.default_rate_hz) {
             let rate_hz = self.default_rate_hz;
             return Err(format!(
-                "the default rate of {rate_hz} Hz is none of its rates"
+                "the default rate of {rate_hz} Hz is not one of its rates"
             ));
         }
         if self.quantity == Quantity::DisplayVoltage && self.limit.is_none() {
@@ -71,7 +71,7 @@ impl Capabilities {
     pub fn check_samples(&self, samples: &[f32], first_frame: u64) -> Result<(), DeviceError> {
         let limit = self.limit.map_or(f32::MAX, |limit| limit as f32);
         let over = |sample: &f32| !(0.0..=limit).contains(&sample.abs());
-        // No early end: the loop is then one of vectors.
+        // Without an early exit, so that the loop can be vectorized.
         if !samples.iter().fold(false, |any, sample| any | over(sample)) {
             return Ok(());
         }
@@ -85,7 +85,7 @@ impl Capabilities {
     }
 }
 
-/// What a device's samples mean.
+/// Quantity of a device's samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
@@ -131,7 +131,7 @@ impl Quantity {
         }
     }
 
-    /// Whether samples are what a finger or tool meets, in an SI unit: levels are then those of the textures.
+    /// Whether samples are a mechanical quantity in an SI unit: levels are then those of the textures.
     pub fn is_physical(self) -> bool {
         !matches!(self, Self::DisplayVoltage | Self::Sound)
     }
@@ -154,9 +154,9 @@ impl Quantity {
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Rates {
-    /// Just these, ascending.
+    /// These rates, ascending.
     List(Vec<f64>),
-    /// All in between, both ends included.
+    /// All rates in a range, both ends included.
     Range {
         /// Lowest.
         min_hz: f64,

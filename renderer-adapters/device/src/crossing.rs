@@ -1,4 +1,4 @@
-//! Errors as they cross the ABI: a code and a text one way, an error again the other way.
+//! Errors across the ABI: from an error to a code and a text, and back.
 
 use crate::DeviceError;
 use crate::abi::Code;
@@ -27,8 +27,8 @@ pub(crate) fn outgoing(error: &DeviceError) -> (Code, String) {
     (code, text)
 }
 
-/// The error of a code and a text, but for what the caller alone knows: `OverLimit`, `Underflow`
-/// and `InvalidRate` are failures here.
+/// The error of a code and a text. `OverLimit`, `Underflow` and `InvalidRate`, whose details only the caller
+/// knows, become failures.
 pub(crate) fn incoming(code: Code, text: String, device: &str, library: &str) -> DeviceError {
     match code {
         Code::InvalidSetting => {
@@ -53,7 +53,7 @@ pub(crate) fn incoming(code: Code, text: String, device: &str, library: &str) ->
     }
 }
 
-/// What stands before the first `: ` and behind it.
+/// The parts before and behind the first `: `.
 fn parted(text: String) -> (String, String) {
     match text.split_once(": ") {
         Some((before, behind)) => (before.to_owned(), behind.to_owned()),

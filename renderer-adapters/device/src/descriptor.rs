@@ -1,4 +1,4 @@
-//! What an adapter says of itself.
+//! Descriptors of adapters.
 
 use std::collections::BTreeMap;
 
@@ -32,22 +32,22 @@ pub struct Descriptor {
 pub struct Setting {
     /// Name, unit included, e.g. `limit_v`.
     pub name: String,
-    /// What it may be.
+    /// The values it may have.
     pub kind: SettingKind,
-    /// Value when nothing is said; absent: it must be given.
+    /// Default; absent: it must be given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub default: Option<String>,
-    /// Value in place of `default` while the motion is given as the scene plays: such as a shorter buffer.
+    /// Default with a live motion, such as a shorter buffer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub live_default: Option<String>,
-    /// What a scene, which may come from anyone, may do with it.
+    /// What a scene, which may be untrusted, may do with it.
     #[serde(default, skip_serializing_if = "FromScene::is_any")]
     pub from_scene: FromScene,
-    /// What it does.
+    /// Its effect.
     pub description: String,
 }
 
-/// What a scene may do with a setting. What describes the hardware is a person's to say: on the command line, or
+/// What a scene may do with a setting. Settings that describe the hardware are given by a person: on the command line, or
 /// by the choice of a profile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
@@ -71,7 +71,7 @@ impl FromScene {
     }
 }
 
-/// What a setting may be. Values are text; numbers are written as JSON writes them.
+/// The values of a setting, as text; numbers are written as in JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(tag = "type", rename_all = "snake_case")]
@@ -100,13 +100,13 @@ pub enum SettingKind {
 pub struct Profile {
     /// Name it is chosen by.
     pub name: String,
-    /// What it is for.
+    /// Its purpose.
     pub summary: String,
-    /// The settings it fixes; what is given beside a profile wins.
+    /// The settings it fixes; those given beside a profile take precedence.
     pub settings: BTreeMap<String, String>,
 }
 
-/// A device that is there.
+/// A connected device.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Endpoint {
@@ -124,10 +124,10 @@ impl Descriptor {
         self.id.rsplit('.').next().unwrap_or(&self.id)
     }
 
-    /// Whether the description makes sense: names, ranges, defaults and profiles.
+    /// Checks names, ranges, defaults and profiles.
     ///
     /// # Errors
-    /// A sentence that says what is wrong.
+    /// A sentence with the fault.
     pub fn check(&self) -> Result<(), String> {
         check_id(&self.id)?;
         semver::Version::parse(&self.version)
@@ -147,12 +147,12 @@ impl Descriptor {
         self.profiles.iter().try_for_each(|p| self.check_profile(p))
     }
 
-    /// What a profile leaves open must be given beside it; what it fixes must be allowed.
+    /// Checks that the values a profile fixes are allowed.
     fn check_profile(&self, profile: &Profile) -> Result<(), String> {
         let wrong = |what: String| Err(format!("profile `{}`: {what}", profile.name));
         for (name, value) in &profile.settings {
             let Some(setting) = self.settings.iter().find(|s| s.name == *name) else {
-                return wrong(format!("there is no setting `{name}`"));
+                return wrong(format!("unknown setting `{name}`"));
             };
             if let Err(error) = crate::settings::check(setting, value) {
                 return wrong(error.to_string());

@@ -1,4 +1,4 @@
-//! The adapters a program knows.
+//! The adapters that a program finds.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use crate::{Adapter, Descriptor, DeviceError, NativeAdapter};
 
-/// Names folders of devices, as `PATH` names those of programs.
+/// The environment variable with folders of devices, separated as in `PATH`.
 const VARIABLE: &str = "HTEX_DEVICE_PATH";
 
-/// Where native devices are looked for. What is found earlier goes before what is found later:
+/// Where native devices are searched. Earlier places take precedence over later ones:
 /// `files`, `dirs`, `HTEX_DEVICE_PATH`, the user's folder, built in.
 #[derive(Debug, Clone)]
 pub struct DeviceSearch {
@@ -26,7 +26,7 @@ pub struct DeviceSearch {
 }
 
 impl Default for DeviceSearch {
-    /// Everywhere, without files and folders of its own.
+    /// All places except `files` and `dirs`.
     fn default() -> Self {
         Self {
             files: Vec::new(),
@@ -65,7 +65,7 @@ pub struct KnownDevice {
 }
 
 impl KnownDevice {
-    /// What the adapter says of itself.
+    /// The adapter's descriptor.
     pub fn descriptor(&self) -> &Descriptor {
         self.adapter.descriptor()
     }
@@ -86,7 +86,7 @@ impl std::fmt::Debug for KnownDevice {
     }
 }
 
-/// What happened while devices were looked for, and is no reason to stop.
+/// Something found during the search that is not an error.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum DeviceNote {
@@ -135,7 +135,7 @@ pub struct Devices {
 }
 
 impl Devices {
-    /// Those linked into a program, and none else.
+    /// Only those linked into a program.
     pub fn new(builtin: Vec<Arc<dyn Adapter>>) -> Self {
         let mut devices = Self::default();
         devices.add_builtin(builtin);
@@ -166,12 +166,12 @@ impl Devices {
         Ok(devices)
     }
 
-    /// All that are used, each id once.
+    /// All adapters in use, each id once.
     pub fn all(&self) -> &[KnownDevice] {
         &self.known
     }
 
-    /// What the user should know: devices that shadow others, and those that could not be loaded.
+    /// Notes for the user: devices that shadow others, and those that could not be loaded.
     pub fn notes(&self) -> &[DeviceNote] {
         &self.notes
     }
@@ -179,7 +179,7 @@ impl Devices {
     /// A device by its id or by its short name (`org.htex.file` or `file`, in any case).
     ///
     /// # Errors
-    /// [`DeviceError::Unknown`] with the names there are.
+    /// [`DeviceError::Unknown`] with the known names.
     pub fn find(&self, name: &str) -> Result<&KnownDevice, DeviceError> {
         let by_id = self.known.iter().find(|known| known.id() == name);
         let by_name = || self.known.iter().find(|known| known.is_named(name));
@@ -241,7 +241,7 @@ impl Devices {
     }
 }
 
-/// The folders that nobody named in this search.
+/// The folders of the environment variable and of the user.
 fn unnamed_folders(search: &DeviceSearch) -> Vec<PathBuf> {
     let mut folders = Vec::new();
     if search.env {

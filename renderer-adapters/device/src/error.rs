@@ -1,4 +1,4 @@
-//! What can go wrong with a device.
+//! Errors of devices.
 
 /// An error of an adapter or an open device.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -8,7 +8,7 @@ pub enum DeviceError {
     Setting {
         /// The setting.
         name: String,
-        /// What is wrong, and what would be right.
+        /// The fault, and the allowed values.
         what: String,
     },
     /// The device does not run at this rate.
@@ -16,15 +16,15 @@ pub enum DeviceError {
     Rate {
         /// The device.
         device: String,
-        /// The rate that was asked for.
+        /// The requested rate.
         rate_hz: f64,
-        /// The rates it has.
+        /// Its rates.
         rates: String,
     },
     /// A driver is not installed, or no such device is connected.
     #[error("{0}")]
     Missing(String),
-    /// The device is there, and somebody has it already.
+    /// The device is in use.
     #[error("{0}")]
     Busy(String),
     /// A sample is beyond the device's limit or not a number; the output is at zero.
@@ -48,18 +48,18 @@ pub enum DeviceError {
         device: String,
         /// Frames that came out before.
         frames: u64,
-        /// What to do.
+        /// Advice.
         advice: String,
     },
-    /// What another process, which holds the device, says of it.
+    /// The message of another process, which holds the device.
     #[error("{0}")]
     Told(String),
-    /// The device was there and is gone, or its driver failed.
+    /// The device was removed, or its driver failed.
     #[error("{device} failed: {what}")]
     Failed {
         /// The device.
         device: String,
-        /// What happened, in the driver's words.
+        /// The driver's message.
         what: String,
     },
     /// A call came after the end or after an error.
@@ -70,23 +70,23 @@ pub enum DeviceError {
     File {
         /// The file.
         path: String,
-        /// What the system said.
+        /// The system's message.
         what: String,
     },
     /// No device of this name is known.
     #[error("no device `{wanted}`; there are {known}")]
     Unknown {
-        /// What was asked for.
+        /// The requested name.
         wanted: String,
-        /// What there is.
+        /// The known names.
         known: String,
     },
-    /// A library is no device of this ABI, or breaks it.
+    /// A library is not a device of this ABI, or breaks it.
     #[error("{library}: {what}")]
     Abi {
         /// The library.
         library: String,
-        /// What is wrong.
+        /// The fault.
         what: String,
     },
 }

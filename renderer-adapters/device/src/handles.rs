@@ -16,7 +16,7 @@ struct Open {
 }
 
 impl Handles {
-    /// None open.
+    /// Without open devices.
     pub(crate) const fn new() -> Self {
         Self(Mutex::new(Open {
             last: 0,
@@ -24,7 +24,7 @@ impl Handles {
         }))
     }
 
-    /// Takes a device in.
+    /// Adds a device; returns its handle.
     pub(crate) fn insert(&self, device: Box<dyn Device>) -> i64 {
         let mut open = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         open.last += 1;
@@ -47,7 +47,7 @@ impl Handles {
         Some(call(&mut **device))
     }
 
-    /// Takes a device out.
+    /// Removes a device.
     pub(crate) fn remove(&self, handle: i64) -> Option<Shared> {
         let mut open = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         open.devices.remove(&handle)

@@ -1,11 +1,11 @@
-//! What a device is: something that takes samples of one quantity at one rate.
+//! Output devices: a device takes samples of one quantity at one rate.
 //!
-//! An [`Adapter`] is a family of devices; [`Adapter::open`] makes a [`Device`]. A device says what
-//! it can do ([`Capabilities`]) and refuses what would harm: its limits hold whatever is asked.
-//! Nothing here knows what a texture is.
+//! An [`Adapter`] is a family of devices; [`Adapter::open`] makes a [`Device`]. A device reports
+//! its [`Capabilities`] and enforces its limits on every sample.
+//! This crate does not depend on textures.
 //!
 //! An adapter is built in, or a native library behind the flat C functions of [`abi`]
-//! ([`NativeAdapter`]); [`Devices`] finds both. A Rust author implements the traits and says
+//! ([`NativeAdapter`]); [`Devices`] finds both. A Rust author implements the traits and calls
 //! [`export_device!`].
 
 pub mod abi;

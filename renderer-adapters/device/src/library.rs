@@ -12,9 +12,9 @@ use crate::abi::{
     WriteFn,
 };
 
-/// Room for a text at the first call, bytes.
+/// Size of the buffer for a text at the first call, bytes.
 const USUAL_TEXT: usize = 16_384;
-/// Calls until a text that changes its length must have kept it.
+/// Most calls for a text whose length changes in between.
 const TRIES: usize = 8;
 
 /// A library's name and its functions.
@@ -24,11 +24,11 @@ pub(crate) struct Library {
     pub(crate) table: &'static DeviceTable,
 }
 
-/// What a call answered in place of a result.
+/// The failure of a call.
 pub(crate) enum Trouble {
-    /// A code, and the text behind it.
+    /// A code and its text.
     Told(Code, String),
-    /// Something that no device may answer.
+    /// A result that the ABI does not allow.
     Broken(String),
 }
 
@@ -71,7 +71,7 @@ impl Library {
         Ok(Self { name, table })
     }
 
-    /// Takes a table of this program.
+    /// Uses a table of this program.
     pub(crate) fn of_table(name: &str, table: &'static DeviceTable) -> Result<Self, DeviceError> {
         let library = Self {
             name: name.to_owned(),
@@ -81,7 +81,7 @@ impl Library {
         Ok(library)
     }
 
-    /// Reads a text of a length not known beforehand, which may change between two calls.
+    /// Reads a text of unknown length, which may change between two calls.
     pub(crate) fn text(
         &self,
         mut call: impl FnMut(*mut u8, usize) -> i64,
@@ -102,12 +102,12 @@ impl Library {
         Err(Trouble::Broken("a text that grows at each call".to_owned()))
     }
 
-    /// A count, or the trouble that a negative answer stands for.
+    /// A count, or the failure of a negative result.
     pub(crate) fn count(&self, answer: i64) -> Result<usize, Trouble> {
         if answer < 0 {
             return Err(Trouble::Told(Code::from_answer(answer), self.last_error()));
         }
-        usize::try_from(answer).map_err(|_| Trouble::Broken(format!("it answered {answer}")))
+        usize::try_from(answer).map_err(|_| Trouble::Broken(format!("it returned {answer}")))
     }
 
     /// The text of this thread's last error.
@@ -122,7 +122,7 @@ impl Library {
         }
     }
 
-    /// The error of an answer that no device may give.
+    /// The error of a result that the ABI does not allow.
     pub(crate) fn broken(&self, what: impl Into<String>) -> DeviceError {
         DeviceError::Abi {
             library: self.name.clone(),
@@ -137,7 +137,7 @@ fn check_marker(marker: u32) -> Result<(), String> {
         return Ok(());
     }
     Err(format!(
-        "the marker {marker:#x} is none of device ABI {ABI_MAJOR}.x, which this host loads"
+        "the marker {marker:#x} is not of device ABI {ABI_MAJOR}.x, which this host loads"
     ))
 }
 
@@ -152,5 +152,9 @@ unsafe fn symbol<T: Copy>(
 ) -> Result<T, DeviceError> {
     // SAFETY: the caller's promise.
     let found = unsafe { library.symbol(name) };
-    found.ok_or_else(|| error(format!("the library has no `{name}`; it is no htex device")))
+    found.ok_or_else(|| {
+        error(format!(
+            "the library has no `{name}`; it is not an htex device"
+        ))
+    })
 }

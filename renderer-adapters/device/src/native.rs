@@ -1,4 +1,4 @@
-//! Adapters and devices behind the C functions: safe calls, checked answers.
+//! Adapters and devices behind the C functions: safe calls, checked results.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use crate::{
     StreamFormat,
 };
 
-/// The longest wait that is asked for at once, ms: a day.
+/// Longest wait of one call, ms: a day.
 const MAX_WAIT_MS: u32 = 86_400_000;
 
 /// An adapter of a native library. Cheap to clone.
@@ -38,13 +38,13 @@ impl NativeAdapter {
     /// Loads a native library, which runs with all rights of this program.
     ///
     /// # Errors
-    /// When the file is no library of this machine, no device of this ABI, or describes itself
-    /// wrongly.
+    /// When the file is not a library of this machine or not a device of this ABI, or its descriptor
+    /// is invalid.
     pub fn load(path: &Path) -> Result<Self, DeviceError> {
         Self::new(Library::load(path)?)
     }
 
-    /// An adapter behind a table of this program, which `name` stands for in messages.
+    /// An adapter behind a table of this program; `name` identifies it in messages.
     ///
     /// # Errors
     /// As [`Self::load`].
@@ -71,7 +71,7 @@ impl NativeAdapter {
     /// Whether the device has the extension `id` (`htex.NAME/REV`, `com.vendor.NAME/REV`).
     ///
     /// # Errors
-    /// When the answer is neither yes nor no.
+    /// When the result is neither 0 nor 1.
     pub fn has_extension(&self, id: &str) -> Result<bool, DeviceError> {
         // SAFETY: a live text.
         match unsafe { (self.library.table.extension)(id.as_ptr(), id.len()) } {
@@ -98,7 +98,7 @@ impl NativeAdapter {
         Ok(capabilities)
     }
 
-    /// As [`Adapter::open`], as the type by which a checker reaches further.
+    /// As [`Adapter::open`], as a type with further functions for checkers.
     ///
     /// # Errors
     /// As [`Adapter::open`].
@@ -140,7 +140,7 @@ impl NativeAdapter {
         }
     }
 
-    /// What a call answers as JSON.
+    /// The JSON that a call returns.
     fn json<T: DeserializeOwned>(
         &self,
         name: &str,
@@ -194,10 +194,10 @@ impl NativeDevice {
         self.adapter.library.table
     }
 
-    /// As [`Device::status`], where a wrong answer is an error.
+    /// As [`Device::status`], with an error for an invalid result.
     ///
     /// # Errors
-    /// When the device answers too few numbers, or one that is none.
+    /// When the device returns too few numbers, or NaN.
     pub fn checked_status(&self) -> Result<Status, DeviceError> {
         let mut numbers = [f64::NAN; STATUS_NUMBERS];
         // SAFETY: a live buffer of this length.
@@ -217,7 +217,7 @@ impl NativeDevice {
     /// whether the device refuses a handle that was closed. An app drops the device instead.
     ///
     /// # Errors
-    /// What the device answers; that the handle is unknown, when called a second time.
+    /// The error of the device; when called a second time, that the handle is unknown.
     pub fn close_and_keep_handle(&mut self) -> Result<(), DeviceError> {
         self.closed = true;
         self.done("close", (self.table().close)(self.handle))
@@ -230,12 +230,12 @@ impl NativeDevice {
             Ok(other) => Err(self
                 .adapter
                 .library
-                .broken(format!("{call}: it answered {other}"))),
+                .broken(format!("{call}: it returned {other}"))),
             Err(trouble) => Err(self.adapter.error(call, trouble)),
         }
     }
 
-    /// The error of a write, with what this side alone knows.
+    /// The error of a write, with the details that only this side knows.
     fn write_error(&self, trouble: Trouble, samples: &[f32]) -> DeviceError {
         match trouble {
             Trouble::Told(Code::OverLimit, text) => {
@@ -295,7 +295,7 @@ impl Device for NativeDevice {
 impl Drop for NativeDevice {
     fn drop(&mut self) {
         if !self.closed {
-            // There is nobody to tell if a device cannot close what it opened.
+            // An error of closing cannot be returned from a drop.
             (self.table().close)(self.handle);
         }
     }

@@ -1,11 +1,11 @@
-//! JSON Schemas of what crosses the ABI as JSON.
+//! JSON Schemas of the documents that cross the ABI.
 
 use htex_schema::crossing;
 use serde_json::Value;
 
 use crate::{Capabilities, Descriptor, Endpoint};
 
-/// The files of `spec/schemas` that this crate makes, and what stands in them.
+/// The files of `spec/schemas` that this crate generates, and their schemas.
 pub fn schemas() -> [(&'static str, Value); 3] {
     let [descriptor, capabilities, endpoints] = [
         "device-descriptor-1.json",

@@ -1,4 +1,4 @@
-//! Settings of a device: what was given, over a profile, over the defaults.
+//! Settings of a device: given values over those of a profile over the defaults.
 
 use std::collections::BTreeMap;
 
@@ -8,16 +8,16 @@ use crate::{Descriptor, DeviceError, FromScene, Setting, SettingKind};
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Settings(BTreeMap<String, String>);
 
-/// What is said of a device, and who says it.
+/// Settings of a device, by their source.
 #[derive(Debug, Clone, Copy)]
 pub struct Stated<'a> {
     /// A profile that a person chose, by name.
     pub profile: Option<&'a str>,
     /// Settings that a person gave.
     pub given: &'a BTreeMap<String, String>,
-    /// Settings that a scene asks for: [`FromScene`] says what becomes of them.
+    /// Settings that a scene asks for: [`FromScene`] says which it gets.
     pub asked: &'a BTreeMap<String, String>,
-    /// Whether the motion is given as the scene plays: [`Setting::live_default`] then stands for the default.
+    /// Whether the motion is live: [`Setting::live_default`] then replaces the default.
     pub live: bool,
 }
 
@@ -31,7 +31,7 @@ pub struct Ignored {
 }
 
 impl Settings {
-    /// Settles `given` over `profile` (by name) over the descriptor's defaults. Of a limit
+    /// Resolves `given` over `profile` (by name) over the descriptor's defaults. Of a limit
     /// ([`FromScene::Less`]) that both state, the smaller one holds.
     ///
     /// # Errors
@@ -50,7 +50,7 @@ impl Settings {
         Ok(Self::settle(descriptor, &stated)?.0)
     }
 
-    /// As [`Self::resolve`], with what a scene asks for; answers what it does not get.
+    /// As [`Self::resolve`], with the settings of a scene; returns those that it does not get.
     ///
     /// # Errors
     /// As [`Self::resolve`].
@@ -110,7 +110,7 @@ impl Settings {
         self.0.get(name).map_or("", String::as_str)
     }
 
-    /// The value of a setting that is a number; not a number when it is none.
+    /// The value of a setting as a number; NaN when it is not one.
     pub fn number(&self, name: &str) -> f64 {
         self.text(name).parse().unwrap_or(f64::NAN)
     }
@@ -121,7 +121,7 @@ impl Settings {
     }
 }
 
-/// How settings cross the ABI.
+/// Settings as they cross the ABI.
 impl Settings {
     /// One line a setting, `name=value`, in the order of the descriptor.
     pub fn to_lines(&self, descriptor: &Descriptor) -> String {
@@ -133,7 +133,7 @@ impl Settings {
     /// Reads the lines of [`Self::to_lines`]. A setting without a line has its default.
     ///
     /// # Errors
-    /// When a line is none or comes twice, and as [`Self::resolve`].
+    /// When a line is invalid or occurs twice, and as [`Self::resolve`].
     pub fn from_lines(descriptor: &Descriptor, lines: &str) -> Result<Self, DeviceError> {
         let mut given = BTreeMap::new();
         for line in lines.lines() {
@@ -171,7 +171,7 @@ fn number(text: &str) -> f64 {
     text.parse().unwrap_or(f64::NAN)
 }
 
-/// Whether a scene gets what it asks for; else why not.
+/// Checks whether a scene gets a setting; the reason if not.
 fn asked(
     setting: &Setting,
     value: &str,
@@ -222,7 +222,7 @@ pub(crate) fn check(setting: &Setting, value: &str) -> Result<(), DeviceError> {
             _ => refuse(format!("`{value}` is not a number from {min} to {max}")),
         },
         SettingKind::Choice { values } if !values.iter().any(|v| v == value) => {
-            refuse(format!("`{value}` is none of {}", values.join(", ")))
+            refuse(format!("`{value}` is not one of {}", values.join(", ")))
         }
         SettingKind::Path if value.is_empty() => refuse("a file is wanted".to_owned()),
         _ => Ok(()),
@@ -299,7 +299,7 @@ mod tests {
         Ok(())
     }
 
-    /// Whatever a scene asks for, the hardware is what a person said, the limit no higher and the ramp no shorter.
+    /// Whatever a scene asks for, settings of the hardware stay, the limit is not raised and the ramp not shortened.
     #[test]
     fn a_scene_asks_for_less_and_never_gets_more() -> Result<(), DeviceError> {
         let map = |name: &str, value: &str| BTreeMap::from([(name.to_owned(), value.to_owned())]);

@@ -1,4 +1,4 @@
-//! From the traits to the C functions: checks what comes in, catches what must not get out.
+//! From the traits to the C functions: checks arguments and catches panics.
 //!
 //! Called by the functions that [`export_device!`](crate::export_device) makes; not by hand.
 
@@ -18,7 +18,7 @@ std::thread_local! {
     static LAST_ERROR: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// What one exported adapter keeps: itself and its open devices.
+/// The state of an exported adapter: itself and its open devices.
 pub struct State<A> {
     adapter: OnceLock<A>,
     devices: Handles,
@@ -57,7 +57,7 @@ impl<'a, T> Input<'a, T> {
 pub struct Output<'a, T>(Option<&'a mut [T]>);
 
 impl<'a, T> Output<'a, T> {
-    /// Refuses null and misaligned pointers when there is room to write.
+    /// Refuses null and misaligned pointers when there is space to write.
     ///
     /// # Safety
     /// `pointer` is null, or `len` initialised values can be written there for `'a`, by us alone.
@@ -80,7 +80,7 @@ fn fits<T>(len: usize) -> bool {
     len <= isize::MAX as usize / size_of::<T>().max(1)
 }
 
-/// A code and the text behind it.
+/// A code and its text.
 struct Refusal(Code, String);
 
 impl From<DeviceError> for Refusal {
@@ -206,10 +206,10 @@ impl<A: Adapter + Default> State<A> {
         })
     }
 
-    /// Dropping the device puts its output to zero; the answer stays, and so does its text.
+    /// Drops the device, which sets its output to zero, and returns the result with its text.
     fn close_if_panicked(&self, handle: i64, answered: i64) -> i64 {
         if answered == Code::Panicked as i64 {
-            // A second panic, in the drop, has nothing more to tell.
+            // A second panic, in the drop, adds nothing.
             let _ = catch_unwind(AssertUnwindSafe(|| drop(self.devices.remove(handle))));
         }
         answered

@@ -1,4 +1,4 @@
-//! What an adapter in Rust does wrong, as a host sees it through the C functions.
+//! Faults of an adapter in Rust, as a host sees them through the C functions.
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 #![allow(unexpected_cfgs)] // No feature exports this device.
 

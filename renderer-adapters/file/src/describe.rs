@@ -1,4 +1,4 @@
-//! What the adapter says of itself.
+//! The adapter's descriptor.
 
 use std::sync::LazyLock;
 

@@ -12,7 +12,7 @@ use crate::sink::Sink;
 pub(crate) struct FileDevice {
     capabilities: Capabilities,
     path: String,
-    /// None once the device is finished or failed.
+    /// `None` once the device is finished or failed.
     open: Option<(Sink, Unfinished)>,
     frames: u64,
     peak: f32,
@@ -36,7 +36,7 @@ impl FileDevice {
         })
     }
 
-    /// After an error nothing is left: what was written is dropped with the file beside.
+    /// After an error no file is left: the temporary file is removed.
     fn abort(&mut self, error: DeviceError) -> DeviceError {
         self.open = None;
         error

@@ -1,6 +1,6 @@
-//! How a sample stands in a file.
+//! Encodings of samples in a file.
 
-/// How a sample stands in a file.
+/// The encoding of a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Encoding {
     /// The quantity itself.
@@ -32,7 +32,7 @@ impl Encoding {
         }
     }
 
-    /// The step, and the largest magnitude there is a code for both ways.
+    /// The step, and the largest magnitude that both signs can encode.
     pub(crate) fn step_and_limit(self) -> Option<(f64, f64)> {
         match self {
             Self::F32 => None,

@@ -1,9 +1,9 @@
-//! A device that is a file: what a finger would feel, or what a display would be driven with, as
+//! A device that is a file: the mechanical quantity at the finger, or the drive of a display, as
 //! WAV, CSV, NPY or raw samples.
 //!
-//! Samples go as fast as they are made, through a buffer of fixed size, into a file beside the
-//! wanted one, which gets its name when the device is finished. A device that is dropped before
-//! leaves nothing behind.
+//! Samples are written as fast as they are made, through a buffer of fixed size, into a temporary file beside the
+//! named one, which is renamed when the device is finished. A device that is dropped before
+//! leaves no file.
 
 mod describe;
 mod device;

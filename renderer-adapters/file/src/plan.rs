@@ -1,4 +1,4 @@
-//! What the settings ask for, and whether that can be had.
+//! The file that the settings ask for, and whether its kind supports it.
 
 use std::path::{Path, PathBuf};
 
@@ -76,7 +76,7 @@ impl Plan {
         }
     }
 
-    /// The rate, if files of this kind can have it.
+    /// The rate, if files of this kind support it.
     pub(crate) fn check_rate(&self, rate_hz: f64) -> Result<(), DeviceError> {
         let rates = self.capabilities().rates;
         if !rates.has(rate_hz) {
@@ -87,7 +87,7 @@ impl Plan {
             });
         }
         if self.form == Form::Wav && rate_hz.fract() != 0.0 {
-            let what = format!("a WAV file has a whole rate, and {rate_hz} Hz is none");
+            let what = format!("a WAV file has a whole rate, and {rate_hz} Hz is not");
             return refuse("format", &what);
         }
         Ok(())
@@ -108,7 +108,7 @@ fn form(format: &str, path: &Path) -> Result<Form, DeviceError> {
         "raw" => Ok(Form::Raw),
         _ => refuse(
             "format",
-            "the file's extension is none of wav, csv, npy, raw; say which it is",
+            "the file's extension is not wav, csv, npy or raw; name the kind",
         ),
     }
 }
@@ -131,7 +131,7 @@ fn encoding(settings: &Settings, form: Form) -> Result<Encoding, DeviceError> {
     }
 }
 
-/// A number that only a voltage has; 0 is none.
+/// A number that applies to voltages only; 0 stands for none.
 fn of_voltage(
     settings: &Settings,
     quantity: Quantity,

@@ -30,7 +30,7 @@ enum Out {
 }
 
 impl Sink {
-    /// Writes what stands before the samples.
+    /// Writes the header.
     pub(crate) fn new(file: File, plan: &Plan, rate_hz: f64) -> io::Result<Self> {
         let mut file = BufWriter::with_capacity(BUFFER, file);
         let out = match plan.form {
@@ -78,7 +78,7 @@ impl Sink {
         Ok(())
     }
 
-    /// Writes what is known at the end only, and all that was gathered.
+    /// Writes the buffered bytes, and completes the header.
     pub(crate) fn end(self) -> io::Result<()> {
         match self.out {
             Out::Wav(wav) => wav.finalize().map_err(wav_error),

@@ -1,4 +1,4 @@
-//! Files as they are read by others.
+//! Files, read back by other readers.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::collections::BTreeMap;
@@ -33,7 +33,7 @@ fn open(
     adapter.open(&settings(path, given)?, &format)
 }
 
-/// Writes samples in uneven blocks; answers the file, which was not there before its end.
+/// Writes samples in uneven blocks; returns the file, which did not exist before its end.
 fn written(adapter: &dyn Adapter, path: &Path, given: Given<'_>, samples: &[f32]) -> Vec<u8> {
     // An earlier one may be there or not.
     let _ = fs::remove_file(path);

@@ -1,12 +1,10 @@
-//! What the specification has of recordings from the code is what the code makes; sound recordings are
-//! found sound.
+//! The conformance recordings of `spec/` with their reports, the page of findings, and sound recordings without findings.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 #[path = "common/recordings.rs"]
 mod recordings;
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use htex_author::findings::{RULES, explain, findings_page};
@@ -15,33 +13,43 @@ use htex_author::{Exploration, SpectrumOptions, Take, read_take};
 use htex_format::Severity;
 use recordings::cases;
 use serde_json::Value;
+use xtask::generated::{file, folder};
 
-const RENEW: &str = "stale: cargo run -p htex-author --example recording_pages";
+const FOLDER: &str = "spec/recording-conformance";
 
-fn spec() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../spec")
+/// [`FOLDER`], from the folder of this package, in which tests run.
+fn conformance() -> PathBuf {
+    Path::new("../..").join(FOLDER)
 }
 
 #[test]
-fn every_recording_gets_its_report_and_every_code_has_a_recording() {
-    let folder = spec().join("recording-conformance");
-    let (mut expected, mut raised) = (BTreeSet::new(), BTreeSet::new());
+fn generated_recordings_reports_and_page_are_fresh() {
+    let mut files = Vec::new();
     for case in cases() {
-        let read = |name: &str| fs::read_to_string(folder.join(name)).expect(name);
-        assert_eq!(read(&case.file()), case.text, "{} {RENEW}", case.name);
-        assert_eq!(
-            read(&case.report()),
-            case.golden(&folder),
-            "{} {RENEW}",
-            case.name
+        let recording = (
+            format!("{FOLDER}/{}", case.file()),
+            case.text.as_bytes().to_vec(),
         );
-        let golden: Value = serde_json::from_str(&read(&case.report())).unwrap();
+        // The report is that of the recording as a file.
+        file(&recording.0, &recording.1);
+        let report = case.golden(&conformance()).into_bytes();
+        files.extend([recording, (format!("{FOLDER}/{}", case.report()), report)]);
+    }
+    folder(FOLDER, &files);
+    file("spec/recording-findings.md", findings_page().as_bytes());
+}
+
+#[test]
+fn recordings_raise_the_code_they_are_named_after_and_every_code_has_one() {
+    let mut raised = BTreeSet::new();
+    for case in cases() {
+        let golden: Value = serde_json::from_str(&case.golden(&conformance())).unwrap();
         let of = |finding: &Value, key: &str| finding[key].as_str().unwrap().to_owned();
         let findings = golden["findings"].as_array().unwrap();
         let own = case.name.to_uppercase();
         for finding in findings {
             let code = of(finding, "code");
-            // Nothing but what the case is about: one fault has one code.
+            // One fault has one code.
             assert!(
                 code == own || of(finding, "severity") == "info" || case.may_also_raise(&code),
                 "{} raises {finding}",
@@ -59,20 +67,12 @@ fn every_recording_gets_its_report_and_every_code_has_a_recording() {
             .iter()
             .any(|finding| of(finding, "severity") == "error");
         assert_eq!(golden["valid"], !worst, "{}", case.name);
-        expected.extend([case.file(), case.report()]);
     }
-    let names = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name());
-    let found: BTreeSet<String> = names.map(|name| name.into_string().unwrap()).collect();
-    assert_eq!(found, expected, "{RENEW}");
     let silent: Vec<_> = RULES
         .iter()
         .filter(|rule| !raised.contains(rule.code))
         .collect();
     assert!(silent.is_empty(), "{silent:?}");
-    let page = fs::read_to_string(spec().join("recording-findings.md")).unwrap();
-    assert_eq!(page, findings_page(), "{RENEW}");
     for rule in htex_format::RULES {
         assert!(
             explain(rule.code).is_none(),

@@ -6,8 +6,8 @@ use htex_host::{Band, HostError, LoadedModel, ModelVoice};
 use serde::Serialize;
 
 use crate::case::{Case, RATE_HZ};
-use crate::finding::Finding;
 use crate::start::{Start, start};
+use htex_check_runner::Finding;
 
 /// Block sizes that are timed, samples.
 pub const BLOCKS: [usize; 4] = [16, 64, 256, 1024];

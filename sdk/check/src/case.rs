@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 use htex_host::{Band, FitCondition, FitRequest, HostError, LoadedModel, Status, Stream};
 use htex_model::Fit;
 
-use crate::finding::Finding;
 use crate::spectra::{REFERENCES, Reference};
+use htex_check_runner::Finding;
 
 /// Rate at which sounds are judged, hertz: that of the recordings.
 pub(crate) const RATE_HZ: f64 = 20_000.0;
 
-/// A loaded model and what the checker was told.
-pub(crate) struct Case {
+/// A loaded model and the checker's settings.
+pub struct Case {
     pub(crate) file: PathBuf,
     pub(crate) model: LoadedModel,
     pub(crate) seed: u64,

@@ -1,22 +1,21 @@
-//! A checker that model authors can trust: every promise of the model ABI is one check, and each
-//! check runs in a process of its own, so that a crash or an endless loop is a finding too.
+//! The checker of texture models: one check for each promise of the model ABI, run by [`htex_check_runner`] in a process of
+//! its own, so that a crash or an endless loop becomes a finding.
 //!
-//! [`CHECKS`] is the list; [`check`] runs it over a model file; [`run_one`] runs one of them in
-//! this process, for a debugger.
+//! [`CHECKS`] is the table; [`check`] runs it over a model file; [`run_one`] runs one check in this process, for a debugger.
+//! [`bench`] measures what models cost.
 //!
 //! ```
 //! use htex_check::{CHECKS, model_checks_page};
 //! assert!(CHECKS.iter().any(|check| check.name == "level"));
 //! assert!(model_checks_page().contains("| level |"));
 //! ```
-#![deny(unsafe_code)] // But in `allocator`.
+#![deny(unsafe_code)] // Allowed in `allocator` only.
 
 #[cfg(all(target_os = "linux", target_pointer_width = "64"))]
 mod allocator;
 mod bench;
 mod case;
 mod checks;
-mod finding;
 mod page;
 mod report;
 mod runner;
@@ -24,12 +23,12 @@ mod signal;
 mod spectra;
 mod start;
 mod table;
+pub mod templates;
 
 pub use bench::{BLOCKS, BlockCost, Cost, Subject, Timing, bench};
-pub use checks::resources::resident_bytes;
-pub use finding::{Finding, Found, Outcome};
+pub use htex_check_runner::{Finding, Outcome, Runner, UnknownCheck};
 pub use page::model_checks_page;
-pub use report::{CheckReport, Report, lines};
-pub use runner::{Options, Runner, check, run_one, run_process};
+pub use report::{ModelFile, Report};
+pub use runner::{Options, check, run_one};
 pub use start::Start;
-pub use table::{CHECKS, Check};
+pub use table::CHECKS;

@@ -8,7 +8,7 @@ const HEAD: &str = "\
 # Checks of a model
 
 Generated from the table of checks in `sdk/check/src/table.rs` by
-`cargo run -p htex-check --example model_checks`.
+`cargo xtask generate`.
 
 `htex plugin check FILE` runs these over a native library or a WASM module, each in a process of its
 own. A check *passes*, ends with a *warning*, is *skipped* (it has nothing to look at, or a check that

@@ -7,7 +7,7 @@ use htex_host::{Band, HostError, LoadedModel, Origin, WasmCache, WasmLimits};
 use serde::Serialize;
 
 use crate::case::RATE_HZ;
-use crate::finding::Finding;
+use htex_check_runner::Finding;
 
 /// Times without and with the compiled module; the least of them counts.
 const COLD: usize = 3;

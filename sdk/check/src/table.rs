@@ -5,35 +5,8 @@ use crate::checks::{
     abi, allocation, change, fit, magnitude, motion, refusal, repeat, resources, sound, together,
     twin,
 };
-use crate::finding::Found;
 
-/// One check.
-pub struct Check {
-    /// Stable name, as `--only` and `--reproduce` take it.
-    pub name: &'static str,
-    /// What is promised, in a sentence.
-    pub summary: &'static str,
-    /// How it is tested, with the tolerances.
-    pub method: &'static str,
-    /// Checks that must have passed for this one to mean something.
-    pub needs: &'static [&'static str],
-    pub(crate) run: fn(&Case) -> Found,
-}
-
-macro_rules! checks {
-    ($($name:literal needs [$($need:literal),*] $run:path: $summary:literal, $method:literal;)*) => {
-        /// All checks, in the order in which they run: what others need comes first.
-        pub const CHECKS: &[Check] = &[$(Check {
-            name: $name,
-            summary: $summary,
-            method: $method,
-            needs: &[$($need),*],
-            run: $run,
-        }),*];
-    };
-}
-
-checks! {
+htex_check_runner::checks! { Case;
     "marker" needs [] abi::loaded:
         "The marker names this ABI's major version.",
         "`htex_model_abi_version` is called before anything else.";
@@ -46,8 +19,8 @@ checks! {
          and no two alike; finite ranges the right way round; stores with positive, finite steps; \
          option defaults in range, whole where they must be.";
     "extensions" needs ["exports"] abi::extensions:
-        "An unknown extension is not there.",
-        "Made-up ids, an empty one and a very long one are asked for; the result must be 0.";
+        "Unknown extensions are absent.",
+        "Made-up ids, an empty one and a very long one are asked for; each must return 0.";
     "fit" needs ["descriptor"] fit::reference:
         "Reference spectra are fitted.",
         "Five spectra: two smooth bumps, falling, rising, broad with ripple, few peaks. Each is \
@@ -169,9 +142,4 @@ checks! {
         "The file named by `--against`, or one of the same name beside it: same id and version; same \
          parameters from every reference within 1e-6; samples within 1e-4 of unit RMS. A warning when \
          they are not the same bits.";
-}
-
-/// The check of a name.
-pub(crate) fn find(name: &str) -> Option<&'static Check> {
-    CHECKS.iter().find(|check| check.name == name)
 }

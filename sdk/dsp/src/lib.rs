@@ -59,3 +59,8 @@ mod wide;
 pub mod window;
 
 pub use grid::{Band, GRID_HZ};
+
+/// The examples of the README, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -10,7 +10,7 @@ const HEAD: &str = "\
 # Findings of validation
 
 Generated from the table of rules in `sdk/format/src/rules.rs` by
-`cargo run -p htex-format --example conformance`.
+`cargo xtask generate`.
 
 A finding has a code, a severity, a JSON pointer into the manifest (empty for the file as a whole)
 and a message. An asset is valid when no finding is an error. Codes never change their meaning.

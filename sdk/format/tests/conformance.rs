@@ -1,19 +1,16 @@
-//! The files under `spec/` are what the code makes of them.
+//! The conformance files, their reports, the page of findings and the schemas of `spec/`.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)]
 
 mod common;
 
 use std::collections::BTreeSet;
-use std::fs;
-use std::path::{Path, PathBuf};
 
 use common::cases::cases;
 use htex_format::{
     Asset, Finding, RULES, STAGES, Severity, Stage, explain, manifest_json, manifest_schema,
     report_schema, validation_page,
 };
-
-const RENEW: &str = "stale: cargo run -p htex-format --example conformance";
+use xtask::generated::{file, file_with, folder};
 
 /// What only `htex validate` finds, with JSON Schemas and by loading models.
 const WITHOUT_FILE: [&str; 4] = [
@@ -23,30 +20,15 @@ const WITHOUT_FILE: [&str; 4] = [
     "DESCRIPTOR_INVALID",
 ];
 
-fn spec() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../spec")
-}
-
 #[test]
-fn every_file_gets_its_report() {
-    let folder = spec().join("conformance");
-    let mut expected = BTreeSet::new();
+fn generated_files_and_their_reports_are_fresh() {
+    let mut files = Vec::new();
     for case in cases() {
-        let [asset, report] = ["htex", "report.json"].map(|e| format!("{}.{e}", case.name));
-        assert_eq!(
-            fs::read(folder.join(&asset)).expect(&asset),
-            case.bytes,
-            "{asset} {RENEW}"
-        );
-        let golden = fs::read_to_string(folder.join(&report)).expect(&report);
-        assert_eq!(golden, case.golden(), "{report} {RENEW}");
-        expected.extend([asset, report]);
+        let path = |end: &str| format!("spec/conformance/{}.{end}", case.name);
+        files.push((path("report.json"), case.golden().into_bytes()));
+        files.push((path("htex"), case.bytes));
     }
-    let names = fs::read_dir(folder)
-        .unwrap()
-        .map(|e| e.unwrap().file_name());
-    let found: BTreeSet<String> = names.map(|n| n.into_string().unwrap()).collect();
-    assert_eq!(found, expected, "{RENEW}");
+    folder("spec/conformance", &files);
 }
 
 #[test]
@@ -87,15 +69,18 @@ fn a_file_is_named_after_the_rule_it_breaks_and_every_rule_has_one() {
 }
 
 #[test]
-fn page_and_schema_are_fresh() {
-    let page = fs::read_to_string(spec().join("validation.md")).expect("the page is there");
-    assert_eq!(page, validation_page(), "{RENEW}");
-    let schema = fs::read_to_string(spec().join("schemas/manifest-1.json")).expect("it is there");
-    let schema: serde_json::Value = serde_json::from_str(&schema).expect("it is JSON");
-    assert_eq!(schema, manifest_schema(), "{RENEW}");
-    let schema = fs::read_to_string(spec().join("schemas/report-1.json")).expect("it is there");
-    let schema: serde_json::Value = serde_json::from_str(&schema).expect("it is JSON");
-    assert_eq!(schema, report_schema(), "{RENEW}");
+fn generated_page_and_schemas_are_fresh() {
+    file("spec/validation.md", validation_page().as_bytes());
+    for (name, schema) in [
+        ("manifest-1", manifest_schema()),
+        ("report-1", report_schema()),
+    ] {
+        let text = serde_json::to_string_pretty(&schema).unwrap() + "\n";
+        let path = format!("spec/schemas/{name}.json");
+        file_with(path, text.as_bytes(), |kept| {
+            serde_json::from_slice::<serde_json::Value>(kept).unwrap() == schema
+        });
+    }
 }
 
 #[test]

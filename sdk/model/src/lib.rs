@@ -19,6 +19,8 @@ pub mod abi;
 mod arena;
 #[cfg(any(feature = "std", target_family = "wasm"))]
 mod arguments;
+#[cfg(not(any(feature = "std", target_family = "wasm")))]
+mod bare;
 mod decimal;
 #[cfg(feature = "host")]
 mod descriptor;
@@ -47,6 +49,8 @@ mod values;
 mod voices;
 pub mod voices_1;
 
+#[cfg(not(any(feature = "std", target_family = "wasm")))]
+pub use bare::Lock;
 #[cfg(feature = "schemars")]
 pub use descriptor::descriptor_schema;
 #[cfg(feature = "host")]

@@ -9,7 +9,7 @@ const HEAD: &str = "\
 # Findings in scenes
 
 Generated from the table of rules in `sdk/scene/src/rules.rs` by
-`cargo run -p htex-scene --example scene_pages`.
+`cargo xtask generate`.
 
 A finding has a code, a severity, a JSON pointer into the scene (empty for the file as a whole) and a
 message. A scene can be played when no finding is an error. Codes never change their meaning.

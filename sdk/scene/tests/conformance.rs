@@ -1,4 +1,4 @@
-//! What the specification has from the code is what the code makes.
+//! The conformance scenes of `spec/` with their reports, the page of findings and the schema.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 #[path = "common/cases.rs"]
@@ -6,42 +6,50 @@ mod cases;
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use cases::{cases, files, plain};
 use htex_format::Findings;
 use htex_scene::{Limits, RULES, explain, findings_page, read_scene, scene_schema};
 use serde_json::Value;
+use xtask::generated::{file, file_with, folder};
 
-const RENEW: &str = "stale: cargo run -p htex-scene --example scene_pages";
+const FOLDER: &str = "spec/scene-conformance";
 
 /// Raised by what no file here can hold: a megabyte, or a device that is not connected.
 /// The last one is raised by devices with hardware settings, which the file is not: `cli/tests/drive.rs`.
 const WITHOUT_FILE: [&str; 3] = ["SCENE_FILE_TOO_LARGE", "DEVICE_HARDWARE", "DEVICE_ABSENT"];
 
-fn spec() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../spec")
+/// The folder of the specification, from that of this package, in which tests run.
+fn spec() -> &'static Path {
+    Path::new("../../spec")
 }
 
 #[test]
-fn every_scene_gets_its_report_and_every_rule_has_a_scene() {
-    let folder = spec().join("scene-conformance");
-    let mut expected: BTreeSet<String> = BTreeSet::new();
-    let mut raised = BTreeSet::new();
-    for (name, bytes) in files() {
-        assert_eq!(
-            fs::read(folder.join(name)).unwrap(),
-            bytes,
-            "{name} {RENEW}"
-        );
-        expected.insert(name.to_owned());
-    }
+fn generated_scenes_and_reports_are_fresh() {
+    let path = |name: &str| format!("{FOLDER}/{name}");
+    let named = |(name, bytes): (&str, Vec<u8>)| (path(name), bytes);
+    let mut all: Vec<_> = files().into_iter().map(named).collect();
     for case in cases() {
-        let [scene, report] = ["scene", "report"].map(|kind| format!("{}.{kind}.json", case.name));
-        let read = |name: &str| fs::read_to_string(folder.join(name)).expect(name);
-        assert_eq!(read(&scene), case.text, "{scene} {RENEW}");
-        assert_eq!(read(&report), case.golden(&folder), "{report} {RENEW}");
-        let golden: Value = serde_json::from_str(&read(&report)).unwrap();
+        let scene = path(&format!("{}.scene.json", case.name));
+        all.push((scene, case.text.as_bytes().to_vec()));
+    }
+    // The reports are those of the scenes as files, with the files that they name.
+    all.iter().for_each(|(path, bytes)| file(path, bytes));
+    for case in cases() {
+        let report = path(&format!("{}.report.json", case.name));
+        let golden = case.golden(&spec().join("scene-conformance"));
+        all.push((report, golden.into_bytes()));
+    }
+    folder(FOLDER, &all);
+}
+
+#[test]
+fn scenes_raise_the_code_they_are_named_after_and_every_rule_has_one() {
+    let mut raised = BTreeSet::new();
+    for case in cases() {
+        let golden = case.golden(&spec().join("scene-conformance"));
+        let golden: Value = serde_json::from_str(&golden).unwrap();
         let findings = golden["findings"].as_array().unwrap();
         let codes: BTreeSet<&str> = findings
             .iter()
@@ -54,13 +62,7 @@ fn every_scene_gets_its_report_and_every_rule_has_a_scene() {
             "{name} gets {codes:?}"
         );
         raised.extend(codes.into_iter().map(str::to_owned));
-        expected.extend([scene, report]);
     }
-    let names = fs::read_dir(folder)
-        .unwrap()
-        .map(|e| e.unwrap().file_name());
-    let found: BTreeSet<String> = names.map(|n| n.into_string().unwrap()).collect();
-    assert_eq!(found, expected, "{RENEW}");
     let silent = RULES.iter().filter(|rule| !raised.contains(rule.code));
     assert_eq!(
         silent.map(|rule| rule.code).collect::<Vec<_>>(),
@@ -69,12 +71,16 @@ fn every_scene_gets_its_report_and_every_rule_has_a_scene() {
 }
 
 #[test]
-fn pages_and_schema_are_up_to_date() {
-    let page = fs::read_to_string(spec().join("scene-findings.md")).unwrap();
-    assert_eq!(page, findings_page(), "{RENEW}");
-    let schema = fs::read_to_string(spec().join("schemas/scene-1.json")).unwrap();
-    let schema: Value = serde_json::from_str(&schema).unwrap();
-    assert_eq!(schema, scene_schema(), "{RENEW}");
+fn generated_page_and_schema_are_fresh() {
+    file("spec/scene-findings.md", findings_page().as_bytes());
+    let schema = serde_json::to_string_pretty(&scene_schema()).unwrap() + "\n";
+    file_with("spec/schemas/scene-1.json", schema.as_bytes(), |kept| {
+        serde_json::from_slice::<Value>(kept).unwrap() == scene_schema()
+    });
+}
+
+#[test]
+fn codes_of_scenes_are_not_codes_of_assets() {
     for rule in htex_format::RULES {
         assert!(
             explain(rule.code).is_none(),

@@ -1,4 +1,4 @@
-//! What all programs work on: one simulated surface, its spectrum and the models fitted to it.
+//! The input of all programs: one simulated surface, its spectrum and the models fitted to it.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use htex_author::{
 use htex_host::FitRequest;
 use serde_json::json;
 
-/// The case, and the folder it lies in for others.
+/// The case, and the folder with its files for the other programs.
 pub struct Case {
     pub folder: PathBuf,
     pub registry: Registry,
@@ -64,14 +64,14 @@ impl Case {
         self.list("ar", 0)
     }
 
-    /// The list that begins at a place of a model's flat parameters.
+    /// The list that begins at an index of a model's flat parameters.
     fn list(&self, model: &str, at: usize) -> &[f64] {
         let flat = self.parameters(model);
         let len = flat.get(at).map_or(0, |len| *len as usize);
         flat.get(at + 1..at + 1 + len).unwrap_or_default()
     }
 
-    /// What the other programs read.
+    /// The files that the other programs read.
     fn json(&self) -> serde_json::Value {
         let lines = self.list("speak", 0);
         json!({

@@ -1,9 +1,9 @@
-//! What htex costs, beside plain loops in C and the libraries people use, in one interleaved run:
+//! Benchmark of htex beside plain loops in C and Python libraries, in one interleaved run:
 //! `cargo xtask bench`.
 //!
-//! Everything runs on one thread, in turns, so that what else the machine does falls on all alike;
-//! the table has the least time of each, and the spread of all. A peer that is not there is
-//! left out with a sentence.
+//! Everything runs on one thread, in turns, so that other load on the machine affects all alike;
+//! the table has the least time of each, and the spread of all. A peer that is not installed is
+//! skipped with a message.
 
 mod case;
 mod ours;
@@ -24,8 +24,7 @@ const ROUNDS: usize = 9;
 const WHOLE_ROUNDS: usize = 5;
 const SECONDS: &str = "600";
 
-/// What is measured: our task, its unit, and the peers' tasks with how many times quicker than each
-/// we mean to be.
+/// A row: our task, its unit, and the peers' tasks with the target ratio to each.
 const ROWS: &[Row] = table::rows();
 
 fn main() -> ExitCode {
@@ -121,7 +120,7 @@ fn peers_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../peers")
 }
 
-/// Compiles the plain loops as people do who want speed, and starts them.
+/// Compiles the plain loops with optimisation, and starts them.
 fn start_c(case: &Case) -> Result<Peer, String> {
     let program = case.folder.join("plain");
     let compiler = std::env::var_os("CC").unwrap_or_else(|| "cc".into());
@@ -143,7 +142,7 @@ fn start_c(case: &Case) -> Result<Peer, String> {
 
 fn start_python(case: &Case) -> Result<Peer, String> {
     let Some(python) = std::env::var_os("HTEX_BENCH_PYTHON") else {
-        return Err("Python is left out: there is none with NumPy and SciPy".to_owned());
+        return Err("Python is skipped: none with NumPy and SciPy was found".to_owned());
     };
     let mut command = Command::new(python);
     Peer::start(

@@ -1,4 +1,4 @@
-//! The tasks, done by this project.
+//! The tasks, by htex.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -12,20 +12,20 @@ use crate::case::{Case, request};
 
 const DEVICE_HZ: f64 = 20_000.0;
 const BLOCK: usize = 256;
-/// As many as the loops in C make.
+/// As many as in the loops in C.
 const SAMPLES: usize = 1 << 20;
 const VOICES: u64 = 1_000;
 /// Voices that are rendered in one call.
 const TOGETHER: usize = 16;
-/// Blocks of each voice, as many as the loops in C make.
+/// Blocks of each voice, as many as in the loops in C.
 const ROUNDS: usize = 16;
-/// Times an asset is opened before the time that counts.
+/// Times an asset is opened before the measured time.
 const OPENINGS: usize = 20;
 
 type Failure = Box<dyn std::error::Error>;
 type Task<'a> = Box<dyn FnMut() -> Result<f64, Failure> + 'a>;
 
-/// A task by its name; each run answers seconds a unit.
+/// A task by its name; each run returns seconds a unit.
 pub fn task<'a>(case: &'a Case, name: &str) -> Result<Task<'a>, Failure> {
     Ok(match name {
         "ar" => voice(case, "ar")?,

@@ -1,7 +1,7 @@
-//! A program that is compared with: it says which tasks it has, then does one a line.
+//! A peer: a program that lists its tasks, then runs one for each line of input.
 //!
-//! Protocol: at its start it prints `skip TASK: reason` for what it cannot do, and `ready TASK …`; then it
-//! reads a task's name a line and answers `seconds units ok`.
+//! Protocol: at its start it prints `skip TASK: reason` for tasks that it lacks, and `ready TASK …`; then it
+//! reads the name of a task on each line and replies `seconds units ok`.
 
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
@@ -16,10 +16,10 @@ pub struct Peer {
 }
 
 impl Peer {
-    /// Starts a program; what it cannot do is said on standard error.
+    /// Starts a program; tasks that it lacks are reported on standard error.
     ///
     /// # Errors
-    /// A sentence: why it does not run.
+    /// The reason why it does not run.
     pub fn start(name: &'static str, command: &mut Command) -> Result<Self, String> {
         let spawned = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
         let mut child = spawned.map_err(|error| format!("{name} does not start: {error}"))?;
@@ -44,15 +44,15 @@ impl Peer {
         }
     }
 
-    /// Whether it can do a task.
+    /// Whether it has a task.
     pub fn can(&self, task: &str) -> bool {
         self.tasks.iter().any(|known| known == task)
     }
 
-    /// Does a task once: seconds a unit.
+    /// Runs a task once; returns seconds a unit.
     ///
     /// # Errors
-    /// A sentence, when it ends or answers anything but numbers.
+    /// When it ends or replies anything but numbers.
     pub fn run(&mut self, task: &str) -> Result<f64, String> {
         writeln!(self.to, "{task}")
             .and_then(|()| self.to.flush())
@@ -78,7 +78,7 @@ impl Peer {
 
 impl Drop for Peer {
     fn drop(&mut self) {
-        // It ends by itself when its input does; this only hurries it.
+        // It ends when its input does; this ends it sooner.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

@@ -1,4 +1,4 @@
-//! The rows of the table, and what was measured.
+//! The rows of the table, and the measurements.
 
 use serde::Serialize;
 use serde_json::json;
@@ -13,17 +13,17 @@ pub enum Who {
 pub struct Against {
     pub peer: Who,
     pub task: &'static str,
-    /// What it is, for the table.
+    /// Description, for the table.
     pub what: &'static str,
-    /// How many times quicker we mean to be; none where it only says where we stand.
+    /// Target ratio of times; `None` for a comparison without a target.
     pub aim: Option<f64>,
 }
 
-/// One thing that is measured.
+/// One measurement.
 pub struct Row {
     /// Our task.
     pub ours: &'static str,
-    /// What it is, for the table.
+    /// Description, for the table.
     pub what: &'static str,
     pub unit: &'static str,
     /// Units a second.
@@ -167,7 +167,7 @@ pub const fn rows() -> &'static [Row] {
     ROWS
 }
 
-/// Everything that was measured.
+/// All measurements.
 pub struct Rows {
     rows: &'static [Row],
     ours: Vec<Vec<f64>>,
@@ -212,7 +212,7 @@ struct Line {
     htex: Timing,
     against: String,
     peer: Option<Timing>,
-    /// The peer's least over ours.
+    /// The peer's least time over ours.
     ratio: Option<f64>,
     aim: Option<f64>,
 }

@@ -1,16 +1,16 @@
-//! Whole programs: time from their start to their end, and the most memory they had.
+//! Whole programs: time from start to end, and peak memory.
 
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Between two looks at a program's memory.
+/// Time between two readings of a program's memory.
 const LOOK: Duration = Duration::from_millis(2);
 
-/// Runs a program twice: for the seconds it takes, and for the most MiB it has in memory (RSS); not a number where the
-/// system does not tell.
+/// Runs a program twice: for its time in seconds, and for its peak memory in MiB (RSS); NaN where the
+/// system does not report it.
 ///
 /// # Errors
-/// A sentence, when it does not start or fails.
+/// When it does not start or fails.
 pub fn run(command: &mut Command) -> Result<(f64, f64), String> {
     command.stdout(Stdio::null()).stderr(Stdio::null());
     let begun = Instant::now();
@@ -18,7 +18,7 @@ pub fn run(command: &mut Command) -> Result<(f64, f64), String> {
     let seconds = begun.elapsed().as_secs_f64();
     let mut child = start(command)?;
     let mut most_kib = f64::NAN;
-    // What the system tells of a program that has ended counts the memory of the one that started it, too.
+    // The system's figure for a program that has ended includes the memory of the one that started it.
     while matches!(child.try_wait(), Ok(None)) {
         most_kib = peak_kib(child.id()).unwrap_or(most_kib);
         std::thread::sleep(LOOK);
@@ -39,7 +39,7 @@ fn finish(mut child: Child, command: &Command) -> Result<(), String> {
     }
 }
 
-/// The most that a running program has had in memory so far, KiB.
+/// Peak memory of a running program so far, KiB.
 fn peak_kib(process: u32) -> Option<f64> {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = status

@@ -1,4 +1,4 @@
-//! A parameter block of a built-in model, in an asset that has just it.
+//! A parameter block of a built-in model, in an asset with this block only.
 
 use std::sync::OnceLock;
 
@@ -9,8 +9,8 @@ use htex_host::{LoadedModel, Registry};
 use crate::asset::open;
 use crate::container::container;
 
-/// Opens an asset whose one block is the input; its first byte says of which model it is, the
-/// second of how many conditions.
+/// Opens an asset whose one block is the input; its first byte chooses the model, the
+/// second the number of conditions.
 pub fn parameter_block(input: &[u8]) -> bool {
     let Some((&[model, conditions], block)) = input.split_first_chunk::<2>() else {
         return false;

@@ -1,6 +1,6 @@
-//! Bodies of WASM functions, made of bytes: always well-typed, else anything.
+//! Well-typed bodies of WASM functions, generated from bytes.
 
-/// What the bytes of an input are used for, one after the other; zeros behind the last.
+/// The bytes of an input, used one after the other; zeros behind the last.
 pub(crate) struct Bytes<'a>(pub(crate) &'a [u8]);
 
 impl Bytes<'_> {
@@ -52,7 +52,7 @@ pub(crate) fn signature(text: &str) -> (Vec<Type>, Option<Type>) {
     (types(parameters), types(result).first().copied())
 }
 
-/// The text of a body with these parameters and this result, behind up to three statements.
+/// The text of a body with these parameters and this result, after up to three statements.
 pub(crate) fn body(bytes: &mut Bytes<'_>, parameters: &[Type], result: Option<Type>) -> String {
     let mut body = Body { bytes, parameters };
     let mut text = String::new();
@@ -134,7 +134,7 @@ impl Body<'_, '_> {
         }
     }
 
-    /// A number near to what hosts and models have to do with.
+    /// A number near to those that hosts and models use.
     fn usual(&mut self, of: Type) -> &'static str {
         const WHOLE: [&str; 8] = [
             "0",

@@ -1,4 +1,4 @@
-//! Modules that are made to be compiled for long.
+//! Modules that take long to compile.
 
 use std::time::{Duration, Instant};
 
@@ -9,13 +9,13 @@ use crate::heavy::Heavy;
 use crate::module::model;
 use crate::promise::sentence;
 
-/// What may be taken by the estimate, which counts on a machine three times as slow.
+/// Allowed time by the estimate, which assumes a machine three times as slow.
 const ALLOWED: Duration = Duration::from_millis(300);
-/// What may never be taken: the programs are built with counters, and other programs run beside them.
+/// Hard limit: the programs are built with counters, and other programs run beside them.
 const NEVER: Duration = Duration::from_secs(6);
 
-/// Loads a sound model with a function in it that a byte each describes: locals, depth, nests, copies, kinds of blocks,
-/// statements. What the limit of compiling lets through is compiled in the time that it may take.
+/// Loads a valid model with a function that is described by a byte each: locals, depth, nests, copies, kinds of blocks,
+/// statements. A function within the limit of compiling is compiled in the allowed time.
 pub fn compile_limits(input: &[u8]) -> bool {
     let mut bytes = Bytes(input);
     let squared = |byte: u8| usize::from(byte) * usize::from(byte) / 32;

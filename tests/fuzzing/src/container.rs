@@ -1,4 +1,4 @@
-//! Containers around fuzzed parts: a checksum would keep a fuzzer out of them.
+//! Containers around fuzzed parts, with valid checksums, which a fuzzer would not find.
 
 use std::io::{Cursor, Write};
 
@@ -7,7 +7,7 @@ use zip::{CompressionMethod, DateTime, System, ZipWriter};
 
 const MEDIA_TYPE: &[u8] = b"application/vnd.htex+zip";
 
-/// A sound archive of a manifest and other entries, all of them stored.
+/// A valid archive of a manifest and other entries, all of them stored.
 pub(crate) fn container<'a>(
     manifest: &'a [u8],
     entries: impl IntoIterator<Item = (&'a str, &'a [u8])>,
@@ -20,7 +20,7 @@ pub(crate) fn container<'a>(
         .system(System::Unix)
         .unix_permissions(0o644);
     for (name, bytes) in first.into_iter().chain(entries) {
-        // A name that stands twice is refused by this writer, and left to `open_asset`.
+        // This writer refuses a duplicate name, which is left to `open_asset`.
         if writer.start_file(name, options).is_ok() {
             writer.write_all(bytes).expect("memory takes all");
         }
@@ -28,7 +28,7 @@ pub(crate) fn container<'a>(
     writer.finish().expect("memory takes all").into_inner()
 }
 
-/// The same archive with checksums that hold, as far as entries are stored and can be found.
+/// The same archive with valid checksums, as far as entries are stored and can be found.
 pub(crate) fn with_checksums(bytes: &[u8]) -> Vec<u8> {
     const LOCAL: &[u8] = b"PK\x03\x04";
     const CENTRAL: &[u8] = b"PK\x01\x02";

@@ -1,9 +1,9 @@
-//! Inputs that differ from a sound one in one value, or in two that stand together, put at the
-//! edges of what can be written: all of them, in the same order each time.
+//! Inputs that differ from a valid one in one value, or in two adjacent ones, which take the
+//! extreme values that can be written: all of them, in the same order each time.
 
 use serde_json::Value;
 
-/// Numbers as they are written, from the smallest to those no type holds.
+/// Numbers as text, from the smallest to those that overflow every type.
 const NUMBERS: &[&str] = &[
     "0",
     "-0",
@@ -33,13 +33,13 @@ const NUMBERS: &[&str] = &[
     "1.7976931348623157e308",
     "1e999",
 ];
-/// The numbers that two values take at once.
+/// The numbers for pairs of values.
 const FEW: &[&str] = &["0", "-1", "1", "5e-324", "1e19", "1e300", "1e308"];
-/// The steps that a column climbs by.
+/// The increments of a column.
 const CLIMBS: &[f64] = &[
     5e-324, 1e-308, 1e-300, 1e-12, 1e-9, 1e-6, 1e6, 1e15, 1e300, 1e307,
 ];
-/// What is no number, as JSON.
+/// JSON values that are not numbers.
 const WORDS: &[&str] = &[
     "null",
     "true",
@@ -58,7 +58,7 @@ const WORDS: &[&str] = &[
     "{}",
     "{\"\":0}",
 ];
-/// What is no number, in a table.
+/// Cells that are not numbers.
 const CELLS: &[&str] = &[
     "",
     " ",
@@ -71,19 +71,19 @@ const CELLS: &[&str] = &[
     "\"",
     "é",
 ];
-/// Longest text that is put for another.
+/// Longest text that replaces another.
 const LONG: usize = 5000;
-/// Stands where the text is put in.
+/// Placeholder of the inserted text.
 const MARK: &str = "\"~here~\"";
 const SECOND_MARK: &str = "\"~there~\"";
 /// Bytes looked at from the beginning and from the end.
 const BYTES: usize = 512;
 
-/// A JSON document with each value put at each edge, written twice, or left out; and with two
-/// neighbouring numbers of an object or list put at edges.
+/// A JSON document with each value replaced by each extreme, duplicated, or left out; and with two
+/// adjacent numbers of an object or list replaced by extremes.
 ///
 /// # Panics
-/// When the document is no JSON.
+/// When the document is not JSON.
 pub fn json(document: &[u8], each: &mut dyn FnMut(&[u8])) {
     let sound: Value = serde_json::from_slice(document).expect("a seed is JSON");
     let mut pointers = Vec::new();
@@ -171,7 +171,7 @@ fn without(sound: &Value, pointer: &str) -> String {
     document.to_string()
 }
 
-/// Numbers of one object or list that follow on each other.
+/// Adjacent numbers of one object or list.
 fn neighbours<'a>(sound: &Value, pointers: &'a [String]) -> Vec<(&'a str, &'a str)> {
     let is_number = |pointer: &&String| sound.pointer(pointer).is_some_and(Value::is_number);
     let numbers: Vec<&str> = pointers.iter().filter(is_number).map(|p| &**p).collect();
@@ -180,11 +180,11 @@ fn neighbours<'a>(sound: &Value, pointers: &'a [String]) -> Vec<(&'a str, &'a st
     pairs.filter(|(a, b)| folder(a) == folder(b)).collect()
 }
 
-/// A table with each cell put at each edge, with each column put there as a whole and by turns or
-/// climbing by a step at an edge, and without each row.
+/// A table with each cell replaced by each extreme, with each column replaced as a whole, alternating or
+/// increasing by an extreme step, and without each row.
 ///
 /// # Panics
-/// When the table is no text.
+/// When the table is not text.
 pub fn table(document: &[u8], each: &mut dyn FnMut(&[u8])) {
     let text = std::str::from_utf8(document).expect("a seed is text");
     let comma = if text.contains(';') { ";" } else { "," };
@@ -235,8 +235,8 @@ fn climb(by: f64, rows: usize) -> Vec<String> {
     (0..rows).map(|r| format!("{:e}", by * r as f64)).collect()
 }
 
-/// A file of bytes with each byte, and each four of them as a little-endian number, put at edges,
-/// and cut before each: the first and the last of it.
+/// A binary file with each byte, and each four of them as a little-endian number, replaced by extremes,
+/// and cut before each: within its first and last bytes.
 pub fn bytes(document: &[u8], each: &mut dyn FnMut(&[u8])) {
     let last = document.len().saturating_sub(BYTES).max(BYTES);
     let places = (0..document.len()).filter(|at| *at < BYTES || *at >= last);

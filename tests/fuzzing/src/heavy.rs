@@ -7,11 +7,11 @@ pub struct Heavy {
     pub locals: usize,
     /// Blocks within one another.
     pub depth: usize,
-    /// Such nests one behind the other.
+    /// Consecutive nests.
     pub nests: usize,
-    /// How many times the function is there.
+    /// Copies of the function.
     pub copies: usize,
-    /// What the blocks are, in turn: a block, a loop, an `if`.
+    /// Kinds of the blocks, in turn: a block, a loop, an `if`.
     pub blocks: Vec<u8>,
     /// Statements at the head of each block, by their number in [`Heavy::statement`].
     pub head: Vec<u8>,
@@ -19,11 +19,11 @@ pub struct Heavy {
     pub end: Vec<u8>,
 }
 
-/// How many kinds of statements there are.
+/// Number of kinds of statements.
 const KINDS: u8 = 14;
 
 impl Heavy {
-    /// Text of the functions, and of what they use. They go into a module with a memory.
+    /// Text of the functions and of the items they use, for a module with a memory.
     pub fn text(&self) -> String {
         let mut function = String::new();
         let mut n = 0;
@@ -44,7 +44,7 @@ impl Heavy {
                 };
             }
         }
-        // So that no variable is without use.
+        // So that every variable is used.
         for local in 1..=self.locals {
             function += &format!("(i64.store (i32.const 0) (local.get {local}))");
         }
@@ -94,7 +94,7 @@ impl Heavy {
         }
     }
 
-    /// Whether the text has a size that can be worked with.
+    /// Whether the text has a practical size.
     pub fn is_bounded(&self) -> bool {
         let blocks = self.depth * self.nests;
         let each = 1 + self.head.len() + self.end.len();

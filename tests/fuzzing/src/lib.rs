@@ -1,4 +1,4 @@
-//! What is done with input that nobody vouches for: one function a fuzz target, which goes as deep
+//! The bodies of the fuzz targets: one function each, which processes untrusted input as far
 //! as an application would and panics when a promise is broken.
 //!
 //! The programs in `fuzz/` call these functions, and so does the test that runs all seeds and
@@ -45,8 +45,8 @@ pub struct Target {
     /// Its name: of the program in `fuzz/fuzz_targets`, and of the folders of its seeds and
     /// regressions.
     pub name: &'static str,
-    /// Reads the input and uses what it holds. True when there was something to use, false when it
-    /// was refused as it should be.
+    /// Reads the input and uses its content. True when it was accepted, false when it was refused
+    /// with a valid error.
     ///
     /// # Panics
     /// When a promise is broken.
@@ -78,7 +78,7 @@ const fn target(name: &'static str, run: fn(&[u8]) -> bool) -> Target {
 /// Runs the target of this name.
 ///
 /// # Panics
-/// When a promise is broken, or there is no such target.
+/// When a promise is broken, or the target is unknown.
 pub fn run(name: &str, input: &[u8]) -> bool {
     let target = TARGETS.iter().find(|target| target.name == name);
     (target.expect("the name of a target").run)(input)

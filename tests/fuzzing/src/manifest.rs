@@ -1,11 +1,11 @@
-//! `manifest.json`, in a container that has all it names.
+//! `manifest.json`, in a container with all entries that it names.
 
 use serde_json::Value;
 
 use crate::asset::open;
 use crate::container::container;
 
-/// Most bytes of an entry that is made up.
+/// Most bytes of a generated entry.
 const MOST: usize = 1 << 16;
 
 /// Opens an asset of this manifest, with entries as it describes them.
@@ -36,7 +36,7 @@ fn text<'a>(value: &'a Value, pointer: &str) -> Option<&'a str> {
     value.pointer(pointer)?.as_str()
 }
 
-/// A parameter block as the fields want it: lists of one number, and all bytes are 1.
+/// A parameter block for the fields: lists of one number, and all bytes are 1.
 fn block(representation: &Value) -> Vec<u8> {
     let one = |field: &Value| {
         let store = field.get("store");
@@ -54,7 +54,7 @@ fn block(representation: &Value) -> Vec<u8> {
     vec![1; bytes.min(MOST)]
 }
 
-/// Bytes of spectra on a grid of 5 Hz, one a condition.
+/// Bytes of spectra on a grid of 5 Hz, one for each condition.
 fn reference_bytes(manifest: &Value) -> usize {
     let edge = |name: &str| {
         manifest

@@ -10,7 +10,7 @@ use crate::promise::{finite, sentence};
 #[path = "../../../sdk/host/tests/common/mod.rs"]
 pub(crate) mod model;
 
-/// Little time and memory: what takes more is refused.
+/// Tight limits of time and memory.
 pub(crate) fn limits() -> WasmLimits {
     WasmLimits {
         memory_bytes: 2 << 20,
@@ -25,8 +25,8 @@ pub(crate) fn limits() -> WasmLimits {
     }
 }
 
-/// Loads a module and makes every call. Input that does not begin as a module is one of bodies for
-/// the functions of a sound model.
+/// Loads a module and makes every call. Input that does not begin as a module describes bodies for
+/// the functions of a valid model.
 pub fn wasm_module(input: &[u8]) -> bool {
     let written;
     let bytes = if input.starts_with(b"\0asm") {
@@ -44,7 +44,7 @@ pub fn wasm_module(input: &[u8]) -> bool {
     }
 }
 
-/// A module: for each function a byte says whether its body is made of the bytes that follow.
+/// A module: for each function a byte chooses whether its body is generated from the following bytes.
 fn of_bodies(input: &[u8]) -> Vec<u8> {
     let mut bytes = Bytes(input);
     let mut bodies = Vec::new();
@@ -64,7 +64,7 @@ fn refused(error: &HostError) -> bool {
     false
 }
 
-/// Every call that a host makes of a model.
+/// Makes every call that a host makes of a model.
 fn use_all(model: &LoadedModel) {
     let band = Band::TACTILE;
     let (grid, ones) = (band.grid_hz(), vec![1.0; band.bins()]);

@@ -1,4 +1,4 @@
-//! Names of scenes and formats, of which the name of a file is made.
+//! Names of scenes and formats, which determine the name of a file.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -7,8 +7,8 @@ use serde_json::json;
 
 use crate::scene::{around, folder};
 
-/// The file that a scene of this name goes to in this format lies in the current folder, whoever says the format: the
-/// caller, or the scene. The format stands behind a line feed; the first byte says whether the scene is rehearsed.
+/// The output file of a scene of this name in this format lies in the current folder, whether the caller or
+/// the scene chooses the format. The format stands behind a line feed; the first byte chooses whether the scene is rehearsed.
 pub fn output_name(input: &[u8]) -> bool {
     let Some((&first, rest)) = input.split_first() else {
         return false;
@@ -35,7 +35,7 @@ pub fn output_name(input: &[u8]) -> bool {
     !rest.is_empty()
 }
 
-/// One name in the current folder, of no hidden file, with an ending: that of the format where it is a plain word.
+/// One name in the current folder, not of a hidden file, with an extension: that of the format where it is a plain word.
 fn is_here(name: &str, format: &str) {
     let parts: Vec<Component<'_>> = Path::new(name).components().collect();
     assert_eq!(parts, [Component::Normal(name.as_ref())], "{name:?}");

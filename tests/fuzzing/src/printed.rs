@@ -1,4 +1,4 @@
-//! Text of strangers, on its way to a terminal.
+//! Untrusted text, printed to a terminal.
 
 use std::sync::OnceLock;
 
@@ -11,11 +11,11 @@ use crate::container::container;
 
 /// Most characters of a text.
 const MOST: usize = 1000;
-/// Most bytes that a byte of text becomes: an escape is six, `\u{1b}`.
+/// Most bytes of output for a byte of text: an escape has six, `\u{1b}`.
 const WIDEST: usize = 6;
 
-/// Puts a text where strangers write: into a text, or as a key, of a manifest and of a descriptor. The first byte says
-/// which. What is said of them, and the text itself, is printed as one line that steers nothing.
+/// Puts a text into a string or a key of a manifest and of a descriptor; the first byte chooses
+/// which. Messages about them, and the text itself, are printed as one line without control characters.
 pub fn printed_text(input: &[u8]) -> bool {
     let Some((&which, text)) = input.split_first() else {
         return false;
@@ -35,7 +35,7 @@ pub fn printed_text(input: &[u8]) -> bool {
     !text.is_empty()
 }
 
-/// One line without what steers a terminal, turns text round or hides it; printed again, it is the same.
+/// One line without characters that control a terminal, reverse text or hide it; printed again, it is the same.
 fn is_tame(printed: &str, from_bytes: usize) {
     let steers = printed.chars().find(|c| steers(*c));
     assert_eq!(steers, None, "in {printed:?}");
@@ -62,7 +62,7 @@ fn steers(c: char) -> bool {
     c.is_control() || marks.iter().any(|range| range.contains(&u32::from(c)))
 }
 
-/// What is said of a manifest: the findings' own words are harmless as they are.
+/// The messages about a manifest: those of findings have no control characters.
 fn of_manifest(json: &str) -> Vec<String> {
     let bytes = container(json.as_bytes(), [("parameters.bin", &[0; 64][..])]);
     let findings = validate(&bytes, &Limits::default()).findings;
@@ -108,7 +108,7 @@ fn descriptor() -> &'static Value {
     })
 }
 
-/// Puts a text in the place of one of a document's texts, or as a key into one of its objects.
+/// Replaces one of a document's strings by a text, or adds the text as a key to one of its objects.
 fn write(document: &mut Value, which: usize, text: &str) {
     let mut places = Vec::new();
     find(document, String::new(), &mut places);

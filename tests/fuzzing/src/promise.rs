@@ -11,7 +11,7 @@ const LONGEST: usize = 20_000;
 /// Samples of a block.
 const BLOCK: usize = 64;
 
-/// An error is a sentence: some text, in one line, that a terminal shows as it is.
+/// An error is a sentence: text in one line, without control characters.
 pub(crate) fn sentence(error: &impl Display) {
     let text = error.to_string();
     assert!(!text.trim().is_empty(), "an error without words");
@@ -46,14 +46,14 @@ pub(crate) fn host_refusal(error: &HostError) {
     }
 }
 
-/// Numbers are numbers.
+/// All numbers are finite.
 pub(crate) fn finite(what: &str, numbers: impl IntoIterator<Item = f64>) {
     for (i, number) in numbers.into_iter().enumerate() {
         assert!(number.is_finite(), "{what}[{i}] is {number}");
     }
 }
 
-/// Plays each representation of an asset by the built-in models, moves the finger, and asks for
+/// Plays each representation of an asset by the built-in models, moves the finger, and computes
 /// magnitudes.
 pub(crate) fn play(asset: &Asset) {
     let band = asset.band();
@@ -95,7 +95,7 @@ fn listen(voice: &mut htex::Voice) {
     }
 }
 
-/// An asset that was read can be written, and is then the same.
+/// An asset that was read can be written, and reads back the same.
 pub(crate) fn round_trip(asset: &htex_format::Asset) {
     let bytes = asset
         .to_bytes()

@@ -11,7 +11,7 @@ use htex_scene::Trace;
 
 use crate::promise::{finite, sentence};
 
-/// Most samples that are worth a spectrum.
+/// Most samples of which a spectrum is taken.
 const MOST: usize = 100_000;
 
 /// A CSV as a recording, and as a motion.
@@ -26,12 +26,12 @@ pub fn csv(input: &[u8]) -> bool {
     recording("fuzzed.csv", input, 100.0) || followed
 }
 
-/// A WAV; its header has a rate.
+/// A WAV, whose header has a rate.
 pub fn wav(input: &[u8]) -> bool {
     recording("fuzzed.wav", input, 2000.0)
 }
 
-/// An NPY, at 1 kHz: it has no rate of its own.
+/// An NPY, which has no rate, at 1 kHz.
 pub fn npy(input: &[u8]) -> bool {
     recording("fuzzed.npy", input, 1000.0)
 }
@@ -113,7 +113,7 @@ fn take_spectra(recording: &Recording) {
     }
 }
 
-/// Looks at a trace all along, and beyond both ends.
+/// Reads a trace along its length, and beyond both ends.
 fn follow(trace: &Trace) {
     trace.warnings.iter().for_each(sentence);
     let duration_s = trace.duration_s();

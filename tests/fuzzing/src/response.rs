@@ -5,7 +5,7 @@ use htex_author::{Recording, SpectrumOptions, segment_spectra};
 
 use crate::promise::{finite, sentence};
 
-/// Reads a response, looks it up, and divides a recording by it.
+/// Reads a response, evaluates it, and divides a recording by it.
 pub fn response_csv(input: &[u8]) -> bool {
     let response = match response_from_bytes("fuzzed.csv", input) {
         Ok(response) => response,

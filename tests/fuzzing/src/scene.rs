@@ -17,7 +17,7 @@ use crate::promise::{finite, refusal, sentence};
 /// Blocks that are rendered.
 const BLOCKS: usize = 4;
 
-/// Reads a scene, opens what it names, plans it for each kind of device, and renders its start.
+/// Reads a scene, opens the files it names, plans it for each kind of device, and renders its start.
 pub fn scene(input: &[u8]) -> bool {
     read_twice(input);
     let place = folder().join("fuzzed.scene.json");
@@ -53,7 +53,7 @@ pub(crate) fn around() -> Surroundings<'static> {
     }
 }
 
-/// Where the assets lie that scenes name.
+/// The folder of the assets that scenes name.
 pub(crate) fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes")
 }
@@ -65,7 +65,7 @@ fn explained(findings: &[htex_format::Finding]) {
     }
 }
 
-/// A scene that is sound is the same when it was written and is read again.
+/// A valid scene is the same after it is written and read again.
 fn read_twice(input: &[u8]) {
     let mut findings = Findings::default();
     let scene = read_scene(input, &Limits::default(), &mut findings);

@@ -1,4 +1,4 @@
-//! The seeds of all targets, made by the project's own writers.
+//! The seeds of all targets, made by the writers of htex.
 
 use std::f64::consts::PI;
 use std::io::Cursor;
@@ -10,7 +10,7 @@ use crate::block;
 use crate::container::container;
 use crate::module::model;
 
-/// A target, a file name, and what the file holds.
+/// A target, a file name, and the file's content.
 pub type Seed = (&'static str, String, Vec<u8>);
 
 /// All seeds.
@@ -45,7 +45,7 @@ pub fn seeds() -> Vec<Seed> {
     seeds
 }
 
-/// Texts that steer a terminal, and names of files and formats.
+/// Texts that control a terminal, and names of files and formats.
 fn words() -> Vec<Seed> {
     let texts = [
         ("escape", "\u{1}x\u{1b}[2J\u{7}\r\nhtex: all is well"),
@@ -270,7 +270,7 @@ fn npy<T: npyz::AutoSerialize + Copy>(shape: &[u64], numbers: &[T]) -> Vec<u8> {
     bytes
 }
 
-/// Modules, and what `wasm_module` and `signed_plugin` make theirs of.
+/// Modules, and the inputs from which `wasm_module` and `signed_plugin` generate theirs.
 fn modules() -> Vec<Seed> {
     let sound = wat::parse_str(model::text("1.0.0", &[], "")).expect("a sound module");
     let varied: Vec<u8> = (0..=255u8).map(|i| i.wrapping_mul(37) ^ (i >> 3)).collect();
@@ -297,7 +297,7 @@ fn modules() -> Vec<Seed> {
             [&[0, 0, 0, 9], &sound[..]].concat(),
         ),
     ];
-    // What a change of each part is like, and of the module with and without its hash.
+    // Changes of each part, and of the module with and without its hash.
     for part in 0..8u8 {
         let how = 1 | part.min(6) << 2 | (part / 7) << 7;
         seeds.push((

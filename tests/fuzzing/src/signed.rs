@@ -1,4 +1,4 @@
-//! Models in assets, signed and not.
+//! Models in assets, signed and unsigned.
 
 use htex::{Asset, Registry, Search};
 use htex_format::{Manifest, Plugin, Signature};
@@ -10,11 +10,11 @@ use crate::promise::{findings, sentence};
 
 /// Bytes of an input before the module.
 const HEAD: usize = 4;
-/// What a fuzzed secret key is made of.
+/// Base of a fuzzed secret key.
 const KEY: [u8; 32] = [7; 32];
 
-/// Opens an asset that brings a model along. The head of the input says what is signed and what is
-/// then changed; behind it stands the module, or nothing for a sound one.
+/// Opens an asset that embeds a model. The head of the input chooses what is signed and what is
+/// then changed; after it comes the module, or nothing for a valid one.
 pub fn signed_plugin(input: &[u8]) -> bool {
     let Some((&[how, place, change, key], module)) = input.split_first_chunk::<HEAD>() else {
         return false;
@@ -70,7 +70,7 @@ pub fn signed_plugin(input: &[u8]) -> bool {
     true
 }
 
-/// Changes one byte of the signature, of the words it is over, or of the module; or takes the
+/// Changes one byte of the signature, of the signed text, or of the module; or takes the
 /// signature of another version.
 fn alter(how: u8, place: u8, change: u8, plugin: &mut Plugin, module: &mut [u8]) {
     let Plugin {
@@ -100,7 +100,7 @@ fn alter(how: u8, place: u8, change: u8, plugin: &mut Plugin, module: &mut [u8])
         _ => {
             let at = usize::from(place) % module.len();
             module[at] ^= change;
-            // The one who changes a module can also change its hash.
+            // An attacker who changes a module can also change its hash.
             if how & 128 != 0 {
                 plugin.blake3 = blake3::hash(module).to_hex().to_string();
             }

@@ -7,9 +7,9 @@ use htex_hard_cases::long::{Blocks, Run, drift_db, phase_error_cycles, run};
 use htex_hard_cases::seen::models;
 use serde_json::{Value, json};
 
-/// Hour against hour, decibels.
+/// Difference between hours, decibels.
 const DRIFT_DB: f64 = 0.05;
-/// Time of a sample in the last minute over that in the first, rendered again in turns with it.
+/// Ratio of the time of a sample in the last minute to that in the first, which is rendered again in turns.
 const SLOWDOWN: f64 = 1.1;
 const PHASE_CYCLES: f64 = 1e-6;
 /// Seconds in which blocks are compared, of each seed.
@@ -79,7 +79,7 @@ fn voices(hours: f64, quiet: bool) -> Vec<Value> {
     rows.collect()
 }
 
-/// Blocks of an hour of each seed, and how many came back.
+/// Blocks of an hour of each seed, and the number of repeated ones.
 fn compare(model: &htex_host::LoadedModel) -> (usize, u64) {
     let mut blocks = Blocks::new();
     let repeated =

@@ -1,4 +1,4 @@
-//! Arithmetic of 256 bits, as a reference.
+//! Floating point of 256 bits, as a reference.
 
 use std::cell::RefCell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -16,7 +16,7 @@ thread_local! {
 #[derive(Debug, Clone)]
 pub struct Big(BigFloat);
 
-/// The number itself, without rounding.
+/// The number, without rounding.
 pub fn big(x: f64) -> Big {
     Big(BigFloat::from_f64(x, BITS))
 }
@@ -26,7 +26,7 @@ fn with(call: impl FnOnce(&mut Consts) -> BigFloat) -> Big {
 }
 
 impl Big {
-    /// The circle's.
+    /// π.
     pub fn pi() -> Self {
         with(|consts| consts.pi(BITS, ROUND))
     }
@@ -61,7 +61,7 @@ impl Big {
         Self(self.0.sqrt(BITS, ROUND))
     }
 
-    /// Rounded to what an f64 holds, by way of decimals.
+    /// Rounded to f64, by way of decimals.
     pub fn to_f64(&self) -> f64 {
         let text = CONSTS.with(|consts| {
             let consts = &mut consts.borrow_mut();

@@ -3,7 +3,7 @@
 use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
-/// The number itself.
+/// The number, without rounding.
 pub fn exact(x: f64) -> BigRational {
     BigRational::from_float(x).unwrap()
 }

@@ -1,15 +1,14 @@
-//! Hard cases: an input, the part or model it goes through, an operation, and what is promised:
-//! finite and within a stated bound, or a refusal by name. One table, which is tested
-//! (`tests/table.rs`) and written out (`spec/hard-cases.md`).
+//! Hard cases: an input, a model or a part of the library, an operation, and a promise: a result that is
+//! finite and within a stated bound, or a refusal by name. The table is tested
+//! (`tests/table.rs`) and published (`spec/hard-cases.md`).
 //!
-//! The bounds are part of the project; what a machine measures below them is printed by the tests.
+//! The bounds are part of the project; the tests print the errors that a machine measures.
 #![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
 #![forbid(unsafe_code)]
 
 pub mod big;
 mod cases;
 pub mod exact;
-pub mod guards;
 pub mod long;
 mod page;
 pub mod seen;
@@ -20,40 +19,40 @@ pub use page::page;
 /// One row of the table.
 #[derive(Debug)]
 pub struct Case {
-    /// What comes in.
+    /// The input.
     pub input: &'static str,
     /// The model, or the part of the library.
     pub subject: &'static str,
-    /// What is done.
+    /// The operation.
     pub operation: &'static str,
-    /// What is promised of it.
+    /// The promise.
     pub promise: Promise,
 }
 
-/// What is promised of a case.
+/// The promise of a case.
 #[derive(Debug)]
 pub enum Promise {
-    /// Finite, and no farther than `bound` from what it is compared `with`.
+    /// Finite, and within `bound` of the reference `with`.
     Within {
         /// Largest error.
         bound: f64,
         /// Unit of the error.
         unit: &'static str,
-        /// What it is compared with.
+        /// The reference.
         with: &'static str,
-        /// The largest error found; NaN, which no bound holds, where something is not finite.
+        /// The largest error; NaN, which exceeds every bound, where something is not finite.
         worst: fn() -> f64,
     },
-    /// Not done, and said so.
+    /// Refused with an error.
     Refused {
-        /// What the refusal says, or a part of it.
+        /// The error's text, or a part of it.
         by: &'static str,
-        /// The refusal; what happened instead, if it is not refused.
+        /// Runs the case: the error's text, or what happened instead.
         said: fn() -> String,
     },
 }
 
-/// What a result is compared with, and how near it is.
+/// The bound of an error, its unit, and the reference.
 #[derive(Debug, Clone, Copy)]
 pub struct Bound(pub f64, pub &'static str, pub &'static str);
 
@@ -78,7 +77,7 @@ pub(crate) const fn within(
     }
 }
 
-/// A row that is refused in words that hold `by`.
+/// A row that is refused with a text that contains `by`.
 pub(crate) const fn refused(
     input: &'static str,
     subject: &'static str,
@@ -102,12 +101,12 @@ pub(crate) fn worse(a: f64, b: f64) -> f64 {
     a.max(b)
 }
 
-/// 0 if all is as it must be; a row of [`none`] promises just that.
+/// Number of conditions that do not hold; a row of [`none`] promises 0.
 pub(crate) fn failures(of: impl IntoIterator<Item = bool>) -> f64 {
     of.into_iter().filter(|holds| !holds).count() as f64
 }
 
-/// No failure.
+/// A bound of no failure.
 pub(crate) const fn none(what: &'static str) -> Bound {
     Bound(0.0, "failures", what)
 }
@@ -117,7 +116,7 @@ pub(crate) const fn none(what: &'static str) -> Bound {
 pub struct Section {
     /// Heading.
     pub title: &'static str,
-    /// What they have in common.
+    /// Description.
     pub about: &'static str,
     /// The rows.
     pub cases: &'static [Case],
@@ -129,10 +128,10 @@ pub fn sections() -> Vec<Section> {
 }
 
 impl Case {
-    /// Runs the case; the error found, or the refusal, as a text for the test's output.
+    /// Runs the case; returns the measured error, or the refusal, as text for the test's output.
     ///
     /// # Errors
-    /// What was promised and what came instead.
+    /// The promise and the result.
     pub fn run(&self) -> Result<String, String> {
         let name = format!("{} | {} | {}", self.input, self.subject, self.operation);
         match self.promise {

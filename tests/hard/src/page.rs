@@ -1,4 +1,4 @@
-//! `spec/hard-cases.md`, made from the table.
+//! `spec/hard-cases.md`, generated from the table.
 
 use std::fmt::Write as _;
 
@@ -7,13 +7,12 @@ use crate::{Case, Promise, sections};
 const HEAD: &str = "\
 # Hard cases
 
-Generated from the table in `tests/hard/src/cases` by `cargo run -p htex-hard-cases --example
-hard_cases_page`.
+Generated from the table in `tests/hard/src/cases` by `cargo xtask generate`.
 
 Inputs at which arithmetic breaks, and what is promised of each: a result that is finite and no farther
 than a bound from a reference, or a refusal by name. *Exact* references are rational numbers without
-rounding, *256 bits* is floating point of that length. An ulp is 2⁻⁵² of the number. What a machine
-measures below the bounds is printed by `cargo test -p htex-hard-cases -- --nocapture`.
+rounding, *256 bits* is floating point of that length. An ulp is 2⁻⁵² of the number. The errors that a
+machine measures are printed by `cargo test -p htex-hard-cases -- --nocapture`.
 ";
 
 /// The page that lists every hard case: `spec/hard-cases.md`.
@@ -47,7 +46,7 @@ fn row(page: &mut String, case: &Case) {
     );
 }
 
-/// A number as one would write it.
+/// A number in its usual notation.
 fn number(x: f64) -> String {
     if (1e-3..1e6).contains(&x) {
         format!("{x}")

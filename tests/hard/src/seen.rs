@@ -1,4 +1,4 @@
-//! A signal's texture spectrum, and all that models do with it.
+//! A signal's texture spectrum, and every operation of models on it.
 
 use htex_dsp::grid::level_rms;
 use htex_dsp::spectrum::SegmentAnalyzer;
@@ -26,7 +26,7 @@ pub fn spectrum(signal: &[f64]) -> Vec<f64> {
     sum
 }
 
-/// The models a program knows.
+/// The built-in models.
 pub fn models() -> Vec<LoadedModel> {
     Registry::builtin().models().to_vec()
 }
@@ -56,7 +56,7 @@ pub fn fit_with(
     })
 }
 
-/// Fits a model as it is to a spectrum on the grid of the tactile band.
+/// Fits a model with its defaults to a spectrum on the grid of the tactile band.
 ///
 /// # Errors
 /// The model's refusal.
@@ -64,8 +64,8 @@ pub fn fit(model: &LoadedModel, magnitude: &[f64]) -> Result<Fit, HostError> {
     fit_with(model, magnitude, &[], &[])
 }
 
-/// Fits every model but those named, and does all with it that is done with parameters; the largest
-/// sample over its RMS. NaN, and a line on the standard output, if anything is not as it must be.
+/// Fits every model but those named, and runs every operation on the parameters; returns the largest
+/// sample over its RMS. NaN, and a line on standard output, if anything fails.
 pub fn every_model_but(refusing: &[&str], signal: &[f64]) -> f64 {
     let magnitude = spectrum(signal);
     let (mut largest, mut failed) = (0.0, false);
@@ -89,7 +89,7 @@ pub fn every_model(signal: &[f64]) -> f64 {
     every_model_but(&[], signal)
 }
 
-/// The refusal of a model to fit a signal; or that it did.
+/// The error of a model that refuses to fit a signal; a text if it does not.
 pub fn refusal(name: &str, signal: &[f64]) -> String {
     told(fit(&model(name), &spectrum(signal)))
 }
@@ -105,7 +105,7 @@ pub fn refusal_of_all(signal: &[f64]) -> String {
     }
 }
 
-/// Status and words of an error; or that there was none.
+/// Status and message of an error; a text if there was none.
 pub fn told<T>(result: Result<T, HostError>) -> String {
     match result {
         Ok(_) => "it was done".to_owned(),

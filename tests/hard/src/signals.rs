@@ -14,7 +14,7 @@ pub fn of_time(f: impl Fn(f64) -> f64) -> Vec<f64> {
 
 /// A tone of 1 N.
 pub fn tone(hz: f64) -> Vec<f64> {
-    // The phase is reduced in whole numbers first, so that the tone is as pure as f64 allows.
+    // The phase is reduced in whole numbers first, so that the tone has the precision of f64.
     of_time(|t| {
         let cycles = hz * t;
         (std::f64::consts::TAU * (cycles - cycles.floor()) + 0.3).sin()

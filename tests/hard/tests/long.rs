@@ -1,4 +1,4 @@
-//! Hours of voices: steady, never broken, never the same again. The accuracy of the example
+//! Hours of voices: steady power, finite samples, no repetition. The accuracy of the example
 //! `long_runs` at a length that fits here.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
@@ -23,7 +23,7 @@ fn an_hour_is_steady() {
         assert_eq!(run.power.len(), 6);
         assert_eq!(run.broken, 0, "{}", model.short_name());
         assert!(drift < 0.1, "{}: {drift} dB", model.short_name());
-        // Above 0 by what the bins of the band miss at its edges.
+        // Above 0 by the power that the bins of the band miss at its edges.
         assert!(
             (-0.05..0.15).contains(&off),
             "{}: {off} dB",

@@ -11,7 +11,7 @@ const COVERAGE: &str = "-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-l
     -Cllvm-args=-sanitizer-coverage-pc-table \
     -Cllvm-args=-sanitizer-coverage-trace-compares --cfg fuzzing -Ccodegen-units=1";
 
-/// Builds all programs; the folder they are in.
+/// Builds all programs; returns their folder.
 pub(super) fn build(options: &Options) -> Result<PathBuf, String> {
     let host = host()?;
     let (flags, place) = match options.address {
@@ -53,7 +53,7 @@ pub(super) fn build(options: &Options) -> Result<PathBuf, String> {
 fn cargo(nightly: bool) -> Command {
     if nightly {
         let mut cargo = Command::new("cargo");
-        // What the present toolchain set for its own tools would win over the name of another.
+        // Variables that the current toolchain set would override the choice of another.
         cargo
             .env_remove("RUSTUP_TOOLCHAIN")
             .env_remove("CARGO")
@@ -64,7 +64,7 @@ fn cargo(nightly: bool) -> Command {
     Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
-/// Apart from the programs of `cargo fuzz`, whose flags differ a little.
+/// A folder apart from that of `cargo fuzz`, whose flags differ.
 fn target_folder() -> PathBuf {
     match std::env::var_os("CARGO_TARGET_DIR") {
         Some(place) => PathBuf::from(place).join("fuzz"),

@@ -1,4 +1,4 @@
-//! `cargo xtask fuzz`: builds the fuzz targets and runs them, each for a while.
+//! `cargo xtask fuzz`: builds the fuzz targets and runs each for a time.
 //!
 //! The programs are built as `cargo fuzz build --sanitizer none` builds them, and with the toolchain
 //! that is installed: nothing here needs a nightly one or cargo-fuzz. The address sanitizer does.
@@ -16,10 +16,10 @@ pub use options::Options;
 
 use report::Outcome;
 
-/// Builds and runs what the options ask for; true when nothing was found.
+/// Builds and runs the chosen targets; true when nothing was found.
 ///
 /// # Errors
-/// When the programs cannot be built or run; says what to do.
+/// When the programs cannot be built or run.
 pub fn fuzz(options: &Options) -> Result<bool, String> {
     let targets = chosen(&options.targets)?;
     let programs = build::build(options)?;
@@ -59,7 +59,7 @@ fn folder() -> PathBuf {
     here.parent().unwrap_or(here).join("fuzz")
 }
 
-/// The targets of these names, or all: one a file in `fuzz/fuzz_targets`.
+/// The targets of these names, or all: the files in `fuzz/fuzz_targets`.
 fn chosen(wanted: &[String]) -> Result<Vec<String>, String> {
     let place = folder().join("fuzz_targets");
     let files = std::fs::read_dir(&place).map_err(|e| format!("{}: {e}", place.display()))?;
@@ -75,7 +75,7 @@ fn chosen(wanted: &[String]) -> Result<Vec<String>, String> {
     match wanted.iter().find(|name| !all.contains(name)) {
         None => Ok(wanted.to_vec()),
         Some(name) => Err(format!(
-            "there is no target {name}; there are {}",
+            "unknown target {name}; known are {}",
             all.join(", ")
         )),
     }

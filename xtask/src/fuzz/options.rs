@@ -1,18 +1,18 @@
-//! What `cargo xtask fuzz` is told.
+//! Options of `cargo xtask fuzz`.
 
-/// Time of a target when nothing is said, seconds.
+/// Default time of a target, seconds.
 const SECONDS: u64 = 60;
 
-/// What to fuzz, and for how long.
+/// Targets and time.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Options {
-    /// Targets; none: all.
+    /// Targets; all when empty.
     pub targets: Vec<String>,
     /// Longest time of a target, seconds.
     pub seconds: Option<u64>,
     /// Most executions of a target.
     pub executions: Option<u64>,
-    /// Targets that run at a time.
+    /// Targets that run at the same time.
     pub jobs: usize,
     /// With the address sanitizer.
     pub address: bool,
@@ -22,7 +22,7 @@ impl Options {
     /// Reads arguments.
     ///
     /// # Errors
-    /// Names the argument that is wrong.
+    /// The invalid argument.
     pub fn parse(arguments: &[&str]) -> Result<Self, String> {
         let mut options = Self {
             targets: Vec::new(),

@@ -1,15 +1,15 @@
-//! What fuzzing came to, as lines of a table.
+//! Results of fuzzing, as lines of a table.
 
 use std::path::PathBuf;
 
-/// Lines of a log that tell what was found.
+/// Lines of a log that are shown with a finding.
 const TOLD: usize = 12;
 
 /// The head of the table.
 pub(super) const HEAD: &str =
     "target            executions  per second  coverage    corpus  findings";
 
-/// What a run of a target came to.
+/// The result of a run of a target.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Outcome {
     target: String,
@@ -18,14 +18,14 @@ pub(super) struct Outcome {
     /// Edges of the program that were reached.
     coverage: u64,
     corpus: u64,
-    /// The input that breaks a promise, or the log when there is none.
+    /// The input that fails, or the log when there is none.
     pub(super) finding: Option<PathBuf>,
-    /// What was said last.
+    /// The last lines of the log.
     tail: String,
 }
 
 impl Outcome {
-    /// Reads what libFuzzer said.
+    /// Reads libFuzzer's log.
     pub(super) fn read(target: &str, log: &str, finding: Option<PathBuf>) -> Self {
         let status = log.lines().rev().find(|line| line.contains(" cov: "));
         let status = status.unwrap_or_default();
@@ -63,7 +63,7 @@ impl Outcome {
     }
 }
 
-/// The sum, and what was found with what to do.
+/// The totals, and each finding with instructions.
 pub(super) fn end(outcomes: &[Outcome]) -> String {
     let executions: u64 = outcomes.iter().map(|outcome| outcome.executions).sum();
     let found: Vec<&Outcome> = outcomes.iter().filter(|o| o.finding.is_some()).collect();
@@ -74,8 +74,8 @@ pub(super) fn end(outcomes: &[Outcome]) -> String {
         let place = place.display();
         text += &format!(
             "\n{target}: {place}\n{tail}\n\
-             When it is mended, keep it as a regression: cp {place} tests/regressions/{target}/NAME,\n\
-             with a NAME that says what was wrong, and `cargo test -p htex-tests --test regressions`.\n"
+             When it is fixed, keep it as a regression: cp {place} tests/regressions/{target}/NAME,\n\
+             with a NAME that describes the fault, and `cargo test -p htex-tests --test regressions`.\n"
         );
     }
     text

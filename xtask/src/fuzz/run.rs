@@ -7,14 +7,14 @@ use std::process::Command;
 use super::report::Outcome;
 use super::{Options, folder};
 
-/// Longest input, bytes: a change should hit something.
+/// Longest input, bytes: short, so that mutations are likely to reach parsed fields.
 const LONGEST: u32 = 4096;
 /// Longest time of one input, seconds.
 const TIMEOUT_S: u32 = 10;
 /// Most memory, MiB.
 const MEMORY_MIB: u32 = 1024;
 
-/// Runs a target; what it says goes to `fuzz/logs`.
+/// Runs a target; its output goes to `fuzz/logs`.
 pub(super) fn run(programs: &Path, target: &str, options: &Options) -> Result<Outcome, String> {
     let at = |kind: &str| folder().join(kind).join(target);
     let (corpus, artifacts) = (at("corpus"), at("artifacts"));
@@ -58,7 +58,7 @@ pub(super) fn run(programs: &Path, target: &str, options: &Options) -> Result<Ou
     Ok(Outcome::read(target, &text, finding))
 }
 
-/// Folders of inputs to begin with, besides the corpus of earlier runs.
+/// Folders of initial inputs, besides the corpus of earlier runs.
 fn inputs(target: &str) -> Vec<PathBuf> {
     let mut places = vec![
         folder().join("seeds").join(target),

@@ -8,7 +8,7 @@ use crate::devices::{DeviceArgs, SettingArgs};
 use crate::failure::Failure;
 use crate::output::{print, print_json, tamed};
 
-/// Show a device's settings and profiles, and what it can do when it is set so.
+/// Show a device's settings and profiles, and its capabilities with these settings.
 #[derive(Args)]
 pub(crate) struct Info {
     /// The device, by short name, id or library file

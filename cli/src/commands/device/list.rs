@@ -11,7 +11,7 @@ use crate::output::{print, print_json, tamed};
 
 /// List all devices: their adapters, what is connected, and what was found but is not used.
 ///
-/// Looked for in this order: --device-file, --device-dir, the folders in HTEX_DEVICE_PATH, the
+/// Search order: --device-file, --device-dir, the folders in HTEX_DEVICE_PATH, the
 /// user's folder, built in. Of two adapters with one id the earlier is used.
 #[derive(Args)]
 pub(crate) struct List {
@@ -41,7 +41,7 @@ fn json(devices: &Devices) -> Value {
     json!({ "devices": all, "notes": notes })
 }
 
-/// A driver that is missing is told beside the adapter, and is no reason to stop.
+/// A missing driver is reported beside the adapter and is not an error.
 fn device_json(known: &KnownDevice) -> Value {
     let descriptor = known.descriptor();
     let (endpoints, problem) = match known.adapter.endpoints() {

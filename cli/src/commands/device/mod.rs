@@ -1,4 +1,4 @@
-//! `htex device`: what there is to play on.
+//! `htex device`: the output devices.
 
 mod check;
 mod info;

@@ -12,8 +12,8 @@ use crate::plugins::PluginArgs;
 
 /// Measure what models cost: nanoseconds a sample, built in, as native plugins and as WASM.
 ///
-/// Of each model all ways to load it that are found are timed, at its own rate, in one interleaved
-/// run: what else the machine does falls on all alike. WASM modules are timed under the default
+/// Each model is timed in every way in which it can be loaded, at its own rate, in one interleaved
+/// run, so that other load on the machine affects all alike. WASM modules are timed under the default
 /// limits, which hold time by deadlines, and with instructions counted too.
 #[derive(Args)]
 pub(crate) struct Bench {
@@ -66,7 +66,7 @@ impl Bench {
     }
 }
 
-/// The built-in model first, with which the others are compared.
+/// The built-in model first: the others are compared with it.
 fn order(origin: &Origin) -> u8 {
     match origin {
         Origin::Builtin => 0,
@@ -75,7 +75,7 @@ fn order(origin: &Origin) -> u8 {
     }
 }
 
-/// Adds a model, and if it is a WASM module once more with its instructions counted.
+/// Adds a model, and a WASM module a second time with its instructions counted.
 fn add(
     subjects: &mut Vec<Subject>,
     loaded: &LoadedModel,

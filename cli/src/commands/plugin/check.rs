@@ -2,44 +2,40 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
-use htex_check::{Options, Runner, check, run_one};
+use htex_check::{Options, UnknownCheck, check, run_one};
 
-use crate::checking::{exit_code, tell_one, this_program, timeout};
+use crate::checking::CheckArgs;
 use crate::failure::Failure;
-use crate::output::{print, print_json};
+use crate::output::print_json;
 
 /// Check that a model keeps every promise of the model ABI; exit status 1 if it does not.
 ///
-/// Each check runs in a process of its own, so that a crash or an endless loop is an answer too.
+/// Each check runs in a process of its own, so that a crash or an endless loop ends only that check.
 /// `spec/model-checks.md` explains them.
 #[derive(Args)]
 pub(crate) struct Check {
     /// The model: a native library or a WASM module
     file: PathBuf,
 
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    checking: CheckArgs,
 
     /// Seed of the voices
     #[arg(long, default_value_t = 0, value_name = "N")]
     seed: u64,
 
-    /// How long one check may take, s
-    #[arg(long, default_value_t = 60.0, value_name = "S")]
-    timeout: f64,
-
     /// Checks to run, comma-separated, with those that they need [default: all]
-    #[arg(long, value_delimiter = ',', value_name = "NAME,…")]
+    #[arg(
+        long,
+        value_delimiter = ',',
+        value_name = "NAME,…",
+        conflicts_with = "reproduce"
+    )]
     only: Option<Vec<String>>,
 
     /// The same model as a file of the other kind [default: the one beside it, if there is one]
     #[arg(long, value_name = "FILE")]
     against: Option<PathBuf>,
-
-    /// Run this one check in a single process, e.g. under a debugger
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["only", "timeout"])]
-    reproduce: Option<String>,
 }
 
 /// Run one check and print its finding as JSON: what `check` starts.
@@ -55,27 +51,25 @@ pub(crate) struct CheckOne {
 
 impl Check {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
-        if let Some(name) = &self.reproduce {
-            let finding = run_one(&self.file, name, self.seed, self.against.as_deref());
-            return tell_one(name, &finding.map_err(Failure::Usage)?, self.json);
+        let Self { file, seed, .. } = &self;
+        if let Some(name) = &self.checking.reproduce {
+            let finding = run_one(file, name, *seed, self.against.as_deref()).map_err(unknown)?;
+            return self.checking.print_one(name, &finding);
         }
-        let report = check(&self.file, &self.options()?).map_err(Failure::Usage)?;
-        if self.json {
-            print_json(&report)?;
-        } else {
-            print(&report.to_text())?;
-        }
-        Ok(exit_code(!report.ok))
+        let report = check(file, &self.options()?).map_err(unknown)?;
+        let again = |name: &str| {
+            let file = file.display();
+            format!("htex plugin check {file} --reproduce {name} --seed {seed}")
+        };
+        self.checking.print_report(&report, again)
     }
 
     fn options(&self) -> Result<Options, Failure> {
         Ok(Options {
-            runner: Runner {
-                program: this_program()?,
-                arguments: vec!["plugin".into(), "check-one".into()],
-            },
+            runner: self
+                .checking
+                .runner(["plugin".into(), "check-one".into()])?,
             seed: self.seed,
-            timeout: timeout(self.timeout)?,
             only: self.only.clone(),
             against: self.against.clone(),
         })
@@ -85,7 +79,11 @@ impl Check {
 impl CheckOne {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         let finding = run_one(&self.file, &self.name, self.seed, self.against.as_deref());
-        print_json(&finding.map_err(Failure::Usage)?)?;
+        print_json(&finding.map_err(unknown)?)?;
         Ok(ExitCode::SUCCESS)
     }
+}
+
+fn unknown(error: UnknownCheck) -> Failure {
+    Failure::Usage(error.to_string())
 }

@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::output::{print, print_json, tamed};
 use crate::plugins::PluginArgs;
 
-/// Show what a model says of itself: parameters and fit options, with units and ranges.
+/// Show a model's descriptor: parameters and fit options, with units and ranges.
 #[derive(Args)]
 pub(crate) struct Info {
     /// The model, by short name, id or file
@@ -75,7 +75,7 @@ fn option(option: &FitOption) -> String {
     format!("  {name}: {values}\n      {}\n", option.description)
 }
 
-/// A range with its unit, which a pure number has none of.
+/// A range with its unit; a pure number has none.
 fn range(min: f64, max: f64, unit: &str) -> String {
     match unit {
         "1" => format!("{min} to {max}"),

@@ -11,7 +11,7 @@ use crate::plugins::PluginArgs;
 
 /// List all models found, and what was found but is not used.
 ///
-/// Looked for in this order: --plugin, --plugin-dir, the folders in HTEX_PLUGIN_PATH, the user's
+/// Search order: --plugin, --plugin-dir, the folders in HTEX_PLUGIN_PATH, the user's
 /// folder, built in. Of two models with one id the earlier is used.
 #[derive(Args)]
 pub(crate) struct List {

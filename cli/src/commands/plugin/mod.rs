@@ -1,4 +1,4 @@
-//! `htex plugin`: what model authors and their users need.
+//! `htex plugin`: commands for authors and users of models.
 
 mod bench;
 mod check;

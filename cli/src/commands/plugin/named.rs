@@ -7,7 +7,7 @@ use htex_host::LoadedModel;
 use crate::failure::Failure;
 use crate::plugins::PluginArgs;
 
-/// The model in a file, when there is one of this name; else the model of this short name or id.
+/// The model in the file of this name if there is one, else the model of this short name or id.
 pub(crate) fn named(name: &str, plugins: &PluginArgs) -> Result<LoadedModel, Failure> {
     let file = Path::new(name);
     if file.is_file() {

@@ -2,6 +2,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
+use htex_check::templates;
 
 use crate::failure::Failure;
 use crate::output::{print, write_file};
@@ -9,53 +10,7 @@ use crate::output::{print, write_file};
 /// The folder `sdk` of the sources this program was built from.
 const SDK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../sdk");
 
-const RUST: &[(&str, &str)] = &[
-    (
-        "README.md",
-        include_str!("../../../../sdk/check/templates/rust/README.md.in"),
-    ),
-    (
-        "Cargo.toml",
-        include_str!("../../../../sdk/check/templates/rust/Cargo.toml.in"),
-    ),
-    (
-        "src/lib.rs",
-        include_str!("../../../../sdk/check/templates/rust/src/lib.rs"),
-    ),
-    (
-        "src/follow.rs",
-        include_str!("../../../../sdk/check/templates/rust/src/follow.rs"),
-    ),
-];
-
-const C: &[(&str, &str)] = &[
-    (
-        "README.md",
-        include_str!("../../../../sdk/check/templates/c/README.md.in"),
-    ),
-    (
-        "model.c",
-        include_str!("../../../../sdk/check/templates/c/model.c"),
-    ),
-    (
-        "build.sh",
-        include_str!("../../../../sdk/check/templates/c/build.sh"),
-    ),
-    (
-        "htex_model.h",
-        include_str!("../../../../spec/include/htex_model.h"),
-    ),
-    (
-        "htex_model_wasm.h",
-        include_str!("../../../../spec/include/htex_model_wasm.h"),
-    ),
-    (
-        "htex_motion_1.h",
-        include_str!("../../../../spec/include/htex_motion_1.h"),
-    ),
-];
-
-/// Write the project of a new model: one that builds with one command and passes `check`.
+/// Write the project of a new model, which builds with one command and passes `check`.
 #[derive(Args)]
 pub(crate) struct New {
     /// Name of the model: lower-case letters, digits and hyphens
@@ -84,8 +39,8 @@ impl Lang {
     /// The files of a project, and their templates.
     fn files(self) -> &'static [(&'static str, &'static str)] {
         match self {
-            Self::Rust => RUST,
-            Self::C => C,
+            Self::Rust => templates::RUST,
+            Self::C => templates::C,
         }
     }
 }
@@ -111,26 +66,26 @@ impl New {
         Ok(ExitCode::SUCCESS)
     }
 
-    /// Refuses a name that is none, and a folder that is there.
+    /// Refuses an invalid name, and a folder that exists.
     fn check(&self, dir: &Path) -> Result<(), Failure> {
         let name = &self.name;
         let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-';
         if !name.bytes().all(plain) || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
             let rule = "lower-case letters, digits and hyphens, a letter first";
             return Err(Failure::Usage(format!(
-                "`{name}` is no name of a model: {rule}"
+                "`{name}` is not a valid name: {rule}"
             )));
         }
         if dir.exists() {
             let dir = dir.display();
             return Err(Failure::Usage(format!(
-                "{dir} is there already; --dir names another"
+                "{dir} exists; name another with --dir"
             )));
         }
         Ok(())
     }
 
-    /// The placeholders of the templates (`sdk/check/templates/README.md`), and what takes their place.
+    /// The placeholders of the templates (`sdk/check/templates/README.md`), and their values.
     fn values(&self, sdk: &str) -> [(&'static str, String); 7] {
         let name = &self.name;
         let crate_name = name.replace('-', "_");

@@ -1,9 +1,9 @@
-//! The marker, the exports, and what a device says of itself.
+//! The marker, the exports, the descriptor, endpoints and capabilities.
 
-use htex_check::{Finding, Found};
+use htex_check_runner::{Finding, Found, made_up_extensions};
 use htex_device::{DeviceError, NativeAdapter, SettingKind};
 
-use crate::case::{Case, failed};
+use crate::case::Case;
 
 /// The check that a loading error belongs to.
 pub(crate) fn owner(error: &DeviceError) -> &'static str {
@@ -14,9 +14,9 @@ pub(crate) fn owner(error: &DeviceError) -> &'static str {
     }
 }
 
-/// The library's own functions, of which a built-in device has none.
+/// The library's functions; a built-in device has none.
 pub(crate) fn library(case: &Case) -> Result<&NativeAdapter, Finding> {
-    let built_in = || Finding::skipped("it is built in: there is no library");
+    let built_in = || Finding::skipped("it is built in and has no library");
     case.native.as_ref().ok_or_else(built_in)
 }
 
@@ -26,7 +26,7 @@ pub(crate) fn loaded(case: &Case) -> Found {
     Ok(Finding::passed("the library was loaded"))
 }
 
-/// Loading looks at a library's descriptor; this is for those that are built in.
+/// Loading checks a library's descriptor; this checks that of a built-in device.
 pub(crate) fn descriptor(case: &Case) -> Found {
     let descriptor = case.adapter.descriptor();
     descriptor.check().map_err(Finding::failed)?;
@@ -36,30 +36,13 @@ pub(crate) fn descriptor(case: &Case) -> Found {
     Ok(Finding::passed(message).with("settings", settings as f64))
 }
 
-/// Made-up extensions are not there.
+/// Made-up extensions are absent.
 pub(crate) fn extensions(case: &Case) -> Found {
     let native = library(case)?;
-    let long = "x".repeat(100_000);
-    for id in [
-        "htex.no-such-thing/1",
-        "com.example.unheard-of/7",
-        "",
-        "\u{1f}é",
-        &long,
-    ] {
-        if native.has_extension(id).map_err(failed)? {
-            let id: String = id.chars().take(40).collect();
-            return Err(Finding::failed(format!(
-                "it says yes to the extension `{id}`"
-            )));
-        }
-    }
-    Ok(Finding::passed(
-        "five made-up extensions are answered by no",
-    ))
+    made_up_extensions(|id| native.has_extension(id))
 }
 
-/// What is connected can be asked; nothing, or no driver, is an answer.
+/// Endpoints can be listed; none, or a missing driver, is a valid result.
 pub(crate) fn endpoints(case: &Case) -> Found {
     let known = |name: &str| {
         let mut settings = case.adapter.descriptor().settings.iter();
@@ -69,17 +52,17 @@ pub(crate) fn endpoints(case: &Case) -> Found {
         Ok(all) => match all.iter().find(|endpoint| !known(&endpoint.setting)) {
             Some(lost) => {
                 let (name, setting) = (&lost.name, &lost.setting);
-                let message = format!("`{name}` is chosen by `{setting}`, which is no setting");
+                let message = format!("`{name}` is chosen by `{setting}`, which is not a setting");
                 Err(Finding::failed(message))
             }
             None => Ok(Finding::passed(format!("{} are connected", all.len()))),
         },
         Err(DeviceError::Missing(what)) => Ok(Finding::warning(what)),
-        Err(error) => Err(failed(error)),
+        Err(error) => Err(error.into()),
     }
 }
 
-/// What a device can do, set as told and by each of its profiles.
+/// The capabilities, with the given settings and with each profile.
 pub(crate) fn capabilities(case: &Case) -> Found {
     let can = case.capabilities()?;
     can.check().map_err(Finding::failed)?;
@@ -98,7 +81,7 @@ pub(crate) fn capabilities(case: &Case) -> Found {
     Ok(Finding::passed(format!("{limit}, {}", can.rates)))
 }
 
-/// Lines that are no settings of this device.
+/// Unknown and invalid settings are refused.
 pub(crate) fn bad_settings(case: &Case) -> Found {
     let native = library(case)?;
     let good = case.settings()?.to_lines(case.adapter.descriptor());

@@ -1,20 +1,20 @@
-//! The ends a device can come to.
+//! Finishing, aborting and closing.
 
 use std::time::Duration;
 
-use htex_check::{Finding, Found};
+use htex_check_runner::{Finding, Found};
 use htex_device::{Adapter, Device, DeviceError, StreamFormat};
 
-use crate::case::{Case, failed, write_all};
+use crate::case::{Case, write_all};
 use crate::checks::describe::library;
 
-/// All comes out; nothing can be written afterwards.
+/// All frames are played; nothing can be written afterwards.
 pub(crate) fn finishes(case: &Case) -> Found {
     let (mut device, _) = case.open()?;
     let tone = case.tone(1_000)?;
     write_all(device.as_mut(), &tone)?;
     let files = files(case);
-    device.finish().map_err(failed)?;
+    device.finish()?;
     let status = device.status();
     if status.frames_played != 1_000 {
         let played = status.frames_played;
@@ -39,7 +39,7 @@ pub(crate) fn finishes(case: &Case) -> Found {
         ));
     }
     Ok(Finding::passed(
-        "all frames came out, and the end is the end",
+        "all frames came out, and writes afterwards are refused",
     ))
 }
 
@@ -72,12 +72,10 @@ pub(crate) fn handles(case: &Case) -> Found {
         rate_hz: can.default_rate_hz,
         block_frames: can.block_frames,
     };
-    let mut closed = native
-        .open_native(&case.settings()?, &format)
-        .map_err(failed)?;
-    closed.close_and_keep_handle().map_err(failed)?;
+    let mut closed = native.open_native(&case.settings()?, &format)?;
+    closed.close_and_keep_handle()?;
     for another in [false, true] {
-        let open = || native.open(&case.settings()?, &format).map_err(failed);
+        let open = || Ok::<_, Finding>(native.open(&case.settings()?, &format)?);
         let _open = another.then(open).transpose()?;
         let calls = [
             ("write", closed.write(&[0.0], Duration::ZERO).map(drop)),

@@ -1,13 +1,13 @@
-//! What must never come out.
+//! Samples that must be refused.
 
 use std::time::Duration;
 
-use htex_check::{Finding, Found};
+use htex_check_runner::{Finding, Found};
 use htex_device::DeviceError;
 
 use crate::case::{Case, write_all};
 
-/// Samples beyond the limit are refused, both ways round.
+/// Samples beyond the limit are refused, positive and negative.
 pub(crate) fn over(case: &Case) -> Found {
     let Some(limit) = case.capabilities()?.limit else {
         return Ok(Finding::skipped("it has no limit"));
@@ -16,21 +16,21 @@ pub(crate) fn over(case: &Case) -> Found {
         refuses(case, sample as f32)?;
     }
     Ok(Finding::passed(format!(
-        "more than {limit} is refused, and zero it stays"
+        "samples over {limit} are refused, and the output stays at zero"
     )))
 }
 
-/// What is no number is refused.
+/// NaN and infinities are refused.
 pub(crate) fn no_number(case: &Case) -> Found {
     for sample in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         refuses(case, sample)?;
     }
     Ok(Finding::passed(
-        "NaN and infinities are refused, and zero it stays",
+        "NaN and infinities are refused, and the output stays at zero",
     ))
 }
 
-/// One bad sample among good ones, and what must follow.
+/// Writes one invalid sample among valid ones: it is refused, and the device is closed.
 fn refuses(case: &Case, bad: f32) -> Result<(), Finding> {
     let wrong = |what: String| Err(Finding::failed(format!("a sample of {bad}: {what}")));
     let (mut device, _) = case.open()?;
@@ -38,7 +38,7 @@ fn refuses(case: &Case, bad: f32) -> Result<(), Finding> {
     write_all(device.as_mut(), &tone)?;
     match device.write(&[tone[1], bad, tone[2]], Duration::ZERO) {
         Err(DeviceError::OverLimit { .. }) => {}
-        Err(error) => return wrong(format!("it is refused with other words: {error}")),
+        Err(error) => return wrong(format!("it is refused with another error: {error}")),
         Ok(0) => return wrong("it is neither taken nor refused".to_owned()),
         Ok(_) => return wrong("it is taken".to_owned()),
     }
@@ -57,7 +57,7 @@ fn refuses(case: &Case, bad: f32) -> Result<(), Finding> {
         match answer {
             Err(DeviceError::Closed(_)) => {}
             Err(error) => return wrong(format!("{call} afterwards: {error}")),
-            Ok(()) => return wrong(format!("{call} afterwards is answered as if nothing were")),
+            Ok(()) => return wrong(format!("{call} afterwards succeeds")),
         }
     }
     Ok(())

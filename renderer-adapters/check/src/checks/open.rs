@@ -1,11 +1,11 @@
 //! Opening.
 
-use htex_check::{Finding, Found};
+use htex_check_runner::{Finding, Found};
 use htex_device::DeviceError;
 
-use crate::case::{Case, failed, rates, write_all};
+use crate::case::{Case, rates, write_all};
 
-/// It opens at each of its rates, and takes silence.
+/// The device opens at each of its rates, and takes silence.
 pub(crate) fn opens(case: &Case) -> Found {
     let rates = rates(&case.capabilities()?);
     for rate_hz in &rates {
@@ -17,7 +17,7 @@ pub(crate) fn opens(case: &Case) -> Found {
     Ok(Finding::passed(format!("it opens at {count} rates")).with("rates", count as f64))
 }
 
-/// Rates that are none of its own.
+/// Rates that the device does not have are refused.
 pub(crate) fn bad_rate(case: &Case) -> Found {
     let can = case.capabilities()?;
     let (lowest, highest) = match rates(&can)[..] {
@@ -47,20 +47,16 @@ pub(crate) fn bad_rate(case: &Case) -> Found {
     Ok(Finding::passed(format!("{count} wrong rates are refused")).with("rates", count as f64))
 }
 
-/// Two at the same time, or a clear refusal.
+/// Two devices open at the same time, or the second is refused as busy.
 pub(crate) fn two(case: &Case) -> Found {
     let (mut first, settings) = case.open()?;
-    let rate_hz = case
-        .adapter
-        .capabilities(&settings)
-        .map_err(failed)?
-        .default_rate_hz;
+    let rate_hz = case.adapter.capabilities(&settings)?.default_rate_hz;
     let tone = case.tone(64)?;
     let mut second = match case.open_at(&case.settings()?, rate_hz) {
         Err(DeviceError::Busy(why)) => {
             return Ok(Finding::passed(format!("one at a time: {why}")));
         }
-        other => other.map_err(failed)?,
+        other => other?,
     };
     write_all(first.as_mut(), &tone)?;
     write_all(second.as_mut(), &tone[..10])?;

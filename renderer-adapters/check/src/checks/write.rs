@@ -1,11 +1,11 @@
-//! Writing, and what is said of it.
+//! Writing, and the status.
 
 use std::time::Duration;
 
-use htex_check::{Finding, Found, resident_bytes};
+use htex_check_runner::{Finding, Found, Growth};
 use htex_device::Status;
 
-use crate::case::{Case, failed, write_all};
+use crate::case::{Case, write_all};
 use crate::checks::describe::library;
 
 /// Blocks over which memory must not grow.
@@ -15,8 +15,6 @@ const BLOCK: usize = 256;
 const PACED_S: f64 = 10.0;
 /// Devices that are opened and closed.
 const OPENED: usize = 100;
-/// Growth of the resident memory that is allowed, bytes.
-const GROWTH: f64 = 2.0 * 1024.0 * 1024.0;
 
 /// Blocks of any size are taken in the end.
 pub(crate) fn blocks(case: &Case) -> Found {
@@ -25,7 +23,7 @@ pub(crate) fn blocks(case: &Case) -> Found {
     let sizes = [1, 7, block, 3 * block + 1];
     let tone = case.tone(sizes[3])?;
     for size in sizes {
-        let none = device.write(&[], Duration::ZERO).map_err(failed)?;
+        let none = device.write(&[], Duration::ZERO)?;
         if none != 0 {
             return Err(Finding::failed(format!("it takes {none} of no frames")));
         }
@@ -37,7 +35,7 @@ pub(crate) fn blocks(case: &Case) -> Found {
     )))
 }
 
-/// It counts what it took.
+/// Frames and peak are counted.
 pub(crate) fn status(case: &Case) -> Found {
     let (mut device, settings) = case.open()?;
     let before = device.status();
@@ -64,50 +62,30 @@ pub(crate) fn status(case: &Case) -> Found {
     }
     drop(device);
     if let Ok(native) = library(case) {
-        let can = case.adapter.capabilities(&settings).map_err(failed)?;
+        let can = case.adapter.capabilities(&settings)?;
         let format = htex_device::StreamFormat {
             rate_hz: can.default_rate_hz,
             block_frames: can.block_frames,
         };
         let opened = native.open_native(&case.settings()?, &format);
-        opened
-            .and_then(|device| device.checked_status())
-            .map_err(failed)?;
+        opened.and_then(|device| device.checked_status())?;
     }
     Ok(Finding::passed("frames and peak are counted").with("latency_s", status.latency_s))
 }
 
-/// The process does not grow with what is written, or as devices come and go.
+/// The process does not grow with what is written, or as devices are opened and closed.
 pub(crate) fn memory(case: &Case) -> Found {
-    if resident_bytes().is_none() {
-        return Ok(Finding::skipped("resident memory is read on Linux only"));
-    }
-    let can = case.capabilities()?;
-    let most = (PACED_S * can.default_rate_hz / BLOCK as f64) as usize;
-    let blocks = if can.paced { BLOCKS.min(most) } else { BLOCKS };
-    let tone = case.tone(BLOCK)?;
-    let (mut device, _) = case.open()?;
-    let mut write = |count: usize| (0..count).try_for_each(|_| write_all(device.as_mut(), &tone));
-    write(blocks / 10)?;
-    let before = resident_bytes().unwrap_or_default();
-    write(blocks)?;
-    let written = resident_bytes().unwrap_or_default() - before;
-    drop(device);
-    let come_and_go = |count: usize| (0..count).try_for_each(|_| case.open().map(drop));
-    let opened = if can.paced { OPENED / 20 } else { OPENED };
-    come_and_go(opened)?;
-    let before = resident_bytes().unwrap_or_default();
-    come_and_go(opened)?;
-    let come = resident_bytes().unwrap_or_default() - before;
-    let kib = |bytes: f64| (bytes / 1024.0).round();
-    let (w, c) = (kib(written), kib(come));
-    let message =
-        format!("{blocks} blocks grow the process by {w} KiB, {opened} openings by {c} KiB");
-    let finding = match written.max(come) > GROWTH {
-        true => Finding::failed(message),
-        false => Finding::passed(message),
-    };
-    Ok(finding
-        .with("blocks_bytes", written)
-        .with("openings_bytes", come))
+    htex_check_runner::memory(|| {
+        let can = case.capabilities()?;
+        let most = (PACED_S * can.default_rate_hz / BLOCK as f64) as usize;
+        let blocks = if can.paced { BLOCKS.min(most) } else { BLOCKS };
+        let tone = case.tone(BLOCK)?;
+        let (mut device, _) = case.open()?;
+        let write = |count: usize| (0..count).try_for_each(|_| write_all(device.as_mut(), &tone));
+        let written = Growth::measure(blocks, "blocks", write)?;
+        drop(device);
+        let opened = if can.paced { OPENED / 20 } else { OPENED };
+        let open = |count: usize| (0..count).try_for_each(|_| case.open().map(drop));
+        Ok([written, Growth::measure(opened, "openings", open)?])
+    })
 }

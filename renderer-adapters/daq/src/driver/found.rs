@@ -1,5 +1,5 @@
-//! Where the driver's library is: the one that is installed, or the one that the setting `driver` names.
-#![allow(unsafe_code)] // A loader: running a driver's initialisers is what was asked for.
+//! Finds the driver's library: the installed one, or the one that the setting `driver` names.
+#![allow(unsafe_code)] // A loader: the user asked to run the driver's initialisers.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! NI-DAQmx, loaded when it is asked for.
+//! NI-DAQmx, loaded at the first use.
 
 mod found;
 mod table;
@@ -69,7 +69,7 @@ impl Driver {
     }
 }
 
-/// What is listed between commas.
+/// The items of a list separated by commas.
 fn list(text: &str) -> impl Iterator<Item = &str> {
     text.split(',')
         .map(str::trim)

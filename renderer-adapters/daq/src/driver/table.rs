@@ -1,4 +1,4 @@
-//! The functions of NI-DAQmx that are used here, as `NIDAQmx.h` declares them.
+//! The functions of NI-DAQmx in use, as `NIDAQmx.h` declares them.
 #![allow(unsafe_code)] // A loader: the library's functions are C.
 
 use std::ffi::{CString, c_char, c_void};
@@ -10,12 +10,12 @@ use crate::fault::Fault;
 
 pub(super) type Handle = *mut c_void;
 
-/// Room for a driver's names and messages, bytes.
+/// Size of the buffer for a driver's names and messages, bytes.
 const ROOM: usize = 8192;
 
 macro_rules! table {
     ($($name:ident = $symbol:literal : ($($argument:ty),*),)*) => {
-        /// One function pointer a symbol; each answers 0, a warning above or an error below.
+        /// One function pointer for each symbol; each returns 0, a positive warning or a negative error.
         pub(super) struct Table {
             $(pub(super) $name: unsafe extern "system" fn($($argument),*) -> i32,)*
         }
@@ -24,7 +24,7 @@ macro_rules! table {
             /// The functions of a library.
             ///
             /// # Errors
-            /// Names a function that the library lacks.
+            /// The function that the library lacks.
             pub(super) fn of(library: Library) -> Result<Self, String> {
                 $(
                     // SAFETY: the name is NI-DAQmx's, and its header states the type.
@@ -61,7 +61,7 @@ table! {
 }
 
 impl Table {
-    /// A call's answer: warnings are none of ours, errors come with the driver's words.
+    /// The result of a call: warnings are ignored, errors carry the driver's message.
     pub(super) fn check(&self, code: i32) -> Result<(), Fault> {
         if code >= 0 {
             return Ok(());
@@ -127,7 +127,7 @@ impl Table {
     }
 }
 
-/// What a function writes into a buffer; nothing when it fails.
+/// The text that a function writes into a buffer; empty when it fails.
 fn filled(call: impl FnOnce(*mut c_char, u32) -> i32) -> Option<String> {
     let mut bytes = vec![0u8; ROOM];
     let code = call(bytes.as_mut_ptr().cast(), ROOM as u32);
@@ -135,7 +135,7 @@ fn filled(call: impl FnOnce(*mut c_char, u32) -> i32) -> Option<String> {
     (code >= 0).then(|| String::from_utf8_lossy(&bytes[..end]).into_owned())
 }
 
-/// A string that ends in zero; settings hold no zero, and one that did would name nothing.
+/// A string that ends in zero; one with a zero inside, which settings do not allow, becomes empty.
 pub(super) fn c_text(text: &str) -> CString {
     CString::new(text).unwrap_or_default()
 }

@@ -13,10 +13,10 @@ const RISING: i32 = 10280;
 const CONTINUOUS: i32 = 10123;
 const DO_NOT_ALLOW_REGENERATION: i32 = 10158;
 const GROUP_BY_CHANNEL: u32 = 0;
-/// The buffer is full: what fitted was taken.
+/// The buffer is full: the samples that fitted were taken.
 const NOT_YET: i32 = -200292;
 
-/// Cleared, which stops it, when dropped; the output then holds its last voltage.
+/// Stopped and cleared when dropped; the output then holds its last voltage.
 pub(crate) struct Task {
     driver: &'static Driver,
     handle: Handle,
@@ -26,7 +26,7 @@ pub(crate) struct Task {
 unsafe impl Send for Task {}
 
 impl Task {
-    /// A task that puts samples out at once, within `limit_v` either way; volts of the card.
+    /// A task that outputs samples at once, within ±`limit_v`; volts of the card.
     pub(crate) fn new(driver: &'static Driver, output: &str, limit_v: f64) -> Result<Self, Fault> {
         let handle = driver.table.new_task()?;
         let task = Self { driver, handle };
@@ -39,7 +39,7 @@ impl Task {
         Ok(task)
     }
 
-    /// Makes a clock take the samples, from a buffer of `frames`, each once.
+    /// Lets a clock take the samples, each once, from a buffer of `frames`.
     pub(crate) fn set_clock(&self, rate_hz: f64, frames: u32) -> Result<(), Fault> {
         let (table, source) = (&self.driver.table, c_text(""));
         // SAFETY: a string that ends in zero: the card's own clock.
@@ -58,13 +58,13 @@ impl Task {
         self.check(unsafe { (self.driver.table.start_task)(self.handle) })
     }
 
-    /// Stops it; an error that it had is said here.
+    /// Stops the task; returns the error that it had.
     pub(crate) fn stop(&self) -> Result<(), Fault> {
         // SAFETY: the handle is this task's.
         self.check(unsafe { (self.driver.table.stop_task)(self.handle) })
     }
 
-    /// Takes the samples that fit now, volts; answers how many. `start` starts a task without a
+    /// Takes the samples that fit now, volts; returns their number. `start` starts a task without a
     /// clock.
     pub(crate) fn write(&self, samples: &[f64], start: bool) -> Result<usize, Fault> {
         let count = i32::try_from(samples.len()).unwrap_or(i32::MAX);
@@ -88,7 +88,7 @@ impl Task {
         Ok(usize::try_from(written).unwrap_or(0).min(samples.len()))
     }
 
-    /// Frames that there is room for; only while it runs.
+    /// Frames of free space; only while the task runs.
     pub(crate) fn space(&self) -> Result<usize, Fault> {
         let mut space = 0u32;
         // SAFETY: a place for one number.
@@ -104,7 +104,7 @@ impl Task {
         Ok(frames)
     }
 
-    /// Whether it stopped by itself; the error that stopped it, if one did.
+    /// Whether the task stopped by itself; the error that stopped it, if any.
     pub(crate) fn is_done(&self) -> Result<bool, Fault> {
         let mut done = 0u32;
         // SAFETY: a place for one truth value.

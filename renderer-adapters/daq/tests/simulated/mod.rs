@@ -1,4 +1,4 @@
-//! The simulated card of `examples/nidaqmx-simulated`: built, and each test given one of its own.
+//! The simulated card of `examples/nidaqmx-simulated`, one for each test.
 #![allow(dead_code)] // Each suite uses a part of it.
 
 mod library;
@@ -17,7 +17,7 @@ pub const PAPER: &str = "pcie-6321_tabor-9200a_sct3250";
 pub const GAIN: f64 = 50.0;
 pub const RATE_HZ: f64 = 20_000.0;
 
-/// One card, whose library is a copy of its own. Its clock goes by calls: no test hangs on time.
+/// One card, whose library is a copy of its own. Its clock advances by calls, so that tests do not depend on time.
 pub struct Card {
     folder: TempDir,
     library: PathBuf,

@@ -8,7 +8,7 @@ const HEAD: &str = "\
 # Findings in recordings
 
 Generated from the table of rules in `sdk/author/src/findings/rules.rs` by
-`cargo run -p htex-author --example recording_pages`.
+`cargo xtask generate`.
 
 `htex validate rec.csv` looks at a recording (any file that is neither an asset nor a scene); `htex fit`, `process`,
 `compare` and `tradeoff` print the same findings as warnings and notes, and with `--strict` refuse a recording that has

@@ -3,7 +3,7 @@
 use htex_host::{Descriptor, Field, FitOption, HostError, Kind, Store};
 
 use crate::case::Case;
-use crate::finding::{Finding, Found};
+use htex_check_runner::{Finding, Found, made_up_extensions};
 
 /// The check that a loading error belongs to.
 pub(crate) fn owner(error: &HostError) -> &'static str {
@@ -100,22 +100,7 @@ fn wrong_default(option: &FitOption) -> Option<String> {
     (!counted).then(|| format!("`{name}`: choices are counted from 0 to {last}"))
 }
 
-/// Made-up extensions are not there.
+/// Made-up extensions are absent.
 pub(crate) fn extensions(case: &Case) -> Found {
-    let long = "x".repeat(100_000);
-    for id in [
-        "htex.no-such-thing/1",
-        "com.example.unheard-of/7",
-        "",
-        "\u{1f}é",
-        &long,
-    ] {
-        if case.model.has_extension(id)? {
-            let id: String = id.chars().take(40).collect();
-            return Err(Finding::failed(format!(
-                "it says yes to the extension `{id}`"
-            )));
-        }
-    }
-    Ok(Finding::passed("five made-up extensions are not there").with("asked", 5.0))
+    made_up_extensions(|id| case.model.has_extension(id))
 }

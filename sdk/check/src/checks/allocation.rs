@@ -3,7 +3,7 @@
 use htex_host::ModelVoice;
 
 use crate::case::{Case, Fitted};
-use crate::finding::{Finding, Found};
+use htex_check_runner::{Finding, Found};
 
 /// Blocks in which a voice may still set itself up.
 const WARM_UP: usize = 64;

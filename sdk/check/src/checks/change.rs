@@ -5,8 +5,8 @@ use htex_host::Band;
 use crate::case::{Case, RATE_HZ};
 use crate::checks::magnitude::fine_grid;
 use crate::checks::sound::{SECONDS, SPECTRUM_DB, spectrum_distance_db};
-use crate::finding::{Finding, Found};
 use crate::signal::{distance_db, sharpest_bend};
+use htex_check_runner::{Finding, Found};
 
 /// Samples at the rate of the recordings: two seconds.
 const SAMPLES: usize = 40_000;

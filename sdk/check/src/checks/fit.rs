@@ -4,9 +4,9 @@ use htex_host::{Band, Field, Kind, Store};
 use htex_model::{Values, flatten};
 
 use crate::case::{Case, is_cannot_fit, is_refusal};
-use crate::finding::{Finding, Found};
 use crate::signal::distance_db;
 use crate::spectra::{HARD, REFERENCES};
+use htex_check_runner::{Finding, Found};
 
 /// How far storing may move a spectrum before it is worth a word, dB RMS.
 const STORED_DB: f64 = 0.5;

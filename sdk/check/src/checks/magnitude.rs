@@ -3,7 +3,7 @@
 use htex_host::Band;
 
 use crate::case::{Case, Fitted};
-use crate::finding::{Finding, Found};
+use htex_check_runner::{Finding, Found};
 
 /// Largest difference between two readings of one frequency, relative to the largest magnitude.
 const TOLERANCE: f64 = 1e-9;

@@ -4,8 +4,8 @@ use htex_host::{Band, HostError, Kind};
 use htex_model::{Values, flatten};
 
 use crate::case::{Case, RATE_HZ, is_refusal};
-use crate::finding::{Finding, Found};
 use crate::signal::first_difference;
+use htex_check_runner::{Finding, Found};
 
 /// Fails unless a call returned a status.
 fn refused<T>(call: &str, what: &str, result: Result<T, HostError>) -> Result<(), Finding> {

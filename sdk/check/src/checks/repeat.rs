@@ -4,8 +4,8 @@ use htex_host::{Band, HostError, Status};
 
 use crate::case::Case;
 use crate::checks::magnitude::fine_grid;
-use crate::finding::{Finding, Found};
 use crate::signal::{first_difference, is_line_spectrum};
+use htex_check_runner::{Finding, Found};
 
 /// Samples that are compared.
 const SAMPLES: usize = 9_000;

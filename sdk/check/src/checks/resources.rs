@@ -5,78 +5,39 @@ use std::time::Instant;
 use htex_host::Band;
 
 use crate::case::{Case, RATE_HZ};
-use crate::finding::{Finding, Found};
+use htex_check_runner::{Finding, Found, Growth};
 
 const BLOCK: usize = 256;
 const BLOCKS: usize = 10_000;
 const VOICES: usize = 2_000;
-/// Growth of the resident memory that is allowed, bytes.
-const GROWTH: f64 = 2.0 * 1024.0 * 1024.0;
 /// Cost from which on there is a warning: a tenth of one processor.
 const BUDGET: f64 = 0.1;
 
-/// The process does not grow while a voice plays, or while voices come and go.
+/// The process does not grow while a voice plays, or while voices are made and freed.
 pub(crate) fn memory(case: &Case) -> Found {
-    if resident_bytes().is_none() {
-        return Ok(Finding::skipped("resident memory is read on Linux only"));
-    }
-    let sets = case.fitted()?;
-    let mut voice = case.voice(&sets[0].parameters, case.seed)?;
-    let mut out = [0.0; BLOCK];
-    let mut play = |blocks: usize| -> Result<(), Finding> {
-        for i in 0..blocks {
-            if i % 16 == 0 {
-                voice.retune(&sets[i / 16 % sets.len()].parameters)?;
+    htex_check_runner::memory(|| {
+        let sets = case.fitted()?;
+        let mut voice = case.voice(&sets[0].parameters, case.seed)?;
+        let mut out = [0.0; BLOCK];
+        let play = |blocks: usize| {
+            for i in 0..blocks {
+                if i % 16 == 0 {
+                    voice.retune(&sets[i / 16 % sets.len()].parameters)?;
+                }
+                voice.render(&mut out)?;
             }
-            voice.render(&mut out)?;
-        }
-        Ok(())
-    };
-    play(BLOCKS / 10)?;
-    let blocks = growth(|| play(BLOCKS))?;
-    let come_and_go = |voices: usize| -> Result<(), Finding> {
-        for _ in 0..voices {
-            case.voice(&sets[0].parameters, case.seed)?
-                .render(&mut [0.0; 16])?;
-        }
-        Ok(())
-    };
-    come_and_go(VOICES / 10)?;
-    let voices = growth(|| come_and_go(VOICES))?;
-    let (kib, bad) = (
-        |bytes: f64| (bytes / 1024.0).round(),
-        blocks.max(voices) > GROWTH,
-    );
-    let message = format!(
-        "{BLOCKS} blocks grow the process by {} KiB, {VOICES} voices by {} KiB",
-        kib(blocks),
-        kib(voices)
-    );
-    let finding = if bad {
-        Finding::failed(message)
-    } else {
-        Finding::passed(message)
-    };
-    Ok(finding
-        .with("blocks_bytes", blocks)
-        .with("voices_bytes", voices))
-}
-
-fn growth(run: impl FnOnce() -> Result<(), Finding>) -> Result<f64, Finding> {
-    let before = resident_bytes().unwrap_or_default();
-    run()?;
-    Ok(resident_bytes().unwrap_or_default() - before)
-}
-
-/// Resident memory of this process (`/proc/self/status`, `VmRSS`), bytes; `None` where there is no
-/// such file.
-pub fn resident_bytes() -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status
-        .lines()
-        .find_map(|line| line.strip_prefix("VmRSS:"))?;
-    let kib: f64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
-    Some(1024.0 * kib)
+            Ok(())
+        };
+        let blocks = Growth::measure(BLOCKS, "blocks", play)?;
+        let make_and_free = |voices: usize| {
+            for _ in 0..voices {
+                case.voice(&sets[0].parameters, case.seed)?
+                    .render(&mut [0.0; 16])?;
+            }
+            Ok(())
+        };
+        Ok([blocks, Growth::measure(VOICES, "voices", make_and_free)?])
+    })
 }
 
 /// Nanoseconds a sample.

@@ -5,10 +5,10 @@ use htex_host::{Band, Stream};
 
 use crate::case::{Case, Fitted, RATE_HZ, is_refusal};
 use crate::checks::magnitude::fine_grid;
-use crate::finding::{Finding, Found};
 use crate::signal::{
     distance_db, is_line_spectrum, measured_spectrum, read_as_noise, rms, rms_spread,
 };
+use htex_check_runner::{Finding, Found};
 
 /// How long sounds are judged, seconds: a minute of noise reads each bin within 0.2 dB.
 pub(crate) const SECONDS: f64 = 60.0;

@@ -3,8 +3,8 @@
 use htex_host::{ModelVoice, VOICES_EXTENSION, render_together};
 
 use crate::case::Case;
-use crate::finding::{Finding, Found};
 use crate::signal::first_difference;
+use htex_check_runner::{Finding, Found};
 
 /// One more than a call takes.
 const VOICES: usize = 17;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::case::Case;
-use crate::finding::{Finding, Found};
+use htex_check_runner::{Finding, Found};
 
 /// Relative difference of parameters that is allowed.
 const PARAMETERS: f64 = 1e-6;

@@ -1,22 +1,22 @@
-//! Blocks that come back.
+//! Repeated blocks.
 
 use std::collections::HashSet;
 
 /// Samples of a block.
 pub const LENGTH: usize = 64;
 
-/// Hashes of blocks of 64 samples. Two blocks that differ have the same hash once in 2⁶⁴.
+/// Hashes of blocks of 64 samples. Two different blocks have the same hash with probability 2⁻⁶⁴.
 #[derive(Debug, Default)]
 pub struct Blocks(HashSet<u64>);
 
 impl Blocks {
-    /// None yet.
+    /// Without blocks.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Takes the blocks of some samples in (what is left over behind the last one is passed over), and
-    /// answers how many there had been before.
+    /// Adds the blocks of some samples (a remainder behind the last is ignored), and
+    /// returns how many of them were there before.
     pub fn add(&mut self, samples: &[f32]) -> u64 {
         let (blocks, _) = samples.as_chunks::<LENGTH>();
         blocks
@@ -25,7 +25,7 @@ impl Blocks {
             .count() as u64
     }
 
-    /// How many there are.
+    /// Number of blocks.
     pub fn len(&self) -> usize {
         self.0.len()
     }
@@ -36,7 +36,7 @@ impl Blocks {
     }
 }
 
-/// A mix of all bits, multiplied and folded sample by sample.
+/// Hash of all bits, multiplied and folded sample by sample.
 fn hash(block: &[f32; LENGTH]) -> u64 {
     block.iter().fold(0x9e37_79b9_7f4a_7c15, |hash, x| {
         let mixed = (hash ^ u64::from(x.to_bits())).wrapping_mul(0xff51_afd7_ed55_8ccd);

@@ -1,7 +1,7 @@
-//! Long runs: what a voice does in hours.
+//! Long runs: hours of a voice.
 //!
-//! A day of a voice is rendered in blocks, and everything asked of it is counted on the way: power by
-//! the hour, samples that are not finite or subnormal, blocks that were there before.
+//! A day of a voice is rendered in blocks, with counts of power by
+//! the hour, of samples that are not finite or subnormal, and of repeated blocks.
 
 mod blocks;
 mod phase;
@@ -18,17 +18,17 @@ use crate::signals::friction;
 
 /// Samples rendered at a time.
 pub const BLOCK: usize = 4_096;
-/// The rate at which voices are wanted, hertz; each renders at its own, which is lower.
+/// The requested rate of voices, hertz; each renders at its own, which is lower.
 pub const WANTED_HZ: f64 = 20_000.0;
 
-/// What was found in a run of a voice.
+/// Results of a run of a voice.
 #[derive(Debug, Clone)]
 pub struct Run {
     /// The rate the voice renders at, hertz.
     pub rate_hz: f64,
     /// Samples rendered.
     pub samples: u64,
-    /// Mean power of each hour, or whatever part was asked for.
+    /// Mean power of each part, such as an hour.
     pub power: Vec<f64>,
     /// Samples that are NaN, infinite or subnormal.
     pub broken: u64,
@@ -43,8 +43,8 @@ pub fn parameters(model: &LoadedModel) -> Vec<f64> {
     fit(model, &spectrum(&friction())).unwrap().parameters
 }
 
-/// Renders `seconds` of a voice of `seed`, in parts of `part_s` seconds. `blocks` remembers what was
-/// rendered, if repetitions are looked for.
+/// Renders `seconds` of a voice of `seed`, in parts of `part_s` seconds. `blocks` collects the
+/// blocks, to find repetitions.
 pub fn run(
     model: &LoadedModel,
     seed: u64,
@@ -92,8 +92,8 @@ pub fn run(
     }
 }
 
-/// Times the last minute of a voice and the first, rendered again by a fresh one, in turns, by their
-/// fastest blocks: a processor is not as quick all day, and others want it too.
+/// Times the last minute of a voice and the first, rendered again by a fresh one, in turns and by their
+/// fastest blocks, since the speed of a processor changes during a day.
 struct Turns {
     fresh: ModelVoice,
     block: [f32; BLOCK],

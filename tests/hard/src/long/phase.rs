@@ -6,7 +6,7 @@ use num_traits::ToPrimitive;
 
 use crate::exact::exact;
 
-/// Cycles by which an oscillator is off after so many samples, against exact arithmetic. The phase is
+/// Phase error of an oscillator after so many samples against exact arithmetic, cycles. The phase is
 /// read from two samples a quarter of a cycle of the oscillator's own frequency apart: from the
 /// amplitudes of sine and cosine that fit a stretch of samples best.
 ///

@@ -1,19 +1,17 @@
-//! Numbers that a player is tested against: the models' descriptors, assets with parameters of every
-//! model, and what is to be read of them.
+//! Reference data for players: the models' descriptors, assets with parameters of every
+//! model, and the values to be read from them.
 
 mod parameters;
-
-use std::path::PathBuf;
 
 use htex::Asset;
 use htex_author::stored_fields;
 use htex_host::{LoadedModel, Registry};
-use htex_tests::workspace;
 use serde_json::{Value, json};
+use xtask::generated::File;
 
 use parameters::parameters;
 
-/// An asset to be made: its band, where it is known, and where it is read in between.
+/// An asset to be made: its band, its conditions, and the motions at which it is read.
 struct Plan {
     name: &'static str,
     band_hz: [f64; 2],
@@ -76,38 +74,33 @@ const PLANS: [Plan; 5] = [
     },
 ];
 
-/// Frequencies beside the grid and beside the band at which magnitudes are told as well, hertz.
+/// Further frequencies of magnitudes, beside the grid and outside the band, hertz.
 const BESIDE_HZ: [f64; 8] = [10.0, 19.99, 33.3, 101.25, 317.7, 437.5, 998.5, 1_000.5];
 
-/// Where the models' descriptors are.
-pub fn models_folder() -> PathBuf {
-    workspace().join("spec/models")
-}
+/// The folder of the models' descriptors.
+pub const MODELS: &str = "spec/models";
 
-/// Where the assets and their numbers are.
-pub fn cases_folder() -> PathBuf {
-    workspace().join("spec/playing-conformance")
-}
+/// The folder of the assets and their numbers.
+pub const CASES: &str = "spec/playing-conformance";
 
-/// Every file with its bytes.
-pub fn files() -> Vec<(PathBuf, Vec<u8>)> {
+/// All files of both folders.
+pub fn files() -> Vec<File> {
     let registry = Registry::builtin();
-    let mut files: Vec<(PathBuf, Vec<u8>)> = registry.models().iter().map(descriptor).collect();
+    let mut files: Vec<File> = registry.models().iter().map(descriptor).collect();
     for (number, plan) in PLANS.iter().enumerate() {
         let bytes = asset(&registry, number, plan);
         let numbers = numbers(plan, &Asset::from_bytes(&bytes).unwrap());
-        let path = |ending: &str| cases_folder().join(format!("{}.{ending}", plan.name));
+        let path = |ending: &str| format!("{CASES}/{}.{ending}", plan.name);
         files.push((path("htex"), bytes));
         files.push((path("json"), numbers.into_bytes()));
     }
     files
 }
 
-/// A model's descriptor as it crosses the ABI, and where it is kept.
-fn descriptor(model: &LoadedModel) -> (PathBuf, Vec<u8>) {
-    let file = format!("{}.json", model.id());
+/// A model's descriptor as it crosses the ABI, and its path.
+fn descriptor(model: &LoadedModel) -> File {
     let text = serde_json::to_string_pretty(model.descriptor()).unwrap() + "\n";
-    (models_folder().join(file), text.into_bytes())
+    (format!("{MODELS}/{}.json", model.id()), text.into_bytes())
 }
 
 fn asset(registry: &Registry, number: usize, plan: &Plan) -> Vec<u8> {
@@ -156,7 +149,7 @@ fn asset(registry: &Registry, number: usize, plan: &Plan) -> Vec<u8> {
     asset.to_bytes().unwrap()
 }
 
-/// What is read of an asset, a line of JSON a case.
+/// The values read from an asset, a line of JSON for each case.
 fn numbers(plan: &Plan, asset: &Asset) -> String {
     let mut frequency_hz = asset.band().grid_hz();
     frequency_hz.extend(BESIDE_HZ);
@@ -186,7 +179,7 @@ fn numbers(plan: &Plan, asset: &Asset) -> String {
     )
 }
 
-/// Twelve digits: more than players are held to.
+/// Rounded to twelve digits, more than players must match.
 fn rounded(values: &[f64]) -> Vec<f64> {
     let round = |x: &f64| format!("{x:.11e}").parse().unwrap();
     values.iter().map(round).collect()

@@ -1,8 +1,7 @@
-//! What a check found.
+//! Findings of checks.
 
 use std::collections::BTreeMap;
 
-use htex_host::HostError;
 use serde::{Deserialize, Serialize};
 
 /// How a check ended.
@@ -11,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub enum Outcome {
     /// The promise is kept.
     Passed,
-    /// The promise is kept, but something deserves a look.
+    /// The promise is kept, but something needs attention.
     Warning,
     /// The check has nothing to look at, or needs another one that did not pass.
     Skipped,
@@ -24,12 +23,22 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Whether the model is at fault.
+    /// All outcomes, in the order in which reports count them.
+    pub const ALL: [Self; 6] = [
+        Self::Passed,
+        Self::Warning,
+        Self::Skipped,
+        Self::Failed,
+        Self::Crashed,
+        Self::TimedOut,
+    ];
+
+    /// Whether what is checked is at fault.
     pub fn is_bad(self) -> bool {
         matches!(self, Self::Failed | Self::Crashed | Self::TimedOut)
     }
 
-    /// The word for it, as in the JSON report.
+    /// Its name in the JSON report.
     pub fn word(self) -> &'static str {
         match self {
             Self::Passed => "passed",
@@ -42,19 +51,19 @@ impl Outcome {
     }
 }
 
-/// An outcome, a sentence, and the numbers behind it.
+/// An outcome, a sentence, and measured numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
     /// How the check ended.
     pub outcome: Outcome,
     /// What was found.
     pub message: String,
-    /// What was measured, by name; the unit is in the name.
+    /// Measured numbers, by name; names end in the unit.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub numbers: BTreeMap<String, f64>,
 }
 
-/// The result of a check: both arms are findings, so that `?` ends a check.
+/// What a check returns: both variants are findings, so that `?` ends a check.
 pub type Found = Result<Finding, Finding>;
 
 impl Finding {
@@ -72,12 +81,12 @@ impl Finding {
         Self::new(Outcome::Passed, message)
     }
 
-    /// The promise is kept, but something deserves a look.
+    /// The promise is kept, but something needs attention.
     pub fn warning(message: impl Into<String>) -> Self {
         Self::new(Outcome::Warning, message)
     }
 
-    /// There is nothing to look at.
+    /// The check has nothing to look at.
     pub fn skipped(message: impl Into<String>) -> Self {
         Self::new(Outcome::Skipped, message)
     }
@@ -87,7 +96,7 @@ impl Finding {
         Self::new(Outcome::Failed, message)
     }
 
-    /// Adds a measured number. One that JSON cannot hold is left out; the sentence tells it.
+    /// Adds a measured number. NaN and infinities, which JSON cannot hold, are left out.
     pub fn with(mut self, name: &str, value: f64) -> Self {
         if value.is_finite() {
             self.numbers.insert(name.to_owned(), value);
@@ -96,8 +105,9 @@ impl Finding {
     }
 }
 
-impl From<HostError> for Finding {
-    fn from(error: HostError) -> Self {
+/// An error of the model or device fails the check.
+impl<E: std::error::Error> From<E> for Finding {
+    fn from(error: E) -> Self {
         Self::failed(error.to_string())
     }
 }

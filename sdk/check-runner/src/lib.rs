@@ -1,0 +1,40 @@
+//! The common part of the checkers of models and of devices: a table of checks ([`checks!`]), a runner that runs each of
+//! them in a process of its own ([`run_all`]), so that a crash or an endless loop becomes a finding, and the report.
+//!
+//! ```
+//! use htex_check_runner::{Finding, Found, run_one};
+//!
+//! fn positive(number: &i32) -> Found {
+//!     if *number > 0 {
+//!         Ok(Finding::passed("it is positive"))
+//!     } else {
+//!         Err(Finding::failed(format!("{number} is not positive")))
+//!     }
+//! }
+//!
+//! htex_check_runner::checks! { i32;
+//!     "positive" needs [] positive:
+//!         "The number is positive.",
+//!         "It is compared with 0.";
+//! }
+//!
+//! let load = || "-1".parse::<i32>();
+//! let finding = run_one(CHECKS, "positive", load, |_| "positive")?;
+//! assert_eq!(finding.message, "-1 is not positive");
+//! # Ok::<(), htex_check_runner::UnknownCheck>(())
+//! ```
+#![forbid(unsafe_code)]
+
+mod common;
+mod finding;
+mod process;
+mod report;
+mod runner;
+mod table;
+
+pub use common::{Growth, made_up_extensions, memory, resident_bytes};
+pub use finding::{Finding, Found, Outcome};
+pub use process::run_process;
+pub use report::{CheckReport, Report};
+pub use runner::{Runner, run_all, run_one};
+pub use table::{Check, UnknownCheck, select};

@@ -1,0 +1,85 @@
+//! One check in a process of its own.
+
+use std::io::Read;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use crate::{Finding, Outcome};
+
+/// Most bytes of a child's output that are kept.
+const MOST_OUTPUT: u64 = 1 << 20;
+
+/// Runs a program that writes one [`Finding`] as a line of JSON. A program that crashes or exceeds `timeout` gives a finding
+/// that says so.
+pub fn run_process(command: &mut Command, timeout: Duration) -> Finding {
+    command
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    let mut child = match command.spawn() {
+        Ok(child) => child,
+        Err(error) => return Finding::skipped(format!("the check cannot be started: {error}")),
+    };
+    let (out, err) = (drain(child.stdout.take()), drain(child.stderr.take()));
+    match wait(&mut child, timeout) {
+        None => {
+            let seconds = timeout.as_secs_f64();
+            let message = format!("it did not end within {seconds} s");
+            Finding::new(Outcome::TimedOut, message).with("timeout_s", seconds)
+        }
+        Some(status) => last_finding(&text(out)).unwrap_or_else(|| crashed(status, &text(err))),
+    }
+}
+
+/// Reads a pipe to its end, so that the child never blocks on it; keeps the first [`MOST_OUTPUT`] bytes.
+fn drain(pipe: Option<impl Read + Send + 'static>) -> JoinHandle<Vec<u8>> {
+    std::thread::spawn(move || {
+        let mut kept = Vec::new();
+        if let Some(mut pipe) = pipe {
+            // A pipe that cannot be read is treated as empty; the exit status tells the rest.
+            let _ = pipe.by_ref().take(MOST_OUTPUT).read_to_end(&mut kept);
+            let _ = std::io::copy(&mut pipe, &mut std::io::sink());
+        }
+        kept
+    })
+}
+
+fn text(drained: JoinHandle<Vec<u8>>) -> String {
+    String::from_utf8_lossy(&drained.join().unwrap_or_default()).into_owned()
+}
+
+/// Waits for the child to end; kills it after `timeout`.
+fn wait(child: &mut Child, timeout: Duration) -> Option<ExitStatus> {
+    let end = Instant::now() + timeout;
+    loop {
+        if let Ok(Some(status)) = child.try_wait() {
+            return Some(status);
+        }
+        if Instant::now() >= end {
+            // Both fail if the child has ended meanwhile.
+            let _ = child.kill();
+            let _ = child.wait();
+            return None;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// The last line that is a finding: what is checked may print lines of its own.
+fn last_finding(out: &str) -> Option<Finding> {
+    out.lines()
+        .rev()
+        .find_map(|line| serde_json::from_str(line).ok())
+}
+
+fn crashed(status: ExitStatus, err: &str) -> Finding {
+    let last = err.lines().rev().find(|line| !line.trim().is_empty());
+    let said = last
+        .map(|line| format!("; it said: {line}"))
+        .unwrap_or_default();
+    Finding::new(
+        Outcome::Crashed,
+        format!("the process ended with {status}{said}"),
+    )
+}

@@ -1,0 +1,71 @@
+//! Reports of all checks of one model or device.
+
+use std::fmt::{self, Display};
+
+use serde::Serialize;
+
+use crate::{Finding, Outcome};
+
+/// One check and its finding.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CheckReport {
+    /// The check's name.
+    pub check: &'static str,
+    /// Its finding.
+    #[serde(flatten)]
+    pub finding: Finding,
+}
+
+/// All checks of one `Subject`, which says what was checked and how.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Report<Subject> {
+    /// What was checked; its fields stand beside `ok` in JSON.
+    #[serde(flatten)]
+    pub subject: Subject,
+    /// Whether no check failed, crashed or timed out.
+    pub ok: bool,
+    /// Each check, in the order of the table.
+    pub checks: Vec<CheckReport>,
+}
+
+impl<Subject> Report<Subject> {
+    /// A report of these checks.
+    pub fn new(subject: Subject, checks: Vec<CheckReport>) -> Self {
+        let ok = !checks.iter().any(|check| check.finding.outcome.is_bad());
+        Self {
+            subject,
+            ok,
+            checks,
+        }
+    }
+
+    /// Names of the checks that failed, crashed or timed out.
+    pub fn bad(&self) -> Vec<&'static str> {
+        let bad = self.checks.iter().filter(|c| c.finding.outcome.is_bad());
+        bad.map(|check| check.check).collect()
+    }
+
+    /// Number of checks with this outcome.
+    pub fn count(&self, outcome: Outcome) -> usize {
+        let same = self.checks.iter().filter(|c| c.finding.outcome == outcome);
+        same.count()
+    }
+}
+
+/// A line for the subject, one for each check, and one with the counts.
+impl<Subject: Display> Display for Report<Subject> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.subject)?;
+        for CheckReport { check, finding } in &self.checks {
+            let word = match finding.outcome {
+                bad if bad.is_bad() => bad.word().to_uppercase(),
+                other => other.word().to_owned(),
+            };
+            writeln!(f, "  {word:9}  {check:15}  {}", finding.message)?;
+        }
+        let counts = Outcome::ALL.map(|outcome| (self.count(outcome), outcome.word()));
+        let counts = counts.iter().filter(|(n, _)| *n > 0);
+        let counts: Vec<String> = counts.map(|(n, word)| format!("{n} {word}")).collect();
+        writeln!(f, "{}", counts.join(", "))
+    }
+}

@@ -1,0 +1,88 @@
+//! Running checks: one in this process, or each in a process of its own.
+
+use std::ffi::OsString;
+use std::fmt::Display;
+use std::path::PathBuf;
+use std::process::Command;
+use std::time::Duration;
+
+use crate::process::run_process;
+use crate::table::{Check, UnknownCheck, find};
+use crate::{CheckReport, Finding};
+
+/// What loading does, in this order: each has a check of this name.
+const LOADING: [&str; 3] = ["marker", "exports", "descriptor"];
+
+/// A program that runs one check in its process and writes the [`Finding`] as a line of JSON.
+#[derive(Debug, Clone)]
+pub struct Runner {
+    /// The program.
+    pub program: PathBuf,
+    /// Its first arguments; the checker adds those that name the check.
+    pub arguments: Vec<OsString>,
+    /// Longest time of one check.
+    pub timeout: Duration,
+}
+
+/// Runs each check in a process of its own. `add_arguments` adds the arguments that name the check. A check is skipped where
+/// one that it needs failed or was skipped for this reason; a check that had nothing to look at stops none.
+pub fn run_all<'a, Case: 'a>(
+    checks: impl IntoIterator<Item = &'a Check<Case>>,
+    runner: &Runner,
+    add_arguments: impl Fn(&mut Command, &'static str),
+) -> Vec<CheckReport> {
+    let mut broken: Vec<&str> = Vec::new();
+    let mut reports = Vec::new();
+    for check in checks {
+        let need = check.needs.iter().find(|name| broken.contains(name));
+        let finding = match need {
+            Some(need) => Finding::skipped(format!("it needs `{need}`, which did not pass")),
+            None => {
+                let mut command = Command::new(&runner.program);
+                command.args(&runner.arguments);
+                add_arguments(&mut command, check.name);
+                run_process(&mut command, runner.timeout)
+            }
+        };
+        if need.is_some() || finding.outcome.is_bad() {
+            broken.push(check.name);
+        }
+        reports.push(CheckReport {
+            check: check.name,
+            finding,
+        });
+    }
+    reports
+}
+
+/// Runs one check in this process: a crash ends the process. `load` loads the model or device; `owner` names the check that
+/// an error of loading belongs to.
+///
+/// # Errors
+/// When the table has no check of this name.
+pub fn run_one<Case, Error: Display>(
+    checks: &[Check<Case>],
+    name: &str,
+    load: impl FnOnce() -> Result<Case, Error>,
+    owner: impl FnOnce(&Error) -> &'static str,
+) -> Result<Finding, UnknownCheck> {
+    let check = find(checks, name)?;
+    let error = match load() {
+        Ok(case) => return Ok((check.run)(&case).unwrap_or_else(|finding| finding)),
+        Err(error) => error,
+    };
+    let broken = owner(&error);
+    Ok(if broken == check.name {
+        Finding::failed(error.to_string())
+    } else if comes_before(check.name, broken) {
+        Finding::passed(format!("loading got as far as `{broken}`"))
+    } else {
+        Finding::skipped(format!("it does not load: {error}"))
+    })
+}
+
+/// Whether loading comes to `name` before it comes to `broken`.
+fn comes_before(name: &str, broken: &str) -> bool {
+    let place = |name: &str| LOADING.iter().position(|stage| *stage == name);
+    matches!((place(name), place(broken)), (Some(a), Some(b)) if a < b)
+}

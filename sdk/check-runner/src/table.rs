@@ -1,0 +1,78 @@
+//! Tables of checks.
+
+use thiserror::Error;
+
+use crate::Found;
+
+/// One check of a `Case`: a loaded model or device, and the checker's settings.
+pub struct Check<Case> {
+    /// Stable name, unique in its table.
+    pub name: &'static str,
+    /// The promise, in a sentence.
+    pub summary: &'static str,
+    /// How it is tested, with the tolerances; empty where the summary says it all.
+    pub method: &'static str,
+    /// Checks that must not be broken for this one to mean something.
+    pub needs: &'static [&'static str],
+    /// Runs the check.
+    pub run: fn(&Case) -> Found,
+}
+
+/// No check of the table has this name.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("there is no check `{name}`; there are {}", known.join(", "))]
+pub struct UnknownCheck {
+    /// The name that was asked for.
+    pub name: String,
+    /// The names in the table.
+    pub known: Vec<&'static str>,
+}
+
+/// Defines `CHECKS`, a table of [`Check`]s, in the order in which they run. A check stands behind those that it needs. A row
+/// is `"name" needs ["name", …] path::of::function: "summary", "method";`; the method may be left out.
+#[macro_export]
+macro_rules! checks {
+    ($case:ty; $($name:literal needs [$($need:literal),*] $run:path: $summary:literal $(, $method:literal)?;)*) => {
+        /// All checks, in the order in which they run: a check stands behind those that it needs.
+        pub const CHECKS: &[$crate::Check<$case>] = &[$($crate::Check {
+            name: $name,
+            summary: $summary,
+            method: concat!($($method)?),
+            needs: &[$($need),*],
+            run: $run,
+        }),*];
+    };
+}
+
+/// The check of a name.
+pub(crate) fn find<'a, Case>(
+    checks: &'a [Check<Case>],
+    name: &str,
+) -> Result<&'a Check<Case>, UnknownCheck> {
+    let found = checks.iter().find(|check| check.name == name);
+    found.ok_or_else(|| UnknownCheck {
+        name: name.to_owned(),
+        known: checks.iter().map(|check| check.name).collect(),
+    })
+}
+
+/// The checks of these names with all that they need, in the table's order.
+///
+/// # Errors
+/// When a name is not in the table.
+pub fn select<'a, Case>(
+    checks: &'a [Check<Case>],
+    names: &[String],
+) -> Result<Vec<&'a Check<Case>>, UnknownCheck> {
+    let mut chosen = Vec::new();
+    let mut open: Vec<&str> = names.iter().map(String::as_str).collect();
+    while let Some(name) = open.pop() {
+        let check = find(checks, name)?;
+        if !chosen.contains(&check.name) {
+            chosen.push(check.name);
+            open.extend(check.needs);
+        }
+    }
+    let is_chosen = |check: &&Check<Case>| chosen.contains(&check.name);
+    Ok(checks.iter().filter(is_chosen).collect())
+}

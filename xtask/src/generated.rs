@@ -1,0 +1,114 @@
+//! Generated files: tests compare them with what the code generates, and write them with `HTEX_GENERATE=1`, which
+//! `cargo xtask generate` sets. The tests that do so are named `generated_…`.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io;
+use std::path::Path;
+use std::process::{Command, ExitCode};
+
+/// Set to 1, it makes the tests write what they would compare.
+const VARIABLE: &str = "HTEX_GENERATE";
+
+/// The test binaries with generated files, by package.
+const TESTS: &[(&str, &[&str])] = &[
+    ("htex-format", &["conformance"]),
+    ("htex-author", &["recording_conformance"]),
+    ("htex-scene", &["conformance"]),
+    ("htex-check", &["page"]),
+    ("htex-hard-cases", &["table"]),
+    (
+        "htex-tests",
+        &["abi", "device_abi", "playing", "regressions"],
+    ),
+];
+
+/// Writes all generated files.
+pub fn generate() -> ExitCode {
+    for (package, tests) in TESTS {
+        let mut cargo = Command::new(crate::plugins::cargo());
+        cargo.args(["test", "--quiet", "--package", package]);
+        cargo.args(tests.iter().flat_map(|test| ["--test", test]));
+        cargo.args(["--", "generated_"]).env(VARIABLE, "1");
+        match cargo.current_dir(crate::plugins::workspace()).status() {
+            Ok(status) if status.success() => {}
+            Ok(_) => return ExitCode::FAILURE,
+            Err(error) => {
+                eprintln!("xtask: cannot run cargo: {error}");
+                return ExitCode::FAILURE;
+            }
+        }
+    }
+    ExitCode::SUCCESS
+}
+
+/// A generated file: its path from the workspace's folder, and its bytes.
+pub type File = (String, Vec<u8>);
+
+/// Compares a generated file with these bytes, or writes it.
+///
+/// # Panics
+/// When the file is stale or cannot be written.
+pub fn file(path: impl AsRef<str>, bytes: &[u8]) {
+    file_with(path, bytes, |kept| kept == bytes);
+}
+
+/// As [`file`]; `is_fresh` compares the bytes of the file.
+///
+/// # Panics
+/// As [`file`].
+#[allow(clippy::panic)] // It fails a test.
+pub fn file_with(path: impl AsRef<str>, bytes: &[u8], is_fresh: impl FnOnce(&[u8]) -> bool) {
+    let name = path.as_ref();
+    let path = crate::plugins::workspace().join(name);
+    if is_written() {
+        return write(&path, bytes).unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
+    let is_fresh = fs::read(path).is_ok_and(|kept| is_fresh(&kept));
+    assert!(is_fresh, "{name} is stale: run `cargo xtask generate`");
+}
+
+/// Compares the files of a folder that has nothing else, or writes them and removes all others.
+///
+/// # Panics
+/// As [`file`], and when the folder has other files or cannot be read.
+pub fn folder(path: &str, files: &[File]) {
+    for (path, bytes) in files {
+        file(path, bytes);
+    }
+    only(path, files.iter().map(|(path, _)| path.as_str()));
+}
+
+/// Removes all files of a folder but `expected`, paths from the workspace's folder, or fails because of them.
+///
+/// # Panics
+/// When the folder has other files, or cannot be read.
+#[allow(clippy::panic)] // It fails a test.
+pub fn only<'a>(path: &str, expected: impl IntoIterator<Item = &'a str>) {
+    let expected: BTreeSet<&str> = expected.into_iter().collect();
+    let failed = |error: io::Error| -> ! { panic!("{path}: {error}") };
+    let entries = fs::read_dir(crate::plugins::workspace().join(path));
+    for entry in entries.unwrap_or_else(|error| failed(error)) {
+        let entry = entry.unwrap_or_else(|error| failed(error));
+        let name = format!("{path}/{}", entry.file_name().to_string_lossy());
+        if expected.contains(name.as_str()) {
+            continue;
+        }
+        assert!(
+            is_written(),
+            "{name} is not generated any more: run `cargo xtask generate`"
+        );
+        fs::remove_file(entry.path()).unwrap_or_else(|error| failed(error));
+    }
+}
+
+fn is_written() -> bool {
+    std::env::var_os(VARIABLE).is_some_and(|value| value == "1")
+}
+
+fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    fs::write(path, bytes)
+}

@@ -64,4 +64,10 @@ pub enum Error {
         /// Normal force, newtons.
         force_n: f64,
     },
+    /// A position that is not a finite number.
+    #[error("position of {position_mm} mm along the path; it must be finite")]
+    Position {
+        /// Position along the path, mm.
+        position_mm: f64,
+    },
 }

@@ -6,7 +6,7 @@ use htex_host::{HostError, StillSound};
 
 use crate::exploration::{Coverage, Reach};
 use crate::follow::Follow;
-use crate::{Error, Source, VoiceOptions};
+use crate::{Error, Motion, Source, VoiceOptions};
 
 /// Length of a change of level, seconds.
 const RAMP_S: f64 = 0.010;
@@ -15,12 +15,12 @@ const RAMP_S: f64 = 0.010;
 /// [`Effects`](crate::Effects).
 ///
 /// ```no_run
-/// use htex::{Asset, VoiceOptions};
+/// use htex::{Asset, Motion, VoiceOptions};
 /// // Recorded at 80 mm/s and 0.4 N.
 /// let mut voice = Asset::open("sandpaper.htex")?.voice(&VoiceOptions::default())?;
-/// voice.set_motion(160.0, 0.8)?; // an octave higher, twice as strong
-/// voice.set_motion(0.0, 0.8)?; // silent
-/// println!("{}", voice.coverage(160.0, 0.8));
+/// voice.set_motion(Motion::new(160.0, 0.8))?; // an octave higher, twice as strong
+/// voice.set_motion(Motion::new(0.0, 0.8))?; // silent
+/// println!("{}", voice.coverage(Motion::new(160.0, 0.8)));
 /// # Ok::<(), htex::Error>(())
 /// ```
 #[derive(Debug)]
@@ -64,7 +64,7 @@ impl Voice {
         })
     }
 
-    /// Follows the finger to this scanning speed (mm/s) and normal force (newtons). Spectrum and level glide to those
+    /// Follows the finger to this motion. Spectrum and level glide to those
     /// between the conditions the asset knows, clamped to them; of a voice that is not streamed (see
     /// [`Synthesis`](crate::Synthesis)) the level alone. Where the asset knows one speed, frequencies go in proportion to
     /// the speed, 1/16 to 8 times as fast and as far as half the rate allows; where it knows one force, the level goes
@@ -75,21 +75,21 @@ impl Voice {
     /// lock or do I/O for the models of this project and others that keep to the ABI.
     ///
     /// # Errors
-    /// When a value is negative or not a number, or the model cannot mix; the voice then plays on
+    /// When a value is out of range (see [`Motion`]), or the model cannot mix; the voice then plays on
     /// as before.
-    pub fn set_motion(&mut self, speed_mm_s: f64, force_n: f64) -> Result<(), Error> {
-        crate::source::check_motion(speed_mm_s, force_n)?;
-        if self.follow.set_motion((speed_mm_s, force_n)) {
-            let level_rms = self.source.set_motion(speed_mm_s, force_n)?;
+    pub fn set_motion(&mut self, motion: Motion) -> Result<(), Error> {
+        let motion = motion.checked()?;
+        if self.follow.set_motion(motion) {
+            let level_rms = self.source.set_motion(motion)?;
             self.level_rms.set((level_rms * self.follow.gain()) as f32);
         }
         Ok(())
     }
 
     /// What this voice makes of a motion, and whether it lies within what was recorded. Does not allocate.
-    pub fn coverage(&self, speed_mm_s: f64, force_n: f64) -> Coverage {
+    pub fn coverage(&self, motion: Motion) -> Coverage {
         let effects = self.follow.effects();
-        let mut coverage = self.source.coverage(speed_mm_s, force_n, effects);
+        let mut coverage = self.source.coverage(motion, effects);
         if let Reach::Scaled { factor, .. } = &mut coverage.speed {
             *factor = factor.min(self.follow.fastest());
         }

@@ -391,11 +391,10 @@ impl Lane {
             self.sounds = touched || !crossfade.is_silent();
         }
         if let (Some((count, neutral)), true) = (&mut self.interpolation, touched) {
-            let (speed, force) = (now.finger.speed_mm_s.abs(), now.finger.force_n);
             let moves = !*neutral && now.finger.slides();
             count.run(timed, || {
                 if moves {
-                    self.synthesis.set_motion(speed, force);
+                    self.synthesis.set_motion(now.finger.motion());
                 }
             });
         }

@@ -97,7 +97,7 @@ fn retuning_does_not_allocate() {
         let band = asset.band();
         let parameters = |speed: f64| {
             asset
-                .parameters(Some(model.id()), Some((speed, 0.4)))
+                .parameters(Some(model.id()), Some(htex::Motion::new(speed, 0.4)))
                 .unwrap()
                 .0
         };

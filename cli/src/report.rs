@@ -70,6 +70,7 @@ impl Reported<'_> {
         let (id, quality) = (Some(&representation.model[..]), at.quality.as_ref());
         let known = &self.asset.manifest().conditions[condition];
         let motion = known.speed_mm_s.zip(known.force_n);
+        let motion = motion.map(|(speed, force)| htex::Motion::new(speed, force));
         let grid = &self.fitted.spectra[condition].frequency_hz;
         let short_name = short_name(&representation.model).to_owned();
         Ok(Some(ModelResult {

@@ -55,7 +55,7 @@ fn bursts_follow(file: &Path) {
             "{speed_mm_s} mm/s: {a_second}"
         );
         assert!(matches!(
-            voice.coverage(100.0, FORCE_N).speed,
+            voice.coverage(htex::Motion::new(100.0, FORCE_N)).speed,
             Reach::Followed
         ));
     }
@@ -244,7 +244,9 @@ fn played(
     let mut out = vec![0.0; (seconds * RATE_HZ) as usize];
     for (i, block) in out.chunks_mut(CONTROL).enumerate() {
         let (speed, force, position) = motion((i * CONTROL) as f64 / RATE_HZ);
-        voice.set_motion_at(speed, force, position).unwrap();
+        let motion = htex::Motion::new(speed, force);
+        let motion = position.map_or(motion, |mm| motion.with_position_mm(mm));
+        voice.set_motion(motion).unwrap();
         voice.render(block).unwrap();
     }
     out

@@ -97,7 +97,7 @@ fn retuning_does_not_allocate() {
         let band = asset.band();
         let parameters = |speed: f64| {
             asset
-                .parameters(Some(model.id()), Some((speed, 0.4)))
+                .parameters(Some(model.id()), Some(htex::Motion::new(speed, 0.4)))
                 .unwrap()
                 .0
         };
@@ -133,7 +133,9 @@ fn rendering_together_does_not_allocate() {
         let mut out = vec![0.0; 18 * 128];
         for i in 0..40 {
             let calls = count(|| {
-                sources[i % 18].set_motion(60.0 + i as f64, 0.4).unwrap();
+                sources[i % 18]
+                    .set_motion(htex::Motion::new(60.0 + i as f64, 0.4))
+                    .unwrap();
                 htex::Source::render_together(&mut sources, 128, &mut out).unwrap();
             });
             assert_eq!(calls, 0, "{model}, block {i}");
@@ -151,8 +153,10 @@ fn follow(voice: &mut htex::Voice, what: &str) {
             0.0
         };
         let calls = count(|| {
-            voice.set_motion(60.0 + f64::from(i % 61), force_n).unwrap();
-            assert!(voice.coverage(80.0, 0.4).slides);
+            voice
+                .set_motion(htex::Motion::new(60.0 + f64::from(i % 61), force_n))
+                .unwrap();
+            assert!(voice.coverage(htex::Motion::new(80.0, 0.4)).slides);
             voice.render(&mut block).unwrap();
         });
         assert_eq!(calls, 0, "{what}, block {i}");

@@ -101,6 +101,7 @@ impl Compare {
         found: Exploration,
     ) -> Result<Vec<Compared>, Failure> {
         let motion = found.speed_mm_s.zip(found.force_n);
+        let motion = motion.map(|(speed, force)| htex::Motion::new(speed, force));
         let mut compared = Vec::new();
         for representation in &asset.manifest().representations {
             let (parameters, level_rms) = asset

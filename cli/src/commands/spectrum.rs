@@ -48,12 +48,12 @@ pub(crate) struct ChoiceArgs {
 impl ChoiceArgs {
     /// The requested motion; what is missing comes from the asset's first condition,
     /// else is the paper's default.
-    pub(crate) fn motion(&self, asset: &htex::Asset) -> Option<(f64, f64)> {
+    pub(crate) fn motion(&self, asset: &htex::Asset) -> Option<htex::Motion> {
         let first = asset.manifest().conditions.first();
         let speed = self.speed.or(first.and_then(|c| c.speed_mm_s));
         let force = self.force.or(first.and_then(|c| c.force_n));
         (self.speed.is_some() || self.force.is_some())
-            .then(|| (speed.unwrap_or(USUAL.0), force.unwrap_or(USUAL.1)))
+            .then(|| htex::Motion::new(speed.unwrap_or(USUAL.0), force.unwrap_or(USUAL.1)))
     }
 }
 
@@ -68,7 +68,7 @@ impl ChoiceArgs {
             return Ok(None);
         };
         let motions = asset.motions(self.model.as_deref())?;
-        let coverage = motions.coverage(motion.0, motion.1, effects);
+        let coverage = motions.coverage(motion, effects);
         Ok((!coverage.is_inside()).then(|| coverage.to_string()))
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p htex --example play -- cloth.htex`
 
-use htex::{Asset, VoiceOptions};
+use htex::{Asset, Motion, VoiceOptions};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = std::env::args()
@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut block = vec![0.0f32; (options.rate_hz / 10.0) as usize];
     for tenth in 0..20 {
         let (speed_mm_s, force_n) = (160.0 - 5.0 * f64::from(tenth), 0.4);
-        voice.set_motion(speed_mm_s, force_n)?;
+        voice.set_motion(Motion::new(speed_mm_s, force_n))?;
         voice.render(&mut block)?;
         let power: f32 = block.iter().map(|x| x * x).sum::<f32>() / block.len() as f32;
         println!("{speed_mm_s:5.0} mm/s  {:7.3} mN RMS", power.sqrt() * 1e3);

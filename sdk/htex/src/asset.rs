@@ -7,9 +7,9 @@ use htex_format::{Manifest, Quantity, Representation};
 use htex_host::{Band, HostError, LoadedModel, Registry, StillSound, Synthesis};
 
 use crate::exploration::{Coverage, Effects, Explored};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Weights};
 use crate::playable::{field_order, model_of};
-use crate::{Error, Source, Voice};
+use crate::{Error, Motion, Source, Voice};
 
 /// An opened texture. A clone shares what the file holds.
 #[derive(Debug, Clone)]
@@ -32,8 +32,8 @@ pub struct VoiceOptions<'a> {
     pub rate_hz: f64,
     /// The same seed gives the same samples.
     pub seed: u64,
-    /// Scanning speed, mm/s, and normal force, newtons, at the start; else the first condition.
-    pub motion: Option<(f64, f64)>,
+    /// The motion at the start; else that of the first condition.
+    pub motion: Option<Motion>,
     /// How samples are made: by the model's voice, or cheaper, with a spectrum that stays as it is
     /// at the start. [`Asset::source`] is always streamed.
     pub synthesis: Synthesis,
@@ -183,18 +183,22 @@ impl Asset {
 
     /// How many times as fast as recorded a voice is read from its start on.
     fn base_ratio(&self, options: &VoiceOptions<'_>) -> Result<f64, Error> {
-        let Some((speed, force)) = options.motion else {
+        let Some(motion) = options.motion else {
             return Ok(1.0);
         };
-        crate::source::check_motion(speed, force)?;
+        let Motion {
+            speed_mm_s,
+            force_n,
+            ..
+        } = motion.checked()?;
         let r = self.representation(options.model)?;
         let streamed = options.synthesis == Synthesis::Streamed;
         let follows = streamed && self.model(r)?.follows_motion();
-        let slides = crate::exploration::slides(speed, force);
+        let slides = crate::exploration::slides(speed_mm_s, force_n);
         let scales = options.effects.speed_scaling && slides && !follows;
         let explored = self.explored(r);
         Ok(if scales {
-            explored.speed_ratio(speed)
+            explored.speed_ratio(speed_mm_s)
         } else {
             1.0
         })
@@ -253,7 +257,7 @@ impl Asset {
     pub fn magnitude(
         &self,
         model: Option<&str>,
-        motion: Option<(f64, f64)>,
+        motion: Option<Motion>,
         frequency_hz: &[f64],
     ) -> Result<Vec<f64>, Error> {
         let (parameters, level_rms) = self.parameters(model, motion)?;
@@ -288,13 +292,14 @@ impl Asset {
     pub fn parameters(
         &self,
         model: Option<&str>,
-        motion: Option<(f64, f64)>,
+        motion: Option<Motion>,
     ) -> Result<(Vec<f64>, f64), Error> {
         let r = self.representation(model)?;
-        let (speed, force) = motion.unwrap_or_else(|| self.first_condition(r));
-        crate::source::check_motion(speed, force)?;
+        let motion = motion
+            .unwrap_or_else(|| self.first_condition(r))
+            .checked()?;
         let model = self.model(r)?;
-        self.known(r, &model)?.at(&model, speed, force)
+        self.known(r, &model)?.at(&model, motion)
     }
 
     /// The index of a representation by its model's id or short name, else of the best.
@@ -378,12 +383,12 @@ impl Asset {
         Explored::new(at, &manifest.conditions)
     }
 
-    fn first_condition(&self, representation: usize) -> (f64, f64) {
+    fn first_condition(&self, representation: usize) -> Motion {
         let manifest = &self.data.manifest;
         let first = manifest.representations[representation].at.first();
         let condition = first.and_then(|at| manifest.conditions.get(at.condition));
-        condition.map_or((0.0, 0.0), |c| {
-            (c.speed_mm_s.unwrap_or(0.0), c.force_n.unwrap_or(0.0))
+        condition.map_or(Motion::new(0.0, 0.0), |c| {
+            Motion::new(c.speed_mm_s.unwrap_or(0.0), c.force_n.unwrap_or(0.0))
         })
     }
 }
@@ -414,13 +419,15 @@ pub struct Motions {
 }
 
 impl Motions {
-    /// What a voice with these effects makes of a motion, a speed (mm/s) and a force (newtons), and whether it lies
-    /// within what was recorded.
-    pub fn coverage(&self, speed_mm_s: f64, force_n: f64, effects: Effects) -> Coverage {
-        let weights = self.mesh.weights(speed_mm_s, force_n);
-        let nearest = self.mesh.motion(&weights);
-        let motion = (speed_mm_s, force_n).into();
+    /// What a voice with these effects makes of a motion, and whether it lies within what was recorded.
+    pub fn coverage(&self, motion: Motion, effects: Effects) -> Coverage {
+        let nearest = self.mesh.motion(&self.weights(motion));
         self.explored.coverage(motion, nearest, effects)
+    }
+
+    /// Weights of the conditions at a motion. Does not allocate.
+    pub(crate) fn weights(&self, motion: Motion) -> Weights {
+        self.mesh.weights(motion.speed_mm_s, motion.force_n)
     }
 }
 
@@ -439,13 +446,8 @@ impl Known {
     }
 
     /// Parameters and level at a motion; the model decides in which space to mix.
-    pub(crate) fn at(
-        &self,
-        model: &LoadedModel,
-        speed_mm_s: f64,
-        force_n: f64,
-    ) -> Result<(Vec<f64>, f64), Error> {
-        let weights = self.motions.mesh.weights(speed_mm_s, force_n);
+    pub(crate) fn at(&self, model: &LoadedModel, motion: Motion) -> Result<(Vec<f64>, f64), Error> {
+        let weights = self.motions.weights(motion);
         let level_rms = weights.iter().map(|(i, w)| w * self.level_rms[i]).sum();
         let sets: Vec<&[f64]> = weights
             .iter()

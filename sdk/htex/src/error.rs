@@ -56,12 +56,6 @@ pub enum Error {
         /// Every field that differs, and how.
         problem: String,
     },
-    /// A position that is not a number.
-    #[error("position of {position_mm} mm; it must be finite")]
-    Position {
-        /// Position along the finger's path, mm.
-        position_mm: f64,
-    },
     /// A speed or force that is negative or not a number.
     #[error("motion of {speed_mm_s} mm/s at {force_n} N; both must be finite and not negative")]
     Motion {
@@ -69,5 +63,11 @@ pub enum Error {
         speed_mm_s: f64,
         /// Normal force, newtons.
         force_n: f64,
+    },
+    /// A position that is not a finite number.
+    #[error("position of {position_mm} mm along the path; it must be finite")]
+    Position {
+        /// Position along the path, mm.
+        position_mm: f64,
     },
 }

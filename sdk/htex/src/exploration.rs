@@ -4,6 +4,8 @@ use std::fmt;
 
 use htex_format::{AtCondition, Condition};
 
+use crate::Motion;
+
 /// Below this speed, mm/s, the finger does not slide, and there is no texture to feel.
 pub const MIN_SLIDING_MM_S: f64 = 0.5;
 /// Slowest and fastest reading of a texture, in its recorded speed.
@@ -150,13 +152,8 @@ impl Explored {
     }
 
     /// What becomes of a motion that is interpolated as if it were `nearest`.
-    pub(crate) fn coverage(
-        &self,
-        motion: [f64; 2],
-        nearest: [f64; 2],
-        effects: Effects,
-    ) -> Coverage {
-        let [speed, force] = motion;
+    pub(crate) fn coverage(&self, motion: Motion, nearest: [f64; 2], effects: Effects) -> Coverage {
+        let (speed, force) = (motion.speed_mm_s, motion.force_n);
         let slides = slides(speed, force);
         let factor = |on: bool, factor: f64| on.then_some(factor);
         Coverage {

@@ -3,9 +3,10 @@
 use htex_dsp::glide::Glide;
 use htex_dsp::warp::Warp;
 
+use crate::Motion;
 use crate::exploration::{CONTACT_RAMP_S, Effects, Explored, slides};
 
-/// Follows a finger. A motion is a scanning speed, mm/s, and a normal force, newtons.
+/// Follows a finger.
 #[derive(Debug)]
 pub(crate) struct Follow {
     explored: Explored,
@@ -27,7 +28,7 @@ impl Follow {
     /// as recorded, and can be read `highest` times as fast until they reach half the rate.
     pub(crate) fn new(
         (explored, effects): (Explored, Effects),
-        motion: Option<(f64, f64)>,
+        motion: Option<Motion>,
         base: f64,
         highest: f64,
         rate_hz: f64,
@@ -51,7 +52,8 @@ impl Follow {
     }
 
     /// Follows to a motion; false where there is nothing to feel, and texture and level stay as they are.
-    pub(crate) fn set_motion(&mut self, (speed_mm_s, force_n): (f64, f64)) -> bool {
+    pub(crate) fn set_motion(&mut self, motion: Motion) -> bool {
+        let (speed_mm_s, force_n) = (motion.speed_mm_s, motion.force_n);
         let slides = slides(speed_mm_s, force_n);
         let felt = slides || !self.effects.contact;
         self.contact.set(if felt { 1.0 } else { 0.0 });

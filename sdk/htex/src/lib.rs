@@ -1,11 +1,11 @@
 //! Open a texture asset and play it.
 //!
 //! ```no_run
-//! use htex::{Asset, VoiceOptions};
+//! use htex::{Asset, Motion, VoiceOptions};
 //! let asset = Asset::open("sandpaper.htex")?;
 //! let mut voice = asset.voice(&VoiceOptions::default())?;
 //! let mut block = [0.0f32; 256];
-//! voice.set_motion(80.0, 0.4)?; // mm/s, newtons
+//! voice.set_motion(Motion::new(80.0, 0.4))?; // mm/s, newtons
 //! voice.render(&mut block)?; // in the asset's unit
 //! # Ok::<(), htex::Error>(())
 //! ```
@@ -18,6 +18,7 @@ mod error;
 pub mod exploration;
 mod follow;
 mod mesh;
+mod motion;
 mod playable;
 mod source;
 mod travel;
@@ -27,7 +28,9 @@ pub use asset::{Asset, Motions, VoiceOptions};
 pub use error::Error;
 pub use exploration::{Coverage, Effects, Explored, Reach, Recorded};
 pub use htex_format::{Finding, Limits, Manifest, Quantity, Severity};
+pub use htex_host::Motion as ModelMotion;
 pub use htex_host::{Band, Registry, Search, Synthesis, WasmLimits};
+pub use motion::Motion;
 pub use playable::{field_order, model_of};
 pub use source::Source;
 pub use voice::Voice;

@@ -1,11 +1,11 @@
 //! What a voice is made of: a texture's shape at the model's own rate, and its level.
 
-use htex_host::{Band, LoadedModel, ModelVoice, Motion};
+use htex_host::{Band, LoadedModel, ModelVoice, Motion as ModelMotion};
 
-use crate::Error;
 use crate::asset::Known;
 use crate::exploration::{Coverage, Effects, Explored};
 use crate::mesh::Weights;
+use crate::{Error, Motion};
 
 /// Most conditions that are mixed.
 const MIXED: usize = 3;
@@ -23,7 +23,7 @@ pub struct Source {
     mixed: Vec<f64>,
     rate_hz: f64,
     top_hz: f64,
-    motion: (f64, f64),
+    motion: Motion,
     level_rms: f64,
     /// The model follows the motion itself.
     follows: bool,
@@ -38,10 +38,10 @@ impl Source {
         band: Band,
         wanted_hz: f64,
         seed: u64,
-        motion: (f64, f64),
+        motion: Motion,
     ) -> Result<Self, Error> {
-        check_motion(motion.0, motion.1)?;
-        let (parameters, level_rms) = known.at(&model, motion.0, motion.1)?;
+        let motion = motion.checked()?;
+        let (parameters, level_rms) = known.at(&model, motion)?;
         let rate_hz = model.voice_rate_hz(&parameters, band, wanted_hz)?;
         Ok(Self {
             voice: model.voice(&parameters, band, rate_hz, seed)?,
@@ -78,8 +78,8 @@ impl Source {
         self.follows
     }
 
-    /// The speed, mm/s, and force, newtons, that the spectrum is of.
-    pub(crate) fn motion(&self) -> (f64, f64) {
+    /// The motion that the spectrum is of.
+    pub(crate) fn motion(&self) -> Motion {
         self.motion
     }
 
@@ -95,12 +95,12 @@ impl Source {
     ///
     /// # Errors
     /// When a number is not finite, or the model refuses the motion; the source then plays on as before.
-    pub fn set_finger(&mut self, finger: Motion, at_s: f64) -> Result<(), Error> {
+    pub fn set_finger(&mut self, finger: ModelMotion, at_s: f64) -> Result<(), Error> {
         if !self.follows {
             return Ok(());
         }
         let ahead_s = self.rendered_s() - at_s;
-        let motion = Motion {
+        let motion = ModelMotion {
             position_mm: finger.position_mm + ahead_s * finger.speed_mm_s,
             ..finger
         };
@@ -112,27 +112,27 @@ impl Source {
         self.known.motions.explored
     }
 
-    /// What a voice with these effects makes of a motion (mm/s, newtons). Does not allocate.
-    pub fn coverage(&self, speed_mm_s: f64, force_n: f64, effects: Effects) -> Coverage {
-        self.known.motions.coverage(speed_mm_s, force_n, effects)
+    /// What a voice with these effects makes of a motion. Does not allocate.
+    pub fn coverage(&self, motion: Motion, effects: Effects) -> Coverage {
+        self.known.motions.coverage(motion, effects)
     }
 
-    /// Glides to the spectrum at this scanning speed (mm/s) and normal force (newtons), clamped to
-    /// the conditions the asset knows, and answers its level. A motion that is not new
-    /// costs nothing; a new one mixes parameters in the voice's own room. Does not allocate, lock or
+    /// Glides to the spectrum at this motion, clamped to
+    /// the conditions the asset knows, and returns its level. A motion that is not new
+    /// costs nothing; a new one mixes parameters in the voice's own memory. Does not allocate, lock or
     /// do I/O for the models of this project and others that keep to the ABI.
     ///
     /// # Errors
-    /// When a value is negative or not a number, or the model cannot mix; the source then plays on
+    /// When a value is out of range (see [`Motion`]), or the model cannot mix; the source then plays on
     /// as before.
-    pub fn set_motion(&mut self, speed_mm_s: f64, force_n: f64) -> Result<f64, Error> {
-        check_motion(speed_mm_s, force_n)?;
-        if self.motion == (speed_mm_s, force_n) || self.known.parameters.len() < 2 {
+    pub fn set_motion(&mut self, motion: Motion) -> Result<f64, Error> {
+        let motion = motion.checked()?;
+        if self.motion.has_conditions_of(&motion) || self.known.parameters.len() < 2 {
             return Ok(self.level_rms);
         }
-        let weights = self.known.motions.mesh.weights(speed_mm_s, force_n);
+        let weights = self.known.motions.weights(motion);
         self.retune(&weights)?;
-        self.motion = (speed_mm_s, force_n);
+        self.motion = motion;
         let level_rms = |(i, weight): (usize, f64)| weight * self.known.level_rms[i];
         self.level_rms = weights.iter().map(level_rms).sum();
         Ok(self.level_rms)
@@ -182,15 +182,4 @@ impl Source {
         self.frames += out.len() as u64;
         Ok(self.voice.render(out)?)
     }
-}
-
-pub(crate) fn check_motion(speed_mm_s: f64, force_n: f64) -> Result<(), Error> {
-    let sane = |x: f64| x.is_finite() && x >= 0.0;
-    if sane(speed_mm_s) && sane(force_n) {
-        return Ok(());
-    }
-    Err(Error::Motion {
-        speed_mm_s,
-        force_n,
-    })
 }

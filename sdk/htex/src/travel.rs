@@ -1,6 +1,8 @@
 //! Where a finger is on its path: told, or integrated from its speed.
 
-use htex_host::Motion;
+use htex_host::Motion as ModelMotion;
+
+use crate::Motion;
 
 /// The way of a finger, for models that follow the motion themselves.
 #[derive(Debug, Clone)]
@@ -9,7 +11,7 @@ pub(crate) struct Travel {
     /// Frames since the last motion.
     frames: u64,
     /// The last motion.
-    motion: Motion,
+    motion: ModelMotion,
     /// Whether a motion was set.
     set: bool,
     /// The last position that was told, mm.
@@ -22,7 +24,7 @@ impl Travel {
         Self {
             rate_hz,
             frames: 0,
-            motion: Motion {
+            motion: ModelMotion {
                 speed_mm_s,
                 force_n: 0.0,
                 position_mm: 0.0,
@@ -37,17 +39,16 @@ impl Travel {
         self.frames += frames as u64;
     }
 
-    /// Takes a speed, mm/s, and a force, newtons, neither negative, and the position, if it is known; the motion if that
-    /// is new.
+    /// Takes a motion, checked; returns it as models get it if it is new.
     ///
     /// The finger goes back where the position is less than the last one that was told, forward where it is more,
     /// and on where it is the same or not known.
-    pub(crate) fn set(
-        &mut self,
-        speed_mm_s: f64,
-        force_n: f64,
-        position_mm: Option<f64>,
-    ) -> Option<Motion> {
+    pub(crate) fn set(&mut self, motion: Motion) -> Option<ModelMotion> {
+        let Motion {
+            speed_mm_s,
+            force_n,
+            position_mm,
+        } = motion;
         let before = self.motion;
         let same = speed_mm_s == before.speed_mm_s.abs() && force_n == before.force_n;
         if self.set && same && position_mm.is_none() {
@@ -58,7 +59,7 @@ impl Travel {
             Some((now, told)) if now != told => now < told,
             _ => before.speed_mm_s.is_sign_negative(),
         };
-        self.motion = Motion {
+        self.motion = ModelMotion {
             speed_mm_s: if back { -speed_mm_s } else { speed_mm_s },
             force_n,
             position_mm: position_mm.unwrap_or(before.position_mm + on_mm),
@@ -75,7 +76,10 @@ mod tests {
 
     /// Speed and position of a motion that is new, after which so many frames go by.
     fn told(travel: &mut Travel, at: (f64, Option<f64>), frames: usize) -> Option<(f64, f64)> {
-        let motion = travel.set(at.0, 0.4, at.1);
+        let motion = travel.set(Motion {
+            position_mm: at.1,
+            ..Motion::new(at.0, 0.4)
+        });
         travel.advance(frames);
         motion.map(|m| (m.speed_mm_s, m.position_mm))
     }
@@ -90,7 +94,10 @@ mod tests {
         assert_eq!(told(50.0, 1_000), Some((50.0, 100.0)));
         assert_eq!(told(0.0, 1_000), Some((0.0, 150.0)));
         assert_eq!(told(80.0, 0), Some((80.0, 150.0)), "it rested");
-        assert!(travel.set(80.0, 0.5, None).is_some(), "another force");
+        assert!(
+            travel.set(Motion::new(80.0, 0.5)).is_some(),
+            "another force"
+        );
     }
 
     #[test]

@@ -7,7 +7,7 @@ use htex_host::{HostError, StillSound};
 use crate::exploration::{Coverage, Reach};
 use crate::follow::Follow;
 use crate::travel::Travel;
-use crate::{Effects, Error, Source, VoiceOptions};
+use crate::{Effects, Error, Motion, Source, VoiceOptions};
 
 /// Length of a change of level, seconds.
 const RAMP_S: f64 = 0.010;
@@ -16,12 +16,12 @@ const RAMP_S: f64 = 0.010;
 /// [`Effects`](crate::Effects).
 ///
 /// ```no_run
-/// use htex::{Asset, VoiceOptions};
+/// use htex::{Asset, Motion, VoiceOptions};
 /// // Recorded at 80 mm/s and 0.4 N.
 /// let mut voice = Asset::open("sandpaper.htex")?.voice(&VoiceOptions::default())?;
-/// voice.set_motion(160.0, 0.8)?; // an octave higher, twice as strong
-/// voice.set_motion(0.0, 0.8)?; // silent
-/// println!("{}", voice.coverage(160.0, 0.8));
+/// voice.set_motion(Motion::new(160.0, 0.8))?; // an octave higher, twice as strong
+/// voice.set_motion(Motion::new(0.0, 0.8))?; // silent
+/// println!("{}", voice.coverage(Motion::new(160.0, 0.8)));
 /// # Ok::<(), htex::Error>(())
 /// ```
 #[derive(Debug)]
@@ -53,7 +53,7 @@ impl Voice {
         let base = if still.is_some() { 1.0 } else { base };
         // A sound that stays as it is can follow nothing itself.
         let travel = (source.follows_motion() && still.is_none())
-            .then(|| Travel::new(source.motion().0, rate_hz));
+            .then(|| Travel::new(source.motion().speed_mm_s, rate_hz));
         let effects = match travel {
             None => options.effects,
             Some(_) => Effects {
@@ -80,13 +80,13 @@ impl Voice {
             frames: 0,
             rate_hz,
         };
-        if let Some((speed, force)) = options.motion {
-            voice.tell((speed, force), None)?;
+        if let Some(motion) = options.motion {
+            voice.tell(motion)?;
         }
         Ok(voice)
     }
 
-    /// Follows the finger to this scanning speed (mm/s) and normal force (newtons). Spectrum and level glide to those
+    /// Follows the finger to this motion. Spectrum and level glide to those
     /// between the conditions the asset knows, clamped to them; of a voice that is not streamed (see
     /// [`Synthesis`](crate::Synthesis)) the level alone. Where the asset knows one speed, frequencies go in proportion to
     /// the speed, 1/16 to 8 times as fast and as far as half the rate allows; where it knows one force, the level goes
@@ -97,31 +97,13 @@ impl Voice {
     /// lock or do I/O for the models of this project and others that keep to the ABI.
     ///
     /// # Errors
-    /// When a value is negative or not a number, or the model cannot mix; the voice then plays on
+    /// When a value is out of range (see [`Motion`]), or the model cannot mix; the voice then plays on
     /// as before.
-    pub fn set_motion(&mut self, speed_mm_s: f64, force_n: f64) -> Result<(), Error> {
-        self.set_motion_at(speed_mm_s, force_n, None)
-    }
-
-    /// As [`Self::set_motion`], at a position along the finger's path (mm, of either sign), which falls on the way back.
-    /// A model that follows the motion itself ([`Self::follows_motion`]) feels the same at the same position; where none is
-    /// given, the finger goes on from the last one at its speed, at first forward from 0. Others have no use for it.
-    ///
-    /// # Errors
-    /// As [`Self::set_motion`], and when the position is not finite.
-    pub fn set_motion_at(
-        &mut self,
-        speed_mm_s: f64,
-        force_n: f64,
-        position_mm: Option<f64>,
-    ) -> Result<(), Error> {
-        crate::source::check_motion(speed_mm_s, force_n)?;
-        if let Some(position_mm) = position_mm.filter(|position| !position.is_finite()) {
-            return Err(Error::Position { position_mm });
-        }
-        self.tell((speed_mm_s, force_n), position_mm)?;
-        if self.follow.set_motion((speed_mm_s, force_n)) {
-            let level_rms = self.source.set_motion(speed_mm_s, force_n)?;
+    pub fn set_motion(&mut self, motion: Motion) -> Result<(), Error> {
+        let motion = motion.checked()?;
+        self.tell(motion)?;
+        if self.follow.set_motion(motion) {
+            let level_rms = self.source.set_motion(motion)?;
             self.level_rms.set((level_rms * self.follow.gain()) as f32);
         }
         Ok(())
@@ -134,11 +116,11 @@ impl Voice {
     }
 
     /// Tells the model the motion, if it follows it itself.
-    fn tell(&mut self, (speed, force_n): (f64, f64), position: Option<f64>) -> Result<(), Error> {
+    fn tell(&mut self, motion: Motion) -> Result<(), Error> {
         let Some(travel) = &mut self.travel else {
             return Ok(());
         };
-        let Some(finger) = travel.set(speed, force_n, position) else {
+        let Some(finger) = travel.set(motion) else {
             return Ok(());
         };
         self.source
@@ -146,9 +128,9 @@ impl Voice {
     }
 
     /// What this voice makes of a motion, and whether it lies within what was recorded. Does not allocate.
-    pub fn coverage(&self, speed_mm_s: f64, force_n: f64) -> Coverage {
+    pub fn coverage(&self, motion: Motion) -> Coverage {
         let effects = self.follow.effects();
-        let mut coverage = self.source.coverage(speed_mm_s, force_n, effects);
+        let mut coverage = self.source.coverage(motion, effects);
         if self.follows_motion() {
             for reach in [&mut coverage.speed, &mut coverage.force] {
                 let beyond = matches!(reach, Reach::Clamped { .. } | Reach::Unknown);

@@ -85,7 +85,7 @@ fn beyond<'a>(
 ) -> (f64, Option<Coverage>) {
     let (mut all, mut beyond, mut farthest) = (0.0, 0.0, None::<Coverage>);
     for finger in fingers.filter(|finger| finger.slides()) {
-        let coverage = motions.coverage(finger.speed_mm_s, finger.force_n, effects);
+        let coverage = motions.coverage(finger.motion(), effects);
         all += 1.0;
         if coverage.excess() > 0.0 {
             beyond += 1.0;

@@ -255,7 +255,7 @@ pub(crate) struct Part {
     pub(crate) always_touched: bool,
     pub(crate) share: f64,
     /// The motion the voice starts with; none: the first condition.
-    pub(crate) start: Option<(f64, f64)>,
+    pub(crate) start: Option<htex::Motion>,
     /// Rate of the model, hertz.
     pub(crate) rate_hz: f64,
     /// Rate behind speed scaling, in the rate of the model.
@@ -301,7 +301,7 @@ impl Part {
             force_n: touch.force_n,
             always_touched: touch.always,
             share: touch.share,
-            start: touch.first.map(|f| (f.speed_mm_s.abs(), f.force_n)),
+            start: touch.first.map(|finger| finger.motion()),
             rate_hz: 0.0,
             oversampling: 1.0,
             mix_rate_hz: 0.0,

@@ -115,11 +115,10 @@ impl Lane {
             self.sounds = touched || !crossfade.is_silent();
         }
         if let (Some((count, neutral)), true) = (&mut self.interpolation, touched) {
-            let (speed, force) = (now.finger.speed_mm_s.abs(), now.finger.force_n);
             let moves = !*neutral && now.finger.slides();
             count.run(timed, || {
                 if moves {
-                    self.synthesis.set_motion(speed, force);
+                    self.synthesis.set_motion(now.finger.motion());
                 }
             });
         }
@@ -135,7 +134,7 @@ impl Lane {
             return;
         };
         let skipped_s = follower.skipped as f64 / follower.rate_hz;
-        let motion = htex_host::Motion {
+        let motion = htex::ModelMotion {
             speed_mm_s: finger.point.speed_mm_s,
             force_n: finger.force_n,
             position_mm: finger.point.position_mm * follower.pitch,

@@ -6,7 +6,8 @@ use crate::file::{Constant, Motion, Region};
 use crate::load::LoadedScene;
 use crate::trace::Trace;
 
-/// A finger at one moment.
+/// A finger at one moment: the signed speed of a stroke, the force, and the place on the surfaces. [`Self::motion`] is what a
+/// voice follows of it; [`crate::file::Motion`] is the motion of a whole scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finger {
     /// Scanning speed, mm/s; negative on the back stroke.
@@ -24,6 +25,11 @@ impl Finger {
         force_n: 0.0,
         at_mm: None,
     };
+
+    /// The motion that a voice follows: speed without its sign, and force.
+    pub fn motion(&self) -> htex::Motion {
+        htex::Motion::new(self.speed_mm_s.abs(), self.force_n)
+    }
 
     /// Whether it slides over something.
     pub fn slides(&self) -> bool {

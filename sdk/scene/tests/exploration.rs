@@ -20,7 +20,7 @@ fn voice(model: &str, motion: Option<(f64, f64)>, effects: Effects) -> Voice {
     let options = VoiceOptions {
         model: Some(model),
         seed: 1,
-        motion,
+        motion: motion.map(|(speed, force)| htex::Motion::new(speed, force)),
         effects,
         ..VoiceOptions::default()
     };
@@ -84,7 +84,9 @@ fn a_constant_motion_plays_as_in_a_scene_whether_a_voice_is_made_for_it_or_moved
             assert!(played.iter().zip(&made).all(same), "{model} at {motion:?}");
 
             let mut moved = voice(model, None, Effects::default());
-            moved.set_motion(motion.0, motion.1).unwrap();
+            moved
+                .set_motion(htex::Motion::new(motion.0, motion.1))
+                .unwrap();
             // Behind the ramps of level and contact.
             samples(&mut moved, 1_000);
             let moved = samples(&mut moved, played.len());
@@ -144,7 +146,9 @@ fn a_live_motion_plays_as_in_a_scene() {
             let mut out = [0.0f32; CONTROL];
             renderer.render(&mut out);
             played.extend(out);
-            voice.set_motion(speed_mm_s, force_n).unwrap();
+            voice
+                .set_motion(htex::Motion::new(speed_mm_s, force_n))
+                .unwrap();
             followed.extend(samples(&mut voice, CONTROL));
         }
         // Windows of half a second while the finger slides, silence at the end.
@@ -188,7 +192,7 @@ fn blocks_do_not_matter_and_the_recorded_motion_changes_nothing() {
             let mut voice = voice(model, None, Effects::default());
             let mut all = Vec::new();
             for (speed, force) in motions {
-                voice.set_motion(speed, force).unwrap();
+                voice.set_motion(htex::Motion::new(speed, force)).unwrap();
                 let mut out = [0.0f32; 900];
                 out.chunks_mut(size)
                     .for_each(|block| voice.render(block).unwrap());
@@ -206,7 +210,9 @@ fn blocks_do_not_matter_and_the_recorded_motion_changes_nothing() {
             voice(model, None, Effects::default()),
         );
         for _ in 0..20 {
-            followed.set_motion(RECORDED.0, RECORDED.1).unwrap();
+            followed
+                .set_motion(htex::Motion::new(RECORDED.0, RECORDED.1))
+                .unwrap();
             assert_eq!(
                 samples(&mut followed, 333),
                 samples(&mut plain, 333),
@@ -219,15 +225,15 @@ fn blocks_do_not_matter_and_the_recorded_motion_changes_nothing() {
 #[test]
 fn a_voice_says_what_it_makes_of_a_motion() {
     let all = voice("ar", None, Effects::default());
-    assert!(all.coverage(80.0, 0.4).is_inside());
-    let beyond = all.coverage(160.0, 0.2);
+    assert!(all.coverage(htex::Motion::new(80.0, 0.4)).is_inside());
+    let beyond = all.coverage(htex::Motion::new(160.0, 0.2));
     assert_eq!(
         beyond.to_string(),
         "160 mm/s, where 80 mm/s was recorded: frequencies are 2.000 times as high; \
          0.2 N, where 0.4 N was recorded: the level is 0.500 times as high"
     );
-    assert!(!beyond.is_inside() && !all.coverage(0.0, 0.4).slides);
-    let none = voice("ar", None, Effects::NONE).coverage(160.0, 0.0);
+    assert!(!beyond.is_inside() && !all.coverage(htex::Motion::new(0.0, 0.4)).slides);
+    let none = voice("ar", None, Effects::NONE).coverage(htex::Motion::new(160.0, 0.0));
     let as_recorded = Reach::Clamped {
         asked: 160.0,
         played: 80.0,
@@ -241,8 +247,11 @@ fn a_voice_says_what_it_makes_of_a_motion() {
     };
     let low = |speed: f64| {
         let mut voice = single().voice(&options).unwrap();
-        voice.set_motion(speed, 0.4).unwrap();
-        (samples(&mut voice, 4_000), voice.coverage(speed, 0.4))
+        voice.set_motion(htex::Motion::new(speed, 0.4)).unwrap();
+        (
+            samples(&mut voice, 4_000),
+            voice.coverage(htex::Motion::new(speed, 0.4)),
+        )
     };
     let ((faster, coverage), (twice, _)) = (low(320.0), low(160.0));
     assert!(faster == twice && faster != low(120.0).0);
@@ -261,7 +270,7 @@ fn a_voice_says_what_it_makes_of_a_motion() {
         grid()
             .motions(None)
             .unwrap()
-            .coverage(motion.0, motion.1, Effects::default())
+            .coverage(htex::Motion::new(motion.0, motion.1), Effects::default())
     };
     assert!(of((100.0, 0.4)).is_inside() && of((122.0, 0.6)).is_inside());
     let fast = of((240.0, 0.4));

@@ -84,7 +84,7 @@ fn listen(voice: &mut htex::Voice) {
     let mut block = [f32::NAN; BLOCK];
     for motion in [None, Some((80.0, 0.4)), Some((1e6, 0.0)), Some((0.0, 1e6))] {
         if let Some((speed, force)) = motion
-            && let Err(error) = voice.set_motion(speed, force)
+            && let Err(error) = voice.set_motion(htex::Motion::new(speed, force))
         {
             refusal(&error);
         }

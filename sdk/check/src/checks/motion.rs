@@ -4,9 +4,9 @@ use htex_host::{FitCondition, MOTION_EXTENSION, ModelVoice, Motion, Status};
 
 use crate::case::{Case, is_cannot_fit};
 use crate::checks::allocation;
-use crate::finding::{Finding, Found};
 use crate::signal::first_difference;
 use crate::spectra::REFERENCES;
+use htex_check_runner::{Finding, Found};
 
 const FRAMES: usize = 4_000;
 const BLOCKS: [usize; 4] = [1, 7, 64, 1_000];

@@ -1,7 +1,6 @@
 //! The samples themselves: a voice of the surface's model, of unit RMS.
 
-use htex::Source;
-use htex_host::Motion;
+use htex::{ModelMotion, Motion, Source};
 
 use super::Stage;
 
@@ -21,8 +20,8 @@ impl Synthesis {
 
     /// The level after gliding to a motion. A model that cannot follow plays on as before, and says
     /// so.
-    pub(crate) fn set_motion(&mut self, speed_mm_s: f64, force_n: f64) -> f64 {
-        match self.source.set_motion(speed_mm_s, force_n) {
+    pub(crate) fn set_motion(&mut self, motion: Motion) -> f64 {
+        match self.source.set_motion(motion) {
             Ok(level_rms) => level_rms,
             Err(error) => {
                 self.failed.get_or_insert(error);
@@ -33,7 +32,7 @@ impl Synthesis {
 
     /// Tells a model that follows the motion itself where the finger is, so many seconds after the first sample. A model
     /// that refuses it plays on as before, and says so.
-    pub(crate) fn set_finger(&mut self, finger: Motion, at_s: f64) {
+    pub(crate) fn set_finger(&mut self, finger: ModelMotion, at_s: f64) {
         if let Err(error) = self.source.set_finger(finger, at_s) {
             self.failed.get_or_insert(error);
         }

@@ -49,7 +49,7 @@ fn moved(motions: &[(f64, f64)], effects: Effects) -> f64 {
         let mut block = [0.0f32; 64];
         for i in 0..200 {
             let (speed_mm_s, force_n) = motions[i % motions.len()];
-            if let Err(error) = voice.set_motion(speed_mm_s, force_n) {
+            if let Err(error) = voice.set_motion(htex::Motion::new(speed_mm_s, force_n)) {
                 println!("{model}: {error}");
                 return f64::NAN;
             }
@@ -70,7 +70,7 @@ fn motion_refused(speed_mm_s: f64, force_n: f64) -> String {
             ..VoiceOptions::default()
         };
         let mut voice = asset.voice(&options).unwrap();
-        match voice.set_motion(speed_mm_s, force_n) {
+        match voice.set_motion(htex::Motion::new(speed_mm_s, force_n)) {
             Ok(()) => return "it was done".to_owned(),
             Err(error) => said = error.to_string(),
         }

@@ -157,13 +157,13 @@ fn numbers(plan: &Plan, asset: &Asset) -> String {
     for representation in &asset.manifest().representations {
         let model = Some(&representation.model[..]);
         for motion in plan.conditions.iter().chain(plan.motions) {
-            let motion = (motion[0], motion[1]);
+            let motion = htex::Motion::new(motion[0], motion[1]);
             let (parameters, level_rms) = asset.parameters(model, Some(motion)).unwrap();
             let magnitude = asset.magnitude(model, Some(motion), &frequency_hz);
             cases.push(json!({
                 "model": representation.model,
-                "speed_mm_s": motion.0,
-                "force_n": motion.1,
+                "speed_mm_s": motion.speed_mm_s,
+                "force_n": motion.force_n,
                 "parameters": parameters,
                 "level_rms": level_rms,
                 "magnitude": rounded(&magnitude.unwrap()),

@@ -1,0 +1,66 @@
+//! The motion of a finger over a texture, at one moment.
+
+use crate::Error;
+
+/// The motion of a finger over a texture, at one moment.
+///
+/// ```
+/// use htex::Motion;
+/// let sliding = Motion::new(80.0, 0.4);
+/// assert_eq!(sliding.position_mm, None);
+/// let placed = sliding.with_position_mm(12.5);
+/// assert_eq!((placed.speed_mm_s, placed.position_mm), (80.0, Some(12.5)));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Motion {
+    /// Scanning speed, mm/s; finite and not negative.
+    pub speed_mm_s: f64,
+    /// Normal force, newtons; finite and not negative.
+    pub force_n: f64,
+    /// Position along the path, mm; finite, and of either sign. `None` where it is not known.
+    pub position_mm: Option<f64>,
+}
+
+impl Motion {
+    /// A scanning speed, mm/s, and a normal force, newtons, at an unknown position.
+    pub const fn new(speed_mm_s: f64, force_n: f64) -> Self {
+        Self {
+            speed_mm_s,
+            force_n,
+            position_mm: None,
+        }
+    }
+
+    /// The same motion at a position along the path, mm.
+    #[must_use]
+    pub const fn with_position_mm(self, position_mm: f64) -> Self {
+        Self {
+            position_mm: Some(position_mm),
+            ..self
+        }
+    }
+
+    /// Returns the motion if its numbers are in range.
+    ///
+    /// # Errors
+    /// [`Error::Motion`] if the speed or the force is negative or not finite; [`Error::Position`] if the position is not finite.
+    pub(crate) fn checked(self) -> Result<Self, Error> {
+        let in_range = |x: f64| x.is_finite() && x >= 0.0;
+        if !(in_range(self.speed_mm_s) && in_range(self.force_n)) {
+            return Err(Error::Motion {
+                speed_mm_s: self.speed_mm_s,
+                force_n: self.force_n,
+            });
+        }
+        match self.position_mm {
+            Some(position_mm) if !position_mm.is_finite() => Err(Error::Position { position_mm }),
+            _ => Ok(self),
+        }
+    }
+
+    /// Whether speed and force, which choose the parameters, equal those of another motion.
+    pub(crate) fn has_conditions_of(&self, other: &Self) -> bool {
+        (self.speed_mm_s, self.force_n) == (other.speed_mm_s, other.force_n)
+    }
+}

@@ -1,5 +1,5 @@
-//! Writes what the specification has from the code: the conformance scenes with their reports, the
-//! page of findings and the schema of scenes.
+//! Generates the parts of the specification that come from the code: the conformance scenes with their
+//! reports, the page of findings and the schema of scenes.
 //!
 //! `cargo run -p htex-scene --example scene_pages`
 #![allow(clippy::unwrap_used)] // It is run by hand.

@@ -1,4 +1,4 @@
-//! What the specification has from the code is what the code makes.
+//! Generated parts of the specification match the code.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 #[path = "common/cases.rs"]
@@ -15,8 +15,8 @@ use serde_json::Value;
 
 const RENEW: &str = "stale: cargo run -p htex-scene --example scene_pages";
 
-/// Raised by what no file here can hold: a megabyte, or a device that is not connected.
-/// The last one is raised by devices with hardware settings, which the file is not: `cli/tests/drive.rs`.
+/// Rules that no conformance file breaks: they take a scene of a megabyte, a device with hardware settings
+/// (tested in `cli/tests/drive.rs`; the file device has none), or a device that is not connected.
 const WITHOUT_FILE: [&str; 3] = ["SCENE_FILE_TOO_LARGE", "DEVICE_HARDWARE", "DEVICE_ABSENT"];
 
 fn spec() -> PathBuf {

@@ -192,7 +192,7 @@ fn the_drive_is_a_cap_and_what_is_far_beyond_it_is_refused() {
     };
     let bench = loud(1000.0);
     let words = [
-        "dB above the level that has the drive",
+        "dB above the reference level of the drive",
         "5 % are allowed",
         "lower the surface's gain",
     ];

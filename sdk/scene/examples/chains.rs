@@ -1,8 +1,8 @@
-//! What the shortest chain saves, whether budgets are met, and how many voices one core plays:
-//! `cargo run --release -p htex-scene --example chains`, or one table of them: `saved`, `live`, `budgets`, `voices`,
-//! `fingers` behind `--`.
+//! Measures the time saved by short chains, whether budgets are met, and how many voices one core plays:
+//! `cargo run --release -p htex-scene --example chains`, followed by `--` and `saved`, `live`, `budgets`,
+//! `voices` or `fingers` for a single table.
 //!
-//! Times are the least of many short stretches, all of a table interleaved in one run.
+//! Times are the minimum over many short runs; all runs of a table are interleaved.
 #![allow(clippy::unwrap_used)] // A program for developers: a failure may end it.
 
 #[path = "../tests/common/mod.rs"]
@@ -40,7 +40,7 @@ fn main() {
     }
 }
 
-/// Six scenes as people have them.
+/// Six typical scenes.
 fn typical() -> Vec<(&'static str, LoadedScene, Capabilities)> {
     let swings = |t: f64| 15.0 * (std::f64::consts::TAU * t).sin();
     let presses = |t: f64| 0.45 + 0.1 * (3.0 * t).sin();
@@ -75,7 +75,7 @@ fn typical() -> Vec<(&'static str, LoadedScene, Capabilities)> {
     ]
 }
 
-/// The least time of a sample for each renderer, nanoseconds, taken in turns.
+/// The minimum time per sample of each renderer, nanoseconds, measured in turns.
 fn interleaved(renderers: &mut [Renderer]) -> Vec<f64> {
     let mut least = vec![f64::INFINITY; renderers.len()];
     let mut block = [0.0f32; BLOCK];
@@ -114,7 +114,7 @@ fn saved() {
     }
 }
 
-/// A finger that moves all the time, looked at before every block: what it costs over a constant one.
+/// A live motion that is set before every block, and its cost compared with a constant one.
 fn live() {
     println!(
         "\nns a sample, blocks of 64 at 20 kHz     constant  live, one condition  live, nine conditions"
@@ -142,10 +142,10 @@ fn live() {
     }
 }
 
-/// Stretches in a row, so that every part of a path over the grid is in them.
+/// Number of consecutive runs, which together cover a path over the grid.
 const STRETCHES: usize = 10;
 
-/// The time of a sample of a live renderer, nanoseconds: the mean over some stretches.
+/// Time per sample of a live renderer, nanoseconds: the mean over several runs.
 fn stretches(renderer: &mut [Renderer; 1]) -> f64 {
     let mut block = [0.0f32; BLOCK];
     let [renderer] = renderer;
@@ -186,8 +186,9 @@ fn budgets() {
     }
 }
 
-/// What a sample of one of many voices costs, each a chain of its own with a resampler of its own, and how many
-/// voices one core plays at 20 kHz by the cost among 5,000. Voices begin at different times, as fingers do.
+/// Time per sample of one of many voices, each with a chain and a resampler of its own, and the number of
+/// voices that one core plays at 20 kHz, extrapolated from the cost among 5,000. Voices start at different
+/// times, like independent fingers.
 fn voices() {
     println!(
         "\nns a sample, blocks of 64 at 20 kHz   1 voice  1,000  5,000  10,000  \
@@ -213,7 +214,7 @@ fn row<V: FnMut(&mut [f32])>(name: &str, make: impl Fn(u64) -> V) {
     for count in [1, 1_000, 5_000, 10_000] {
         while many.len() < count {
             let mut voice = make(many.len() as u64);
-            // Within the time in which each makes a frame.
+            // Within the time in which each voice computes a frame.
             voice(&mut vec![0.0; BLOCK * (many.len() * 61 % FRAME_BLOCKS)]);
             many.push(voice);
         }
@@ -245,11 +246,11 @@ fn app_voice(model: &str, seed: u64) -> htex::Voice {
     single().voice(&options).unwrap()
 }
 
-/// Blocks in 0.36 s of sound, in which each voice makes a frame.
+/// Blocks in 0.36 s of sound, in which each voice computes a frame.
 const FRAME_BLOCKS: usize = 112;
 
-/// The time of a sample of voices that take turns, nanoseconds, and that of the slowest block of all, milliseconds: the
-/// least of some stretches.
+/// Time per sample of voices rendered in turn, nanoseconds, and that of the slowest block, milliseconds: the
+/// minimum over several runs.
 fn among<V: FnMut(&mut [f32])>(voices: &mut [V]) -> (f64, f64) {
     let mut block = [0.0f32; BLOCK];
     let mut least = (f64::INFINITY, f64::INFINITY);
@@ -269,8 +270,8 @@ fn among<V: FnMut(&mut [f32])>(voices: &mut [V]) -> (f64, f64) {
     least
 }
 
-/// A thousand live voices of each model over nine conditions, each under a finger of its own that moves all the time and began at a
-/// time of its own.
+/// A thousand live voices of each model over nine conditions, each with a motion of its own that changes all
+/// the time and starts at a time of its own.
 fn fingers() {
     println!("\n1,000 live voices over nine conditions, blocks of 64 at 20 kHz: part of one core");
     for model in MODELS {
@@ -298,7 +299,7 @@ fn live_voice(model: &str, seed: u64) -> impl FnMut(&mut [f32]) {
     }
 }
 
-/// A finger somewhere on its way over the nine conditions.
+/// A finger at time `t` of its path over the nine conditions.
 fn finger(t: f64) -> Finger {
     Finger {
         speed_mm_s: 90.0 + 35.0 * (17.0 * t).sin(),

@@ -1,4 +1,4 @@
-//! Whether a scene's motion lies within what its textures were recorded at.
+//! Check whether a scene's motion is within the speeds and forces its textures were recorded at.
 
 use htex::{Asset, Coverage, Effects, Motions};
 use htex_format::Findings;
@@ -9,12 +9,13 @@ use crate::motion::Finger;
 use crate::rules as rule;
 use crate::trace::Trace;
 
-/// Part of the time on a surface that may lie beyond what was recorded: strokes turn, and are slow there.
+/// Part of the time on a surface that may be outside the recorded motions without a warning: strokes slow
+/// down where they turn.
 const MOST: f64 = 0.1;
-/// Most rows of a trace that are looked at, evenly spaced: each is looked up among all conditions.
+/// Maximum number of trace rows checked, evenly spaced: each is compared with all conditions.
 const MOST_ROWS: usize = 20_000;
 
-/// Warns of each surface that is played as at another motion than the finger's.
+/// Warns of each surface that is played as if at another motion than the scene's.
 pub(crate) fn check(
     scene: &Scene,
     assets: &[Asset],
@@ -23,7 +24,7 @@ pub(crate) fn check(
 ) {
     let fingers = fingers(scene, trace);
     for (i, asset) in assets.iter().enumerate() {
-        // One that is not there has its finding already.
+        // An asset that could not be used has a finding already.
         let Ok(motions) = motions(asset, &scene.surfaces[i]) else {
             continue;
         };
@@ -35,7 +36,7 @@ pub(crate) fn check(
         if let (true, Some(farthest)) = (share > MOST, farthest) {
             let percent = 100.0 * share;
             let message =
-                format!("surface {i}: {percent:.0} % of the motion on it, as far as: {farthest}");
+                format!("surface {i}: {percent:.0} % of the motion on it, at most: {farthest}");
             findings.add(rule::MOTION_BEYOND_RECORDED, "/motion", message);
         }
     }
@@ -55,7 +56,7 @@ fn effects(scene: &Scene) -> Effects {
     }
 }
 
-/// The finger at the rows of a trace, or as it always is; none when it is live.
+/// The finger at the rows of a trace, or in constant motion; empty if the motion is live.
 fn fingers(scene: &Scene, trace: Option<&Trace>) -> Vec<Finger> {
     match (&scene.motion, trace) {
         (Motion::Constant(motion), _) => vec![Finger {
@@ -77,7 +78,8 @@ fn fingers(scene: &Scene, trace: Option<&Trace>) -> Vec<Finger> {
     }
 }
 
-/// Which part of the fingers that slide is played as at another motion, and the farthest of them.
+/// Fraction of the sliding fingers that are played as if at another motion, and the coverage of the farthest
+/// one.
 fn beyond<'a>(
     fingers: impl Iterator<Item = &'a Finger>,
     motions: &Motions,

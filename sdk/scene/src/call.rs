@@ -1,5 +1,4 @@
-//! What a scene calls for: gathered once, from the scene, its assets and its device, before anything is
-//! built.
+//! The requirements of a scene, gathered from the scene, its assets and its device before anything is built.
 
 use htex::exploration::CONTACT_RAMP_S;
 use htex::{Explored, Recorded, Source, VoiceOptions};
@@ -13,23 +12,23 @@ use crate::load::LoadedScene;
 use crate::motion::{Course, Finger};
 use crate::response::Inverse;
 
-/// Fastest reading that a live motion is prepared for.
+/// Largest frequency ratio that a live motion is prepared for.
 const LIVE_RATIO: f64 = 4.0;
-/// Largest force that a live motion is prepared for, in the recorded one.
+/// Largest force that a live motion is prepared for, relative to the recorded one.
 const LIVE_FORCE: f64 = 3.0;
-/// Rate of a voice before a compensation, in the highest frequency there is.
+/// Rate of a voice before a compensation, relative to the highest frequency.
 const FILTERED_OVERSAMPLING: f64 = 2.5;
-/// Relative difference of speeds and forces that is rounding.
+/// Relative difference of speeds and forces that is attributed to rounding.
 const SAME: f64 = 1e-6;
-/// Most looks at the finger before a scene plays: nearly an hour at every one. A longer scene is
-/// looked at less often.
+/// Maximum number of control blocks examined before a scene plays, nearly an hour of motion; a longer scene
+/// is sampled at larger intervals.
 const MOST_LOOKS: u64 = 1 << 20;
-/// How often the finger is looked at, seconds.
+/// Duration of a control block, seconds.
 const CONTROL_S: f64 = 0.0032;
-/// Level of a preview by ear, decibels of full scale.
+/// Level of a preview by ear, dB relative to full scale.
 const PREVIEW_DBFS: f64 = -18.0;
 
-/// From the smallest to the largest value that comes up.
+/// Range of the values that occur.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Span {
     pub(crate) low: f64,
@@ -51,17 +50,17 @@ impl Span {
         self.high = self.high.max(x);
     }
 
-    /// One value, but for rounding, or none.
+    /// Whether it contains one value, within rounding, or none.
     pub(crate) fn is_point(&self) -> bool {
         self.low >= self.high - SAME * self.high.abs()
     }
 
-    /// Whether a texture that was recorded so is scaled by more than one factor.
+    /// Whether it requires more than one scaling factor for a texture recorded at `recorded`.
     pub(crate) fn changes(&self, recorded: &Recorded) -> bool {
         !self.is_point() && recorded.ratio(self.low) != recorded.ratio(self.high)
     }
 
-    /// Whether it is what was recorded, but for rounding.
+    /// Whether it is the recorded value, within rounding.
     pub(crate) fn is_as(&self, recorded: &Recorded) -> bool {
         let near = |x: f64| (recorded.ratio(x) - 1.0).abs() <= SAME;
         near(self.low) && near(self.high)
@@ -76,24 +75,24 @@ impl Span {
     }
 }
 
-/// What holds for the scene as a whole.
+/// Requirements of the scene as a whole.
 #[derive(Debug)]
 pub(crate) struct Call {
     pub(crate) device: Capabilities,
     pub(crate) rate_hz: f64,
-    /// Frames between two looks at the finger.
+    /// Frames of a control block.
     pub(crate) control: usize,
-    /// Length; none: without end.
+    /// Length in frames; `None` if endless.
     pub(crate) frames: Option<u64>,
     pub(crate) live: bool,
     pub(crate) turns_round: bool,
     pub(crate) breaks_contact: bool,
-    /// What the assets hold.
+    /// Quantity of the assets.
     pub(crate) quantity: htex_format::Quantity,
-    /// The device's unit for one of the assets' unit.
+    /// Device units per asset unit.
     pub(crate) quantity_gain: f64,
-    /// RMS that is brought to the drive or to the level of a preview, as it reaches the device's stages, in the
-    /// assets' unit.
+    /// Reference level: the RMS that is mapped to the drive voltage or the preview level, at the input of the
+    /// device's stages, in the assets' unit.
     pub(crate) level_rms: f64,
     pub(crate) drive_v: f64,
     pub(crate) gain_db: f64,
@@ -101,24 +100,24 @@ pub(crate) struct Call {
     pub(crate) pitch: f64,
     pub(crate) seed: u64,
     pub(crate) compensation: Option<Inverse>,
-    /// How each surface is touched.
+    /// Touch of each surface.
     pub(crate) touches: Vec<Touch>,
 }
 
-/// How a surface is touched.
+/// How a surface is touched over the scene.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Touch {
-    /// Part of the time, 0 to 1.
+    /// Fraction of the time, 0 to 1.
     pub(crate) share: f64,
     pub(crate) always: bool,
     pub(crate) speed_mm_s: Span,
     pub(crate) force_n: Span,
-    /// How it is first touched.
+    /// The finger at the first contact.
     pub(crate) first: Option<Finger>,
 }
 
 impl Call {
-    /// Gathers what does not depend on the choice of representations.
+    /// Gathers the requirements that do not depend on the choice of representations.
     pub(crate) fn gather(scene: &LoadedScene, device: &Capabilities) -> Result<Self, SceneError> {
         let (file, choice) = (&scene.scene, &scene.scene.device);
         let rate_hz = choice.rate_hz.unwrap_or(device.default_rate_hz);
@@ -168,7 +167,7 @@ impl Call {
         Ok(call)
     }
 
-    /// Goes through the scene as the renderer will.
+    /// Steps through the motion as the renderer does.
     fn follow(&mut self, course: &Course, surfaces: &[Surface]) {
         let untouched = Touch {
             share: 0.0,
@@ -187,7 +186,7 @@ impl Call {
             }
             return;
         }
-        // Where nothing changes, one look is enough.
+        // A constant motion needs one step.
         let still = course.is_constant() && surfaces.len() == 1 && surfaces[0].region.is_none();
         let frames = self.frames.unwrap_or(1);
         let controls = match still {
@@ -222,13 +221,13 @@ impl Call {
         }
     }
 
-    /// Frames of the ramp at a scene's end.
+    /// Frames of the ramp at the end of a scene.
     pub(crate) fn ramp_frames(&self) -> u64 {
         (CONTACT_RAMP_S * self.rate_hz).ceil() as u64
     }
 }
 
-/// The surface under the finger: the highest of those it is on.
+/// Index of the surface under the finger: the one on the highest layer.
 pub(crate) fn topmost(surfaces: &[Surface], finger: &Finger) -> Option<usize> {
     let under = |i: &usize| finger.is_in(surfaces[*i].region.as_ref());
     (0..surfaces.len())
@@ -236,15 +235,15 @@ pub(crate) fn topmost(surfaces: &[Surface], finger: &Finger) -> Option<usize> {
         .max_by_key(|&i| surfaces[i].layer)
 }
 
-/// A surface, played by one of its representations.
+/// A surface played by one of its representations.
 #[derive(Debug, Clone)]
 pub(crate) struct Part {
     pub(crate) surface: usize,
     /// Id of the model.
     pub(crate) model: String,
-    /// Error by the budget's measure, decibels; infinite when it was not measured.
+    /// Error by the budget's measure, decibels; infinite if not measured.
     pub(crate) error_db: f64,
-    /// Known conditions.
+    /// Number of known conditions.
     pub(crate) known: usize,
     /// Known speeds and forces.
     pub(crate) explored: Explored,
@@ -254,28 +253,28 @@ pub(crate) struct Part {
     pub(crate) force_n: Span,
     pub(crate) always_touched: bool,
     pub(crate) share: f64,
-    /// The motion the voice starts with; none: the first condition.
+    /// Motion the voice starts with; `None`: the first condition.
     pub(crate) start: Option<htex::Motion>,
     /// Rate of the model, hertz.
     pub(crate) rate_hz: f64,
-    /// Rate behind speed scaling, in the rate of the model.
+    /// Rate after speed scaling, relative to the rate of the model.
     pub(crate) oversampling: f64,
     pub(crate) mix_rate_hz: f64,
     /// Highest frequency of the voice, hertz.
     pub(crate) voice_top_hz: f64,
     /// Highest frequency at the rate of the mix, hertz.
     pub(crate) top_hz: f64,
-    /// How much faster than recorded all of it is read.
+    /// Constant frequency ratio at which the voice is read.
     pub(crate) fixed_ratio: f64,
     pub(crate) fixed_force_gain: f64,
     /// Factor on the asset's level.
     pub(crate) gain: f64,
-    /// Largest RMS, in the asset's unit, compensated.
+    /// Largest RMS after compensation, in the asset's unit.
     pub(crate) level_rms: f64,
 }
 
 impl Part {
-    /// One surface by the representation of `model`.
+    /// Makes the part of a surface that is played by the representation of `model`.
     pub(crate) fn new(
         scene: &LoadedScene,
         call: &Call,
@@ -323,9 +322,8 @@ impl Part {
         Ok(part)
     }
 
-    /// The surface's voice. A model that renders at any rate is asked for the one that needs no
-    /// conversion behind the scaling of the speed; before a compensation, for one at which its
-    /// filter is short.
+    /// Makes the surface's voice. A model that renders at any rate is given one that needs no conversion
+    /// after speed scaling, or, before a compensation, one at which its filter is short.
     pub(crate) fn source(&self, scene: &LoadedScene, call: &Call) -> Result<Source, htex::Error> {
         let mut wanted_hz = call.rate_hz / (self.fixed_ratio * self.oversampling);
         if call.compensation.is_some() {
@@ -340,7 +338,7 @@ impl Part {
         })
     }
 
-    /// The speed in the rates: a constant one in the resampler's, a changing one in the warp's.
+    /// Applies the speed to the rates: a constant one to the resampler, a changing one to the warp.
     fn scale_speed(&mut self, scene: &LoadedScene) {
         let off = scene.scene.effects.get(&Effect::SpeedScaling) == Some(&Switch::Off);
         if off || self.follows_motion || !self.explored.speed.is_one() {
@@ -361,8 +359,8 @@ impl Part {
         self.top_hz *= fastest.max(1.0);
     }
 
-    /// Oversamples more where a changing speed is read at a rate that is then a whole part of the device's: raising
-    /// that takes a fraction of what another conversion does.
+    /// Increases the oversampling of a changing speed until the rate is an integer fraction of the device's:
+    /// conversion by an integer factor takes a fraction of the time of other conversions.
     fn divide_rate(&mut self, device_hz: f64) {
         let parts = (device_hz / (self.rate_hz * self.fixed_ratio * self.oversampling)).floor();
         if self.oversampling > 1.0 && parts >= 1.0 {
@@ -370,7 +368,7 @@ impl Part {
         }
     }
 
-    /// A constant force in the gain; answers the largest gain that forces make.
+    /// Applies a constant force to the gain; returns the largest gain of all forces.
     fn scale_force(&mut self, scene: &LoadedScene) -> f64 {
         let off = scene.scene.effects.get(&Effect::ForceScaling) == Some(&Switch::Off);
         if off || self.follows_motion || !self.explored.force.is_one() {
@@ -389,7 +387,7 @@ impl Part {
         }
     }
 
-    /// RMS behind the compensation over RMS before it.
+    /// Ratio of the RMS after the compensation to that before it.
     fn compensated(&self, call: &Call, asset: &htex::Asset) -> Result<f64, htex::Error> {
         let Some(inverse) = &call.compensation else {
             return Ok(1.0);
@@ -411,7 +409,7 @@ impl Part {
     }
 }
 
-/// How many conditions a representation knows, which, and the largest of its errors.
+/// Number of conditions of a representation, their speeds and forces, and the largest error.
 fn known(asset: &htex::Asset, model: &str, measure: ErrorMeasure) -> (usize, Explored, f64) {
     let manifest = asset.manifest();
     let found = manifest.representations.iter().find(|r| r.model == model);

@@ -1,4 +1,4 @@
-//! The rules for what a scene says by itself.
+//! Rules for the contents of a scene without its files and its device.
 
 use htex_format::{Findings, Rule};
 
@@ -6,7 +6,7 @@ use crate::file::{Budget, Constant, DeviceChoice, Motion, Region, Scene, Surface
 use crate::rules as rule;
 use crate::validate::Limits;
 
-/// Farthest place, mm: a kilometre.
+/// Largest absolute coordinate, mm: a kilometre.
 const FAR_MM: f64 = 1e6;
 
 /// Checks a scene without its files and its device.
@@ -20,7 +20,7 @@ pub(crate) fn check(scene: &Scene, limits: &Limits, findings: &mut Findings) {
     let duration = scene.duration_s.unwrap_or(1.0);
     let is_length = duration > 0.0 && duration <= 1e9;
     findings.require(is_length, rule::DURATION_INVALID, "/duration_s", || {
-        format!("the duration is {duration} s; it is more than 0 and at most 1e9")
+        format!("the duration is {duration} s; it must be above 0 and at most 1e9")
     });
     check_budget(&scene.budget, findings);
 }
@@ -30,12 +30,12 @@ fn check_surfaces(surfaces: &[Surface], limits: &Limits, findings: &mut Findings
         !surfaces.is_empty(),
         rule::SURFACES_EMPTY,
         "/surfaces",
-        || "there is no surface; add one with an asset".to_owned(),
+        || "the scene has no surface; add one with an asset".to_owned(),
     );
     if surfaces.len() > limits.surfaces {
         let (there, most) = (surfaces.len(), limits.surfaces);
         let message =
-            format!("there are {there} surfaces and the limit is {most}; split the scene");
+            format!("the scene has {there} surfaces and the limit is {most}; split the scene");
         findings.add(rule::SURFACES_TOO_MANY, "/surfaces", message);
         return;
     }
@@ -65,7 +65,7 @@ fn check_surface(surface: &Surface, at: &str, findings: &mut Findings) {
         let sound = from < to && from.abs() <= FAR_MM && to.abs() <= FAR_MM;
         let pointer = format!("{at}/region/{axis}");
         findings.require(sound, rule::REGION_INVALID, pointer, || {
-            format!("the region runs from {from} to {to} mm; write the lower number first, both within {FAR_MM}")
+            format!("the region extends from {from} to {to} mm; write the lower number first, both within ±{FAR_MM}")
         });
     }
 }
@@ -85,7 +85,7 @@ fn check_overlaps(surfaces: &[Surface], findings: &mut Findings) {
     }
 }
 
-/// Whether two regions share a place; none is everywhere.
+/// Whether two regions intersect; `None` covers everything.
 fn overlap(a: Option<&Region>, b: Option<&Region>) -> bool {
     let (Some(a), Some(b)) = (a, b) else {
         return true;
@@ -115,7 +115,7 @@ fn check_constant(motion: &Constant, surfaces: &[Surface], findings: &mut Findin
     let everywhere = surfaces.len() < 2 && surfaces.iter().all(|s| s.region.is_none());
     let is_known = everywhere || motion.from_mm.is_some();
     findings.require(is_known, rule::REGION_UNKNOWN_POSITION, at, || {
-        "there are several surfaces, or a region, and no start; add from_mm".to_owned()
+        "with several surfaces or a region the motion needs a start; add from_mm".to_owned()
     });
 }
 
@@ -162,7 +162,7 @@ fn check_budget(budget: &Budget, findings: &mut Findings) {
     }
 }
 
-/// A range, both ends included.
+/// A range of values, both ends included.
 #[derive(Clone, Copy)]
 struct Range(f64, f64);
 
@@ -170,8 +170,10 @@ impl Range {
     fn require(self, value: f64, rule: &Rule, pointer: String, findings: &mut Findings) {
         let Self(low, high) = self;
         findings.require((low..=high).contains(&value), rule, pointer, || match low {
-            f64::MIN_POSITIVE => format!("{value} is not above 0 and at most {high}"),
-            _ => format!("{value} is not from {low} to {high}"),
+            f64::MIN_POSITIVE => {
+                format!("{value} is out of range; it must be above 0 and at most {high}")
+            }
+            _ => format!("{value} is out of range; it must be from {low} to {high}"),
         });
     }
 }

@@ -1,4 +1,4 @@
-//! What stages cost in time: measured on a machine, kept for the next plan.
+//! Run times of models and stages: measured on one machine and stored for later plans.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -8,34 +8,34 @@ use serde::{Deserialize, Serialize};
 /// Costs of models and stages on one machine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Costs {
-    /// Where and how they were measured.
+    /// Name of the machine, and how the costs were measured.
     pub machine: String,
-    /// A sample of a model's voice at the model's own rate, nanoseconds.
+    /// Model id to the time of one sample of a voice at the model's own rate, nanoseconds.
     pub model_ns: BTreeMap<String, f64>,
-    /// Mixing two sets of parameters and changing a voice to them, nanoseconds.
+    /// Model id to the time of interpolating two parameter sets and retuning a voice, nanoseconds.
     pub retune_ns: BTreeMap<String, f64>,
-    /// A sample through a stage at the stage's rate, nanoseconds; without its multiplications, for
-    /// stages that filter.
+    /// Stage to the time of one sample at the stage's rate, nanoseconds; for filtering stages without their
+    /// multiplications.
     pub stage_ns: BTreeMap<String, f64>,
-    /// A multiplication and addition of a filter, nanoseconds.
+    /// Time of one multiply-accumulate of a filter, nanoseconds.
     pub mac_ns: f64,
 }
 
 impl Costs {
-    /// The costs this crate brings along, measured on its authors' machine.
+    /// The costs embedded in this crate, measured on its authors' machine.
     pub fn embedded() -> Self {
         serde_json::from_str(include_str!("costs.json")).unwrap_or_else(|_| Self::nothing())
     }
 
-    /// Costs that were kept; none when there are none of this version.
+    /// Reads stored costs; `None` if the file is missing or of another version.
     pub fn load(path: &Path) -> Option<Self> {
         serde_json::from_slice(&std::fs::read(path).ok()?).ok()
     }
 
-    /// Keeps the costs for later plans.
+    /// Stores the costs for later plans.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// If the file cannot be written.
     pub fn save(&self, path: &Path) -> std::io::Result<()> {
         let text = serde_json::to_string_pretty(self)?;
         if let Some(folder) = path.parent() {
@@ -44,7 +44,7 @@ impl Costs {
         htex_format::write_file(path, text.as_bytes())
     }
 
-    /// The cost of a model that was never measured: the dearest known.
+    /// Cost of a model; of one that was not measured, the largest known cost.
     pub(crate) fn model(&self, id: &str) -> f64 {
         or_largest(&self.model_ns, id)
     }

@@ -1,4 +1,4 @@
-//! The rules for a scene's device, and what may be chosen instead of it.
+//! Rules for a scene's device, and the settings a user states in place of the scene's.
 
 use std::collections::BTreeMap;
 
@@ -14,38 +14,38 @@ use crate::output::named;
 pub(crate) use crate::output::stem;
 use crate::rules as rule;
 
-/// The setting that names a library of code; a scene, which may come from anyone, must not have it.
+/// The setting that names a library to load; not allowed in a scene, which may come from an untrusted source.
 const DRIVER: &str = "driver";
 
-/// What is said of the device when a scene is loaded; it goes before what the scene says.
+/// Device options of the program that loads a scene; they take precedence over the scene's.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DeviceOverride {
-    /// Another adapter; nothing of the scene's `device` is then left.
+    /// Another adapter; the scene's `device` is then ignored.
     pub adapter: Option<String>,
     /// Another profile.
     pub profile: Option<String>,
-    /// Settings as the adapter reads them; relative paths are left as they are.
+    /// Settings in the adapter's syntax; relative paths are not resolved.
     pub settings: BTreeMap<String, String>,
-    /// The device will not be opened: the scene's own profile and what it says of the hardware are taken as they
-    /// are, to validate, to plan, or to render to a file. Never set it for a device that plays.
+    /// The device will not be opened: the scene's own profile and hardware settings are accepted, in order to
+    /// validate, plan, or render to a file. Never set it for a device that plays.
     pub rehearsal: bool,
-    /// The motion is given as the scene plays: settings that nobody states have their live defaults.
+    /// The motion is given while the scene plays: unset settings get their live defaults.
     pub live: bool,
-    /// Another [`DeviceChoice::quantity_gain`].
+    /// Replaces [`DeviceChoice::quantity_gain`].
     pub quantity_gain: Option<f64>,
-    /// What a setting that names a file is when nobody says; absent: the scene's name with the ending of the
+    /// Default of an unset setting that names a file; `None`: the scene's name with the extension of the
     /// format, in the current folder.
     pub output: Option<String>,
 }
 
 impl DeviceOverride {
-    /// The file that is written, in a format if one was said, when nobody names one.
+    /// The default output file, in a format if one is set.
     fn output(&self, stem: &str, format: Option<&String>) -> String {
         let usual = || named(stem, format.map_or("auto", String::as_str));
         self.output.clone().unwrap_or_else(usual)
     }
 
-    /// Puts adapter and profile into a scene's choice.
+    /// Replaces adapter and profile in a scene's choice.
     pub(crate) fn apply(&self, choice: &mut DeviceChoice) {
         if let Some(adapter) = &self.adapter {
             *choice = DeviceChoice {
@@ -60,7 +60,7 @@ impl DeviceOverride {
     }
 }
 
-/// Checks the choice of a device; the settings that it comes to, when they can be used.
+/// Checks the choice of a device; returns the resulting settings if they are valid.
 pub(crate) fn check_device(
     choice: &DeviceChoice,
     (change, stem): (&DeviceOverride, &str),
@@ -91,7 +91,7 @@ pub(crate) fn check_device(
     Some(settings)
 }
 
-/// The settings that a person, a profile and a scene come to.
+/// Resolves the settings of the user, the profile and the scene.
 fn settle(
     choice: &DeviceChoice,
     change: &DeviceOverride,
@@ -104,7 +104,7 @@ fn settle(
     let mut profile = change.profile.as_deref();
     let is_hardware = |s: &Setting| s.from_scene == FromScene::Never;
     if change.rehearsal {
-        tell_of_hardware(descriptor, &asked, findings);
+        report_hardware(descriptor, &asked, findings);
         for (name, value) in std::mem::take(&mut asked) {
             given.entry(name).or_insert(value);
         }
@@ -113,7 +113,7 @@ fn settle(
         profile = profile.or(choice.profile.as_deref());
     } else if let (None, Some(named)) = (profile, &choice.profile) {
         findings.add(rule::DEVICE_HARDWARE, "/device/profile", format!(
-            "the scene's profile {named} is not used: it describes the hardware; if that is yours, give --profile {named}"
+            "the scene's profile {named} is ignored, since it describes the hardware; if it matches yours, give --profile {named}"
         ));
     }
     for setting in descriptor.settings.iter().filter(|s| s.default.is_none()) {
@@ -139,8 +139,8 @@ fn settle(
     Some(settings)
 }
 
-/// Says of settings that a player will not take from the scene that a rehearsal does.
-fn tell_of_hardware(
+/// Reports settings that a rehearsal takes from the scene but a player does not.
+fn report_hardware(
     descriptor: &Descriptor,
     asked: &BTreeMap<String, String>,
     findings: &mut Findings,
@@ -149,7 +149,7 @@ fn tell_of_hardware(
     for Setting { name, .. } in descriptor.settings.iter().filter(is_asked) {
         let pointer = format!("/device/settings/{}", escape(name));
         findings.add(rule::DEVICE_HARDWARE, pointer, format!(
-            "{name} is planned with as the scene states it; a player takes it from a profile or the command line, and \
+            "the plan uses the scene's {name}; a player takes it from a profile or the command line, and \
              a scene can at most ask for a lower limit or a longer ramp"
         ));
     }
@@ -164,7 +164,7 @@ fn add_error(error: DeviceError, findings: &mut Findings) {
     findings.add(rule::DEVICE_SETTING, pointer, error.to_string());
 }
 
-/// The scene's settings as text, without files, which it must not name; none when one of them is not usable.
+/// The scene's settings as text, except files, which a scene must not name; `None` if a setting is invalid.
 fn texts(
     choice: &DeviceChoice,
     descriptor: &Descriptor,
@@ -175,18 +175,20 @@ fn texts(
     for (name, value) in &choice.settings {
         let pointer = format!("/device/settings/{}", escape(name));
         let Some(text) = text(value) else {
-            let message = "a setting is text, a number, true or false; write one of these";
+            let message = "invalid type of a setting; write text, a number, true or false";
             findings.add(rule::DEVICE_SETTING, pointer, message.to_owned());
             usable = false;
             continue;
         };
         if name == DRIVER {
-            let message = format!("{text} is code to be loaded; name it by --set {DRIVER}={text}");
+            let message = format!(
+                "{text} is a library to load, which a scene must not name; use --set {DRIVER}={text}"
+            );
             findings.add(rule::DEVICE_PATH_UNSAFE, pointer, message);
             usable = false;
         } else if is_path(descriptor, name) {
             let message = format!(
-                "{text} is not written: a scene names no file; name it by --set {name}=FILE"
+                "{text} is ignored: a scene must not name output files; use --set {name}=FILE"
             );
             findings.add(rule::DEVICE_PATH_UNUSED, pointer, message);
         } else {
@@ -254,7 +256,7 @@ fn check_fit(choice: &DeviceChoice, able: &Capabilities, findings: &mut Findings
         let fits = value.is_none() || fits;
         let pointer = format!("/device/{key}");
         findings.require(fits, rule::DEVICE_FIELD_UNFIT, pointer, || {
-            format!("{key} is for a device of {unit}, and this one takes {takes}; leave it out")
+            format!("{key} applies to devices of {unit}, and this one takes {takes}; leave it out")
         });
     }
     let is_own = choice.levels == Levels::Own;
@@ -262,13 +264,13 @@ fn check_fit(choice: &DeviceChoice, able: &Capabilities, findings: &mut Findings
         !(is_own && able.quantity.is_physical()),
         rule::DEVICE_FIELD_UNFIT,
         "/device/levels",
-        || format!("the device takes {takes}, which is never normalised; leave it out"),
+        || format!("levels apply to devices of FS or V, and this one takes {takes}; leave it out"),
     );
     findings.require(
         is_own || choice.reference_rms.is_none(),
         rule::DEVICE_FIELD_UNFIT,
         "/device/reference_rms",
-        || "reference_rms goes with the levels `own`; add these, or leave it out".to_owned(),
+        || "reference_rms applies to the levels `own` only; add \"levels\": \"own\", or leave it out".to_owned(),
     );
     let (drive_v, limit_v) = (
         choice.drive_v.unwrap_or(0.0),
@@ -282,7 +284,7 @@ fn check_fit(choice: &DeviceChoice, able: &Capabilities, findings: &mut Findings
     );
 }
 
-/// Whether the device takes what the assets hold.
+/// Checks that the device takes the quantity of the assets.
 fn check_quantity(
     choice: &DeviceChoice,
     able: &Capabilities,
@@ -295,9 +297,9 @@ fn check_quantity(
     }
 }
 
-/// Why assets of a quantity cannot be played on a device with this gain, or without one; none when they can.
+/// Reason why a device cannot play assets of a quantity with this gain, or without one; `None` if it can.
 ///
-/// A drive's voltage adds a lateral force; sound is brought to its level from any unit.
+/// An electrovibration drive adds a lateral force; sound is scaled to its level from any unit.
 pub(crate) fn quantity_misfit(held: Held, device: Quantity, gain: Option<f64>) -> Option<String> {
     let takes = match device {
         Quantity::DisplayVoltage => Quantity::LateralForce.name(),
@@ -309,13 +311,14 @@ pub(crate) fn quantity_misfit(held: Held, device: Quantity, gain: Option<f64>) -
         None if is_sound || held.name() == takes => None,
         None => Some(format!(
             "the assets hold {held} in {unit}, and the device takes {takes}; choose a device or a setting that takes \
-             {held} (a file: quantity={held}), or state what one {unit} is there by quantity_gain"
+             {held} (a file: quantity={held}), or give the device units per {unit} as quantity_gain"
         )),
         Some(_) if is_sound => Some(
-            "the device takes sound, whose level is not that of the assets; leave quantity_gain out".to_owned(),
+            "quantity_gain does not apply to sound, whose level is set by level_dbfs; leave it out"
+                .to_owned(),
         ),
         Some(_) if held.name() == takes => Some(format!(
-            "the assets hold what the device takes, {held}; leave quantity_gain out (gain_db is a gain)"
+            "assets and device have the same quantity, {held}; leave quantity_gain out (for a gain use gain_db)"
         )),
         Some(_) => None,
     }
@@ -325,7 +328,8 @@ pub(crate) fn quantity_misfit(held: Held, device: Quantity, gain: Option<f64>) -
 mod tests {
     use super::*;
 
-    /// Devices know no textures, so that both have a list of quantities: they agree.
+    /// Assets and devices have separate lists of quantities, since devices do not depend on textures; the
+    /// lists must match.
     #[test]
     fn devices_have_every_quantity_that_assets_have() {
         let physical: Vec<(&str, &str)> = Quantity::ALL

@@ -1,32 +1,32 @@
-//! Why a scene cannot be planned or played.
+//! Errors of planning and playing a scene.
 
 use std::path::PathBuf;
 
 /// An error of planning or playing a scene.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
-    /// A surface's asset, or its model, does not do.
+    /// A surface's asset or its model cannot be used.
     #[error("surface {surface} ({}): {source}", .asset.display())]
     Surface {
         /// Index of the surface.
         surface: usize,
         /// Its asset.
         asset: PathBuf,
-        /// What is wrong.
+        /// The error.
         source: htex::Error,
     },
-    /// A surface has no representation that can be played here.
+    /// No model of a surface's representations is available.
     #[error(
-        "surface {surface}: none of its representations ({there}) has a model here; \
-         `htex plugin list` shows which there are"
+        "surface {surface}: no model of its representations ({there}) is available; \
+         `htex plugin list` shows the available ones"
     )]
     NoModel {
         /// Index of the surface.
         surface: usize,
-        /// The models the asset names.
+        /// The models of the asset's representations.
         there: String,
     },
-    /// No representation is near enough.
+    /// No representation is within the error budget.
     #[error(
         "surface {surface}: no representation comes within {wanted_db} dB; the nearest is {model} \
          at {nearest_db:.2} dB: raise budget.max_error_db"
@@ -36,12 +36,12 @@ pub enum SceneError {
         surface: usize,
         /// The budget, decibels.
         wanted_db: f64,
-        /// The nearest representation.
+        /// The representation with the smallest error.
         model: String,
         /// Its error, decibels.
         nearest_db: f64,
     },
-    /// No choice of representations is quick enough.
+    /// No choice of representations is within the time budget.
     #[error(
         "the quickest chain takes {quickest_ns:.1} ns a sample, and the budget is {wanted_ns} ns: \
          raise budget.ns_per_sample, or ask for a lower rate"
@@ -49,10 +49,10 @@ pub enum SceneError {
     TooSlow {
         /// The budget, nanoseconds.
         wanted_ns: f64,
-        /// What the quickest chain takes, nanoseconds.
+        /// Time of the fastest chain, nanoseconds.
         quickest_ns: f64,
     },
-    /// The quickest chain within the error budget takes too long.
+    /// The fastest chain within the error budget exceeds the time budget.
     #[error(
         "within {wanted_db} dB the quickest chain takes {quickest_ns:.1} ns a sample, and the budget is \
          {wanted_ns} ns: raise one of the two"
@@ -62,7 +62,7 @@ pub enum SceneError {
         wanted_db: f64,
         /// The time budget, nanoseconds.
         wanted_ns: f64,
-        /// What it takes, nanoseconds.
+        /// Time of the fastest chain within the error budget, nanoseconds.
         quickest_ns: f64,
     },
     /// The device does not run at the scene's rate.
@@ -73,41 +73,41 @@ pub enum SceneError {
         /// The device's rates.
         rates: String,
     },
-    /// The loudest texture is so far above the level that has the drive that the drive would hold more samples than is
-    /// allowed.
+    /// The loudest texture exceeds the reference level so far that more samples than allowed would be clipped
+    /// at the drive voltage.
     #[error(
-        "the loudest texture stands {above_db:.1} dB above the level that has the drive, so that {percent:.0} % of its \
-         samples would be held there ({most_percent} % are allowed): raise drive_v, lower the surface's gain, or choose another \
+        "the loudest texture is {above_db:.1} dB above the reference level of the drive, so that {percent:.0} % of its \
+         samples would be clipped ({most_percent} % are allowed): raise drive_v, lower the surface's gain, or choose another \
          representation"
     )]
     Clamped {
-        /// Of the loudest texture over the reference, decibels.
+        /// Level of the loudest texture relative to the reference level, decibels.
         above_db: f64,
-        /// Part of the samples, percent.
+        /// Clipped samples, percent.
         percent: f64,
-        /// What is allowed, percent.
+        /// Maximum allowed, percent.
         most_percent: f64,
     },
-    /// The device does not take what the assets hold.
+    /// The device does not take the quantity of the assets.
     #[error("{sentence}")]
     Quantity {
-        /// What to do.
+        /// The problem, and how to correct it.
         sentence: String,
     },
-    /// An effect that the chain cannot do without is switched off.
-    #[error("`{effect}` is off, and without it the scene cannot be played: {reason}")]
+    /// The scene switches off an effect that is required.
+    #[error("`{effect}` is off, but the scene cannot be played without it: {reason}")]
     Needed {
-        /// The effect.
+        /// Name of the effect.
         effect: String,
-        /// Why it is needed.
+        /// Reason why it is required.
         reason: String,
     },
     /// The rate of a model cannot be converted to the device's.
     #[error(transparent)]
     Rates(#[from] htex_dsp::resample::UnusableRates),
-    /// A motion that is no motion.
+    /// Invalid motion: not finite, or a negative force.
     #[error(
-        "a motion of {speed_mm_s} mm/s at {force_n} N; both must be finite, and the force not negative"
+        "invalid motion: {speed_mm_s} mm/s at {force_n} N; both must be finite, and the force not negative"
     )]
     Motion {
         /// Scanning speed, mm/s.

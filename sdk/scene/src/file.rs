@@ -1,4 +1,4 @@
-//! `*.scene.json`: what a scene says. `spec/scene-1.md` is the normative text.
+//! `*.scene.json`: the scene file format. `spec/scene-1.md` is the normative text.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -8,63 +8,63 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// The version of the format this crate reads and writes.
+/// Version of the format that this crate reads and writes.
 pub const VERSION: &str = "1.0";
 
-/// A scene: surfaces, how the finger moves over them, and the device it is felt on.
+/// A scene: surfaces, the motion of the finger over them, and the output device.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Scene {
     /// Version of the format, `MAJOR.MINOR`.
     #[schemars(extend("const" = VERSION))]
     pub htex_scene: String,
-    /// What can be touched.
+    /// The surfaces that can be touched.
     #[schemars(length(min = 1, max = 256))]
     pub surfaces: Vec<Surface>,
-    /// How the finger moves.
+    /// The motion of the finger.
     pub motion: Motion,
-    /// What it is felt on; a file of newtons when nothing is said.
+    /// The output device; default: a file of newtons.
     #[serde(default)]
     pub device: DeviceChoice,
-    /// Length, seconds; absent: the trace's, and without end for other motions.
+    /// Duration, seconds. Default: that of the trace; endless for other motions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e9), extend("exclusiveMinimum" = 0))]
     pub duration_s: Option<f64>,
-    /// The same seed gives the same samples.
+    /// Seed of all random numbers: the same seed gives the same samples.
     #[serde(default)]
     pub seed: u64,
-    /// What chooses the representation of surfaces that leave it to the scene.
+    /// Limits for the choice of representations of surfaces that do not name one.
     #[serde(default, skip_serializing_if = "Budget::is_empty")]
     pub budget: Budget,
-    /// Effects that are not left to the planner.
+    /// Effects that are switched explicitly instead of by the planner.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub effects: BTreeMap<Effect, Switch>,
 }
 
-/// A texture, and where it lies.
+/// A texture and its region.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Surface {
-    /// The asset; a relative path starts at the scene's folder.
+    /// Path of the asset; relative paths start at the scene's folder.
     pub asset: PathBuf,
-    /// Where it lies; absent: everywhere.
+    /// Region of the surface; default: everywhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub region: Option<Region>,
-    /// Which of two overlapping surfaces is felt: the higher one.
+    /// Layer: of overlapping surfaces the one on the highest layer is felt.
     #[serde(default)]
     pub layer: i32,
-    /// Factor on its level, 0 to 1000.
+    /// Factor on the level, 0 to 1000.
     #[serde(default = "one")]
     #[schemars(range(min = 0, max = 1000))]
     pub gain: f64,
-    /// A model by its id or short name, or `auto`.
+    /// Id or short name of a model, or `auto`.
     #[serde(default = "auto")]
     #[schemars(regex(pattern = r"\S"))]
     pub representation: String,
 }
 
 impl Surface {
-    /// A surface that lies everywhere, as it was recorded.
+    /// A surface that covers everything and plays as recorded.
     pub fn everywhere(asset: &Path) -> Self {
         Self {
             asset: asset.to_owned(),
@@ -76,30 +76,30 @@ impl Surface {
     }
 }
 
-/// A rectangle, edges included at the lower end and excluded at the upper.
+/// A rectangle; lower edges are included, upper edges excluded.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Region {
-    /// From and to along x, mm.
+    /// Lower and upper x, mm.
     pub x_mm: [f64; 2],
-    /// From and to along y, mm.
+    /// Lower and upper y, mm.
     pub y_mm: [f64; 2],
 }
 
-/// How the finger moves.
+/// The motion of the finger.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Motion {
-    /// Always alike.
+    /// Constant speed, force and direction.
     Constant(Constant),
-    /// As in a CSV with the columns `t_s`, `x_mm`, `y_mm`, `force_n`; a relative path starts at the
-    /// scene's folder.
+    /// A recorded motion: path of a CSV with the columns `t_s`, `x_mm`, `y_mm`, `force_n`; relative paths
+    /// start at the scene's folder.
     Trace(PathBuf),
-    /// As a person moves it, while the scene plays.
+    /// Controlled by a person while the scene plays.
     Live,
 }
 
-/// A motion that is always alike.
+/// A motion of constant speed, force and direction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Constant {
@@ -109,80 +109,81 @@ pub struct Constant {
     /// Normal force, newtons.
     #[schemars(range(min = 0, max = 1e3))]
     pub force_n: f64,
-    /// Where it starts, x and y, mm; only a single surface without a region goes without it.
+    /// Start position, x and y, mm; optional only with a single surface without a region.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from_mm: Option<[f64; 2]>,
-    /// Whither it goes, degrees from the x axis towards the y axis.
+    /// Direction of the motion, degrees from the x axis towards the y axis.
     #[serde(default)]
     #[schemars(range(min = -3600, max = 3600))]
     pub direction_deg: f64,
 }
 
-/// The device, and how the scene is brought to it.
+/// The output device, and the mapping of the scene to it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct DeviceChoice {
-    /// The adapter by its id or short name.
+    /// Id or short name of the device adapter.
     #[serde(default = "file_adapter")]
     pub adapter: String,
-    /// One of the adapter's profiles.
+    /// Name of one of the adapter's profiles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub profile: Option<String>,
-    /// Settings of the adapter: text, numbers, or true and false.
+    /// Settings of the adapter: strings, numbers or booleans.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub settings: BTreeMap<String, Value>,
-    /// Rate of the samples, hertz; absent: the device's own.
+    /// Sampling rate, hertz; default: the device's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e7), extend("exclusiveMinimum" = 0))]
     pub rate_hz: Option<f64>,
-    /// Gain on what a device of newtons, or of another quantity of touch, gets, decibels.
+    /// Gain for devices of newtons or another physical quantity, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -120, max = 120))]
     pub gain_db: Option<f64>,
-    /// What one unit of the assets' quantity is in the device's unit, where they differ: with 0.1, a device of
-    /// newtons plays an acceleration of 1 m/s2 as 0.1 N. Without it such assets are refused.
+    /// Device units per unit of the assets' quantity, required if the quantities differ: with 0.1, a device
+    /// of newtons plays an acceleration of 1 m/s2 as 0.1 N. Without it such assets are refused.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-9, max = 1e9))]
     pub quantity_gain: Option<f64>,
-    /// Largest voltage of an electrovibration drive, volts: V_g of the paper is this over sqrt(2).
-    /// Absent: half of the device's limit.
+    /// Largest voltage of an electrovibration drive, volts: sqrt(2) times V_g of the paper. Default: half of
+    /// the device's limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e4), extend("exclusiveMinimum" = 0))]
     pub drive_v: Option<f64>,
-    /// RMS of a preview by ear, decibels below full scale (so not above 0); absent: -18.
+    /// RMS level of a preview by ear, decibels relative to full scale (at most 0); default: -18.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -120, max = 0))]
     pub level_dbfs: Option<f64>,
-    /// Whether the drive, or the level of a preview, is that of the scene's loudest texture.
+    /// Whether the drive voltage or the preview level applies to the scene's loudest texture or to a
+    /// reference level.
     #[serde(default, skip_serializing_if = "Levels::is_normalised")]
     pub levels: Levels,
-    /// With levels of their own: the RMS that has the drive, or the level of a preview, in the assets' unit. Absent: that of the
-    /// strongest representation of all that the scene's surfaces have.
+    /// With the levels `own`: the RMS that is mapped to the drive voltage or the preview level, in the
+    /// assets' unit. Default: that of the strongest representation of all the scene's surfaces.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reference_rms: Option<f64>,
     /// Factor on all frequencies of a preview by ear.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.05, max = 20))]
     pub pitch: Option<f64>,
-    /// Response of finger and display, to be compensated: a CSV with the columns `frequency_hz`,
-    /// `magnitude`; a relative path starts at the scene's folder.
+    /// Frequency response of finger and display, to be compensated: path of a CSV with the columns
+    /// `frequency_hz`, `magnitude`; relative paths start at the scene's folder.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub response: Option<PathBuf>,
-    /// How far below its maximum the response is compensated at most, decibels.
+    /// Largest depth below the response's maximum that is compensated, decibels.
     #[serde(default = "depth", skip_serializing_if = "is_depth")]
     #[schemars(range(min = 0, max = 120))]
     pub response_depth_db: f64,
 }
 
-/// What a device of sound or voltages is given the levels of textures as.
+/// Normalisation of levels on devices of sound or voltages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Levels {
-    /// The loudest texture of the scene, by the representation that plays it, has the drive or the level given: all
-    /// representations are as strong.
+    /// The loudest texture of the scene, in the representation that plays it, gets the drive voltage or
+    /// preview level: a texture is equally strong in every representation.
     #[default]
     Normalised,
-    /// A reference level has it, whatever plays: each representation keeps its own energy.
+    /// A reference level gets it, whichever representation plays: each representation keeps its own energy.
     Own,
 }
 
@@ -192,19 +193,20 @@ impl Levels {
     }
 }
 
-/// What chooses representations. With both, the nearest within the time must be near enough.
+/// Limits for the choice of representations. With both limits, the representation of least error within the
+/// time limit must be within the error limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Budget {
-    /// Most time a sample of the whole chain may take, nanoseconds.
+    /// Maximum time of one sample of the whole chain, nanoseconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e12), extend("exclusiveMinimum" = 0))]
     pub ns_per_sample: Option<f64>,
-    /// Largest error of a representation, decibels.
+    /// Maximum error of a representation, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e12), extend("exclusiveMinimum" = 0))]
     pub max_error_db: Option<f64>,
-    /// What the error is: which measure `max_error_db` bounds and the nearest has least of.
+    /// The error measure that `max_error_db` limits and the choice minimises.
     #[serde(default, skip_serializing_if = "is_default")]
     pub error: ErrorMeasure,
 }
@@ -213,44 +215,44 @@ fn is_default(measure: &ErrorMeasure) -> bool {
     *measure == ErrorMeasure::default()
 }
 
-/// What a scene may call for, in the order in which a chain has it.
+/// Effects of a scene, in the order of the chain.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
 )]
 #[serde(rename_all = "snake_case")]
 pub enum Effect {
-    /// Parameters and level between exploration conditions, as speed and force change.
+    /// Interpolation of parameters and level between exploration conditions as speed and force change.
     Interpolation,
-    /// Temporal frequencies in proportion to the speed, where an asset knows only one speed.
+    /// Scaling of temporal frequencies with the speed, for assets with a single speed.
     SpeedScaling,
-    /// Level in proportion to the normal force, where an asset knows only one force.
+    /// Scaling of the level with the normal force, for assets with a single force.
     ForceScaling,
-    /// From one surface to the next, and off and on.
+    /// Cross-fades between surfaces, and fades at their edges.
     Crossfade,
-    /// The response of finger and display, inverted.
+    /// Compensation of the response of finger and display.
     Compensation,
-    /// From the rate of the models to the rate of the device.
+    /// Conversion from the rate of the models to the rate of the device.
     Resampling,
-    /// The sign of the force, against the stroke.
+    /// Sign of the force, opposite to the stroke.
     Direction,
-    /// From newtons to what the device wants.
+    /// Conversion from newtons to the device's quantity.
     Gain,
-    /// Shift and square root, for friction that goes with the square of a voltage.
+    /// Shift and square root, for friction proportional to the square of a voltage.
     SquareRoot,
-    /// Silence without contact or slip, and at both ends.
+    /// Silence without contact or slip, and at the start and end.
     Contact,
     /// Amplitude modulation on a carrier.
     Carrier,
-    /// Never above the device's limit.
+    /// Limit to the device's range.
     Limiter,
-    /// Noise that hides the steps of an integer file.
+    /// Dither noise for integer files.
     Dither,
-    /// Rounding to the steps of the device.
+    /// Rounding to the resolution of the device.
     Quantisation,
 }
 
 impl Effect {
-    /// All effects, in the order in which a chain has them.
+    /// All effects, in the order of the chain.
     pub const ALL: [Self; 14] = [
         Self::Interpolation,
         Self::SpeedScaling,
@@ -268,7 +270,7 @@ impl Effect {
         Self::Quantisation,
     ];
 
-    /// The name in a scene, such as `speed_scaling`.
+    /// Name of the effect in a scene, such as `speed_scaling`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Interpolation => "interpolation",
@@ -289,16 +291,16 @@ impl Effect {
     }
 }
 
-/// Whether an effect is in.
+/// Switch of an effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Switch {
-    /// When the scene calls for it.
+    /// Included if the scene requires it.
     #[default]
     Auto,
-    /// In any case; without a call for it, it changes nothing.
+    /// Always included; if not required, it changes no samples.
     On,
-    /// In no case.
+    /// Never included.
     Off,
 }
 

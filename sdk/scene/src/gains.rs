@@ -1,5 +1,5 @@
-//! How strong a drive each person wants to feel a surface on a device: V_g of the paper, found by
-//! adjustment, kept in a file of the user's own.
+//! Drive voltages by person, texture and device: V_g of the paper, found by adjustment and stored in a file
+//! of the user's own.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -9,53 +9,55 @@ use std::path::{Path, PathBuf};
 use htex_format::Manifest;
 use serde::{Deserialize, Serialize};
 
-/// Largest file that is read, bytes.
+/// Size limit of a gains file, bytes.
 const MAX_BYTES: u64 = 16 << 20;
 
-/// What a gain is for.
+/// Key of a gain: person, texture and device.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct GainKey {
-    /// Who feels it.
+    /// Name of the person.
     pub person: String,
-    /// What is felt: see [`texture_id`]. Empty in entries of old, which have a hash instead.
+    /// Identifier of the texture: see [`texture_id`]. Empty in legacy entries, which have a hash instead.
     #[serde(default)]
     pub texture: String,
     /// Id of the device's adapter.
     pub device: String,
-    /// The device's profile; empty when there is none.
+    /// The device's profile; empty if there is none.
     pub profile: String,
 }
 
-/// A gain that was found.
+/// An adjusted gain.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Gain {
-    /// What it is for.
+    /// Person, texture and device.
     #[serde(flatten)]
     pub key: GainKey,
-    /// Name of the file it was found with, for people.
+    /// Name of the file it was adjusted with, for display.
     pub file: String,
     /// Largest voltage of the drive, volts: V_g times sqrt(2).
     pub drive_v: f64,
-    /// RMS that had this drive, in the assets' unit: what other representations are measured by where levels are not normalised.
+    /// Reference level of this drive voltage, RMS in the assets' unit; other representations are scaled
+    /// relative to it if levels are not normalised.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reference_rms: Option<f64>,
-    /// Names of the files that the texture was recorded in: they tell two textures of one name apart.
+    /// Names of the texture's recordings; they distinguish textures of the same name.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub recordings: Vec<String>,
-    /// BLAKE3 hash of the asset or scene, hexadecimal, by which gains were kept before textures had names.
+    /// BLAKE3 hash of the asset or scene, hexadecimal; the identifier in legacy entries.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blake3: Option<String>,
 }
 
-/// The gains in a file.
+/// The contents of a gains file.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Gains {
-    /// All of them, each key once.
+    /// All gains; keys are unique.
     pub gains: Vec<Gain>,
 }
 
-/// What assets of one texture share, however and whenever they were fitted: the name and, where there is one, the
-/// author, as [`texture_name`] has them. For several textures that are felt together: all of them, in order.
+/// Identifier that all assets of one texture share, whenever and however they were fitted: the name and, if
+/// present, the author, both normalised by [`texture_name`]. For several textures played together, all of
+/// them in order.
 pub fn texture_id<'a>(textures: impl IntoIterator<Item = &'a Manifest>) -> String {
     let id = |texture: &Manifest| match texture.author.as_deref().map(texture_name) {
         Some(author) if !author.is_empty() => {
@@ -67,13 +69,13 @@ pub fn texture_id<'a>(textures: impl IntoIterator<Item = &'a Manifest>) -> Strin
     Vec::from_iter(ids).join(" + ")
 }
 
-/// A name in lower case, its words with one space between them.
+/// Normalises a name: lower case, words separated by single spaces.
 pub fn texture_name(name: &str) -> String {
     let words: Vec<String> = name.split_whitespace().map(str::to_lowercase).collect();
     words.join(" ")
 }
 
-/// Names of the files that textures were recorded in, in order.
+/// Names of the recordings of textures, in order.
 pub fn recordings_of<'a>(textures: impl IntoIterator<Item = &'a Manifest>) -> Vec<String> {
     let recordings = textures.into_iter().flat_map(|t| &t.provenance.recordings);
     let names: BTreeSet<String> = recordings.map(|source| source.file.clone()).collect();
@@ -81,46 +83,46 @@ pub fn recordings_of<'a>(textures: impl IntoIterator<Item = &'a Manifest>) -> Ve
 }
 
 impl Gains {
-    /// The hash of an asset or scene, as entries of old have it.
+    /// Hash of an asset or scene, as in legacy entries.
     ///
     /// # Errors
-    /// When the file cannot be read.
+    /// If the file cannot be read.
     pub fn hash_of(file: &Path) -> io::Result<String> {
         Ok(blake3::hash(&fs::read(file)?).to_hex().to_string())
     }
 
-    /// Where the user's gains are kept: `gains.json` in `$HTEX_CONFIG_DIR`, else in `htex` in the
-    /// user's configuration folder. None when there is no such folder.
+    /// Path of the user's gains: `gains.json` in `$HTEX_CONFIG_DIR`, else in `htex` in the user's
+    /// configuration folder. `None` if there is no such folder.
     pub fn user_file() -> Option<PathBuf> {
         htex_host::folders::config().map(|folder| folder.join("gains.json"))
     }
 
-    /// Reads a file of gains; one that is not there has none.
+    /// Reads a gains file; a missing file gives no gains.
     ///
     /// # Errors
-    /// When it cannot be read, or is something else.
+    /// If it cannot be read, is too large, or is not a gains file.
     pub fn load(path: &Path) -> io::Result<Self> {
         let bytes = match fs::metadata(path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Self::default()),
             Err(error) => return Err(error),
             Ok(found) if found.len() > MAX_BYTES => {
-                return Err(io::Error::other("it is too large to be a file of gains"));
+                return Err(io::Error::other("the file is too large for a gains file"));
             }
             Ok(_) => fs::read(path)?,
         };
         Ok(serde_json::from_slice(&bytes)?)
     }
 
-    /// Reads the file, changes what it holds, and writes it, whole or not at all; programs that do so at once wait for
-    /// each other. Its folder is made when it is not there.
+    /// Reads the file, applies `change`, and replaces the file atomically; concurrent programs wait for each
+    /// other. Creates the folder if it is missing.
     ///
     /// # Errors
-    /// As [`Self::load`], and what the system says of writing.
+    /// As [`Self::load`], and I/O errors of writing.
     pub fn update(path: &Path, change: impl FnOnce(&mut Self)) -> io::Result<()> {
         if let Some(folder) = path.parent() {
             fs::create_dir_all(folder)?;
         }
-        // Beside it: the file itself is replaced.
+        // A lock file next to it, since the file itself is replaced.
         let lock = fs::File::create(path.with_extension("lock"))?;
         lock.lock()?;
         let mut gains = Self::load(path)?;
@@ -129,13 +131,13 @@ impl Gains {
         htex_format::write_file(path, text.as_bytes())
     }
 
-    /// The gain of a key; else one of old, of the same person and device, for the file of this hash.
+    /// The gain of a key; else the legacy entry of the same person and device for a file with this hash.
     pub fn find(&self, key: &GainKey, blake3: &str) -> Option<&Gain> {
         let exact = self.gains.iter().find(|gain| gain.key == *key);
         exact.or_else(|| self.gains.iter().find(|gain| gain.is_of_old(key, blake3)))
     }
 
-    /// Puts a gain in, in place of an earlier one, and of one of old for the file of this hash.
+    /// Inserts a gain in place of an earlier one and of a legacy entry for a file with this hash.
     pub fn put(&mut self, gain: Gain, blake3: &str) {
         let replaced = |other: &Gain| other.key == gain.key || other.is_of_old(&gain.key, blake3);
         self.gains.retain(|other| !replaced(other));

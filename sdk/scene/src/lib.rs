@@ -1,5 +1,5 @@
-//! Scenes: surfaces, a motion, a device. The planner finds the shortest chain of stages that the
-//! scene calls for and says why each is in or out; the renderer runs just that chain.
+//! Scenes: surfaces, a motion, and a device. The planner finds the shortest chain of stages for a scene and
+//! states the reason for each stage that is included or left out; the renderer runs exactly that chain.
 #![forbid(unsafe_code)]
 
 mod ahead;

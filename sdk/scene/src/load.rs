@@ -1,4 +1,4 @@
-//! A scene with the files it names, ready to be planned.
+//! Loading a scene with the files it names.
 
 use std::collections::HashMap;
 use std::fs::File;
@@ -18,58 +18,58 @@ use crate::rules as rule;
 use crate::trace::Trace;
 use crate::validate::{Limits, read_scene};
 
-/// What a scene is loaded with.
+/// Models and devices with which a scene is loaded.
 #[derive(Clone, Copy)]
 pub struct Surroundings<'a> {
-    /// The models that play its assets.
+    /// The available models.
     pub models: &'a Registry,
-    /// Whether models that assets bring along may run (in their sandbox).
+    /// Whether models embedded in assets may run (in their sandbox).
     pub embedded: bool,
-    /// The devices there are.
+    /// The available devices.
     pub devices: &'a Devices,
 }
 
-/// A scene and all that it names.
+/// A scene with its files.
 #[derive(Debug, Clone)]
 pub struct LoadedScene {
-    /// What the file says; its device with what was overridden.
+    /// The contents of the file, with overrides applied to its device.
     pub scene: Scene,
-    /// Where relative paths start.
+    /// Folder that relative paths start from.
     pub folder: PathBuf,
     /// The surfaces' assets, one for each surface.
     pub assets: Vec<Asset>,
-    /// The motion, when it is a trace.
+    /// The motion, if it is a trace.
     pub trace: Option<Trace>,
     /// The response to compensate.
     pub response: Option<Response>,
-    /// The device's settings, to ask and to open it with.
+    /// The device's settings, for querying and opening it.
     pub settings: Settings,
-    /// Findings that are no errors.
+    /// Findings that are not errors.
     pub notes: Vec<Finding>,
 }
 
-/// A scene could not be loaded.
+/// Error: a scene cannot be loaded.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
-    /// The file could not be read at all.
+    /// The file cannot be read.
     #[error("cannot read {}: {error}", .path.display())]
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         #[source]
         error: io::Error,
     },
-    /// It is not a scene that can be played.
-    #[error("not a scene that can be played: {}", htex_format::summary(.findings))]
+    /// The scene is invalid.
+    #[error("invalid scene: {}", htex_format::summary(.findings))]
     Invalid {
-        /// Everything that was found, errors and others.
+        /// All findings, errors and others.
         findings: Vec<Finding>,
     },
 }
 
 impl LoadedScene {
-    /// The files it was read from, but for its own.
+    /// The files it was read from, except the scene file.
     pub fn inputs(&self) -> Vec<PathBuf> {
         let assets = self.scene.surfaces.iter().map(|surface| &surface.asset);
         let trace = match &self.scene.motion {
@@ -80,16 +80,17 @@ impl LoadedScene {
         all.map(|path| self.folder.join(path)).collect()
     }
 
-    /// What the assets hold, all of them the same.
+    /// The quantity of the assets; all have the same.
     pub fn quantity(&self) -> Quantity {
         let first = self.assets.first();
         first.map_or(Quantity::default(), Asset::quantity)
     }
 
-    /// Opens a scene file and all that it names.
+    /// Opens a scene file and the files it names.
     ///
     /// # Errors
-    /// [`LoadError::Invalid`] with every finding when one of them is an error.
+    /// [`LoadError::Invalid`] with all findings if at least one is an error; [`LoadError::Io`] if the file
+    /// cannot be read.
     pub fn open(
         path: &Path,
         around: &Surroundings<'_>,
@@ -98,8 +99,7 @@ impl LoadedScene {
         Self::from_bytes(path, &read_file(path)?, around, device)
     }
 
-    /// Opens a scene in memory and all that it names; `path` is where it would lie, and is not
-    /// opened.
+    /// Opens a scene in memory and the files it names; `path` is its notional location and is not opened.
     ///
     /// # Errors
     /// As [`Self::open`].
@@ -117,10 +117,10 @@ impl LoadedScene {
         finish(loaded, findings)
     }
 
-    /// Makes a scene of one surface, everywhere, without a file.
+    /// Makes a scene with one surface that covers everything, without a file.
     ///
     /// # Errors
-    /// As [`Self::open`]; pointers are those of the scene file that would say the same.
+    /// As [`Self::open`]; pointers refer to the equivalent scene file.
     pub fn of_asset(
         asset: &Path,
         motion: Motion,
@@ -146,10 +146,10 @@ impl LoadedScene {
     }
 }
 
-/// Validates a scene file with all that it names.
+/// Validates a scene file and the files it names.
 ///
 /// # Errors
-/// When the file cannot be read.
+/// If the file cannot be read.
 pub fn validate(path: &Path, around: &Surroundings<'_>) -> Result<Report, LoadError> {
     let rehearsal = DeviceOverride {
         rehearsal: true,
@@ -179,7 +179,7 @@ fn finish(loaded: Option<LoadedScene>, findings: Findings) -> Result<LoadedScene
     }
 }
 
-/// The bytes of a file; of one that is too large, no more is read than shows it.
+/// Reads a file up to one byte above the size limit.
 fn read_file(path: &Path) -> Result<Vec<u8>, LoadError> {
     let most = Limits::default().file_bytes + 1;
     let mut bytes = Vec::new();
@@ -197,7 +197,7 @@ fn folder(path: &Path) -> PathBuf {
     path.parent().unwrap_or(Path::new("")).to_owned()
 }
 
-/// Opens all that a scene names; none when something is missing, and findings say what.
+/// Opens the files of a scene; `None` if one is missing, with findings for each.
 fn load(
     mut scene: Scene,
     folder: PathBuf,
@@ -216,7 +216,7 @@ fn load(
     let settings = check_device(&scene.device, device, around.devices, held, findings);
     let assets = assets?;
     check_quantities(&assets, findings);
-    // A motion that is not valid has its finding already.
+    // An invalid motion has a finding already.
     if !findings.has_errors() {
         crate::beyond::check(&scene, &assets, trace.as_ref(), findings);
     }
@@ -234,7 +234,7 @@ fn load(
     })
 }
 
-/// The assets of all surfaces, each file opened once.
+/// The assets of all surfaces; each file is opened once.
 fn open_assets(
     scene: &Scene,
     folder: &Path,
@@ -283,7 +283,7 @@ fn open_asset(
     })
 }
 
-/// Finds an asset that holds another quantity than the first.
+/// Reports assets whose quantity differs from that of the first.
 fn check_quantities(assets: &[Asset], findings: &mut Findings) {
     let Some(first) = assets.first().map(Asset::quantity) else {
         return;
@@ -296,7 +296,7 @@ fn check_quantities(assets: &[Asset], findings: &mut Findings) {
             format!("/surfaces/{i}/asset"),
             || {
                 format!(
-                    "the asset holds {held} in {}, that of the first surface {first} in {}",
+                    "the asset holds {held} in {}, and the first surface's asset {first} in {}",
                     held.unit(),
                     first.unit()
                 )
@@ -305,14 +305,14 @@ fn check_quantities(assets: &[Asset], findings: &mut Findings) {
     }
 }
 
-/// Whether it is a file, or nothing: a scene may come from anyone, and a device or a pipe may never
-/// end.
+/// Whether the path is a regular file or missing. Scenes may come from untrusted sources, and reading a
+/// device or a pipe may never end.
 fn may_be_read(path: &Path) -> bool {
     std::fs::metadata(path).map_or(true, |what| what.is_file())
 }
 
 fn no_file(path: &Path) -> String {
-    format!("{} is no file; name one", path.display())
+    format!("{} is not a regular file; name one", path.display())
 }
 
 fn is_missing(error: &io::Error) -> bool {
@@ -341,7 +341,7 @@ fn check_representation(asset: &Asset, surface: &Surface, i: usize, findings: &m
             let first = tried.next().unwrap_or(Ok(()));
             first.or_else(|error| tried.find(Result::is_ok).unwrap_or(Err(error)))
         }
-        // It has its finding already.
+        // An empty name has a finding already.
         name if name.trim().is_empty() => Ok(()),
         name => source(name),
     };
@@ -372,7 +372,7 @@ fn open_trace(scene: &Scene, folder: &Path, findings: &mut Findings) -> Option<T
         "/duration_s",
         || {
             format!(
-                "{wanted} s are asked for and the trace ends after {there} s; the rest is silent"
+                "the duration is {wanted} s and the trace ends after {there} s; the rest is silent"
             )
         },
     );
@@ -386,7 +386,7 @@ fn open_response(scene: &Scene, folder: &Path, findings: &mut Findings) -> Optio
     opened(open, folder, path, rules, "/device/response", findings)
 }
 
-/// Finds a response that has nothing where the textures lie, and tells what one raises there.
+/// Reports a response that is zero in the band of the textures, and warns of what its compensation raises.
 fn check_response(
     response: &Response,
     assets: &[Asset],
@@ -402,7 +402,7 @@ fn check_response(
         "/device/response",
         || {
             format!(
-                "every magnitude from {} to {} Hz, where the textures lie, is 0; measure there",
+                "every magnitude from {} to {} Hz, the band of the textures, is 0; measure the response there",
                 band.low_hz, band.high_hz
             )
         },
@@ -411,12 +411,12 @@ fn check_response(
         findings.add(
             rule::RESPONSE_RAISED,
             "/device/response",
-            format!("the compensation raises {raised}, over where the response is largest"),
+            format!("the compensation raises {raised}, relative to the frequency of the largest response"),
         );
     }
 }
 
-/// What was opened; else the finding of a file that is not there or not valid.
+/// Opens a file; otherwise adds a finding that it is missing or invalid.
 fn opened<T>(
     open: impl Fn(&Path) -> Result<T, ReadError>,
     folder: &Path,

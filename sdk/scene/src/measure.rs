@@ -1,4 +1,4 @@
-//! Measures what models and stages cost on this machine.
+//! Measurement of the run times of models and stages on this machine.
 
 use std::collections::BTreeMap;
 use std::hint::black_box;
@@ -16,15 +16,15 @@ use crate::motion::Finger;
 use crate::stages::{EFFECTS, Level, Now, Place, Stage, resampling_macs};
 
 const BLOCK: usize = 64;
-/// Samples timed at a stretch: short enough to fall between two interruptions now and then.
+/// Samples per timed run: short enough that some runs are not interrupted.
 const STRETCH: usize = 2_048;
 const ROUNDS: usize = 60;
 
 impl Costs {
-    /// Measures all models of a registry, and all stages; takes about a second.
+    /// Measures all models of a registry and all stages; takes about a second.
     ///
     /// # Errors
-    /// When a model cannot be fitted or played.
+    /// If a model cannot be fitted or played.
     pub fn measure(models: &Registry, machine: &str) -> Result<Self, HostError> {
         let mut costs = Self {
             machine: machine.to_owned(),
@@ -41,7 +41,7 @@ impl Costs {
     }
 }
 
-/// The least time of many stretches, nanoseconds a sample: what is above it is the machine's.
+/// Minimum time over many runs, nanoseconds per sample; longer times are caused by interruptions.
 fn least(mut run: impl FnMut(&mut [f32])) -> f64 {
     let mut block = [0.0f32; BLOCK];
     let mut stretch = || {
@@ -54,7 +54,8 @@ fn least(mut run: impl FnMut(&mut [f32])) -> f64 {
     (0..ROUNDS).map(|_| stretch()).fold(f64::INFINITY, f64::min)
 }
 
-/// Nanoseconds a sample at the model's own rate, and for mixing parameters and changing to them.
+/// Time per sample at the model's own rate, and time of interpolating parameters and retuning, both in
+/// nanoseconds.
 fn measure_model(model: &LoadedModel) -> Result<(f64, f64), HostError> {
     let (one, other) = (fitted(model, 200.0)?, fitted(model, 300.0)?);
     let rate_hz = model.voice_rate_hz(&one, Band::TACTILE, 20_000.0)?;
@@ -76,7 +77,7 @@ fn measure_model(model: &LoadedModel) -> Result<(f64, f64), HostError> {
     Ok((steady, (retuned - steady).max(0.0) * BLOCK as f64))
 }
 
-/// Parameters for a textured spectrum that falls above `corner_hz`.
+/// Parameters of a noise-like spectrum that falls above `corner_hz`.
 fn fitted(model: &LoadedModel, corner_hz: f64) -> Result<Vec<f64>, HostError> {
     let band = Band::TACTILE;
     let grid = band.grid_hz();
@@ -99,7 +100,7 @@ fn mac_ns() -> f64 {
     least(|block| fir.process(block)) / taps as f64
 }
 
-/// What each stage costs at its own rate, multiplications of filters aside.
+/// Time per sample of each stage at its own rate, nanoseconds, without the multiplications of filters.
 fn stages(mac_ns: f64) -> Result<BTreeMap<String, f64>, UnusableRates> {
     let (call, part) = (example_call(), example_part());
     let mut costs = BTreeMap::new();
@@ -148,7 +149,7 @@ fn measure_stage(stage: &mut dyn Stage) -> f64 {
     (least(|block| stage.render(block, &mut source)) - alone).max(0.0)
 }
 
-/// A scene on an electrovibration display, for which every stage has something to do.
+/// A scene on an electrovibration display, in which every stage is active.
 fn example_call() -> Call {
     Call {
         device: Capabilities {

@@ -1,4 +1,4 @@
-//! Where the finger is, and how it moves, at any time of a scene.
+//! The position and motion of the finger over the time of a scene.
 
 use htex::exploration::{MIN_SLIDING_MM_S, slides};
 
@@ -6,37 +6,37 @@ use crate::file::{Constant, Motion, Region};
 use crate::load::LoadedScene;
 use crate::trace::Trace;
 
-/// A finger at one moment: the signed speed of a stroke, the force, and the place on the surfaces. [`Self::motion`] is what a
-/// voice follows of it; [`crate::file::Motion`] is the motion of a whole scene.
+/// Position, signed speed and force of the finger at one time. [`Self::motion`] is the part that a voice follows;
+/// [`crate::file::Motion`] is the motion of a whole scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finger {
     /// Scanning speed, mm/s; negative on the back stroke.
     pub speed_mm_s: f64,
     /// Normal force, newtons.
     pub force_n: f64,
-    /// Where it is, mm; none: on every surface that lies everywhere.
+    /// Position, mm; `None`: on every surface without a region.
     pub at_mm: Option<[f64; 2]>,
 }
 
 impl Finger {
-    /// A finger that touches nothing.
+    /// A finger without contact.
     pub const AWAY: Self = Self {
         speed_mm_s: 0.0,
         force_n: 0.0,
         at_mm: None,
     };
 
-    /// The motion that a voice follows: speed without its sign, and force.
+    /// The motion that a voice follows: the speed without its sign, and the force.
     pub fn motion(&self) -> htex::Motion {
         htex::Motion::new(self.speed_mm_s.abs(), self.force_n)
     }
 
-    /// Whether it slides over something.
+    /// Whether it is in contact and moving.
     pub fn slides(&self) -> bool {
         slides(self.speed_mm_s, self.force_n)
     }
 
-    /// Whether it is in a region; none lies everywhere.
+    /// Whether it is inside a region; `None` covers everything.
     pub(crate) fn is_in(&self, region: Option<&Region>) -> bool {
         match (region, self.at_mm) {
             (None, _) => true,
@@ -49,7 +49,7 @@ impl Finger {
     }
 }
 
-/// The finger over time.
+/// The motion of the finger over time.
 #[derive(Debug, Clone)]
 pub(crate) enum Course {
     Constant(Constant),
@@ -66,7 +66,7 @@ impl Course {
         }
     }
 
-    /// The finger at a time, seconds; away when the motion is live. Does not allocate.
+    /// The finger at `t_s` seconds; without contact if the motion is live. Does not allocate.
     pub(crate) fn at(&self, t_s: f64) -> Finger {
         match self {
             Self::Constant(constant) => Finger {
@@ -95,13 +95,13 @@ impl Course {
         }
     }
 
-    /// Whether the finger does the same all the time; its place aside.
+    /// Whether speed, force and direction are constant.
     pub(crate) fn is_constant(&self) -> bool {
         matches!(self, Self::Constant(_))
     }
 }
 
-/// The direction of the first stroke: where the finger first slides.
+/// Direction of the first stroke, at the first contact in motion.
 fn first_way(trace: &Trace) -> [f64; 2] {
     let moving = trace.t_s.iter().map(|t| trace.at(*t));
     let mut sliding = moving.filter(|point| point.speed_mm_s >= MIN_SLIDING_MM_S);

@@ -1,13 +1,13 @@
-//! What a file is called that a scene goes to when nobody names one.
+//! Default names of output files.
 
 use std::path::Path;
 
-/// Longest ending of a file's name, characters.
+/// Maximum length of a file extension, characters.
 const LONGEST_ENDING: usize = 8;
 
-/// The file in the current folder that a scene, or an asset, goes to when nobody names one: its own name with the ending
-/// of the format, which is `wav` where that is `auto` or no plain word. Whatever both hold, this is one name in
-/// the current folder, and no hidden file's.
+/// Default output file of a scene or an asset: its name with the extension of the format, in the current
+/// folder. The extension is `wav` if the format is `auto` or not a plain word. For any input the result is a
+/// single file name in the current folder and not a hidden file.
 ///
 /// ```
 /// # use htex_scene::output_name;
@@ -18,7 +18,7 @@ pub fn output_name(scene: &Path, format: &str) -> String {
     named(&stem(scene), format)
 }
 
-/// The name of the scene or asset in `path` without its ending; no hidden file's, whatever it is called.
+/// The file name of the scene or asset in `path` without its extension; never a hidden file's name.
 pub(crate) fn stem(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let stem = [".scene.json", ".json", ".htex"]
@@ -26,12 +26,12 @@ pub(crate) fn stem(path: &Path) -> String {
         .find_map(|ending| name.strip_suffix(ending));
     match stem.unwrap_or(&name).trim_start_matches('.') {
         "" => "scene".to_owned(),
-        // A separator elsewhere.
+        // Path separators of other systems.
         stem => stem.replace('\\', "_"),
     }
 }
 
-/// A stem with the ending of a format.
+/// A stem with the extension of a format.
 pub(crate) fn named(stem: &str, format: &str) -> String {
     let is_word = |text: &str| text.bytes().all(|byte| byte.is_ascii_alphanumeric());
     let ending = match format {

@@ -1,4 +1,4 @@
-//! `spec/scene-findings.md` and `spec/schemas/scene-1.json`, made from the code.
+//! Generation of `spec/scene-findings.md` and `spec/schemas/scene-1.json` from the code.
 
 use htex_format::rules_page;
 use serde_json::Value;
@@ -15,12 +15,12 @@ A finding has a code, a severity, a JSON pointer into the scene (empty for the f
 message. A scene can be played when no finding is an error. Codes never change their meaning.
 ";
 
-/// The page that explains every rule: `spec/scene-findings.md`.
+/// The page with all rules: `spec/scene-findings.md`.
 pub fn findings_page() -> String {
     rules_page(HEAD, RULES)
 }
 
-/// The JSON Schema of a scene of version 1.0: `spec/schemas/scene-1.json`.
+/// The JSON Schema of scenes of version 1.0: `spec/schemas/scene-1.json`.
 pub fn scene_schema() -> Value {
     htex_schema::document::<Scene>("scene-1.json", "Scene of htex 1")
 }

@@ -1,4 +1,4 @@
-//! The plan: which stages a scene needs, in which order, at which rate, at which cost, and why.
+//! The plan: the stages of a scene with their order, rates, costs and reasons.
 
 use std::collections::BTreeMap;
 
@@ -13,30 +13,31 @@ use crate::load::LoadedScene;
 use crate::representation::{self, Choice};
 use crate::stages::{EFFECTS, Entry, HEADROOM, Need, Place, resampling_macs};
 
-/// What will run, what will not, and why.
+/// A plan: the stages that run, the effects left out, and the reason for each.
 #[derive(Debug, Serialize)]
 pub struct Plan {
-    /// The stages, in the order in which samples come through them.
+    /// The stages in processing order.
     pub stages: Vec<PlannedStage>,
-    /// What is not built.
+    /// The effects that are left out.
     pub left_out: Vec<LeftOut>,
-    /// What plays each surface that is touched.
+    /// The representation of each surface that is touched.
     pub representation: Vec<Chosen>,
-    /// The sum of the stages' costs.
+    /// Sum of the stages' costs, nanoseconds per sample.
     pub ns_per_sample_total: f64,
-    /// Nothing changes while the scene plays: nothing is looked at between blocks.
+    /// Whether nothing changes while the scene plays, so that stages are not updated between blocks.
     pub constant: bool,
     /// Rate of the device, hertz.
     pub rate_hz: f64,
-    /// Frames between two looks at the finger.
+    /// Frames of a control block, the interval at which the motion is read.
     pub block_frames: usize,
-    /// Length, frames; none: without end.
+    /// Length in frames; `None` if endless.
     pub frames: Option<u64>,
-    /// Where the costs come from.
+    /// Source of the costs.
     pub costs: String,
-    /// RMS that is brought to the drive or to the level of a preview, in the assets' unit.
+    /// Reference level: the RMS that is mapped to the drive voltage or the preview level, in the assets'
+    /// unit.
     pub reference_rms: f64,
-    /// What is worth knowing.
+    /// Notes for the user.
     pub notes: Vec<String>,
     #[serde(skip)]
     pub(crate) call: Call,
@@ -48,53 +49,53 @@ pub struct Plan {
     pub(crate) device: Vec<(&'static Entry, bool)>,
 }
 
-/// A stage that runs.
+/// A stage of a plan.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PlannedStage {
-    /// The stage.
+    /// Name of the stage.
     pub name: &'static str,
-    /// The surface it is for; none: for all.
+    /// Its surface; `None`: all surfaces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface: Option<usize>,
-    /// Why it is in.
+    /// Reason why it is included.
     pub reason: String,
-    /// Rate of the samples it gives, hertz.
+    /// Rate of its output, hertz.
     pub rate_hz: f64,
-    /// Its time, nanoseconds a sample of the device, averaged over the scene.
+    /// Its run time, nanoseconds per sample of the device, averaged over the scene.
     pub ns_per_sample: f64,
 }
 
-/// An effect that is not built.
+/// An effect that is left out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LeftOut {
-    /// The effect.
+    /// Name of the effect.
     pub name: &'static str,
-    /// The surface it would be for; none: for all.
+    /// Its surface; `None`: all surfaces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface: Option<usize>,
-    /// Why it is out.
+    /// Reason why it is left out.
     pub reason: String,
 }
 
-/// What plays a surface.
+/// The representation that plays a surface.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Chosen {
     /// Index of the surface.
     pub surface: usize,
     /// Id of the model.
     pub model: String,
-    /// Why it.
+    /// Reason for the choice.
     pub why: String,
 }
 
-/// A surface with the effects that are its own; true: neutral.
+/// A surface with its own effects; the flag says whether an effect is neutral.
 #[derive(Debug)]
 pub(crate) struct PlannedPart {
     pub(crate) part: Part,
     pub(crate) effects: BTreeMap<Effect, bool>,
 }
 
-/// Parts that are mixed at one rate, and what comes behind.
+/// Surfaces mixed at one rate, and the effects of the mix.
 #[derive(Debug)]
 pub(crate) struct Mix {
     /// Indices of the parts.
@@ -152,17 +153,17 @@ pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result
     })
 }
 
-/// Largest part of the samples that may be held at the drive, percent: a texture of noise 7 dB above the reference.
+/// Maximum percentage of samples that may be clipped at the drive: reached by noise 7 dB above the reference.
 const MOST_CLAMPED_PERCENT: f64 = 5.0;
 
-/// Refuses a texture that is far too strong for the drive. One of the reference level, noise, is held there once in
+/// Rejects a texture that is far too strong for the drive. Noise at the reference level is clipped once in
 /// 75,000 samples.
 fn check_drive(call: &Call, loudest_rms: f64) -> Result<(), SceneError> {
     let over = loudest_rms / call.level_rms;
     if call.device.quantity != Quantity::DisplayVoltage || !over.is_finite() {
         return Ok(());
     }
-    // Of normal noise, on both sides.
+    // For normally distributed noise, both tails.
     let percent = 100.0 * libm::erfc(HEADROOM / over / std::f64::consts::SQRT_2);
     match percent > MOST_CLAMPED_PERCENT {
         false => Ok(()),
@@ -182,7 +183,7 @@ fn chosen(choice: &Choice) -> Chosen {
     }
 }
 
-/// Whether the finger does the same from the first sample to the last.
+/// Whether the motion is constant from the first sample to the last.
 fn is_constant(call: &Call, parts: &[PlannedPart]) -> bool {
     let steady = |p: &PlannedPart| {
         p.part.always_touched && p.part.speed_mm_s.is_point() && p.part.force_n.is_point()
@@ -193,13 +194,13 @@ fn is_constant(call: &Call, parts: &[PlannedPart]) -> bool {
 fn notes(call: &Call, constant: bool, loudest_rms: f64) -> Vec<String> {
     let mut notes = Vec::new();
     if constant {
-        notes.push("nothing changes over the scene: the constant path is taken".to_owned());
+        notes.push("nothing changes over the scene: the constant path is used".to_owned());
     }
-    // A level of its own, that is.
+    // With the levels `own` the two differ.
     if call.level_rms > 0.0 && loudest_rms > 0.0 && loudest_rms != call.level_rms {
         let db = 20.0 * (loudest_rms / call.level_rms).log10();
         notes.push(format!(
-            "levels are not normalised: the loudest texture, {} RMS, stands {db:+.1} dB from the reference of {}",
+            "levels are not normalised: the loudest texture, {} RMS, is {db:+.1} dB relative to the reference of {}",
             call.quantity.text(loudest_rms),
             call.quantity.text(call.level_rms)
         ));
@@ -212,7 +213,7 @@ fn notes(call: &Call, constant: bool, loudest_rms: f64) -> Vec<String> {
             20.0 * (HEADROOM / 4.0).log10()
         )),
         Quantity::Sound => notes.push(format!(
-            "a preview by ear: the level is set to {} dB of full scale whatever the texture's is{}",
+            "a preview by ear: the level is {} dB relative to full scale, independent of the texture's level{}",
             call.level_dbfs,
             match call.pitch == 1.0 {
                 true => String::new(),
@@ -224,7 +225,7 @@ fn notes(call: &Call, constant: bool, loudest_rms: f64) -> Vec<String> {
     notes
 }
 
-/// A plan in the making.
+/// A plan under construction.
 struct Draft<'a> {
     scene: &'a LoadedScene,
     call: &'a Call,
@@ -274,7 +275,7 @@ impl<'a> Draft<'a> {
         Ok(())
     }
 
-    /// The stages of one surface, at its model's rate.
+    /// Adds the stages of one surface, at its model's rate.
     fn surface(&mut self, part: &Part) -> Result<(), SceneError> {
         let surface = Some(part.surface);
         let per_frame = part.share * part.rate_hz * part.fixed_ratio / self.call.rate_hz;
@@ -296,7 +297,7 @@ impl<'a> Draft<'a> {
             effects.extend(decided.map(|neutral| (entry.effect, neutral)));
             if entry.effect == Effect::SpeedScaling {
                 let level_ns = self.costs.stage("level") * per_frame * part.oversampling;
-                let reason = "the model's samples are of unit RMS; the asset has its level";
+                let reason = "the model's samples have unit RMS; the asset gives the level";
                 self.push("level", surface, reason.into(), part.mix_rate_hz, level_ns);
             }
         }
@@ -307,7 +308,7 @@ impl<'a> Draft<'a> {
         Ok(())
     }
 
-    /// Surfaces that nobody touches are not built.
+    /// Leaves out surfaces that are never touched.
     fn untouched(&mut self, parts: &[Part]) {
         let touched = |i: &usize| parts.iter().any(|p| p.surface == *i);
         let all = 0..self.call.touches.len();
@@ -319,7 +320,7 @@ impl<'a> Draft<'a> {
         }));
     }
 
-    /// The stages behind the surfaces of one rate.
+    /// Adds the stages of a mix of surfaces of one rate.
     fn mix(&mut self, parts: &[Part], group: Vec<usize>) -> Result<(), SceneError> {
         let first = &parts[group[0]];
         let surface = (group.len() == 1 && parts.len() > 1).then_some(first.surface);
@@ -342,7 +343,7 @@ impl<'a> Draft<'a> {
         Ok(())
     }
 
-    /// Rate of what a mix's stage gives, and its cost a frame of the device.
+    /// Output rate of a mix's stage, and its cost per frame of the device.
     fn mix_cost(&self, entry: &Entry, part: &Part) -> Result<(f64, f64), SceneError> {
         let own = self.costs.stage(entry.name);
         Ok(match entry.effect {
@@ -361,7 +362,7 @@ impl<'a> Draft<'a> {
         })
     }
 
-    /// Takes an effect in (and answers whether it is neutral) or leaves it out.
+    /// Includes an effect, returning whether it is neutral, or leaves it out.
     fn decide(
         &mut self,
         entry: &'static Entry,
@@ -377,7 +378,7 @@ impl<'a> Draft<'a> {
                 reason,
             }),
             (Switch::Off, Need::In(reason)) => {
-                let reason = format!("the scene switches it off, though {reason}");
+                let reason = format!("switched off by the scene, although {reason}");
                 self.leave_out(entry, surface, reason);
                 Ok(None)
             }
@@ -390,14 +391,14 @@ impl<'a> Draft<'a> {
                 Ok(Some(false))
             }
             (Switch::On, Need::Out(reason)) => {
-                let reason = format!("the scene switches it on; neutral, since {reason}");
+                let reason = format!("switched on by the scene; neutral, since {reason}");
                 self.push(entry.name, surface, reason, rate_hz, ns);
                 Ok(Some(true))
             }
         }
     }
 
-    /// Without these, what reaches the device is not what it takes.
+    /// Whether the device would get invalid samples without the effect.
     fn is_needed(&self, entry: &Entry) -> bool {
         match entry.effect {
             Effect::Resampling => true,
@@ -405,7 +406,7 @@ impl<'a> Draft<'a> {
                 !self.call.device.quantity.is_physical() || self.call.quantity_gain != 1.0
             }
             Effect::SquareRoot => !self.call.device.quantity.is_physical(),
-            // A voltage comes from zero, goes to zero, and stays within the drive.
+            // A voltage starts and ends at zero and stays within the drive.
             Effect::Contact | Effect::Limiter => {
                 self.call.device.quantity == Quantity::DisplayVoltage
             }
@@ -446,7 +447,7 @@ fn always(part: &Part) -> String {
     }
 }
 
-/// Indices of parts that one converter can serve.
+/// Indices of parts that can share one resampler, in groups.
 fn groups(parts: &[Part]) -> Vec<Vec<usize>> {
     let key = |p: &Part| [p.mix_rate_hz, p.fixed_ratio, p.top_hz];
     let mut groups: Vec<Vec<usize>> = Vec::new();

@@ -1,4 +1,4 @@
-//! The chain of a plan, running.
+//! The renderer: runs the chain of a plan.
 
 use crate::SceneError;
 use crate::ahead::Ahead;
@@ -11,10 +11,10 @@ use crate::path::Path;
 use crate::plan::{Mix, Plan, PlannedPart};
 use crate::stages::{Chain, Now, Place, Slot, StageRun, Told};
 
-/// Samples that surfaces are mixed in at a time.
+/// Maximum number of samples mixed at a time.
 const PIECE: usize = 256;
 
-/// Plays a scene. [`Renderer::render`] runs where sound is made: it does not allocate, lock or wait.
+/// Plays a scene. [`Renderer::render`] is real-time safe: it does not allocate, lock or wait.
 pub struct Renderer {
     surfaces: Vec<Surface>,
     course: Course,
@@ -50,10 +50,10 @@ struct MixChain {
 }
 
 impl Renderer {
-    /// Builds what the plan has, and nothing else.
+    /// Builds the stages of the plan.
     ///
     /// # Errors
-    /// When a model refuses to make a voice.
+    /// If a model cannot make a voice.
     pub fn new(scene: &LoadedScene, plan: &Plan) -> Result<Self, SceneError> {
         let call = &plan.call;
         let mixes = plan
@@ -96,7 +96,7 @@ impl Renderer {
         })
     }
 
-    /// Measures the time each stage takes; it costs some.
+    /// Enables timing of each stage, which slows rendering down.
     #[must_use]
     pub fn timed(mut self) -> Self {
         self.timed = true;
@@ -108,10 +108,10 @@ impl Renderer {
         self.call.rate_hz
     }
 
-    /// Moves the finger of a live scene.
+    /// Sets the position and motion of the finger of a live scene.
     ///
     /// # Errors
-    /// When a number is not finite, or the force negative.
+    /// [`SceneError::Motion`] if a number is not finite or the force is negative.
     pub fn set_motion(&mut self, finger: Finger) -> Result<(), SceneError> {
         let place = finger.at_mm.unwrap_or_default();
         let finite = finger.speed_mm_s.is_finite() && place.iter().all(|x| x.is_finite());
@@ -130,22 +130,22 @@ impl Renderer {
         self.frame as f64 / self.call.rate_hz
     }
 
-    /// Ends the scene as soon as it can go to silence.
+    /// Ends the scene with a ramp to silence, as early as possible.
     pub fn stop(&mut self) {
         let end = self.frame + self.call.ramp + self.call.control as u64;
         self.call.frames = Some(self.call.frames.map_or(end, |frames| frames.min(end)));
     }
 
-    /// Frames until the end; none: without end.
+    /// Frames until the end; `None` if endless.
     pub fn frames_left(&self) -> Option<u64> {
         self.call
             .frames
             .map(|frames| frames.saturating_sub(self.frame))
     }
 
-    /// Fills `out` with the next samples, in the unit of the device; answers how many there are: fewer
-    /// at the end of the scene. Gives the same samples for all sizes of `out`. A surface whose model
-    /// fails is silent, and the others play on; [`Self::take_failure`] tells.
+    /// Fills `out` with the next samples, in the unit of the device, and returns their number, which is
+    /// smaller at the end of the scene. The samples do not depend on the size of `out`. If a model fails, its
+    /// surface is silent and the others continue; see [`Self::take_failure`].
     pub fn render(&mut self, out: &mut [f32]) -> usize {
         if self.follows {
             self.render_blocks(out)
@@ -154,8 +154,8 @@ impl Renderer {
         }
     }
 
-    /// Nothing changes: however few samples are wanted, many are made at once, so that renderers in turn go through
-    /// the memory of their chains once for many blocks.
+    /// While nothing changes, renders many samples at once even if few are requested, so that renderers that
+    /// run in turn load the memory of their chains once for many blocks.
     fn render_ahead(&mut self, out: &mut [f32]) -> usize {
         let mut done = 0;
         loop {
@@ -175,7 +175,7 @@ impl Renderer {
         done
     }
 
-    /// Renders ahead, at most `left` samples.
+    /// Renders at most `left` samples ahead.
     fn fill_ahead(&mut self, left: u64) {
         // A finger that goes on as it began is told once.
         if self.frame == 0 {
@@ -260,7 +260,7 @@ impl Renderer {
         self.device.follow(&now);
     }
 
-    /// What each stage did so far, in the order of the plan.
+    /// Statistics of each stage so far, in the order of the plan.
     pub fn stages_run(&self) -> Vec<StageRun> {
         let frames = self.timed.then_some(self.frame);
         let mut lanes: Vec<&Lane> = self.mixes.iter().flat_map(|mix| &mix.lanes).collect();
@@ -271,18 +271,18 @@ impl Renderer {
         lanes.chain(behind).collect()
     }
 
-    /// Largest magnitude so far, in the unit of the device. Where nothing changes, samples are made up to 1,024 ahead, and
-    /// are in this and in the numbers below from then on.
+    /// Largest magnitude so far, in the unit of the device. While nothing changes, up to 1,024 samples are
+    /// rendered ahead; this value and the counts below include them.
     pub fn peak(&self) -> f64 {
         f64::from(self.peak)
     }
 
-    /// Samples that were held at the device's limit.
+    /// Number of samples clipped at the device's limit.
     pub fn limited_samples(&self) -> u64 {
         self.told().limited
     }
 
-    /// Samples whose radicand was held at zero.
+    /// Number of samples whose radicand was negative and set to zero.
     pub fn rooted_samples(&self) -> u64 {
         self.told().rooted
     }
@@ -296,7 +296,7 @@ impl Renderer {
         told
     }
 
-    /// The first failure of a model since this was last asked.
+    /// Returns and clears the first failure of a model.
     pub fn take_failure(&mut self) -> Option<SceneError> {
         let mut lanes = self.mixes.iter_mut().flat_map(|mix| &mut mix.lanes);
         lanes.find_map(|lane| {
@@ -310,7 +310,7 @@ impl Renderer {
     }
 }
 
-/// The sum of all mixes, at the device's rate.
+/// Sums all mixes at the device's rate.
 fn mix(mixes: &mut [MixChain], sum: &mut [f32], timed: bool, out: &mut [f32]) {
     match mixes.split_first_mut() {
         None => out.fill(0.0),

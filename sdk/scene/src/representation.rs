@@ -1,31 +1,31 @@
-//! Which representation plays each surface.
+//! Choice of the representation of each surface.
 
 use crate::SceneError;
 use crate::call::{Call, Part};
 use crate::file::Budget;
 use crate::load::LoadedScene;
 
-/// What a plan is taken to need more than its stages were measured to. The quickest chain takes 1.3
-/// times their sum in blocks of 64 (`--example chains`): calls between stages, and the peak.
+/// Safety factor of a plan over the measured times of its stages. The fastest chain takes 1.3 times their sum
+/// in blocks of 64 (`--example chains`), because of the calls between stages and the peak measurement.
 const RESERVE: f64 = 1.5;
 
-/// A representation, and why it was chosen.
+/// A representation and the reason for its choice.
 #[derive(Debug, Clone)]
 pub(crate) struct Choice {
     pub(crate) part: Part,
     pub(crate) why: String,
 }
 
-/// The representations that may play a surface.
+/// The candidate representations of a surface.
 struct Candidates {
     surface: usize,
     parts: Vec<Part>,
-    /// The scene names the model.
+    /// Whether the scene names the model.
     named: bool,
 }
 
-/// Chooses for each surface that is touched. `cost` is what a choice of parts takes, nanoseconds a
-/// sample.
+/// Chooses a representation for each surface that is touched. `cost` gives the time of a set of parts,
+/// nanoseconds per sample.
 pub(crate) fn choose(
     scene: &LoadedScene,
     call: &Call,
@@ -44,8 +44,8 @@ pub(crate) fn choose(
     Ok(parts.into_iter().zip(&all).map(why).collect())
 }
 
-/// The level that stands for the drive where levels are not normalised, in the assets' unit: the one given, else that of the
-/// strongest representation of the surfaces that are touched, whichever plays them.
+/// Reference level if levels are not normalised, in the assets' unit: the scene's, else that of the strongest
+/// representation of the surfaces that are touched, whichever plays them.
 pub(crate) fn reference_rms(scene: &LoadedScene, call: &Call) -> f64 {
     if let Some(given_n) = scene.scene.device.reference_rms {
         return given_n;
@@ -54,7 +54,7 @@ pub(crate) fn reference_rms(scene: &LoadedScene, call: &Call) -> f64 {
     for surface in (0..scene.assets.len()).filter(|&i| call.touches[i].share > 0.0) {
         let asset = &scene.assets[surface];
         for r in &asset.manifest().representations {
-            // One that cannot be played here has no say.
+            // Representations without an available model do not count.
             if let Ok(part) = Part::new(scene, call, surface, &r.model) {
                 strongest_rms = strongest_rms.max(part.level_rms);
             }
@@ -104,7 +104,7 @@ fn candidates(scene: &LoadedScene, call: &Call, surface: usize) -> Result<Candid
     })
 }
 
-/// One part a surface, within the budget.
+/// Chooses one part per surface within the budget.
 fn within(
     all: &[Candidates],
     budget: &Budget,
@@ -120,7 +120,7 @@ fn within(
     }
 }
 
-/// The least error bound whose quickest parts are quick enough.
+/// Parts with the smallest error bound for which the fastest choice is within the time limit.
 fn nearest_within(
     all: &[Candidates],
     error_db: Option<f64>,
@@ -133,7 +133,7 @@ fn nearest_within(
         .filter(|bound| error_db.is_none_or(|most| *bound <= most))
         .collect();
     bounds.sort_by(f64::total_cmp);
-    // Below this, a surface has no representation at all.
+    // Below this bound, some surface has no representation.
     let least = all.iter().filter(|c| !c.named);
     let least = least.map(|c| c.parts[0].error_db).fold(0.0, f64::max);
     let mut quickest_ns = f64::INFINITY;
@@ -161,7 +161,7 @@ fn nearest_within(
     })
 }
 
-/// The quickest part of each surface with an error of at most `error_db`.
+/// The fastest part of each surface with an error of at most `error_db`.
 fn quickest(all: &[Candidates], error_db: f64, cost: &dyn Fn(&[Part]) -> f64) -> Vec<Part> {
     let one = |c: &Candidates| {
         let near = c.parts.iter().filter(|p| c.named || p.error_db <= error_db);
@@ -189,9 +189,9 @@ fn reason(part: &Part, from: &Candidates, budget: &Budget) -> String {
     let error = format!("{} {:.2} dB", budget.error, part.error_db);
     let of = from.parts.len();
     match (from.named, budget.max_error_db, budget.ns_per_sample) {
-        (true, _, _) => format!("the scene names it; {error}"),
-        (_, None, None) => format!("the nearest of {of}: {error}"),
-        (_, Some(most), None) => format!("the quickest of {of} within {most} dB: {error}"),
-        (_, _, Some(ns)) => format!("the nearest of {of} within {ns} ns a sample: {error}"),
+        (true, _, _) => format!("named by the scene; {error}"),
+        (_, None, None) => format!("the smallest error of {of}: {error}"),
+        (_, Some(most), None) => format!("the fastest of {of} within {most} dB: {error}"),
+        (_, _, Some(ns)) => format!("the smallest error of {of} within {ns} ns a sample: {error}"),
     }
 }

@@ -1,4 +1,4 @@
-//! The response of finger and display, which a scene may compensate.
+//! The frequency response of finger and display, and its compensation.
 
 use std::path::Path;
 
@@ -9,32 +9,34 @@ use htex_dsp::grid::Band;
 
 pub use htex_author::SetupResponse as Response;
 
-/// Reads a response from a CSV with the columns `frequency_hz` and `magnitude`: output over input,
-/// in any unit, since only its shape is compensated.
+/// Reads a response from a CSV with the columns `frequency_hz` and `magnitude` (output over input). Any unit
+/// is valid, since only the shape is compensated.
 ///
 /// # Errors
-/// As [`read_response`]; and when no magnitude is above 0.
+/// As [`read_response`]; and if no magnitude is above 0.
 pub fn open(path: &Path) -> Result<Response, ReadError> {
     let response = read_response(path)?;
     if response.magnitude.iter().all(|m| *m == 0.0) {
         let file = path.file_name().unwrap_or(path.as_os_str());
         return Err(ReadError::Option {
             file: file.to_string_lossy().into_owned(),
-            problem: "every magnitude is 0, and nothing can make up for that; measure anew".into(),
+            problem:
+                "every magnitude is 0, which cannot be compensated; measure the response again"
+                    .into(),
         });
     }
     Ok(response)
 }
 
-/// The inverse of a response, of which only the shape counts: its largest magnitude in the band of the
-/// textures stands for 1. There the force is left as it is, elsewhere it is raised.
+/// The inverse of a response. Only its shape counts: it is normalised to its largest magnitude in the band of
+/// the textures, where the gain is near 1; at other frequencies the gain is higher.
 #[derive(Debug, Clone)]
 pub(crate) struct Inverse {
     response: Response,
     band: Band,
-    /// Largest magnitude in the band; 0 when there is none.
+    /// Largest magnitude in the band; 0 if there is none.
     largest: f64,
-    /// Least part of the largest magnitude that is made up for.
+    /// Depth of the compensation as a magnitude, relative to the largest one.
     floor: f64,
 }
 
@@ -50,8 +52,8 @@ impl Inverse {
         }
     }
 
-    /// The gain at a frequency, 1/|H| and no more than 1/(2 floor): |H| / (|H|² + floor²), H over its
-    /// largest magnitude in the band; 0 where the response has nothing.
+    /// Gain at a frequency, near 1/|H| and at most 1/(2 floor): |H| / (|H|² + floor²), with H relative to its
+    /// largest magnitude in the band; 0 where the response is 0.
     pub(crate) fn at(&self, frequency_hz: f64) -> f64 {
         let (re, im) = self.response.at(frequency_hz);
         let part = re.hypot(im) / self.largest;
@@ -59,12 +61,12 @@ impl Inverse {
         if gain.is_finite() { gain } else { 0.0 }
     }
 
-    /// Whether the response has anything in the band.
+    /// Whether the response is nonzero in the band.
     pub(crate) fn reaches_band(&self) -> bool {
         self.largest > 0.0
     }
 
-    /// What it raises in the band.
+    /// The part of the band that is amplified, and by how much.
     pub(crate) fn raised(&self) -> Option<Raised> {
         let grid = self.band.grid_hz();
         raised(&grid, grid.iter().map(|&hz| self.at(hz)))
@@ -76,7 +78,7 @@ impl Inverse {
     }
 }
 
-/// From the lowest to the highest frequency of any of the textures.
+/// Band from the lowest to the highest frequency of the textures.
 fn played_band(assets: &[Asset], pitch: f64) -> Band {
     let bands = || assets.iter().map(Asset::band);
     Band {

@@ -1,8 +1,8 @@
-//! Every rule that a scene is held to, in one table.
+//! All rules for scenes, in one table.
 
 use htex_format::Rule;
 
-/// The rule of a code, such as `REGION_OVERLAP`; none when no rule has it.
+/// The rule of a code, such as `REGION_OVERLAP`; `None` if no rule has this code.
 pub fn explain(code: &str) -> Option<&'static Rule> {
     RULES.iter().find(|rule| rule.code == code)
 }
@@ -10,12 +10,12 @@ pub fn explain(code: &str) -> Option<&'static Rule> {
 htex_format::rule_table! {
     SCENE_FILE_TOO_LARGE Error:
         "The scene file is larger than the limit.",
-        "A reader caps what it takes from a file it does not trust, before it reads it.",
-        "Keep long motions in a trace; a scene of a hundred surfaces has a few kilobytes.";
+        "A reader limits the size of untrusted files before it reads them.",
+        "Keep long motions in a trace; a scene with a hundred surfaces takes a few kilobytes.";
     SCENE_JSON_TOO_DEEP Error:
         "The scene nests deeper than the limit.",
         "Deep nesting exhausts a parser's stack, and no scene needs it.",
-        "Take out what does not belong there.";
+        "Remove the unneeded levels.";
     SCENE_JSON_SYNTAX Error:
         "The scene is not JSON.",
         "It must be one JSON object in UTF-8 (RFC 8259), without a byte order mark.",
@@ -30,161 +30,161 @@ htex_format::rule_table! {
         "Write `\"htex_scene\": \"1.0\"`.";
     SCENE_VERSION_UNSUPPORTED Error:
         "The scene is of another major version.",
-        "Another major version may mean other things by the same words.",
-        "Play it with a program of that version, or write it anew as version 1.";
+        "The same keys may have other meanings in another major version.",
+        "Play it with a program for that version, or rewrite it as version 1.";
     SCENE_VERSION_NEWER Info:
         "The scene is of a newer minor version.",
-        "It can be played; what is new in it is left alone.",
-        "Update the program to play all of it.";
+        "It can be played; keys of the newer version are ignored.",
+        "Update the program to use them.";
     EFFECT_UNKNOWN Error:
-        "`effects` names an effect that there is not.",
-        "A misspelt effect would be left to the planner, and the scene would feel otherwise than meant.",
+        "`effects` names an unknown effect.",
+        "A misspelt effect would be ignored, and the scene would not feel as intended.",
         "Correct its name; the message lists them all.";
     SCENE_JSON_TYPE Error:
-        "A key is missing, stands twice, or has a value of the wrong type.",
+        "A key is missing, is duplicated, or has a value of the wrong type.",
         "The scene does not follow `schemas/scene-1.json`.",
         "Correct it at the place the pointer names.";
     SCENE_UNKNOWN_KEY Error:
-        "A key is not of this version.",
-        "What it was to change stays as it is, and the scene would feel otherwise than meant.",
-        "Correct its spelling, or take it out.";
+        "A key is unknown in this version.",
+        "An unknown key has no effect, and the scene would not feel as intended.",
+        "Correct its spelling, or remove it.";
     SURFACES_EMPTY Error:
         "There is no surface.",
         "There is nothing to feel.",
         "Add a surface with an asset.";
     SURFACES_TOO_MANY Error:
         "There are more surfaces than the limit.",
-        "Each surface is held ready while the scene plays.",
+        "Each surface takes memory and time while the scene plays.",
         "Split the scene, or merge surfaces of the same asset.";
     SURFACE_GAIN_INVALID Error:
         "The gain of a surface is out of range.",
-        "It is a factor from 0 to 1000; one below 0 would turn the force round.",
+        "It is a factor from 0 to 1000; a negative one would reverse the force.",
         "Write 1 to play the surface as it was recorded.";
     REPRESENTATION_NAME_EMPTY Error:
         "A surface's representation has no name.",
         "It is a model's id or short name, or `auto`.",
         "Name a model, or leave the key out.";
     REGION_INVALID Error:
-        "A region is empty, upside down or beyond all bounds.",
-        "Both pairs run from a lower to a higher number of millimetres, within a kilometre.",
+        "A region is empty, reversed or out of range.",
+        "Both pairs are a lower and a higher coordinate in millimetres, within a kilometre of the origin.",
         "Write `\"x_mm\": [from, to]` with from below to, and `y_mm` alike.";
     REGION_OVERLAP Error:
-        "Two surfaces of one layer lie on the same place.",
-        "A player could not tell which of them the finger feels.",
+        "Two surfaces on one layer overlap.",
+        "It is undefined which of them the finger feels.",
         "Move one of them, or give one a higher `layer`.";
     REGION_UNKNOWN_POSITION Error:
-        "Nobody knows where the finger is.",
+        "The position of the finger is not given.",
         "There are several surfaces, or one in a region, and the constant motion does not say where it starts.",
         "Add `from_mm`, or leave one surface without a region.";
     MOTION_INVALID Error:
         "A number of the motion is out of range.",
-        "Speed is 0 to 10000 mm/s and force 0 to 1000 N; places lie within a kilometre.",
+        "Speed is 0 to 10000 mm/s and force 0 to 1000 N; positions are within a kilometre of the origin.",
         "Correct it; a direction is given by `direction_deg`, not by a sign.";
     DURATION_INVALID Error:
-        "The duration is not a length of time.",
+        "The duration is out of range.",
         "It is more than 0 and at most 1e9 seconds.",
-        "Correct it, or leave it out: a trace has its own, and other motions go on until they are stopped.";
+        "Correct it, or leave it out: a trace has its own, and other motions continue until they are stopped.";
     BUDGET_INVALID Error:
         "A budget is not a positive number.",
-        "Nothing takes no time, and no representation is without error.",
+        "Every chain takes time, and every representation has an error.",
         "Correct it, or leave it out.";
     DEVICE_FIELD_INVALID Error:
         "A number of `device` is out of range.",
-        "It would make silence, or more than any device takes.",
+        "Values out of range give silence, or signals beyond the range of any device.",
         "Correct it to what the message allows, or leave it out.";
     ASSET_MISSING Error:
-        "A surface's asset is not there.",
+        "A surface's asset is missing.",
         "Relative paths start at the scene's folder.",
-        "Correct the path, or put the asset there.";
+        "Correct the path, or copy the asset to it.";
     ASSET_INVALID Error:
         "A surface's asset cannot be used.",
         "It is not a valid asset, or brings a model that cannot be loaded.",
-        "Look at it with `htex validate`.";
+        "Check it with `htex validate`.";
     REPRESENTATION_MISSING Error:
         "The asset does not have the representation that the scene asks for.",
-        "Another model would feel otherwise than meant.",
+        "Another model would not feel as intended.",
         "Name one that it has (`htex info`), or `auto`.";
     REPRESENTATION_UNPLAYABLE Error:
         "The asset's representation cannot be played here.",
         "Its model is not installed, is of another version, or refuses the parameters.",
         "Install the model as a plugin (`--plugin`), or name another representation.";
     TRACE_MISSING Error:
-        "The trace is not there.",
+        "The trace is missing.",
         "Relative paths start at the scene's folder.",
-        "Correct the path, or put the trace there.";
+        "Correct the path, or copy the trace to it.";
     TRACE_INVALID Error:
         "The trace cannot be read.",
-        "It is a CSV with the columns `t_s`, `x_mm`, `y_mm`, `force_n`, and a time that ascends.",
+        "It is a CSV with the columns `t_s`, `x_mm`, `y_mm`, `force_n`, with ascending time.",
         "Correct it at the line the message names.";
     TRACE_ASSUMED Warning:
-        "Something about the trace had to be assumed.",
-        "A column without a unit, or one that is not used, may be another than meant.",
+        "An assumption was made about the trace.",
+        "A column without a unit, or an unused one, may not be interpreted as intended.",
         "Name the columns `t_s`, `x_mm`, `y_mm`, `force_n`, `speed_mm_s`.";
     DURATION_BEYOND_TRACE Warning:
         "The scene lasts longer than its trace.",
-        "Behind its last row the finger does not touch.",
+        "After its last row there is no contact.",
         "Shorten `duration_s`, or leave it out.";
     MOTION_BEYOND_RECORDED Warning:
-        "A texture is played as at another motion than the finger's.",
-        "The motion lies beyond the speeds and forces it was recorded at, or beyond what it can be scaled to from one.",
-        "Move within what was recorded (`htex info`), or record the texture at such a motion too.";
+        "A texture is played as if at another speed or force than the motion's.",
+        "The motion is outside the recorded speeds and forces, or outside the range to which a single one can be scaled.",
+        "Stay within the recorded conditions (`htex info`), or record the texture at such a motion too.";
     RESPONSE_MISSING Error:
-        "The response is not there.",
+        "The response is missing.",
         "Relative paths start at the scene's folder.",
-        "Correct the path, or put the response there.";
+        "Correct the path, or copy the response to it.";
     RESPONSE_INVALID Error:
         "The response cannot be read.",
         "It is a CSV with the columns `frequency_hz`, ascending, and `magnitude`, not negative and not all 0.",
         "Correct it at the line the message names.";
     RESPONSE_RAISED Warning:
         "The compensation of the response raises a part of the band by more than 10 dB.",
-        "The device plays that part so much stronger than the texture is: it may reach its limit there, and errors of the response count as much.",
-        "Check the response there, or hold the compensation back by a lower `response_depth_db`.";
+        "The device plays that part stronger than the texture by as much: it may reach its limit, and errors of the response are amplified.",
+        "Check the response at these frequencies, or limit the compensation by a lower `response_depth_db`.";
     DEVICE_UNKNOWN Error:
-        "There is no such device adapter.",
-        "What the samples mean depends on the device.",
-        "Correct the name; `htex device list` shows what there is.";
+        "The device adapter is unknown.",
+        "The meaning of the samples depends on the device.",
+        "Correct the name; `htex device list` shows the available ones.";
     DEVICE_PATH_UNSAFE Error:
         "A setting of the scene names a driver.",
-        "A scene may come from anyone: playing it must not load code.",
+        "A scene may come from an untrusted source: playing it must not load code.",
         "Give the setting on the command line (`--set`).";
     DEVICE_PATH_UNUSED Warning:
         "A setting of the scene names a file to write.",
-        "A scene may come from anyone: what is written where, a person says.",
-        "Name the file by `-o`, or by the setting on the command line (`--set`); take it out of the scene.";
+        "A scene may come from an untrusted source: only the user chooses which files are written.",
+        "Name the file by `-o`, or by the setting on the command line (`--set`); remove it from the scene.";
     DEVICE_HARDWARE Warning:
-        "The scene says what the hardware is, or asks for more than a limit allows.",
-        "A wrong gain or limit puts hundreds of volts more at a finger. What describes the hardware comes from a \
+        "The scene describes the hardware, or exceeds a limit.",
+        "A wrong gain or limit can apply hundreds of volts more to a finger. What describes the hardware comes from a \
          profile or from the command line; a scene can only ask for a lower limit or a longer ramp.",
-        "Choose the profile of the rig with `--profile`; take the setting out of the scene.";
+        "Choose the profile of the rig with `--profile`; remove the setting from the scene.";
     DEVICE_SETTING Error:
         "A profile or a setting of the device cannot be used.",
-        "It is not known, missing, or not a value it may have.",
+        "It is unknown, missing, or has an invalid value.",
         "Correct it; `htex device info` shows settings and profiles.";
     DEVICE_ABSENT Warning:
-        "The device cannot be asked now.",
-        "It is not connected or its driver is not installed, so what depends on it is not checked.",
-        "Connect it and validate again; on another machine this may be as it should.";
+        "The device cannot be queried.",
+        "It is not connected or its driver is not installed, so rules that depend on it are not checked.",
+        "Connect it and validate again; on a machine without the device this is expected.";
     DEVICE_RATE Error:
         "The device does not run at this rate.",
-        "It would play at another one, and all frequencies would be wrong.",
+        "At another rate all frequencies would be wrong.",
         "Choose one of its rates, or leave `rate_hz` out.";
     DEVICE_FIELD_UNFIT Error:
-        "A key of `device` does not go with what the device takes.",
-        "`gain_db` is for newtons and other quantities of touch, `drive_v` for volts at a display, `level_dbfs` and `pitch` for sound, and \
-         `levels` for the last two; `reference_rms` goes with the levels `own`.",
+        "A key of `device` does not apply to the device's quantity.",
+        "`gain_db` applies to newtons and other physical quantities, `drive_v` to volts at a display, `level_dbfs` and `pitch` to sound, and \
+         `levels` to the last two; `reference_rms` applies to the levels `own` only.",
         "Leave it out, or choose another device.";
     DEVICE_QUANTITY Error:
-        "The device does not take what the assets hold, or `quantity_gain` is stated for one that does.",
-        "An acceleration of 1 m/s2 is no force of 1 N: what it is to be felt as, a person must say.",
-        "Choose a device or a setting that takes the assets' quantity, or state `quantity_gain`; leave it out where \
-         device and assets agree, and for sound.";
+        "The device does not take the quantity of the assets, or `quantity_gain` is given although it does.",
+        "An acceleration of 1 m/s2 is not a force of 1 N: the conversion must be given explicitly.",
+        "Choose a device or a setting that takes the assets' quantity, or give `quantity_gain`; leave it out if \
+         device and assets agree, or for sound.";
     QUANTITIES_DIFFER Error:
         "The assets of a scene hold different quantities.",
-        "One device plays them all, and newtons and metres cannot be compared.",
-        "Use assets of one quantity, or a scene for each.";
+        "One device plays them all, and levels of different quantities cannot be compared.",
+        "Use assets of one quantity, or one scene per quantity.";
     DEVICE_DRIVE_TOO_HIGH Error:
         "`drive_v` is above the device's limit.",
-        "Voltages beyond the limit are cut off, and are not what was meant to be felt.",
+        "Voltages beyond the limit are clipped, and the texture would not feel as intended.",
         "Lower it.";
 }

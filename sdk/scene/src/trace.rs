@@ -1,14 +1,14 @@
-//! A recorded motion, looked up at any time.
+//! A recorded motion, interpolated at any time.
 
 use std::path::Path;
 
 use htex_author::read::{ReadError, TraceColumns, read_trace};
 
-/// Half the support of the triangle that the velocity is averaged over, seconds. Trackers are slow
-/// and quantised (60 Hz, 0.1 mm): a shorter one shows their steps and not the finger.
+/// Half the support of the triangle over which the velocity is averaged, seconds. Trackers are slow and
+/// quantised (60 Hz, 0.1 mm): a shorter window would show their steps instead of the motion.
 const REACH_S: f64 = 0.05;
 
-/// A motion over time. The vectors are equally long, at least 2; time 0 is the first row.
+/// A motion over time. The vectors have equal lengths of at least 2; time 0 is the first row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trace {
     /// Time, seconds, strictly ascending from 0.
@@ -19,11 +19,11 @@ pub struct Trace {
     pub y_mm: Vec<f64>,
     /// Normal force, newtons, not negative.
     pub force_n: Vec<f64>,
-    /// Sliding speed, mm/s, not negative: the trace's own, else the velocity's.
+    /// Sliding speed, mm/s, not negative: from the trace if it has a speed column, else from the velocity.
     pub speed_mm_s: Vec<f64>,
-    /// Velocity along x and y, mm/s, from the positions.
+    /// Velocity along x and y, mm/s, computed from the positions.
     pub velocity_mm_s: Vec<[f64; 2]>,
-    /// What was assumed when it was read.
+    /// Assumptions made while reading.
     pub warnings: Vec<String>,
 }
 
@@ -54,12 +54,12 @@ impl Trace {
         Ok(Self::new(read_trace(path)?))
     }
 
-    /// A trace from columns.
+    /// Makes a trace from columns.
     ///
-    /// The velocity is the second difference, over 50 ms, of the position's integral: the slope of
-    /// the position (straight between rows) averaged under a triangle of 100 ms. It is exact where
-    /// the velocity is steady, and blind to a tracker of 60 Hz that repeats its last value. Nearer
-    /// to the ends than 50 ms it is held. Negative forces, which a sensor's offset makes, are 0.
+    /// The velocity is the second difference, over 50 ms, of the position's integral: the slope of the
+    /// position (linear between rows) averaged with a triangular window of 100 ms. It is exact for a constant
+    /// velocity, and insensitive to a tracker of 60 Hz that repeats its last value. Within 50 ms of the ends
+    /// it is constant. Negative forces, caused by a sensor's offset, become 0.
     pub fn new(columns: TraceColumns) -> Self {
         let start_s = columns.t_s.first().copied().unwrap_or(0.0);
         let t_s: Vec<f64> = columns.t_s.iter().map(|t| t - start_s).collect();
@@ -80,8 +80,8 @@ impl Trace {
         }
     }
 
-    /// The motion at `t_s` seconds, straight between rows. Before the first row and behind the last
-    /// one the finger rests there without touching: speed and force are 0. Does not allocate.
+    /// The motion at `t_s` seconds, linear between rows. Before the first row and after the last one the
+    /// finger rests there without contact: speed and force are 0. Does not allocate.
     pub fn at(&self, t_s: f64) -> TracePoint {
         let last = self.t_s.len().saturating_sub(1);
         let above = self.t_s.partition_point(|t| *t <= t_s);
@@ -115,17 +115,17 @@ impl Trace {
         }
     }
 
-    /// Length from the first row to the last, seconds.
+    /// Time from the first row to the last, seconds.
     pub fn duration_s(&self) -> f64 {
         self.t_s.last().copied().unwrap_or(0.0)
     }
 
-    /// Slowest and fastest speed, mm/s.
+    /// Minimum and maximum speed, mm/s.
     pub fn speed_range(&self) -> (f64, f64) {
         range(&self.speed_mm_s)
     }
 
-    /// Least and greatest force, newtons.
+    /// Minimum and maximum force, newtons.
     pub fn force_range(&self) -> (f64, f64) {
         range(&self.force_n)
     }
@@ -156,8 +156,7 @@ fn velocity(t_s: &[f64], x_mm: &[f64]) -> Vec<f64> {
     t_s.iter().map(|t| at(*t)).collect()
 }
 
-/// The integral of the position (less the first one) from the first row on, asked for at times that
-/// do not go back.
+/// The integral of the position (minus the first one) from the first row on, evaluated at ascending times.
 #[derive(Clone)]
 struct Integral<'a> {
     t_s: &'a [f64],
@@ -219,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_coarse_tracker_gives_a_steady_speed() {
+    fn a_quantised_tracker_gives_a_constant_speed() {
         // 60 Hz and 0.1 mm, as read by a recorder of 1 kHz that repeats the last value.
         let held = |t: f64| 80.0 * (t * 60.0 + 1e-9).floor() / 60.0;
         for (rate_hz, x_mm) in [
@@ -235,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn turns_are_followed_and_the_ends_are_silent() {
+    fn velocity_follows_turns_and_is_zero_beyond_the_ends() {
         let (amplitude, omega) = (40.0, 2.0 * std::f64::consts::PI);
         let trace = trace(200.0, 3.0, 0.0, |t| amplitude * (omega * t).sin());
         for step in 10..290 {
@@ -259,7 +258,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_steady_velocity_is_exact_however_the_rows_lie(
+        fn a_constant_velocity_is_exact_for_any_row_spacing(
             steps in prop::collection::vec(1e-4..0.2f64, 1..200),
             v in -300.0..300.0f64,
         ) {

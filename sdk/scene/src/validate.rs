@@ -1,4 +1,4 @@
-//! From the bytes of a scene file to a scene, and what is wrong with it in itself.
+//! Parsing and validation of a scene file, without the files it names.
 
 use htex_format::{Document, DocumentRules, Findings, escape};
 use serde_json::Value;
@@ -7,14 +7,14 @@ use crate::check::check;
 use crate::file::{Effect, Scene};
 use crate::rules as rule;
 
-/// How much a reader takes from a scene it does not trust.
+/// Limits for reading untrusted scenes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
-    /// Bytes of the file: 1 MiB.
+    /// Size of the file, bytes; default 1 MiB.
     pub file_bytes: u64,
-    /// Depth of arrays and objects within one another: 16.
+    /// Nesting depth of arrays and objects; default 16.
     pub json_depth: usize,
-    /// Surfaces: 256.
+    /// Number of surfaces; default 256.
     pub surfaces: usize,
 }
 
@@ -46,8 +46,8 @@ const DOCUMENT: Document = Document {
     },
 };
 
-/// Reads a scene and checks what can be checked without its files and its device; none when a
-/// finding says why not. Never panics.
+/// Reads a scene and checks it without its files and its device. Returns `None`, with a finding that states
+/// the reason, if it cannot be used. Never panics.
 pub fn read_scene(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<Scene> {
     if bytes.len() as u64 > limits.file_bytes {
         let message = format!("the scene has more than {} bytes", limits.file_bytes);
@@ -61,7 +61,7 @@ pub fn read_scene(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Opt
     let (scene, unknown) = DOCUMENT.typed::<Scene>(&opened, findings)?;
     if !opened.newer {
         for pointer in unknown {
-            let message = "version 1.0 has no such key; correct it or take it out".to_owned();
+            let message = "version 1.0 has no such key; correct it or remove it".to_owned();
             findings.add(rule::SCENE_UNKNOWN_KEY, pointer, message);
         }
     }
@@ -69,7 +69,7 @@ pub fn read_scene(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Opt
     Some(scene)
 }
 
-/// None when there is an effect that is not known.
+/// Checks the names of effects; `None` if one is unknown.
 fn check_effect_names(scene: &Value, findings: &mut Findings) -> Option<()> {
     let effects = scene.get("effects").and_then(Value::as_object);
     let known = |name: &String| Effect::ALL.iter().any(|effect| effect.name() == name);
@@ -77,7 +77,10 @@ fn check_effect_names(scene: &Value, findings: &mut Findings) -> Option<()> {
     for name in effects.into_iter().flat_map(|map| map.keys()) {
         if !known(name) {
             let names: Vec<&str> = Effect::ALL.iter().map(|effect| effect.name()).collect();
-            let message = format!("there is no effect {name}; there are {}", names.join(", "));
+            let message = format!(
+                "unknown effect {name}; the effects are {}",
+                names.join(", ")
+            );
             findings.add(
                 rule::EFFECT_UNKNOWN,
                 format!("/effects/{}", escape(name)),

@@ -8,10 +8,10 @@ use htex_format::ErrorMeasure;
 use htex_scene::file::Budget;
 use htex_scene::{Costs, Plan, SceneError, plan};
 
-/// What a plan keeps in reserve.
+/// Safety factor of a plan.
 const RESERVE: f64 = 1.5;
 
-/// Each representation's error and the budget that the plan with it alone needs.
+/// Error of each representation, and the time budget needed by the plan with it alone.
 fn measured(measure: ErrorMeasure) -> Vec<(String, f64, f64)> {
     let manifest = single().manifest();
     let one = |r: &htex_format::Representation| {
@@ -36,7 +36,7 @@ fn error_of(all: &[(String, f64, f64)], plan: &Plan) -> f64 {
 }
 
 #[test]
-fn less_time_means_more_error_and_never_the_other_way() {
+fn a_smaller_time_budget_never_reduces_the_error() {
     let all = measured(ErrorMeasure::NineBand);
     let dearest = all.iter().map(|(.., ns)| *ns).fold(0.0, f64::max);
     let cheapest = all.iter().map(|(.., ns)| *ns).fold(f64::INFINITY, f64::min);
@@ -55,7 +55,7 @@ fn less_time_means_more_error_and_never_the_other_way() {
                     error_db >= last_error,
                     "{ns} ns: {error_db} dB after {last_error} dB"
                 );
-                // Nothing nearer would have been quick enough.
+                // No representation of smaller error is within the time budget.
                 let nearer = all.iter().find(|(_, e, t)| *e < error_db && *t <= ns);
                 assert!(nearer.is_none(), "{nearer:?}");
                 last_error = error_db;
@@ -74,7 +74,7 @@ fn less_time_means_more_error_and_never_the_other_way() {
 }
 
 #[test]
-fn more_error_means_less_time_and_never_the_other_way() {
+fn a_larger_error_budget_never_takes_more_time() {
     for error in ErrorMeasure::ALL {
         let all = measured(error);
         let mut last_ns = f64::INFINITY;

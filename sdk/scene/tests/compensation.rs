@@ -1,4 +1,4 @@
-//! A response is made up for in the band of the textures, by its shape alone.
+//! A response is compensated in the band of the textures, and only its shape counts.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -17,7 +17,7 @@ fn response(frequency_hz: &[f64], magnitude: &[f64]) -> Response {
     }
 }
 
-/// What a device of newtons gets in 20 s, and the plan's reason for the compensation.
+/// The output of a newton device in 20 s, and the plan's reason for the compensation.
 fn played(response: Option<Response>) -> (Vec<f32>, Option<String>) {
     let mut scene = scene(single(), constant(80.0, 0.4), 20.0);
     scene.scene.surfaces[0].representation = "sbeta".to_owned();
@@ -57,7 +57,7 @@ fn a_response_in_another_unit_changes_nothing() {
 }
 
 #[test]
-fn what_lies_outside_the_band_holds_nothing_back() {
+fn the_response_outside_the_band_does_not_matter() {
     let steps = response(
         &[0.0, 10.0, 15.0, 200.0, 201.0, 500.0, 501.0, 1_000.0],
         &[1_000.0, 1_000.0, 1.0, 1.0, 0.4, 0.4, 0.1, 0.1],

@@ -1,4 +1,4 @@
-//! What an electrovibration display is driven with gives the texture back.
+//! The drive signal of an electrovibration display reproduces the texture.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -15,10 +15,10 @@ use htex_scene::{LoadedScene, Renderer, Response};
 
 const RATE_HZ: f64 = 50_000.0;
 const DRIVE_V: f64 = 100.0;
-/// At 50 kHz, seven whole periods of twice the carrier.
+/// Seven periods of twice the carrier are 25 samples at 50 kHz.
 const PERIODS: usize = 25;
 
-/// The paper's rig at 50 kHz, without a converter's steps.
+/// The rig of the paper at 50 kHz, without quantisation.
 fn rig() -> Capabilities {
     Capabilities {
         default_rate_hz: RATE_HZ,
@@ -33,7 +33,7 @@ fn driven(scene: &mut LoadedScene) -> (Vec<f32>, Renderer) {
     (rendered(&mut renderer), renderer)
 }
 
-/// Twice the square, averaged over whole periods: what the friction goes with, V².
+/// Twice the square, averaged over whole periods: proportional to the friction, V².
 fn demodulated(drive: &[f32]) -> Vec<f64> {
     let squares: Vec<f64> = drive.iter().map(|v| 2.0 * f64::from(*v).powi(2)).collect();
     let mean = |w: &[f64]| w.iter().sum::<f64>() / PERIODS as f64;
@@ -55,7 +55,7 @@ fn magnitudes(signal: Vec<f64>) -> Vec<f64> {
 }
 
 #[test]
-fn demodulated_and_squared_it_has_the_textures_compensated_spectrum() {
+fn the_demodulated_square_has_the_compensated_spectrum() {
     let response = Response {
         frequency_hz: vec![0.0, 100.0, 300.0, 600.0, 1_000.0],
         magnitude: vec![1.0, 1.2, 0.9, 0.4, 0.25],
@@ -87,7 +87,7 @@ fn demodulated_and_squared_it_has_the_textures_compensated_spectrum() {
                 .map(|(m, f)| m * inverse(*f))
                 .collect();
             let gain = energy_matching_gain(&wanted, &found);
-            // A bin that the model leaves empty is no ratio.
+            // Bins in which the model has no magnitude have no ratio.
             let most = wanted.iter().copied().fold(0.0, f64::max);
             let errors: Vec<f64> = found
                 .iter()
@@ -105,7 +105,7 @@ fn demodulated_and_squared_it_has_the_textures_compensated_spectrum() {
             );
             assert!(error_db < 1.0, "{model}: {error_db} dB");
 
-            // 4.5 times the RMS of what is felt reaches half the square of the largest voltage.
+            // 4.5 times the RMS of the texture corresponds to half the square of the largest voltage.
             let reach = 4.5 * level_rms(&found) / (DRIVE_V * DRIVE_V / 2.0);
             let reach_db = 20.0 * reach.log10();
             assert!(reach_db.abs() < 0.3, "{model}: {reach_db} dB");
@@ -113,9 +113,9 @@ fn demodulated_and_squared_it_has_the_textures_compensated_spectrum() {
     }
 }
 
-/// What the drive of each model demodulates to, dB RMS, and the level of its representation.
+/// Demodulated level of the drive of each model, dB RMS, and the level of its representation.
 #[test]
-fn under_one_gain_levels_are_alike_or_the_representations_own() {
+fn levels_under_one_gain_are_normalised_or_the_representations_own() {
     let model = |name: &str, levels: Levels, reference_rms: Option<f64>| {
         let mut scene = scene(single(), constant(80.0, 0.4), 20.0);
         scene.scene.surfaces[0].representation = name.to_owned();
@@ -131,7 +131,7 @@ fn under_one_gain_levels_are_alike_or_the_representations_own() {
     let all = single().manifest().representations.iter();
     let strongest_rms = all.map(|r| level_rms(&r.model)).fold(0.0, f64::max);
     let alike = model("ar", Levels::Normalised, None);
-    // The RMS of 20 s of noise that holds most of its power in some 30 Hz is uncertain by 0.2 dB.
+    // The RMS of 20 s of noise with most of its power in about 30 Hz has an uncertainty of 0.2 dB.
     const SPREAD_DB: f64 = 0.5;
     for name in ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"] {
         let normalised = model(name, Levels::Normalised, None) - alike;
@@ -154,7 +154,7 @@ fn it_never_exceeds_the_limit_and_starts_and_ends_at_zero() {
     let lifted = |t: f64| if (0.5..0.7).contains(&t) { 0.0 } else { 0.4 };
     let motion = trace(2.0, |t| 10.0 * (12.0 * t).sin(), lifted);
     let mut scene = traced(single(), motion, 2.0);
-    // As much as there is.
+    // The largest drive.
     scene.scene.device.drive_v = Some(150.0);
     let rig = Capabilities {
         default_rate_hz: RATE_HZ,

@@ -1,5 +1,5 @@
-//! A planned chain gives the samples of the full one: every effect forced in, neutral where the scene
-//! does not call for it.
+//! A planned chain gives the same samples as the full chain, in which every effect is switched on and is
+//! neutral if the scene does not need it.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -82,7 +82,7 @@ impl Case {
             1 => traced(asset, self.trace(), SECONDS),
             _ => scene(asset, Motion::Live, SECONDS),
         };
-        // A constant motion has a place only where it is asked for.
+        // A constant motion has no position here, and so needs a surface that covers everything.
         if self.surfaces > 1 && self.motion != 0 {
             self.tile(&mut scene);
         }
@@ -116,7 +116,7 @@ impl Case {
         trace(SECONDS, x, force)
     }
 
-    /// Surfaces side by side, 3 mm wide, and none at the right of them.
+    /// Places surfaces of 3 mm width side by side, with an empty region to their right.
     fn tile(&self, scene: &mut LoadedScene) {
         let asset = scene.assets[0].clone();
         scene.assets = vec![asset; self.surfaces];
@@ -142,7 +142,7 @@ impl Case {
             2 => display(),
             _ => loudspeaker(),
         };
-        // 2,000 Hz is the rate of AR itself.
+        // 2,000 Hz is the model rate of AR.
         let rate_hz = [20_000.0, 44_100.0, 16_384.0, 2_000.0][usize::from(self.rate)];
         Capabilities {
             default_rate_hz: rate_hz,
@@ -150,13 +150,13 @@ impl Case {
         }
     }
 
-    /// All samples, in blocks of the sizes given; a live finger moves between them.
+    /// All samples, rendered in blocks of the given sizes, with changes of a live motion in between.
     fn samples(&self, renderer: &mut Renderer, blocks: &[usize]) -> Vec<f32> {
         let frames = renderer.frames_left().unwrap() as usize;
         let mut samples = vec![0.0f32; frames];
         let (mut done, mut sizes) = (0, blocks.iter().cycle());
         while done < frames {
-            // A live motion changes at fixed frames, whatever the blocks are.
+            // A live motion changes at fixed frames, independent of the blocks.
             let (part, end) = (done / 1_024, (done / 1_024 + 1) * 1_024);
             if done % 1_024 == 0 {
                 renderer.set_motion(self.live(part)).unwrap();
@@ -166,7 +166,11 @@ impl Case {
             assert_eq!(rendered, size);
             done += size;
         }
-        assert_eq!(renderer.render(&mut [0.0; 8]), 0, "the end is the end");
+        assert_eq!(
+            renderer.render(&mut [0.0; 8]),
+            0,
+            "no samples after the end"
+        );
         let failure = renderer.take_failure();
         assert!(failure.is_none(), "{failure:?}");
         samples
@@ -194,7 +198,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 1_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn the_shortest_chain_sounds_like_the_full_one(case in cases()) {
+    fn the_planned_chain_gives_the_samples_of_the_full_one(case in cases()) {
         let (scene, device) = (case.scene(), case.device());
         let mut full = scene.clone();
         full.scene.effects = Effect::ALL.map(|effect| (effect, Switch::On)).into();
@@ -210,12 +214,12 @@ proptest! {
             prop_assert!(a.is_finite() && (a - b).abs() <= 1e-6 * full_scale, "{i}: {a} {b}");
         }
 
-        // What ran is what was planned, and a full chain has every effect for each surface.
+        // The stages that ran are the planned ones, and a full chain has every effect for each surface.
         for (renderer, plan) in [(&short, &short_plan), (&full, &full_plan)] {
             let runs = renderer.stages_run();
             let ran: Vec<_> = runs.iter().map(|run| (run.name, run.surface)).collect();
             prop_assert_eq!(ran, names(plan));
-            // A finger may be on one of several surfaces for less than a sample of its model.
+            // With several surfaces, the finger may be on one for less than a sample of its model.
             prop_assert!(case.surfaces > 1 || runs.iter().all(|run| run.blocks > 0), "{:?}", runs);
         }
         prop_assert!(short_plan.stages.len() <= full_plan.stages.len());

@@ -1,4 +1,4 @@
-//! A voice makes of a motion what a scene makes of it.
+//! A voice of the facade plays a motion like a scene does.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -12,10 +12,10 @@ use htex_scene::{Finger, Renderer};
 const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
 const RATE_HZ: f64 = 20_000.0;
 const RECORDED: (f64, f64) = (80.0, 0.4);
-/// Frames between two motions, those of a scene at this rate.
+/// Frames between two motions, as in a scene at this rate.
 const CONTROL: usize = 64;
 
-/// A voice with the seed that the first surface of a scene gets.
+/// A voice with the seed of the first surface of a scene.
 fn voice(model: &str, motion: Option<(f64, f64)>, effects: Effects) -> Voice {
     let options = VoiceOptions {
         model: Some(model),
@@ -38,7 +38,7 @@ fn rms_db(signal: &[f32]) -> f64 {
     10.0 * (power / signal.len() as f64).log10()
 }
 
-/// Power by octaves from `low_hz`, decibels of all.
+/// Power in octaves from `low_hz`, decibels relative to the total.
 fn octaves(signal: &[f32], low_hz: f64) -> Vec<f64> {
     let n = 4_000;
     let mut power = [0.0; 6];
@@ -54,7 +54,7 @@ fn octaves(signal: &[f32], low_hz: f64) -> Vec<f64> {
     power.iter().map(|p| 10.0 * (p / all).log10()).collect()
 }
 
-/// Goertzel's algorithm on the segment times a Hann window.
+/// Goertzel's algorithm on the Hann-windowed segment.
 fn bin_power(segment: &[f32], bin: usize) -> f64 {
     let turn = std::f64::consts::TAU / segment.len() as f64;
     let coefficient = 2.0 * (turn * bin as f64).cos();
@@ -67,10 +67,10 @@ fn bin_power(segment: &[f32], bin: usize) -> f64 {
 }
 
 #[test]
-fn a_constant_motion_plays_as_in_a_scene_whether_a_voice_is_made_for_it_or_moved_to_it() {
+fn a_constant_motion_plays_as_in_a_scene_from_the_start_or_after_a_change() {
     for model in MODELS {
         for motion in [RECORDED, (160.0, 0.8), (30.0, 0.2), (0.0, 0.4), (80.0, 0.0)] {
-            // Eight seconds of an octave from 20 Hz are uncertain by 0.35 dB.
+            // Eight seconds of the octave from 20 Hz have an uncertainty of 0.35 dB.
             let mut scene = scene(single(), constant(motion.0, motion.1), 8.0);
             scene.scene.surfaces[0].representation = model.to_owned();
             let mut renderer = Renderer::new(&scene, &planned(&scene, &file())).unwrap();
@@ -87,7 +87,7 @@ fn a_constant_motion_plays_as_in_a_scene_whether_a_voice_is_made_for_it_or_moved
             moved
                 .set_motion(htex::Motion::new(motion.0, motion.1))
                 .unwrap();
-            // Behind the ramps of level and contact.
+            // After the ramps of level and contact.
             samples(&mut moved, 1_000);
             let moved = samples(&mut moved, played.len());
             if peak == 0.0 {
@@ -105,8 +105,8 @@ fn a_constant_motion_plays_as_in_a_scene_whether_a_voice_is_made_for_it_or_moved
                 .zip(octaves(&played, low_hz))
                 .enumerate()
             {
-                // What lies 30 dB below all is not compared. The lowest octave has the band's edge, at which a voice that
-                // was moved plays up to 6 dB more between 5 and 7 Hz (of 7.5).
+                // Octaves 30 dB below the total are not compared. The lowest octave contains the band's edge,
+                // where a voice after a change of motion plays up to 6 dB more between 5 and 7 Hz (of 7.5).
                 let most_db = if k == 0 { 3.0 } else { 1.5 };
                 assert!(
                     (a - b).abs() < most_db || b < -30.0,
@@ -117,7 +117,7 @@ fn a_constant_motion_plays_as_in_a_scene_whether_a_voice_is_made_for_it_or_moved
     }
 }
 
-/// A stroke that gets faster and stronger, and rests at its end.
+/// A stroke of increasing speed and force that stops at its end.
 fn stroke(block: usize, blocks: usize) -> (f64, f64) {
     let part = block as f64 / blocks as f64;
     match part < 0.9 {
@@ -151,7 +151,7 @@ fn a_live_motion_plays_as_in_a_scene() {
                 .unwrap();
             followed.extend(samples(&mut voice, CONTROL));
         }
-        // Windows of half a second while the finger slides, silence at the end.
+        // Windows of half a second during the stroke, and silence at its end.
         let window = RATE_HZ as usize / 2;
         for (i, (a, b)) in followed
             .chunks(window)
@@ -178,7 +178,7 @@ fn a_live_motion_plays_as_in_a_scene() {
 }
 
 #[test]
-fn blocks_do_not_matter_and_the_recorded_motion_changes_nothing() {
+fn samples_do_not_depend_on_blocks_or_on_the_recorded_motion() {
     let motions = [
         RECORDED,
         (80.0, 0.5),
@@ -223,7 +223,7 @@ fn blocks_do_not_matter_and_the_recorded_motion_changes_nothing() {
 }
 
 #[test]
-fn a_voice_says_what_it_makes_of_a_motion() {
+fn a_voice_reports_its_coverage_of_a_motion() {
     let all = voice("ar", None, Effects::default());
     assert!(all.coverage(htex::Motion::new(80.0, 0.4)).is_inside());
     let beyond = all.coverage(htex::Motion::new(160.0, 0.2));
@@ -240,7 +240,7 @@ fn a_voice_says_what_it_makes_of_a_motion() {
     };
     assert!(none.slides && none.speed == as_recorded);
 
-    // A texture of 1 kHz at 4 kHz: no more than twice as fast.
+    // A texture of 1 kHz at a rate of 4 kHz: at most twice as fast.
     let options = VoiceOptions {
         rate_hz: 4_000.0,
         ..VoiceOptions::default()
@@ -281,9 +281,9 @@ fn a_voice_says_what_it_makes_of_a_motion() {
     );
 }
 
-/// Forces that a hand took for one are one: each of them plays as it was recorded, and others are scaled.
+/// Forces within the tolerance of one setting count as one: each plays as recorded, and others are scaled.
 #[test]
-fn forces_that_nearly_agree_are_one() {
+fn forces_within_tolerance_count_as_one() {
     let condition = |speed: f64, force: f64| Condition {
         speed_mm_s: Some(speed),
         force_n: Some(force),

@@ -1,4 +1,4 @@
-//! Whatever a scene file holds, reading it answers.
+//! Reading a scene file of any content terminates with a scene or a finding.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 #[path = "common/cases.rs"]
@@ -9,7 +9,7 @@ use htex_format::Findings;
 use htex_scene::{Limits, read_scene};
 use proptest::prelude::*;
 
-/// Reads bytes as a scene, and what it says is a scene again when it was one.
+/// Reads bytes as a scene; a valid scene remains valid after serialisation.
 fn check(bytes: &[u8]) {
     let mut findings = Findings::default();
     let scene = read_scene(bytes, &Limits::default(), &mut findings);
@@ -17,7 +17,7 @@ fn check(bytes: &[u8]) {
     let list = findings.into_list();
     assert!(
         scene.is_some() || has_errors,
-        "no scene, and no reason: {list:?}"
+        "no scene and no error finding: {list:?}"
     );
     if let (Some(scene), false) = (scene, has_errors) {
         let text = serde_json::to_vec(&scene).unwrap();

@@ -1,10 +1,10 @@
-//! Gains that are kept by several programs at once.
+//! Concurrent updates of a gains file.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_scene::{Gain, GainKey, Gains};
 
 #[test]
-fn programs_that_keep_gains_at_once_lose_none() {
+fn concurrent_updates_lose_no_gain() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("htex/gains.json");
     let gain = |person: usize, drive_v: f64| Gain {

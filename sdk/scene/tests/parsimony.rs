@@ -1,5 +1,5 @@
-//! For each effect a pair of scenes that differ only in needing it: its stage is in one and not in the
-//! other.
+//! For each effect, two scenes that differ only in whether they need it: the stage is in one plan and not in
+//! the other.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -14,13 +14,13 @@ use htex_scene::{LoadedScene, Renderer, Response};
 
 type Scene = (LoadedScene, Capabilities);
 
-/// A finger that slides to and fro at 80 mm/s or so, `swing` of its speed and force more and less.
+/// A stroke at 80 mm/s on average, whose speed varies by the fraction `swing`.
 fn strokes(asset: &htex::Asset, swing: f64) -> LoadedScene {
     let x = move |t: f64| 80.0 * t + 80.0 * swing * (4.0 * t).sin() / 4.0;
     traced(asset, trace(0.5, x, |_| 0.4), 0.5)
 }
 
-/// Two surfaces side by side, the finger on the left one until `x_mm`.
+/// Two surfaces of 30 mm side by side, with a stroke from x = 0 at `reach_mm` per second.
 fn two(reach_mm: f64) -> LoadedScene {
     let mut scene = traced(single(), trace(0.5, move |t| reach_mm * t, |_| 0.4), 0.5);
     let at = |from: f64| Surface {
@@ -39,7 +39,7 @@ fn plain() -> LoadedScene {
     scene(single(), constant(80.0, 0.4), 0.5)
 }
 
-/// Scenes without and with a need of the effect.
+/// Scenes that do not need and that need the effect.
 fn pair(effect: Effect) -> (Scene, Scene) {
     let forces = |change: f64| {
         let force = move |t: f64| 0.4 + change * (5.0 * t).sin();
@@ -99,7 +99,7 @@ fn pair(effect: Effect) -> (Scene, Scene) {
 }
 
 #[test]
-fn each_effect_is_in_where_it_is_called_for_and_nowhere_else() {
+fn each_effect_is_included_only_where_it_is_needed() {
     for effect in Effect::ALL {
         let (without, with) = pair(effect);
         for ((scene, device), wanted) in [(&without, false), (&with, true)] {
@@ -125,7 +125,7 @@ fn each_effect_is_in_where_it_is_called_for_and_nowhere_else() {
 }
 
 #[test]
-fn a_constant_motion_to_a_file_takes_three_stages_and_says_so() {
+fn a_constant_motion_to_a_file_takes_three_stages_with_reasons() {
     for scene in [
         plain(),
         scene(single(), constant(120.0, 0.6), 0.5),
@@ -141,7 +141,7 @@ fn a_constant_motion_to_a_file_takes_three_stages_and_says_so() {
 }
 
 #[test]
-fn a_surface_that_nobody_touches_is_not_built() {
+fn an_untouched_surface_is_left_out() {
     let plan = planned(&two(50.0), &file());
     assert_eq!(plan.representation.len(), 1);
     let out = plan
@@ -153,7 +153,7 @@ fn a_surface_that_nobody_touches_is_not_built() {
 }
 
 #[test]
-fn what_the_chain_needs_cannot_be_switched_off_and_the_rest_can() {
+fn only_required_effects_cannot_be_switched_off() {
     let costs = htex_scene::Costs::embedded();
     for effect in Effect::ALL {
         let (_, (mut scene, device)) = pair(effect);
@@ -174,7 +174,7 @@ fn what_the_chain_needs_cannot_be_switched_off_and_the_rest_can() {
 }
 
 #[test]
-fn a_live_scene_is_ready_for_what_may_come() {
+fn a_live_scene_includes_all_effects_of_motion() {
     let live = scene(single(), Motion::Live, 1.0);
     let plan = planned(&live, &file());
     let stages: Vec<&str> = plan.stages.iter().map(|s| s.name).collect();

@@ -1,10 +1,10 @@
-//! Amplitude modulation on a carrier, which keeps charge from leaking (7 kHz in the paper).
+//! Amplitude modulation of a carrier, which prevents charge leakage (7 kHz in the paper).
 
 use super::{Entry, Need, Place, Stage};
 use crate::call::Call;
 use crate::file::Effect;
 
-/// Samples after which the oscillator is set anew from its exact phase.
+/// Samples after which the oscillator restarts from its exact phase.
 const RENEW: u32 = 1024;
 
 pub(crate) const ENTRY: Entry = Entry {
@@ -15,15 +15,15 @@ pub(crate) const ENTRY: Entry = Entry {
 
 fn need(call: &Call) -> Need {
     match call.device.carrier_hz {
-        Some(carrier_hz) => Need::yes(format!("the device wants a carrier of {carrier_hz} Hz")),
-        None => Need::no("the device wants no carrier"),
+        Some(carrier_hz) => Need::yes(format!("the device requires a carrier of {carrier_hz} Hz")),
+        None => Need::no("the device requires no carrier"),
     }
 }
 
 fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
     let carrier_hz = call.device.carrier_hz.filter(|_| !neutral).unwrap_or(0.0);
     let cycles = carrier_hz / call.rate_hz;
-    // Phase in 64-bit fixed point never drifts.
+    // A phase in 64-bit fixed point does not drift.
     let step = (cycles.fract() * 2f64.powi(64)) as u64;
     let (sin, cos) = (std::f64::consts::TAU * cycles).sin_cos();
     Box::new(Carrier {
@@ -36,9 +36,9 @@ fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
 }
 
 struct Carrier {
-    /// A sample's phase, in 2^-64 cycles.
+    /// Phase increment per sample, in 2^-64 cycles.
     step: u64,
-    /// A sample's rotation: cosine and sine.
+    /// Rotation per sample: cosine and sine.
     turn: [f64; 2],
     phase: u64,
     at: [f64; 2],

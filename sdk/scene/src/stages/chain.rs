@@ -1,4 +1,4 @@
-//! Stages one behind the other, counted where they run.
+//! A chain of stages, with counts and times of each.
 
 use std::time::Instant;
 
@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::{Now, Stage, Told};
 
-/// A stage of a chain, and what it did.
+/// A stage of a chain with its statistics.
 pub(crate) struct Slot {
     name: &'static str,
     surface: Option<usize>,
@@ -15,17 +15,17 @@ pub(crate) struct Slot {
     ns: u64,
 }
 
-/// What a stage did.
+/// Statistics of a stage.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StageRun {
-    /// The stage.
+    /// Name of the stage.
     pub name: &'static str,
-    /// The surface it is for; none: for all.
+    /// Its surface; `None`: all surfaces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface: Option<usize>,
-    /// How often it ran.
+    /// Number of blocks it processed.
     pub blocks: u64,
-    /// Time it took, nanoseconds a sample of the device; none when it was not measured.
+    /// Run time, nanoseconds per sample of the device; `None` if not measured.
     pub ns_per_sample: Option<f64>,
 }
 
@@ -44,7 +44,7 @@ impl Slot {
         self.stage.follow(now);
     }
 
-    /// Runs the stage; its time is that spent in it and not in its source.
+    /// Runs the stage; its time excludes that of its source.
     pub(crate) fn render(
         &mut self,
         timed: bool,
@@ -68,7 +68,7 @@ impl Slot {
         self.stage.tell(told);
     }
 
-    /// What it did in a rendering of so many frames, if they were timed.
+    /// Statistics after a rendering of `timed_frames` frames, with times if that is not `None`.
     pub(crate) fn run(&self, timed_frames: Option<u64>) -> StageRun {
         StageRun {
             name: self.name,
@@ -79,7 +79,7 @@ impl Slot {
     }
 }
 
-/// Stages one behind the other; the last one gives the samples.
+/// A chain of stages; the last one gives the output.
 #[derive(Default)]
 pub(crate) struct Chain {
     pub(crate) slots: Vec<Slot>,
@@ -100,7 +100,7 @@ impl Chain {
     }
 }
 
-/// Runs the last stage, which pulls from the ones before it.
+/// Runs the last stage, which pulls from the stages before it.
 fn run(slots: &mut [Slot], timed: bool, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
     match slots.split_last_mut() {
         None => source(out),

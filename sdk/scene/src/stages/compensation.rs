@@ -1,5 +1,5 @@
-//! The response of finger and display, inverted, so that the friction on the finger has the texture's
-//! spectrum: 1/|H| where |H| is large, and no more than its depth below the maximum in the band allows.
+//! Compensation of the response of finger and display, so that the friction on the finger has the texture's
+//! spectrum: the gain is 1/|H| where |H| is large, and is limited by the depth below the maximum in the band.
 
 use htex_dsp::fir::Fir;
 use htex_dsp::resample::UnusableRates;
@@ -8,7 +8,7 @@ use super::{Entry, Need, Place, Stage};
 use crate::call::{Call, Part};
 use crate::file::Effect;
 
-/// What the filter resolves, hertz: its length is four of these periods.
+/// Frequency resolution of the filter, hertz: its length is four periods of this frequency.
 const RESOLUTION_HZ: f64 = 20.0;
 
 pub(crate) const ENTRY: Entry = Entry {
@@ -20,9 +20,9 @@ pub(crate) const ENTRY: Entry = Entry {
 fn need(call: &Call, _: &Part) -> Need {
     match &call.compensation {
         Some(inverse) => Need::yes(match inverse.raised() {
-            None => "the device's response is given, and is divided out".to_owned(),
+            None => "a response of the device is given, and is compensated".to_owned(),
             Some(raised) => {
-                format!("the device's response is given, and is divided out: it raises {raised}")
+                format!("a response of the device is given, and is compensated: it raises {raised}")
             }
         }),
         None => Need::no("no response of finger and display is given"),
@@ -37,7 +37,7 @@ pub(crate) fn taps(part: &Part) -> usize {
 fn build(call: &Call, part: &Part, neutral: bool) -> Result<Box<dyn Stage>, UnusableRates> {
     let fir = match &call.compensation {
         Some(inverse) if !neutral => {
-            // Before the resampler, which reads `fixed_ratio` times as fast.
+            // The filter runs before the resampler, which reads `fixed_ratio` times as fast.
             let rate_hz = part.mix_rate_hz * part.fixed_ratio;
             Fir::with_magnitude(taps(part), rate_hz, |hz| inverse.at(hz))
         }

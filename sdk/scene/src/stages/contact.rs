@@ -1,4 +1,5 @@
-//! Silence without contact or slip, and at both ends of a scene on a device that people touch or hear.
+//! Silence without contact or slip, and at the start and end of a scene on a device that people touch or
+//! hear.
 
 use htex::exploration::CONTACT_RAMP_S;
 use htex_device::Quantity;
@@ -16,7 +17,7 @@ pub(crate) const ENTRY: Entry = Entry {
 
 fn need(call: &Call) -> Need {
     if call.live {
-        return Need::yes("a live finger comes and goes");
+        return Need::yes("a live finger may start and end contact");
     }
     if call.breaks_contact {
         return Need::yes("the finger rests or is lifted");
@@ -50,7 +51,7 @@ impl Stage for Contact {
         }
         match now.ends_in {
             Some(left) if left <= u64::from(self.ramp) => {
-                // The last of them is at zero, as the first of a scene is.
+                // The last of them is zero, like the first one of a scene.
                 self.gain.set_within(0.0, (left as u32).saturating_sub(1));
             }
             _ => self.gain.set(if now.finger.slides() { 1.0 } else { 0.0 }),

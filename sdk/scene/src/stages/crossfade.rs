@@ -1,5 +1,5 @@
-//! From one surface to the next, and off and on: equal power, since textures are not correlated.
-//! A surface that is not touched is not rendered.
+//! Cross-fades between surfaces, and fades at their edges: equal power, since textures are uncorrelated. A
+//! surface that is not touched is not rendered.
 
 use htex_dsp::glide::Glide;
 
@@ -7,7 +7,7 @@ use super::{Entry, Need, Place};
 use crate::call::{Call, Part};
 use crate::file::Effect;
 
-/// Length of a crossfade, seconds: a fingertip of 10 mm at 1 m/s.
+/// Duration of a cross-fade, seconds: a fingertip of 10 mm at 1 m/s.
 const FADE_S: f64 = 0.010;
 
 pub(crate) const ENTRY: Entry = Entry {
@@ -20,10 +20,10 @@ fn need(_: &Call, part: &Part) -> Need {
     if part.always_touched {
         return Need::no("the finger never leaves the surface");
     }
-    Need::yes("the finger comes onto the surface or leaves it")
+    Need::yes("the finger enters or leaves the surface")
 }
 
-/// The weight of a surface.
+/// Fade weight of a surface.
 pub(crate) struct Crossfade {
     weight: Glide,
 }

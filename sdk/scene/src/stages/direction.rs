@@ -7,7 +7,7 @@ use super::{Entry, Need, Now, Place, Stage};
 use crate::call::Call;
 use crate::file::Effect;
 
-/// Length of a change of sign, seconds.
+/// Duration of a change of sign, seconds.
 const RAMP_S: f64 = 0.010;
 
 pub(crate) const ENTRY: Entry = Entry {
@@ -21,11 +21,13 @@ fn need(call: &Call) -> Need {
         Quantity::DisplayVoltage => {
             Need::no("friction on an electrovibration display opposes the motion by itself")
         }
-        Quantity::Sound => Need::no("the sign of a sound is not heard"),
-        Quantity::LateralForce if call.live => Need::yes("a live motion may turn round"),
-        Quantity::LateralForce if call.turns_round => Need::yes("the finger turns round"),
-        Quantity::LateralForce => Need::no("the finger never turns round"),
-        _ => Need::no("only a lateral force points against the stroke"),
+        Quantity::Sound => Need::no("the sign of a sound is inaudible"),
+        Quantity::LateralForce if call.live => Need::yes("a live motion may reverse"),
+        Quantity::LateralForce if call.turns_round => {
+            Need::yes("the finger reverses its direction")
+        }
+        Quantity::LateralForce => Need::no("the finger never reverses its direction"),
+        _ => Need::no("only a lateral force has a direction opposite to the stroke"),
     }
 }
 

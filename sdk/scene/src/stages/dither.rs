@@ -1,5 +1,5 @@
-//! Noise of triangular density, one step to either side, that makes the error of rounding to an integer
-//! file's steps independent of the signal.
+//! Triangular dither of one step in either direction, which makes the rounding error of integer files
+//! independent of the signal.
 
 use htex_device::Quantity;
 use rand_core::{Rng, SeedableRng};
@@ -19,10 +19,10 @@ fn need(call: &Call) -> Need {
     match (call.device.step, call.device.quantity) {
         (None, _) => Need::no("the device takes floats"),
         (Some(_), Quantity::DisplayVoltage) => {
-            Need::no("the steps of a converter behind an amplifier are not felt")
+            Need::no("the steps of a converter before an amplifier are imperceptible")
         }
         (Some(_), _) if call.device.paced => {
-            Need::no("the device is no file that is processed further")
+            Need::no("the device is not a file that may be processed further")
         }
         (Some(_), _) => {
             Need::yes("the samples are rounded to integers and may be processed further")

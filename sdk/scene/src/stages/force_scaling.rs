@@ -1,4 +1,4 @@
-//! Level in proportion to the normal force, as friction goes, where the asset knows only one force.
+//! Scaling of the level with the normal force, as for friction, for assets with a single force.
 
 use htex::{Explored, Recorded};
 use htex_dsp::glide::Glide;
@@ -7,7 +7,7 @@ use super::{Entry, FOLLOWS, Need, Now, Place, Stage};
 use crate::call::{Call, Part};
 use crate::file::Effect;
 
-/// Length of a change, seconds.
+/// Duration of a change, seconds.
 const RAMP_S: f64 = 0.010;
 
 pub(crate) const ENTRY: Entry = Entry {
@@ -23,12 +23,12 @@ fn need(_: &Call, part: &Part) -> Need {
     let known = part.explored.force;
     match known {
         _ if part.follows_motion => Need::no(FOLLOWS),
-        Recorded::Unknown => Need::no("the asset does not say at which force it was recorded"),
+        Recorded::Unknown => Need::no("the asset does not state the force of its recording"),
         Recorded::Several { .. } => {
-            Need::no("the asset knows several forces, and is interpolated between them")
+            Need::no("the asset has several forces, and is interpolated between them")
         }
         Recorded::One { .. } if part.force_n.changes(&known) => Need::yes(format!(
-            "the asset knows {known} N alone, and the force is {}",
+            "the asset has the force {known} N only, and the force is {}",
             part.force_n.text("N")
         )),
         Recorded::One { .. } if part.force_n.is_as(&known) => {

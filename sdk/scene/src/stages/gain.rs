@@ -1,5 +1,5 @@
-//! From the textures' unit to what the device wants: another quantity by a stated gain, the level of a preview, or
-//! the radicand of a drive.
+//! Conversion from the textures' unit to the device's: a stated gain, the level of a preview, or the radicand
+//! of a drive.
 
 use htex_device::Quantity;
 
@@ -7,11 +7,11 @@ use super::{Entry, Need, Place, Stage};
 use crate::call::Call;
 use crate::file::Effect;
 
-/// How far a stream is taken to reach, in units of its RMS. Normal noise is beyond it once in
-/// 150,000 samples on either side, ten equal sinusoids never.
+/// Assumed peak of a stream, in units of its RMS. Normally distributed noise exceeds it once in 150,000
+/// samples on either side, ten equal sinusoids never.
 pub(crate) const HEADROOM: f64 = 4.5;
 
-/// Quieter than this, RMS in the textures' unit, is nothing to bring anywhere: the gain would be no number.
+/// RMS in the textures' unit below which a stream counts as silent: its gain would not be finite.
 const LEAST_RMS: f64 = 1e-20;
 
 pub(crate) const ENTRY: Entry = Entry {
@@ -20,13 +20,13 @@ pub(crate) const ENTRY: Entry = Entry {
     place: Place::Device { need, build },
 };
 
-/// What brings a force to an electrovibration drive: V = sqrt(gain · force + shift), from
-/// V = V_g sqrt(y + 1) with y the force over [`HEADROOM`] times its RMS, and V_g = drive / sqrt(2).
+/// Mapping of a force to an electrovibration drive: V = sqrt(gain · force + shift), from V = V_g sqrt(y + 1),
+/// where y is the force over [`HEADROOM`] times its RMS and V_g = drive / sqrt(2).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Drive {
-    /// V² for one of the textures' unit.
+    /// V² per unit of the textures.
     pub(crate) gain: f64,
-    /// V².
+    /// Shift, V².
     pub(crate) shift: f64,
 }
 
@@ -40,7 +40,7 @@ impl Drive {
     }
 }
 
-/// The gain that brings the scene's reference level to this one; 0 when there is no level.
+/// Gain that maps the scene's reference level to `level`; 0 if there is no reference level.
 fn brings_level_to(level: f64, call: &Call) -> f64 {
     match call.level_rms > LEAST_RMS {
         true => level / call.level_rms,
@@ -51,7 +51,7 @@ fn brings_level_to(level: f64, call: &Call) -> f64 {
 fn need(call: &Call) -> Need {
     match call.device.quantity {
         Quantity::Sound => Need::yes(format!(
-            "the level is brought to {} dB of full scale to be heard",
+            "the level is set to {} dB relative to full scale for listening",
             call.level_dbfs
         )),
         Quantity::DisplayVoltage => Need::yes(format!(

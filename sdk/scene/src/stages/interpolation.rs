@@ -1,5 +1,5 @@
-//! Parameters and level between exploration conditions, as speed and force change. The voice is
-//! retuned; no samples pass through this stage.
+//! Interpolation of parameters and level between exploration conditions as speed and force change. It retunes
+//! the voice; no samples pass through this stage.
 
 use htex::{Explored, Recorded};
 
@@ -16,7 +16,7 @@ pub(crate) const ENTRY: Entry = Entry {
 fn need(_: &Call, part: &Part) -> Need {
     let known = part.known;
     if known < 2 {
-        return Need::no("the asset knows one exploration condition");
+        return Need::no("the asset has one exploration condition");
     }
     let varies = |span: &Span, recorded: Recorded| {
         !span.is_point() && matches!(recorded, Recorded::Several { .. })
@@ -24,10 +24,10 @@ fn need(_: &Call, part: &Part) -> Need {
     let Explored { speed, force } = part.explored;
     if varies(&part.speed_mm_s, speed) || varies(&part.force_n, force) {
         return Need::yes(format!(
-            "speed ({}) and force ({}) change between {known} known conditions",
+            "speed ({}) and force ({}) change between {known} conditions",
             part.speed_mm_s.text("mm/s"),
             part.force_n.text("N"),
         ));
     }
-    Need::no("the motion does not change: the parameters at it are mixed once")
+    Need::no("the motion does not change: parameters are interpolated once")
 }

@@ -1,11 +1,11 @@
-//! From unit RMS to the asset's unit: the asset's level and the surface's gain.
+//! Conversion from unit RMS to the asset's unit, by the asset's level and the surface's gain.
 
 use htex_dsp::glide::Glide;
 
 use super::{Now, Stage};
 use crate::call::Part;
 
-/// Length of a change of level, seconds.
+/// Duration of a change of level, seconds.
 const RAMP_S: f64 = 0.010;
 
 pub(crate) struct Level {

@@ -1,5 +1,5 @@
-//! Never above the device's limit, nor above the drive of a display, whatever comes; samples that are held there are counted. One that
-//! is no number is held at zero.
+//! Clipping at the device's limit and at the drive of a display. Clipped samples are counted; NaN becomes
+//! zero.
 
 use htex_device::Quantity;
 
@@ -24,10 +24,10 @@ fn need(call: &Call) -> Need {
     }
 }
 
-/// What no sample exceeds.
+/// The largest magnitude of a sample.
 fn limit(call: &Call) -> Option<f64> {
     match (call.device.quantity, call.device.limit) {
-        // Of the device's steps the highest within, so that rounding leads to none beyond.
+        // The highest step of the device within the limit, so that rounding never exceeds it.
         (Quantity::DisplayVoltage, Some(limit)) => {
             let most = limit.min(call.drive_v);
             let step = call.device.step.unwrap_or(0.0);
@@ -50,7 +50,7 @@ fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
     })
 }
 
-/// The largest 32-bit float that is not above a number.
+/// The largest 32-bit float not above a number.
 fn at_most(limit: f64) -> f32 {
     let near = limit as f32;
     if f64::from(near) > limit {
@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_no_device_takes_is_held_and_counted() {
+    fn samples_beyond_the_limit_are_clipped_and_counted() {
         let (limit, mut told) = (at_most(0.1), Told::default());
         let mut limiter = Limiter { limit, held: 0 };
         let given = [0.05, -0.2, f32::INFINITY, f32::NEG_INFINITY, f32::NAN, -0.0];

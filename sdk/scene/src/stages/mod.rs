@@ -1,4 +1,4 @@
-//! What a chain is made of. A file an effect: its need, stated beside its code.
+//! The stages of a chain: one file per effect, with the condition under which it is needed.
 
 mod carrier;
 mod chain;
@@ -33,41 +33,41 @@ use crate::call::{Call, Part};
 use crate::file::Effect;
 use crate::motion::Finger;
 
-/// One part of a chain. Samples are pulled: a stage asks its source for what it needs.
+/// A stage of a chain, pull-based: it requests the input it needs from its source.
 pub(crate) trait Stage: Send {
-    /// Hears of the finger, before each control block.
+    /// Is told the motion before each control block.
     fn follow(&mut self, _now: &Now) {}
 
     /// Fills `out`. Does not allocate, lock or do I/O.
     fn render(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32]));
 
-    /// Tells what it had to do to the samples.
+    /// Adds what the stage did to the samples to `_told`.
     fn tell(&self, _told: &mut Told) {}
 }
 
-/// What a control block is to be made for.
+/// State of a control block.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Now {
     pub(crate) finger: Finger,
-    /// RMS of the surface at hand, newtons.
+    /// RMS of the current surface, newtons.
     pub(crate) level_rms: f64,
-    /// Frames until the scene ends.
+    /// Frames until the end of the scene; `None` if endless.
     pub(crate) ends_in: Option<u64>,
 }
 
-/// Why a surface is not scaled by the motion.
+/// Reason to leave out the scaling by speed and by force.
 pub(crate) const FOLLOWS: &str = "the model follows the motion itself";
 
-/// What the stages had to do to the samples.
+/// Counts of corrected samples.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Told {
-    /// Samples held at the device's limit.
+    /// Samples clipped at the device's limit.
     pub(crate) limited: u64,
-    /// Radicands held at zero.
+    /// Negative radicands set to zero.
     pub(crate) rooted: u64,
 }
 
-/// Whether a scene calls for an effect, and why.
+/// Whether an effect is needed, and the reason.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Need {
     In(String),
@@ -84,35 +84,35 @@ impl Need {
     }
 }
 
-/// An effect: when it is needed, and how it is made. `neutral`: the scene does not call for it, and
-/// it must not change a sample.
+/// Stage of the chain where an effect is applied, with the functions that decide whether it is needed and
+/// that build it. `neutral`: the effect is not needed and must not change any sample.
 #[derive(Debug)]
 pub(crate) enum Place {
-    /// For one surface, at its model's rate, before surfaces are mixed.
+    /// Per surface, at the model's rate, before surfaces are mixed.
     Surface {
         need: fn(&Call, &Part) -> Need,
-        /// None: it has no stage of its own in the chain of samples.
+        /// `None`: the effect has no stage of its own in the chain.
         build: Option<BuildFor>,
     },
-    /// For the surfaces of one rate, mixed; the need is that of one of them.
+    /// Per mix of surfaces of one rate; the need is that of one of them.
     Mix {
         need: fn(&Call, &Part) -> Need,
         build: BuildMix,
     },
-    /// For the sum of all, at the device's rate.
+    /// Once, after mixing, at the device's rate.
     Device {
         need: fn(&Call) -> Need,
         build: fn(&Call, neutral: bool) -> Box<dyn Stage>,
     },
 }
 
-/// Makes the stage of an effect for a surface.
+/// Builds the stage of an effect for a surface.
 type BuildFor = fn(&Call, &Part, neutral: bool) -> Box<dyn Stage>;
 
-/// Makes the stage of an effect for the surfaces of one rate.
+/// Builds the stage of an effect for a mix of surfaces of one rate.
 type BuildMix = fn(&Call, &Part, neutral: bool) -> Result<Box<dyn Stage>, UnusableRates>;
 
-/// An effect in the table.
+/// An entry of the table of effects.
 #[derive(Debug)]
 pub(crate) struct Entry {
     pub(crate) effect: Effect,
@@ -120,7 +120,7 @@ pub(crate) struct Entry {
     pub(crate) place: Place,
 }
 
-/// All effects, in the order in which samples come through them.
+/// All effects, in processing order.
 pub(crate) const EFFECTS: &[Entry] = &[
     interpolation::ENTRY,
     speed_scaling::ENTRY,

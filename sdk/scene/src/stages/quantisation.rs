@@ -1,4 +1,4 @@
-//! Rounding to the steps the device can put out.
+//! Rounding to the resolution of the device.
 
 use super::{Entry, Need, Place, Stage};
 use crate::call::Call;

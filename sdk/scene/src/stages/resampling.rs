@@ -1,4 +1,4 @@
-//! From the rate of the models to the rate of the device: once, for all surfaces of a rate together.
+//! Conversion from the rate of the models to the rate of the device, once for all surfaces of a rate.
 
 use htex_dsp::resample::{Resampler, UnusableRates};
 
@@ -14,7 +14,7 @@ pub(crate) const ENTRY: Entry = Entry {
 
 fn need(call: &Call, part: &Part) -> Need {
     match macs(call, part) {
-        // Rates that cannot be converted are refused where the stage is planned.
+        // Rates that cannot be converted are refused when the stage is planned.
         Ok(Some(_)) | Err(_) => Need::yes(format!(
             "the model renders at {:.0} Hz, the device runs at {:.0} Hz",
             part.mix_rate_hz * part.fixed_ratio,
@@ -24,14 +24,14 @@ fn need(call: &Call, part: &Part) -> Need {
     }
 }
 
-/// Rates of the converter that a surface needs, and what lies highest; a speed that never changes is
-/// in its ratio.
+/// Input rate, output rate and highest frequency of a surface's converter, hertz; a constant speed is
+/// included in the ratio.
 fn rates(call: &Call, part: &Part) -> (f64, f64, f64) {
     let ratio = part.fixed_ratio;
     (part.mix_rate_hz * ratio, call.rate_hz, part.top_hz * ratio)
 }
 
-/// Multiplications a sample of the device; none when there is nothing to convert.
+/// Multiplications per sample of the device; `None` if no conversion is needed.
 pub(crate) fn macs(call: &Call, part: &Part) -> Result<Option<f64>, UnusableRates> {
     let (from, to, top) = rates(call, part);
     Resampler::macs_per_output(from, to, top)

@@ -1,5 +1,5 @@
-//! Temporal frequency in proportion to the scanning speed, f ∝ v: what a fixed surface does to a finger
-//! that moves faster, where the asset knows only one speed.
+//! Scaling of temporal frequencies with the scanning speed, f ∝ v, as on a fixed surface under a faster
+//! finger, for assets with a single speed.
 
 use htex::{Explored, Recorded};
 use htex_dsp::warp::Warp;
@@ -21,12 +21,12 @@ fn need(_: &Call, part: &Part) -> Need {
     let known = part.explored.speed;
     match known {
         _ if part.follows_motion => Need::no(FOLLOWS),
-        Recorded::Unknown => Need::no("the asset does not say at which speed it was recorded"),
+        Recorded::Unknown => Need::no("the asset does not state the speed of its recording"),
         Recorded::Several { .. } => {
-            Need::no("the asset knows several speeds, and is interpolated between them")
+            Need::no("the asset has several speeds, and is interpolated between them")
         }
         Recorded::One { .. } if part.speed_mm_s.changes(&known) => Need::yes(format!(
-            "the asset knows {known} mm/s alone, and the speed is {}",
+            "the asset has the speed {known} mm/s only, and the speed is {}",
             part.speed_mm_s.text("mm/s")
         )),
         Recorded::One { .. } if part.speed_mm_s.is_as(&known) => Need::no(format!(
@@ -58,7 +58,8 @@ struct SpeedScaling {
     scales: bool,
     warp: Warp,
     ratio: f64,
-    /// Samples given for each one of the source, so that a faster finger fits below half the rate.
+    /// Output samples per source sample, so that higher frequencies of a faster finger stay below the Nyquist
+    /// frequency.
     oversampling: f64,
 }
 

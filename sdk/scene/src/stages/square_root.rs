@@ -1,9 +1,9 @@
-//! Shift and square root: the friction an electrovibration display adds goes with the square of its
-//! voltage: V = V_g sqrt(y + |min y|) cos(2 pi f_c t). (The paper, Electrovibration rendering, prints
-//! min|y|, with which the radicand can be negative.)
+//! Shift and square root: the friction that an electrovibration display adds is proportional to the square of
+//! its voltage: V = V_g sqrt(y + |min y|) cos(2 pi f_c t). (The paper, Electrovibration rendering, prints
+//! min|y|, which allows negative radicands.)
 //!
-//! The minimum of a stream is not known beforehand. The shift is [`HEADROOM`] times the RMS of the
-//! scene's loudest surface instead; what is still below, is held at zero and counted.
+//! The minimum of a stream is not known in advance. The shift is [`HEADROOM`] times the RMS of the scene's
+//! loudest surface instead; radicands that are still negative are set to zero and counted.
 
 use htex_device::Quantity;
 
@@ -20,9 +20,9 @@ pub(crate) const ENTRY: Entry = Entry {
 fn need(call: &Call) -> Need {
     match call.device.quantity {
         Quantity::DisplayVoltage => Need::yes(format!(
-            "friction goes with the square of the voltage; the shift is {HEADROOM} times the RMS"
+            "friction is proportional to the square of the voltage; the shift is {HEADROOM} times the RMS"
         )),
-        _ => Need::no("the device is no electrovibration display"),
+        _ => Need::no("the device is not an electrovibration display"),
     }
 }
 
@@ -36,7 +36,7 @@ fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
     }
 }
 
-/// A power of 1 and a shift of 0.
+/// A signal power of 1 and a shift of 0.
 struct Unchanged;
 
 impl Stage for Unchanged {

@@ -1,4 +1,4 @@
-//! The samples themselves: a voice of the surface's model, of unit RMS.
+//! Synthesis: a voice of the surface's model, with unit RMS.
 
 use htex::{ModelMotion, Motion, Source};
 
@@ -18,8 +18,8 @@ impl Synthesis {
         }
     }
 
-    /// The level after gliding to a motion. A model that cannot follow plays on as before, and says
-    /// so.
+    /// Retunes the voice to a motion and returns the level there. If the model fails, the voice
+    /// continues unchanged and the failure is stored.
     pub(crate) fn set_motion(&mut self, motion: Motion) -> f64 {
         match self.source.set_motion(motion) {
             Ok(level_rms) => level_rms,
@@ -42,7 +42,7 @@ impl Synthesis {
         self.source.level_rms()
     }
 
-    /// The first failure since this was last asked.
+    /// Returns and clears the first failure.
     pub(crate) fn take_failure(&mut self) -> Option<htex::Error> {
         self.failed.take()
     }

@@ -1,4 +1,4 @@
-//! The conformance scenes: sound ones, and one for each way to break a rule; and the files they name.
+//! The conformance scenes: valid ones, and at least one for each rule they break; and the files they name.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// The report that the scene in `folder` must get, as pretty JSON.
+    /// The report expected for the scene in `folder`, as pretty-printed JSON.
     pub fn golden(&self, folder: &Path) -> String {
         let devices = Devices::new(vec![Arc::new(htex_device_file::FileAdapter)]);
         let around = Surroundings {
@@ -31,7 +31,7 @@ impl Case {
     }
 }
 
-/// What the scenes name: (file name, bytes).
+/// The files that the scenes name: (file name, bytes).
 pub fn files() -> Vec<(&'static str, Vec<u8>)> {
     let trace = |header: &str, rows: &str| format!("{header}\n{rows}").into_bytes();
     let rows = "0,0,0,0.4\n0.5,40,0,0.4\n1,0,0,0.4\n";
@@ -157,7 +157,7 @@ pub fn plain() -> Value {
     })
 }
 
-/// [`plain`] with the value at a pointer set; its parents are objects, or there.
+/// [`plain`] with the values at some pointers set; parents are created as objects if they are missing.
 fn with(changes: &[(&str, Value)]) -> String {
     let mut scene = plain();
     for (pointer, value) in changes {
@@ -180,7 +180,7 @@ fn without(key: &str) -> String {
     serde_json::to_string_pretty(&scene).unwrap() + "\n"
 }
 
-/// Two surfaces side by side; `second` runs from there along x.
+/// Two surfaces side by side; `second` is the range of the second one along x.
 fn two(second: [f64; 2]) -> Value {
     let region = |x_mm: [f64; 2]| json!({ "x_mm": x_mm, "y_mm": [0, 50] });
     json!([
@@ -189,7 +189,7 @@ fn two(second: [f64; 2]) -> Value {
     ])
 }
 
-/// All scenes.
+/// All conformance scenes.
 pub fn cases() -> Vec<Case> {
     let volts = || {
         (

@@ -1,4 +1,4 @@
-//! Scenes of simulated surfaces, made in memory.
+//! Scenes of simulated surfaces in memory.
 #![allow(dead_code)] // Each suite uses its part.
 
 use std::path::PathBuf;
@@ -73,7 +73,7 @@ fn asset(surface: Simulated, conditions: &[(f64, f64)]) -> Asset {
     Asset::from_bytes(&fitted.asset.to_bytes().unwrap()).unwrap()
 }
 
-/// A scene of one surface that lies everywhere.
+/// A scene of one surface without a region.
 pub fn scene(asset: &Asset, motion: Motion, duration_s: f64) -> LoadedScene {
     LoadedScene {
         scene: Scene {
@@ -114,7 +114,7 @@ pub fn constant(speed_mm_s: f64, force_n: f64) -> Motion {
     })
 }
 
-/// A trace at 200 rows a second: place along x (mm) and force (newtons) over time.
+/// A trace at 200 rows per second from position along x (mm) and force (newtons) as functions of time.
 pub fn trace(duration_s: f64, x_mm: impl Fn(f64) -> f64, force_n: impl Fn(f64) -> f64) -> Trace {
     let t_s: Vec<f64> = (0..=(duration_s * 200.0) as usize + 1)
         .map(|i| i as f64 / 200.0)
@@ -129,7 +129,7 @@ pub fn trace(duration_s: f64, x_mm: impl Fn(f64) -> f64, force_n: impl Fn(f64) -
     })
 }
 
-/// A scene that follows a trace.
+/// A scene with a trace as its motion.
 pub fn traced(asset: &Asset, trace: Trace, duration_s: f64) -> LoadedScene {
     LoadedScene {
         trace: Some(trace),
@@ -190,7 +190,7 @@ pub fn planned(scene: &LoadedScene, device: &Capabilities) -> Plan {
     plan(scene, device, &Costs::embedded()).unwrap()
 }
 
-/// All samples of a scene.
+/// All samples of a scene, rendered to its end.
 pub fn rendered(renderer: &mut Renderer) -> Vec<f32> {
     let mut all = Vec::new();
     let mut block = [0.0f32; 64];

@@ -1,4 +1,4 @@
-//! The checker itself: sound models pass, and of each bad one the right check complains.
+//! The checker of models: valid models pass, and each faulty one fails the right check.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
@@ -10,7 +10,7 @@ use htex_check::{CHECKS, Options, Outcome, Report, Runner, check, run_one};
 
 const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
 
-/// A fault of `tests/bad-plugins/bad.c`, and the check that must complain of it.
+/// A fault of `tests/bad-plugins/bad.c`, and the check that must fail.
 const FAULTS: &[(&str, &str, Outcome)] = &[
     ("MARKER", "marker", Outcome::Failed),
     ("EXPORT_MISSING", "exports", Outcome::Failed),
@@ -29,7 +29,7 @@ const FAULTS: &[(&str, &str, Outcome)] = &[
     ("MAGNITUDE_GRID", "magnitude-grid", Outcome::Failed),
     ("RENDER_LOOPS", "render", Outcome::TimedOut),
     ("RENDER_CRASHES", "render", Outcome::Crashed),
-    // The host itself refuses samples that are no numbers, from the first block on.
+    // The host refuses NaN and infinite samples, from the first block on.
     ("NOT_FINITE", "render", Outcome::Failed),
     ("SUBNORMAL", "samples", Outcome::Failed),
     ("LEVEL", "level", Outcome::Failed),
@@ -64,7 +64,7 @@ fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The folder in which Cargo puts what it builds for these tests.
+/// Cargo's build folder for these tests.
 fn built() -> &'static Path {
     Path::new(env!("CARGO_BIN_EXE_htex")).parent().unwrap()
 }
@@ -87,7 +87,7 @@ fn library(model: &str) -> PathBuf {
     built().join(format!("libhtex_{model}{suffix}"))
 }
 
-/// Compiles the bad model with a fault, or with none, around a sound library.
+/// Compiles the faulty model with a fault, or without, around a valid library.
 fn bad(folder: &Path, good: &Path, fault: &str) -> PathBuf {
     let out = folder.join(format!("bad-{fault}{}", std::env::consts::DLL_SUFFIX));
     let status = Command::new("cc")
@@ -117,7 +117,7 @@ fn checked(file: &Path, timeout_s: u64) -> Report {
     check_some(file, timeout_s, 3, None)
 }
 
-/// The checks of sounds with more seeds: a level or spectrum that is wrong by a little fails with some.
+/// The checks of sounds with more seeds: a level or spectrum with a small error fails with some.
 fn checked_by_seeds(file: &Path) {
     let sounds = ["level", "spectrum", "narrow-band"].map(String::from);
     for seed in [0, 1, 2, u64::MAX] {
@@ -148,7 +148,7 @@ fn sound_models_pass() {
         let report = checked(&file, 120);
         println!("{report}");
         assert!(report.ok, "{}", report);
-        // What may be skipped for a sound model lying alone: its twin.
+        // The only check that is skipped for a model without a twin beside it.
         assert_eq!(report.count(Outcome::Skipped), 1, "{}", report);
     }
 }

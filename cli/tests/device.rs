@@ -1,5 +1,5 @@
-//! Devices on the command line, a third party's among them, and the checker of devices: sound ones
-//! pass, and of each bad one the right check complains.
+//! Devices on the command line, including a third party's, and the checker of devices: valid ones
+//! pass, and each faulty one fails the right check.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
@@ -14,7 +14,7 @@ use htex_device::{Adapter, DeviceError, NativeAdapter, Settings, StreamFormat};
 use htex_device_check::CHECKS;
 use serde_json::Value;
 
-/// A fault of `tests/bad-devices/bad.c`, the check that must complain of it, and how it ends.
+/// A fault of `tests/bad-devices/bad.c`, the check that must fail, and its outcome.
 const FAULTS: &[(&str, &str, &str)] = &[
     ("MARKER", "marker", "failed"),
     ("EXPORT_MISSING", "exports", "failed"),
@@ -69,7 +69,7 @@ fn strip(place: &Place) -> PathBuf {
     place.path(String::from_utf8(built.stdout).unwrap().trim())
 }
 
-/// Compiles the bad device with a fault, or with none, around the sound one.
+/// Compiles the faulty device with a fault, or without, around the valid one.
 fn bad(place: &Place, good: &Path, fault: &str) -> String {
     let out = place.path(&format!("bad-{fault}{}", std::env::consts::DLL_SUFFIX));
     let status = Command::new("cc")
@@ -159,7 +159,7 @@ fn sound_devices_pass() {
     let strip = strip(&place);
     let report = checked(&place, &[strip.to_str().unwrap()]);
     assert_eq!(count(&report, "passed"), CHECKS.len(), "{report:#}");
-    // Built in there is no library: marker, exports, extensions, settings as lines, handles.
+    // Checks of a library: marker, exports, extensions, settings as lines, handles.
     let file = checked(&place, &["file", "--set", "encoding=i16"]);
     assert_eq!(complaints(&file), []);
     assert_eq!(count(&file, "passed"), CHECKS.len() - 5, "{file:#}");
@@ -204,7 +204,7 @@ fn what_a_check_needs_comes_before_it() {
     }
 }
 
-/// A third party's device does what it says: an hour of force becomes a picture of an hour.
+/// A third party's device works: an hour of force becomes a picture of an hour.
 #[test]
 fn the_strip_chart_draws() {
     let place = Place::new();
@@ -292,7 +292,7 @@ fn devices_are_listed_and_shown() {
     let found = place.json(&["device", "list", "--json", "--device-dir", folder]);
     assert_eq!(ids(&found)[0], "org.example.strip");
     assert_eq!(ids(&found)[1..], builtin);
-    // The same library twice: the first is used, and that is told.
+    // The same library twice: the first is used, and a note says so.
     let named = library.to_str().unwrap();
     let twice = ["--device-file", named, "--device-dir", folder];
     let twice = place.json(&[&["device", "list", "--json"], &twice[..]].concat());

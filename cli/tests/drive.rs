@@ -1,5 +1,5 @@
-//! Scenes played on a card, the simulated one: the voltage that comes out, and that it is zero after
-//! all that can go wrong.
+//! Scenes played on the simulated card: the output voltage, and that it is zero after
+//! every failure.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 #[path = "common/bench.rs"]
@@ -16,7 +16,7 @@ use bench::{Bench, EXAMPLES, GAIN, PAPER, RATE_HZ, RECORD, SCENE, check_failed, 
 use common::Place;
 use serde_json::{Value, json};
 
-/// Volts at the display, as a file has them.
+/// Volts at the display, from a file.
 fn samples(file: &Path) -> Vec<f32> {
     let mut wav = hound::WavReader::open(file).unwrap();
     assert_eq!(f64::from(wav.spec().sample_rate), RATE_HZ);
@@ -124,7 +124,7 @@ fn a_scene_never_overrides_the_rig() {
         .iter()
         .fold(0.0, |most: f64, v| most.max(v.abs()));
     assert!(most > 1.0 && most <= 150.0 / GAIN, "{most} V of the card");
-    // Without a person's word there is no rig, and nothing is played.
+    // Without settings from a person there is no rig, and nothing is played.
     let driver = format!("driver={}", simulated::built().display());
     let alone = Bench::new(json!({ "duration_s": 1 }));
     let mut play = alone.0.command(&["play", SCENE, "--set", &driver]);
@@ -140,7 +140,7 @@ fn a_scene_never_overrides_the_rig() {
         ],
     );
     assert!(!alone.0.path(RECORD).exists());
-    // A lower limit is granted, whoever asks for it; the smallest holds.
+    // Anyone may lower the limit; the smallest holds.
     for (asked, given, holds) in [
         (Some(40.0), None, 40.0),
         (Some(400.0), Some("60"), 60.0),
@@ -174,7 +174,7 @@ fn a_scene_never_overrides_the_rig() {
     }
 }
 
-/// A model may render what it likes: nothing goes beyond the drive, and a texture far beyond it is refused.
+/// Whatever a model renders, the output stays within the drive, and a texture far beyond it is refused.
 #[test]
 fn the_drive_is_a_cap_and_what_is_far_beyond_it_is_refused() {
     let loud = |gain: f64| {
@@ -262,7 +262,7 @@ fn an_interrupted_play_goes_down_to_zero() {
     assert!(ramp[3] < 0.3 * before, "{before} V, then {ramp:?}");
 }
 
-/// However many signals come, and whichever: the way to zero is gone to its end.
+/// The ramp to zero is completed whatever signals arrive.
 #[cfg(unix)]
 #[test]
 fn further_signals_do_not_cut_the_way_to_zero_short() {
@@ -275,7 +275,7 @@ fn further_signals_do_not_cut_the_way_to_zero_short() {
         let child = bench.start();
         for name in signals {
             signal(&child, name);
-            // One that comes while another waits is lost.
+            // A signal that arrives while another is pending is lost.
             std::thread::sleep(Duration::from_millis(5));
         }
         let done = child.wait_with_output().unwrap();
@@ -295,7 +295,7 @@ fn further_signals_do_not_cut_the_way_to_zero_short() {
     }
 }
 
-/// What ends or stops the player reaches nobody else: another process holds the output.
+/// A signal that ends or stops the player does not reach the process that holds the output.
 #[cfg(unix)]
 #[test]
 fn a_player_that_is_killed_leaves_zero() {
@@ -316,7 +316,7 @@ fn a_player_that_is_killed_leaves_zero() {
     }
 }
 
-/// Should the process that holds the output be killed, the player puts it to zero, and says so.
+/// If the process that holds the output is killed, the player sets it to zero, and says so.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_guardian_that_is_killed_is_replaced_by_zero() {
@@ -342,7 +342,7 @@ fn a_guardian_that_is_killed_is_replaced_by_zero() {
     bench.is_at_zero();
 }
 
-/// A bare name is a file of the current folder; one that is not there is searched by the system's loader, and the error
+/// A bare name is a file of the current folder; if there is none, the system's loader searches for it, and the error
 /// says so.
 #[test]
 fn a_driver_is_found_by_its_bare_name() {
@@ -379,6 +379,6 @@ fn the_adapter_keeps_what_devices_promise() {
     assert!(done.status.success(), "{report:#}");
     let all = report["checks"].as_array().unwrap().iter();
     let passed = all.filter(|check| check["outcome"] == "passed").count();
-    // Built in there is no library (5), and the installed driver, which lists outputs, may be absent.
+    // Five checks are of libraries, and the installed driver, which lists outputs, may be absent.
     assert!(passed >= htex_device_check::CHECKS.len() - 6, "{report:#}");
 }

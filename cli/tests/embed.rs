@@ -1,4 +1,4 @@
-//! An asset that brings its model along plays where that model was never installed.
+//! An asset that embeds its model plays where that model was never installed.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -36,7 +36,7 @@ fn build_bursts(place: &Place) -> bool {
     xtask::needs::WASM_CLANG.met(built.is_ok_and(|status| status.success()))
 }
 
-/// Fits a recording by the example and by sBeta to `b.htex`, which brings the example along.
+/// Fits a recording by the example and by sBeta to `b.htex`, which embeds the example.
 fn fit_with_bursts(place: &Place, more: &[&str]) -> serde_json::Value {
     let csv = place.recording("sandpaper");
     let models = ["fit", &csv, "--model", "bursts,sbeta"];
@@ -96,7 +96,7 @@ fn a_third_party_model_travels_with_its_asset() {
     }
 }
 
-/// A module that is declared, and even signed, as another model takes the place of none.
+/// A module that is declared, or even signed, as another model does not replace it.
 #[test]
 fn a_module_is_the_model_it_is_said_to_be() {
     let place = Place::new();
@@ -127,7 +127,7 @@ fn a_module_is_the_model_it_is_said_to_be() {
         let run = place.run(&[&synth[..], &["--model", model]].concat());
         assert_eq!(run.code(), 1, "{}", run.error());
         assert!(run.error().contains(&words), "{}", run.error());
-        // Nothing runs unless it is asked for, and then it is found.
+        // Nothing runs unless asked for; then the fault is found.
         let valid = place.run(&["validate", "liar.htex"]);
         assert_eq!(valid.code(), 0, "{}", valid.text());
         let loaded = place.run(&["validate", "--embedded-plugins", "liar.htex"]);
@@ -135,7 +135,7 @@ fn a_module_is_the_model_it_is_said_to_be() {
         for part in ["PLUGIN_UNUSABLE at /plugins/0", &words] {
             assert!(loaded.text().contains(part), "{}", loaded.text());
         }
-        // What it does not bring along is played without it.
+        // Models that are not embedded are played without it.
         let without = ["--model", "sbeta", "--no-embedded-plugins"];
         let run = place.run(&[&synth[..], &without].concat());
         assert_eq!(run.code(), 0, "{}", run.error());

@@ -1,4 +1,4 @@
-//! Numbers that flags take, at every edge.
+//! Extreme numbers for every numeric flag.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -18,7 +18,7 @@ const EDGES: &[&str] = &[
     "\u{1b}[2J",
 ];
 
-/// Commands, and what each takes numbers by: `@` stands for the number.
+/// Commands with their numeric arguments: `@` stands for the number.
 const FLAGS: &[(&str, &str)] = &[
     (
         "simulate --surface vinyl -o simulated.csv",

@@ -59,7 +59,7 @@ fn a_gain_is_found_by_adjustment_and_played_with() {
     let (code, error) = run(&gain, "-\nlouder\n--\n++\n\n");
     assert_eq!(code, Some(0), "{error}");
     assert!(
-        error.contains("100.0 V at most") && error.contains("\"louder\" is none"),
+        error.contains("100.0 V at most") && error.contains("\"louder\" is not"),
         "{error}"
     );
     let text = std::fs::read_to_string(place.path("own/gains.json")).unwrap();
@@ -165,7 +165,7 @@ fn one_gain_serves_all_representations_of_a_texture() {
         }
     }
 
-    // Fitted anew; of another name; of the same name, from other recordings.
+    // Fitted again; of another name; of the same name, from other recordings.
     let variant = |file: &str, change: &dyn Fn(&mut htex_format::Manifest)| {
         let mut asset = htex_format::Asset::open(&place.path("coarse-fabric.htex")).unwrap();
         change(&mut asset.manifest);
@@ -206,7 +206,7 @@ fn one_gain_serves_all_representations_of_a_texture() {
     );
 }
 
-/// Gains were kept by the hash of the asset once.
+/// Earlier versions kept gains by the hash of the asset.
 #[test]
 fn a_gain_kept_by_the_hash_of_its_asset_is_found_and_replaced() {
     let place = place();
@@ -234,7 +234,7 @@ fn a_gain_kept_by_the_hash_of_its_asset_is_found_and_replaced() {
         .iter()
         .fold(0.0f32, |peak, x| peak.max(x.abs()));
     assert!((25.0..60.0).contains(&peak), "{peak} V");
-    // At which level it was found, is not known.
+    // The level at which it was found is unknown.
     let (code, error) = run(&[&play[..], &["--levels", "own"]].concat(), "");
     assert!(
         code == Some(1) && error.contains("does not say at which level"),

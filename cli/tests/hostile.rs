@@ -1,5 +1,5 @@
-//! Models that mean harm, through the command: each is one sentence on standard error that names the
-//! model and the call, exit status 1, in time and in little memory.
+//! Hostile models, through the command: each gives one sentence on standard error that names the
+//! model and the call, and exit status 1, within bounded time and memory.
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
@@ -15,7 +15,7 @@ use model::{ID, text, with_descriptor};
 
 /// Longest time of a call, given to the command.
 const DEADLINE: Duration = Duration::from_millis(500);
-/// What may come on top, of processor time: compiling, and all that the command does by itself.
+/// Further processor time that is allowed: compiling, and the command's own work.
 const BESIDES: Duration = Duration::from_secs(1);
 const MOST_MEMORY_KIB: i64 = 300 << 10;
 
@@ -89,7 +89,7 @@ impl Bench {
     }
 }
 
-/// Bodies that never come back in order, and what the error says.
+/// Bodies that do not return normally, and the error's text.
 const HARM: [(&str, &str); 5] = [
     ("(loop $l (br $l)) unreachable", "ran longer than 500 ms"),
     ("unreachable", "panicked"),

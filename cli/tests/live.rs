@@ -1,5 +1,5 @@
-//! A motion that is given while it plays, on the simulated card: how long the finger waits for it, and that the output is
-//! zero whatever ends the play.
+//! Live motions on the simulated card: their latency, and that the output is zero however playback
+//! ends.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
@@ -16,19 +16,19 @@ use std::time::{Duration, Instant};
 use bench::{Bench, GAIN, check_failed, signal};
 use serde_json::json;
 
-/// The longest wait from a motion to the display that is promised, milliseconds.
+/// The promised latency from a motion to the display, milliseconds.
 const PROMISED_MS: f64 = 30.0;
 /// The longest block of a live motion, milliseconds: a motion that comes while it is made waits for its end.
 const BLOCK_MS: f64 = 5.0;
 
-/// Begins to play by the clock on the wall; the motion is to come.
+/// Starts playback in real time; the motion follows.
 fn begin(bench: &Bench, more: &[&str]) -> Child {
     let mut command = bench.command(&[&["play", "--motion", "-"], more].concat());
     let command = command.env("NIDAQMX_SIM_CLOCK", "wall");
     command.stdin(Stdio::piped()).spawn().unwrap()
 }
 
-/// False when the play has ended.
+/// False when playback has ended.
 fn move_finger(child: &mut Child) -> bool {
     let lines = child.stdin.as_mut().unwrap();
     lines.write_all(b"80 0.4\n").is_ok()
@@ -49,8 +49,8 @@ fn latency_ms(done: &Output) -> f64 {
     rest.split(' ').next().unwrap().parse().unwrap()
 }
 
-/// A machine that is busy may let so short a buffer run dry: then the output is zero, and the error names the setting. It
-/// is tried again.
+/// On a busy machine so short a buffer may run dry: then the output is zero, and the error names the setting. The test
+/// tries again.
 #[test]
 fn a_live_motion_waits_no_longer_than_is_promised() {
     for _ in 0..20 {
@@ -96,7 +96,7 @@ fn a_live_player_that_is_killed_or_stopped_leaves_zero() {
     }
 }
 
-/// A live play that is felt; on a busy machine not the first that is begun.
+/// A live playback with output; on a busy machine not necessarily the first try.
 fn felt() -> (Bench, Child) {
     let begun = Instant::now();
     while begun.elapsed() < Duration::from_secs(60) {

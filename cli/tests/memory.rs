@@ -1,4 +1,4 @@
-//! What a long scene takes: no more memory than a short one.
+//! A long scene takes no more memory than a short one.
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 

@@ -1,4 +1,4 @@
-//! Metadata, in a fit and afterwards: it is stored, shown and checked, and nothing else of an asset changes.
+//! Metadata in `fit` and `edit`: it is stored, shown and checked, and nothing else of an asset changes.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -92,7 +92,7 @@ fn an_edit_changes_the_metadata_alone() {
     }
 }
 
-/// What this version would not write again is not lost without a word.
+/// Content that this version would not write again is not lost silently.
 #[test]
 fn an_edit_that_would_lose_something_is_refused() {
     let spec = concat!(env!("CARGO_MANIFEST_DIR"), "/../spec/conformance");
@@ -131,7 +131,7 @@ fn metadata_is_fitted_shown_removed_and_checked() {
             "{line}: {text}"
         );
     }
-    // In its place, and what is empty is taken out.
+    // In place; an empty text removes an entry.
     let run = place.run(&["edit", "v.htex", "--doi", "", "--author", "B. Uthor"]);
     assert_eq!(run.code(), 0, "{}", run.error());
     let info = place.json(&["info", "v.htex", "--json"]);

@@ -1,4 +1,4 @@
-//! What strangers' modules take of this machine at most.
+//! Upper bounds of the time and memory of untrusted modules.
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
@@ -16,10 +16,10 @@ use common::measured::{End, run};
 use heavy::Heavy;
 use htex_format::{Asset, Plugin};
 
-/// What may be taken beside what is limited: reading, checking, and writing the module.
+/// Allowed beside the limits: reading, checking, and writing the module.
 const BESIDE: (Duration, i64) = (Duration::from_secs(2), 128 << 10);
 
-/// An asset of as many representations, each of a model that it brings along, which was sound when it was fitted.
+/// An asset of so many representations, each of an embedded model, which was valid when it was fitted.
 fn asset(place: &Place, models: usize, hostile: &str) {
     let csv = place.recording("sandpaper");
     let ids: Vec<String> = (0..models)
@@ -71,7 +71,7 @@ fn any_module_is_compiled_or_refused_within_its_limits() {
         head: head.to_vec(),
         end: end.to_vec(),
     };
-    // What took 40 s, 15 s and 50 s, or some GB, with a processor and a compiler of 2026.
+    // These took 40 s, 15 s and 50 s, or some GB, with a processor and a compiler of 2026.
     let cases = [
         ("nested conditions", of(100, (2000, 1), &[2], &[0], &[])),
         ("nested loops", of(1000, (1000, 1), &[1], &[0], &[4])),
@@ -125,7 +125,7 @@ fn any_module_is_compiled_or_refused_within_its_limits() {
     }
 }
 
-/// A compiler that goes over its limits is stopped, whatever was estimated.
+/// A compiler that exceeds its limits is stopped, whatever the estimate.
 #[test]
 fn a_compiler_that_takes_more_is_stopped() {
     let place = Place::new();
@@ -173,7 +173,7 @@ fn a_compiler_that_takes_more_is_stopped() {
     assert_eq!(end.code, 0, "{}", end.error);
 }
 
-/// Modules that never answer, and an asset full of them: nothing runs before it is wanted, and then within one budget.
+/// Modules that never return, and an asset full of them: nothing runs before it is needed, and then within one budget.
 #[test]
 fn modules_share_a_budget_of_time() {
     let place = Place::new();

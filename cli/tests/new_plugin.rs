@@ -1,4 +1,4 @@
-//! What `htex plugin new` writes builds with one command and passes the checker.
+//! Projects of `htex plugin new` build with one command and pass the checker.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
@@ -28,7 +28,7 @@ fn passes(file: &str) {
     assert!(checked.status.success(), "{text}");
 }
 
-/// A project has a README and its own names, and holds no path of the machine that htex was built on.
+/// A project has a README and its own names, and no path of the machine that htex was built on.
 #[test]
 fn a_new_model_has_names_of_its_own() {
     for lang in ["c", "rust"] {

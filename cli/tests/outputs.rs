@@ -1,4 +1,4 @@
-//! What commands may write over, and what they leave behind.
+//! Files that commands overwrite, and files that they leave.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -123,7 +123,7 @@ fn no_command_writes_over_what_it_reads() {
     }
 }
 
-/// A file that nobody names has the scene's name and the format's ending, and is not hidden.
+/// A file without a given name has the scene's name and the format's extension, and is not hidden.
 #[test]
 fn an_unnamed_file_is_called_as_its_scene_and_format() {
     let place = place();
@@ -154,7 +154,7 @@ fn an_unnamed_file_is_called_as_its_scene_and_format() {
     }
 }
 
-/// The journal of a sweep is no name for a person's file.
+/// The journal of a sweep does not take the name of another file.
 #[test]
 fn a_file_that_is_no_journal_is_left_alone() {
     let place = place();
@@ -223,7 +223,7 @@ fn a_scene_names_no_output() {
     );
 }
 
-/// Asked to end, whichever way, a program leaves nothing that it did not finish.
+/// A program that is asked to end, by any signal, leaves no unfinished file.
 #[cfg(unix)]
 #[test]
 fn an_ended_program_leaves_no_part() {
@@ -264,7 +264,7 @@ fn an_ended_program_leaves_no_part() {
     }
 }
 
-/// What is no file stays what it is, and a closed standard error is no reason to fail.
+/// An output that is not a regular file is kept, and a closed standard error is not a failure.
 #[cfg(unix)]
 #[test]
 fn devices_stay_devices_and_a_closed_standard_error_is_no_panic() {
@@ -295,7 +295,7 @@ fn devices_stay_devices_and_a_closed_standard_error_is_no_panic() {
     }
 }
 
-/// Names that are no Unicode are those of the files that are read and written.
+/// Files with names that are not Unicode are read and written.
 #[cfg(target_os = "linux")]
 #[test]
 fn names_that_are_no_unicode_are_kept() {

@@ -1,4 +1,4 @@
-//! What is played agrees with what is said of it.
+//! Played samples agree with the asset's levels and spectra.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -150,7 +150,7 @@ fn the_conformance_files_validate_as_their_reports_say() {
         let run = place.run(&["validate", &path, "--json"]);
         let mut got: serde_json::Value = serde_json::from_str(&run.text()).unwrap();
         for finding in got[0]["findings"].as_array_mut().unwrap() {
-            // The command holds manifests to their schema too, and names its rule.
+            // The command also validates manifests against their schema, and names its rule.
             finding.as_object_mut().unwrap().remove("schema_rule");
         }
         assert_eq!(got[0]["valid"], golden["valid"], "{name}");

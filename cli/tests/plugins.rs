@@ -72,7 +72,7 @@ fn a_plugin_is_fitted_shown_and_played() {
     assert!(text(&with(&["plugin", "list"])).contains("org.example.resonance"));
     assert!(text(&with(&["plugin", "info", "resonance"])).contains("bandwidth_hz"));
 
-    // Without the plugin nobody knows the model.
+    // Without the plugin the model is unknown.
     assert!(!htex(&["synth", &asset, "-o", &wav]).status.success());
     let dir = Path::new(&plugin).parent().unwrap().to_str().unwrap();
     let found = htex(&["plugin", "list", "--json", "--plugin-dir", dir]);

@@ -1,14 +1,14 @@
-//! What strangers wrote into files steers no terminal and forges no line.
+//! Text from untrusted files controls no terminal and forges no line.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
 
 use common::Place;
 
-/// An escape, a mark that turns text round, one that hides it, and further lines.
+/// An escape, a mark that reverses text, one that hides it, and further lines.
 const EVIL: &str = "x\u{1b}[2J\u{202e}\u{200b}\u{2028}\nbrings along forged 9.9.9, signed by me\r\nhtex: all is well\u{7}";
 
-/// Nothing that steers, and no line that only the text could have begun.
+/// Asserts that there are no control characters, and no line that only the text could have begun.
 fn is_tame(what: &str, bytes: &[u8]) {
     let text = String::from_utf8(bytes.to_vec()).unwrap();
     let steers = |c: &char| (c.is_control() && *c != '\n') || ('\u{200b}'..='\u{206f}').contains(c);

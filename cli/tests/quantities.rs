@@ -1,4 +1,4 @@
-//! A texture that is no force, from the recording to the device.
+//! Textures of other quantities than force, from the recording to the device.
 
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 

@@ -1,4 +1,4 @@
-//! What the README says is so: its table and picture are the demonstration's, its test command is the one that continuous
+//! The README is true: its table and picture are the demonstration's, its test command is the one that continuous
 //! integration runs, and its links lead to files.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 

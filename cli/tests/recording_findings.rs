@@ -1,4 +1,4 @@
-//! What is wrong with a recording, as a user learns of it.
+//! Findings in recordings, as commands report them.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;

@@ -1,4 +1,4 @@
-//! Recordings made by others, and files that are none.
+//! Recordings in other formats, and files that are not recordings.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;
@@ -122,7 +122,7 @@ fn csv_at_1_khz_with_speed_force_accel_friction() {
     assert_eq!(run.code(), 0, "{}", run.error());
 }
 
-/// What is said of several recordings is said once, with their number and names.
+/// A warning about several recordings is printed once, with their number and names.
 #[test]
 fn warnings_of_several_recordings_are_one() {
     let place = Place::new();

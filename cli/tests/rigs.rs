@@ -1,4 +1,4 @@
-//! The adapters of cards and of sound, as the command shows them.
+//! The adapters of cards and of sound on the command line.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 mod common;

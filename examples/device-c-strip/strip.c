@@ -1,4 +1,4 @@
-/* A strip chart: what a finger would feel, drawn into an SVG file as it comes.
+/* A strip chart: the force at the finger, drawn into an SVG file as it is played.
  *
  * Each column of the chart is the span between the least and the greatest force within column_ms.
  * Memory is the same for seconds and for hours: columns are written as they are complete, into
@@ -51,7 +51,7 @@ int64_t htex_device_last_error(uint8_t *out, size_t capacity) {
     return give(last_error, out, capacity);
 }
 
-/* A file needs nothing connected. */
+/* A file needs no connected device. */
 int64_t htex_device_endpoints(uint8_t *out, size_t capacity) { return give("[]", out, capacity); }
 
 int64_t htex_device_extension(const uint8_t *id, size_t id_len) {
@@ -164,7 +164,7 @@ static void end_column(struct device *d) {
     d->columns++;
 }
 
-/* Closes the file and takes it away. */
+/* Closes and removes the file. */
 static void abandon(struct device *d) {
     if (!d->file) return;
     fclose(d->file);
@@ -205,7 +205,7 @@ int64_t htex_device_open(const uint8_t *settings, size_t settings_len, double ra
 
 int64_t htex_device_write(int64_t device, const float *samples, size_t frames,
                           uint32_t timeout_ms) {
-    (void)timeout_ms; /* there is always room */
+    (void)timeout_ms; /* there is always space */
     struct device *d = find(device);
     if (!d) return HTEX_DEVICE_BAD_HANDLE;
     if (!d->file) return fail(HTEX_DEVICE_CLOSED, "", "the chart is closed");

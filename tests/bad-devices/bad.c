@@ -1,7 +1,7 @@
-/* A sound device with one fault in it.
+/* A valid device with one fault.
  *
  * Every call is passed on to the library GOOD_LIBRARY (the strip chart of examples/device-c-strip), but
- * for what one -DFAULT_… changes. The checker must blame just the check that is the fault's own; the
+ * for what one -DFAULT_… changes. Only the check of this fault must fail; the
  * table of faults and checks stands in cli/tests/device.rs.
  */
 #include <dlfcn.h>

@@ -1,7 +1,7 @@
-/* A sound model with one fault in it.
+/* A valid model with one fault.
  *
  * Every call is passed on to the library GOOD_LIBRARY (a native build of a model), but for what one
- * -DFAULT_… changes. The checker must blame just the check that is the fault's own; the table of
+ * -DFAULT_… changes. Only the check of this fault must fail; the table of
  * faults and checks stands in cli/tests/checker.rs.
  */
 #include <dlfcn.h>
@@ -113,7 +113,7 @@ int64_t htex_model_fit(double band_low_hz, double band_high_hz, const double *fr
     return answer;
 }
 
-/* Replaces parameters that are no numbers, where the fault is to do so. */
+/* Replaces NaN among the parameters, for the fault that does so. */
 static const double *tolerant(const double *parameters, size_t len) {
 #ifdef FAULT_ACCEPTS_NAN
     static const double usual[] = {2, 5};
@@ -234,7 +234,7 @@ int64_t htex_model_voice_render(int64_t handle, float *out, size_t frames) {
         if (voice->click) out[i] += 30, voice->click = 0;
     }
 #ifdef FAULT_LEAK
-    /* From the system itself, which the count of the allocator's calls does not see. */
+    /* From the system, which the count of the allocator's calls does not see. */
     kept = mmap(NULL, 4096, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (kept != MAP_FAILED) memset(kept, 1, 4096);
 #elif defined FAULT_RENDER_ALLOCATES

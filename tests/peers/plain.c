@@ -1,4 +1,4 @@
-/* Plain loops in C, as one would write them for one voice: what cargo xtask bench compares with.
+/* Plain loops in C for one voice, with which cargo xtask bench compares.
  *
  * Speaks the protocol of tests/bench/src/peer.rs: a task's name a line comes in, "seconds units" goes out.
  * Arguments: order and coefficients of the all-pole filter, as text.

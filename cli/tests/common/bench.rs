@@ -1,4 +1,4 @@
-//! A card, the simulated one, with a scene for it: played by `htex`, and what came out.
+//! Scenes played by `htex` on the simulated card, and the card's output.
 #![allow(dead_code)] // Each suite uses a part of it.
 
 use std::process::{Child, Command, Output, Stdio};
@@ -17,7 +17,7 @@ pub const RATE_HZ: f64 = 20_000.0;
 pub const SCENE: &str = "s.scene.json";
 pub const RECORD: &str = "Dev1_ao0.txt";
 
-/// A folder with a card, a scene for it, and what came out of it.
+/// A folder with a card, a scene for it, and the card's recorded output.
 pub struct Bench(pub Place);
 
 impl Bench {
@@ -41,7 +41,7 @@ impl Bench {
         Self(place)
     }
 
-    /// A command with the simulated driver; its clock goes by calls, so that no test hangs on time.
+    /// A command with the simulated driver, whose clock advances by calls, so that tests do not depend on time.
     pub fn command(&self, arguments: &[&str]) -> Command {
         let driver = format!("driver={}", simulated::built().display());
         let mut command = self
@@ -55,7 +55,7 @@ impl Bench {
         command
     }
 
-    /// Plays without end by the clock on the wall, and waits until it can be felt.
+    /// Plays without end in real time, and waits until there is output.
     pub fn start(&self) -> Child {
         let mut command = self.command(&["play"]);
         let child = command.env("NIDAQMX_SIM_CLOCK", "wall").spawn().unwrap();
@@ -70,20 +70,20 @@ impl Bench {
         child
     }
 
-    /// Plays and expects that it fails, with this in its one sentence.
+    /// Plays and expects a failure whose one sentence contains this text.
     pub fn fails(&self, command: &mut Command, words: &[&str]) {
         check_failed(&command.output().unwrap(), words);
     }
 
-    /// Volts of the card that came out so far; nothing when it was never touched. A line that is
-    /// being written is not there yet.
+    /// Volts of the card that came out so far; empty when it was never used. A line that is
+    /// being written is left out.
     pub fn card_v(&self) -> Vec<f64> {
         let text = std::fs::read_to_string(self.0.path(RECORD)).unwrap_or_default();
         let whole = text.rfind('\n').map_or("", |end| &text[..end]);
         whole.lines().map(|line| line.parse().unwrap()).collect()
     }
 
-    /// Waits until zero came out and nothing since, however busy the machine is.
+    /// Waits until the output is zero and stays so, however busy the machine is.
     pub fn comes_to_zero(&self) {
         let (start, mut length) = (Instant::now(), 0);
         while start.elapsed() < Duration::from_secs(30) {
@@ -97,7 +97,7 @@ impl Bench {
         self.is_at_zero();
     }
 
-    /// Something came out, and zero is the last of it.
+    /// There was output, and its last value is zero.
     pub fn is_at_zero(&self) {
         let card_v = self.card_v();
         assert!(card_v.iter().any(|v| *v != 0.0), "it was never felt");
@@ -110,7 +110,7 @@ pub fn check_failed(done: &Output, words: &[&str]) {
     let error = String::from_utf8_lossy(&done.stderr);
     assert_eq!(done.status.code(), Some(1), "{error}");
     let mut sentences: Vec<&str> = error.lines().filter(|l| l.starts_with("htex: ")).collect();
-    // The process that holds the output says at once what may be standing there; the player says it again.
+    // The process that holds the output warns at once of a remaining voltage; the player repeats it.
     sentences.dedup();
     assert_eq!(sentences.len(), 1, "{error}");
     for word in words {

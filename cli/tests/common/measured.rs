@@ -4,23 +4,23 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// When a command hangs for sure, however busy the machine is.
+/// Time after which a command is regarded as hanging, however busy the machine is.
 const HANGS: Duration = Duration::from_secs(60);
 
-/// What became of a command.
+/// The result of a command.
 pub struct End {
     pub code: i32,
     pub error: String,
     /// Processor time.
     pub cpu: Duration,
-    /// Most memory it had at a time (RSS), KiB.
+    /// Peak memory (RSS), KiB.
     pub memory_kib: i64,
 }
 
 /// Runs a command to its end, and kills it when it hangs.
 pub fn run(command: &mut Command, errors: &Path) -> End {
     let file = std::fs::File::create(errors).unwrap();
-    #[allow(clippy::zombie_processes)] // wait4 below waits, and tells what was used.
+    #[allow(clippy::zombie_processes)] // wait4 below waits, and returns the resources used.
     let child = command.stdout(Stdio::null()).stderr(file).spawn().unwrap();
     let begun = Instant::now();
     let pid = child.id() as libc::pid_t;

@@ -13,7 +13,7 @@ use tempfile::TempDir;
 /// A folder to work in.
 pub struct Place(TempDir);
 
-/// What a run said.
+/// The output of a run.
 pub struct Run(Output);
 
 impl Place {

@@ -135,12 +135,12 @@ impl Card {
             return Err(codes::INVALID_SAMPLE);
         }
         let (clocked, running) = (task.rate_hz.is_some(), task.running.is_some());
-        let room = task.capacity - task.buffer.len().min(task.capacity);
-        if clocked && !running && samples.len() > room {
+        let space = task.capacity - task.buffer.len().min(task.capacity);
+        if clocked && !running && samples.len() > space {
             return Err(codes::NO_MORE_SPACE);
         }
         let taken = if clocked {
-            samples.len().min(room)
+            samples.len().min(space)
         } else {
             samples.len()
         };
@@ -152,11 +152,11 @@ impl Card {
         Ok(taken)
     }
 
-    pub fn room(&mut self, id: usize) -> Answer<u32> {
+    pub fn space(&mut self, id: usize) -> Answer<u32> {
         self.advance(id, STEP_S)?;
         let task = self.task(id)?;
-        let room = task.capacity.saturating_sub(task.buffer.len());
-        Ok(task.running.map_or(0, |_| room as u32))
+        let space = task.capacity.saturating_sub(task.buffer.len());
+        Ok(task.running.map_or(0, |_| space as u32))
     }
 
     pub fn generated(&mut self, id: usize) -> Answer<u64> {

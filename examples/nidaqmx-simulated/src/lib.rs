@@ -64,13 +64,13 @@ unsafe fn text(from: *const c_char) -> String {
 }
 
 /// Copies a string; for a buffer of size 0, returns the size needed, as the driver does.
-unsafe fn copy(text: &str, to: *mut c_char, room: u32) -> i32 {
+unsafe fn copy(text: &str, to: *mut c_char, size: u32) -> i32 {
     let text = CString::new(text).unwrap_or_default();
     let bytes = text.as_bytes_with_nul();
-    if to.is_null() || room == 0 {
+    if to.is_null() || size == 0 {
         return bytes.len() as i32;
     }
-    if bytes.len() > room as usize {
+    if bytes.len() > size as usize {
         return status::<()>(Err(codes::STRING_TOO_LONG));
     }
     unsafe { to.copy_from_nonoverlapping(bytes.as_ptr().cast(), bytes.len()) };
@@ -92,25 +92,25 @@ pub unsafe extern "system" fn nidaqmx_simulated_set(name: *const c_char, value: 
 }
 
 #[unsafe(no_mangle)]
-pub unsafe extern "system" fn DAQmxGetSysDevNames(to: *mut c_char, room: u32) -> i32 {
+pub unsafe extern "system" fn DAQmxGetSysDevNames(to: *mut c_char, size: u32) -> i32 {
     if let Some(code) = fault::injected("DAQmxGetSysDevNames") {
         return code;
     }
     let names = if device("Dev1").is_ok() { "Dev1" } else { "" };
-    unsafe { copy(names, to, room) }
+    unsafe { copy(names, to, size) }
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "system" fn DAQmxGetDevProductType(
     name: *const c_char,
     to: *mut c_char,
-    room: u32,
+    size: u32,
 ) -> i32 {
     if let Some(code) = fault::injected("DAQmxGetDevProductType") {
         return code;
     }
     match device(&unsafe { text(name) }) {
-        Ok(()) => unsafe { copy("PCIe-6321 (simulated)", to, room) },
+        Ok(()) => unsafe { copy("PCIe-6321 (simulated)", to, size) },
         Err(code) => status::<()>(Err(code)),
     }
 }
@@ -119,13 +119,13 @@ pub unsafe extern "system" fn DAQmxGetDevProductType(
 pub unsafe extern "system" fn DAQmxGetDevAOPhysicalChans(
     name: *const c_char,
     to: *mut c_char,
-    room: u32,
+    size: u32,
 ) -> i32 {
     if let Some(code) = fault::injected("DAQmxGetDevAOPhysicalChans") {
         return code;
     }
     match device(&unsafe { text(name) }) {
-        Ok(()) => unsafe { copy(&CHANNELS.join(", "), to, room) },
+        Ok(()) => unsafe { copy(&CHANNELS.join(", "), to, size) },
         Err(code) => status::<()>(Err(code)),
     }
 }
@@ -257,7 +257,7 @@ pub unsafe extern "system" fn DAQmxGetWriteSpaceAvail(task: *mut c_void, to: *mu
     if let Some(code) = fault::injected("DAQmxGetWriteSpaceAvail") {
         return code;
     }
-    unsafe { store(with(|c| c.room(task as usize)), to) }
+    unsafe { store(with(|c| c.space(task as usize)), to) }
 }
 
 #[unsafe(no_mangle)]
@@ -316,12 +316,12 @@ pub unsafe extern "system" fn DAQmxWriteAnalogF64(
 }
 
 #[unsafe(no_mangle)]
-pub unsafe extern "system" fn DAQmxGetErrorString(code: i32, to: *mut c_char, room: u32) -> i32 {
-    unsafe { copy(codes::words(code), to, room) }
+pub unsafe extern "system" fn DAQmxGetErrorString(code: i32, to: *mut c_char, size: u32) -> i32 {
+    unsafe { copy(codes::words(code), to, size) }
 }
 
 #[unsafe(no_mangle)]
-pub unsafe extern "system" fn DAQmxGetExtendedErrorInfo(to: *mut c_char, room: u32) -> i32 {
+pub unsafe extern "system" fn DAQmxGetExtendedErrorInfo(to: *mut c_char, size: u32) -> i32 {
     let code = *LAST.lock().unwrap_or_else(PoisonError::into_inner);
-    unsafe { copy(&format!("{} (status {code})", codes::words(code)), to, room) }
+    unsafe { copy(&format!("{} (status {code})", codes::words(code)), to, size) }
 }

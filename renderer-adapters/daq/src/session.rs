@@ -83,7 +83,7 @@ impl Session {
         if self.task.is_none() {
             self.start(*first_v)?;
         }
-        let fitting = self.room()?.min(volts.len());
+        let fitting = self.space()?.min(volts.len());
         let taken = self.give(&volts[..fitting])?;
         for sample in &samples[..taken] {
             self.status.peak = self.status.peak.max(f64::from(sample.abs()));
@@ -96,7 +96,7 @@ impl Session {
 
     /// Frames of the stream that may be given now. Waiting frames are counted by those that came out: the driver reports space in
     /// its buffer as soon as samples have moved on to the card's own memory, which may hold a second of them.
-    fn room(&mut self) -> Result<usize, DeviceError> {
+    fn space(&mut self) -> Result<usize, DeviceError> {
         let generated = self.task.as_ref().map(Task::generated).transpose();
         self.generated = generated
             .map_err(|fault| self.fail(&fault))?

@@ -79,7 +79,7 @@ impl NativeAdapter {
             1 => Ok(true),
             other => Err(self
                 .library
-                .broken(format!("extension `{id}`: it answers {other}"))),
+                .broken(format!("extension `{id}`: it returns {other}"))),
         }
     }
 

@@ -62,7 +62,7 @@ impl Peer {
         let number = |i: usize| words.get(i).and_then(|w| w.parse::<f64>().ok());
         match (number(0), number(1), words.get(2)) {
             (Some(seconds), Some(units), Some(&"ok")) if units > 0.0 => Ok(seconds / units),
-            _ => Err(format!("{} answered {task} with {line:?}", self.name)),
+            _ => Err(format!("{} replied to {task} with {line:?}", self.name)),
         }
     }
 

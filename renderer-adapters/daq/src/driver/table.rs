@@ -67,10 +67,10 @@ impl Table {
             return Ok(());
         }
         // SAFETY: both are given a buffer and its length.
-        let details = filled(|to, room| unsafe { (self.get_error_details)(to, room) });
+        let details = filled(|to, space| unsafe { (self.get_error_details)(to, space) });
         let words = details.filter(|text| !text.is_empty()).or_else(|| {
             // SAFETY: as above.
-            filled(|to, room| unsafe { (self.get_error_string)(code, to, room) })
+            filled(|to, space| unsafe { (self.get_error_string)(code, to, space) })
         });
         Err(Fault {
             code,
@@ -80,19 +80,19 @@ impl Table {
 
     pub(super) fn device_names(&self) -> Result<String, Fault> {
         // SAFETY: a buffer and its length.
-        self.text(|to, room| unsafe { (self.get_device_names)(to, room) })
+        self.text(|to, space| unsafe { (self.get_device_names)(to, space) })
     }
 
     pub(super) fn product(&self, card: &str) -> Result<String, Fault> {
         let card = c_text(card);
         // SAFETY: a string that ends in zero, a buffer and its length.
-        self.text(|to, room| unsafe { (self.get_product)(card.as_ptr(), to, room) })
+        self.text(|to, space| unsafe { (self.get_product)(card.as_ptr(), to, space) })
     }
 
     pub(super) fn outputs(&self, card: &str) -> Result<String, Fault> {
         let card = c_text(card);
         // SAFETY: as above.
-        self.text(|to, room| unsafe { (self.get_outputs)(card.as_ptr(), to, room) })
+        self.text(|to, space| unsafe { (self.get_outputs)(card.as_ptr(), to, space) })
     }
 
     pub(super) fn max_rate(&self, card: &str) -> Result<f64, Fault> {
@@ -118,8 +118,8 @@ impl Table {
 
     fn text(&self, call: impl Fn(*mut c_char, u32) -> i32) -> Result<String, Fault> {
         let mut code = 0;
-        let text = filled(|to, room| {
-            code = call(to, room);
+        let text = filled(|to, space| {
+            code = call(to, space);
             code
         });
         self.check(code)?;

@@ -153,7 +153,7 @@ const CASES: &[Case] = &[
         "all zero, NaN, infinite, empty; columns the same",
         "pseudo-inverse",
         "solve",
-        none("answered, without a dependent column more than the rank"),
+        none("solved, without more dependent columns than the rank"),
         || {
             let rank = |m: &[f64], rows, columns| PseudoInverse::new(m, rows, columns).rank();
             failures([

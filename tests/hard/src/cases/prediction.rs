@@ -158,7 +158,7 @@ const CASES: &[Case] = &[
         },
     ),
     within(
-        "lags that are no autocorrelation: larger than r[0], NaN, infinite",
+        "lags that are not an autocorrelation: larger than r[0], NaN, infinite",
         LEVINSON,
         "solve",
         none("stable"),

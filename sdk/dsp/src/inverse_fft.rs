@@ -220,6 +220,7 @@ impl Stage {
         }
     }
 
+    /// Transforms by one radix; the results stand in `to` where the stride is a multiple of [`WIDTH`], else in `from`.
     #[inline(always)]
     fn run_by<const R: usize, B: Butterfly<R>>(&self, from: &mut Complexes, to: &mut Complexes) {
         self.turn::<R, B>(from, to);
@@ -236,6 +237,7 @@ impl Stage {
         }
     }
 
+    /// Writes the butterflies of `from` to `to`, all `k` of each group of twiddles behind one another.
     #[inline(always)]
     fn turn<const R: usize, B: Butterfly<R>>(&self, from: &Complexes, to: &mut Complexes) {
         let run = self.groups * WIDTH;
@@ -295,7 +297,7 @@ impl Stage {
     }
 }
 
-/// [`Stage::spread`] of a first stage, whose stride is 1.
+/// [`Stage::spread`] of a first stage, whose stride is 1, in whole groups.
 #[cfg_attr(target_family = "wasm", inline(never))]
 #[cfg_attr(not(target_family = "wasm"), inline(always))]
 fn spread_first<const R: usize>(groups: &[f32], out: &mut [f32]) {
@@ -352,7 +354,7 @@ mod tests {
 
     #[test]
     fn the_transform_equals_the_direct_sum() {
-        for half in [4, 6, 10, 15, 16, 45, 48, 120, 500] {
+        for half in [4, 6, 10, 15, 16, 45, 48, 90, 120, 500, 810] {
             let bins: Vec<(f32, f32)> = (2..half)
                 .map(|k| (1.0 / k as f32, 0.3 - 0.01 * k as f32))
                 .collect();

@@ -13,8 +13,8 @@ use common::{
     constant, display, file, grid, integer_file, loudspeaker, nine, planned, scene, single, trace,
     traced,
 };
-use htex::Registry;
 use htex_device::Capabilities;
+use htex_play::Registry;
 use htex_scene::file::{Budget, Effect, Motion, Switch};
 use htex_scene::{Costs, Finger, LoadedScene, Renderer, plan};
 
@@ -37,7 +37,7 @@ fn typical() -> Vec<(&'static str, LoadedScene, Capabilities)> {
     let long = 1e4;
     let mut preview = scene(single(), constant(80.0, 0.4), long);
     preview.scene.device.pitch = Some(2.0);
-    let moved = |asset: &htex::Asset| {
+    let moved = |asset: &htex_play::Asset| {
         let mut moved = traced(asset, trace(600.0, swings, presses), 600.0);
         moved.scene.surfaces[0].representation = "ar".to_owned();
         moved

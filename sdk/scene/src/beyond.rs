@@ -1,7 +1,7 @@
 //! Whether a scene's motion lies within what its textures were recorded at.
 
-use htex::{Asset, Coverage, Effects, Motions};
 use htex_format::Findings;
+use htex_play::{Asset, Coverage, Effects, Motions};
 
 use crate::call::topmost;
 use crate::file::{Effect, Motion, Scene, Surface, Switch};
@@ -41,7 +41,7 @@ pub(crate) fn check(
     }
 }
 
-fn motions(asset: &Asset, surface: &Surface) -> Result<Motions, htex::Error> {
+fn motions(asset: &Asset, surface: &Surface) -> Result<Motions, htex_play::Error> {
     let name = surface.representation.as_str();
     asset.motions((name != "auto").then_some(name))
 }

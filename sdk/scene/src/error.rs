@@ -13,7 +13,7 @@ pub enum SceneError {
         /// Its asset.
         asset: PathBuf,
         /// What is wrong.
-        source: htex::Error,
+        source: htex_play::Error,
     },
     /// A surface has no representation that can be played here.
     #[error(

@@ -15,7 +15,7 @@ use htex_scene::{LoadedScene, Renderer, Response};
 type Scene = (LoadedScene, Capabilities);
 
 /// A finger that slides to and fro at 80 mm/s or so, `swing` of its speed and force more and less.
-fn strokes(asset: &htex::Asset, swing: f64) -> LoadedScene {
+fn strokes(asset: &htex_play::Asset, swing: f64) -> LoadedScene {
     let x = move |t: f64| 80.0 * t + 80.0 * swing * (4.0 * t).sin() / 4.0;
     traced(asset, trace(0.5, x, |_| 0.4), 0.5)
 }

@@ -134,7 +134,7 @@ pub const GUARDS: &[Guard] = &[
         "files",
     )),
     piped(guard(
-        "sdk/htex/src/exploration.rs",
+        "sdk/play/src/exploration.rs",
         "self.force.ratio(force_n).min(MOST_GAIN)",
         "self.force.ratio(force_n)",
         "motion",

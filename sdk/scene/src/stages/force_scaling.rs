@@ -1,7 +1,7 @@
 //! Level in proportion to the normal force, as friction goes, where the asset knows only one force.
 
-use htex::{Explored, Recorded};
 use htex_dsp::glide::Glide;
+use htex_play::{Explored, Recorded};
 
 use super::{Entry, Need, Now, Place, Stage};
 use crate::call::{Call, Part};

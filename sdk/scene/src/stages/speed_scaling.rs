@@ -1,8 +1,8 @@
 //! Temporal frequency in proportion to the scanning speed, f ∝ v: what a fixed surface does to a finger
 //! that moves faster, where the asset knows only one speed.
 
-use htex::{Explored, Recorded};
 use htex_dsp::warp::Warp;
+use htex_play::{Explored, Recorded};
 
 use super::{Entry, Need, Now, Place, Stage};
 use crate::call::{Call, Part};

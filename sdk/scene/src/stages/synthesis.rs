@@ -1,13 +1,13 @@
 //! The samples themselves: a voice of the surface's model, of unit RMS.
 
-use htex::{Motion, Source};
+use htex_play::{Motion, Source};
 
 use super::Stage;
 
 /// A voice at its model's own rate.
 pub(crate) struct Synthesis {
     source: Source,
-    failed: Option<htex::Error>,
+    failed: Option<htex_play::Error>,
 }
 
 impl Synthesis {
@@ -35,7 +35,7 @@ impl Synthesis {
     }
 
     /// The first failure since this was last asked.
-    pub(crate) fn take_failure(&mut self) -> Option<htex::Error> {
+    pub(crate) fn take_failure(&mut self) -> Option<htex_play::Error> {
         self.failed.take()
     }
 }

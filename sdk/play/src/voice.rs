@@ -8,6 +8,13 @@ use crate::exploration::{Coverage, Reach};
 use crate::follow::Follow;
 use crate::{Error, Motion, Source, VoiceOptions};
 
+// A voice is made in one thread and rendered in another.
+const _: () = {
+    const fn assert_send<T: Send>() {}
+    assert_send::<Voice>();
+    assert_send::<Source>();
+};
+
 /// Length of a change of level, seconds.
 const RAMP_S: f64 = 0.010;
 
@@ -27,7 +34,7 @@ const RAMP_S: f64 = 0.010;
 pub struct Voice {
     source: Source,
     resampler: Option<Resampler>,
-    /// What is heard instead of the source, whose level counts then.
+    /// Pre-rendered audio; `source` then supplies only the level.
     still: Option<StillSound>,
     level_rms: Glide,
     follow: Follow,

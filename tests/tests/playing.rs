@@ -125,10 +125,7 @@ fn valid_conformance_files_are_played() {
         }
         let asset = htex::Asset::open(&path).unwrap();
         for representation in &asset.manifest().representations {
-            let options = htex::VoiceOptions {
-                model: Some(&representation.model),
-                ..Default::default()
-            };
+            let options = htex::VoiceOptions::default().with_model(&representation.model);
             let mut out = [0.0f32; 2_000];
             let voice = asset.voice(&options);
             let rendered = voice.and_then(|mut voice| voice.render(&mut out));

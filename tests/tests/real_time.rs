@@ -122,11 +122,7 @@ fn rendering_together_does_not_allocate() {
     let asset = asset();
     for model in MODELS {
         let source = |seed| {
-            let options = VoiceOptions {
-                model: Some(model),
-                seed,
-                ..VoiceOptions::default()
-            };
+            let options = VoiceOptions::default().with_model(model).with_seed(seed);
             asset.source(&options).unwrap()
         };
         let mut sources: Vec<_> = (0..18).map(source).collect();
@@ -174,11 +170,9 @@ fn following_the_finger_does_not_allocate() {
     let assets = [asset(), one];
     for (asset, model) in assets.iter().flat_map(|a| MODELS.map(|model| (a, model))) {
         for rate_hz in [20_000.0, 44_100.0] {
-            let options = VoiceOptions {
-                model: Some(model),
-                rate_hz,
-                ..VoiceOptions::default()
-            };
+            let options = VoiceOptions::default()
+                .with_model(model)
+                .with_rate_hz(rate_hz);
             follow(
                 &mut asset.voice(&options).unwrap(),
                 &format!("{model} at {rate_hz} Hz"),
@@ -209,10 +203,7 @@ fn following_the_finger_does_not_allocate_in_a_sandbox() {
                 .to_string()
                 .contains("wasm")
         );
-        let options = VoiceOptions {
-            model: Some(model),
-            ..VoiceOptions::default()
-        };
+        let options = VoiceOptions::default().with_model(model);
         follow(
             &mut asset.voice(&options).unwrap(),
             &format!("{model} as WASM"),

@@ -212,11 +212,9 @@ fn request(name: &str, rig: &SetupResponse) -> Result<AssetRequest, Failure> {
 
 fn play(asset: &htex::Asset, model: &str, file: &Path, wav: &Path) -> Result<(), Failure> {
     let failure = |error| Failure::asset(file, error);
-    let options = VoiceOptions {
-        model: Some(model),
-        rate_hz: f64::from(WAV_RATE_HZ),
-        ..VoiceOptions::default()
-    };
+    let options = VoiceOptions::default()
+        .with_model(model)
+        .with_rate_hz(f64::from(WAV_RATE_HZ));
     let mut voice = asset.voice(&options).map_err(failure)?;
     let frames = WAV_SECONDS * u64::from(WAV_RATE_HZ);
     write_wav(wav, WAV_RATE_HZ, frames, |block| {

@@ -61,17 +61,16 @@ impl Synth {
         check_outputs([self.output.as_path()], [self.asset.as_path()])?;
         let failure = |error| Failure::asset(&self.asset, error);
         let asset = self.player.open(&self.asset)?;
-        let options = VoiceOptions {
-            model: self.choice.model.as_deref(),
-            rate_hz: f64::from(self.rate),
-            seed: self.seed,
-            motion: self.choice.motion(&asset),
-            synthesis: self.quality,
-            effects: match self.as_recorded {
+        let mut options = VoiceOptions::default()
+            .with_rate_hz(f64::from(self.rate))
+            .with_seed(self.seed)
+            .with_motion(self.choice.motion(&asset))
+            .with_synthesis(self.quality)
+            .with_effects(match self.as_recorded {
                 true => Effects::NONE,
                 false => Effects::default(),
-            },
-        };
+            });
+        options.model = self.choice.model.as_deref();
         let beyond = self
             .choice
             .beyond(&asset, options.effects)

@@ -41,7 +41,7 @@ impl Library {
             what,
         };
         // SAFETY: running a library's initialisers is what the user asked for by naming it.
-        let library = unsafe { htex_library::Library::from_file(path) };
+        let library = unsafe { htex_native::Library::from_file(path) };
         let library = library.map_err(|e| error(e.to_string()))?;
         // SAFETY: the marker comes first, and says that the other symbols have these types.
         let abi_version: AbiVersion =
@@ -146,7 +146,7 @@ fn check_marker(marker: u32) -> Result<(), String> {
 /// # Safety
 /// The symbol has the type `T`.
 unsafe fn symbol<T: Copy>(
-    library: htex_library::Library,
+    library: htex_native::Library,
     name: &str,
     error: &impl Fn(String) -> DeviceError,
 ) -> Result<T, DeviceError> {

@@ -68,27 +68,6 @@ fn run<const N: usize>(sections: &mut [Section; N], block: &mut [f64]) {
     *sections = own;
 }
 
-/// Error: more sections than the capacity of a [`Cascade`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct TooManySections {
-    /// Sections given.
-    pub given: usize,
-    /// Capacity of the cascade, sections.
-    pub capacity: usize,
-}
-
-impl core::fmt::Display for TooManySections {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let Self { given, capacity } = self;
-        write!(
-            f,
-            "{given} filter sections given, but the cascade was made for {capacity}: make it larger"
-        )
-    }
-}
-
-impl core::error::Error for TooManySections {}
-
 /// A section with its state (transposed direct form II).
 #[derive(Debug, Clone, Copy)]
 struct Section {
@@ -141,7 +120,6 @@ pub(crate) fn without_denormals(state: f64) -> f64 {
 #[derive(Debug, Clone)]
 pub struct Cascade {
     sections: Vec<Section>,
-    capacity: usize,
 }
 
 impl Cascade {
@@ -149,39 +127,7 @@ impl Cascade {
     pub fn new(sections: &[Biquad]) -> Self {
         Self {
             sections: sections.iter().map(|&b| Section::at_rest(b)).collect(),
-            capacity: sections.len(),
         }
-    }
-
-    /// An empty cascade, which passes its input unchanged, for up to `capacity` sections.
-    pub fn with_capacity(capacity: usize) -> Self {
-        Self {
-            sections: Vec::with_capacity(capacity),
-            capacity,
-        }
-    }
-
-    /// Replaces the coefficients and keeps the state of the existing sections, so that a small change causes
-    /// no click. Added sections start with zero state. Does not allocate.
-    ///
-    /// # Errors
-    /// If there are more sections than the capacity; the cascade is then unchanged.
-    pub fn set_sections(&mut self, sections: &[Biquad]) -> Result<(), TooManySections> {
-        if sections.len() > self.capacity {
-            return Err(TooManySections {
-                given: sections.len(),
-                capacity: self.capacity,
-            });
-        }
-        self.sections.truncate(sections.len());
-        let staying = self.sections.len();
-        for (section, &biquad) in self.sections.iter_mut().zip(sections) {
-            section.biquad = biquad;
-        }
-        for &biquad in &sections[staying..] {
-            self.sections.push(Section::at_rest(biquad));
-        }
-        Ok(())
     }
 
     /// Filters one sample.
@@ -270,20 +216,5 @@ mod tests {
             assert_eq!(holds(radius * 0.6, radius * radius), stable, "{radius}");
         }
         assert!(!holds(f64::NAN, 0.0) && !holds(0.0, f64::NAN));
-    }
-
-    #[test]
-    fn replacing_coefficients_keeps_state_and_respects_capacity() {
-        let mut cascade = Cascade::with_capacity(2);
-        let delay = Biquad {
-            b0: 0.0,
-            b1: 1.0,
-            ..Biquad::IDENTITY
-        };
-        assert_eq!(cascade.set_sections(&[delay]), Ok(()));
-        cascade.tick(0.25);
-        assert_eq!(cascade.set_sections(&[delay, Biquad::IDENTITY]), Ok(()));
-        assert_eq!(cascade.tick(0.0), 0.25);
-        assert!(cascade.set_sections(&[delay; 3]).is_err());
     }
 }

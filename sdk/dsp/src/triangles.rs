@@ -70,17 +70,6 @@ impl TriangleBank {
         }
     }
 
-    /// `out = bankᵀ · values`: `values` has `rows()` elements, `out` has `columns()`.
-    pub fn apply_transposed(&self, values: &[f64], out: &mut [f64]) {
-        out.fill(0.0);
-        for (&value, triangle) in values.iter().zip(&self.triangles) {
-            let under = out.get_mut(triangle.first..).unwrap_or(&mut []);
-            for (sum, weight) in under.iter_mut().zip(&triangle.weights) {
-                *sum += weight * value;
-            }
-        }
-    }
-
     /// The full matrix, row by row.
     pub fn to_dense(&self) -> Vec<f64> {
         let mut dense = alloc::vec![0.0; self.rows() * self.columns];
@@ -127,8 +116,5 @@ mod tests {
         let mut out = [0.0; 3];
         bank.apply(&[1.0; 4], &mut out);
         assert_eq!(out.to_vec(), bank.row_sums());
-        let mut spread = [0.0; 4];
-        bank.apply_transposed(&[0.0, 0.0, 1.0], &mut spread);
-        assert_eq!(spread, [0.0, bank.weight(2, 1), 1.0, 0.0]);
     }
 }

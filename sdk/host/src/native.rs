@@ -5,13 +5,13 @@
 
 use std::path::Path;
 
-use htex_library::Library;
 use htex_model::abi::{
     AbiVersion, DescriptorJson, ExtensionFn, FitFn, InterpolateFn, LastError, MagnitudeFn,
     ModelTable, VoiceFreeFn, VoiceNewFn, VoiceRateFn, VoiceRenderFn, VoiceRetuneFn,
 };
 use htex_model::motion_1::{MotionFitFn, MotionSetFn, MotionTable};
 use htex_model::voices_1::{VoicesRenderFn, VoicesTable};
+use htex_native::Library;
 
 use crate::HostError;
 use crate::table::TableModel;

@@ -11,26 +11,22 @@
 //! ```
 //!
 //! [`Voice::render`] does not allocate, lock or touch files: it may run in an audio thread.
+//!
+//! # Features
+//! - `wasm` (default): runs the models that assets bring along, in a sandbox. Without it the player is smaller, and an
+//!   asset plays its representations of built-in models.
+//! - `author`: reads recordings and makes assets of them, as `htex::author`.
+//! - `scene`: plans and renders scenes, as `htex::scene`, for the devices of `htex::device`.
 #![forbid(unsafe_code)]
 
-mod asset;
-mod error;
-pub mod exploration;
-mod follow;
-mod mesh;
-mod motion;
-mod playable;
-mod source;
-mod travel;
-mod voice;
-
-pub use asset::{Asset, Motions, VoiceOptions};
-pub use error::Error;
-pub use exploration::{Coverage, Effects, Explored, Reach, Recorded};
-pub use htex_format::{Finding, Limits, Manifest, Quantity, Severity};
-pub use htex_host::Motion as ModelMotion;
-pub use htex_host::{Band, Registry, Search, Synthesis, WasmLimits};
-pub use motion::Motion;
-pub use playable::{field_order, model_of};
-pub use source::Source;
-pub use voice::Voice;
+#[cfg(feature = "author")]
+pub use htex_author as author;
+#[cfg(feature = "scene")]
+pub use htex_device as device;
+/// The container: its types, reading, writing, validation.
+pub use htex_format as format;
+/// The models: registry, loaders, calls.
+pub use htex_host as host;
+pub use htex_play::*;
+#[cfg(feature = "scene")]
+pub use htex_scene as scene;

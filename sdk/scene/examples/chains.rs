@@ -14,8 +14,8 @@ use common::{
     constant, display, file, grid, integer_file, loudspeaker, nine, planned, scene, single, trace,
     traced,
 };
-use htex::Registry;
 use htex_device::Capabilities;
+use htex_play::Registry;
 use htex_scene::file::{Budget, Effect, Motion, Switch};
 use htex_scene::{Costs, Finger, LoadedScene, Renderer, plan};
 
@@ -47,7 +47,7 @@ fn typical() -> Vec<(&'static str, LoadedScene, Capabilities)> {
     let long = 1e4;
     let mut preview = scene(single(), constant(80.0, 0.4), long);
     preview.scene.device.pitch = Some(2.0);
-    let moved = |asset: &htex::Asset| {
+    let moved = |asset: &htex_play::Asset| {
         let mut moved = traced(asset, trace(600.0, swings, presses), 600.0);
         moved.scene.surfaces[0].representation = "ar".to_owned();
         moved
@@ -237,12 +237,10 @@ fn scene_voice(model: &str, seed: u64) -> Renderer {
     Renderer::new(&scene, &planned(&scene, &file())).unwrap()
 }
 
-fn app_voice(model: &str, seed: u64) -> htex::Voice {
-    let options = htex::VoiceOptions {
-        model: Some(model),
-        seed,
-        ..Default::default()
-    };
+fn app_voice(model: &str, seed: u64) -> htex_play::Voice {
+    let options = htex_play::VoiceOptions::default()
+        .with_model(model)
+        .with_seed(seed);
     single().voice(&options).unwrap()
 }
 

@@ -3,7 +3,7 @@
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let machine = std::env::args().nth(1).unwrap_or_default();
-    let costs = htex_scene::Costs::measure(&htex::Registry::builtin(), &machine)?;
+    let costs = htex_scene::Costs::measure(&htex_play::Registry::builtin(), &machine)?;
     println!("{}", serde_json::to_string_pretty(&costs)?);
     Ok(())
 }

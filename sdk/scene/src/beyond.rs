@@ -1,7 +1,7 @@
 //! Check whether a scene's motion is within the speeds and forces its textures were recorded at.
 
-use htex::{Asset, Coverage, Effects, Motions};
 use htex_format::Findings;
+use htex_play::{Asset, Coverage, Effects, Motions};
 
 use crate::call::topmost;
 use crate::file::{Effect, Motion, Scene, Surface, Switch};
@@ -42,7 +42,7 @@ pub(crate) fn check(
     }
 }
 
-fn motions(asset: &Asset, surface: &Surface) -> Result<Motions, htex::Error> {
+fn motions(asset: &Asset, surface: &Surface) -> Result<Motions, htex_play::Error> {
     let name = surface.representation.as_str();
     asset.motions((name != "auto").then_some(name))
 }

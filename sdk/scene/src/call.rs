@@ -1,9 +1,9 @@
 //! The requirements of a scene, gathered from the scene, its assets and its device before anything is built.
 
-use htex::exploration::CONTACT_RAMP_S;
-use htex::{Explored, Recorded, Source, VoiceOptions};
 use htex_device::{Capabilities, Quantity};
 use htex_format::ErrorMeasure;
+use htex_play::exploration::CONTACT_RAMP_S;
+use htex_play::{Explored, Recorded, Source, VoiceOptions};
 
 use crate::SceneError;
 use crate::device::quantity_misfit;
@@ -254,7 +254,7 @@ pub(crate) struct Part {
     pub(crate) always_touched: bool,
     pub(crate) share: f64,
     /// Motion the voice starts with; `None`: the first condition.
-    pub(crate) start: Option<htex::Motion>,
+    pub(crate) start: Option<htex_play::Motion>,
     /// Rate of the model, hertz.
     pub(crate) rate_hz: f64,
     /// Rate after speed scaling, relative to the rate of the model.
@@ -324,18 +324,22 @@ impl Part {
 
     /// Makes the surface's voice. A model that renders at any rate is given one that needs no conversion
     /// after speed scaling, or, before a compensation, one at which its filter is short.
-    pub(crate) fn source(&self, scene: &LoadedScene, call: &Call) -> Result<Source, htex::Error> {
+    pub(crate) fn source(
+        &self,
+        scene: &LoadedScene,
+        call: &Call,
+    ) -> Result<Source, htex_play::Error> {
         let mut wanted_hz = call.rate_hz / (self.fixed_ratio * self.oversampling);
         if call.compensation.is_some() {
             wanted_hz = wanted_hz.min(FILTERED_OVERSAMPLING * self.top_hz);
         }
-        scene.assets[self.surface].source(&VoiceOptions {
-            model: Some(&self.model),
-            rate_hz: wanted_hz,
-            seed: call.seed.wrapping_add(self.surface as u64),
-            motion: self.start,
-            ..VoiceOptions::default()
-        })
+        scene.assets[self.surface].source(
+            &VoiceOptions::default()
+                .with_model(&self.model)
+                .with_rate_hz(wanted_hz)
+                .with_seed(call.seed.wrapping_add(self.surface as u64))
+                .with_motion(self.start),
+        )
     }
 
     /// Applies the speed to the rates: a constant one to the resampler, a changing one to the warp.
@@ -388,7 +392,7 @@ impl Part {
     }
 
     /// Ratio of the RMS after the compensation to that before it.
-    fn compensated(&self, call: &Call, asset: &htex::Asset) -> Result<f64, htex::Error> {
+    fn compensated(&self, call: &Call, asset: &htex_play::Asset) -> Result<f64, htex_play::Error> {
         let Some(inverse) = &call.compensation else {
             return Ok(1.0);
         };
@@ -410,7 +414,7 @@ impl Part {
 }
 
 /// Number of conditions of a representation, their speeds and forces, and the largest error.
-fn known(asset: &htex::Asset, model: &str, measure: ErrorMeasure) -> (usize, Explored, f64) {
+fn known(asset: &htex_play::Asset, model: &str, measure: ErrorMeasure) -> (usize, Explored, f64) {
     let manifest = asset.manifest();
     let found = manifest.representations.iter().find(|r| r.model == model);
     let at = found.map_or(&[][..], |r| &r.at);
@@ -423,7 +427,7 @@ fn known(asset: &htex::Asset, model: &str, measure: ErrorMeasure) -> (usize, Exp
 }
 
 /// The largest level of a representation, in the asset's unit.
-fn loudest(asset: &htex::Asset, model: &str, level_rms: f64) -> f64 {
+fn loudest(asset: &htex_play::Asset, model: &str, level_rms: f64) -> f64 {
     let manifest = asset.manifest();
     let found = manifest.representations.iter().find(|r| r.model == model);
     let levels = found.into_iter().flat_map(|r| &r.at).map(|at| at.level_rms);

@@ -13,7 +13,7 @@ pub enum SceneError {
         /// Its asset.
         asset: PathBuf,
         /// The error.
-        source: htex::Error,
+        source: htex_play::Error,
     },
     /// No model of a surface's representations is available.
     #[error(

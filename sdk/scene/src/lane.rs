@@ -134,7 +134,7 @@ impl Lane {
             return;
         };
         let skipped_s = follower.skipped as f64 / follower.rate_hz;
-        let motion = htex::ModelMotion {
+        let motion = htex_play::ModelMotion {
             speed_mm_s: finger.point.speed_mm_s,
             force_n: finger.force_n,
             position_mm: finger.point.position_mm * follower.pitch,

@@ -5,10 +5,10 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use htex::{Asset, Registry, VoiceOptions};
 use htex_author::read::ReadError;
 use htex_device::{Devices, Settings};
 use htex_format::{Finding, Findings, Quantity, Report, Rule};
+use htex_play::{Asset, Registry, VoiceOptions};
 
 use crate::check::check;
 use crate::device::{DeviceOverride, check_device, stem};
@@ -269,14 +269,14 @@ fn open_asset(
         return Err((rule::ASSET_INVALID, no_file(asset)));
     }
     let opened = htex_format::Asset::open(&path)
-        .map_err(htex::Error::from)
+        .map_err(htex_play::Error::from)
         .map(|data| Asset::with_registry(data, around.models.clone()))
         .map(|asset| match around.embedded {
             true => asset.with_embedded(),
             false => asset,
         });
     opened.map_err(|error| match &error {
-        htex::Error::Read(htex_format::ReadError::Io { error, .. }) if is_missing(error) => {
+        htex_play::Error::Read(htex_format::ReadError::Io { error, .. }) if is_missing(error) => {
             (rule::ASSET_MISSING, missing(asset))
         }
         _ => (rule::ASSET_INVALID, format!("{}: {error}", asset.display())),
@@ -328,10 +328,7 @@ fn missing(path: &Path) -> String {
 
 fn check_representation(asset: &Asset, surface: &Surface, i: usize, findings: &mut Findings) {
     let source = |model: &str| {
-        let options = VoiceOptions {
-            model: Some(model),
-            ..VoiceOptions::default()
-        };
+        let options = VoiceOptions::default().with_model(model);
         asset.source(&options).map(|_| ())
     };
     let playable = match surface.representation.as_str() {
@@ -347,7 +344,7 @@ fn check_representation(asset: &Asset, surface: &Surface, i: usize, findings: &m
     };
     if let Err(error) = playable {
         let rule = match error {
-            htex::Error::NoRepresentation { .. } => rule::REPRESENTATION_MISSING,
+            htex_play::Error::NoRepresentation { .. } => rule::REPRESENTATION_MISSING,
             _ => rule::REPRESENTATION_UNPLAYABLE,
         };
         let message = format!("{}: {error}", surface.asset.display());

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::hint::black_box;
 use std::time::Instant;
 
-use htex::{Explored, Recorded};
 use htex_device::{Capabilities, Quantity, Rates};
 use htex_dsp::fir::Fir;
 use htex_dsp::resample::UnusableRates;
 use htex_host::{Band, FitRequest, HostError, LoadedModel, Registry};
+use htex_play::{Explored, Recorded};
 
 use crate::call::{Call, Part, Span};
 use crate::cost::Costs;

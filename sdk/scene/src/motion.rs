@@ -1,6 +1,6 @@
 //! The position and motion of the finger over the time of a scene.
 
-use htex::exploration::{MIN_SLIDING_MM_S, slides};
+use htex_play::exploration::{MIN_SLIDING_MM_S, slides};
 
 use crate::file::{Constant, Motion, Region};
 use crate::load::LoadedScene;
@@ -27,8 +27,8 @@ impl Finger {
     };
 
     /// The motion that a voice follows: the speed without its sign, and the force.
-    pub fn motion(&self) -> htex::Motion {
-        htex::Motion::new(self.speed_mm_s.abs(), self.force_n)
+    pub fn motion(&self) -> htex_play::Motion {
+        htex_play::Motion::new(self.speed_mm_s.abs(), self.force_n)
     }
 
     /// Whether it is in contact and moving.

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use htex::Asset;
 use htex_author::read::ReadError;
 use htex_author::response::{Raised, raised, read_response};
 use htex_dsp::grid::Band;
+use htex_play::Asset;
 
 pub use htex_author::SetupResponse as Response;
 

@@ -119,24 +119,6 @@ impl Trace {
     pub fn duration_s(&self) -> f64 {
         self.t_s.last().copied().unwrap_or(0.0)
     }
-
-    /// Minimum and maximum speed, mm/s.
-    pub fn speed_range(&self) -> (f64, f64) {
-        range(&self.speed_mm_s)
-    }
-
-    /// Minimum and maximum force, newtons.
-    pub fn force_range(&self) -> (f64, f64) {
-        range(&self.force_n)
-    }
-}
-
-fn range(values: &[f64]) -> (f64, f64) {
-    let all = values.iter().copied();
-    (
-        all.clone().fold(f64::INFINITY, f64::min),
-        all.fold(0.0, f64::max),
-    )
 }
 
 /// Velocity at each row, mm/s.

@@ -4,8 +4,8 @@
 mod common;
 
 use common::{constant, file, grid, planned, rendered, scene, single};
-use htex::{Effects, Explored, Reach, Recorded, Voice, VoiceOptions};
 use htex_format::{AtCondition, Condition};
+use htex_play::{Effects, Explored, Reach, Recorded, Voice, VoiceOptions};
 use htex_scene::file::Motion;
 use htex_scene::{Finger, Renderer};
 
@@ -17,13 +17,11 @@ const CONTROL: usize = 64;
 
 /// A voice with the seed of the first surface of a scene.
 fn voice(model: &str, motion: Option<(f64, f64)>, effects: Effects) -> Voice {
-    let options = VoiceOptions {
-        model: Some(model),
-        seed: 1,
-        motion: motion.map(|(speed, force)| htex::Motion::new(speed, force)),
-        effects,
-        ..VoiceOptions::default()
-    };
+    let options = VoiceOptions::default()
+        .with_model(model)
+        .with_seed(1)
+        .with_motion(motion.map(|(speed, force)| htex_play::Motion::new(speed, force)))
+        .with_effects(effects);
     single().voice(&options).unwrap()
 }
 
@@ -85,7 +83,7 @@ fn a_constant_motion_plays_as_in_a_scene_from_the_start_or_after_a_change() {
 
             let mut moved = voice(model, None, Effects::default());
             moved
-                .set_motion(htex::Motion::new(motion.0, motion.1))
+                .set_motion(htex_play::Motion::new(motion.0, motion.1))
                 .unwrap();
             // After the ramps of level and contact.
             samples(&mut moved, 1_000);
@@ -147,7 +145,7 @@ fn a_live_motion_plays_as_in_a_scene() {
             renderer.render(&mut out);
             played.extend(out);
             voice
-                .set_motion(htex::Motion::new(speed_mm_s, force_n))
+                .set_motion(htex_play::Motion::new(speed_mm_s, force_n))
                 .unwrap();
             followed.extend(samples(&mut voice, CONTROL));
         }
@@ -192,7 +190,9 @@ fn samples_do_not_depend_on_blocks_or_on_the_recorded_motion() {
             let mut voice = voice(model, None, Effects::default());
             let mut all = Vec::new();
             for (speed, force) in motions {
-                voice.set_motion(htex::Motion::new(speed, force)).unwrap();
+                voice
+                    .set_motion(htex_play::Motion::new(speed, force))
+                    .unwrap();
                 let mut out = [0.0f32; 900];
                 out.chunks_mut(size)
                     .for_each(|block| voice.render(block).unwrap());
@@ -211,7 +211,7 @@ fn samples_do_not_depend_on_blocks_or_on_the_recorded_motion() {
         );
         for _ in 0..20 {
             followed
-                .set_motion(htex::Motion::new(RECORDED.0, RECORDED.1))
+                .set_motion(htex_play::Motion::new(RECORDED.0, RECORDED.1))
                 .unwrap();
             assert_eq!(
                 samples(&mut followed, 333),
@@ -225,15 +225,15 @@ fn samples_do_not_depend_on_blocks_or_on_the_recorded_motion() {
 #[test]
 fn a_voice_reports_its_coverage_of_a_motion() {
     let all = voice("ar", None, Effects::default());
-    assert!(all.coverage(htex::Motion::new(80.0, 0.4)).is_inside());
-    let beyond = all.coverage(htex::Motion::new(160.0, 0.2));
+    assert!(all.coverage(htex_play::Motion::new(80.0, 0.4)).is_inside());
+    let beyond = all.coverage(htex_play::Motion::new(160.0, 0.2));
     assert_eq!(
         beyond.to_string(),
         "160 mm/s, where 80 mm/s was recorded: frequencies are 2.000 times as high; \
          0.2 N, where 0.4 N was recorded: the level is 0.500 times as high"
     );
-    assert!(!beyond.is_inside() && !all.coverage(htex::Motion::new(0.0, 0.4)).slides);
-    let none = voice("ar", None, Effects::NONE).coverage(htex::Motion::new(160.0, 0.0));
+    assert!(!beyond.is_inside() && !all.coverage(htex_play::Motion::new(0.0, 0.4)).slides);
+    let none = voice("ar", None, Effects::NONE).coverage(htex_play::Motion::new(160.0, 0.0));
     let as_recorded = Reach::Clamped {
         asked: 160.0,
         played: 80.0,
@@ -241,16 +241,15 @@ fn a_voice_reports_its_coverage_of_a_motion() {
     assert!(none.slides && none.speed == as_recorded);
 
     // A texture of 1 kHz at a rate of 4 kHz: at most twice as fast.
-    let options = VoiceOptions {
-        rate_hz: 4_000.0,
-        ..VoiceOptions::default()
-    };
+    let options = VoiceOptions::default().with_rate_hz(4_000.0);
     let low = |speed: f64| {
         let mut voice = single().voice(&options).unwrap();
-        voice.set_motion(htex::Motion::new(speed, 0.4)).unwrap();
+        voice
+            .set_motion(htex_play::Motion::new(speed, 0.4))
+            .unwrap();
         (
             samples(&mut voice, 4_000),
-            voice.coverage(htex::Motion::new(speed, 0.4)),
+            voice.coverage(htex_play::Motion::new(speed, 0.4)),
         )
     };
     let ((faster, coverage), (twice, _)) = (low(320.0), low(160.0));
@@ -267,10 +266,10 @@ fn a_voice_reports_its_coverage_of_a_motion() {
 
     // Four conditions, 60 and 120 mm/s by 0.3 and 0.6 N.
     let of = |motion: (f64, f64)| {
-        grid()
-            .motions(None)
-            .unwrap()
-            .coverage(htex::Motion::new(motion.0, motion.1), Effects::default())
+        grid().motions(None).unwrap().coverage(
+            htex_play::Motion::new(motion.0, motion.1),
+            Effects::default(),
+        )
     };
     assert!(of((100.0, 0.4)).is_inside() && of((122.0, 0.6)).is_inside());
     let fast = of((240.0, 0.4));

@@ -68,11 +68,8 @@ pub(crate) fn play(asset: &Asset) {
             Ok(magnitude) => finite("magnitude", magnitude),
             Err(error) => refusal(&error),
         }
-        let options = htex::VoiceOptions {
-            model,
-            rate_hz: 8000.0,
-            ..htex::VoiceOptions::default()
-        };
+        let mut options = htex::VoiceOptions::default().with_rate_hz(8000.0);
+        options.model = model;
         match asset.voice(&options) {
             Ok(mut voice) => listen(&mut voice),
             Err(error) => refusal(&error),

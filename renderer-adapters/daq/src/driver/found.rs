@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use htex_device::DeviceError;
-use htex_library::{Library, LoadError};
+use htex_native::{Library, LoadError};
 
 use super::table::Table;
 

@@ -4,7 +4,7 @@
 use std::ffi::{CString, c_char, c_void};
 use std::ptr::null_mut;
 
-use htex_library::Library;
+use htex_native::Library;
 
 use crate::fault::Fault;
 

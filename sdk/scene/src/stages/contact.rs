@@ -1,9 +1,9 @@
 //! Silence without contact or slip, and at the start and end of a scene on a device that people touch or
 //! hear.
 
-use htex::exploration::CONTACT_RAMP_S;
 use htex_device::Quantity;
 use htex_dsp::glide::Glide;
+use htex_play::exploration::CONTACT_RAMP_S;
 
 use super::{Entry, Need, Now, Place, Stage};
 use crate::call::Call;

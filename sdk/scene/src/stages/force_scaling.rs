@@ -1,7 +1,7 @@
 //! Scaling of the level with the normal force, as for friction, for assets with a single force.
 
-use htex::{Explored, Recorded};
 use htex_dsp::glide::Glide;
+use htex_play::{Explored, Recorded};
 
 use super::{Entry, FOLLOWS, Need, Now, Place, Stage};
 use crate::call::{Call, Part};

@@ -1,7 +1,7 @@
 //! Interpolation of parameters and level between exploration conditions as speed and force change. It retunes
 //! the voice; no samples pass through this stage.
 
-use htex::{Explored, Recorded};
+use htex_play::{Explored, Recorded};
 
 use super::{Entry, Need, Place};
 use crate::call::{Call, Part, Span};

@@ -1,8 +1,8 @@
 //! Scaling of temporal frequencies with the scanning speed, f ∝ v, as on a fixed surface under a faster
 //! finger, for assets with a single speed.
 
-use htex::{Explored, Recorded};
 use htex_dsp::warp::Warp;
+use htex_play::{Explored, Recorded};
 
 use super::{Entry, FOLLOWS, Need, Now, Place, Stage};
 use crate::call::{Call, Part};

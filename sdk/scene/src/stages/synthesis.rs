@@ -1,13 +1,13 @@
 //! Synthesis: a voice of the surface's model, with unit RMS.
 
-use htex::{ModelMotion, Motion, Source};
+use htex_play::{ModelMotion, Motion, Source};
 
 use super::Stage;
 
 /// A voice at its model's own rate.
 pub(crate) struct Synthesis {
     source: Source,
-    failed: Option<htex::Error>,
+    failed: Option<htex_play::Error>,
 }
 
 impl Synthesis {
@@ -43,7 +43,7 @@ impl Synthesis {
     }
 
     /// Returns and clears the first failure.
-    pub(crate) fn take_failure(&mut self) -> Option<htex::Error> {
+    pub(crate) fn take_failure(&mut self) -> Option<htex_play::Error> {
         self.failed.take()
     }
 }

@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use htex::Registry;
 use htex_device::Devices;
 use htex_format::{AtCondition, Band, Condition, Field, Manifest, Quantity, Representation, Store};
+use htex_play::Registry;
 use htex_scene::{Surroundings, validate};
 use serde_json::{Value, json};
 

@@ -75,10 +75,7 @@ fn opened(recording: Recording, models: usize) -> f64 {
 
 /// The largest sample of a voice.
 fn played(asset: &htex::Asset, model: &str) -> f64 {
-    let options = htex::VoiceOptions {
-        model: Some(model),
-        ..htex::VoiceOptions::default()
-    };
+    let options = htex::VoiceOptions::default().with_model(model);
     let mut out = vec![0.0f32; 4_000];
     let rendered = asset
         .voice(&options)

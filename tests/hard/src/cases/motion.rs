@@ -40,11 +40,9 @@ fn moved(motions: &[(f64, f64)], effects: Effects) -> f64 {
     let asset = asset(2);
     let mut peak = 0.0;
     for model in models() {
-        let options = VoiceOptions {
-            model: Some(&model),
-            effects,
-            ..VoiceOptions::default()
-        };
+        let options = VoiceOptions::default()
+            .with_model(&model)
+            .with_effects(effects);
         let mut voice = asset.voice(&options).unwrap();
         let mut block = [0.0f32; 64];
         for i in 0..200 {
@@ -65,10 +63,7 @@ fn motion_refused(speed_mm_s: f64, force_n: f64) -> String {
     let asset = asset(2);
     let mut said = String::new();
     for model in models() {
-        let options = VoiceOptions {
-            model: Some(&model),
-            ..VoiceOptions::default()
-        };
+        let options = VoiceOptions::default().with_model(&model);
         let mut voice = asset.voice(&options).unwrap();
         match voice.set_motion(htex::Motion::new(speed_mm_s, force_n)) {
             Ok(()) => return "it was done".to_owned(),

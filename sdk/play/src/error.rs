@@ -1,7 +1,14 @@
-//! What can go wrong between a file and a sound.
+//! Errors of opening and playing an asset.
 
 /// An error of opening or playing an asset.
+///
+/// ```
+/// use htex::{Asset, Error};
+/// let error = Asset::from_bytes(b"not an asset").unwrap_err();
+/// assert!(matches!(error, Error::Read(_)));
+/// ```
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
     /// The file is not a usable asset.
     #[error(transparent)]
@@ -28,8 +35,8 @@ pub enum Error {
     /// The asset brings along the only model that could play a representation, and such models are not run
     /// ([`crate::Asset::with_embedded`] runs them).
     #[error(
-        "no model `{id}` is installed; the asset brings it along, and models of assets are not run here: allow them \
-         (leave out `--no-embedded-plugins`), or install the model"
+        "no model `{id}` is installed; the asset brings it along, and models of assets are not run here: allow them, \
+         or install the model"
     )]
     EmbeddedOff {
         /// The model's id.

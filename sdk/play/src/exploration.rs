@@ -14,7 +14,7 @@ pub const MIN_RATIO: f64 = 1.0 / 16.0;
 pub const MAX_RATIO: f64 = 8.0;
 /// Length of an onset or offset of contact, seconds.
 pub const CONTACT_RAMP_S: f64 = 0.020;
-/// Largest gain of a force: no finger presses harder, and a gain that is no number would be in every sample.
+/// Largest gain of a force: no finger presses harder, and a gain that is not finite would be in every sample.
 const MOST_GAIN: f64 = 1e6;
 
 /// Whether a finger slides at this speed (mm/s, either sign) and force (newtons).
@@ -24,6 +24,12 @@ pub fn slides(speed_mm_s: f64, force_n: f64) -> bool {
 
 /// What a voice does with a motion beside interpolating between recorded conditions; a scene has an effect of the
 /// same name for each.
+///
+/// ```
+/// use htex::Effects;
+/// let as_recorded_but_silent_at_rest = Effects { contact: true, ..Effects::NONE };
+/// assert!(!as_recorded_but_silent_at_rest.speed_scaling);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Effects {
     /// Frequencies in proportion to the speed, where one speed was recorded.
@@ -55,6 +61,12 @@ impl Default for Effects {
 }
 
 /// The speeds, or the forces, at which a representation was fitted.
+///
+/// ```
+/// use htex::Recorded;
+/// let speed = Recorded::One { low: 80.0, high: 80.0 };
+/// assert_eq!(speed.ratio(160.0), 2.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Recorded {
     /// The asset does not say, or says 0.
@@ -120,6 +132,13 @@ impl fmt::Display for Recorded {
 }
 
 /// At which speeds (mm/s) and forces (newtons) a representation was fitted.
+///
+/// ```
+/// use htex::{Explored, Recorded};
+/// let one = |x| Recorded::One { low: x, high: x };
+/// let explored = Explored { speed: one(80.0), force: one(0.4) };
+/// assert_eq!((explored.speed_ratio(40.0), explored.force_gain(0.8)), (0.5, 2.0));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Explored {
     /// Speeds, mm/s.
@@ -193,6 +212,13 @@ fn reach(recorded: Recorded, asked: f64, nearest: f64, factor: Option<f64>) -> R
 }
 
 /// How a motion relates to what was recorded, and what a voice makes of it.
+///
+/// ```
+/// use htex::{Coverage, Reach};
+/// let speed = Reach::Clamped { asked: 160.0, played: 80.0 };
+/// let coverage = Coverage { slides: true, speed, force: Reach::Inside };
+/// assert!(!coverage.is_inside() && coverage.excess() == 1.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coverage {
     /// Whether there is anything to feel: the finger slides, or the voice plays without contact.
@@ -204,6 +230,12 @@ pub struct Coverage {
 }
 
 /// How a speed or a force relates to those that were recorded.
+///
+/// ```
+/// use htex::Reach;
+/// let reach = Reach::Scaled { asked: 160.0, recorded: 80.0, factor: 2.0 };
+/// assert_ne!(reach, Reach::Inside);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reach {
     /// It was recorded, or lies between conditions that were; within the tolerance of

@@ -11,7 +11,16 @@ use crate::mesh::{Mesh, Weights};
 use crate::playable::{field_order, model_of};
 use crate::{Error, Motion, Source, Voice};
 
-/// An opened texture. A clone shares what the file holds.
+/// Whether this program can run the modules that assets bring along.
+const SANDBOX: bool = cfg!(feature = "wasm");
+
+/// An opened texture. A clone shares the data of the file.
+///
+/// ```no_run
+/// let asset = htex::Asset::open("sandpaper.htex")?;
+/// println!("{} in {}", asset.manifest().name, asset.quantity().unit());
+/// # Ok::<(), htex::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Asset {
     data: Arc<htex_format::Asset>,
@@ -22,8 +31,18 @@ pub struct Asset {
     models: Arc<[OnceLock<LoadedModel>]>,
 }
 
-/// How a voice is to be made.
+/// Options of a voice.
+///
+/// ```
+/// use htex::{Motion, VoiceOptions};
+/// let options = VoiceOptions::default()
+///     .with_model("bands")
+///     .with_rate_hz(48_000.0)
+///     .with_motion(Motion::new(80.0, 0.4));
+/// assert_eq!(options.model, Some("bands"));
+/// ```
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct VoiceOptions<'a> {
     /// The representation, by its model's id or short name; else the one that comes nearest to the
     /// recording by its nine-band error.
@@ -52,6 +71,50 @@ impl Default for VoiceOptions<'_> {
             synthesis: Synthesis::Streamed,
             effects: Effects::default(),
         }
+    }
+}
+
+impl<'a> VoiceOptions<'a> {
+    /// Sets the representation, by its model's id or short name.
+    #[must_use]
+    pub fn with_model(mut self, model: &'a str) -> Self {
+        self.model = Some(model);
+        self
+    }
+
+    /// Sets the rate of the samples, hertz.
+    #[must_use]
+    pub fn with_rate_hz(mut self, rate_hz: f64) -> Self {
+        self.rate_hz = rate_hz;
+        self
+    }
+
+    /// Sets the seed.
+    #[must_use]
+    pub fn with_seed(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        self
+    }
+
+    /// Sets the motion at the start, or `None` for that of the first condition.
+    #[must_use]
+    pub fn with_motion(mut self, motion: impl Into<Option<Motion>>) -> Self {
+        self.motion = motion.into();
+        self
+    }
+
+    /// Sets how samples are made.
+    #[must_use]
+    pub fn with_synthesis(mut self, synthesis: Synthesis) -> Self {
+        self.synthesis = synthesis;
+        self
+    }
+
+    /// Sets what a motion does beyond the recorded conditions.
+    #[must_use]
+    pub fn with_effects(mut self, effects: Effects) -> Self {
+        self.effects = effects;
+        self
     }
 }
 
@@ -86,15 +149,6 @@ impl Asset {
             registry: registry.of_asset(),
             embedded: false,
         }
-    }
-
-    /// Opens a file, to be played by the models it brings along and those of `registry`.
-    ///
-    /// # Errors
-    /// As [`Self::open`].
-    pub fn open_with(path: impl AsRef<Path>, registry: Registry) -> Result<Self, Error> {
-        let data = htex_format::Asset::open(path.as_ref())?;
-        Ok(Self::with_registry(data, registry).with_embedded())
     }
 
     /// Lets the models run that the asset brings along, in their sandbox, before those of its registry (but behind plugins
@@ -307,7 +361,7 @@ impl Asset {
         let all = &self.data.manifest.representations;
         let found = match model {
             Some(name) => all.iter().position(|r| is_named(r, name)),
-            None => nearest(all),
+            None => nearest(all, |r| self.is_runnable(&r.model)),
         };
         found.ok_or_else(|| Error::NoRepresentation {
             wanted: model.unwrap_or("any").to_owned(),
@@ -325,11 +379,21 @@ impl Asset {
             return Ok(model.clone());
         }
         let stored = &self.data.manifest.representations[representation];
-        let model = match self.embedded {
+        let model = match self.runs_embedded(&stored.model) {
             true => model_of(&self.registry_with(&stored.model)?, stored)?.clone(),
             false => self.installed(stored)?,
         };
         Ok(kept.get_or_init(|| model).clone())
+    }
+
+    /// Whether a model of this id is taken from the asset. A program without a sandbox takes its own, if it has one.
+    fn runs_embedded(&self, id: &str) -> bool {
+        self.embedded && (SANDBOX || self.registry.find(id).is_err())
+    }
+
+    /// Whether this program has what it takes to run a model of this id; none is loaded.
+    fn is_runnable(&self, id: &str) -> bool {
+        SANDBOX || self.registry.find(id).is_ok()
     }
 
     /// The model of a representation from the registry alone.
@@ -402,16 +466,28 @@ fn is_named(representation: &Representation, name: &str) -> bool {
             .is_some_and(|short| short.eq_ignore_ascii_case(name))
 }
 
-/// The representation of least nine-band error at its first condition; unmeasured ones come last.
-fn nearest(all: &[Representation]) -> Option<usize> {
+/// The representation of least nine-band error at its first condition; unmeasured ones come last, and those of models
+/// that this program cannot run behind them.
+fn nearest(all: &[Representation], runnable: impl Fn(&Representation) -> bool) -> Option<usize> {
     let error = |r: &Representation| {
         let quality = r.at.first().and_then(|at| at.quality.as_ref());
         quality.map_or(f64::INFINITY, |q| q.band_error_rms_db)
     };
-    (0..all.len()).min_by(|&a, &b| error(&all[a]).total_cmp(&error(&all[b])))
+    let order = |i: usize| (!runnable(&all[i]), error(&all[i]));
+    (0..all.len()).min_by(|&a, &b| {
+        let (a, b) = (order(a), order(b));
+        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+    })
 }
 
 /// The motions that a representation was recorded at.
+///
+/// ```no_run
+/// use htex::{Asset, Effects, Motion};
+/// let motions = Asset::open("sandpaper.htex")?.motions(None)?;
+/// println!("{}", motions.coverage(Motion::new(160.0, 0.4), Effects::default()));
+/// # Ok::<(), htex::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Motions {
     pub(crate) mesh: Mesh,

@@ -14,11 +14,19 @@ const MIXED: usize = 3;
 /// renderer that brings many textures together resamples them once, behind their sum; [`crate::Voice`]
 /// does it for a single one. A source interpolates between conditions and does nothing else with a motion: what
 /// lies beyond ([`Effects`]) is its renderer's.
+///
+/// ```no_run
+/// use htex::{Asset, VoiceOptions};
+/// let mut source = Asset::open("sandpaper.htex")?.source(&VoiceOptions::default())?;
+/// let mut block = vec![0.0f32; (source.rate_hz() / 100.0) as usize];
+/// source.render(&mut block)?; // 10 ms of unit RMS
+/// # Ok::<(), htex::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Source {
     known: Known,
     voice: ModelVoice,
-    /// Room for the sets to mix, and for the mix.
+    /// Buffers for the sets to mix, and for the mix.
     sets: Vec<f64>,
     mixed: Vec<f64>,
     rate_hz: f64,
@@ -156,8 +164,8 @@ impl Source {
 
     /// Fills `out` with the next `frames` samples of each source, one behind the other: what
     /// [`Self::render`] gives of each, to the bit, in as few calls as models allow. In blocks of 256
-    /// frames AR takes some six tenths of the time then. Sources for which `out` has no room stay as
-    /// they are, and room without a source is silent. Does not allocate, lock or do I/O.
+    /// frames AR takes some six tenths of the time then. Sources for which `out` is too short stay as
+    /// they are, and what is left of `out` is silent. Does not allocate, lock or do I/O.
     ///
     /// # Errors
     /// The first, when a model fails; what it should have rendered is silent, and other sources play on.

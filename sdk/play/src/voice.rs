@@ -9,6 +9,13 @@ use crate::follow::Follow;
 use crate::travel::Travel;
 use crate::{Effects, Error, Motion, Source, VoiceOptions};
 
+// A voice is made in one thread and rendered in another.
+const _: () = {
+    const fn assert_send<T: Send>() {}
+    assert_send::<Voice>();
+    assert_send::<Source>();
+};
+
 /// Length of a change of level, seconds.
 const RAMP_S: f64 = 0.010;
 
@@ -28,7 +35,7 @@ const RAMP_S: f64 = 0.010;
 pub struct Voice {
     source: Source,
     resampler: Option<Resampler>,
-    /// What is heard instead of the source, whose level counts then.
+    /// Pre-rendered audio; `source` then supplies only the level.
     still: Option<StillSound>,
     level_rms: Glide,
     follow: Follow,

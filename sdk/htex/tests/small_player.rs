@@ -1,0 +1,71 @@
+//! A player without the sandbox plays what it can of an asset that brings a module.
+#![cfg(all(feature = "author", not(feature = "wasm")))]
+
+use htex::author::simulate::{SimulationOptions, Surface, simulate};
+use htex::author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
+use htex::format::Plugin;
+use htex::{Asset, Error, Registry, VoiceOptions};
+
+/// An id that no built-in model has.
+const ELSEWHERE: &str = "org.example.elsewhere";
+
+/// An asset of AR and sBeta. The one named is renamed, measured as the best, and brought along as a module.
+fn asset() -> htex::AssetData {
+    let options = SimulationOptions {
+        duration_s: 3.0,
+        ..SimulationOptions::new(Surface::Sandpaper)
+    };
+    let take = Take {
+        recording: simulate(&options)
+            .unwrap()
+            .to_recording("simulated")
+            .unwrap(),
+        given: Exploration {
+            speed_mm_s: Some(80.0),
+            force_n: Some(0.4),
+        },
+    };
+    let registry = Registry::builtin();
+    let model = |name: &str| {
+        let model = registry.find(name).unwrap().clone();
+        ModelRequest {
+            options: model.descriptor().default_options(),
+            model,
+        }
+    };
+    let request = AssetRequest {
+        name: "simulated".to_owned(),
+        models: vec![model("ar"), model("sbeta")],
+        ..AssetRequest::default()
+    };
+    let mut asset = fit_asset(&[take], &request).unwrap().asset;
+    let brought = &mut asset.manifest.representations[0];
+    let version = brought.model_version.clone();
+    brought.model = ELSEWHERE.to_owned();
+    brought.at[0].quality.as_mut().unwrap().band_error_rms_db = 0.0;
+    asset.manifest.plugins.push(Plugin {
+        model: ELSEWHERE.to_owned(),
+        version,
+        file: format!("plugins/{ELSEWHERE}.wasm"),
+        blake3: "0".repeat(64),
+        signature: None,
+    });
+    asset.plugins.push(b"\0asm\x01\0\0\0".to_vec());
+    asset
+}
+
+#[test]
+fn other_representations_play() {
+    let asset = Asset::new(asset()).with_embedded();
+    assert_eq!(asset.representation_id(None).unwrap(), "org.htex.sbeta");
+    let mut voice = asset.voice(&VoiceOptions::default()).unwrap();
+    let mut block = [0.0f32; 256];
+    voice.render(&mut block).unwrap();
+    assert!(block.iter().any(|x| *x != 0.0));
+
+    let options = VoiceOptions::default().with_model(ELSEWHERE);
+    let Err(Error::Model(error)) = asset.voice(&options) else {
+        panic!("a module ran without a sandbox");
+    };
+    assert!(error.to_string().contains("wasm"), "{error}");
+}

@@ -1,0 +1,46 @@
+//! Open a texture asset and play it: the core that scenes build on. Programs depend on the crate `htex`, which re-exports it.
+//!
+//! ```no_run
+//! use htex::{Asset, Motion, VoiceOptions};
+//! let asset = Asset::open("sandpaper.htex")?;
+//! let mut voice = asset.voice(&VoiceOptions::default())?;
+//! let mut block = [0.0f32; 256];
+//! voice.set_motion(Motion::new(80.0, 0.4))?; // mm/s, newtons
+//! voice.render(&mut block)?; // in the asset's unit
+//! # Ok::<(), htex::Error>(())
+//! ```
+//!
+//! [`Voice::render`] does not allocate, lock or touch files: it may run in an audio thread.
+#![forbid(unsafe_code)]
+
+mod asset;
+mod error;
+pub mod exploration;
+mod follow;
+mod mesh;
+mod motion;
+mod playable;
+mod source;
+mod travel;
+mod voice;
+
+pub use asset::{Asset, Motions, VoiceOptions};
+pub use error::Error;
+pub use exploration::{Coverage, Effects, Explored, Reach, Recorded};
+/// An asset's data, as [`Asset::new`] takes it.
+pub use htex_format::Asset as AssetData;
+pub use htex_format::{
+    AtCondition, Condition, Finding, Limits, Manifest, Quantity, ReadError, Representation,
+    Severity,
+};
+pub use htex_format::{FieldOrder, SAME_CONDITION};
+/// The motion as models get it: with a signed speed and a known position.
+pub use htex_host::Motion as ModelMotion;
+pub use htex_host::{
+    Band, Descriptor, HostError, LoadedModel, Note, Origin, Registry, Search, Synthesis, WasmCache,
+    WasmCompiler, WasmLimits, WasmTotal,
+};
+pub use motion::Motion;
+pub use playable::{field_order, model_of};
+pub use source::Source;
+pub use voice::Voice;

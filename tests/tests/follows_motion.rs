@@ -225,11 +225,7 @@ fn fitted(file: &Path, recording: &[f64]) -> Asset {
 }
 
 fn voice(asset: &Asset) -> Voice {
-    let options = VoiceOptions {
-        rate_hz: RATE_HZ,
-        seed: 3,
-        ..VoiceOptions::default()
-    };
+    let options = VoiceOptions::default().with_rate_hz(RATE_HZ).with_seed(3);
     let voice = asset.voice(&options).unwrap();
     assert!(voice.follows_motion());
     voice

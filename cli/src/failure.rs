@@ -21,7 +21,7 @@ pub(crate) enum Failure {
     Device(#[from] htex_device::DeviceError),
     #[error(transparent)]
     Tradeoff(#[from] htex_tradeoff::TradeoffError),
-    #[error("{file}: {error}")]
+    #[error("{file}: {error}{}", flag_of(.error))]
     Asset { file: String, error: htex::Error },
     #[error("{file}: {}", findings_text(.findings))]
     Findings {
@@ -118,6 +118,14 @@ impl Failure {
             .into_iter()
             .map(|line| plain(line).into_owned())
             .collect()
+    }
+}
+
+/// The flag that caused an error of the library, which knows no flags.
+fn flag_of(error: &htex::Error) -> &'static str {
+    match error {
+        htex::Error::EmbeddedOff { .. } => " (by --no-embedded-plugins)",
+        _ => "",
     }
 }
 

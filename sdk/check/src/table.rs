@@ -121,7 +121,7 @@ htex_check_runner::checks! { Case;
          model or a library that it calls, in the thread that renders; none is allowed. Not seen: threads of the model's own, and an \
          allocator of its own that takes pages from the system by itself. WASM: the module's memory must not grow. What it takes \
          and gives back within its memory is not seen; its native twin shows that.";
-    "motion" needs ["render", "retune"] motion::keeps_its_promises:
+    "motion" needs ["render", "retune", "allocation"] motion::keeps_its_promises:
         "A voice that is told the motion takes any in range, and refuses others.",
         "Of a model with the extension `htex.motion/1`; others pass. NaN, infinities and 1e13 in each number, a force of -0.1 and a \
          freed voice: a status, and the voice plays on as before. 4,000 samples of a constant motion in blocks of 1, 7, 64, 1,000 \

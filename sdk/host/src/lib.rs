@@ -60,3 +60,6 @@ pub use together::{VOICES_EXTENSION, render_together};
 pub use voice::ModelVoice;
 #[cfg(feature = "wasm")]
 pub use wasm::serve_compiler;
+
+/// Whether this build runs WASM modules (feature `wasm`).
+pub const RUNS_WASM: bool = cfg!(feature = "wasm");

@@ -4,15 +4,12 @@ use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
 use htex_format::{Manifest, Quantity, Representation};
-use htex_host::{Band, HostError, LoadedModel, Registry, StillSound, Synthesis};
+use htex_host::{Band, HostError, LoadedModel, RUNS_WASM, Registry, StillSound, Synthesis};
 
 use crate::exploration::{Coverage, Effects, Explored};
 use crate::mesh::{Mesh, Weights};
 use crate::playable::{field_order, model_of};
 use crate::{Error, Motion, Source, Voice};
-
-/// Whether this program can run the modules that assets bring along.
-const SANDBOX: bool = cfg!(feature = "wasm");
 
 /// An opened texture. A clone shares the data of the file.
 ///
@@ -388,12 +385,12 @@ impl Asset {
 
     /// Whether a model of this id is taken from the asset. A program without a sandbox takes its own, if it has one.
     fn runs_embedded(&self, id: &str) -> bool {
-        self.embedded && (SANDBOX || self.registry.find(id).is_err())
+        self.embedded && (RUNS_WASM || self.registry.find(id).is_err())
     }
 
     /// Whether this program has what it takes to run a model of this id; none is loaded.
     fn is_runnable(&self, id: &str) -> bool {
-        SANDBOX || self.registry.find(id).is_ok()
+        RUNS_WASM || self.registry.find(id).is_ok()
     }
 
     /// The model of a representation from the registry alone.

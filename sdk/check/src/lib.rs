@@ -2,7 +2,7 @@
 //! its own, so that a crash or an endless loop becomes a finding.
 //!
 //! [`CHECKS`] is the table; [`check`] runs it over a model file; [`run_one`] runs one check in this process, for a debugger.
-//! [`mod@bench`] measures what models cost.
+//! [`bench()`] measures what models cost.
 //!
 //! ```
 //! use htex_check::{CHECKS, model_checks_page};

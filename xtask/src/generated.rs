@@ -53,10 +53,10 @@ pub fn file(path: impl AsRef<str>, bytes: &[u8]) {
     file_with(path, bytes, |kept| kept == bytes);
 }
 
-/// As [`file`]; `is_fresh` compares the bytes of the file.
+/// As [`file()`]; `is_fresh` compares the bytes of the file.
 ///
 /// # Panics
-/// As [`file`].
+/// As [`file()`].
 #[allow(clippy::panic)] // It fails a test.
 pub fn file_with(path: impl AsRef<str>, bytes: &[u8], is_fresh: impl FnOnce(&[u8]) -> bool) {
     let name = path.as_ref();
@@ -71,7 +71,7 @@ pub fn file_with(path: impl AsRef<str>, bytes: &[u8], is_fresh: impl FnOnce(&[u8
 /// Compares the files of a folder that has nothing else, or writes them and removes all others.
 ///
 /// # Panics
-/// As [`file`], and when the folder has other files or cannot be read.
+/// As [`file()`], and when the folder has other files or cannot be read.
 pub fn folder(path: &str, files: &[File]) {
     for (path, bytes) in files {
         file(path, bytes);

@@ -28,6 +28,7 @@ mod native;
 mod note;
 mod options;
 mod origin;
+mod own;
 mod raw;
 mod registry;
 // Without modules nothing is spent.

@@ -1,10 +1,14 @@
 //! The models a program knows.
 
+use std::sync::Arc;
+
+use htex_model::{Model, MotionVoice};
 use semver::{Version, VersionReq};
 
 use crate::builtin;
+use crate::own::OwnModel;
 use crate::sandbox::Sandbox;
-use crate::{HostError, LoadedModel, Note, Search, WasmLimits};
+use crate::{HostError, LoadedModel, Note, Origin, Search, WasmLimits};
 
 /// Models by id. Of several with one id, the one that [`Search`] puts first is used; the others are
 /// there for those who ask for their version.
@@ -28,6 +32,14 @@ pub(crate) enum Rank {
     Folder,
     User,
     Builtin,
+}
+
+fn own<M: Model>() -> Result<OwnModel<M>, HostError> {
+    OwnModel::new().ok_or_else(|| HostError::Broken {
+        model: M::DESCRIPTOR.id.to_owned(),
+        call: "htex_model_descriptor",
+        what: "the descriptor is longer than 64 KiB; shorten its texts".to_owned(),
+    })
 }
 
 impl Registry {
@@ -74,6 +86,72 @@ impl Registry {
         for model in builtin::models() {
             self.add(Rank::Builtin, model.clone());
         }
+    }
+
+    /// Adds a model of this program: a type that implements the trait. It goes before all other models of its id, but for
+    /// those that were named or registered earlier.
+    ///
+    /// ```
+    /// use htex_host::Registry;
+    /// use htex_model::*;
+    /// /// White noise.
+    /// struct White;
+    /// struct WhiteVoice(u32);
+    /// impl Voice for WhiteVoice {
+    ///     fn render(&mut self, out: &mut [f32]) {
+    ///         for x in out {
+    ///             self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+    ///             *x = self.0 as f32 / 2f32.powi(31) - 1.0;
+    ///         }
+    ///     }
+    ///     fn retune(&mut self, _: &Values<'_>) -> Result<(), Error> { Ok(()) }
+    /// }
+    /// impl Model for White {
+    ///     type Voice = WhiteVoice;
+    ///     const DESCRIPTOR: StaticDescriptor =
+    ///         StaticDescriptor::new("org.example.white", "White", "1.0.0", "White noise.").fields(FIELDS);
+    ///     fn fit(_: &FitInput<'_>) -> Result<Fit, Error> {
+    ///         Ok(Fit { parameters: vec![0.0], level_rms: 1.0 })
+    ///     }
+    ///     fn magnitude(_: &Values<'_>, _: Band, _: &[f64], magnitude: &mut [f64]) -> Result<(), Error> {
+    ///         magnitude.fill(1.0);
+    ///         Ok(())
+    ///     }
+    ///     fn interpolate(_: &[Values<'_>], _: &[f64], mixed: &mut Numbers<'_>) -> Result<(), Error> {
+    ///         mixed.push(0.0);
+    ///         Ok(())
+    ///     }
+    ///     fn voice(_: &Values<'_>, _: Band, _: f64, seed: u64) -> Result<WhiteVoice, Error> {
+    ///         Ok(WhiteVoice(seed as u32))
+    ///     }
+    /// }
+    /// const FIELDS: &[StaticField] = &[StaticField::scalar("colour", "", (0.0, 1.0), "Unused.")];
+    /// let mut registry = Registry::builtin();
+    /// registry.add_model::<White>()?;
+    /// assert_eq!(registry.find("white")?.id(), "org.example.white");
+    /// # Ok::<(), htex_host::HostError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the descriptor describes no model that can be called, or is longer than 64 KiB.
+    pub fn add_model<M: Model>(&mut self) -> Result<(), HostError> {
+        let model = own::<M>()?;
+        self.add_own(model)
+    }
+
+    /// As [`Self::add_model`], of a model that follows the motion itself (the extension `htex.motion/1`).
+    ///
+    /// # Errors
+    /// As [`Self::add_model`].
+    pub fn add_motion_model<M: Model<Voice: MotionVoice>>(&mut self) -> Result<(), HostError> {
+        let model = own::<M>()?.with_motion();
+        self.add_own(model)
+    }
+
+    fn add_own<M: Model>(&mut self, model: OwnModel<M>) -> Result<(), HostError> {
+        let model = LoadedModel::new(Origin::Own, Arc::new(model))?;
+        self.add(Rank::File, model);
+        Ok(())
     }
 
     /// Adds a WASM model that came with `name` (an asset's, say), behind plugins named by their

@@ -52,6 +52,12 @@ impl<'a, T> Input<'a, T> {
     }
 }
 
+impl<'a, T> From<&'a [T]> for Input<'a, T> {
+    fn from(values: &'a [T]) -> Self {
+        Self(Some(values))
+    }
+}
+
 /// A buffer to write to, from the other side.
 pub struct Output<'a, T>(Option<&'a mut [T]>);
 
@@ -71,6 +77,12 @@ impl<'a, T> Output<'a, T> {
 
     fn get(self, name: &str) -> Result<&'a mut [T], Error> {
         self.0.ok_or_else(|| unusable(name, "buffer"))
+    }
+}
+
+impl<'a, T> From<&'a mut [T]> for Output<'a, T> {
+    fn from(values: &'a mut [T]) -> Self {
+        Self(Some(values))
     }
 }
 

@@ -1,0 +1,152 @@
+//! A model of the program's own: flat noise between two frequencies. It is registered, fitted to a simulated recording, and
+//! the asset is played.
+//!
+//! `cargo run --release -p htex --features author --example own_model`
+
+use htex::author::simulate::{SimulationOptions, Surface, simulate};
+use htex::author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
+use htex::{Asset, Motion, Registry, VoiceOptions};
+use htex_model::{
+    Band, Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, Values, mix,
+};
+use htex_shaped::{Curve, ShapedVoice};
+
+/// The model: a plateau from `low_hz` to `high_hz`.
+struct Plateau;
+
+/// The plateau of some parameters in a band.
+struct Edges {
+    low_hz: f64,
+    high_hz: f64,
+    band: htex_dsp::Band,
+}
+
+impl Model for Plateau {
+    type Voice = ShapedVoice<Edges>;
+
+    const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new(
+        "org.example.plateau",
+        "Plateau",
+        "1.0.0",
+        "Flat noise between two frequencies.",
+    )
+    .fields(&[
+        StaticField::scalar("low_hz", "Hz", (0.0, 2_000.0), "Lowest frequency."),
+        StaticField::scalar("high_hz", "Hz", (0.0, 2_000.0), "Highest frequency."),
+    ]);
+
+    /// The frequencies between which 90 % of the power is.
+    fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
+        let power = || input.magnitude.iter().map(|m| m * m);
+        let total: f64 = power().sum();
+        if total == 0.0 {
+            return Err(Error::cannot_fit("the spectrum is zero"));
+        }
+        let below = |part: f64| {
+            let mut sum = 0.0;
+            let bin = power().position(|p| {
+                sum += p;
+                sum >= part * total
+            });
+            input.frequency_hz[bin.unwrap_or(input.frequency_hz.len() - 1)]
+        };
+        Ok(Fit {
+            parameters: vec![below(0.05), below(0.95)],
+            level_rms: (total / 3.0).sqrt(),
+        })
+    }
+
+    fn magnitude(
+        parameters: &Values<'_>,
+        band: Band,
+        frequency_hz: &[f64],
+        magnitude: &mut [f64],
+    ) -> Result<(), Error> {
+        htex_shaped::magnitude::<Edges>(parameters, band, frequency_hz, magnitude)
+    }
+
+    fn interpolate(
+        sets: &[Values<'_>],
+        weights: &[f64],
+        mixed: &mut Numbers<'_>,
+    ) -> Result<(), Error> {
+        mix::linear(sets, weights, mixed)
+    }
+
+    fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
+        htex_shaped::voice_rate_hz(band, wanted_hz)
+    }
+
+    fn voice(
+        parameters: &Values<'_>,
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Self::Voice, Error> {
+        ShapedVoice::new(parameters, band, rate_hz, seed)
+    }
+}
+
+impl Curve for Edges {
+    fn new(parameters: &Values<'_>, band: htex_dsp::Band) -> Result<Self, Error> {
+        let mut edges = Self {
+            low_hz: 0.0,
+            high_hz: 0.0,
+            band,
+        };
+        edges.set(parameters)?;
+        Ok(edges)
+    }
+
+    fn set(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+        (self.low_hz, self.high_hz) = (parameters.scalar(0), parameters.scalar(1));
+        if self.level() > 0.0 {
+            return Ok(());
+        }
+        Err(Error::parameters(
+            "no bin of the band lies between `low_hz` and `high_hz`",
+        ))
+    }
+
+    fn at(&self, frequency_hz: f64) -> f64 {
+        f64::from((self.low_hz..=self.high_hz).contains(&frequency_hz))
+    }
+
+    fn level(&self) -> f64 {
+        htex_dsp::grid::curve_level_rms(self.band, |hz| self.at(hz))
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut registry = Registry::builtin();
+    registry.add_model::<Plateau>()?;
+
+    let options = SimulationOptions::new(Surface::Sandpaper);
+    let take = Take {
+        given: Exploration {
+            speed_mm_s: Some(options.speed_mm_s),
+            force_n: Some(options.force_n),
+        },
+        recording: simulate(&options)?.to_recording("simulated")?,
+    };
+    let model = registry.find("org.example.plateau")?.clone();
+    let request = AssetRequest {
+        name: "Sandpaper".to_owned(),
+        models: vec![ModelRequest {
+            options: model.descriptor().default_options(),
+            model,
+        }],
+        ..AssetRequest::default()
+    };
+    let fitted = fit_asset(&[take], &request)?;
+
+    let asset = Asset::with_registry(fitted.asset, registry);
+    let motion = Motion::new(80.0, 0.4);
+    println!("{:?}", asset.parameters(Some("plateau"), Some(motion))?);
+    let mut voice = asset.voice(&VoiceOptions::default().with_motion(motion))?;
+    let mut second = vec![0.0f32; 20_000];
+    voice.render(&mut second)?;
+    let power: f32 = second.iter().map(|x| x * x).sum::<f32>() / second.len() as f32;
+    println!("{:.3} mN RMS", power.sqrt() * 1e3);
+    Ok(())
+}

@@ -1,5 +1,5 @@
-//! Writes what the specification has from the code: the conformance files with their reports, the
-//! page of findings and the schemas of manifests and reports.
+//! Writes the generated files of the specification: the conformance files with their reports, the
+//! page of findings, and the schemas of manifests and reports.
 //!
 //! `cargo run -p htex-format --example conformance`
 

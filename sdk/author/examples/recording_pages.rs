@@ -1,4 +1,4 @@
-//! Writes what the specification has from the code: the conformance recordings with their reports, and
+//! Writes the generated files of the specification: the conformance recordings with their reports, and
 //! the page of findings.
 //!
 //! `cargo run -p htex-author --example recording_pages`

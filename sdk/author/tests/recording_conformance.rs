@@ -1,5 +1,4 @@
-//! What the specification has of recordings from the code is what the code makes; sound recordings are
-//! found sound.
+//! The generated files for recordings are up to date, and valid recordings have no findings.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 #[path = "common/recordings.rs"]
@@ -41,7 +40,7 @@ fn every_recording_gets_its_report_and_every_code_has_a_recording() {
         let own = case.name.to_uppercase();
         for finding in findings {
             let code = of(finding, "code");
-            // Nothing but what the case is about: one fault has one code.
+            // Each case has only the finding of its own code.
             assert!(
                 code == own || of(finding, "severity") == "info" || case.may_also_raise(&code),
                 "{} raises {finding}",
@@ -82,8 +81,8 @@ fn every_recording_gets_its_report_and_every_code_has_a_recording() {
     }
 }
 
-/// The simulator's hand wanders by a few percent, and its surfaces have knots and ribs: no finding but that a
-/// sweep is cut off.
+/// The simulated hand varies by a few percent, and the surfaces have knots and ribs: the only finding is a
+/// sweep that is cut off.
 #[test]
 fn sound_recordings_at_any_rate_and_speed_have_no_warning() {
     let surfaces = [

@@ -14,7 +14,7 @@ Generated from the table of rules in `sdk/format/src/rules.rs` by
 
 A finding has a code, a severity, a JSON pointer into the manifest (empty for the file as a whole)
 and a message. An asset is valid when no finding is an error. The meaning of a code never changes.
-Section 11 of [htex-1.md](htex-1.md) specifies reports.
+Section 12 of [htex-1.md](htex-1.md) specifies reports.
 
 ## Stages
 

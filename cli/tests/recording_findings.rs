@@ -88,7 +88,7 @@ fn fit_warns_of_what_strict_refuses() {
     assert!(
         fitted["notes"]
             .to_string()
-            .contains("1 sweep of 4 left out"),
+            .contains("1 of 4 sweeps left out"),
         "{fitted}"
     );
     let run = place.run(&["validate", "x.htex", "--rate", "1000"]);

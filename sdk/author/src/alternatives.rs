@@ -10,7 +10,7 @@ use crate::stored::stored_fields;
 use crate::{TextureSpectrum, agreement};
 
 /// Nine-band RMS error above which a warning is given, decibels.
-const MISSES_DB: f64 = 12.0;
+const LIMIT_DB: f64 = 12.0;
 
 /// A fit that was tried, and its nine-band RMS error, decibels.
 struct Tried {
@@ -30,13 +30,13 @@ pub(crate) fn warning(
     let conditions = qualities.iter().zip(spectra);
     let error_db = |quality: &Quality| quality.band_error_rms_db;
     let (quality, spectrum) = conditions.max_by(|a, b| error_db(a.0).total_cmp(&error_db(b.0)))?;
-    let misses_db = error_db(quality);
-    if misses_db <= MISSES_DB {
+    let nine_band_db = error_db(quality);
+    if nine_band_db <= LIMIT_DB {
         return None;
     }
     let try_one = |model: &LoadedModel, options: Vec<f64>, name: String| {
         let error_db = error_of(model, &options, spectrum, level)?;
-        (error_db < misses_db).then_some(Tried { name, error_db })
+        (error_db < nine_band_db).then_some(Tried { name, error_db })
     };
     let own = other_options(choice).into_iter();
     let best_option = best(own.filter_map(|(name, options)| try_one(&choice.model, options, name)));
@@ -48,7 +48,7 @@ pub(crate) fn warning(
     let better: Vec<String> = best_option
         .into_iter()
         .chain(best_model)
-        .map(|tried| format!("{} by {:.1} dB", tried.name, tried.error_db))
+        .map(|tried| format!("{} with {:.1} dB", tried.name, tried.error_db))
         .collect();
     let advice = match &better[..] {
         [] => "no other option or model fits better".to_owned(),
@@ -56,7 +56,7 @@ pub(crate) fn warning(
     };
     let model = choice.model.short_name();
     Some(format!(
-        "the nine-band error of {model} is {misses_db:.1} dB (RMS); {advice}"
+        "the nine-band error of {model} is {nine_band_db:.1} dB (RMS); {advice}"
     ))
 }
 

@@ -66,7 +66,7 @@ pub enum AuthorError {
     QuantitiesDiffer,
     /// No segment is within the tolerance of the requested condition.
     #[error(
-        "{source_name}: all {segments} segments differ from their target by more than 10 %: {told}; give the condition that \
+        "{source_name}: all {segments} segments differ from their target by more than 10 %: {comparison}; give the condition that \
          was recorded, scale a column with `--map`, or record again"
     )]
     OffTarget {
@@ -75,7 +75,7 @@ pub enum AuthorError {
         /// Number of segments.
         segments: usize,
         /// The measured and the requested values.
-        told: String,
+        comparison: String,
     },
     /// The recording has findings, and `strict` is set.
     #[error("{source_name}: refused because of --strict (`htex explain CODE` describes each finding):{}", lines(.findings))]

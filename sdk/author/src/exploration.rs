@@ -153,24 +153,24 @@ pub(crate) fn keep_on_target(
     if off == 0 {
         return Ok(());
     }
-    let told: Vec<String> = known
+    let comparison: Vec<String> = known
         .iter()
         .flatten()
-        .filter_map(|one| one.told(&of_all))
+        .filter_map(|one| one.comparison(&of_all))
         .collect();
-    let told = told.join("; ");
+    let comparison = comparison.join("; ");
     if segments.starts.is_empty() {
         return Err(AuthorError::OffTarget {
             source_name: recording.source.clone(),
             segments: off,
-            told,
+            comparison,
         });
     }
     findings.add(
         RECORDING_OFF_TARGET,
         "",
         format!(
-            "{off} of {} segments left out because they differ from their target by more than 10 %: {told}",
+            "{off} of {} segments left out because they differ from their target by more than 10 %: {comparison}",
             of_all.starts.len()
         ),
     );
@@ -221,7 +221,7 @@ impl Known<'_> {
     }
 
     /// Describes a signal with a target: its median and range over the segments.
-    fn told(&self, segments: &Segments) -> Option<String> {
+    fn comparison(&self, segments: &Segments) -> Option<String> {
         let (target, median) = (self.target?, self.median(segments)?);
         let ([low, high], unit) = (self.spread(segments), self.unit);
         Some(format!(

@@ -85,7 +85,7 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
     for choice in &request.models {
         match fit_model(choice, &grouped.groups, request.level) {
             Ok(one) => {
-                warnings.extend(misses(choice, &one, &grouped.groups, request));
+                warnings.extend(band_error_warning(choice, &one, &grouped.groups, request));
                 fitted.push(one);
             }
             Err(AuthorError::Model(HostError::Call { call, message, .. })) => {
@@ -170,7 +170,7 @@ fn fit_model(
 }
 
 /// Returns the warning of a representation with a large band error.
-fn misses(
+fn band_error_warning(
     choice: &ModelRequest,
     fitted: &FittedModel,
     groups: &[Group],

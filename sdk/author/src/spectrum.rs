@@ -243,8 +243,7 @@ fn check_segments(
         }),
         n @ 1..=2 => {
             warnings.push(format!(
-                "{source}: {n} segment{} of 0.2 s: the spectrum has the scatter of a single \
-                 segment; record for 10 s",
+                "{source}: {n} segment{} of 0.2 s: an average of so few is noisy; record for 10 s",
                 if n == 1 { "" } else { "s" }
             ));
             Ok(())

@@ -325,12 +325,12 @@ impl Reader<'_> {
                 condition,
             });
         }
-        let room = match field.store {
+        let most = match field.store {
             Store::Packed(_) => most_steps(self.bytes.len()),
             store => self.bytes.len() / store.bytes(),
         };
         match usize::try_from(length) {
-            Ok(length) if length <= room => Ok(length),
+            Ok(length) if length <= most => Ok(length),
             _ => Err(truncated(field, condition)),
         }
     }

@@ -75,16 +75,16 @@ impl Axis {
 
 /// Returns a valid range with a margin for a marker at either end that does not extend it across zero.
 fn with_margin((low, high): (f64, f64), scale: Scale) -> (f64, f64) {
-    const ROOM: f64 = 0.03;
+    const MARGIN: f64 = 0.03;
     match scale {
         Scale::Linear => {
-            let room = ROOM * (high - low);
+            let margin = MARGIN * (high - low);
             let floor = if low >= 0.0 { 0.0 } else { f64::NEG_INFINITY };
-            ((low - room).max(floor), high + room)
+            ((low - margin).max(floor), high + margin)
         }
         Scale::Log => {
-            let room = (high / low).powf(ROOM);
-            (low / room, high * room)
+            let margin = (high / low).powf(MARGIN);
+            (low / margin, high * margin)
         }
     }
 }

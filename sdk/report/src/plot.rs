@@ -230,10 +230,13 @@ fn spaced_labels<'t>(ticks: &'t [(f64, Tick)], area: &Area) -> Vec<(f64, &'t str
     let mut kept: Vec<(f64, &str)> = Vec::new();
     for (fraction, tick) in order {
         let x = area.left + fraction * area.width;
-        let room = |other: &str| {
+        let clearance = |other: &str| {
             (text_width(&tick.label, TEXT_PX) + text_width(other, TEXT_PX)) / 2.0 + 4.0
         };
-        if kept.iter().all(|(at, other)| (x - at).abs() >= room(other)) {
+        if kept
+            .iter()
+            .all(|(at, other)| (x - at).abs() >= clearance(other))
+        {
             kept.push((x, &tick.label));
         }
     }

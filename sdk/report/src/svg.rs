@@ -16,8 +16,8 @@ pub(crate) fn fit_text(text: &str, size_px: f64, width_px: f64) -> String {
     if text_width(text, size_px) <= width_px {
         return text.to_owned();
     }
-    let room = (width_px / text_width("x", size_px)).max(1.0) as usize - 1;
-    let kept: String = text.chars().take(room).collect();
+    let fitting = (width_px / text_width("x", size_px)).max(1.0) as usize - 1;
+    let kept: String = text.chars().take(fitting).collect();
     format!("{}\u{2026}", kept.trim_end())
 }
 

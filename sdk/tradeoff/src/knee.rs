@@ -90,7 +90,7 @@ fn knee_of(recording: &str, of: &str, against: Against, points: &[&Point]) -> Op
     let next = next.map(|i| (&places[i], along[i]));
     let here = format!("{}, {}", along[at].name(), against.cost.words(cost, error));
     let words = match next {
-        None => format!("{here}: there is no step up"),
+        None => format!("{here}: no further step reduces the error"),
         Some((&(next_cost, next_error), next)) => format!(
             "{here}; the next step up, {}, reduces the error by {:.2} dB for {} more ({:+.0} %)",
             next.name(),

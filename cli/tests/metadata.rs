@@ -98,7 +98,7 @@ fn an_edit_that_would_lose_something_is_refused() {
     let spec = concat!(env!("CARGO_MANIFEST_DIR"), "/../spec/conformance");
     let place = Place::new();
     for (name, words) in [
-        ("entry_unreferenced", "nothing names the entry"),
+        ("entry_unreferenced", "does not refer to the entry"),
         ("json_unknown_key_inside", "the key /"),
         ("valid_newer_store", "the key /representations/0/fields/"),
     ] {

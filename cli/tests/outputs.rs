@@ -162,7 +162,8 @@ fn a_file_that_is_no_journal_is_left_alone() {
     let run = place.run(&["tradeoff", "vinyl.csv", "-o", "vinyl-2.html", "--quick"]);
     assert_eq!(run.code(), 1);
     assert!(
-        run.error().contains("no journal of an interrupted sweep"),
+        run.error()
+            .contains("not the journal of an interrupted sweep"),
         "{}",
         run.error()
     );

@@ -48,7 +48,7 @@ fn fit_warns_of_what_strict_refuses() {
         )
     };
     for (name, place_of_it) in [
-        ("recording_clipped", "samples of the lateral force lie on"),
+        ("recording_clipped", "samples of the lateral force are at"),
         ("recording_spike", "N at 0.6000 s"),
     ] {
         let csv = spec(name);
@@ -88,7 +88,7 @@ fn fit_warns_of_what_strict_refuses() {
     assert!(
         fitted["notes"]
             .to_string()
-            .contains("1 sweep of 4 left out"),
+            .contains("1 of 4 sweeps left out"),
         "{fitted}"
     );
     let run = place.run(&["validate", "x.htex", "--rate", "1000"]);

@@ -163,7 +163,7 @@ fn a_licence_is_checked_before_a_fit_begins() {
     assert!(
         refused
             .error()
-            .contains("--license: \"CC BY 4.0\" is no SPDX expression")
+            .contains("--license: \"CC BY 4.0\" is not an SPDX expression")
     );
     let doubtful = fit("CC-BY-9.0");
     assert_eq!(doubtful.code(), 0);
@@ -186,7 +186,7 @@ fn info_says_of_fields_that_are_not_the_models() {
     assert!(reordered.contains("alpha=2.5 beta=1.5"), "{reordered}");
     let newer = shown("valid_field_of_newer_model.htex");
     assert!(
-        newer.contains("\"gamma\" is no field of the model"),
+        newer.contains("the model has no field \"gamma\""),
         "{newer}"
     );
 }

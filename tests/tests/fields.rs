@@ -36,7 +36,7 @@ fn fields_that_are_not_the_models_are_refused_with_their_names() {
     for (file, words) in [
         (
             "field_unknown.htex",
-            ["\"alfa\" is no field", "\"alpha\" is not stored"],
+            ["the model has no field \"alfa\"", "\"alpha\" is not stored"],
         ),
         (
             "field_missing.htex",
@@ -44,7 +44,7 @@ fn fields_that_are_not_the_models_are_refused_with_their_names() {
         ),
         (
             "field_kind_wrong.htex",
-            ["\"beta\" is stored as a list", "takes one number"],
+            ["\"beta\" is stored as a list", "expects one number"],
         ),
         (
             "field_unit_wrong.htex",
@@ -52,7 +52,7 @@ fn fields_that_are_not_the_models_are_refused_with_their_names() {
         ),
         (
             "valid_field_of_newer_model.htex",
-            ["\"gamma\" is no field", "fitted by 1.9.0"],
+            ["the model has no field \"gamma\"", "fitted by 1.9.0"],
         ),
     ] {
         let asset = conformance(file);

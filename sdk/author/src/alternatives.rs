@@ -1,5 +1,5 @@
-//! What fits a recording better than a representation that misses its bands: options of the same model
-//! and other models, each tried.
+//! Search for other options and models that fit a recording better than a representation with a large band
+//! error.
 
 use htex_format::Quality;
 use htex_host::{FitOption, LoadedModel};
@@ -10,17 +10,17 @@ use crate::fit::ModelRequest;
 use crate::level::{Level, stored_level};
 use crate::stored::stored_fields;
 
-/// Nine-band RMS error above which a representation is told to miss its bands, decibels.
-const MISSES_DB: f64 = 12.0;
+/// Nine-band RMS error above which a warning is given, decibels.
+const LIMIT_DB: f64 = 12.0;
 
-/// Something that was tried, and the nine-band RMS error it leaves, decibels.
+/// A fit that was tried, and its nine-band RMS error, decibels.
 struct Tried {
     name: String,
     error_db: f64,
 }
 
-/// The warning of a representation that misses its bands at one of its conditions; none when it does
-/// not. `models` are tried beside the model's own options.
+/// Returns a warning if a representation exceeds the error limit at one of its conditions. `models` are tried
+/// beside the model's own options.
 pub(crate) fn warning(
     choice: &ModelRequest,
     qualities: &[&Quality],
@@ -31,13 +31,13 @@ pub(crate) fn warning(
     let conditions = qualities.iter().zip(groups);
     let error_db = |quality: &Quality| quality.band_error_rms_db;
     let (quality, group) = conditions.max_by(|a, b| error_db(a.0).total_cmp(&error_db(b.0)))?;
-    let misses_db = error_db(quality);
-    if misses_db <= MISSES_DB {
+    let nine_band_db = error_db(quality);
+    if nine_band_db <= LIMIT_DB {
         return None;
     }
     let try_one = |model: &LoadedModel, options: Vec<f64>, name: String| {
         let error_db = error_of(model, &options, group, level)?;
-        (error_db < misses_db).then_some(Tried { name, error_db })
+        (error_db < nine_band_db).then_some(Tried { name, error_db })
     };
     let own = other_options(choice).into_iter();
     let best_option = best(own.filter_map(|(name, options)| try_one(&choice.model, options, name)));
@@ -49,15 +49,15 @@ pub(crate) fn warning(
     let better: Vec<String> = best_option
         .into_iter()
         .chain(best_model)
-        .map(|tried| format!("{} by {:.1} dB", tried.name, tried.error_db))
+        .map(|tried| format!("{} with {:.1} dB", tried.name, tried.error_db))
         .collect();
     let advice = match &better[..] {
-        [] => "none of its options and no other model does better".to_owned(),
-        better => format!("tried on this recording, {}", better.join(", ")),
+        [] => "no other option or model fits better".to_owned(),
+        better => format!("better on this recording: {}", better.join(", ")),
     };
     let model = choice.model.short_name();
     Some(format!(
-        "{model} misses the nine bands by {misses_db:.1} dB (RMS); {advice}"
+        "the nine-band error of {model} is {nine_band_db:.1} dB (RMS); {advice}"
     ))
 }
 
@@ -65,8 +65,8 @@ fn best(tried: impl Iterator<Item = Tried>) -> Option<Tried> {
     tried.min_by(|a, b| a.error_db.total_cmp(&b.error_db))
 }
 
-/// The request's options with one of them at another choice or at an end of its range, and how that is
-/// asked for.
+/// Returns the request's options with one of them set to another choice or to an end of its range, and the
+/// command-line text of each.
 fn other_options(choice: &ModelRequest) -> Vec<(String, Vec<f64>)> {
     let mut others = Vec::new();
     let model = &choice.model;
@@ -95,7 +95,7 @@ fn other_values(option: &FitOption) -> Vec<f64> {
     }
 }
 
-/// Nine-band RMS error of a model's stored fit, from its magnitudes; none when it cannot be fitted.
+/// Returns the nine-band RMS error of a model's stored fit, from its magnitudes; `None` when it cannot be fitted.
 fn error_of(model: &LoadedModel, options: &[f64], group: &Group, level: Level) -> Option<f64> {
     let reference = group.spectrum.as_ref();
     let request = group.spectrum.fit_request(options);

@@ -1,4 +1,4 @@
-//! Which recordings belong to one exploration condition.
+//! Grouping of recordings by exploration condition.
 
 use htex_format::{Condition, Source};
 use htex_host::FitCondition;
@@ -9,23 +9,23 @@ use crate::spectrum::SegmentSpectra;
 use crate::warnings::Warnings;
 use crate::{AuthorError, Exploration, Recording, SpectrumOptions, TextureSpectrum};
 
-/// A recording and what is known of its condition beforehand.
+/// A recording and its condition as far as it is given.
 #[derive(Debug, Clone)]
 pub struct Take {
     /// The recording.
     pub recording: Recording,
-    /// Speed and force as given; wins over what was measured.
+    /// Given speed and force; they take precedence over measured ones.
     pub given: Exploration,
 }
 
-/// One condition's spectrum.
+/// The spectrum of one condition.
 pub(crate) struct Group {
     pub(crate) spectrum: TextureSpectrum,
     /// The motion it was recorded at, as far as it is known.
     pub(crate) condition: FitCondition,
 }
 
-/// All conditions.
+/// The spectra of all conditions.
 pub(crate) struct Grouped {
     pub(crate) groups: Vec<Group>,
     pub(crate) conditions: Vec<Condition>,
@@ -39,7 +39,7 @@ struct Gathering {
     parts: Vec<SegmentSpectra>,
 }
 
-/// Takes the recordings' spectra and averages those of one condition.
+/// Takes the recordings' spectra and averages those of the same condition.
 pub(crate) fn group_takes(
     takes: &[Take],
     options: &SpectrumOptions,
@@ -101,7 +101,7 @@ pub(crate) fn group_takes(
     })
 }
 
-/// Whether two recordings are of one condition.
+/// Whether two recordings have the same condition.
 fn same(a: Exploration, b: Exploration) -> bool {
     let near = |a: Option<f64>, b: Option<f64>| match (a, b) {
         (Some(a), Some(b)) => Condition::is_same(a, b),
@@ -111,7 +111,7 @@ fn same(a: Exploration, b: Exploration) -> bool {
     near(a.speed_mm_s, b.speed_mm_s) && near(a.force_n, b.force_n)
 }
 
-/// Several conditions can only be told apart by what is known of all of them.
+/// Checks that speed and force are known for all conditions if there are several.
 fn check_known(gatherings: &[Gathering]) -> Result<(), AuthorError> {
     let known = gatherings
         .iter()
@@ -126,7 +126,7 @@ fn check_known(gatherings: &[Gathering]) -> Result<(), AuthorError> {
     })
 }
 
-/// Measured speeds and forces mean nothing beyond four digits.
+/// Rounds to four digits, the precision of measured speeds and forces.
 fn four_digits(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)
 }

@@ -1,4 +1,4 @@
-//! What can go wrong between a recording and an asset.
+//! Errors of the authoring pipeline.
 
 use std::path::PathBuf;
 
@@ -6,10 +6,10 @@ use htex_host::HostError;
 
 use crate::hertz::hertz;
 
-/// An error of the authoring pipeline; each message says what, where, and what to do.
+/// An error of the authoring pipeline. Each message says what is wrong, where, and what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum AuthorError {
-    /// The rate leaves nothing of the tactile band.
+    /// The sample rate is too low for the tactile band.
     #[error(
         "{source_name}: sampled at {} it holds nothing above {}, and a \
          texture's spectrum lies at 20 to 1000 Hz; record at 2 kHz or more (60 Hz is the least \
@@ -19,109 +19,109 @@ pub enum AuthorError {
     RateTooLow {
         /// The recording.
         source_name: String,
-        /// Its rate.
+        /// Its sample rate, hertz.
         rate_hz: f64,
-        /// Half of it.
+        /// Its Nyquist frequency, hertz.
         nyquist_hz: f64,
     },
-    /// Shorter than one segment.
+    /// The recording is shorter than one segment.
     #[error(
         "{source_name}: {samples} samples are less than one segment of 0.2 s ({needed} samples)"
     )]
     TooShort {
         /// The recording.
         source_name: String,
-        /// What there is.
+        /// Its samples.
         samples: usize,
-        /// What is needed.
+        /// Samples of a segment.
         needed: usize,
     },
-    /// No sweep is long enough.
+    /// No sweep is long enough for a segment.
     #[error(
-        "{source_name}: no whole sweep of 0.2 s or more (one that the beginning or the end cuts off does not count); \
+        "{source_name}: no complete sweep of 0.2 s or more (a sweep cut off by the beginning or the end does not count); \
          try `--segments windows` for a recording without back-and-forth sweeps"
     )]
     NoSegments {
         /// The recording.
         source_name: String,
     },
-    /// A setup response that nothing can be divided by.
+    /// The setup response is zero or not finite, so nothing can be divided by it.
     #[error(
-        "setup response: its largest magnitude in the band is {largest:e}; a finite one above 0 is \
+        "setup response: its largest magnitude in the band is {largest:e}; a finite value above 0 is \
          needed at every frequency that is to be divided by it: measure the setup again"
     )]
     Response {
         /// Its largest magnitude in the band; NaN if one is not a number.
         largest: f64,
     },
-    /// Recordings of different bands were to be averaged.
+    /// The recordings of one condition have different bands.
     #[error(
-        "recordings at one condition have different bands because of their rates; fit them apart"
+        "recordings of one condition have different bands because of their sample rates; fit them separately"
     )]
     BandsDiffer,
-    /// Recordings of one texture hold different quantities.
+    /// The recordings of one texture have different quantities.
     #[error(
-        "the recordings hold different quantities, such as forces and accelerations; fit them apart"
+        "the recordings hold different quantities, such as forces and accelerations; fit them separately"
     )]
     QuantitiesDiffer,
-    /// No segment keeps to the condition that was asked for.
+    /// No segment is within the tolerance of the requested condition.
     #[error(
-        "{source_name}: all {segments} segments leave their target by more than 10 %: {told}; give the condition that \
+        "{source_name}: all {segments} segments differ from their target by more than 10 %: {comparison}; give the condition that \
          was recorded, scale a column with `--map`, or record again"
     )]
     OffTarget {
         /// The recording.
         source_name: String,
-        /// How many segments there were.
+        /// Number of segments.
         segments: usize,
-        /// What was measured, and what was asked for.
-        told: String,
+        /// The measured and the requested values.
+        comparison: String,
     },
-    /// The recording has findings, and `strict` was asked for.
-    #[error("{source_name}: --strict refuses it (`htex explain CODE` says more):{}", lines(.findings))]
+    /// The recording has findings, and `strict` is set.
+    #[error("{source_name}: refused because of --strict (`htex explain CODE` describes each finding):{}", lines(.findings))]
     Strict {
         /// The recording.
         source_name: String,
-        /// Its errors and warnings.
+        /// Errors and warnings.
         findings: Vec<htex_format::Finding>,
     },
-    /// A speed or a force that no exploration has.
+    /// A speed or a force is out of range.
     #[error("{what} is {value}; {allowed}")]
     Condition {
         /// Speed or force.
         what: &'static str,
-        /// What it is.
+        /// The value.
         value: f64,
-        /// What is allowed.
+        /// The allowed range.
         allowed: &'static str,
     },
     /// A model could not be fitted or measured.
     #[error(transparent)]
     Model(#[from] HostError),
-    /// Samples are no recording.
+    /// The samples are not a valid recording.
     #[error(transparent)]
     Recording(#[from] crate::recording::RecordingError),
-    /// Some recordings have a condition and others have none.
+    /// Some recordings have a condition and others do not.
     #[error(
-        "scanning speed and normal force are both known for {known} of the {all} conditions only; \
-         give them for each recording: `--at speed=80,force=0.4`, once a recording, in their order"
+        "scanning speed and normal force are both known for only {known} of {all} conditions; \
+         give them for each recording: `--at speed=80,force=0.4`, once per recording, in their order"
     )]
     UnknownConditions {
-        /// How many are known.
+        /// Number of conditions with speed and force.
         known: usize,
-        /// How many there are.
+        /// Number of conditions.
         all: usize,
     },
     /// No model could be fitted.
     #[error("no model could be fitted: {reasons}")]
     NothingFitted {
-        /// Why, model by model.
+        /// The reasons, model by model.
         reasons: String,
     },
     /// A recording could not be read.
     #[error(transparent)]
     Read(#[from] crate::read::ReadError),
-    /// The asset could not be made.
+    /// The asset could not be encoded.
     #[error(transparent)]
     Asset(#[from] htex_format::WriteError),
     /// A file could not be written.
@@ -129,12 +129,12 @@ pub enum AuthorError {
     Write {
         /// The file.
         path: PathBuf,
-        /// The system's reason.
+        /// The system's error.
         error: std::io::Error,
     },
 }
 
-/// Findings, one a line.
+/// Formats findings, one per line.
 fn lines(findings: &[htex_format::Finding]) -> String {
     let line = |f: &htex_format::Finding| {
         format!("\n  {} {}", f.severity, htex_format::plain(&f.to_string()))

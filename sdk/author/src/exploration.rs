@@ -1,4 +1,4 @@
-//! How the finger moved: speed and force while the texture was read.
+//! Exploration conditions: speed and normal force of the finger while the texture is recorded.
 
 use htex_format::Findings;
 
@@ -7,14 +7,14 @@ use crate::segments::Segments;
 use crate::sums::Sums;
 use crate::{AuthorError, Recording};
 
-/// Speed and force may leave their target by this part of it (paper: recordings beyond were discarded and
-/// repeated).
+/// Allowed relative deviation of speed and force from their target (paper: recordings beyond it were discarded
+/// and repeated).
 const TOLERANCE: f64 = 0.10;
-/// Half the length of the average that speed and force are judged on, seconds: fast ripple is the
-/// texture's, not the hand's.
+/// Half the length of the average in which speed and force are compared with the target, seconds. Faster changes are
+/// caused by the texture, not by the hand.
 const HALF_AVERAGE_S: f64 = 0.025;
 
-/// An exploration condition; what was not recorded and not given is unknown.
+/// An exploration condition; an unknown value is `None`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Exploration {
     /// Scanning speed, mm/s.
@@ -24,7 +24,7 @@ pub struct Exploration {
 }
 
 impl Exploration {
-    /// Checks that what is known can be.
+    /// Checks the ranges of the known values.
     ///
     /// # Errors
     /// When a speed or force is negative or not finite, or beyond 10 m/s or 100 N.
@@ -48,17 +48,17 @@ impl Exploration {
     }
 }
 
-/// Lowest and highest value over the segments that are read, averaged over 50 ms; none where it is not
+/// Lowest and highest value over the segments that are read, averaged over 50 ms; `None` if the signal is not
 /// known.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Spread {
-    /// Of the scanning speed, mm/s.
+    /// Range of the scanning speed, mm/s.
     pub speed_mm_s: Option<[f64; 2]>,
-    /// Of the normal force, newtons.
+    /// Range of the normal force, newtons.
     pub force_n: Option<[f64; 2]>,
 }
 
-/// What is known of the motion: each quantity's name, unit, samples and target.
+/// A known signal of the motion: its name, unit, samples and target.
 struct Known<'a> {
     what: &'static str,
     signal: &'static str,
@@ -69,7 +69,7 @@ struct Known<'a> {
     half: usize,
 }
 
-/// The quantities of the motion that the recording knows: the speed, the normal force.
+/// Returns the recording's speed and normal force, where they are known.
 fn known(recording: &Recording, target: Exploration) -> [Option<Known<'_>>; 2] {
     let half = (HALF_AVERAGE_S * recording.rate_hz).round() as usize;
     let make = |what, signal, unit, values, target| Known {
@@ -90,7 +90,7 @@ fn known(recording: &Recording, target: Exploration) -> [Option<Known<'_>>; 2] {
 }
 
 impl Known<'_> {
-    /// Lowest and highest average over a segment.
+    /// Returns the lowest and the highest average over a segment.
     fn range(&self, start: usize, len: usize) -> [f64; 2] {
         let averages = (start..start + len).map(|at| self.average.mean_around(at, self.half));
         averages.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
@@ -108,7 +108,7 @@ impl Known<'_> {
         })
     }
 
-    /// Median of the samples of all segments: what a few readings that no finger makes do not move.
+    /// Returns the median over the samples of all segments, which a few outliers do not change.
     fn median(&self, segments: &Segments) -> Option<f64> {
         let (starts, len) = (&segments.starts, segments.len);
         quantile(0.5, starts.len() * len, |at| {
@@ -121,17 +121,17 @@ impl Known<'_> {
         near(low) && near(high)
     }
 
-    /// Whether a segment keeps to the target, if there is one.
+    /// Whether a segment stays within the tolerance of the target, if there is one.
     fn is_on_target(&self, start: usize, len: usize) -> bool {
         self.target
             .is_none_or(|target| self.keeps_to(target, self.range(start, len)))
     }
 }
 
-/// Leaves out the segments over which a known motion leaves its target by more than 10 %.
+/// Removes the segments in which a known motion differs from its target by more than 10 %.
 ///
 /// # Errors
-/// When the target is impossible, or no segment is left.
+/// When the target is out of range, or no segment remains.
 pub(crate) fn keep_on_target(
     recording: &Recording,
     segments: &mut Segments,
@@ -153,35 +153,35 @@ pub(crate) fn keep_on_target(
     if off == 0 {
         return Ok(());
     }
-    let told: Vec<String> = known
+    let comparison: Vec<String> = known
         .iter()
         .flatten()
-        .filter_map(|one| one.told(&of_all))
+        .filter_map(|one| one.comparison(&of_all))
         .collect();
-    let told = told.join("; ");
+    let comparison = comparison.join("; ");
     if segments.starts.is_empty() {
         return Err(AuthorError::OffTarget {
             source_name: recording.source.clone(),
             segments: off,
-            told,
+            comparison,
         });
     }
     findings.add(
         RECORDING_OFF_TARGET,
         "",
         format!(
-            "{off} of {} segments left out, as they leave their target by more than 10 %: {told}",
+            "{off} of {} segments left out because they differ from their target by more than 10 %: {comparison}",
             of_all.starts.len()
         ),
     );
     Ok(())
 }
 
-/// Speed and force over the segments: what was given, else the median of what was measured; and the
-/// spread of what was measured. A median that is left by more than 10 % is a finding.
+/// Returns speed and force over the segments, which are the given values or else the medians of the measured ones,
+/// and the range of the measured ones. A deviation of more than 10 % from a median is a finding.
 ///
 /// # Errors
-/// When a value is impossible.
+/// When a value is out of range.
 pub(crate) fn exploration(
     recording: &Recording,
     segments: &Segments,
@@ -203,7 +203,7 @@ pub(crate) fn exploration(
 }
 
 impl Known<'_> {
-    /// The target, else the median; tells when the motion is not steady about it.
+    /// Returns the target, or else the median; adds a finding when the motion is not steady about the median.
     fn value(&self, segments: &Segments, findings: &mut Findings) -> Option<f64> {
         if self.target.is_some() {
             return self.target;
@@ -213,19 +213,19 @@ impl Known<'_> {
         if !self.keeps_to(median, [low, high]) {
             let (what, unit) = (self.what, self.unit);
             findings.add(RECORDING_UNSTEADY, format!("/{}", self.signal), format!(
-                "the {what} leaves its median of {median:.4} {unit} by more than 10 %: from {low:.4} to {high:.4} {unit}; \
-                 cut a steady part out with --from and --to, or give a target with --at"
+                "the {what} differs from its median of {median:.4} {unit} by more than 10 %: from {low:.4} to {high:.4} {unit}; \
+                 choose a steady part with --from and --to, or give a target with --at"
             ));
         }
         Some(median)
     }
 
-    /// A quantity with a target: its median and range over the segments.
-    fn told(&self, segments: &Segments) -> Option<String> {
+    /// Describes a signal with a target: its median and range over the segments.
+    fn comparison(&self, segments: &Segments) -> Option<String> {
         let (target, median) = (self.target?, self.median(segments)?);
         let ([low, high], unit) = (self.spread(segments), self.unit);
         Some(format!(
-            "{} {median:.4} {unit} (median, from {low:.4} to {high:.4}) where {target} {unit} is asked for",
+            "the {} is {median:.4} {unit} (median, from {low:.4} to {high:.4}) and its target is {target} {unit}",
             self.what
         ))
     }

@@ -26,54 +26,54 @@ pub struct ModelRequest {
     pub options: Vec<f64>,
 }
 
-/// What an asset is to be made of.
+/// Options of an asset to be fitted.
 #[derive(Debug, Clone, Default)]
 pub struct AssetRequest {
     /// Name of the texture.
     pub name: String,
     /// SPDX licence expression.
     pub license: Option<String>,
-    /// Who made it.
+    /// Author of the asset.
     pub author: Option<String>,
-    /// Words to find it by.
+    /// Search terms.
     pub tags: Vec<String>,
     /// Models, in the order of the representations.
     pub models: Vec<ModelRequest>,
-    /// The recording pipeline.
+    /// Options of the spectra.
     pub spectrum: SpectrumOptions,
-    /// Which level representations get.
+    /// Level of the representations.
     pub level: Level,
-    /// Models to try, at their defaults, where a representation misses its bands; those in `models` are
-    /// tried in any case.
+    /// Models to try at their default options when a representation has a large band error; those in `models` are
+    /// always tried.
     pub alternatives: Vec<LoadedModel>,
-    /// Refuse recordings with findings that are errors or warnings.
+    /// Whether to refuse recordings with errors or warnings.
     pub strict: bool,
-    /// Keep the recorded spectra in the asset.
+    /// Whether to keep the recorded spectra in the asset.
     pub keep_reference: bool,
-    /// Options that were not left at their defaults, for the record.
+    /// Options that differ from their defaults, for the provenance.
     pub recorded_options: BTreeMap<String, String>,
-    /// Program and version, for the record.
+    /// Program and version, for the provenance.
     pub tool: String,
 }
 
-/// A fitted asset, and what a file does not say.
+/// A fitted asset with the results that its file does not hold.
 #[derive(Debug, Clone)]
 pub struct FittedAsset {
     /// The asset.
     pub asset: Asset,
-    /// Milliseconds each representation's fits took.
+    /// Time of each representation's fits, milliseconds.
     pub fit_ms: Vec<f64>,
-    /// Models that could not be fitted, and why.
+    /// Models that could not be fitted, with the reasons.
     pub skipped: Vec<(String, String)>,
     /// The texture spectrum of each condition.
     pub spectra: Vec<TextureSpectrum>,
-    /// Findings of the recordings that are no warnings: what was left out, and why.
+    /// Findings of the recordings below a warning: what was left out, and why.
     pub notes: Vec<String>,
 }
 
-/// Fits every model to every condition, measures what will be stored, and makes the asset.
+/// Fits every model at every condition, measures the parameters as stored, and returns the asset.
 ///
-/// A model that cannot be fitted is left out and named in `skipped`.
+/// A model that cannot be fitted is left out and listed in `skipped`.
 ///
 /// # Errors
 /// When a recording is not usable, or no model could be fitted.
@@ -85,7 +85,7 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
     for choice in &request.models {
         match fit_model(choice, &grouped.groups, request.level) {
             Ok(one) => {
-                warnings.extend(misses(choice, &one, &grouped.groups, request));
+                warnings.extend(band_error_warning(choice, &one, &grouped.groups, request));
                 fitted.push(one);
             }
             Err(AuthorError::Model(HostError::Call { call, message, .. })) => {
@@ -172,8 +172,8 @@ fn fit_model(
     })
 }
 
-/// The warning of a representation that misses its bands.
-fn misses(
+/// Returns the warning of a representation with a large band error.
+fn band_error_warning(
     choice: &ModelRequest,
     fitted: &FittedModel,
     groups: &[Group],
@@ -191,7 +191,7 @@ fn misses(
     warning(choice, &qualities, groups, &models, request.level)
 }
 
-/// Agreement of parameters and level with a recorded spectrum, by magnitude and by samples.
+/// Measures the agreement of parameters and level with a recorded spectrum, by magnitude and by samples.
 ///
 /// # Errors
 /// When the model refuses the parameters.
@@ -221,7 +221,7 @@ pub fn measure(
     })
 }
 
-/// Nine-band RMS between the shapes of the fitted and of the stored parameters, decibels.
+/// Returns the nine-band RMS difference between the shapes of the fitted and the stored parameters, decibels.
 fn rounding_error_db(
     model: &LoadedModel,
     fitted: &[f64],
@@ -243,7 +243,7 @@ fn assemble(
     spectra: &[TextureSpectrum],
     fitted: Vec<FittedModel>,
 ) -> Asset {
-    // There is a spectrum a condition, all of one band and quantity: `group_takes` sees to it.
+    // `group_takes` returns one spectrum per condition, all with the same band and quantity.
     let band = spectra
         .first()
         .map_or((20.0, 1000.0), |s| (s.band.low_hz, s.band.high_hz));
@@ -291,7 +291,7 @@ fn assemble(
     }
 }
 
-/// The record of a recording.
+/// Returns the provenance entry of a recording.
 pub(crate) fn source_of(take: &Take, segments: usize) -> Source {
     Source {
         file: take.recording.source.clone(),

@@ -1,6 +1,6 @@
-//! Rates, as a person reads them.
+//! Formatting of sample rates.
 
-/// A rate with one decimal where it has any, with three below 10 Hz: `524.7 Hz`, `20000 Hz`.
+/// Formats a rate with at most one decimal, or three below 10 Hz: `524.7 Hz`, `20000 Hz`.
 pub(crate) fn hertz(rate_hz: f64) -> String {
     let text = match rate_hz.abs() < 10.0 {
         true => format!("{rate_hz:.3}"),

@@ -1,23 +1,23 @@
-//! The level of what is stored: how strong a shape plays.
+//! The level of stored representations.
 
 use htex_dsp::grid::level_rms;
 use htex_host::{Fit, HostError, LoadedModel};
 
 use crate::SpectrumRef;
 
-/// Which level a representation gets.
+/// The source of a representation's level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Level {
-    /// The recording's RMS in the band, so that the asset plays as strong as its recording and a copy of
-    /// a copy as strong as the first. A model whose level is part of what it keeps
+    /// The recording's RMS in the band: the asset plays at the level of its recording, and a copy of a copy at the
+    /// level of the first. A model whose level is a part of its parameters
     /// ([`htex_host::Descriptor::keeps_level`]) keeps that of its fit.
     #[default]
     Recording,
-    /// That of the model's own fit, for the parameters as they are stored. (The paper gives no rule for levels.)
+    /// The level of the model's fit, for the parameters as stored. (The paper gives no rule for levels.)
     Fitted,
 }
 
-/// The level of a fit whose parameters are stored as `stored`, RMS in the spectrum's unit.
+/// Returns the level of a fit whose parameters are stored as `stored`: RMS in the spectrum's unit.
 ///
 /// # Errors
 /// When the model refuses the parameters.
@@ -36,7 +36,7 @@ pub fn stored_level(
     }
 }
 
-/// The level at which the stored shape comes nearest to the fitted magnitudes, by least squares over
+/// Returns the level at which the stored shape is closest to the fitted magnitudes, by least squares over
 /// the band's grid.
 fn fitted_level(
     model: &LoadedModel,
@@ -54,7 +54,7 @@ fn fitted_level(
     Ok(fit.level_rms * (both / own))
 }
 
-/// RMS of magnitudes, taken relative to the largest so that no square over- or underflows.
+/// Returns the RMS of magnitudes, computed relative to the largest to avoid overflow and underflow.
 fn recorded_level(magnitude: &[f64]) -> f64 {
     let largest = magnitude.iter().copied().fold(0.0, f64::max);
     if largest == 0.0 {

@@ -1,8 +1,21 @@
-//! Recordings in, fitted and measured texture assets out.
+//! Authoring: from recordings to fitted and measured texture assets.
 //!
-//! The way of a recording: [`read::read_recording`], [`segment_spectra`],
-//! [`TextureSpectrum::average`], [`fit_asset`]. Definitions follow the paper's Texture processing;
-//! where it is silent, the option's own documentation says what is done.
+//! The pipeline is [`read::read_recording`], [`segment_spectra`], [`TextureSpectrum::average`], [`fit_asset`].
+//! Definitions follow the paper's section Texture processing; where it is silent, the option's documentation
+//! states what is done.
+//!
+//! ```
+//! use htex_author::simulate::{SimulationOptions, Surface, simulate};
+//! use htex_author::{Averaging, SpectrumOptions, TextureSpectrum, segment_spectra};
+//!
+//! let simulation = simulate(&SimulationOptions::new(Surface::Vinyl))?;
+//! let recording = simulation.to_recording("vinyl")?;
+//! let segments = segment_spectra(&recording, &SpectrumOptions::default())?;
+//! let texture = TextureSpectrum::average(&[segments], Averaging::Rms)?;
+//! // Magnitudes from 20 to 1000 Hz in steps of 5 Hz, newtons.
+//! assert_eq!(texture.magnitude.len(), 197);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 #![forbid(unsafe_code)]
 
 mod alternatives;

@@ -1,4 +1,4 @@
-//! How near a spectrum comes to a reference.
+//! Measures of agreement between a spectrum and a reference.
 
 use htex_dsp::bands::{
     BAND_COUNT, BandBank, band_error_db, energy_matching_gain, pearson_correlation, rms,
@@ -7,23 +7,23 @@ use htex_dsp::fidelity::{log_spectral_distance_db, third_octave_error_rms_db};
 
 use crate::spectrum::SpectrumRef;
 
-/// Agreement of one spectrum with a reference: the paper's spectral correlation; errors in the nine bands of its
-/// regression, in decibels (the paper takes standardised absolute differences); and two that no model is fitted to.
+/// Agreement of a spectrum with a reference: the paper's spectral correlation; errors in the nine bands of its
+/// regression, in decibels (the paper uses standardised absolute differences); and two measures that no model is fitted to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agreement {
     /// Pearson correlation of the linear magnitudes.
     pub spectral_correlation: f64,
-    /// Energy over the reference's in each of the nine bands, decibels.
+    /// Energy relative to the reference's in each of the nine bands, decibels.
     pub band_error_db: Vec<f64>,
-    /// RMS of those.
+    /// RMS of the nine band errors, decibels.
     pub band_error_rms_db: f64,
     /// The gain that equalises total energy, decibels.
     pub matching_gain_db: f64,
-    /// RMS of the nine after that gain.
+    /// RMS of the nine band errors after that gain, decibels.
     pub band_error_matched_rms_db: f64,
-    /// RMS error over third-octave bands, decibels; none where the reference has no energy in any.
+    /// RMS error over third-octave bands, decibels; `None` if the reference has no energy in any of them.
     pub third_octave_error_rms_db: Option<f64>,
-    /// RMS over the bins of the decibels between the magnitudes; none for a silent reference.
+    /// RMS over the bins of the difference of the magnitudes in decibels; `None` for a silent reference.
     pub log_spectral_distance_db: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! A recording, read: its segments' spectra, its condition, and what is to be said of it.
+//! Reading of a recording: the spectra of its segments, its condition and its findings.
 
 use std::path::Path;
 
@@ -13,29 +13,29 @@ use crate::read::{ReadError, ReadOptions, read_recording};
 use crate::spectrum::spectra_of;
 use crate::{AuthorError, Exploration, Recording, SegmentSpectra, SpectrumOptions, Spread};
 
-/// A recording, read.
+/// The result of reading a recording.
 #[derive(Debug, Clone)]
 pub struct Reading {
     /// The spectra of its segments.
     pub part: SegmentSpectra,
-    /// Speed and force: what was given, else the median of what was measured over the segments.
+    /// Speed and force: the given values, else the medians of the measured ones over the segments.
     pub condition: Exploration,
-    /// How far speed and force spread over the segments.
+    /// Ranges of speed and force over the segments.
     pub spread: Spread,
     /// All findings, in the order of `spec/recording-findings.md`.
     pub findings: Vec<Finding>,
-    /// What the readers noticed, and the findings that are errors or warnings, as sentences.
+    /// The reader's warnings, and the findings that are errors or warnings, as sentences.
     pub warnings: Vec<String>,
-    /// The findings that are worth knowing and no more, as sentences.
+    /// The findings of severity info, as sentences.
     pub notes: Vec<String>,
 }
 
-/// Reads the texture of a recording: finds what is wrong with it, chooses its segments, leaves out those that
-/// leave the given condition by more than 10 %, and takes their spectra.
+/// Reads the texture of a recording: checks its signals, chooses its segments, removes those that
+/// differ from the given condition by more than 10 %, and takes their spectra.
 ///
 /// # Errors
-/// When the recording is too short, its rate too low, no segment is left, the response cannot be divided
-/// by, or a speed or force is impossible; with `strict`, when a finding is an error or a warning.
+/// When the recording is too short, its rate too low, no segment remains, the response cannot be divided
+/// by, or a speed or force is out of range; with `strict`, when a finding is an error or a warning.
 pub fn read_take(
     take: &Take,
     options: &SpectrumOptions,
@@ -82,10 +82,10 @@ fn refuse(recording: &Recording, findings: &[Finding]) -> Result<(), AuthorError
     }
 }
 
-/// Everything that is found in a recording; it is valid when no finding is an error.
+/// Validates a recording and returns all findings; it is valid when none is an error.
 ///
 /// # Errors
-/// When the file cannot be opened, or an option cannot be followed. A file that is no recording is a
+/// When the file cannot be opened, or an option does not apply. A file that is not a recording is a
 /// finding.
 pub fn validate_recording(
     path: &Path,
@@ -108,7 +108,7 @@ pub fn validate_recording(
     })
 }
 
-/// The findings of a recording that can be read, and what was noticed while it was.
+/// Returns the findings and the reader's warnings of a readable recording.
 fn all_findings(take: Take, options: &SpectrumOptions) -> Vec<Finding> {
     let mut rest = Findings::default();
     let mut noticed = take.recording.warnings.clone();

@@ -1,72 +1,72 @@
-//! One recording of a finger sliding on a surface, in physical units.
+//! A recording of a finger sliding on a surface, in physical units.
 
 use htex_format::{Finding, Quantity};
 use thiserror::Error;
 
-/// Highest sample rate, hertz: no force sensor is as fast, and counts of samples stay numbers.
+/// Highest sample rate, hertz: above that of any force sensor, and low enough that sample counts are exact.
 pub const MAX_RATE_HZ: f64 = 1e9;
-/// Largest number of a recording, in any unit: its square, summed over hours, is still a number.
+/// Largest magnitude of a sample, in any unit: sums of squares over hours stay finite.
 const LARGEST: f64 = 1e12;
 
-/// Why a set of columns is not a recording.
+/// Errors of constructing a recording.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum RecordingError {
     /// The rate is zero, negative, NaN, or above [`MAX_RATE_HZ`].
     #[error("the sample rate is {rate_hz} Hz; it must be above 0 and at most {MAX_RATE_HZ} Hz")]
     Rate {
-        /// The rate that was given.
+        /// The given rate.
         rate_hz: f64,
     },
-    /// More axes than the quantity has, or none.
+    /// There are more axes than the quantity has, or none.
     #[error("a recording of a {} has 1 to {} axes, this one has {axes}", .quantity.words(), most_axes(*.quantity))]
     Axes {
-        /// What is recorded.
+        /// The recorded quantity.
         quantity: Quantity,
-        /// How many axes were given.
+        /// Number of axes given.
         axes: usize,
     },
-    /// Fewer than two samples.
+    /// There are fewer than two samples.
     #[error("a recording needs at least 2 samples, this one has {samples}")]
     TooShort {
-        /// How many samples were given.
+        /// Number of samples given.
         samples: usize,
     },
-    /// A range with fewer than two samples in it.
+    /// A range contains fewer than two samples.
     #[error(
         "from {from_s} to {to_s} s there are fewer than 2 samples; the recording runs from {begins_s:.3} to {ends_s:.3} s"
     )]
     Between {
-        /// Where the range begins, seconds.
+        /// Start of the range, seconds.
         from_s: f64,
-        /// Where it ends, seconds.
+        /// End of the range, seconds.
         to_s: f64,
-        /// Where the recording begins, seconds.
+        /// Start of the recording, seconds.
         begins_s: f64,
-        /// Where it ends, seconds.
+        /// End of the recording, seconds.
         ends_s: f64,
     },
-    /// A signal is not as long as the first axis.
+    /// A signal differs in length from the first axis.
     #[error(
         "the {signal} has {got} samples, the first axis has {expected}; all signals must be equally long"
     )]
     Lengths {
-        /// Which signal.
+        /// The signal.
         signal: &'static str,
         /// Samples of the first axis.
         expected: usize,
         /// Samples of this signal.
         got: usize,
     },
-    /// A sample is larger than any recording's.
+    /// A sample exceeds the largest magnitude.
     #[error(
         "the {signal} is {value} at sample {sample} (counted from 0), and no recording goes beyond {LARGEST}; correct its unit"
     )]
     TooLarge {
-        /// Which signal.
+        /// The signal.
         signal: &'static str,
         /// Index from 0.
         sample: usize,
-        /// What it is.
+        /// The value.
         value: f64,
     },
     /// A sample is NaN or infinite.
@@ -74,49 +74,49 @@ pub enum RecordingError {
         "the {signal} is {value} at sample {sample} (counted from 0); repair or cut the recording there"
     )]
     NotFinite {
-        /// Which signal.
+        /// The signal.
         signal: &'static str,
         /// Index from 0.
         sample: usize,
-        /// NaN or an infinity.
+        /// The value.
         value: f64,
     },
 }
 
-/// A recording: the texture's signal, such as the lateral force, and what is known about how the finger pressed
-/// and moved.
+/// A recording: the texture's signal, such as the lateral force, and the normal force and speed if they are
+/// known.
 ///
-/// All signals are equally long, at least two samples, and finite, none beyond 1e12.
+/// All signals have the same length of at least two samples, and are finite with magnitudes up to 1e12.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     /// File name without its directory, for messages and provenance.
     pub source: String,
     /// Samples per second of every signal, hertz.
     pub rate_hz: f64,
-    /// What the axes are.
+    /// Quantity of the axes.
     pub quantity: Quantity,
-    /// The signal in the quantity's unit: one axis, or perpendicular ones: two of a lateral force, up to three of
+    /// The signal in the quantity's unit: one axis, or perpendicular axes: two of a lateral force, up to three of
     /// an acceleration, velocity or displacement.
     pub axes: Vec<Vec<f64>>,
-    /// Normal force, newtons, positive on the whole when the finger presses.
+    /// Normal force, newtons, with a positive mean.
     pub normal_n: Option<Vec<f64>>,
     /// Sliding speed of each sample, mm/s.
     pub speed_mm_s: Option<Vec<f64>>,
-    /// True when the file says that it comes from a simulator and not from a finger.
+    /// True when the file states that it comes from a simulator instead of a finger.
     pub simulated: bool,
-    /// Samples of the file before the first of this recording.
+    /// Number of samples of the file before the first of this recording.
     pub first_sample: usize,
-    /// What the time column showed: gaps, unevenness.
+    /// Findings of the time column: gaps, jitter.
     pub clock_findings: Vec<Finding>,
-    /// What the reader had to assume or noticed; each a full sentence.
+    /// Assumptions and observations of the reader, each a full sentence.
     pub warnings: Vec<String>,
 }
 
 impl Recording {
-    /// A checked recording of a lateral force, one or two axes in newtons: [`Self::of`].
+    /// Creates a recording of a lateral force, one or two axes in newtons.
     ///
     /// # Errors
-    /// As of [`Self::of`].
+    /// As [`Self::of`].
     ///
     /// ```
     /// # use htex_author::recording::Recording;
@@ -133,7 +133,7 @@ impl Recording {
         Self::of(Quantity::LateralForce, source, rate_hz, axes)
     }
 
-    /// A checked recording without normal force, speed or warnings; `axes` are in the quantity's unit.
+    /// Creates a recording without normal force, speed or warnings; `axes` are in the quantity's unit.
     ///
     /// # Errors
     /// When the rate is not above 0 and at most [`MAX_RATE_HZ`], there are no axes or more than the quantity
@@ -179,8 +179,8 @@ impl Recording {
         })
     }
 
-    /// Adds the normal force, newtons; a force that is negative on average is turned round, so that
-    /// pressing reads positive whichever way the sensor counts.
+    /// Adds the normal force, newtons. A force with a negative mean is inverted, so that
+    /// pressing is positive whatever the sensor's sign.
     ///
     /// # Errors
     /// When it differs in length from the axes or is not finite.
@@ -203,11 +203,11 @@ impl Recording {
         Ok(self)
     }
 
-    /// The part of the recording between two times of its file, seconds; a side that is not given is left
-    /// as it is. What was found of the clock stays.
+    /// Returns the part of the recording between two times of its file, seconds; `None` is the start or the
+    /// end. Findings of the time column are kept.
     ///
     /// # Errors
-    /// When a time is not finite, or fewer than two samples lie between them.
+    /// When a time is not finite, or fewer than two samples are between them.
     ///
     /// ```
     /// # use htex_author::recording::Recording;
@@ -245,13 +245,13 @@ impl Recording {
         Ok(self)
     }
 
-    /// Time of a sample in its file, seconds.
+    /// Returns the time of a sample in its file, seconds.
     #[must_use]
     pub fn second(&self, sample: usize) -> f64 {
         (self.first_sample + sample) as f64 / self.rate_hz
     }
 
-    /// Length of the signal's vector at a sample.
+    /// Returns the length of the signal's vector at a sample.
     #[must_use]
     pub fn magnitude_at(&self, sample: usize) -> f64 {
         let square = |axis: &Vec<f64>| axis[sample] * axis[sample];
@@ -261,7 +261,7 @@ impl Recording {
         }
     }
 
-    /// An axis' name in pointers and messages: `lateral_x`, `signal`.
+    /// Returns an axis' name in pointers and messages: `lateral_x`, `signal`.
     #[must_use]
     pub fn axis_name(&self, axis: usize) -> &'static str {
         let names = match self.quantity {
@@ -275,20 +275,20 @@ impl Recording {
         }
     }
 
-    /// Samples in each signal, at least 2.
+    /// Returns the number of samples in each signal, at least 2.
     #[must_use]
     pub fn samples(&self) -> usize {
         self.axes.first().map_or(0, Vec::len)
     }
 
-    /// Length in seconds: samples over rate.
+    /// Returns the length in seconds: samples over rate.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
         self.samples() as f64 / self.rate_hz
     }
 }
 
-/// A force along a surface has two axes, one across it has one, and motions have three.
+/// Returns the most axes of a quantity: two along a surface, one across it, three of a motion.
 pub(crate) const fn most_axes(quantity: Quantity) -> usize {
     match quantity {
         Quantity::LateralForce => 2,
@@ -297,7 +297,7 @@ pub(crate) const fn most_axes(quantity: Quantity) -> usize {
     }
 }
 
-/// Refuses a rate that no recording has.
+/// Checks that a sample rate is in range.
 pub(crate) fn check_rate(rate_hz: f64) -> Result<(), RecordingError> {
     match rate_hz > 0.0 && rate_hz <= MAX_RATE_HZ {
         true => Ok(()),
@@ -313,7 +313,7 @@ fn check(signal: &'static str, values: &[f64], expected: usize) -> Result<(), Re
             got: values.len(),
         });
     }
-    // False for NaN too.
+    // False for NaN.
     let holds = |value: &f64| value.abs() <= LARGEST;
     match values.iter().position(|value| !holds(value)) {
         Some(sample) if values[sample].is_finite() => Err(RecordingError::TooLarge {

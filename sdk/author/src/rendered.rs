@@ -1,4 +1,4 @@
-//! The spectrum of what a voice really plays.
+//! The spectrum of rendered samples.
 
 use htex_dsp::grid::GRID_HZ;
 use htex_host::{LoadedModel, Stream};
@@ -13,29 +13,29 @@ use crate::{
 const SECONDS: f64 = 20.0;
 const SEED: u64 = 1;
 
-/// Renders parameters at a level and measures the samples as a recording, RMS-averaged: the
-/// magnitudes a model states are those of its power.
+/// Renders parameters at a level and measures the samples as a recording, RMS-averaged, because
+/// the magnitudes of a model are RMS values.
 ///
 /// # Errors
-/// When the model cannot render, or renders what is no number.
+/// When the model cannot render, or renders samples that are not finite.
 pub fn rendered_spectrum(
     model: &LoadedModel,
     parameters: &[f64],
     level_rms: f64,
     reference: SpectrumRef<'_>,
 ) -> Result<Vec<f64>, AuthorError> {
-    // Four times the band's top, a whole number of samples a segment.
+    // Four times the band's top: an integer number of samples per segment.
     let rate_hz = 4.0 * reference.band.last_bin() as f64 * GRID_HZ;
     let mut samples = vec![0.0f32; (SECONDS * rate_hz) as usize];
     Stream::new(model, parameters, reference.band, rate_hz, SEED)?.render(&mut samples)?;
     spectrum_of_samples(&samples, rate_hz, level_rms, reference)
 }
 
-/// The magnitudes of samples of unit RMS at a level, in its unit, on the reference's grid, RMS-averaged;
-/// zero where the rate holds none.
+/// Returns the magnitudes of samples of unit RMS at a level, in its unit, on the reference's grid, RMS-averaged;
+/// zero above the samples' Nyquist frequency.
 ///
 /// # Errors
-/// When the samples are too few, or hold what is no number.
+/// When there are too few samples, or they are not finite.
 pub fn spectrum_of_samples(
     samples: &[f32],
     rate_hz: f64,

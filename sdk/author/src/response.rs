@@ -1,4 +1,4 @@
-//! The setup's frequency response: what the recording rig does to a lateral force.
+//! The setup's frequency response: the recording rig's gain of a lateral force.
 
 use std::path::Path;
 use std::{fmt, io};
@@ -7,33 +7,33 @@ use htex_dsp::grid::Band;
 
 use crate::read::ReadError;
 use crate::read::blocks::Blocks;
-use crate::read::room::Room;
 use crate::read::table::Table;
 use crate::read::text::{file_name, open};
+use crate::read::value_limit::ValueLimit;
 
-/// Smallest magnitude above 0, and largest magnitude, frequency (hertz) and phase (radians).
+/// Smallest magnitude above 0; largest magnitude, frequency (hertz) and phase (radians).
 const SMALLEST: f64 = 1e-9;
 const LARGEST: f64 = 1e9;
-/// Gains above this, decibels, are told: what they raise was a third of the rest or less, and mostly
+/// Gain above which a warning is given, decibels: what it raises was attenuated to a third or less and is mostly
 /// noise.
 const RAISED_DB: f64 = 10.0;
 
-/// A frequency response, sampled.
+/// A sampled frequency response.
 ///
-/// The three vectors are equally long (at least 2), the frequencies ascend strictly.
+/// The three vectors have equal lengths of at least 2; the frequencies increase strictly.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SetupResponse {
-    /// Frequencies, hertz, strictly ascending, not negative.
+    /// Frequencies, hertz, strictly increasing, not negative.
     pub frequency_hz: Vec<f64>,
-    /// Output over input at each frequency, without unit, not negative.
+    /// Ratio of output to input at each frequency, without unit, not negative.
     pub magnitude: Vec<f64>,
     /// Phase at each frequency, radians, unwrapped.
     pub phase_rad: Vec<f64>,
 }
 
 impl SetupResponse {
-    /// Real and imaginary part at a frequency in hertz: magnitude and unwrapped phase interpolated
-    /// linearly in frequency, held below the first and above the last.
+    /// Returns the real and imaginary part at a frequency in hertz. Magnitude and unwrapped phase are interpolated
+    /// linearly in frequency and constant below the first and above the last.
     ///
     /// ```
     /// # use htex_author::response::SetupResponse;
@@ -61,7 +61,7 @@ impl SetupResponse {
         (magnitude * libm::cos(phase), magnitude * libm::sin(phase))
     }
 
-    /// Largest magnitude in a band, its edges included.
+    /// Returns the largest magnitude in a band, edges included.
     #[must_use]
     pub fn largest_in(&self, band: Band) -> f64 {
         let edges = [band.low_hz, band.high_hz].map(|hz| self.at(hz));
@@ -74,11 +74,11 @@ impl SetupResponse {
 }
 
 impl SetupResponse {
-    /// Writes `frequency_hz,magnitude,phase_rad`, each number as short as it reads back to the same
+    /// Writes `frequency_hz,magnitude,phase_rad`, each number in the shortest form that reads back to the same
     /// bits.
     ///
     /// # Errors
-    /// What the writer reports.
+    /// Those of the writer.
     pub fn write_csv(&self, out: &mut impl io::Write) -> io::Result<()> {
         writeln!(out, "frequency_hz,magnitude,phase_rad")?;
         let numbers = self.magnitude.iter().zip(&self.phase_rad);
@@ -89,14 +89,14 @@ impl SetupResponse {
     }
 }
 
-/// Where dividing by a response raises a spectrum by more than 10 dB, and by how much.
+/// Frequencies at which dividing by a response raises a spectrum by more than 10 dB, with the gains.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Raised {
     /// Lowest and highest frequency of each stretch, hertz, and its largest gain, decibels.
     pub stretches: Vec<(f64, f64, f64)>,
 }
 
-/// The stretches of a grid on which gains exceed 10 dB; none when there is no such stretch.
+/// Returns the stretches of a grid where gains exceed 10 dB; `None` when there is none.
 pub fn raised(frequency_hz: &[f64], gains: impl Iterator<Item = f64>) -> Option<Raised> {
     let mut stretches: Vec<(f64, f64, f64)> = Vec::new();
     let mut goes_on = false;
@@ -126,22 +126,26 @@ impl fmt::Display for Raised {
     }
 }
 
-/// Reads a setup response from a CSV with the columns `frequency_hz`, `magnitude` and, if known,
-/// `phase_rad` (else zero).
+/// Reads a setup response from a CSV with the columns `frequency_hz`, `magnitude` and optionally
+/// `phase_rad` (default zero).
 ///
 /// # Errors
-/// What [`read_recording`](crate::read::read_recording) reports of a CSV; and, with the line, a
-/// frequency that is negative or does not ascend, or a negative magnitude.
+/// Those of [`read_recording`](crate::read::read_recording) for a CSV; and, with the line, a
+/// frequency that is negative or does not increase, or a negative magnitude.
 pub fn read_response(path: &Path) -> Result<SetupResponse, ReadError> {
-    response(Blocks::new(&file_name(path), open(path)?, Room::default()))
+    response(Blocks::new(
+        &file_name(path),
+        open(path)?,
+        ValueLimit::default(),
+    ))
 }
 
-/// Reads a setup response in memory; `file` is what it is called.
+/// Reads a setup response from bytes; `file` is its name.
 ///
 /// # Errors
 /// As [`read_response`].
 pub fn response_from_bytes(file: &str, bytes: &[u8]) -> Result<SetupResponse, ReadError> {
-    response(Blocks::new(file, bytes, Room::default()))
+    response(Blocks::new(file, bytes, ValueLimit::default()))
 }
 
 fn response(mut blocks: Blocks<'_>) -> Result<SetupResponse, ReadError> {
@@ -198,7 +202,7 @@ fn check(table: &Table<'_>, frequency_hz: &[f64], magnitude: &[f64]) -> Result<(
             return refuse(
                 row,
                 format!(
-                    "the frequency {frequency} Hz follows {} Hz; frequencies must ascend on every row",
+                    "the frequency {frequency} Hz follows {} Hz; frequencies must increase on every row",
                     frequency_hz[row - 1]
                 ),
             );
@@ -209,21 +213,23 @@ fn check(table: &Table<'_>, frequency_hz: &[f64], magnitude: &[f64]) -> Result<(
             return refuse(
                 row,
                 format!(
-                    "{magnitude} at {frequency} Hz is no response; a magnitude is 0, or from {SMALLEST} to {LARGEST}"
+                    "the magnitude {magnitude} at {frequency} Hz is out of range; write 0, or {SMALLEST} to {LARGEST}"
                 ),
             );
         }
         if *magnitude < 0.0 {
             return refuse(
                 row,
-                format!("the magnitude {magnitude} is negative; put the sign into phase_rad"),
+                format!(
+                    "the magnitude {magnitude} is negative; write the sign as a phase_rad of pi"
+                ),
             );
         }
     }
     Ok(())
 }
 
-/// Takes out jumps of more than half a turn.
+/// Removes jumps of more than half a turn.
 fn unwrapped(mut phase_rad: Vec<f64>) -> Vec<f64> {
     let turn = 2.0 * std::f64::consts::PI;
     let mut previous = phase_rad.first().copied().unwrap_or(0.0);

@@ -1,4 +1,4 @@
-//! Where in a recording the texture is read: sweeps, or evenly spaced windows.
+//! Choice of the segments of a recording: middles of sweeps, or evenly spaced windows.
 
 use std::ops::Range;
 
@@ -7,32 +7,32 @@ use htex_format::Quantity;
 use crate::Recording;
 use crate::sums::Sums;
 
-/// Texture spectra have a resolution of 5 Hz: segments are a fifth of a second.
+/// Segments per second: texture spectra have a resolution of 5 Hz.
 const SEGMENTS_PER_S: f64 = 5.0;
-/// Half the length of the moving average that sweeps are found on (50 ms in all), seconds.
+/// Half the length of the moving average in which sweeps are detected (50 ms in all), seconds.
 const HALF_AVERAGE_S: f64 = 0.025;
-/// A recording has sweeps if between them its friction falls below this part of the threshold; above it
+/// A recording has sweeps if its friction falls below this part of the threshold between them; above it
 /// the finger slides.
 const REST_LEVEL: f64 = 0.5;
-/// Sliding that a sweep's one segment stands for at most, seconds: ten segments. A sweep across
+/// Longest sliding that a sweep's one segment represents, seconds: ten segments. A sweep across
 /// the paper's samples, 100 mm at 80 mm/s, lasts 1.25 s at most.
-const SPOKEN_FOR_S: f64 = 2.0;
-/// Least part of the sliding that the segments must stand for, or sweeps leave most of it unread.
-const SPOKEN_FOR: f64 = 0.5;
+const REPRESENTED_S: f64 = 2.0;
+/// Least part of the sliding that the segments of sweeps must represent; otherwise windows are used.
+const REPRESENTED: f64 = 0.5;
 
-/// How segments are chosen.
+/// Method of choosing segments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SegmentChoice {
-    /// Sweeps if the recording has them and they speak for at least half of its sliding, else windows.
+    /// Sweeps if the recording has them and their segments represent at least half of its sliding, else windows.
     ///
-    /// A sweep speaks for itself, but for 2 s at most: a long stroke is more than its middle.
+    /// A segment represents its sweep, but at most 2 s of it.
     #[default]
     Auto,
-    /// One segment in the middle of each sweep that the recording holds whole (paper, Texture
-    /// processing). A sweep that its beginning or end cuts off has no known middle.
+    /// One segment in the middle of each complete sweep (paper, Texture
+    /// processing). The middle of a sweep cut off by the beginning or the end is not known.
     Sweeps,
-    /// Windows over the whole recording, each half over the one before (Welch 1967): side by side, Hann
-    /// windows would leave half of it unread, and the level of 10 s of noise uncertain by 0.2 dB.
+    /// Windows over the whole recording, each overlapping the previous by half (Welch 1967). Without overlap, Hann
+    /// windows leave half of it unused, and the level of 10 s of noise is uncertain by 0.2 dB.
     Windows,
 }
 
@@ -45,12 +45,12 @@ pub struct Sweep {
     pub end: usize,
 }
 
-/// What sweeps would have left unread.
+/// The part of the sliding that the segments of sweeps would represent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unread {
-    /// Sliding that their segments stand for, seconds.
-    pub spoken_for_s: f64,
-    /// All sliding, seconds.
+    /// Sliding that the segments represent, seconds.
+    pub represented_s: f64,
+    /// Total sliding, seconds.
     pub sliding_s: f64,
 }
 
@@ -61,22 +61,22 @@ pub struct Segments {
     pub len: usize,
     /// First sample of each segment.
     pub starts: Vec<usize>,
-    /// Whether they lie in sweeps (else: evenly spaced windows).
+    /// Whether the segments are in sweeps (else evenly spaced windows).
     pub from_sweeps: bool,
-    /// The sweeps that were found, also if windows are used.
+    /// The detected sweeps, also if windows are used.
     pub sweeps: Vec<Sweep>,
-    /// How many of them the recording's beginning or end cuts off; they are not read.
+    /// Number of sweeps cut off by the recording's beginning or end, which are not read.
     pub cut_off: usize,
-    /// First samples of the segments that were left out because the motion left its target.
+    /// First samples of the segments left out because the motion differs from its target.
     pub off_target: Vec<usize>,
-    /// Why `auto` turned to windows though there are sweeps.
+    /// Why `auto` uses windows although there are sweeps.
     pub unread: Option<Unread>,
-    /// Mean length of the signal's vector, in its unit.
+    /// Mean length of the signal's vector, in its unit: the threshold of sweeps.
     pub threshold: f64,
 }
 
 impl Segments {
-    /// The stretches that are read, samples; segments that touch are one.
+    /// Returns the stretches that are read, in samples; adjoining segments are joined.
     pub fn stretches(&self) -> Vec<Range<usize>> {
         let mut stretches: Vec<Range<usize>> = Vec::new();
         for &start in &self.starts {
@@ -89,7 +89,7 @@ impl Segments {
     }
 }
 
-/// Chooses the segments of a recording. There may be none.
+/// Chooses the segments of a recording. The result may be empty.
 pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments {
     let len = segment_len(recording.rate_hz);
     let resultant = resultant(recording);
@@ -102,12 +102,12 @@ pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments
         let is_whole = |sweep: &&Sweep| sweep.start > 0 && sweep.end < samples;
         sweeps.iter().filter(is_whole)
     };
-    let longest = (SPOKEN_FOR_S * recording.rate_hz) as usize;
-    let spoken_for: usize = whole().map(|s| (s.end - s.start).min(longest)).sum();
+    let longest = (REPRESENTED_S * recording.rate_hz) as usize;
+    let represented: usize = whole().map(|s| (s.end - s.start).min(longest)).sum();
     let has_sweeps = !sweeps.is_empty() && sliding < samples;
-    let speak_for_most = spoken_for as f64 >= SPOKEN_FOR * sliding as f64;
+    let represent_most = represented as f64 >= REPRESENTED * sliding as f64;
     let from_sweeps = match choice {
-        SegmentChoice::Auto => has_sweeps && speak_for_most,
+        SegmentChoice::Auto => has_sweeps && represent_most,
         SegmentChoice::Sweeps => true,
         SegmentChoice::Windows => false,
     };
@@ -119,7 +119,7 @@ pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments
         let last = samples.saturating_sub(len);
         (0..=last).step_by(hop).filter(|_| samples >= len).collect()
     };
-    let turned = choice == SegmentChoice::Auto && has_sweeps && !speak_for_most;
+    let turned = choice == SegmentChoice::Auto && has_sweeps && !represent_most;
     Segments {
         len,
         starts,
@@ -127,7 +127,7 @@ pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments
         cut_off: sweeps.len() - whole().count(),
         off_target: Vec::new(),
         unread: turned.then(|| Unread {
-            spoken_for_s: spoken_for as f64 / recording.rate_hz,
+            represented_s: represented as f64 / recording.rate_hz,
             sliding_s: sliding as f64 / recording.rate_hz,
         }),
         sweeps,
@@ -135,13 +135,13 @@ pub fn choose_segments(recording: &Recording, choice: SegmentChoice) -> Segments
     }
 }
 
-/// Samples of a segment at a rate: 4000 at 20 kHz.
+/// Returns the samples of a segment at a rate: 4000 at 20 kHz.
 pub fn segment_len(rate_hz: f64) -> usize {
     (rate_hz / SEGMENTS_PER_S).round().max(1.0) as usize
 }
 
-/// Length of the signal's vector, sample by sample. The mean of friction tells sliding from rest; that of any
-/// other quantity (gravity, a place, a weight) tells nothing and is removed.
+/// Computes the length of the signal's vector, sample by sample. The mean of a friction force separates sliding from
+/// rest; the mean of any other quantity (gravity, position, weight) is an offset and is removed.
 fn resultant(recording: &Recording) -> Sums {
     let mean = |axis: &Vec<f64>| match recording.quantity {
         Quantity::LateralForce => 0.0,
@@ -155,7 +155,7 @@ fn resultant(recording: &Recording) -> Sums {
     Sums::of((0..recording.samples()).map(length))
 }
 
-/// The sweeps, and the number of samples at which the finger slides.
+/// The sweeps, and the number of samples in which the finger slides.
 struct Scan {
     sweeps: Vec<Sweep>,
     sliding: usize,
@@ -183,7 +183,7 @@ fn scan(smooth: impl Iterator<Item = f64>, threshold: f64, shortest: usize) -> S
     Scan { sweeps, sliding }
 }
 
-/// Start of the segment around a sweep's middle, if it lies inside the recording.
+/// Returns the start of the segment around a sweep's middle, if it is inside the recording.
 fn middle(sweep: Sweep, len: usize, samples: usize) -> Option<usize> {
     let start = ((sweep.start + sweep.end) / 2).checked_sub(len / 2)?;
     (start + len <= samples).then_some(start)

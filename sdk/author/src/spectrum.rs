@@ -12,69 +12,69 @@ use crate::response::raised;
 use crate::segments::{SegmentChoice, Segments, choose_segments};
 use crate::{AuthorError, Recording, SetupResponse};
 
-/// The setup's response is held to at least this part of its largest value in the band: -40 dB.
+/// Floor of the setup's response, relative to its largest value in the band: -40 dB.
 const RESPONSE_FLOOR: f64 = 0.01;
-/// A response whose largest value in the band is below this is none: its inverse is no number.
+/// Smallest valid maximum of a response in the band; the inverse of a smaller one overflows.
 const SMALLEST_RESPONSE: f64 = 1e-200;
-/// A spectrum of fewer bins than this says nothing of a texture.
+/// Fewest bins of a texture spectrum.
 const FEWEST_BINS: usize = 3;
-/// Relative error of the grid's frequencies that is worth a warning.
+/// Relative error of the grid's frequencies above which a warning is given.
 const GRID_TOLERANCE: f64 = 1e-3;
 
-/// How segments are averaged.
+/// Method of averaging segments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Averaging {
-    /// Mean of the magnitudes: one reading of "averaged the FFTs" (paper, Texture processing). Reads noise
-    /// 1.05 dB, a factor of √π/2, below its RMS: the mean of a Rayleigh distribution.
+    /// Mean of the magnitudes: one reading of "averaged the FFTs" (paper, Texture processing). The mean of noise is
+    /// 1.05 dB, a factor of √π/2, below its RMS (Rayleigh distribution).
     Magnitude,
-    /// Root of the mean power: reads noise and tones at their RMS.
+    /// Root of the mean power: the RMS of noise and tones.
     #[default]
     Rms,
-    /// Magnitude of the mean of the complex spectra: keeps only what is in step in all segments.
+    /// Magnitude of the mean of the complex spectra: keeps only what is in phase in all segments.
     Complex,
 }
 
-/// Options of the pipeline.
+/// Options of computing a texture spectrum.
 #[derive(Debug, Clone, Default)]
 pub struct SpectrumOptions {
-    /// How segments are chosen.
+    /// Method of choosing segments.
     pub segments: SegmentChoice,
-    /// How they are averaged.
+    /// Method of averaging segments.
     pub averaging: Averaging,
-    /// Response of the recording setup, divided out.
+    /// Response of the recording setup, which spectra are divided by.
     pub response: Option<SetupResponse>,
 }
 
-/// The compensated spectra of a recording's segments, one axis, in the band.
+/// The compensated spectra of a recording's segments, folded into one axis, in the band.
 #[derive(Debug, Clone)]
 pub struct SegmentSpectra {
-    /// What is recorded.
+    /// The recorded quantity.
     pub quantity: Quantity,
     /// The band: 20 to 1000 Hz, or up to half the rate.
     pub band: Band,
-    /// A spectrum a segment on the band's grid; a sinusoid of amplitude A on the grid reads A.
+    /// One spectrum per segment on the band's grid; a sinusoid of amplitude A on the grid has magnitude A.
     pub spectra: Vec<Vec<Complex<f64>>>,
-    /// Where the segments lie.
+    /// Positions of the segments.
     pub segments: Segments,
-    /// What a user should know.
+    /// Warnings, as sentences.
     pub warnings: Vec<String>,
 }
 
 /// An averaged texture spectrum.
 #[derive(Debug, Clone)]
 pub struct TextureSpectrum {
-    /// What was recorded; magnitudes and the signal are in its unit.
+    /// The recorded quantity; magnitudes and the signal are in its unit.
     pub quantity: Quantity,
     /// The band.
     pub band: Band,
     /// The band's grid, hertz.
     pub frequency_hz: Vec<f64>,
-    /// Magnitude at the grid.
+    /// Magnitude at each frequency of the grid.
     pub magnitude: Vec<f64>,
-    /// How many segments were averaged.
+    /// Number of averaged segments.
     pub segments: usize,
-    /// Nine-band RMS difference between the odd and the even segments, decibels: what the
-    /// recording itself varies by. None with fewer than two segments, or when half of them are silent.
+    /// Nine-band RMS difference between the odd and the even segments, decibels: the variation within the
+    /// recording. `None` with fewer than two segments, or when half of them are silent.
     pub repeatability_rms_db: Option<f64>,
     /// The segments, windowed and overlap-added to one signal in the band.
     pub signal: Vec<f64>,
@@ -82,7 +82,7 @@ pub struct TextureSpectrum {
     pub signal_rate_hz: f64,
 }
 
-/// Band and magnitudes: what models are fitted to and measured against.
+/// Band and magnitudes of a spectrum, for fits and measures.
 #[derive(Debug, Clone, Copy)]
 #[allow(missing_docs)]
 pub struct SpectrumRef<'a> {
@@ -92,7 +92,7 @@ pub struct SpectrumRef<'a> {
 }
 
 impl TextureSpectrum {
-    /// Averages segment spectra of one texture at one condition, of one or more recordings.
+    /// Averages segment spectra of one texture at one condition, from one or more recordings.
     ///
     /// # Errors
     /// When there are no segments, or the quantities or bands differ.
@@ -124,7 +124,7 @@ impl TextureSpectrum {
         })
     }
 
-    /// What a model is asked to fit, with one value for each of its options.
+    /// Returns the request to fit a model, with one value for each of its options.
     pub fn fit_request<'a>(&'a self, options: &'a [f64]) -> FitRequest<'a> {
         FitRequest {
             band: self.band,
@@ -136,7 +136,7 @@ impl TextureSpectrum {
         }
     }
 
-    /// Band and magnitudes.
+    /// Returns band and magnitudes.
     pub fn as_ref(&self) -> SpectrumRef<'_> {
         SpectrumRef {
             band: self.band,
@@ -146,7 +146,7 @@ impl TextureSpectrum {
     }
 }
 
-/// Cuts a recording into segments and takes their spectra.
+/// Cuts a recording into segments and computes their spectra.
 ///
 /// # Errors
 /// When the rate leaves no useful band, no segment is found, or the setup's response cannot be divided
@@ -158,7 +158,7 @@ pub fn segment_spectra(
     spectra_of(recording, options, |_| Ok(()))
 }
 
-/// The spectra of the segments that `keep` leaves.
+/// Computes the spectra of the segments that `keep` retains.
 pub(crate) fn spectra_of(
     recording: &Recording,
     options: &SpectrumOptions,
@@ -208,7 +208,7 @@ fn usable_band(recording: &Recording, warnings: &mut Vec<String>) -> Result<Band
     }
     if band.high_hz < Band::TACTILE.high_hz {
         warnings.push(format!(
-            "{source}: sampled at {}, so the spectrum ends at {} instead of 1000 Hz; what a finger feels above that is \
+            "{source}: sampled at {}, so the spectrum ends at {} instead of 1000 Hz; higher frequencies of the texture are \
              not in the recording",
             hertz(rate_hz),
             hertz(nyquist_hz)
@@ -217,7 +217,7 @@ fn usable_band(recording: &Recording, warnings: &mut Vec<String>) -> Result<Band
     let spacing_hz = rate_hz / crate::segments::segment_len(rate_hz) as f64;
     if (spacing_hz / GRID_HZ - 1.0).abs() > GRID_TOLERANCE {
         warnings.push(format!(
-            "{source}: {} is no multiple of 5 Hz: bins are {spacing_hz:.3} Hz apart and read as if they were 5 Hz apart",
+            "{source}: {} is not a multiple of 5 Hz: bins are {spacing_hz:.3} Hz apart and are treated as 5 Hz apart",
             hertz(rate_hz)
         ));
     }
@@ -243,8 +243,7 @@ fn check_segments(
         }),
         n @ 1..=2 => {
             warnings.push(format!(
-                "{source}: {n} segment{} of 0.2 s: the spectrum keeps the noise of a single \
-                 reading; record for 10 s",
+                "{source}: {n} segment{} of 0.2 s: an average of so few is noisy; record for 10 s",
                 if n == 1 { "" } else { "s" }
             ));
             Ok(())
@@ -253,7 +252,7 @@ fn check_segments(
     }
 }
 
-/// `1 / H` on the band's grid, with `|H|` held to the floor.
+/// Returns `1 / H` on the band's grid, with `|H|` limited by the floor.
 fn inverse_response(
     response: &SetupResponse,
     band: Band,
@@ -274,7 +273,7 @@ fn inverse_response(
     let gains = values.iter().map(|h| 1.0 / h.norm().max(floor));
     if let Some(raised) = raised(&band.grid_hz(), gains) {
         warnings.push(format!(
-            "setup response: dividing by it raises {raised}; noise there is raised as much"
+            "setup response: dividing by it raises {raised}; noise is raised equally"
         ));
     }
     let floored = values.iter().filter(|h| h.norm() < floor).count();
@@ -295,7 +294,7 @@ fn inverse_response(
     Ok(values.iter().map(invert).collect())
 }
 
-/// Reads segments: mean removed, Hann window, FFT; axes folded into one (Landin 2010).
+/// Computes spectra of segments: mean removed, Hann window, FFT; axes folded into one (Landin 2010).
 struct SegmentReader {
     analyzer: SegmentAnalyzer,
     len: usize,
@@ -354,11 +353,11 @@ fn repeatability(band: Band, all: &[&[Complex<f64>]], averaging: Averaging) -> O
         let half: Vec<&[Complex<f64>]> = all.iter().skip(first).step_by(2).copied().collect();
         bank.energies(&average(&half, grid.len(), averaging))
     };
-    // Half of the segments may be silent: that is no number of decibels.
+    // If half of the segments are silent, the difference is not finite.
     Some(rms(&band_error_db(&energies(0), &energies(1)))).filter(|rms_db| rms_db.is_finite())
 }
 
-/// The windowed segments, half overlapping, as one signal at four times the band's top.
+/// Overlap-adds the half-overlapping windowed segments to one signal at four times the band's top.
 fn overlap_add(band: Band, all: &[&[Complex<f64>]]) -> (Vec<f64>, f64) {
     let len = 4 * band.last_bin();
     let inverse = RealFftPlanner::new().plan_fft_inverse(len);
@@ -367,7 +366,7 @@ fn overlap_add(band: Band, all: &[&[Complex<f64>]]) -> (Vec<f64>, f64) {
     for (i, spectrum) in all.iter().enumerate() {
         bins.fill(Complex::new(0.0, 0.0));
         for (bin, x) in bins[band.first_bin()..].iter_mut().zip(*spectrum) {
-            // The windowed sinusoid of amplitude A reads A; its window's mean is a half.
+            // The windowed sinusoid of amplitude A has magnitude A; the mean of its window is a half.
             *bin = x * 0.25;
         }
         if inverse.process(&mut bins, &mut frame).is_ok() {

@@ -1,9 +1,9 @@
-//! A model's parameter fields, as an asset stores them.
+//! Conversion of a model's parameter fields to those of an asset.
 
 use htex_format::{Field, Steps, Store, stored_unit};
 use htex_host::{Descriptor, Kind};
 
-/// The asset's fields for a model.
+/// Returns the asset's fields for a model.
 pub fn stored_fields(descriptor: &Descriptor) -> Vec<Field> {
     let field = |f: &htex_host::Field| Field {
         name: f.name.clone(),

@@ -1,6 +1,6 @@
-//! Running sums: the mean of any stretch of a signal for the price of two look-ups.
+//! Running sums: the mean of any stretch of a signal with two look-ups.
 
-/// The sum before each sample of a signal, and the sum of all.
+/// The sum before each sample of a signal, and the total.
 pub(crate) struct Sums(Vec<f64>);
 
 impl Sums {
@@ -15,17 +15,17 @@ impl Sums {
         Self(sums)
     }
 
-    /// Samples of the signal.
+    /// Returns the number of samples of the signal.
     pub(crate) fn samples(&self) -> usize {
         self.0.len() - 1
     }
 
-    /// Mean of the samples from `from` to before `to`, 0 of none.
+    /// Returns the mean of the samples from `from` to before `to`, 0 if there are none.
     pub(crate) fn mean(&self, from: usize, to: usize) -> f64 {
         (self.0[to] - self.0[from]) / (to - from).max(1) as f64
     }
 
-    /// Mean over `2·half + 1` samples around one, fewer at the ends.
+    /// Returns the mean over `2·half + 1` samples around one, fewer at the ends.
     pub(crate) fn mean_around(&self, at: usize, half: usize) -> f64 {
         self.mean(at.saturating_sub(half), (at + half + 1).min(self.samples()))
     }

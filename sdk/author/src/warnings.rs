@@ -1,20 +1,20 @@
-//! Warnings of several recordings: what is said of many of them is one sentence, with their names.
+//! Warnings of several recordings: equal warnings become one sentence with the recordings' names.
 
-/// Sentences in the order in which they came, each with the recordings that it is about.
+/// Warnings in the order of their first occurrence, each with its recordings.
 #[derive(Debug, Default)]
 pub(crate) struct Warnings(Vec<Warning>);
 
 #[derive(Debug)]
 struct Warning {
-    /// As it was first said.
+    /// The sentence as first given.
     sentence: String,
-    /// Without the recording's name in front.
+    /// The sentence without the recording's name.
     text: String,
     recordings: Vec<String>,
 }
 
 impl Warnings {
-    /// Adds what is said of a recording.
+    /// Adds the warnings of a recording.
     pub(crate) fn add(&mut self, recording: &str, sentences: Vec<String>) {
         let name = format!("{recording}: ");
         for sentence in sentences {
@@ -30,7 +30,7 @@ impl Warnings {
         }
     }
 
-    /// The sentences, each once.
+    /// Returns the sentences, each once.
     pub(crate) fn into_sentences(self) -> Vec<String> {
         self.0.into_iter().map(Warning::into_sentence).collect()
     }

@@ -42,8 +42,16 @@ fn wav_of_one_to_three_channels_and_all_depths() {
             ReadOptions::default(),
             "at least 2 samples",
         ),
-        (bytes[..30].to_vec(), ReadOptions::default(), "not a WAV"),
-        (b"nonsense".to_vec(), ReadOptions::default(), "not a WAV"),
+        (
+            bytes[..30].to_vec(),
+            ReadOptions::default(),
+            "not a readable WAV",
+        ),
+        (
+            b"nonsense".to_vec(),
+            ReadOptions::default(),
+            "not a readable WAV",
+        ),
         (
             bytes.clone(),
             mapped("lateral=#1", None),
@@ -90,7 +98,7 @@ fn npy_in_either_order_and_endianness() {
         ),
         (
             npy_header("<f4", "False", "(4294967296, 4294967296)"),
-            "no plain array",
+            "not describe a plain array",
         ),
         (npy_header("<f4", "False", "(1, 4)"), "shape is [1, 4]"),
         (npy_header("<f4", "False", "()"), "shape is []"),

@@ -1,4 +1,4 @@
-//! Files of more than one block of 256 KiB: read as those that fit in one, and refused with the same lines.
+//! Files longer than one block of 256 KiB are read as shorter ones, with the same line numbers in errors.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -64,7 +64,7 @@ fn all_rows_are_read_and_lines_are_counted_through() {
     assert!(told, "{:?}", gap.clock_findings);
 }
 
-/// A short row is cut off at the end of the file only, wherever blocks end.
+/// A short row is reported as truncated only at the end of the file, wherever blocks end.
 #[test]
 fn a_short_row_is_cut_off_at_the_end_alone() {
     for pad in 0..16 {
@@ -75,12 +75,12 @@ fn a_short_row_is_cut_off_at_the_end_alone() {
         text += "1234567\n";
         let cut = read(&text).unwrap_err();
         assert!(
-            cut.contains("cut off") && cut.contains(&format!("{line}")),
+            cut.contains("truncated") && cut.contains(&format!("{line}")),
             "{cut}"
         );
         for behind in ["1,1\n", "\n# Notes\n\n1,1\n"] {
             let ragged = read(format!("{text}{behind}")).unwrap_err();
-            assert!(!ragged.contains("cut off"), "{ragged}");
+            assert!(!ragged.contains("truncated"), "{ragged}");
             assert!(ragged.contains(&format!("{line}")), "{ragged}");
         }
     }

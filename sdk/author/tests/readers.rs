@@ -1,4 +1,4 @@
-//! Reading recordings: what must work, and what must be refused with file, line and column.
+//! Readers of recordings: accepted files, and errors with file, line and column.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -67,7 +67,7 @@ fn units_left_unsaid_are_assumed_aloud() {
     assert_eq!(recording.speed_mm_s, Some(vec![80.0, 81.0]));
     assert!(has_warning(
         &recording,
-        "\"speed\" (speed) names no unit: taken as mm/s"
+        "\"speed\" (speed) has no unit; mm/s is assumed"
     ));
     assert!(has_warning(&recording, "Columns not used: accel."));
     assert!(
@@ -130,7 +130,7 @@ fn broken_text_is_refused_where_it_breaks() {
             "line 3: 1 cells where the first row has 2",
         ),
         (b"fy_n,z\n1,2\n1,2,3\n", "line 3: 3 cells"),
-        (b"fy_n,z\n1,2\n1,2\n1", "line 4: the file seems cut off"),
+        (b"fy_n,z\n1,2\n1,2\n1", "line 4: the file seems truncated"),
         (b"fy_n,z\n1,2\n1,\0\n", "line 3: a NUL byte"),
         (
             b"fy_n,z\n1,2\n1,\xff\n",
@@ -199,7 +199,7 @@ fn the_time_column_gives_the_rate_or_says_why_not() {
     );
     let other = read("t.csv", &even, &at(1000.0)).unwrap();
     assert_eq!(other.rate_hz, 1000.0);
-    assert!(has_warning(&other, "2000 Hz, --rate says 1000 Hz"));
+    assert!(has_warning(&other, "2000 Hz, --rate is 1000 Hz"));
     let gap = read(
         "t.csv",
         table(&["0", "1", "2", "3", "7", "8"]),
@@ -223,17 +223,17 @@ fn the_time_column_gives_the_rate_or_says_why_not() {
     assert!(
         read("t.csv", &back, &ReadOptions::default())
             .unwrap_err()
-            .contains("line 4: time")
+            .contains("line 4: the time")
     );
     assert!(has_warning(
         &read("t.csv", &back, &at(1000.0)).unwrap(),
-        "not used"
+        "instead of the time column"
     ));
 }
 
 #[test]
 fn jitter_does_not_move_the_rate() {
-    // Stamps of a busy computer: late by up to a whole period, in order.
+    // Timestamps of a busy computer: late by up to a whole period, in order.
     let mut state = 1u32;
     let mut text = String::from("t_s,fy_n\n");
     let mut last = -1.0;
@@ -292,7 +292,7 @@ fn setup_response_is_read_unwrapped_and_held_at_its_ends() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    /// Damaged files of every kind end in a recording or an error, never in a panic.
+    /// Damaged files of every kind give a recording or an error, never a panic.
     #[test]
     fn damage_never_panics(kind in 0..3_usize, cut in 0..200_usize, edits in prop::collection::vec((0..200_usize, any::<u8>()), 0..6)) {
         let (name, mut bytes) = [
@@ -321,18 +321,21 @@ fn a_trace_is_known_by_names_and_units_and_refused_with_its_line() {
     assert_eq!(read.speed_mm_s, Some(vec![80.0, 90.0]));
     assert_eq!(read.warnings, ["Columns not used: mood."]);
     let refusals = [
-        ("t_s,x_mm,y_mm\n0,0,0\n1,1,1\n", "no column is the normal"),
+        (
+            "t_s,x_mm,y_mm\n0,0,0\n1,1,1\n",
+            "there is no column for normal",
+        ),
         (
             "t_s,x_mm,y_mm,fz_V\n0,0,0,1\n1,1,1,1\n",
             "not in a unit known for normal",
         ),
         (
             "t_s,x_mm,y_mm,fz_n\n0,0,0,1\n1,1,1,1\n1,1,1,1\n",
-            "line 4: time goes from 1 s to 1 s",
+            "line 4: the time after 1 s is 1 s",
         ),
         (
             "t_s,x_mm,x_cm,y_mm,fz_n\n0,0,0,0,1\n1,1,1,1,1\n",
-            "could be x; keep one",
+            "both match x; keep one",
         ),
         ("0,0,0,1\n1,1,1,1\n", "no header row"),
         (

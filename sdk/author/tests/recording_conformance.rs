@@ -1,4 +1,4 @@
-//! The conformance recordings of `spec/` with their reports, the page of findings, and sound recordings without findings.
+//! The conformance recordings of `spec/` with their reports, the page of findings, and valid recordings without findings.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 #[path = "common/recordings.rs"]
@@ -49,7 +49,7 @@ fn recordings_raise_the_code_they_are_named_after_and_every_code_has_one() {
         let own = case.name.to_uppercase();
         for finding in findings {
             let code = of(finding, "code");
-            // One fault has one code.
+            // Each case has only the finding of its own code.
             assert!(
                 code == own || of(finding, "severity") == "info" || case.may_also_raise(&code),
                 "{} raises {finding}",
@@ -82,8 +82,8 @@ fn recordings_raise_the_code_they_are_named_after_and_every_code_has_one() {
     }
 }
 
-/// The simulator's hand wanders by a few percent, and its surfaces have knots and ribs: no finding but that a
-/// sweep is cut off.
+/// The simulated hand varies by a few percent, and the surfaces have knots and ribs: the only finding is a
+/// sweep that is cut off.
 #[test]
 fn sound_recordings_at_any_rate_and_speed_have_no_warning() {
     let surfaces = [

@@ -1,4 +1,4 @@
-//! Which seconds of a recording are read, and which are left out.
+//! Choice of the segments of a recording.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_author::recording::Recording;
@@ -37,7 +37,7 @@ fn read(recording: &Recording, given: Exploration) -> Result<Reading, AuthorErro
 
 #[test]
 fn a_sweep_that_the_end_cuts_off_is_left_out() {
-    // Its middle lies where the finger stops: at 25 mm/s instead of 80.
+    // The middle of the recorded part is where the finger stops, at 25 mm/s instead of 80.
     let options = SimulationOptions::new(Surface::CorrugatedPaper);
     let recording = simulate(&options).unwrap().to_recording("paper").unwrap();
     let reading = read(&recording, Exploration::default()).unwrap();
@@ -50,7 +50,7 @@ fn a_sweep_that_the_end_cuts_off_is_left_out() {
     let codes: Vec<&str> = reading.findings.iter().map(|f| f.code.as_str()).collect();
     assert_eq!(codes, ["RECORDING_SWEEPS_CUT_OFF"]);
     assert!(
-        reading.notes[0].contains("1 sweep of 9 left out"),
+        reading.notes[0].contains("1 of 9 sweeps left out"),
         "{:?}",
         reading.notes
     );
@@ -65,7 +65,7 @@ fn with_a_target_a_segment_counts_within_ten_percent_and_without_one_always() {
         .map(|n| (1.3 * f64::from(n) + 0.2, 1.3 * f64::from(n) + 1.2))
         .collect();
     let lateral = friction(8.0, &sweeps);
-    // The first at 65 mm/s, the second at 80 but for a moment at 95, the others at 80.
+    // The first at 65 mm/s, the second at 80 except for a moment at 95, the others at 80.
     let speed = |at: usize| match at {
         0..1300 => 65.0,
         1950..2050 => 95.0,
@@ -109,8 +109,8 @@ fn a_long_stroke_is_read_all_along_and_sweeps_in_their_middles() {
     let stroke = read_in(&[(0.3, 8.7)]);
     assert!(!stroke.from_sweeps && stroke.starts.len() == 89);
     let unread = stroke.unread.unwrap();
-    assert!((unread.spoken_for_s - 2.0).abs() < 0.01 && (unread.sliding_s - 8.4).abs() < 0.1);
-    // Two whole sweeps of a second beside a long one that is cut off.
+    assert!((unread.represented_s - 2.0).abs() < 0.01 && (unread.sliding_s - 8.4).abs() < 0.1);
+    // Two complete sweeps of a second beside a long one that is cut off.
     assert!(!read_in(&[(0.3, 1.3), (1.6, 2.6), (3.0, 9.0)]).from_sweeps);
     let three = read_in(&[(0.3, 1.8), (2.3, 5.3), (5.7, 8.0)]);
     assert!(three.from_sweeps && three.starts.len() == 3 && three.unread.is_none());

@@ -1,4 +1,4 @@
-//! The simulator: repeatable, readable, and like the surfaces it is named after.
+//! The simulator is repeatable, its files are readable, and its spectra have the properties of their surfaces.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -19,7 +19,7 @@ fn csv(simulation: &Simulation) -> Vec<u8> {
     bytes
 }
 
-/// FNV-1a, so that one number holds a whole file.
+/// FNV-1a hash of a whole file.
 fn hash(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
@@ -55,8 +55,8 @@ fn same_options_give_the_same_bytes_everywhere() {
     };
     assert_eq!(short(7), short(7));
     assert_ne!(short(7), short(8));
-    // The rows, without the first line, which names the version: another machine or compiler that
-    // computes otherwise is noticed.
+    // The rows, without the first line, which has the version: detects machines and compilers whose results
+    // differ.
     let bytes = short(7);
     let first_row = bytes.iter().position(|byte| *byte == b'\n').unwrap();
     assert_eq!(hash(&bytes[first_row..]), HASH);
@@ -100,7 +100,7 @@ fn the_hand_keeps_within_the_papers_tolerance() {
     }
 }
 
-/// Power of the lateral force in the middle of each sweep, at a frequency, by Goertzel's sums.
+/// Amplitude of the lateral force at a frequency in the middle of each sweep (Goertzel).
 fn amplitude_n(simulation: &Simulation, frequency_hz: f64) -> f64 {
     let n = 4000;
     let mut sum = 0.0;
@@ -251,7 +251,7 @@ fn dividing_by_the_rigs_response_gives_the_force_at_the_finger() {
         TextureSpectrum::average(&[part], options.averaging).unwrap()
     };
     let (raw, at_finger) = (spectrum(None), spectrum(Some(written)));
-    // Sandpaper falls smoothly through 500 to 740 Hz; the rig's resonance and the gap above it do not.
+    // The spectrum of sandpaper falls smoothly from 500 to 740 Hz; the rig's resonance does not.
     let step_db = |s: &TextureSpectrum| {
         let level = |low: f64, high: f64| {
             let bins = s.frequency_hz.iter().zip(&s.magnitude);

@@ -1,8 +1,17 @@
-//! Files that are whole or not there: written beside their place, and renamed into it.
+//! Atomic writing of files: a file is written beside its target and renamed into place, so that readers see it
+//! complete or not at all.
 //!
-//! A symbolic link is followed, and what it leads to is replaced, with the mode that it had. What is no file (a device,
-//! a pipe) is written to and stays what it is. A process that is asked to end removes what it did not finish by
+//! A symbolic link is followed, and its target is replaced with the permissions that it had. A device or a pipe is
+//! written to directly. A process that is asked to end removes its unfinished files with
 //! [`remove_unfinished`].
+//!
+//! ```
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("numbers.txt");
+//! htex_files::write_file(&path, b"1 2 3")?;
+//! assert_eq!(std::fs::read(&path)?, b"1 2 3");
+//! # Ok::<(), std::io::Error>(())
+//! ```
 #![forbid(unsafe_code)]
 
 use std::collections::BTreeSet;
@@ -13,11 +22,11 @@ use std::sync::{Mutex, PoisonError};
 
 use tempfile::NamedTempFile;
 
-/// Files that are being written.
+/// Files that this process is writing.
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-/// Removes the files that this process is writing: for a handler of signals, before the process ends. None of them
-/// gets its name any more.
+/// Removes the files that this process is writing; a signal handler calls it before the process ends. Afterwards no
+/// unfinished file can be completed.
 pub fn remove_unfinished() {
     let unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
     for path in unfinished.iter() {
@@ -30,24 +39,24 @@ fn unfinished<T>(run: impl FnOnce(&mut BTreeSet<PathBuf>) -> T) -> T {
     run(&mut UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// A file that is being written. Dropped before [`Self::keep`] it leaves nothing behind, but for what went to a pipe or
-/// device.
+/// A file that is being written. Dropping it before [`Self::keep`] removes it; data written to a pipe or
+/// device cannot be removed.
 #[derive(Debug)]
 pub struct Unfinished(Kind);
 
 #[derive(Debug)]
 enum Kind {
-    /// A file beside its place, and the place.
+    /// A temporary file beside the target, and the target.
     Beside(NamedTempFile, PathBuf),
-    /// What is no file, open.
+    /// An open pipe or device.
     Direct(File),
 }
 
 impl Unfinished {
-    /// Begins a file that is to be at `path`.
+    /// Creates the temporary file for the target `path`.
     ///
     /// # Errors
-    /// When `path` is a folder or a link that leads nowhere, its folder is not there, or the system refuses.
+    /// When `path` is a folder or a dangling link, its folder does not exist, or the system reports an error.
     pub fn create(path: &Path) -> io::Result<Self> {
         let path = followed(path)?;
         let there = path.metadata().ok();
@@ -62,7 +71,7 @@ impl Unfinished {
         if !folder.is_dir() {
             return Err(io::Error::new(
                 io::ErrorKind::NotFound,
-                "its folder is not there; make it first",
+                "its folder does not exist; create it first",
             ));
         }
         let beside = builder().tempfile_in(folder)?;
@@ -73,7 +82,7 @@ impl Unfinished {
         Ok(Self(Kind::Beside(beside, path)))
     }
 
-    /// The file to write to.
+    /// Returns the file to write to.
     pub fn file(&mut self) -> &mut File {
         match &mut self.0 {
             Kind::Beside(beside, _) => beside.as_file_mut(),
@@ -81,18 +90,18 @@ impl Unfinished {
         }
     }
 
-    /// Puts all on the disk and gives the file its name: a reader sees the old file or the new one, never a part, and so
-    /// does one after a crash.
+    /// Flushes the file to disk and renames it to its target: a reader sees the old file or the new one, never a part,
+    /// also after a crash.
     ///
     /// # Errors
-    /// What the system reports; the place is then as it was.
+    /// Those of the system; the target is then unchanged.
     pub fn keep(mut self) -> io::Result<()> {
         self.file().flush()?;
         let Kind::Beside(beside, path) = &mut self.0 else {
             return Ok(());
         };
         beside.as_file().sync_all()?;
-        // Renamed while the set is held: whoever ends the process meanwhile has removed it, or finds it finished.
+        // Renamed while the set is locked: whoever ends the process has removed the file before, or finds it complete.
         unfinished(|all| {
             std::fs::rename(beside.path(), &*path)?;
             all.remove(beside.path());
@@ -111,10 +120,10 @@ impl Drop for Unfinished {
     }
 }
 
-/// Writes a file beside `path` and renames it over `path` once `write` has succeeded.
+/// Writes a file beside `path` and renames it to `path` when `write` succeeds.
 ///
 /// # Errors
-/// Whatever `write` or the system reports; `path` is then as it was.
+/// Those of `write` and of the system; `path` is then unchanged.
 pub fn replace_file(
     path: &Path,
     write: impl FnOnce(&mut File) -> io::Result<()>,
@@ -124,7 +133,7 @@ pub fn replace_file(
     unfinished.keep()
 }
 
-/// [`replace_file`] with bytes that stand ready.
+/// Writes bytes to a file as [`replace_file`] does.
 ///
 /// # Errors
 /// As [`replace_file`].
@@ -139,19 +148,19 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-/// What a symbolic link leads to; any other path as it is.
+/// Returns the target of a symbolic link; any other path unchanged.
 fn followed(path: &Path) -> io::Result<PathBuf> {
     match path.symlink_metadata() {
         Ok(is) if is.is_symlink() => path.canonicalize().map_err(|error| {
-            let words = format!("it is a symbolic link that leads nowhere ({error})");
+            let words = format!("it is a symbolic link to a missing file ({error})");
             io::Error::new(error.kind(), words)
         }),
         _ => Ok(path.to_owned()),
     }
 }
 
-/// A temporary file with the permissions of an ordinary one: all may read and write, less the
-/// process's mask.
+/// Returns a builder of temporary files with the permissions of an ordinary file: readable and writable by all, less the
+/// process' mask.
 fn builder() -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".htex-").suffix(".part");
@@ -172,7 +181,7 @@ fn ordinary() -> Option<Permissions> {
     None
 }
 
-/// Puts the rename itself on the disk.
+/// Flushes the rename to disk.
 #[cfg(unix)]
 fn sync_folder(folder: &Path) -> io::Result<()> {
     File::open(folder)?.sync_all()
@@ -233,7 +242,7 @@ mod tests {
         Ok(())
     }
 
-    /// A link is followed, a mode is kept, and what is no file stays what it is.
+    /// A link is followed, permissions are kept, and pipes and devices are written to directly.
     #[cfg(unix)]
     #[test]
     fn what_is_there_stays_what_it_is() -> Outcome {

@@ -1,8 +1,8 @@
-//! A strict look at the archive before anything of it is unpacked, and then all its entries.
+//! Strict reader of the ZIP archive: checks all records first, then unpacks every entry.
 //!
-//! The ZIP format lets two programs see two archives in one file. An asset's archive has one
-//! reading only: entries back to back from byte 0, then the directory in the same order, then the
-//! end record, with sizes stated twice and alike.
+//! The ZIP format allows files in which two programs see different archives. An asset's archive is
+//! unambiguous: entries without gaps from byte 0, then the directory in the same order, then the end
+//! record; directory and local headers state the same names and sizes.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -19,27 +19,27 @@ const DATA_DESCRIPTOR: u16 = 1 << 3;
 const ZIP64_16: u16 = u16::MAX;
 const ZIP64_32: u32 = u32::MAX;
 
-/// An entry, unpacked.
+/// An unpacked entry.
 pub(crate) struct Entry<'a> {
     pub name: String,
     pub method: u16,
     pub bytes: Cow<'a, [u8]>,
 }
 
-/// An entry that may be unpacked.
+/// An entry whose records are valid, still packed.
 struct Packed<'a> {
     name: String,
     common: Common,
     data: &'a [u8],
 }
 
-/// An archive whose structure is sound, all of it unpacked.
+/// A valid archive with all entries unpacked.
 pub(crate) struct Archive<'a> {
     pub entries: Vec<Entry<'a>>,
 }
 
 impl<'a> Archive<'a> {
-    /// Scans and unpacks the archive; none when a finding is an error.
+    /// Checks the records and unpacks all entries. Returns `None` when a finding is an error.
     pub(crate) fn open(bytes: &'a [u8], limits: &Limits, findings: &mut Findings) -> Option<Self> {
         if bytes.len() as u64 > limits.file_bytes {
             findings.add(
@@ -88,10 +88,10 @@ pub(crate) fn too_large(bytes: u64, limits: &Limits) -> String {
     format!("the file has {bytes} bytes and the limit is {limit}; raise it if you trust the file")
 }
 
-/// The end record, when there is exactly one archive in the file and all of it.
+/// Returns the end record when the file holds exactly one archive and nothing else.
 fn end_record(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<End> {
     let Some(end) = zip_records::find_end(bytes) else {
-        let message = "there is no end record: this is no ZIP archive, or the file is cut off";
+        let message = "there is no end record: this is not a ZIP archive, or the file is truncated";
         findings.add(rule::ARCHIVE_INVALID, "", message.to_owned());
         return None;
     };
@@ -100,7 +100,7 @@ fn end_record(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<
         || end.directory_bytes == ZIP64_32
         || end.directory_at == ZIP64_32
     {
-        let message = "the end record is of ZIP64; write the archive without";
+        let message = "the end record is a ZIP64 record; write the archive without ZIP64";
         findings.add(rule::ARCHIVE_ZIP64, "", message.to_owned());
         return None;
     }
@@ -113,14 +113,14 @@ fn end_record(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<
     let whole = end.disks == [0, 0] && end.entries_here == end.entries && end.comment_bytes == 0;
     let directory_end = u64::from(end.directory_at) + u64::from(end.directory_bytes);
     if !whole || directory_end > end.at as u64 {
-        let message = "the end record does not add up: the file is cut off or of several parts";
+        let message =
+            "the end record is inconsistent: the file is truncated or one part of a split archive";
         findings.add(rule::ARCHIVE_INVALID, "", message.to_owned());
         return None;
     }
     if directory_end < end.at as u64 {
         let gap = end.at as u64 - directory_end;
-        let message =
-            format!("{gap} bytes stand before the archive or its end record; remove them");
+        let message = format!("{gap} bytes precede the archive or its end record; remove them");
         findings.add(rule::ARCHIVE_EXTRA_DATA, "", message);
         return None;
     }
@@ -153,7 +153,7 @@ fn directory<'a>(
         let name = String::from_utf8_lossy(central.name).into_owned();
         check_name(central.name, &name, findings);
         if !names.insert(name.to_ascii_lowercase()) {
-            let message = format!("{name:?} is the name of two entries; keep one");
+            let message = format!("two entries have the name {name:?}; keep one");
             findings.add(rule::ENTRY_NAME_DUPLICATE, "", message);
         }
         check_record(&central, &name, findings);
@@ -176,7 +176,7 @@ fn directory<'a>(
     Some(entries)
 }
 
-/// The entries end where the directory starts, and the directory where the end record does.
+/// Checks that the entries end where the directory starts, and the directory where the end record starts.
 fn check_ends(end: &End, directory_end: usize, entries_end: usize, findings: &mut Findings) {
     if directory_end != end.at {
         let message = "the directory is longer or shorter than the end record says".to_owned();
@@ -193,7 +193,8 @@ fn check_name(raw: &[u8], name: &str, findings: &mut Findings) {
         .all(|&b| (b' '..=b'~').contains(&b) && b != b'\\' && b != b':');
     let parts = name.split('/').all(|part| !matches!(part, "" | "." | ".."));
     if !plain || !parts {
-        let message = format!("{name:?} is no safe name; use relative names of ASCII characters");
+        let message =
+            format!("{name:?} is not a safe name; use relative names of ASCII characters");
         findings.add(rule::ENTRY_NAME_UNSAFE, "", message);
     }
 }
@@ -209,15 +210,16 @@ fn check_record(central: &Central<'_>, name: &str, findings: &mut Findings) {
         findings.add(rule::ENTRY_COMPRESSION_UNKNOWN, "", message);
     }
     if common.flags & DATA_DESCRIPTOR != 0 {
-        let message = format!("{name} has its sizes behind its data; write them before");
+        let message =
+            format!("{name} has its sizes after its data; write them in the local header");
         findings.add(rule::ENTRY_DATA_DESCRIPTOR, "", message);
     }
     if [common.packed, common.size, central.local_at].contains(&ZIP64_32) {
-        let message = format!("{name} has sizes of ZIP64; write the archive without");
+        let message = format!("{name} has ZIP64 sizes; write the archive without ZIP64");
         findings.add(rule::ARCHIVE_ZIP64, "", message);
     }
     if !central.extra.is_empty() || !central.comment.is_empty() {
-        let message = format!("{name} has an extra field or a comment; write it without");
+        let message = format!("{name} has an extra field or a comment; remove it");
         findings.add(rule::ENTRY_EXTRA_FIELD, "", message);
     }
 }
@@ -233,12 +235,14 @@ fn check_sizes(central: &Central<'_>, name: &str, limits: &Limits, findings: &mu
         findings.add(rule::ENTRY_TOO_LARGE, "", message);
     }
     if size > packed.saturating_mul(ratio) {
-        let message = format!("{name} unpacks from {packed} bytes to {size}: above 1 to {ratio}");
+        let message = format!(
+            "{name} unpacks from {packed} to {size} bytes and the limit is a ratio of {ratio}"
+        );
         findings.add(rule::ENTRY_RATIO, "", message);
     }
 }
 
-/// Compares the local header; gives where the entry's data are, none when there is none here.
+/// Compares the local header with the directory. Returns the range of the entry's data, or `None` when it cannot be found.
 fn check_local(
     bytes: &[u8],
     central: &Central<'_>,
@@ -249,24 +253,25 @@ fn check_local(
     if central.local_at as usize != expected {
         let message = format!(
             "{name} starts at byte {} and the entry before it ends at {expected}; \
-             write entries one behind the other in directory order",
+             write the entries without gaps, in directory order",
             central.local_at
         );
         findings.add(rule::ARCHIVE_EXTRA_DATA, "", message);
         return None;
     }
     let Some(local) = zip_records::local(bytes, expected, central.common.packed) else {
-        let message = format!("{name} has no local header at byte {expected}, or is cut off");
+        let message = format!("{name} has no local header at byte {expected}, or is truncated");
         findings.add(rule::ARCHIVE_INVALID, "", message);
         return None;
     };
     let stated = central.common.method == STORED && central.common.packed != central.common.size;
     if !agrees(central, &local) || stated || central.disk != 0 {
-        let message = format!("{name} is described in two ways; write the archive anew");
+        let message =
+            format!("the directory and the local header of {name} differ; write the archive again");
         findings.add(rule::ENTRY_HEADER_MISMATCH, "", message);
     }
     if !local.extra.is_empty() && central.extra.is_empty() {
-        let message = format!("{name} has an extra field in its local header; write it without");
+        let message = format!("{name} has an extra field in its local header; remove it");
         findings.add(rule::ENTRY_EXTRA_FIELD, "", message);
     }
     Some(local.data)

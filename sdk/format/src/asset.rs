@@ -2,10 +2,41 @@
 
 use crate::{Finding, Manifest};
 
-/// One texture: its manifest, and the numbers that stand beside it.
+/// One texture: its manifest, parameters, reference spectra and embedded modules.
+///
+/// ```
+/// use htex_format::{Asset, Manifest};
+///
+/// let manifest: Manifest = serde_json::from_str(r#"{
+///     "htex": "1.0",
+///     "name": "Cotton",
+///     "license": "CC0-1.0",
+///     "quantity": "lateral_force",
+///     "unit": "N",
+///     "band": { "low_hz": 20, "high_hz": 1000 },
+///     "conditions": [{ "speed_mm_s": 80, "force_n": 0.4 }],
+///     "representations": [{
+///         "model": "org.htex.sbeta",
+///         "model_version": "1.0.0",
+///         "fields": [{ "name": "alpha", "store": "f32" }, { "name": "beta", "store": "f32" }],
+///         "at": [{ "condition": 0, "level_rms": 0.02 }],
+///         "parameters": "parameters/sbeta.bin"
+///     }]
+/// }"#)?;
+/// let asset = Asset {
+///     manifest,
+///     parameters: vec![vec![vec![1.5, 4.0]]],
+///     reference: None,
+///     plugins: Vec::new(),
+///     notes: Vec::new(),
+/// };
+/// let bytes = asset.to_bytes()?;
+/// assert_eq!(Asset::from_bytes(&bytes)?, asset);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Asset {
-    /// What it says of itself.
+    /// The contents of `manifest.json`.
     pub manifest: Manifest,
     /// Parameters by representation and then by condition, in the order of
     /// [`crate::Representation::at`]: flat arrays in field order, a list preceded by its length.
@@ -15,6 +46,6 @@ pub struct Asset {
     pub reference: Option<Vec<Vec<f32>>>,
     /// WASM modules, in the order of [`crate::Manifest::plugins`].
     pub plugins: Vec<Vec<u8>>,
-    /// What a reader should tell, such as a newer minor version.
+    /// Findings of reading that are not errors, such as a newer minor version.
     pub notes: Vec<Finding>,
 }

@@ -1,8 +1,8 @@
-//! The bytes of a parameter block.
+//! Encoder and decoder of parameter blocks.
 //!
-//! For each condition, for each field, the stored values: fixed width, little endian; a list has
-//! its length before it, as bincode's variable-length integer. Nothing else: the manifest's fields
-//! say what stands where. This is the only module that knows bincode.
+//! A block holds, for each condition and each field, the stored values: fixed width, little endian; a
+//! list is preceded by its length as bincode's variable-length integer. The layout is given by the
+//! manifest's fields alone. This is the only module that uses bincode.
 
 use bincode::config::{Configuration, standard};
 use bincode::{Decode, Encode};
@@ -12,14 +12,16 @@ use crate::{Field, Steps, Store, WriteError};
 
 const CONFIGURATION: Configuration = standard();
 
-/// Why a block does not decode.
+/// Errors of decoding a parameter block.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum BlockError {
     #[error("the block ends inside field {field} of condition {condition}")]
     Truncated { field: String, condition: usize },
     #[error("the length of list {field} of condition {condition} is not in its shortest form")]
     Length { field: String, condition: usize },
-    #[error("the packed list {field} of condition {condition} is cut off or not in its one form")]
+    #[error(
+        "the packed list {field} of condition {condition} is truncated or not in canonical form"
+    )]
     Packed { field: String, condition: usize },
     #[error("{0} bytes follow the last value")]
     Trailing(usize),
@@ -33,7 +35,7 @@ pub(crate) enum BlockError {
     TooMany(usize),
 }
 
-/// The block of a representation from one flat array a condition.
+/// Encodes the block of a representation from one flat array per condition.
 pub(crate) fn encode(fields: &[Field], conditions: &[Vec<f64>]) -> Result<Vec<u8>, WriteError> {
     let mut out = Vec::new();
     for flat in conditions {
@@ -53,7 +55,7 @@ pub(crate) fn encode(fields: &[Field], conditions: &[Vec<f64>]) -> Result<Vec<u8
     Ok(out)
 }
 
-/// Flat arrays from a block; `values` is how many numbers may still be read, and is used up.
+/// Decodes a block into flat arrays. `values` is the number of values that may still be read; it is decremented.
 pub(crate) fn decode(
     fields: &[Field],
     conditions: usize,
@@ -75,7 +77,7 @@ pub(crate) fn decode(
     Ok(flats)
 }
 
-/// Bytes that one flat array takes in an asset's parameter block.
+/// Returns the bytes that one flat array takes in a parameter block.
 ///
 /// # Errors
 /// As [`round_parameters`].
@@ -93,23 +95,34 @@ pub fn stored_bytes(fields: &[Field], flat: &[f64]) -> Result<usize, WriteError>
     Ok(bytes)
 }
 
-/// The steps of a packed list.
+/// Quantises a packed list into steps.
 fn steps_of(field: &Field, values: &[f64]) -> Result<Vec<u8>, WriteError> {
     let step = |(index, &value): (usize, &f64)| match quantise(field, index, value)? {
         Number::U8(q) => Ok(q),
-        // `quantise` makes no other of this store.
+        // `quantise` returns a byte for this store.
         _ => Ok(0),
     };
     values.iter().enumerate().map(step).collect()
 }
 
-/// The values of a flat array as they will be read back from an asset.
+/// Returns the values of a flat array as they are read back from an asset.
 ///
 /// `flat` holds the fields in order: a scalar's value, or a list's length and then its values.
 ///
 /// # Errors
 /// [`WriteError::OutOfRange`] for a value its field's store cannot hold or that is not finite,
 /// [`WriteError::Layout`] when `flat` does not follow `fields`.
+///
+/// ```
+/// use htex_format::{Field, Steps, Store, round_parameters};
+///
+/// let steps = Steps { scale: 0.5, offset: 20.0, log: false };
+/// let store = Store::U8(steps);
+/// let fields = [Field { name: "peak_hz".to_owned(), unit: "Hz".to_owned(), list: true, store }];
+/// // A list of two values.
+/// assert_eq!(round_parameters(&fields, &[2.0, 30.2, 40.9])?, [2.0, 30.0, 41.0]);
+/// # Ok::<(), htex_format::WriteError>(())
+/// ```
 pub fn round_parameters(fields: &[Field], flat: &[f64]) -> Result<Vec<f64>, WriteError> {
     let mut rounded = Vec::with_capacity(flat.len());
     for (field, values) in split(fields, flat)? {
@@ -123,7 +136,7 @@ pub fn round_parameters(fields: &[Field], flat: &[f64]) -> Result<Vec<f64>, Writ
     Ok(rounded)
 }
 
-/// The values of each field, without the lengths of lists.
+/// Splits a flat array into the values of each field, without the lengths of lists.
 pub(crate) fn split<'a>(
     fields: &'a [Field],
     flat: &'a [f64],
@@ -155,7 +168,7 @@ pub(crate) fn split<'a>(
     layout(format!("{} values follow the last field", rest.len()))
 }
 
-/// A number as it is stored.
+/// A number in its stored form.
 #[derive(Clone, Copy)]
 enum Number {
     F64(f64),
@@ -196,7 +209,7 @@ fn quantise(field: &Field, index: usize, value: f64) -> Result<Number, WriteErro
     }
 }
 
-/// The nearest step, halves away from zero; none when it is below 0 or above `last`.
+/// Returns the nearest step, halves rounded away from zero; `None` when it is below 0 or above `last`.
 fn step(steps: Steps, value: f64, last: f64) -> Option<f64> {
     let x = if steps.log { libm::log(value) } else { value };
     let q = libm::round((x - steps.offset) / steps.scale);
@@ -204,7 +217,7 @@ fn step(steps: Steps, value: f64, last: f64) -> Option<f64> {
 }
 
 impl Steps {
-    /// The value that step `q` stands for.
+    /// Returns the value of step `q`.
     pub(crate) fn value(&self, q: u16) -> f64 {
         let x = self.offset + self.scale * f64::from(q);
         if self.log { libm::exp(x) } else { x }
@@ -222,7 +235,7 @@ fn value_of(number: Number, store: Store) -> f64 {
     }
 }
 
-/// Integers go as bytes: bincode would spend three on a `u16` above 250.
+/// Writes a number. Integers are written as bytes: bincode takes three for a `u16` above 250.
 fn put_number(out: &mut Vec<u8>, number: Number) -> Result<(), WriteError> {
     match number {
         Number::F64(x) => put(out, x),
@@ -285,7 +298,7 @@ impl Reader<'_> {
         Ok(flat)
     }
 
-    /// The steps of a packed list; every step's value is finite, which the manifest was checked for.
+    /// Reads the steps of a packed list. The manifest check has made sure that every step's value is finite.
     fn steps(
         &mut self,
         field: &Field,
@@ -300,7 +313,7 @@ impl Reader<'_> {
         Ok(steps)
     }
 
-    /// A list's length, no more than the bytes that follow can hold.
+    /// Reads a list's length, at most what the remaining bytes can hold.
     fn length(&mut self, field: &Field, condition: usize) -> Result<usize, BlockError> {
         let before = self.bytes.len();
         let length = self
@@ -312,12 +325,12 @@ impl Reader<'_> {
                 condition,
             });
         }
-        let room = match field.store {
+        let most = match field.store {
             Store::Packed(_) => most_steps(self.bytes.len()),
             store => self.bytes.len() / store.bytes(),
         };
         match usize::try_from(length) {
-            Ok(length) if length <= room => Ok(length),
+            Ok(length) if length <= most => Ok(length),
             _ => Err(truncated(field, condition)),
         }
     }
@@ -340,7 +353,7 @@ impl Reader<'_> {
 }
 
 impl Store {
-    /// Bytes of a stored number; a packed one has no size of its own.
+    /// Returns the bytes of a stored number. A packed number has no fixed size.
     fn bytes(self) -> usize {
         match self {
             Self::F64 => 8,
@@ -351,7 +364,7 @@ impl Store {
     }
 }
 
-/// Bytes of bincode's variable-length integer.
+/// Returns the bytes of bincode's shortest variable-length integer.
 fn shortest(length: u64) -> usize {
     match length {
         0..=250 => 1,
@@ -382,7 +395,7 @@ mod tests {
             let offset = if negative { -offset } else { offset };
             let scale = offset.abs().max(f64::MIN_POSITIVE) * libm::exp2(finer);
             let steps = Steps { scale, offset, log };
-            for last in [u16::from(u8::MAX), u16::MAX].into_iter().filter(|last| steps.work(*last)) {
+            for last in [u16::from(u8::MAX), u16::MAX].into_iter().filter(|last| steps.are_valid(*last)) {
                 for q in [0, q.min(last), last] {
                     prop_assert_eq!(step(steps, steps.value(q), f64::from(last)), Some(f64::from(q)));
                 }

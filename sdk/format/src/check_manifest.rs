@@ -1,4 +1,4 @@
-//! What the manifest's words and numbers must be.
+//! Checks of the manifest's values.
 
 use std::collections::BTreeSet;
 
@@ -11,26 +11,26 @@ use crate::pointer::escape;
 use crate::report::Findings;
 use crate::rules as rule;
 
-/// Spacing of the grid spectra stand on, hertz.
+/// Spacing of the frequency grid of spectra, hertz.
 const GRID_HZ: f64 = 5.0;
-/// A multiple of 5 Hz counts as in the band when it misses the edge by no more than this many steps.
+/// Tolerance of the band's edges, in grid steps.
 const EDGE: f64 = 1e-9;
-/// Highest frequency an asset speaks of, hertz.
+/// Highest upper edge of a band, hertz.
 const HIGHEST_HZ: f64 = 20_000.0;
 
 impl Band {
-    /// Multiples of 5 Hz in the band, edges included: 197 for 20 to 1000 Hz. None when the band
-    /// breaks its rule.
+    /// Counts the multiples of 5 Hz in the band, edges included: 197 for 20 to 1000 Hz. Returns `None`
+    /// for an invalid band.
     pub(crate) fn grid_points(&self) -> Option<usize> {
         let sane = 0.0 < self.low_hz && self.low_hz < self.high_hz && self.high_hz <= HIGHEST_HZ;
         let first = (self.low_hz / GRID_HZ - EDGE).ceil();
         let last = (self.high_hz / GRID_HZ + EDGE).floor();
-        // Counted only when sane: a band up to 1e300 Hz has more points than can be counted.
+        // A band up to 1e300 Hz has more points than `usize` holds, so only valid bands are counted.
         (sane && first <= last).then(|| (last - first) as usize + 1)
     }
 }
 
-/// Adds a finding for each rule a manifest breaks by itself.
+/// Adds a finding for each rule that the manifest breaks by itself.
 pub(crate) fn check_manifest(manifest: &Manifest, findings: &mut Findings) {
     check_words(manifest, findings);
     let band = manifest.band;
@@ -40,7 +40,7 @@ pub(crate) fn check_manifest(manifest: &Manifest, findings: &mut Findings) {
         "/band",
         || {
             format!(
-                "{} to {} Hz is no band; take 20 to 1000",
+                "{} to {} Hz is not a valid band; write 20 to 1000",
                 band.low_hz, band.high_hz
             )
         },
@@ -55,7 +55,7 @@ pub(crate) fn check_manifest(manifest: &Manifest, findings: &mut Findings) {
 fn check_words(manifest: &Manifest, findings: &mut Findings) {
     let named = !manifest.name.trim().is_empty();
     findings.require(named, rule::NAME_EMPTY, "/name", || {
-        "the name is empty; give one".to_owned()
+        "the name is empty; write one".to_owned()
     });
     findings.require(
         manifest.license.is_some(),
@@ -88,11 +88,14 @@ fn check_sources(manifest: &Manifest, findings: &mut Findings) {
             positive,
             rule::SOURCE_INVALID,
             format_args!("{at}/rate_hz"),
-            || format!("{rate} Hz is no sampling rate; write the recording's"),
+            || format!("{rate} Hz is not a valid sampling rate; write the recording's rate"),
         );
         let plain = !source.file.contains(['/', '\\']);
         findings.require(plain, rule::SOURCE_PATH, format_args!("{at}/file"), || {
-            format!("{:?} has a folder; write the file name alone", source.file)
+            format!(
+                "{:?} contains a folder; write only the file name",
+                source.file
+            )
         });
     }
 }
@@ -102,7 +105,7 @@ fn check_conditions(conditions: &[Condition], findings: &mut Findings) {
         !conditions.is_empty(),
         rule::CONDITIONS_EMPTY,
         "/conditions",
-        || "there is no condition; add one, {} when nothing is known".to_owned(),
+        || "there is no condition; add one, or {} when speed and force are not known".to_owned(),
     );
     let mut seen = BTreeSet::new();
     for (i, condition) in conditions.iter().enumerate() {
@@ -113,13 +116,11 @@ fn check_conditions(conditions: &[Condition], findings: &mut Findings) {
             ("repeatability_rms_db", condition.repeatability_rms_db),
         ];
         for (key, number) in numbers {
-            let possible = number.is_none_or(is_size);
-            findings.require(
-                possible,
-                rule::CONDITION_INVALID,
-                format_args!("{at}/{key}"),
-                || format!("{number:?} is negative or not finite; leave out what is not known"),
-            );
+            if let Some(number) = number.filter(|number| !is_size(*number)) {
+                let message =
+                    format!("{number} is negative or not finite; remove {key} if it is not known");
+                findings.add(rule::CONDITION_INVALID, format!("{at}/{key}"), message);
+            }
         }
         // Adding zero makes -0 the same as 0.
         let bits = |number: Option<f64>| number.map(|x| (x + 0.0).to_bits());
@@ -148,6 +149,11 @@ fn check_extensions(manifest: &Manifest, findings: &mut Findings) {
 }
 
 /// Whether a name is of the form `com.vendor.NAME/REVISION`.
+///
+/// ```
+/// assert!(htex_format::is_extension_name("com.example.LOOK/1"));
+/// assert!(!htex_format::is_extension_name("LOOK"));
+/// ```
 pub fn is_extension_name(name: &str) -> bool {
     let Some((id, revision)) = name.split_once('/') else {
         return false;
@@ -161,7 +167,7 @@ pub fn is_extension_name(name: &str) -> bool {
     parts().count() >= 3 && parts().all(word) && number && !revision.is_empty()
 }
 
-/// Finite and not negative.
+/// Whether a number is finite and not negative.
 pub(crate) fn is_size(number: f64) -> bool {
     number.is_finite() && number >= 0.0
 }

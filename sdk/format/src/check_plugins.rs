@@ -1,4 +1,4 @@
-//! What the manifest's words on plugins must be.
+//! Checks of the manifest's plugins.
 
 use std::collections::BTreeSet;
 
@@ -8,7 +8,7 @@ use crate::report::Findings;
 use crate::rules as rule;
 use crate::{Manifest, Plugin};
 
-/// Adds a finding for each rule the manifest's plugins break by themselves.
+/// Adds a finding for each rule that the manifest's plugins break by themselves.
 pub(crate) fn check_plugins(manifest: &Manifest, findings: &mut Findings) {
     let mut seen = BTreeSet::new();
     for (i, plugin) in manifest.plugins.iter().enumerate() {
@@ -17,22 +17,19 @@ pub(crate) fn check_plugins(manifest: &Manifest, findings: &mut Findings) {
         let model = || format!("{at}/model");
         let new = seen.insert(plugin.model.as_str());
         findings.require(new, rule::PLUGIN_DUPLICATE, model(), || {
-            format!("{} is here already; keep one module", plugin.model)
+            format!("{} has two modules; keep one", plugin.model)
         });
         let used = manifest
             .representations
             .iter()
             .any(|r| r.model == plugin.model);
         findings.require(used, rule::PLUGIN_UNUSED, model(), || {
-            format!(
-                "no representation is of {}; leave its module out",
-                plugin.model
-            )
+            format!("no representation uses {}; remove its module", plugin.model)
         });
         let valid = plugin.is_signature_valid();
         let pointer = format!("{at}/signature");
         findings.require(valid, rule::PLUGIN_SIGNATURE_INVALID, pointer, || {
-            "the signature is not that of its key over this plugin; do not trust it".to_owned()
+            "the signature does not match its key and this plugin; do not trust it".to_owned()
         });
     }
 }
@@ -50,13 +47,13 @@ fn check_words(plugin: &Plugin, at: &str, findings: &mut Findings) {
         (
             "file",
             plugin.file == Plugin::file_of(&plugin.model),
-            "plugins/ID.wasm of its model",
+            "plugins/ID.wasm with the model's id",
         ),
         ("blake3", hash, "64 lower-case hexadecimal digits"),
     ];
     for (key, holds, form) in words {
         findings.require(holds, rule::PLUGIN_INVALID, format!("{at}/{key}"), || {
-            format!("`{key}` is not {form}; embed the module anew")
+            format!("`{key}` is not {form}; embed the module again")
         });
     }
 }

@@ -1,4 +1,4 @@
-//! What a representation's words and numbers must be.
+//! Checks of representations.
 
 use std::collections::BTreeSet;
 use std::fmt::Arguments;
@@ -11,9 +11,9 @@ use crate::quantity::Quantity;
 use crate::report::Findings;
 use crate::rules as rule;
 
-/// Bands that agreement is measured in.
+/// Number of bands of `band_error_db`.
 const BANDS: usize = 9;
-/// Smallest step over the largest number it is added to: below it, rounding may lead to the next.
+/// Smallest ratio of a step to the largest magnitude it is added to; below it, rounding can change the step.
 const FINEST: f64 = 4.0 * f64::EPSILON;
 
 pub(crate) fn check_representations(manifest: &Manifest, findings: &mut Findings) {
@@ -32,7 +32,7 @@ pub(crate) fn check_representations(manifest: &Manifest, findings: &mut Findings
             models.insert(model),
             rule::MODEL_DUPLICATE,
             format_args!("{at}/model"),
-            || format!("{model:?} has an earlier representation; merge them"),
+            || format!("two representations are of model {model:?}; merge them"),
         );
         check_model(representation, at, findings);
         check_fields(representation, at, findings);
@@ -49,13 +49,13 @@ fn check_model(representation: &Representation, at: Arguments<'_>, findings: &mu
     findings.require(
         is_model_id(model),
         rule::MODEL_ID_INVALID,
-        format_args!("{at}/model"),
-        || format!("{model:?} is no model id; write one like org.example.mymodel"),
+        format!("{at}/model"),
+        || format!("{model:?} is not a model id; write one like org.example.mymodel"),
     );
     let semantic = semver::Version::parse(model_version).is_ok();
     let pointer = format_args!("{at}/model_version");
     findings.require(semantic, rule::MODEL_VERSION_INVALID, pointer, || {
-        format!("{model_version:?} is no semantic version; write one like 1.0.0")
+        format!("{model_version:?} is not a semantic version; write one like 1.0.0")
     });
 }
 
@@ -74,30 +74,30 @@ fn check_fields(representation: &Representation, at: Arguments<'_>, findings: &m
             names.insert(name),
             rule::FIELD_DUPLICATE,
             format_args!("{at}/name"),
-            || format!("{name:?} is the name of an earlier field"),
+            || format!("an earlier field has the name {name:?}; rename one"),
         );
-        let works = match field.store {
+        let valid = match field.store {
             Store::F64 | Store::F32 => true,
-            Store::U16(steps) => steps.work(u16::MAX),
-            Store::U8(steps) => steps.work(u8::MAX.into()),
-            Store::Packed(steps) => field.list && steps.work(u8::MAX.into()),
+            Store::U16(steps) => steps.are_valid(u16::MAX),
+            Store::U8(steps) => steps.are_valid(u8::MAX.into()),
+            Store::Packed(steps) => field.list && steps.are_valid(u8::MAX.into()),
         };
-        findings.require(works, rule::STORE_INVALID, format_args!("{at}/store"), || {
-            "scale is not above 0, a step's value is not finite or, in the logarithm, no normal \
-             number, steps are too fine for their offset, or a number is packed that is no list"
+        findings.require(valid, rule::STORE_INVALID, format_args!("{at}/store"), || {
+            "the steps are invalid: scale is not above 0, a step's value is not finite (with log: \
+             below 2^-1022), scale is too small for the offset, or a scalar is packed"
                 .to_owned()
         });
     }
 }
 
 impl Steps {
-    /// Whether every value that a step stands for leads back to that step.
-    pub(crate) fn work(&self, last: u16) -> bool {
+    /// Whether the value of every step is quantised back to that step.
+    pub(crate) fn are_valid(&self, last: u16) -> bool {
         let positive = self.scale > 0.0 && self.scale.is_finite() && self.offset.is_finite();
         let far_end = self.offset + self.scale * f64::from(last);
         let mut furthest = self.offset.abs().max(far_end.abs());
         if self.log {
-            // The logarithm of a value is known no better than the value itself.
+            // The absolute error of a logarithm is at least the relative error of its argument.
             furthest = furthest.max(1.0);
         }
         let least = if self.log {
@@ -121,8 +121,8 @@ fn check_conditions(
     findings.require(
         !representation.at.is_empty(),
         rule::AT_EMPTY,
-        format_args!("{at}/at"),
-        || "the model is fitted at no condition; fit it or leave it out".to_owned(),
+        format!("{at}/at"),
+        || "the model is fitted at no condition; fit it or remove it".to_owned(),
     );
     let conditions = manifest.conditions.len();
     let mut seen = BTreeSet::new();
@@ -140,7 +140,7 @@ fn check_conditions(
             seen.insert(index),
             rule::CONDITION_INDEX_DUPLICATE,
             pointer,
-            || format!("condition {index} stands here twice; keep one"),
+            || format!("condition {index} is listed twice; keep one"),
         );
         check_fit(fitted, manifest.quantity, at, findings);
     }
@@ -151,8 +151,8 @@ fn check_fit(fitted: &AtCondition, quantity: Quantity, at: Arguments<'_>, findin
     findings.require(
         is_size(level) && level <= largest,
         rule::LEVEL_INVALID,
-        format_args!("{at}/level_rms"),
-        || format!("{level} {unit} is no level; it lies in 0 to {largest}"),
+        format!("{at}/level_rms"),
+        || format!("{level} {unit} is not a valid level; write a value from 0 to {largest}"),
     );
     if let Some(quality) = &fitted.quality {
         check_quality(quality, format_args!("{at}/quality"), findings);
@@ -177,13 +177,11 @@ fn check_quality(quality: &Quality, at: Arguments<'_>, findings: &mut Findings) 
         ),
     ];
     for (key, number) in correlations {
-        let holds = number.is_none_or(|x| (-1.0..=1.0).contains(&x));
-        findings.require(
-            holds,
-            rule::QUALITY_INVALID,
-            format_args!("{at}/{key}"),
-            || format!("{number:?} is no correlation; it lies in -1 to 1"),
-        );
+        if let Some(number) = number.filter(|x| !(-1.0..=1.0).contains(x)) {
+            let message =
+                format!("{number} is not a valid correlation; write a value from -1 to 1");
+            findings.add(rule::QUALITY_INVALID, format!("{at}/{key}"), message);
+        }
     }
     let sizes = [
         ("band_error_rms_db", Some(quality.band_error_rms_db)),
@@ -211,11 +209,10 @@ fn check_quality(quality: &Quality, at: Arguments<'_>, findings: &mut Findings) 
         ("rounding_error_db", quality.rounding_error_db),
     ];
     for (key, number) in sizes {
-        findings.require(
-            number.is_none_or(is_size),
-            rule::QUALITY_INVALID,
-            format_args!("{at}/{key}"),
-            || format!("{number:?} is no RMS; it is finite and not negative"),
-        );
+        if let Some(number) = number.filter(|number| !is_size(*number)) {
+            let message =
+                format!("{number} is negative or not finite; measure again or remove {key}");
+            findings.add(rule::QUALITY_INVALID, format!("{at}/{key}"), message);
+        }
     }
 }

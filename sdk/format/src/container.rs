@@ -1,4 +1,4 @@
-//! Assets as `.htex` files.
+//! Reading and writing assets as `.htex` files.
 
 use std::fs::File;
 use std::io::{Cursor, Read, Write};
@@ -15,12 +15,12 @@ use crate::rules::FILE_TOO_LARGE;
 use crate::validate::{MANIFEST, MEDIA_TYPE, MIMETYPE, inspect};
 use crate::{Asset, ReadError, WriteError, block, write_file};
 
-/// zlib-rs chooses its matches alike on every processor, so the bytes are the same everywhere.
-/// Zopfli would take 100 ms for an asset and save five bytes.
+/// zlib-rs chooses the same matches on every processor, so the bytes are the same everywhere.
+/// Zopfli takes 100 ms for an asset and saves five bytes.
 const DEFLATE_LEVEL: i64 = 9;
 
 impl Asset {
-    /// Reads an asset within the default [`Limits`].
+    /// Reads an asset from bytes, within the default [`Limits`].
     ///
     /// # Errors
     /// [`ReadError::Invalid`] with every finding when one of them is an error.
@@ -28,7 +28,7 @@ impl Asset {
         Self::from_bytes_with(bytes, &Limits::default())
     }
 
-    /// Reads an asset within limits of your own.
+    /// Reads an asset from bytes, within the given limits.
     ///
     /// # Errors
     /// As [`Self::from_bytes`].
@@ -37,7 +37,7 @@ impl Asset {
         asset.ok_or(ReadError::Invalid { findings })
     }
 
-    /// Reads an asset from a file within the default [`Limits`].
+    /// Reads an asset from a file, within the default [`Limits`].
     ///
     /// # Errors
     /// [`ReadError::Io`] when the file cannot be read, else as [`Self::from_bytes`].
@@ -46,7 +46,7 @@ impl Asset {
         Self::from_bytes_with(&read_capped(path, &limits)?, &limits)
     }
 
-    /// The asset as the bytes of a `.htex` file; the same asset gives the same bytes everywhere.
+    /// Encodes the asset as a `.htex` file. Equal assets give equal bytes on every machine.
     ///
     /// Levels keep nine significant digits, agreement four decimals
     /// ([`crate::Manifest::rounded`]), and parameters what their store keeps
@@ -80,7 +80,7 @@ impl Asset {
         readable(archive.finish()?)
     }
 
-    /// Bytes of a representation's parameter block as it is stored, 0 when there is none.
+    /// Returns the bytes of a representation's stored parameter block, 0 when there is none.
     pub fn payload_bytes(&self, representation: usize) -> usize {
         let stored = self.manifest.representations.get(representation);
         let block = stored.zip(self.parameters.get(representation));
@@ -88,7 +88,7 @@ impl Asset {
         bytes.map_or(0, |bytes| bytes.len())
     }
 
-    /// Writes the asset to a file, whole or not at all.
+    /// Writes the asset to a file atomically: a reader sees the old file or the new one.
     ///
     /// # Errors
     /// [`WriteError::Io`] when the file cannot be written, else as [`Self::to_bytes`].
@@ -144,7 +144,7 @@ impl Asset {
     }
 }
 
-/// The bytes of a file, no more of them than the limit.
+/// Reads a file, and no more of it than the limit.
 fn read_capped(path: &Path, limits: &Limits) -> Result<Vec<u8>, ReadError> {
     let failed = |error| ReadError::Io {
         path: path.to_owned(),
@@ -168,7 +168,7 @@ fn read_capped(path: &Path, limits: &Limits) -> Result<Vec<u8>, ReadError> {
     Err(ReadError::Invalid { findings })
 }
 
-/// The bytes, when they can be read back: what is written is always valid.
+/// Returns the bytes if the reader accepts them: everything that is written is valid.
 fn readable(bytes: Vec<u8>) -> Result<Vec<u8>, WriteError> {
     match inspect(&bytes, &Limits::default(), &|_| None) {
         (Some(_), _) => Ok(bytes),
@@ -193,7 +193,7 @@ fn archive_error(error: impl std::fmt::Display) -> WriteError {
     }
 }
 
-/// An archive while it is written.
+/// Writer of an archive.
 struct Writer(ZipWriter<Cursor<Vec<u8>>>);
 
 impl Writer {

@@ -1,4 +1,4 @@
-//! JSON documents of a versioned format, read so that every problem has its place.
+//! Versioned JSON documents, parsed so that every problem has a JSON pointer.
 
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -8,55 +8,55 @@ use crate::json_text::{self, TextError};
 use crate::report::Findings;
 use crate::typed::typed;
 
-/// A kind of document: what it is called in messages, its version, and the rules it is held to.
+/// A kind of document: its names in messages, its version and the rules it must follow.
 #[derive(Debug, Clone, Copy)]
 pub struct Document {
-    /// What a message calls the text, such as `manifest`.
+    /// Name of the text in messages, such as `manifest`.
     pub text: &'static str,
-    /// What a message calls the text as a file, such as `manifest.json`.
+    /// Name of the file in messages, such as `manifest.json`.
     pub file: &'static str,
-    /// What a message calls the thing that has a version, such as `asset`.
+    /// Name in messages of the thing that has a version, such as `asset`.
     pub thing: &'static str,
     /// The key that holds the version.
     pub version_key: &'static str,
-    /// The major version that is read.
+    /// The supported major version.
     pub major: u64,
-    /// The newest minor version that is known.
+    /// The newest supported minor version.
     pub minor: u64,
-    /// Its rules.
+    /// The rules of the document.
     pub rules: DocumentRules,
 }
 
-/// The rules that every document is held to, under the codes of its kind.
+/// The rules that apply to every document, with the codes of its kind.
 #[derive(Debug, Clone, Copy)]
 pub struct DocumentRules {
-    /// It nests too deep.
+    /// The nesting exceeds the limit.
     pub too_deep: &'static Rule,
-    /// It is not JSON.
+    /// The text is not JSON.
     pub syntax: &'static Rule,
-    /// A key is missing, stands twice or has a value of the wrong type.
+    /// A key is missing, appears twice or has a value of the wrong type.
     pub wrong_type: &'static Rule,
-    /// It has no version.
+    /// The version is missing.
     pub version_missing: &'static Rule,
-    /// The version is none.
+    /// The version is invalid.
     pub version_invalid: &'static Rule,
-    /// It is of another major version.
+    /// The major version is not supported.
     pub version_unsupported: &'static Rule,
-    /// It is of a newer minor version.
+    /// The minor version is newer than the supported one.
     pub version_newer: &'static Rule,
 }
 
-/// A text that is JSON, of a version that can be read.
+/// A parsed JSON text of a supported version.
 #[derive(Debug)]
 pub struct Opened {
-    /// The whole of it.
+    /// The parsed JSON.
     pub value: Value,
-    /// Whether its minor version is newer than known.
+    /// Whether its minor version is newer than the supported one.
     pub newer: bool,
 }
 
 impl Document {
-    /// Opens a text that nests at most `max_depth` deep; none when a finding says why not.
+    /// Parses a text that nests at most `max_depth` deep. Returns `None` after adding a finding that says why.
     pub fn open(&self, bytes: &[u8], max_depth: usize, findings: &mut Findings) -> Option<Opened> {
         let (rules, text) = (&self.rules, self.text);
         let depth = depth(bytes);
@@ -75,19 +75,19 @@ impl Document {
         match json_text::parse(bytes) {
             Ok(value) => Some(value),
             Err(TextError::Syntax(error)) => {
-                let message = format!("{} is not JSON: {error}; correct it there", self.file);
+                let message = format!("{} is not valid JSON: {error}; correct it", self.file);
                 findings.add(rules.syntax, "", message);
                 None
             }
             Err(TextError::Twice(pointer)) => {
-                let message = "the key stands twice; keep one of them".to_owned();
+                let message = "the key appears twice; keep one".to_owned();
                 findings.add(rules.wrong_type, pointer, message);
                 None
             }
         }
     }
 
-    /// Whether the minor version is newer than known; none when the document cannot be read.
+    /// Whether the minor version is newer than the supported one. `None` when the document cannot be read.
     fn check_version(&self, value: &Value, findings: &mut Findings) -> Option<bool> {
         let (rules, key, thing) = (&self.rules, self.version_key, self.thing);
         let (known_major, known_minor) = (self.major, self.minor);
@@ -108,7 +108,7 @@ impl Document {
             findings.add(rules.version_invalid, pointer, message);
             return None;
         };
-        let is = format!("the {thing} is of version {major}.{minor} and this reader of");
+        let is = format!("the {thing} has version {major}.{minor} and this reader supports");
         if major != known_major {
             let message = format!("{is} {known_major}");
             findings.add(rules.version_unsupported, pointer, message);
@@ -121,8 +121,8 @@ impl Document {
         Some(minor > known_minor)
     }
 
-    /// The document as a `T`, and pointers to the keys inside it that no type knows; none when a
-    /// finding says why not.
+    /// Converts the document to a `T` and returns it with pointers to the keys that no type knows. Returns
+    /// `None` after adding a finding that says why.
     pub fn typed<T: DeserializeOwned>(
         &self,
         opened: &Opened,
@@ -131,7 +131,7 @@ impl Document {
         match typed(&opened.value) {
             Ok(typed) => Some(typed),
             Err(error) => {
-                let message = format!("{error}; correct it or add what is missing");
+                let message = format!("{error}; correct the value or add the key");
                 let pointer = error.pointer.unwrap_or_default();
                 findings.add(self.rules.wrong_type, pointer, message);
                 None
@@ -140,7 +140,7 @@ impl Document {
     }
 }
 
-/// Greatest number of arrays and objects open at once.
+/// Returns the greatest number of arrays and objects open at once.
 fn depth(bytes: &[u8]) -> usize {
     let (mut open, mut deepest) = (0usize, 0);
     let mut bytes = bytes.iter();
@@ -169,7 +169,7 @@ fn skip_string(bytes: &mut std::slice::Iter<'_, u8>) {
     }
 }
 
-/// `MAJOR.MINOR` without signs or leading zeros.
+/// Parses `MAJOR.MINOR` without signs or leading zeros.
 fn numbers(version: &str) -> Option<(u64, u64)> {
     let (major, minor) = version.split_once('.')?;
     Some((number(major)?, number(minor)?))

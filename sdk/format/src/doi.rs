@@ -1,9 +1,14 @@
-//! Digital object identifiers, by their form (ISO 26324): a prefix of the registrant, a slash, a name.
+//! Syntax of digital object identifiers (ISO 26324): `10.`, the registrant, a slash, a name.
 
-/// Holds a text to the form of a DOI. Whether it is registered is not asked.
+/// Checks the syntax of a DOI, not whether it is registered.
 ///
 /// # Errors
-/// What is wrong, and what to write.
+/// A message that says what is wrong and what to write.
+///
+/// ```
+/// assert!(htex_format::check_doi("10.5281/zenodo.1234567").is_ok());
+/// assert!(htex_format::check_doi("https://doi.org/10.5281/zenodo.1").is_err());
+/// ```
 pub fn check_doi(doi: &str) -> Result<(), String> {
     if is_doi(doi) {
         return Ok(());

@@ -1,60 +1,60 @@
-//! What can go wrong when an asset is read or written.
+//! Errors of reading and writing assets.
 
 use std::io;
 use std::path::PathBuf;
 
 use crate::{Finding, Severity};
 
-/// How many findings the text of an error shows.
+/// Number of findings in the text of an error.
 const SHOWN: usize = 3;
 
-/// An asset could not be read.
+/// Error of reading an asset.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
-    /// The file could not be read at all.
+    /// The file could not be read.
     #[error("cannot read {}: {error}", .path.display())]
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         #[source]
         error: io::Error,
     },
     /// The file is not a valid asset.
     #[error("not a valid asset: {}", summary(.findings))]
     Invalid {
-        /// Everything that was found, errors and others.
+        /// All findings, errors and others.
         findings: Vec<Finding>,
     },
 }
 
-/// An asset could not be written.
+/// Error of writing an asset.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
-    /// The file could not be written; what stood there before still does.
-    #[error("cannot write {}: {error}; the file was left as it was", .path.display())]
+    /// The file could not be written; an existing file is unchanged.
+    #[error("cannot write {}: {error}; the file is unchanged", .path.display())]
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         #[source]
         error: io::Error,
     },
     /// The asset breaks a rule of the format.
     #[error("the asset breaks the format's rules: {}", summary(.findings))]
     Invalid {
-        /// Everything that was found, errors and others.
+        /// All findings, errors and others.
         findings: Vec<Finding>,
     },
-    /// A parameter cannot be stored the way its field says.
+    /// A parameter does not fit its field's store.
     #[error(
-        "parameter {field}[{index}] is {value}, and its store holds {low} to {high}; \
+        "parameter {field}[{index}] is {value} and its store holds {low} to {high}; \
          bring the value into that range or choose another store"
     )]
     OutOfRange {
         /// Name of the field.
         field: String,
-        /// Place in the field; 0 for a scalar.
+        /// Index in the field; 0 for a scalar.
         index: usize,
         /// The value.
         value: f64,
@@ -63,34 +63,34 @@ pub enum WriteError {
         /// Greatest value the store holds.
         high: f64,
     },
-    /// A flat array does not follow its fields.
+    /// A flat array does not match its fields.
     #[error(
-        "the flat parameters do not follow the fields: {problem}; give each scalar one value \
+        "the flat parameters do not match the fields: {problem}; give each scalar one value \
          and each list its length and then its values"
     )]
     Layout {
-        /// Which field, and how.
+        /// The field, and what is wrong with it.
         problem: String,
     },
-    /// The arrays beside the manifest do not match it.
+    /// An array beside the manifest has the wrong length.
     #[error("{what}: {got} given and the manifest has {expected}; make them agree")]
     Count {
-        /// Which array.
+        /// The array.
         what: String,
-        /// Entries the manifest asks for.
+        /// Entries that the manifest asks for.
         expected: usize,
-        /// Entries there are.
+        /// Entries that were given.
         got: usize,
     },
-    /// The archive or the manifest could not be made.
-    #[error("cannot make the archive: {problem}")]
+    /// The archive or the manifest could not be encoded.
+    #[error("cannot encode the archive: {problem}")]
     Archive {
-        /// What the encoder said.
+        /// The encoder's message.
         problem: String,
     },
 }
 
-/// The first errors of a list, in words.
+/// Formats the first errors of a list as one line.
 pub fn summary(findings: &[Finding]) -> String {
     let errors = || findings.iter().filter(|f| f.severity == Severity::Error);
     let mut text: Vec<String> = errors().take(SHOWN).map(ToString::to_string).collect();

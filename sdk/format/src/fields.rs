@@ -1,4 +1,4 @@
-//! Stored fields, matched by name to a model's.
+//! Matching of stored fields to a model's fields, by name.
 
 use htex_model::{Descriptor, Kind};
 use semver::Version;
@@ -8,36 +8,35 @@ use crate::report::Findings;
 use crate::rules as rule;
 use crate::{Field, Manifest, Representation, Rule, WriteError};
 
-/// A stored field that the model does not have, or reads otherwise, or one of the model's that is
-/// not stored.
+/// A difference between the stored fields and the model's fields.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FieldMismatch {
     /// The model has no field of this name.
-    #[error("{name:?} is no field of the model, which has {there}")]
+    #[error("the model has no field {name:?}; its fields are {there}")]
     Unknown {
-        /// Place among the stored fields.
+        /// Index among the stored fields.
         index: usize,
         /// The stored name.
         name: String,
         /// The names of the model's fields.
         there: String,
     },
-    /// A list is stored where the model takes one number, or the other way round.
-    #[error("{name:?} is stored as {stored} and the model takes {wanted}")]
+    /// A list is stored where the model has a scalar, or the reverse.
+    #[error("{name:?} is stored as {stored} and the model expects {wanted}")]
     Kind {
-        /// Place among the stored fields.
+        /// Index among the stored fields.
         index: usize,
         /// Its name.
         name: String,
         /// What is stored.
         stored: &'static str,
-        /// What the model takes.
+        /// What the model expects.
         wanted: &'static str,
     },
-    /// The unit is another one.
-    #[error("{name:?} is stored {} and the model takes it {}", words(.stored), words(.wanted))]
+    /// The stored unit is not the model's.
+    #[error("{name:?} is stored {} and the model expects it {}", words(.stored), words(.wanted))]
     Unit {
-        /// Place among the stored fields.
+        /// Index among the stored fields.
         index: usize,
         /// Its name.
         name: String,
@@ -46,7 +45,7 @@ pub enum FieldMismatch {
         /// The model's unit; empty for a pure number.
         wanted: String,
     },
-    /// A field of the model, without a default, is not stored.
+    /// A field that the model has, without a default, is not stored.
     #[error("the model's field {name:?} is not stored")]
     Missing {
         /// Its name.
@@ -70,7 +69,7 @@ impl FieldMismatch {
 
     fn remedy(&self) -> &'static str {
         match self {
-            Self::Unknown { .. } => "use the model's name, or take the field out",
+            Self::Unknown { .. } => "use the model's name, or remove the field",
             Self::Kind { .. } => "correct `list` and fit again",
             Self::Unit { .. } => "correct `unit`, and the numbers with it",
             Self::Missing { .. } => "fit again",
@@ -87,7 +86,7 @@ impl FieldMismatch {
     }
 }
 
-/// Where the fields of a model come from in the parameters of an asset.
+/// The order in which a model's fields are taken from the parameters of an asset.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FieldOrder<'a> {
     stored: &'a [Field],
@@ -96,16 +95,16 @@ pub struct FieldOrder<'a> {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Part {
-    /// A place among the stored fields.
+    /// Index among the stored fields.
     Stored(usize),
-    /// The model's default: the asset is older than the field.
+    /// The model's default, for an asset older than the field.
     Default(f64),
 }
 
-/// Matches stored fields to a model's by their names; the order may be another one.
+/// Matches stored fields to a model's by name, in any order.
 ///
 /// # Errors
-/// Every mismatch, those of stored fields first, in their order.
+/// Every mismatch: those of stored fields first, in their order.
 pub fn match_fields<'a>(
     stored: &'a [Field],
     model: &Descriptor,
@@ -167,13 +166,13 @@ fn kind(list: bool) -> &'static str {
     if list { "a list" } else { "one number" }
 }
 
-/// A descriptor's unit as an asset stores it: empty for a pure number.
+/// Converts a descriptor's unit to an asset's: empty for a pure number.
 pub fn stored_unit(unit: &str) -> &str {
     if unit == "1" { "" } else { unit }
 }
 
 impl FieldOrder<'_> {
-    /// A flat array of the stored fields as the model takes it.
+    /// Rearranges a flat array of the stored fields into the model's order.
     ///
     /// # Errors
     /// [`WriteError::Layout`] when the array does not follow the stored fields.
@@ -196,10 +195,10 @@ impl FieldOrder<'_> {
     }
 }
 
-/// The description of a model that can play a representation, where the reader has one.
+/// Returns the descriptor of the model that plays a representation, if the reader has it.
 pub type KnownModel<'a> = &'a dyn Fn(&Representation) -> Option<&'a Descriptor>;
 
-/// Adds a finding for each field that does not agree with its model's, where that is known.
+/// Adds a finding for each field that does not match its model's, for the models that are known.
 pub(crate) fn check_fields(manifest: &Manifest, known: KnownModel<'_>, findings: &mut Findings) {
     for (i, representation) in manifest.representations.iter().enumerate() {
         let Some(model) = known(representation) else {
@@ -216,7 +215,7 @@ pub(crate) fn check_fields(manifest: &Manifest, known: KnownModel<'_>, findings:
     }
 }
 
-/// Whether an asset's version of a model is newer than the known one, and may have more fields.
+/// Whether an asset was fitted by a newer version of a model than the known one, which may have more fields.
 fn is_newer(fitted: &str, known: &str) -> bool {
     let [fitted, known] = [fitted, known].map(|version| Version::parse(version).ok());
     fitted > known

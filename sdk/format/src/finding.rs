@@ -1,11 +1,11 @@
-//! What validation has to say.
+//! Findings of validation.
 
 use std::fmt;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How bad a finding is.
+/// Severity of a finding.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
 )]
@@ -13,27 +13,27 @@ use serde::{Deserialize, Serialize};
 pub enum Severity {
     /// The asset cannot be used.
     Error,
-    /// It can, but something is probably not as meant.
+    /// The asset can be used, but probably contains a mistake.
     Warning,
-    /// Worth knowing.
+    /// Information that needs no action.
     Info,
 }
 
-/// One finding.
+/// A finding of validation.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Finding {
-    /// Stable name of the rule.
+    /// Stable code of the rule.
     #[schemars(regex(pattern = "^[A-Z][A-Z0-9_]*$"))]
     pub code: String,
-    /// How bad it is.
+    /// Severity.
     pub severity: Severity,
     /// JSON pointer into the manifest; empty for the file as a whole.
     #[schemars(regex(pattern = "^(/([^~/]|~[01])*)*$"))]
     pub pointer: String,
-    /// What, where, and what to do.
+    /// What is wrong, where, and what to do.
     pub message: String,
-    /// The rule of a JSON Schema that says the same: the schema's file, `#` and a JSON pointer into
-    /// it. Only a validator that holds documents to schemas gives it.
+    /// The keyword of a JSON Schema that the document breaks: the schema's file, `#` and a JSON pointer into
+    /// it. Only validators that check documents against schemas set it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = "#"))]
     pub schema_rule: Option<String>,

@@ -1,4 +1,4 @@
-//! JSON texts in which no key stands twice.
+//! JSON texts without duplicate keys.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -9,26 +9,31 @@ use serde_json::{Map, Number, Value};
 
 use crate::pointer::Place;
 
-/// Parses a JSON text, within the parser's own limit of depth (128).
+/// Parses a JSON text that nests at most 128 deep, the parser's own limit.
 ///
 /// # Errors
-/// When it is not JSON, or a key stands twice in an object.
+/// When the text is not JSON or a key appears twice in an object.
+///
+/// ```
+/// assert!(htex_format::parse_json(br#"{ "a": 1, "b": 1 }"#).is_ok());
+/// assert!(htex_format::parse_json(br#"{ "a": 1, "a": 1 }"#).is_err());
+/// ```
 pub fn parse_json(bytes: &[u8]) -> Result<Value, String> {
     parse(bytes).map_err(|error| match error {
         TextError::Syntax(error) => format!("it is not JSON: {error}"),
-        TextError::Twice(pointer) => format!("the key {pointer} stands twice"),
+        TextError::Twice(pointer) => format!("the key {pointer} appears twice"),
     })
 }
 
-/// Why a text is no document.
+/// Errors of parsing a JSON text.
 pub(crate) enum TextError {
-    /// It is not JSON.
+    /// The text is not JSON.
     Syntax(serde_json::Error),
-    /// The key at this pointer stands twice in its object.
+    /// The key at this pointer appears twice in its object.
     Twice(String),
 }
 
-/// Parses a text; programs differ in which of two like keys they take, so none may stand twice.
+/// Parses a text. Programs differ in which of two equal keys they use, so duplicates are refused.
 pub(crate) fn parse(bytes: &[u8]) -> Result<Value, TextError> {
     let twice = RefCell::new(None);
     let mut json = serde_json::Deserializer::from_slice(bytes);
@@ -44,7 +49,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Value, TextError> {
     })
 }
 
-/// A value at a place; what stands twice is noted before the parser stops.
+/// A value at a place. A duplicate key is recorded before the parser stops.
 #[derive(Clone, Copy)]
 struct Strict<'p> {
     place: &'p Place<'p>,
@@ -115,7 +120,7 @@ impl<'de> Visitor<'de> for Strict<'_> {
                 Entry::Occupied(entry) => {
                     let place = Place::Key(self.place, entry.key());
                     self.twice.replace(Some(place.pointer()));
-                    return Err(A::Error::custom("a key stands twice"));
+                    return Err(A::Error::custom("a key appears twice"));
                 }
                 Entry::Vacant(entry) => {
                     let place = &Place::Key(self.place, entry.key());

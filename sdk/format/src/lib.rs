@@ -1,7 +1,15 @@
-//! The `.htex` container: types, reading, writing, validation.
+//! The `.htex` container: types, reader, writer, validator.
 //!
-//! `spec/htex-1.md` is the normative text. This crate knows no signal processing, and of models no
-//! more than their descriptors.
+//! `spec/htex-1.md` is the normative text. This crate does no signal processing and loads no model:
+//! of a model it uses only the descriptor.
+//!
+//! ```
+//! use htex_format::{Limits, validate};
+//!
+//! let report = validate(b"not an asset", &Limits::default());
+//! assert!(!report.valid);
+//! assert_eq!(report.findings[0].code, "ARCHIVE_INVALID");
+//! ```
 #![forbid(unsafe_code)]
 
 mod archive;

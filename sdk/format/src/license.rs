@@ -5,17 +5,24 @@ use spdx::{Expression, ParseMode};
 use crate::Rule;
 use crate::rules as rule;
 
-/// The standard's grammar and list; ids that the list has retired are still licences.
+/// The standard's grammar and list; deprecated ids are still licences.
 const LISTED: ParseMode = ParseMode {
     allow_deprecated: true,
     ..ParseMode::STRICT
 };
 
-/// Holds a text to the grammar of SPDX licence expressions and to the list of licences.
+/// Checks a text against the grammar of SPDX licence expressions and the list of licences.
 ///
 /// # Errors
-/// The rule it breaks, and what is wrong: an error of grammar, a warning for an id that is not in
+/// The broken rule and a message: an error for wrong grammar, a warning for an id that is not in
 /// the list (which grows).
+///
+/// ```
+/// use htex_format::check_license;
+/// assert!(check_license("MIT OR Apache-2.0").is_ok());
+/// let (rule, _) = check_license("CC-BY-9.0").expect_err("there is no such licence");
+/// assert_eq!(rule.code, "LICENSE_UNKNOWN");
+/// ```
 pub fn check_license(license: &str) -> Result<(), (&'static Rule, String)> {
     let Err(unlisted) = Expression::parse_mode(license, LISTED) else {
         return Ok(());
@@ -35,7 +42,7 @@ pub fn check_license(license: &str) -> Result<(), (&'static Rule, String)> {
         }
         Err(error) => {
             let message = format!(
-                "{license:?} is no SPDX expression ({}); write one like CC-BY-4.0",
+                "{license:?} is not an SPDX expression ({}); write one like CC-BY-4.0",
                 error.reason
             );
             Err((rule::LICENSE_INVALID, message))

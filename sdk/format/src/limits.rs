@@ -1,6 +1,6 @@
-//! How much a reader takes from a file it does not trust.
+//! Limits on files that are not trusted.
 
-/// Caps, each applied before the bytes it bounds are read or unpacked.
+/// Limits of reading, each checked before the bytes it bounds are read or unpacked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
     /// Bytes of the file: 16 MiB.
@@ -11,10 +11,10 @@ pub struct Limits {
     pub entry_bytes: u64,
     /// Bytes of all entries together when unpacked: 16 MiB.
     pub total_bytes: u64,
-    /// Unpacked bytes of an entry for each packed byte: 200.
+    /// Ratio of unpacked to packed bytes of an entry: 200.
     pub ratio: u64,
-    /// Depth of arrays and objects within one another in the manifest: 32. More than 100 is
-    /// refused by the JSON parser itself.
+    /// Nesting depth of the manifest's arrays and objects: 32. The JSON parser itself refuses
+    /// more than 100.
     pub json_depth: usize,
     /// Numbers in all parameter blocks and the reference together: 1,048,576.
     pub values: usize,

@@ -1,6 +1,6 @@
-//! `manifest.json`: everything an asset says in words and single numbers.
+//! `manifest.json`: the metadata of an asset.
 //!
-//! Keys that are absent or empty are left out when written. Keys this version does not know are
+//! Absent and empty keys are left out when the manifest is written. Keys that this version does not know are
 //! kept and written back ([`Manifest::other`]).
 
 use std::collections::BTreeMap;
@@ -14,13 +14,13 @@ use crate::schema_words::{
     DOI, ENTRY_NAME, MODEL_ID, SEMANTIC_VERSION, open_variants, own_entries, quantities_and_units,
 };
 
-/// The newest version of the format that this crate knows. It writes the lowest that has the keys of an asset:
-/// [`Manifest::declare_version`].
+/// The newest version of the format that this crate supports. The writer declares the lowest version that has all
+/// keys of the asset: [`Manifest::declare_version`].
 pub const VERSION: &str = "1.1";
-/// The first version: what an asset is of that has no later keys.
+/// The first version of the format; an asset without later keys declares it.
 pub const FIRST_VERSION: &str = "1.0";
 
-/// The asset: one surface.
+/// The manifest of an asset: one surface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(extend("oneOf" = quantities_and_units()))]
 pub struct Manifest {
@@ -34,47 +34,47 @@ pub struct Manifest {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1))]
     pub license: Option<String>,
-    /// Who made it.
+    /// Author of the asset.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub author: Option<String>,
-    /// Words to find it by.
+    /// Search terms.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
-    /// What the surface is, in words (1.1).
+    /// Description of the surface (1.1).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
-    /// Where the recordings come from: a dataset, a laboratory, an address (1.1).
+    /// Origin of the recordings: a dataset, a laboratory, an address (1.1).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
     /// DOI of the recordings or of the paper that describes them, without `https://doi.org/` (1.1).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = DOI))]
     pub doi: Option<String>,
-    /// What measured the signal: the kind and the model of the sensor (1.1).
+    /// Kind and model of the sensor (1.1).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sensor: Option<String>,
     /// What slid over the surface: a bare finger, an artificial fingertip, a tool (1.1).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub finger: Option<String>,
-    /// What the samples mean.
+    /// Physical quantity of the samples.
     pub quantity: Quantity,
-    /// Their unit: [`Quantity::unit`].
+    /// Unit of the samples: [`Quantity::unit`].
     pub unit: String,
-    /// The band the spectra cover.
+    /// Frequency band of the spectra.
     pub band: Band,
-    /// Where the asset comes from.
+    /// How the asset was made.
     #[serde(default, skip_serializing_if = "Provenance::is_empty")]
     pub provenance: Provenance,
-    /// The exploration conditions the texture is known at.
+    /// The conditions (speed and force) at which the texture was recorded.
     #[schemars(length(min = 1), extend("uniqueItems" = true))]
     pub conditions: Vec<Condition>,
-    /// The texture's spectrum, once for each model.
+    /// The texture's spectrum, once per model.
     #[schemars(length(min = 1), extend("uniqueItems" = true))]
     pub representations: Vec<Representation>,
-    /// The recorded spectra themselves.
+    /// The recorded spectra.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reference: Option<Reference>,
-    /// Models the asset brings along, for players that do not have them.
+    /// Embedded models, for players that do not have them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("uniqueItems" = true))]
     pub plugins: Vec<Plugin>,
@@ -106,7 +106,7 @@ impl Manifest {
     }
 }
 
-/// A frequency band, inclusive.
+/// A frequency band, edges included.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Band {
     /// Lower edge, hertz, above 0.
@@ -117,22 +117,22 @@ pub struct Band {
     pub high_hz: f64,
 }
 
-/// Where an asset comes from.
+/// How an asset was made.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Provenance {
     /// Program and version that wrote it.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub tool: String,
-    /// True when a recording comes from a simulator and not from a finger.
+    /// True when a recording comes from a simulator instead of a finger.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub simulated: bool,
-    /// The recordings it was made from.
+    /// The recordings that the asset was fitted to.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub recordings: Vec<Source>,
-    /// Options that were not left at their defaults.
+    /// Options that differ from their defaults.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub options: BTreeMap<String, String>,
-    /// What its author was warned of.
+    /// Warnings that the author was given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
 }
@@ -151,11 +151,11 @@ pub struct Source {
     /// Sampling rate, hertz.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub rate_hz: f64,
-    /// How many segments of it were averaged.
+    /// Number of segments that were averaged.
     pub segments: u64,
 }
 
-/// An exploration condition; what is absent is not known.
+/// An exploration condition; an absent value is unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Condition {
     /// Scanning speed, mm/s, not negative.
@@ -166,24 +166,24 @@ pub struct Condition {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub force_n: Option<f64>,
-    /// Nine-band RMS difference between odd and even segments, decibels.
+    /// RMS difference between odd and even segments in nine bands, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub repeatability_rms_db: Option<f64>,
 }
 
-/// Speeds, or forces, that differ by at most this part of the larger one are the same: a hand that is asked to
-/// keep a speed or a force comes no nearer to it.
+/// Largest relative difference of two speeds, or two forces, that count as the same: a hand asked to keep a speed
+/// or a force is no more accurate.
 pub const SAME_CONDITION: f64 = 0.05;
 
 impl Condition {
-    /// Whether two speeds, or two forces, are the same within [`SAME_CONDITION`]; both not negative.
+    /// Whether two speeds, or two forces, are the same within [`SAME_CONDITION`]. Both must not be negative.
     pub fn is_same(a: f64, b: f64) -> bool {
         (a - b).abs() <= SAME_CONDITION * a.max(b)
     }
 }
 
-/// One model's account of the texture.
+/// The texture as one model describes it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Representation {
     /// Reverse-DNS id of the model.
@@ -195,7 +195,7 @@ pub struct Representation {
     /// Parameter fields, in the order of the flat array.
     #[schemars(extend("uniqueItems" = true))]
     pub fields: Vec<Field>,
-    /// The conditions it is fitted at, in the order of the parameter block.
+    /// The conditions at which the model is fitted, in the order of the parameter block.
     #[schemars(length(min = 1), extend("uniqueItems" = true))]
     pub at: Vec<AtCondition>,
     /// Archive entry that holds the parameter block.
@@ -203,7 +203,7 @@ pub struct Representation {
     pub parameters: String,
 }
 
-/// A parameter field and the way it is stored.
+/// A parameter field and its storage.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Field {
     /// Name, as in the model's descriptor.
@@ -212,15 +212,15 @@ pub struct Field {
     /// Unit symbol; a pure number has none.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub unit: String,
-    /// A list of numbers instead of one.
+    /// Whether the field is a list of numbers instead of one.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub list: bool,
-    /// How each number is stored.
+    /// Storage of each number.
     #[serde(default, skip_serializing_if = "Store::is_f64")]
     pub store: Store,
 }
 
-/// How a number is stored. The integer kinds stand for `offset + scale·q`, or with `log` for
+/// Storage of a number. The integer kinds hold `q` for the value `offset + scale·q`, or with `log`
 /// `exp(offset + scale·q)`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
@@ -235,11 +235,11 @@ pub enum Store {
     U16(Steps),
     /// 8-bit steps.
     U8(Steps),
-    /// 8-bit steps of a list, by their differences: fewer bits where neighbours are alike.
+    /// 8-bit steps of a list, stored as differences: fewer bits where neighbours are similar.
     Packed(Steps),
 }
 
-/// Steps of an integer store.
+/// Step size and offset of an integer store.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Steps {
     /// Size of a step, above 0.
@@ -248,7 +248,7 @@ pub struct Steps {
     /// Value at `q = 0`.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub offset: f64,
-    /// Steps in the natural logarithm.
+    /// Whether the steps are in the natural logarithm.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub log: bool,
 }
@@ -268,67 +268,67 @@ fn is_zero(x: &f64) -> bool {
 pub struct AtCondition {
     /// Index into the asset's conditions.
     pub condition: usize,
-    /// RMS of the fitted spectrum in the band, in the asset's unit; the parameters are a shape of
+    /// RMS of the fitted spectrum in the band, in the asset's unit; the parameters describe a shape of
     /// unit RMS.
     #[schemars(range(min = 0))]
     pub level_rms: f64,
-    /// How near it comes to the recording.
+    /// Agreement with the recording.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quality: Option<Quality>,
 }
 
-/// Agreement with the recorded spectrum, from the model's magnitudes unless said otherwise.
+/// Agreement with the recorded spectrum, of the model's magnitudes unless stated otherwise.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Quality {
     /// Pearson correlation of the linear magnitudes, -1 to 1.
     #[schemars(range(min = -1, max = 1))]
     pub spectral_correlation: f64,
-    /// Energy over the recording's in nine bands, decibels.
+    /// Energy relative to the recording's in nine bands, decibels.
     #[schemars(length(equal = 9))]
     pub band_error_db: Vec<f64>,
-    /// RMS of the nine.
+    /// RMS of the nine band errors, decibels.
     #[schemars(range(min = 0))]
     pub band_error_rms_db: f64,
-    /// RMS of the nine after one gain that equalises the total energy.
+    /// RMS of the nine band errors after one gain that equalises the total energy, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub band_error_matched_rms_db: Option<f64>,
     /// RMS error over third-octave bands, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub third_octave_error_rms_db: Option<f64>,
-    /// RMS over the bins of the decibels between the magnitudes.
+    /// RMS over the bins of the difference of the magnitudes in decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub log_spectral_distance_db: Option<f64>,
     /// Spectral correlation of rendered samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -1, max = 1))]
     pub samples_spectral_correlation: Option<f64>,
-    /// Nine-band RMS of rendered samples.
+    /// Nine-band RMS error of rendered samples, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub samples_band_error_rms_db: Option<f64>,
-    /// Third-octave error of rendered samples.
+    /// Third-octave error of rendered samples, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples_third_octave_error_rms_db: Option<f64>,
-    /// Log-spectral distance of rendered samples.
+    /// Log-spectral distance of rendered samples, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples_log_spectral_distance_db: Option<f64>,
-    /// Nine-band RMS between the spectra of the fitted and of the stored parameters.
+    /// Nine-band RMS difference between the spectra of the fitted and of the stored parameters, decibels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub rounding_error_db: Option<f64>,
 }
 
-/// Where the recorded spectra are kept.
+/// The entry of the recorded spectra.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reference {
-    /// Archive entry: one array of 32-bit floats a condition, on the band's 5 Hz grid, in
+    /// Archive entry: one array of 32-bit floats per condition, on the band's 5 Hz grid, in
     /// the asset's unit.
     #[schemars(regex(pattern = ENTRY_NAME), extend("not" = own_entries()))]
     pub file: String,
 }
 
-/// A model's WASM module inside the asset.
+/// An embedded WASM module of a model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Plugin {
     /// Reverse-DNS id of the model.
@@ -343,7 +343,7 @@ pub struct Plugin {
     /// BLAKE3 of the module, 64 lower-case hexadecimal digits.
     #[schemars(regex(pattern = "^[0-9a-f]{64}$"))]
     pub blake3: String,
-    /// Who vouches for it.
+    /// Signature of the module's author.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub signature: Option<Signature>,
 }

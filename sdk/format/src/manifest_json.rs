@@ -1,4 +1,4 @@
-//! From the bytes of `manifest.json` to a manifest.
+//! Parser of `manifest.json`.
 
 use serde_json::Value;
 
@@ -27,7 +27,7 @@ const DOCUMENT: Document = Document {
     },
 };
 
-/// Reads a manifest; none when a finding says why not.
+/// Parses a manifest. Returns `None` after adding a finding that says why.
 pub(crate) fn parse(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> Option<Manifest> {
     let opened = DOCUMENT.open(bytes, limits.json_depth, findings)?;
     check_quantity(&opened.value, findings)?;
@@ -45,7 +45,7 @@ pub(crate) fn parse(bytes: &[u8], limits: &Limits, findings: &mut Findings) -> O
     Some(manifest)
 }
 
-/// None when the quantity has a name that this version does not know.
+/// Returns `None` when this version does not know the quantity.
 fn check_quantity(manifest: &Value, findings: &mut Findings) -> Option<()> {
     let Some(Value::String(name)) = manifest.get("quantity") else {
         return Some(());
@@ -55,7 +55,7 @@ fn check_quantity(manifest: &Value, findings: &mut Findings) -> Option<()> {
     }
     let names: Vec<&str> = Quantity::ALL.iter().map(|q| q.name()).collect();
     let names = names.join(", ");
-    let message = format!("{name:?} is no quantity of version 1; it has {names}");
+    let message = format!("{name:?} is not a quantity of version 1; write one of {names}");
     findings.add(rule::QUANTITY_UNKNOWN, "/quantity", message);
     None
 }

@@ -1,4 +1,4 @@
-//! By which error two spectra are compared.
+//! Measures of the error between two spectra.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Quality;
 
-/// A measure of how far a representation lies from the recording, decibels.
+/// A measure of the error of a representation, decibels.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize, JsonSchema,
 )]
@@ -18,7 +18,7 @@ pub enum ErrorMeasure {
     NineBand,
     /// RMS of the energy errors of third-octave bands.
     ThirdOctave,
-    /// RMS over the bins of the decibels between the magnitudes.
+    /// RMS over the bins of the difference of the magnitudes in decibels.
     LogSpectral,
 }
 
@@ -26,7 +26,7 @@ impl ErrorMeasure {
     /// All measures.
     pub const ALL: [Self; 3] = [Self::NineBand, Self::ThirdOctave, Self::LogSpectral];
 
-    /// The error by this measure, from the model's magnitudes; none if it was not measured.
+    /// Returns the error by this measure, from the model's magnitudes; `None` if it was not measured.
     pub fn of(self, quality: &Quality) -> Option<f64> {
         match self {
             Self::NineBand => Some(quality.band_error_rms_db),
@@ -35,7 +35,7 @@ impl ErrorMeasure {
         }
     }
 
-    /// The name in running text: `nine-band error`.
+    /// Returns the name in running text: `nine-band error`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::NineBand => "nine-band error",

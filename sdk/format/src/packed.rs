@@ -1,26 +1,26 @@
-//! Lists of steps, packed: the first step, and then the differences in Rice's code.
+//! Packed lists of steps: the first step, then the differences in a Rice code.
 //!
-//! Steps that change little from one to the next take two to five bits each. The code has one
-//! form for a list, so a block comes back byte for byte.
+//! Steps with small differences take two to five bits each. Each list has exactly one code, so a
+//! block that is read and written again has the same bytes.
 
-/// Bits of the parameter `k`.
+/// Bits of the Rice parameter `k`.
 const PARAMETER_BITS: u32 = 3;
 /// Bits of the first step.
 const FIRST_BITS: u32 = 8;
-/// Largest folded difference of two steps.
+/// Largest folded difference between two steps.
 const MOST: u32 = 2 * u8::MAX as u32;
 
-/// The most steps that so many bytes can hold: a difference takes a bit or more.
+/// Returns the most steps that fit into the given bytes: a difference takes at least one bit.
 pub(crate) fn most_steps(bytes: usize) -> usize {
     bytes.saturating_mul(8)
 }
 
-/// Bytes of the packed list.
+/// Returns the bytes of the packed list.
 pub(crate) fn packed_bytes(steps: &[u8]) -> usize {
     bits(steps, parameter(steps)).div_ceil(8)
 }
 
-/// Packs a list; an empty one takes no byte.
+/// Packs a list; an empty list takes no bytes.
 pub(crate) fn pack(steps: &[u8]) -> Vec<u8> {
     let Some(&first) = steps.first() else {
         return Vec::new();
@@ -37,8 +37,8 @@ pub(crate) fn pack(steps: &[u8]) -> Vec<u8> {
     out.bytes
 }
 
-/// The `count` steps at the head of `bytes`, and the bytes they take; none where the bytes end too early
-/// or are not what [`pack`] writes.
+/// Unpacks `count` steps from the start of `bytes` and returns them with the bytes they take. Returns `None` when
+/// the bytes end too early or differ from what [`pack`] writes.
 pub(crate) fn unpack(bytes: &[u8], count: usize) -> Option<(Vec<u8>, usize)> {
     if count == 0 {
         return Some((Vec::new(), 0));
@@ -63,7 +63,7 @@ pub(crate) fn unpack(bytes: &[u8], count: usize) -> Option<(Vec<u8>, usize)> {
     (parameter(&steps) == k && reader.rest_is_zero()).then_some((steps, used))
 }
 
-/// The parameter of fewest bits, the least of several.
+/// Returns the Rice parameter with the fewest bits, the smallest of several.
 fn parameter(steps: &[u8]) -> u32 {
     let all = 0..1 << PARAMETER_BITS;
     all.min_by_key(|&k| bits(steps, k)).unwrap_or(0)
@@ -77,7 +77,7 @@ fn bits(steps: &[u8], k: u32) -> usize {
     }
 }
 
-/// Differences of neighbours, folded to 0, 1, 2, 3, ... for 0, -1, 1, -2, ...
+/// Returns the differences between neighbours, folded to 0, 1, 2, 3, ... for 0, -1, 1, -2, ...
 fn differences(steps: &[u8]) -> impl Iterator<Item = u32> {
     steps.windows(2).map(|pair| {
         let difference = i32::from(pair[1]) - i32::from(pair[0]);
@@ -89,11 +89,11 @@ fn unfold(z: u32) -> i32 {
     (z >> 1) as i32 ^ -((z & 1) as i32)
 }
 
-/// Bits into bytes, the most significant first.
+/// Writer of bits, the most significant first.
 #[derive(Default)]
 struct Writer {
     bytes: Vec<u8>,
-    /// Bits of the last byte that are taken.
+    /// Used bits of the last byte.
     taken: u32,
 }
 
@@ -114,7 +114,7 @@ impl Writer {
 
 struct Reader<'a> {
     bytes: &'a [u8],
-    /// Bits that are read.
+    /// Number of bits already read.
     at: usize,
 }
 
@@ -129,7 +129,7 @@ impl Reader<'_> {
         Some(value)
     }
 
-    /// Whether the bits that are left of the last byte are zero.
+    /// Whether the remaining bits of the last byte are zero.
     fn rest_is_zero(&mut self) -> bool {
         let left = self.at.next_multiple_of(8) - self.at;
         self.take(left as u32) == Some(0)
@@ -155,13 +155,13 @@ mod tests {
 
     #[test]
     fn other_forms_and_steps_out_of_range_are_refused() {
-        // A set bit behind the last.
+        // A set bit after the last step.
         assert_eq!(unpack(&[0b0001_1111, 0b1110_0001], 1), None);
         // k = 1 where 0 takes fewer bits.
         assert_eq!(unpack(&[0b0011_1111, 0b1110_0000], 1), None);
         // 255 and one more.
         assert_eq!(unpack(&[0b0001_1111, 0b1111_1000], 2), None);
-        // Ones without end.
+        // Endless ones.
         assert_eq!(unpack(&[0xFF; 400], 2), None);
     }
 

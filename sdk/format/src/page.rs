@@ -1,4 +1,4 @@
-//! `spec/validation.md` and `spec/schemas/manifest-1.json`, made from the code.
+//! Generator of `spec/validation.md` and `spec/schemas/manifest-1.json`.
 
 use std::fmt::Write;
 
@@ -13,17 +13,17 @@ Generated from the table of rules in `sdk/format/src/rules.rs` by
 `cargo xtask generate`.
 
 A finding has a code, a severity, a JSON pointer into the manifest (empty for the file as a whole)
-and a message. An asset is valid when no finding is an error. Codes never change their meaning.
-Section 11 of [htex-1.md](htex-1.md) says what a report is.
+and a message. An asset is valid when no finding is an error. The meaning of a code never changes.
+Section 12 of [htex-1.md](htex-1.md) specifies reports.
 
 ## Stages
 
-A reader looks for findings in these stages, in this order. After an error in a stage that ends the
-reading, no finding of a later stage follows.
+A reader goes through these stages in order. After an error in a stage that ends the reading, the later
+stages are skipped.
 
 ";
 
-/// The page that explains every rule: `spec/validation.md`.
+/// Generates the page of all rules: `spec/validation.md`.
 pub fn validation_page() -> String {
     let mut head = format!("{HEAD}| stage | findings | errors end the reading |\n|---|---|---|\n");
     for stage in STAGES {
@@ -36,7 +36,7 @@ pub fn validation_page() -> String {
     rules_page(&head, RULES)
 }
 
-/// A page that explains rules: `head`, a table of all codes, then each rule.
+/// Generates a page of rules: `head`, a table of all codes, then each rule.
 pub fn rules_page(head: &str, rules: &[Rule]) -> String {
     let mut page = format!("{head}\n| code | severity | what was found |\n|---|---|---|\n");
     for rule in rules {
@@ -73,12 +73,12 @@ fn push(page: &mut String, text: std::fmt::Arguments<'_>) {
     let _ = page.write_fmt(text);
 }
 
-/// The JSON Schema of `manifest.json`: `spec/schemas/manifest-1.json`.
+/// Generates the JSON Schema of `manifest.json`: `spec/schemas/manifest-1.json`.
 pub fn manifest_schema() -> Value {
     htex_schema::document::<Manifest>("manifest-1.json", "manifest.json of an htex 1 asset")
 }
 
-/// The JSON Schema of a report of validation: `spec/schemas/report-1.json`.
+/// Generates the JSON Schema of a validation report: `spec/schemas/report-1.json`.
 pub fn report_schema() -> Value {
     htex_schema::document::<FileReport>("report-1.json", "report of validation of an htex file")
 }

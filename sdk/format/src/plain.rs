@@ -1,10 +1,10 @@
-//! Text of a stranger, in a message.
+//! Escaping of untrusted text in messages.
 
 use std::borrow::Cow;
 
-/// The text with its control characters, and those that turn or hide text (marks of direction, of no width, tags, other
-/// line ends), written out (`\u{1b}`): a message that quotes a file must not steer the terminal it is read on, nor show what is
-/// not there.
+/// Escapes control characters and invisible formatting characters (direction marks, zero-width characters, tags, other
+/// line ends) as `\u{1b}`: a message that quotes a file must neither control the terminal nor show text that is not in
+/// the file.
 ///
 /// ```
 /// assert_eq!(htex_format::plain("a\tb\x1b[2J"), r"a\tb\u{1b}[2J");
@@ -24,7 +24,7 @@ pub fn plain(text: &str) -> Cow<'_, str> {
 }
 
 fn steers(c: char) -> bool {
-    // All of Unicode's format characters (Cf) but those that are seen, and the plane of tags and selectors.
+    // All of Unicode's format characters (Cf) except the visible ones, and the plane of tags and selectors.
     let is_mark = matches!(c, '\u{00ad}' | '\u{061c}' | '\u{180e}' | '\u{feff}')
         || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}')
         || matches!(c, '\u{fff9}'..='\u{fffb}' | '\u{1bca0}'..='\u{1bca3}' | '\u{1d173}'..='\u{1d17a}')

@@ -1,16 +1,16 @@
-//! Models inside an asset: their hash, and who vouches for them.
+//! Embedded models: hash and signature.
 
 use ed25519_dalek::{Signature as Ed25519, Signer, SigningKey, VerifyingKey};
 
 use crate::{Plugin, Signature};
 
-/// What every signed text begins with, so that a signature means nothing elsewhere.
+/// Prefix of every signed text, so that a signature is valid for plugins only.
 const DOMAIN: &[u8] = b"htex plugin 1\0";
-/// What every WASM module begins with.
+/// First bytes of every WASM module.
 pub(crate) const WASM_MAGIC: &[u8] = b"\0asm";
 
 impl Plugin {
-    /// The entry of a model's module, unsigned. `version` is the model's.
+    /// Creates the unsigned entry of a model's module. `version` is the model's.
     pub fn new(model: &str, version: &str, module: &[u8]) -> Self {
         Self {
             model: model.to_owned(),
@@ -21,12 +21,12 @@ impl Plugin {
         }
     }
 
-    /// Name of the archive entry of a model's module.
+    /// Returns the name of the archive entry of a model's module.
     pub(crate) fn file_of(model: &str) -> String {
         format!("plugins/{model}.wasm")
     }
 
-    /// Signs with an ed25519 secret key of 32 bytes.
+    /// Signs the entry with an ed25519 secret key of 32 bytes.
     #[must_use]
     pub fn signed(mut self, secret_key: &[u8; 32]) -> Self {
         let key = SigningKey::from_bytes(secret_key);
@@ -37,7 +37,7 @@ impl Plugin {
         self
     }
 
-    /// Whether the signature is that of its public key over this plugin; true without one.
+    /// Whether the signature is valid for its public key and this plugin; true without a signature.
     pub fn is_signature_valid(&self) -> bool {
         let Some(signature) = &self.signature else {
             return true;
@@ -48,7 +48,7 @@ impl Plugin {
             .is_some_and(|(key, made)| key.verify_strict(&self.signed_text(), &made).is_ok())
     }
 
-    /// `htex plugin 1`, the model, the version and the hash, each ended by a zero byte.
+    /// Returns the signed text: `htex plugin 1`, the model, the version and the hash, each followed by a zero byte.
     fn signed_text(&self) -> Vec<u8> {
         let mut text = DOMAIN.to_vec();
         for part in [&self.model, &self.version, &self.blake3] {
@@ -65,7 +65,7 @@ fn to_hex(bytes: &[u8]) -> String {
 
 fn from_hex<const N: usize>(text: &str) -> Option<[u8; N]> {
     let mut bytes = [0; N];
-    // A sign before a digit is a number for the standard library, and no hexadecimal digit.
+    // `from_str_radix` accepts a sign, which is not a hexadecimal digit.
     if text.len() != 2 * N || !text.bytes().all(|b| b.is_ascii_hexdigit()) {
         return None;
     }

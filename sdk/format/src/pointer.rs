@@ -1,6 +1,6 @@
 //! JSON pointers (RFC 6901).
 
-/// A place in a document, as a chain up to its root: it becomes text only where it is needed.
+/// A place in a document, as a chain up to its root. It is formatted only when needed.
 pub(crate) enum Place<'p> {
     /// The whole document.
     Root,
@@ -11,7 +11,7 @@ pub(crate) enum Place<'p> {
 }
 
 impl Place<'_> {
-    /// The pointer to the place; empty for the root.
+    /// Returns the JSON pointer of the place; empty for the root.
     pub(crate) fn pointer(&self) -> String {
         match self {
             Self::Root => String::new(),
@@ -21,7 +21,7 @@ impl Place<'_> {
     }
 }
 
-/// A key as a part of a JSON pointer (RFC 6901, section 3).
+/// Escapes a key for a JSON pointer (RFC 6901, section 3).
 pub fn escape(key: &str) -> String {
     key.replace('~', "~0").replace('/', "~1")
 }

@@ -1,11 +1,11 @@
-//! What the samples of an asset mean.
+//! Physical quantities of an asset's samples.
 
 use std::fmt;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A physical quantity, with the unit it is stored and played in.
+/// A physical quantity, with the unit in which it is stored and played.
 ///
 /// ```
 /// use htex_format::Quantity;
@@ -20,7 +20,7 @@ pub enum Quantity {
     /// Force on the finger or tool along the surface, N.
     #[default]
     LateralForce,
-    /// Force on the finger or tool across the surface, N.
+    /// Force on the finger or tool normal to the surface, N.
     NormalForce,
     /// Acceleration of the finger or tool, m/s².
     Acceleration,
@@ -40,7 +40,7 @@ impl Quantity {
         Self::Displacement,
     ];
 
-    /// Its name in a manifest.
+    /// Returns the name in a manifest.
     pub const fn name(self) -> &'static str {
         match self {
             Self::LateralForce => "lateral_force",
@@ -51,12 +51,12 @@ impl Quantity {
         }
     }
 
-    /// The quantity of a name.
+    /// Returns the quantity with the given name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|q| q.name() == name)
     }
 
-    /// Symbol of its unit, as a manifest writes it.
+    /// Returns the symbol of the unit, as in a manifest.
     pub const fn unit(self) -> &'static str {
         match self {
             Self::LateralForce | Self::NormalForce => "N",
@@ -66,7 +66,7 @@ impl Quantity {
         }
     }
 
-    /// The unit as the end of a name: `n`, `m_s2`, `m_s`, `m`.
+    /// Returns the unit as a suffix of a name: `n`, `m_s2`, `m_s`, `m`.
     pub const fn suffix(self) -> &'static str {
         match self {
             Self::LateralForce | Self::NormalForce => "n",
@@ -76,7 +76,7 @@ impl Quantity {
         }
     }
 
-    /// Its name in a sentence.
+    /// Returns the name in running text.
     pub const fn words(self) -> &'static str {
         match self {
             Self::LateralForce => "lateral force",
@@ -87,7 +87,7 @@ impl Quantity {
         }
     }
 
-    /// A value with its unit and a prefix that leaves one to three digits before the point.
+    /// Formats a value with its unit and an SI prefix that leaves one to three digits before the point.
     ///
     /// ```
     /// use htex_format::Quantity;
@@ -110,8 +110,8 @@ impl Quantity {
         format!("{number:.digits$} {prefix}{}", self.unit())
     }
 
-    /// Largest level (RMS) of an asset, in the unit. Samples are 32-bit numbers in any scene; of
-    /// velocity and displacement the limits are those of a vibration of the largest acceleration at
+    /// Returns the largest level (RMS) of an asset, in the unit: a limit that keeps samples within 32-bit floats in
+    /// any scene. The limits of velocity and displacement are those of a vibration of the largest acceleration at
     /// 20 Hz (8.0e3 m/s and 63 m), rounded up to powers of ten.
     pub const fn largest_level(self) -> f64 {
         match self {

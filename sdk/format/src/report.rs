@@ -1,4 +1,4 @@
-//! What validation finds in a file.
+//! Reports of validation.
 
 use std::collections::BTreeMap;
 
@@ -9,35 +9,35 @@ use crate::plain;
 use crate::rules::{FINDINGS_TRUNCATED, Rule};
 use crate::{Finding, Severity};
 
-/// Findings that are kept; a hostile file could raise millions.
+/// Maximum number of findings in a report; a hostile file could cause millions.
 const KEPT: usize = 100;
 
-/// The outcome of validation.
+/// The result of validation.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Report {
     /// Whether the asset can be used: no finding is an error.
     pub valid: bool,
-    /// Everything found, in the order the file is read.
+    /// All findings, in the order in which the file is read.
     pub findings: Vec<Finding>,
 }
 
-/// The outcome of validation of a file, as `htex validate --json` and the conformance reports write it;
+/// The result of validating a file, as `htex validate --json` and the conformance reports write it;
 /// its schema is `spec/schemas/report-1.json`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct FileReport {
     /// The file.
     pub file: String,
-    /// Whether it can be used: no finding is an error.
+    /// Whether the file can be used: no finding is an error.
     pub valid: bool,
-    /// Everything found, in the order of the stages.
+    /// All findings, in the order of the stages.
     pub findings: Vec<Finding>,
-    /// Limits other than the defaults, by name.
+    /// Limits that differ from the defaults, by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub limits: BTreeMap<String, u64>,
 }
 
 impl Report {
-    /// The report with the name of its file.
+    /// Adds the name of the file.
     pub fn of_file(self, file: &str) -> FileReport {
         FileReport {
             file: file.to_owned(),
@@ -48,7 +48,17 @@ impl Report {
     }
 }
 
-/// Findings while they are collected; the first hundred are kept.
+/// A collector of findings that keeps the first hundred.
+///
+/// ```
+/// use htex_format::{Findings, explain};
+///
+/// let mut findings = Findings::default();
+/// let rule = explain("LICENSE_MISSING").expect("the rule exists");
+/// findings.add(rule, "", "there is no license; add an SPDX expression".to_owned());
+/// assert!(!findings.has_errors());
+/// assert_eq!(findings.into_list().len(), 1);
+/// ```
 #[derive(Debug, Default)]
 pub struct Findings {
     kept: Vec<Finding>,
@@ -57,8 +67,8 @@ pub struct Findings {
 }
 
 impl Findings {
-    /// Adds a finding: the rule that is broken, where (a JSON pointer; empty for the whole), and
-    /// what, where, and what to do.
+    /// Adds a finding: the broken rule, a JSON pointer (empty for the whole document), and a message that says
+    /// what is wrong, where, and what to do.
     pub fn add(&mut self, rule: &Rule, pointer: impl Into<String>, message: String) {
         self.errors |= rule.severity == Severity::Error;
         if self.kept.len() < KEPT {
@@ -81,12 +91,12 @@ impl Findings {
         }
     }
 
-    /// Whether one of them is an error.
+    /// Whether a finding is an error.
     pub fn has_errors(&self) -> bool {
         self.errors
     }
 
-    /// All that were kept, and how many were not.
+    /// Returns the findings; a last one states how many were dropped.
     pub fn into_list(mut self) -> Vec<Finding> {
         if self.dropped > 0 {
             let message = format!("{} more findings are not shown", self.dropped);

@@ -1,11 +1,11 @@
-//! How the manifest's numbers are shortened when an asset is written.
+//! Rounding of the manifest's numbers when an asset is written.
 
 use crate::Manifest;
 use crate::manifest::{AtCondition, Quality};
 
 impl Manifest {
-    /// The manifest as it will be read back: agreement and repeatability to four decimals, levels to
-    /// nine significant digits. What is rounded once does not change again.
+    /// Returns the manifest as it is read back: agreement and repeatability to four decimals, levels to
+    /// nine significant digits. Rounding again changes nothing.
     pub fn rounded(&self) -> Self {
         let mut rounded = self.clone();
         for condition in &mut rounded.conditions {
@@ -60,7 +60,7 @@ fn four_decimals<'a>(numbers: impl Iterator<Item = &'a mut f64>) {
     }
 }
 
-/// The number a text stands for, without a negative zero; `otherwise` when it is not finite.
+/// Parses a number and removes a negative zero; returns `otherwise` when it is not finite.
 fn reread(text: &str, otherwise: f64) -> f64 {
     match text.parse::<f64>() {
         Ok(number) if number.is_finite() => number + 0.0,

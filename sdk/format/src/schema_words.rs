@@ -1,4 +1,4 @@
-//! What the manifest's JSON Schema says beyond types: patterns, and values that belong together.
+//! Parts of the manifest's JSON Schema beyond types: patterns, and values that depend on each other.
 
 use schemars::Schema;
 use serde_json::{Value, json};
@@ -6,28 +6,28 @@ use serde_json::{Value, json};
 use crate::Quantity;
 use crate::validate::{MANIFEST, MIMETYPE};
 
-/// A model's id, as [`htex_model::is_model_id`] has it.
+/// Pattern of a model's id, as [`htex_model::is_model_id`] checks it.
 pub(crate) const MODEL_ID: &str = r"^[a-z0-9_-]+(\.[a-z0-9_-]+){2,}$";
 
-/// A semantic version (semver.org).
+/// Pattern of a semantic version (semver.org).
 pub(crate) const SEMANTIC_VERSION: &str = concat!(
     r"^(0|[1-9][0-9]*)\.(0|[1-9][0-9]*)\.(0|[1-9][0-9]*)",
     r"(-(0|[1-9][0-9]*|[0-9]*[a-zA-Z-][0-9a-zA-Z-]*)(\.(0|[1-9][0-9]*|[0-9]*[a-zA-Z-][0-9a-zA-Z-]*))*)?",
     r"(\+[0-9a-zA-Z-]+(\.[0-9a-zA-Z-]+)*)?$"
 );
 
-/// A DOI, as [`crate::check_doi`] has it.
+/// Pattern of a DOI, as [`crate::check_doi`] checks it.
 pub(crate) const DOI: &str = r"^10\.[0-9]{4,9}(\.[0-9]+)*/[!-~]+$";
 
-/// The name of an entry: parts of ASCII characters from space to `~`, without `\\`, `:` and `/`.
+/// Pattern of an entry's name: parts of ASCII characters from space to `~`, without `\\`, `:` and `/`.
 pub(crate) const ENTRY_NAME: &str = r"^[ -.0-9;-\[\]-~]+(/[ -.0-9;-\[\]-~]+)*$";
 
-/// The names that entries of the container itself have.
+/// Returns the names of the container's own entries.
 pub(crate) fn own_entries() -> Value {
     json!({ "enum": [MIMETYPE, MANIFEST] })
 }
 
-/// Lets other keys stand beside that of a variant: a later minor version may have more.
+/// Allows further keys beside a variant's key: a later minor version may have more.
 pub(crate) fn open_variants(schema: &mut Schema) {
     let variants = schema.get_mut("oneOf").and_then(Value::as_array_mut);
     for variant in variants
@@ -39,7 +39,7 @@ pub(crate) fn open_variants(schema: &mut Schema) {
     }
 }
 
-/// Each quantity with its unit and its largest level.
+/// Returns each quantity with its unit and its largest level.
 pub(crate) fn quantities_and_units() -> Value {
     let pair = |quantity: &Quantity| {
         let level = json!({ "level_rms": { "maximum": quantity.largest_level() } });

@@ -1,17 +1,17 @@
-//! In which order a reader finds what is wrong, and where it stops.
+//! The stages of reading: in which order findings are made, and where reading stops.
 
 /// A stage of reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stage {
-    /// What it looks at.
+    /// What the stage checks.
     pub of: &'static str,
     /// The codes of its findings; a few belong to several stages.
     pub codes: &'static [&'static str],
-    /// Whether the reading ends after it when it found an error.
+    /// Whether reading ends after the stage if it found an error.
     pub ends: bool,
 }
 
-/// All stages of reading an asset, in their order.
+/// All stages of reading an asset, in order.
 pub const STAGES: &[Stage] = &[
     Stage {
         of: "the file, and the end record; the first finding only",
@@ -26,7 +26,7 @@ pub const STAGES: &[Stage] = &[
     },
     Stage {
         of: "the entries' headers, in the directory's order, and then all of them together; after a \
-             record or a local header that is not where it must be, no further one is looked at",
+             record or a local header at a wrong position, no further one is checked",
         codes: &[
             "ENTRY_NAME_UNSAFE",
             "ENTRY_NAME_DUPLICATE",
@@ -75,7 +75,7 @@ pub const STAGES: &[Stage] = &[
         ends: true,
     },
     Stage {
-        of: "keys of no type, by their pointers",
+        of: "unknown keys, sorted by pointer",
         codes: &["JSON_UNKNOWN_KEY"],
         ends: false,
     },
@@ -140,7 +140,7 @@ pub const STAGES: &[Stage] = &[
         ends: false,
     },
     Stage {
-        of: "fields beside those of models that the reader knows: stored fields, then absent ones",
+        of: "fields, compared with those of models that the reader has: stored fields, then absent ones",
         codes: &[
             "FIELD_UNKNOWN",
             "FIELD_KIND_WRONG",
@@ -182,12 +182,12 @@ pub const STAGES: &[Stage] = &[
         ends: false,
     },
     Stage {
-        of: "entries that nothing names, in the directory's order",
+        of: "unreferenced entries, in the directory's order",
         codes: &["ENTRY_UNREFERENCED"],
         ends: false,
     },
     Stage {
-        of: "JSON Schemas, of validators that hold documents to them",
+        of: "JSON Schemas, in validators that check documents against them",
         codes: &[
             "SCHEMA_BROKEN",
             "EXTENSION_SCHEMA_BROKEN",

@@ -1,5 +1,5 @@
-//! JSON values as typed ones, more strictly than serde's own way: an object is never written as an
-//! array, a word never as an object, and `null` is no value of a key that a type knows.
+//! Deserializer from JSON values to types, stricter than serde's: an array is not accepted for an
+//! object, an object not for a string variant, and `null` not for a key of a type.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -14,17 +14,17 @@ use serde_json::{Map, Value};
 
 use crate::pointer::Place;
 
-/// Largest whole number up to which every whole number is a binary64.
+/// Largest integer up to which every integer is exact in binary64.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
-/// A value that is not of its type, and where it stands.
+/// Error of a value that does not have its type, with its place.
 #[derive(Debug)]
 pub(crate) struct TypeError {
     pub(crate) pointer: Option<String>,
     pub(crate) message: String,
 }
 
-/// The value as a `T`, and pointers to the keys that no type knows.
+/// Converts the value to a `T` and returns it with pointers to the unknown keys.
 pub(crate) fn typed<T: DeserializeOwned>(value: &Value) -> Result<(T, Vec<String>), TypeError> {
     let unknown = RefCell::new(Vec::new());
     let typed = T::deserialize(Typed {
@@ -44,7 +44,7 @@ struct Typed<'de, 'p> {
 }
 
 impl<'de> Typed<'de, '_> {
-    /// A whole number, also where it is written as `1.0` or `1e0`.
+    /// Deserializes an integer, also if it is written as `1.0` or `1e0`.
     fn whole<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, TypeError> {
         let number = self.value.as_number().filter(|number| number.is_f64());
         let whole = number
@@ -70,7 +70,7 @@ impl<'de> Typed<'de, '_> {
         self.here(de::Error::invalid_type(found, visitor))
     }
 
-    /// The error at this place, unless it has a deeper one.
+    /// Adds this place to the error, unless it has a deeper one.
     fn here(self, mut error: TypeError) -> TypeError {
         error.pointer.get_or_insert_with(|| self.place.pointer());
         error
@@ -107,7 +107,7 @@ impl<'de> Typed<'de, '_> {
     }
 }
 
-/// Methods that take whole numbers, however they are written.
+/// Implements methods that deserialize integers in any notation.
 macro_rules! whole_numbers {
     ($($name:ident)*) => {
         $(fn $name<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, TypeError> {
@@ -139,7 +139,7 @@ impl<'de> Deserializer<'de> for Typed<'de, '_> {
         deserialize_i64 deserialize_i32 deserialize_u8 deserialize_u16 deserialize_u32 deserialize_u64
     }
 
-    /// A key that may be absent is never `null` instead.
+    /// Deserializes an optional key, which may be absent but not `null`.
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, TypeError> {
         visitor.visit_some(self)
     }
@@ -183,7 +183,7 @@ impl<'de> Deserializer<'de> for Typed<'de, '_> {
         self.deserialize_map(visitor)
     }
 
-    /// A word, or an object of one key that is a variant's; other keys beside it are unknown ones.
+    /// Deserializes a string, or an object with a variant's key; other keys beside it are unknown keys.
     fn deserialize_enum<V: Visitor<'de>>(
         self,
         _name: &'static str,
@@ -205,11 +205,11 @@ impl<'de> Deserializer<'de> for Typed<'de, '_> {
         let is_known = |key: &str| variants.contains(&key);
         let mut known = map.iter().filter(|(key, _)| is_known(key));
         let Some((word, value)) = known.next() else {
-            let message = format!("none of its keys is one of {}", variants.join(", "));
+            let message = format!("the object has none of the keys {}", variants.join(", "));
             return Err(self.here(de::Error::custom(message)));
         };
         if let Some((other, _)) = known.next() {
-            let message = format!("{word:?} and {other:?} exclude each other");
+            let message = format!("{word:?} and {other:?} cannot both be given");
             return Err(self.here(de::Error::custom(message)));
         }
         for key in map.keys().filter(|key| !is_known(key)) {
@@ -224,7 +224,7 @@ impl<'de> Deserializer<'de> for Typed<'de, '_> {
         self.placed(visitor.visit_enum(variant))
     }
 
-    /// The value of a key that the type does not know.
+    /// Skips the value of a key that the type does not know.
     fn deserialize_ignored_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, TypeError> {
         self.unknown.borrow_mut().push(self.place.pointer());
         visitor.visit_unit()
@@ -313,7 +313,7 @@ impl<'de> MapAccess<'de> for Entries<'de, '_> {
     }
 }
 
-/// A variant: a word, or the only known key of an object with its value.
+/// A variant: a string, or the only known key of an object with its value.
 struct Variant<'de, 'p> {
     parent: Typed<'de, 'p>,
     word: &'de str,
@@ -345,7 +345,7 @@ impl<'de> VariantAccess<'de> for Variant<'de, '_> {
         match self.value {
             None => Ok(()),
             Some(_) => Err(de::Error::custom(format!(
-                "{word:?} is a word; write it alone"
+                "{word:?} has no value; write {word:?} as a string"
             ))),
         }
     }
@@ -407,10 +407,7 @@ impl de::Error for TypeError {
             Unexpected::Signed(x) => format!("the number {x}"),
             other => other.to_string(),
         };
-        Self::custom(format!(
-            "{found} stands where {} belongs",
-            in_words(expected)
-        ))
+        Self::custom(format!("expected {}, found {found}", in_words(expected)))
     }
 
     fn custom<T: fmt::Display>(message: T) -> Self {
@@ -421,16 +418,16 @@ impl de::Error for TypeError {
     }
 }
 
-/// What a type expects, in the words of JSON.
+/// Translates what a type expects from Rust to JSON terms.
 fn in_words(expected: &dyn de::Expected) -> String {
     let rust = expected.to_string();
     let words = match rust.as_str() {
         "f64" | "f32" => "a number",
-        "usize" | "u64" | "u32" | "u16" | "u8" | "i64" => "a whole number",
+        "usize" | "u64" | "u32" | "u16" | "u8" | "i64" => "an integer",
         "a boolean" => "true or false",
         "a sequence" => "an array",
         _ if rust == "a map" || rust.starts_with("struct ") => "an object",
-        _ if rust.starts_with("enum ") => "a word or an object of one key",
+        _ if rust.starts_with("enum ") => "a string or an object with one key",
         _ => return rust,
     };
     words.to_owned()

@@ -1,4 +1,4 @@
-//! From bytes to an asset, or to the reasons why not. Reading and validating are this one path.
+//! Reading and validation of an asset: one path for both.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -18,20 +18,20 @@ use crate::rules as rule;
 use crate::unpack::STORED;
 use crate::{Asset, Finding, Manifest, Plugin, Representation, Severity};
 
-/// Name of the entry that says what the archive is.
+/// Name of the entry that identifies an asset.
 pub(crate) const MIMETYPE: &str = "mimetype";
-/// What it says.
+/// Contents of that entry.
 pub(crate) const MEDIA_TYPE: &str = "application/vnd.htex+zip";
-/// Name of the entry everything else is found through.
+/// Name of the manifest's entry.
 pub(crate) const MANIFEST: &str = "manifest.json";
 
-/// Validates the bytes of a `.htex` file: every broken rule that can be told apart from the ones
-/// before it. Never panics, and takes no more than `limits` allow.
+/// Validates the bytes of a `.htex` file and reports every broken rule that can be detected
+/// independently of earlier ones. Never panics, and reads no more than `limits` allow.
 pub fn validate(bytes: &[u8], limits: &Limits) -> Report {
     validate_with(bytes, limits, &|_| None)
 }
 
-/// Validates as [`validate`] does, and compares fields with those of the models that are known.
+/// Validates as [`validate`] does, and compares fields with those of the known models.
 pub fn validate_with(bytes: &[u8], limits: &Limits, known: KnownModel<'_>) -> Report {
     let (asset, findings) = inspect(bytes, limits, known);
     Report {
@@ -40,8 +40,7 @@ pub fn validate_with(bytes: &[u8], limits: &Limits, known: KnownModel<'_>) -> Re
     }
 }
 
-/// The manifest of an asset as JSON, whatever stands in it; none when it cannot be reached, or is
-/// not JSON.
+/// Returns the manifest of an asset as JSON, valid or not; `None` when it cannot be unpacked or is not JSON.
 pub fn manifest_json(bytes: &[u8], limits: &Limits) -> Option<Value> {
     let mut findings = Findings::default();
     let archive = Archive::open(bytes, limits, &mut findings)?;
@@ -49,7 +48,7 @@ pub fn manifest_json(bytes: &[u8], limits: &Limits) -> Option<Value> {
     json_text::parse(&entry.bytes).ok()
 }
 
-/// The asset, when no finding is an error.
+/// Reads an asset; `None` when a finding is an error.
 pub(crate) fn inspect(
     bytes: &[u8],
     limits: &Limits,
@@ -76,7 +75,7 @@ fn read(
     let archive = Archive::open(bytes, limits, findings)?;
     check_mimetype(&archive, findings);
     let Some(index) = archive.index(MANIFEST) else {
-        let message = format!("there is no entry {MANIFEST}; write the asset anew");
+        let message = format!("there is no entry {MANIFEST}; write the asset again");
         findings.add(rule::MANIFEST_MISSING, "", message);
         return None;
     };
@@ -125,7 +124,7 @@ fn check_mimetype(archive: &Archive<'_>, findings: &mut Findings) {
     });
 }
 
-/// The entries the manifest names, while they are read.
+/// Reader of the entries that the manifest names.
 struct Payload<'a, 'f> {
     archive: Archive<'a>,
     claimed: BTreeSet<String>,
@@ -155,7 +154,7 @@ impl<'a> Payload<'a, '_> {
                     _ => rule::PARAMETERS_INVALID,
                 };
                 let message = format!(
-                    "{}: {error}; write the asset anew",
+                    "{}: {error}; write the asset again",
                     representation.parameters
                 );
                 self.findings.add(rule, format!("{at}/parameters"), message);
@@ -164,15 +163,16 @@ impl<'a> Payload<'a, '_> {
         }
     }
 
-    /// The bytes of an entry that nothing else has named.
+    /// Returns the bytes of an entry that no other key has named.
     fn entry(&mut self, name: &str, pointer: String) -> Option<Cow<'a, [u8]>> {
         let Some(index) = self.archive.index(name) else {
-            let message = format!("there is no entry {name:?}; add it or remove what names it");
+            let message =
+                format!("there is no entry {name:?}; add it or remove the reference to it");
             self.findings.add(rule::ENTRY_MISSING, pointer, message);
             return None;
         };
         if !self.claimed.insert(name.to_owned()) {
-            let message = format!("{name} has another use already; take an entry of its own");
+            let message = format!("{name} is already used; use a separate entry");
             self.findings
                 .add(rule::PARAMETERS_ENTRY_INVALID, pointer, message);
             return None;
@@ -188,7 +188,7 @@ impl<'a> Payload<'a, '_> {
         let values = points.saturating_mul(conditions);
         if values.saturating_mul(size_of::<f32>()) != bytes.len() {
             let message = format!(
-                "{} has {} bytes; {points} magnitudes at {conditions} conditions take four each",
+                "{} has {} bytes; expected 4 for each of {points} magnitudes at {conditions} conditions",
                 reference.file,
                 bytes.len()
             );
@@ -235,7 +235,10 @@ impl<'a> Payload<'a, '_> {
         let pointer = format!("{at}/file");
         self.findings
             .require(is_wasm, rule::PLUGIN_NOT_WASM, pointer, || {
-                format!("{} is no WASM module; embed the model's .wasm", plugin.file)
+                format!(
+                    "{} is not a WASM module; embed the model's .wasm",
+                    plugin.file
+                )
             });
         let hash = blake3::hash(&bytes).to_hex();
         let pointer = format!("{at}/blake3");
@@ -243,7 +246,12 @@ impl<'a> Payload<'a, '_> {
             hash.as_str() == plugin.blake3,
             rule::PLUGIN_HASH_MISMATCH,
             pointer,
-            || format!("{} has the hash {hash}; embed the module anew", plugin.file),
+            || {
+                format!(
+                    "{} has the hash {hash}; embed the module again",
+                    plugin.file
+                )
+            },
         );
         Some(bytes.into_owned())
     }
@@ -254,7 +262,12 @@ impl<'a> Payload<'a, '_> {
                 self.claimed.contains(&entry.name),
                 rule::ENTRY_UNREFERENCED,
                 "",
-                || format!("nothing names the entry {}; remove it", entry.name),
+                || {
+                    format!(
+                        "the manifest does not refer to the entry {}; remove it",
+                        entry.name
+                    )
+                },
             );
         }
     }

@@ -1,4 +1,4 @@
-//! The records of a ZIP archive, as bytes.
+//! Parser of the records of a ZIP archive.
 
 use std::ops::Range;
 
@@ -14,7 +14,7 @@ const ZIP64_LOCATOR_BYTES: usize = 20;
 
 /// The end record.
 pub(crate) struct End {
-    /// Where it starts.
+    /// Offset of the record.
     pub at: usize,
     pub disks: [u16; 2],
     pub entries_here: u16,
@@ -22,11 +22,11 @@ pub(crate) struct End {
     pub directory_bytes: u32,
     pub directory_at: u32,
     pub comment_bytes: u16,
-    /// Whether a ZIP64 locator stands before it.
+    /// Whether a ZIP64 locator precedes it.
     pub zip64: bool,
 }
 
-/// What the directory and a local header both say of an entry.
+/// The fields that the directory and a local header have in common.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Common {
     pub flags: u16,
@@ -55,7 +55,7 @@ pub(crate) struct Local<'a> {
     pub data: Range<usize>,
 }
 
-/// The last end record there is: in an asset, the file's last 22 bytes.
+/// Returns the last end record: in an asset, the file's last 22 bytes.
 pub(crate) fn find_end(bytes: &[u8]) -> Option<End> {
     let last = bytes.len().checked_sub(END_BYTES)?;
     let first = last.saturating_sub(usize::from(u16::MAX));
@@ -76,7 +76,7 @@ pub(crate) fn find_end(bytes: &[u8]) -> Option<End> {
     })
 }
 
-/// The directory record at `at`, and where the next one starts.
+/// Parses the directory record at `at` and returns it with the offset of the next one.
 pub(crate) fn central(bytes: &[u8], at: usize) -> Option<(Central<'_>, usize)> {
     if u32_at(bytes, at)? != CENTRAL {
         return None;
@@ -97,7 +97,7 @@ pub(crate) fn central(bytes: &[u8], at: usize) -> Option<(Central<'_>, usize)> {
     Some((record, next))
 }
 
-/// The local header at `at`; its data are as long as `packed` says.
+/// Parses the local header at `at`, with data of `packed` bytes.
 pub(crate) fn local(bytes: &[u8], at: usize, packed: u32) -> Option<Local<'_>> {
     if u32_at(bytes, at)? != LOCAL {
         return None;

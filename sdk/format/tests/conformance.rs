@@ -12,7 +12,7 @@ use htex_format::{
 };
 use xtask::generated::{file, file_with, folder};
 
-/// What only `htex validate` finds, with JSON Schemas and by loading models.
+/// Codes that only `htex validate` reports, with JSON Schemas and by loading models.
 const WITHOUT_FILE: [&str; 4] = [
     "PLUGIN_UNUSABLE",
     "SCHEMA_BROKEN",
@@ -45,7 +45,7 @@ fn a_file_is_named_after_the_rule_it_breaks_and_every_rule_has_one() {
             "{name}: {:?}",
             report.findings
         );
-        // A reader without models cannot tell whose fields are wrong.
+        // A reader without models cannot detect wrong fields.
         let by_model = [
             "FIELD_UNKNOWN",
             "FIELD_MISSING",
@@ -98,7 +98,7 @@ fn a_newer_minor_version_is_noted_and_kept() {
     );
 }
 
-/// Places of the findings' codes in the stages: each at or behind that of the finding before it.
+/// Stages of the findings' codes: each at or after that of the finding before it.
 fn stages_of(findings: &[Finding]) -> Vec<usize> {
     let mut at = 0;
     let mut places = Vec::new();

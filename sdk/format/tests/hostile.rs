@@ -1,11 +1,12 @@
-//! Whatever the bytes, validation answers.
+//! Validation returns a report for any bytes.
 #![allow(clippy::unwrap_used)]
 
 mod common;
 
 use std::time::{Duration, Instant};
 
-use common::cases::{cases, manifest, parts};
+use common::cases::cases;
+use common::parts::{manifest, parts};
 use common::raw_zip::archive;
 use common::{asset, five};
 use htex_format::{Limits, validate};

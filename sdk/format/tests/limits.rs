@@ -1,4 +1,4 @@
-//! Each limit bites, and just where it says.
+//! Each limit takes effect at exactly its value.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -6,7 +6,7 @@ mod common;
 use common::{asset, five};
 use htex_format::{Limits, validate};
 
-/// Codes with a limit at what the asset takes, and one below.
+/// Codes of findings with a limit at what the asset takes, and one below.
 fn around(limit: impl Fn(usize) -> Limits, takes: usize) -> [Vec<String>; 2] {
     let bytes = asset(1, five(1)).to_bytes().unwrap();
     let codes = |limits| {
@@ -77,7 +77,7 @@ fn each_limit_bites_where_it_says() {
 
 #[test]
 fn a_list_cannot_claim_more_than_the_block_holds() {
-    use common::cases::{manifest, parts};
+    use common::parts::{manifest, parts};
     let mut manifest = manifest();
     manifest["representations"][0]["fields"][0]["list"] = serde_json::json!(true);
     // A length of 2^64 - 1.

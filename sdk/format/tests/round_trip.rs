@@ -1,4 +1,4 @@
-//! What is written is read back, and written again is the same bytes.
+//! A written asset reads back equal, and writing it again gives the same bytes.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -36,7 +36,7 @@ fn store() -> impl Strategy<Value = Store> {
     ]
 }
 
-/// A representation with values spread over what its stores hold.
+/// A representation with values over the range of its stores.
 fn representation(i: usize, conditions: usize) -> impl Strategy<Value = Fitted> {
     let field = (store(), 0usize..300, 0.0..1.0f64);
     prop::collection::vec(field, 0..4).prop_map(move |fields| {

@@ -1,4 +1,4 @@
-//! A texture is a few numbers; its file stays small.
+//! Limits on the size of asset files.
 #![allow(clippy::expect_used)]
 
 mod common;

@@ -1,4 +1,4 @@
-//! The specification's worked example is what the code writes.
+//! The specification's worked example has the bytes that the code writes.
 #![allow(clippy::unwrap_used)]
 
 mod common;

@@ -1,10 +1,10 @@
-//! Writes a texture report on made-up data to the path given.
+//! Writes a texture report on invented data to the given path.
 //!
 //! `cargo run -p htex-report --example sample -- report.html`
 
 use htex_report::{ModelResult, Texture, TextureReport, texture_report};
 
-/// Name, where the spectrum is strongest (hertz), how wide it is (natural log units), height (newtons).
+/// Name, frequency of the peak (hertz), width (natural log units), height (newtons).
 const TEXTURES: [(&str, f64, f64, f64); 5] = [
     ("Vinyl", 60.0, 0.9, 0.0021),
     ("Denim", 130.0, 0.5, 0.0124),
@@ -21,9 +21,9 @@ fn main() -> std::io::Result<()> {
 
 fn report() -> TextureReport {
     TextureReport {
-        title: "Sample report: five made-up textures".to_owned(),
+        title: "Sample report: five invented textures".to_owned(),
         intro: vec![
-            "Every number on this page is made up, to show what a report looks like.".to_owned(),
+            "Every number on this page is invented, to show what a report looks like.".to_owned(),
         ],
         textures: (0..TEXTURES.len()).map(texture).collect(),
         command: "cargo run -p htex-report --example sample -- report.html".to_owned(),
@@ -59,7 +59,7 @@ fn texture(index: usize) -> Texture {
     }
 }
 
-/// Name, sharpness against the envelope, correlation, error (dB), bytes.
+/// Name, sharpness relative to the envelope, correlation, error (dB), bytes.
 struct Spec(&'static str, f64, f64, f64, usize);
 
 const SPECS: [Spec; 5] = [

@@ -1,6 +1,6 @@
-//! An axis: what it shows, how it is scaled, what it covers.
+//! Axes of a plot: label, scale and range.
 
-/// How values are spaced along an axis.
+/// Spacing of values along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
     /// Equal steps for equal differences.
@@ -20,12 +20,12 @@ pub struct Axis {
     pub range: Option<(f64, f64)>,
 }
 
-/// Values beyond these are treated as these: spans and ratios of the rest stay finite.
+/// Largest magnitude of values; larger ones are limited to it, so that spans and ratios stay finite.
 const LARGEST: f64 = 1e140;
 const SMALLEST: f64 = 1e-140;
 
 impl Axis {
-    /// A linear axis over the data.
+    /// Creates a linear axis whose range is that of the data.
     pub fn linear(label: &str) -> Self {
         Self {
             label: label.to_owned(),
@@ -34,7 +34,7 @@ impl Axis {
         }
     }
 
-    /// A logarithmic axis over the data.
+    /// Creates a logarithmic axis whose range is that of the data.
     pub fn log(label: &str) -> Self {
         Self {
             scale: Scale::Log,
@@ -42,24 +42,24 @@ impl Axis {
         }
     }
 
-    /// This axis from `low` to `high`, in the label's unit.
+    /// Sets the range from `low` to `high`, in the label's unit.
     #[must_use]
     pub fn with_range(mut self, low: f64, high: f64) -> Self {
         self.range = Some((low, high));
         self
     }
 
-    /// The unit: what follows the label's last slash, or nothing.
+    /// Returns the unit: the text after the label's last slash, or nothing.
     pub fn unit(&self) -> &str {
         self.label.rsplit_once(" / ").map_or("", |(_, unit)| unit)
     }
 
-    /// Whether `value` has a place on an axis of this kind.
+    /// Whether an axis of this kind can show `value`.
     pub(crate) fn shows(&self, value: f64) -> bool {
         value.is_finite() && (self.scale == Scale::Linear || value > 0.0)
     }
 
-    /// The range to draw for `values`: always finite, ascending, wide enough to divide, and
+    /// Returns the range to draw for `values`: always finite, increasing, wide enough to divide, and
     /// positive on a log axis.
     pub(crate) fn resolve(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
         let given = self.range.filter(|(a, b)| self.shows(*a) && self.shows(*b));
@@ -67,24 +67,24 @@ impl Axis {
             Some(range) => sound_range(Some(range), self.scale),
             None => {
                 let found = extremes(values.filter(|v| self.shows(*v)));
-                roomy(sound_range(found, self.scale), self.scale)
+                with_margin(sound_range(found, self.scale), self.scale)
             }
         }
     }
 }
 
-/// A sound range with room for a marker at either end, not reaching across zero for it.
-fn roomy((low, high): (f64, f64), scale: Scale) -> (f64, f64) {
-    const ROOM: f64 = 0.03;
+/// Returns a valid range with a margin for a marker at either end that does not extend it across zero.
+fn with_margin((low, high): (f64, f64), scale: Scale) -> (f64, f64) {
+    const MARGIN: f64 = 0.03;
     match scale {
         Scale::Linear => {
-            let room = ROOM * (high - low);
+            let margin = MARGIN * (high - low);
             let floor = if low >= 0.0 { 0.0 } else { f64::NEG_INFINITY };
-            ((low - room).max(floor), high + room)
+            ((low - margin).max(floor), high + margin)
         }
         Scale::Log => {
-            let room = (high / low).powf(ROOM);
-            (low / room, high * room)
+            let margin = (high / low).powf(MARGIN);
+            (low / margin, high * margin)
         }
     }
 }
@@ -96,7 +96,7 @@ fn extremes(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     })
 }
 
-/// `range` put in order and widened where it is too narrow to be divided into steps.
+/// Returns `range` in increasing order, widened if it is too narrow to be divided into steps.
 pub(crate) fn sound_range(range: Option<(f64, f64)>, scale: Scale) -> (f64, f64) {
     let usable = range.filter(|(a, b)| a.is_finite() && b.is_finite());
     match scale {

@@ -1,4 +1,4 @@
-//! A chain of stages as one SVG element: what runs, what it costs, and, pale, what was left out.
+//! Diagram of a chain of stages as one SVG element: the running stages with their costs, and the omitted ones in grey.
 
 use crate::markup::Element;
 use crate::number::{brief, px};
@@ -17,35 +17,35 @@ const NAME_PX: f64 = 13.0;
 const FILL: &str = "#f3f8fc";
 const LINE: &str = "#0072b2";
 const PALE_LINE: &str = "#c4c4c4";
-/// Still 4.5 : 1 on white.
+/// Contrast of 4.5 : 1 on white.
 const PALE_INK: &str = "#767676";
 
-/// A chain of stages.
+/// A chain of stages, to be drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chain {
-    /// Above the picture; also its name for screen readers.
+    /// Title above the picture, and its name for screen readers.
     pub title: String,
-    /// What runs, in its order.
+    /// The running stages, in order.
     pub stages: Vec<ChainStage>,
-    /// What was left out: name and reason.
+    /// The omitted stages: name and reason.
     pub left_out: Vec<(String, String)>,
 }
 
 /// One stage of a chain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChainStage {
-    /// Its name.
+    /// Name of the stage.
     pub name: String,
-    /// Why it is in.
+    /// Why the stage runs.
     pub reason: String,
-    /// Rate of the samples that it gives, hertz.
+    /// Rate of its output samples, hertz.
     pub rate_hz: f64,
-    /// Its time, nanoseconds a sample.
+    /// Its time, nanoseconds per sample.
     pub ns_per_sample: f64,
 }
 
 impl Chain {
-    /// The chain as an `<svg>` element: a picture by itself, or a part of a page.
+    /// Draws the chain as an `<svg>` element, usable alone or in a page.
     pub fn to_svg(&self) -> String {
         let rows = self.stages.len() + self.left_out.len();
         let pale_head = if self.left_out.is_empty() { 0.0 } else { 30.0 };
@@ -103,7 +103,7 @@ impl Chain {
         boxed.children(arrow)
     }
 
-    /// A stage's share of the total, and its number.
+    /// Draws a stage's part of the total cost, with the number.
     fn bar(&self, top: f64, ns: f64) -> [Element; 2] {
         let total = self.total_ns();
         let share = if total > 0.0 { ns / total } else { 0.0 };

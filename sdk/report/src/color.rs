@@ -1,10 +1,10 @@
-//! Colours: one for each model, everywhere, and the scales of the heat tables.
+//! Colours: a fixed one for each model, and the scales of the heat tables.
 //!
-//! The hues start from Okabe and Ito's set. The light ones are replaced by dark ones, so that every
-//! line stands at 3 : 1 or better on white, and any two models stay apart in normal, protan, deutan
+//! The hues are based on Okabe and Ito's set. Light ones are replaced by darker ones, so that every
+//! line has a contrast of at least 3 : 1 on white, and any two models differ in normal, protan, deutan
 //! and tritan vision (simulated after Machado et al. 2009: CIE76 difference of about 17 or more).
 
-/// The recording: dark grey, behind or beside any model's colour.
+/// Colour of the recording: dark grey, distinct from the models' colours.
 pub const RECORDING_COLOR: &str = "#4d4d4d";
 
 const MODELS: [(&str, &str); 6] = [
@@ -16,11 +16,11 @@ const MODELS: [(&str, &str); 6] = [
     ("bands", "#006b7a"),
 ];
 
-/// For models this crate has never heard of.
+/// Colours of models that are not in the table.
 const OTHERS: [&str; 4] = ["#5b4fc4", "#8a8000", "#2a7f8e", "#5f7a1f"];
 
-/// The colour of the model called `short_name` (`"sbeta"`), the same in every picture. A model
-/// that is not one of these gets a colour of its own kind, chosen by its name.
+/// Returns the colour of the model called `short_name` (`"sbeta"`), the same in every picture. A model
+/// that is not in the table gets one of four further colours, chosen by its name.
 pub fn model_color(short_name: &str) -> &'static str {
     let name = short_name.to_ascii_lowercase();
     let known = MODELS.iter().find(|(model, _)| *model == name);
@@ -28,12 +28,12 @@ pub fn model_color(short_name: &str) -> &'static str {
     known.map_or(OTHERS[sum % OTHERS.len()], |(_, color)| color)
 }
 
-/// The colour of the `index`-th of some series that are not models.
+/// Returns the colour of the `index`-th of some series that are not models.
 pub fn series_color(index: usize) -> &'static str {
     MODELS[index % MODELS.len()].1
 }
 
-/// Red, green and blue, each 0 to 255.
+/// A colour: red, green and blue, each 0 to 255.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Rgb(pub(crate) [f64; 3]);
 
@@ -44,13 +44,13 @@ const BLUE: Rgb = Rgb([8.0, 81.0, 146.0]);
 const ORANGE: Rgb = Rgb([191.0, 84.0, 0.0]);
 
 impl Rgb {
-    /// `#rrggbb`.
+    /// Formats as `#rrggbb`.
     pub(crate) fn hex(self) -> String {
         let [r, g, b] = self.0.map(|part| part.round() as u8);
         format!("#{r:02x}{g:02x}{b:02x}")
     }
 
-    /// Black or white, whichever reads better on this: never below 4.5 : 1.
+    /// Returns black or white, whichever has more contrast on this colour: at least 4.5 : 1.
     pub(crate) fn ink(self) -> &'static str {
         if self.contrast(BLACK) >= self.contrast(WHITE) {
             "#000"
@@ -64,13 +64,13 @@ impl Rgb {
         Self([part(0), part(1), part(2)])
     }
 
-    /// WCAG 2.1 contrast ratio, 1 to 21.
+    /// Returns the WCAG 2.1 contrast ratio, 1 to 21.
     fn contrast(self, other: Self) -> f64 {
         let (a, b) = (self.luminance(), other.luminance());
         (a.max(b) + 0.05) / (a.min(b) + 0.05)
     }
 
-    /// WCAG 2.1 relative luminance, 0 to 1.
+    /// Returns the WCAG 2.1 relative luminance, 0 to 1.
     fn luminance(self) -> f64 {
         let linear = self.0.map(|part| {
             let part = part / 255.0;
@@ -84,12 +84,12 @@ impl Rgb {
     }
 }
 
-/// Light to dark blue over 0 to 1.
+/// Returns a shade from light to dark blue, for 0 to 1.
 pub(crate) fn sequential(amount: f64) -> Rgb {
     PALE.mix(BLUE, amount.clamp(0.0, 1.0))
 }
 
-/// Blue, white, orange over -1 to 1.
+/// Returns a shade from blue over white to orange, for -1 to 1.
 pub(crate) fn diverging(amount: f64) -> Rgb {
     let end = if amount < 0.0 { BLUE } else { ORANGE };
     WHITE.mix(end, amount.abs().min(1.0))

@@ -1,4 +1,4 @@
-//! The part of a plot that shows data: lines, stems, markers, hover text.
+//! The data area of a plot: lines, stems, markers, hover text.
 
 use crate::legend::stroke;
 use crate::markup::Element;
@@ -8,7 +8,7 @@ use crate::series::{Line, Series};
 use crate::svg;
 
 impl Drawing<'_> {
-    /// The series, in an inner picture that cuts off whatever leaves the data area.
+    /// Draws the series in an inner picture that clips at the data area.
     pub(crate) fn data(&self) -> Element {
         let area = &self.area;
         Element::new("svg")
@@ -66,7 +66,7 @@ impl Drawing<'_> {
             .collect()
     }
 
-    /// Invisible dots that answer to the pointer, no closer together than it can be held.
+    /// Draws invisible dots that show the hover text, no closer together than a pointer can distinguish.
     fn hover(&self, series: &Series) -> Element {
         let mut last = f64::NEG_INFINITY;
         let mut dots = Element::new("g")
@@ -99,7 +99,7 @@ impl Drawing<'_> {
         )
     }
 
-    /// Where a point stands inside the data area, pixels from its top left.
+    /// Returns the position of a point in the data area, pixels from its top left.
     fn place(&self, (x, y): (f64, f64)) -> Option<(f64, f64)> {
         let across = self.x.fraction(x)? * self.area.width;
         let down = (1.0 - self.y.fraction(y)?) * self.area.height;

@@ -1,11 +1,11 @@
-//! The names of a plot's series, each beside a sample of its look.
+//! Legend: the names of a plot's series with samples of their line styles.
 
 use crate::markup::Element;
 use crate::number::px;
 use crate::series::{Line, Series};
 use crate::svg::{self, TEXT_PX, text_width};
 
-/// Where each series' name goes: left to right below the title, wrapped to `width`.
+/// Positions the series' names left to right below the title, wrapped to `width`.
 pub(crate) fn places(series: &[Series], width: f64) -> Vec<(f64, f64, &Series)> {
     let (mut x, mut y) = (12.0, 33.0);
     let mut out = Vec::new();
@@ -20,7 +20,7 @@ pub(crate) fn places(series: &[Series], width: f64) -> Vec<(f64, f64, &Series)> 
     out
 }
 
-/// A sample of the series' look at `(x, y)`, pixels, and its name.
+/// Draws a sample of the series' style at `(x, y)`, pixels, and its name.
 pub(crate) fn entry(x: f64, y: f64, series: &Series) -> Element {
     let sample = match series.line {
         Line::None => None,
@@ -37,7 +37,7 @@ pub(crate) fn entry(x: f64, y: f64, series: &Series) -> Element {
         .child(&svg::label(x + 26.0, y, "start", &series.name))
 }
 
-/// `element` with the series' colour and line.
+/// Applies the series' colour and line style to `element`.
 pub(crate) fn stroke(element: Element, series: &Series) -> Element {
     let element = element
         .set("fill", "none")

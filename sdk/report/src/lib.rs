@@ -1,8 +1,7 @@
-//! Pictures and pages: SVG plots, heat tables and self-contained HTML reports.
+//! SVG plots, heat tables and self-contained HTML reports.
 //!
-//! Data in, text out. This crate knows no texture file and no signal processing, reads no clock
-//! and writes no file: the same data gives the same bytes. Pages carry their own style, need no
-//! script and fetch nothing.
+//! The crate converts data to text. It reads no files and no clock and does no signal processing: equal data
+//! gives equal bytes. Pages contain their style, use no script and load nothing.
 //!
 //! ```
 //! use htex_report::{Axis, Plot, Series};

@@ -1,9 +1,9 @@
-//! Elements and escaping: the only place that writes angle brackets.
+//! Elements and escaping: the only module that writes markup.
 
 use std::fmt::Write;
 
-/// `text` with everything that markup would read as its own replaced, fit for element content
-/// and for a double-quoted attribute. Characters that XML forbids become U+FFFD.
+/// Escapes `text` for element content
+/// and for double-quoted attributes. Characters that XML forbids become U+FFFD.
 pub(crate) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -21,7 +21,7 @@ pub(crate) fn escape(text: &str) -> String {
     out
 }
 
-/// One element, its attributes and its content; valid both as XML and inside HTML.
+/// An element with attributes and content, valid both as XML and in HTML.
 #[derive(Debug, Clone)]
 pub(crate) struct Element {
     name: &'static str,
@@ -30,7 +30,7 @@ pub(crate) struct Element {
 }
 
 impl Element {
-    /// An empty element.
+    /// Creates an empty element.
     pub(crate) fn new(name: &'static str) -> Self {
         Self {
             name,
@@ -39,37 +39,37 @@ impl Element {
         }
     }
 
-    /// With one more attribute; the value is escaped.
+    /// Adds an attribute; the value is escaped.
     pub(crate) fn set(mut self, name: &str, value: &str) -> Self {
         // Writing to a string cannot fail.
         let _ = write!(self.head, " {name}=\"{}\"", escape(value));
         self
     }
 
-    /// With `text` appended to its content, escaped.
+    /// Appends `text` to the content, escaped.
     pub(crate) fn text(mut self, text: &str) -> Self {
         self.content.push_str(&escape(text));
         self
     }
 
-    /// With `child` appended to its content.
+    /// Appends `child` to the content.
     pub(crate) fn child(mut self, child: &Element) -> Self {
         child.write_to(&mut self.content);
         self
     }
 
-    /// With each of `children` appended to its content.
+    /// Appends `children` to the content.
     pub(crate) fn children(self, children: impl IntoIterator<Item = Element>) -> Self {
         children.into_iter().fold(self, |all, one| all.child(&one))
     }
 
-    /// With finished markup appended to its content as it is.
+    /// Appends markup to the content without escaping.
     pub(crate) fn raw(mut self, markup: &str) -> Self {
         self.content.push_str(markup);
         self
     }
 
-    /// The element as text.
+    /// Returns the element as text.
     pub(crate) fn render(&self) -> String {
         let mut out = String::new();
         self.write_to(&mut out);

@@ -1,9 +1,9 @@
-//! Numbers as text: fixed formats, no locale.
+//! Formatting of numbers, independent of the locale.
 
-/// What stands for a value that is missing or not finite.
+/// Text for a value that is missing or not finite.
 pub(crate) const MISSING: &str = "\u{2013}";
 
-/// `value` with exactly `decimals` decimals and a true minus sign; an en dash when not finite.
+/// Formats `value` with exactly `decimals` decimals and a minus sign (U+2212); an en dash when not finite.
 pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return MISSING.to_owned();
@@ -18,7 +18,7 @@ pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// `value` to about three significant digits, without trailing zeros.
+/// Formats `value` with about three significant digits, without trailing zeros.
 pub(crate) fn brief(value: f64) -> String {
     if !value.is_finite() {
         return MISSING.to_owned();
@@ -34,13 +34,13 @@ pub(crate) fn brief(value: f64) -> String {
     trim_zeros(&fixed(value, decimals))
 }
 
-/// A coordinate in pixels, to a hundredth.
+/// Formats a coordinate in pixels, to a hundredth.
 pub(crate) fn px(value: f64) -> String {
     let text = trim_zeros(&format!("{value:.2}"));
     if text == "-0" { "0".to_owned() } else { text }
 }
 
-/// A size in bytes, decimal units: `16 B`, `2.1 kB`, `1.20 MB`.
+/// Formats a size in bytes with decimal units: `16 B`, `2.1 kB`, `1.20 MB`.
 pub(crate) fn bytes(count: u64) -> String {
     let value = count as f64;
     match count {
@@ -52,7 +52,7 @@ pub(crate) fn bytes(count: u64) -> String {
     }
 }
 
-/// How many times `part` goes into `whole`, to three digits, as `570 : 1`; an en dash when `part`
+/// Formats the ratio of `whole` to `part` with three digits, as `570 : 1`; an en dash when `part`
 /// is zero.
 pub(crate) fn ratio(whole: u64, part: u64) -> String {
     if part == 0 {
@@ -63,7 +63,7 @@ pub(crate) fn ratio(whole: u64, part: u64) -> String {
     format!("{} : 1", thousands(&fixed(three_digits(value), decimals)))
 }
 
-/// `value` rounded to three digits where it has more before the decimal point.
+/// Rounds `value` to three digits if it has more before the decimal point.
 fn three_digits(value: f64) -> f64 {
     let unit = 10f64.powi(value.max(100.0).log10().floor() as i32 - 2);
     if value < 100.0 {
@@ -73,7 +73,7 @@ fn three_digits(value: f64) -> f64 {
     }
 }
 
-/// Digits grouped in threes by narrow no-break spaces, where there are more than four.
+/// Groups digits in threes by narrow no-break spaces if there are more than four.
 fn thousands(digits: &str) -> String {
     if digits.len() <= 4 || digits.contains('.') {
         return digits.to_owned();

@@ -1,10 +1,10 @@
-//! A self-contained page: one file, its own style, no script, nothing fetched.
+//! Self-contained HTML pages: one file with its style, without scripts or external resources.
 
 use crate::markup::{Element, escape};
 
 const STYLE: &str = include_str!("page.css");
 
-/// An HTML page, filled from the top.
+/// An HTML page, written from top to bottom.
 #[derive(Debug, Clone)]
 pub struct Page {
     title: String,
@@ -12,7 +12,7 @@ pub struct Page {
 }
 
 impl Page {
-    /// A page with `title` as its heading.
+    /// Creates a page with `title` as its heading.
     pub fn new(title: &str) -> Self {
         let heading = Element::new("h1").text(title);
         Self {
@@ -26,14 +26,14 @@ impl Page {
         self.html(&Element::new("h2").text(text).render());
     }
 
-    /// Appends finished HTML as it is, such as [`Plot::to_svg`](crate::Plot::to_svg),
-    /// [`Table::to_html`](crate::Table::to_html) or [`paragraph`] give.
+    /// Appends HTML without escaping, such as the result of [`Plot::to_svg`](crate::Plot::to_svg),
+    /// [`Table::to_html`](crate::Table::to_html) or [`paragraph`].
     pub fn html(&mut self, html: &str) {
         self.body.push('\n');
         self.body.push_str(html);
     }
 
-    /// The page as text, to be stored as UTF-8.
+    /// Returns the page as text, to be stored as UTF-8.
     pub fn render(&self) -> String {
         let (title, body) = (escape(&self.title), &self.body);
         format!(
@@ -45,12 +45,12 @@ impl Page {
     }
 }
 
-/// `text` as a paragraph.
+/// Returns `text` as a paragraph.
 pub fn paragraph(text: &str) -> String {
     Element::new("p").text(text).render()
 }
 
-/// `items` as a list; nothing when there are none.
+/// Returns `items` as a list, or nothing when there are none.
 pub fn list(items: &[String]) -> String {
     if items.is_empty() {
         return String::new();
@@ -59,20 +59,20 @@ pub fn list(items: &[String]) -> String {
     Element::new("ul").children(items).render()
 }
 
-/// `text` set as it was typed.
+/// Returns `text` as preformatted text.
 pub fn code_block(text: &str) -> String {
     let code = Element::new("code").text(text);
     Element::new("pre").child(&code).render()
 }
 
-/// Finished pictures side by side, below one another where the page is narrow.
+/// Places SVG pictures side by side, or one below another where the page is narrow.
 pub fn figures(pictures: &[String]) -> String {
     let one = |svg: &String| Element::new("figure").set("class", "wide").raw(svg);
     let figures = Element::new("div").set("class", "figures");
     figures.children(pictures.iter().map(one)).render()
 }
 
-/// Finished HTML that opens at a click on `summary`.
+/// Returns HTML that a click on `summary` expands.
 pub fn details(summary: &str, html: &str) -> String {
     let details = Element::new("details").child(&Element::new("summary").text(summary));
     details.raw(html).render()

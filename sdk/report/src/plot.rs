@@ -1,4 +1,4 @@
-//! A small line or scatter plot as one SVG element.
+//! Line and scatter plots as one SVG element.
 
 use crate::axis::Axis;
 use crate::legend;
@@ -15,27 +15,27 @@ pub(crate) const INK: &str = "#222";
 const GRID: &str = "#e3e3e3";
 const MINOR_GRID: &str = "#f2f2f2";
 
-/// A plot: axes, series, a title.
+/// A plot with axes, series and a title.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plot {
-    /// Above the plot; also its name for screen readers.
+    /// Title above the plot, and its name for screen readers.
     pub title: String,
     /// The horizontal axis.
     pub x: Axis,
     /// The vertical axis.
     pub y: Axis,
-    /// Drawn in this order, the last on top.
+    /// The series in drawing order, the last on top.
     pub series: Vec<Series>,
     /// Width of the whole picture, pixels.
     pub width: f64,
     /// Height of the whole picture, pixels.
     pub height: f64,
-    /// Whether to name the series above the plot.
+    /// Whether to show a legend above the plot.
     pub legend: bool,
 }
 
 impl Plot {
-    /// An empty plot of 480 by 300 pixels with a legend.
+    /// Creates an empty plot of 480 by 300 pixels with a legend.
     pub fn new(title: &str, x: Axis, y: Axis) -> Self {
         Self {
             title: title.to_owned(),
@@ -48,7 +48,7 @@ impl Plot {
         }
     }
 
-    /// The plot as an `<svg>` element: a picture by itself, or a part of a page.
+    /// Draws the plot as an `<svg>` element, usable alone or in a page.
     pub fn to_svg(&self) -> String {
         let drawing = Drawing::new(self);
         let (width, height) = (drawing.width, drawing.height);
@@ -73,7 +73,7 @@ impl Plot {
     }
 }
 
-/// A plot with every place decided.
+/// A plot with its layout.
 pub(crate) struct Drawing<'a> {
     pub(crate) plot: &'a Plot,
     width: f64,
@@ -86,7 +86,7 @@ pub(crate) struct Drawing<'a> {
     pub(crate) area: Area,
 }
 
-/// Where the data goes, pixels.
+/// The data area, pixels.
 pub(crate) struct Area {
     pub(crate) left: f64,
     pub(crate) top: f64,
@@ -203,7 +203,7 @@ impl<'a> Drawing<'a> {
     }
 }
 
-/// A width or height that a plot fits in.
+/// Returns `given` if it is a valid width or height, else `otherwise`.
 fn size(given: f64, otherwise: f64) -> f64 {
     if given.is_finite() {
         given.clamp(120.0, 10_000.0)
@@ -223,17 +223,20 @@ fn grid_line(tick: &Tick, line: Element) -> Element {
     )
 }
 
-/// The labels of `ticks` that fit beside one another, most important first.
+/// Returns the labels of `ticks` that fit without overlap, by decreasing importance.
 fn spaced_labels<'t>(ticks: &'t [(f64, Tick)], area: &Area) -> Vec<(f64, &'t str)> {
     let mut order: Vec<&(f64, Tick)> = ticks.iter().filter(|(_, t)| !t.label.is_empty()).collect();
     order.sort_by_key(|(_, tick)| tick.rank);
     let mut kept: Vec<(f64, &str)> = Vec::new();
     for (fraction, tick) in order {
         let x = area.left + fraction * area.width;
-        let room = |other: &str| {
+        let clearance = |other: &str| {
             (text_width(&tick.label, TEXT_PX) + text_width(other, TEXT_PX)) / 2.0 + 4.0
         };
-        if kept.iter().all(|(at, other)| (x - at).abs() >= room(other)) {
+        if kept
+            .iter()
+            .all(|(at, other)| (x - at).abs() >= clearance(other))
+        {
             kept.push((x, &tick.label));
         }
     }

@@ -1,9 +1,9 @@
-//! From values to pixels along one axis.
+//! Mapping from values to pixels along one axis.
 
 use crate::axis::{Axis, Scale};
 use crate::ticks::{Tick, ticks};
 
-/// One axis laid along a length of pixels.
+/// One axis, mapped to a length of pixels.
 #[derive(Debug, Clone)]
 pub(crate) struct Projection {
     scale: Scale,
@@ -11,20 +11,20 @@ pub(crate) struct Projection {
     high: f64,
 }
 
-/// Beyond this many lengths outside the plot a point may as well stand there: keeps coordinates
-/// short whatever the data.
+/// Distance outside the plot, in lengths of the axis, at which points are clamped, so that coordinates
+/// stay short.
 const FAR: f64 = 20.0;
 
 impl Projection {
-    /// The projection of `axis` for the finite ones of `values`.
+    /// Creates the mapping of `axis` for the finite `values`.
     pub(crate) fn new(axis: &Axis, values: impl Iterator<Item = f64>) -> Self {
         let (low, high) = axis.resolve(values);
         let scale = axis.scale;
         Self { scale, low, high }
     }
 
-    /// Where `value` stands: 0 at the low end, 1 at the high end; none where the axis has no
-    /// place for it.
+    /// Returns the position of `value`: 0 at the low end, 1 at the high end; `None` if the axis cannot
+    /// show it.
     pub(crate) fn fraction(&self, value: f64) -> Option<f64> {
         let fraction = match self.scale {
             Scale::Linear => (value - self.low) / (self.high - self.low),
@@ -35,7 +35,7 @@ impl Projection {
         usable.then(|| fraction.clamp(-FAR, FAR))
     }
 
-    /// The value stems rise from: zero where the axis shows it, otherwise the end nearest to it.
+    /// Returns the value at which stems start: zero if the axis shows it, otherwise the closest end.
     pub(crate) fn base(&self) -> f64 {
         match self.scale {
             Scale::Linear => 0f64.clamp(self.low, self.high),
@@ -43,7 +43,7 @@ impl Projection {
         }
     }
 
-    /// About `count` labelled marks, each with its fraction of the length.
+    /// Returns about `count` labelled ticks, each with its position from 0 to 1.
     pub(crate) fn ticks(&self, count: usize) -> Vec<(f64, Tick)> {
         let all = ticks(self.scale, self.low, self.high, count);
         let placed = all

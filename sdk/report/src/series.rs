@@ -1,45 +1,45 @@
-//! What a plot draws: named points and how they look.
+//! Series of a plot: named points and their style.
 
 use crate::color::RECORDING_COLOR;
 
-/// How a series' points are joined.
+/// How a series' points are connected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Line {
-    /// Not at all: a scatter of markers.
+    /// Not connected: a scatter of markers.
     None,
-    /// A line through the points in their order, broken where a point cannot be shown.
+    /// A line through the points in order, interrupted at points that cannot be shown.
     Solid,
-    /// The same, dashed.
+    /// A dashed line.
     Dashed,
-    /// An upright from zero to each point.
+    /// A vertical line from zero to each point.
     Stems,
 }
 
-/// One set of points of a [`Plot`](crate::Plot).
+/// A series of points of a [`Plot`](crate::Plot).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// Shown in the legend and in the hover text; a series without a name is not in the legend.
+    /// Name in the legend and in the hover text; a series without a name is not in the legend.
     pub name: String,
     /// (x, y) in the axes' units. Points that are not finite are left out.
     pub points: Vec<(f64, f64)>,
     /// A CSS colour.
     pub color: String,
-    /// How the points are joined.
+    /// How the points are connected.
     pub line: Line,
     /// Thickness of the line, pixels.
     pub line_width_px: f64,
-    /// Radius of a dot on each point, pixels; no dots when absent.
+    /// Radius of a dot on each point, pixels; `None` for no dots.
     pub marker_radius_px: Option<f64>,
-    /// Whether dots are rings.
+    /// Whether the dots are hollow.
     pub marker_hollow: bool,
-    /// Whether pointing at a point shows its values.
+    /// Whether hovering over a point shows its values.
     pub hover: bool,
-    /// What is shown instead of its values, point by point; values where there is none.
+    /// Hover texts, one per point, instead of the values; missing ones show the values.
     pub notes: Vec<String>,
 }
 
 impl Series {
-    /// A solid dark grey line that answers to the pointer.
+    /// Creates a solid dark grey line with hover text.
     pub fn line(name: &str, points: Vec<(f64, f64)>) -> Self {
         Self {
             name: name.to_owned(),
@@ -54,7 +54,7 @@ impl Series {
         }
     }
 
-    /// Uprights with a dot on each.
+    /// Creates stems with a dot on each.
     pub fn stems(name: &str, points: Vec<(f64, f64)>) -> Self {
         Self {
             line: Line::Stems,
@@ -63,7 +63,7 @@ impl Series {
         }
     }
 
-    /// Dots alone.
+    /// Creates dots without lines.
     pub fn scatter(name: &str, points: Vec<(f64, f64)>) -> Self {
         Self {
             line: Line::None,
@@ -72,14 +72,14 @@ impl Series {
         }
     }
 
-    /// This series in another CSS colour.
+    /// Sets the CSS colour.
     #[must_use]
     pub fn colored(mut self, color: &str) -> Self {
         self.color = color.to_owned();
         self
     }
 
-    /// What dots are filled with.
+    /// Returns the fill colour of dots.
     pub(crate) fn marker_fill(&self) -> &str {
         if self.marker_hollow {
             "#fff"
@@ -88,7 +88,7 @@ impl Series {
         }
     }
 
-    /// This series as a backdrop: thin, and silent under the pointer.
+    /// Makes the series a backdrop: thin, without hover text.
     #[must_use]
     pub fn behind(mut self) -> Self {
         self.line_width_px = 1.0;

@@ -1,24 +1,24 @@
-//! Tables whose cells carry their value as a number and as a shade.
+//! Tables whose cells show their value as a number and as a shade.
 
 use crate::color::{Rgb, diverging, sequential};
 use crate::markup::Element;
 use crate::number::{MISSING, fixed};
 
-/// How values become shades.
+/// Mapping from values to shades.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum HeatScale {
     /// No shades.
     None,
     /// Light at `low`, dark at `high`.
     Sequential {
-        /// The value of the lightest shade.
+        /// Value of the lightest shade.
         low: f64,
-        /// The value of the darkest shade.
+        /// Value of the darkest shade.
         high: f64,
     },
     /// White at zero, blue towards `-extent`, orange towards `extent`.
     Diverging {
-        /// The size of the values with the strongest shades.
+        /// Magnitude of the values with the strongest shades.
         extent: f64,
     },
 }
@@ -34,25 +34,25 @@ impl HeatScale {
     }
 }
 
-/// One cell.
+/// A cell of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
-    /// A value on the table's scale, with a mark (such as `"*"`, or nothing) behind it.
+    /// A value shaded by the table's scale, followed by a mark (such as `"*"`, or nothing).
     Shaded(f64, &'static str),
-    /// A value that is not on the scale.
+    /// A value without a shade.
     Plain(f64),
-    /// Text, and smaller text below it where not empty.
+    /// Text, with smaller text below it if the second is not empty.
     Text(String, String),
-    /// Nothing known.
+    /// An unknown value.
     Missing,
 }
 
-/// A row: what it is about, and its cells.
+/// A row of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     /// The row's header.
     pub header: String,
-    /// One cell a column.
+    /// One cell per column.
     pub cells: Vec<Cell>,
 }
 
@@ -61,20 +61,20 @@ pub struct Row {
 pub struct Table {
     /// What the numbers are, with their unit.
     pub caption: String,
-    /// What the row headers are.
+    /// Header of the column of row headers.
     pub corner: String,
     /// The column headers.
     pub columns: Vec<String>,
     /// The rows, from the top.
     pub rows: Vec<Row>,
-    /// How values become shades.
+    /// Mapping from values to shades.
     pub scale: HeatScale,
     /// Decimals of each number.
     pub decimals: usize,
 }
 
 impl Table {
-    /// The table as an HTML element, in a frame that scrolls where the page is too narrow.
+    /// Returns the table as an HTML element, in a frame that scrolls if the page is too narrow.
     pub fn to_html(&self) -> String {
         let table = Element::new("table")
             .child(&Element::new("caption").text(&self.caption))

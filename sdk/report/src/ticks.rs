@@ -1,27 +1,27 @@
-//! Where an axis is marked, and with what text.
+//! Ticks of an axis.
 
 use crate::axis::{Scale, sound_range};
 use crate::number;
 
-/// One mark on an axis.
+/// A tick of an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tick {
-    /// Where, in the axis's unit.
+    /// Position, in the axis' unit.
     pub value: f64,
-    /// What is written there; empty for a minor mark.
+    /// Label; empty for a minor tick.
     pub label: String,
-    /// Which labels to keep where not all fit: 0 first.
+    /// Priority of the label if not all fit: 0 is the highest.
     pub(crate) rank: u8,
 }
 
-/// The marks for an axis from `low` to `high`, ascending and inside it: steps of 1, 2 or 5 times
-/// a power of ten, about `count` of them labelled. A log axis is marked at 1, 2 and 5 of each
-/// decade with minor marks between, or at whole decades where there are many.
+/// Returns the ticks of an axis from `low` to `high`, increasing and inside it: steps of 1, 2 or 5 times
+/// a power of ten, about `count` of them labelled. A log axis has ticks at 1, 2 and 5 of each
+/// decade with minor ticks between, or at whole decades if there are many.
 pub fn ticks(scale: Scale, low: f64, high: f64, count: usize) -> Vec<Tick> {
     let (low, high) = sound_range(Some((low, high)), scale);
     let count = count.clamp(2, 50) as f64;
     match scale {
-        // Less than a factor of three holds too few of 1, 2 and 5.
+        // A range of less than a factor of three has too few of 1, 2 and 5.
         Scale::Log if high / low >= 3.0 => log(low, high, count),
         _ => linear(low, high, count),
     }
@@ -45,7 +45,7 @@ fn linear(low: f64, high: f64, count: f64) -> Vec<Tick> {
         .collect()
 }
 
-/// The smallest of 1, 2, 5 times a power of ten that is at least `step`, as mantissa and exponent.
+/// Returns the smallest of 1, 2, 5 times a power of ten that is at least `step`, as mantissa and exponent.
 fn nice_step(step: f64) -> (f64, i32) {
     let exponent = step.log10().floor() as i32;
     let rest = step / 10f64.powi(exponent);
@@ -96,7 +96,7 @@ fn tick(value: f64, label: String, rank: u8) -> Tick {
     Tick { value, label, rank }
 }
 
-/// `value` with the decimals that a step of 10^`exponent` needs.
+/// Formats `value` with the decimals that a step of 10^`exponent` needs.
 fn label(value: f64, exponent: i32) -> String {
     let size = value.abs();
     if size >= 1e6 || exponent < -4 {
@@ -128,7 +128,7 @@ mod tests {
         assert_eq!(labels(&found), ["\u{2212}0.2", "0.0", "0.2", "0.4"]);
     }
 
-    /// No gap, at the ends or between, is wider than the 1-2-5 grid allows.
+    /// Checks that no gap, at the ends or between ticks, is wider than the 1-2-5 grid allows.
     fn check(scale: Scale, low: f64, high: f64, count: usize) -> Result<(), TestCaseError> {
         let values: Vec<f64> = ticks(scale, low, high, count)
             .iter()

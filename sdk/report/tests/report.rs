@@ -1,5 +1,5 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
-//! What every picture and page must hold, whatever the data.
+//! Properties of all pictures and pages, for any data.
 
 use htex_report::{
     Axis, Cell, HeatScale, Line, ModelResult, Plot, Row, Series, Table, Texture, TextureReport,
@@ -9,12 +9,12 @@ use proptest::prelude::*;
 
 const HOSTILE: &str = "<script>alert('x')</script> & \"quoted\" \u{1}";
 
-/// The markup as XML: the test fails where it is not well formed.
+/// Parses markup as XML; fails if it is not well formed.
 fn parse(markup: &str) -> roxmltree::Document<'_> {
     roxmltree::Document::parse(markup).unwrap()
 }
 
-/// The page's body as XML; the head has elements that HTML leaves open.
+/// Returns the page's body as XML; the head has elements that HTML does not close.
 fn body(page: &str) -> &str {
     let start = page.find("<body>").unwrap();
     &page[start..page.find("</body>").unwrap() + "</body>".len()]
@@ -212,7 +212,7 @@ fn a_chain_shows_what_runs_by_its_cost_and_what_was_left_out_pale() {
     ] {
         assert!(svg.contains(text), "{text}");
     }
-    // Bars in the proportion of the costs, and one pale box.
+    // Bars proportional to the costs, and one grey box.
     assert!(
         svg.contains("width=\"105\"") && svg.contains("width=\"35\""),
         "{svg}"

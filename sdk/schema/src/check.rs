@@ -1,14 +1,14 @@
-//! Documents, held to schemas. Nothing is fetched: a `$ref` leads into the schema itself.
+//! Validation of documents against schemas. Nothing is downloaded: a `$ref` must refer to the schema itself.
 
 use std::error::Error;
 
 use jsonschema::{Retrieve, Uri, Validator};
 use serde_json::Value;
 
-/// Violations that are told; a hostile document could break rules by the million.
+/// Most violations reported; a hostile document could break rules by the million.
 const MOST: usize = 1000;
 
-/// A schema that documents can be held to.
+/// A compiled JSON Schema.
 ///
 /// ```
 /// use serde_json::json;
@@ -22,41 +22,44 @@ const MOST: usize = 1000;
 #[derive(Debug)]
 pub struct Schema(Validator);
 
-/// A schema cannot be used.
+/// Error of compiling a schema.
 #[derive(Debug)]
 pub struct SchemaError(String);
 
-/// A rule of a schema that a document breaks.
+/// A violation of a schema.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Violation {
     /// JSON pointer into the document.
     pub pointer: String,
-    /// JSON pointer into the schema: the keyword that does not hold, last.
+    /// JSON pointer into the schema: the violated keyword, last.
     pub rule: String,
-    /// What does not hold.
+    /// What is wrong.
     pub message: String,
 }
 
-/// What a schema refers to outside itself.
+/// Retriever that refuses references outside the schema.
 struct Nothing;
 
 impl Retrieve for Nothing {
     fn retrieve(&self, _uri: &Uri<String>) -> Result<Value, Box<dyn Error + Send + Sync>> {
-        Err("nothing is fetched; put what it refers to into its own $defs".into())
+        Err(
+            "nothing is fetched; copy the target of the reference into the schema's own $defs"
+                .into(),
+        )
     }
 }
 
 impl Schema {
-    /// Reads a schema of draft 2020-12, or of the draft that its `$schema` names.
+    /// Compiles a schema of draft 2020-12, or of the draft that its `$schema` names.
     ///
     /// # Errors
-    /// When it is not a valid schema, or refers to another one.
+    /// When it is not a valid schema, or refers to another schema.
     pub fn new(schema: &Value) -> Result<Self, SchemaError> {
         let validator = jsonschema::options().with_retriever(Nothing).build(schema);
         validator.map(Self).map_err(|e| SchemaError(e.to_string()))
     }
 
-    /// The rules that a document breaks, in the order of the schema; at most the first thousand.
+    /// Returns the violations of a document, in the order of the schema; at most the first thousand.
     pub fn violations(&self, document: &Value) -> Vec<Violation> {
         let errors = self.0.iter_errors(document);
         errors

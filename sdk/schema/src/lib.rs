@@ -1,9 +1,9 @@
-//! JSON Schemas (draft 2020-12) of htex's documents: made from Rust types, and checked against.
+//! JSON Schemas (draft 2020-12) of htex's documents: generated from Rust types, and used for validation.
 //!
 //! ```
 //! #[derive(schemars::JsonSchema)]
 //! struct Cloth {
-//!     /// Threads a centimetre.
+//!     /// Threads per centimetre.
 //!     threads: f64,
 //!     dye: Option<String>,
 //! }
@@ -24,10 +24,10 @@ use schemars::transform::transform_subschemas;
 use schemars::{JsonSchema, Schema as Made, SchemaGenerator};
 use serde_json::{Value, json};
 
-/// What the schemas' names start with; nothing is fetched from there.
+/// Prefix of the schemas' ids; nothing is downloaded from there.
 const BASE: &str = "https://htex.org/schemas/";
 
-/// The schema of a document in which what is not known is left out, never `null`; `file` is its
+/// Returns the schema of a document in which unknown values are absent, never `null`; `file` is its
 /// name in `spec/schemas`.
 pub fn document<T: JsonSchema>(file: &str, title: &str) -> Value {
     let mut schema = made::<T>(file, title);
@@ -35,7 +35,7 @@ pub fn document<T: JsonSchema>(file: &str, title: &str) -> Value {
     schema.to_value()
 }
 
-/// The schema of what crosses an ABI as JSON, where `null` stands for what is absent.
+/// Returns the schema of JSON that crosses an ABI, in which `null` stands for an absent value.
 pub fn crossing<T: JsonSchema>(file: &str, title: &str) -> Value {
     made::<T>(file, title).to_value()
 }
@@ -48,13 +48,13 @@ fn made<T: JsonSchema>(file: &str, title: &str) -> Made {
     schema
 }
 
-/// Takes out formats such as `double` and `uint64`, which the standard does not have.
+/// Removes formats such as `double` and `uint64`, which the standard does not have.
 fn without_formats(schema: &mut Made) {
     schema.remove("format");
     transform_subschemas(&mut (without_formats as fn(&mut Made)), schema);
 }
 
-/// Takes out `null` beside another type.
+/// Removes `null` as an alternative to another type.
 fn without_null(schema: &mut Made) {
     transform_subschemas(&mut (without_null as fn(&mut Made)), schema);
     if let Some(Value::Array(types)) = schema.get_mut("type") {

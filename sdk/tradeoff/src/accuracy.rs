@@ -1,22 +1,22 @@
-//! How near a spectrum comes, in five numbers.
+//! Accuracy of a spectrum: five measures against a recording's.
 
 use htex_author::{SpectrumRef, agreement};
 use htex_dsp::grid::level_rms;
 use serde::{Deserialize, Serialize};
 
-/// How near a spectrum comes to a recording's.
+/// Errors of a spectrum, compared with a recording's.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Accuracy {
     pub(crate) spectral_correlation: f64,
     pub(crate) band_error_rms_db: f64,
     pub(crate) third_octave_error_rms_db: f64,
     pub(crate) log_spectral_distance_db: f64,
-    /// RMS in the band over the recording's, decibels.
+    /// RMS in the band relative to the recording's, decibels.
     pub(crate) level_error_db: f64,
 }
 
-/// A level this far off is none at all: keeps silence finite. The errors of what has nothing to be
-/// compared with.
+/// Error in decibels used for silence, and when there is nothing to compare with, so that all errors
+/// are finite.
 const FAR_DB: f64 = 200.0;
 
 pub(crate) fn accuracy(reference: SpectrumRef<'_>, magnitude: &[f64]) -> Accuracy {

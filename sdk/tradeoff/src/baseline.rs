@@ -1,19 +1,19 @@
-//! The two baselines: the spectrum itself, coarsely quantised, and the recording.
+//! The two baselines: the quantised spectrum, and the recording.
 
 use htex_dsp::grid::{Band, level_rms};
 use htex_dsp::resample::Resampler;
 use htex_dsp::shaped_noise::{ShapedNoise, economical_rate_hz};
 use htex_host::HostError;
 
-/// Steps of a byte.
+/// Quantisation steps of a byte.
 const STEPS: f64 = 255.0;
-/// Bins this far below the largest are stored as if they were there, a part of it: -120 dB.
+/// Lower limit of a bin relative to the largest: -120 dB.
 const FLOOR: f64 = 1e-6;
-/// Two single-precision numbers: lowest and highest logarithm.
+/// Bytes of the two single-precision numbers: lowest and highest logarithm.
 const RANGE_BYTES: usize = 8;
 
-/// Magnitudes after a round trip through one byte each, on a logarithmic scale from the lowest to
-/// the highest, each rounded up or down; and the bytes that takes.
+/// Quantises magnitudes to one byte each, on a logarithmic scale from the lowest to
+/// the highest, rounded up or down. Returns the values read back, and the bytes they take.
 pub(crate) fn quantise(magnitude: &[f64]) -> (Vec<f64>, usize) {
     let top = magnitude.iter().copied().fold(0.0, f64::max);
     let bytes = magnitude.len() + RANGE_BYTES;
@@ -24,7 +24,7 @@ pub(crate) fn quantise(magnitude: &[f64]) -> (Vec<f64>, usize) {
     let single = |x: f64| f64::from(x as f32);
     let low = single(logs.iter().copied().fold(f64::INFINITY, f64::min));
     let step = (single(top.ln()) - low) / STEPS;
-    // The energy that rounding left over, brought into the next bin as far as half a step goes: so
+    // The rounding error in energy is carried to the next bin, up to half a step, so that
     // bands keep their energies.
     let mut left_over = 0.0;
     let stored = |log: &f64| {
@@ -42,7 +42,7 @@ pub(crate) fn quantise(magnitude: &[f64]) -> (Vec<f64>, usize) {
     (logs.iter().map(stored).collect(), bytes)
 }
 
-/// Noise of unit RMS under magnitudes on the band's grid: as the models of noise play.
+/// Noise of unit RMS shaped by magnitudes on the band's grid, as noise models play it.
 pub(crate) struct SpectrumNoise {
     noise: ShapedNoise,
     resampler: Option<Resampler>,
@@ -89,7 +89,7 @@ mod tests {
             .collect();
         let (stored, bytes) = quantise(&magnitude);
         assert_eq!(bytes, 205);
-        // 51 dB in 255 steps of 0.2 dB; ten bins together are much nearer.
+        // 51 dB in 255 steps of 0.2 dB; the error of ten bins together is much smaller.
         for (a, b) in magnitude.iter().zip(&stored) {
             assert!((20.0 * (b / a).log10()).abs() < 0.201, "{a} {b}");
         }

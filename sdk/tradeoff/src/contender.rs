@@ -1,4 +1,4 @@
-//! Whatever can be fitted to a recording, stored and played.
+//! Contenders: what can be fitted to a recording, stored and played.
 
 use htex_author::{Level, stored_fields, stored_level};
 use htex_dsp::grid::level_rms;
@@ -9,7 +9,7 @@ use crate::baseline::quantise;
 use crate::setting::Keep;
 use crate::{Setting, Subject, TradeoffError};
 
-/// What is measured: a setting of a model, or a baseline.
+/// A setting of a model, or a baseline, to be measured.
 #[derive(Debug, Clone)]
 pub(crate) struct Contender {
     pub(crate) model: String,
@@ -19,15 +19,15 @@ pub(crate) struct Contender {
 
 #[derive(Debug, Clone)]
 pub(crate) enum Kind {
-    /// A model, with a value for each of its fit options.
+    /// A model with a value for each of its fit options.
     Model(LoadedModel, Vec<f64>),
-    /// The spectrum, a byte a bin.
+    /// The spectrum, one byte per bin.
     Quantised,
-    /// The recording itself.
+    /// The recording.
     Recording,
 }
 
-/// What playing needs.
+/// Stored data that playing needs.
 pub(crate) struct Stored {
     pub(crate) parameters: Vec<f64>,
     pub(crate) level_rms: f64,
@@ -35,12 +35,12 @@ pub(crate) struct Stored {
 }
 
 impl Contender {
-    /// Its name within a recording: no two have the same.
+    /// Returns its name, which is unique within a recording.
     pub(crate) fn id(&self) -> String {
         format!("{} {}", self.model, self.setting.words())
     }
 
-    /// Fits it; for the baselines, makes what is stored.
+    /// Fits the model; for a baseline, computes the stored data.
     pub(crate) fn fit(&self, subject: &Subject) -> Result<Fit, HostError> {
         let spectrum = &subject.spectrum;
         match &self.kind {
@@ -60,7 +60,7 @@ impl Contender {
         }
     }
 
-    /// What is read back after storing a fit, and its size.
+    /// Returns the data read back after storing a fit, and their size.
     pub(crate) fn store(&self, subject: &Subject, fit: &Fit) -> Result<Stored, TradeoffError> {
         let spectrum = &subject.spectrum;
         let (parameters, bytes) = match &self.kind {

@@ -1,4 +1,4 @@
-//! The points as a table.
+//! The points as CSV.
 
 use std::fmt::Write;
 
@@ -51,7 +51,7 @@ const COLUMNS: &[Column] = &[
     ("on_time_front", |p| p.on_time_front.to_string()),
 ];
 
-/// Every setting on every recording, a line each, below a line of names.
+/// Writes every setting on every recording, one line each, after a header line.
 pub fn csv(tradeoff: &Tradeoff) -> String {
     let names: Vec<&str> = COLUMNS.iter().map(|(name, _)| *name).collect();
     let mut out = names.join(",") + "\n";
@@ -63,8 +63,8 @@ pub fn csv(tradeoff: &Tradeoff) -> String {
     out
 }
 
-/// A cell of text, quoted where it must be; one that a spreadsheet would take for a formula begins with an apostrophe, by
-/// which these know text.
+/// Formats a cell of text, quoted if necessary. A cell that a spreadsheet would take for a formula gets an apostrophe in
+/// front, which marks text.
 fn text(text: &str) -> String {
     let text = match text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
         true => &format!("'{text}"),

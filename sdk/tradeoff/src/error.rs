@@ -1,11 +1,11 @@
-//! Why there is no sweep.
+//! Errors of a sweep.
 
 use std::path::PathBuf;
 
-/// Why a sweep ended early; what was finished is in its journal.
+/// An error that ended a sweep; finished points are in its journal.
 #[derive(Debug, thiserror::Error)]
 pub enum TradeoffError {
-    /// A recording is of no use, or a model failed.
+    /// A recording is not usable, or a model failed.
     #[error(transparent)]
     Author(#[from] htex_author::AuthorError),
     /// A model refused a setting.
@@ -14,20 +14,20 @@ pub enum TradeoffError {
     /// Parameters do not fit their store.
     #[error(transparent)]
     Store(#[from] htex_format::WriteError),
-    /// The file of finished points could not be kept.
+    /// The journal could not be written.
     #[error("cannot keep finished points in {path}: {error}")]
     Journal {
         /// The file.
         path: PathBuf,
-        /// The system's reason.
+        /// The system's error.
         error: std::io::Error,
     },
-    /// A value that a knob does not take.
-    #[error("knob {name}: `{value}` is none of its values")]
+    /// A knob does not have this value.
+    #[error("knob {name}: `{value}` is not one of its values")]
     Knob {
         /// The knob.
         name: String,
-        /// What was given.
+        /// The given value.
         value: String,
     },
 }

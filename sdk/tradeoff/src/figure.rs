@@ -1,4 +1,4 @@
-//! Error against cost as a picture.
+//! Plots of error against cost.
 
 use htex_format::ErrorMeasure;
 use htex_report::{Axis, Line, Plot, RECORDING_COLOR, Series, model_color};
@@ -8,21 +8,21 @@ use crate::knee::along_front;
 use crate::point::{Point, QUANTISED};
 use crate::setting::Keep;
 
-/// What error is weighed against.
+/// The cost that error is compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cost {
-    /// Bytes of stored parameters; error by magnitudes.
+    /// Bytes of stored parameters; the error is that of the magnitudes.
     Bytes,
-    /// Nanoseconds a sample; error by samples.
+    /// Nanoseconds per sample; the error is that of the samples.
     Time,
 }
 
-/// Which error is weighed against what.
+/// A pair of cost and error measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Against {
-    /// What it is weighed against.
+    /// The cost.
     pub cost: Cost,
-    /// How the error is measured.
+    /// The error measure.
     pub error: ErrorMeasure,
 }
 
@@ -34,7 +34,7 @@ impl Cost {
         }
     }
 
-    /// Whether a point's cost means the same as that of the others.
+    /// Whether a point's cost is comparable with that of the others.
     pub(crate) fn compares(self, point: &Point) -> bool {
         match self {
             Self::Bytes => point.how.plays_as_default(),
@@ -62,7 +62,7 @@ impl Cost {
 }
 
 impl Against {
-    /// Cost and error of a point.
+    /// Returns cost and error of a point.
     pub(crate) fn place(self, point: &Point) -> (f64, f64) {
         match self.cost {
             Cost::Bytes => (point.bytes as f64, point.error_db(self.error)),
@@ -71,7 +71,7 @@ impl Against {
     }
 }
 
-/// Marks the points that no other beats.
+/// Marks the points on the front.
 pub(crate) fn mark_front(points: &mut [Point], against: Against) {
     let compared: Vec<usize> = (0..points.len())
         .filter(|&i| against.cost.compares(&points[i]))
@@ -88,8 +88,8 @@ pub(crate) fn mark_front(points: &mut [Point], against: Against) {
     }
 }
 
-/// Error against cost: all settings as small dots, each model's own front as larger ones, both
-/// baselines, and the front of all. Both axes are logarithmic.
+/// Plots error against cost: all settings as small dots, each model's own front as larger ones, both
+/// baselines, and the front of all models. Both axes are logarithmic.
 pub fn figure(title: &str, points: &[&Point], models: &[String], against: Against) -> Plot {
     let shown: Vec<&Point> = points
         .iter()
@@ -101,7 +101,7 @@ pub fn figure(title: &str, points: &[&Point], models: &[String], against: Agains
         against.cost.axis(),
         Axis::log(&format!("{} / dB", against.error)),
     );
-    // Narrow, so that text stays legible on a telephone.
+    // Narrow, so that text stays legible on a phone.
     (plot.width, plot.height) = (440.0, 380.0);
     let front = along_front(&shown, against);
     let mut line = Series::line("front of all", steps(&front, against));
@@ -147,7 +147,7 @@ pub fn figure(title: &str, points: &[&Point], models: &[String], against: Agains
     plot
 }
 
-/// A front as steps: an error is had from its cost on.
+/// Converts a front to steps: an error is reached from its cost on.
 fn steps(front: &[&Point], against: Against) -> Vec<(f64, f64)> {
     let mut steps = Vec::new();
     for point in front {

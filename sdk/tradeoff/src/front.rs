@@ -1,6 +1,6 @@
-//! Which points no other point beats.
+//! Pareto fronts.
 
-/// Which of some points of (cost, error) no other beats, that is, has at most the cost and at most
+/// Returns which points of (cost, error) are on the Pareto front: no other point has at most the cost and at most
 /// the error, and less of one. A point with a number that is not finite is never on the front;
 /// points that are equal in both are on it together.
 pub fn front(points: &[(f64, f64)]) -> Vec<bool> {
@@ -47,7 +47,7 @@ mod tests {
     proptest! {
         #[test]
         fn nothing_on_it_is_beaten_and_all_else_is(
-            // Few values, so that ties come up.
+            // Few values, so that ties occur.
             points in prop::collection::vec((0u8..12, 0u8..12), 0..60)
         ) {
             let points: Vec<(f64, f64)> =

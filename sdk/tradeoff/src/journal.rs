@@ -1,4 +1,4 @@
-//! The finished part of a sweep, so that an interrupted one goes on where it stopped.
+//! Journal of a sweep, from which an interrupted sweep continues.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufRead, BufReader, Write};
@@ -11,26 +11,26 @@ use crate::TradeoffError;
 use crate::measured::Measured;
 use crate::timing::Timed;
 
-/// How the first line of a journal begins; the key stands behind it.
+/// Start of the first line of a journal, followed by the key.
 const HEAD: &str = "htex tradeoff ";
 
-/// What was finished. A contender is named by its id within its recording.
+/// A finished step. A contender is named by its id within its recording.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Entry {
-    /// A contender was measured on a recording, or why it was not.
+    /// The result of measuring a contender on a recording, or the reason why it failed.
     Measured {
         recording: usize,
         contender: String,
         outcome: Result<Measured, String>,
     },
-    /// The contenders of a recording were timed, side by side.
+    /// The times of all contenders of a recording.
     Timed {
         recording: usize,
         times: Vec<(String, Timed)>,
     },
 }
 
-/// A file of finished entries, one a line, under the key of what they are results of.
+/// A file of finished entries, one per line, with a key of the sweep's inputs.
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
@@ -39,7 +39,7 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// A journal in a file, which is read by the first sweep that uses it.
+    /// Creates a journal; its file is read by the first sweep that uses it.
     pub fn new(path: &Path) -> Self {
         Self {
             path: path.to_owned(),
@@ -48,8 +48,8 @@ impl Journal {
         }
     }
 
-    /// Reads what was finished under `key`; a file of another key is begun anew. A line that was
-    /// cut off is dropped, and with it what follows.
+    /// Reads the entries of a file with this key; a file with another key is overwritten. Reading stops at a
+    /// truncated line.
     pub(crate) fn open(&mut self, key: &str) -> Result<(), TradeoffError> {
         let key = &format!("{HEAD}{key}");
         self.entries = self.read(key).map_err(|error| self.error(error))?;
@@ -58,7 +58,7 @@ impl Journal {
         Ok(())
     }
 
-    /// A file that is none of ours is left alone.
+    /// Reads the file; a file that is not a journal is an error and is not changed.
     fn read(&self, key: &str) -> io::Result<Vec<Entry>> {
         let Ok(file) = File::open(&self.path) else {
             return Ok(Vec::new());
@@ -67,7 +67,7 @@ impl Journal {
         let first = lines.next().unwrap_or_default();
         if !first.is_empty() && !first.starts_with(HEAD) {
             return Err(io::Error::other(
-                "it is there, and no journal of an interrupted sweep; move it away, or name another output",
+                "it exists and is not the journal of an interrupted sweep; move it, or name another output",
             ));
         }
         if first != key {
@@ -77,7 +77,7 @@ impl Journal {
         Ok(entries.collect())
     }
 
-    /// The file with just what was read, open for more.
+    /// Rewrites the file with the entries that were read, and opens it for more.
     fn rewrite(&self, key: &str) -> io::Result<File> {
         htex_format::replace_file(&self.path, |file| {
             let mut file = io::BufWriter::new(file);
@@ -90,7 +90,7 @@ impl Journal {
         OpenOptions::new().append(true).open(&self.path)
     }
 
-    /// Keeps a finished entry. A line is one write, so that only the last one can be cut off.
+    /// Appends a finished entry. A line is one write, so that only the last one can be truncated.
     pub(crate) fn keep(&self, entry: &Entry) -> Result<(), TradeoffError> {
         let write = |file: &Mutex<File>| {
             let line = serde_json::to_string(entry)? + "\n";
@@ -105,7 +105,7 @@ impl Journal {
             .map_err(|error| self.error(error))
     }
 
-    /// Removes the file: the results stand elsewhere.
+    /// Removes the file, when the results are written elsewhere.
     ///
     /// # Errors
     /// When it cannot be removed.
@@ -149,7 +149,7 @@ mod tests {
         let journal = open("one");
         journal.keep(&entry("a")).unwrap();
         journal.keep(&entry("b")).unwrap();
-        // Killed while it wrote.
+        // Interrupted while writing.
         let mut text = std::fs::read_to_string(&path).unwrap();
         text += "{\"Measured\":{\"recor";
         std::fs::write(&path, text).unwrap();

@@ -1,4 +1,4 @@
-//! Where a front bends: what the next step up buys less and less.
+//! Knees of fronts, beyond which more cost reduces the error less.
 
 use htex_format::ErrorMeasure;
 use serde::Serialize;
@@ -7,34 +7,34 @@ use crate::figure::{Against, Cost};
 use crate::front::front;
 use crate::point::Point;
 
-/// Less than this is no step up.
+/// Smallest error reduction of a step up, decibels.
 const STEP_DB: f64 = 0.05;
 
-/// The bend of a front, and the next step up.
+/// The knee of a front, and the next step up.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Knee {
-    /// The recording, or the median of all.
+    /// The recording, or the median of all recordings.
     pub recording: String,
     /// A model's short name, or `all models`.
     pub of: String,
-    /// What error is weighed against: `bytes` or `time`.
+    /// The cost: `bytes` or `time`.
     pub against: &'static str,
-    /// Model and setting at the bend.
+    /// Model and setting at the knee.
     pub at: String,
-    /// Its bytes or ns a sample.
+    /// Its cost, bytes or ns per sample.
     pub cost: f64,
-    /// How its error is measured.
+    /// The error measure.
     pub error: ErrorMeasure,
-    /// Its error, dB.
+    /// Its error, decibels.
     pub error_db: f64,
-    /// Model and setting of the next step up, which is at least 0.05 dB better; none when there is none.
+    /// Model and setting of the next step up, which is at least 0.05 dB better; `None` if there is none.
     pub next: Option<String>,
-    /// The same, with what the step buys and costs, as a sentence.
+    /// Description of the knee and of the next step's gain and cost, as a sentence.
     pub words: String,
 }
 
-/// The place on a front, ascending in cost, that lies furthest below the straight line between its
-/// ends, cost on a logarithmic axis; the first of a front of one or two.
+/// Returns the point of a front, by increasing cost, that is furthest below the straight line between its
+/// ends, with cost on a logarithmic axis; the first point of a front of one or two.
 pub fn knee(front: &[(f64, f64)]) -> Option<usize> {
     let (&(low, high_error), &(high, low_error)) = (front.first()?, front.last()?);
     let across = |cost: f64| (cost / low).ln() / (high / low).ln();
@@ -42,7 +42,7 @@ pub fn knee(front: &[(f64, f64)]) -> Option<usize> {
         let line = high_error + across(cost) * (low_error - high_error);
         if high > low { line - error } else { 0.0 }
     };
-    // Of several that lie as low, the cheapest.
+    // Of several equally low ones, the cheapest.
     (0..front.len()).reduce(|best, i| {
         if below(&front[i]) > below(&front[best]) {
             i
@@ -52,7 +52,7 @@ pub fn knee(front: &[(f64, f64)]) -> Option<usize> {
     })
 }
 
-/// The knees of one recording: of all models, then of each.
+/// Returns the knees of one recording: of all models, then of each.
 pub(crate) fn knees(
     recording: &str,
     points: &[&Point],
@@ -90,9 +90,9 @@ fn knee_of(recording: &str, of: &str, against: Against, points: &[&Point]) -> Op
     let next = next.map(|i| (&places[i], along[i]));
     let here = format!("{}, {}", along[at].name(), against.cost.words(cost, error));
     let words = match next {
-        None => format!("{here}: there is no step up"),
+        None => format!("{here}: no further step reduces the error"),
         Some((&(next_cost, next_error), next)) => format!(
-            "{here}; the next step up, {}, buys {:.2} dB for {} more ({:+.0} %)",
+            "{here}; the next step up, {}, reduces the error by {:.2} dB for {} more ({:+.0} %)",
             next.name(),
             error - next_error,
             against.cost.amount(next_cost - cost),
@@ -112,7 +112,7 @@ fn knee_of(recording: &str, of: &str, against: Against, points: &[&Point]) -> Op
     })
 }
 
-/// The points of a front, ascending in cost; of equal ones the first.
+/// Returns the points of a front by increasing cost; of equal ones the first.
 pub(crate) fn along_front<'a>(points: &[&'a Point], against: Against) -> Vec<&'a Point> {
     let places: Vec<(f64, f64)> = points.iter().map(|p| against.place(p)).collect();
     let on = front(&places);

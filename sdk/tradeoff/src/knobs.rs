@@ -1,6 +1,6 @@
-//! What is turned, and how far: one table.
+//! Table of knobs: the options that a sweep varies, and their values.
 
-/// A knob and the values it takes in a sweep, besides its default.
+/// A knob and its values in a sweep, besides its default.
 #[derive(Debug, Clone, Copy)]
 pub struct Knob {
     /// A fit option of the model, or one of [`PLAYING`].
@@ -14,11 +14,11 @@ pub struct Knob {
 pub struct ModelKnobs {
     /// The model's short name.
     pub model: &'static str,
-    /// Every value of one with every value of the others.
+    /// Knobs that are varied in all combinations.
     pub together: &'static [Knob],
-    /// One at a time, the others at their defaults.
+    /// Knobs that are varied one at a time, with the others at their defaults.
     pub alone: &'static [Knob],
-    /// A knob that says nothing above the value of another.
+    /// A knob that has no effect above the value of another.
     pub not_above: Option<(&'static str, &'static str)>,
 }
 
@@ -26,7 +26,7 @@ const fn knob(name: &'static str, values: &'static [&'static str]) -> Knob {
     Knob { name, values }
 }
 
-/// Fit options by model. A model that is not here is measured at its defaults.
+/// Fit options by model. A model that is not listed is measured at its defaults.
 pub const MODELS: &[ModelKnobs] = &[
     ModelKnobs {
         model: "ar",
@@ -109,8 +109,8 @@ pub const MODELS: &[ModelKnobs] = &[
     },
 ];
 
-/// How what was fitted is stored and played: each alone, at the fit's defaults. Ways to load a
-/// model come to these.
+/// Options of storing and playing: varied one at a time, at the fit's defaults. Ways to load a
+/// model are added to these.
 pub const PLAYING: &[Knob] = &[
     knob(
         "synthesis",
@@ -129,7 +129,7 @@ pub const PLAYING: &[Knob] = &[
     knob("output_rate_hz", &["4000", "8000", "48000", "192000"]),
 ];
 
-/// Ends and middle of a knob: what a quick sweep takes.
+/// Returns the ends and the middle of a knob's values, for a quick sweep.
 pub(crate) fn few(values: &'static [&'static str]) -> Vec<&'static str> {
     let mut few = vec![0, values.len() / 2, values.len().saturating_sub(1)];
     few.dedup();

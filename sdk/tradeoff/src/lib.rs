@@ -1,8 +1,8 @@
-//! What accuracy costs: every model and knob on recordings, in bytes and in time.
+//! Accuracy against cost: every model and option on recordings, in bytes and in time.
 //!
-//! [`sweep`] fits, measures and times the settings of [`knobs`] on some [`Subject`]s, beside two
-//! baselines, and [`Tradeoff::new`] makes of it fronts, knees and warnings; [`page`] and [`csv`]
-//! write that down. A sweep that was interrupted goes on where it stopped ([`Journal`]).
+//! [`sweep`] fits, measures and times the settings of [`knobs`] on some [`Subject`]s, with two
+//! baselines. [`Tradeoff::new`] finds fronts, knees and warnings in the result; [`page`] and [`csv`]
+//! write it. An interrupted sweep continues from its [`Journal`].
 #![forbid(unsafe_code)]
 
 mod accuracy;

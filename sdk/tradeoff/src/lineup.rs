@@ -1,4 +1,4 @@
-//! Who is measured, and under which key results are kept.
+//! The contenders of a sweep, and the key of its results.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::settings::{fit_settings, playing_settings};
 use crate::sweep::{Model, Request};
 use crate::{Machine, Setting, Subject, TradeoffError};
 
-/// Everything that stands in the table, and the baselines.
+/// Returns all settings of the table, and the baselines.
 pub(crate) fn lineup(request: &Request) -> Result<Vec<Contender>, TradeoffError> {
     let mut all = Vec::new();
     for Model { ways } in &request.models {
@@ -62,7 +62,7 @@ pub(crate) fn lineup(request: &Request) -> Result<Vec<Contender>, TradeoffError>
     Ok(all)
 }
 
-/// What the results of a sweep depend on, as a BLAKE3 hash.
+/// Returns a BLAKE3 hash of everything that the results of a sweep depend on.
 pub(crate) fn key(subjects: &[Subject], contenders: &[Contender], request: &Request) -> String {
     let mut hasher = blake3::Hasher::new();
     let mut add = |text: &str| {
@@ -93,7 +93,7 @@ pub(crate) fn key(subjects: &[Subject], contenders: &[Contender], request: &Requ
     hasher.finalize().to_hex().to_string()
 }
 
-/// Which build of a program a file is, by its size and its time; empty if that cannot be read.
+/// Identifies the build of a program by its file's size and time; empty if they cannot be read.
 fn build(file: &Path) -> String {
     let read = || {
         let about = file.metadata().ok()?;

@@ -1,4 +1,4 @@
-//! How near a contender comes, by its magnitudes and by what it plays.
+//! Accuracy of a contender, by its magnitudes and by rendered samples.
 
 use htex_author::spectrum_of_samples;
 use htex_host::HostError;
@@ -8,12 +8,12 @@ use crate::accuracy::{Accuracy, accuracy};
 use crate::contender::{Contender, Kind, Stored};
 use crate::{Subject, TradeoffError};
 
-/// Renderings that are measured, each with a seed of its own.
+/// Number of renderings that are measured, each with its own seed.
 const SEEDS: u64 = 3;
-/// Length of each, seconds.
+/// Length of a rendering, seconds.
 const SECONDS: f64 = 20.0;
 const QUICK_SECONDS: f64 = 4.0;
-/// Most samples of one rendering: at high rates it is shorter.
+/// Most samples of a rendering; at high rates it is shorter.
 const MOST_SAMPLES: f64 = 2e6;
 
 /// Accuracy and size of a contender.
@@ -23,12 +23,12 @@ pub(crate) struct Measured {
     pub(crate) kept_bytes: usize,
     pub(crate) by_magnitude: Accuracy,
     pub(crate) by_samples: Accuracy,
-    /// Half the range of the nine-band errors of single renderings, decibels.
+    /// Half the range of the nine-band errors of the renderings, decibels.
     pub(crate) samples_spread_db: f64,
 }
 
 impl Contender {
-    /// Fits, stores and measures. None for a recording that says nothing of how it repeats.
+    /// Fits, stores and measures. `None` for a recording without a known repeatability.
     pub(crate) fn measure(
         &self,
         subject: &Subject,
@@ -59,7 +59,7 @@ impl Contender {
         }))
     }
 
-    /// The spectra of some renderings.
+    /// Returns the spectra of the renderings.
     fn rendered(
         &self,
         subject: &Subject,
@@ -109,7 +109,7 @@ struct Rendered {
     kept_bytes: usize,
 }
 
-/// The root of the mean power of several magnitudes, bin by bin.
+/// Returns the root of the mean power of several magnitudes, bin by bin.
 fn rms_of(spectra: &[Vec<f64>]) -> Vec<f64> {
     let bins = spectra.first().map_or(0, Vec::len);
     let power = |k: usize| spectra.iter().map(|m| m[k] * m[k]).sum::<f64>();

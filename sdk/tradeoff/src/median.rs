@@ -1,10 +1,10 @@
-//! The medians of each setting over several recordings.
+//! Medians of each setting over several recordings.
 
 use std::collections::BTreeMap;
 
 use crate::point::Point;
 
-/// A point for each setting that was measured on all of `recordings`, in the order of the first.
+/// Returns a point for each setting that was measured on all of `recordings`, in the order of the first.
 pub(crate) fn medians(points: &[Point], recordings: usize) -> Vec<Point> {
     let mut settings: BTreeMap<String, Vec<&Point>> = BTreeMap::new();
     for point in points {

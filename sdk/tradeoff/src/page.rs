@@ -1,4 +1,4 @@
-//! The report as a page.
+//! The report as an HTML page.
 
 use htex_format::ErrorMeasure;
 use htex_report::{Cell, HeatScale, Page, Row, Table, figures, list, paragraph};
@@ -7,7 +7,7 @@ use crate::figure::{Cost, figure};
 use crate::knee::{Knee, along_front};
 use crate::{Point, QUANTISED, RECORDING, Tradeoff};
 
-/// The report: self-contained HTML, the summary first, then every recording.
+/// Returns the report as self-contained HTML: the summary first, then every recording.
 pub fn page(tradeoff: &Tradeoff, command: &str) -> String {
     let mut page = Page::new("Accuracy against bytes and time");
     page.html(&paragraph(&made_of(tradeoff)));
@@ -59,20 +59,20 @@ fn reading(tradeoff: &Tradeoff) -> String {
         _ => "no model is fitted to it",
     };
     format!(
-        "Each dot is a setting of a model; large ones are the model's own front, where no other of its \
-         settings has less error for as little. The grey line is the front of all. Point at a large dot \
-         for all its numbers. In the pictures and knees error is the {}, in decibels ({own}): against \
-         bytes by the model's own magnitudes, against time by what it plays. The tables have the \
-         nine-band error, third-octave error and log-spectral distance side by side. Two baselines stand \
-         in every picture: the spectrum itself at a byte a bin, and the recording, whose error is what its \
-         odd and even strokes differ by. An error below that says nothing more about the surface.",
+        "Each dot is a setting of a model; large dots are the model's own front, where no other of its \
+         settings has less error at the same or a lower cost. The grey line is the front of all models. Point at a large dot \
+         to see all its numbers. In the pictures and knees the error is the {}, in decibels ({own}): against \
+         bytes by the model's own magnitudes, against time by rendered samples. The tables have the \
+         nine-band error, third-octave error and log-spectral distance side by side. Two baselines are \
+         in every picture: the spectrum at one byte per bin, and the recording, whose error is the difference \
+         between its odd and even strokes. Errors below that do not distinguish models.",
         tradeoff.error
     )
 }
 
-const PLAYING: &str = "What was fitted at the defaults, stored and played in other ways, one at a time. A \
-    loop costs memory and keeps the grain of one piece of noise; a filter resolves the better the more \
-    taps it has. Times at another output rate are for a sample at that rate.";
+const PLAYING: &str = "The fit at the defaults, stored and played with one other option at a time. A \
+    loop takes memory and repeats one piece of noise; a filter's resolution increases with its number of \
+    taps. Times at another output rate are per sample at that rate.";
 
 fn made_of(tradeoff: &Tradeoff) -> String {
     let names: Vec<String> = tradeoff.recordings.iter().map(|r| r.name.clone()).collect();
@@ -97,13 +97,13 @@ fn made_of(tradeoff: &Tradeoff) -> String {
 fn machine(tradeoff: &Tradeoff) -> String {
     let m = &tradeoff.machine;
     format!(
-        "{} on {} ({} cores, {}). Times are medians of turns taken in rotation on one core, warm; a \
-         spread is half the distance between the quartiles.",
+        "{} on {} ({} cores, {}). Times are medians of interleaved runs on one core, with warm caches; a \
+         spread is half the interquartile range.",
         tradeoff.tool, m.processor, m.cores, m.system
     )
 }
 
-/// Two pictures and the knees of a recording.
+/// Adds two plots and the knees of a recording.
 fn section(page: &mut Page, tradeoff: &Tradeoff, name: &str, points: &[&Point]) {
     page.heading(name);
     let pictures = [Cost::Bytes, Cost::Time].map(|cost| {
@@ -184,7 +184,7 @@ fn timed(median: f64, spread: f64) -> Cell {
     Cell::Text(format!("{median:.2}"), format!("± {:.0} %", 100.0 * spread))
 }
 
-/// A model fitted at its defaults, stored and played in every way.
+/// Returns the table of a model fitted at its defaults, stored and played in every way.
 fn playing(points: &[&Point], model: &str) -> Table {
     let is_own = |p: &&Point| p.how.options.is_empty() && p.model == model;
     let own: Vec<&Point> = points.iter().copied().filter(is_own).collect();

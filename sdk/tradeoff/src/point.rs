@@ -1,4 +1,4 @@
-//! One measured setting on one recording.
+//! Measurements of one setting on one recording.
 
 use std::collections::BTreeMap;
 
@@ -11,68 +11,68 @@ use crate::contender::{Contender, Kind};
 use crate::measured::Measured;
 use crate::timing::Timed;
 
-/// Name of the first baseline in place of a model's: the spectrum, a byte a bin.
+/// Name of the first baseline, in place of a model's: the spectrum, one byte per bin.
 pub const QUANTISED: &str = "quantised-spectrum";
-/// Name of the second: the recording itself.
+/// Name of the second baseline: the recording.
 pub const RECORDING: &str = "recording";
 
-/// One setting on one recording: what it costs, and how near it comes.
+/// Cost and accuracy of one setting on one recording.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Point {
     /// The recording.
     pub recording: String,
     /// Short name of the model, [`QUANTISED`] or [`RECORDING`].
     pub model: String,
-    /// All knobs, those at their defaults too.
+    /// All knobs, including those at their defaults.
     pub knobs: BTreeMap<String, Value>,
-    /// The knobs that are not at their defaults, in words.
+    /// The knobs that are not at their defaults, as text.
     pub setting: String,
     /// The setting.
     #[serde(skip)]
     pub how: Setting,
-    /// Time of a fit, ms: the median.
+    /// Median time of a fit, ms.
     pub fit_ms: f64,
-    /// Half the distance between the quartiles over the median, of the fit.
+    /// Half the interquartile range of the fit times over their median.
     pub fit_spread: f64,
-    /// From stored parameters to the first sample, microseconds: the median.
+    /// Median time from stored parameters to the first sample, microseconds.
     pub first_sample_us: f64,
-    /// Half the distance between the quartiles over the median, of the first sample.
+    /// Half the interquartile range of the times to the first sample over their median.
     pub first_sample_spread: f64,
-    /// Time of an output sample, ns: the median.
+    /// Median time per output sample, ns.
     pub ns_per_sample: f64,
-    /// Half the distance between the quartiles over the median, of a sample.
+    /// Half the interquartile range of the times per sample over their median.
     pub spread: f64,
-    /// Bytes of the stored parameters; of the recording as single-precision numbers.
+    /// Bytes of the stored parameters; for the recording, of its single-precision samples.
     pub bytes: usize,
-    /// Bytes of a loop or a filter that are kept while it plays.
+    /// Bytes of a loop or a filter that are kept while playing.
     pub kept_bytes: usize,
-    /// Correlation of the magnitudes, by the model's own.
+    /// Spectral correlation of the model's magnitudes.
     pub spectral_correlation: f64,
-    /// RMS of the nine bands' errors, dB, by the model's own magnitudes.
+    /// RMS error over the nine bands of the model's magnitudes, dB.
     pub band_error_rms_db: f64,
-    /// RMS error over third-octave bands, dB, by the model's own magnitudes.
+    /// RMS error over third-octave bands of the model's magnitudes, dB.
     pub third_octave_error_rms_db: f64,
-    /// RMS over the bins of the decibels between the magnitudes.
+    /// Log-spectral distance of the model's magnitudes: RMS over the bins of their difference in decibels.
     pub log_spectral_distance_db: f64,
-    /// Level over the recording's, dB, by the model's own magnitudes.
+    /// Level of the model's magnitudes relative to the recording's, dB.
     pub level_error_db: f64,
-    /// Correlation, by what it plays.
+    /// Spectral correlation of rendered samples.
     pub samples_spectral_correlation: f64,
-    /// RMS of the nine bands' errors, dB, by what it plays.
+    /// RMS error over the nine bands of rendered samples, dB.
     pub samples_band_error_rms_db: f64,
     /// Half the range of that error over single renderings, dB.
     pub samples_band_error_spread_db: f64,
-    /// RMS error over third-octave bands, dB, by what it plays.
+    /// RMS error over third-octave bands of rendered samples, dB.
     pub samples_third_octave_error_rms_db: f64,
-    /// Log-spectral distance, dB, by what it plays.
+    /// Log-spectral distance of rendered samples, dB.
     pub samples_log_spectral_distance_db: f64,
-    /// Level, dB, by what it plays.
+    /// Level of rendered samples relative to the recording's, dB.
     pub samples_level_error_db: f64,
-    /// Whether no other setting that plays at its defaults has as few bytes and as small an error,
-    /// and less of one (error by magnitudes).
+    /// Whether it is on the front of bytes and magnitude error, among settings that play
+    /// at their defaults.
     pub on_front: bool,
-    /// Whether no other setting with blocks and output rate at their defaults takes as little time
-    /// and has as small an error, and less of one (error by samples).
+    /// Whether it is on the front of time and sample error, among settings with blocks and output rate at their
+    /// defaults.
     pub on_time_front: bool,
 }
 
@@ -118,7 +118,7 @@ impl Point {
         }
     }
 
-    /// The error, dB, by the model's own magnitudes.
+    /// Returns the error of the model's magnitudes, dB.
     pub fn error_db(&self, measure: ErrorMeasure) -> f64 {
         match measure {
             ErrorMeasure::NineBand => self.band_error_rms_db,
@@ -127,7 +127,7 @@ impl Point {
         }
     }
 
-    /// The error, dB, by what it plays.
+    /// Returns the error of rendered samples, dB.
     pub fn samples_error_db(&self, measure: ErrorMeasure) -> f64 {
         match measure {
             ErrorMeasure::NineBand => self.samples_band_error_rms_db,
@@ -136,7 +136,7 @@ impl Point {
         }
     }
 
-    /// Model and setting.
+    /// Returns model and setting.
     pub fn name(&self) -> String {
         format!("{} {}", self.model, self.setting)
     }

@@ -1,4 +1,4 @@
-//! One setting of all knobs.
+//! Settings: a value for each knob.
 
 use std::collections::BTreeMap;
 
@@ -7,36 +7,36 @@ use serde_json::Value;
 
 use crate::TradeoffError;
 
-/// How numbers are stored.
+/// Storage of parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Keep {
-    /// As the model says.
+    /// As the model's descriptor states.
     Model,
-    /// All as single-precision numbers.
+    /// Single precision for all.
     F32,
-    /// All as double-precision numbers.
+    /// Double precision for all.
     F64,
 }
 
-/// All knobs of one measurement.
+/// The values of all knobs of one measurement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setting {
-    /// Fit options by name, those that are not at their defaults.
+    /// Fit options by name that are not at their defaults.
     pub options: Vec<(String, String)>,
-    /// How samples are made.
+    /// How samples are generated.
     pub synthesis: Synthesis,
     /// How parameters are stored.
     pub store: Keep,
-    /// Samples a call.
+    /// Samples per call.
     pub block_samples: usize,
     /// Rate of the samples, hertz.
     pub output_rate_hz: f64,
-    /// How the model was loaded; empty for the first way.
+    /// How the model is loaded; empty for the first way.
     pub loader: String,
 }
 
 impl Default for Setting {
-    /// Defaults of the fit; the model's voice in blocks of 256 at 20 kHz.
+    /// Returns the defaults: the model's default fit and its voice, in blocks of 256 at 20 kHz.
     fn default() -> Self {
         Self {
             options: Vec::new(),
@@ -50,7 +50,7 @@ impl Default for Setting {
 }
 
 impl Setting {
-    /// Whether it plays as [`Self::default`] does, whatever was fitted and however that is stored.
+    /// Whether it plays as [`Self::default`] does, with any fit and storage.
     pub fn plays_as_default(&self) -> bool {
         let other = Self {
             options: self.options.clone(),
@@ -60,13 +60,13 @@ impl Setting {
         *self == other
     }
 
-    /// Whether times compare with those of the default: blocks and rate are its.
+    /// Whether times are comparable with the default's: blocks and output rate are the same.
     pub fn times_compare(&self) -> bool {
         let default = Self::default();
         self.block_samples == default.block_samples && self.output_rate_hz == default.output_rate_hz
     }
 
-    /// This setting with one of [`PLAYING`](crate::knobs::PLAYING) turned.
+    /// Returns the setting with one of [`PLAYING`](crate::knobs::PLAYING) changed.
     pub(crate) fn playing(mut self, name: &str, value: &str) -> Result<Self, TradeoffError> {
         let wrong = || TradeoffError::Knob {
             name: name.to_owned(),
@@ -83,7 +83,7 @@ impl Setting {
         Ok(self)
     }
 
-    /// What is not at its default, in words; `default` when nothing is.
+    /// Returns the values that are not at their defaults as text; `default` when all are.
     pub fn words(&self) -> String {
         let default = Self::default();
         let mut words: Vec<String> = self
@@ -125,7 +125,7 @@ impl Setting {
         }
     }
 
-    /// All knobs with their values, those at their defaults too.
+    /// Returns all knobs with their values, including defaults.
     pub(crate) fn knobs(&self, descriptor: Option<&Descriptor>) -> BTreeMap<String, Value> {
         let mut knobs = BTreeMap::new();
         for option in descriptor.iter().flat_map(|d| &d.options) {

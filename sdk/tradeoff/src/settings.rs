@@ -5,7 +5,7 @@ use htex_host::LoadedModel;
 use crate::knobs::{Knob, MODELS, ModelKnobs, PLAYING, few};
 use crate::{Setting, TradeoffError};
 
-/// The settings of a model's fit options, the defaults first; a quick sweep turns one knob at a time.
+/// Returns the settings of a model's fit options, the defaults first; a quick sweep varies one knob at a time.
 pub(crate) fn fit_settings(model: &LoadedModel, quick: bool) -> Vec<Setting> {
     let mut settings = vec![Setting::default()];
     let Some(knobs) = MODELS.iter().find(|m| m.model == model.short_name()) else {
@@ -17,7 +17,7 @@ pub(crate) fn fit_settings(model: &LoadedModel, quick: bool) -> Vec<Setting> {
             options,
             ..Setting::default()
         };
-        // A plugin of the same name may not have all of these options.
+        // A plugin with the same name may not have all of these options.
         let given: Vec<(&str, &str)> = setting
             .options
             .iter()
@@ -49,10 +49,10 @@ pub(crate) fn fit_settings(model: &LoadedModel, quick: bool) -> Vec<Setting> {
     settings
 }
 
-/// The settings of [`PLAYING`].
+/// Returns the settings of [`PLAYING`].
 ///
 /// # Errors
-/// When the table holds a value that a knob does not take.
+/// When the table has an invalid value.
 pub(crate) fn playing_settings(quick: bool) -> Result<Vec<Setting>, TradeoffError> {
     let mut settings = Vec::new();
     for knob in PLAYING {
@@ -68,7 +68,7 @@ pub(crate) fn playing_settings(quick: bool) -> Result<Vec<Setting>, TradeoffErro
     Ok(settings)
 }
 
-/// Every value of each knob with every value of the others.
+/// Returns every combination of the knobs' values.
 fn products(knobs: &[Knob]) -> Vec<Vec<(String, String)>> {
     knobs.iter().fold(vec![Vec::new()], |all, knob| {
         let with = |value: &'static str| {
@@ -80,7 +80,7 @@ fn products(knobs: &[Knob]) -> Vec<Vec<(String, String)>> {
     })
 }
 
-/// Leaves out what the model does by itself.
+/// Removes values that are the model's defaults.
 fn without_defaults(
     model: &LoadedModel,
     mut options: Vec<(String, String)>,
@@ -100,7 +100,7 @@ fn without_defaults(
     options
 }
 
-/// Whether one knob is above another that holds it down.
+/// Whether a knob has no effect because it is above the value of another.
 fn is_idle(model: &LoadedModel, knobs: &ModelKnobs, setting: &Setting) -> bool {
     let value = |name: &str| {
         let given = setting.options.iter().find(|(n, _)| n == name);

@@ -1,4 +1,4 @@
-//! What a contender sounds like.
+//! The samples that a contender plays.
 
 use htex_dsp::resample::Resampler;
 use htex_dsp::seam::Loop;
@@ -8,19 +8,19 @@ use crate::baseline::SpectrumNoise;
 use crate::contender::{Contender, Kind, Stored};
 use crate::{Setting, Subject};
 
-/// Cross-fade of the recording played as a loop, seconds.
+/// Cross-fade of the recording's loop, seconds.
 const FADE_S: f64 = 0.1;
 
 type Render = Box<dyn FnMut(&mut [f32]) -> Result<(), HostError>>;
 
-/// A sound that plays.
+/// A sound that can be played.
 pub(crate) struct Sound {
     pub(crate) render: Render,
     pub(crate) kept_bytes: usize,
 }
 
 impl Contender {
-    /// The sound of what was stored, of unit RMS.
+    /// Returns the sound of stored data, with unit RMS.
     pub(crate) fn sound(
         &self,
         subject: &Subject,
@@ -36,7 +36,7 @@ impl Contender {
 }
 
 impl Sound {
-    /// What cannot fail.
+    /// Creates a sound whose rendering cannot fail.
     fn sure(kept_bytes: usize, mut render: impl FnMut(&mut [f32]) + 'static) -> Self {
         let render = move |out: &mut [f32]| {
             render(out);

@@ -1,21 +1,21 @@
-//! A recording, as a sweep looks at it.
+//! Recordings as the subjects of a sweep.
 
 use htex_author::{AuthorError, SegmentSpectra, SpectrumOptions, Take, TextureSpectrum, read_take};
 
 use crate::accuracy::{Accuracy, accuracy};
 
-/// A recording, its spectrum, and what it repeats within.
+/// A recording with its spectrum and repeatability.
 #[derive(Debug, Clone)]
 pub struct Subject {
     /// File name, or name of a simulated surface.
     pub name: String,
-    /// Whether it was computed and not recorded from a finger.
+    /// Whether it was computed instead of recorded.
     pub simulated: bool,
-    /// What models are fitted to.
+    /// The spectrum that models are fitted to.
     pub spectrum: TextureSpectrum,
-    /// What a user should know.
+    /// Warnings, as sentences.
     pub warnings: Vec<String>,
-    /// Odd strokes against even ones; none for a single stroke.
+    /// Difference between odd and even strokes; `None` for a single stroke.
     pub(crate) repeats: Option<Accuracy>,
     /// The first lateral axis.
     pub(crate) samples: Vec<f32>,
@@ -25,8 +25,8 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// Reads the texture of a recording; `strict` refuses one with findings that are errors or
-    /// warnings.
+    /// Reads the texture of a recording; with `strict`, findings that are errors or
+    /// warnings are refused.
     ///
     /// # Errors
     /// When the recording is not usable.
@@ -52,7 +52,7 @@ impl Subject {
     }
 }
 
-/// How near the odd strokes come to the even ones.
+/// Compares the odd strokes with the even ones.
 fn repeats(
     part: &SegmentSpectra,
     options: &SpectrumOptions,
@@ -78,7 +78,7 @@ fn repeats(
     Ok(Some(accuracy(even.as_ref(), &odd.magnitude)))
 }
 
-/// Everything that results depend on: the samples, and what was made of them.
+/// Returns a hash of everything that results depend on: the samples and their spectrum.
 fn digest(axes: &[Vec<f64>], rate_hz: f64, spectrum: &TextureSpectrum) -> blake3::Hash {
     let mut hasher = blake3::Hasher::new();
     let parts = axes.iter().chain([&spectrum.magnitude, &spectrum.signal]);

@@ -1,4 +1,4 @@
-//! All settings on all recordings.
+//! The sweep of all settings over all recordings.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -15,50 +15,50 @@ use crate::measured::Measured;
 use crate::timing::{Timed, time};
 use crate::{Point, Subject, TradeoffError};
 
-/// A model, by each way in which it was loaded: `built in`, `native`, `wasm`. The first is measured
-/// with all knobs, the others at its defaults.
+/// A model, loaded in one or more ways: `built in`, `native`, `wasm`. The first is measured
+/// with all knobs, the others at their defaults.
 #[derive(Debug, Clone)]
 pub struct Model {
-    /// Name of a way, and the model loaded so; at least one.
+    /// Name of a way of loading, and the model loaded so; at least one.
     pub ways: Vec<(String, LoadedModel)>,
 }
 
-/// What is swept.
+/// Options of a sweep.
 #[derive(Debug, Clone)]
 pub struct Request {
     /// The models.
     pub models: Vec<Model>,
-    /// One knob at a time, ends and middle of each, fewer turns of timing.
+    /// Whether to vary one knob at a time with three values each, and to time fewer runs.
     pub quick: bool,
 }
 
-/// A setting without a point, and why.
+/// A setting that could not be measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LeftOut {
     /// The recording.
     pub recording: String,
     /// Model and setting.
     pub setting: String,
-    /// The model's reason.
+    /// The reason.
     pub reason: String,
 }
 
-/// The points of a sweep.
+/// The result of a sweep.
 #[derive(Debug, Clone, Default)]
 pub struct Swept {
-    /// By recording, in the order of the table.
+    /// The points by recording, in the order of the table.
     pub points: Vec<Point>,
-    /// Settings that a model refused.
+    /// Settings that could not be measured.
     pub left_out: Vec<LeftOut>,
 }
 
-/// Is told of steps done, of all steps, and what is under way.
+/// Callback for progress: finished steps, all steps, and the current step.
 pub type Progress<'a> = &'a (dyn Fn(u64, u64, &str) + Sync);
 
 /// Measures every setting on every recording, on all cores, and times them on one.
 ///
 /// # Errors
-/// When the journal cannot be kept, or no model can be fitted to a recording.
+/// When the journal cannot be written, or no model can be fitted to a recording.
 pub fn sweep(
     subjects: &[Subject],
     request: &Request,
@@ -67,7 +67,7 @@ pub fn sweep(
 ) -> Result<Swept, TradeoffError> {
     let contenders = lineup(request)?;
     journal.open(&key(subjects, &contenders, request))?;
-    // Timing a contender takes about as long as measuring it, and is done at once.
+    // Timing a contender takes about as long as measuring it, and counts as as many steps.
     let all = subjects.len() * 2 * contenders.len();
     let done = AtomicUsize::new(0);
     let step = |steps: usize, what: &str| {
@@ -168,7 +168,7 @@ fn measure_all(
         while let Some(one) = open.get(next.fetch_add(1, Ordering::Relaxed)) {
             let outcome = match one.measure(subject, quick) {
                 Ok(Some(measured)) => Ok(measured),
-                Ok(None) => Err("a single stroke says nothing of how it repeats".to_owned()),
+                Ok(None) => Err("the repeatability of a single stroke is not known".to_owned()),
                 Err(error) => Err(error.to_string()),
             };
             let contender = one.id();
@@ -203,7 +203,7 @@ fn measure_all(
         .unwrap_or_else(std::sync::PoisonError::into_inner))
 }
 
-/// Times what could be measured, unless the journal has all of it.
+/// Times the contenders that could be measured, unless the journal has all of their times.
 fn time_all(
     recording: usize,
     subject: &Subject,

@@ -1,4 +1,4 @@
-//! How long contenders take, side by side on one core.
+//! Interleaved timing of contenders on one core.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -9,11 +9,11 @@ use crate::contender::{Contender, Stored};
 use crate::sound::Sound;
 use crate::{Subject, TradeoffError};
 
-/// Samples of a turn, and before it, so that a turn finds its code and state in the caches.
+/// Samples of a run, and of the warm-up before it that fills the caches.
 const SAMPLES: usize = 16_384;
 const WARM_UP: usize = 1_024;
 
-/// Turns of each contender.
+/// Number of runs of each contender.
 #[derive(Debug, Clone, Copy)]
 struct Rounds {
     fit: usize,
@@ -32,14 +32,14 @@ const QUICK: Rounds = Rounds {
     render: 9,
 };
 
-/// A median, and half the distance between the quartiles as a part of it.
+/// A median, and half the interquartile range relative to it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Median {
     pub(crate) median: f64,
     pub(crate) spread: f64,
 }
 
-/// What a contender takes.
+/// The times of a contender.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Timed {
     pub(crate) fit_ms: Median,
@@ -47,10 +47,10 @@ pub(crate) struct Timed {
     pub(crate) ns_per_sample: Median,
 }
 
-/// Times contenders in turns, so that what else the machine does falls on all alike.
+/// Times contenders in interleaved runs, so that other load affects all alike.
 ///
 /// # Errors
-/// When one cannot be fitted or played, which those that were measured can.
+/// When a contender cannot be fitted or played, which cannot happen for those that were measured.
 pub(crate) fn time(
     subject: &Subject,
     contenders: &[&Contender],
@@ -106,7 +106,7 @@ impl Playing<'_> {
     }
 }
 
-/// Some rounds, in each of which every item has its turn; the first of them warms up.
+/// Runs all items in several rounds; the first round is a warm-up.
 fn turns<T>(
     items: impl IntoIterator<Item = T>,
     rounds: usize,

@@ -1,4 +1,4 @@
-//! What a sweep comes to: fronts, knees, warnings.
+//! Evaluation of a sweep: fronts, knees, warnings.
 
 use htex_format::ErrorMeasure;
 use serde::Serialize;
@@ -10,31 +10,31 @@ use crate::median::medians;
 use crate::point::Point;
 use crate::sweep::{LeftOut, Swept};
 
-/// What the numbers are, for whoever reads the JSON.
-const METHOD: &str = "times are medians of interleaved turns on one core, warm; every spread is half \
-    the distance between the quartiles over the median. Errors are RMS over nine bands, over \
+/// Description of the numbers, for readers of the JSON.
+const METHOD: &str = "times are medians of interleaved runs on one core, with warm caches; every spread is half \
+    the interquartile range over the median. Errors are RMS over nine bands, over \
     third-octave bands, and over the bins (log-spectral distance), by the model's own magnitudes, \
-    and by what three renderings play; `error` says which one fronts and knees go by. on_front: bytes \
+    and of three renderings; `error` is the one used for fronts and knees. on_front: bytes \
     against the error by magnitudes, settings that play at their defaults; on_time_front: \
     ns_per_sample against the error by samples, settings with blocks and output rate at their defaults. The \
-    recording's error is that of its odd strokes against its even ones.";
+    recording's error is the difference between its odd and even strokes.";
 
-/// Steps that a warning names.
+/// Most steps in a warning.
 const SHOWN_STEPS: usize = 3;
 
-/// Where a sweep ran.
+/// The machine on which a sweep ran.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Machine {
-    /// The processor, as it names itself.
+    /// The processor's name.
     pub processor: String,
-    /// Processors that a program may use.
+    /// Number of cores that a program may use.
     pub cores: usize,
     /// Operating system and architecture.
     pub system: String,
 }
 
 impl Machine {
-    /// This machine.
+    /// Returns the current machine.
     pub fn here() -> Self {
         let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
         let name = info
@@ -49,27 +49,27 @@ impl Machine {
     }
 }
 
-/// A recording, in the words of the report.
+/// A recording of the report.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Recorded {
     /// Its name.
     pub name: String,
-    /// Whether it was computed.
+    /// Whether it was computed instead of recorded.
     pub simulated: bool,
-    /// What it repeats within, nine-band RMS, dB.
+    /// Its repeatability, nine-band RMS, dB.
     pub repeatability_rms_db: Option<f64>,
 }
 
-/// The whole result.
+/// The evaluated result of a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Tradeoff {
     /// Program and version.
     pub tool: String,
-    /// Where it ran.
+    /// The machine on which it ran.
     pub machine: Machine,
-    /// The error that fronts and knees go by.
+    /// The error measure of fronts and knees.
     pub error: ErrorMeasure,
-    /// What the numbers are.
+    /// Description of the numbers.
     pub method: &'static str,
     /// The recordings.
     pub recordings: Vec<Recorded>,
@@ -79,11 +79,11 @@ pub struct Tradeoff {
     pub points: Vec<Point>,
     /// The median of every setting over the recordings; empty for one recording.
     pub medians: Vec<Point>,
-    /// The bends of the fronts: of the medians first, where there are any.
+    /// The knees of the fronts: of the medians first, if there are any.
     pub knees: Vec<Knee>,
-    /// Settings that a model refused.
+    /// Settings that could not be measured.
     pub left_out: Vec<LeftOut>,
-    /// What a reader should know.
+    /// Warnings, as sentences.
     pub warnings: Vec<String>,
 }
 
@@ -96,7 +96,7 @@ impl Tradeoff {
         } = swept;
         for subject in subjects {
             let own = |p: &Point| p.recording == subject.name;
-            // Points stand by recording.
+            // Points are ordered by recording.
             let first = points.iter().position(own).unwrap_or(0);
             let count = points.iter().filter(|p| own(p)).count();
             mark(&mut points[first..first + count], error);
@@ -130,7 +130,7 @@ impl Tradeoff {
         tradeoff
     }
 
-    /// The points of a recording.
+    /// Returns the points of a recording.
     pub fn of(&self, recording: &str) -> Vec<&Point> {
         self.points
             .iter()
@@ -138,7 +138,7 @@ impl Tradeoff {
             .collect()
     }
 
-    /// What stands for all: the medians, or the points of the only recording.
+    /// Returns the summary: the medians, or the points of the only recording.
     pub fn summary(&self) -> Vec<&Point> {
         let points = if self.medians.is_empty() {
             &self.points
@@ -182,15 +182,15 @@ impl Tradeoff {
         }
         if !self.left_out.is_empty() {
             warnings.push(format!(
-                "{} settings have no point because a model refused them; `left_out` in the JSON says \
-                 which, and why",
+                "{} settings could not be measured; `left_out` in the JSON lists \
+                 them with the reasons",
                 self.left_out.len()
             ));
         }
         warnings
     }
 
-    /// Steps along the front of time that the spread of the times hides.
+    /// Lists the steps along the front of time that are smaller than the spread of the times.
     fn close_steps(&self, recording: &str) -> Option<String> {
         let points: Vec<&Point> = self
             .of(recording)
@@ -210,7 +210,7 @@ impl Tradeoff {
         };
         (!hidden.is_empty()).then(|| {
             format!(
-                "{recording}: along the front of time the spread is wider than the difference from {}{more}",
+                "{recording}: on the front of time, the spread of the times exceeds the difference from {}{more}",
                 hidden[..hidden.len().min(SHOWN_STEPS)].join(", from ")
             )
         })

@@ -1,4 +1,4 @@
-//! Samples that share their values: clipping, and converters of few steps.
+//! Detection of clipping and of coarse quantisation.
 
 use htex_format::Findings;
 
@@ -6,32 +6,32 @@ use super::rules::{RECORDING_CLIPPED, RECORDING_COARSE};
 use super::{axis_words, pointer};
 use crate::{Recording, segment_len};
 
-/// Values of a signal below which it is its converter's steps: a texture of 4 bits has a quantisation
-/// noise 26 dB below a full swing (6.02 · 4 + 1.76), hardly more than the spectrum's own scatter.
+/// Number of different values below which a signal counts as coarsely quantised: at 4 bits the quantisation
+/// noise is 26 dB below full scale (6.02 · 4 + 1.76), close to the scatter of the spectrum itself.
 const FEWEST_LEVELS: usize = 16;
-/// Part of all samples on an extreme value that counts as clipping. Noise that is cut as often, at 2.3
-/// times its RMS, is distorted by -24 dB; what is cut less is not worth a recording.
+/// Part of all samples on an extreme value that counts as clipping. Noise clipped at 2.3 times its RMS, which
+/// is this often, has a distortion of -24 dB; less clipping does not justify another recording.
 const CLIPPED: f64 = 0.01;
-/// The extreme value holds this many times the samples of the range next to it ([`BESIDE`]); at the top
-/// of a sine in steps it holds twice as many.
+/// Least ratio of the samples on the extreme value to those in the range next to it ([`BESIDE`]). At the top
+/// of a quantised sine the ratio is two.
 const OVER_BESIDE: usize = 4;
-/// Width of that range, as a part of the whole; at least one step of the converter. A texture on a plateau is
-/// a few percent of the whole, and dense: it must not be taken for one value.
+/// Width of that range relative to the whole range, at least one step of the converter. A texture on a plateau
+/// covers a few percent of the whole range densely and must not count as one value.
 const BESIDE: f64 = 0.001;
-/// A clipping signal comes back to its limit; one that came once or twice has stuck there.
+/// Least number of separate visits to the limit; a signal that reaches it once or twice is stuck instead.
 const FEWEST_VISITS: usize = 3;
-/// A limit lies this far from zero, as a part of the mean magnitude: nearer to it lies rest.
+/// Least distance of a limit from zero, as a part of the mean magnitude; values closer to zero are rest.
 const REST: f64 = 0.5;
 
-/// What the values of an axis are like.
+/// Result of the check of an axis' values.
 pub(super) enum Levels {
-    /// Too few to judge anything else by.
+    /// Too few different values for any other check.
     Coarse,
-    /// Many; these are the ones that the axis is clipped at.
+    /// Enough different values; the signal is clipped at these.
     ClippedAt(Vec<f64>),
 }
 
-/// Finds coarse steps and clipping; what is shorter than a segment is not judged.
+/// Finds coarse quantisation and clipping in recordings of at least one segment.
 pub(super) fn judge(recording: &Recording, axis: usize, findings: &mut Findings) -> Levels {
     let values = &recording.axes[axis];
     let (name, words) = (recording.axis_name(axis), axis_words(recording, axis));
@@ -43,7 +43,7 @@ pub(super) fn judge(recording: &Recording, axis: usize, findings: &mut Findings)
         FEWEST_LEVELS => {}
         levels => {
             findings.add(RECORDING_COARSE, format!("/{name}"), format!(
-                "the {words} takes {levels} different values in {} samples; raise the gain or write more digits",
+                "the {words} has only {levels} different values in {} samples; raise the gain or write more digits",
                 values.len()
             ));
             return Levels::Coarse;
@@ -63,7 +63,7 @@ pub(super) fn judge(recording: &Recording, axis: usize, findings: &mut Findings)
             .map(|clip| format!("{:.4} {}", clip.level, recording.quantity.unit()))
             .collect();
         findings.add(RECORDING_CLIPPED, pointer(recording, name, first), format!(
-            "{:.1} % of the samples of the {words} lie on {}, first at {:.3} s; record with a larger range",
+            "{:.1} % of the samples of the {words} are at {}, first at {:.3} s; record with a larger range",
             100.0 * count as f64 / values.len() as f64,
             limits.join(" or "),
             recording.second(first)
@@ -72,7 +72,7 @@ pub(super) fn judge(recording: &Recording, axis: usize, findings: &mut Findings)
     Levels::ClippedAt(clips.iter().map(|clip| clip.level).collect())
 }
 
-/// How many different values there are, as far as [`FEWEST_LEVELS`].
+/// Counts different values, up to [`FEWEST_LEVELS`].
 fn count_levels(values: &[f64]) -> usize {
     let mut levels: Vec<f64> = Vec::with_capacity(FEWEST_LEVELS);
     for value in values {
@@ -89,12 +89,12 @@ fn count_levels(values: &[f64]) -> usize {
 struct Clip {
     level: f64,
     count: usize,
-    /// Stretches on the level.
+    /// Separate visits to the level.
     visits: usize,
     first: usize,
 }
 
-/// What looks like clipping at the highest value (`side` 1) or the lowest (-1).
+/// Finds clipping at the highest value (`side` 1) or the lowest (-1).
 fn clip(values: &[f64], side: f64) -> Option<Clip> {
     let (mut top, mut second, mut bottom) = (f64::NEG_INFINITY, f64::NEG_INFINITY, f64::INFINITY);
     let mut magnitude = 0.0;

@@ -1,4 +1,4 @@
-//! What is wrong with a recording: findings with stable codes.
+//! Findings of recordings, with stable codes.
 
 mod levels;
 mod page;
@@ -23,8 +23,8 @@ pub(crate) use rules::{
 pub use rules::{RULES, explain};
 pub(crate) use segments::judge_segments;
 
-/// What a recording's signals show to be wrong, before any spectrum is taken: clipping, stuck
-/// sensors, spikes, forces and speeds that no finger has; and what its clock showed when it was read.
+/// Checks a recording's signals before any spectrum is taken: clipping, stuck sensors, spikes, and forces and
+/// speeds that a finger cannot have. Findings of the time column are included.
 ///
 /// ```
 /// use htex_author::{Recording, recording_findings};
@@ -58,7 +58,7 @@ pub fn recording_findings(recording: &Recording) -> Vec<Finding> {
         .collect()
 }
 
-/// An axis in a sentence: `lateral_x force`, `signal_z`.
+/// Names an axis in running text: `lateral_x force`, `signal_z`.
 fn axis_words(recording: &Recording, axis: usize) -> String {
     let name = recording.axis_name(axis);
     match recording.quantity {
@@ -67,7 +67,7 @@ fn axis_words(recording: &Recording, axis: usize) -> String {
     }
 }
 
-/// A JSON pointer to a sample of a signal, counted in the file.
+/// Returns a JSON pointer to a sample of a signal, counted from the start of the file.
 fn pointer(recording: &Recording, signal: &str, sample: usize) -> String {
     format!("/{signal}/{}", recording.first_sample + sample)
 }

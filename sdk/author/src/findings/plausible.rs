@@ -1,4 +1,4 @@
-//! Forces and speeds that no finger has.
+//! Detection of forces and speeds that a finger cannot have.
 
 use htex_format::Findings;
 
@@ -8,16 +8,16 @@ use super::rules::{
 };
 use crate::Recording;
 
-/// Largest lateral over normal force. Fingers on smooth, wet glass reach 3 to 5 at light touch, where
-/// adhesion counts most; twice that leaves room for offsets of the sensors.
+/// Largest ratio of lateral to normal force. Fingers on smooth, wet glass reach 3 to 5 at light touch, where
+/// adhesion dominates; twice that allows for offsets of the sensors.
 const LARGEST_FRICTION: f64 = 10.0;
-/// A speed below which the finger stands still, mm/s: at it, the skin alone, which gives by about a
-/// millimetre, takes a quarter of an hour to be stretched.
+/// Speed below which the finger stands still, mm/s: at this speed it takes a quarter of an hour to stretch the skin by
+/// the millimetre that it yields.
 const STILL_MM_S: f64 = 1e-3;
-/// Speeds of hands that explore, mm/s: the slowest tribometers for fingers run at 1; an arm in full swing
+/// Range of exploration speeds, mm/s: the slowest tribometers for fingers run at 1; a fully swinging arm
 /// reaches 2 m/s.
 const HANDS_MM_S: [f64; 2] = [1.0, 2000.0];
-/// The speed is judged by this rank of its samples: the rest of them may be turns and pauses.
+/// Quantile of the speed that is checked; slower samples may be turns and pauses.
 const SLIDING: f64 = 0.75;
 
 /// Compares the medians of lateral and normal force.
@@ -35,7 +35,7 @@ pub(super) fn judge_friction(recording: &Recording, findings: &mut Findings) {
     }
 }
 
-/// Judges the speed by its faster samples.
+/// Checks the upper quartile of the speed.
 pub(super) fn judge_speed(recording: &Recording, findings: &mut Findings) {
     let Some(speed) = &recording.speed_mm_s else {
         return;
@@ -45,7 +45,7 @@ pub(super) fn judge_speed(recording: &Recording, findings: &mut Findings) {
         .fold(0.0, |most: f64, speed| most.max(speed.abs()));
     if fastest < STILL_MM_S {
         findings.add(RECORDING_SPEED_ZERO, "/speed", format!(
-            "the speed is never above {fastest} mm/s in {:.2} s; leave the column out, or give --speed",
+            "the speed does not exceed {fastest} mm/s in {:.2} s; remove the column, or give --speed",
             recording.duration_s()
         ));
         return;
@@ -64,7 +64,7 @@ pub(super) fn judge_speed(recording: &Recording, findings: &mut Findings) {
             ),
         };
         findings.add(RECORDING_SPEED_IMPLAUSIBLE, "/speed", format!(
-            "a quarter of the time the speed is {sliding:.4} mm/s or more, and hands slide at {slowest} to {largest} mm/s; \
+            "the upper quartile of the speed is {sliding:.4} mm/s, and hands explore at {slowest} to {largest} mm/s; \
              {guess}"
         ));
     }

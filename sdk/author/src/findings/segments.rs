@@ -1,4 +1,4 @@
-//! What is to be said of the segments that are read, and of those that are not.
+//! Findings of the chosen segments and of the sweeps that are left out.
 
 use htex_format::Findings;
 
@@ -6,15 +6,15 @@ use super::quantile::median;
 use super::rules::{RECORDING_READ_IN_WINDOWS, RECORDING_SWEEPS_CUT_OFF, RECORDING_UNEVEN};
 use crate::{Recording, SegmentSpectra};
 
-/// Level over the median of all segments from which on one is too loud: 12 dB. Force and speed within
-/// 10 % make about 1 dB, seams and knots of a material a few.
+/// Ratio to the median level of all segments above which a segment is too loud: 12 dB. Force and speed within
+/// 10 % cause about 1 dB, seams and knots of a material a few.
 const LOUD: f64 = 4.0;
-/// Loud ones are the exception: at most a quarter of the segments.
+/// Loud segments are reported only if they are at most one in this many.
 const EXCEPTION: usize = 4;
-/// Places that a message names.
+/// Most places in a message.
 const NAMED: usize = 5;
 
-/// Tells which sweeps were left out, what is read instead, and which segments are too loud.
+/// Reports left-out sweeps, the use of windows instead, and segments that are too loud.
 pub(crate) fn judge_segments(
     recording: &Recording,
     part: &SegmentSpectra,
@@ -22,28 +22,24 @@ pub(crate) fn judge_segments(
 ) {
     let segments = &part.segments;
     if segments.from_sweeps && segments.cut_off > 0 {
-        let (n, s) = (
-            segments.cut_off,
-            if segments.cut_off == 1 { "" } else { "s" },
+        let (n, all) = (segments.cut_off, segments.sweeps.len());
+        let message = format!(
+            "{n} of {all} sweeps left out: cut off by the beginning or the end of the recording"
         );
-        findings.add(RECORDING_SWEEPS_CUT_OFF, "/lateral", format!(
-            "{n} sweep{s} of {} left out: the beginning or the end of the recording cuts {} off",
-            segments.sweeps.len(),
-            if n == 1 { "it" } else { "them" }
-        ));
+        findings.add(RECORDING_SWEEPS_CUT_OFF, "/lateral", message);
     }
     if let Some(unread) = segments.unread {
         findings.add(RECORDING_READ_IN_WINDOWS, "/lateral", format!(
-            "read in windows ({}): its sweeps stand for {:.1} of {:.1} s of sliding; --segments sweeps reads their middles alone",
+            "read in windows ({}): its sweeps represent {:.1} of {:.1} s of sliding; --segments sweeps reads only their middles",
             seconds_read(recording, part),
-            unread.spoken_for_s,
+            unread.represented_s,
             unread.sliding_s
         ));
     }
     judge_levels(recording, part, findings);
 }
 
-/// The stretches that are read, as a person reads them.
+/// Lists the stretches that are read, in seconds.
 fn seconds_read(recording: &Recording, part: &SegmentSpectra) -> String {
     let stretches = part.segments.stretches();
     let second = |sample| recording.second(sample);
@@ -92,7 +88,7 @@ fn judge_levels(recording: &Recording, part: &SegmentSpectra, findings: &mut Fin
         named.push(format!("{} more", loud.len() - NAMED));
     }
     let message = format!(
-        "{} of {} segments 12 dB or more above the median of all: {}; look there, and choose a range with --from and --to",
+        "{} of {} segments are 12 dB or more above the median of all: {}; check them and choose a range with --from and --to",
         loud.len(),
         levels.len(),
         named.join(", ")

@@ -1,4 +1,4 @@
-//! Single samples that stand out.
+//! Detection of single outliers.
 
 use htex_format::{Findings, Quantity};
 
@@ -7,43 +7,42 @@ use super::rules::{RECORDING_FORCE_OUTLIER, RECORDING_SPIKE};
 use super::{axis_words, pointer};
 use crate::Recording;
 
-/// Blocks in which the sharpest corner is looked for, seconds.
+/// Length of the blocks in which the largest second difference is searched, seconds.
 const BLOCK_S: f64 = 0.1;
-/// A corner this many times as sharp as those of usual blocks is a spike: with its energy, 100 times
-/// theirs, one sample raises the highest bands of a segment at 20 kHz by about 1.5 dB, at 1 kHz by 7 dB.
+/// Ratio to the usual second difference above which a sample is a spike. With 100 times the usual energy, one sample
+/// raises the highest bands of a segment by about 1.5 dB at 20 kHz and by 7 dB at 1 kHz.
 const SPIKE: f64 = 10.0;
-/// The usual block is the one of this rank: three quarters of a recording may be rest.
+/// Quantile of the blocks that counts as usual: three quarters of a recording may be rest.
 const USUAL: f64 = 0.75;
-/// Sharp corners in more than this part of the blocks are the texture's own (stick and slip).
+/// Largest part of blocks with spikes; more are the texture's own (stick and slip).
 const RARE: f64 = 0.1;
-/// As many are rare in any recording.
+/// Number of spikes that are always reported.
 const FEW: usize = 3;
-/// Part of the median normal force that a single step may have: forces come in steps, and are often
-/// constant but for one.
+/// Step of a normal force, relative to its median, below which it is not a spike: quantised forces are often
+/// constant except for single steps.
 const FORCE_STEP: f64 = 0.05;
-/// Sharp corners this near to each other, samples, are one spike's.
+/// Distance in samples within which spikes count as one.
 const NEIGHBOURS: usize = 2;
-/// Places that a message names.
+/// Most places in a message.
 const NAMED: usize = 5;
 
-/// Finds spikes of an axis.
+/// Reports spikes of an axis.
 pub(super) fn judge_axis(recording: &Recording, axis: usize, findings: &mut Findings) {
     let values = &recording.axes[axis];
     let (name, words) = (recording.axis_name(axis), axis_words(recording, axis));
     let spikes = spikes(values, recording.rate_hz, 0.0);
     if let Some(first) = spikes.first() {
         let message = format!(
-            "the {words} has {} that stand{} out of all others: {}; cut them away with --from and --to, or repair \
+            "the {words} has {} far from all others: {}; leave them out with --from and --to, or repair \
              them",
             count(spikes.len()),
-            if spikes.len() == 1 { "s" } else { "" },
             places(recording, recording.quantity, values, &spikes)
         );
         findings.add(RECORDING_SPIKE, pointer(recording, name, *first), message);
     }
 }
 
-/// Finds outliers of the normal force.
+/// Reports outliers of the normal force.
 pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
     let Some(values) = &recording.normal_n else {
         return;
@@ -52,7 +51,7 @@ pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
     let spikes = spikes(values, recording.rate_hz, FORCE_STEP * usual.abs());
     if let Some(first) = spikes.first() {
         let message = format!(
-            "the normal force has {} that no finger presses with: {}; its median is {usual:.4} N (its mean would be \
+            "the normal force has {} far from all others: {}; its median is {usual:.4} N (its mean would be \
              {:.4} N), repair them or give --force",
             count(spikes.len()),
             places(recording, Quantity::NormalForce, values, &spikes),
@@ -66,7 +65,7 @@ pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
     }
 }
 
-/// The sharpest sample of each block whose corner is beyond all that is usual and above a floor.
+/// Returns the sample with the largest second difference of each block that exceeds both the usual one and a floor.
 fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
     let block = ((BLOCK_S * rate_hz) as usize).max(8);
     let sharpest: Vec<(usize, f64)> = (0..values.len())
@@ -80,7 +79,7 @@ fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
     }
     let mut found: Vec<(usize, f64)> = sharpest;
     found.retain(|(_, corner)| *corner > limit);
-    // At the edge of a block, a spike's neighbours make the sharpest corner of the next.
+    // At the edge of a block, a spike's neighbour is the largest of the next block.
     found.dedup_by(|next, one| {
         let is_one = next.0 - one.0 <= NEIGHBOURS;
         if is_one && next.1 > one.1 {
@@ -95,7 +94,7 @@ fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
     }
 }
 
-/// The sample of a block that differs most from the mean of its neighbours, and by how much.
+/// Returns the sample of a block that differs most from the mean of its neighbours, and the difference.
 fn sharpest(values: &[f64], start: usize, block: usize) -> Option<(usize, f64)> {
     let from = start.saturating_sub(1);
     let reach = &values[from..(start + block + 1).min(values.len())];

@@ -1,4 +1,4 @@
-//! Sensors that hold one value.
+//! Detection of stuck sensors.
 
 use std::ops::Range;
 
@@ -8,20 +8,20 @@ use super::rules::{RECORDING_SILENT, RECORDING_STUCK};
 use super::{axis_words, pointer};
 use crate::Recording;
 
-/// Shortest stretch of one value that is a stuck sensor, seconds: longer than a hand takes to turn (0.1
-/// to 0.3 s), and two segments and a half.
+/// Shortest stretch of one value that counts as a stuck sensor, seconds: longer than a turn of the hand (0.1
+/// to 0.3 s), and two and a half segments.
 const STUCK_S: f64 = 0.5;
-/// Shortest stretch of one value near zero that is worth a word, seconds: pauses between sweeps are shorter.
+/// Shortest reported stretch of one value near zero, seconds: pauses between sweeps are shorter.
 const SILENT_S: f64 = 1.0;
-/// A value this far from zero, as a part of the mean magnitude, is friction; nearer to it is rest.
+/// Distance from zero, as a part of the mean magnitude, above which a value is friction; smaller values are rest.
 const FRICTION: f64 = 0.5;
-/// Part of the mean speed below which the finger rests.
+/// Part of the mean speed below which the finger is at rest.
 const RESTS: f64 = 0.1;
-/// Part of the samples at which a normal force changes whose converter resolves its noise. Forces in
-/// coarser steps, and set points, may well stay.
+/// Part of the samples at which a normal force must change for its sensor to resolve noise. Coarsely quantised
+/// forces and set points may stay constant.
 const LIVELY: f64 = 0.5;
 
-/// Finds stretches in which an axis stands still, except at the values that it is clipped at.
+/// Finds stretches in which an axis is constant, except at the values at which it is clipped.
 pub(super) fn judge_axis(
     recording: &Recording,
     axis: usize,
@@ -55,7 +55,7 @@ pub(super) fn judge_axis(
     }
 }
 
-/// Finds stretches in which a normal force stands still that elsewhere does not.
+/// Finds stretches in which an otherwise varying normal force is constant.
 pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
     let Some(values) = &recording.normal_n else {
         return;
@@ -82,18 +82,18 @@ pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
     }
 }
 
-/// Whether the finger moves in a stretch, by its mean speed in all; none where it never does or its speed is not known.
+/// Whether the finger moves in a stretch, compared with its mean speed; `None` if it never moves or its speed is not known.
 fn moves(recording: &Recording, usual_speed: f64, run: &Range<usize>) -> Option<bool> {
     let here = mean_size(&recording.speed_mm_s.as_ref()?[run.clone()]);
     (usual_speed > 0.0).then_some(here > RESTS * usual_speed)
 }
 
-/// Mean of the magnitudes.
+/// Returns the mean of the magnitudes.
 fn mean_size(values: &[f64]) -> f64 {
     values.iter().map(|value| value.abs()).sum::<f64>() / values.len() as f64
 }
 
-/// Stretches of one value, of at least so many samples.
+/// Returns the stretches of one value that have at least the given number of samples.
 fn runs(values: &[f64], shortest: usize) -> Vec<Range<usize>> {
     let mut runs = Vec::new();
     let mut start = 0;
@@ -122,7 +122,7 @@ fn sentence(
         .cloned()
         .unwrap_or_default();
     format!(
-        "the {words} holds one value for {:.2} of {:.2} s, longest {:.4} {} from {:.3} to {:.3} s; cut it away with \
+        "the {words} is constant for {:.2} of {:.2} s, longest at {:.4} {} from {:.3} to {:.3} s; leave it out with \
          --from and --to, or record again",
         held as f64 / recording.rate_hz,
         recording.duration_s(),

@@ -1,34 +1,34 @@
-//! A file of any length, text a block of whole lines at a time: memory that is used again costs less than memory
-//! as large as the file.
+//! Reading of files in blocks of whole lines: a reused buffer takes less memory and time than one as large as the
+//! file.
 
 use std::io::{BufReader, Cursor, Read};
 
 use super::ReadError;
-use super::room::Room;
 use super::text::{Lines, checked, without_mark};
+use super::value_limit::ValueLimit;
 
-/// Bytes of a block; longer than any line may be.
+/// Bytes of a block; longer than any valid line.
 const BLOCK: usize = 256 << 10;
 
-/// What a reader gives, cut behind line ends.
+/// A reader whose data are split at line ends.
 pub(crate) struct Blocks<'a> {
-    /// Its name, for messages.
+    /// File name for messages.
     pub(crate) file: &'a str,
-    /// For the numbers that are kept of it.
-    pub(crate) room: Room,
+    /// Limit on the numbers that are kept.
+    pub(crate) limit: ValueLimit,
     source: Box<dyn Read + 'a>,
     buffer: Vec<u8>,
-    /// Of the buffer: what was handed out, and what is filled.
+    /// Bytes of the buffer already returned, and bytes filled.
     taken: usize,
     filled: usize,
     ended: bool,
 }
 
 impl<'a> Blocks<'a> {
-    pub(crate) fn new(file: &'a str, source: impl Read + 'a, room: Room) -> Self {
+    pub(crate) fn new(file: &'a str, source: impl Read + 'a, limit: ValueLimit) -> Self {
         Self {
             file,
-            room,
+            limit,
             source: Box::new(source),
             buffer: vec![0; BLOCK],
             taken: 0,
@@ -37,7 +37,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// The first bytes of what is left; all of them, where they are fewer than a block.
+    /// Returns the first remaining bytes, or all of them if they are fewer than a block.
     pub(crate) fn front(&mut self) -> Result<&[u8], ReadError> {
         self.buffer.copy_within(self.taken..self.filled, 0);
         (self.taken, self.filled) = (0, self.filled - self.taken);
@@ -52,15 +52,15 @@ impl<'a> Blocks<'a> {
         Ok(&self.buffer[..self.filled])
     }
 
-    /// All that is left, as bytes.
+    /// Returns all remaining bytes.
     pub(crate) fn rest(mut self) -> Result<impl Read + 'a, ReadError> {
         self.front()?;
         self.buffer.truncate(self.filled);
         Ok(BufReader::new(Cursor::new(self.buffer).chain(self.source)))
     }
 
-    /// The next lines, behind `before` others; `None` at the end. A line that is longer than a block comes in
-    /// pieces, the first of which is too long.
+    /// Returns the next lines, which follow `before` others; `None` at the end. A line longer than a block is returned in
+    /// pieces, the first of which exceeds the limit of a line.
     pub(crate) fn next(&mut self, before: usize) -> Result<Option<&str>, ReadError> {
         self.front()?;
         let filled = &self.buffer[..self.filled];
@@ -74,7 +74,7 @@ impl<'a> Blocks<'a> {
         Ok((!block.is_empty()).then_some(block))
     }
 
-    /// The first lines, without a byte order mark: as many as it takes to have two rows, if there are.
+    /// Returns the first lines, without a byte order mark: as many as contain two rows, if there are two.
     pub(crate) fn head(&mut self) -> Result<String, ReadError> {
         let (mut head, mut rows, mut before) = (String::new(), 0, 0);
         while rows < 2 {
@@ -89,7 +89,7 @@ impl<'a> Blocks<'a> {
             };
             head.push_str(block);
             let mut lines = Lines::behind(file, block, before, false);
-            // A line that is too long is told by whoever reads it.
+            // A line that is too long is reported when it is parsed.
             while rows < 2 && !matches!(lines.next_row(), Ok(None)) {
                 rows += 1;
             }
@@ -98,7 +98,7 @@ impl<'a> Blocks<'a> {
         Ok(head)
     }
 
-    /// Whether a row is left, behind `before` lines.
+    /// Whether another row follows, after `before` lines.
     pub(crate) fn has_row(&mut self, mut before: usize) -> Result<bool, ReadError> {
         let file = self.file;
         while let Some(block) = self.next(before)? {
@@ -119,7 +119,7 @@ impl<'a> Blocks<'a> {
     }
 }
 
-/// Length of the front of some bytes without a character that is cut off.
+/// Returns the length of the bytes without an incomplete character at the end.
 fn whole_characters(bytes: &[u8]) -> usize {
     match std::str::from_utf8(bytes) {
         Err(error) if error.error_len().is_none() && error.valid_up_to() > 0 => error.valid_up_to(),

@@ -1,4 +1,4 @@
-//! The sample rate of a table: from its time column, or from the user.
+//! The sample rate of a table, from its time column or from the options.
 
 use htex_format::Findings;
 
@@ -8,29 +8,29 @@ use crate::findings::{RECORDING_CLOCK_GAP, RECORDING_CLOCK_JITTER};
 use crate::hertz::hertz;
 use crate::recording::check_rate;
 
-/// Steps this much longer than the median are gaps, where the clock is even otherwise.
+/// Ratio to the median step above which a step is a gap, if the clock is otherwise even.
 const GAP: f64 = 1.5;
-/// The same where it is not: a long step is then made up for by short ones, and is no gap. Of steps that
-/// scatter as widely as those of a Poisson process, one in a thousand is longer.
+/// The same for an uneven clock, where short steps make up for a long one. Of the steps of a Poisson process, one in
+/// a thousand is longer.
 const GAP_UNEVEN: f64 = 10.0;
-/// Quartiles of the steps this far apart, as a part of the median, make a clock uneven: normal scatter of
-/// that width brings one step in 200,000 beyond [`GAP`].
+/// Interquartile range of the steps, relative to the median, above which a clock is uneven: normal scatter of
+/// this width puts one step in 200,000 beyond [`GAP`].
 const UNEVEN: f64 = 0.15;
-/// Unevenness of the steps (rms over mean) from which on a warning is due.
+/// Jitter of the steps (rms over mean) above which a warning is given.
 const JITTER: f64 = 0.01;
-/// Difference between column and option from which on a warning is due.
+/// Relative difference between column and option above which a warning is given.
 const DISAGREE: f64 = 1e-3;
-/// Within this of a whole number of hertz, the whole number is meant: times are printed rounded.
+/// Relative distance from an integer rate within which the integer is used: printed times are rounded.
 const WHOLE: f64 = 1e-5;
 
-/// What a reader noticed: sentences, and findings of the clock.
+/// Warnings of a reader, and findings of the time column.
 #[derive(Default)]
 pub(crate) struct Noticed {
     pub(crate) warnings: Vec<String>,
     pub(crate) findings: Findings,
 }
 
-/// The rate in hertz; `given` wins over the time column `time_s`.
+/// Returns the rate in hertz; `given` takes precedence over the time column `time_s`.
 pub(crate) fn rate(
     table: &Table<'_>,
     time_s: Option<&[f64]>,
@@ -51,7 +51,7 @@ pub(crate) fn rate(
         (Ok(measured), Some(given)) => {
             if (measured / given - 1.0).abs() > DISAGREE {
                 noticed.warnings.push(format!(
-                    "The time column runs at {}, --rate says {}: --rate is used.",
+                    "The time column has a rate of {}, --rate is {}; --rate is used.",
                     hertz(measured),
                     hertz(given)
                 ));
@@ -59,14 +59,14 @@ pub(crate) fn rate(
             Ok(given)
         }
         (Err(error), Some(given)) => {
-            let sentence = format!("The time column is not used, --rate is: {error}.");
+            let sentence = format!("--rate is used instead of the time column: {error}.");
             noticed.warnings.push(sentence);
             Ok(given)
         }
     }
 }
 
-/// The number of steps over the time they take, without gaps.
+/// Returns the number of steps over the time they take, without gaps.
 fn measure(
     table: &Table<'_>,
     time_s: &[f64],
@@ -111,7 +111,7 @@ fn measure(
     let jitter = (squares / count / (mean * mean) - 1.0).max(0.0).sqrt();
     if jitter > JITTER {
         let used = match given {
-            None => format!("read at {}, its steps over their time", hertz(rate_hz)),
+            None => format!("read at {}, the mean rate", hertz(rate_hz)),
             Some(_) => "--rate is used".to_owned(),
         };
         findings.add(
@@ -126,13 +126,13 @@ fn measure(
     Ok(rate_hz)
 }
 
-/// The longest step that is no gap.
+/// Returns the longest step that is not a gap.
 fn longest_step(mut steps: Vec<f64>) -> f64 {
     let last = steps.len() - 1;
     let mut rank = |at: usize| *steps.select_nth_unstable_by(at, f64::total_cmp).1;
     let [low, median, high] = [last / 4, last / 2, last - last / 4].map(&mut rank);
     let is_even = high - low <= UNEVEN * median;
-    // A step that is too long by rounding alone is none.
+    // A step that is too long only by rounding is not a gap.
     let factor = if is_even { GAP } else { GAP_UNEVEN };
     factor * median * (1.0 + 1e-6)
 }

@@ -1,19 +1,19 @@
-//! What a column's name says: its role and its unit.
+//! Roles and units of columns, from their names.
 
 use htex_format::Quantity;
 
 use super::map::Role;
 
-/// What the name says of the unit.
+/// The unit in a column's name.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Unit {
-    /// Factor to the role's own unit (that of the quantity, N, mm/s, s, mm).
+    /// Factor to the role's base unit (that of the quantity, N, mm/s, s, mm).
     Scale(f64),
-    /// No unit in the name.
+    /// The name has no unit.
     Unsaid,
-    /// Volts: the factor is the sensor's, and nothing here knows it.
+    /// Volts, whose factor depends on the sensor.
     Volts,
-    /// Some other text.
+    /// An unknown unit.
     Unknown(String),
 }
 
@@ -101,17 +101,17 @@ const NAMES: [(Role, &[&str]); 8] = [
     ),
 ];
 
-/// Unit suffixes after an underscore, the longer before the shorter that ends it.
+/// Unit suffixes after an underscore, each before its own suffixes.
 const SUFFIXES: [&str; 23] = [
     "mm_s2", "cm_s2", "m_s2", "mm/s2", "cm/s2", "m/s2", "mm_s", "cm_s", "um_s", "m_s", "mm/s",
     "cm/s", "m/s", "mn", "un", "kn", "n", "mv", "v", "ms", "us", "s", "mm",
 ];
-/// Lengths and accelerations of gravity, apart from the list above because `_m` also ends other words' units.
+/// Units of length, and standard gravity. They are separate because `_m` also ends other units.
 const SHORT: [&str; 5] = ["cm", "um", "nm", "m", "g"];
 /// Standard gravity, m/s².
 const GRAVITY_M_S2: f64 = 9.806_65;
 
-/// The role that a column's name is known for in a recording of a quantity, and its unit.
+/// Returns the role and the unit of a column's name in a recording of a quantity.
 pub(crate) fn recognise(name: &str, quantity: Quantity) -> Option<(Role, Unit)> {
     let name = normalise(name);
     let known = |name: &str| signal_role(name, quantity).or_else(|| known_role(name));
@@ -123,7 +123,7 @@ pub(crate) fn recognise(name: &str, quantity: Quantity) -> Option<(Role, Unit)> 
     Some((role, unit_of(role, unit, quantity)))
 }
 
-/// The unit that a column's name gives when the column is used in this role.
+/// Returns the unit in a column's name when the column has this role.
 pub(crate) fn unit_in(name: &str, role: Role, quantity: Quantity) -> Unit {
     match split_unit(&normalise(name)) {
         Some((_, unit)) => unit_of(role, unit, quantity),
@@ -131,7 +131,7 @@ pub(crate) fn unit_in(name: &str, role: Role, quantity: Quantity) -> Unit {
     }
 }
 
-/// The unit that a role is kept in.
+/// Returns the base unit of a role.
 pub(crate) fn base_unit(role: Role, quantity: Quantity) -> &'static str {
     match role {
         Role::Signal | Role::SignalX | Role::SignalY | Role::SignalZ => quantity.unit(),
@@ -151,7 +151,7 @@ fn normalise(name: &str) -> String {
         .replace('^', "")
 }
 
-/// The axis of a motion's quantity that a name stands for: `accel`, `ax`, `velocity_y`, `z_disp`.
+/// Returns the axis of a motion's quantity that a name stands for: `accel`, `ax`, `velocity_y`, `z_disp`.
 fn signal_role(name: &str, quantity: Quantity) -> Option<Role> {
     let bases: &[&str] = match quantity {
         Quantity::LateralForce | Quantity::NormalForce => return None,
@@ -179,7 +179,7 @@ fn known_role(name: &str) -> Option<Role> {
         .map(|(role, _)| *role)
 }
 
-/// `fx_[n]`, `fx(n)` and `fx_n` into `fx` and `n`.
+/// Splits `fx_[n]`, `fx(n)` and `fx_n` into `fx` and `n`.
 fn split_unit(name: &str) -> Option<(&str, &str)> {
     for (open, close) in [('[', ']'), ('(', ')')] {
         if let Some((base, unit)) = name

@@ -1,4 +1,4 @@
-//! Recordings as delimited text.
+//! Recordings as CSV.
 
 use htex_format::Quantity;
 
@@ -11,7 +11,7 @@ use super::table::Table;
 use super::{ReadError, ReadOptions};
 use crate::recording::{Recording, RecordingError};
 
-/// Reads a CSV, a block at a time.
+/// Reads a CSV, block by block.
 pub(crate) fn read(mut blocks: Blocks<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
     let file = blocks.file;
     if options.scale.is_some() {
@@ -58,7 +58,7 @@ pub(crate) fn read(mut blocks: Blocks<'_>, options: &ReadOptions) -> Result<Reco
     Ok(recording)
 }
 
-/// The columns that were read, in the order of the selection; each is taken out once.
+/// The columns that were read, in the order of the selection; each is removed once.
 struct Signals {
     selection: Selection,
     columns: Vec<Vec<f64>>,

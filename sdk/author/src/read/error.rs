@@ -1,4 +1,4 @@
-//! What can be wrong with a recording's file, and what its author can do about it.
+//! Errors of reading recordings, setup responses and motion traces.
 
 use std::io;
 
@@ -6,9 +6,9 @@ use thiserror::Error;
 
 use crate::recording::RecordingError;
 
-/// Why a file could not be read as a recording or a setup response.
+/// Errors of reading a recording, a setup response or a motion trace.
 ///
-/// Lines are counted from 1 as an editor shows them. `file` is the name without its directory.
+/// Lines are counted from 1, as in an editor. `file` is the name without its directory.
 #[derive(Debug, Error)]
 pub enum ReadError {
     /// The file cannot be opened or read.
@@ -16,10 +16,10 @@ pub enum ReadError {
     Io {
         /// File name.
         file: String,
-        /// The system's reason.
+        /// The system's error.
         source: io::Error,
     },
-    /// The file is larger than any recording.
+    /// The file is larger than the limit.
     #[error(
         "{file}: {bytes} bytes is more than the limit of {limit}; cut the recording into parts"
     )]
@@ -28,27 +28,27 @@ pub enum ReadError {
         file: String,
         /// The file's size.
         bytes: u64,
-        /// The largest size that is read.
+        /// The limit.
         limit: u64,
     },
-    /// The file holds more numbers than are kept in memory.
+    /// The file holds more numbers than the limit.
     #[error(
-        "{file}: it holds more than {limit} numbers, which are as many as are kept in memory; cut the recording into \
+        "{file}: it holds more than {limit} numbers, the limit of what is kept in memory; cut the recording into \
          parts, or raise the limit by --most-numbers"
     )]
     TooManyValues {
         /// File name.
         file: String,
-        /// Most numbers that are kept.
+        /// The limit.
         limit: usize,
     },
-    /// The file has no rows at all.
+    /// The file has no rows.
     #[error("{file}: the file holds no data; expected a header row and at least 2 rows of numbers")]
     Empty {
         /// File name.
         file: String,
     },
-    /// The header is there, the rows are not.
+    /// The file has a header but fewer than two rows.
     #[error("{file}: {rows} row(s) of numbers after the header; a recording needs at least 2")]
     TooFewRows {
         /// File name.
@@ -65,12 +65,12 @@ pub enum ReadError {
         file: String,
         /// Line of the first such byte.
         line: usize,
-        /// Which byte.
+        /// The kind of byte.
         what: &'static str,
     },
-    /// A line longer than any row of numbers.
+    /// A line is longer than the limit.
     #[error(
-        "{file}, line {line}: {bytes} bytes in one line, more than the limit of {limit}; one row a line is expected"
+        "{file}, line {line}: {bytes} bytes in one line, more than the limit of {limit}; expected one row per line"
     )]
     LongLine {
         /// File name.
@@ -79,10 +79,10 @@ pub enum ReadError {
         line: usize,
         /// Its length in bytes.
         bytes: usize,
-        /// The longest that is read.
+        /// The limit.
         limit: usize,
     },
-    /// A row with another number of cells than the header.
+    /// A row has another number of cells than the first.
     #[error(
         "{file}, line {line}: {got} cells where the first row has {expected}; every row must have the same columns"
     )]
@@ -93,12 +93,12 @@ pub enum ReadError {
         line: usize,
         /// Cells in the first row.
         expected: usize,
-        /// Cells in this one.
+        /// Cells in this row.
         got: usize,
     },
     /// The last line is shorter than the others.
     #[error(
-        "{file}, line {line}: the file seems cut off: its last line has {got} of {expected} cells; copy the file again or delete that line"
+        "{file}, line {line}: the file seems truncated: its last line has {got} of {expected} cells; copy the file again or delete that line"
     )]
     CutOff {
         /// File name.
@@ -107,10 +107,10 @@ pub enum ReadError {
         line: usize,
         /// Cells in the first row.
         expected: usize,
-        /// Cells in the last one.
+        /// Cells in the last row.
         got: usize,
     },
-    /// A cell that is not a finite number.
+    /// A cell is not a finite number.
     #[error(
         "{file}, line {line}, column {column:?}: {problem}; every sample must be a finite number with a decimal point"
     )]
@@ -121,20 +121,20 @@ pub enum ReadError {
         line: usize,
         /// The column's name, or `#` and its number.
         column: String,
-        /// What the cell holds.
+        /// What is wrong with the cell.
         problem: String,
     },
-    /// The columns do not say which is which.
+    /// The columns' roles are not clear.
     #[error("{file}: {problem}; the columns are: {columns}")]
     Columns {
         /// File name.
         file: String,
-        /// What is missing or unclear, and what to give.
+        /// What is missing or ambiguous, and what to give.
         problem: String,
-        /// The columns there are.
+        /// The names of the columns.
         columns: String,
     },
-    /// A column map that cannot be understood.
+    /// A column map is malformed.
     #[error(
         "column map: {problem}; write ROLE=COLUMN[:SCALE], comma separated, as in lateral=lateral_V:0.4444,normal=#3"
     )]
@@ -142,76 +142,76 @@ pub enum ReadError {
         /// What is wrong.
         problem: String,
     },
-    /// A time column that does not run forward.
+    /// A time column does not increase.
     #[error(
-        "{file}, line {line}: time goes from {before} s to {after} s; it must grow on every row (a column with too few decimals repeats itself); repair the column, or give --rate HZ to go without it"
+        "{file}, line {line}: the time after {before} s is {after} s; it must increase on every row (a column with too few decimals repeats values); repair the column, or give --rate HZ to ignore it"
     )]
     Time {
         /// File name.
         file: String,
         /// The line of the later time.
         line: usize,
-        /// Time of the row before, seconds.
+        /// Time of the previous row, seconds.
         before: f64,
         /// Time of this row, seconds.
         after: f64,
     },
-    /// Nothing tells the sample rate.
-    #[error("{file}: nothing in it tells the sample rate; give --rate HZ")]
+    /// The sample rate is not known.
+    #[error("{file}: it has no sample rate; give --rate HZ")]
     NoRate {
         /// File name.
         file: String,
     },
-    /// An option that does not go with this kind of file.
+    /// An option does not apply to this kind of file.
     #[error("{file}: {problem}")]
     Option {
         /// File name.
         file: String,
-        /// Which option, and what to do instead.
+        /// The option, and what to do instead.
         problem: String,
     },
-    /// A WAV file that is broken or of another kind than is read.
+    /// A WAV file is damaged or of an unsupported kind.
     #[error("{file}: {problem}")]
     Wav {
         /// File name.
         file: String,
-        /// What, and where.
+        /// What is wrong, and where.
         problem: String,
     },
-    /// An NPY file that is broken or of another kind than is read.
+    /// An NPY file is damaged or of an unsupported kind.
     #[error("{file}: {problem}")]
     Npy {
         /// File name.
         file: String,
-        /// What, and where.
+        /// What is wrong, and where.
         problem: String,
     },
-    /// The signals make no recording.
+    /// The signals are not a valid recording.
     #[error("{file}: {source}")]
     Recording {
         /// File name.
         file: String,
-        /// Why.
+        /// The reason.
         source: RecordingError,
     },
-    /// A setup response that makes no sense.
+    /// A setup response is invalid.
     #[error("{file}, line {line}: {problem}")]
     Response {
         /// File name.
         file: String,
         /// The line.
         line: usize,
-        /// What, and what is expected.
+        /// What is wrong, and what is expected.
         problem: String,
     },
-    /// A motion trace that makes no sense.
+    /// A motion trace is invalid.
     #[error("{file}, line {line}: {problem}")]
     Trace {
         /// File name.
         file: String,
         /// The line.
         line: usize,
-        /// What, and what is expected.
+        /// What is wrong, and what is expected.
         problem: String,
     },
 }

@@ -1,26 +1,26 @@
-//! The user's word on which column is what: `lateral=lateral_V:0.4444,normal=#3`.
+//! The column map, in which the user assigns roles: `lateral=lateral_V:0.4444,normal=#3`.
 
 use std::fmt;
 use std::str::FromStr;
 
 use super::ReadError;
 
-/// What a column holds.
+/// The role of a column: the signal that it holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
-    /// Lateral force along the only axis, newtons.
+    /// Lateral force along a single axis, newtons.
     Lateral,
     /// First lateral axis, newtons.
     LateralX,
     /// Second lateral axis, newtons.
     LateralY,
-    /// The only axis of an acceleration, velocity or displacement, in its unit.
+    /// Single axis of an acceleration, velocity or displacement, in its unit.
     Signal,
-    /// First of its axes.
+    /// First axis of the quantity.
     SignalX,
-    /// Second of its axes.
+    /// Second axis of the quantity.
     SignalY,
-    /// Third of its axes.
+    /// Third axis of the quantity.
     SignalZ,
     /// Normal force, newtons.
     Normal,
@@ -28,14 +28,14 @@ pub enum Role {
     Speed,
     /// Time, seconds.
     Time,
-    /// Finger position, mm.
+    /// Finger position along the first axis, mm.
     X,
-    /// Finger position across the first, mm.
+    /// Finger position along the second axis, mm.
     Y,
 }
 
 impl Role {
-    /// Every role, in the order in which columns are claimed.
+    /// Every role, in the order in which columns are assigned.
     pub const ALL: [Self; 12] = [
         Self::Lateral,
         Self::LateralX,
@@ -51,7 +51,7 @@ impl Role {
         Self::Y,
     ];
 
-    /// The role's name in a column map.
+    /// Returns the role's name in a column map.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -77,12 +77,12 @@ impl fmt::Display for Role {
     }
 }
 
-/// A column, by name or by place.
+/// A column, by name or by number.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ColumnRef {
     /// The name in the header, compared without case.
     Name(String),
-    /// The place counted from 1, written `#3`.
+    /// The number counted from 1, written `#3`.
     Number(usize),
 }
 
@@ -95,18 +95,18 @@ impl fmt::Display for ColumnRef {
     }
 }
 
-/// One `ROLE=COLUMN[:SCALE]`.
+/// An entry `ROLE=COLUMN[:SCALE]` of a column map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapEntry {
-    /// What the column holds.
+    /// The role of the column.
     pub role: Role,
-    /// Which column.
+    /// The column.
     pub column: ColumnRef,
-    /// Factor from the column's unit to the role's (N, the quantity's, mm/s, s, mm); `None`: by the unit in its name.
+    /// Factor from the column's unit to the role's (N, the quantity's, mm/s, s, mm); `None` uses the unit in the column's name.
     pub scale: Option<f64>,
 }
 
-/// Which columns hold what, in the user's words.
+/// The user's assignment of columns to roles.
 ///
 /// ```
 /// # use htex_author::read::ColumnMap;
@@ -120,7 +120,7 @@ pub struct ColumnMap {
 }
 
 impl ColumnMap {
-    /// The entries as they were written.
+    /// Returns the entries in the given order.
     #[must_use]
     pub fn entries(&self) -> &[MapEntry] {
         &self.entries
@@ -157,7 +157,7 @@ impl FromStr for ColumnMap {
         for (one, several) in [lateral, signal] {
             if has(one) && several.iter().any(|role| has(*role)) {
                 return Err(problem(format!(
-                    "{one} is one axis, {one}_x and {one}_y are two: give one or the other"
+                    "{one} is a single axis, {one}_x and {one}_y are two axes; give one or the other"
                 )));
             }
         }
@@ -197,13 +197,13 @@ fn parse_column(text: &str) -> Result<ColumnRef, ReadError> {
         Some(number) => match number.parse() {
             Ok(number) if number > 0 => Ok(ColumnRef::Number(number)),
             _ => Err(problem(format!(
-                "{text:?} is no column number; the first column is #1"
+                "{text:?} is not a column number; the first column is #1"
             ))),
         },
     }
 }
 
-/// Splits at the last colon; a colon in a column's name needs a scale after it.
+/// Splits at the last colon; a colon in a column's name requires a scale after it.
 fn split_scale(text: &str) -> Result<(&str, Option<f64>), ReadError> {
     let Some((column, scale)) = text.rsplit_once(':') else {
         return Ok((text, None));
@@ -211,7 +211,7 @@ fn split_scale(text: &str) -> Result<(&str, Option<f64>), ReadError> {
     match scale.trim().parse::<f64>() {
         Ok(scale) if scale.is_finite() && scale != 0.0 => Ok((column.trim_end(), Some(scale))),
         _ => Err(problem(format!(
-            "{scale:?} is no scale; it must be a finite number other than 0"
+            "{scale:?} is not a scale; write a finite number other than 0"
         ))),
     }
 }

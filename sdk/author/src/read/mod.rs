@@ -1,10 +1,10 @@
-//! Reads recordings: CSV with named columns, WAV, and NPY.
+//! Readers of recordings: CSV with named columns, WAV, and NPY.
 //!
 //! ```no_run
 //! # use std::path::Path;
 //! use htex_author::read::{ReadOptions, read_recording};
 //!
-//! // Columns in volts: the map says what is what, and the sensor's newtons per volt.
+//! // Columns in volts: the map assigns roles and the sensor's newtons per volt.
 //! let options = ReadOptions {
 //!     rate_hz: Some(10_000.0),
 //!     map: Some("lateral=lateral_V:0.4444,normal=normal_V:0.31".parse()?),
@@ -24,11 +24,11 @@ mod map;
 pub(crate) mod motion;
 mod npy;
 mod number;
-pub(crate) mod room;
 mod select;
 pub(crate) mod table;
 pub(crate) mod text;
 mod trace;
+pub(crate) mod value_limit;
 mod wav;
 
 use std::io::Read;
@@ -38,31 +38,31 @@ use htex_format::Quantity;
 
 pub use error::ReadError;
 pub use map::{ColumnMap, ColumnRef, MapEntry, Role};
-pub use room::MOST_VALUES;
 pub use trace::{TraceColumns, read_trace, trace_from_bytes};
+pub use value_limit::MOST_VALUES;
 
 use crate::recording::{MAX_RATE_HZ, Recording, check_rate};
 
 use blocks::Blocks;
-use room::Room;
+use value_limit::ValueLimit;
 
-/// What a file may leave unsaid.
+/// Options of reading, for what a file does not state.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ReadOptions {
-    /// Sample rate, hertz. Needed by NPY and by a CSV without time column; it wins over a time
-    /// column, and must equal a WAV's own.
+    /// Sample rate, hertz. Required for NPY and for a CSV without time column. It takes precedence over a time
+    /// column and must equal a WAV's own rate.
     pub rate_hz: Option<f64>,
-    /// Which CSV columns hold what; columns that it leaves out are known by their names.
+    /// Roles of CSV columns; columns that it leaves out are assigned by their names.
     pub map: Option<ColumnMap>,
-    /// What the texture's signal is.
+    /// Quantity of the texture's signal.
     pub quantity: Quantity,
-    /// What a full-scale (1.0) sample is in WAV and NPY, in the quantity's unit; 1 when absent, with a warning.
+    /// Value of a full-scale (1.0) sample in WAV and NPY, in the quantity's unit; 1 with a warning when absent.
     pub scale: Option<f64>,
-    /// Time in the file from which on it is read, seconds.
+    /// Start of the part to read, seconds of the file.
     pub from_s: Option<f64>,
-    /// Time in the file up to which it is read, seconds.
+    /// End of the part to read, seconds of the file.
     pub to_s: Option<f64>,
-    /// Most numbers that are kept of it in memory; [`MOST_VALUES`] when absent. Columns that are not used do not count.
+    /// Limit on the numbers kept in memory; [`MOST_VALUES`] when absent. Unused columns do not count.
     pub most_values: Option<usize>,
 }
 
@@ -73,9 +73,9 @@ enum Kind {
     Npy,
 }
 
-/// Reads one recording; the kind of file is told by its first bytes, and its extension must agree.
+/// Reads a recording. The kind of file is detected by its first bytes; a file without a signature by its extension.
 ///
-/// The recording's warnings say what was assumed: units, gaps in time, columns not used.
+/// The recording's warnings list assumed units, gaps in time and unused columns.
 ///
 /// # Errors
 /// See [`ReadError`]: each names the file, and the line and column where there is one.
@@ -83,7 +83,7 @@ pub fn read_recording(path: &Path, options: &ReadOptions) -> Result<Recording, R
     read_from(path, || text::open(path), options)
 }
 
-/// Reads one recording in memory; `path` is what it is called, and is not opened.
+/// Reads a recording from bytes; `path` is its name and is not opened.
 ///
 /// # Errors
 /// As [`read_recording`].
@@ -103,7 +103,7 @@ fn read_from<R: Read>(
     let file = text::file_name(path);
     check_options(&file, options)?;
     let most_values = options.most_values.unwrap_or(MOST_VALUES);
-    let mut blocks = Blocks::new(&file, open()?, Room { most_values });
+    let mut blocks = Blocks::new(&file, open()?, ValueLimit { most_values });
     let recording = match kind(path, blocks.front()?) {
         Kind::Csv => csv::read(blocks, options),
         Kind::Wav => wav::read(blocks, options),
@@ -117,7 +117,7 @@ fn read_from<R: Read>(
     }
 }
 
-/// By magic where there is one, else by extension, else text.
+/// Detects the kind of file by its signature, else by its extension; the default is text.
 fn kind(path: &Path, bytes: &[u8]) -> Kind {
     if bytes.starts_with(b"RIFF") {
         return Kind::Wav;
@@ -153,7 +153,7 @@ fn check_options(file: &str, options: &ReadOptions) -> Result<(), ReadError> {
     }
 }
 
-/// Refuses a column map where there are no named columns.
+/// Refuses a column map for files without named columns.
 fn refuse_map(file: &str, options: &ReadOptions) -> Result<(), ReadError> {
     match options.map {
         None => Ok(()),
@@ -166,17 +166,17 @@ fn refuse_map(file: &str, options: &ReadOptions) -> Result<(), ReadError> {
     }
 }
 
-/// What is said of samples without a scale.
+/// Returns the warning about samples without a scale.
 fn assumption(is_integer: bool, quantity: Quantity) -> String {
     let unit = quantity.unit();
     match is_integer {
-        true => format!("Integer full scale is taken as 1 {unit}; give --scale if it is not."),
-        false => format!("Samples are taken as {unit}; give --scale if they are not."),
+        true => format!("Integer full scale is assumed to be 1 {unit}; give --scale if it is not."),
+        false => format!("Samples are assumed to be in {unit}; give --scale if they are not."),
     }
 }
 
-/// Of a force, one channel: lateral; two: lateral x, y; three: x, y, normal. Of other quantities the channels are
-/// axes. Scaled to the quantity's unit.
+/// Assigns channels. Of a force: one is lateral, two are lateral x and y, three are x, y and normal. Of other
+/// quantities the channels are axes. Scales to the quantity's unit.
 fn from_channels(
     file: &str,
     rate_hz: f64,

@@ -1,15 +1,15 @@
-//! Sliding speed from the finger's position.
+//! Sliding speed, from the finger's position.
 
 use crate::sums::Sums;
 
-/// Length of the moving average over position, and of the step that the speed is taken over, seconds.
-/// Trackers are slow (60 Hz is common): a shorter window shows their steps and not the finger.
+/// Length of the moving average of the position and of the difference for the speed, seconds. Trackers are slow
+/// (60 Hz is common): in a shorter window the speed shows their steps.
 const WINDOW_S: f64 = 0.05;
 
-/// Speed in mm/s of each sample from one or two coordinates in mm, equally long.
+/// Returns the speed in mm/s of each sample, from one or two coordinates in mm of equal length.
 ///
-/// Position is averaged over 50 ms, and its difference taken over 50 ms round each sample; both
-/// windows shrink at the ends.
+/// The position is averaged over 50 ms, and its difference is taken over 50 ms around each sample; both
+/// windows are shorter at the ends.
 pub(crate) fn speed_mm_s(coordinates_mm: &[&[f64]], rate_hz: f64) -> Vec<f64> {
     let [first, others @ ..] = coordinates_mm else {
         return Vec::new();
@@ -24,7 +24,7 @@ pub(crate) fn speed_mm_s(coordinates_mm: &[&[f64]], rate_hz: f64) -> Vec<f64> {
     speed
 }
 
-/// Difference of the averaged position over `2 half` samples around each, fewer at the ends.
+/// Returns the difference of the averaged position over `2 half` samples around each sample, fewer at the ends.
 fn velocity(position: &[f64], half: usize, rate_hz: f64) -> impl Iterator<Item = f64> {
     let position = moving_average(position, half);
     let last = position.len().saturating_sub(1);
@@ -34,7 +34,7 @@ fn velocity(position: &[f64], half: usize, rate_hz: f64) -> impl Iterator<Item =
     })
 }
 
-/// Mean over `2 half + 1` samples, fewer at the ends but always as many on either side.
+/// Returns the mean over `2 half + 1` samples, fewer at the ends but symmetric around the sample.
 fn moving_average(values: &[f64], half: usize) -> Vec<f64> {
     let sums = Sums::of(values.iter().copied());
     let mean = |at: usize| {

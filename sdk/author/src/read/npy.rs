@@ -8,10 +8,10 @@ use super::blocks::Blocks;
 use super::{ReadError, ReadOptions, assumption, from_channels, refuse_map};
 use crate::recording::Recording;
 
-/// Longest header text, bytes; NumPy writes 118 for such arrays.
+/// Longest header, bytes; NumPy writes 118 for such arrays.
 const MAX_HEADER: usize = 4096;
 
-/// Reads an NPY, value by value.
+/// Reads an NPY file, value by value.
 pub(crate) fn read(mut blocks: Blocks<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
     let file = blocks.file;
     refuse_map(file, options)?;
@@ -21,15 +21,15 @@ pub(crate) fn read(mut blocks: Blocks<'_>, options: &ReadOptions) -> Result<Reco
         });
     };
     check_header(blocks.front()?).map_err(|problem| broken(file, problem))?;
-    let room = blocks.room;
+    let limit = blocks.limit;
     let npy = NpyFile::new(blocks.rest()?).map_err(|error| {
-        // Its parser draws a picture of the place below the first line.
+        // The parser's messages have a picture of the position below the first line.
         let text = error.to_string();
         let first = htex_format::plain(text.lines().next().unwrap_or_default().trim_end());
         broken(file, format!("not an NPY file that can be read: {first}"))
     })?;
     let shape = shape(npy.shape()).map_err(|problem| broken(file, problem))?;
-    room.check(file, npy.len())?;
+    limit.check(file, npy.len())?;
     let (channels, is_integer) = channels(npy, shape).map_err(|problem| broken(file, problem))?;
     let mut recording = from_channels(file, rate_hz, channels, options)?;
     if options.scale.is_none() {
@@ -40,7 +40,7 @@ pub(crate) fn read(mut blocks: Blocks<'_>, options: &ReadOptions) -> Result<Reco
     Ok(recording)
 }
 
-/// Keeps from the header's parser what would make it recurse, overflow or allocate without bound.
+/// Refuses headers that would make the parser recurse, overflow or allocate without bound.
 fn check_header(bytes: &[u8]) -> Result<(), String> {
     let (start, length) = match bytes {
         [_, _, _, _, _, _, 1, _, a, b, ..] => (10, usize::from(u16::from_le_bytes([*a, *b]))),
@@ -55,7 +55,7 @@ fn check_header(bytes: &[u8]) -> Result<(), String> {
     };
     if length > MAX_HEADER {
         return Err(format!(
-            "the header says it is {length} bytes long, more than the limit of {MAX_HEADER}"
+            "the header has {length} bytes, more than the limit of {MAX_HEADER}"
         ));
     }
     let Some(header) = bytes.get(start..start + length) else {
@@ -67,12 +67,12 @@ fn check_header(bytes: &[u8]) -> Result<(), String> {
     let brackets = header.iter().filter(|byte| b"([{".contains(byte)).count();
     let digits = header.iter().filter(|byte| byte.is_ascii_digit()).count();
     if brackets > 4 || digits > 18 {
-        return Err("the header describes no plain array of at most two dimensions; save a (n,) or (n, 1..3) array".into());
+        return Err("the header does not describe a plain array of at most two dimensions; save a (n,) or (n, 1..3) array".into());
     }
     Ok(())
 }
 
-/// Rows and columns.
+/// Rows and columns of an array.
 type Shape = (usize, usize);
 
 fn shape(shape: &[u64]) -> Result<Shape, String> {
@@ -81,7 +81,7 @@ fn shape(shape: &[u64]) -> Result<Shape, String> {
         [rows, columns @ 1..=3] => (*rows, *columns),
         _ => {
             return Err(format!(
-                "the array's shape is {shape:?}; (n,) or (n, 1..3) is expected, one row a sample"
+                "the array's shape is {shape:?}; expected (n,) or (n, 1..3), one row per sample"
             ));
         }
     };
@@ -90,7 +90,7 @@ fn shape(shape: &[u64]) -> Result<Shape, String> {
     Ok((rows, columns as usize))
 }
 
-/// The columns, integers as fractions of full scale; true for integers.
+/// Returns the columns, with integers as fractions of full scale, and whether the values are integers.
 fn channels(npy: NpyFile<impl Read>, shape: Shape) -> Result<(Vec<Vec<f64>>, bool), String> {
     let DType::Plain(kind) = npy.dtype() else {
         return Err("the array holds records; save a plain float array".into());
@@ -104,12 +104,12 @@ fn channels(npy: NpyFile<impl Read>, shape: Shape) -> Result<(Vec<Vec<f64>>, boo
             true,
         )),
         _ => Err(format!(
-            "the array holds {kind}; f4, f8, i2 or i4 is expected (in NumPy: array.astype('f8'))"
+            "the array's type is {kind}; expected f4, f8, i2 or i4 (in NumPy: array.astype('f8'))"
         )),
     }
 }
 
-/// Deals the values out to their columns.
+/// Distributes the values to their columns.
 fn deal<T: npyz::Deserialize>(
     npy: NpyFile<impl Read>,
     (rows, columns): Shape,

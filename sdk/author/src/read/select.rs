@@ -1,4 +1,4 @@
-//! Which columns of a table are used, for what, and in which unit.
+//! Selection of a table's columns, with their roles and units.
 
 use htex_format::Quantity;
 
@@ -7,17 +7,17 @@ use super::columns::{Unit, base_unit, recognise, unit_in};
 use super::map::{ColumnMap, ColumnRef, MapEntry, Role};
 use super::table::Table;
 
-/// One column in use.
+/// A selected column.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Chosen {
     pub(crate) role: Role,
-    /// From 0.
+    /// Index from 0.
     pub(crate) column: usize,
-    /// Factor to the role's unit.
+    /// Factor to the role's base unit.
     pub(crate) scale: f64,
 }
 
-/// The roles that the axes of a quantity have: of an only one, and of several.
+/// Returns the roles of a quantity's axes: the role of a single one, and those of several.
 fn axis_roles(quantity: Quantity) -> (Role, &'static [Role]) {
     match quantity {
         Quantity::LateralForce => (Role::Lateral, &[Role::LateralX, Role::LateralY]),
@@ -28,13 +28,13 @@ fn axis_roles(quantity: Quantity) -> (Role, &'static [Role]) {
     }
 }
 
-/// Every role of an axis, in the order of the axes.
+/// Returns every role of an axis, in the order of the axes.
 pub(crate) fn all_axis_roles(quantity: Quantity) -> impl Iterator<Item = Role> {
     let (one, several) = axis_roles(quantity);
     [one].into_iter().chain(several.iter().copied())
 }
 
-/// The columns in use, and what had to be assumed.
+/// The selected columns, and the assumptions made.
 #[derive(Debug, Default)]
 pub(crate) struct Selection {
     quantity: Quantity,
@@ -42,7 +42,7 @@ pub(crate) struct Selection {
     pub(crate) warnings: Vec<String>,
 }
 
-/// Takes what the map says, then what the names say, and insists on an axis of the quantity.
+/// Assigns columns by the map, then by their names, and requires an axis of the quantity.
 pub(crate) fn select(
     table: &Table<'_>,
     map: Option<&ColumnMap>,
@@ -72,7 +72,7 @@ pub(crate) fn select(
 }
 
 impl Selection {
-    /// The column in a role, if any.
+    /// Returns the position of the column with a role, if there is one.
     pub(crate) fn position(&self, role: Role) -> Option<usize> {
         self.chosen.iter().position(|chosen| chosen.role == role)
     }
@@ -89,7 +89,7 @@ impl Selection {
         all_axis_roles(self.quantity).any(|role| self.has(role))
     }
 
-    /// The role of a map's entry; refuses axes of other quantities.
+    /// Returns the role of a map's entry; refuses axes of other quantities.
     fn mapped_role(&self, table: &Table<'_>, role: Role) -> Result<Role, ReadError> {
         let is_axis = ![Role::Normal, Role::Speed, Role::Time, Role::X, Role::Y].contains(&role);
         if !is_axis || all_axis_roles(self.quantity).any(|own| own == role) {
@@ -99,7 +99,7 @@ impl Selection {
         Err(columns_error(
             table,
             format!(
-                "the map's {role} is no axis of a recorded {}; its axes are {} (--quantity says what is recorded)",
+                "the map's {role} is not an axis of {}; its axes are {} (--quantity sets the recorded quantity)",
                 self.quantity.words(),
                 own.join(", ")
             ),
@@ -136,7 +136,7 @@ impl Selection {
         Ok(())
     }
 
-    /// Takes columns by their names; returns why some with a known name cannot be used.
+    /// Assigns columns by their names; returns why some with a known name cannot be used.
     fn take_named(&mut self, table: &Table<'_>) -> Result<Vec<String>, ReadError> {
         let mut refused = Vec::new();
         for role in self.open_roles(table) {
@@ -144,7 +144,7 @@ impl Selection {
             for column in self.candidates(table, role) {
                 let name = table.name(column);
                 match recognise(&name, self.quantity) {
-                    // A bare x or y is as often a force or an acceleration.
+                    // A column x or y without unit may as well be a force or an acceleration.
                     Some((Role::X | Role::Y, Unit::Unsaid)) => {}
                     Some((_, unit @ (Unit::Volts | Unit::Unknown(_)))) => {
                         refused.push(no_scale(&name, role, &unit, self.quantity))
@@ -180,7 +180,7 @@ impl Selection {
         (0..table.width).filter(is_candidate).collect()
     }
 
-    /// Roles that names may fill: several axes before one; position only where no speed is.
+    /// Returns the roles that names may fill: several axes before a single one; position only without a speed.
     fn open_roles(&self, table: &Table<'_>) -> Vec<Role> {
         let named = |role| !self.candidates(table, role).is_empty();
         let mut roles = Vec::new();
@@ -209,7 +209,7 @@ impl Selection {
         roles
     }
 
-    /// One column without a name can only be the texture's signal.
+    /// Assigns a single column without a name to the texture's signal.
     fn take_single(&mut self, table: &Table<'_>) {
         if table.width == 1 && self.chosen.is_empty() {
             let (role, _) = axis_roles(self.quantity);
@@ -225,7 +225,7 @@ impl Selection {
     fn assume_unit(&mut self, table: &Table<'_>, column: usize, role: Role) -> f64 {
         let (name, unit) = (table.name(column), base_unit(role, self.quantity));
         self.warnings.push(format!(
-            "Column {name:?} ({role}) names no unit: taken as {unit}."
+            "Column {name:?} ({role}) has no unit; {unit} is assumed."
         ));
         1.0
     }
@@ -238,18 +238,16 @@ impl Selection {
         let problem = if let Some(refused) = refused.first() {
             refused.clone()
         } else if table.header.is_none() {
-            format!(
-                "there is no header row; say which column is which by number, as in --map {role}=#2"
-            )
+            format!("there is no header row; assign columns by number, as in --map {role}=#2")
         } else if let Some(other) = self.other_quantity(table) {
             format!(
-                "no column is known as the {}, but there is one of the {}; give --quantity {other} if that is the texture",
+                "no column has a known name of the {}, but one is a {}; give --quantity {other} if that is the texture",
                 self.quantity.words(),
                 other.words()
             )
         } else {
             format!(
-                "no column is known as the {}; name it with --map {role}=COLUMN (and :SCALE to {})",
+                "no column has a known name of the {}; assign it with --map {role}=COLUMN (and :SCALE to {})",
                 self.quantity.words(),
                 self.quantity.unit()
             )
@@ -257,7 +255,7 @@ impl Selection {
         Err(columns_error(table, problem))
     }
 
-    /// Another quantity that a column's name is known as.
+    /// Returns another quantity whose names include a column's name.
     fn other_quantity(&self, table: &Table<'_>) -> Option<Quantity> {
         let is_there = |quantity: &Quantity| {
             let is_axis = |role| all_axis_roles(*quantity).any(|axis| axis == role);
@@ -293,16 +291,16 @@ fn find(table: &Table<'_>, column: &ColumnRef) -> Result<usize, ReadError> {
         [column] => Ok(*column),
         [] => Err(columns_error(
             table,
-            format!("the map names column {column}, which is not there"),
+            format!("the map's column {column} does not exist"),
         )),
         _ => Err(columns_error(
             table,
-            format!("several columns are called {column}; give its number, as in #2"),
+            format!("several columns have the name {column}; give the number, as in #2"),
         )),
     }
 }
 
-/// Columns of exactly this name, or else those that differ in case only.
+/// Returns the columns with exactly this name, or else those that differ only in case.
 fn by_name(table: &Table<'_>, name: &str) -> Vec<usize> {
     let names = table.header.as_deref().unwrap_or_default();
     let matching = |same: fn(&str, &str) -> bool| -> Vec<usize> {
@@ -331,7 +329,7 @@ fn two_columns(table: &Table<'_>, role: Role, a: usize, b: usize) -> ReadError {
     let (a, b) = (table.name(a), table.name(b));
     columns_error(
         table,
-        format!("both {a:?} and {b:?} could be {role}; choose with --map {role}=COLUMN"),
+        format!("{a:?} and {b:?} both match {role}; choose one with --map {role}=COLUMN"),
     )
 }
 

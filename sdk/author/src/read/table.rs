@@ -1,15 +1,15 @@
-//! A delimited text file as named columns of numbers.
+//! Delimited text files as named columns of numbers.
 //!
-//! Cells are split here and not by the `csv` crate: rows are plain numbers, one pass splits and parses
-//! them in less time than that crate splits alone, and messages need the line as an editor counts it.
+//! The cells are split here instead of by the `csv` crate: rows are plain numbers, one pass splits and parses
+//! them in less time than that crate needs to split them, and messages need line numbers as in an editor.
 
 use super::ReadError;
 use super::blocks::Blocks;
 use super::number::{parse_number, parse_plain_row};
-use super::room::Room;
 use super::text::Lines;
+use super::value_limit::ValueLimit;
 
-/// Longest piece of a cell that a message repeats, characters.
+/// Longest part of a cell in a message, characters.
 const MAX_SHOWN: usize = 40;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,7 +18,7 @@ enum Delimiter {
     Whitespace,
 }
 
-/// The layout of a delimited file: its column names, and where its rows begin.
+/// The layout of a delimited file: its column names and the start of its rows.
 #[derive(Debug)]
 pub(crate) struct Table<'a> {
     /// File name for messages.
@@ -28,23 +28,23 @@ pub(crate) struct Table<'a> {
     /// Number of columns, at least 1.
     pub(crate) width: usize,
     delimiter: Delimiter,
-    /// Stands before the first row of numbers.
+    /// Lines from the first row of numbers on.
     rows: Lines<'a>,
-    /// Rows that stand on other lines than the next after the row before, and these lines; the first does.
+    /// Rows whose line is not the one after the previous row, with their lines; the first row is always listed.
     runs: Vec<(usize, usize)>,
 }
 
-/// Columns of numbers, and what the comments said.
+/// Columns of numbers, and whether a comment marks them as simulated.
 #[derive(Debug)]
 pub(crate) struct Numbers {
-    /// One vector for each wanted column, equally long.
+    /// One vector per wanted column, of equal length.
     pub(crate) columns: Vec<Vec<f64>>,
-    /// Whether a comment said "simulated".
+    /// Whether a comment contains "simulated".
     pub(crate) simulated: bool,
 }
 
 impl<'a> Table<'a> {
-    /// Finds delimiter and header.
+    /// Detects delimiter and header.
     pub(crate) fn new(file: &'a str, text: &'a str) -> Result<Self, ReadError> {
         let mut lines = Lines::new(file, text);
         let before = lines.clone();
@@ -77,7 +77,7 @@ impl<'a> Table<'a> {
         })
     }
 
-    /// The column's name, or `#` and its number when it has none.
+    /// Returns the column's name, or `#` and its number when it has none.
     pub(crate) fn name(&self, column: usize) -> String {
         match self.header.as_ref().and_then(|names| names.get(column)) {
             Some(name) if !name.is_empty() => htex_format::plain(name).into_owned(),
@@ -85,7 +85,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// All column names, for messages.
+    /// Returns all column names, for messages.
     pub(crate) fn names(&self) -> String {
         const MANY: usize = 20;
         let mut names: Vec<_> = (0..self.width.min(MANY))
@@ -97,17 +97,17 @@ impl<'a> Table<'a> {
         names.join(", ")
     }
 
-    /// Reads the wanted columns (counted from 0, each below `width`), from the text that the table was made of and the
-    /// blocks behind it; the other cells are only counted.
+    /// Reads the wanted columns (counted from 0, each below `width`), from the text that the table was created from and
+    /// the blocks that follow it; the other cells are only counted.
     pub(crate) fn numbers(
         &mut self,
         wanted: &[usize],
         behind: &mut Blocks<'_>,
     ) -> Result<Numbers, ReadError> {
         let mut columns = vec![Vec::new(); wanted.len()];
-        let room = behind.room;
+        let limit = behind.limit;
         let mut lines = self.rows.clone();
-        let mut read = self.block(&mut lines, wanted, &mut columns, room);
+        let mut read = self.block(&mut lines, wanted, &mut columns, limit);
         let (mut number, mut simulated) = (lines.number, lines.simulated);
         loop {
             read.or_else(|error| Err(in_the_middle(error, behind)?))?;
@@ -115,7 +115,7 @@ impl<'a> Table<'a> {
                 break;
             };
             let mut lines = Lines::behind(self.file, text, number, simulated);
-            read = self.block(&mut lines, wanted, &mut columns, room);
+            read = self.block(&mut lines, wanted, &mut columns, limit);
             (number, simulated) = (lines.number, lines.simulated);
         }
         let rows = columns.first().map_or(0, Vec::len);
@@ -128,20 +128,20 @@ impl<'a> Table<'a> {
         Ok(Numbers { columns, simulated })
     }
 
-    /// Reads the rows of a block, as long as there is room.
+    /// Reads the rows of a block, up to the limit of numbers.
     fn block(
         &mut self,
         lines: &mut Lines<'_>,
         wanted: &[usize],
         columns: &mut [Vec<f64>],
-        room: Room,
+        limit: ValueLimit,
     ) -> Result<(), ReadError> {
         let mut row = vec![0.0; self.width];
         let mut count = columns.first().map_or(0, Vec::len);
         while self.next_numbers(lines, wanted, &mut row)? {
-            // A run takes as much as two numbers.
+            // A run takes the memory of two numbers.
             let values = (count + 1) * wanted.len() + 2 * self.runs.len();
-            room.check(self.file, values as u64)?;
+            limit.check(self.file, values as u64)?;
             for (values, &column) in columns.iter_mut().zip(wanted) {
                 values.push(row[column]);
             }
@@ -153,7 +153,7 @@ impl<'a> Table<'a> {
         Ok(())
     }
 
-    /// The line, from 1, on which a row of numbers that were read (from 0) stands.
+    /// Returns the line, from 1, of a row of numbers, from 0.
     pub(crate) fn line_of_row(&self, row: usize) -> usize {
         let mut runs = self.runs.iter().rev();
         let run = runs.find(|(first, _)| *first <= row);
@@ -178,7 +178,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Reads the wanted cells of a row that is not all plain numbers; `lines` stands behind it.
+    /// Reads the wanted cells of a row that is not all plain numbers; `lines` is already past it.
     fn read_row(
         &self,
         line: &str,
@@ -239,7 +239,7 @@ impl<'a> Table<'a> {
     }
 }
 
-/// A row that ends a block is not cut off if others follow.
+/// Converts the error of a truncated row if other rows follow the block.
 fn in_the_middle(error: ReadError, behind: &mut Blocks<'_>) -> Result<ReadError, ReadError> {
     match error {
         ReadError::CutOff {
@@ -257,7 +257,7 @@ fn in_the_middle(error: ReadError, behind: &mut Blocks<'_>) -> Result<ReadError,
     }
 }
 
-/// The header that `numpy.savetxt` writes: the comment right before the numbers, as many cells as they.
+/// Returns the header that `numpy.savetxt` writes: the comment before the numbers, with the same number of cells.
 fn commented_header(
     comment: Option<&str>,
     delimiter: Delimiter,
@@ -268,7 +268,7 @@ fn commented_header(
     (width > 1 && cells.len() == width).then_some(cells)
 }
 
-/// The delimiter that gives the first two rows the same number of cells, and the most of them.
+/// Returns the delimiter that gives the first two rows the same number of cells, and the most of them.
 fn sniff(first: &str, second: &str) -> Delimiter {
     let count = |line, delimiter| {
         let mut cells = Vec::new();
@@ -300,7 +300,7 @@ fn split<'a>(line: &'a str, delimiter: Delimiter, cells: &mut Vec<&'a str>) {
     }
 }
 
-/// Splits at a one-byte delimiter outside double quotes; cells lose outer spaces and quotes.
+/// Splits at a one-byte delimiter outside double quotes and removes outer spaces and quotes.
 fn split_bytes<'a>(line: &'a str, delimiter: u8, cells: &mut Vec<&'a str>) {
     let mut start = 0;
     let mut quoted = false;

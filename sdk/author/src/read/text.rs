@@ -1,4 +1,4 @@
-//! Files of bounded size, and the lines of a text with their numbers.
+//! Opening of files with a size limit, and numbered lines of text.
 
 use std::fs::File;
 use std::io::{Read, Take};
@@ -6,12 +6,12 @@ use std::path::Path;
 
 use super::ReadError;
 
-/// The largest file that is read, bytes. What is kept of it is bounded by [`super::MOST_VALUES`].
+/// The largest file that is read, bytes. The numbers kept of it are limited by [`super::MOST_VALUES`].
 pub(crate) const MAX_BYTES: u64 = 4 << 30;
-/// The longest line, bytes; a row of forces has some tens.
+/// The longest line, bytes; a row of forces has a few tens.
 const MAX_LINE: usize = 64 << 10;
 
-/// The file's name without its directory.
+/// Returns the file's name without its directory.
 pub(crate) fn file_name(path: &Path) -> String {
     path.file_name()
         .unwrap_or(path.as_os_str())
@@ -19,7 +19,7 @@ pub(crate) fn file_name(path: &Path) -> String {
         .into_owned()
 }
 
-/// A file of bounded size.
+/// Opens a file with a size limit.
 pub(crate) fn open(path: &Path) -> Result<Take<File>, ReadError> {
     let io = |source| ReadError::Io {
         file: file_name(path),
@@ -34,16 +34,16 @@ pub(crate) fn open(path: &Path) -> Result<Take<File>, ReadError> {
             limit: MAX_BYTES,
         });
     }
-    // A pipe or a growing file tells no size before it ends.
+    // The size of a pipe or a growing file is not known in advance.
     Ok(file.take(MAX_BYTES))
 }
 
-/// Without a byte order mark.
+/// Removes a byte order mark.
 pub(crate) fn without_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
 }
 
-/// The bytes as text, behind `before` lines; refuses NUL and what is not UTF-8.
+/// Returns the bytes, which follow `before` lines, as text; refuses NUL and invalid UTF-8.
 pub(crate) fn checked<'a>(
     file: &str,
     bytes: &'a [u8],
@@ -70,16 +70,16 @@ pub(crate) fn checked<'a>(
         .map_err(|error| refuse(error.valid_up_to(), "a byte sequence that is not UTF-8"))
 }
 
-/// The lines that hold cells: blank lines and `#` comments are passed over.
+/// The lines that hold cells, without blank lines and `#` comments.
 #[derive(Debug, Clone)]
 pub(crate) struct Lines<'a> {
     file: &'a str,
     rest: &'a str,
-    /// Number of the last line handed out or passed over, from 1.
+    /// Number of the last returned or skipped line, from 1.
     pub(crate) number: usize,
-    /// The last comment passed over, without its `#`.
+    /// The last skipped comment, without its `#`.
     pub(crate) comment: Option<&'a str>,
-    /// Whether a comment said "simulated".
+    /// Whether a comment contains "simulated".
     pub(crate) simulated: bool,
 }
 
@@ -88,7 +88,7 @@ impl<'a> Lines<'a> {
         Self::behind(file, text, 0, false)
     }
 
-    /// Of a text behind some lines, which may have said "simulated".
+    /// Lines of a text that follows others, which may have contained "simulated".
     pub(crate) fn behind(file: &'a str, text: &'a str, number: usize, simulated: bool) -> Self {
         Self {
             file,
@@ -99,7 +99,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// The next line with cells, without its line end; `None` at the end of the file.
+    /// Returns the next line with cells, without its line end; `None` at the end of the file.
     pub(crate) fn next_row(&mut self) -> Result<Option<&'a str>, ReadError> {
         while !self.rest.is_empty() {
             let line = self.take_line()?;
@@ -113,8 +113,8 @@ impl<'a> Lines<'a> {
         Ok(None)
     }
 
-    /// Passes over the next line if `parse` can read it; `parse` is given the text from there on, and
-    /// gives back what stands behind the line, from the line feed on.
+    /// Skips the next line if `parse` can read it. `parse` is given the remaining text and
+    /// returns what follows the line, from the line feed on.
     pub(crate) fn pass_line(&mut self, parse: impl FnOnce(&[u8]) -> Option<&[u8]>) -> bool {
         let Some(left) = parse(self.rest.as_bytes()) else {
             return false;

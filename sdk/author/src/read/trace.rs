@@ -1,4 +1,4 @@
-//! Motion traces as CSV: where the finger was, and how hard it pressed.
+//! Motion traces as CSV: position and normal force of the finger over time.
 
 use std::path::Path;
 
@@ -8,16 +8,16 @@ use super::ReadError;
 use super::blocks::Blocks;
 use super::columns::{Unit, base_unit, recognise};
 use super::map::Role;
-use super::room::Room;
 use super::table::Table;
 use super::text::{file_name, open};
+use super::value_limit::ValueLimit;
 
 /// Shortest time between two rows, seconds.
 const SHORTEST_S: f64 = 1e-9;
-/// Largest time (seconds), place (mm), speed (mm/s) and force (newtons).
+/// Largest magnitude of time (seconds), position (mm), speed (mm/s) and force (newtons).
 const LARGEST: f64 = 1e9;
 
-/// The columns of a trace, equally long, at least two rows.
+/// The columns of a trace, of equal length, at least two rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TraceColumns {
     /// Time, seconds, strictly ascending.
@@ -28,28 +28,32 @@ pub struct TraceColumns {
     pub y_mm: Vec<f64>,
     /// Normal force, newtons.
     pub force_n: Vec<f64>,
-    /// Sliding speed, mm/s, where the trace has it.
+    /// Sliding speed, mm/s, if the trace has it.
     pub speed_mm_s: Option<Vec<f64>>,
-    /// What was assumed: units that no name gives, columns not used.
+    /// Assumptions: units without a name, unused columns.
     pub warnings: Vec<String>,
 }
 
-/// Reads a trace from a CSV with the columns `t_s`, `x_mm`, `y_mm`, `force_n` and, if known,
-/// `speed_mm_s`. Other names and units are known as in a recording (`time [ms]`, `fz_n`).
+/// Reads a trace from a CSV with the columns `t_s`, `x_mm`, `y_mm`, `force_n` and optionally
+/// `speed_mm_s`. Other names and units are recognised as in a recording (`time [ms]`, `fz_n`).
 ///
 /// # Errors
-/// What [`read_recording`](super::read_recording) reports of a CSV; and, with the line, a time that
-/// does not ascend by a nanosecond, or a number beyond 1e9.
+/// Those of [`read_recording`](super::read_recording) for a CSV; and, with the line, a time that
+/// does not increase by a nanosecond, or a number beyond 1e9.
 pub fn read_trace(path: &Path) -> Result<TraceColumns, ReadError> {
-    trace(Blocks::new(&file_name(path), open(path)?, Room::default()))
+    trace(Blocks::new(
+        &file_name(path),
+        open(path)?,
+        ValueLimit::default(),
+    ))
 }
 
-/// Reads a trace in memory; `file` is what it is called.
+/// Reads a trace from bytes; `file` is its name.
 ///
 /// # Errors
 /// As [`read_trace`].
 pub fn trace_from_bytes(file: &str, bytes: &[u8]) -> Result<TraceColumns, ReadError> {
-    trace(Blocks::new(file, bytes, Room::default()))
+    trace(Blocks::new(file, bytes, ValueLimit::default()))
 }
 
 fn trace(mut blocks: Blocks<'_>) -> Result<TraceColumns, ReadError> {
@@ -87,7 +91,7 @@ fn trace(mut blocks: Blocks<'_>) -> Result<TraceColumns, ReadError> {
     Ok(trace)
 }
 
-/// The column in a role and the factor to its unit.
+/// Returns the column with a role and the factor to its unit.
 fn find(
     table: &Table<'_>,
     role: Role,
@@ -103,7 +107,7 @@ fn find(
         [one] => one,
         [one, other, ..] => {
             let (one, other) = (table.name(one.0), table.name(other.0));
-            let problem = format!("both {one:?} and {other:?} could be {role}; keep one of them");
+            let problem = format!("{one:?} and {other:?} both match {role}; keep one of them");
             return Err(refuse(table, problem));
         }
     };
@@ -112,7 +116,7 @@ fn find(
         Unit::Scale(scale) => *scale,
         Unit::Unsaid => {
             warnings.push(format!(
-                "Column {name:?} ({role}) names no unit: taken as {wanted}."
+                "Column {name:?} ({role}) has no unit; {wanted} is assumed."
             ));
             1.0
         }
@@ -127,8 +131,10 @@ fn find(
 
 fn missing(table: &Table<'_>, role: Role) -> ReadError {
     let problem = match table.header {
-        None => "there is no header row; a trace's is t_s,x_mm,y_mm,force_n".to_owned(),
-        Some(_) => format!("no column is the {role}; a trace's header is t_s,x_mm,y_mm,force_n"),
+        None => "there is no header row; write t_s,x_mm,y_mm,force_n".to_owned(),
+        Some(_) => {
+            format!("there is no column for {role}; a trace's header is t_s,x_mm,y_mm,force_n")
+        }
     };
     refuse(table, problem)
 }
@@ -182,8 +188,8 @@ fn check_time(table: &Table<'_>, t_s: &[f64]) -> Result<(), ReadError> {
         file: table.file.to_owned(),
         line: table.line_of_row(row + 1),
         problem: format!(
-            "time goes from {before} s to {after} s; it must grow on every row, by a nanosecond or more (a column with too \
-             few decimals repeats itself)"
+            "the time after {before} s is {after} s; it must increase on every row by a nanosecond or more (a column with too \
+             few decimals repeats values)"
         ),
     })
 }

@@ -6,16 +6,16 @@ use super::blocks::Blocks;
 use super::{ReadError, ReadOptions, assumption, from_channels, refuse_map};
 use crate::recording::Recording;
 
-/// Reads a WAV, sample by sample.
+/// Reads a WAV file, sample by sample.
 pub(crate) fn read(blocks: Blocks<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
     let file = blocks.file;
     refuse_map(file, options)?;
-    let room = blocks.room;
+    let limit = blocks.limit;
     let reader = WavReader::new(blocks.rest()?)
-        .map_err(|error| broken(file, format!("not a WAV file that can be read: {error}")))?;
+        .map_err(|error| broken(file, format!("not a readable WAV file: {error}")))?;
     let spec = reader.spec();
     check(file, spec, options)?;
-    room.check(file, reader.len().into())?;
+    limit.check(file, reader.len().into())?;
     let channels = match spec.sample_format {
         SampleFormat::Float => collect(
             file,
@@ -58,14 +58,14 @@ fn check(file: &str, spec: WavSpec, options: &ReadOptions) -> Result<(), ReadErr
         Some(rate) if rate != own => Err(ReadError::Option {
             file: file.to_owned(),
             problem: format!(
-                "the file says {own} Hz, --rate says {rate} Hz; leave --rate out or mend the file's header"
+                "the file has {own} Hz, --rate is {rate} Hz; remove --rate or correct the file's header"
             ),
         }),
         _ => Ok(()),
     }
 }
 
-/// Deals the interleaved samples out to their channels.
+/// Distributes the interleaved samples to their channels.
 fn collect(
     file: &str,
     spec: WavSpec,

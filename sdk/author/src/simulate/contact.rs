@@ -1,4 +1,4 @@
-//! From the finger's motion to the forces that the rig's sensor gives.
+//! Model of skin, rig and sensor: from the finger's motion to measured forces.
 
 use htex_dsp::spectrum::Complex;
 
@@ -9,15 +9,15 @@ use super::relief::Relief;
 use super::surface::Parameters;
 use crate::response::SetupResponse;
 
-/// Speed over which Coulomb friction turns round, mm/s: the fingertip shears before it slides.
+/// Speed range over which Coulomb friction reverses, mm/s: the fingertip shears before it slides.
 const TURN_MM_S: f64 = 5.0;
-/// Extra friction near standstill (Stribeck): as a share, and the speed over which it is lost, mm/s.
+/// Extra friction near standstill (Stribeck): as a part, and the speed over which it decays, mm/s.
 const STRIBECK: (f64, f64) = (0.15, 15.0);
-/// The skin passes texture on up to here, Hz; second order, quality factor beside it.
+/// Low-pass of the skin: frequency in Hz and quality factor, second order.
 const SKIN: (f64, f64) = (900.0, 0.6);
-/// Share of the texture that acts across the sweep, and where along it that part is read, mm.
+/// Part of the texture that acts across the sweep, and the offset along the sweep at which it is read, mm.
 const ACROSS: (f64, f64) = (0.25, 7.3);
-/// The rig's lateral mode: frequency in Hz, damping ratio, share of the force that goes through it.
+/// Lateral mode of the rig: frequency in Hz, damping ratio, part of the force that passes through it.
 /// The gain is about 5 dB at the peak and 1 far below.
 const MODE: (f64, f64, f64) = (620.0, 0.08, 0.25);
 /// White noise of each force channel at 20 kHz, newtons rms.
@@ -25,7 +25,7 @@ const NOISE_N: f64 = 0.2e-3;
 /// Step of the converter, newtons: 16 bits over 5 N.
 const STEP_N: f64 = 5.0 / 65_536.0;
 
-/// One sample of force on the surface, newtons.
+/// Force on the surface at one sample, newtons.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Force {
     pub(super) x: f64,
@@ -33,7 +33,7 @@ pub(super) struct Force {
     pub(super) z: f64,
 }
 
-/// Skin on relief: friction of the finger before the rig.
+/// Contact of skin and relief: the friction of the finger, before the rig.
 pub(super) struct Contact {
     friction: f64,
     relief: Relief,
@@ -50,7 +50,7 @@ impl Contact {
         }
     }
 
-    /// Coulomb friction against the motion, and the texture's modulation of it.
+    /// Computes Coulomb friction against the motion, modulated by the texture.
     pub(super) fn tick(&mut self, finger: &Finger) -> Force {
         let speed = libm::hypot(finger.along_mm_s, finger.across_mm_s);
         let sliding = libm::tanh(finger.along_mm_s / TURN_MM_S);
@@ -80,11 +80,11 @@ pub(super) struct Rig {
 }
 
 impl Rig {
-    /// `inner_hz` is the rate of the physics, `rate_hz` the recording's, not above it.
+    /// Creates the rig. `inner_hz` is the rate of the physics, `rate_hz` the recording's, not above it.
     pub(super) fn new(inner_hz: f64, rate_hz: f64) -> Self {
         let (hz, damping, share) = MODE;
         let mode = Biquad::mode(share, damping, hz, inner_hz);
-        // Butterworth of fourth order.
+        // Fourth-order Butterworth.
         let low_pass =
             [0.541_196_1, 1.306_563].map(|q| Biquad::low_pass(q, 0.4 * rate_hz, inner_hz));
         let anti_alias =
@@ -114,8 +114,8 @@ impl Rig {
 }
 
 impl Rig {
-    /// What it does to a lateral force at frequencies in hertz, strictly ascending, at the rate it
-    /// was made for.
+    /// Returns the rig's response to a lateral force at strictly increasing frequencies in hertz, for the rate
+    /// it was created with.
     pub(super) fn response(&self, frequency_hz: Vec<f64>, inner_hz: f64) -> SetupResponse {
         let lateral = &self.mode[..1];
         let filters = || {
@@ -141,7 +141,7 @@ fn chain(filters: &mut [Biquad], x: f64) -> f64 {
     filters.iter_mut().fold(x, |x, filter| filter.tick(x))
 }
 
-/// What the sensor makes of a force: noise and the converter's steps.
+/// Adds the sensor's noise and quantisation to a force.
 pub(super) fn sense(force: Force, rate_hz: f64, random: &mut Random) -> Force {
     let noise = NOISE_N * libm::sqrt(rate_hz / 20_000.0);
     let mut read = |force: f64| STEP_N * libm::round((force + noise * random.normal()) / STEP_N);

@@ -1,4 +1,4 @@
-//! The few filters that the simulated hand, skin and rig are made of.
+//! Filters of the simulated hand, skin and rig.
 
 use std::f64::consts::PI;
 
@@ -13,7 +13,7 @@ pub(super) struct Biquad {
 }
 
 impl Biquad {
-    /// `b2 s^2 + b1 s + b0` over `s^2 + s/q + 1`, s in units of 2 pi `hz`; bilinear, exact at `hz`.
+    /// Creates `b2 s^2 + b1 s + b0` over `s^2 + s/q + 1`, s in units of 2 pi `hz`, by the bilinear transform, exact at `hz`.
     fn analog(numerator: [f64; 3], q: f64, hz: f64, rate_hz: f64) -> Self {
         let c = 1.0 / libm::tan(PI * hz / rate_hz);
         let [b2, b1, b0] = numerator;
@@ -37,13 +37,13 @@ impl Biquad {
         Self::analog([0.0, 1.0 / q, 0.0], q, hz, rate_hz)
     }
 
-    /// Unit gain with a share of the signal going through a resonance: `1 - share + share * mode`.
+    /// Creates a filter of unit gain with a part of the signal passing a resonance: `1 - share + share * mode`.
     pub(super) fn mode(share: f64, damping: f64, hz: f64, rate_hz: f64) -> Self {
         let (rest, q) = (1.0 - share, 0.5 / damping);
         Self::analog([rest, rest / q, 1.0], q, hz, rate_hz)
     }
 
-    /// Its frequency response, by its coefficients.
+    /// Returns the frequency response.
     pub(super) fn response(&self, hz: f64, rate_hz: f64) -> Complex<f64> {
         let angle = -2.0 * PI * hz / rate_hz;
         let delay = Complex::new(libm::cos(angle), libm::sin(angle));

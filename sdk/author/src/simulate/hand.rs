@@ -1,4 +1,4 @@
-//! The hand: sweeps to and fro over the surface, not quite evenly, pressing not quite evenly.
+//! The hand: back-and-forth sweeps over the surface with uneven speed and force.
 
 use std::f64::consts::PI;
 
@@ -11,22 +11,22 @@ const SWEEP_MM: f64 = 83.0;
 const END_SCATTER_MM: f64 = 0.8;
 /// Time to reach the speed, and to stop, s.
 const RAMP_S: f64 = 0.1;
-/// Rest at each end, s, shortest and longest.
+/// Rest at each end, shortest and longest, s.
 const REST_S: [f64; 2] = [0.06, 0.11];
-/// Scatter of the speed from sweep to sweep, and within a sweep, as shares.
+/// Scatter of the speed between sweeps and within a sweep, relative.
 const SPEED_SCATTER: [f64; 2] = [0.015, 0.02];
-/// Slow drift of the force, and physiological tremor (8–12 Hz), as shares; together kept within 10 %.
+/// Slow drift of the force, and physiological tremor (8–12 Hz), relative; their sum is kept within 10 %.
 const FORCE_SCATTER: [f64; 2] = [0.03, 0.012];
 const FORCE_BOUND: f64 = 0.1;
 const TREMOR_HZ: f64 = 10.0;
 const TREMOR_Q: f64 = 4.0;
-/// Wander of the heading, radians, and how strongly the finger is drawn back to the middle, 1/mm.
+/// Scatter of the heading, radians, and the rate at which the finger returns to the middle, 1/mm.
 const HEADING: f64 = 0.03;
 const DRAW_BACK: f64 = 0.02;
-/// Scatter of how strongly the texture is felt, from sweep to sweep and within a sweep, as shares.
+/// Scatter of the strength of contact between sweeps and within a sweep, relative.
 const CONTACT_SCATTER: [f64; 2] = [0.07, 0.08];
 
-/// Where the finger is, and what it does there.
+/// State of the finger.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Finger {
     /// Position along and across the sweep, mm; 0 is the middle of the surface.
@@ -37,23 +37,23 @@ pub(super) struct Finger {
     pub(super) across_mm_s: f64,
     /// Normal force, newtons.
     pub(super) normal_n: f64,
-    /// How strongly the contact takes up the texture; 1 on average.
+    /// Strength of contact with the texture; 1 on average.
     pub(super) contact: f64,
 }
 
-/// One rest and the sweep after it.
+/// A rest and the sweep after it.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sweep {
     rest_s: f64,
     ramp_s: f64,
-    /// From the end of the rest to standing still again.
+    /// Time from the end of the rest to standstill, s.
     moving_s: f64,
     /// Signed speed between the ramps, mm/s.
     speed_mm_s: f64,
     contact: f64,
 }
 
-/// The hand's state from sample to sample.
+/// The hand's state, advanced sample by sample.
 pub(super) struct Hand {
     speed_mm_s: f64,
     force_n: f64,
@@ -98,7 +98,7 @@ impl Hand {
         }
     }
 
-    /// The finger one sample later.
+    /// Advances the finger by one sample.
     pub(super) fn tick(&mut self) -> Finger {
         if self.time_s >= self.sweep.rest_s + self.sweep.moving_s {
             self.turn_round();
@@ -147,7 +147,7 @@ impl Hand {
 }
 
 impl Sweep {
-    /// Share of the full speed: 0 at rest, 1 between raised-cosine ramps.
+    /// Returns the part of the full speed: 0 at rest, 1 between raised-cosine ramps.
     fn envelope(&self, time_s: f64) -> f64 {
         let from_start = time_s - self.rest_s;
         let to_end = self.moving_s - from_start;
@@ -156,7 +156,7 @@ impl Sweep {
     }
 }
 
-/// Noise of unit variance below some hertz.
+/// Low-pass noise of unit variance.
 struct SlowNoise {
     filters: [OnePole; 2],
     gain: f64,
@@ -179,7 +179,7 @@ impl SlowNoise {
     }
 }
 
-/// Physiological tremor: noise of unit variance about 10 Hz.
+/// Physiological tremor: noise of unit variance around 10 Hz.
 struct Tremor {
     filter: Biquad,
     gain: f64,

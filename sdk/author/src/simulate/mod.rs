@@ -1,12 +1,12 @@
-//! Simulated recordings: a finger that sweeps to and fro over one of five surfaces.
+//! Simulated recordings of a finger that sweeps back and forth over one of five surfaces.
 //!
-//! For tests, examples and first steps without a rig. The surfaces have the order of
-//! levels, and the energy at the frequencies, that the paper's Results describe of its five; they are not
-//! measured, and every file says so.
+//! They serve tests, examples and first steps without a rig. The order of the surfaces' levels and the
+//! frequencies of their energy are those that the paper's Results describe of its five; they are not
+//! measured, and every file states this.
 //!
-//! A hand moves and presses unevenly; the friction coefficient varies along the surface
-//! as a fixed relief that the finger reads at its position, so its spectrum moves with the speed and
-//! grows with the force; skin, rig and sensor follow.
+//! The hand's speed and force vary. The friction coefficient varies along the surface
+//! as a fixed relief read at the finger's position, so the spectrum's frequencies scale with the speed and
+//! its level with the force. Skin, rig and sensor follow.
 //!
 //! ```
 //! use htex_author::simulate::{SimulationOptions, Surface, simulate};
@@ -40,43 +40,43 @@ use hand::{Finger, Hand};
 use random::Random;
 use write::{FORCE_DECIMALS, POSITION_DECIMALS, rounded};
 
-/// The physics runs at least at this rate, Hz.
+/// Lowest rate of the physics, Hz.
 const INNER_HZ: f64 = 20_000.0;
-/// Most samples of one simulation.
+/// Most samples of a simulation.
 const MAX_SAMPLES: f64 = 2e7;
 
-/// Why there is no simulation.
+/// Errors of a simulation.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SimulationError {
-    /// No surface of this name.
+    /// There is no surface of this name.
     #[error(
         "unknown surface {text:?}; the surfaces are sandpaper, fine-fabric, coarse-fabric, corrugated-paper and vinyl"
     )]
     Surface {
-        /// What was given, at most 40 characters.
+        /// The given name, at most 40 characters.
         text: String,
     },
-    /// An option out of its range.
+    /// An option is out of its range.
     #[error("{option} is {value}; it must lie in {low}..={high}")]
     Range {
         /// Name of the option, with its unit.
         option: &'static str,
-        /// What was given.
+        /// The given value.
         value: f64,
-        /// Least allowed.
+        /// Smallest allowed value.
         low: f64,
-        /// Most allowed.
+        /// Largest allowed value.
         high: f64,
     },
 }
 
-/// What to simulate.
+/// Options of a simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimulationOptions {
     /// The surface.
     pub surface: Surface,
-    /// Same seed and options, same samples; another seed, another piece of the same material and
-    /// another go of the hand.
+    /// Seed: equal seeds and options give equal samples; another seed simulates another piece of the same material and
+    /// another motion of the hand.
     pub seed: u64,
     /// Sample rate, 200 to 200 000 Hz.
     pub rate_hz: f64,
@@ -89,7 +89,7 @@ pub struct SimulationOptions {
 }
 
 impl SimulationOptions {
-    /// The paper's conditions: 10 s at 20 kHz, 80 mm/s, 0.4 N; seed 1.
+    /// Returns the paper's conditions: 10 s at 20 kHz, 80 mm/s, 0.4 N; seed 1.
     #[must_use]
     pub fn new(surface: Surface) -> Self {
         Self {
@@ -102,8 +102,8 @@ impl SimulationOptions {
         }
     }
 
-    /// What the simulated rig does to a lateral force: a resonance at 620 Hz, and for rates below 20 kHz
-    /// an anti-aliasing filter; each 5 Hz from 0 to 1000 Hz, or to half the rate. Dividing the
+    /// Returns the simulated rig's response to a lateral force: a resonance at 620 Hz, and for rates below 20 kHz
+    /// an anti-aliasing filter, every 5 Hz from 0 to 1000 Hz or to half the rate. Dividing the
     /// recording by it gives the force at the finger.
     ///
     /// # Errors
@@ -127,12 +127,12 @@ impl SimulationOptions {
         Ok(rig.response(frequency_hz, self.inner_hz()))
     }
 
-    /// Steps of the physics a sample.
+    /// Returns the steps of the physics per sample.
     fn inner_steps(&self) -> usize {
         libm::ceil(INNER_HZ / self.rate_hz) as usize
     }
 
-    /// Rate of the physics, hertz.
+    /// Returns the rate of the physics, hertz.
     fn inner_hz(&self) -> f64 {
         self.rate_hz * self.inner_steps() as f64
     }
@@ -165,10 +165,10 @@ impl SimulationOptions {
     }
 }
 
-/// A simulated recording; all signals are equally long.
+/// A simulated recording; all signals have the same length.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simulation {
-    /// What was simulated.
+    /// The options of the simulation.
     pub options: SimulationOptions,
     /// Time, seconds, from 0.
     pub t_s: Vec<f64>,
@@ -210,10 +210,10 @@ impl Simulation {
         self.y_mm.push(rounded(finger.along_mm, POSITION_DECIMALS));
     }
 
-    /// The recording that reading the written CSV gives; `source` stands for its file name.
+    /// Converts to the recording that is read from the written CSV; `source` is its file name.
     ///
     /// # Errors
-    /// None that the options' ranges let through.
+    /// None within the options' ranges.
     pub fn to_recording(&self, source: &str) -> Result<Recording, RecordingError> {
         let lateral = vec![self.fx_n.clone(), self.fy_n.clone()];
         let speed = speed_mm_s(&[&self.x_mm, &self.y_mm], self.rate_hz);
@@ -225,7 +225,7 @@ impl Simulation {
     }
 }
 
-/// Simulates a recording; same options, same samples on every machine.
+/// Simulates a recording. Equal options give equal samples on every machine.
 ///
 /// # Errors
 /// When an option is out of its range.

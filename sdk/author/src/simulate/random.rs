@@ -1,9 +1,9 @@
-//! Normal deviates that are the same on every machine.
+//! Normal random numbers that are equal on every machine.
 
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// One stream of random numbers; streams of one seed with different labels are independent.
+/// A stream of random numbers; streams of one seed with different labels are independent.
 #[derive(Debug, Clone)]
 pub(super) struct Random {
     generator: Xoshiro256PlusPlus,
@@ -12,7 +12,7 @@ pub(super) struct Random {
 
 impl Random {
     pub(super) fn new(seed: u64, label: u64) -> Self {
-        // The odd factor spreads small labels over all bits; the generator's own seeding mixes on.
+        // The odd factor spreads small labels over all bits; the generator mixes further when it is seeded.
         let mixed = seed ^ label.wrapping_mul(0x9E37_79B9_7F4A_7C15);
         Self {
             generator: Xoshiro256PlusPlus::seed_from_u64(mixed),
@@ -20,12 +20,12 @@ impl Random {
         }
     }
 
-    /// Uniform on [0, 1).
+    /// Returns a number uniform on [0, 1).
     pub(super) fn uniform(&mut self) -> f64 {
         (self.generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Zero mean, unit variance (Marsaglia's polar method).
+    /// Returns a number of zero mean and unit variance (Marsaglia's polar method).
     pub(super) fn normal(&mut self) -> f64 {
         if let Some(spare) = self.spare.take() {
             return spare;

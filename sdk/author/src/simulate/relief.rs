@@ -1,4 +1,4 @@
-//! The friction coefficient's ups and downs along the surface, as the finger's ridges read them.
+//! The variation of the friction coefficient along the surface, as the finger's ridges sense it.
 
 use std::f64::consts::PI;
 
@@ -6,25 +6,25 @@ use super::filters::OnePole;
 use super::random::Random;
 use super::surface::{Grain, Line, Parameters};
 
-/// Points in a millimetre: 1000 Hz at 80 mm/s is a period of 8 points, and faster sweeps have longer ones.
+/// Points per millimetre: 1000 Hz at 80 mm/s is a period of 8 points; faster sweeps have longer periods.
 const POINTS_PER_MM: f64 = 100.0;
-/// The surface's length with a margin, mm, centred on 0.
+/// Length of the surface with a margin, mm, centred on 0.
 const LENGTH_MM: f64 = 120.0;
-/// Standard deviation of the Gaussian that one ridge's contact averages over, mm: -3 dB at 6.6 periods
-/// in a millimetre (530 Hz at 80 mm/s).
+/// Standard deviation of the Gaussian over which one ridge's contact averages, mm: -3 dB at 6.6 periods
+/// per millimetre (530 Hz at 80 mm/s).
 const CONTACT_MM: f64 = 0.02;
-/// Distance across the sweep over which the grain changes wholly, mm.
+/// Distance across the sweep over which the grain changes completely, mm.
 const TRACK_MM: f64 = 3.0;
 
 /// The relief of one surface: a fixed field, read at the finger's position.
 pub(super) struct Relief {
     lines: Vec<f64>,
-    /// Two independent fields; their mix turns with the position across the sweep.
+    /// Two independent fields; their mix rotates with the position across the sweep.
     grains: [Vec<f64>; 2],
 }
 
 impl Relief {
-    /// A field whose standard deviation is `parameters.relief` before the contact smooths it.
+    /// Creates a field whose standard deviation before smoothing by the contact is `parameters.relief`.
     pub(super) fn new(parameters: &Parameters, random: &mut Random) -> Self {
         let power = parameters
             .lines
@@ -59,7 +59,7 @@ impl Relief {
         }
     }
 
-    /// The change of the friction coefficient `along_mm` the sweep (0 is the middle) and `across_mm` it.
+    /// Returns the change of the friction coefficient at `along_mm` (0 is the middle of the sweep) and `across_mm`.
     pub(super) fn at(&self, along_mm: f64, across_mm: f64) -> f64 {
         let point = (along_mm + LENGTH_MM / 2.0) * POINTS_PER_MM;
         let turn = PI * across_mm / (2.0 * TRACK_MM);
@@ -98,7 +98,7 @@ fn add_grain(values: &mut [f64], grain: &Grain, unit: f64, random: &mut Random) 
         .for_each(|(value, x)| *value += scale * x);
 }
 
-/// Convolution with the contact's Gaussian.
+/// Convolves with the contact's Gaussian.
 fn smooth(values: &[f64]) -> Vec<f64> {
     let sigma = CONTACT_MM * POINTS_PER_MM;
     let reach = libm::ceil(4.0 * sigma) as usize;
@@ -119,7 +119,7 @@ fn smooth(values: &[f64]) -> Vec<f64> {
     (0..values.len()).map(at).collect()
 }
 
-/// Catmull–Rom interpolation; held at the ends.
+/// Interpolates by Catmull–Rom; constant beyond the ends.
 fn cubic(values: &[f64], point: f64) -> f64 {
     let last = values.len() - 3;
     let whole = libm::floor(point).clamp(1.0, last as f64);

@@ -1,4 +1,4 @@
-//! The five surfaces: one table of what sets them apart.
+//! The parameters of the five surfaces.
 
 use std::fmt;
 use std::str::FromStr;
@@ -30,7 +30,7 @@ impl Surface {
         Self::Vinyl,
     ];
 
-    /// The surface's name, kebab-case.
+    /// Returns the surface's name in kebab case.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -75,33 +75,33 @@ impl FromStr for Surface {
 /// A periodic part of the relief: a weave's thread or a flute, and its harmonics.
 #[derive(Debug)]
 pub(super) struct Line {
-    /// Periods in a millimetre; at 80 mm/s, times 80 hertz.
+    /// Periods per millimetre; hertz at 80 mm/s are 80 times as many.
     pub(super) per_mm: f64,
-    /// Standard deviation against the other parts of the surface.
+    /// Standard deviation relative to the other parts of the surface.
     pub(super) weight: f64,
-    /// Random walk of the phase, radians over the root of a millimetre: how wide the line is.
+    /// Random walk of the phase, radians per root millimetre, which sets the width of the line.
     pub(super) wander: f64,
 }
 
 /// An irregular part of the relief: noise with most of its power between two spatial frequencies.
 #[derive(Debug)]
 pub(super) struct Grain {
-    /// Below this the spectrum falls by 6 dB an octave; periods in a millimetre.
+    /// Lower edge, periods per millimetre; below it the spectrum falls by 6 dB per octave.
     pub(super) from_per_mm: f64,
-    /// Above this it falls by 12 dB an octave; periods in a millimetre.
+    /// Upper edge, periods per millimetre; above it the spectrum falls by 12 dB per octave.
     pub(super) to_per_mm: f64,
-    /// Standard deviation against the other parts of the surface.
+    /// Standard deviation relative to the other parts of the surface.
     pub(super) weight: f64,
 }
 
-/// What sets one surface apart.
+/// Parameters of a surface.
 #[derive(Debug)]
 pub(super) struct Parameters {
-    /// Keeps the random relief of two surfaces with one seed apart.
+    /// Label of the random stream, so that surfaces of the same seed differ.
     pub(super) label: u64,
     /// Coefficient of kinetic friction, without unit.
     pub(super) friction: f64,
-    /// Standard deviation of the friction coefficient along the surface, before the finger smooths it.
+    /// Standard deviation of the friction coefficient along the surface, before smoothing by the finger.
     pub(super) relief: f64,
     /// Periodic parts.
     pub(super) lines: &'static [Line],

@@ -1,30 +1,30 @@
-//! A simulation as CSV: fixed decimals, the same bytes on every machine.
+//! Writer of simulations as CSV with fixed decimals: equal bytes on every machine.
 
 use std::io::{self, Write};
 
 use super::Simulation;
 
-/// Decimals of each kind of column: 1 us, 0.1 uN (0.2 mN is noise), 0.1 um.
+/// Decimals of each kind of column: 1 us, 0.1 uN (the noise is 0.2 mN), 0.1 um.
 const TIME_DECIMALS: u32 = 6;
 pub(super) const FORCE_DECIMALS: u32 = 7;
 pub(super) const POSITION_DECIMALS: u32 = 4;
-/// Bytes gathered before they are written.
+/// Bytes that are collected before they are written.
 const CHUNK: usize = 1 << 16;
 
-/// The nearest number of so many decimals, as reading it back gives it.
+/// Rounds to the given decimals, as the value is read back.
 pub(super) fn rounded(value: f64, decimals: u32) -> f64 {
     let scale = 10_u32.pow(decimals) as f64;
     libm::round(value * scale) / scale
 }
 
 impl Simulation {
-    /// Writes `t_s,fx_n,fy_n,fz_n,x_mm,y_mm` after a comment that says that this is simulated, of which
-    /// surface, with which seed, and by which version.
+    /// Writes `t_s,fx_n,fy_n,fz_n,x_mm,y_mm` after a comment that states that this is simulated, with the
+    /// surface, the seed and the version.
     ///
-    /// Reading it back gives the same forces, bit for bit.
+    /// The forces read back bit for bit.
     ///
     /// # Errors
-    /// What the writer reports.
+    /// Those of the writer.
     pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
         let options = &self.options;
         writeln!(
@@ -68,7 +68,7 @@ impl Simulation {
     }
 }
 
-/// Appends `value` with exactly so many decimals, at most 9.
+/// Appends `value` with exactly the given decimals, at most 9.
 fn push_decimal(row: &mut Vec<u8>, value: f64, decimals: u32) {
     let scale = 10_u64.pow(decimals);
     let units = libm::round(value.abs() * scale as f64) as u64;
@@ -80,7 +80,7 @@ fn push_decimal(row: &mut Vec<u8>, value: f64, decimals: u32) {
     push_digits(row, units % scale, decimals as usize);
 }
 
-/// Appends an integer, padded with zeros to so many digits.
+/// Appends an integer, padded with zeros to the given digits.
 fn push_digits(row: &mut Vec<u8>, mut value: u64, width: usize) {
     let mut digits = [b'0'; 20];
     let mut first = digits.len();

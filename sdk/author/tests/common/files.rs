@@ -1,4 +1,4 @@
-//! Files written to be read.
+//! Writers of test files.
 #![allow(dead_code, reason = "each suite uses a part of it")]
 
 use std::fs;

@@ -1,4 +1,4 @@
-//! The conformance recordings: a sound one, and one for each code.
+//! The conformance recordings: a valid one, and one for each code.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -14,7 +14,7 @@ const RATE_HZ: f64 = 500.0;
 pub struct Case {
     pub name: &'static str,
     pub text: String,
-    /// Scanning speed that is asked for, mm/s.
+    /// Requested scanning speed, mm/s.
     pub speed_mm_s: Option<f64>,
 }
 
@@ -27,7 +27,7 @@ impl Case {
         format!("{}.report.json", self.name)
     }
 
-    /// What else may be found in it: a knock is sharp, and a gap or the end of a stuck stretch is a step.
+    /// Codes that may also be found: a knock is sharp, and a gap or the end of a stuck stretch is a step.
     pub fn may_also_raise(&self, code: &str) -> bool {
         let also: &[&str] = match self.name {
             "recording_clock_gap" | "recording_stuck" | "recording_silent" => &["RECORDING_SPIKE"],
@@ -38,7 +38,7 @@ impl Case {
         also.contains(&code)
     }
 
-    /// The report that the recording in `folder` must get, as pretty JSON.
+    /// The expected report of the recording in `folder`, as pretty JSON.
     pub fn golden(&self, folder: &Path) -> String {
         let given = Exploration {
             speed_mm_s: self.speed_mm_s,
@@ -61,7 +61,7 @@ impl Case {
     }
 }
 
-/// Columns of a simulated recording; each case changes what it is about.
+/// Columns of a simulated recording; each case changes some.
 struct Columns {
     /// Decimals of the time.
     decimals: usize,
@@ -89,7 +89,7 @@ impl Columns {
         }
     }
 
-    /// The time and the lateral force alone.
+    /// Only the time and the lateral force.
     fn lateral(self) -> String {
         self.text("t_s,lateral_n", |c, at| format!("{:.5}", c.lateral_n[at]))
     }
@@ -122,7 +122,7 @@ impl Columns {
     }
 }
 
-/// Uniform numbers from -1 to 1, the same everywhere.
+/// Uniform numbers from -1 to 1, equal on every machine.
 fn noise(at: usize) -> f64 {
     let mixed = (at as u64 ^ 0x9E37_79B9).wrapping_mul(0xD134_2543_DE82_EF95);
     let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0x2545_F491_4F6C_DD1D);
@@ -186,7 +186,7 @@ pub fn cases() -> Vec<Case> {
     ]
 }
 
-/// A tenth of the samples is missing.
+/// A tenth of the samples are missing.
 fn clock_gap() -> String {
     let text = Columns::new(3.0).lateral();
     let lost = sample(1.0)..sample(1.3);
@@ -195,7 +195,7 @@ fn clock_gap() -> String {
     kept.map(|(_, line)| format!("{line}\n")).collect()
 }
 
-/// Timestamps by a busy computer.
+/// Timestamps of a busy computer.
 fn clock_jitter() -> String {
     let mut columns = Columns {
         decimals: 5,
@@ -207,7 +207,7 @@ fn clock_jitter() -> String {
     columns.lateral()
 }
 
-/// 61 % of the samples on two levels.
+/// 61 % of the samples are on two levels.
 fn clipped() -> String {
     let columns = Columns::new(3.0);
     let mut sorted: Vec<f64> = columns.lateral_n.iter().map(|f| f.abs()).collect();
@@ -216,7 +216,7 @@ fn clipped() -> String {
     columns.map_lateral(|_, f| f.clamp(-limit, limit)).lateral()
 }
 
-/// The force holds a value over some samples.
+/// The force is constant over some samples.
 fn held(samples: std::ops::Range<usize>, value: fn(&[f64]) -> f64) -> String {
     let columns = Columns::new(3.0);
     let value = value(&columns.lateral_n);
@@ -245,7 +245,7 @@ fn speed(change: fn(f64) -> f64) -> String {
     columns.with_speed()
 }
 
-/// The first of several sweeps is made at three quarters of the speed.
+/// The first of several sweeps has three quarters of the speed.
 fn slow_sweep() -> String {
     let mut columns = Columns::new(4.0);
     columns.speed_mm_s[..sample(1.2)]
@@ -265,7 +265,7 @@ fn stroke() -> String {
     columns.lateral()
 }
 
-/// Somebody knocks at the table during one sweep.
+/// A knock at the table during one sweep.
 fn knock() -> String {
     let columns = Columns::new(8.0);
     let from = sample(3.0);

@@ -1,9 +1,11 @@
-//! Manifests that break a rule, each in one way.
+//! Manifests that each break one rule.
 
 use serde_json::{Value, json};
 
-use super::cases::{Named, block, manifest, parts, with_manifest, with_store_key};
+use super::cases::Named;
+use super::parts::{block, manifest, parts, with_manifest};
 use super::raw_zip::{Entry, archive};
+use super::valid_cases::with_store_key;
 
 /// Assets with such manifests.
 pub(super) fn manifests() -> Vec<Named> {
@@ -173,7 +175,7 @@ pub(super) fn manifests() -> Vec<Named> {
     files
 }
 
-/// A manifest whose fields are not the model's, with a block that follows the fields.
+/// An asset whose fields are not the model's, with a block that matches the fields.
 fn with_fields(fields: Value, block: &[u8]) -> Vec<u8> {
     let mut manifest = manifest();
     manifest["representations"][0]["fields"] = fields;

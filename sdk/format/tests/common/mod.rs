@@ -1,4 +1,4 @@
-//! Assets to test with.
+//! Assets for tests.
 #![allow(
     dead_code,
     clippy::expect_used,
@@ -7,13 +7,18 @@
     reason = "each test file takes what it needs"
 )]
 
+mod archive_cases;
 pub mod cases;
 mod manifest_cases;
+pub mod parts;
+mod plugin_cases;
 pub mod raw_zip;
+mod text_cases;
+mod valid_cases;
 
 use htex_format::*;
 
-/// A representation, with one flat array a condition.
+/// A representation, with one flat array per condition.
 pub type Fitted = (Representation, Vec<Vec<f64>>);
 
 /// An asset with the given representations at `conditions` conditions.
@@ -69,7 +74,7 @@ fn condition(i: usize) -> Condition {
     }
 }
 
-/// A representation whose fields are (name, unit, list length, store); 0 stands for a scalar.
+/// Creates a representation whose fields are (name, unit, list length, store); length 0 is a scalar.
 pub fn fitted(model: &str, conditions: usize, fields: &[(&str, &str, usize, Store)]) -> Fitted {
     let stored: Vec<Field> = fields.iter().map(field).collect();
     let representation = Representation {
@@ -103,7 +108,7 @@ fn flat(condition: usize, fields: &[(&str, &str, usize, Store)], stored: &[Field
     round_parameters(stored, &flat).expect("the values fit their stores")
 }
 
-/// A value that the model of the field plays.
+/// Returns a value that the model of the field accepts.
 fn value(field: &str, i: f64, condition: f64) -> f64 {
     match field {
         "coefficients" => 0.2 / (i + 1.0) - 0.1 * condition / (i + 2.0),
@@ -155,7 +160,7 @@ pub fn sbeta(conditions: usize) -> Fitted {
     fitted("sbeta", conditions, &fields)
 }
 
-/// Knots, packed: 30 steps that rise slowly.
+/// A packed list of 30 steps that rise slowly.
 pub fn bands(conditions: usize) -> Fitted {
     let fields = [
         ("below_highest", "", 30, Store::Packed(steps(0.25))),
@@ -165,7 +170,7 @@ pub fn bands(conditions: usize) -> Fitted {
     fitted("bands", conditions, &fields)
 }
 
-/// The five models, stored as their descriptors say.
+/// The paper's five models, with the stores of their descriptors.
 pub fn five(conditions: usize) -> Vec<Fitted> {
     let hertz = Store::U16(steps(0.03125));
     let order = Store::U16(steps(0.001));
@@ -215,7 +220,7 @@ pub fn five(conditions: usize) -> Vec<Fitted> {
     ]
 }
 
-/// A reference for as many conditions, newtons.
+/// A reference for the given number of conditions, newtons.
 pub fn reference(conditions: usize) -> Vec<Vec<f32>> {
     let spectrum = |c: usize| {
         (0..197)

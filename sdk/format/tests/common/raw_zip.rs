@@ -1,6 +1,6 @@
-//! Archives with anything wrong in them.
+//! Writer of deliberately invalid archives.
 
-/// What a header says of an entry.
+/// The fields of an entry's header.
 #[derive(Clone, Default)]
 pub struct Header {
     pub name: Vec<u8>,
@@ -13,7 +13,7 @@ pub struct Header {
     pub comment: Vec<u8>,
 }
 
-/// An entry: what its two headers say, and its bytes.
+/// An entry: its two headers and its bytes.
 #[derive(Clone)]
 pub struct Entry {
     pub local: Header,
@@ -22,7 +22,7 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// A sound, stored entry.
+    /// Creates a valid, stored entry.
     pub fn stored(name: &str, data: &[u8]) -> Self {
         let header = Header {
             name: name.into(),
@@ -38,7 +38,7 @@ impl Entry {
         }
     }
 
-    /// The same change in both headers.
+    /// Applies the same change to both headers.
     pub fn with(mut self, change: impl Fn(&mut Header)) -> Self {
         change(&mut self.local);
         change(&mut self.central);
@@ -46,7 +46,7 @@ impl Entry {
     }
 }
 
-/// The archive of some entries.
+/// Writes an archive of entries.
 pub fn archive(entries: &[Entry]) -> Vec<u8> {
     let (mut bytes, mut directory) = (Vec::new(), Vec::new());
     for entry in entries {

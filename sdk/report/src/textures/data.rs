@@ -1,6 +1,6 @@
-//! What the report is about.
+//! The data of a texture report.
 
-/// Everything on the page.
+/// The data of a texture report.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TextureReport {
     /// The page's title.
@@ -9,7 +9,7 @@ pub struct TextureReport {
     pub intro: Vec<String>,
     /// The textures, in the order of the page.
     pub textures: Vec<Texture>,
-    /// The command that makes this page again.
+    /// The command that generates this page.
     pub command: String,
 }
 
@@ -18,7 +18,7 @@ pub struct TextureReport {
 pub struct Texture {
     /// The texture's name.
     pub name: String,
-    /// Whether it was computed and not recorded; the page says so wherever it is named.
+    /// Whether it was computed instead of recorded; the page states this wherever it names the texture.
     pub simulated: bool,
     /// The unit of its magnitudes: `"N"`, `"m/s2"`, `"m/s"`, `"m"`.
     pub unit: String,
@@ -30,46 +30,46 @@ pub struct Texture {
     pub asset_bytes: u64,
     /// RMS nine-band difference between two parts of the recording, decibels.
     pub repeatability_rms_db: Option<f64>,
-    /// The frequencies of every magnitude below, ascending, hertz.
+    /// The frequencies of all magnitudes, increasing, hertz.
     pub frequency_hz: Vec<f64>,
     /// The recording's magnitude, in the texture's unit.
     pub recorded: Vec<f64>,
     /// The models fitted to it.
     pub models: Vec<ModelResult>,
-    /// What the reader should know about this texture.
+    /// Warnings about this texture.
     pub warnings: Vec<String>,
 }
 
-/// How one model did on one texture.
+/// Result of one model on one texture.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ModelResult {
-    /// The model's name as written in text: `"sBeta"`.
+    /// The model's display name: `"sBeta"`.
     pub model: String,
-    /// The model's name as written in files: `"sbeta"`. Decides its colour and column.
+    /// The model's short name, which determines colour and column: `"sbeta"`.
     pub short_name: String,
     /// The model's magnitude at the texture's frequencies, in the texture's unit.
     pub magnitude: Vec<f64>,
     /// Pearson's correlation with the recording's magnitude.
     pub spectral_correlation: f64,
-    /// Model over recording in each of the nine bands, decibels.
+    /// Energy of the model relative to the recording's in each of the nine bands, decibels.
     pub band_error_db: Vec<f64>,
     /// Root mean square of the nine, decibels.
     pub band_error_rms_db: f64,
-    /// Error over third-octave bands, RMS, decibels.
+    /// RMS error over third-octave bands, decibels.
     pub third_octave_error_rms_db: Option<f64>,
-    /// Difference of the magnitudes in decibels, RMS over the bins.
+    /// RMS over the bins of the difference of the magnitudes in decibels.
     pub log_spectral_distance_db: Option<f64>,
-    /// The nine-band error of rendered samples and not of the magnitude, decibels.
+    /// The nine-band error of rendered samples, decibels.
     pub samples_band_error_rms_db: Option<f64>,
     /// Size of the parameters, bytes.
     pub payload_bytes: usize,
-    /// Frequency (hertz) and amplitude (in the texture's unit) of each sinusoid, for a model that is made of
-    /// them; drawn instead of the magnitude.
+    /// Frequency (hertz) and amplitude (in the texture's unit) of each sinusoid of a model that is a sum of
+    /// sinusoids; drawn instead of the magnitude.
     pub lines: Option<Vec<(f64, f64)>>,
 }
 
 impl TextureReport {
-    /// Short name and name of each model, in the order they first appear.
+    /// Returns short name and name of each model, in the order of their first occurrence.
     pub(crate) fn models(&self) -> Vec<(&str, &str)> {
         let mut found: Vec<(&str, &str)> = Vec::new();
         for model in self.textures.iter().flat_map(|texture| &texture.models) {
@@ -85,7 +85,7 @@ impl TextureReport {
 }
 
 impl Texture {
-    /// The name, with a word where it is simulated.
+    /// Returns the name, marked if it is simulated.
     pub(crate) fn header(&self) -> String {
         if self.simulated {
             format!("{} (simulated)", self.name)
@@ -94,8 +94,8 @@ impl Texture {
         }
     }
 
-    /// How many of the unit of its plots are in the texture's unit, and that unit: one in which textures have
-    /// numbers that are easy to read.
+    /// Returns the unit of the plots and the factor to it from the texture's unit, chosen so that
+    /// the numbers are easy to read.
     pub(crate) fn plotted(&self) -> (f64, &str) {
         match self.unit.as_str() {
             "N" => (1e3, "mN"),
@@ -106,7 +106,7 @@ impl Texture {
         }
     }
 
-    /// The name and the condition, where one is given.
+    /// Returns the name and the condition, if it is given.
     pub(crate) fn title(&self) -> String {
         match self.condition.as_str() {
             "" => self.header(),
@@ -114,7 +114,7 @@ impl Texture {
         }
     }
 
-    /// What the model called `short_name` made of this texture.
+    /// Returns the result of the model called `short_name`.
     pub(crate) fn model(&self, short_name: &str) -> Option<&ModelResult> {
         self.models
             .iter()

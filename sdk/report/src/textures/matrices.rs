@@ -1,4 +1,4 @@
-//! The figures of merit: textures against models, and bands against models.
+//! Tables of errors: textures by models, and models by bands.
 
 use super::data::{ModelResult, Texture, TextureReport};
 use crate::markup::Element;
@@ -6,13 +6,13 @@ use crate::number::fixed;
 use crate::page::paragraph;
 use crate::table::{Cell, HeatScale, Row, Table};
 
-/// Behind an error that is no larger than the recording's own variation.
+/// Mark of an error that does not exceed the recording's own variation.
 const WITHIN: &str = "\u{a0}*";
 
-/// Errors of this size and more have the darkest shade, decibels.
+/// Error of the darkest shade, decibels.
 const DARKEST_DB: f64 = 12.0;
 
-/// Correlation and nine-band error, and the other measures where they were taken.
+/// Tables of correlation and nine-band error, and of the other measures if they are known.
 pub(super) fn summary(report: &TextureReport) -> String {
     let mut out = Element::new("div").set("class", "tables");
     let correlation = correlation(report).to_html();
@@ -41,8 +41,8 @@ pub(super) fn summary(report: &TextureReport) -> String {
         }
     }
     let note = paragraph(
-        "* at or below the recording's own repeatability: the recording itself varies by as much \
-         from one part to another, so a smaller error says nothing more about the model.",
+        "* at or below the recording's own repeatability: parts of the recording differ from each other \
+         by as much, so smaller errors do not distinguish models.",
     );
     out.render() + "\n" + &note
 }
@@ -54,7 +54,7 @@ fn measured(report: &TextureReport, value: impl Fn(&ModelResult) -> Option<f64>)
     models.any(|m| value(m).is_some())
 }
 
-/// A measure that the recording's repeatability is not known by.
+/// Table of an error for which the recording's repeatability is not known.
 fn independent_error(report: &TextureReport, caption: &str, value: Value) -> String {
     let cell = |_: &Texture, model: &ModelResult| {
         value(model).map_or(Cell::Missing, |db| Cell::Shaded(db, ""))
@@ -99,7 +99,7 @@ fn error(report: &TextureReport, of: &str, value: impl Fn(&ModelResult) -> Optio
     table.to_html()
 }
 
-/// A table of textures against models.
+/// Table of textures by models.
 fn by_model(report: &TextureReport, cell: impl Fn(&Texture, &ModelResult) -> Cell) -> Table {
     let models = report.models();
     let row = |texture: &Texture| {
@@ -125,11 +125,11 @@ fn by_model(report: &TextureReport, cell: impl Fn(&Texture, &ModelResult) -> Cel
     }
 }
 
-/// The nine errors of each model, a table for each texture.
+/// Tables of the nine errors of each model, one per texture.
 pub(super) fn bands(report: &TextureReport) -> String {
     let note = paragraph(
-        "Model over recording in dB: orange is too much vibration in a band, blue is too little. \
-         The columns are the bands' centre frequencies in Hz; each band reaches to the centres \
+        "Model relative to recording in dB: orange is too much vibration in a band, blue is too little. \
+         The columns are the bands' centre frequencies in Hz; each band extends to the centres \
          of its neighbours.",
     );
     let fitted = report.textures.iter().filter(|t| !t.models.is_empty());
@@ -160,7 +160,7 @@ fn band_table(texture: &Texture) -> Table {
     }
 }
 
-/// The centres of the nine bands: the inner nine of eleven points evenly spaced in log frequency
+/// Returns the centres of the nine bands: the inner nine of eleven points evenly spaced in log frequency
 /// from 20 to 1000 Hz.
 fn band_centres_hz() -> impl Iterator<Item = f64> {
     (1..=9).map(|i| 20.0 * 50f64.powf(f64::from(i) / 10.0))

@@ -1,4 +1,4 @@
-//! The report on some fitted textures: spectra, errors, sizes.
+//! Report on fitted textures: spectra, errors, sizes.
 
 mod data;
 mod matrices;
@@ -12,7 +12,7 @@ pub use picture::spectra_picture;
 use crate::markup::Element;
 use crate::page::{Page, code_block, list, paragraph};
 
-/// The report as a self-contained HTML page.
+/// Returns the report as a self-contained HTML page.
 pub fn texture_report(report: &TextureReport) -> String {
     let mut page = Page::new(&report.title);
     for text in &report.intro {
@@ -60,17 +60,17 @@ fn how_to_read(page: &mut Page) {
         "Each row of spectra is one texture: first the recording (dark grey), then each model in \
          its own colour over the same recording (light grey). The horizontal axis is frequency \
          from 20 to 1000 Hz, logarithmic; the vertical axis is the magnitude, of a force in \
-         millinewtons, from zero and the same along a row, not between rows. A model that is a \
-         set of sinusoids is drawn as uprights, one for each. Point at a curve for its values.",
+         millinewtons, from zero; its range is the same within a row but differs between rows. A model that is a \
+         sum of sinusoids is drawn as vertical lines, one for each. Point at a curve to see its values.",
     ));
     page.html(&paragraph(
         "Spectral correlation (r) is Pearson's correlation of the model's and the recording's \
-         magnitudes, bin by bin: it rewards matching every ripple, and 1 is the best. The \
+         magnitudes, bin by bin: it measures whether every ripple is matched, and 1 is the best. The \
          nine-band error compares the energy in nine overlapping bands, evenly spaced in log \
-         frequency, in decibels: it asks only for the right amount of vibration in the right \
+         frequency, in decibels: it measures whether the right amount of vibration is in the right \
          region, and 0 is the best. Third-octave bands do not overlap and are about twice as fine, \
          and the log-spectral distance compares every bin in decibels; no model is fitted to either. \
-         The measures can disagree; none is a rating by a person.",
+         The measures can differ; none is a rating by a person.",
     ));
 }
 

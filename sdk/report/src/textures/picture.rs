@@ -1,4 +1,4 @@
-//! Spectra of some textures as one picture: a column for each texture, a row for each model.
+//! Spectra of several textures as one picture: a column per texture, a row per model.
 
 use super::data::{ModelResult, Texture};
 use super::spectra::{overlay, top};
@@ -9,11 +9,11 @@ use crate::svg::{self, TEXT_PX};
 
 /// Size of one panel, pixels.
 const PANEL: (f64, f64) = (230.0, 190.0);
-/// Height of the line below the panels, pixels.
+/// Height of the caption below the panels, pixels.
 const CAPTION_PX: f64 = 26.0;
 
-/// The recording of each texture, and over it each of the models named, as a self-contained SVG. A texture without one of
-/// them has an empty place.
+/// Draws each texture's recording, overlaid with each of the named models, as a self-contained SVG. The panel of a texture
+/// without a model is empty.
 pub fn spectra_picture(textures: &[Texture], short_names: &[&str]) -> String {
     let width = PANEL.0 * textures.len() as f64;
     let height = PANEL.1 * short_names.len() as f64 + CAPTION_PX;
@@ -42,7 +42,7 @@ pub fn spectra_picture(textures: &[Texture], short_names: &[&str]) -> String {
         + "\n"
 }
 
-/// The panels of a texture with their rows; all have the same vertical axis.
+/// Returns the panels of a texture with their rows; all have the same vertical axis.
 fn texture_panels(texture: &Texture, short_names: &[&str]) -> Vec<(usize, Plot)> {
     let rows = short_names.iter().enumerate();
     let found = rows.filter_map(|(row, name)| Some((row, texture.model(name)?)));

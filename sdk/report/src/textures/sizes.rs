@@ -1,13 +1,13 @@
-//! What a texture costs in bytes: as recorded, as an asset, as each model's parameters.
+//! Table of sizes in bytes: recording, asset, and each model's parameters.
 
 use super::data::{Texture, TextureReport};
 use crate::number::{bytes, ratio};
 use crate::table::{Cell, HeatScale, Row, Table};
 
-const CAPTION: &str = "Bytes (1 kB = 1000 B); under a model, its parameters alone. \
-                       Below each, how many times it goes into the recording file";
+const CAPTION: &str = "Bytes (1 kB = 1000 B); for a model, those of its parameters. \
+                       Below each, the ratio of the recording file's size to it";
 
-/// The table of sizes.
+/// Returns the table of sizes.
 pub(super) fn table(report: &TextureReport) -> String {
     let models = report.models();
     let files = ["recording file", "asset file"].map(str::to_owned);

@@ -1,4 +1,4 @@
-//! A row of spectra for each texture: the recording, then each model over it.
+//! A row of spectra for each texture: the recording, then the recording overlaid with each model.
 
 use super::data::{ModelResult, Texture, TextureReport};
 use crate::axis::Axis;
@@ -12,14 +12,14 @@ use crate::svg;
 /// Size of one panel, pixels.
 const PANEL: (f64, f64) = (210.0, 190.0);
 
-/// The recording where it stands behind a model.
+/// Colour of the recording behind a model.
 const BACKDROP: &str = "#a3a3a3";
 
-/// A model may rise this far above the recording before it is cut off: past that, the recording
+/// A model is clipped at this multiple of the recording's maximum; beyond it the recording
 /// would be too flat to read.
 const OVERSHOOT: f64 = 2.0;
 
-/// The colour key and all rows.
+/// Returns the colour key and all rows.
 pub(super) fn section(report: &TextureReport) -> String {
     let rows = report.textures.iter().map(row);
     let all: String = rows.map(|row| row.render() + "\n").collect();
@@ -55,7 +55,7 @@ fn row(texture: &Texture) -> Element {
         .models
         .iter()
         .map(|model| model_panel(texture, model, top));
-    // All in one row, or in two rows that are filled alike.
+    // All in one row, or in two rows of equal length.
     let all = 1 + texture.models.len();
     let half = if all > 4 { all.div_ceil(2) } else { all };
     let panels = Element::new("div")
@@ -107,7 +107,7 @@ fn model_panel(texture: &Texture, model: &ModelResult, top: f64) -> Element {
     )
 }
 
-/// A model over the recording.
+/// Plots a model over the recording.
 pub(super) fn overlay(title: &str, texture: &Texture, model: &ModelResult, top: f64) -> Plot {
     let backdrop = Series::line("recording", curve(texture, &texture.recorded));
     let (scale, _) = texture.plotted();
@@ -134,7 +134,7 @@ fn model_note(texture: &Texture, model: &ModelResult, top: f64) -> String {
     let (scale, unit) = texture.plotted();
     match highest(drawn(model), scale) {
         Some(highest) if highest > top => {
-            format!("{note}; rises to {} {unit}, cut off", brief(highest))
+            format!("{note}; maximum {} {unit}, clipped", brief(highest))
         }
         _ => note,
     }
@@ -160,14 +160,14 @@ fn panel(plot: Plot, note: &str) -> Element {
     figure.child(&Element::new("figcaption").text(note))
 }
 
-/// (hertz, magnitude in the unit of the plots) pairs.
+/// Returns (hertz, magnitude in the unit of the plots) pairs.
 fn curve(texture: &Texture, magnitude: &[f64]) -> Vec<(f64, f64)> {
     let pairs = texture.frequency_hz.iter().zip(magnitude);
     let (scale, _) = texture.plotted();
     pairs.map(|(f, n)| (*f, n * scale)).collect()
 }
 
-/// The top of the vertical axis of some models of a texture, in the unit of the plots.
+/// Returns the top of the vertical axis for some models of a texture, in the unit of the plots.
 pub(super) fn top<'a>(texture: &Texture, models: impl IntoIterator<Item = &'a ModelResult>) -> f64 {
     let (scale, _) = texture.plotted();
     let recorded = highest(texture.recorded.iter().copied(), scale);
@@ -179,7 +179,7 @@ pub(super) fn top<'a>(texture: &Texture, models: impl IntoIterator<Item = &'a Mo
     if highest > 0.0 { 1.05 * highest } else { 1.0 }
 }
 
-/// What a panel draws of a model, in the texture's unit.
+/// Returns the values that a panel draws of a model, in the texture's unit.
 fn drawn(model: &ModelResult) -> impl Iterator<Item = f64> + '_ {
     let lines = model
         .lines
@@ -194,7 +194,7 @@ fn drawn(model: &ModelResult) -> impl Iterator<Item = f64> + '_ {
     lines.chain(curve.iter().copied())
 }
 
-/// The highest value above 0, times the scale.
+/// Returns the highest value above 0, times the scale.
 fn highest(values: impl Iterator<Item = f64>, scale: f64) -> Option<f64> {
     let positive = values.filter(|v| v.is_finite() && *v > 0.0);
     positive.reduce(f64::max).map(|highest| highest * scale)

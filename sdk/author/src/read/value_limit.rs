@@ -1,19 +1,19 @@
-//! How many numbers of a file are kept in memory.
+//! Limit on the numbers of a file that are kept in memory.
 
 use super::ReadError;
 
-/// Most numbers that are kept of a file, where nothing else is said: 11 minutes of three columns at 20 kHz. With what is
-/// made of them they take 8 to 40 bytes each, most at low rates.
+/// Default limit on the numbers kept of a file: 11 minutes of three columns at 20 kHz. With derived data they
+/// take 8 to 40 bytes each, most at low rates.
 pub const MOST_VALUES: usize = 40_000_000;
 
-/// Room for the numbers of one file.
+/// Limit on the numbers kept of one file.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Room {
+pub(crate) struct ValueLimit {
     pub(crate) most_values: usize,
 }
 
-impl Room {
-    /// Refuses more numbers than there is room for.
+impl ValueLimit {
+    /// Refuses more numbers than the limit.
     #[inline]
     pub(crate) fn check(self, file: &str, values: u64) -> Result<(), ReadError> {
         match values <= self.most_values as u64 {
@@ -26,7 +26,7 @@ impl Room {
     }
 }
 
-impl Default for Room {
+impl Default for ValueLimit {
     fn default() -> Self {
         Self {
             most_values: MOST_VALUES,

@@ -1,4 +1,4 @@
-//! How many numbers of a file are kept: one more is refused before it is read.
+//! The limit on the numbers of a file takes effect before they are read.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -21,9 +21,9 @@ fn read(name: &str, bytes: &[u8], most_values: Option<usize>) -> Result<usize, S
     read.map(|r| r.samples()).map_err(|error| error.to_string())
 }
 
-/// The whole file is read with room for its numbers. With less, nothing behind the room is looked at: not the nonsense at
-/// the end of `more`.
-fn has_room(name: &str, whole: &[u8], more: &[u8], most_values: usize, samples: usize) {
+/// The whole file is read with a limit equal to its numbers. With a lower limit nothing after it is parsed, such as the
+/// invalid text at the end of `more`.
+fn check_limit(name: &str, whole: &[u8], more: &[u8], most_values: usize, samples: usize) {
     assert_eq!(read(name, whole, Some(most_values)), Ok(samples));
     let broken = read(name, more, None).unwrap_err();
     for (bytes, most) in [(whole, most_values - 1), (more, most_values)] {
@@ -37,23 +37,23 @@ fn has_room(name: &str, whole: &[u8], more: &[u8], most_values: usize, samples: 
 }
 
 #[test]
-fn what_there_is_no_room_for_is_refused_before_it_is_read() {
-    // Longer than a block, and with a column that is not used. Where the rows begin takes as much as two numbers, and so
-    // does each gap between them.
+fn numbers_beyond_the_limit_are_refused_before_they_are_read() {
+    // Longer than a block, with an unused column. The start of the rows and each gap between them take the memory of
+    // two numbers.
     let rows = "1,2,oiled\n".repeat(40_000);
     let csv = format!("lateral_n,normal_n,what\n{rows}\n1,2,dry\n");
     let values = 2 * 40_001 + 2;
     let more = format!("{csv}1,2,dry\n1,nonsense,dry\n");
-    has_room("r.csv", csv.as_bytes(), more.as_bytes(), values, 40_001);
+    check_limit("r.csv", csv.as_bytes(), more.as_bytes(), values, 40_001);
 
     let whole = wav(spec(2, 8), &[0.5; 40]);
     let more = wav(spec(2, 8), &[0.5; 42]);
-    has_room("r.wav", &whole, &more[..50], 40, 20);
+    check_limit("r.wav", &whole, &more[..50], 40, 20);
 
     let data = [0; 160];
     let whole = npy(&npy_header("<f4", "False", "(20, 2)"), &data);
     let more = npy(&npy_header("<f4", "False", "(21, 2)"), &data);
-    has_room("r.npy", &whole, &more, 40, 20);
+    check_limit("r.npy", &whole, &more, 40, 20);
     let endless = npy(&npy_header("<f4", "False", "(4000000000,)"), &data);
     let refused = read("r.npy", &endless, None).unwrap_err();
     assert!(refused.contains(&MOST_VALUES.to_string()), "{refused}");

@@ -1,0 +1,58 @@
+//! The entries of a small asset, and archives of them with a change.
+
+use serde_json::{Value, json};
+
+use super::raw_zip::{Entry, archive};
+use super::{asset, sbeta};
+
+/// The manifest of a small asset.
+pub fn manifest() -> Value {
+    serde_json::to_value(asset(1, vec![sbeta(1)]).manifest).unwrap()
+}
+
+pub(super) fn block() -> Vec<u8> {
+    [1.5f32, 2.5].iter().flat_map(|x| x.to_le_bytes()).collect()
+}
+
+/// The entries of a small asset.
+pub fn parts(manifest: &[u8], block: &[u8]) -> Vec<Entry> {
+    vec![
+        Entry::stored("mimetype", b"application/vnd.htex+zip"),
+        Entry::stored("manifest.json", manifest),
+        Entry::stored("parameters/sbeta.bin", block),
+    ]
+}
+
+pub(super) fn with_text(manifest: &[u8]) -> Vec<u8> {
+    archive(&parts(manifest, &block()))
+}
+
+pub(super) fn with_manifest(change: impl Fn(&mut Value)) -> Vec<u8> {
+    let mut manifest = manifest();
+    change(&mut manifest);
+    with_text(manifest.to_string().as_bytes())
+}
+
+pub(super) fn with_block(block: &[u8]) -> Vec<u8> {
+    archive(&parts(manifest().to_string().as_bytes(), block))
+}
+
+/// An asset whose parameter block is one packed list.
+pub(super) fn with_packed(block: &[u8]) -> Vec<u8> {
+    let mut manifest = manifest();
+    manifest["representations"][0]["fields"] =
+        json!([{ "name": "steps", "list": true, "store": { "packed": { "scale": 1 } } }]);
+    archive(&parts(manifest.to_string().as_bytes(), block))
+}
+
+pub(super) fn with_parts(change: impl Fn(&mut Vec<Entry>)) -> Vec<u8> {
+    let mut parts = parts(manifest().to_string().as_bytes(), &block());
+    change(&mut parts);
+    archive(&parts)
+}
+
+pub(super) fn with_bytes(change: impl Fn(&mut Vec<u8>)) -> Vec<u8> {
+    let mut bytes = with_manifest(|_| ());
+    change(&mut bytes);
+    bytes
+}

@@ -1,0 +1,51 @@
+//! Manifests and parameter blocks that differ in single bytes.
+
+use super::cases::Named;
+use super::parts::{block, manifest, with_block, with_packed, with_text};
+
+pub(super) fn texts() -> Vec<Named> {
+    let text = manifest().to_string();
+    let twice = text.replacen('{', "{\"name\":\"Twice\",", 1);
+    let with = |key: &str| with_text(text.replacen('{', &format!("{{{key},"), 1).as_bytes());
+    let deep = format!("{}{}", "[".repeat(40), "]".repeat(40));
+    vec![
+        ("json_syntax", with_text(b"{\"htex\": \"1.0\",}")),
+        (
+            "json_syntax_utf8",
+            with_text(b"{\"htex\": \"1.0\", \"name\": \"\xFF\"}"),
+        ),
+        (
+            "json_syntax_not_finite",
+            with_text(text.replacen("20.0", "1e999", 1).as_bytes()),
+        ),
+        ("json_too_deep", with_text(deep.as_bytes())),
+        ("json_type_twice", with_text(twice.as_bytes())),
+        (
+            "json_type_twice_extension",
+            with(r#""extensions":{"com.example.LOOK/1":[{"a~b":{"x":1,"x":1}}]}"#),
+        ),
+        (
+            "json_type_twice_unknown",
+            with(r#""friction":{"static":0.4,"static":0.4}"#),
+        ),
+        (
+            "valid_null_in_extension",
+            with(r#""extensions":{"com.example.LOOK/1":{"colour":null}}"#),
+        ),
+        (
+            "valid_whole_numbers",
+            with_text(
+                text.replacen("\"condition\":0", "\"condition\":0e0", 1)
+                    .replacen("\"segments\":48", "\"segments\":4.8e1", 1)
+                    .as_bytes(),
+            ),
+        ),
+        ("parameters_invalid_short", with_block(&block()[..7])),
+        ("parameters_invalid_long", with_block(&[0; 9])),
+        ("parameters_invalid_packed", with_packed(&[1, 0x1F, 0xE1])),
+        (
+            "parameters_not_finite",
+            with_block(&[0, 0, 0xC0, 0x7F, 0, 0, 0, 0]),
+        ),
+    ]
+}

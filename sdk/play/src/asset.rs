@@ -6,10 +6,11 @@ use std::sync::{Arc, OnceLock};
 use htex_format::{Manifest, Quantity, Representation};
 use htex_host::{Band, HostError, LoadedModel, RUNS_WASM, Registry, StillSound, Synthesis};
 
-use crate::exploration::{Coverage, Effects, Explored};
-use crate::mesh::{Mesh, Weights};
+use crate::exploration::Explored;
+use crate::known::{Known, Motions};
+use crate::mesh::Mesh;
 use crate::playable::{field_order, model_of};
-use crate::{Error, Motion, Source, Voice};
+use crate::{Error, Motion, Source, Voice, VoiceOptions};
 
 /// An opened texture. A clone shares the data of the file.
 ///
@@ -26,93 +27,6 @@ pub struct Asset {
     embedded: bool,
     /// The model of each representation, once it was wanted.
     models: Arc<[OnceLock<LoadedModel>]>,
-}
-
-/// Options of a voice.
-///
-/// ```
-/// use htex::{Motion, VoiceOptions};
-/// let options = VoiceOptions::default()
-///     .with_model("bands")
-///     .with_rate_hz(48_000.0)
-///     .with_motion(Motion::new(80.0, 0.4));
-/// assert_eq!(options.model, Some("bands"));
-/// ```
-#[derive(Debug, Clone)]
-#[non_exhaustive]
-pub struct VoiceOptions<'a> {
-    /// The representation, by its model's id or short name; else the one that comes nearest to the
-    /// recording by its nine-band error.
-    pub model: Option<&'a str>,
-    /// Rate of the samples, hertz.
-    pub rate_hz: f64,
-    /// The same seed gives the same samples.
-    pub seed: u64,
-    /// The motion at the start; else that of the first condition.
-    pub motion: Option<Motion>,
-    /// How samples are made: by the model's voice, or cheaper, with a spectrum that stays as it is
-    /// at the start. [`Asset::source`] is always streamed.
-    pub synthesis: Synthesis,
-    /// What a motion does beyond the recorded conditions; [`Asset::source`] has no effects.
-    pub effects: Effects,
-}
-
-impl Default for VoiceOptions<'_> {
-    /// 20 kHz (the paper's rate), seed 0, the first condition, streamed, all effects.
-    fn default() -> Self {
-        Self {
-            model: None,
-            rate_hz: 20_000.0,
-            seed: 0,
-            motion: None,
-            synthesis: Synthesis::Streamed,
-            effects: Effects::default(),
-        }
-    }
-}
-
-impl<'a> VoiceOptions<'a> {
-    /// Sets the representation, by its model's id or short name.
-    #[must_use]
-    pub fn with_model(mut self, model: &'a str) -> Self {
-        self.model = Some(model);
-        self
-    }
-
-    /// Sets the rate of the samples, hertz.
-    #[must_use]
-    pub fn with_rate_hz(mut self, rate_hz: f64) -> Self {
-        self.rate_hz = rate_hz;
-        self
-    }
-
-    /// Sets the seed.
-    #[must_use]
-    pub fn with_seed(mut self, seed: u64) -> Self {
-        self.seed = seed;
-        self
-    }
-
-    /// Sets the motion at the start, or `None` for that of the first condition.
-    #[must_use]
-    pub fn with_motion(mut self, motion: impl Into<Option<Motion>>) -> Self {
-        self.motion = motion.into();
-        self
-    }
-
-    /// Sets how samples are made.
-    #[must_use]
-    pub fn with_synthesis(mut self, synthesis: Synthesis) -> Self {
-        self.synthesis = synthesis;
-        self
-    }
-
-    /// Sets what a motion does beyond the recorded conditions.
-    #[must_use]
-    pub fn with_effects(mut self, effects: Effects) -> Self {
-        self.effects = effects;
-        self
-    }
 }
 
 impl Asset {
@@ -475,61 +389,4 @@ fn nearest(all: &[Representation], runnable: impl Fn(&Representation) -> bool) -
         let (a, b) = (order(a), order(b));
         a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
     })
-}
-
-/// The motions that a representation was recorded at.
-///
-/// ```no_run
-/// use htex::{Asset, Effects, Motion};
-/// let motions = Asset::open("sandpaper.htex")?.motions(None)?;
-/// println!("{}", motions.coverage(Motion::new(160.0, 0.4), Effects::default()));
-/// # Ok::<(), htex::Error>(())
-/// ```
-#[derive(Debug, Clone)]
-pub struct Motions {
-    pub(crate) mesh: Mesh,
-    pub(crate) explored: Explored,
-}
-
-impl Motions {
-    /// What a voice with these effects makes of a motion, and whether it lies within what was recorded.
-    pub fn coverage(&self, motion: Motion, effects: Effects) -> Coverage {
-        let nearest = self.mesh.motion(&self.weights(motion));
-        self.explored.coverage(motion, nearest, effects)
-    }
-
-    /// Weights of the conditions at a motion. Does not allocate.
-    pub(crate) fn weights(&self, motion: Motion) -> Weights {
-        self.mesh.weights(motion.speed_mm_s, motion.force_n)
-    }
-}
-
-/// What is known of a representation: parameters and level at each condition.
-#[derive(Debug, Clone)]
-pub(crate) struct Known {
-    pub(crate) motions: Motions,
-    pub(crate) level_rms: Vec<f64>,
-    pub(crate) parameters: Vec<Vec<f64>>,
-}
-
-impl Known {
-    /// Numbers in the longest set of parameters.
-    pub(crate) fn longest(&self) -> usize {
-        self.parameters.iter().map(Vec::len).max().unwrap_or(0)
-    }
-
-    /// Parameters and level at a motion; the model decides in which space to mix.
-    pub(crate) fn at(&self, model: &LoadedModel, motion: Motion) -> Result<(Vec<f64>, f64), Error> {
-        let weights = self.motions.weights(motion);
-        let level_rms = weights.iter().map(|(i, w)| w * self.level_rms[i]).sum();
-        let sets: Vec<&[f64]> = weights
-            .iter()
-            .map(|(i, _)| &self.parameters[i][..])
-            .collect();
-        if let [only] = sets[..] {
-            return Ok((only.to_vec(), level_rms));
-        }
-        let parameters = model.interpolate(&sets, &weights.weight[..weights.count])?;
-        Ok((parameters, level_rms))
-    }
 }

@@ -17,14 +17,16 @@ mod asset;
 mod error;
 pub mod exploration;
 mod follow;
+mod known;
 mod mesh;
 mod motion;
+mod options;
 mod playable;
 mod source;
 mod travel;
 mod voice;
 
-pub use asset::{Asset, Motions, VoiceOptions};
+pub use asset::Asset;
 pub use error::Error;
 pub use exploration::{Coverage, Effects, Explored, Reach, Recorded};
 /// An asset's data, as [`Asset::new`] takes it.
@@ -40,7 +42,9 @@ pub use htex_host::{
     Band, Descriptor, HostError, LoadedModel, Note, Origin, Registry, Search, Synthesis, WasmCache,
     WasmCompiler, WasmLimits, WasmTotal,
 };
+pub use known::Motions;
 pub use motion::Motion;
+pub use options::VoiceOptions;
 pub use playable::{field_order, model_of};
 pub use source::Source;
 pub use voice::Voice;

@@ -2,8 +2,8 @@
 
 use htex_host::{Band, LoadedModel, ModelVoice, Motion as ModelMotion};
 
-use crate::asset::Known;
 use crate::exploration::{Coverage, Effects, Explored};
+use crate::known::Known;
 use crate::mesh::Weights;
 use crate::{Error, Motion};
 

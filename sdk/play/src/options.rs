@@ -1,0 +1,93 @@
+//! Options of a voice.
+
+use htex_host::Synthesis;
+
+use crate::Motion;
+use crate::exploration::Effects;
+
+/// Options of a voice.
+///
+/// ```
+/// use htex::{Motion, VoiceOptions};
+/// let options = VoiceOptions::default()
+///     .with_model("bands")
+///     .with_rate_hz(48_000.0)
+///     .with_motion(Motion::new(80.0, 0.4));
+/// assert_eq!(options.model, Some("bands"));
+/// ```
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct VoiceOptions<'a> {
+    /// The representation, by its model's id or short name; else the one that comes nearest to the
+    /// recording by its nine-band error.
+    pub model: Option<&'a str>,
+    /// Rate of the samples, hertz.
+    pub rate_hz: f64,
+    /// The same seed gives the same samples.
+    pub seed: u64,
+    /// The motion at the start; else that of the first condition.
+    pub motion: Option<Motion>,
+    /// How samples are made: by the model's voice, or cheaper, with a spectrum that stays as it is
+    /// at the start. [`Asset::source`] is always streamed.
+    pub synthesis: Synthesis,
+    /// What a motion does beyond the recorded conditions; [`Asset::source`] has no effects.
+    pub effects: Effects,
+}
+
+impl Default for VoiceOptions<'_> {
+    /// 20 kHz (the paper's rate), seed 0, the first condition, streamed, all effects.
+    fn default() -> Self {
+        Self {
+            model: None,
+            rate_hz: 20_000.0,
+            seed: 0,
+            motion: None,
+            synthesis: Synthesis::Streamed,
+            effects: Effects::default(),
+        }
+    }
+}
+
+impl<'a> VoiceOptions<'a> {
+    /// Sets the representation, by its model's id or short name.
+    #[must_use]
+    pub fn with_model(mut self, model: &'a str) -> Self {
+        self.model = Some(model);
+        self
+    }
+
+    /// Sets the rate of the samples, hertz.
+    #[must_use]
+    pub fn with_rate_hz(mut self, rate_hz: f64) -> Self {
+        self.rate_hz = rate_hz;
+        self
+    }
+
+    /// Sets the seed.
+    #[must_use]
+    pub fn with_seed(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        self
+    }
+
+    /// Sets the motion at the start, or `None` for that of the first condition.
+    #[must_use]
+    pub fn with_motion(mut self, motion: impl Into<Option<Motion>>) -> Self {
+        self.motion = motion.into();
+        self
+    }
+
+    /// Sets how samples are made.
+    #[must_use]
+    pub fn with_synthesis(mut self, synthesis: Synthesis) -> Self {
+        self.synthesis = synthesis;
+        self
+    }
+
+    /// Sets what a motion does beyond the recorded conditions.
+    #[must_use]
+    pub fn with_effects(mut self, effects: Effects) -> Self {
+        self.effects = effects;
+        self
+    }
+}

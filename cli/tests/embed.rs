@@ -29,6 +29,8 @@ fn build_bursts(place: &Place) -> bool {
         .args(link)
         .arg("-I")
         .arg(workspace.join("spec/include"))
+        .arg("-I")
+        .arg(workspace.join("sdk/check/templates/c"))
         .arg("-o")
         .arg(place.path("bursts.wasm"))
         .arg(workspace.join("examples/model-c-bursts/bursts.c"))

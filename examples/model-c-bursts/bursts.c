@@ -10,6 +10,7 @@
 #include <stdatomic.h>
 
 #include "htex_model.h"
+#include "htex_model_parts.h"
 #include "htex_model_wasm.h"
 #include "htex_motion_1.h"
 
@@ -47,51 +48,10 @@ static const char DESCRIPTOR[] =
     "\"description\":\"Normal force of the recording; 0 where it is not known.\"}],"
     "\"options\":[]}";
 
-/* ---- errors ---- */
-
-static _Thread_local const char *last_error = "";
-
-static int64_t fail(int64_t status, const char *text)
-{
-    last_error = text;
-    return status;
-}
-
-static int64_t copy_text(const char *text, uint8_t *out, size_t capacity)
-{
-    size_t len = 0;
-    for (; text[len] != 0; len++)
-        if (len < capacity)
-            out[len] = (uint8_t)text[len];
-    return (int64_t)len;
-}
+#include "resonance.h"
+#include "rhythm.h"
 
 /* ---- checks ---- */
-
-/* Whether `len` numbers of `size` bytes can stand at `pointer`. */
-static int usable(const void *pointer, size_t len, size_t size)
-{
-    return len == 0 || (pointer != NULL && (uintptr_t)pointer % size == 0 && len <= PTRDIFF_MAX / size);
-}
-
-static int within(double x, double low, double high)
-{
-    return x >= low && x <= high; /* NaN is not */
-}
-
-static int64_t check_band(double low_hz, double high_hz)
-{
-    if (low_hz > 0.0 && low_hz < high_hz && high_hz <= HTEX_MAX_BAND_HZ)
-        return HTEX_OK;
-    return fail(HTEX_INVALID_ARGUMENT, "band: 0 < low < high <= 1 MHz is allowed");
-}
-
-static int64_t check_rate(double rate_hz)
-{
-    if (within(rate_hz, HTEX_MIN_RATE_HZ, HTEX_MAX_RATE_HZ))
-        return HTEX_OK;
-    return fail(HTEX_INVALID_ARGUMENT, "rate: 1 Hz to 10 MHz is allowed");
-}
 
 /* Whether one set of parameters stands at `p`. */
 static int64_t check_set(const double *p)
@@ -125,98 +85,6 @@ static int64_t check_shape(const double *p, size_t len, double low_hz, double hi
     if (status == HTEX_OK && !within(p[CENTRE], low_hz, high_hz))
         status = fail(HTEX_INVALID_PARAMETERS, "centre_hz lies outside the band: move it in");
     return status;
-}
-
-/* ---- the spectrum ---- */
-
-struct band { double low_hz, high_hz, pass_low_hz, pass_high_hz; };
-
-/* Noise is cut off half a bin below the band, as each bin stands for so much, and from 13 % inside
- * its upper edge: so that less than 2 % of the power of the widest resonance lies outside. */
-static struct band band_of(double low_hz, double high_hz)
-{
-    double cut = low_hz - 0.5 * HTEX_GRID_HZ;
-    struct band band = {low_hz, high_hz, cut, 0.87 * high_hz};
-    if (cut < 0.5 * low_hz)
-        band.pass_low_hz = 0.5 * low_hz;
-    return band;
-}
-
-static double power_16(double x)
-{
-    for (int i = 0; i < 4; i++)
-        x *= x;
-    return x;
-}
-
-/* The filters' magnitude at a frequency, in any scale; 0 outside the band. */
-static double shape_at(const double *p, struct band band, double f)
-{
-    if (!within(f, band.low_hz, band.high_hz))
-        return 0.0;
-    double detuned = (f / p[CENTRE] - p[CENTRE] / f) * p[CENTRE] / p[BANDWIDTH];
-    double edges = (1.0 + power_16(band.pass_low_hz / f)) * (1.0 + power_16(f / band.pass_high_hz));
-    return 1.0 / __builtin_sqrt((1.0 + detuned * detuned) * edges);
-}
-
-/* RMS of the shape on the grid; 0 if no multiple of 5 Hz lies in the band. */
-static double shape_rms(const double *p, struct band band)
-{
-    double power = 0.0;
-    uint64_t first = (uint64_t)(band.low_hz / HTEX_GRID_HZ);
-    uint64_t last = (uint64_t)(band.high_hz / HTEX_GRID_HZ);
-    for (uint64_t bin = first; bin <= last; bin++) {
-        double m = shape_at(p, band, (double)bin * HTEX_GRID_HZ);
-        power += m * m;
-    }
-    return __builtin_sqrt(power / 3.0);
-}
-
-/* ---- filters ---- */
-
-struct biquad { double b0, b1, b2, a1, a2, s1, s2; };
-
-/* tan of an angle from 0 to 0.45 pi, by the series of sine and cosine. */
-static double tangent(double x)
-{
-    double sine = 0.0, cosine = 0.0, term = 1.0;
-    for (int n = 0; n < 26; n += 2) {
-        cosine += term;
-        term *= x / (n + 1);
-        sine += term;
-        term *= -x / (n + 2);
-    }
-    return sine / cosine;
-}
-
-/* A section by the bilinear transform; `numerator` weighs 1, s and s^2 over the corner. */
-static struct biquad section(double corner_hz, double q, double rate_hz, const double numerator[3])
-{
-    double t = tangent(3.14159265358979323846 * corner_hz / rate_hz);
-    double norm = 1.0 / (1.0 + t / q + t * t);
-    double low = numerator[0] * t * t, mid = numerator[1] * t / q, high = numerator[2];
-    struct biquad s = {
-        .b0 = (low + mid + high) * norm,
-        .b1 = 2.0 * (low - high) * norm,
-        .b2 = (low - mid + high) * norm,
-        .a1 = 2.0 * (t * t - 1.0) * norm,
-        .a2 = (1.0 - t / q + t * t) * norm,
-    };
-    return s;
-}
-
-/* Smaller state is set to zero, so that no processor meets slow subnormal numbers. */
-static double without_subnormals(double x)
-{
-    return within(x, -1e-30, 1e-30) ? 0.0 : x;
-}
-
-static double tick(struct biquad *f, double x)
-{
-    double y = f->b0 * x + f->s1;
-    f->s1 = without_subnormals(f->b1 * x - f->a1 * y + f->s2);
-    f->s2 = without_subnormals(f->b2 * x - f->a2 * y);
-    return y;
 }
 
 /* ---- voices ---- */
@@ -258,16 +126,6 @@ static struct slot *find(int64_t handle)
     unsigned generation = atomic_load(&slots[number].generation);
     int live = generation % 2 == 1 && (generation & 0x7fffffff) == (uint64_t)handle >> 32;
     return live ? &slots[number] : NULL;
-}
-
-/* White noise of unit variance (splitmix64; uniform, which filters make Gaussian). */
-static double noise(uint64_t *state)
-{
-    uint64_t z = *state += 0x9e3779b97f4a7c15u;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    z ^= z >> 31;
-    return ((double)(z >> 11) * 0x1p-53 - 0.5) * 3.4641016151377544; /* sqrt(12) */
 }
 
 /* A bin of magnitude m has power m^2 / 3; white noise of unit variance has 2 * 5 Hz / rate in each:
@@ -394,159 +252,8 @@ static void start(struct voice *v, const double *p, uint64_t seed)
 
 /* ---- fit ---- */
 
-enum { SHAPE = 2 /* parameters of the filter */ };
-
 /* Speed of a recording that does not tell its own, mm/s. */
 static const double USUAL_SPEED_MM_S = 100.0;
-
-struct spectrum { const double *hz, *magnitude; size_t bins; double largest; };
-
-/* Squared distance of the best scaled shape to the spectrum, over the spectrum's own square. */
-static double misfit(const double *p, struct band band, struct spectrum s)
-{
-    double hm = 0.0, hh = 0.0, mm = 0.0;
-    for (size_t i = 0; i < s.bins; i++) {
-        double h = shape_at(p, band, s.hz[i]), m = s.magnitude[i] / s.largest;
-        hm += h * m;
-        hh += h * h;
-        mm += m * m;
-    }
-    return hh > 0.0 && mm > 0.0 ? 1.0 - hm * hm / (hh * mm) : 1.0;
-}
-
-static double clamp(double x, double low, double high)
-{
-    return x < low ? low : x > high ? high : x;
-}
-
-/* Tries one step from `p`; keeps it if it is better. */
-static int try_step(double *p, double *best, int field, double factor, struct band band,
-                    struct spectrum s)
-{
-    double at[SHAPE] = {p[CENTRE], p[BANDWIDTH]};
-    at[field] = clamp(at[field] * factor, MIN[field], MAX[field]);
-    /* Inside the band: an asset rounds what it stores, and a resonance at the upper edge has half of
-     * its power outside. */
-    at[CENTRE] = clamp(at[CENTRE], band.low_hz * 1.0001, band.high_hz * 0.9);
-    double value = misfit(at, band, s);
-    if (!(value < *best))
-        return 0;
-    *best = value;
-    p[CENTRE] = at[CENTRE];
-    p[BANDWIDTH] = at[BANDWIDTH];
-    return 1;
-}
-
-/* From the best of a coarse grid, by steps that halve until they are 0.01 %. */
-static void search(double *p, struct band band, struct spectrum s)
-{
-    double best = 2.0;
-    double middle = __builtin_sqrt(band.low_hz * band.high_hz);
-    p[CENTRE] = clamp(middle, MIN[CENTRE], MAX[CENTRE]);
-    p[BANDWIDTH] = 100.0;
-    for (double hz = band.low_hz; hz < band.high_hz; hz *= 1.2)
-        for (double width = 20.0; width < 2000.0; width *= 2.0) {
-            double at[SHAPE] = {clamp(hz, MIN[CENTRE], MAX[CENTRE]), width};
-            double value = 2.0;
-            if (try_step(at, &value, CENTRE, 1.0, band, s) && value < best) {
-                best = value;
-                p[CENTRE] = at[CENTRE];
-                p[BANDWIDTH] = at[BANDWIDTH];
-            }
-        }
-    for (double step = 1.2; step > 1.0001;) {
-        int better = 0;
-        for (int field = 0; field < SHAPE; field++)
-            better |= try_step(p, &best, field, step, band, s)
-                      || try_step(p, &best, field, 1.0 / step, band, s);
-        if (!better)
-            step = __builtin_sqrt(step);
-    }
-}
-
-/* Power of the signal in blocks of 2 ms, less its mean; answers the mean. */
-static double envelope(const double *signal, size_t blocks, size_t frames, double *out)
-{
-    double mean = 0.0;
-    for (size_t n = 0; n < blocks; n++) {
-        out[n] = 0.0;
-        for (size_t i = 0; i < frames; i++)
-            out[n] += signal[n * frames + i] * signal[n * frames + i];
-        mean += out[n] / (double)blocks;
-    }
-    for (size_t n = 0; n < blocks; n++)
-        out[n] -= mean;
-    return mean;
-}
-
-static double covariance(const double *x, size_t len, size_t lag)
-{
-    double sum = 0.0;
-    for (size_t n = 0; n + lag < len; n++)
-        sum += x[n] * x[n + lag];
-    return sum / (double)(len - lag);
-}
-
-/* The rhythm of the signal: where the covariance of its envelope comes back. At one period it is
- * (1/duty - 1) mean^2, without what the noise itself adds at lag 0. Steady noise if none stands out,
- * or if there is less than half a second to tell from. The speed is in `p` already. */
-static void find_bursts(double *p, const double *signal, size_t len, double rate_hz)
-{
-    enum { BLOCKS = 2048, LEAST = 250, SHORTEST = 5, LONGEST = 250 };
-    double power[BLOCKS], lags[LONGEST + 2], largest = 0.0;
-    size_t frames = (size_t)(0.002 * rate_hz), blocks = frames > 0 ? len / frames : 0;
-    p[PER_MM] = clamp(20.0 / p[SPEED], MIN[PER_MM], MAX[PER_MM]);
-    p[DUTY] = 1.0;
-    p[JITTER] = 0.0;
-    if (blocks < LEAST)
-        return;
-    if (blocks > BLOCKS)
-        blocks = BLOCKS;
-    size_t longest = blocks / 3 < LONGEST ? blocks / 3 : LONGEST;
-    double mean = envelope(signal, blocks, frames, power);
-    for (size_t lag = SHORTEST - 1; lag <= longest + 1; lag++)
-        lags[lag] = covariance(power, blocks, lag);
-    size_t period = 0;
-    for (size_t lag = SHORTEST; lag <= longest; lag++)
-        if (lags[lag] > lags[lag - 1] && lags[lag] >= lags[lag + 1] && lags[lag] > largest)
-            largest = lags[lag];
-    /* The first that is nearly as high: later ones are multiples. */
-    for (size_t lag = longest; lag >= SHORTEST; lag--)
-        if (lags[lag] > lags[lag - 1] && lags[lag] >= lags[lag + 1] && lags[lag] >= 0.8 * largest)
-            period = lag;
-    double threshold = 8.0 / __builtin_sqrt((double)blocks);
-    if (period == 0 || !(largest > clamp(threshold, 0.15, 1.0) * covariance(power, blocks, 0)))
-        return;
-    double before = lags[period - 1], at = lags[period], after = lags[period + 1];
-    double exact = (double)period + 0.5 * (before - after) / (before - 2.0 * at + after);
-    p[PER_MM] = clamp(rate_hz / ((double)frames * exact) / p[SPEED], MIN[PER_MM], MAX[PER_MM]);
-    p[DUTY] = clamp(1.0 / (1.0 + largest / (mean * mean)), MIN[DUTY], MAX[DUTY]);
-}
-
-static int64_t check_spectrum(const double *hz, const double *magnitude, size_t bins)
-{
-    if (!usable(hz, bins, sizeof *hz) || !usable(magnitude, bins, sizeof *magnitude))
-        return fail(HTEX_INVALID_ARGUMENT, "`frequency_hz` or `magnitude` is not a usable array");
-    if (bins < HTEX_MIN_BINS)
-        return fail(HTEX_INVALID_ARGUMENT, "a spectrum needs three bins or more");
-    for (size_t i = 0; i < bins; i++) {
-        if (!within(hz[i], -1e300, 1e300) || (i > 0 && hz[i] <= hz[i - 1]))
-            return fail(HTEX_INVALID_ARGUMENT, "`frequency_hz` does not ascend");
-        if (!within(magnitude[i], 0.0, 1e300))
-            return fail(HTEX_INVALID_ARGUMENT, "`magnitude` is negative or not finite");
-    }
-    return HTEX_OK;
-}
-
-static int64_t check_signal(const double *signal, size_t len, double rate_hz)
-{
-    if (!usable(signal, len, sizeof *signal))
-        return fail(HTEX_INVALID_ARGUMENT, "`signal` is not a usable array");
-    for (size_t i = 0; i < len; i++)
-        if (!within(signal[i], -1e300, 1e300))
-            return fail(HTEX_INVALID_ARGUMENT, "`signal` is not finite");
-    return len == 0 ? HTEX_OK : check_rate(rate_hz);
-}
 
 /* ---- the functions of the ABI ---- */
 

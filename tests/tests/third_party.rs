@@ -31,11 +31,16 @@ fn the_example_in_c() {
 #[test]
 fn the_template_in_c() {
     let project = folder("template-c");
-    for file in ["model.c", "build.sh"] {
+    for file in ["model.c", "resonance.h", "build.sh"] {
         let text = fs::read_to_string(templates().join("c").join(file)).unwrap();
         fs::write(project.join(file), filled_in(&text)).unwrap();
     }
-    for header in ["htex_model.h", "htex_model_wasm.h", "htex_motion_1.h"] {
+    for header in [
+        "htex_model.h",
+        "htex_model_parts.h",
+        "htex_model_wasm.h",
+        "htex_motion_1.h",
+    ] {
         let from = workspace().join("spec/include").join(header);
         fs::copy(from, project.join(header)).unwrap();
     }

@@ -19,10 +19,15 @@ pub const RUST: &[(&str, &str)] = &[
 pub const C: &[(&str, &str)] = &[
     ("README.md", include_str!("../templates/c/README.md.in")),
     ("model.c", include_str!("../templates/c/model.c")),
+    ("resonance.h", include_str!("../templates/c/resonance.h")),
     ("build.sh", include_str!("../templates/c/build.sh")),
     (
         "htex_model.h",
         include_str!("../templates/include/htex_model.h"),
+    ),
+    (
+        "htex_model_parts.h",
+        include_str!("../templates/include/htex_model_parts.h"),
     ),
     (
         "htex_model_wasm.h",

@@ -67,11 +67,11 @@ fn run(command: &mut Command) -> String {
 /// A copy of the example in C, ready to be built.
 pub fn bursts_project() -> PathBuf {
     let project = folder("model-c-bursts");
-    for file in ["bursts.c", "build.sh"] {
+    for file in ["bursts.c", "rhythm.h", "build.sh"] {
         let from = workspace().join("examples/model-c-bursts").join(file);
         let text = fs::read_to_string(from).unwrap();
-        let include = workspace().join("spec/include").canonicalize().unwrap();
-        let text = text.replace("../../spec/include", include.to_str().unwrap());
+        let root = workspace().canonicalize().unwrap();
+        let text = text.replace("../..", root.to_str().unwrap());
         fs::write(project.join(file), text).unwrap();
     }
     project

@@ -214,6 +214,8 @@ fn growing_module(folder: &Path) -> Option<PathBuf> {
         .args(["-ffreestanding", "-nostdlib", "-Wl,--no-entry"])
         .arg("-I")
         .arg(workspace().join("spec/include"))
+        .arg("-I")
+        .arg(workspace().join("sdk/check/templates/c"))
         .arg(workspace().join("tests/bad-plugins/grows.c"))
         .args(["-o".as_ref(), out.as_os_str()])
         .status();

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use htex_author::AuthorError;
 use htex_format::plain;
 
+use crate::flags::with_flags;
 use crate::output::shown;
 
 /// An error, with its place.
@@ -107,6 +108,7 @@ impl Failure {
     /// end only where this program ends them.
     pub(crate) fn to_lines(&self) -> Vec<String> {
         let text = self.to_string();
+        let text = with_flags(&text);
         let lines: Vec<&str> = match self {
             // One line for each finding, with control characters escaped.
             Self::Findings { .. } | Self::Author(AuthorError::Strict { .. }) => {

@@ -6,6 +6,7 @@ mod checking;
 mod commands;
 mod devices;
 mod failure;
+mod flags;
 mod gains;
 mod guardian;
 mod metadata;

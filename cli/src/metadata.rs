@@ -72,8 +72,8 @@ impl MetadataArgs {
             ));
         }
         let doi = self.doi.as_deref().filter(|doi| !doi.is_empty());
-        if let Some(Err(message)) = doi.map(check_doi) {
-            return Err(Failure::Usage(format!("--doi: {message}")));
+        if let Some(Err(error)) = doi.map(check_doi) {
+            return Err(Failure::Usage(format!("--doi: {error}")));
         }
         self.check_license()
     }

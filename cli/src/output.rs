@@ -9,6 +9,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use crate::failure::Failure;
+use crate::flags::with_flags;
 
 /// Prints a line on standard error; unlike `eprintln!` it does not panic when that is closed.
 macro_rules! tell {
@@ -80,14 +81,14 @@ pub(crate) fn shown(path: &Path) -> String {
 /// Prints a warning.
 pub(crate) fn warn(warnings: &[String]) {
     for warning in warnings {
-        tell!("warning: {}", plain(warning));
+        tell!("warning: {}", plain(&with_flags(warning)));
     }
 }
 
 /// Prints a note.
 pub(crate) fn note(notes: &[String]) {
     for note in notes {
-        tell!("note: {}", plain(note));
+        tell!("note: {}", plain(&with_flags(note)));
     }
 }
 

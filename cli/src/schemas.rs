@@ -132,7 +132,7 @@ impl ExtensionSchema {
         }
         let file = PathBuf::from(file);
         let bytes = std::fs::read(&file).map_err(|error| Failure::read(&file, error))?;
-        let schema = htex_format::parse_json(&bytes).map_err(wrong)?;
+        let schema = htex_format::parse_json(&bytes).map_err(|error| wrong(error.to_string()))?;
         let schema = Schema::new(&schema).map_err(|error| wrong(error.to_string()))?;
         let name = name.to_owned();
         Ok(Self { name, file, schema })

@@ -4,6 +4,7 @@ use clap::Args;
 use htex_format::{RULES, explain};
 
 use crate::failure::Failure;
+use crate::flags::with_flags;
 use crate::output::print;
 
 /// Explain a finding's code: what it means and what to do.
@@ -33,7 +34,10 @@ impl Explain {
         })?;
         print(&format!(
             "{}: {}\n\n{}\n\nWhat to do: {}\n",
-            rule.code, rule.summary, rule.explanation, rule.fix
+            rule.code,
+            rule.summary,
+            rule.explanation,
+            with_flags(rule.fix)
         ))?;
         Ok(ExitCode::SUCCESS)
     }

@@ -9,6 +9,7 @@ use htex_host::{Registry, Search, WasmLimits};
 use serde_json::Value;
 
 use crate::failure::Failure;
+use crate::flags::with_flags;
 use crate::output::{print, print_json, shown, warn};
 use crate::recordings::RecordingArgs;
 use crate::scenes::SceneArgs;
@@ -249,7 +250,7 @@ fn text(path: &Path, report: &Report) -> String {
             "  {severity} {}{place}{}: {}\n",
             finding.code,
             htex_format::plain(&finding.pointer),
-            finding.message
+            with_flags(&finding.message)
         );
         if let Some(rule) = &finding.schema_rule {
             text += &format!("    schema: {}\n", htex_format::plain(rule));

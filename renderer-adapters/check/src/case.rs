@@ -89,7 +89,7 @@ impl Case {
                 SettingKind::Path => Some(self.new_file()),
                 _ => self.endpoint(name),
             };
-            let missing = || Finding::skipped(format!("give its setting: --set {name}=…"));
+            let missing = || Finding::skipped(format!("give `setting {name}=…`"));
             given.insert(name.clone(), value.ok_or_else(missing)?);
         }
         Ok(Settings::resolve(descriptor, profile, &given)?)

@@ -77,7 +77,7 @@ impl Rig {
     pub(crate) fn larger_buffer(&self) -> String {
         let buffer_ms = self.buffer_s * 1e3;
         format!(
-            "write sooner, or keep more ready: --set buffer_ms={} (now {buffer_ms} ms)",
+            "write sooner, or give `setting buffer_ms={}` (now {buffer_ms} ms)",
             2.0 * buffer_ms
         )
     }

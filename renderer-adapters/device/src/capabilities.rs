@@ -31,21 +31,46 @@ pub struct Capabilities {
     pub block_frames: u32,
 }
 
+/// Error: capabilities are out of range or do not agree with each other.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CapabilitiesError {
+    /// There is no rate, or the rates do not ascend within their range.
+    #[error("rates must ascend, from {MIN_RATE_HZ} to {MAX_RATE_HZ} Hz, and there must be one")]
+    Rates,
+    /// The default rate is not one of the rates.
+    #[error("the default rate of {rate_hz} Hz is not one of its rates")]
+    DefaultRate {
+        /// The default rate, hertz.
+        rate_hz: f64,
+    },
+    /// A voltage at a display has no limit.
+    #[error("a voltage without a limit")]
+    NoLimit,
+    /// A number is not finite or not positive.
+    #[error("`{name}` must be finite and greater than 0")]
+    Number {
+        /// Its name.
+        name: &'static str,
+    },
+    /// The preferred block is empty or too long.
+    #[error("`block_frames` must be 1 to {MAX_BLOCK_FRAMES}")]
+    BlockFrames,
+}
+
 impl Capabilities {
     /// Checks that the numbers are in range and agree with each other.
     ///
     /// # Errors
-    /// A sentence with the fault.
-    pub fn check(&self) -> Result<(), String> {
+    /// The first fault.
+    pub fn check(&self) -> Result<(), CapabilitiesError> {
         self.rates.check()?;
         if !self.rates.has(self.default_rate_hz) {
             let rate_hz = self.default_rate_hz;
-            return Err(format!(
-                "the default rate of {rate_hz} Hz is not one of its rates"
-            ));
+            return Err(CapabilitiesError::DefaultRate { rate_hz });
         }
         if self.quantity == Quantity::DisplayVoltage && self.limit.is_none() {
-            return Err("a voltage without a limit".to_owned());
+            return Err(CapabilitiesError::NoLimit);
         }
         let numbers = [
             ("limit", self.limit),
@@ -54,11 +79,11 @@ impl Capabilities {
         ];
         for (name, number) in numbers {
             if number.is_some_and(|x| !(x.is_finite() && x > 0.0)) {
-                return Err(format!("`{name}` must be finite and greater than 0"));
+                return Err(CapabilitiesError::Number { name });
             }
         }
         if !(1..=MAX_BLOCK_FRAMES).contains(&self.block_frames) {
-            return Err(format!("`block_frames` must be 1 to {MAX_BLOCK_FRAMES}"));
+            return Err(CapabilitiesError::BlockFrames);
         }
         Ok(())
     }
@@ -174,16 +199,14 @@ impl Rates {
         }
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), CapabilitiesError> {
         let (all, ascending) = match self {
             Self::List(all) => (all.clone(), all.is_sorted_by(|a, b| a < b)),
             Self::Range { min_hz, max_hz } => (vec![*min_hz, *max_hz], min_hz <= max_hz),
         };
         let sane = |hz: &f64| (MIN_RATE_HZ..=MAX_RATE_HZ).contains(hz);
         if all.is_empty() || !ascending || !all.iter().all(sane) {
-            return Err(format!(
-                "rates must ascend, from {MIN_RATE_HZ} to {MAX_RATE_HZ} Hz, and there must be one"
-            ));
+            return Err(CapabilitiesError::Rates);
         }
         Ok(())
     }

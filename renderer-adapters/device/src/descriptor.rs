@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::Settings;
+use crate::{DeviceError, Settings};
 use crate::abi::MAX_SETTINGS;
 
 /// An adapter's description; crosses the ABI as JSON.
@@ -118,6 +118,80 @@ pub struct Endpoint {
     pub summary: String,
 }
 
+/// Error: the descriptor of a device is invalid.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DescriptorError {
+    /// The id is not in reverse-DNS form.
+    #[error("`{id}` is not a reverse-DNS id")]
+    Id {
+        /// The id.
+        id: String,
+    },
+    /// The version is not a semantic version.
+    #[error("`{version}` is not a semantic version")]
+    Version {
+        /// The version.
+        version: String,
+    },
+    /// The name or the summary is empty.
+    #[error("`name` and `summary` must not be empty")]
+    Empty,
+    /// There are too many settings or profiles.
+    #[error("at most {MAX_SETTINGS} settings and profiles are allowed")]
+    TooMany,
+    /// Two settings or two profiles have the same name.
+    #[error("two {kind} are named `{name}`")]
+    Twice {
+        /// `settings` or `profiles`.
+        kind: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// A setting is invalid.
+    #[error("setting `{name}`{fault}")]
+    Setting {
+        /// The setting.
+        name: String,
+        /// Its fault.
+        fault: SettingFault,
+    },
+    /// A default is not a value of its setting.
+    #[error("the default: {0}")]
+    Default(DeviceError),
+    /// A profile has a setting that is unknown, or a value that is not allowed.
+    #[error("profile `{profile}`: {error}")]
+    Profile {
+        /// The profile.
+        profile: String,
+        /// The error of its setting.
+        error: DeviceError,
+    },
+}
+
+/// Fault of a setting in a descriptor.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SettingFault {
+    /// The name has other characters.
+    #[error(": names are of a-z, 0-9 and _")]
+    Name,
+    /// The range is empty or not finite.
+    #[error(" has the range {min} to {max}")]
+    Range {
+        /// Smallest value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+    },
+    /// There is nothing to choose from.
+    #[error(" has nothing to choose from")]
+    NoChoice,
+    /// It has a default for live motions and none for others.
+    #[error(" has a `live_default` and no `default`")]
+    LiveDefault,
+}
+
 impl Descriptor {
     /// The last part of the id: the name used on command lines and in scenes.
     pub fn short_name(&self) -> &str {
@@ -127,18 +201,18 @@ impl Descriptor {
     /// Checks names, ranges, defaults and profiles.
     ///
     /// # Errors
-    /// A sentence with the fault.
-    pub fn check(&self) -> Result<(), String> {
+    /// The first fault.
+    pub fn check(&self) -> Result<(), DescriptorError> {
         check_id(&self.id)?;
-        semver::Version::parse(&self.version)
-            .map_err(|_| format!("`{}` is not a semantic version", self.version))?;
+        let version = &self.version;
+        semver::Version::parse(version).map_err(|_| DescriptorError::Version {
+            version: version.clone(),
+        })?;
         if self.name.trim().is_empty() || self.summary.trim().is_empty() {
-            return Err("`name` and `summary` must say something".to_owned());
+            return Err(DescriptorError::Empty);
         }
         if self.settings.len().max(self.profiles.len()) > MAX_SETTINGS {
-            return Err(format!(
-                "at most {MAX_SETTINGS} settings and profiles are allowed"
-            ));
+            return Err(DescriptorError::TooMany);
         }
         self.settings.iter().try_for_each(Setting::check)?;
         let profiles = self.profiles.iter().map(|p| p.name.as_str());
@@ -148,15 +222,14 @@ impl Descriptor {
     }
 
     /// Checks that the values a profile fixes are allowed.
-    fn check_profile(&self, profile: &Profile) -> Result<(), String> {
-        let wrong = |what: String| Err(format!("profile `{}`: {what}", profile.name));
+    fn check_profile(&self, profile: &Profile) -> Result<(), DescriptorError> {
+        let wrong = |error| DescriptorError::Profile {
+            profile: profile.name.clone(),
+            error,
+        };
         for (name, value) in &profile.settings {
-            let Some(setting) = self.settings.iter().find(|s| s.name == *name) else {
-                return wrong(format!("unknown setting `{name}`"));
-            };
-            if let Err(error) = crate::settings::check(setting, value) {
-                return wrong(error.to_string());
-            }
+            let setting = crate::settings::known(self, name).map_err(wrong)?;
+            crate::settings::check(setting, value).map_err(wrong)?;
         }
         Ok(())
     }
@@ -168,36 +241,41 @@ impl Descriptor {
 }
 
 impl Setting {
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), DescriptorError> {
         let Self { name, kind, .. } = self;
+        let wrong = |fault| {
+            let name = name.clone();
+            Err(DescriptorError::Setting { name, fault })
+        };
         let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_';
         if name.is_empty() || !name.bytes().all(plain) {
-            return Err(format!("setting `{name}`: names are of a-z, 0-9 and _"));
+            return wrong(SettingFault::Name);
         }
         match kind {
             SettingKind::Number { min, max }
                 if !(min.is_finite() && max.is_finite() && min <= max) =>
             {
-                return Err(format!("setting `{name}` has the range {min} to {max}"));
+                return wrong(SettingFault::Range {
+                    min: *min,
+                    max: *max,
+                });
             }
             SettingKind::Choice { values } if values.is_empty() => {
-                return Err(format!("setting `{name}` has nothing to choose from"));
+                return wrong(SettingFault::NoChoice);
             }
             _ => {}
         }
         if self.default.is_none() && self.live_default.is_some() {
-            return Err(format!(
-                "setting `{name}` has a `live_default` and no `default`"
-            ));
+            return wrong(SettingFault::LiveDefault);
         }
         let mut defaults = self.default.iter().chain(&self.live_default);
         defaults
             .try_for_each(|value| crate::settings::check(self, value))
-            .map_err(|error| format!("the default: {error}"))
+            .map_err(DescriptorError::Default)
     }
 }
 
-fn check_id(id: &str) -> Result<(), String> {
+fn check_id(id: &str) -> Result<(), DescriptorError> {
     let part = |part: &str| {
         let allowed = |b: u8| b.is_ascii_alphanumeric() || b == b'_' || b == b'-';
         !part.is_empty() && part.bytes().all(allowed)
@@ -205,14 +283,21 @@ fn check_id(id: &str) -> Result<(), String> {
     if id.split('.').count() >= 3 && id.split('.').all(part) {
         return Ok(());
     }
-    Err(format!("`{id}` is not a reverse-DNS id"))
+    let id = id.to_owned();
+    Err(DescriptorError::Id { id })
 }
 
-fn no_two_alike<'a>(what: &str, names: impl Iterator<Item = &'a str>) -> Result<(), String> {
+fn no_two_alike<'a>(
+    kind: &'static str,
+    names: impl Iterator<Item = &'a str>,
+) -> Result<(), DescriptorError> {
     let mut names: Vec<&str> = names.collect();
     names.sort_unstable();
     match names.windows(2).find(|pair| pair[0] == pair[1]) {
-        Some(pair) => Err(format!("two {what} are named `{}`", pair[0])),
+        Some(pair) => Err(DescriptorError::Twice {
+            kind,
+            name: pair[0].to_owned(),
+        }),
         None => Ok(()),
     }
 }

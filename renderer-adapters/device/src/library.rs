@@ -46,7 +46,7 @@ impl Library {
         // SAFETY: the marker comes first, and says that the other symbols have these types.
         let abi_version: AbiVersion =
             unsafe { symbol(library, "htex_device_abi_version", &error)? };
-        check_marker(abi_version()).map_err(&error)?;
+        check_marker(abi_version()).map_err(|other| error(other.to_string()))?;
         // SAFETY: a library with this marker exports these names with these types.
         let table = unsafe {
             DeviceTable {
@@ -77,7 +77,7 @@ impl Library {
             name: name.to_owned(),
             table,
         };
-        check_marker((table.abi_version)()).map_err(|what| library.broken(what))?;
+        check_marker((table.abi_version)()).map_err(|other| library.broken(other.to_string()))?;
         Ok(library)
     }
 
@@ -131,14 +131,16 @@ impl Library {
     }
 }
 
-/// Refuses a library of another major version of the ABI, or of another ABI.
-fn check_marker(marker: u32) -> Result<(), String> {
-    if marker >> 8 == ABI_MARKER >> 8 {
-        return Ok(());
+/// Error: a library is of another major version of the ABI, or of another ABI.
+#[derive(Debug, thiserror::Error)]
+#[error("the marker {0:#x} is not of device ABI {ABI_MAJOR}.x, which this host loads")]
+struct OtherAbi(u32);
+
+fn check_marker(marker: u32) -> Result<(), OtherAbi> {
+    match marker >> 8 == ABI_MARKER >> 8 {
+        true => Ok(()),
+        false => Err(OtherAbi(marker)),
     }
-    Err(format!(
-        "the marker {marker:#x} is not of device ABI {ABI_MAJOR}.x, which this host loads"
-    ))
 }
 
 /// The address of a symbol.

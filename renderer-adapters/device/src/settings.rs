@@ -86,11 +86,11 @@ impl Settings {
             check(setting, value)?;
             let is_given = stated.given.contains_key(name);
             match asked(setting, value, values.get(name), is_given) {
-                Ok(true) => {
+                Asked::Used => {
                     values.insert(name.clone(), value.clone());
                 }
-                Ok(false) => {}
-                Err(what) => ignored.push(Ignored {
+                Asked::Given => {}
+                Asked::Ignored(what) => ignored.push(Ignored {
                     name: name.clone(),
                     what,
                 }),
@@ -148,7 +148,7 @@ impl Settings {
     }
 }
 
-fn known<'a>(descriptor: &'a Descriptor, name: &str) -> Result<&'a Setting, DeviceError> {
+pub(crate) fn known<'a>(descriptor: &'a Descriptor, name: &str) -> Result<&'a Setting, DeviceError> {
     let mut settings = descriptor.settings.iter();
     settings.find(|s| s.name == name).ok_or_else(|| {
         let known: Vec<&str> = descriptor.settings.iter().map(|s| &s.name[..]).collect();
@@ -171,25 +171,34 @@ fn number(text: &str) -> f64 {
     text.parse().unwrap_or(f64::NAN)
 }
 
-/// Checks whether a scene gets a setting; the reason if not.
+/// What becomes of a setting that a scene asks for.
+enum Asked {
+    Used,
+    /// The user has given another value.
+    Given,
+    /// It is not used, for this reason.
+    Ignored(String),
+}
+
 fn asked(
     setting: &Setting,
     value: &str,
     held: Option<&String>,
     is_given: bool,
-) -> Result<bool, String> {
+) -> Asked {
     let held = held.map(String::as_str);
     match (setting.from_scene, held) {
-        (FromScene::Any, _) => Ok(!is_given),
-        (FromScene::Never, _) | (FromScene::Less | FromScene::More, None) => Err(format!(
-            "the scene's {value} is not used: it describes the hardware, which a profile or the command line does"
+        (FromScene::Any, _) if is_given => Asked::Given,
+        (FromScene::Any, _) => Asked::Used,
+        (FromScene::Never, _) | (FromScene::Less | FromScene::More, None) => Asked::Ignored(format!(
+            "the scene's {value} is not used: it describes the hardware, which the user does"
         )),
-        (FromScene::Less, Some(held)) if number(value) <= number(held) => Ok(true),
-        (FromScene::More, Some(held)) if number(value) >= number(held) => Ok(true),
-        (FromScene::Less, Some(held)) => Err(format!(
+        (FromScene::Less, Some(held)) if number(value) <= number(held) => Asked::Used,
+        (FromScene::More, Some(held)) if number(value) >= number(held) => Asked::Used,
+        (FromScene::Less, Some(held)) => Asked::Ignored(format!(
             "the scene's {value} is not used: {held} holds, and a scene can only lower it"
         )),
-        (FromScene::More, Some(held)) => Err(format!(
+        (FromScene::More, Some(held)) => Asked::Ignored(format!(
             "the scene's {value} is not used: {held} holds, and a scene can only raise it"
         )),
     }

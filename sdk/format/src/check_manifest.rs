@@ -67,8 +67,8 @@ fn check_words(manifest: &Manifest, findings: &mut Findings) {
     if let Some(Err((rule, message))) = license {
         findings.add(rule, "/license", message);
     }
-    if let Some(Err(message)) = manifest.doi.as_deref().map(check_doi) {
-        findings.add(rule::DOI_INVALID, "/doi", message);
+    if let Some(Err(error)) = manifest.doi.as_deref().map(check_doi) {
+        findings.add(rule::DOI_INVALID, "/doi", error.to_string());
     }
     let (unit, wanted) = (&manifest.unit, manifest.quantity.unit());
     findings.require(unit == wanted, rule::UNIT_UNKNOWN, "/unit", || {

@@ -4,7 +4,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use crate::Rule;
-use crate::json_text::{self, TextError};
+use crate::json_text::{self, JsonError};
 use crate::report::Findings;
 use crate::typed::typed;
 
@@ -74,12 +74,12 @@ impl Document {
         let rules = &self.rules;
         match json_text::parse(bytes) {
             Ok(value) => Some(value),
-            Err(TextError::Syntax(error)) => {
+            Err(JsonError::Syntax(error)) => {
                 let message = format!("{} is not valid JSON: {error}; correct it", self.file);
                 findings.add(rules.syntax, "", message);
                 None
             }
-            Err(TextError::Twice(pointer)) => {
+            Err(JsonError::Twice(pointer)) => {
                 let message = "the key appears twice; keep one".to_owned();
                 findings.add(rules.wrong_type, pointer, message);
                 None

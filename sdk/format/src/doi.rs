@@ -1,21 +1,28 @@
 //! Syntax of digital object identifiers (ISO 26324): `10.`, the registrant, a slash, a name.
 
+/// Error: a text is not a DOI.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{doi:?} is not a DOI; write one like 10.5281/zenodo.1234567, without https://doi.org/")]
+pub struct InvalidDoi {
+    /// The text.
+    pub doi: String,
+}
+
 /// Checks the syntax of a DOI, not whether it is registered.
 ///
 /// # Errors
-/// A message that says what is wrong and what to write.
+/// [`InvalidDoi`], which says what to write.
 ///
 /// ```
 /// assert!(htex_format::check_doi("10.5281/zenodo.1234567").is_ok());
 /// assert!(htex_format::check_doi("https://doi.org/10.5281/zenodo.1").is_err());
 /// ```
-pub fn check_doi(doi: &str) -> Result<(), String> {
+pub fn check_doi(doi: &str) -> Result<(), InvalidDoi> {
     if is_doi(doi) {
         return Ok(());
     }
-    Err(format!(
-        "{doi:?} is not a DOI; write one like 10.5281/zenodo.1234567, without https://doi.org/"
-    ))
+    let doi = doi.to_owned();
+    Err(InvalidDoi { doi })
 }
 
 fn is_doi(doi: &str) -> bool {

@@ -18,23 +18,24 @@ use crate::pointer::Place;
 /// assert!(htex_format::parse_json(br#"{ "a": 1, "b": 1 }"#).is_ok());
 /// assert!(htex_format::parse_json(br#"{ "a": 1, "a": 1 }"#).is_err());
 /// ```
-pub fn parse_json(bytes: &[u8]) -> Result<Value, String> {
-    parse(bytes).map_err(|error| match error {
-        TextError::Syntax(error) => format!("it is not JSON: {error}"),
-        TextError::Twice(pointer) => format!("the key {pointer} appears twice"),
-    })
+pub fn parse_json(bytes: &[u8]) -> Result<Value, JsonError> {
+    parse(bytes)
 }
 
-/// Errors of parsing a JSON text.
-pub(crate) enum TextError {
+/// Error of parsing a JSON text.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum JsonError {
     /// The text is not JSON.
-    Syntax(serde_json::Error),
+    #[error("it is not JSON: {0}")]
+    Syntax(#[source] serde_json::Error),
     /// The key at this pointer appears twice in its object.
+    #[error("the key {0} appears twice")]
     Twice(String),
 }
 
 /// Parses a text. Programs differ in which of two equal keys they use, so duplicates are refused.
-pub(crate) fn parse(bytes: &[u8]) -> Result<Value, TextError> {
+pub(crate) fn parse(bytes: &[u8]) -> Result<Value, JsonError> {
     let twice = RefCell::new(None);
     let mut json = serde_json::Deserializer::from_slice(bytes);
     let strict = Strict {
@@ -44,8 +45,8 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Value, TextError> {
     let parsed = strict.deserialize(&mut json);
     let parsed = parsed.and_then(|value| json.end().map(|()| value));
     parsed.map_err(|error| match twice.take() {
-        Some(pointer) => TextError::Twice(pointer),
-        None => TextError::Syntax(error),
+        Some(pointer) => JsonError::Twice(pointer),
+        None => JsonError::Syntax(error),
     })
 }
 

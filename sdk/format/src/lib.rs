@@ -50,12 +50,12 @@ pub use asset::Asset;
 pub use block::{round_parameters, stored_bytes};
 pub use check_manifest::is_extension_name;
 pub use document::{Document, DocumentRules, Opened};
-pub use doi::check_doi;
+pub use doi::{InvalidDoi, check_doi};
 pub use error::{ReadError, WriteError, summary};
 pub use fields::{FieldMismatch, FieldOrder, KnownModel, match_fields, stored_unit};
 pub use finding::{Finding, Severity};
 pub use htex_files::{remove_unfinished, replace_file, write_file};
-pub use json_text::parse_json;
+pub use json_text::{JsonError, parse_json};
 pub use license::check_license;
 pub use limits::Limits;
 pub use manifest::{

@@ -344,7 +344,7 @@ rule_table! {
         "Do not trust the module; get the asset again from its author.";
     PLUGIN_UNUSABLE Error:
         "A plugin's module cannot be loaded, or has another model id or version than the manifest states.",
-        "`htex validate --embedded-plugins` loads embedded modules in the sandbox; players find the same error when they load the module.",
+        "A validator that may load embedded modules, in the sandbox, reports it; players find the same error when they load the module.",
         "Get the asset again from its author, or play a representation whose model you have.";
     EXTENSION_NAME_INVALID Warning:
         "An extension's name is not of the form `com.vendor.NAME/REVISION`.",
@@ -360,7 +360,7 @@ rule_table! {
         "Correct it at the place the pointer names; `schema_rule` names the keyword.";
     EXTENSION_SCHEMA_BROKEN Error:
         "An extension breaks a rule of its author's schema.",
-        "`htex validate --extension-schema NAME=FILE` checks the extension of that name against the schema.",
+        "A validator that has the schema of that extension checks it.",
         "Correct the extension, or its schema.";
     DESCRIPTOR_INVALID Error:
         "A model's or device's descriptor is invalid.",

@@ -6,14 +6,31 @@ use flate2::{Decompress, FlushDecompress, Status};
 
 use crate::zip_records::Common;
 
+/// Damage of an entry's data.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Damage {
+    #[error("its checksum is {found:08x} instead of {stated:08x}")]
+    Checksum { found: u32, stated: u32 },
+    #[error("its deflate stream is invalid")]
+    Invalid,
+    #[error("its deflate stream does not end")]
+    Endless,
+    #[error("it unpacks to more than {0} bytes")]
+    TooLong(usize),
+    #[error("it unpacks to {found} bytes instead of {stated}")]
+    Length { found: u64, stated: usize },
+    #[error("{0} bytes follow the end of its deflate stream")]
+    Follows(u64),
+}
+
 pub(crate) const STORED: u16 = 0;
 pub(crate) const DEFLATED: u16 = 8;
 
 /// Unpacks an entry's data, whose sizes are already checked against the limits.
 ///
 /// # Errors
-/// A message that says what is wrong with the data.
-pub(crate) fn unpack<'a>(data: &'a [u8], common: &Common) -> Result<Cow<'a, [u8]>, String> {
+/// The damage of the data.
+pub(crate) fn unpack<'a>(data: &'a [u8], common: &Common) -> Result<Cow<'a, [u8]>, Damage> {
     let bytes = match common.method {
         DEFLATED => Cow::Owned(inflate(data, common.size as usize)?),
         _ => Cow::Borrowed(data),
@@ -22,32 +39,35 @@ pub(crate) fn unpack<'a>(data: &'a [u8], common: &Common) -> Result<Cow<'a, [u8]
     if crc == common.crc {
         return Ok(bytes);
     }
-    let stated = common.crc;
-    Err(format!("its checksum is {crc:08x} instead of {stated:08x}"))
+    Err(Damage::Checksum {
+        found: crc,
+        stated: common.crc,
+    })
 }
 
-fn inflate(data: &[u8], size: usize) -> Result<Vec<u8>, String> {
+fn inflate(data: &[u8], size: usize) -> Result<Vec<u8>, Damage> {
     // One byte more than stated, to detect a longer stream.
     let mut bytes = vec![0; size + 1];
     let mut stream = Decompress::new(false);
     let status = stream
         .decompress(data, &mut bytes, FlushDecompress::Finish)
-        .map_err(|_| "its deflate stream is invalid".to_owned())?;
+        .map_err(|_| Damage::Invalid)?;
     let (used, unpacked) = (stream.total_in(), stream.total_out());
     if status != Status::StreamEnd {
         return Err(match unpacked > size as u64 {
-            true => format!("it unpacks to more than {size} bytes"),
-            false => "its deflate stream does not end".to_owned(),
+            true => Damage::TooLong(size),
+            false => Damage::Endless,
         });
     }
     if unpacked != size as u64 {
-        return Err(format!("it unpacks to {unpacked} bytes instead of {size}"));
+        return Err(Damage::Length {
+            found: unpacked,
+            stated: size,
+        });
     }
     let behind = data.len() as u64 - used;
     if behind > 0 {
-        return Err(format!(
-            "{behind} bytes follow the end of its deflate stream"
-        ));
+        return Err(Damage::Follows(behind));
     }
     bytes.truncate(size);
     Ok(bytes)

@@ -113,7 +113,7 @@ fn settle(
         profile = profile.or(choice.profile.as_deref());
     } else if let (None, Some(named)) = (profile, &choice.profile) {
         findings.add(rule::DEVICE_HARDWARE, "/device/profile", format!(
-            "the scene's profile {named} is ignored, since it describes the hardware; if it matches yours, give --profile {named}"
+            "the scene's profile {named} is ignored, since it describes the hardware; if it matches yours, give `profile {named}` to the player"
         ));
     }
     for setting in descriptor.settings.iter().filter(|s| s.default.is_none()) {
@@ -182,13 +182,13 @@ fn texts(
         };
         if name == DRIVER {
             let message = format!(
-                "{text} is a library to load, which a scene must not name; use --set {DRIVER}={text}"
+                "{text} is a library to load, which a scene must not name; give `setting {DRIVER}={text}` to the player"
             );
             findings.add(rule::DEVICE_PATH_UNSAFE, pointer, message);
             usable = false;
         } else if is_path(descriptor, name) {
             let message = format!(
-                "{text} is ignored: a scene must not name output files; use --set {name}=FILE"
+                "{text} is ignored: a scene must not name output files; give `setting {name}=FILE` to the player"
             );
             findings.add(rule::DEVICE_PATH_UNUSED, pointer, message);
         } else {

@@ -107,7 +107,7 @@ htex_format::rule_table! {
     REPRESENTATION_UNPLAYABLE Error:
         "The asset's representation cannot be played here.",
         "Its model is not installed, is of another version, or refuses the parameters.",
-        "Install the model as a plugin (`--plugin`), or name another representation.";
+        "Install the model as a plugin, or name another representation.";
     TRACE_MISSING Error:
         "The trace is missing.",
         "Relative paths start at the scene's folder.",
@@ -147,16 +147,16 @@ htex_format::rule_table! {
     DEVICE_PATH_UNSAFE Error:
         "A setting of the scene names a driver.",
         "A scene may come from an untrusted source: playing it must not load code.",
-        "Give the setting on the command line (`--set`).";
+        "Give the `setting` to the player instead.";
     DEVICE_PATH_UNUSED Warning:
         "A setting of the scene names a file to write.",
         "A scene may come from an untrusted source: only the user chooses which files are written.",
-        "Name the file by `-o`, or by the setting on the command line (`--set`); remove it from the scene.";
+        "Give the `setting` to the player instead; remove it from the scene.";
     DEVICE_HARDWARE Warning:
         "The scene describes the hardware, or exceeds a limit.",
         "A wrong gain or limit can apply hundreds of volts more to a finger. What describes the hardware comes from a \
          profile or from the command line; a scene can only ask for a lower limit or a longer ramp.",
-        "Choose the profile of the rig with `--profile`; remove the setting from the scene.";
+        "Give the `profile` of the rig to the player; remove the setting from the scene.";
     DEVICE_SETTING Error:
         "A profile or a setting of the device cannot be used.",
         "It is unknown, missing, or has an invalid value.",

@@ -29,7 +29,8 @@ pub(crate) fn loaded(case: &Case) -> Found {
 /// Loading checks a library's descriptor; this checks that of a built-in device.
 pub(crate) fn descriptor(case: &Case) -> Found {
     let descriptor = case.adapter.descriptor();
-    descriptor.check().map_err(Finding::failed)?;
+    let checked = descriptor.check();
+    checked.map_err(|error| Finding::failed(error.to_string()))?;
     let (id, version) = (&descriptor.id, &descriptor.version);
     let (settings, profiles) = (descriptor.settings.len(), descriptor.profiles.len());
     let message = format!("{id} {version}: {settings} settings, {profiles} profiles");

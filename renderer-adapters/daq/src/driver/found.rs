@@ -6,7 +6,7 @@ use std::path::Path;
 use htex_device::DeviceError;
 use htex_native::{Library, LoadError};
 
-use super::table::Table;
+use super::table::{Table, TableError};
 
 /// The names of the installed library, tried in turn.
 #[cfg(windows)]
@@ -20,7 +20,7 @@ pub(super) fn installed() -> Result<Table, DeviceError> {
     for name in NAMES {
         match of_system(name) {
             Ok(table) => return Ok(table),
-            Err(reason) => reasons.push(reason),
+            Err(reason) => reasons.push(reason.to_string()),
         }
     }
     Err(DeviceError::Missing(not_installed(&reasons.join("; "))))
@@ -50,18 +50,18 @@ const SEARCHED: &str = if cfg!(windows) {
      ldconfig, /lib, /usr/lib)"
 };
 
-fn of_file(path: &Path) -> Result<Table, String> {
+fn of_file(path: &Path) -> Result<Table, TableError> {
     // SAFETY: a person named this library as a driver.
     table(unsafe { Library::from_file(path) })
 }
 
-fn of_system(name: &str) -> Result<Table, String> {
+fn of_system(name: &str) -> Result<Table, TableError> {
     // SAFETY: NI-DAQmx's own name, or one that a person gave.
     table(unsafe { Library::from_system(name) })
 }
 
-fn table(library: Result<Library, LoadError>) -> Result<Table, String> {
-    Table::of(library.map_err(|error| error.to_string())?)
+fn table(library: Result<Library, LoadError>) -> Result<Table, TableError> {
+    Table::of(library?)
 }
 
 fn not_installed(reasons: &str) -> String {

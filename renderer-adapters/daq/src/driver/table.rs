@@ -4,7 +4,7 @@
 use std::ffi::{CString, c_char, c_void};
 use std::ptr::null_mut;
 
-use htex_native::Library;
+use htex_native::{Library, LoadError};
 
 use crate::fault::Fault;
 
@@ -12,6 +12,15 @@ pub(super) type Handle = *mut c_void;
 
 /// Size of the buffer for a driver's names and messages, bytes.
 const ROOM: usize = 8192;
+
+/// Error: a library cannot be used as NI-DAQmx.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum TableError {
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    #[error("it has no `{0}`")]
+    Missing(&'static str),
+}
 
 macro_rules! table {
     ($($name:ident = $symbol:literal : ($($argument:ty),*),)*) => {
@@ -25,11 +34,11 @@ macro_rules! table {
             ///
             /// # Errors
             /// The function that the library lacks.
-            pub(super) fn of(library: Library) -> Result<Self, String> {
+            pub(super) fn of(library: Library) -> Result<Self, TableError> {
                 $(
                     // SAFETY: the name is NI-DAQmx's, and its header states the type.
                     let $name = unsafe { library.symbol($symbol) };
-                    let $name = $name.ok_or_else(|| format!("it has no `{}`", $symbol))?;
+                    let $name = $name.ok_or(TableError::Missing($symbol))?;
                 )*
                 Ok(Self { $($name,)* })
             }

@@ -33,7 +33,7 @@ pub(super) fn judge_axis(recording: &Recording, axis: usize, findings: &mut Find
     let spikes = spikes(values, recording.rate_hz, 0.0);
     if let Some(first) = spikes.first() {
         let message = format!(
-            "the {words} has {} far from all others: {}; leave them out with --from and --to, or repair \
+            "the {words} has {} far from all others: {}; leave them out with `from` and `to`, or repair \
              them",
             count(spikes.len()),
             places(recording, recording.quantity, values, &spikes)
@@ -52,7 +52,7 @@ pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
     if let Some(first) = spikes.first() {
         let message = format!(
             "the normal force has {} far from all others: {}; its median is {usual:.4} N (its mean would be \
-             {:.4} N), repair them or give --force",
+             {:.4} N), repair them or give `force`",
             count(spikes.len()),
             places(recording, Quantity::NormalForce, values, &spikes),
             values.iter().sum::<f64>() / values.len() as f64

@@ -123,7 +123,7 @@ fn sentence(
         .unwrap_or_default();
     format!(
         "the {words} is constant for {:.2} of {:.2} s, longest at {:.4} {} from {:.3} to {:.3} s; leave it out with \
-         --from and --to, or record again",
+         `from` and `to`, or record again",
         held as f64 / recording.rate_hz,
         recording.duration_s(),
         values[longest.start],

@@ -18,7 +18,7 @@ pub(crate) fn read(mut blocks: Blocks<'_>, options: &ReadOptions) -> Result<Reco
         return Err(ReadError::Option {
             file: file.to_owned(),
             problem:
-                "--scale is for WAV and NPY; scale a CSV's columns with --map lateral=COLUMN:SCALE"
+                "`scale` is for WAV and NPY; scale a CSV's columns with `map` lateral=COLUMN:SCALE"
                     .into(),
         });
     }

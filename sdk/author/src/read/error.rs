@@ -34,7 +34,7 @@ pub enum ReadError {
     /// The file holds more numbers than the limit.
     #[error(
         "{file}: it holds more than {limit} numbers, the limit of what is kept in memory; cut the recording into \
-         parts, or raise the limit by --most-numbers"
+         parts, or raise the limit by `most_numbers`"
     )]
     TooManyValues {
         /// File name.
@@ -144,7 +144,7 @@ pub enum ReadError {
     },
     /// A time column does not increase.
     #[error(
-        "{file}, line {line}: the time after {before} s is {after} s; it must increase on every row (a column with too few decimals repeats values); repair the column, or give --rate HZ to ignore it"
+        "{file}, line {line}: the time after {before} s is {after} s; it must increase on every row (a column with too few decimals repeats values); repair the column, or give `rate` HZ to ignore it"
     )]
     Time {
         /// File name.
@@ -157,7 +157,7 @@ pub enum ReadError {
         after: f64,
     },
     /// The sample rate is not known.
-    #[error("{file}: it has no sample rate; give --rate HZ")]
+    #[error("{file}: it has no sample rate; give `rate` HZ")]
     NoRate {
         /// File name.
         file: String,

@@ -144,10 +144,10 @@ fn check_options(file: &str, options: &ReadOptions) -> Result<(), ReadError> {
     };
     match (options.rate_hz, options.scale) {
         (Some(rate), _) if check_rate(rate).is_err() => refuse(format!(
-            "--rate is {rate}; it must be above 0 and at most {MAX_RATE_HZ} Hz"
+            "`rate` is {rate}; it must be above 0 and at most {MAX_RATE_HZ} Hz"
         )),
         (_, Some(scale)) if !scale.is_finite() || scale == 0.0 => {
-            refuse(format!("--scale is {scale}; it must be finite and not 0"))
+            refuse(format!("`scale` is {scale}; it must be finite and not 0"))
         }
         _ => Ok(()),
     }
@@ -159,7 +159,7 @@ fn refuse_map(file: &str, options: &ReadOptions) -> Result<(), ReadError> {
         None => Ok(()),
         Some(_) => Err(ReadError::Option {
             file: file.to_owned(),
-            problem: "--map is for CSV; in WAV and NPY the channels are lateral, or lateral x, y, or x, y, normal; of a motion \
+            problem: "`map` is for CSV; in WAV and NPY the channels are lateral, or lateral x, y, or x, y, normal; of a motion \
                   they are its axes"
                 .into(),
         }),
@@ -170,8 +170,8 @@ fn refuse_map(file: &str, options: &ReadOptions) -> Result<(), ReadError> {
 fn assumption(is_integer: bool, quantity: Quantity) -> String {
     let unit = quantity.unit();
     match is_integer {
-        true => format!("Integer full scale is assumed to be 1 {unit}; give --scale if it is not."),
-        false => format!("Samples are assumed to be in {unit}; give --scale if they are not."),
+        true => format!("Integer full scale is assumed to be 1 {unit}; give `scale` if it is not."),
+        false => format!("Samples are assumed to be in {unit}; give `scale` if they are not."),
     }
 }
 

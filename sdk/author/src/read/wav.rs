@@ -58,7 +58,7 @@ fn check(file: &str, spec: WavSpec, options: &ReadOptions) -> Result<(), ReadErr
         Some(rate) if rate != own => Err(ReadError::Option {
             file: file.to_owned(),
             problem: format!(
-                "the file has {own} Hz, --rate is {rate} Hz; remove --rate or correct the file's header"
+                "the file has {own} Hz, `rate` is {rate} Hz; remove `rate` or correct the file's header"
             ),
         }),
         _ => Ok(()),

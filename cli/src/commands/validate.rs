@@ -153,10 +153,7 @@ fn validate_asset(path: &Path, extensions: &[ExtensionSchema]) -> Result<Report,
 /// Loads the embedded models of an asset; one that cannot be loaded is a finding.
 fn hold_plugins(path: &Path, limits: &WasmLimits, report: &mut Report) -> Result<(), Failure> {
     let data = htex_format::Asset::open(path).map_err(|error| Failure::asset(path, error))?;
-    let registry = Registry::search(&Search {
-        limits: limits.clone(),
-        ..Search::builtin()
-    })?;
+    let registry = Registry::search(&Search::builtin().with_limits(limits.clone()))?;
     let asset = htex::Asset::with_registry(data, registry).with_embedded();
     let mut findings = Findings::default();
     for (i, plugin) in asset.manifest().plugins.iter().enumerate() {

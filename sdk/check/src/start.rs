@@ -34,10 +34,7 @@ pub(crate) fn start(model: &LoadedModel, parameters: &[f64]) -> Result<Option<St
     for _ in 0..COLD {
         let folder = tempfile::tempdir()
             .map_err(|e| Finding::failed(format!("cannot make a folder for the cache: {e}")))?;
-        let limits = WasmLimits {
-            cache: WasmCache::Dir(folder.path().join("wasm")),
-            ..WasmLimits::default()
-        };
+        let limits = WasmLimits::default().with_cache(WasmCache::Dir(folder.path().join("wasm")));
         best.cold_ms = best
             .cold_ms
             .min(first_sample_ms(file, &limits, parameters)?);

@@ -21,10 +21,7 @@ fn wasm(folder: &Path, name: &str) -> PathBuf {
 }
 
 fn uncached() -> WasmLimits {
-    WasmLimits {
-        cache: WasmCache::Off,
-        ..WasmLimits::default()
-    }
+    WasmLimits::default().with_cache(WasmCache::Off)
 }
 
 fn fitted(model: &LoadedModel) -> Vec<f64> {
@@ -128,10 +125,7 @@ fn what_each_way_costs() {
     for name in plugins::MODELS {
         let builtin = registry.find(name).unwrap().clone();
         let parameters = fitted(&builtin);
-        let fuel = WasmLimits {
-            fuel: Some(u64::MAX / 2),
-            ..uncached()
-        };
+        let fuel = uncached().with_fuel(u64::MAX / 2);
         let native = LoadedModel::from_file(&native(&native_folder, name)).unwrap();
         let module = wasm(&folder, name);
         let within = |limits| LoadedModel::from_file_within(&module, limits).unwrap();
@@ -173,10 +167,7 @@ fn ns_a_sample(model: &LoadedModel, parameters: &[f64], block: usize) -> f64 {
 /// From the file to the first block: compiling, and from the cache.
 fn first_sample(name: &str, module: &Path, parameters: &[f64]) {
     let folder = tempfile::tempdir().unwrap();
-    let limits = WasmLimits {
-        cache: WasmCache::Dir(folder.path().join("wasm")),
-        ..WasmLimits::default()
-    };
+    let limits = WasmLimits::default().with_cache(WasmCache::Dir(folder.path().join("wasm")));
     let time = || {
         let start = Instant::now();
         let model = LoadedModel::from_file_within(module, &limits).unwrap();

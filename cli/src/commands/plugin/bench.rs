@@ -89,10 +89,7 @@ fn add(
     match loaded.origin() {
         Origin::Wasm(file) => {
             subjects.push(subject("wasm", loaded));
-            let counted = WasmLimits {
-                fuel: Some(limits.fuel.unwrap_or(u64::MAX / 2)),
-                ..limits.clone()
-            };
+            let counted = limits.clone().with_fuel(limits.fuel.unwrap_or(u64::MAX / 2));
             let counted = LoadedModel::from_file_within(file, &counted)?;
             subjects.push(subject("wasm, counted", &counted));
         }

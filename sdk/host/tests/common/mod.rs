@@ -115,12 +115,7 @@ pub fn with_descriptor(json: &str, changed: &[(&str, &str)], fields: &str) -> St
 
 /// Short times and no cache.
 pub fn limits() -> WasmLimits {
-    WasmLimits {
-        call: Duration::from_millis(200),
-        render: Duration::from_millis(100),
-        cache: WasmCache::Off,
-        ..WasmLimits::default()
-    }
+    WasmLimits::default().with_call(Duration::from_millis(200)).with_render(Duration::from_millis(100)).with_cache(WasmCache::Off)
 }
 
 pub fn load_within(wat: &str, limits: &WasmLimits) -> Result<LoadedModel, HostError> {

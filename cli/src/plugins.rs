@@ -58,7 +58,9 @@ impl PluginArgs {
 
     /// The models that are found without arguments, without reports.
     pub(crate) fn installed() -> Result<Registry, Failure> {
-        Ok(Registry::search(&Search::default().with_limits(WasmLimit::all(&[])))?)
+        Ok(Registry::search(
+            &Search::default().with_limits(WasmLimit::all(&[])),
+        )?)
     }
 
     /// The limits of WASM models.
@@ -67,7 +69,12 @@ impl PluginArgs {
     }
 
     fn search(&self, files: &[PathBuf]) -> Result<Registry, Failure> {
-        Ok(Registry::search(&Search::default().with_files([&self.plugin[..], files].concat()).with_dirs(self.plugin_dir.clone()).with_limits(self.limits()))?)
+        Ok(Registry::search(
+            &Search::default()
+                .with_files([&self.plugin[..], files].concat())
+                .with_dirs(self.plugin_dir.clone())
+                .with_limits(self.limits()),
+        )?)
     }
 }
 

@@ -191,7 +191,8 @@ fn validate_json(path: &Path) -> Result<Report, Failure> {
     let text = || String::from_utf8_lossy(&bytes);
     let has = |key: &str| document.get(key).is_some();
     if has("id") && has("fields") {
-        let problem = htex_host::read_descriptor(&text()).err();
+        let refused = htex_host::read_descriptor(&text()).err();
+        let problem = refused.map(|error| error.to_string());
         return descriptor(&document, problem, Named::model()?);
     }
     if has("id") && has("settings") {

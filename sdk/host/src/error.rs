@@ -43,9 +43,7 @@ pub enum HostError {
         known: String,
     },
     /// A module contains another model than declared.
-    #[error(
-        "{path} is declared as {declared} but contains {found}; get it again from its author"
-    )]
+    #[error("{path} is declared as {declared} but contains {found}; get it again from its author")]
     OtherModel {
         /// The file, or the entry of an asset.
         path: String,

@@ -98,8 +98,7 @@ impl LoadedModel {
             },
             TextError::Broken(what) => broken(call, what),
         })?;
-        let descriptor =
-            read_descriptor(&json).map_err(|error| broken(call, error.to_string()))?;
+        let descriptor = read_descriptor(&json).map_err(|error| broken(call, error.to_string()))?;
         Ok(Self {
             descriptor: Arc::new(descriptor),
             origin: Arc::new(origin),
@@ -413,7 +412,6 @@ impl LoadedModel {
         }
     }
 }
-
 
 fn abi_band(band: Band) -> htex_model::Band {
     htex_model::Band {

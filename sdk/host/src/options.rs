@@ -35,13 +35,11 @@ fn parse(option: &FitOption, text: &str) -> Result<f64, OptionError> {
     let name = || option.name.clone();
     if !option.choices.is_empty() {
         let choice = option.choices.iter().position(|c| c == text);
-        return choice
-            .map(|i| i as f64)
-            .ok_or_else(|| OptionError::Choice {
-                name: name(),
-                text: text.to_owned(),
-                choices: option.choices.join(", "),
-            });
+        return choice.map(|i| i as f64).ok_or_else(|| OptionError::Choice {
+            name: name(),
+            text: text.to_owned(),
+            choices: option.choices.join(", "),
+        });
     }
     let value: Option<f64> = text.parse().ok();
     value

@@ -117,11 +117,7 @@ fn voices() {
 fn time_of_a_voice() {
     let body = "(call $count (i32.const 200000000)) (i64.const 0)";
     let wat = text("1.0.0", &[("voice_render", body)], "");
-    let model = load_within(
-        &wat,
-        &limits().with_render(Duration::from_secs(60)),
-    )
-    .unwrap();
+    let model = load_within(&wat, &limits().with_render(Duration::from_secs(60))).unwrap();
     let mut voice = model.voice(&[0.5], Band::TACTILE, 48_000.0, 1).unwrap();
     let mut block = [0.0; 16];
     let error = (0..1_000)
@@ -129,7 +125,7 @@ fn time_of_a_voice() {
         .unwrap()
         .to_string();
     assert!(
-        error.contains("10 times as long as what it renders"),
+        error.contains("10 times the duration of its samples"),
         "{error}"
     );
 }
@@ -160,11 +156,7 @@ fn time_memory_and_instances_of_all() {
     assert_eq!(registry(with(enough), sound), "");
     assert_eq!(registry(with(enough), &grows), "");
     for (body, all, said) in [
-        (
-            sound,
-            enough.with_instances(3),
-            "3 instances at a time",
-        ),
+        (sound, enough.with_instances(3), "3 instances at a time"),
         (
             &grows,
             enough.with_memory_bytes(20 << 20),

@@ -131,7 +131,9 @@ fn a_short_name_that_two_ids_have_is_noted() {
 fn limits_reach_every_plugin_of_a_search() {
     let dir = tempfile::tempdir().unwrap();
     write(dir.path(), "a.wasm", "1.0.0");
-    let tight = Search::builtin().with_dirs(vec![dir.path().to_owned()]).with_limits(limits().with_module_bytes(100));
+    let tight = Search::builtin()
+        .with_dirs(vec![dir.path().to_owned()])
+        .with_limits(limits().with_module_bytes(100));
     let mut registry = Registry::search(&tight).unwrap();
     assert!(registry.notes()[0].to_string().contains("100 bytes"));
     let module = std::fs::read(dir.path().join("a.wasm")).unwrap();
@@ -143,7 +145,9 @@ fn limits_reach_every_plugin_of_a_search() {
 fn folders_of_the_environment() {
     const INSIDE: &str = "HTEX_TEST_INSIDE";
     if std::env::var_os(INSIDE).is_some() {
-        let registry = Registry::search(&Search::default().with_limits(limits().with_cache(htex_host::WasmCache::User)));
+        let registry = Registry::search(
+            &Search::default().with_limits(limits().with_cache(htex_host::WasmCache::User)),
+        );
         let registry = registry.unwrap();
         assert_eq!(
             version(&registry),

@@ -1,4 +1,4 @@
-//! What a field holds, and how a file stores it.
+//! The kind of a field, and its encoding in files.
 
 /// One number, or a list of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -8,7 +8,7 @@
 pub enum Kind {
     /// One number.
     Scalar,
-    /// From none to `max_len` numbers.
+    /// 0 to `max_len` numbers.
     List {
         /// Most numbers allowed, at most 65,535.
         #[cfg_attr(feature = "schemars", schemars(range(max = 65535)))]

@@ -89,7 +89,9 @@ fn add(
     match loaded.origin() {
         Origin::Wasm(file) => {
             subjects.push(subject("wasm", loaded));
-            let counted = limits.clone().with_fuel(limits.fuel.unwrap_or(u64::MAX / 2));
+            let counted = limits
+                .clone()
+                .with_fuel(limits.fuel.unwrap_or(u64::MAX / 2));
             let counted = LoadedModel::from_file_within(file, &counted)?;
             subjects.push(subject("wasm, counted", &counted));
         }

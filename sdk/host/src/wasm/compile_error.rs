@@ -7,14 +7,14 @@ use crate::sandbox::BudgetError;
 pub(super) enum CompileError {
     #[error("the module is larger than the {bytes} bytes allowed")]
     TooLarge { bytes: usize },
-    #[error("no valid module: {what}")]
+    #[error("invalid module: {what}")]
     Invalid { what: String },
     #[error(
         "the module imports `{module}.{name}`; a model may import nothing (build it for wasm32-unknown-unknown, \
          without files, clocks and randomness)"
     )]
     Import { module: String, name: String },
-    #[error("the module exports no `memory`; it is no htex model")]
+    #[error("the module exports no `memory`; it is not an htex model")]
     NoMemory,
     #[error(
         "the module may take {ms} ms to compile, and {allowed_ms} ms are allowed; it has too much code, or functions \

@@ -34,7 +34,7 @@ pub(super) enum Fault {
     Start(Box<Self>),
     #[error("the module exports no `memory`")]
     NoMemory,
-    #[error("the module exports no function `{name}`; it is no htex model")]
+    #[error("the module exports no function `{name}`; it is not an htex model")]
     NoFunction { name: String },
     #[error("`{name}` does not have the arguments of the model ABI: {what}")]
     Signature { name: String, what: String },

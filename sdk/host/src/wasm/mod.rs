@@ -25,9 +25,9 @@ mod voice;
 use std::path::Path;
 use std::sync::Arc;
 
+use compile_error::CompileError;
 pub use compile_error::CompilerError;
 pub(crate) use model::WasmModel;
-use compile_error::CompileError;
 use module::WasmModule;
 pub use process::serve_compiler;
 

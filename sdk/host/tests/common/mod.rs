@@ -115,7 +115,10 @@ pub fn with_descriptor(json: &str, changed: &[(&str, &str)], fields: &str) -> St
 
 /// Short times and no cache.
 pub fn limits() -> WasmLimits {
-    WasmLimits::default().with_call(Duration::from_millis(200)).with_render(Duration::from_millis(100)).with_cache(WasmCache::Off)
+    WasmLimits::default()
+        .with_call(Duration::from_millis(200))
+        .with_render(Duration::from_millis(100))
+        .with_cache(WasmCache::Off)
 }
 
 pub fn load_within(wat: &str, limits: &WasmLimits) -> Result<LoadedModel, HostError> {

@@ -25,7 +25,7 @@ mod start;
 mod table;
 pub mod templates;
 
-pub use bench::{BLOCKS, BlockCost, Cost, Subject, Timing, bench};
+pub use bench::{BLOCKS, BenchError, BlockCost, Cost, Subject, Timing, bench};
 pub use htex_check_runner::{Finding, Outcome, Runner, UnknownCheck};
 pub use page::model_checks_page;
 pub use report::{ModelFile, Report};

@@ -82,5 +82,9 @@ unsafe fn symbol<T: Copy>(
 ) -> Result<T, HostError> {
     // SAFETY: guaranteed by the caller.
     let found = unsafe { library.symbol(name) };
-    found.ok_or_else(|| error(format!("the library has no `{name}`; it is not an htex model")))
+    found.ok_or_else(|| {
+        error(format!(
+            "the library has no `{name}`; it is not an htex model"
+        ))
+    })
 }

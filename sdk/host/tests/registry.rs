@@ -7,7 +7,7 @@ mod common;
 use std::path::Path;
 
 use common::{ID, limits, text};
-use htex_host::{HostError, Note, Origin, Registry, Search, WasmLimits};
+use htex_host::{HostError, Note, Origin, Registry, Search};
 use semver::VersionReq;
 
 /// Writes a plugin of this version.

@@ -18,11 +18,7 @@ pub(crate) fn check_handles(handles: &[i64]) -> Result<(), Error> {
     let again = |(i, handle)| handles[..i].contains(handle);
     match handles.iter().enumerate().find(|pair| again(*pair)) {
         None => Ok(()),
-        Some((i, _)) => Err(Error::argument(text![
-            "`voices`[",
-            i,
-            "] occurs twice",
-        ])),
+        Some((i, _)) => Err(Error::argument(text!["`voices`[", i, "] occurs twice",])),
     }
 }
 
@@ -72,7 +68,7 @@ pub(crate) fn check_fit_input(
     finite("signal", input.signal)?;
     let bins = input.frequency_hz.len();
     if bins < MIN_BINS || input.magnitude.len() != bins {
-        return Err(Error::argument("a spectrum needs at least three bins"));
+        return Err(Error::argument("a spectrum needs three bins or more"));
     }
     if !input.frequency_hz.is_sorted_by(|a, b| a < b) {
         return Err(Error::argument("`frequency_hz` does not ascend"));
@@ -135,9 +131,7 @@ pub(crate) fn read_sets<'a>(
         flat = &flat[used..];
     }
     if !flat.is_empty() {
-        return Err(Error::argument(
-            "numbers follow the last parameter set",
-        ));
+        return Err(Error::argument("numbers follow the last parameter set"));
     }
     Ok(())
 }

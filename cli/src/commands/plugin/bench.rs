@@ -31,7 +31,7 @@ pub(crate) struct Bench {
 
 impl Bench {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
-        let costs = bench(&self.subjects()?).map_err(Failure::Other)?;
+        let costs = bench(&self.subjects()?).map_err(|error| Failure::Other(error.to_string()))?;
         if self.json {
             print_json(&costs)?;
         } else {

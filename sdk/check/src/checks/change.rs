@@ -135,10 +135,10 @@ pub(crate) fn interpolate(case: &Case) -> Found {
         }
     }
     let pairs = sets.len() - 1;
-    Ok(
-        Finding::passed(format!("eleven interpolations of {pairs} pairs can be played"))
-            .with("end_distance", worst),
-    )
+    Ok(Finding::passed(format!(
+        "eleven interpolations of {pairs} pairs can be played"
+    ))
+    .with("end_distance", worst))
 }
 
 /// Checks that a parameter set has a magnitude and finite samples.

@@ -70,7 +70,10 @@ pub(crate) fn clean(case: &Case) -> Found {
             voice.retune(&sets[second % sets.len()].parameters)?;
         }
     }
-    Ok(Finding::passed(format!("{samples} samples are normal numbers or 0")).with("samples", samples))
+    Ok(
+        Finding::passed(format!("{samples} samples are normal numbers or 0"))
+            .with("samples", samples),
+    )
 }
 
 /// Renders a minute at the rate of the recordings.

@@ -21,7 +21,9 @@ pub(crate) fn agrees(case: &Case) -> Found {
         .map_err(|error| Finding::failed(format!("the other file: {error}")))?;
     if case.model.descriptor() != other.model.descriptor() {
         let file = file.display();
-        return Err(Finding::failed(format!("{file} has a different descriptor")));
+        return Err(Finding::failed(format!(
+            "{file} has a different descriptor"
+        )));
     }
     let (ours, theirs) = (case.fitted()?, other.fitted()?);
     if ours

@@ -1,4 +1,4 @@
-//! Each limit of a WASM model, in a test in which it bites, and one in which it does not.
+//! Each limit of a WASM model: a model that exceeds it, and one that does not.
 #![cfg(feature = "wasm")]
 #![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
@@ -13,14 +13,14 @@ fn magnitude(model: &LoadedModel) -> Result<(), HostError> {
     model.magnitude(&[0.5], Band::TACTILE, &[50.0]).map(drop)
 }
 
-/// Loads a model whose magnitude has this body, and calls that.
+/// Loads a model whose magnitude has this body, and calls it.
 fn run(body: &str, more: &str, limits: &WasmLimits) -> Result<(), String> {
     let wat = text("1.0.0", &[("magnitude", body)], more);
     let model = load_within(&wat, limits).map_err(|e| e.to_string())?;
     magnitude(&model).map_err(|e| e.to_string())
 }
 
-/// What is fine within one limit is refused under a smaller one, with this reason.
+/// Checks that a body runs within the usual limits and is refused under a smaller one, with this reason.
 fn bites(body: &str, more: &str, smaller: &WasmLimits, reason: &str) {
     run(body, more, &limits()).unwrap();
     let error = run(body, more, smaller).unwrap_err();
@@ -46,7 +46,7 @@ fn memory_at_the_start_and_grown() {
     );
     let tiny = limits().with_memory_bytes(100_000);
     bites(NOTHING, "", &tiny, "100000 bytes");
-    // What the host itself would pass counts too.
+    // Arguments that the host passes are counted too.
     let model = load_within(&text("1.0.0", &[], ""), &smaller).unwrap();
     let many = vec![50.0; 200_000];
     let error = model
@@ -79,7 +79,7 @@ fn instructions() {
         &smaller,
         "10000 instructions",
     );
-    // They are counted a call, not a model.
+    // Instructions are counted per call, not per model.
     let counting = limits().with_fuel(1_000_000);
     let body = "(call $count (i32.const 100000)) (i64.const 0)";
     let model = load_within(&text("1.0.0", &[("magnitude", body)], ""), &counting).unwrap();
@@ -90,7 +90,7 @@ fn instructions() {
 fn time() {
     let shorter = limits().with_call(Duration::from_millis(20));
     let longer = limits().with_call(Duration::from_secs(60));
-    // Some seconds of counting at most, and never as little as 20 ms.
+    // Counting takes some seconds at most, and never less than 20 ms.
     let body = "(call $count (i32.const 400000000)) (i64.const 0)";
     run(body, "", &longer).unwrap();
     let error = run(body, "", &shorter).unwrap_err();
@@ -112,7 +112,7 @@ fn voices() {
     (0..5).for_each(|_| drop(voice().unwrap()));
 }
 
-/// A voice that is slow within the limit of each call ends all the same.
+/// A voice that is slow but within the limit of each call is stopped.
 #[test]
 fn time_of_a_voice() {
     let body = "(call $count (i32.const 200000000)) (i64.const 0)";
@@ -130,7 +130,7 @@ fn time_of_a_voice() {
     );
 }
 
-/// What models of one registry share: each is within its own limits.
+/// The shared limits of a registry, with models that are within their own limits.
 #[test]
 fn time_memory_and_instances_of_all() {
     let with = |all: WasmTotal| limits().with_call(Duration::from_secs(60)).with_all(all);

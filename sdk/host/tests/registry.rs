@@ -1,4 +1,4 @@
-//! Which of several models is used, and what is said of the others.
+//! Precedence of several models, and notes on the others.
 #![cfg(feature = "wasm")]
 #![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
@@ -25,7 +25,7 @@ fn version(registry: &Registry) -> &str {
 }
 
 #[test]
-fn files_go_before_embedded_ones_before_folders_before_built_in_ones() {
+fn files_precede_embedded_models_then_folders_then_built_in_models() {
     let dir = tempfile::tempdir().unwrap();
     let (folder, file) = (dir.path().join("plugins"), dir.path().join("named.wasm"));
     std::fs::create_dir(&folder).unwrap();
@@ -140,7 +140,7 @@ fn limits_reach_every_plugin_of_a_search() {
     assert!(registry.add_wasm_bytes("felt.htex", &module).is_err());
 }
 
-/// Runs itself in a process of its own environment.
+/// Runs itself in another process with changed environment variables.
 #[test]
 fn folders_of_the_environment() {
     const INSIDE: &str = "HTEX_TEST_INSIDE";

@@ -100,7 +100,7 @@ fn a_fit_is_told_what_is_known_of_the_recording() {
     assert_eq!(fit(&model, Some(80.0), Some(0.5)), (80.0, 0.5));
     assert_eq!(fit(&model, Some(80.0), None), (80.0, 0.25));
     assert_eq!(fit(&model, None, Some(0.5)), (2.0, 0.5));
-    // A model without the extension does not need its functions.
+    // A model without the extension does not receive the condition.
     let other = load(&[]).unwrap();
     assert_eq!(fit(&other, Some(80.0), Some(0.3)), (1.0, 0.5));
 }

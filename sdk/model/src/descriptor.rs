@@ -20,6 +20,10 @@ use crate::{Kind, StaticDescriptor, StaticField, StaticOption, Store};
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "schemars",
+    schemars(description = "A model's description; passed through the ABI as JSON.")
+)]
 pub struct Descriptor {
     /// Reverse-DNS identifier, e.g. `org.htex.sbeta`; never changes.
     #[cfg_attr(
@@ -50,8 +54,24 @@ fn is_false(flag: &bool) -> bool {
 }
 
 /// One parameter field.
+///
+/// ```
+/// use htex_model::{Field, Kind, Store};
+/// let field = Field {
+///     name: "peak_hz".to_owned(),
+///     unit: "Hz".to_owned(),
+///     kind: Kind::Scalar,
+///     min: 20.0,
+///     max: 1000.0,
+///     store: Store::F32,
+///     default: None,
+///     description: "Peak.".to_owned(),
+/// };
+/// assert!((field.min..=field.max).contains(&80.0));
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schemars", schemars(description = "One parameter field."))]
 pub struct Field {
     /// Name, units included, e.g. `peak_hz`.
     pub name: String,
@@ -63,7 +83,7 @@ pub struct Field {
     pub min: f64,
     /// Largest value allowed.
     pub max: f64,
-    /// How an asset stores the values.
+    /// Encoding of the values in an asset.
     pub store: Store,
     /// Value for assets of earlier minor versions, which lack the field; for scalars only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -73,8 +93,29 @@ pub struct Field {
 }
 
 /// One option of the fit: a number, or one of several named choices (the number is its index).
+///
+/// ```
+/// use htex_model::FitOption;
+/// let option = FitOption {
+///     name: "scale".to_owned(),
+///     unit: "1".to_owned(),
+///     min: 0.0,
+///     max: 1.0,
+///     default: 0.0,
+///     integer: true,
+///     choices: vec!["linear".to_owned(), "log".to_owned()],
+///     description: "Scale of the frequency axis.".to_owned(),
+/// };
+/// assert_eq!(option.choices[option.default as usize], "linear");
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "schemars",
+    schemars(
+        description = "One option of the fit: a number, or one of several named choices (the number is its index)."
+    )
+)]
 pub struct FitOption {
     /// Name as given on the command line.
     pub name: String,

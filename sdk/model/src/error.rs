@@ -3,6 +3,12 @@
 use alloc::string::String;
 
 /// Result of a call. The numbers are part of the ABI and frozen.
+///
+/// ```
+/// use htex_model::Status;
+/// assert_eq!(Status::from_code(Status::CannotFit as i64), Status::CannotFit);
+/// assert_eq!(Status::from_code(-1000), Status::Failed);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(i32)]
 pub enum Status {

@@ -43,7 +43,7 @@ pub struct StaticField {
     pub min: f64,
     /// Largest value allowed.
     pub max: f64,
-    /// How an asset stores the values.
+    /// Encoding of the values in an asset.
     pub store: Store,
     /// Value for assets of earlier minor versions, which lack the field; for scalars only.
     pub default: Option<f64>,

@@ -41,6 +41,12 @@ pub struct FitInput<'a> {
 }
 
 /// Result of a fit.
+///
+/// ```
+/// let fit = htex_model::Fit { parameters: vec![2.0, 5.0], level_rms: 0.01 };
+/// let softer = htex_model::Fit { level_rms: 0.5 * fit.level_rms, ..fit };
+/// assert_eq!(softer.level_rms, 0.005);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
     /// The flat array of parameters.

@@ -88,7 +88,7 @@ pub enum HostError {
         /// The model's id.
         model: String,
         /// The option, and its allowed values.
-        error: OptionError,
+        error: Box<OptionError>,
     },
     /// An unknown synthesis, or one with a number out of range.
     #[error(
@@ -119,8 +119,10 @@ impl From<UnusableRates> for HostError {
 /// ```
 /// use htex_host::{HostError, OptionError, Registry};
 /// let registry = Registry::builtin();
-/// let error = registry.find("bands")?.options(&[("colour", "red")]).unwrap_err();
-/// assert!(matches!(error, HostError::Option { error: OptionError::Unknown { .. }, .. }));
+/// let Err(HostError::Option { error, .. }) = registry.find("bands")?.options(&[("colour", "red")]) else {
+///     unreachable!();
+/// };
+/// assert!(matches!(*error, OptionError::Unknown { .. }));
 /// # Ok::<(), HostError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -13,7 +13,7 @@ impl LoadedModel {
     pub fn options(&self, given: &[(&str, &str)]) -> Result<Vec<f64>, HostError> {
         let in_model = |error| HostError::Option {
             model: self.id().to_owned(),
-            error,
+            error: Box::new(error),
         };
         let options = &self.descriptor().options;
         let mut values = self.descriptor().default_options();

@@ -58,10 +58,9 @@ impl PluginArgs {
 
     /// The models that are found without arguments, without reports.
     pub(crate) fn installed() -> Result<Registry, Failure> {
-        Ok(Registry::search(&Search {
-            limits: WasmLimit::all(&[]),
-            ..Search::default()
-        })?)
+        Ok(Registry::search(
+            &Search::default().with_limits(WasmLimit::all(&[])),
+        )?)
     }
 
     /// The limits of WASM models.
@@ -70,12 +69,12 @@ impl PluginArgs {
     }
 
     fn search(&self, files: &[PathBuf]) -> Result<Registry, Failure> {
-        Ok(Registry::search(&Search {
-            files: [&self.plugin[..], files].concat(),
-            dirs: self.plugin_dir.clone(),
-            limits: self.limits(),
-            ..Search::default()
-        })?)
+        Ok(Registry::search(
+            &Search::default()
+                .with_files([&self.plugin[..], files].concat())
+                .with_dirs(self.plugin_dir.clone())
+                .with_limits(self.limits()),
+        )?)
     }
 }
 

@@ -111,7 +111,7 @@ fn a_module_is_the_model_it_is_said_to_be() {
     let played = htex::Asset::new(honest.clone()).with_embedded();
     assert!(played.load_embedded("org.example.bursts").is_ok());
     let absent = played.load_embedded("org.htex.sbeta").unwrap_err();
-    assert!(absent.to_string().contains("brings along no model"));
+    assert!(absent.to_string().contains("embeds no model"));
     for (model, version) in [
         ("org.htex.sbeta", "9.9.9"),
         ("org.htex.sbeta", &true_version),
@@ -123,8 +123,9 @@ fn a_module_is_the_model_it_is_said_to_be() {
         plugin.file = format!("plugins/{model}.wasm");
         plugin.signature = None;
         place.write("liar.htex", asset.to_bytes().unwrap());
-        let words =
-            format!("is said to be {model} {version} and is org.example.bursts {true_version}");
+        let words = format!(
+            "is declared as {model} {version} but contains org.example.bursts {true_version}"
+        );
         let synth = ["synth", "liar.htex", "--seconds", "1", "-o", "b.wav"];
         let run = place.run(&[&synth[..], &["--model", model]].concat());
         assert_eq!(run.code(), 1, "{}", run.error());

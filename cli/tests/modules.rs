@@ -155,7 +155,7 @@ fn a_compiler_that_takes_more_is_stopped() {
         ),
         (
             ["compile-ms=600000", "all-ms=20"],
-            "to compile and was given up",
+            "to compile, and compilation was stopped",
         ),
         (
             ["compile-ms=1", "all-ms=30000"],

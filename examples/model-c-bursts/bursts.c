@@ -1,11 +1,11 @@
-/* org.example.bursts: filtered noise bursts, as a fingertip makes that catches and slips: so many on each
- * millimetre of its way, which the voice is told by the extension htex.motion/1. White
- * noise is switched on and off and then runs through a two-pole band-pass filter. Switched white
- * noise is still white, so the spectrum is the filter's own, whatever the bursts:
+/* org.example.bursts: filtered noise bursts, like those of a fingertip that sticks and slips, at a given number per
+ * millimetre of the path; the voice receives the position by the extension htex.motion/1. White
+ * noise is switched on and off and then filtered by a two-pole band-pass. Switched white
+ * noise is still white, so the spectrum is that of the filter for all bursts:
  * 1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)^2).
  *
- * Against htex_model.h and htex_motion_1.h alone: no C library, so that the same file is a native library and a WASM
- * module, of the same samples. See build.sh.
+ * Includes htex_model.h and htex_motion_1.h and needs no C library, so that the same file is built as a native library
+ * and as a WASM module with equal samples. See build.sh.
  */
 #include <stdatomic.h>
 
@@ -14,7 +14,7 @@
 #include "htex_model_wasm.h"
 #include "htex_motion_1.h"
 
-/* ---- what the model says of itself ---- */
+/* ---- the descriptor ---- */
 
 enum { CENTRE, BANDWIDTH, PER_MM, DUTY, JITTER, SPEED, FORCE, PARAMETERS };
 
@@ -53,7 +53,7 @@ static const char DESCRIPTOR[] =
 
 /* ---- checks ---- */
 
-/* Whether one set of parameters stands at `p`. */
+/* Checks that `p` is one parameter set. */
 static int64_t check_set(const double *p)
 {
     static const char *const text[PARAMETERS] = {
@@ -76,7 +76,7 @@ static int64_t check_parameters(const double *p, size_t len)
     return check_set(p);
 }
 
-/* Parameters, and that they have a spectrum in the band. */
+/* Checks parameters, and that their spectrum is not empty in the band. */
 static int64_t check_shape(const double *p, size_t len, double low_hz, double high_hz)
 {
     int64_t status = check_parameters(p, len);
@@ -91,10 +91,10 @@ static int64_t check_shape(const double *p, size_t len, double low_hz, double hi
 
 enum { EDGE_SECTIONS = 4, VOICES = 256 };
 
-/* The resonance, its noise scaled so that what comes out has unit RMS. */
+/* The resonance; its noise is scaled so that the output has unit RMS. */
 struct tone { struct biquad filter; double gain; };
 
-/* Way that a burst and a pause take, mm, and how much pauses vary. */
+/* Length of a burst and of a pause, mm, and variation of the pauses. */
 struct timing { double burst, pause, jitter; };
 
 struct voice {
@@ -104,7 +104,7 @@ struct voice {
     struct timing timing;
     double switch_in_mm;
     int sounding;
-    /* Speed and force of the recording, and those that were told; the level follows in 10 ms. */
+    /* Speed and force of the recording, and those of the last motion; the level changes over 10 ms. */
     double recorded_mm_s, recorded_n, speed_mm_s, force_n, level;
     int told;
     struct tone now, next, pending;
@@ -113,7 +113,7 @@ struct voice {
     struct biquad low_cut[EDGE_SECTIONS], high_cut[EDGE_SECTIONS];
 };
 
-/* `generation` is odd while a voice lives here; a handle holds it and the slot's number. */
+/* `generation` is odd while the slot contains a voice; a handle consists of it and the slot's number. */
 struct slot { atomic_flag taken; atomic_uint generation; struct voice voice; };
 
 static struct slot slots[VOICES];
@@ -129,7 +129,7 @@ static struct slot *find(int64_t handle)
 }
 
 /* A bin of magnitude m has power m^2 / 3; white noise of unit variance has 2 * 5 Hz / rate in each:
- * so the noise is scaled by sqrt(rate / 30) over the shape's RMS, and more where it is seldom on. */
+ * so the noise is scaled by sqrt(rate / 30) over the shape's RMS, and by 1 / sqrt(duty). */
 static struct tone tone_of(const double *p, const struct voice *v)
 {
     static const double band_pass[3] = {0.0, 1.0, 0.0};
@@ -150,8 +150,8 @@ static struct timing timing_of(const double *p)
     return timing;
 }
 
-/* The way to the next frame, mm, in either direction; half a burst and its pause at most, as faster ones cannot be told
- * apart. */
+/* The distance to the next frame, mm, in either direction; at most half a burst and its pause, because shorter ones
+ * cannot be sampled. */
 static double way_mm(const struct voice *v)
 {
     double mm = (v->told ? v->speed_mm_s : v->recorded_mm_s) / v->rate_hz;
@@ -160,8 +160,8 @@ static double way_mm(const struct voice *v)
     return mm < most ? mm : most;
 }
 
-/* Whether noise is on at this frame: never under a finger that rests. A change of the timing counts from the
- * next switch on. */
+/* Whether noise is on at this frame; it is off while the finger rests. A change of the timing takes effect at the
+ * next switch. */
 static int sounding(struct voice *v)
 {
     double mm = way_mm(v);
@@ -177,7 +177,7 @@ static int sounding(struct voice *v)
     return v->sounding && mm > 0.0;
 }
 
-/* Level in proportion to the force, where that of the recording is known. */
+/* The level is proportional to the force if that of the recording is known. */
 static double level(struct voice *v)
 {
     double goal = v->told && v->recorded_n > 0.0 ? v->force_n / v->recorded_n : 1.0;
@@ -197,7 +197,7 @@ static void make_edges(struct voice *v)
     }
 }
 
-/* Begins to fade to the waiting resonance, which takes over the state: no click, and no gap. */
+/* Begins to fade to the next resonance, which takes over the filter state, without a click or a gap. */
 static void begin_fade(struct voice *v)
 {
     v->next = v->pending;
@@ -230,7 +230,7 @@ static float next_sample(struct voice *v)
 
 static void start(struct voice *v, const double *p, uint64_t seed)
 {
-    v->random = seed * 0xd1342543de82ef95u + 1; /* apart from the step of noise() */
+    v->random = seed * 0xd1342543de82ef95u + 1; /* differs from the increment in noise() */
     v->fade_frames = 0.010 * v->rate_hz > 3.0 ? 0.010 * v->rate_hz : 3.0;
     v->fading = v->waiting = 0;
     v->random_timing = ~v->random;
@@ -244,7 +244,7 @@ static void start(struct voice *v, const double *p, uint64_t seed)
     v->switch_in_mm = v->timing.burst * (0.5 + noise(&v->random_timing) / 3.4641016151377544);
     v->now = tone_of(p, v);
     make_edges(v);
-    /* The filters settle before the first sample is heard. */
+    /* The filters settle before the first sample is output. */
     double settle = 4.0 * v->rate_hz / v->band.pass_low_hz;
     for (double n = settle < 65536.0 ? settle : 65536.0; n > 0.0; n -= 1.0)
         next_sample(v);
@@ -252,7 +252,7 @@ static void start(struct voice *v, const double *p, uint64_t seed)
 
 /* ---- fit ---- */
 
-/* Speed of a recording that does not tell its own, mm/s. */
+/* Assumed speed of a recording of unknown speed, mm/s. */
 static const double USUAL_SPEED_MM_S = 100.0;
 
 /* ---- the functions of the ABI ---- */
@@ -274,7 +274,7 @@ int64_t htex_model_last_error(uint8_t *out, size_t capacity)
     return usable(out, capacity, 1) ? copy_text(last_error, out, capacity) : HTEX_INVALID_ARGUMENT;
 }
 
-/* Whether a number is not known, and so NaN. */
+/* Whether a number is unknown, that is, NaN. */
 static int is_unknown(double x)
 {
     return x != x;
@@ -390,7 +390,7 @@ double htex_model_voice_rate(const double *parameters, size_t parameters_len, do
         status = check_rate(wanted_hz);
     if (status != HTEX_OK)
         return (double)status;
-    /* Ten times the band, where the filters are near their analogue models, in whole steps. */
+    /* Ten times the band, rounded to whole steps: the filters are then close to their analogue models. */
     double least = clamp(10.0 * band_high_hz, HTEX_MIN_RATE_HZ, HTEX_MAX_RATE_HZ);
     if (wanted_hz >= least)
         return wanted_hz / (double)(uint64_t)(wanted_hz / least);
@@ -476,7 +476,7 @@ int64_t htex_motion_1_set(int64_t voice, double speed_mm_s, double force_n, doub
         return fail(HTEX_INVALID_ARGUMENT, "force_n: 0 to 10^6 N is allowed");
     if (!within(position_mm, -HTEX_MOTION_1_MAX_POSITION_MM, HTEX_MOTION_1_MAX_POSITION_MM))
         return fail(HTEX_INVALID_ARGUMENT, "position_mm: at most 10^12 mm is allowed");
-    /* Bursts come with the way, wherever it leads. */
+    /* Bursts depend on the distance only, so the position is not used. */
     slot->voice.speed_mm_s = speed_mm_s;
     slot->voice.force_n = force_n;
     slot->voice.told = 1;

@@ -28,8 +28,8 @@ static double covariance(const double *x, size_t len, size_t lag)
 }
 
 /* Finds the period of the bursts: the first maximum of the covariance of the signal's envelope. At one period it is
- * (1/duty - 1) mean^2, without what the noise itself adds at lag 0. Steady noise if none stands out,
- * or if there is less than half a second to tell from. `p[SPEED]` must be set. */
+ * (1/duty - 1) mean^2, without the part of the noise at lag 0. The result is steady noise if there is no clear maximum,
+ * or if the signal is shorter than half a second. `p[SPEED]` must be set. */
 static void find_bursts(double *p, const double *signal, size_t len, double rate_hz)
 {
     enum { BLOCKS = 2048, LEAST = 250, SHORTEST = 5, LONGEST = 250 };
@@ -50,7 +50,7 @@ static void find_bursts(double *p, const double *signal, size_t len, double rate
     for (size_t lag = SHORTEST; lag <= longest; lag++)
         if (lags[lag] > lags[lag - 1] && lags[lag] >= lags[lag + 1] && lags[lag] > largest)
             largest = lags[lag];
-    /* The first that is nearly as high: later ones are multiples. */
+    /* The first maximum that is nearly as high: later ones are multiples of the period. */
     for (size_t lag = longest; lag >= SHORTEST; lag--)
         if (lags[lag] > lags[lag - 1] && lags[lag] >= lags[lag + 1] && lags[lag] >= 0.8 * largest)
             period = lag;

@@ -1,8 +1,8 @@
 /* A valid model with one fault.
  *
- * Every call is passed on to the library GOOD_LIBRARY (a native build of a model), but for what one
- * -DFAULT_… changes. Only the check of this fault must fail; the table of
- * faults and checks stands in cli/tests/checker.rs.
+ * Every call is passed to the library GOOD_LIBRARY (a native build of a model), except for the change by one
+ * -DFAULT_…. Only the check of this fault must fail; the table of
+ * faults and checks is in cli/tests/checker.rs.
  */
 #include <dlfcn.h>
 #include <math.h>
@@ -25,8 +25,8 @@ static void *good_symbol(const char *name) {
 /* The good model's function of the same name and type. */
 #define GOOD(function) ((__typeof__(&function))good_symbol(#function))
 
-/* Voices of the good model, and what a fault needs to remember of each. Handles count up from 1 and
- * are never used twice. */
+/* Voices of the good model, and the state that a fault needs for each. Handles count up from 1 and
+ * are never reused. */
 struct voice {
     int64_t good;
     uint64_t rendered;
@@ -34,7 +34,7 @@ struct voice {
     int told;
 };
 
-/* Faults of the extension are those of a model that has it. */
+/* Faults of the extension require a model that has it. */
 #if defined FAULT_MOTION_MISSING || defined FAULT_ACCEPTS_MOTION || defined FAULT_MOTION_ALLOCATES \
     || defined FAULT_MOTION_BLOCKS
 #define HAS_MOTION
@@ -67,7 +67,7 @@ int64_t htex_model_descriptor(uint8_t *out, size_t capacity) {
         "\"options\":[{\"name\":\"o\",\"unit\":\"1\",\"min\":0,\"max\":1,\"default\":2,"
         "\"description\":\"O.\"}]}";
 #elif defined FAULT_STORE
-    /* That of the good model, with a store that holds 0 to 255 millionths, below the least alpha. */
+    /* The descriptor of the good model, with a store of 0 to 255 millionths, below the least alpha. */
 #define SHAPE(name)                                                                              \
     "{\"name\":\"" name "\",\"unit\":\"1\",\"kind\":{\"type\":\"scalar\"},\"min\":0.001,"        \
     "\"max\":1000000,\"store\":{\"type\":\"u8\",\"scale\":1e-6,\"offset\":0},"                   \
@@ -113,7 +113,7 @@ int64_t htex_model_fit(double band_low_hz, double band_high_hz, const double *fr
     return answer;
 }
 
-/* Replaces NaN among the parameters, for the fault that does so. */
+/* Replaces NaN in the parameters, for the fault that accepts it. */
 static const double *tolerant(const double *parameters, size_t len) {
 #ifdef FAULT_ACCEPTS_NAN
     static const double usual[] = {2, 5};
@@ -132,7 +132,7 @@ int64_t htex_model_magnitude(const double *parameters, size_t parameters_len, do
     if (!(band_low_hz < band_high_hz)) band_low_hz = 20, band_high_hz = 1000;
 #endif
 #ifdef FAULT_SPECTRUM
-    /* The shape of other parameters than those that are played. */
+    /* The shape of parameters other than those that are played. */
     double other[] = {parameters_len ? parameters[0] + 2 : 0, parameters_len > 1 ? parameters[1] : 0};
     if (parameters_len == 2) parameters = other;
 #endif
@@ -172,7 +172,7 @@ double htex_model_voice_rate(const double *parameters, size_t parameters_len, do
                                        band_low_hz, band_high_hz, wanted_hz);
 }
 
-/* Where a leak points last, so that a compiler does not leave it out. */
+/* Stores the last leaked pointer, so that a compiler does not remove the allocation. */
 static void *volatile kept;
 
 #ifdef FAULT_SHARED_STATE
@@ -234,7 +234,7 @@ int64_t htex_model_voice_render(int64_t handle, float *out, size_t frames) {
         if (voice->click) out[i] += 30, voice->click = 0;
     }
 #ifdef FAULT_LEAK
-    /* From the system, which the count of the allocator's calls does not see. */
+    /* Pages from the system, which are not counted as calls of the allocator. */
     kept = mmap(NULL, 4096, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (kept != MAP_FAILED) memset(kept, 1, 4096);
 #elif defined FAULT_RENDER_ALLOCATES
@@ -249,7 +249,7 @@ int64_t htex_model_voice_retune(int64_t handle, const double *parameters, size_t
     struct voice *voice = live(handle);
     if (!voice) return HTEX_BAD_HANDLE;
 #ifdef FAULT_RETUNE_IGNORED
-    /* Looks at the parameters, and plays on with the old ones. */
+    /* Checks the parameters, and keeps the old ones. */
     double hz = 100, magnitude;
     int64_t answer = GOOD(htex_model_magnitude)(parameters, parameters_len, 20, 1000, &hz, &magnitude, 1);
 #else
@@ -294,7 +294,7 @@ int64_t htex_voices_1_render(const int64_t *handles, size_t count, float *out, s
         if (answer < 0) return answer;
     }
 #ifdef FAULT_TOGETHER
-    /* The last of many voices is a sample late. */
+    /* The last of many voices is one sample late. */
     if (count > 8 && frames > 1)
         memmove(out + (count - 1) * frames + 1, out + (count - 1) * frames, (frames - 1) * sizeof *out);
 #endif
@@ -303,7 +303,7 @@ int64_t htex_voices_1_render(const int64_t *handles, size_t count, float *out, s
 #endif
 
 #ifndef FAULT_MOTION_MISSING
-/* The good model does nothing with a motion. */
+/* The good model ignores motions. */
 int64_t htex_motion_1_set(int64_t handle, double speed_mm_s, double force_n, double position_mm) {
     struct voice *voice = live(handle);
     if (!voice) return HTEX_BAD_HANDLE;

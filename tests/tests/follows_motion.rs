@@ -198,10 +198,7 @@ fn comb() -> Vec<f64> {
 
 /// An asset of a recording at 50 mm/s and 0.5 N, fitted by a model in a file.
 fn fitted(file: &Path, recording: &[f64]) -> Asset {
-    let search = Search {
-        files: vec![file.to_owned()],
-        ..Search::builtin()
-    };
+    let search = Search::builtin().with_files(vec![file.to_owned()]);
     let registry = Registry::search(&search).unwrap();
     let model = registry.models()[0].clone();
     assert!(model.follows_motion(), "{}", model.id());

@@ -187,10 +187,7 @@ fn following_the_finger_does_not_allocate_in_a_sandbox() {
         return;
     };
     let files = MODELS.map(|model| modules.join(format!("htex_{model}.wasm")));
-    let search = Search {
-        files: files.to_vec(),
-        ..Search::builtin()
-    };
+    let search = Search::builtin().with_files(files.to_vec());
     let data = htex_format::Asset::from_bytes(&bytes()).unwrap();
     let asset = Asset::with_registry(data, Registry::search(&search).unwrap());
     for model in MODELS {

@@ -14,7 +14,8 @@ pub(crate) struct CompileModule {
 
 impl CompileModule {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
-        htex_host::serve_compiler(&self.arguments).map_err(Failure::Other)?;
+        htex_host::serve_compiler(&self.arguments)
+            .map_err(|error| Failure::Other(error.to_string()))?;
         Ok(ExitCode::SUCCESS)
     }
 }

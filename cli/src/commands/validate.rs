@@ -154,10 +154,7 @@ fn validate_asset(path: &Path, extensions: &[ExtensionSchema]) -> Result<Report,
 /// Loads the embedded models of an asset; one that cannot be loaded is a finding.
 fn hold_plugins(path: &Path, limits: &WasmLimits, report: &mut Report) -> Result<(), Failure> {
     let data = htex_format::Asset::open(path).map_err(|error| Failure::asset(path, error))?;
-    let registry = Registry::search(&Search {
-        limits: limits.clone(),
-        ..Search::builtin()
-    })?;
+    let registry = Registry::search(&Search::builtin().with_limits(limits.clone()))?;
     let asset = htex::Asset::with_registry(data, registry).with_embedded();
     let mut findings = Findings::default();
     for (i, plugin) in asset.manifest().plugins.iter().enumerate() {
@@ -195,7 +192,8 @@ fn validate_json(path: &Path) -> Result<Report, Failure> {
     let text = || String::from_utf8_lossy(&bytes);
     let has = |key: &str| document.get(key).is_some();
     if has("id") && has("fields") {
-        let problem = htex_host::read_descriptor(&text()).err();
+        let refused = htex_host::read_descriptor(&text()).err();
+        let problem = refused.map(|error| error.to_string());
         return descriptor(&document, problem, Named::model()?);
     }
     if has("id") && has("settings") {

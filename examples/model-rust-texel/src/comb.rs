@@ -1,4 +1,4 @@
-//! The comb of lines that parameters stand for: what is seen of it, and what plays it.
+//! The comb of lines of given parameters: its measured spectrum, and the lines that are played.
 
 use htex_dsp::GRID_HZ;
 use htex_model::{Band, Error, Values, text};
@@ -7,8 +7,8 @@ use crate::{AMPLITUDE, JITTER, PITCH, SPEED};
 
 /// Most harmonics.
 pub(crate) const HARMONICS: usize = 48;
-/// Lines of one harmonic, at the 10, 30, 50, 70 and 90 % quantiles of the normal law: irregular, so
-/// that their sum does not come back.
+/// Lines of one harmonic, at the 10, 30, 50, 70 and 90 % quantiles of the normal distribution: unequal distances, so
+/// that their sum is not periodic.
 const QUANTILES: [f64; 5] = [
     -1.281_551_565_544_6,
     -0.524_400_512_708_04,
@@ -16,13 +16,13 @@ const QUANTILES: [f64; 5] = [
     0.524_400_512_708_04,
     1.281_551_565_544_6,
 ];
-/// Lines altogether.
+/// Most lines in total.
 pub(crate) const LINES: usize = HARMONICS * QUANTILES.len();
-/// Least spread, hertz: nearer lines would beat so slowly that a minute has no steady level.
+/// Least spread, hertz: closer lines would beat so slowly that the level of a minute is not constant.
 const LEAST_SPREAD_HZ: f64 = 1.0;
 
-/// The comb in a band, at the speed of the recording. Lines nearer than a bin to an edge are silent: they would be read
-/// outside.
+/// The comb in a band, at the speed of the recording. Lines closer than a bin to an edge are silent, because the window
+/// would spread them outside the band.
 pub(crate) struct Comb<'a> {
     fundamental_hz: f64,
     jitter: f64,
@@ -46,7 +46,7 @@ impl<'a> Comb<'a> {
             power += 0.5 * amplitude * amplitude;
         });
         comb.rms = libm::sqrt(power);
-        // Fainter amplitudes have squares that fade into nothing.
+        // The squares of smaller amplitudes would underflow.
         if comb.rms > 1e-100 {
             return Ok(comb);
         }
@@ -61,7 +61,7 @@ impl<'a> Comb<'a> {
         ]))
     }
 
-    /// Calls `line(index, frequency_hz, amplitude)` for each line, those outside the band too.
+    /// Calls `line(index, frequency_hz, amplitude)` for each line, including those outside the band.
     fn for_each_line(&self, mut line: impl FnMut(usize, f64, f64)) {
         let share = 1.0 / libm::sqrt(QUANTILES.len() as f64);
         for (i, &amplitude) in self.amplitude.iter().take(HARMONICS).enumerate() {
@@ -74,7 +74,7 @@ impl<'a> Comb<'a> {
         }
     }
 
-    /// Unit-RMS magnitude as read through the Hann window; lines add in power.
+    /// Magnitude of unit RMS as measured with the Hann window; the powers of lines are added.
     pub(crate) fn seen_at(&self, frequency_hz: f64) -> f64 {
         let mut power = 0.0;
         self.for_each_line(|_, f, amplitude| {
@@ -90,8 +90,8 @@ impl<'a> Comb<'a> {
     }
 }
 
-/// How much of a line of this frequency is heard: nothing within a bin of the band's edges, and all from two bins on, so
-/// that a finger that slides faster moves lines in and out without a step.
+/// Gain of a line at this frequency: 0 within a bin of the band's edges, and 1 from two bins on, so that lines enter and
+/// leave the band without a step when the speed changes.
 pub(crate) fn heard(frequency_hz: f64, band: Band) -> f64 {
     let inside_hz = (frequency_hz - band.low_hz).min(band.high_hz - frequency_hz);
     (inside_hz / GRID_HZ - 1.0).clamp(0.0, 1.0)

@@ -1,5 +1,5 @@
-//! From a spectrum to the comb in it: a harmonic sum finds the fundamental, the bins nearest to each
-//! harmonic give its amplitude, how far they lie from it gives the jitter.
+//! Fit of a comb to a spectrum: a harmonic sum gives the fundamental, the bins nearest to each
+//! harmonic its amplitude, and their distance from it the jitter.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -9,18 +9,18 @@ use htex_model::{Error, Fit, FitInput, Model, Values};
 use crate::comb::{Comb, HARMONICS};
 use crate::{FORCE_N, SPEED_MM_S, Texel};
 
-/// Speed of a recording that does not tell its own, mm/s.
+/// Assumed speed of a recording of unknown speed, mm/s.
 const USUAL_SPEED_MM_S: f64 = 100.0;
-/// Nearer harmonics are not told apart on a grid of 5 Hz.
+/// Least distance of harmonics that a grid of 5 Hz resolves.
 const LEAST_FUNDAMENTAL_HZ: f64 = 20.0;
 /// Step of the search, hertz: a twentieth of a bin.
 const STEP_HZ: f64 = 0.25;
-/// A comb sum this near to the largest is as good.
+/// A comb sum this close to the largest is considered equal.
 const NEARLY: f64 = 0.85;
-/// Largest spread that is told from noise around the lines.
+/// Largest spread that can be distinguished from noise around the lines.
 const MOST_JITTER: f64 = 0.05;
-/// Variance of the power that a single line leaves in the bins around it, Hz²: two bins at half the
-/// amplitude, 5 Hz away, among three.
+/// Variance of the power of a single line over the bins around it, Hz²: of three bins, two have half the
+/// amplitude at a distance of 5 Hz.
 const WINDOW_VARIANCE: f64 = 2.0 * 0.25 * 25.0 / 1.5;
 
 pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
@@ -77,7 +77,7 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
     })
 }
 
-/// Lines at the band's very edges are silent: a comb of no other is none.
+/// Checks that a comb has lines apart from those at the band's edges, which are silent.
 fn playable(parameters: &[f64], input: &FitInput<'_>) -> Result<(), Error> {
     let comb = Values::read(&Texel::DESCRIPTOR, parameters)
         .and_then(|v| Comb::new(&v, input.band).map(|_| ()));
@@ -91,7 +91,7 @@ struct Power<'a> {
     high_hz: f64,
 }
 
-/// What lies nearest to one multiple of the fundamental.
+/// The power nearest to one multiple of the fundamental.
 #[derive(Clone, Copy, Default)]
 struct Harmonic {
     power: f64,
@@ -101,7 +101,7 @@ struct Harmonic {
 }
 
 impl Power<'_> {
-    /// Between bins by a straight line; nothing outside them.
+    /// Linear interpolation between bins; 0 outside them.
     fn at(&self, frequency_hz: f64) -> f64 {
         let above = self.frequency_hz.partition_point(|&f| f <= frequency_hz);
         if above == 0 {
@@ -114,8 +114,8 @@ impl Power<'_> {
         p + (q - p) * (frequency_hz - f) / (g - f)
     }
 
-    /// What stands on the multiples of a frequency, less what stands between them: half of a true
-    /// fundamental has as much between as on, and so has its double.
+    /// Power at the multiples of a frequency minus power between them. For half of the true fundamental, or its double,
+    /// both are equal.
     fn comb_sum(&self, fundamental_hz: f64) -> f64 {
         (1..=HARMONICS)
             .map(|k| k as f64 * fundamental_hz)
@@ -128,7 +128,7 @@ impl Power<'_> {
     }
 
     /// The highest frequency whose comb sum is nearly the largest: a third of the fundamental has
-    /// the same sum.
+    /// an equal sum.
     fn fundamental_hz(&self) -> Option<f64> {
         let low_hz = self.frequency_hz.first()?.max(LEAST_FUNDAMENTAL_HZ);
         let steps = ((self.frequency_hz.last()? - low_hz) / STEP_HZ).max(0.0) as usize;
@@ -144,7 +144,7 @@ impl Power<'_> {
         best(&scored[last.saturating_sub(bin)..=last]).1
     }
 
-    /// The fundamental of least squared distance to where the power around its multiples lies.
+    /// The fundamental with the least squared distance of its multiples from the power around them.
     fn refined(&self, fundamental_hz: f64) -> f64 {
         let (mut sum, mut weight) = (0.0, 0.0);
         for (i, h) in self.harmonics(fundamental_hz).iter().enumerate() {
@@ -156,7 +156,7 @@ impl Power<'_> {
         fundamental_hz + shift.clamp(-STEP_HZ, STEP_HZ)
     }
 
-    /// Each bin goes to the multiple it lies nearest to, so that all power is kept.
+    /// Each bin is assigned to the nearest multiple, so that all power is counted.
     fn harmonics(&self, fundamental_hz: f64) -> [Harmonic; HARMONICS] {
         let mut harmonics = [Harmonic::default(); HARMONICS];
         for (&f, &power) in self.frequency_hz.iter().zip(&self.power) {
@@ -178,7 +178,7 @@ fn higher(best: (f64, Option<f64>), (sum, f): (f64, f64)) -> (f64, Option<f64>) 
     if sum > best.0 { (sum, Some(f)) } else { best }
 }
 
-/// The relative spread that explains how far power lies from the harmonics, the window's part apart.
+/// The relative spread that explains the distance of the power from the harmonics, without the window's part.
 fn jitter(harmonics: &[Harmonic], fundamental_hz: f64) -> f64 {
     let (mut variance, mut weight) = (0.0, 0.0);
     for (i, h) in harmonics.iter().enumerate() {

@@ -1,10 +1,10 @@
-//! Where the finger is, sample by sample: on a smooth curve to where it was told to be.
+//! The finger's position at each sample, on a smooth curve to the positions that were set.
 
 use htex_model::Motion;
 
-/// Length of the way from one motion to another, seconds.
+/// Duration of the transition from one motion to another, seconds.
 const BLEND_S: f64 = 0.010;
-/// A finger that is told to be further away than this, mm, jumped.
+/// Least distance of a position that was set, mm, that is treated as a jump.
 const JUMP_MM: f64 = 0.2;
 
 /// The finger on its path.
@@ -12,29 +12,29 @@ pub(crate) struct Path {
     rate_hz: f64,
     /// Samples of a blend.
     blend: f64,
-    /// Where it was told to be, mm, and how far it goes a sample.
+    /// The position that was set, mm, and the distance per sample.
     told_mm: f64,
     told_step_mm: f64,
     /// Samples since then.
     age: f64,
-    /// How far from there it was, mm, and how much further a sample.
+    /// The difference at that time, mm, and its change per sample.
     off_mm: f64,
     off_step_mm: f64,
     started: bool,
 }
 
-/// What a new motion asks of the voice.
+/// The reaction of the voice to a new motion.
 pub(crate) enum Way {
-    /// Nothing: the path leads there.
+    /// None: the path reaches the position.
     Smooth,
-    /// To be here at once, mm from where it is, before any sample.
+    /// Move by this distance, mm, before the first sample.
     Start(f64),
-    /// To fall silent before it is there.
+    /// Fade out before the jump.
     Jump,
 }
 
 impl Path {
-    /// At position 0, sliding forward at a speed, mm/s.
+    /// Starts at position 0, moving forward at a speed, mm/s.
     pub(crate) fn new(speed_mm_s: f64, rate_hz: f64) -> Self {
         Self {
             rate_hz,
@@ -53,7 +53,7 @@ impl Path {
         self.blend
     }
 
-    /// Takes where the finger is at the next sample.
+    /// Sets the finger's position at the next sample.
     pub(crate) fn tell(&mut self, motion: Motion) -> Way {
         let (at_mm, step_mm) = (self.at_mm(0.0), self.at_mm(1.0) - self.at_mm(0.0));
         self.told_mm = motion.position_mm;
@@ -68,7 +68,7 @@ impl Path {
         }
     }
 
-    /// Changes the speed of a finger that was told no place, mm/s.
+    /// Changes the speed of a finger of unknown position, mm/s.
     pub(crate) fn set_speed(&mut self, speed_mm_s: f64) {
         let motion = Motion {
             speed_mm_s,
@@ -78,14 +78,14 @@ impl Path {
         self.tell(motion);
     }
 
-    /// Goes to where the finger was told to be; returns how far that is, mm.
+    /// Moves to the position that was set; returns the distance, mm.
     pub(crate) fn leap(&mut self) -> f64 {
         let before_mm = self.at_mm(0.0);
         (self.off_mm, self.off_step_mm) = (0.0, 0.0);
         self.at_mm(0.0) - before_mm
     }
 
-    /// Goes one sample on; returns how far that is, mm.
+    /// Advances by one sample; returns the distance, mm.
     pub(crate) fn advance(&mut self) -> f64 {
         let step_mm = self.at_mm(1.0) - self.at_mm(0.0);
         self.age += 1.0;
@@ -93,8 +93,8 @@ impl Path {
         step_mm
     }
 
-    /// Position a number of samples on, mm: what is off at first goes to nothing, as its speed does (Hermite's
-    /// cubic). A jump is not on the path: it goes on as before.
+    /// Position after a number of samples, mm: the initial differences in position and speed decrease to 0 along a
+    /// cubic Hermite curve. A jump is not part of the path, which continues unchanged.
     fn at_mm(&self, samples: f64) -> f64 {
         let n = self.age + samples;
         let told_mm = self.told_mm + n * self.told_step_mm;

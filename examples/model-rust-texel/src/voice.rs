@@ -1,4 +1,4 @@
-//! The surface under the finger: sinusoids over the path, read where the finger is.
+//! The surface under the finger: sinusoids over the path, evaluated at the finger's position.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -13,7 +13,7 @@ use crate::{FORCE, SPEED};
 /// Largest gain of a force.
 const MOST_GAIN: f64 = 16.0;
 
-/// A value that goes to each new target in a straight line.
+/// A value with linear ramps to new targets.
 #[derive(Clone, Copy, Default)]
 struct Ramp {
     value: f64,
@@ -39,7 +39,7 @@ impl Ramp {
         }
     }
 
-    /// The value, which then goes one sample on.
+    /// Returns the value and advances by one sample.
     fn next(&mut self) -> f64 {
         let value = self.value;
         if self.left > 0.0 {
@@ -58,30 +58,30 @@ impl Ramp {
 struct Ridge {
     /// Phase under the finger, cycles, 0 to 1.
     phase: f64,
-    /// Cycles a mm, and the amplitude where the speed brings it into the band.
+    /// Cycles per mm, and the amplitude after the gain at the band's edges.
     per_mm: Ramp,
     height: Ramp,
-    /// Both, as the parameters have them.
+    /// Cycles per mm and amplitude of the parameters.
     wanted: (f64, f64),
 }
 
-/// The surface and the finger on it. Phases go with the way of the finger, so the same place is the same sample on
-/// the way there and back, until a retune changes the surface.
+/// The surface and the finger on it. Phases are proportional to the position, so that samples are a function of the
+/// position in both directions, until a retune changes the surface.
 pub struct TexelVoice {
     band: Band,
     rate_hz: f64,
     ridges: Vec<Ridge>,
     path: Path,
-    /// Of the recording; 0 for a force that is not known.
+    /// Force of the recording; 0 if unknown.
     speed_mm_s: f64,
     force_n: f64,
-    /// The motion, once it is told.
+    /// The last motion that was set, if any.
     told: Option<Motion>,
-    /// What came since the last sample, in any order.
+    /// Changes since the last sample.
     retuned: bool,
     moved: bool,
     gain: Ramp,
-    /// Falls to 0 before a jump of the finger, and rises behind it.
+    /// Decreases to 0 before a jump of the finger, and increases after it.
     contact: Ramp,
 }
 
@@ -116,7 +116,7 @@ impl TexelVoice {
         Ok(voice)
     }
 
-    /// Ends all ramps: nothing is heard yet.
+    /// Ends all ramps, before the first sample.
     fn settle(&mut self) {
         for ridge in &mut self.ridges {
             ridge.per_mm = Ramp::at(ridge.per_mm.target);
@@ -125,14 +125,14 @@ impl TexelVoice {
         self.gain = Ramp::at(self.gain.target);
     }
 
-    /// Begins to change to what came since the last sample.
+    /// Starts the changes since the last sample.
     fn take_changes(&mut self) {
         let samples = self.path.blend();
         if core::mem::take(&mut self.retuned) {
             for ridge in &mut self.ridges {
                 let (per_mm, height) = ridge.wanted;
                 if ridge.height.value == 0.0 && ridge.height.left == 0.0 {
-                    // Not there yet: it may begin with any pitch.
+                    // A line of amplitude 0 can start with any pitch.
                     ridge.per_mm = Ramp::at(per_mm);
                 }
                 ridge.per_mm.set(per_mm, samples);
@@ -157,7 +157,7 @@ impl TexelVoice {
         }
     }
 
-    /// Begins to change to the level at the force.
+    /// Starts the change to the level at the force.
     fn press(&mut self, samples: f64) {
         let force = self.told.filter(|_| self.force_n > 0.0);
         let gain = force.map_or(1.0, |m| (m.force_n / self.force_n).min(MOST_GAIN));
@@ -190,7 +190,7 @@ impl TexelVoice {
             ridge.phase = phase - libm::floor(phase);
         }
         let sample = (sum * self.gain.next() * self.contact.next()) as f32;
-        // No processor meets slow subnormal numbers.
+        // Avoids subnormal numbers, which are slow on some processors.
         if sample.abs() < f32::MIN_POSITIVE {
             0.0
         } else {
@@ -209,7 +209,7 @@ impl Voice for TexelVoice {
         }
     }
 
-    /// Pitches glide and amplitudes ramp over 10 ms; phases go on.
+    /// Pitches and amplitudes change over 10 ms; phases are continuous.
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
         let comb = Comb::new(parameters, self.band)?;
         self.speed_mm_s = parameters.scalar(SPEED);
@@ -231,7 +231,7 @@ impl MotionVoice for TexelVoice {
     }
 }
 
-/// Sine of an angle of 0 to 1 cycle, by its series: within 1e-7, and the same bits on every machine.
+/// Sine of an angle of 0 to 1 cycle, by its series: within 1e-7, and bit-identical on every machine.
 fn sine(cycles: f64) -> f64 {
     let centred = if cycles < 0.5 { cycles } else { cycles - 1.0 };
     let folded = if centred > 0.25 {

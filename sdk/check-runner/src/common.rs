@@ -14,8 +14,8 @@ pub struct Growth {
 }
 
 impl Growth {
-    /// Runs a tenth of `count` repetitions to warm up, then `count`, and measures the growth over the latter. `of` names what
-    /// is repeated, in the plural.
+    /// Runs a tenth of `count` repetitions as a warm-up, then `count`, and measures the growth over the latter. `of` is the
+    /// plural name of the repeated object.
     ///
     /// # Errors
     /// Those of `repeat`.
@@ -62,8 +62,7 @@ pub fn memory(measure: impl FnOnce() -> Result<[Growth; 2], Finding>) -> Found {
     }))
 }
 
-/// Resident memory of this process (`/proc/self/status`, `VmRSS`), bytes; `None` where there is no
-/// such file.
+/// Returns the resident memory of this process (`/proc/self/status`, `VmRSS`), bytes; `None` without this file.
 pub fn resident_bytes() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status
@@ -73,7 +72,7 @@ pub fn resident_bytes() -> Option<f64> {
     Some(1024.0 * kib)
 }
 
-/// Checks that made-up extensions are absent, by `has`, which asks for one.
+/// Checks that made-up extensions are absent; `has` queries one.
 ///
 /// # Errors
 /// A failed finding that names the extension that `has` reports; and the errors of `has`.

@@ -8,22 +8,22 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Outcome {
-    /// The promise is kept.
+    /// The guarantee holds.
     Passed,
-    /// The promise is kept, but something needs attention.
+    /// The guarantee holds, but something needs attention.
     Warning,
-    /// The check has nothing to look at, or needs another one that did not pass.
+    /// The check does not apply, or needs another one that did not pass.
     Skipped,
-    /// The promise is broken.
+    /// The guarantee is violated.
     Failed,
     /// The process that ran the check died.
     Crashed,
-    /// The check did not end in time.
+    /// The check exceeded its time limit.
     TimedOut,
 }
 
 impl Outcome {
-    /// All outcomes, in the order in which reports count them.
+    /// All outcomes, in the order of the counts in reports.
     pub const ALL: [Self; 6] = [
         Self::Passed,
         Self::Warning,
@@ -33,12 +33,12 @@ impl Outcome {
         Self::TimedOut,
     ];
 
-    /// Whether what is checked is at fault.
+    /// Returns whether the checked model or device is at fault.
     pub fn is_bad(self) -> bool {
         matches!(self, Self::Failed | Self::Crashed | Self::TimedOut)
     }
 
-    /// Its name in the JSON report.
+    /// Returns its name in the JSON report.
     pub fn word(self) -> &'static str {
         match self {
             Self::Passed => "passed",
@@ -56,14 +56,14 @@ impl Outcome {
 pub struct Finding {
     /// How the check ended.
     pub outcome: Outcome,
-    /// What was found.
+    /// The message.
     pub message: String,
     /// Measured numbers, by name; names end in the unit.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub numbers: BTreeMap<String, f64>,
 }
 
-/// What a check returns: both variants are findings, so that `?` ends a check.
+/// Result of a check: both variants are findings, so that `?` ends a check.
 pub type Found = Result<Finding, Finding>;
 
 impl Finding {
@@ -76,22 +76,22 @@ impl Finding {
         }
     }
 
-    /// The promise is kept.
+    /// The guarantee holds.
     pub fn passed(message: impl Into<String>) -> Self {
         Self::new(Outcome::Passed, message)
     }
 
-    /// The promise is kept, but something needs attention.
+    /// The guarantee holds, but something needs attention.
     pub fn warning(message: impl Into<String>) -> Self {
         Self::new(Outcome::Warning, message)
     }
 
-    /// The check has nothing to look at.
+    /// The check does not apply.
     pub fn skipped(message: impl Into<String>) -> Self {
         Self::new(Outcome::Skipped, message)
     }
 
-    /// The promise is broken.
+    /// The guarantee is violated.
     pub fn failed(message: impl Into<String>) -> Self {
         Self::new(Outcome::Failed, message)
     }

@@ -1,5 +1,5 @@
 //! The common part of the checkers of models and of devices: a table of checks ([`checks!`]), a runner that runs each of
-//! them in a process of its own ([`run_all`]), so that a crash or an endless loop becomes a finding, and the report.
+//! them in a separate process ([`run_all`]), so that a crash or an endless loop becomes a finding, and the report.
 //!
 //! ```
 //! use htex_check_runner::{Finding, Found, run_one};

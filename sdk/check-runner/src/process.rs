@@ -1,4 +1,4 @@
-//! One check in a process of its own.
+//! One check in a separate process.
 
 use std::io::Read;
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -37,7 +37,7 @@ fn drain(pipe: Option<impl Read + Send + 'static>) -> JoinHandle<Vec<u8>> {
     std::thread::spawn(move || {
         let mut kept = Vec::new();
         if let Some(mut pipe) = pipe {
-            // A pipe that cannot be read is treated as empty; the exit status tells the rest.
+            // A pipe that cannot be read is treated as empty; the finding then has the exit status only.
             let _ = pipe.by_ref().take(MOST_OUTPUT).read_to_end(&mut kept);
             let _ = std::io::copy(&mut pipe, &mut std::io::sink());
         }
@@ -66,7 +66,7 @@ fn wait(child: &mut Child, timeout: Duration) -> Option<ExitStatus> {
     }
 }
 
-/// The last line that is a finding: what is checked may print lines of its own.
+/// Returns the last line that is a finding: the model or device may print other lines.
 fn last_finding(out: &str) -> Option<Finding> {
     out.lines()
         .rev()
@@ -76,7 +76,7 @@ fn last_finding(out: &str) -> Option<Finding> {
 fn crashed(status: ExitStatus, err: &str) -> Finding {
     let last = err.lines().rev().find(|line| !line.trim().is_empty());
     let said = last
-        .map(|line| format!("; it said: {line}"))
+        .map(|line| format!("; its last line: {line}"))
         .unwrap_or_default();
     Finding::new(
         Outcome::Crashed,

@@ -16,10 +16,10 @@ pub struct CheckReport {
     pub finding: Finding,
 }
 
-/// All checks of one `Subject`, which says what was checked and how.
+/// All checks of one `Subject`, which identifies the model or device and the settings.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report<Subject> {
-    /// What was checked; its fields stand beside `ok` in JSON.
+    /// The subject; its fields are next to `ok` in JSON.
     #[serde(flatten)]
     pub subject: Subject,
     /// Whether no check failed, crashed or timed out.
@@ -29,7 +29,7 @@ pub struct Report<Subject> {
 }
 
 impl<Subject> Report<Subject> {
-    /// A report of these checks.
+    /// Makes a report of these checks.
     pub fn new(subject: Subject, checks: Vec<CheckReport>) -> Self {
         let ok = !checks.iter().any(|check| check.finding.outcome.is_bad());
         Self {
@@ -39,13 +39,13 @@ impl<Subject> Report<Subject> {
         }
     }
 
-    /// Names of the checks that failed, crashed or timed out.
+    /// Returns the names of the checks that failed, crashed or timed out.
     pub fn bad(&self) -> Vec<&'static str> {
         let bad = self.checks.iter().filter(|c| c.finding.outcome.is_bad());
         bad.map(|check| check.check).collect()
     }
 
-    /// Number of checks with this outcome.
+    /// Returns the number of checks with this outcome.
     pub fn count(&self, outcome: Outcome) -> usize {
         let same = self.checks.iter().filter(|c| c.finding.outcome == outcome);
         same.count()

@@ -1,4 +1,4 @@
-//! Running checks: one in this process, or each in a process of its own.
+//! Running checks: one in this process, or each in a separate process.
 
 use std::ffi::OsString;
 use std::fmt::Display;
@@ -10,7 +10,7 @@ use crate::process::run_process;
 use crate::table::{Check, UnknownCheck, find};
 use crate::{CheckReport, Finding};
 
-/// What loading does, in this order: each has a check of this name.
+/// The steps of loading, in order; each has a check of this name.
 const LOADING: [&str; 3] = ["marker", "exports", "descriptor"];
 
 /// A program that runs one check in its process and writes the [`Finding`] as a line of JSON.
@@ -24,8 +24,8 @@ pub struct Runner {
     pub timeout: Duration,
 }
 
-/// Runs each check in a process of its own. `add_arguments` adds the arguments that name the check. A check is skipped where
-/// one that it needs failed or was skipped for this reason; a check that had nothing to look at stops none.
+/// Runs each check in a separate process. `add_arguments` adds the arguments that name the check. A check is skipped if
+/// one that it needs failed or was skipped for this reason; a check that did not apply does not cause others to be skipped.
 pub fn run_all<'a, Case: 'a>(
     checks: impl IntoIterator<Item = &'a Check<Case>>,
     runner: &Runner,
@@ -75,13 +75,13 @@ pub fn run_one<Case, Error: Display>(
     Ok(if broken == check.name {
         Finding::failed(error.to_string())
     } else if comes_before(check.name, broken) {
-        Finding::passed(format!("loading got as far as `{broken}`"))
+        Finding::passed(format!("loading reached `{broken}`"))
     } else {
         Finding::skipped(format!("it does not load: {error}"))
     })
 }
 
-/// Whether loading comes to `name` before it comes to `broken`.
+/// Returns whether the loading step `name` precedes the step `broken`.
 fn comes_before(name: &str, broken: &str) -> bool {
     let place = |name: &str| LOADING.iter().position(|stage| *stage == name);
     matches!((place(name), place(broken)), (Some(a), Some(b)) if a < b)

@@ -8,32 +8,32 @@ use crate::Found;
 pub struct Check<Case> {
     /// Stable name, unique in its table.
     pub name: &'static str,
-    /// The promise, in a sentence.
+    /// The guarantee, in one sentence.
     pub summary: &'static str,
-    /// How it is tested, with the tolerances; empty where the summary says it all.
+    /// The method of the test, with its tolerances; empty if the summary is sufficient.
     pub method: &'static str,
-    /// Checks that must not be broken for this one to mean something.
+    /// Checks that must not fail for this one to be meaningful.
     pub needs: &'static [&'static str],
     /// Runs the check.
     pub run: fn(&Case) -> Found,
 }
 
-/// No check of the table has this name.
+/// The table has no check of this name.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("there is no check `{name}`; there are {}", known.join(", "))]
 pub struct UnknownCheck {
-    /// The name that was asked for.
+    /// The requested name.
     pub name: String,
     /// The names in the table.
     pub known: Vec<&'static str>,
 }
 
-/// Defines `CHECKS`, a table of [`Check`]s, in the order in which they run. A check stands behind those that it needs. A row
+/// Defines `CHECKS`, a table of [`Check`]s, in the order in which they run. A check follows those that it needs. A row
 /// is `"name" needs ["name", …] path::of::function: "summary", "method";`; the method may be left out.
 #[macro_export]
 macro_rules! checks {
     ($case:ty; $($name:literal needs [$($need:literal),*] $run:path: $summary:literal $(, $method:literal)?;)*) => {
-        /// All checks, in the order in which they run: a check stands behind those that it needs.
+        /// All checks, in the order in which they run: a check follows those that it needs.
         pub const CHECKS: &[$crate::Check<$case>] = &[$($crate::Check {
             name: $name,
             summary: $summary,
@@ -44,7 +44,7 @@ macro_rules! checks {
     };
 }
 
-/// The check of a name.
+/// Returns the check of a name.
 pub(crate) fn find<'a, Case>(
     checks: &'a [Check<Case>],
     name: &str,
@@ -56,7 +56,7 @@ pub(crate) fn find<'a, Case>(
     })
 }
 
-/// The checks of these names with all that they need, in the table's order.
+/// Returns the checks of these names with all that they need, in the table's order.
 ///
 /// # Errors
 /// When a name is not in the table.

@@ -6,7 +6,7 @@
 //! `strdup` and a Rust library's `Vec` are counted, each in its own thread. It leaves the program itself as it is: what the
 //! host allocates is not counted.
 //!
-//! Not seen: an allocator that a library links statically and that takes pages from the system by itself; calls through an
+//! Not detected: an allocator that a library links statically and that maps pages itself; calls through an
 //! address that was taken with `dlsym`; libraries loaded after the call; threads that a library starts.
 #![allow(unsafe_code)] // The dynamic linker's tables are C.
 
@@ -16,7 +16,7 @@ use std::ffi::{CStr, c_char, c_int, c_void};
 use libc::{dl_phdr_info, size_t};
 
 thread_local! {
-    // Neither made when it is first used nor dropped: that would allocate.
+    // Constant and without destructor: lazy initialisation would allocate.
     static CALLS: Cell<u64> = const { Cell::new(0) };
 }
 
@@ -29,7 +29,7 @@ impl AllocatorCalls {
     /// Counts the calls of all libraries that are loaded now.
     pub(crate) fn watch() -> Self {
         let mut places = 0usize;
-        // SAFETY: `visit` has the type that is asked for, and gets the address of `places`, which outlives the call.
+        // SAFETY: `visit` has the required type, and gets the address of `places`, which outlives the call.
         unsafe { libc::dl_iterate_phdr(Some(visit), (&raw mut places).cast()) };
         Self { places }
     }
@@ -53,25 +53,25 @@ fn count() {
 
 unsafe extern "C" fn malloc(size: size_t) -> *mut c_void {
     count();
-    // SAFETY: the call as it came.
+    // SAFETY: the arguments are passed on unchanged.
     unsafe { libc::malloc(size) }
 }
 
 unsafe extern "C" fn calloc(items: size_t, size: size_t) -> *mut c_void {
     count();
-    // SAFETY: the call as it came.
+    // SAFETY: the arguments are passed on unchanged.
     unsafe { libc::calloc(items, size) }
 }
 
 unsafe extern "C" fn realloc(pointer: *mut c_void, size: size_t) -> *mut c_void {
     count();
-    // SAFETY: the call as it came.
+    // SAFETY: the arguments are passed on unchanged.
     unsafe { libc::realloc(pointer, size) }
 }
 
 unsafe extern "C" fn aligned_alloc(alignment: size_t, size: size_t) -> *mut c_void {
     count();
-    // SAFETY: the call as it came.
+    // SAFETY: the arguments are passed on unchanged.
     unsafe { libc::aligned_alloc(alignment, size) }
 }
 
@@ -81,13 +81,13 @@ unsafe extern "C" fn posix_memalign(
     size: size_t,
 ) -> c_int {
     count();
-    // SAFETY: the call as it came.
+    // SAFETY: the arguments are passed on unchanged.
     unsafe { libc::posix_memalign(out, alignment, size) }
 }
 
 unsafe extern "C" fn free(pointer: *mut c_void) {
     count();
-    // SAFETY: the call as it came.
+    // SAFETY: the arguments are passed on unchanged.
     unsafe { libc::free(pointer) }
 }
 
@@ -145,7 +145,7 @@ unsafe extern "C" fn visit(info: *mut dl_phdr_info, _: size_t, places: *mut c_vo
     if name.is_empty() || name.starts_with(b"linux-") {
         return 0;
     }
-    // SAFETY: as many headers as it says.
+    // SAFETY: the description states the number of headers.
     let headers =
         unsafe { std::slice::from_raw_parts(info.dlpi_phdr, usize::from(info.dlpi_phnum)) };
     if let Some(header) = headers.iter().find(|h| h.p_type == libc::PT_DYNAMIC) {
@@ -164,7 +164,7 @@ impl Library {
     fn value(&self, tag: i64) -> usize {
         let mut at = self.dynamic;
         loop {
-            // SAFETY: the section ends in DT_NULL, and nothing behind that is read.
+            // SAFETY: the section ends with DT_NULL, and nothing after it is read.
             let entry = unsafe { &*at };
             match entry.tag {
                 DT_NULL => return 0,
@@ -204,7 +204,7 @@ impl Library {
         if table == 0 {
             return &[];
         }
-        // SAFETY: the dynamic linker has applied this table, so it is there and as long as it says.
+        // SAFETY: the dynamic linker has applied this table, so it exists with the stated length.
         unsafe {
             std::slice::from_raw_parts(table as *const Relocation, bytes / size_of::<Relocation>())
         }
@@ -221,7 +221,7 @@ impl Library {
         let place = (self.base + relocation.offset) as *mut usize;
         // The linker makes the table read-only after it has filled it.
         let page = place as usize & !(page_bytes() - 1);
-        // SAFETY: the pages hold this word, which is the library's data; writing to them breaks nothing.
+        // SAFETY: the pages contain this word, which is data of the library, and writing to them is allowed by `mprotect`.
         unsafe {
             let writable = libc::PROT_READ | libc::PROT_WRITE;
             if libc::mprotect(page as *mut c_void, page_bytes(), writable) != 0 {
@@ -244,6 +244,6 @@ impl Library {
 }
 
 fn page_bytes() -> usize {
-    // SAFETY: asks for a number.
+    // SAFETY: the call only returns a number.
     usize::try_from(unsafe { libc::sysconf(libc::_SC_PAGESIZE) }).unwrap_or(4096)
 }

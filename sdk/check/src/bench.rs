@@ -1,4 +1,4 @@
-//! What models cost, measured side by side.
+//! Rendering times of several models, measured in one run.
 
 use std::time::Instant;
 
@@ -11,26 +11,26 @@ use htex_check_runner::Finding;
 
 /// Block sizes that are timed, samples.
 pub const BLOCKS: [usize; 4] = [16, 64, 256, 1024];
-/// Rounds of all models and block sizes; the first warms up and is left out.
+/// Rounds of all models and block sizes; the first is a warm-up and not counted.
 const ROUNDS: usize = 64;
-/// Samples rendered a round, model and block size.
+/// Samples rendered per round, model and block size.
 const SAMPLES: usize = 8_192;
 
 /// One model, loaded in one way.
 #[derive(Debug, Clone)]
 pub struct Subject {
-    /// The model's short name; the first subject of a name is what the others are compared with.
+    /// The model's short name; subjects with the same name are compared with the first one.
     pub model: String,
-    /// How it was loaded.
+    /// The kind of loading.
     pub way: String,
     /// The model.
     pub loaded: LoadedModel,
 }
 
-/// Least, median and spread of the rounds.
+/// Minimum, median and spread of the rounds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Timing {
-    /// The fastest round, ns: what it costs when nothing else runs.
+    /// The fastest round, ns: the time without other load.
     pub min_ns: f64,
     /// Median, ns.
     pub median_ns: f64,
@@ -38,34 +38,34 @@ pub struct Timing {
     pub spread_ns: f64,
 }
 
-/// The cost of a sample in blocks of one size.
+/// The time per sample in blocks of one size.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct BlockCost {
-    /// Samples a block.
+    /// Samples per block.
     pub block: usize,
-    /// Cost of a sample.
+    /// Time per sample.
     pub per_sample: Timing,
-    /// Its least over that of the first subject of the same model.
+    /// Its minimum divided by that of the first subject of the same model.
     pub ratio: f64,
 }
 
-/// What one subject costs.
+/// The times of one subject.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Cost {
     /// The model.
     pub model: String,
-    /// How it was loaded.
+    /// The kind of loading.
     pub way: String,
-    /// Where it came from.
+    /// The model's origin.
     pub origin: String,
     /// Rate at which the model renders, hertz.
     pub rate_hz: f64,
-    /// Cost in blocks of [`BLOCKS`].
+    /// Times in blocks of [`BLOCKS`].
     pub blocks: Vec<BlockCost>,
-    /// Cost of a call, ns: what a call for one sample takes more than a sample in a large block,
-    /// both at their least.
+    /// Overhead of a call, ns: the time of a call for one sample minus that of a sample in a large block,
+    /// both minima.
     pub per_call_ns: f64,
-    /// How soon the first sample comes, for a WASM module.
+    /// Time to the first sample, for a WASM module.
     pub start: Option<Start>,
 }
 
@@ -73,16 +73,29 @@ struct Runner {
     voice: ModelVoice,
     rate_hz: f64,
     start: Option<Start>,
-    /// Nanoseconds a sample of each round: in each block size, and one by one.
+    /// Nanoseconds per sample of each round: in each block size, and one by one.
     rounds: [Vec<f64>; 5],
 }
 
-/// Times models in one interleaved run, so that what else the machine does falls on all alike. Each
+/// A model cannot be fitted, or fails to render.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{model} ({way}): {what}")]
+#[non_exhaustive]
+pub struct BenchError {
+    /// The model's short name.
+    pub model: String,
+    /// The kind of loading.
+    pub way: String,
+    /// The error.
+    pub what: String,
+}
+
+/// Measures models in one interleaved run, so that other load of the machine affects all equally. Each
 /// plays parameters fitted to a reference spectrum.
 ///
 /// # Errors
-/// When a model cannot be fitted or fails to render.
-pub fn bench(subjects: &[Subject]) -> Result<Vec<Cost>, String> {
+/// [`BenchError`] when a model cannot be fitted or fails to render.
+pub fn bench(subjects: &[Subject]) -> Result<Vec<Cost>, BenchError> {
     let mut runners = Vec::new();
     for subject in subjects {
         let runner =
@@ -106,8 +119,12 @@ pub fn bench(subjects: &[Subject]) -> Result<Vec<Cost>, String> {
 }
 
 impl Subject {
-    fn failed(&self, what: impl std::fmt::Display) -> String {
-        format!("{} ({}): {what}", self.model, self.way)
+    fn failed(&self, what: impl std::fmt::Display) -> BenchError {
+        BenchError {
+            model: self.model.clone(),
+            way: self.way.clone(),
+            what: what.to_string(),
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! The model under test, and what several checks ask of it.
+//! The model under test, and operations that several checks use.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use htex_model::Fit;
 use crate::spectra::{REFERENCES, Reference};
 use htex_check_runner::Finding;
 
-/// Rate at which sounds are judged, hertz: that of the recordings.
+/// Rate at which sounds are checked, hertz: that of the recordings.
 pub(crate) const RATE_HZ: f64 = 20_000.0;
 
 /// A loaded model and the checker's settings.
@@ -19,7 +19,7 @@ pub struct Case {
     pub(crate) against: Option<PathBuf>,
 }
 
-/// Parameters that came out of a fit to a reference spectrum.
+/// Parameters fitted to a reference spectrum.
 pub(crate) struct Fitted {
     pub(crate) reference: &'static str,
     pub(crate) parameters: Vec<f64>,
@@ -44,7 +44,7 @@ impl Case {
         self.fit_in(Band::TACTILE, &Band::TACTILE.grid_hz(), magnitude)
     }
 
-    /// Fits a spectrum on a grid of its own.
+    /// Fits a spectrum on another grid.
     pub(crate) fn fit_in(&self, band: Band, grid: &[f64], m: &[f64]) -> Result<Fit, HostError> {
         self.fit_any((band, grid), m, FitCondition::default())
     }
@@ -93,7 +93,7 @@ impl Case {
         }
         if fitted.is_empty() {
             return Err(Finding::failed(
-                "the model can be fitted to none of the reference spectra",
+                "the model cannot be fitted to any reference spectrum",
             ));
         }
         Ok(fitted)
@@ -107,7 +107,7 @@ impl Case {
             .ok_or_else(|| Finding::failed("there are no parameters"))
     }
 
-    /// Two sets of parameters that are not the same; `None` when all fits came out alike.
+    /// Two different parameter sets; `None` if all fits returned the same.
     pub(crate) fn two_sets(&self) -> Result<Option<Pair>, Finding> {
         let mut fitted = self.fitted()?.into_iter().map(|f| f.parameters);
         let Some(first) = fitted.next() else {
@@ -122,7 +122,7 @@ impl Case {
         Stream::new(&self.model, parameters, Band::TACTILE, RATE_HZ, seed)
     }
 
-    /// Samples of a fresh voice at the model's own rate, rendered in blocks.
+    /// Samples of a new voice at the model's own rate, rendered in blocks.
     pub(crate) fn samples(
         &self,
         parameters: &[f64],
@@ -156,7 +156,7 @@ impl Case {
     }
 }
 
-/// Whether the model cannot be fitted to this spectrum.
+/// Returns whether the model cannot be fitted to this spectrum.
 pub(crate) fn is_cannot_fit(error: &HostError) -> bool {
     matches!(
         error,
@@ -167,7 +167,7 @@ pub(crate) fn is_cannot_fit(error: &HostError) -> bool {
     )
 }
 
-/// Whether the model returned a status other than `Panicked`.
+/// Returns whether the model returned a status other than `Panicked`.
 pub(crate) fn is_refusal(error: &HostError) -> bool {
     matches!(error, HostError::Call { status, .. } if *status != Status::Panicked)
 }

@@ -1,8 +1,8 @@
-//! The checker of texture models: one check for each promise of the model ABI, run by [`htex_check_runner`] in a process of
-//! its own, so that a crash or an endless loop becomes a finding.
+//! The checker of texture models: one check for each guarantee of the model ABI, run by [`htex_check_runner`] in a separate
+//! process, so that a crash or an endless loop becomes a finding.
 //!
-//! [`CHECKS`] is the table; [`check`] runs it over a model file; [`run_one`] runs one check in this process, for a debugger.
-//! [`bench()`] measures what models cost.
+//! [`CHECKS`] is the table; [`check`] runs all checks on a model file; [`run_one`] runs one check in this process, for a
+//! debugger. [`bench()`] measures the rendering time of models.
 //!
 //! ```
 //! use htex_check::{CHECKS, model_checks_page};
@@ -25,7 +25,7 @@ mod start;
 mod table;
 pub mod templates;
 
-pub use bench::{BLOCKS, BlockCost, Cost, Subject, Timing, bench};
+pub use bench::{BLOCKS, BenchError, BlockCost, Cost, Subject, Timing, bench};
 pub use htex_check_runner::{Finding, Outcome, Runner, UnknownCheck};
 pub use page::model_checks_page;
 pub use report::{ModelFile, Report};

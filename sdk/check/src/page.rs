@@ -1,4 +1,4 @@
-//! `spec/model-checks.md`, made from the table.
+//! `spec/model-checks.md`, generated from the table.
 
 use std::fmt::Write;
 
@@ -10,16 +10,16 @@ const HEAD: &str = "\
 Generated from the table of checks in `sdk/check/src/table.rs` by
 `cargo xtask generate`.
 
-`htex plugin check FILE` runs these over a native library or a WASM module, each in a process of its
-own. A check *passes*, ends with a *warning*, is *skipped* (it has nothing to look at, or a check that
-it needs did not pass), *fails*, *crashes* or is *timed-out*; the last three make the exit status 1.
-`--reproduce NAME --seed N` runs one in a single process, for a debugger.
+`htex plugin check FILE` runs these on a native library or a WASM module, each in a separate
+process. A check *passes*, ends with a *warning*, is *skipped* (it does not apply, or a check that
+it needs did not pass), *fails*, *crashes* or is *timed-out*; after the last three the exit status is 1.
+`htex plugin check --help` shows how to run one check in a single process, for a debugger.
 
-| check | what is promised |
+| check | guarantee |
 |---|---|
 ";
 
-/// The page that explains every check: `spec/model-checks.md`.
+/// Returns the page that documents every check: `spec/model-checks.md`.
 pub fn model_checks_page() -> String {
     let mut page = HEAD.to_owned();
     // Writing to a string cannot fail.

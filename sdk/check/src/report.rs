@@ -7,7 +7,7 @@ use serde::Serialize;
 /// All checks of one model.
 pub type Report = htex_check_runner::Report<ModelFile>;
 
-/// What was checked, and with which seed.
+/// The model that was checked, and the seed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelFile {
     /// The model file.

@@ -9,21 +9,21 @@ use crate::checks::abi::owner;
 use crate::report::{ModelFile, Report};
 use crate::table::CHECKS;
 
-/// How a model is checked.
+/// Options of checking a model.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// A program that calls [`run_one`]. It gets its own arguments, then `FILE NAME --seed N`, and `--against FILE` where there
-    /// is one.
+    /// A program that calls [`run_one`]. After its own arguments it receives the file, the check's name and the options
+    /// for the seed and for the other file, if there is one.
     pub runner: Runner,
     /// Seed of the voices.
     pub seed: u64,
     /// Checks to run, with those that they need; all when `None`.
     pub only: Option<Vec<String>>,
-    /// The same model as a file of another kind.
+    /// The same model as a file of the other kind.
     pub against: Option<PathBuf>,
 }
 
-/// Runs the checks, each in a process of its own.
+/// Runs the checks, each in a separate process.
 ///
 /// # Errors
 /// When `only` names an unknown check.

@@ -1,4 +1,4 @@
-//! The spectra that models are fitted to.
+//! The reference spectra.
 
 /// A spectrum as a curve over frequency, newtons at hertz.
 pub(crate) struct Reference {
@@ -6,7 +6,7 @@ pub(crate) struct Reference {
     pub(crate) curve: fn(f64) -> f64,
 }
 
-/// Five shapes of the spectra of real surfaces, simplified.
+/// Five simplified spectra of real surfaces.
 pub(crate) const REFERENCES: &[Reference] = &[
     Reference {
         name: "two bumps",
@@ -30,7 +30,7 @@ pub(crate) const REFERENCES: &[Reference] = &[
     },
 ];
 
-/// What a fit must survive: it fits, or returns a status.
+/// Degenerate spectra: a fit succeeds or returns a status.
 pub(crate) const HARD: &[Reference] = &[
     Reference {
         name: "silence",

@@ -1,4 +1,4 @@
-//! How soon the first sample of a WASM module comes.
+//! The time to the first sample of a WASM module.
 
 use std::path::Path;
 use std::time::Instant;
@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::case::RATE_HZ;
 use htex_check_runner::Finding;
 
-/// Times without and with the compiled module; the least of them counts.
+/// Measurements without and with a cached module; the minimum of each counts.
 const COLD: usize = 3;
 const WARM: usize = 10;
 
@@ -18,11 +18,11 @@ const WARM: usize = 10;
 pub struct Start {
     /// The module is compiled.
     pub cold_ms: f64,
-    /// The compiled module lies in the cache.
+    /// The compiled module is in the cache.
     pub warm_ms: f64,
 }
 
-/// Measures a module in a cache folder of its own; `None` for what is no module in a file.
+/// Measures a module with a new cache folder; `None` for a model that is not a module in a file.
 pub(crate) fn start(model: &LoadedModel, parameters: &[f64]) -> Result<Option<Start>, Finding> {
     let Origin::Wasm(file) = model.origin() else {
         return Ok(None);
@@ -33,11 +33,8 @@ pub(crate) fn start(model: &LoadedModel, parameters: &[f64]) -> Result<Option<St
     };
     for _ in 0..COLD {
         let folder = tempfile::tempdir()
-            .map_err(|e| Finding::failed(format!("cannot make a folder for the cache: {e}")))?;
-        let limits = WasmLimits {
-            cache: WasmCache::Dir(folder.path().join("wasm")),
-            ..WasmLimits::default()
-        };
+            .map_err(|e| Finding::failed(format!("cannot create a cache folder: {e}")))?;
+        let limits = WasmLimits::default().with_cache(WasmCache::Dir(folder.path().join("wasm")));
         best.cold_ms = best
             .cold_ms
             .min(first_sample_ms(file, &limits, parameters)?);

@@ -14,32 +14,32 @@ htex_check_runner::checks! { Case;
         "The file loads, and exports every function of the ABI.",
         "The file is loaded as a host loads it; each function is looked up by name.";
     "descriptor" needs ["exports"] abi::descriptor:
-        "The descriptor is JSON of the schema, and makes sense.",
-        "Reverse-DNS id, semantic version, name and summary present; 1 to 32 fields; names not empty \
-         and no two alike; finite ranges the right way round; stores with positive, finite steps; \
-         option defaults in range, whole where they must be.";
+        "The descriptor is valid.",
+        "JSON of the schema; reverse-DNS id, semantic version, name and summary present; 1 to 32 fields; names not \
+         empty and all different; finite ranges with min <= max; stores with positive, finite steps; option defaults in \
+         range, and integers for integer options.";
     "extensions" needs ["exports"] abi::extensions:
         "Unknown extensions are absent.",
-        "Made-up ids, an empty one and a very long one are asked for; each must return 0.";
+        "`htex_model_extension` must return 0 for made-up ids, an empty id and a very long one.";
     "fit" needs ["descriptor"] fit::reference:
         "Reference spectra are fitted.",
         "Five spectra: two smooth bumps, falling, rising, broad with ripple, few peaks. Each is \
-         fitted, or the model returns CANNOT_FIT, and at least one is fitted; parameters obey the \
-         descriptor; the level is above 0; fitting again gives the same numbers.";
+         fitted, or the model returns CANNOT_FIT, and at least one is fitted; parameters fit the \
+         descriptor; the level is above 0; a second fit returns the same numbers.";
     "fit-hard" needs ["fit"] fit::hard:
         "Hard spectra are fitted, or the model returns a status.",
-        "Silence, one line, flat, 1e-200 and 1e100 times the usual, all energy in the lowest bin, and \
+        "Silence, one line, flat, magnitudes of 1e-200 and 1e100, all energy in the lowest bin, and \
          a grid of two bins. A panic fails.";
     "magnitude" needs ["fit"] magnitude::sane:
         "Magnitudes are finite and not negative.",
         "On the 5 Hz grid, every 0.5 Hz, at the band's edges and outside of it, for every reference.";
     "parameters" needs ["fit", "magnitude"] fit::round_trip:
-        "Parameters survive being taken apart, put together and stored.",
-        "Fitted parameters are read by field and flattened again: the same magnitudes. They are \
-         stored by the descriptor's stores and read back: still accepted. A warning when storing \
-         moves the spectrum by more than 0.5 dB.";
+        "Parameters are unchanged by conversion to fields and back, and remain valid when stored.",
+        "Fitted parameters are read by field and flattened again: the magnitudes are equal. They are encoded by the \
+         descriptor's stores and decoded: the model accepts them. A warning if storage changes the spectrum by more than \
+         0.5 dB.";
     "magnitude-grid" needs ["magnitude"] magnitude::grid:
-        "The magnitude at a frequency does not depend on which others are asked for.",
+        "The magnitude at a frequency does not depend on the other frequencies of a call.",
         "The 5 Hz grid as a whole, frequency by frequency, in reversed chunks of ten, and within a \
          0.5 Hz grid; agreement within 1e-9 of the largest magnitude.";
     "render" needs ["fit"] sound::renders:
@@ -51,65 +51,62 @@ htex_check_runner::checks! { Case;
     "level" needs ["magnitude", "render"] sound::level:
         "Magnitude and sound have unit RMS.",
         "The magnitude's RMS on the 5 Hz grid within 2 %, and the RMS of a minute of sound within 2 %, \
-         or within four standard deviations of what noise of this spectrum has in a minute, where \
-         that is more. A magnitude of separate lines adds power where lines share a bin: it is judged \
-         by its sound alone.";
+         or within four standard deviations of the RMS of such noise over a minute, whichever is larger. The magnitude of \
+         a line spectrum is not the root of its power in a bin that contains several lines, so for line spectra only the \
+         sound is checked.";
     "spectrum" needs ["magnitude", "render"] sound::spectrum:
         "The sound has the spectrum of the magnitude.",
         "A minute, segments of 0.2 s averaged by power, levels matched: within 1 dB RMS over the bins \
-         that hold 99 % of the energy, of the magnitude or of what noise of that density reads through the \
-         window, which differ at steep flanks. A line spectrum is thereby judged at its lines.";
+         that contain 99 % of the energy, of the magnitude or of the spectrum that the window measures for noise of that \
+         density; these differ at steep flanks. A line spectrum is thus compared at its lines.";
     "narrow-band" needs ["level"] sound::narrow_band:
-        "What lies outside the band is neither in the magnitude nor in the sound.",
-        "Every fitted reference in the band 150 to 700 Hz, which leaves peaks of two of them out: the RMS \
-         of a minute of sound is 1 within 1.5 dB, in the band and in all. A model may refuse parameters that \
-         leave nothing in the band.";
+        "Magnitude and sound contain nothing outside the band.",
+        "Every fitted reference in the band 150 to 700 Hz, which excludes peaks of two of them: the RMS \
+         of a minute of sound is 1 within 1.5 dB, both in the band and in total. A model may refuse parameters without \
+         energy in the band.";
     "reproducible" needs ["render"] repeat::reproducible:
         "The same parameters, rate and seed give the same samples.",
-        "Two voices, one after the other, 9000 samples, bit by bit.";
+        "Two voices, one after the other: 9000 bit-identical samples.";
     "blocks" needs ["reproducible"] repeat::blocks:
         "Block sizes do not change the samples.",
-        "Blocks of 1, 7, 64 and 1000, and the whole, bit by bit; a block of no samples is allowed.";
+        "Blocks of 1, 7, 64 and 1000 samples and one single block: bit-identical samples; an empty block is allowed.";
     "seeds" needs ["reproducible"] repeat::seeds:
         "Different seeds give different samples.",
-        "Two seeds. The same samples are a warning for a line spectrum, which may have nothing random \
-         in it, else a failure.";
+        "Two seeds. Equal samples are a warning for a line spectrum, which may contain no random component, else a failure.";
     "voices-apart" needs ["reproducible"] repeat::voices_apart:
-        "Voices do not disturb each other.",
-        "Two voices in turns of 64 samples, and two on threads of their own, against each one alone, \
-         bit by bit.";
+        "Voices do not affect each other.",
+        "Two voices in alternating blocks of 64 samples, and two on separate threads, compared with each voice alone: \
+         bit-identical samples.";
     "voices-together" needs ["blocks", "voices-apart"] together::agrees:
-        "Voices that are rendered in one call sound as each does alone.",
-        "Where the model has the extension `htex.voices/1`: seventeen voices of two sets of parameters, in \
-         blocks of 1, 256, 3, 64 and 500 frames, one of them retuned on the way, against each alone, bit by \
-         bit.";
+        "Voices that are rendered in one call have the samples of separately rendered ones.",
+        "If the model has the extension `htex.voices/1`: seventeen voices of two parameter sets, in \
+         blocks of 1, 256, 3, 64 and 500 frames, one of them retuned in between, compared with each voice alone: \
+         bit-identical samples.";
     "handles" needs ["render"] repeat::handles:
         "A freed handle is refused.",
-        "Rendering, retuning and freeing by a handle that was freed return a status; so it is after \
-         the next voice was made.";
+        "Rendering, retuning and freeing with a freed handle return a status, also after the next voice was made.";
     "retune" needs ["render"] change::retune:
         "A retune does not click.",
-        "Three sets of parameters in turn, every 500 samples at 20 kHz: no second difference is more \
-         than twice the sharpest of the steady sounds.";
+        "Three parameter sets in turn, every 500 samples at 20 kHz: no second difference exceeds twice the largest one of \
+         the voices without retunes.";
     "retune-follows" needs ["spectrum", "retune"] change::follows:
         "After a retune the sound has the spectrum of the new parameters.",
-        "One voice is retuned to each fitted reference in turn. A second later, a minute of it is within 1 dB RMS of the \
-         magnitude of the new parameters, judged as in `spectrum`: a model that passes there with a fresh voice passes here. \
-         A reference counts if its magnitude is at least 3 dB RMS from that of the one before, by the same measure; if \
-         there is none, there is nothing to follow.";
+        "One voice is retuned to each fitted reference in turn. One second later, a minute of its sound is within 1 dB RMS of \
+         the magnitude of the new parameters, measured as in `spectrum`. References are tested whose magnitude differs from \
+         the preceding one by at least 3 dB RMS in the same measure; without one the check is skipped.";
     "interpolate" needs ["magnitude", "render"] change::interpolate:
-        "Mixing meets its ends, and everything between can be played.",
-        "Weights 1 and 0 give the magnitudes of the sets themselves within 1e-6 of the largest. Eleven \
-         mixtures of each pair of neighbouring references: a finite magnitude, and two seconds of \
+        "Interpolation reproduces the parameter sets at its ends, and all results can be played.",
+        "Weights 1 and 0 give the magnitudes of the two sets within 1e-6 of the largest. Eleven \
+         interpolations of each pair of neighbouring references: a finite magnitude, and two seconds of \
          finite samples below 100 times unit RMS.";
     "bad-parameters" needs ["magnitude", "reproducible"] refusal::parameters:
-        "Parameters that break the descriptor are refused.",
-        "For each field a value below and above its range, NaN, infinity, and for lists impossible \
+        "Parameters that do not fit the descriptor are refused.",
+        "For each field a value below and above its range, NaN, infinity, and for lists invalid \
          lengths; too few numbers, too many, none. `magnitude`, `voice_rate`, `voice_new` and \
-         `voice_retune` return a status; a voice whose retune was refused plays on as before.";
+         `voice_retune` return a status; a voice whose retune was refused continues unchanged.";
     "bad-band" needs ["magnitude", "render"] refusal::band:
         "Invalid bands are refused.",
-        "Upside down, empty, from 0, negative, NaN, infinite, beyond 1 MHz, in `fit`, `magnitude`, \
+        "Edges in the wrong order, equal, 0, negative, NaN, infinite and above 1 MHz, in `fit`, `magnitude`, \
          `voice_rate` and `voice_new`.";
     "bad-rate" needs ["render"] refusal::rate:
         "Invalid rates are refused.",
@@ -118,28 +115,28 @@ htex_check_runner::checks! { Case;
         "Rendering and retuning do not allocate.",
         "After 64 blocks with retunes through all fitted references, 1,000 more in sizes of 1, 64, 256 and 1,000. Native, on \
          64-bit Linux: calls of the C library's `malloc`, `calloc`, `realloc`, `aligned_alloc`, `posix_memalign` and `free`, by the \
-         model or a library that it calls, in the thread that renders; none is allowed. Not seen: threads of the model's own, and an \
-         allocator of its own that takes pages from the system by itself. WASM: the module's memory must not grow. What it takes \
-         and gives back within its memory is not seen; its native twin shows that.";
+         model or a library that it calls, in the thread that renders; none is allowed. Not detected: calls in threads that the \
+         model starts, and an allocator of the model that maps pages itself. WASM: the module's memory must not grow. Allocations \
+         within that memory are not detected; the check of the same model as a native library detects them.";
     "motion" needs ["render", "retune", "allocation"] motion::keeps_its_promises:
-        "A voice that is told the motion takes any in range, and refuses others.",
-        "Of a model with the extension `htex.motion/1`; others pass. NaN, infinities and 1e13 in each number, a force of -0.1 and a \
-         freed voice: a status, and the voice plays on as before. 4,000 samples of a constant motion in blocks of 1, 7, 64, 1,000 \
-         and all: the same. A retune and a motion before the same sample: the same in either order. 40,000 samples of a way there \
-         and back, told every 50: finite, and nothing allocated, seen as in `allocation`. The references are fitted at a condition \
-         that is known, known by half, and unknown; a negative or infinite speed or force is refused. That the model exports the \
-         extension's functions is part of `exports`.";
+        "A voice with `htex.motion/1` accepts all motions in range, and refuses others.",
+        "Models without the extension pass. NaN, infinities and 1e13 in each number, a force of -0.1 and a freed voice return a \
+         status, and the voice continues unchanged. 4,000 samples of a constant motion are equal in blocks of 1, 7, 64, 1,000 \
+         and 4,000. A retune and a motion before the same sample give equal samples in either order. 40,000 samples of a movement \
+         forward and back, with a motion every 50, are finite, and nothing is allocated, as detected in `allocation`. The \
+         references are fitted at a known, a half known and an unknown condition; a negative or infinite speed or force is \
+         refused. The check `exports` tests that the model exports the extension's functions.";
     "memory" needs ["render"] resources::memory:
         "Memory does not grow.",
         "Resident memory of the process over 10,000 blocks of 256 samples with retunes, and over 2,000 \
          voices made and freed: at most 2 MiB more after than before. On Linux.";
     "cost" needs ["render"] resources::cost:
-        "What a sample costs.",
-        "Nanoseconds a sample in blocks of 256, at the model's own rate: the median of 21 runs. A \
+        "The time per sample.",
+        "Nanoseconds per sample in blocks of 256, at the model's own rate: the median of 21 runs. A \
          warning from a tenth of one processor on.";
     "twin" needs ["render"] twin::agrees:
         "The native library and the WASM module of a model agree.",
-        "The file named by `--against`, or one of the same name beside it: same id and version; same \
-         parameters from every reference within 1e-6; samples within 1e-4 of unit RMS. A warning when \
-         they are not the same bits.";
+        "The given other file of the model, or the file of the other kind with the same name in the same folder: equal id and \
+         version; equal parameters for every reference within 1e-6; samples within 1e-4 of unit RMS. A warning if \
+         they are not bit-identical.";
 }

@@ -5,11 +5,11 @@ use std::sync::{Arc, LazyLock};
 use crate::table::TableModel;
 use crate::{LoadedModel, Origin};
 
-/// The built-in models, in the order in which they are shown. They are loaded once.
+/// Returns the built-in models in their display order. They are loaded once.
 pub(crate) fn models() -> &'static [LoadedModel] {
     static MODELS: LazyLock<Vec<LoadedModel>> = LazyLock::new(|| {
         let load = |table| LoadedModel::new(Origin::Builtin, Arc::new(table));
-        // A built-in model that cannot be loaded is not there; the tests count them.
+        // A built-in model that cannot be loaded is left out; a test checks their number.
         tables().into_iter().flat_map(load).collect()
     });
     &MODELS

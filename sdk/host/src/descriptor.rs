@@ -1,64 +1,130 @@
-//! What a host holds a model's description to.
+//! Checks of a model's descriptor.
 
 use htex_model::abi::MAX_FIELDS;
 use htex_model::{Descriptor, Field, Kind, is_model_id};
 
 use crate::error::plain;
 
-/// Reads a descriptor, as JSON, as every loader does.
+/// An invalid descriptor. Texts of the descriptor are quoted with their control characters escaped.
+///
+/// ```
+/// use htex_host::{DescriptorError, read_descriptor};
+/// let error = read_descriptor("{}").unwrap_err();
+/// assert!(matches!(error, DescriptorError::Json { .. }));
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DescriptorError {
+    /// The text is not the JSON of a descriptor.
+    #[error("{what}")]
+    Json {
+        /// The parser's message.
+        what: String,
+    },
+    /// The id does not have the form of model ids.
+    #[error("`{id}` is not a reverse-DNS id: three or more parts of a-z, 0-9, `-` and `_`")]
+    Id {
+        /// The id.
+        id: String,
+    },
+    /// The version is not a semantic version.
+    #[error("`{version}` is not a semantic version")]
+    Version {
+        /// The version.
+        version: String,
+    },
+    /// There are no parameter fields, or too many.
+    #[error("there are {count} parameter fields; 1 to {MAX_FIELDS} are allowed")]
+    FieldCount {
+        /// Number of fields.
+        count: usize,
+    },
+    /// The range of a field or fit option is empty or not finite.
+    #[error("`{name}` has the invalid range {range}")]
+    Range {
+        /// The field or option.
+        name: String,
+        /// The range.
+        range: String,
+    },
+    /// A field has a default outside its range, or is a list with a default.
+    #[error("`{name}` has a default outside its range, or is a list")]
+    Default {
+        /// The field.
+        name: String,
+    },
+    /// A name, unit or choice contains control characters.
+    #[error("`{text}` has control characters")]
+    ControlCharacters {
+        /// The text.
+        text: String,
+    },
+    /// Two fields have the same name.
+    #[error("two fields are named `{name}`")]
+    SameName {
+        /// The name.
+        name: String,
+    },
+}
+
+/// Reads and checks a descriptor in JSON, as every loader does.
 ///
 /// # Errors
-/// Why it describes no model that can be called.
-pub fn read_descriptor(json: &str) -> Result<Descriptor, String> {
-    let descriptor: Descriptor = serde_json::from_str(json).map_err(|e| plain(&e.to_string()))?;
-    check_descriptor(&descriptor).map_err(|what| plain(&what))?;
+/// [`DescriptorError`] when the text is not the descriptor of a model that can be called.
+pub fn read_descriptor(json: &str) -> Result<Descriptor, DescriptorError> {
+    let descriptor: Descriptor =
+        serde_json::from_str(json).map_err(|error| DescriptorError::Json {
+            what: plain(&error.to_string()),
+        })?;
+    check_descriptor(&descriptor)?;
     Ok(descriptor)
 }
 
-fn check_descriptor(descriptor: &Descriptor) -> Result<(), String> {
+fn check_descriptor(descriptor: &Descriptor) -> Result<(), DescriptorError> {
     if !is_model_id(&descriptor.id) {
-        return Err(format!(
-            "`{}` is not a reverse-DNS id: three or more parts of a-z, 0-9, `-` and `_`",
-            descriptor.id
-        ));
+        let id = plain(&descriptor.id);
+        return Err(DescriptorError::Id { id });
     }
     if semver::Version::parse(&descriptor.version).is_err() {
-        return Err(format!(
-            "`{}` is not a semantic version",
-            descriptor.version
-        ));
+        let version = plain(&descriptor.version);
+        return Err(DescriptorError::Version { version });
     }
-    if descriptor.fields.is_empty() || descriptor.fields.len() > MAX_FIELDS {
-        return Err(format!("1 to {MAX_FIELDS} parameter fields are allowed"));
+    let count = descriptor.fields.len();
+    if !(1..=MAX_FIELDS).contains(&count) {
+        return Err(DescriptorError::FieldCount { count });
     }
     let fields = descriptor.fields.iter().map(|f| (&f.name, f.min, f.max));
     let options = descriptor.options.iter().map(|o| (&o.name, o.min, o.max));
     for (name, min, max) in fields.chain(options) {
         if !(min.is_finite() && max.is_finite() && min <= max) {
-            return Err(format!("`{name}` has the range {min} to {max}"));
+            return Err(DescriptorError::Range {
+                name: plain(name),
+                range: format!("{min} to {max}"),
+            });
         }
     }
     if let Some(field) = descriptor.fields.iter().find(|field| !default_holds(field)) {
-        let name = &field.name;
-        return Err(format!(
-            "`{name}` has a default outside its range, or is a list"
-        ));
+        let name = plain(&field.name);
+        return Err(DescriptorError::Default { name });
     }
     let fields = descriptor.fields.iter().flat_map(|f| [&f.name, &f.unit]);
     let options = descriptor.options.iter();
     let options = options.flat_map(|o| o.choices.iter().chain([&o.name, &o.unit]));
-    if let Some(word) = fields.chain(options).find(|w| w.contains(char::is_control)) {
-        return Err(format!("`{word}` has control characters"));
+    if let Some(text) = fields.chain(options).find(|w| w.contains(char::is_control)) {
+        let text = plain(text);
+        return Err(DescriptorError::ControlCharacters { text });
     }
     let mut names: Vec<&str> = descriptor.fields.iter().map(|f| f.name.as_str()).collect();
     names.sort_unstable();
     match names.windows(2).find(|pair| pair[0] == pair[1]) {
-        Some(pair) => Err(format!("two fields are named `{}`", pair[0])),
+        Some(pair) => Err(DescriptorError::SameName {
+            name: plain(pair[0]),
+        }),
         None => Ok(()),
     }
 }
 
-/// Whether a default is that of a scalar, and in its range.
+/// Returns whether a field has no default, or a scalar one in its range.
 fn default_holds(field: &Field) -> bool {
     let inside =
         |value: f64| field.kind == Kind::Scalar && (field.min..=field.max).contains(&value);

@@ -1,13 +1,13 @@
-//! What can go wrong between a host and a model.
+//! Errors of finding, loading and calling models.
 
 use htex_dsp::resample::UnusableRates;
 use htex_model::Status;
 
-/// Most bytes of a model's words that a message shows.
+/// Most bytes of a model's text that a message shows.
 const LONGEST_SHOWN: usize = 4096;
 
-/// The text as a message shows it: with its control characters written out, as a model's words must
-/// not steer a terminal, and cut where they are too long to read.
+/// Returns a model's text for a message: control characters are escaped, so that the text cannot control a
+/// terminal, and a long text is cut.
 pub(crate) fn plain(text: &str) -> String {
     let mut plain = String::with_capacity(text.len().min(LONGEST_SHOWN));
     for c in text.chars() {
@@ -15,86 +15,94 @@ pub(crate) fn plain(text: &str) -> String {
             plain.push('…');
             break;
         }
-        match c.is_control() {
-            true => plain.extend(c.escape_default()),
-            false => plain.push(c),
+        if c.is_control() {
+            plain.extend(c.escape_default());
+        } else {
+            plain.push(c);
         }
     }
     plain
 }
 
-/// An error of one call, or of finding a model.
+/// An error of one call, or of finding or loading a model.
+///
+/// ```
+/// use htex_host::{HostError, Registry};
+/// let error = Registry::builtin().find("wavelet").unwrap_err();
+/// assert!(matches!(error, HostError::UnknownModel { .. }));
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum HostError {
-    /// No model of this name is known.
+    /// The registry has no model of this name.
     #[error("no model `{wanted}`; there are {known}")]
     UnknownModel {
-        /// What was asked for.
+        /// The requested name, or id and version.
         wanted: String,
-        /// What there is.
+        /// The names in the registry.
         known: String,
     },
-    /// A module is of another model than it is declared to be.
-    #[error("{path} is said to be {declared} and is {found}; get it again from its maker")]
+    /// A module contains another model than declared.
+    #[error("{path} is declared as {declared} but contains {found}; get it again from its author")]
     OtherModel {
         /// The file, or the entry of an asset.
         path: String,
-        /// Id and version that are declared.
+        /// Declared id and version.
         declared: String,
-        /// Id and version that it has.
+        /// Id and version of the model in the module.
         found: String,
     },
-    /// A file is no model.
+    /// A file cannot be loaded as a model.
     #[error("cannot load {path}: {what}")]
     Load {
         /// The file.
         path: String,
-        /// Why not.
+        /// The reason.
         what: String,
     },
-    /// The model answered with a status.
+    /// The model returned an error status.
     #[error("model {model}: {call}: {message}")]
     Call {
         /// The model's id.
         model: String,
         /// The function that was called.
         call: &'static str,
-        /// The status it answered.
+        /// The status it returned.
         status: Status,
         /// Its last-error text.
         message: String,
     },
-    /// The model answered something that no model may answer.
+    /// The model returned a value that the ABI does not allow.
     #[error("model {model}: {call} broke the model ABI: {what}; report this to the model's author")]
     Broken {
-        /// The model's id, or where it came from.
+        /// The model's id, or its origin while the id is unknown.
         model: String,
         /// The function that was called.
         call: &'static str,
-        /// What was wrong.
+        /// The violation.
         what: String,
     },
-    /// A fit option that the model does not have, or a value it does not take.
-    #[error("model {model}: option {what}")]
+    /// An unknown fit option, or an invalid value of one.
+    #[error("model {model}: option {error}")]
     Option {
         /// The model's id.
         model: String,
-        /// Which option, and what is allowed.
-        what: String,
+        /// The option, and its allowed values.
+        error: Box<OptionError>,
     },
-    /// No such way to make samples, or one out of its range.
+    /// An unknown synthesis, or one with a number out of range.
     #[error(
         "synthesis `{text}`: it takes streamed, loop:SECONDS (0.1 to 60, at most 67 million samples) \
          or filter:TAPS (15 to 4095)"
     )]
     Synthesis {
-        /// What was asked for.
+        /// The requested synthesis.
         text: String,
     },
-    /// The model's samples cannot be brought to the rate that is wanted.
+    /// The model's rate cannot be converted to the requested rate.
     #[error("{what}")]
     Rates {
-        /// The two rates, and which can be converted.
+        /// Both rates, and the conversions that are possible.
         what: String,
     },
 }
@@ -104,4 +112,48 @@ impl From<UnusableRates> for HostError {
         let what = rates.to_string();
         Self::Rates { what }
     }
+}
+
+/// An unknown fit option, or an invalid value of one.
+///
+/// ```
+/// use htex_host::{HostError, OptionError, Registry};
+/// let registry = Registry::builtin();
+/// let Err(HostError::Option { error, .. }) = registry.find("bands")?.options(&[("colour", "red")]) else {
+///     unreachable!();
+/// };
+/// assert!(matches!(*error, OptionError::Unknown { .. }));
+/// # Ok::<(), HostError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum OptionError {
+    /// The model has no option of this name.
+    #[error("`{name}` is unknown; there are {known}")]
+    Unknown {
+        /// The requested name.
+        name: String,
+        /// The names of the model's options.
+        known: String,
+    },
+    /// The value is none of the option's choices.
+    #[error("`{name}` is `{text}`; it takes one of {choices}")]
+    Choice {
+        /// The option.
+        name: String,
+        /// The value.
+        text: String,
+        /// The choices.
+        choices: String,
+    },
+    /// The value is not a number in the option's range.
+    #[error("`{name}` is `{text}`; it takes {range}")]
+    Number {
+        /// The option.
+        name: String,
+        /// The value.
+        text: String,
+        /// The kind of number, the range and the unit.
+        range: String,
+    },
 }

@@ -3,7 +3,7 @@
 use std::env::var_os;
 use std::path::PathBuf;
 
-/// Where what can be made again is kept: `$HTEX_CACHE_DIR`, else `htex` in the user's cache folder.
+/// Returns the folder of cached files: `$HTEX_CACHE_DIR`, else `htex` in the user's cache folder.
 pub fn cache() -> Option<PathBuf> {
     if let Some(own) = absolute("HTEX_CACHE_DIR") {
         return Some(own);
@@ -11,8 +11,7 @@ pub fn cache() -> Option<PathBuf> {
     base("XDG_CACHE_HOME", ".cache").map(|base| base.join("htex"))
 }
 
-/// Where what a user has chosen is kept: `$HTEX_CONFIG_DIR`, else `htex` in the user's configuration
-/// folder.
+/// Returns the folder of settings: `$HTEX_CONFIG_DIR`, else `htex` in the user's configuration folder.
 pub fn config() -> Option<PathBuf> {
     if let Some(own) = absolute("HTEX_CONFIG_DIR") {
         return Some(own);
@@ -20,12 +19,12 @@ pub fn config() -> Option<PathBuf> {
     base("XDG_CONFIG_HOME", ".config").map(|base| base.join("htex"))
 }
 
-/// Where a user's plugins are: `htex/plugins` in the user's data folder.
+/// Returns the folder of a user's plugins: `htex/plugins` in the user's data folder.
 pub fn plugins() -> Option<PathBuf> {
     base("XDG_DATA_HOME", ".local/share").map(|base| base.join("htex/plugins"))
 }
 
-/// A folder of the XDG base directory specification: that of the variable, else one of the home
+/// Returns a folder of the XDG base directory specification: that of the variable, else one in the home
 /// folder; on Windows the local application data.
 fn base(variable: &str, in_home: &str) -> Option<PathBuf> {
     let home = || absolute("HOME").map(|home| home.join(in_home));
@@ -33,7 +32,7 @@ fn base(variable: &str, in_home: &str) -> Option<PathBuf> {
     absolute(variable).or_else(windows).or_else(home)
 }
 
-/// A variable's path; relative ones are ignored, as the specification asks.
+/// Returns a variable's path; relative paths are ignored, as the specification requires.
 fn absolute(variable: &str) -> Option<PathBuf> {
     let path = PathBuf::from(var_os(variable)?);
     path.is_absolute().then_some(path)

@@ -1,10 +1,8 @@
-//! Finds texture models and calls them: one registry and one way of calling, wherever a model's
-//! code comes from.
+//! Finds and calls texture models: one registry and one calling interface for models of all origins.
 //!
-//! A model is built in, a native library, or a WASM module in a sandbox ([`Origin`]); [`Search`] says
-//! where to look. Every model is called through the flat functions of the model ABI, the built-in ones too. What
-//! a model answers is checked here, so that a wrong model is an error of that call and of nothing
-//! else.
+//! A model is built in, a native library, or a WASM module in a sandbox ([`Origin`]); [`Search`] lists
+//! the places that are searched. Every model is called through the flat functions of the model ABI, the built-in ones
+//! too. The results of each call are checked here, so that an invalid result is an error of that call only.
 //!
 //! ```
 //! use htex_host::{Band, Registry};
@@ -15,7 +13,7 @@
 //! # Ok::<(), htex_host::HostError>(())
 //! ```
 
-// A model of the tests has no library, and so no feature that exports its symbols.
+// `export_model!` in a unit test names a Cargo feature that this crate does not have.
 #![cfg_attr(test, allow(unexpected_cfgs))]
 
 mod builtin;
@@ -23,6 +21,7 @@ mod descriptor;
 mod error;
 pub mod folders;
 mod limits;
+mod marker;
 mod model;
 mod native;
 mod note;
@@ -31,7 +30,7 @@ mod origin;
 mod own;
 mod raw;
 mod registry;
-// Without modules nothing is spent.
+// Without modules the budget is not used.
 #[cfg_attr(not(feature = "wasm"), allow(dead_code))]
 mod sandbox;
 mod search;
@@ -43,8 +42,8 @@ mod voice;
 #[cfg(feature = "wasm")]
 mod wasm;
 
-pub use descriptor::read_descriptor;
-pub use error::HostError;
+pub use descriptor::{DescriptorError, read_descriptor};
+pub use error::{HostError, OptionError};
 pub use htex_dsp::grid::{Band, GRID_HZ};
 pub use htex_model::{
     Descriptor, Field, Fit, FitCondition, FitOption, Kind, Motion, Status, Store,
@@ -60,7 +59,7 @@ pub use synthesis::{StillSound, Synthesis};
 pub use together::{VOICES_EXTENSION, render_together};
 pub use voice::ModelVoice;
 #[cfg(feature = "wasm")]
-pub use wasm::serve_compiler;
+pub use wasm::{CompilerError, serve_compiler};
 
 /// Whether this build runs WASM modules (feature `wasm`).
 pub const RUNS_WASM: bool = cfg!(feature = "wasm");

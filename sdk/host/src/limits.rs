@@ -1,11 +1,21 @@
-//! What a WASM model may use of this machine.
+//! Limits of WASM models.
 
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// What one WASM model may use. A model that goes over a limit fails in that call; the message names
-/// the limit.
+/// Limits of one WASM model. A call that exceeds a limit fails, and its error names the limit.
+///
+/// ```
+/// use htex_host::{WasmCache, WasmLimits};
+/// use std::time::Duration;
+/// let limits = WasmLimits::default()
+///     .with_memory_bytes(16 << 20)
+///     .with_call(Duration::from_secs(1))
+///     .with_cache(WasmCache::Off);
+/// assert_eq!(limits.memory_bytes, 16 << 20);
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct WasmLimits {
     /// Largest module, bytes. Default 16 MiB (the models of this project have 0.2 to 0.5 MiB).
     pub module_bytes: usize,
@@ -13,54 +23,104 @@ pub struct WasmLimits {
     pub memory_bytes: usize,
     /// Most elements of one table. Default 10,000.
     pub table_elements: usize,
-    /// Stack of WASM code, bytes, taken of the calling thread's own. Default 256 KiB.
+    /// Stack of WASM code, bytes, a part of the calling thread's stack. Default 256 KiB.
     pub stack_bytes: usize,
-    /// Most voices of one model at a time; each is an instance of its own. Default 256.
+    /// Most voices of one model at a time; each has a separate instance. Default 256.
     pub voices: usize,
     /// Longest time of one call that does not render, and of the module's start. Default 5 s.
     pub call: Duration,
-    /// Longest time of rendering 8,192 samples, or of one retune. Default 0.5 s: far over what any
-    /// device waits for, and short enough to get an application back from an endless loop.
+    /// Longest time of rendering 8,192 samples, or of one retune. Default 0.5 s: much longer than any
+    /// device waits, and short enough to end an endless loop.
     pub render: Duration,
-    /// Most WASM instructions of one call, if given: unlike time, the same on every machine.
-    /// Default none: the deadlines hold already, and counting costs up to a tenth more.
+    /// Most WASM instructions of one call, if given: unlike time, equal on every machine.
+    /// Default none: the time limits suffice, and counting takes up to a tenth more time.
     pub fuel: Option<u64>,
-    /// Longest time of compiling the module. Default 5 s. A module that might take longer, as estimated before it is
-    /// compiled, is compiled quickly and runs slower; one that might then still take longer is refused.
+    /// Longest time of compiling the module. Default 5 s. The time is estimated before compilation: a module that might
+    /// exceed it is compiled without optimisation, and refused if that might exceed it too.
     pub compile: Duration,
-    /// Most memory of compiling a module, bytes, where [`WasmCompiler::Program`] compiles. Default 512 MiB, which the
-    /// estimate of `compile` keeps as well.
+    /// Most memory of compiling a module, bytes, if [`WasmCompiler::Program`] compiles. Default 512 MiB; modules within
+    /// the estimated `compile` time need less.
     pub compile_bytes: usize,
-    /// What compiles. Default [`WasmCompiler::Here`].
+    /// The compiler of modules. Default [`WasmCompiler::Here`].
     pub compiler: WasmCompiler,
-    /// What all modules of one asset may use together. Default 10 s, 512 MiB, 512 instances.
+    /// Total of all modules of one asset. Default 10 s, 512 MiB, 512 instances.
     pub asset: WasmTotal,
-    /// What all modules of one registry and its clones may use together, those of assets included. Default 30 s,
+    /// Total of all modules of one registry and its clones, including those of assets. Default 30 s,
     /// 1 GiB, 2,048 instances.
     pub all: WasmTotal,
-    /// Where compiled modules are kept. Default [`WasmCache::User`].
+    /// Cache of compiled modules. Default [`WasmCache::User`].
     pub cache: WasmCache,
 }
 
-/// What several modules may use together.
+/// Limits that several modules share.
+///
+/// ```
+/// use htex_host::{WasmLimits, WasmTotal};
+/// use std::time::Duration;
+/// let total = WasmTotal::new(Duration::from_secs(2), 64 << 20, 16);
+/// assert_eq!(WasmLimits::default().with_asset(total).asset.instances, 16);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct WasmTotal {
-    /// Time of compiling and of all calls that are no voice's. It comes back at a tenth of the time that passes. A
-    /// voice has ten times as long as what it renders lasts, and a second more.
+    /// Time of compilation and of all calls except those of voices. A tenth of the elapsed time is added to it. A
+    /// voice has a separate time: one second, and ten times the duration of its samples.
     pub time: Duration,
-    /// Memory of all instances that live at a time, bytes.
+    /// Memory of all live instances, bytes.
     pub memory_bytes: usize,
-    /// Instances that live at a time: one a model, and one a voice.
+    /// Live instances: one per model, and one per voice.
     pub instances: usize,
 }
 
-/// What compiles modules.
+impl WasmTotal {
+    /// Limits of time, memory in bytes, and instances.
+    pub const fn new(time: Duration, memory_bytes: usize, instances: usize) -> Self {
+        Self {
+            time,
+            memory_bytes,
+            instances,
+        }
+    }
+
+    /// Sets the time.
+    #[must_use]
+    pub const fn with_time(self, time: Duration) -> Self {
+        Self { time, ..self }
+    }
+
+    /// Sets the memory of all live instances, bytes.
+    #[must_use]
+    pub const fn with_memory_bytes(self, memory_bytes: usize) -> Self {
+        Self {
+            memory_bytes,
+            ..self
+        }
+    }
+
+    /// Sets the number of live instances.
+    #[must_use]
+    pub const fn with_instances(self, instances: usize) -> Self {
+        Self { instances, ..self }
+    }
+}
+
+/// The compiler of modules.
+///
+/// ```no_run
+/// use htex_host::{WasmCompiler, WasmLimits};
+/// // This program calls `htex_host::serve_compiler` when its first argument is `compile`.
+/// let program = std::env::current_exe()?;
+/// let compiler = WasmCompiler::Program(program, vec!["compile".to_owned()]);
+/// let limits = WasmLimits::default().with_compiler(compiler);
+/// # Ok::<(), std::io::Error>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum WasmCompiler {
-    /// This process, which holds `compile` and `compile_bytes` by an estimate alone.
+    /// This process. The limits `compile` and `compile_bytes` are applied to an estimate only.
     #[default]
     Here,
-    /// Another process, which is stopped where it takes more time or memory than it may: a program that calls
+    /// Another process, which is stopped if it exceeds the limits of time or memory: a program that calls
     /// `htex_host::serve_compiler` when it is started with these arguments.
     Program(PathBuf, Vec<String>),
 }
@@ -79,33 +139,133 @@ impl Default for WasmLimits {
             compile: Duration::from_secs(5),
             compile_bytes: 512 << 20,
             compiler: WasmCompiler::Here,
-            asset: WasmTotal {
-                time: Duration::from_secs(10),
-                memory_bytes: 512 << 20,
-                instances: 512,
-            },
-            all: WasmTotal {
-                time: Duration::from_secs(30),
-                memory_bytes: 1 << 30,
-                instances: 2048,
-            },
+            asset: WasmTotal::new(Duration::from_secs(10), 512 << 20, 512),
+            all: WasmTotal::new(Duration::from_secs(30), 1 << 30, 2048),
             cache: WasmCache::User,
         }
     }
 }
 
-/// Where compiled modules are kept, so that a module is compiled once a machine.
+impl WasmLimits {
+    /// Sets the largest module, bytes.
+    #[must_use]
+    pub fn with_module_bytes(mut self, module_bytes: usize) -> Self {
+        self.module_bytes = module_bytes;
+        self
+    }
+
+    /// Sets the largest memory of one instance, bytes.
+    #[must_use]
+    pub fn with_memory_bytes(mut self, memory_bytes: usize) -> Self {
+        self.memory_bytes = memory_bytes;
+        self
+    }
+
+    /// Sets the most elements of one table.
+    #[must_use]
+    pub fn with_table_elements(mut self, table_elements: usize) -> Self {
+        self.table_elements = table_elements;
+        self
+    }
+
+    /// Sets the stack of WASM code, bytes.
+    #[must_use]
+    pub fn with_stack_bytes(mut self, stack_bytes: usize) -> Self {
+        self.stack_bytes = stack_bytes;
+        self
+    }
+
+    /// Sets the most voices of one model at a time.
+    #[must_use]
+    pub fn with_voices(mut self, voices: usize) -> Self {
+        self.voices = voices;
+        self
+    }
+
+    /// Sets the longest time of one call that does not render.
+    #[must_use]
+    pub fn with_call(mut self, call: Duration) -> Self {
+        self.call = call;
+        self
+    }
+
+    /// Sets the longest time of rendering 8,192 samples, or of one retune.
+    #[must_use]
+    pub fn with_render(mut self, render: Duration) -> Self {
+        self.render = render;
+        self
+    }
+
+    /// Sets the most WASM instructions of one call, or `None` for no limit.
+    #[must_use]
+    pub fn with_fuel(mut self, fuel: impl Into<Option<u64>>) -> Self {
+        self.fuel = fuel.into();
+        self
+    }
+
+    /// Sets the longest time of compiling a module.
+    #[must_use]
+    pub fn with_compile(mut self, compile: Duration) -> Self {
+        self.compile = compile;
+        self
+    }
+
+    /// Sets the most memory of compiling a module, bytes.
+    #[must_use]
+    pub fn with_compile_bytes(mut self, compile_bytes: usize) -> Self {
+        self.compile_bytes = compile_bytes;
+        self
+    }
+
+    /// Sets the compiler of modules.
+    #[must_use]
+    pub fn with_compiler(mut self, compiler: WasmCompiler) -> Self {
+        self.compiler = compiler;
+        self
+    }
+
+    /// Sets the total of all modules of one asset.
+    #[must_use]
+    pub fn with_asset(mut self, asset: WasmTotal) -> Self {
+        self.asset = asset;
+        self
+    }
+
+    /// Sets the total of all modules of one registry and its clones.
+    #[must_use]
+    pub fn with_all(mut self, all: WasmTotal) -> Self {
+        self.all = all;
+        self
+    }
+
+    /// Sets the cache of compiled modules.
+    #[must_use]
+    pub fn with_cache(mut self, cache: WasmCache) -> Self {
+        self.cache = cache;
+        self
+    }
+}
+
+/// Cache of compiled modules on disk.
 ///
-/// What lies there is machine code that this program runs. So the folder is made for this user alone (mode 0700); one
-/// of another user, or that others may write to, is not used; and each file is authenticated with a key that this user
-/// alone can read (`wasm.key` in the user's configuration folder). A file that was damaged, or made by another
-/// version, is compiled again.
+/// A cached file is machine code that this program runs. The folder is therefore created with permissions for this user
+/// alone (mode 0700); a folder of another user, or one that others may write to, is not used; and each file is
+/// authenticated with a key that only this user can read (`wasm.key` in the user's configuration folder). A file that is
+/// damaged, or was made by another version, is compiled again.
+///
+/// ```
+/// use htex_host::{Search, WasmCache, WasmLimits};
+/// let limits = WasmLimits::default().with_cache(WasmCache::Dir("/var/cache/player".into()));
+/// let search = Search::default().with_limits(limits);
+/// # assert_ne!(search.limits.cache, WasmCache::User);
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum WasmCache {
     /// `$HTEX_CACHE_DIR/wasm`, else `htex/wasm` in the user's cache folder.
     User,
-    /// A folder, which this user alone may write to.
+    /// A folder that only this user may write to.
     Dir(PathBuf),
-    /// Compiled modules are not kept.
+    /// Compiled modules are not stored.
     Off,
 }

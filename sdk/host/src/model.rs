@@ -1,26 +1,44 @@
-//! A loaded model: safe calls, checked answers.
+//! A loaded model: safe calls, checked results.
 
 use std::path::Path;
 use std::sync::Arc;
 
 use htex_dsp::grid::Band;
-use htex_model::abi::{
-    ABI_MAJOR, ABI_MARKER, MAX_PARAMETERS, MAX_RATE_HZ, MAX_TEXT_BYTES, MIN_RATE_HZ,
-};
+use htex_model::abi::{MAX_PARAMETERS, MAX_RATE_HZ, MAX_TEXT_BYTES, MIN_RATE_HZ};
 use htex_model::{Descriptor, Fit, FitCondition, Kind, Status, Values};
 
 use crate::descriptor::read_descriptor;
 use crate::error::plain;
+use crate::marker::check_marker;
 use crate::raw::{RawFit, RawModel};
 use crate::sandbox::Sandbox;
 use crate::{HostError, ModelVoice, Origin, WasmLimits};
 
-/// The extension of models that are told the motion.
+/// The extension of models that follow the motion.
 pub const MOTION_EXTENSION: &str = htex_model::motion_1::MotionTable::ID;
-/// Parameters for which there is room at the first call.
+/// Length of the parameter buffer in the first call.
 const USUAL_PARAMETERS: usize = 256;
 
-/// What a fit may look at; see [`htex_model::FitInput`] for units.
+/// Input of a fit; see [`htex_model::FitInput`] for units.
+///
+/// ```
+/// use htex_host::{Band, FitRequest, Registry};
+/// let registry = Registry::builtin();
+/// let model = registry.find("sslope")?;
+/// let frequency_hz: Vec<f64> = (4..=200).map(|i| 5.0 * f64::from(i)).collect();
+/// let magnitude: Vec<f64> = frequency_hz.iter().map(|f| 0.01 * 100.0 / f).collect();
+/// let request = FitRequest {
+///     band: Band::TACTILE,
+///     frequency_hz: &frequency_hz,
+///     magnitude: &magnitude,
+///     signal: &[],
+///     signal_rate_hz: 20_000.0,
+///     options: &model.options(&[])?,
+/// };
+/// let fit = model.fit(&request)?;
+/// assert!(fit.level_rms > 0.0);
+/// # Ok::<(), htex_host::HostError>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 #[allow(missing_docs)]
 pub struct FitRequest<'a> {
@@ -29,11 +47,22 @@ pub struct FitRequest<'a> {
     pub magnitude: &'a [f64],
     pub signal: &'a [f64],
     pub signal_rate_hz: f64,
-    /// One value an option of the descriptor; [`LoadedModel::options`] makes them.
+    /// One value per option of the descriptor, as [`LoadedModel::options`] returns them.
     pub options: &'a [f64],
 }
 
-/// A model that can be called. Cheap to clone.
+/// A model that can be called. A clone shares the model.
+///
+/// ```
+/// use htex_host::{Band, Registry};
+/// let registry = Registry::builtin();
+/// let bands = registry.find("bands")?;
+/// assert_eq!((bands.id(), bands.short_name()), ("org.htex.bands", "bands"));
+/// let sbeta = registry.find("sbeta")?;
+/// let magnitude = sbeta.magnitude(&[2.0, 5.0], Band::TACTILE, &[50.0, 2_000.0])?;
+/// assert_eq!(magnitude[1], 0.0, "outside the band");
+/// # Ok::<(), htex_host::HostError>(())
+/// ```
 #[derive(Clone)]
 pub struct LoadedModel {
     descriptor: Arc<Descriptor>,
@@ -60,16 +89,16 @@ impl LoadedModel {
         };
         check_marker(&name, raw.abi_version())?;
         let call = "htex_model_descriptor";
-        let json = text(|out| raw.descriptor(out)).map_err(|no_text| match no_text {
-            NoText::Status(status) => HostError::Call {
+        let json = text(|out| raw.descriptor(out)).map_err(|error| match error {
+            TextError::Status(status) => HostError::Call {
                 model: name.clone(),
                 call,
                 status: Status::from_code(status),
                 message: reason(|out| raw.last_error(out)),
             },
-            NoText::Broken(what) => broken(call, what),
+            TextError::Broken(what) => broken(call, what),
         })?;
-        let descriptor = read_descriptor(&json).map_err(|what| broken(call, what))?;
+        let descriptor = read_descriptor(&json).map_err(|error| broken(call, error.to_string()))?;
         Ok(Self {
             descriptor: Arc::new(descriptor),
             origin: Arc::new(origin),
@@ -77,16 +106,16 @@ impl LoadedModel {
         })
     }
 
-    /// Loads a model from a file: a WASM module (`.wasm`), which runs in a sandbox under the default
+    /// Loads a model from a file: a WASM module (`.wasm`), which runs in a sandbox with the default
     /// limits, or a native library, which runs with all rights of this program.
     ///
     /// # Errors
-    /// When the file is neither, or its model breaks the ABI.
+    /// When the file is neither, or its model violates the ABI.
     pub fn from_file(path: &Path) -> Result<Self, HostError> {
         Self::from_file_within(path, &WasmLimits::default())
     }
 
-    /// As [`Self::from_file`], under other limits if it is a WASM module.
+    /// As [`Self::from_file`], with other limits for a WASM module.
     ///
     /// # Errors
     /// As [`Self::from_file`].
@@ -94,7 +123,7 @@ impl LoadedModel {
         Self::from_file_in(path, &Sandbox::new(limits))
     }
 
-    /// As [`Self::from_file`], in a sandbox that may have other models too.
+    /// As [`Self::from_file`], in a sandbox that other models may share.
     pub(crate) fn from_file_in(path: &Path, sandbox: &Sandbox) -> Result<Self, HostError> {
         if path
             .extension()
@@ -117,10 +146,10 @@ impl LoadedModel {
         Err(no_wasm(&path.display().to_string()))
     }
 
-    /// Loads a model from the bytes of a WASM module that came with `name`.
+    /// Loads a model from the bytes of a WASM module; messages name `name`, the asset or file that contains it.
     ///
     /// # Errors
-    /// When the bytes are no such module, its model breaks the ABI, or this program was built without the `wasm`
+    /// When the bytes are not a module, its model violates the ABI, or this program was built without the `wasm`
     /// feature.
     pub fn from_wasm_bytes(
         name: &str,
@@ -130,7 +159,7 @@ impl LoadedModel {
         Self::from_wasm_in(name, bytes, &Sandbox::new(limits))
     }
 
-    /// As [`Self::from_wasm_bytes`], in a sandbox that may have other models too.
+    /// As [`Self::from_wasm_bytes`], in a sandbox that other models may share.
     #[cfg(feature = "wasm")]
     pub(crate) fn from_wasm_in(
         name: &str,
@@ -147,22 +176,22 @@ impl LoadedModel {
         Err(no_wasm(name))
     }
 
-    /// Where the model's code comes from.
+    /// Returns the origin of the model's code.
     pub fn origin(&self) -> &Origin {
         &self.origin
     }
 
-    /// What the model says of itself.
+    /// Returns the model's descriptor.
     pub fn descriptor(&self) -> &Descriptor {
         &self.descriptor
     }
 
-    /// The model's reverse-DNS id.
+    /// Returns the model's reverse-DNS id.
     pub fn id(&self) -> &str {
         &self.descriptor.id
     }
 
-    /// The last part of the id: the name used on command lines.
+    /// Returns the last part of the id, the name used on command lines.
     pub fn short_name(&self) -> &str {
         let id = self.id();
         id.rsplit('.').next().unwrap_or(id)
@@ -176,11 +205,11 @@ impl LoadedModel {
         self.fit_at(request, FitCondition::default())
     }
 
-    /// As [`Self::fit`], of a recording at a motion, which is told to models that follow the motion
-    /// ([`Self::follows_motion`]) and makes no difference to others.
+    /// As [`Self::fit`], of a recording at a motion. Models that follow the motion ([`Self::follows_motion`]) receive
+    /// it; others ignore it.
     ///
     /// # Errors
-    /// As [`Self::fit`]; of a model that follows the motion also when a speed or force is negative or not finite.
+    /// As [`Self::fit`]; for a model that follows the motion also when a speed or force is negative or not finite.
     pub fn fit_at(
         &self,
         request: &FitRequest<'_>,
@@ -188,7 +217,11 @@ impl LoadedModel {
     ) -> Result<Fit, HostError> {
         let call = "fit";
         if request.frequency_hz.len() != request.magnitude.len() {
-            let what = "as many magnitudes as frequencies are wanted".to_owned();
+            let what = format!(
+                "there are {} magnitudes for {} frequencies; pass one per frequency",
+                request.magnitude.len(),
+                request.frequency_hz.len()
+            );
             return Err(self.error(call, Status::InvalidArgument, what));
         }
         let raw = RawFit {
@@ -211,11 +244,10 @@ impl LoadedModel {
         })
     }
 
-    /// The shape's magnitude at `frequency_hz`: unit RMS on the 5 Hz grid in the band.
+    /// Returns the shape's magnitude at `frequency_hz`, of unit RMS on the 5 Hz grid in the band.
     ///
     /// # Errors
-    /// [`HostError::Call`] with the model's reason; [`HostError::Broken`] if a magnitude is not a
-    /// number or negative.
+    /// [`HostError::Call`] with the model's reason; [`HostError::Broken`] if a magnitude is not finite or negative.
     pub fn magnitude(
         &self,
         parameters: &[f64],
@@ -238,21 +270,25 @@ impl LoadedModel {
         }
     }
 
-    /// Parameters between several sets, weighted; weights sum to one.
+    /// Interpolates parameter sets by weights, which sum to one.
     ///
     /// # Errors
     /// [`HostError::Call`] with the model's reason.
     pub fn interpolate(&self, sets: &[&[f64]], weights: &[f64]) -> Result<Vec<f64>, HostError> {
         let call = "interpolate";
         if sets.len() != weights.len() {
-            let what = "as many weights as sets are wanted".to_owned();
+            let what = format!(
+                "there are {} weights for {} sets; pass one per set",
+                weights.len(),
+                sets.len()
+            );
             return Err(self.error(call, Status::InvalidArgument, what));
         }
         let flat = sets.concat();
         self.numbers(call, |out| self.raw.interpolate(&flat, weights, out))
     }
 
-    /// The longest set of parameters that the descriptor allows.
+    /// Returns the length of the longest parameter set that the descriptor allows.
     pub fn most_parameters(&self) -> usize {
         let most = self.descriptor.fields.iter().map(|field| match field.kind {
             Kind::Scalar => 1,
@@ -261,7 +297,7 @@ impl LoadedModel {
         most.sum::<usize>().min(MAX_PARAMETERS)
     }
 
-    /// The rate at which a voice renders when `wanted_hz` is wanted, hertz.
+    /// Returns the rate at which a voice renders for a requested rate of `wanted_hz`, hertz.
     ///
     /// # Errors
     /// [`HostError::Call`] with the model's reason.
@@ -281,7 +317,7 @@ impl LoadedModel {
         Err(self.broken("voice_rate", format!("a rate of {rate_hz} Hz")))
     }
 
-    /// Makes a voice that renders at `rate_hz`, which is what [`Self::voice_rate_hz`] answered.
+    /// Makes a voice that renders at `rate_hz`, a rate that [`Self::voice_rate_hz`] returned.
     ///
     /// # Errors
     /// [`HostError::Call`] with the model's reason.
@@ -295,48 +331,50 @@ impl LoadedModel {
         let band = abi_band(band);
         match self.raw.voice_new(parameters, band, rate_hz, seed) {
             Ok(voice) => Ok(ModelVoice::new(self.clone(), voice)),
-            Err(status) => Err(self.told("voice_new", status, |out| self.raw.last_error(out))),
+            Err(status) => {
+                Err(self.call_error("voice_new", status, |out| self.raw.last_error(out)))
+            }
         }
     }
 
-    /// Whether the model has the extension `id` (`htex.NAME/REV`, `com.vendor.NAME/REV`).
+    /// Returns whether the model has the extension `id` (`htex.NAME/REV`, `com.vendor.NAME/REV`).
     ///
     /// # Errors
-    /// [`HostError::Broken`] if the answer is neither yes nor no.
+    /// [`HostError::Broken`] if the model returns neither 0 nor 1.
     pub fn has_extension(&self, id: &str) -> Result<bool, HostError> {
         match self.check("extension", self.raw.extension(id.as_bytes()))? {
             0 => Ok(false),
             1 => Ok(true),
-            other => Err(self.broken("extension", format!("it answers {other} to `{id}`"))),
+            other => Err(self.broken("extension", format!("it returns {other} for `{id}`"))),
         }
     }
 
-    /// Whether the model has the extension `htex.motion/1`: its voices are told the motion
-    /// ([`ModelVoice::set_motion`]) and follow it themselves, and its fits are told the recording's.
+    /// Returns whether the model has the extension `htex.motion/1`: its voices receive the motion
+    /// ([`ModelVoice::set_motion`]) and follow it themselves, and its fits receive the recording's motion.
     pub fn follows_motion(&self) -> bool {
         self.raw.follows_motion()
     }
 
-    /// A length, or the error that a negative answer stands for.
-    fn check(&self, call: &'static str, answer: i64) -> Result<usize, HostError> {
-        if answer >= 0 {
-            return Ok(answer as usize);
+    /// Converts a returned number to a length, or a negative one to an error.
+    fn check(&self, call: &'static str, returned: i64) -> Result<usize, HostError> {
+        if returned >= 0 {
+            return Ok(returned as usize);
         }
-        Err(self.told(call, answer, |out| self.raw.last_error(out)))
+        Err(self.call_error(call, returned, |out| self.raw.last_error(out)))
     }
 
-    /// The error of a negative answer, in the words of the model.
-    pub(crate) fn told(
+    /// Returns the error of a negative status, with the model's last-error text.
+    pub(crate) fn call_error(
         &self,
         call: &'static str,
-        answer: i64,
+        status: i64,
         last_error: impl FnMut(&mut [u8]) -> i64,
     ) -> HostError {
-        self.error(call, Status::from_code(answer), reason(last_error))
+        self.error(call, Status::from_code(status), reason(last_error))
     }
 
-    /// Calls with a buffer of the usual size, and once more if that was too small; the answer must
-    /// be one set of parameters that fits the descriptor.
+    /// Calls with a buffer of the usual size, and again if that is too small. The result must be one parameter set that
+    /// fits the descriptor.
     fn numbers(
         &self,
         call: &'static str,
@@ -375,18 +413,6 @@ impl LoadedModel {
     }
 }
 
-/// Refuses a model of another major version of the ABI.
-pub(crate) fn check_marker(origin: &str, marker: u32) -> Result<(), HostError> {
-    if marker >> 8 == ABI_MARKER >> 8 {
-        return Ok(());
-    }
-    Err(HostError::Broken {
-        model: origin.to_owned(),
-        call: "htex_model_abi_version",
-        what: format!("its marker is {marker:#x}; this host loads models of ABI {ABI_MAJOR}.x"),
-    })
-}
-
 fn abi_band(band: Band) -> htex_model::Band {
     htex_model::Band {
         low_hz: band.low_hz,
@@ -394,29 +420,29 @@ fn abi_band(band: Band) -> htex_model::Band {
     }
 }
 
-/// Why there is no text.
-enum NoText {
-    /// The model answered with this status.
+/// An error of reading a text.
+enum TextError {
+    /// The model returned this status.
     Status(i64),
-    /// The answer is not one the ABI allows.
+    /// The returned length or text violates the ABI.
     Broken(String),
 }
 
-/// Reads a text of a length not known beforehand.
-fn text(mut call: impl FnMut(&mut [u8]) -> i64) -> Result<String, NoText> {
-    let answer = call(&mut []);
-    let len = usize::try_from(answer).map_err(|_| NoText::Status(answer))?;
+/// Reads a text of unknown length: one call for the length, one for the text.
+fn text(mut call: impl FnMut(&mut [u8]) -> i64) -> Result<String, TextError> {
+    let first = call(&mut []);
+    let len = usize::try_from(first).map_err(|_| TextError::Status(first))?;
     if len > MAX_TEXT_BYTES {
-        let what = format!("it says its text has {len} bytes; {MAX_TEXT_BYTES} are allowed");
-        return Err(NoText::Broken(what));
+        let what = format!("its text has {len} bytes; {MAX_TEXT_BYTES} are allowed");
+        return Err(TextError::Broken(what));
     }
     let mut bytes = vec![0; len];
     match call(&mut bytes) {
-        status if status < 0 => Err(NoText::Status(status)),
-        again if again != answer => Err(NoText::Broken(format!(
-            "it says its text has {answer} bytes, and then {again}"
+        status if status < 0 => Err(TextError::Status(status)),
+        second if second != first => Err(TextError::Broken(format!(
+            "its text has {first} bytes in one call and {second} in the next"
         ))),
-        _ => String::from_utf8(bytes).map_err(|e| NoText::Broken(e.to_string())),
+        _ => String::from_utf8(bytes).map_err(|e| TextError::Broken(e.to_string())),
     }
 }
 

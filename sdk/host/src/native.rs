@@ -1,7 +1,7 @@
 //! Models in native libraries (`.so`, `.dylib`, `.dll`).
 //!
-//! A native library runs with all the rights of this program: which ones to load is the user's
-//! decision. Libraries are loaded once and never unloaded, since voices and tables point into them.
+//! A native library runs with all rights of this program, so only libraries that the user chose are loaded. They
+//! are loaded once and never unloaded, because voices and tables point into them.
 
 use std::path::Path;
 
@@ -14,23 +14,24 @@ use htex_model::voices_1::{VoicesRenderFn, VoicesTable};
 use htex_native::Library;
 
 use crate::HostError;
+use crate::marker::check_marker;
 use crate::table::TableModel;
 
 /// Loads a library and fills a table from its symbols.
 ///
 /// # Errors
-/// When the file is no library of this machine, or lacks a symbol of the model ABI.
+/// When the file is not a library for this machine, or lacks a symbol of the model ABI.
 pub(crate) fn load(path: &Path) -> Result<TableModel, HostError> {
     let origin = path.display().to_string();
     let error = |what: String| HostError::Load {
         path: origin.clone(),
         what,
     };
-    // SAFETY: running a library's initialisers is what the user asked for by naming it.
+    // SAFETY: the user allowed the library's initialisers to run by naming the file or its folder.
     let library = unsafe { Library::from_file(path) }.map_err(|e| error(e.to_string()))?;
-    // SAFETY: the marker comes first, and says that the other symbols have these types.
+    // SAFETY: every version of the ABI has this function with this type.
     let abi_version: AbiVersion = unsafe { symbol(library, "htex_model_abi_version", &error)? };
-    crate::model::check_marker(&origin, abi_version())?;
+    check_marker(&origin, abi_version())?;
     // SAFETY: a library with this marker exports these names with these types.
     let table: &'static ModelTable = Box::leak(Box::new(unsafe {
         ModelTable {
@@ -79,7 +80,11 @@ unsafe fn symbol<T: Copy>(
     name: &str,
     error: &impl Fn(String) -> HostError,
 ) -> Result<T, HostError> {
-    // SAFETY: the caller's promise.
+    // SAFETY: guaranteed by the caller.
     let found = unsafe { library.symbol(name) };
-    found.ok_or_else(|| error(format!("the library has no `{name}`; it is no htex model")))
+    found.ok_or_else(|| {
+        error(format!(
+            "the library has no `{name}`; it is not an htex model"
+        ))
+    })
 }

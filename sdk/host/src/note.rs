@@ -1,10 +1,22 @@
-//! What a program's user should know of the models that were found.
+//! Notes on the models that a search found.
 
 use std::path::PathBuf;
 
 use crate::{HostError, Origin};
 
-/// What happened while models were looked for, and is no reason to stop.
+/// A note of a search, for the user: the search went on.
+///
+/// ```
+/// use htex_host::{Note, Registry, Search};
+/// let registry = Registry::search(&Search::default())?;
+/// for note in registry.notes() {
+///     if let Note::Broken { path, .. } = note {
+///         eprintln!("remove or update {}", path.display());
+///     }
+///     eprintln!("{note}");
+/// }
+/// # Ok::<(), htex_host::HostError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Note {
@@ -12,32 +24,32 @@ pub enum Note {
     Shadowed {
         /// The id.
         id: String,
-        /// The model that is used: its version, and where it comes from.
+        /// Version and origin of the model that is used.
         used: (String, Origin),
-        /// The model that is used only when its version is asked for.
+        /// Version and origin of the model that is used only for requests of its version.
         shadowed: (String, Origin),
     },
-    /// Two models of different ids have the same short name, which means the one found first.
+    /// Two models with different ids have the same short name, which refers to the one found first.
     SameName {
         /// The short name.
         name: String,
-        /// The id it means.
+        /// The id that the short name refers to.
         means: String,
-        /// The id that must be written out.
+        /// The id of the other model, which has to be written in full.
         other: String,
     },
     /// A file in a plugin folder could not be loaded.
     Broken {
         /// The file.
         path: PathBuf,
-        /// Why not.
+        /// The reason.
         error: HostError,
     },
     /// A folder of `HTEX_PLUGIN_PATH`, or the user's, could not be read.
     Folder {
         /// The folder.
         path: PathBuf,
-        /// Why not.
+        /// The reason.
         what: String,
     },
 }

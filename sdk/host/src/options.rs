@@ -2,41 +2,43 @@
 
 use htex_model::FitOption;
 
-use crate::{HostError, LoadedModel};
+use crate::{HostError, LoadedModel, OptionError};
 
 impl LoadedModel {
-    /// One value for each of the model's options: those given as `(name, text)`, else the default.
+    /// Returns one value for each of the model's options: the value given as `(name, text)`, else the default.
     /// A choice is given by its name.
     ///
     /// # Errors
-    /// [`HostError::Option`] with what is allowed.
+    /// [`HostError::Option`] with the allowed values.
     pub fn options(&self, given: &[(&str, &str)]) -> Result<Vec<f64>, HostError> {
-        let error = |what| HostError::Option {
+        let in_model = |error| HostError::Option {
             model: self.id().to_owned(),
-            what,
+            error: Box::new(error),
         };
         let options = &self.descriptor().options;
         let mut values = self.descriptor().default_options();
         for (name, text) in given {
             let Some(i) = options.iter().position(|o| o.name == *name) else {
                 let known: Vec<&str> = options.iter().map(|o| o.name.as_str()).collect();
-                return Err(error(format!(
-                    "`{name}` is unknown; there are {}",
-                    known.join(", ")
-                )));
+                return Err(in_model(OptionError::Unknown {
+                    name: (*name).to_owned(),
+                    known: known.join(", "),
+                }));
             };
-            values[i] = parse(&options[i], text).map_err(error)?;
+            values[i] = parse(&options[i], text).map_err(in_model)?;
         }
         Ok(values)
     }
 }
 
-fn parse(option: &FitOption, text: &str) -> Result<f64, String> {
+fn parse(option: &FitOption, text: &str) -> Result<f64, OptionError> {
+    let name = || option.name.clone();
     if !option.choices.is_empty() {
         let choice = option.choices.iter().position(|c| c == text);
-        return choice.map(|i| i as f64).ok_or_else(|| {
-            let choices = option.choices.join(", ");
-            format!("`{}` is `{text}`; it takes one of {choices}", option.name)
+        return choice.map(|i| i as f64).ok_or_else(|| OptionError::Choice {
+            name: name(),
+            text: text.to_owned(),
+            choices: option.choices.join(", "),
         });
     }
     let value: Option<f64> = text.parse().ok();
@@ -49,9 +51,13 @@ fn parse(option: &FitOption, text: &str) -> Result<f64, String> {
             } else {
                 "a number"
             };
-            format!(
-                "`{}` is `{text}`; it takes {kind} from {} to {} {}",
-                option.name, option.min, option.max, option.unit
-            )
+            OptionError::Number {
+                name: name(),
+                text: text.to_owned(),
+                range: format!(
+                    "{kind} from {} to {} {}",
+                    option.min, option.max, option.unit
+                ),
+            }
         })
 }

@@ -1,20 +1,27 @@
-//! Where a model's code comes from.
+//! Origins of models.
 
 use std::path::PathBuf;
 
-/// Where a model's code comes from.
+/// Origin of a model's code.
+///
+/// ```
+/// use htex_host::{Origin, Registry};
+/// let registry = Registry::builtin();
+/// assert_eq!(*registry.find("ar")?.origin(), Origin::Builtin);
+/// # Ok::<(), htex_host::HostError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Origin {
     /// Linked into this program.
     Builtin,
-    /// A type of this program, registered by it.
+    /// A type that this program registered.
     Own,
     /// A native library, which runs with all rights of this program.
     Native(PathBuf),
     /// A WASM module in a file, which runs in a sandbox.
     Wasm(PathBuf),
-    /// A WASM module that came with something else, by the name of that.
+    /// A WASM module in an asset or another container, by the name of the container.
     Embedded(String),
 }
 

@@ -1,4 +1,4 @@
-//! Models of the program itself: types that implement [`Model`], called without a C function in between.
+//! Models of the program itself: types that implement [`Model`], called without C functions.
 
 use std::sync::Arc;
 
@@ -8,28 +8,28 @@ use htex_model::{Band, Model, Motion, MotionVoice, json};
 
 use crate::raw::{RawFit, RawModel, RawVoice};
 
-/// Most bytes of the descriptor of such a model, as JSON.
+/// Most bytes of such a model's descriptor in JSON.
 const MOST_JSON_BYTES: usize = 65_536;
 
-/// A model of the program itself. It calls the same checks of arguments as an exported one, and catches panics as it does.
+/// A model of the program itself. Arguments are checked and panics caught as for an exported model.
 pub(crate) struct OwnModel<M: Model> {
     state: Arc<State<M>>,
     motion: Option<OwnMotion<M>>,
 }
 
-/// The functions of `htex.motion/1`, of a model that has it.
+/// The functions of `htex.motion/1` of a model.
 struct OwnMotion<M: Model> {
     fit: fn(&State<M>, FitCall<'_>, f64, f64) -> i64,
-    /// Unsafe as [`State::motion_set`] is.
+    /// Safety: as [`State::motion_set`].
     set: unsafe fn(&State<M>, i64, Motion) -> i64,
 }
 
 impl<M: Model> OwnModel<M> {
-    /// The model; `None` if its descriptor is longer than 64 KiB.
+    /// Makes the model; `None` if its descriptor is longer than 64 KiB.
     pub(crate) fn new() -> Option<Self> {
         let len = json::length(&M::DESCRIPTOR);
         let bytes: Vec<u8> = json::text::<MOST_JSON_BYTES>(&M::DESCRIPTOR).into();
-        // A program registers a model once or a few times, and the text is as long as the program runs.
+        // The text lives until the program ends; a program registers a model once or a few times.
         let json: &'static [u8] = Box::leak(bytes.get(..len)?.into());
         Some(Self {
             state: Arc::new(State::new(json)),
@@ -39,7 +39,7 @@ impl<M: Model> OwnModel<M> {
 }
 
 impl<M: Model<Voice: MotionVoice>> OwnModel<M> {
-    /// The model with the extension `htex.motion/1`.
+    /// Adds the extension `htex.motion/1`.
     pub(crate) fn with_motion(self) -> Self {
         Self {
             motion: Some(OwnMotion {
@@ -110,7 +110,7 @@ impl<M: Model> RawModel for OwnModel<M> {
     }
 
     fn extension(&self, id: &[u8]) -> i64 {
-        // Voices are rendered one by one: a call for several is found by its table of C functions.
+        // `htex.voices/1` is absent: its call needs a table of C functions.
         let known = self.motion.is_some() && id == crate::MOTION_EXTENSION.as_bytes();
         i64::from(known)
     }
@@ -146,7 +146,7 @@ impl<M: Model> RawModel for OwnModel<M> {
     }
 }
 
-/// A voice behind a handle, which it alone holds.
+/// A voice and its handle, which no other value holds.
 struct OwnVoice<M: Model> {
     state: Arc<State<M>>,
     motion: Option<OwnMotion<M>>,
@@ -156,12 +156,12 @@ struct OwnVoice<M: Model> {
 
 impl<M: Model> RawVoice for OwnVoice<M> {
     fn render(&mut self, out: &mut [f32]) -> i64 {
-        // SAFETY: `&mut self` keeps the handle to one thread at a time.
+        // SAFETY: `&mut self` restricts the handle to one thread at a time.
         unsafe { self.state.voice_render(self.handle, out.into()) }
     }
 
     fn retune(&mut self, parameters: &[f64]) -> i64 {
-        // SAFETY: `&mut self` keeps the handle to one thread at a time.
+        // SAFETY: `&mut self` restricts the handle to one thread at a time.
         unsafe { self.state.voice_retune(self.handle, parameters.into()) }
     }
 
@@ -169,7 +169,7 @@ impl<M: Model> RawVoice for OwnVoice<M> {
         let Some(own) = self.motion else {
             return 0;
         };
-        // SAFETY: `&mut self` keeps the handle to one thread at a time.
+        // SAFETY: `&mut self` restricts the handle to one thread at a time.
         unsafe { (own.set)(&self.state, self.handle, motion) }
     }
 
@@ -191,7 +191,7 @@ impl<M: Model> RawVoice for OwnVoice<M> {
 impl<M: Model> Drop for OwnVoice<M> {
     fn drop(&mut self) {
         if !self.freed {
-            // The handle is live, so that nothing can fail.
+            // The handle is live, so the call does not fail.
             self.state.voice_free(self.handle);
         }
     }

@@ -1,4 +1,4 @@
-//! The models a program knows.
+//! The models available to a program.
 
 use std::sync::Arc;
 
@@ -10,21 +10,29 @@ use crate::own::OwnModel;
 use crate::sandbox::Sandbox;
 use crate::{HostError, LoadedModel, Note, Origin, Search, WasmLimits};
 
-/// Models by id. Of several with one id, the one that [`Search`] puts first is used; the others are
-/// there for those who ask for their version.
+/// Models by id. Of several models with one id, the first in the order of [`Search`] is used; the others are
+/// returned only for requests of their version.
+///
+/// ```
+/// use htex_host::Registry;
+/// let registry = Registry::builtin();
+/// assert_eq!(registry.models().len(), 6);
+/// assert_eq!(registry.find("AR")?.id(), "org.htex.ar");
+/// # Ok::<(), htex_host::HostError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Registry {
-    /// In the order in which they are shown.
+    /// In display order.
     models: Vec<LoadedModel>,
-    /// Models whose id one of `models` has.
+    /// Models with the same id as one of `models`.
     shadowed: Vec<LoadedModel>,
-    /// The ranks of `models`, one each, ascending.
+    /// The rank of each of `models`, ascending.
     ranks: Vec<Rank>,
     notes: Vec<Note>,
     sandbox: Sandbox,
 }
 
-/// What goes before what.
+/// Precedence of origins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Rank {
     File,
@@ -43,14 +51,14 @@ fn own<M: Model>() -> Result<OwnModel<M>, HostError> {
 }
 
 impl Registry {
-    /// The models linked into this program.
+    /// Returns the models linked into this program.
     pub fn builtin() -> Self {
         let mut registry = Self::empty(&WasmLimits::default());
         registry.add_builtin();
         registry
     }
 
-    /// The models that a search finds.
+    /// Returns the models that a search finds.
     ///
     /// # Errors
     /// When one of the search's `files` cannot be loaded, or one of its `dirs` cannot be read.
@@ -68,8 +76,8 @@ impl Registry {
         }
     }
 
-    /// The registry of one asset: modules that are added to it share what [`WasmLimits::asset`] allows, within what all
-    /// modules of this registry do.
+    /// Returns the registry of one asset: modules that are added to it share the limits [`WasmLimits::asset`], within
+    /// those of all modules of this registry.
     #[must_use]
     pub fn of_asset(self) -> Self {
         Self {
@@ -88,8 +96,8 @@ impl Registry {
         }
     }
 
-    /// Adds a model of this program: a type that implements the trait. It goes before all other models of its id, but for
-    /// those that were named or registered earlier.
+    /// Adds a model of this program: a type that implements the trait. It precedes all other models of its id except
+    /// those that were named or registered before.
     ///
     /// ```
     /// use htex_host::Registry;
@@ -133,13 +141,13 @@ impl Registry {
     /// ```
     ///
     /// # Errors
-    /// When the descriptor describes no model that can be called, or is longer than 64 KiB.
+    /// When the descriptor is invalid, or longer than 64 KiB.
     pub fn add_model<M: Model>(&mut self) -> Result<(), HostError> {
         let model = own::<M>()?;
         self.add_own(model)
     }
 
-    /// As [`Self::add_model`], of a model that follows the motion itself (the extension `htex.motion/1`).
+    /// As [`Self::add_model`], for a model that follows the motion itself (the extension `htex.motion/1`).
     ///
     /// # Errors
     /// As [`Self::add_model`].
@@ -154,18 +162,18 @@ impl Registry {
         Ok(())
     }
 
-    /// Adds a WASM model that came with `name` (an asset's, say), behind plugins named by their
-    /// files and before all others. There is no such way for a native library.
+    /// Adds the WASM model of a container `name`, such as an asset, after plugins named by their files and before all
+    /// others. A native library cannot be added in this way.
     ///
     /// # Errors
-    /// When the bytes are no module, or its model breaks the ABI.
+    /// When the bytes are not a module, or its model violates the ABI.
     pub fn add_wasm_bytes(&mut self, name: &str, bytes: &[u8]) -> Result<(), HostError> {
         let model = LoadedModel::from_wasm_in(name, bytes, &self.sandbox)?;
         self.add(Rank::Embedded, model);
         Ok(())
     }
 
-    /// As [`Self::add_wasm_bytes`], of a model that is declared: a module of any other id or version is not added.
+    /// As [`Self::add_wasm_bytes`], for a declared id and version: a module with another id or version is not added.
     ///
     /// # Errors
     /// As [`Self::add_wasm_bytes`], and [`HostError::OtherModel`].
@@ -189,7 +197,7 @@ impl Registry {
         Ok(())
     }
 
-    /// Adds a model behind those of its rank, and notes what it shadows, or what shadows it.
+    /// Adds a model after those of its rank, and a note if it shadows a model or is shadowed.
     pub(crate) fn add(&mut self, rank: Rank, model: LoadedModel) {
         let at = self.ranks.partition_point(|other| *other <= rank);
         let same = self.models.iter().position(|m| m.id() == model.id());
@@ -212,7 +220,7 @@ impl Registry {
         self.ranks.insert(at, rank);
     }
 
-    /// All models of one id: the one that is used, and those it shadows.
+    /// Returns all models of one id: the one that is used, and those that it shadows.
     pub fn all<'a>(&'a self, id: &'a str) -> impl Iterator<Item = &'a LoadedModel> {
         let models = self.models.iter().chain(&self.shadowed);
         models.filter(move |model| model.id() == id)
@@ -242,20 +250,20 @@ impl Registry {
         }
     }
 
-    /// All models that are used, each id once.
+    /// Returns all models that are used, one per id.
     pub fn models(&self) -> &[LoadedModel] {
         &self.models
     }
 
-    /// What the user should know: models that shadow others, and plugins that could not be loaded.
+    /// Returns notes for the user: models that shadow others, and plugins that could not be loaded.
     pub fn notes(&self) -> &[Note] {
         &self.notes
     }
 
-    /// A model by its id or by its short name (`org.htex.sbeta` or `sbeta`, in any case).
+    /// Returns a model by its id or its short name (`org.htex.sbeta` or `sbeta`; short names ignore case).
     ///
     /// # Errors
-    /// [`HostError::UnknownModel`] with the names there are.
+    /// [`HostError::UnknownModel`] with the known names.
     pub fn find(&self, name: &str) -> Result<&LoadedModel, HostError> {
         let by_id = self.models.iter().find(|m| m.id() == name);
         let by_name = || {
@@ -271,10 +279,10 @@ impl Registry {
             })
     }
 
-    /// The first model of this id whose version is one of those wanted, shadowed ones included.
+    /// Returns the first model of this id whose version matches `wanted`, including shadowed ones.
     ///
     /// # Errors
-    /// [`HostError::UnknownModel`] with the ids and versions there are.
+    /// [`HostError::UnknownModel`] with the known ids and versions.
     pub fn find_version(&self, id: &str, wanted: &VersionReq) -> Result<&LoadedModel, HostError> {
         let matches = |m: &&LoadedModel| {
             let version = Version::parse(&m.descriptor().version);

@@ -1,4 +1,4 @@
-//! What modules run in: the limits of each, and what several share.
+//! The sandbox of modules: the limits of each, and the budget that several share.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -7,10 +7,10 @@ use std::time::{Duration, Instant};
 
 use crate::{WasmLimits, WasmTotal};
 
-/// The part of passing time that comes back.
-const COMES_BACK: f64 = 0.1;
+/// The part of elapsed time that is added to a budget.
+const REFILL: f64 = 0.1;
 
-/// The limits of modules, and the budget that they share. A clone shares it too.
+/// The limits of modules, and the budget that they share. A clone shares the budget.
 #[derive(Debug, Clone)]
 pub(crate) struct Sandbox {
     pub(crate) limits: WasmLimits,
@@ -18,7 +18,7 @@ pub(crate) struct Sandbox {
 }
 
 impl Sandbox {
-    /// A sandbox with a budget of its own.
+    /// A sandbox with a new budget.
     pub(crate) fn new(limits: &WasmLimits) -> Self {
         Self {
             limits: limits.clone(),
@@ -26,7 +26,7 @@ impl Sandbox {
         }
     }
 
-    /// The sandbox of one asset: within the budget of this one.
+    /// The sandbox of one asset: its budget is part of this sandbox's budget.
     pub(crate) fn of_asset(&self) -> Self {
         let outer = Some(Arc::clone(&self.budget));
         Self {
@@ -40,11 +40,27 @@ impl Sandbox {
     }
 }
 
-/// What several modules have together.
+/// A limit that several modules share is exceeded.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum BudgetError {
+    #[error("{owner} may have {bytes} bytes of memory together")]
+    Memory { owner: &'static str, bytes: usize },
+    #[error(
+        "{owner} may have {instances} instances at a time, one per model and one per voice; free some voices"
+    )]
+    Instances {
+        owner: &'static str,
+        instances: usize,
+    },
+    #[error("{owner} have used up the {ms} ms that they have together")]
+    Time { owner: &'static str, ms: u128 },
+}
+
+/// The shared limits of several modules, and what they use of them.
 #[derive(Debug)]
 pub(crate) struct Budget {
-    /// Whose it is, for messages.
-    whose: &'static str,
+    /// The modules that share it, for messages.
+    owner: &'static str,
     total: WasmTotal,
     memory_bytes: AtomicUsize,
     instances: AtomicUsize,
@@ -52,7 +68,7 @@ pub(crate) struct Budget {
     outer: Option<Arc<Self>>,
 }
 
-/// Time that is left, as it was at an instant.
+/// The time left at an instant.
 #[derive(Debug)]
 struct Time {
     left: Duration,
@@ -60,9 +76,9 @@ struct Time {
 }
 
 impl Budget {
-    fn new(whose: &'static str, total: WasmTotal, outer: Option<Arc<Self>>) -> Self {
+    fn new(owner: &'static str, total: WasmTotal, outer: Option<Arc<Self>>) -> Self {
         Self {
-            whose,
+            owner,
             total,
             memory_bytes: AtomicUsize::new(0),
             instances: AtomicUsize::new(0),
@@ -74,19 +90,17 @@ impl Budget {
         }
     }
 
-    /// This budget and those around it.
+    /// Iterates over this budget and the ones that contain it.
     fn all(&self) -> impl Iterator<Item = &Self> {
         std::iter::successors(Some(self), |budget| budget.outer.as_deref())
     }
 
-    /// Takes memory, or none and says whose limit that would break.
-    pub(crate) fn take_memory(&self, bytes: usize) -> Result<(), String> {
+    /// Takes memory; takes none on error.
+    pub(crate) fn take_memory(&self, bytes: usize) -> Result<(), BudgetError> {
         self.take(bytes, |b| (&b.memory_bytes, b.total.memory_bytes))
-            .map_err(|b| {
-                format!(
-                    "{} may have {} bytes of memory together",
-                    b.whose, b.total.memory_bytes
-                )
+            .map_err(|b| BudgetError::Memory {
+                owner: b.owner,
+                bytes: b.total.memory_bytes,
             })
     }
 
@@ -96,14 +110,12 @@ impl Budget {
         }
     }
 
-    /// Takes the place of an instance, or none and says whose limit that would break.
-    pub(crate) fn take_instance(&self) -> Result<(), String> {
+    /// Counts one more instance; counts none on error.
+    pub(crate) fn take_instance(&self) -> Result<(), BudgetError> {
         self.take(1, |b| (&b.instances, b.total.instances))
-            .map_err(|b| {
-                format!(
-                    "{} may have {} instances at a time, one a model and one a voice; free some voices",
-                    b.whose, b.total.instances
-                )
+            .map_err(|b| BudgetError::Instances {
+                owner: b.owner,
+                instances: b.total.instances,
             })
     }
 
@@ -113,7 +125,8 @@ impl Budget {
         }
     }
 
-    /// Adds to a count of this budget and of those around it, or to none; answers the one that has not enough.
+    /// Adds to a count of this budget and of those that contain it. On error adds to none, and returns the budget whose
+    /// limit would be exceeded.
     fn take(&self, n: usize, count: impl Fn(&Self) -> (&AtomicUsize, usize)) -> Result<(), &Self> {
         for (taken, budget) in self.all().enumerate() {
             let (used, most) = count(budget);
@@ -131,18 +144,17 @@ impl Budget {
         Ok(())
     }
 
-    /// The time that is left, or whose is used up.
-    pub(crate) fn time_left(&self) -> Result<Duration, String> {
+    /// Returns the time left, or the budget whose time is used up as an error.
+    pub(crate) fn time_left(&self) -> Result<Duration, BudgetError> {
         let mut least = Duration::MAX;
         for budget in self.all() {
             let left = budget.update(Duration::ZERO);
-            // What comes back while one is refused is not given to the next at once.
+            // After time is used up, calls are refused until a hundredth of the total has been added.
             if left < budget.total.time / 100 {
-                return Err(format!(
-                    "{} have used up the {} ms that they have together",
-                    budget.whose,
-                    budget.total.time.as_millis()
-                ));
+                return Err(BudgetError::Time {
+                    owner: budget.owner,
+                    ms: budget.total.time.as_millis(),
+                });
             }
             least = least.min(left);
         }
@@ -155,11 +167,11 @@ impl Budget {
         }
     }
 
-    /// Adds what has come back, takes what was spent, and answers what is left.
+    /// Adds the part of the elapsed time, subtracts the time spent, and returns the time left.
     fn update(&self, spent: Duration) -> Duration {
         let mut time = self.time.lock().unwrap_or_else(PoisonError::into_inner);
         let now = Instant::now();
-        let back = now.saturating_duration_since(time.at).mul_f64(COMES_BACK);
+        let back = now.saturating_duration_since(time.at).mul_f64(REFILL);
         time.left = (time.left + back)
             .min(self.total.time)
             .saturating_sub(spent);

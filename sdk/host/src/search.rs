@@ -1,4 +1,4 @@
-//! Where models are looked for.
+//! The places that are searched for models.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -6,31 +6,40 @@ use std::path::{Path, PathBuf};
 use crate::registry::Rank;
 use crate::{HostError, LoadedModel, Note, Registry, WasmLimits, folders};
 
-/// Names plugin folders, as `PATH` names those of programs.
+/// Variable with the plugin folders, separated as in `PATH`.
 const VARIABLE: &str = "HTEX_PLUGIN_PATH";
 
-/// Where models are looked for. What is found earlier goes before what is found later: `files`,
-/// models embedded in an asset, `dirs`, `HTEX_PLUGIN_PATH`, the user's folder, built in.
+/// The places that are searched for models, in order of precedence: `files`, models embedded in an asset, `dirs`,
+/// `HTEX_PLUGIN_PATH`, the user's folder, built-in models.
+///
+/// ```
+/// use htex_host::{Registry, Search, WasmLimits};
+/// let search = Search::builtin().with_limits(WasmLimits::default().with_voices(8));
+/// let registry = Registry::search(&search)?;
+/// assert!(registry.find("mfcc").is_ok());
+/// # Ok::<(), htex_host::HostError>(())
+/// ```
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Search {
-    /// Plugins by their files; one that cannot be loaded is an error.
+    /// Files of plugins; a file that cannot be loaded is an error.
     pub files: Vec<PathBuf>,
-    /// Folders of plugins; one that cannot be read is an error, a plugin in it that cannot be
-    /// loaded a [`Note`].
+    /// Folders of plugins; a folder that cannot be read is an error, a plugin in it that cannot be
+    /// loaded is a [`Note`].
     pub dirs: Vec<PathBuf>,
-    /// Whether to look into the folders that the variable `HTEX_PLUGIN_PATH` names.
+    /// Whether to search the folders in the variable `HTEX_PLUGIN_PATH`.
     pub env: bool,
-    /// Whether to look into `htex/plugins` in the user's data folder (`$XDG_DATA_HOME`, else
+    /// Whether to search `htex/plugins` in the user's data folder (`$XDG_DATA_HOME`, else
     /// `~/.local/share`).
     pub user_dir: bool,
-    /// Whether to take the models linked into this program.
+    /// Whether to include the models linked into this program.
     pub builtin: bool,
-    /// What a WASM model may use.
+    /// Limits of WASM models.
     pub limits: WasmLimits,
 }
 
 impl Default for Search {
-    /// Everywhere, without files and folders of its own.
+    /// All places, without `files` and `dirs`.
     fn default() -> Self {
         Self {
             files: Vec::new(),
@@ -44,13 +53,55 @@ impl Default for Search {
 }
 
 impl Search {
-    /// The models linked into this program, and none else.
+    /// Only the models linked into this program.
     pub fn builtin() -> Self {
         Self {
             env: false,
             user_dir: false,
             ..Self::default()
         }
+    }
+
+    /// Sets the files of plugins.
+    #[must_use]
+    pub fn with_files(mut self, files: Vec<PathBuf>) -> Self {
+        self.files = files;
+        self
+    }
+
+    /// Sets the folders of plugins.
+    #[must_use]
+    pub fn with_dirs(mut self, dirs: Vec<PathBuf>) -> Self {
+        self.dirs = dirs;
+        self
+    }
+
+    /// Sets whether the folders in `HTEX_PLUGIN_PATH` are searched.
+    #[must_use]
+    pub fn with_env(mut self, env: bool) -> Self {
+        self.env = env;
+        self
+    }
+
+    /// Sets whether the user's folder is searched.
+    #[must_use]
+    pub fn with_user_dir(mut self, user_dir: bool) -> Self {
+        self.user_dir = user_dir;
+        self
+    }
+
+    /// Sets whether the models linked into this program are included.
+    #[must_use]
+    pub fn with_builtin(mut self, builtin: bool) -> Self {
+        self.builtin = builtin;
+        self
+    }
+
+    /// Sets the limits of WASM models.
+    #[must_use]
+    pub fn with_limits(mut self, limits: WasmLimits) -> Self {
+        self.limits = limits;
+        self
     }
 
     /// See [`Registry::search`].
@@ -82,7 +133,7 @@ impl Search {
         Ok(registry)
     }
 
-    /// Adds the plugins of a folder that nobody named in this search.
+    /// Adds the plugins of a folder that is not one of `dirs`: one that cannot be read is a note.
     fn add_folder(&self, registry: &mut Registry, rank: Rank, dir: &Path) {
         match plugins_in(dir) {
             Ok(files) => self.add_all(registry, rank, files),
@@ -103,7 +154,7 @@ impl Search {
     }
 }
 
-/// The plugins in a folder, by name.
+/// Returns the plugins in a folder, sorted by name.
 fn plugins_in(dir: &Path) -> io::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(dir)? {

@@ -1,12 +1,21 @@
-//! A voice brought to the rate its listener wants.
+//! A voice with a resampler.
 
 use htex_dsp::grid::Band;
 use htex_dsp::resample::Resampler;
 
 use crate::{HostError, LoadedModel, ModelVoice};
 
-/// Samples of unit RMS at a wanted rate: the voice at its own rate, and a resampler if the two
+/// Samples of unit RMS at a requested rate: a voice at its own rate, and a resampler if the rates
 /// differ.
+///
+/// ```
+/// use htex_host::{Band, Registry, Stream};
+/// let registry = Registry::builtin();
+/// let mut stream = Stream::new(registry.find("sbeta")?, &[2.0, 5.0], Band::TACTILE, 48_000.0, 1)?;
+/// let mut block = [0.0; 480];
+/// stream.render(&mut block)?;
+/// # Ok::<(), htex_host::HostError>(())
+/// ```
 #[derive(Debug)]
 pub struct Stream {
     voice: ModelVoice,
@@ -15,7 +24,7 @@ pub struct Stream {
 }
 
 impl Stream {
-    /// Makes a voice of `model` and what is needed to hear it at `rate_hz`.
+    /// Makes a voice of `model`, and a resampler to `rate_hz` if needed.
     ///
     /// # Errors
     /// When the model refuses the parameters or the rate, or its own rate cannot be converted to `rate_hz`.
@@ -34,7 +43,7 @@ impl Stream {
         })
     }
 
-    /// The rate at which the model itself renders, hertz.
+    /// Returns the rate at which the model renders, hertz.
     pub fn voice_rate_hz(&self) -> f64 {
         self.voice_rate_hz
     }
@@ -42,7 +51,7 @@ impl Stream {
     /// Fills `out` with the next samples. Does not allocate.
     ///
     /// # Errors
-    /// When the model fails; what it should have rendered is silent.
+    /// When the model fails; the samples that it did not render are zero.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), HostError> {
         let Some(resampler) = &mut self.resampler else {
             return self.voice.render(out);
@@ -59,7 +68,7 @@ impl Stream {
     /// Changes to other parameters without a click.
     ///
     /// # Errors
-    /// When the model refuses them; the stream then plays on as before.
+    /// When the model refuses the parameters; the stream then continues unchanged.
     pub fn retune(&mut self, parameters: &[f64]) -> Result<(), HostError> {
         self.voice.retune(parameters)
     }

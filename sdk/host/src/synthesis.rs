@@ -1,4 +1,4 @@
-//! Cheaper ways to play a spectrum than to stream a model's voice.
+//! Alternatives to streaming a model's voice, with less computation per sample.
 
 use std::fmt;
 use std::str::FromStr;
@@ -12,7 +12,7 @@ use htex_dsp::shaped_noise::economical_rate_hz;
 
 use crate::{HostError, LoadedModel, Stream};
 
-/// Seconds of a loop, and taps of a filter, when none are said.
+/// Default length of a loop, seconds, and default taps of a filter.
 const LOOP_S: f64 = 2.0;
 const TAPS: usize = 511;
 const LOOP_RANGE_S: (f64, f64) = (0.1, 60.0);
@@ -21,26 +21,32 @@ const TAPS_RANGE: (usize, usize) = (15, 4095);
 const MOST_SAMPLES: f64 = 6.7e7;
 /// Length of the cross-fade of a loop: at most a quarter of it.
 const FADE_S: f64 = 0.1;
-/// What a voice and its resampler play first is left out of a loop.
+/// The start of a voice and its resampler that is left out of a loop, seconds.
 const RUN_IN_S: f64 = 0.1;
 
-/// How samples are made of a model's parameters; as text `streamed`, `loop:SECONDS`,
-/// `filter:TAPS`, where the number may be left out.
+/// Method of synthesis. Its text is `streamed`, `loop:SECONDS` or `filter:TAPS`; the number is optional.
+///
+/// ```
+/// use htex_host::Synthesis;
+/// assert_eq!("loop:1.5".parse(), Ok(Synthesis::Loop { seconds: 1.5 }));
+/// assert_eq!("filter".parse(), Ok(Synthesis::Filter { taps: 511 }));
+/// assert!("loop:0".parse::<Synthesis>().is_err());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub enum Synthesis {
-    /// The model's voice: it never repeats, and its spectrum follows the motion.
+    /// The model's voice. It does not repeat, and its spectrum follows the motion.
     #[default]
     Streamed,
-    /// So many seconds of the voice, 0.1 to 60, rendered once and played again and again over a
-    /// cross-fade that keeps the power. The cheapest sample there is, for four bytes of memory a
-    /// sample; the spectrum is that of one piece of noise, and stays.
+    /// A part of the voice, 0.1 to 60 s long, rendered once and repeated with a cross-fade of constant power. It has the
+    /// least computation per sample and needs four bytes of memory per sample; the spectrum is that of one section of
+    /// noise and does not change.
     Loop {
-        /// Length of a round, seconds.
+        /// Length of the loop, seconds.
         seconds: f64,
     },
-    /// White noise through a linear-phase filter of the magnitude, of 15 to 4095 taps at the rate
-    /// that models of noise work at. It resolves four times that rate over the taps, in hertz, and
-    /// the spectrum stays.
+    /// White noise through a linear-phase filter with the model's magnitude, of 15 to 4095 taps at the rate of noise
+    /// models. Its resolution in hertz is four times that rate divided by the taps; the spectrum does not change.
     Filter {
         /// Coefficients of the filter.
         taps: usize,
@@ -90,7 +96,19 @@ impl Synthesis {
     }
 }
 
-/// Samples of unit RMS whose spectrum stays as it was made: a loop, or filtered noise.
+/// Samples of unit RMS with a constant spectrum: a loop, or filtered noise.
+///
+/// ```
+/// use htex_host::{Band, Registry, StillSound, Synthesis};
+/// let registry = Registry::builtin();
+/// let (filter, model) = (Synthesis::Filter { taps: 255 }, registry.find("sbeta")?);
+/// let mut block = [0.0; 256];
+/// if let Some(mut sound) = StillSound::new(filter, model, &[2.0, 5.0], Band::TACTILE, 20_000.0, 1)? {
+///     sound.render(&mut block);
+/// }
+/// assert!(block.iter().any(|x| *x != 0.0));
+/// # Ok::<(), htex_host::HostError>(())
+/// ```
 #[derive(Debug)]
 pub struct StillSound(Way);
 
@@ -101,7 +119,7 @@ enum Way {
 }
 
 impl StillSound {
-    /// The sound of `model` at `rate_hz`; none when it is to be streamed.
+    /// Makes the sound of `model` at `rate_hz`; `None` for [`Synthesis::Streamed`].
     ///
     /// # Errors
     /// [`HostError::Synthesis`] for a length out of range, or when the model refuses the parameters
@@ -141,7 +159,7 @@ impl StillSound {
         }
     }
 
-    /// Bytes of sound or coefficients that are kept while it plays.
+    /// Returns the bytes of the stored samples or coefficients.
     pub fn kept_bytes(&self) -> usize {
         size_of::<f32>()
             * match &self.0 {
@@ -164,7 +182,7 @@ fn looped(mut stream: Stream, seconds: f64, rate_hz: f64) -> Result<Loop, HostEr
     Ok(Loop::new(piece, samples(fade_s)).with_rms(1.0))
 }
 
-/// White noise, a filter of the magnitude, and what brings it to the wanted rate.
+/// White noise, a filter with the magnitude, and a resampler to the requested rate.
 #[derive(Debug)]
 struct FilteredNoise {
     noise: GaussianNoise,
@@ -183,7 +201,7 @@ impl FilteredNoise {
         magnitude: impl Fn(&[f64]) -> Result<Vec<f64>, HostError>,
     ) -> Result<Self, HostError> {
         let noise_hz = economical_rate_hz(rate_hz, band);
-        // The filter asks frequency by frequency; the model is asked once.
+        // The filter reads the curve frequency by frequency; the model is called once.
         let grid: Vec<f64> = (0..=(0.5 * noise_hz) as usize).map(|f| f as f64).collect();
         let curve = magnitude(&grid)?;
         let at = |hz: f64| {
@@ -192,11 +210,11 @@ impl FilteredNoise {
             value(below) + part * (value(below + 1) - value(below))
         };
         let fir = Fir::with_magnitude(taps, noise_hz, at);
-        // The power of filtered white noise is the energy of the filter's answer to one.
-        let mut answer = vec![0.0f32; taps + 16];
-        answer[0] = 1.0;
-        fir.clone().process(&mut answer);
-        let energy: f64 = answer.iter().map(|&x| f64::from(x) * f64::from(x)).sum();
+        // The power of filtered white noise is the energy of the filter's impulse response.
+        let mut response = vec![0.0f32; taps + 16];
+        response[0] = 1.0;
+        fir.clone().process(&mut response);
+        let energy: f64 = response.iter().map(|&x| f64::from(x) * f64::from(x)).sum();
         Ok(Self {
             noise: GaussianNoise::new(seed),
             gain: if energy > 0.0 {

@@ -1,4 +1,4 @@
-//! A model behind a table of native functions: built in, or of a native library.
+//! Models that are called through a table of native functions: built-in models and native libraries.
 
 use htex_model::abi::ModelTable;
 use htex_model::motion_1::MotionTable;
@@ -7,13 +7,13 @@ use htex_model::{Band, Motion};
 
 use crate::raw::{RawFit, RawModel, RawVoice, Together};
 
-/// A model behind a table of native functions.
+/// A model that is called through a table of native functions.
 #[derive(Clone, Copy)]
 pub(crate) struct TableModel {
     table: &'static ModelTable,
-    /// Where the model has the extension `htex.voices/1`.
+    /// If the model has the extension `htex.voices/1`.
     voices: Option<&'static VoicesTable>,
-    /// Where the model has the extension `htex.motion/1`.
+    /// If the model has the extension `htex.motion/1`.
     motion: Option<&'static MotionTable>,
 }
 
@@ -26,7 +26,7 @@ impl TableModel {
         }
     }
 
-    /// The model with the extension `htex.motion/1`.
+    /// Adds the extension `htex.motion/1`.
     pub(crate) fn with_motion(self, motion: &'static MotionTable) -> Self {
         Self {
             motion: Some(motion),
@@ -35,9 +35,8 @@ impl TableModel {
     }
 }
 
-// Each call below passes slices of this program, readable or writable for its whole length during
-// the call, as the ABI asks; a voice's handle is
-// held by its `TableVoice` alone.
+// Each call below passes slices that are readable or writable for their whole length during the call, as the ABI
+// requires; no value but its `TableVoice` holds a voice's handle.
 impl RawModel for TableModel {
     fn abi_version(&self) -> u32 {
         (self.table.abi_version)()
@@ -180,7 +179,7 @@ impl RawModel for TableModel {
     }
 }
 
-/// A voice behind a handle, which it alone holds.
+/// A voice and its handle, which no other value holds.
 struct TableVoice {
     model: TableModel,
     handle: i64,
@@ -189,12 +188,12 @@ struct TableVoice {
 
 impl RawVoice for TableVoice {
     fn render(&mut self, out: &mut [f32]) -> i64 {
-        // SAFETY: a live slice; `&mut self` keeps the handle to one thread at a time.
+        // SAFETY: a live slice; `&mut self` restricts the handle to one thread at a time.
         unsafe { (self.model.table.voice_render)(self.handle, out.as_mut_ptr(), out.len()) }
     }
 
     fn retune(&mut self, parameters: &[f64]) -> i64 {
-        // SAFETY: a live slice; `&mut self` keeps the handle to one thread at a time.
+        // SAFETY: a live slice; `&mut self` restricts the handle to one thread at a time.
         unsafe {
             (self.model.table.voice_retune)(self.handle, parameters.as_ptr(), parameters.len())
         }
@@ -204,7 +203,7 @@ impl RawVoice for TableVoice {
         let Some(table) = self.model.motion else {
             return 0;
         };
-        // SAFETY: `&mut self` keeps the handle to one thread at a time.
+        // SAFETY: `&mut self` restricts the handle to one thread at a time.
         unsafe {
             (table.set)(
                 self.handle,
@@ -241,7 +240,7 @@ impl RawVoice for TableVoice {
 impl Drop for TableVoice {
     fn drop(&mut self) {
         if !self.freed {
-            // There is nobody to tell if a model cannot free what it made.
+            // `drop` cannot report an error of the model.
             (self.model.table.voice_free)(self.handle);
         }
     }
@@ -311,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn a_built_in_model_is_told_the_motion_where_its_table_has_the_extension() {
+    fn a_built_in_model_receives_the_motion_if_its_table_has_the_extension() {
         let plain = TableModel::new(&TABLE, Some(&VOICES));
         let motion = Motion {
             speed_mm_s: 80.0,

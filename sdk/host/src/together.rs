@@ -1,4 +1,4 @@
-//! Several voices, rendered in as few calls as their models allow.
+//! Rendering of several voices in as few calls as their models allow.
 
 use htex_model::voices_1::{MAX_VOICES, VoicesTable};
 
@@ -7,12 +7,12 @@ use crate::{HostError, ModelVoice};
 /// The extension of models that render several voices in one call.
 pub const VOICES_EXTENSION: &str = VoicesTable::ID;
 
-/// Fills `out` with the next `frames` samples of each voice, one voice behind the other: what
-/// [`ModelVoice::render`] gives of each, to the bit. Neighbours of one model are rendered in one call
-/// where the model has the extension `htex.voices/1`, as the built-in ones have. In blocks of
-/// 256 frames AR takes some six tenths of the time then (`cargo xtask bench`); below 64 frames, and of
-/// other models, voices are rendered one after the other. Voices for which `out` has no room stay as they
-/// are, and room without a voice is silent. Does not allocate, lock or block for well-made models.
+/// Fills `out` with the next `frames` samples of each voice, one voice after another, bit-identical to
+/// [`ModelVoice::render`] of each. Neighbours with the same model are rendered in one call if the model has the extension
+/// `htex.voices/1`, as the built-in models have. AR then takes about six tenths of the time in blocks of 256 frames
+/// (`cargo xtask bench`); below 64 frames, and for other models, voices are rendered separately. If `out` is too short,
+/// the remaining voices are not advanced; if it is too long, the rest is filled with zeros. Does not allocate, lock or
+/// block if the models keep to the ABI.
 ///
 /// ```
 /// use htex_host::{Band, Registry, render_together};
@@ -26,7 +26,7 @@ pub const VOICES_EXTENSION: &str = VoicesTable::ID;
 /// ```
 ///
 /// # Errors
-/// The first, when a model fails; what it should have rendered is silent, and other voices play on.
+/// The first error of a model. The samples of its voice are zero, and other voices continue.
 pub fn render_together<'a>(
     voices: impl IntoIterator<Item = &'a mut ModelVoice>,
     frames: usize,
@@ -59,7 +59,7 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// Whether one more voice can be in this call.
+    /// Returns whether this call can render one more voice.
     fn takes(&self, voice: &ModelVoice) -> bool {
         let (Some(first), Some(new)) = (self.first(), voice.together()) else {
             return self.count == 0;
@@ -78,11 +78,11 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Renders its voices into the front of `rest`, and is empty again.
+    /// Renders the voices into the front of `rest` and removes them.
     fn render(&mut self, frames: usize, rest: &mut &mut [f32]) -> Result<(), HostError> {
         let Self { mut voices, count } = std::mem::take(self);
-        let (out, behind) = std::mem::take(rest).split_at_mut(count * frames);
-        *rest = behind;
+        let (out, after) = std::mem::take(rest).split_at_mut(count * frames);
+        *rest = after;
         match &mut voices[..count] {
             [] => Ok(()),
             [one] => one.as_mut().map_or(Ok(()), |voice| voice.render(out)),
@@ -91,7 +91,7 @@ impl<'a> Run<'a> {
     }
 }
 
-/// One call for several voices of one model.
+/// Renders several voices of one model in one call.
 fn call(
     voices: &[Option<&mut ModelVoice>],
     frames: usize,
@@ -108,11 +108,11 @@ fn call(
     let (Some(render), Some(Some(first))) = (render, voices.first()) else {
         return Ok(());
     };
-    // SAFETY: live slices, as many rows of `out` as handles. Each handle is held by its voice alone, of
-    // which there are exclusive references here, so no other thread uses it.
-    let answer = unsafe { render(handles.as_ptr(), count, out.as_mut_ptr(), frames) };
+    // SAFETY: live slices, with one row of `out` per handle. Only its voice holds a handle, and the references to the
+    // voices are exclusive, so no other thread uses it.
+    let status = unsafe { render(handles.as_ptr(), count, out.as_mut_ptr(), frames) };
     first
-        .check("htex_voices_1_render", answer)
+        .check("htex_voices_1_render", status)
         .inspect_err(|_| out.fill(0.0))?;
     let mut result = Ok(());
     for (voice, row) in voices.iter().flatten().zip(out.chunks_exact_mut(frames)) {

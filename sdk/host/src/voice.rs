@@ -6,6 +6,19 @@ use crate::raw::{RawVoice, Together};
 use crate::{HostError, LoadedModel};
 
 /// An endless stream of samples of unit RMS at the model's own rate.
+///
+/// ```
+/// use htex_host::{Band, Registry};
+/// let registry = Registry::builtin();
+/// let (model, band) = (registry.find("sbeta")?, Band::TACTILE);
+/// let rate_hz = model.voice_rate_hz(&[2.0, 5.0], band, 20_000.0)?;
+/// let mut voice = model.voice(&[2.0, 5.0], band, rate_hz, 1)?;
+/// let mut block = [0.0; 64];
+/// voice.render(&mut block)?;
+/// voice.retune(&[3.0, 5.0])?;
+/// voice.render(&mut block)?;
+/// # Ok::<(), htex_host::HostError>(())
+/// ```
 pub struct ModelVoice {
     model: LoadedModel,
     raw: Box<dyn RawVoice>,
@@ -24,25 +37,25 @@ impl ModelVoice {
         Self { model, raw }
     }
 
-    /// Fills `out` with the next samples. Does not allocate, lock or block for a well-made model.
+    /// Fills `out` with the next samples. Does not allocate, lock or block if the model keeps to the ABI.
     ///
     /// # Errors
-    /// When the model fails; `out` is then silent.
+    /// When the model fails; `out` is then filled with zeros.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), HostError> {
-        let answer = self.raw.render(out);
-        self.check("voice_render", answer)
+        let status = self.raw.render(out);
+        self.check("voice_render", status)
             .and_then(|()| self.check_finite(out))
             .inspect_err(|_| out.fill(0.0))
     }
 
-    /// What it takes to render it in one call with others of its model, if the model can.
+    /// Returns the data to render the voice in one call with others, if its model has `htex.voices/1`.
     pub(crate) fn together(&self) -> Option<Together> {
         self.raw.together()
     }
 
-    /// A sample that is no number would stay in every filter behind this voice.
+    /// Checks that all samples are finite: NaN would stay in the state of every following filter.
     pub(crate) fn check_finite(&self, out: &[f32]) -> Result<(), HostError> {
-        // No early end: the loop is then one of vectors.
+        // No early return, so that the compiler vectorises the loop.
         if out.iter().fold(true, |finite, x| finite & x.is_finite()) {
             return Ok(());
         }
@@ -54,40 +67,40 @@ impl ModelVoice {
     /// Changes to other parameters without a click.
     ///
     /// # Errors
-    /// When the model refuses them; the voice then plays on as before.
+    /// When the model refuses the parameters; the voice then continues unchanged.
     pub fn retune(&mut self, parameters: &[f64]) -> Result<(), HostError> {
-        let answer = self.raw.retune(parameters);
-        self.check("voice_retune", answer)
+        let status = self.raw.retune(parameters);
+        self.check("voice_retune", status)
     }
 
-    /// Changes to parameters between several sets, which stand one behind the other; `room` is for
-    /// the mix, [`LoadedModel::most_parameters`] at most. Mixing is this voice's own: no lock, and
-    /// no allocation for a well-made model.
+    /// Changes to interpolated parameters. `sets` are concatenated; `buffer` receives the interpolated set, which has at
+    /// most [`LoadedModel::most_parameters`] numbers. The voice interpolates in its own instance: without a lock, and
+    /// without allocation if the model keeps to the ABI.
     ///
     /// # Errors
-    /// When the model cannot mix, or there is no room; the voice then plays on as before.
+    /// When the model cannot interpolate, or `buffer` is too short; the voice then continues unchanged.
     pub fn retune_mix(
         &mut self,
         sets: &[f64],
         weights: &[f64],
-        room: &mut [f64],
+        buffer: &mut [f64],
     ) -> Result<(), HostError> {
-        let answer = self.raw.interpolate(sets, weights, room);
-        self.check("interpolate", answer)?;
-        match room.get(..answer as usize) {
+        let len = self.raw.interpolate(sets, weights, buffer);
+        self.check("interpolate", len)?;
+        match buffer.get(..len as usize) {
             Some(mixed) => self.retune(mixed),
             None => {
-                let what = format!("{answer} parameters where {} fit", room.len());
+                let what = format!("{len} parameters for a buffer of {}", buffer.len());
                 Err(self.model.broken("interpolate", what))
             }
         }
     }
 
-    /// Tells the motion at the next sample to a voice whose model follows it ([`LoadedModel::follows_motion`]); does
-    /// nothing to others. Does not allocate, lock or block for a well-made model.
+    /// Sets the motion at the next sample of a voice whose model follows it ([`LoadedModel::follows_motion`]); does
+    /// nothing for others. Does not allocate, lock or block if the model keeps to the ABI.
     ///
     /// # Errors
-    /// When a number is not finite or beyond its range, or the model refuses it; the voice then plays on as before.
+    /// When a number is not finite or out of range, or the model refuses it; the voice then continues unchanged.
     pub fn set_motion(&mut self, motion: Motion) -> Result<(), HostError> {
         let call = "motion_1_set";
         let refused =
@@ -96,37 +109,38 @@ impl ModelVoice {
         self.set_any_motion(motion)
     }
 
-    /// For checkers of models: as [`Self::set_motion`], of any numbers, so that the model shows what it refuses.
+    /// For checkers of models: as [`Self::set_motion`], without a check of the numbers, to test which ones the model
+    /// refuses.
     ///
     /// # Errors
     /// What the model returns.
     pub fn set_any_motion(&mut self, motion: Motion) -> Result<(), HostError> {
-        let answer = self.raw.set_motion(motion);
-        self.check("motion_1_set", answer)
+        let status = self.raw.set_motion(motion);
+        self.check("motion_1_set", status)
     }
 
-    /// For checkers of models: size of the WASM memory that this voice has to itself, bytes; `None` for a native
-    /// voice, which shares the process's.
+    /// For checkers of models: returns the size of this voice's separate WASM memory, bytes; `None` for a native
+    /// voice, which uses the memory of the process.
     pub fn memory_bytes(&self) -> Option<usize> {
         self.raw.memory_bytes()
     }
 
-    /// For checkers of models: frees the voice early and keeps its handle, so that later calls show
-    /// whether the model refuses a handle that was freed. An app drops the voice instead.
+    /// For checkers of models: frees the voice and keeps its handle, to test whether the model refuses a freed handle
+    /// in later calls. An app drops the voice instead.
     ///
     /// # Errors
-    /// What the model answers; that the handle is unknown, when called a second time.
+    /// The model's error; in a second call that the handle is unknown.
     pub fn free_and_keep_handle(&mut self) -> Result<(), HostError> {
-        let answer = self.raw.free();
-        self.check("voice_free", answer)
+        let status = self.raw.free();
+        self.check("voice_free", status)
     }
 
-    pub(crate) fn check(&self, call: &'static str, answer: i64) -> Result<(), HostError> {
-        if answer >= 0 {
+    pub(crate) fn check(&self, call: &'static str, status: i64) -> Result<(), HostError> {
+        if status >= 0 {
             return Ok(());
         }
         Err(self
             .model
-            .told(call, answer, |out| self.raw.last_error(out)))
+            .call_error(call, status, |out| self.raw.last_error(out)))
     }
 }

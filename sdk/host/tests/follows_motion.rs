@@ -1,4 +1,4 @@
-//! Modules that are told the motion, and those that say so and are not.
+//! Modules with the extension `htex.motion/1`, and modules that claim it without its functions.
 #![cfg(feature = "wasm")]
 #![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
@@ -7,18 +7,18 @@ mod common;
 use common::{SAMPLE, limits, load, load_within, text};
 use htex_host::{Band, FitCondition, FitRequest, HostError, LoadedModel, Motion, Status};
 
-/// Yes to `htex.motion/1`, by its sixth letter.
+/// Returns 1 for `htex.motion/1`, by its sixth letter.
 const SAYS_YES: (&str, &str) = (
     "extension",
     "(i64.extend_i32_u (i32.eq (i32.load8_u offset=5 (local.get 0)) (i32.const 0x6d)))",
 );
-/// The first sample of a block is the position; above 100 mm there is nothing.
+/// The first sample of a block is the position; above 100 mm an error is returned.
 const SET: &str = "(global $position (mut f64) (f64.const 7))
     (func (export \"htex_motion_1_set\") (param i64 f64 f64 f64) (result i64)
       (if (f64.gt (local.get 3) (f64.const 100)) (then (return (i64.const -1))))
       (global.set $position (local.get 3))
       (i64.const 0))";
-/// The parameter is the force, the level the speed; 0.25 and 2 where one is not known.
+/// The parameter is the force, the level the speed; 0.25 and 2 if unknown.
 const FIT: &str = "(func (export \"htex_motion_1_fit\")
       (param f64 f64 i32 i32 i32 i32 i32 f64 i32 i32 f64 f64 i32 i32 i32) (result i64)
       (f64.store (local.get 12)
@@ -56,7 +56,7 @@ fn a_voice_is_told_where_the_finger_is() {
         out[0]
     };
     assert_eq!([next(0), next(1)], [42.0, 7.0], "each voice has its own");
-    // The host refuses what no model may be told, the model what it does not take.
+    // The host refuses motions outside the ranges of the extension, and the model those that it does not accept.
     let refused = |error: HostError, words: &str| match error {
         HostError::Call {
             status, message, ..
@@ -100,7 +100,7 @@ fn a_fit_is_told_what_is_known_of_the_recording() {
     assert_eq!(fit(&model, Some(80.0), Some(0.5)), (80.0, 0.5));
     assert_eq!(fit(&model, Some(80.0), None), (80.0, 0.25));
     assert_eq!(fit(&model, None, Some(0.5)), (2.0, 0.5));
-    // A model without the extension is not asked for it.
+    // A model without the extension does not receive the condition.
     let other = load(&[]).unwrap();
     assert_eq!(fit(&other, Some(80.0), Some(0.3)), (1.0, 0.5));
 }
@@ -130,8 +130,8 @@ fn a_module_that_says_yes_must_have_all_of_it() {
     let wrong = SET.replace("(param i64 f64 f64 f64)", "(param i64 f64 f64 f64 f64)");
     let wat = text("1.0.0", &[SAYS_YES], &format!("{wrong} {FIT}"));
     let error = load_within(&wat, &limits()).unwrap_err().to_string();
-    assert!(error.contains("has not the arguments"), "{error}");
-    // A module that fails at the question has none, and works.
+    assert!(error.contains("does not have the arguments"), "{error}");
+    // A module that fails in `htex_model_extension` has no extension, and is loaded.
     let model = load(&[("extension", "unreachable")]).unwrap();
     assert!(!model.follows_motion());
     assert!(model.voice(&[0.5], Band::TACTILE, 2_000.0, 1).is_ok());

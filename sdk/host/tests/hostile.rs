@@ -1,5 +1,5 @@
-//! WASM models that mean harm: each is an error of its call that names model, call and reason, in
-//! time; the host, the model's other voices and its later calls go on.
+//! Hostile WASM models: each fault is an error of its call that names model, call and reason, within the time limit;
+//! the host, the model's other voices and its later calls continue.
 #![cfg(feature = "wasm")]
 #![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
@@ -64,7 +64,7 @@ const CALLS: [&str; 9] = [
     "extension",
 ];
 
-/// Bodies that never come back in order, and what the error says.
+/// Bodies that trap or do not return, and the text of the error.
 const HARM: [(&str, &str); 5] = [
     ("(loop $l (br $l)) unreachable", "ran longer than"),
     ("unreachable", "panicked"),
@@ -100,7 +100,7 @@ fn harm_in_any_call_is_an_error_of_that_call() {
                 "{call}: {body}: {error}"
             );
             other.as_mut().map_or(Ok(()), render).unwrap();
-            // The calls that mean no harm work on, the shared instance being made again.
+            // Other calls continue with a new shared instance.
             for fine in ["fit", "magnitude", "extension"] {
                 assert_eq!(
                     make(fine, &model).is_ok(),
@@ -148,7 +148,7 @@ fn a_voice_that_traps_leaves_the_others_alone() {
         );
         render(&mut good).unwrap();
     }
-    // It does not come back to life: what its memory holds is not known.
+    // The voice is not called again: the state of its memory is unknown.
     assert!(bad.retune(&[0.0]).is_err());
     render(&mut voice(&model).unwrap()).unwrap();
 }
@@ -225,7 +225,7 @@ fn answers_that_no_model_may_give() {
         ("voice_rate", "(f64.const 1e30)", "Hz"),
         ("voice_new", "(i64.const 0)", "handle 0"),
         ("voice_new", "(i64.const -6)", "no reason given"),
-        ("extension", "(i64.const 2)", "answers 2"),
+        ("extension", "(i64.const 2)", "returns 2"),
     ];
     for (call, body, reason) in cases {
         let model = load(&[(call, body)]).unwrap();
@@ -233,8 +233,7 @@ fn answers_that_no_model_may_give() {
         let named = error.contains(ID) && error.contains(call) && error.contains(reason);
         assert!(named, "{call}: {body}: {error}");
     }
-    // A last-error text that is longer than it says (zeros, each of which a message writes out), and
-    // no text at all.
+    // An invalid length of the last-error text, and no text. A message escapes each of the zero bytes.
     for body in ["(i64.const 0x7fffffffffffffff)", "(i64.const -1)"] {
         let model = load(&[("last_error", body), ("fit", "(i64.const -4)")]).unwrap();
         let error = fit(&model).unwrap_err().to_string();
@@ -249,7 +248,7 @@ fn answers_that_no_model_may_give() {
 }
 
 #[test]
-fn descriptors_that_are_none() {
+fn invalid_descriptors() {
     let giant = [("descriptor", "(i64.const 1000000000)")];
     let negative = [("descriptor", "(i64.const -8)")];
     let growing = [(
@@ -260,7 +259,7 @@ fn descriptors_that_are_none() {
     let cases = [
         (text("1.0.0", &giant, ""), "1000000000 bytes"),
         (text("1.0.0", &negative, ""), "no reason given"),
-        (text("1.0.0", &growing, ""), "and then"),
+        (text("1.0.0", &growing, ""), "in the next"),
         (text("one", &[], ""), "semantic version"),
         (with_descriptor("\\ff\\fe", &[], ""), "utf-8"),
         (with_descriptor("{", &[], ""), "EOF"),
@@ -289,7 +288,7 @@ fn descriptors_that_are_none() {
 }
 
 #[test]
-fn imports_and_what_is_no_module() {
+fn imports_and_invalid_modules() {
     let import = "(module (import \"env\" \"clock\" (func)) (memory (export \"memory\") 1))";
     let error = load_within(import, &limits()).unwrap_err().to_string();
     assert!(error.contains("`env.clock`"), "{error}");
@@ -299,6 +298,6 @@ fn imports_and_what_is_no_module() {
     let whole = wat::parse_str(text("1.0.0", &[], "")).unwrap();
     for bytes in [b"".as_slice(), b"\0asm", b"MZ", &whole[..whole.len() / 2]] {
         let error = LoadedModel::from_wasm_bytes("test.htex", bytes, &limits()).unwrap_err();
-        assert!(error.to_string().contains("no valid module"), "{error}");
+        assert!(error.to_string().contains("invalid module"), "{error}");
     }
 }

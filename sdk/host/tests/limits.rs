@@ -1,4 +1,4 @@
-//! Each limit of a WASM model, in a test in which it bites, and one in which it does not.
+//! Each limit of a WASM model: a model that exceeds it, and one that does not.
 #![cfg(feature = "wasm")]
 #![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
@@ -13,14 +13,14 @@ fn magnitude(model: &LoadedModel) -> Result<(), HostError> {
     model.magnitude(&[0.5], Band::TACTILE, &[50.0]).map(drop)
 }
 
-/// Loads a model whose magnitude has this body, and calls that.
+/// Loads a model whose magnitude has this body, and calls it.
 fn run(body: &str, more: &str, limits: &WasmLimits) -> Result<(), String> {
     let wat = text("1.0.0", &[("magnitude", body)], more);
     let model = load_within(&wat, limits).map_err(|e| e.to_string())?;
     magnitude(&model).map_err(|e| e.to_string())
 }
 
-/// What is fine within one limit is refused under a smaller one, with this reason.
+/// Checks that a body runs within the usual limits and is refused under a smaller one, with this reason.
 fn bites(body: &str, more: &str, smaller: &WasmLimits, reason: &str) {
     run(body, more, &limits()).unwrap();
     let error = run(body, more, smaller).unwrap_err();
@@ -31,31 +31,22 @@ const NOTHING: &str = "(i64.const 0)";
 
 #[test]
 fn size_of_the_module() {
-    let smaller = WasmLimits {
-        module_bytes: 500,
-        ..limits()
-    };
+    let smaller = limits().with_module_bytes(500);
     bites(NOTHING, "", &smaller, "500 bytes");
 }
 
 #[test]
 fn memory_at_the_start_and_grown() {
-    let smaller = WasmLimits {
-        memory_bytes: 1 << 20,
-        ..limits()
-    };
+    let smaller = limits().with_memory_bytes(1 << 20);
     bites(
         "(drop (memory.grow (i32.const 9))) (i64.const 0)",
         "",
         &smaller,
         "1048576 bytes",
     );
-    let tiny = WasmLimits {
-        memory_bytes: 100_000,
-        ..limits()
-    };
+    let tiny = limits().with_memory_bytes(100_000);
     bites(NOTHING, "", &tiny, "100000 bytes");
-    // What the host itself would pass counts too.
+    // Arguments that the host passes are counted too.
     let model = load_within(&text("1.0.0", &[], ""), &smaller).unwrap();
     let many = vec![50.0; 200_000];
     let error = model
@@ -68,40 +59,28 @@ fn memory_at_the_start_and_grown() {
 
 #[test]
 fn tables() {
-    let smaller = WasmLimits {
-        table_elements: 50,
-        ..limits()
-    };
+    let smaller = limits().with_table_elements(50);
     bites(NOTHING, "(table 100 funcref)", &smaller, "50 elements");
 }
 
 #[test]
 fn stack() {
-    let smaller = WasmLimits {
-        stack_bytes: 16 << 10,
-        ..limits()
-    };
+    let smaller = limits().with_stack_bytes(16 << 10);
     let body = "(drop (call $deep (i32.const 1000))) (i64.const 0)";
     bites(body, "", &smaller, "16384 bytes of stack");
 }
 
 #[test]
 fn instructions() {
-    let smaller = WasmLimits {
-        fuel: Some(10_000),
-        ..limits()
-    };
+    let smaller = limits().with_fuel(10_000);
     bites(
         "(call $count (i32.const 100000)) (i64.const 0)",
         "",
         &smaller,
         "10000 instructions",
     );
-    // They are counted a call, not a model.
-    let counting = WasmLimits {
-        fuel: Some(1_000_000),
-        ..limits()
-    };
+    // Instructions are counted per call, not per model.
+    let counting = limits().with_fuel(1_000_000);
     let body = "(call $count (i32.const 100000)) (i64.const 0)";
     let model = load_within(&text("1.0.0", &[("magnitude", body)], ""), &counting).unwrap();
     (0..10).for_each(|_| magnitude(&model).unwrap());
@@ -109,15 +88,9 @@ fn instructions() {
 
 #[test]
 fn time() {
-    let shorter = WasmLimits {
-        call: Duration::from_millis(20),
-        ..limits()
-    };
-    let longer = WasmLimits {
-        call: Duration::from_secs(60),
-        ..limits()
-    };
-    // Some seconds of counting at most, and never as little as 20 ms.
+    let shorter = limits().with_call(Duration::from_millis(20));
+    let longer = limits().with_call(Duration::from_secs(60));
+    // Counting takes some seconds at most, and never less than 20 ms.
     let body = "(call $count (i32.const 400000000)) (i64.const 0)";
     run(body, "", &longer).unwrap();
     let error = run(body, "", &shorter).unwrap_err();
@@ -126,10 +99,7 @@ fn time() {
 
 #[test]
 fn voices() {
-    let two = WasmLimits {
-        voices: 2,
-        ..limits()
-    };
+    let two = limits().with_voices(2);
     let model = load_within(&text("1.0.0", &[], ""), &two).unwrap();
     let voice = || model.voice(&[0.5], Band::TACTILE, 2000.0, 1);
     let (first, second) = (voice().unwrap(), voice().unwrap());
@@ -142,19 +112,12 @@ fn voices() {
     (0..5).for_each(|_| drop(voice().unwrap()));
 }
 
-/// A voice that is slow within the limit of each call ends all the same.
+/// A voice that is slow but within the limit of each call is stopped.
 #[test]
 fn time_of_a_voice() {
     let body = "(call $count (i32.const 200000000)) (i64.const 0)";
     let wat = text("1.0.0", &[("voice_render", body)], "");
-    let model = load_within(
-        &wat,
-        &WasmLimits {
-            render: Duration::from_secs(60),
-            ..limits()
-        },
-    )
-    .unwrap();
+    let model = load_within(&wat, &limits().with_render(Duration::from_secs(60))).unwrap();
     let mut voice = model.voice(&[0.5], Band::TACTILE, 48_000.0, 1).unwrap();
     let mut block = [0.0; 16];
     let error = (0..1_000)
@@ -162,26 +125,18 @@ fn time_of_a_voice() {
         .unwrap()
         .to_string();
     assert!(
-        error.contains("10 times as long as what it renders"),
+        error.contains("10 times the duration of its samples"),
         "{error}"
     );
 }
 
-/// What models of one registry share: each is within its own limits.
+/// The shared limits of a registry, with models that are within their own limits.
 #[test]
 fn time_memory_and_instances_of_all() {
-    let with = |all: WasmTotal| WasmLimits {
-        call: Duration::from_secs(60),
-        all,
-        ..limits()
-    };
+    let with = |all: WasmTotal| limits().with_call(Duration::from_secs(60)).with_all(all);
     let enough = limits().all;
     let registry = |limits: WasmLimits, body: &str| {
-        let search = Search {
-            limits,
-            builtin: false,
-            ..Search::builtin()
-        };
+        let search = Search::builtin().with_limits(limits).with_builtin(false);
         let mut registry = Registry::search(&search).unwrap();
         let mut errors = Vec::new();
         for i in 0..4 {
@@ -201,28 +156,15 @@ fn time_memory_and_instances_of_all() {
     assert_eq!(registry(with(enough), sound), "");
     assert_eq!(registry(with(enough), &grows), "");
     for (body, all, said) in [
-        (
-            sound,
-            WasmTotal {
-                instances: 3,
-                ..enough
-            },
-            "3 instances at a time",
-        ),
+        (sound, enough.with_instances(3), "3 instances at a time"),
         (
             &grows,
-            WasmTotal {
-                memory_bytes: 20 << 20,
-                ..enough
-            },
+            enough.with_memory_bytes(20 << 20),
             "20971520 bytes of memory together",
         ),
         (
             &counts,
-            WasmTotal {
-                time: Duration::from_millis(100),
-                ..enough
-            },
+            enough.with_time(Duration::from_millis(100)),
             "used up the 100 ms",
         ),
     ] {

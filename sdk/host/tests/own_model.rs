@@ -1,4 +1,4 @@
-//! A model of the program itself is called as an exported one is.
+//! Calls of a model of the program itself, compared with those of an exported one.
 #![allow(clippy::unwrap_used)] // Test code: a failure is a failed test.
 
 use htex_ar::Autoregression;

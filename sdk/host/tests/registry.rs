@@ -1,4 +1,4 @@
-//! Which of several models is used, and what is said of the others.
+//! Precedence of several models, and notes on the others.
 #![cfg(feature = "wasm")]
 #![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
@@ -7,7 +7,7 @@ mod common;
 use std::path::Path;
 
 use common::{ID, limits, text};
-use htex_host::{HostError, Note, Origin, Registry, Search, WasmLimits};
+use htex_host::{HostError, Note, Origin, Registry, Search};
 use semver::VersionReq;
 
 /// Writes a plugin of this version.
@@ -17,10 +17,7 @@ fn write(folder: &Path, name: &str, version: &str) {
 }
 
 fn search() -> Search {
-    Search {
-        limits: limits(),
-        ..Search::builtin()
-    }
+    Search::builtin().with_limits(limits())
 }
 
 fn version(registry: &Registry) -> &str {
@@ -28,7 +25,7 @@ fn version(registry: &Registry) -> &str {
 }
 
 #[test]
-fn files_go_before_embedded_ones_before_folders_before_built_in_ones() {
+fn files_precede_embedded_models_then_folders_then_built_in_models() {
     let dir = tempfile::tempdir().unwrap();
     let (folder, file) = (dir.path().join("plugins"), dir.path().join("named.wasm"));
     std::fs::create_dir(&folder).unwrap();
@@ -134,32 +131,23 @@ fn a_short_name_that_two_ids_have_is_noted() {
 fn limits_reach_every_plugin_of_a_search() {
     let dir = tempfile::tempdir().unwrap();
     write(dir.path(), "a.wasm", "1.0.0");
-    let tight = Search {
-        dirs: vec![dir.path().to_owned()],
-        limits: WasmLimits {
-            module_bytes: 100,
-            ..limits()
-        },
-        ..Search::builtin()
-    };
+    let tight = Search::builtin()
+        .with_dirs(vec![dir.path().to_owned()])
+        .with_limits(limits().with_module_bytes(100));
     let mut registry = Registry::search(&tight).unwrap();
     assert!(registry.notes()[0].to_string().contains("100 bytes"));
     let module = std::fs::read(dir.path().join("a.wasm")).unwrap();
     assert!(registry.add_wasm_bytes("felt.htex", &module).is_err());
 }
 
-/// Runs itself in a process of its own environment.
+/// Runs itself in another process with changed environment variables.
 #[test]
 fn folders_of_the_environment() {
     const INSIDE: &str = "HTEX_TEST_INSIDE";
     if std::env::var_os(INSIDE).is_some() {
-        let registry = Registry::search(&Search {
-            limits: WasmLimits {
-                cache: htex_host::WasmCache::User,
-                ..limits()
-            },
-            ..Search::default()
-        });
+        let registry = Registry::search(
+            &Search::default().with_limits(limits().with_cache(htex_host::WasmCache::User)),
+        );
         let registry = registry.unwrap();
         assert_eq!(
             version(&registry),

@@ -1,4 +1,4 @@
-//! The same model built in, as a native library and as a WASM module: the same samples.
+//! A model built in, as a native library and as a WASM module has equal samples.
 #![cfg(feature = "wasm")]
 #![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
@@ -21,10 +21,7 @@ fn wasm(folder: &Path, name: &str) -> PathBuf {
 }
 
 fn uncached() -> WasmLimits {
-    WasmLimits {
-        cache: WasmCache::Off,
-        ..WasmLimits::default()
-    }
+    WasmLimits::default().with_cache(WasmCache::Off)
 }
 
 fn fitted(model: &LoadedModel) -> Vec<f64> {
@@ -99,7 +96,7 @@ fn the_same_samples_three_ways() {
             };
             let difference = difference(&expected, &got);
             println!("{name:8} built in and {kind:6}: differ by {difference:e} of full scale");
-            // Only an FFT may choose other instructions on another machine.
+            // Only an FFT may choose instructions by the machine.
             let exact = ["ar", "speak"].contains(&name);
             assert!(
                 difference <= if exact { 0.0 } else { 1e-9 },
@@ -115,8 +112,8 @@ fn the_same_samples_three_ways() {
     }
 }
 
-/// What a block costs each way, and how soon the first sample comes: printed, and held to the bounds
-/// that rendering in real time needs.
+/// Time per sample for each kind of loading, and time to the first samples: printed, and compared with the bounds of
+/// rendering in real time.
 #[test]
 fn what_each_way_costs() {
     let Some(folder) = plugins::wasm_if_there() else {
@@ -128,10 +125,7 @@ fn what_each_way_costs() {
     for name in plugins::MODELS {
         let builtin = registry.find(name).unwrap().clone();
         let parameters = fitted(&builtin);
-        let fuel = WasmLimits {
-            fuel: Some(u64::MAX / 2),
-            ..uncached()
-        };
+        let fuel = uncached().with_fuel(u64::MAX / 2);
         let native = LoadedModel::from_file(&native(&native_folder, name)).unwrap();
         let module = wasm(&folder, name);
         let within = |limits| LoadedModel::from_file_within(&module, limits).unwrap();
@@ -152,7 +146,7 @@ fn what_each_way_costs() {
     }
 }
 
-/// The best of many blocks: what else the machine does is not measured.
+/// The minimum of many blocks, which excludes other load of the machine.
 fn ns_a_sample(model: &LoadedModel, parameters: &[f64], block: usize) -> f64 {
     let rate_hz = model
         .voice_rate_hz(parameters, Band::TACTILE, RATE_HZ)
@@ -161,7 +155,7 @@ fn ns_a_sample(model: &LoadedModel, parameters: &[f64], block: usize) -> f64 {
         .voice(parameters, Band::TACTILE, rate_hz, SEED)
         .unwrap();
     let mut out = vec![0.0f32; block];
-    // Frames of noise are made once in several blocks: so means of 64 blocks are compared.
+    // Frames of noise are computed once in several blocks, so means of 64 blocks are compared.
     let mean = |_| {
         let start = Instant::now();
         (0..64).for_each(|_| voice.render(&mut out).unwrap());
@@ -170,13 +164,10 @@ fn ns_a_sample(model: &LoadedModel, parameters: &[f64], block: usize) -> f64 {
     (0..8).map(mean).fold(f64::INFINITY, f64::min)
 }
 
-/// From the file to the first block: compiling, and from the cache.
+/// Time from the file to the first block, with compilation and with the cache.
 fn first_sample(name: &str, module: &Path, parameters: &[f64]) {
     let folder = tempfile::tempdir().unwrap();
-    let limits = WasmLimits {
-        cache: WasmCache::Dir(folder.path().join("wasm")),
-        ..WasmLimits::default()
-    };
+    let limits = WasmLimits::default().with_cache(WasmCache::Dir(folder.path().join("wasm")));
     let time = || {
         let start = Instant::now();
         let model = LoadedModel::from_file_within(module, &limits).unwrap();

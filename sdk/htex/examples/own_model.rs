@@ -1,5 +1,5 @@
-//! A model of the program's own: flat noise between two frequencies. It is registered, fitted to a simulated recording, and
-//! the asset is played.
+//! A model of the program itself: flat noise between two frequencies. It is registered and fitted to a simulated
+//! recording, and the asset is played.
 //!
 //! `cargo run --release -p htex --features author --example own_model`
 
@@ -14,7 +14,7 @@ use htex_shaped::{Curve, ShapedVoice};
 /// The model: a plateau from `low_hz` to `high_hz`.
 struct Plateau;
 
-/// The plateau of some parameters in a band.
+/// The plateau of parameters in a band.
 struct Edges {
     low_hz: f64,
     high_hz: f64,
@@ -35,7 +35,7 @@ impl Model for Plateau {
         StaticField::scalar("high_hz", "Hz", (0.0, 2_000.0), "Highest frequency."),
     ]);
 
-    /// The frequencies between which 90 % of the power is.
+    /// The frequencies between which 90 % of the power lies.
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         let power = || input.magnitude.iter().map(|m| m * m);
         let total: f64 = power().sum();

@@ -1,4 +1,4 @@
-//! Open a texture asset and play it.
+//! Opens and plays texture assets.
 //!
 //! ```no_run
 //! use htex::{Asset, Motion, VoiceOptions};
@@ -10,13 +10,13 @@
 //! # Ok::<(), htex::Error>(())
 //! ```
 //!
-//! [`Voice::render`] does not allocate, lock or touch files: it may run in an audio thread.
+//! [`Voice::render`] does not allocate, lock or access files: it may run in an audio thread.
 //!
 //! # Features
-//! - `wasm` (default): runs the models that assets bring along, in a sandbox. Without it the player is smaller, and an
-//!   asset plays its representations of built-in models.
-//! - `author`: reads recordings and makes assets of them, as `htex::author`.
-//! - `scene`: plans and renders scenes, as `htex::scene`, for the devices of `htex::device`.
+//! - `wasm` (default): runs models that are embedded in assets, in a sandbox. Without it the program is smaller, and only
+//!   representations of built-in models can be played.
+//! - `author`: `htex::author`, which reads recordings and makes assets.
+//! - `scene`: `htex::scene`, which plans and renders scenes, and `htex::device`, the devices they are played on.
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "author")]

@@ -1,4 +1,4 @@
-//! A player without the sandbox plays what it can of an asset that brings a module.
+//! A player without the sandbox plays the representations of built-in models of an asset with an embedded module.
 #![cfg(all(feature = "author", not(feature = "wasm")))]
 
 use htex::author::simulate::{SimulationOptions, Surface, simulate};
@@ -9,7 +9,7 @@ use htex::{Asset, Error, Registry, VoiceOptions};
 /// An id that no built-in model has.
 const ELSEWHERE: &str = "org.example.elsewhere";
 
-/// An asset of AR and sBeta. The one named is renamed, measured as the best, and brought along as a module.
+/// An asset of AR and sBeta. The named one gets another id, the smallest error, and an embedded module.
 fn asset() -> htex::AssetData {
     let options = SimulationOptions {
         duration_s: 3.0,

@@ -1,12 +1,12 @@
-//! The frozen surface: numbers and signatures that cross between a host and a model.
+//! The frozen ABI between a host and a model: constants and function signatures.
 //!
-//! Only scalars and pointer + length cross. `usize` is the machine's own size: 8 bytes native, 4 in
-//! a WASM module. Functions that give text or parameters take the caller's buffer and return the
-//! length needed; a caller with too small a buffer calls again. Negative return values are
+//! Arguments are scalars, or a pointer and a length. `usize` is the machine's own size: 8 bytes native, 4 in
+//! a WASM module. Functions that return text or parameters write to the caller's buffer and return the
+//! required length; a caller whose buffer is too small calls again. Negative return values are
 //! [`crate::Status`] codes.
 //!
 //! A native library exports the functions of [`ModelTable`]. A WASM module exports these, its
-//! `memory`, and two more by which the host allocates memory there for the arrays that it passes:
+//! `memory`, and two more by which the host allocates memory for arguments in the module:
 //! `htex_model_alloc` ([`AllocFn`]) and `htex_model_free` ([`FreeFn`]). It imports nothing.
 
 /// Major part of the version: a host loads only models of its own major.
@@ -117,8 +117,8 @@ pub type AllocFn = extern "C" fn(len: usize) -> *mut u8;
 /// same `len`; null is allowed and does nothing. `[not while another call is in flight]`
 pub type FreeFn = unsafe extern "C" fn(pointer: *mut u8, len: usize);
 
-/// Everything a model exports, in one table: a static in a built-in model, filled from symbols of
-/// the same names (`htex_model_…`) in a native library.
+/// All functions of a model: a static table in a built-in model, filled from the symbols `htex_model_…` of a native
+/// library.
 #[derive(Clone, Copy)]
 #[repr(C)]
 #[allow(missing_docs)] // The types document the functions.

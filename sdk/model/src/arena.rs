@@ -1,8 +1,8 @@
-//! Memory of a module: blocks in classes of size, each class with a list of what was freed. It takes a
-//! tenth of the code of a general allocator.
+//! Allocator of a module: blocks in size classes, each class with a list of freed blocks. It has a tenth of the code
+//! of a general allocator.
 //!
-//! Classes stand a quarter of an octave apart or less, so a block is at most a quarter larger than asked
-//! for. Freed blocks are used again in their class alone: a model allocates the same sizes again and again.
+//! Classes are at most a quarter of an octave apart, so a block is at most a quarter larger than requested. Freed
+//! blocks are reused only in their class, which suits models: they allocate the same sizes repeatedly.
 
 use core::alloc::Layout;
 use core::ptr::null_mut;
@@ -17,7 +17,7 @@ const CLASSES: usize = STEPS * (usize::BITS as usize + 1);
 
 /// Blocks of memory that grows and never moves.
 pub(crate) struct Arena {
-    /// The block of each class that was freed last; each holds the address of the one before.
+    /// The last freed block of each class; each contains the address of the one freed before it.
     freed: [*mut u8; CLASSES],
     /// New memory that is not in a block yet.
     fresh: *mut u8,
@@ -49,7 +49,7 @@ impl Arena {
         if block.is_null() {
             return self.take_fresh(len, grow);
         }
-        // SAFETY: a freed block, in which `give_back` wrote the address of the one before.
+        // SAFETY: a freed block, to which `give_back` wrote the address of the one freed before it.
         self.freed[class] = unsafe { block.cast::<*mut u8>().read() };
         Some(block)
     }
@@ -81,7 +81,7 @@ impl Arena {
         let Some((class, _)) = class(layout.size()) else {
             return;
         };
-        // SAFETY: a block of ours, aligned and larger than an address.
+        // SAFETY: a block of this arena, aligned and larger than an address.
         unsafe { block.cast::<*mut u8>().write(self.freed[class]) };
         self.freed[class] = block;
     }
@@ -102,8 +102,8 @@ mod tests {
     use super::*;
     use std::vec::Vec;
 
-    /// Blocks of all sizes, taken and given back in disorder, never overlap, keep what is written to them,
-    /// are aligned, and are used again.
+    /// Blocks of all sizes, allocated and freed in mixed order, never overlap, keep their content, are aligned, and are
+    /// reused.
     #[test]
     fn blocks_are_apart_and_used_again() {
         const PAGES: usize = 512;

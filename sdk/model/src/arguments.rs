@@ -1,10 +1,10 @@
-//! Checks of arguments: every model refuses the same ones.
+//! Checks of arguments, common to all models.
 
 use crate::abi::{MAX_BAND_HZ, MAX_RATE_HZ, MIN_BINS, MIN_RATE_HZ};
 use crate::voices_1::MAX_VOICES;
 use crate::{Band, Error, FitInput, StaticDescriptor, Status, Values, text};
 
-/// Voices that are rendered together: not too many, and none of them twice.
+/// Checks the handles of voices that are rendered together: at most [`MAX_VOICES`], and all different.
 pub(crate) fn check_handles(handles: &[i64]) -> Result<(), Error> {
     if handles.len() > MAX_VOICES {
         let count = handles.len();
@@ -18,11 +18,7 @@ pub(crate) fn check_handles(handles: &[i64]) -> Result<(), Error> {
     let again = |(i, handle)| handles[..i].contains(handle);
     match handles.iter().enumerate().find(|pair| again(*pair)) {
         None => Ok(()),
-        Some((i, _)) => Err(Error::argument(text![
-            "`voices`[",
-            i,
-            "] stands there a second time",
-        ])),
+        Some((i, _)) => Err(Error::argument(text!["`voices`[", i, "] occurs twice",])),
     }
 }
 
@@ -78,7 +74,7 @@ pub(crate) fn check_fit_input(
         return Err(Error::argument("`frequency_hz` does not ascend"));
     }
     if input.magnitude.iter().any(|&m| m < 0.0) {
-        return Err(Error::argument("`magnitude` holds a negative number"));
+        return Err(Error::argument("`magnitude` contains a negative number"));
     }
     if !input.signal.is_empty() {
         check_rate(input.signal_rate_hz)?;
@@ -90,7 +86,7 @@ fn check_options(values: &[f64], descriptor: &StaticDescriptor) -> Result<(), Er
     let invalid = |message| Err(Error::new(Status::InvalidOption, message));
     if values.len() != descriptor.options.len() {
         let (want, got) = (descriptor.options.len(), values.len());
-        return invalid(text![want, " option values are wanted, ", got, " came"]);
+        return invalid(text![got, " option values; ", want, " are required"]);
     }
     for (option, &value) in descriptor.options.iter().zip(values) {
         let whole = !option.integer || value as i64 as f64 == value;
@@ -135,9 +131,7 @@ pub(crate) fn read_sets<'a>(
         flat = &flat[used..];
     }
     if !flat.is_empty() {
-        return Err(Error::argument(
-            "numbers stand behind the last parameter set",
-        ));
+        return Err(Error::argument("numbers follow the last parameter set"));
     }
     Ok(())
 }

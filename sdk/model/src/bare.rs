@@ -3,8 +3,8 @@
 use core::cell::RefMut;
 use core::marker::PhantomData;
 
-/// A lock that is always taken: nothing is shared, since this crate knows no lock of the target's own. Callers make what they
-/// would have shared.
+/// A lock that is never acquired: this crate has no lock for such targets. Callers then compute the value that they would
+/// share.
 pub struct Lock<T>(PhantomData<fn() -> T>);
 
 impl<T> Lock<T> {

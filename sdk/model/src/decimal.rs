@@ -1,5 +1,4 @@
-//! Decimal texts of numbers, without the formatting of the standard library: that takes 20 kB of a WASM
-//! module.
+//! Decimal texts of numbers, without the formatting of the standard library, which takes 20 kB of a WASM module.
 
 /// Significant digits of [`rounded`].
 const DIGITS: i32 = 9;
@@ -43,7 +42,7 @@ impl Short {
         }
     }
 
-    /// The digits of a number, with a point behind the first `whole` ones if more follow.
+    /// Writes the digits of a number, with a point after the first `whole` ones if more follow.
     const fn digits(&mut self, number: u64, whole: i32) {
         let mut unit = 1;
         while number / unit >= 10 {
@@ -61,7 +60,7 @@ impl Short {
     }
 }
 
-/// The text of a whole number.
+/// Returns the text of a whole number.
 pub(crate) const fn whole(number: u64) -> Short {
     let mut text = Short::EMPTY;
     text.digits(number, i32::MAX);
@@ -69,7 +68,7 @@ pub(crate) const fn whole(number: u64) -> Short {
 }
 
 impl Decimal {
-    /// The text, as JSON has it.
+    /// Returns the text in the syntax of JSON.
     pub(crate) const fn text(self) -> Short {
         let Self {
             negative, digits, ..
@@ -108,7 +107,7 @@ const fn count_digits(mut number: u64) -> i32 {
     count
 }
 
-/// A finite number, rounded to nine significant digits: for people.
+/// Rounds a finite number to nine significant digits, for messages.
 pub(crate) fn rounded(number: f64) -> Decimal {
     const LEAST: f64 = 10u64.pow(DIGITS as u32 - 1) as f64;
     let (mut size, mut exponent) = (number.abs(), 0);

@@ -1,4 +1,4 @@
-//! A model's descriptor, as a host reads it.
+//! The descriptor of a model, as a host reads it.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -7,9 +7,23 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Kind, StaticDescriptor, StaticField, StaticOption, Store};
 
-/// A model's description; crosses the ABI as JSON.
+/// A model's description; passed through the ABI as JSON.
+///
+/// ```
+/// use htex_model::{StaticDescriptor, StaticField, json};
+/// const DESCRIPTOR: StaticDescriptor = StaticDescriptor::new("org.example.x", "X", "1.0.0", "An example.")
+///     .fields(&[StaticField::scalar("peak_hz", "Hz", (20.0, 1000.0), "Peak.")]);
+/// const TEXT: [u8; json::length(&DESCRIPTOR)] = json::text(&DESCRIPTOR);
+/// let descriptor: htex_model::Descriptor = serde_json::from_slice(&TEXT)?;
+/// assert_eq!((&descriptor.id[..], &descriptor.fields[0].name[..]), ("org.example.x", "peak_hz"));
+/// # Ok::<(), serde_json::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "schemars",
+    schemars(description = "A model's description; passed through the ABI as JSON.")
+)]
 pub struct Descriptor {
     /// Reverse-DNS identifier, e.g. `org.htex.sbeta`; never changes.
     #[cfg_attr(
@@ -21,7 +35,7 @@ pub struct Descriptor {
     pub name: String,
     /// Semantic version of the model's parameters and sound.
     pub version: String,
-    /// One sentence: what the model keeps of a spectrum.
+    /// One sentence: the properties of a spectrum that the model stores.
     pub summary: String,
     /// Parameters, in the order of the flat array.
     #[cfg_attr(feature = "schemars", schemars(length(min = 1, max = 32)))]
@@ -29,8 +43,8 @@ pub struct Descriptor {
     /// Fit options, in the order of their array.
     #[serde(default)]
     pub options: Vec<FitOption>,
-    /// The level of a fit is part of what the model keeps of a spectrum, as with energies, and stays as
-    /// it is. Otherwise the level may be taken from the recording.
+    /// Whether the level of a fit is determined by the parameters, as for energies, and is stored unchanged. Otherwise
+    /// the level may be taken from the recording.
     #[serde(default, skip_serializing_if = "is_false")]
     pub keeps_level: bool,
 }
@@ -40,8 +54,24 @@ fn is_false(flag: &bool) -> bool {
 }
 
 /// One parameter field.
+///
+/// ```
+/// use htex_model::{Field, Kind, Store};
+/// let field = Field {
+///     name: "peak_hz".to_owned(),
+///     unit: "Hz".to_owned(),
+///     kind: Kind::Scalar,
+///     min: 20.0,
+///     max: 1000.0,
+///     store: Store::F32,
+///     default: None,
+///     description: "Peak.".to_owned(),
+/// };
+/// assert!((field.min..=field.max).contains(&80.0));
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schemars", schemars(description = "One parameter field."))]
 pub struct Field {
     /// Name, units included, e.g. `peak_hz`.
     pub name: String,
@@ -53,18 +83,39 @@ pub struct Field {
     pub min: f64,
     /// Largest value allowed.
     pub max: f64,
-    /// How an asset stores the values.
+    /// Encoding of the values in an asset.
     pub store: Store,
-    /// Value for assets of earlier minor versions, which lack the field; a scalar's alone.
+    /// Value for assets of earlier minor versions, which lack the field; for scalars only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub default: Option<f64>,
-    /// What the field means.
+    /// Meaning of the field.
     pub description: String,
 }
 
-/// One knob of the fit: a number, or one of several named choices (the number is its index).
+/// One option of the fit: a number, or one of several named choices (the number is its index).
+///
+/// ```
+/// use htex_model::FitOption;
+/// let option = FitOption {
+///     name: "scale".to_owned(),
+///     unit: "1".to_owned(),
+///     min: 0.0,
+///     max: 1.0,
+///     default: 0.0,
+///     integer: true,
+///     choices: vec!["linear".to_owned(), "log".to_owned()],
+///     description: "Scale of the frequency axis.".to_owned(),
+/// };
+/// assert_eq!(option.choices[option.default as usize], "linear");
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "schemars",
+    schemars(
+        description = "One option of the fit: a number, or one of several named choices (the number is its index)."
+    )
+)]
 pub struct FitOption {
     /// Name as given on the command line.
     pub name: String,
@@ -82,12 +133,12 @@ pub struct FitOption {
     /// Names of the values 0, 1, …; empty for a plain number.
     #[serde(default)]
     pub choices: Vec<String>,
-    /// What the knob does, and where its default comes from.
+    /// Effect of the option, and source of its default.
     pub description: String,
 }
 
 impl Descriptor {
-    /// The default of each option.
+    /// Returns the default of each option.
     pub fn default_options(&self) -> Vec<f64> {
         self.options.iter().map(|o| o.default).collect()
     }
@@ -137,7 +188,7 @@ impl From<&StaticOption> for FitOption {
     }
 }
 
-/// The JSON Schema of a descriptor: `spec/schemas/descriptor-1.json`.
+/// Returns the JSON Schema of a descriptor: `spec/schemas/descriptor-1.json`.
 #[cfg(feature = "schemars")]
 pub fn descriptor_schema() -> serde_json::Value {
     let title = "descriptor of a texture model, ABI 1";

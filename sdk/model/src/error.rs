@@ -2,32 +2,38 @@
 
 use alloc::string::String;
 
-/// What a call returns. Frozen numbers: they are part of the ABI.
+/// Result of a call. The numbers are part of the ABI and frozen.
+///
+/// ```
+/// use htex_model::Status;
+/// assert_eq!(Status::from_code(Status::CannotFit as i64), Status::CannotFit);
+/// assert_eq!(Status::from_code(-1000), Status::Failed);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(i32)]
 pub enum Status {
-    /// The call did what it says.
+    /// The call succeeded.
     Ok = 0,
-    /// A pointer, length, rate, band or weight is not usable.
+    /// A pointer, length, rate, band or weight is invalid.
     InvalidArgument = -1,
     /// Parameters do not fit the descriptor's fields.
     InvalidParameters = -2,
     /// A fit option does not fit the descriptor's options.
     InvalidOption = -3,
-    /// The spectrum holds nothing this model can be fitted to.
+    /// The model cannot be fitted to the spectrum.
     CannotFit = -4,
     /// No such voice, or a voice that was freed.
     BadHandle = -5,
     /// No more voices can be made.
     TooManyVoices = -6,
-    /// The model panicked; the call had no effect that can be relied on.
+    /// The model panicked; the effect of the call is undefined.
     Panicked = -7,
-    /// Any other failure, told by the last-error text.
+    /// Any other failure, described by the last-error text.
     Failed = -8,
 }
 
 impl Status {
-    /// The status of a number that crossed the ABI; unknown negative numbers are `Failed`.
+    /// Converts a returned number; unknown negative numbers are `Failed`.
     pub fn from_code(code: i64) -> Self {
         match code {
             0.. => Self::Ok,
@@ -43,17 +49,23 @@ impl Status {
     }
 }
 
-/// A status with a message: what was wrong, where, and what to do.
+/// A status with a message: the error, its place, and a remedy.
+///
+/// ```
+/// use htex_model::{Error, Status, text};
+/// let error = Error::cannot_fit(text!["no peak above ", 0.5, " N"]);
+/// assert_eq!((error.status, &error.message[..]), (Status::CannotFit, "no peak above 0.5 N"));
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Error {
-    /// The code that crosses the ABI.
+    /// The status returned through the ABI.
     pub status: Status,
-    /// The message behind it.
+    /// The last-error text.
     pub message: String,
 }
 
 impl Error {
-    /// An error of any status.
+    /// Makes an error of any status.
     pub fn new(status: Status, message: impl Into<String>) -> Self {
         Self {
             status,
@@ -61,19 +73,19 @@ impl Error {
         }
     }
 
-    /// The spectrum holds nothing this model can be fitted to.
+    /// The model cannot be fitted to the spectrum.
     #[cold]
     pub fn cannot_fit(message: impl Into<String>) -> Self {
         Self::new(Status::CannotFit, message)
     }
 
-    /// An argument is not usable.
+    /// An argument is invalid.
     #[cold]
     pub fn argument(message: impl Into<String>) -> Self {
         Self::new(Status::InvalidArgument, message)
     }
 
-    /// Parameters are not usable.
+    /// Parameters are invalid.
     #[cold]
     pub fn parameters(message: impl Into<String>) -> Self {
         Self::new(Status::InvalidParameters, message)

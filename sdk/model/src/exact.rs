@@ -1,4 +1,4 @@
-//! Decimals that read as the number they were made of, to the bit; at compile time.
+//! Decimal texts of numbers that are parsed to the same bits; computed at compile time.
 
 use crate::decimal::Decimal;
 
@@ -6,18 +6,18 @@ use crate::decimal::Decimal;
 const EXACT_POWER: i32 = 22;
 /// Whole numbers below this are exact in 64-bit floats.
 const EXACT_WHOLE: f64 = (1u64 << 53) as f64;
-/// Digits that tell every 64-bit float from its neighbours.
+/// Digits that distinguish all 64-bit floats.
 const ENOUGH_DIGITS: usize = 17;
-/// Limbs of nine digits that hold `m · 5^1074`, m < 2^53.
+/// Limbs of nine digits for `m · 5^1074`, m < 2^53.
 const LIMBS: usize = 86;
 const LIMB: u64 = 1_000_000_000;
 
-/// The decimal of a finite number; the shortest where that is found by one exact product or quotient
-/// (Clinger 1990), else one of 17 digits.
+/// Returns the decimal of a finite number: the shortest if one exact product or quotient gives it
+/// (Clinger 1990), else one with 17 digits.
 pub(crate) const fn exact(number: f64) -> Decimal {
     assert!(
         number.is_finite(),
-        "a descriptor holds a number that is not finite"
+        "a descriptor contains a number that is not finite"
     );
     let negative = number < 0.0;
     let size = number.abs();
@@ -39,15 +39,17 @@ const fn short(size: f64) -> Option<(u64, i32)> {
     let mut exponent = EXACT_POWER;
     while exponent >= -EXACT_POWER {
         let power = power_of_ten(exponent.abs());
-        let digits = match exponent >= 0 {
-            true => size / power,
-            false => size * power,
+        let digits = if exponent >= 0 {
+            size / power
+        } else {
+            size * power
         };
         if digits < EXACT_WHOLE {
             let whole = (digits + 0.5) as u64;
-            let back = match exponent >= 0 {
-                true => whole as f64 * power,
-                false => whole as f64 / power,
+            let back = if exponent >= 0 {
+                whole as f64 * power
+            } else {
+                whole as f64 / power
             };
             if back == size && whole as f64 <= EXACT_WHOLE {
                 return Some((whole, exponent));
@@ -67,8 +69,7 @@ const fn power_of_ten(exponent: i32) -> f64 {
     power
 }
 
-/// The first 17 digits of the number's full decimal expansion, rounded up where more follow by half
-/// or more.
+/// Returns the first 17 digits of the number's full decimal expansion, rounded half up.
 const fn long(size: f64) -> (u64, i32) {
     let bits = size.to_bits();
     let (field, fraction) = ((bits >> 52) as i32, bits & ((1 << 52) - 1));
@@ -100,7 +101,7 @@ const fn multiply(limbs: &mut [u64; LIMBS], factor: u64) {
     }
 }
 
-/// The first digits, and how many follow.
+/// Returns the first digits, and the number of further ones.
 const fn leading(limbs: &[u64; LIMBS]) -> (u64, i32) {
     let mut place = 9 * LIMBS;
     while place > ENOUGH_DIGITS && digit(limbs, place - 1) == 0 {
@@ -124,7 +125,7 @@ mod tests {
     use super::*;
     use std::string::String;
 
-    /// Numbers of all sizes come back to the bit, and those that people write as they wrote them.
+    /// Numbers of all sizes are parsed to the same bits, and short decimals are reproduced.
     #[test]
     fn decimals_read_as_the_number() {
         let text = |x| String::from_utf8(exact(x).text().bytes().to_vec()).unwrap();

@@ -1,12 +1,12 @@
-//! The macro that makes a model's C functions.
+//! The macro that generates a model's C functions.
 
-/// Makes the table of C functions of a [`Model`](crate::Model), as `pub static TABLE`.
+/// Generates the table of C functions of a [`Model`](crate::Model), as `pub static TABLE`.
 ///
 /// With `symbols: "FEATURE"` the functions are also exported under their C names (`htex_model_…`)
-/// when the crate is built with that Cargo feature: for a native library or a WASM module, where
-/// one binary holds one model. A WASM module also gets the two memory functions of the ABI.
+/// when the crate is built with that Cargo feature: for a native library or a WASM module, which
+/// contains one model. A WASM module also gets the two memory functions of the ABI.
 ///
-/// With `extensions: [motion]` behind it, as in `export_model!(Stick, symbols: "plugin", extensions: [motion])`,
+/// With `extensions: [motion]` after it, as in `export_model!(Stick, symbols: "plugin", extensions: [motion])`,
 /// the model has the extension `htex.motion/1`: its voice implements [`MotionVoice`](crate::MotionVoice), and the
 /// extension's functions are in `pub static MOTION`.
 ///
@@ -65,7 +65,7 @@ macro_rules! export_model {
             extension: htex_model_exports::htex_model_extension,
         };
 
-        /// What the extension `htex.voices/1` adds.
+        /// The C functions of the extension `htex.voices/1`.
         pub static VOICES: $crate::voices_1::VoicesTable = $crate::voices_1::VoicesTable {
             render: htex_model_exports::htex_voices_1_render,
         };
@@ -257,13 +257,13 @@ macro_rules! export_model {
             #[cfg(target_family = "wasm")]
             #[cfg_attr(feature = $feature, unsafe(no_mangle))]
             pub(super) unsafe extern "C" fn htex_model_free(pointer: *mut u8, len: usize) {
-                // SAFETY: what `htex_model_alloc` returned for this length, by the ABI.
+                // SAFETY: a block that `htex_model_alloc` returned for this length, by the ABI.
                 unsafe { shim::free(pointer, len) }
             }
         }
     };
     (@motion $feature:literal) => {
-        /// What the extension `htex.motion/1` adds.
+        /// The C functions of the extension `htex.motion/1`.
         pub static MOTION: $crate::motion_1::MotionTable = $crate::motion_1::MotionTable {
             set: htex_motion_exports::htex_motion_1_set,
             fit: htex_motion_exports::htex_motion_1_fit,

@@ -1,16 +1,16 @@
-//! The JSON text of a descriptor, made while the model is compiled: a module holds the bytes and no
-//! program that writes them.
+//! The JSON text of a descriptor, generated at compile time, so that a module contains the text and no code that
+//! writes it.
 
 use crate::decimal::whole;
 use crate::exact::exact;
 use crate::{Kind, StaticDescriptor, StaticField, StaticOption, Store};
 
-/// Bytes of a descriptor's text.
+/// Returns the length of a descriptor's text, bytes.
 pub const fn length(descriptor: &StaticDescriptor) -> usize {
     written::<0>(descriptor).len
 }
 
-/// The text, of the [`length`] of the same descriptor.
+/// Returns the text; `N` is the [`length`] for the same descriptor.
 pub const fn text<const N: usize>(descriptor: &StaticDescriptor) -> [u8; N] {
     written(descriptor).bytes
 }
@@ -24,7 +24,7 @@ const fn written<const N: usize>(descriptor: &StaticDescriptor) -> Writer<N> {
     json
 }
 
-/// Keeps the bytes that have a place, and counts all.
+/// Writes the bytes that fit into the buffer, and counts all.
 struct Writer<const N: usize> {
     bytes: [u8; N],
     len: usize,
@@ -213,7 +213,7 @@ mod tests {
                 StaticOption::choice("c", &["x", "y", "z"], "Choice."),
             ]);
 
-    /// The text, which is made at compile time, reads as the constants it was made of.
+    /// The text is parsed to the constants from which it is generated.
     #[test]
     fn the_text_is_the_descriptor() {
         const LEN: usize = length(&ALL);

@@ -1,15 +1,15 @@
-//! Interpolation that most models share.
+//! Linear interpolation of parameter sets, used by most models.
 
 use crate::{Error, Numbers, Values};
 
-/// The set that has all the weight, if one has.
+/// Returns the set of weight 1, if there is one.
 pub fn sole<'a, 'v>(sets: &'a [Values<'v>], weights: &[f64]) -> Option<&'a Values<'v>> {
     let i = weights.iter().position(|&w| w == 1.0)?;
     sets.get(i)
 }
 
-/// Writes the weighted mean of sets whose fields have the same lengths, never outside what the sets
-/// span; a set with all the weight comes back to the bit. Does not allocate.
+/// Writes the weighted mean of sets whose fields have the same lengths. The mean is within the range of the sets; a set
+/// of weight 1 is copied unchanged. Does not allocate.
 ///
 /// # Errors
 /// When the sets differ in length.
@@ -27,7 +27,7 @@ pub fn linear(sets: &[Values<'_>], weights: &[f64], out: &mut Numbers<'_>) -> Re
     for i in 0..len {
         let values = || sets.iter().map(|set| set.flat()[i]);
         let sum: f64 = values().zip(weights).map(|(x, weight)| weight * x).sum();
-        // Weights sum to one but for rounding, which would take a parameter out of its range.
+        // The sum of weights has a rounding error, which could move a parameter out of its range.
         let low = values().fold(f64::INFINITY, f64::min);
         out.push(sum.max(low).min(values().fold(f64::NEG_INFINITY, f64::max)));
     }

@@ -1,12 +1,19 @@
-//! The motion of a finger, as models with the extension `htex.motion/1` are told it.
+//! The motion of a finger, for models with the extension `htex.motion/1`.
 
 use crate::motion_1::{MAX_FORCE_N, MAX_POSITION_MM, MAX_SPEED_MM_S};
 use crate::{Error, Voice, text};
 
-/// The motion of a finger at one sample. From there on it goes on at this speed, until another motion is told.
+/// The motion of a finger at one sample. The speed is constant from there until the next motion is set.
+///
+/// ```
+/// let back = htex_model::Motion { speed_mm_s: -80.0, force_n: 0.4, position_mm: 12.5 };
+/// assert!(back.check().is_ok());
+/// let too_strong = htex_model::Motion { force_n: f64::MAX, ..back };
+/// assert!(too_strong.check().is_err() && too_strong.clamped().check().is_ok());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion {
-    /// Speed along the finger's path, mm/s; negative while the position falls, which is the way back.
+    /// Speed along the finger's path, mm/s; negative while the position decreases.
     pub speed_mm_s: f64,
     /// Normal force, newtons, not negative.
     pub force_n: f64,
@@ -41,7 +48,7 @@ impl Motion {
 }
 
 impl Motion {
-    /// The nearest motion in the ranges of the extension; NaN stays.
+    /// Clamps the numbers to the ranges of the extension; NaN is kept.
     #[must_use]
     pub fn clamped(self) -> Self {
         Self {
@@ -52,7 +59,13 @@ impl Motion {
     }
 }
 
-/// The motion at which a recording was made, as far as it is known.
+/// The motion at which a recording was made, as far as known.
+///
+/// ```
+/// let condition = htex_model::FitCondition::from_numbers(80.0, f64::NAN)?;
+/// assert_eq!((condition.speed_mm_s, condition.force_n), (Some(80.0), None));
+/// # Ok::<(), htex_model::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FitCondition {
     /// Scanning speed, mm/s, not negative.
@@ -62,14 +75,16 @@ pub struct FitCondition {
 }
 
 impl FitCondition {
-    /// Of numbers that crossed the ABI: NaN is not known.
+    /// Converts numbers of the ABI: NaN means unknown.
     ///
     /// # Errors
     /// [`InvalidArgument`](crate::Status::InvalidArgument) for a number that is infinite or beyond its range.
     pub fn from_numbers(speed_mm_s: f64, force_n: f64) -> Result<Self, Error> {
-        let known = |name, x: f64, most| match x.is_nan() {
-            true => Ok(None),
-            false => within(name, x, (0.0, most)).map(|()| Some(x)),
+        let known = |name, x: f64, most| {
+            if x.is_nan() {
+                return Ok(None);
+            }
+            within(name, x, (0.0, most)).map(|()| Some(x))
         };
         Ok(Self {
             speed_mm_s: known("speed_mm_s", speed_mm_s, MAX_SPEED_MM_S)?,
@@ -77,23 +92,23 @@ impl FitCondition {
         })
     }
 
-    /// Speed and force as numbers that cross the ABI: NaN where one is not known.
+    /// Returns speed and force as numbers of the ABI: NaN means unknown.
     pub fn numbers(self) -> (f64, f64) {
         let number = |known: Option<f64>| known.unwrap_or(f64::NAN);
         (number(self.speed_mm_s), number(self.force_n))
     }
 }
 
-/// A voice that follows the finger itself, by the extension `htex.motion/1`. A model has the extension when
-/// [`export_model!`](crate::export_model) is told `extensions: [motion]`, which requires this trait of its voice.
+/// A voice that follows the motion itself, by the extension `htex.motion/1`. A model has the extension if
+/// [`export_model!`](crate::export_model) gets `extensions: [motion]`, which requires this trait of its voice.
 ///
-/// A host then scales neither frequencies with the speed nor the level with the force. A voice that was never told
-/// a motion plays as its parameters say, at the motion of their recording.
+/// A host then scales neither frequencies with the speed nor the level with the force. Before its first motion a voice
+/// plays its parameters as at the motion of their recording.
 pub trait MotionVoice: Voice {
-    /// Takes the motion at the next sample, which is checked. The samples depend on the motions and on the samples
-    /// before which they come, not on the blocks. A voice glides to a new motion without a click; what it does at
-    /// a speed of 0 is the model's own. Before the same sample as a [`retune`](Voice::retune), the order of the
-    /// two does not matter.
+    /// Sets the motion at the next sample, which is in range. The samples depend on the motions and on the samples at
+    /// which they are set, not on the blocks. A voice changes to a new motion without a click; the model determines the
+    /// samples at a speed of 0. The order of this call and of [`retune`](Voice::retune) before the same sample does not
+    /// matter.
     /// `[render thread, no allocation, no lock, no I/O]`
     fn set_motion(&mut self, motion: Motion);
 }

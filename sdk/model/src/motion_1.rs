@@ -1,25 +1,24 @@
-//! The extension `htex.motion/1`: voices that are told how the finger moves, and fits that are told at which
-//! motion the recording was made.
+//! The extension `htex.motion/1`: voices receive the motion of the finger, and fits the motion of the recording.
 //!
-//! A model without it knows its parameters alone, and a host scales frequencies with the speed and the level with
-//! the force. A model with it does both itself, and is the place for what depends on the way travelled:
-//! stick-slip, or a surface that feels the same at the same place. Native libraries and WASM modules may have it.
+//! For a model without the extension, a host scales frequencies with the speed and the level with the force. A model
+//! with the extension does both itself, and can also depend on the position: for stick-slip, or a surface that is the
+//! same at the same position. Native libraries and WASM modules may have it.
 
 /// Largest speed of a finger, mm/s, in either direction.
 pub const MAX_SPEED_MM_S: f64 = 1_000_000.0;
 /// Largest normal force of a finger, newtons.
 pub const MAX_FORCE_N: f64 = 1_000_000.0;
-/// Largest distance of a finger from where its path begins, mm, in either direction.
+/// Largest distance of a finger from the start of its path, mm, in either direction.
 pub const MAX_POSITION_MM: f64 = 1_000_000_000_000.0;
 
-/// Tells a voice the motion at its next sample: the speed along the finger's path (mm/s, negative while the
-/// position falls), the normal force (newtons, not negative) and the position along the path (mm, of either
-/// sign). Until the next call the finger goes on at this speed. Returns a status; after a negative one the
-/// voice plays on as before. `[render thread, no allocation; one thread at a time for one voice]`
+/// Sets the motion at a voice's next sample: the speed along the finger's path (mm/s, negative while the
+/// position decreases), the normal force (newtons, not negative) and the position along the path (mm, of either
+/// sign). The speed is constant until the next call. Returns a status; after a negative one the
+/// voice continues unchanged. `[render thread, no allocation; one thread at a time for one voice]`
 pub type MotionSetFn =
     unsafe extern "C" fn(voice: i64, speed_mm_s: f64, force_n: f64, position_mm: f64) -> i64;
 /// As `htex_model_fit`, of a recording at a speed (mm/s) and a normal force (newtons), neither negative; NaN
-/// where one is not known. `[any thread]`
+/// means unknown. `[any thread]`
 pub type MotionFitFn = unsafe extern "C" fn(
     band_low_hz: f64,
     band_high_hz: f64,
@@ -38,7 +37,7 @@ pub type MotionFitFn = unsafe extern "C" fn(
     level_rms: *mut f64,
 ) -> i64;
 
-/// What the extension adds to the exports.
+/// The functions of the extension.
 #[derive(Clone, Copy)]
 #[repr(C)]
 #[allow(missing_docs)] // The types document the functions.

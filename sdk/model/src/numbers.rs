@@ -1,7 +1,7 @@
-//! Output buffer for numbers that a model writes.
+//! An output buffer for the numbers that a model writes.
 
-/// Numbers that a model writes one after the other, as many as fit into the buffer; the others are
-/// only counted, so that the caller can provide a larger one.
+/// An output buffer for numbers. Numbers that do not fit are only counted, so that the caller can provide a larger
+/// buffer.
 ///
 /// ```
 /// let mut buffer = [0.0; 2];
@@ -16,12 +16,12 @@ pub struct Numbers<'a> {
 }
 
 impl<'a> Numbers<'a> {
-    /// None yet.
+    /// Makes an empty output.
     pub fn new(buffer: &'a mut [f64]) -> Self {
         Self { buffer, count: 0 }
     }
 
-    /// Writes one more.
+    /// Writes a number.
     pub fn push(&mut self, number: f64) {
         if let Some(place) = self.buffer.get_mut(self.count) {
             *place = number;
@@ -29,17 +29,17 @@ impl<'a> Numbers<'a> {
         self.count += 1;
     }
 
-    /// Writes some more.
+    /// Writes several numbers.
     pub fn extend(&mut self, numbers: &[f64]) {
         numbers.iter().for_each(|number| self.push(*number));
     }
 
-    /// How many there are, written or not.
+    /// Returns the count of all numbers, including those that did not fit.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// Those that fit into the buffer.
+    /// Returns the numbers in the buffer.
     pub fn written(&self) -> &[f64] {
         &self.buffer[..self.count.min(self.buffer.len())]
     }

@@ -1,9 +1,9 @@
-//! What the exported functions need of the machine: locks, the last error, and an end to panics.
+//! Platform services of the exported functions: locks, the last error, and handling of panics.
 
 pub use here::Lock;
 pub(crate) use here::{Once, caught, with_last_error};
 
-/// Several threads, and panics that unwind.
+/// With the standard library: several threads, and panics that unwind.
 #[cfg(feature = "std")]
 mod here {
     use alloc::string::{String, ToString};
@@ -19,22 +19,21 @@ mod here {
         static LAST_ERROR: RefCell<String> = const { RefCell::new(String::new()) };
     }
 
-    /// What voices and calls of a model share: a mutex, whatever panicked while it was held.
+    /// A mutex that ignores poisoning, for data that voices and calls of a model share.
     pub struct Lock<T>(Mutex<T>);
 
     impl<T> Lock<T> {
-        /// Around a value.
+        /// Makes a lock of a value.
         pub const fn new(value: T) -> Self {
             Self(Mutex::new(value))
         }
 
-        /// The value, for as long as the guard lives; `None` where this thread has it already and
-        /// that is known.
+        /// Locks the value; `None` if it is detected that this thread holds the lock already.
         pub fn lock(&self) -> Option<MutexGuard<'_, T>> {
             Some(self.0.lock().unwrap_or_else(PoisonError::into_inner))
         }
 
-        /// The value; `None` where another has it now. Does not wait.
+        /// Locks the value without waiting; `None` if the lock is held.
         pub fn try_lock(&self) -> Option<MutexGuard<'_, T>> {
             match self.0.try_lock() {
                 Ok(value) => Some(value),
@@ -57,13 +56,13 @@ mod here {
         })
     }
 
-    /// The last error's text of this thread; `None` while it is in use.
+    /// Returns the text of this thread's last error; `None` while it is in use.
     pub(crate) fn with_last_error<T>(with: impl FnOnce(&mut String) -> T) -> Option<T> {
         LAST_ERROR.with(|last| last.try_borrow_mut().ok().map(|mut text| with(&mut text)))
     }
 }
 
-/// A module: one thread, and panics that trap.
+/// In a module: one thread, and panics that trap.
 #[cfg(not(feature = "std"))]
 mod here {
     use alloc::string::String;
@@ -73,25 +72,24 @@ mod here {
 
     static LAST_ERROR: Lock<String> = Lock::new(String::new());
 
-    /// What voices and calls of a model share.
+    /// A lock for data that voices and calls of a model share.
     pub struct Lock<T>(RefCell<T>);
 
-    // SAFETY: a module has one thread. It imports nothing, so no memory that others share either.
+    // SAFETY: a module has one thread. It imports nothing, so its memory is not shared.
     unsafe impl<T> Sync for Lock<T> {}
 
     impl<T> Lock<T> {
-        /// Around a value.
+        /// Makes a lock of a value.
         pub const fn new(value: T) -> Self {
             Self(RefCell::new(value))
         }
 
-        /// The value, for as long as the guard lives; `None` where this thread has it already and
-        /// that is known.
+        /// Locks the value; `None` if it is detected that this thread holds the lock already.
         pub fn lock(&self) -> Option<RefMut<'_, T>> {
             self.0.try_borrow_mut().ok()
         }
 
-        /// The value; `None` where another has it now. Does not wait.
+        /// Locks the value without waiting; `None` if the lock is held.
         pub fn try_lock(&self) -> Option<RefMut<'_, T>> {
             self.lock()
         }
@@ -121,7 +119,7 @@ mod here {
         call()
     }
 
-    /// The last error's text; `None` while it is in use.
+    /// Returns the text of the last error; `None` while it is in use.
     pub(crate) fn with_last_error<T>(with: impl FnOnce(&mut String) -> T) -> Option<T> {
         LAST_ERROR.lock().map(|mut text| with(&mut text))
     }

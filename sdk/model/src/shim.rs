@@ -1,6 +1,6 @@
-//! From the traits to the C functions: checks arguments, catches panics.
+//! The layer between the C functions and the traits: checks arguments, catches panics.
 //!
-//! Called by the functions that [`export_model!`](crate::export_model) makes; not by hand.
+//! Only the functions that [`export_model!`](crate::export_model) generates call it.
 
 use alloc::alloc::Layout;
 use alloc::vec::Vec;
@@ -22,14 +22,14 @@ use crate::{
 /// Sets that can be mixed without allocating.
 const FEW_SETS: usize = 8;
 
-/// What one exported model keeps: its description as JSON, and its voices.
+/// The state of one exported model: its descriptor as JSON, and its voices.
 pub struct State<M: Model> {
     json: &'static [u8],
     voices: Voices<M::Voice>,
     model: PhantomData<fn() -> M>,
 }
 
-/// A pointer and a length from the other side.
+/// An input array: a pointer and a length from the host.
 #[derive(Clone, Copy)]
 pub struct Input<'a, T>(Option<&'a [T]>);
 
@@ -43,7 +43,7 @@ impl<'a, T> Input<'a, T> {
             return Self(Some(&[]));
         }
         let usable = !pointer.is_null() && pointer.is_aligned() && fits::<T>(len);
-        // SAFETY: not null, aligned, not longer than memory; readable by the caller's promise.
+        // SAFETY: not null, aligned, not longer than memory; the caller guarantees that it is readable.
         Self(usable.then(|| unsafe { core::slice::from_raw_parts(pointer, len) }))
     }
 
@@ -58,20 +58,20 @@ impl<'a, T> From<&'a [T]> for Input<'a, T> {
     }
 }
 
-/// A buffer to write to, from the other side.
+/// An output buffer: a pointer and a length from the host.
 pub struct Output<'a, T>(Option<&'a mut [T]>);
 
 impl<'a, T> Output<'a, T> {
     /// Refuses null and misaligned pointers when `len` is above 0.
     ///
     /// # Safety
-    /// `pointer` is null, or `len` initialised values can be written there for `'a`, by us alone.
+    /// `pointer` is null, or `len` initialised values can be written there for `'a`, with exclusive access.
     pub unsafe fn new(pointer: *mut T, len: usize) -> Self {
         if len == 0 {
             return Self(Some(&mut []));
         }
         let usable = !pointer.is_null() && pointer.is_aligned() && fits::<T>(len);
-        // SAFETY: not null, aligned, not longer than memory; ours by the caller's promise.
+        // SAFETY: not null, aligned, not longer than memory; the caller guarantees exclusive access.
         Self(usable.then(|| unsafe { core::slice::from_raw_parts_mut(pointer, len) }))
     }
 
@@ -108,7 +108,7 @@ pub struct FitCall<'a> {
 }
 
 impl<M: Model> State<M> {
-    /// No voices yet; the model's descriptor as JSON.
+    /// Makes the state without voices; `json` is the model's descriptor.
     pub const fn new(json: &'static [u8]) -> Self {
         Self {
             json,
@@ -192,7 +192,7 @@ impl<M: Model> State<M> {
             self.voices.insert(voice).ok_or_else(|| {
                 Error::new(
                     Status::TooManyVoices,
-                    "no more voices can be made; free some",
+                    "no more voices can be made; free some voices",
                 )
             })
         })
@@ -205,7 +205,7 @@ impl<M: Model> State<M> {
     pub unsafe fn voice_render(&self, handle: i64, out: Output<'_, f32>) -> i64 {
         guarded(|| {
             let out = out.get("out")?;
-            // SAFETY: the caller's promise.
+            // SAFETY: guaranteed by the caller.
             let voice = unsafe { self.voices.get(handle) }.ok_or_else(bad_handle)?;
             voice.render(out);
             Ok(0)
@@ -227,12 +227,12 @@ impl<M: Model> State<M> {
             check_handles(handles)?;
             let mut voices = [core::ptr::null_mut::<M::Voice>(); MAX_VOICES];
             for (voice, &handle) in voices.iter_mut().zip(handles) {
-                // SAFETY: the caller's promise; no handle occurs twice.
+                // SAFETY: guaranteed by the caller; no handle occurs twice.
                 *voice = unsafe { self.voices.get(handle) }.ok_or_else(bad_handle)?;
             }
             let voices = voices.as_mut_ptr().cast::<&mut M::Voice>();
-            // SAFETY: as many pointers as there are handles were just made of references, each to a
-            // voice of its own, and are not used again but as these.
+            // SAFETY: one pointer per handle was just made of a reference to a different voice, and the pointers
+            // are used only as these references.
             let voices = unsafe { core::slice::from_raw_parts_mut(voices, handles.len()) };
             M::Voice::render_together(voices, frames, out);
             Ok(0)
@@ -246,7 +246,7 @@ impl<M: Model> State<M> {
     pub unsafe fn voice_retune(&self, handle: i64, parameters: Input<'_, f64>) -> i64 {
         guarded(|| {
             let values = self.values(parameters)?;
-            // SAFETY: the caller's promise.
+            // SAFETY: guaranteed by the caller.
             let voice = unsafe { self.voices.get(handle) }.ok_or_else(bad_handle)?;
             voice.retune(&values)?;
             Ok(0)
@@ -270,7 +270,7 @@ impl<M: Model<Voice: MotionVoice>> State<M> {
     pub unsafe fn motion_set(&self, handle: i64, motion: Motion) -> i64 {
         guarded(|| {
             motion.check()?;
-            // SAFETY: the caller's promise.
+            // SAFETY: guaranteed by the caller.
             let voice = unsafe { self.voices.get(handle) }.ok_or_else(bad_handle)?;
             voice.set_motion(motion);
             Ok(0)
@@ -285,8 +285,7 @@ fn values<'a>(
     Values::read(descriptor, parameters.get("parameters")?)
 }
 
-/// Fits by the model's own function. Not generic, so that a module holds it once, at this crate's level
-/// of optimisation.
+/// Fits with the model's function. Not generic, so that a module contains it once, at this crate's optimisation level.
 fn fit(
     descriptor: &StaticDescriptor,
     own: fn(&FitInput<'_>) -> Result<Fit, Error>,
@@ -318,7 +317,7 @@ fn fit(
 /// [`Model::interpolate`].
 type Interpolate = fn(&[Values<'_>], &[f64], &mut Numbers<'_>) -> Result<(), Error>;
 
-/// Mixes by the model's own function.
+/// Interpolates with the model's function.
 fn interpolate(
     descriptor: &StaticDescriptor,
     own: Interpolate,
@@ -329,7 +328,7 @@ fn interpolate(
     let weights = weights.get("weights")?;
     check_weights(weights)?;
     let flat = sets.get("sets")?;
-    // Hosts mix two or three sets, and may do so while they render: nothing is allocated.
+    // Hosts interpolate two or three sets, possibly while they render, so these are not allocated.
     let (mut few, mut many) = ([Values::NONE; FEW_SETS], Vec::new());
     let sets = match few.get_mut(..weights.len()) {
         Some(few) => few,
@@ -359,10 +358,10 @@ pub fn alloc(len: usize) -> *mut u8 {
 /// See [`crate::abi::FreeFn`].
 ///
 /// # Safety
-/// `pointer` is null, or what [`alloc`](alloc()) returned for the same `len`, not yet freed.
+/// `pointer` is null, or was returned by [`alloc`](alloc()) for the same `len` and not freed.
 pub unsafe fn free(pointer: *mut u8, len: usize) {
     if let (false, Some(layout)) = (pointer.is_null(), layout(len)) {
-        // SAFETY: the caller's promise; the layout is that of the allocation.
+        // SAFETY: guaranteed by the caller; the layout is that of the allocation.
         unsafe { alloc::alloc::dealloc(pointer, layout) }
     }
 }
@@ -392,7 +391,7 @@ fn guarded(call: impl FnOnce() -> Result<i64, Error>) -> i64 {
     caught(call).unwrap_or_else(failed)
 }
 
-/// Keeps an error's text; returns its status.
+/// Stores an error's text; returns its status.
 fn failed(error: Error) -> i64 {
     with_last_error(|text| *text = error.message);
     error.status as i64
@@ -402,7 +401,7 @@ fn bad_handle() -> Error {
     Error::new(Status::BadHandle, "no such voice; it may have been freed")
 }
 
-/// Copies what there is space for; returns how many there are.
+/// Copies as many values as fit; returns the number of all values.
 fn copy<T: Copy>(from: &[T], out: &mut [T]) -> i64 {
     for (out, from) in out.iter_mut().zip(from) {
         *out = *from;

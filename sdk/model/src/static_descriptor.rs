@@ -1,5 +1,5 @@
-//! What an author writes of a model: constants, of which [`export_model!`](crate::export_model) makes
-//! the JSON text of the ABI while the model is compiled.
+//! The descriptor as constants in a model's code, from which [`export_model!`](crate::export_model) generates
+//! the JSON text of the ABI at compile time.
 
 use crate::{Kind, Store};
 
@@ -20,13 +20,13 @@ pub struct StaticDescriptor {
     pub name: &'static str,
     /// Semantic version of the model's parameters and sound.
     pub version: &'static str,
-    /// One sentence: what the model keeps of a spectrum.
+    /// One sentence: the properties of a spectrum that the model stores.
     pub summary: &'static str,
     /// Parameters, in the order of the flat array.
     pub fields: &'static [StaticField],
     /// Fit options, in the order of their array.
     pub options: &'static [StaticOption],
-    /// The level of a fit is part of what the model keeps of a spectrum.
+    /// Whether the level of a fit is determined by the parameters.
     pub keeps_level: bool,
 }
 
@@ -43,11 +43,11 @@ pub struct StaticField {
     pub min: f64,
     /// Largest value allowed.
     pub max: f64,
-    /// How an asset stores the values.
+    /// Encoding of the values in an asset.
     pub store: Store,
-    /// Value for assets of earlier minor versions, which lack the field; a scalar's alone.
+    /// Value for assets of earlier minor versions, which lack the field; for scalars only.
     pub default: Option<f64>,
-    /// What the field means.
+    /// Meaning of the field.
     pub description: &'static str,
 }
 
@@ -68,12 +68,12 @@ pub struct StaticOption {
     pub integer: bool,
     /// Names of the values 0, 1, …; empty for a plain number.
     pub choices: &'static [&'static str],
-    /// What the option does, and where its default comes from.
+    /// Effect of the option, and source of its default.
     pub description: &'static str,
 }
 
 impl StaticDescriptor {
-    /// A description without fields or options.
+    /// Makes a descriptor without fields or options.
     pub const fn new(
         id: &'static str,
         name: &'static str,
@@ -91,17 +91,17 @@ impl StaticDescriptor {
         }
     }
 
-    /// With these parameters, 1 to 32.
+    /// Sets the parameter fields, 1 to 32.
     pub const fn fields(self, fields: &'static [StaticField]) -> Self {
         Self { fields, ..self }
     }
 
-    /// With these fit options.
+    /// Sets the fit options.
     pub const fn options(self, options: &'static [StaticOption]) -> Self {
         Self { options, ..self }
     }
 
-    /// With the level of a fit as part of what the model keeps.
+    /// Declares that the level of a fit is determined by the parameters.
     pub const fn keeping_level(self) -> Self {
         Self {
             keeps_level: true,
@@ -111,8 +111,7 @@ impl StaticDescriptor {
 }
 
 impl StaticField {
-    /// A parameter of one number in `min..=max`, stored as 32-bit float unless [`Self::stored`] says
-    /// otherwise.
+    /// A parameter of one number in `min..=max`, stored as 32-bit float unless [`Self::stored`] sets another store.
     pub const fn scalar(
         name: &'static str,
         unit: &'static str,
@@ -145,12 +144,12 @@ impl StaticField {
         }
     }
 
-    /// Stored in this way.
+    /// Sets the store.
     pub const fn stored(self, store: Store) -> Self {
         Self { store, ..self }
     }
 
-    /// With this value in assets of earlier minor versions; of a scalar alone.
+    /// Sets the value for assets of earlier minor versions; for scalars only.
     pub const fn defaulted(self, value: f64) -> Self {
         Self {
             default: Some(value),
@@ -199,7 +198,7 @@ impl StaticOption {
         }
     }
 
-    /// One of these; the first is the default.
+    /// A choice of several names; the first is the default.
     pub const fn choice(
         name: &'static str,
         choices: &'static [&'static str],

@@ -1,14 +1,24 @@
-//! What a field holds, and how a file stores it.
+//! The kind of a field, and its encoding in files.
 
 /// One number, or a list of them.
+///
+/// ```
+/// use htex_model::{Kind, StaticField};
+/// let amplitudes = StaticField::list("amplitude", "1", (0.0, 1.0), 16, "Amplitudes.");
+/// assert_eq!(amplitudes.kind, Kind::List { max_len: 16 });
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "host", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "host", serde(tag = "type", rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "schemars",
+    schemars(description = "One number, or a list of them.")
+)]
 pub enum Kind {
     /// One number.
     Scalar,
-    /// From none to `max_len` numbers.
+    /// 0 to `max_len` numbers.
     List {
         /// Most numbers allowed, at most 65,535.
         #[cfg_attr(feature = "schemars", schemars(range(max = 65535)))]
@@ -16,12 +26,26 @@ pub enum Kind {
     },
 }
 
-/// How a file stores a field's values: `offset + scale·q`, or `exp(offset + scale·q)` when
+/// Encoding of a field's values in a file: `offset + scale·q`, or `exp(offset + scale·q)` when
 /// `log` is set, for the integer kinds.
+///
+/// ```
+/// use htex_model::{StaticField, Store};
+/// // One byte: 20 to 1040 Hz in steps of 4 Hz.
+/// let steps = Store::U8 { scale: 4.0, offset: 20.0, log: false };
+/// let peak = StaticField::scalar("peak_hz", "Hz", (20.0, 1040.0), "Peak.").stored(steps);
+/// assert_eq!(peak.store, steps);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "host", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "host", serde(tag = "type", rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "schemars",
+    schemars(
+        description = "Encoding of a field's values in a file: `offset + scale·q`, or `exp(offset + scale·q)` when\n`log` is set, for the integer kinds."
+    )
+)]
 pub enum Store {
     /// 64-bit float.
     F64,

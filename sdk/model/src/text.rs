@@ -1,5 +1,4 @@
-//! Texts of errors, put together without the formatting of the standard library, which would be most of
-//! a small WASM module.
+//! Error texts, built without the formatting of the standard library, which is larger than a small WASM module.
 
 use alloc::string::String;
 
@@ -40,7 +39,7 @@ impl From<f64> for Part<'_> {
     }
 }
 
-/// The parts one behind the other. [`text!`](crate::text!) is shorter to write.
+/// Concatenates the parts. [`text!`](crate::text!) is shorter to write.
 #[cold]
 pub fn concat(parts: &[Part<'_>]) -> String {
     let mut text = String::new();

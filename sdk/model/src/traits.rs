@@ -1,4 +1,4 @@
-//! What a Rust author implements.
+//! The traits of a model in Rust, and their arguments.
 
 use alloc::vec::Vec;
 
@@ -20,7 +20,7 @@ impl Band {
     }
 }
 
-/// What a fit may look at.
+/// Input of a fit.
 #[derive(Debug, Clone, Copy)]
 pub struct FitInput<'a> {
     /// The band.
@@ -35,12 +35,18 @@ pub struct FitInput<'a> {
     pub signal_rate_hz: f64,
     /// One value for each of the descriptor's options, in range.
     pub options: &'a [f64],
-    /// The motion at which the recording was made. Known to models with the extension `htex.motion/1` alone, and to
-    /// them where their host knows it.
+    /// The motion at which the recording was made. Unknown for models without the extension `htex.motion/1`, and if the
+    /// host does not know it.
     pub condition: FitCondition,
 }
 
-/// What a fit gives.
+/// Result of a fit.
+///
+/// ```
+/// let fit = htex_model::Fit { parameters: vec![2.0, 5.0], level_rms: 0.01 };
+/// let softer = htex_model::Fit { level_rms: 0.5 * fit.level_rms, ..fit };
+/// assert_eq!(softer.level_rms, 0.005);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
     /// The flat array of parameters.
@@ -52,9 +58,9 @@ pub struct Fit {
 /// A texture model: a pure description of a spectrum by a few parameters.
 ///
 /// The macro's functions check every argument before they call these methods: parameters fit the
-/// descriptor, options are in range, bands are sane, rates are finite and positive.
+/// descriptor, options are in range, bands are valid, rates are finite and positive.
 pub trait Model: 'static {
-    /// What plays the parameters.
+    /// The voice type.
     type Voice: Voice;
 
     /// The model's descriptor.
@@ -63,7 +69,7 @@ pub trait Model: 'static {
     /// Finds the parameters of a spectrum.
     ///
     /// # Errors
-    /// [`crate::Status::CannotFit`] when the spectrum holds nothing the model can describe.
+    /// [`crate::Status::CannotFit`] when the model cannot describe the spectrum.
     fn fit(input: &FitInput<'_>) -> Result<Fit, Error>;
 
     /// Writes the shape's magnitude at `frequency_hz`, of unit RMS on the 5 Hz grid in the band;
@@ -78,23 +84,23 @@ pub trait Model: 'static {
         magnitude: &mut [f64],
     ) -> Result<(), Error>;
 
-    /// Writes parameters between several sets; weights are not negative and sum to one.
+    /// Interpolates parameter sets; weights are not negative and sum to one.
     /// `[render thread, no allocation, no lock, no I/O]`
     ///
     /// # Errors
-    /// When the sets cannot be mixed.
+    /// When the sets cannot be interpolated.
     fn interpolate(
         sets: &[Values<'_>],
         weights: &[f64],
         out: &mut Numbers<'_>,
     ) -> Result<(), Error>;
 
-    /// The rate at which a voice renders when `wanted_hz` is wanted: the host converts the rest.
+    /// Returns the rate at which a voice renders for a requested rate of `wanted_hz`; the host converts between them.
     fn voice_rate_hz(_parameters: &Values<'_>, _band: Band, wanted_hz: f64) -> f64 {
         wanted_hz
     }
 
-    /// Makes a voice that renders the shape at unit RMS at `rate_hz`, which is what
+    /// Makes a voice that renders the shape at unit RMS at `rate_hz`, a rate that
     /// [`Self::voice_rate_hz`] returned.
     ///
     /// # Errors
@@ -107,15 +113,13 @@ pub trait Model: 'static {
     ) -> Result<Self::Voice, Error>;
 }
 
-/// An endless stream of samples. The same parameters, rate and seed give the same samples, whatever
-/// the block sizes.
+/// An endless stream of samples. Equal parameters, rates and seeds give equal samples, for all block sizes.
 pub trait Voice: Send + 'static {
     /// Fills `out` with the next samples. `[render thread, no allocation, no lock, no I/O]`
     fn render(&mut self, out: &mut [f32]);
 
-    /// Fills `out` with the next `frames` samples of each of some voices, one voice behind the other: what
-    /// [`Self::render`] gives of each, to the bit. A model that renders several voices faster together than one after
-    /// the other overrides this.
+    /// Fills `out` with the next `frames` samples of each voice, one voice after another, bit-identical to
+    /// [`Self::render`] of each. A model that renders several voices faster in one call than separately overrides this.
     /// `[render thread, no allocation, no lock, no I/O]`
     fn render_together(voices: &mut [&mut Self], frames: usize, out: &mut [f32])
     where
@@ -131,6 +135,6 @@ pub trait Voice: Send + 'static {
     /// `[render thread, no allocation, no lock, no I/O]`
     ///
     /// # Errors
-    /// When the voice cannot change to these parameters; it then plays on as before.
+    /// When the voice cannot change to these parameters; it then continues unchanged.
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error>;
 }

@@ -1,4 +1,4 @@
-//! The flat array of parameters, read by field.
+//! The flat array of parameters, by field.
 
 use alloc::vec::Vec;
 
@@ -6,20 +6,19 @@ use crate::abi::{MAX_FIELDS, MAX_LIST_LEN};
 use crate::text;
 use crate::{Error, Kind, StaticDescriptor};
 
-/// Names and ranges of parameters: of the constants that a model is written with, and of what a host
-/// reads of it.
+/// Names and ranges of parameters: of a model's constants, and of a descriptor that a host has read.
 pub trait Fields {
     /// The model's id.
     fn id(&self) -> &str;
 
-    /// How many fields there are.
+    /// The number of fields.
     fn count(&self) -> usize;
 
     /// Field `i`, which is below [`Self::count`].
     fn range(&self, i: usize) -> Range<'_>;
 }
 
-/// What the numbers of a field are checked by.
+/// The properties by which the numbers of a field are checked.
 #[derive(Debug, Clone, Copy)]
 pub struct Range<'a> {
     /// Name, units included.
@@ -84,14 +83,14 @@ pub struct Values<'a> {
 }
 
 impl<'a> Values<'a> {
-    /// No parameters: a place for some.
+    /// An empty value, to be replaced.
     #[cfg(any(feature = "std", target_family = "wasm"))]
     pub(crate) const NONE: Self = Self {
         flat: &[],
         spans: [(0, 0); MAX_FIELDS],
     };
 
-    /// Reads an array that holds just one set of parameters.
+    /// Reads an array of exactly one parameter set.
     ///
     /// # Errors
     /// Names the field that is missing, too long, out of range or not finite.
@@ -103,12 +102,12 @@ impl<'a> Values<'a> {
         let extra = flat.len() - used;
         Err(Error::parameters(text![
             extra,
-            " numbers stand behind the last parameter field of ",
+            " numbers follow the last parameter field of ",
             descriptor.id(),
         ]))
     }
 
-    /// Reads the set of parameters at the start of an array; returns how many numbers it took.
+    /// Reads the parameter set at the start of an array; returns its length.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -137,9 +136,9 @@ impl<'a> Values<'a> {
                 return Err(Error::parameters(text![
                     "parameter `",
                     field.name,
-                    "` wants ",
+                    "` needs ",
                     len,
-                    " numbers and ",
+                    " numbers; ",
                     flat.len().saturating_sub(at),
                     " are left",
                 ]));
@@ -152,24 +151,24 @@ impl<'a> Values<'a> {
         Ok((Self { flat, spans }, at))
     }
 
-    /// The numbers of field `i` (one for a scalar); empty if there is no such field.
+    /// Returns the numbers of field `i` (one for a scalar); empty if there is no such field.
     pub fn list(&self, i: usize) -> &'a [f64] {
         let (start, end) = self.spans.get(i).copied().unwrap_or_default();
         &self.flat[start as usize..end as usize]
     }
 
-    /// The number of scalar field `i`; NaN if there is no such field.
+    /// Returns the number of scalar field `i`; NaN if there is no such field.
     pub fn scalar(&self, i: usize) -> f64 {
         self.list(i).first().copied().unwrap_or(f64::NAN)
     }
 
-    /// The array itself.
+    /// Returns the array.
     pub fn flat(&self) -> &'a [f64] {
         self.flat
     }
 }
 
-/// Writes fields' numbers as one flat array (the other way round from [`Values`]).
+/// Returns the numbers of fields as one flat array, the inverse of [`Values`].
 pub fn flatten(descriptor: &impl Fields, fields: &[&[f64]]) -> Vec<f64> {
     let mut flat = Vec::new();
     for (i, numbers) in fields.iter().enumerate().take(descriptor.count()) {
@@ -188,7 +187,7 @@ fn list_length(field: &Range<'_>, value: Option<f64>, max_len: u32) -> Result<us
         Some(n) => Err(Error::parameters(text![
             "parameter `",
             field.name,
-            "` says its length is ",
+            "` has the length ",
             n,
             "; a whole number from 0 to ",
             max,

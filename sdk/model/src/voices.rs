@@ -1,4 +1,4 @@
-//! Voices behind handles: a stale handle is refused, a live one is found without a lock.
+//! Voices by handle: a stale handle is refused, a live one is found without a lock.
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -7,7 +7,7 @@ use core::sync::atomic::{AtomicU32, Ordering};
 
 use crate::platform::{Lock, Once};
 
-/// Slots that are made at a time: few in a module, whose instances have a voice or two.
+/// Slots per allocation: few in a module, whose instances have one or two voices.
 const CHUNK: usize = if cfg!(target_family = "wasm") {
     16
 } else {
@@ -15,15 +15,15 @@ const CHUNK: usize = if cfg!(target_family = "wasm") {
 };
 const CHUNKS: usize = 64;
 
-/// Up to 65,536 voices, 1,024 in a module. A handle holds a slot's index and the slot's generation, which changes at
-/// every birth and death.
+/// Up to 65,536 voices, 1,024 in a module. A handle consists of a slot's index and the slot's generation, which changes
+/// when a voice is inserted or removed.
 pub struct Voices<V> {
     chunks: [Once<Box<[Slot<V>]>>; CHUNKS],
     free: Lock<Free>,
 }
 
 struct Slot<V> {
-    /// Odd while a voice lives here.
+    /// Odd while the slot contains a voice.
     generation: AtomicU32,
     voice: UnsafeCell<Option<V>>,
 }
@@ -33,8 +33,8 @@ struct Free {
     never_used: u32,
 }
 
-// SAFETY: a slot's voice is touched only by the thread that makes or frees it, which holds the
-// `free` lock, and by `get`, whose caller promises to be alone with that voice.
+// SAFETY: a slot's voice is accessed only by the thread that inserts or removes it, which holds the
+// `free` lock, and by `get`, whose caller guarantees exclusive access to that voice.
 unsafe impl<V: Send> Sync for Voices<V> {}
 
 impl<V> Default for Voices<V> {
@@ -44,7 +44,7 @@ impl<V> Default for Voices<V> {
 }
 
 impl<V> Voices<V> {
-    /// No voices yet.
+    /// Makes an empty collection.
     pub const fn new() -> Self {
         Self {
             chunks: [const { Once::new() }; CHUNKS],
@@ -55,7 +55,7 @@ impl<V> Voices<V> {
         }
     }
 
-    /// Takes a voice in; `None` when there are too many.
+    /// Inserts a voice; `None` at the limit.
     pub fn insert(&self, voice: V) -> Option<i64> {
         let mut free = self.free.lock()?;
         let index = match free.freed.pop() {
@@ -75,13 +75,13 @@ impl<V> Voices<V> {
         });
         let slot = &chunk[index as usize % CHUNK];
         // SAFETY: the slot is free (its index came from the free list, whose lock is held), so no
-        // valid handle to it is out there.
+        // valid handle to it exists.
         unsafe { *slot.voice.get() = Some(voice) };
         let generation = slot.generation.fetch_add(1, Ordering::Release) + 1;
         Some((i64::from(generation & 0x7fff_ffff) << 32) | i64::from(index + 1))
     }
 
-    /// The voice behind a handle; `None` if it was freed or never was.
+    /// Returns the voice of a handle; `None` if it was removed or never existed.
     ///
     /// # Safety
     /// No other thread uses or frees this voice meanwhile, and the caller holds one such reference
@@ -89,17 +89,17 @@ impl<V> Voices<V> {
     #[allow(clippy::mut_from_ref)]
     pub unsafe fn get(&self, handle: i64) -> Option<&mut V> {
         let slot = self.live_slot(handle)?;
-        // SAFETY: the slot is live, and the caller promises to be alone with it.
+        // SAFETY: the slot is live, and the caller guarantees exclusive access.
         unsafe { (*slot.voice.get()).as_mut() }
     }
 
-    /// Takes the voice out.
+    /// Removes a voice.
     pub fn remove(&self, handle: i64) -> Option<V> {
         let mut free = self.free.lock()?;
         let slot = self.live_slot(handle)?;
         slot.generation.fetch_add(1, Ordering::Release);
         free.freed.push((handle & 0xffff_ffff) as u32 - 1);
-        // SAFETY: the slot was live and its generation has moved on under the lock.
+        // SAFETY: the slot was live, and its generation was changed under the lock.
         unsafe { (*slot.voice.get()).take() }
     }
 

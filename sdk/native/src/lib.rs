@@ -6,7 +6,7 @@ use std::error::Error;
 use std::ffi::OsStr;
 use std::path::{Path, absolute};
 
-/// Why a library is not loaded: the loader's own reason.
+/// A library cannot be loaded; contains the system loader's message.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct LoadError(String);
@@ -23,10 +23,10 @@ impl Library {
     /// Runs the library's initialisers with all rights of this program.
     ///
     /// # Errors
-    /// When the file is absent, or no library of this machine.
+    /// When the file is absent, or not a library for this machine.
     pub unsafe fn from_file(path: &Path) -> Result<Self, LoadError> {
         let path = absolute(path).map_err(|error| LoadError(error.to_string()))?;
-        // SAFETY: the caller's promise.
+        // SAFETY: guaranteed by the caller.
         unsafe { load(path.as_os_str()) }
     }
 
@@ -38,17 +38,17 @@ impl Library {
     /// # Errors
     /// When the loader finds none, or cannot load it.
     pub unsafe fn from_system(name: &str) -> Result<Self, LoadError> {
-        // SAFETY: the caller's promise.
+        // SAFETY: guaranteed by the caller.
         unsafe { load(OsStr::new(name)) }
     }
 
-    /// The function or variable of this name.
+    /// Returns the function or variable of this name.
     ///
     /// # Safety
     /// The symbol has the type `T`.
     #[must_use]
     pub unsafe fn symbol<T: Copy>(self, name: &str) -> Option<T> {
-        // SAFETY: the caller's promise.
+        // SAFETY: guaranteed by the caller.
         let found = unsafe { self.0.get::<T>(name) };
         found.ok().map(|symbol| *symbol)
     }
@@ -57,13 +57,13 @@ impl Library {
 /// # Safety
 /// Runs the library's initialisers.
 unsafe fn load(name: &OsStr) -> Result<Library, LoadError> {
-    // SAFETY: the caller's promise.
+    // SAFETY: guaranteed by the caller.
     let loaded = unsafe { libloading::Library::new(name) };
     let library = loaded.map_err(|error| LoadError(reason(&error)))?;
     Ok(Library(Box::leak(Box::new(library))))
 }
 
-/// The loader's words, which libloading keeps behind its own.
+/// Returns the system loader's message, which is the source of libloading's error.
 fn reason(error: &libloading::Error) -> String {
     match error.source() {
         Some(source) => source.to_string(),

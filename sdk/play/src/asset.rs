@@ -1,4 +1,4 @@
-//! An asset with the models that can play it.
+//! An asset and the models that can play it.
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -23,14 +23,14 @@ use crate::{Error, Motion, Source, Voice, VoiceOptions};
 pub struct Asset {
     data: Arc<htex_format::Asset>,
     registry: Registry,
-    /// Whether the models that the asset brings along may run.
+    /// Whether embedded models may run.
     embedded: bool,
-    /// The model of each representation, once it was wanted.
+    /// The model of each representation, loaded at its first use.
     models: Arc<[OnceLock<LoadedModel>]>,
 }
 
 impl Asset {
-    /// Opens a file, to be played by the models it brings along and the built-in ones.
+    /// Opens a file; its models are the embedded and the built-in ones.
     ///
     /// # Errors
     /// When the file cannot be read, or is not a valid asset.
@@ -38,7 +38,7 @@ impl Asset {
         Ok(Self::new(htex_format::Asset::open(path.as_ref())?).with_embedded())
     }
 
-    /// Opens an asset in memory.
+    /// Opens an asset in memory; its models are the embedded and the built-in ones.
     ///
     /// # Errors
     /// When the bytes are not a valid asset.
@@ -46,12 +46,12 @@ impl Asset {
         Ok(Self::new(htex_format::Asset::from_bytes(bytes)?).with_embedded())
     }
 
-    /// Takes an asset that is already read, to be played by the built-in models.
+    /// Makes an asset of its data; its models are the built-in ones.
     pub fn new(data: htex_format::Asset) -> Self {
         Self::with_registry(data, Registry::builtin())
     }
 
-    /// Takes an asset that is already read, to be played by the models of `registry`.
+    /// Makes an asset of its data; its models are those of `registry`.
     pub fn with_registry(data: htex_format::Asset, registry: Registry) -> Self {
         let models = data.manifest.representations.iter();
         Self {
@@ -62,9 +62,9 @@ impl Asset {
         }
     }
 
-    /// Lets the models run that the asset brings along, in their sandbox, before those of its registry (but behind plugins
-    /// named by their files). One is loaded when a representation of its id is wanted first, and what cannot be loaded, or
-    /// is of another model or version than the asset says, is an error there. Without this call they are not run.
+    /// Allows embedded models to run, in a sandbox. They precede the models of the registry, except plugins named by
+    /// their files. An embedded model is loaded when a representation of its id is first used; a module that cannot be
+    /// loaded, or has another id or version than declared, is an error of that use.
     #[must_use]
     pub fn with_embedded(mut self) -> Self {
         self.embedded = true;
@@ -72,25 +72,25 @@ impl Asset {
         self
     }
 
-    /// Loads a model that the asset brings along, by its id.
+    /// Loads an embedded model by its id.
     ///
     /// # Errors
-    /// When the asset brings none of this id, when it cannot be loaded, or is of another model or version than the asset
-    /// says.
+    /// When the asset embeds no model of this id, when it cannot be loaded, or when it has another id or version than
+    /// declared.
     pub fn load_embedded(&self, id: &str) -> Result<(), Error> {
-        if self.brings(id) {
+        if self.embeds(id) {
             self.registry_with(id).map(drop)
         } else {
             Err(Error::NoEmbeddedModel { id: id.to_owned() })
         }
     }
 
-    /// Whether the asset brings along a model of this id.
-    fn brings(&self, id: &str) -> bool {
+    /// Returns whether the asset embeds a model of this id.
+    fn embeds(&self, id: &str) -> bool {
         self.data.manifest.plugins.iter().any(|p| p.model == id)
     }
 
-    /// The registry, and in it the model of this id that the asset brings along, if it does.
+    /// Returns the registry with the embedded model of this id, if there is one.
     fn registry_with(&self, id: &str) -> Result<Registry, Error> {
         let mut registry = self.registry.clone();
         let plugins = self.data.manifest.plugins.iter().zip(&self.data.plugins);
@@ -101,27 +101,28 @@ impl Asset {
         Ok(registry)
     }
 
-    /// Whether there is a model of this id that could play a representation; none is loaded.
+    /// Returns whether there is a model of this id, without loading it.
     pub fn knows_model(&self, id: &str) -> bool {
-        self.embedded && self.brings(id) || self.registry.find(id).is_ok()
+        self.embedded && self.embeds(id) || self.registry.find(id).is_ok()
     }
 
-    /// What the asset says of itself.
+    /// Returns the manifest.
     pub fn manifest(&self) -> &Manifest {
         &self.data.manifest
     }
 
-    /// What its samples are, and so their unit: a lateral force in newtons, an acceleration in m/s².
+    /// Returns the quantity of the samples, which determines their unit: a lateral force in newtons, an acceleration in
+    /// m/s².
     pub fn quantity(&self) -> Quantity {
         self.data.manifest.quantity
     }
 
-    /// The models that can play it, without those it brings along.
+    /// Returns the models that can play it, without the embedded ones.
     pub fn registry(&self) -> &Registry {
         &self.registry
     }
 
-    /// The asset's band.
+    /// Returns the asset's band.
     pub fn band(&self) -> Band {
         let band = self.data.manifest.band;
         Band {
@@ -133,12 +134,12 @@ impl Asset {
     /// Makes a voice.
     ///
     /// # Errors
-    /// When there is no such representation, its model is not there or not compatible, or it
-    /// refuses the parameters or the rate; when the synthesis is out of its range.
+    /// When there is no such representation, its model is missing or not compatible, the model
+    /// refuses the parameters or the rate, or the synthesis is out of range.
     pub fn voice(&self, options: &VoiceOptions<'_>) -> Result<Voice, Error> {
         let still = self.still(options)?;
         let base = self.base_ratio(options)?;
-        // Read faster, the source's samples come at a higher rate: one that renders at any rate is asked for less.
+        // The source is read `base` times as fast, so a lower rate of its samples suffices.
         let source = self.source(&VoiceOptions {
             rate_hz: options.rate_hz / base,
             ..options.clone()
@@ -146,7 +147,7 @@ impl Asset {
         Voice::new(source, still, options, base)
     }
 
-    /// How many times as fast as recorded a voice is read from its start on.
+    /// Returns the reading speed of a voice at its start, in the recorded speed.
     fn base_ratio(&self, options: &VoiceOptions<'_>) -> Result<f64, Error> {
         let Some(motion) = options.motion else {
             return Ok(1.0);
@@ -169,7 +170,7 @@ impl Asset {
         })
     }
 
-    /// The motions that a representation was recorded at. No model is loaded.
+    /// Returns the motions at which a representation was recorded. Loads no model.
     ///
     /// # Errors
     /// When there is no such representation.
@@ -177,7 +178,7 @@ impl Asset {
         Ok(self.motions_of(self.representation(model)?))
     }
 
-    /// The sound of a voice that is not streamed.
+    /// Makes the sound of a voice that is not streamed.
     fn still(&self, options: &VoiceOptions<'_>) -> Result<Option<StillSound>, Error> {
         if options.synthesis == Synthesis::Streamed {
             return Ok(None);
@@ -193,7 +194,7 @@ impl Asset {
         )?)
     }
 
-    /// Makes the source of a voice: the shape alone, at the model's own rate for a listener at
+    /// Makes the source of a voice: the shape alone, at the model's own rate for a player at
     /// `options.rate_hz`.
     ///
     /// # Errors
@@ -213,9 +214,9 @@ impl Asset {
         )
     }
 
-    /// Magnitudes of a representation at a motion (else its first condition) and frequencies in
-    /// hertz; in the asset's unit, in the measure of the texture spectrum. As recorded, or interpolated: what a voice makes of a
-    /// motion beyond that ([`Self::motions`]) is not in it.
+    /// Returns the magnitudes of a representation at a motion (else its first condition) and at frequencies in
+    /// hertz, as a texture spectrum in the asset's unit. They are those recorded or interpolated, without the effects of a
+    /// motion ([`crate::Effects`]).
     ///
     /// # Errors
     /// As [`Self::voice`].
@@ -231,7 +232,7 @@ impl Asset {
         Ok(shape.iter().map(|m| m * level_rms).collect())
     }
 
-    /// The model that plays a representation, named by its id or short name, else the best.
+    /// Returns the model of a representation, named by its id or short name, else of the best representation.
     ///
     /// # Errors
     /// As [`Self::voice`].
@@ -239,8 +240,7 @@ impl Asset {
         self.model(self.representation(model)?)
     }
 
-    /// The full id of the model of a representation named by it or by its short name, else of the
-    /// best.
+    /// Returns the full model id of a representation, named by its id or short name, else of the best representation.
     ///
     /// # Errors
     /// When there is no such representation.
@@ -249,7 +249,7 @@ impl Asset {
         Ok(&self.data.manifest.representations[r].model)
     }
 
-    /// Parameters (the flat array) and level (RMS, in the asset's unit) of a representation at a motion, else
+    /// Returns parameters (the flat array) and level (RMS, in the asset's unit) of a representation at a motion, else
     /// at its first condition.
     ///
     /// # Errors
@@ -267,7 +267,7 @@ impl Asset {
         self.known(r, &model)?.at(&model, motion)
     }
 
-    /// The index of a representation by its model's id or short name, else of the best.
+    /// Returns the index of a representation by its model's id or short name, else of the best.
     fn representation(&self, model: Option<&str>) -> Result<usize, Error> {
         let all = &self.data.manifest.representations;
         let found = match model {
@@ -290,35 +290,37 @@ impl Asset {
             return Ok(model.clone());
         }
         let stored = &self.data.manifest.representations[representation];
-        let model = match self.runs_embedded(&stored.model) {
-            true => model_of(&self.registry_with(&stored.model)?, stored)?.clone(),
-            false => self.installed(stored)?,
+        let model = if self.runs_embedded(&stored.model) {
+            model_of(&self.registry_with(&stored.model)?, stored)?.clone()
+        } else {
+            self.installed(stored)?
         };
         Ok(kept.get_or_init(|| model).clone())
     }
 
-    /// Whether a model of this id is taken from the asset. A program without a sandbox takes its own, if it has one.
+    /// Returns whether the embedded model of this id is used. A program without a sandbox uses an installed model if
+    /// there is one.
     fn runs_embedded(&self, id: &str) -> bool {
         self.embedded && (RUNS_WASM || self.registry.find(id).is_err())
     }
 
-    /// Whether this program has what it takes to run a model of this id; none is loaded.
+    /// Returns whether this program can run a model of this id, without loading it.
     fn is_runnable(&self, id: &str) -> bool {
         RUNS_WASM || self.registry.find(id).is_ok()
     }
 
-    /// The model of a representation from the registry alone.
+    /// Returns the model of a representation from the registry, without the embedded ones.
     fn installed(&self, stored: &Representation) -> Result<LoadedModel, Error> {
         let id = &stored.model;
         match model_of(&self.registry, stored) {
-            Err(Error::Model(HostError::UnknownModel { .. })) if self.brings(id) => {
+            Err(Error::Model(HostError::UnknownModel { .. })) if self.embeds(id) => {
                 Err(Error::EmbeddedOff { id: id.clone() })
             }
             found => found.cloned(),
         }
     }
 
-    /// What the asset knows of a representation, its parameters in the order of the model's fields.
+    /// Returns the conditions of a representation, with parameters in the order of the model's fields.
     fn known(&self, representation: usize, model: &LoadedModel) -> Result<Known, Error> {
         let manifest = &self.data.manifest;
         let stored = &manifest.representations[representation];
@@ -377,8 +379,8 @@ fn is_named(representation: &Representation, name: &str) -> bool {
             .is_some_and(|short| short.eq_ignore_ascii_case(name))
 }
 
-/// The representation of least nine-band error at its first condition; unmeasured ones come last, and those of models
-/// that this program cannot run behind them.
+/// Returns the representation with the smallest nine-band error at its first condition. Representations without a
+/// measurement follow, and then those of models that this program cannot run.
 fn nearest(all: &[Representation], runnable: impl Fn(&Representation) -> bool) -> Option<usize> {
     let error = |r: &Representation| {
         let quality = r.at.first().and_then(|at| at.quality.as_ref());

@@ -13,36 +13,36 @@ pub enum Error {
     /// The file is not a usable asset.
     #[error(transparent)]
     Read(#[from] htex_format::ReadError),
-    /// A model is missing, or refused a call.
+    /// A model is missing, or returned an error.
     #[error(transparent)]
     Model(#[from] htex_host::HostError),
     /// The asset has no representation of this model.
     #[error("the asset has no representation `{wanted}`; it has {there}")]
     NoRepresentation {
-        /// What was asked for.
+        /// The requested model.
         wanted: String,
-        /// What there is.
+        /// The models of the asset's representations.
         there: String,
     },
-    /// The asset brings along no model of this id.
+    /// The asset embeds no model of this id.
     #[error(
-        "the asset brings along no model `{id}`; its manifest lists those it brings under `plugins`"
+        "the asset embeds no model `{id}`; its manifest lists the embedded models under `plugins`"
     )]
     NoEmbeddedModel {
-        /// What was asked for.
+        /// The requested id.
         id: String,
     },
-    /// The asset brings along the only model that could play a representation, and such models are not run
-    /// ([`crate::Asset::with_embedded`] runs them).
+    /// The only model that can play a representation is embedded in the asset, and embedded models are not allowed to run
+    /// ([`crate::Asset::with_embedded`] allows it).
     #[error(
-        "no model `{id}` is installed; the asset brings it along, and models of assets are not run here: allow them, \
-         or install the model"
+        "no model `{id}` is installed; the asset embeds it, but embedded models are not allowed to run: allow them, or \
+         install the model"
     )]
     EmbeddedOff {
         /// The model's id.
         id: String,
     },
-    /// The asset was made by a model of another major version.
+    /// The asset was fitted by another major version of the model.
     #[error(
         "the asset was fitted by {model} {asset}, and version {installed} is installed, which is \
          not compatible; install a {model} of the same major version"
@@ -55,24 +55,28 @@ pub enum Error {
         /// The version of the model.
         installed: String,
     },
-    /// The stored fields are not those of the model.
-    #[error("the parameters do not suit {model}: {problem}; fit the recording again")]
+    /// The stored fields differ from those of the model.
+    #[error(
+        "the parameters do not match the fields of {model}: {problem}; fit the recording again"
+    )]
     Fields {
         /// The model's id.
         model: String,
-        /// Every field that differs, and how.
+        /// Each field that differs, and its difference.
         problem: String,
     },
-    /// A speed or force that is negative or not a number.
-    #[error("motion of {speed_mm_s} mm/s at {force_n} N; both must be finite and not negative")]
+    /// A speed or force is negative or not finite.
+    #[error(
+        "invalid motion: {speed_mm_s} mm/s at {force_n} N; both must be finite and not negative"
+    )]
     Motion {
         /// Scanning speed, mm/s.
         speed_mm_s: f64,
         /// Normal force, newtons.
         force_n: f64,
     },
-    /// A position that is not a finite number.
-    #[error("position of {position_mm} mm along the path; it must be finite")]
+    /// A position is not finite.
+    #[error("invalid position: {position_mm} mm along the path; it must be finite")]
     Position {
         /// Position along the path, mm.
         position_mm: f64,

@@ -1,4 +1,4 @@
-//! What a motion does beyond the conditions that were recorded. Voices and scenes share these rules.
+//! Playback at motions outside the recorded conditions. Voices and scenes share these rules.
 
 use std::fmt;
 
@@ -6,42 +6,67 @@ use htex_format::{AtCondition, Condition};
 
 use crate::Motion;
 
-/// Below this speed, mm/s, the finger does not slide, and there is no texture to feel.
+/// Lowest speed at which the finger slides, mm/s; below it the texture is silent.
 pub const MIN_SLIDING_MM_S: f64 = 0.5;
-/// Slowest and fastest reading of a texture, in its recorded speed.
+/// Lowest ratio of a playing speed to the recorded speed.
 pub const MIN_RATIO: f64 = 1.0 / 16.0;
-/// See [`MIN_RATIO`].
+/// Highest ratio of a playing speed to the recorded speed.
 pub const MAX_RATIO: f64 = 8.0;
 /// Length of an onset or offset of contact, seconds.
 pub const CONTACT_RAMP_S: f64 = 0.020;
-/// Largest gain of a force: no finger presses harder, and a gain that is not finite would be in every sample.
+/// Largest gain of a force, so that all samples are finite.
 const MOST_GAIN: f64 = 1e6;
 
-/// Whether a finger slides at this speed (mm/s, either sign) and force (newtons).
+/// Returns whether a finger slides at this speed (mm/s, either sign) and force (newtons).
 pub fn slides(speed_mm_s: f64, force_n: f64) -> bool {
     speed_mm_s.abs() >= MIN_SLIDING_MM_S && force_n > 0.0
 }
 
-/// What a voice does with a motion beside interpolating between recorded conditions; a scene has an effect of the
-/// same name for each.
+/// Effects of a motion on a voice in addition to interpolation between recorded conditions; a scene has an effect of
+/// the same name for each.
 ///
 /// ```
 /// use htex::Effects;
-/// let as_recorded_but_silent_at_rest = Effects { contact: true, ..Effects::NONE };
+/// let as_recorded_but_silent_at_rest = Effects::NONE.with_contact(true);
 /// assert!(!as_recorded_but_silent_at_rest.speed_scaling);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Effects {
-    /// Frequencies in proportion to the speed, where one speed was recorded.
+    /// Frequencies are proportional to the speed if one speed was recorded.
     pub speed_scaling: bool,
-    /// Level in proportion to the normal force, where one force was recorded.
+    /// The level is proportional to the normal force if one force was recorded.
     pub force_scaling: bool,
-    /// Silence where the finger does not slide.
+    /// The voice is silent while the finger does not slide.
     pub contact: bool,
 }
 
 impl Effects {
-    /// The texture as it was recorded, whatever the motion; between several conditions it is still interpolated.
+    /// Sets whether frequencies are proportional to the speed.
+    #[must_use]
+    pub const fn with_speed_scaling(self, speed_scaling: bool) -> Self {
+        Self {
+            speed_scaling,
+            ..self
+        }
+    }
+
+    /// Sets whether the level is proportional to the normal force.
+    #[must_use]
+    pub const fn with_force_scaling(self, force_scaling: bool) -> Self {
+        Self {
+            force_scaling,
+            ..self
+        }
+    }
+
+    /// Sets whether the voice is silent while the finger does not slide.
+    #[must_use]
+    pub const fn with_contact(self, contact: bool) -> Self {
+        Self { contact, ..self }
+    }
+
+    /// The texture as recorded, at any motion; it is still interpolated between several conditions.
     pub const NONE: Self = Self {
         speed_scaling: false,
         force_scaling: false,
@@ -69,7 +94,7 @@ impl Default for Effects {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Recorded {
-    /// The asset does not say, or says 0.
+    /// The asset does not state it, or states 0.
     Unknown,
     /// One value, whose measurements lie within the tolerance of [`htex_format::SAME_CONDITION`].
     One {
@@ -78,7 +103,7 @@ pub enum Recorded {
         /// The highest.
         high: f64,
     },
-    /// Several, between which is interpolated.
+    /// Several values, between which the texture is interpolated.
     Several {
         /// The lowest.
         low: f64,
@@ -96,14 +121,17 @@ impl Recorded {
             };
             (low, high) = (low.min(x), high.max(x));
         }
-        match high > 0.0 {
-            true if Condition::is_same(low, high) => Self::One { low, high },
-            true => Self::Several { low, high },
-            false => Self::Unknown,
+        if high <= 0.0 {
+            Self::Unknown
+        } else if Condition::is_same(low, high) {
+            Self::One { low, high }
+        } else {
+            Self::Several { low, high }
         }
     }
 
-    /// A speed or force in the one that was recorded: 1 within its measurements, and where not just one is known.
+    /// Returns the ratio of a speed or force to the recorded one: 1 within its measurements, and 1 unless exactly one
+    /// value was recorded.
     pub fn ratio(&self, x: f64) -> f64 {
         match *self {
             Self::One { low, .. } if x < low => x / low,
@@ -112,7 +140,7 @@ impl Recorded {
         }
     }
 
-    /// Whether just one value was recorded.
+    /// Returns whether exactly one value was recorded.
     pub fn is_one(&self) -> bool {
         matches!(self, Self::One { .. })
     }
@@ -131,7 +159,7 @@ impl fmt::Display for Recorded {
     }
 }
 
-/// At which speeds (mm/s) and forces (newtons) a representation was fitted.
+/// The speeds (mm/s) and forces (newtons) at which a representation was fitted.
 ///
 /// ```
 /// use htex::{Explored, Recorded};
@@ -148,7 +176,7 @@ pub struct Explored {
 }
 
 impl Explored {
-    /// Of the conditions that a representation is fitted `at`.
+    /// Collects the conditions that a representation is fitted `at`.
     pub fn new(at: &[AtCondition], conditions: &[Condition]) -> Self {
         let of = |value: fn(&Condition) -> Option<f64>| {
             let known = at.iter().filter_map(|at| conditions.get(at.condition));
@@ -160,17 +188,17 @@ impl Explored {
         }
     }
 
-    /// How many times as fast the texture is read at a speed: 1/16 to 8, and 1 where not just one speed is known.
+    /// Returns the ratio of the playing speed to the recorded one: 1/16 to 8, and 1 unless exactly one speed was recorded.
     pub fn speed_ratio(&self, speed_mm_s: f64) -> f64 {
         self.speed.ratio(speed_mm_s).clamp(MIN_RATIO, MAX_RATIO)
     }
 
-    /// Gain on the level at a force; 1 where not just one force is known.
+    /// Returns the gain of the level at a force; 1 unless exactly one force was recorded.
     pub fn force_gain(&self, force_n: f64) -> f64 {
         self.force.ratio(force_n).min(MOST_GAIN)
     }
 
-    /// What becomes of a motion that is interpolated as if it were `nearest`.
+    /// Returns the coverage of a motion whose interpolation uses the conditions at `nearest`.
     pub(crate) fn coverage(&self, motion: Motion, nearest: [f64; 2], effects: Effects) -> Coverage {
         let (speed, force) = (motion.speed_mm_s, motion.force_n);
         let slides = slides(speed, force);
@@ -211,7 +239,7 @@ fn reach(recorded: Recorded, asked: f64, nearest: f64, factor: Option<f64>) -> R
     }
 }
 
-/// How a motion relates to what was recorded, and what a voice makes of it.
+/// The relation of a motion to the recorded conditions, and how a voice plays it.
 ///
 /// ```
 /// use htex::{Coverage, Reach};
@@ -221,7 +249,7 @@ fn reach(recorded: Recorded, asked: f64, nearest: f64, factor: Option<f64>) -> R
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coverage {
-    /// Whether there is anything to feel: the finger slides, or the voice plays without contact.
+    /// Whether the voice is audible: the finger slides, or the effect `contact` is off.
     pub slides: bool,
     /// Speed, mm/s.
     pub speed: Reach,
@@ -229,7 +257,7 @@ pub struct Coverage {
     pub force: Reach,
 }
 
-/// How a speed or a force relates to those that were recorded.
+/// The relation of a speed or force to the recorded ones.
 ///
 /// ```
 /// use htex::Reach;
@@ -238,42 +266,42 @@ pub struct Coverage {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reach {
-    /// It was recorded, or lies between conditions that were; within the tolerance of
+    /// It was recorded, or lies between recorded conditions, within the tolerance of
     /// [`htex_format::SAME_CONDITION`].
     Inside,
-    /// The asset does not say what was recorded: it changes nothing.
+    /// The asset does not state the recorded value; the speed or force has no effect.
     Unknown,
     /// One value was recorded, and the texture is scaled from it.
     Scaled {
-        /// What was asked for.
+        /// The requested value.
         asked: f64,
-        /// What was recorded.
+        /// The recorded value.
         recorded: f64,
-        /// Factor on all frequencies for a speed, on the level for a force.
+        /// Factor of all frequencies for a speed, of the level for a force.
         factor: f64,
     },
-    /// The model follows it itself ([`crate::Voice::follows_motion`]).
+    /// The model follows the motion itself ([`crate::Voice::follows_motion`]).
     Followed,
-    /// The texture is played as at another value, the nearest that is known.
+    /// The texture is played at the nearest recorded value.
     Clamped {
-        /// What was asked for.
+        /// The requested value.
         asked: f64,
-        /// What is played.
+        /// The value that is played.
         played: f64,
     },
 }
 
 impl Coverage {
-    /// How far a motion lies beyond the one that is played, relative to it; 0 where the texture is played as
+    /// Returns the relative distance of the motion from the one that is played; 0 if the texture is played as
     /// recorded, interpolated, or scaled to the motion.
     pub fn excess(&self) -> f64 {
         let excess = self.speed.excess().max(self.force.excess());
-        // What is left is rounding.
+        // Smaller values are rounding errors.
         if excess > 1e-9 { excess } else { 0.0 }
     }
 
-    /// Whether the texture is played as it was recorded, or interpolated between recordings; what is not known does
-    /// not count.
+    /// Returns whether the texture is played as recorded, or interpolated between recordings; unknown values are
+    /// ignored.
     pub fn is_inside(&self) -> bool {
         let inside = |reach| matches!(reach, Reach::Inside | Reach::Unknown);
         self.slides && inside(self.speed) && inside(self.force)
@@ -294,16 +322,16 @@ impl Reach {
     }
 }
 
-/// Measured speeds and forces mean nothing beyond four digits.
+/// Rounds to four digits, the precision of measured speeds and forces.
 fn four_digits(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)
 }
 
 impl fmt::Display for Coverage {
-    /// What is not as recorded, as a sentence; empty when all of it is.
+    /// Describes in one sentence what differs from the recording; empty if nothing does.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.slides {
-            return f.write_str("the finger does not slide, and there is nothing to feel");
+            return f.write_str("the finger does not slide, so the texture is silent");
         }
         let mut joint = "";
         for (reach, unit, scaled) in [
@@ -324,7 +352,7 @@ impl fmt::Display for Coverage {
                 )?,
                 Reach::Clamped { asked, played } => write!(
                     f,
-                    "{joint}{} {unit} is beyond what was recorded, and is played as {} {unit}",
+                    "{joint}{} {unit} is outside the recorded range, and is played as {} {unit}",
                     four_digits(asked),
                     four_digits(played)
                 )?,

@@ -1,4 +1,4 @@
-//! What a voice does with a motion beside retuning its source: reading faster, a gain, silence.
+//! The effects of a motion on a voice's samples: reading speed, gain, silence.
 
 use htex_dsp::glide::Glide;
 use htex_dsp::warp::Warp;
@@ -6,26 +6,26 @@ use htex_dsp::warp::Warp;
 use crate::Motion;
 use crate::exploration::{CONTACT_RAMP_S, Effects, Explored, slides};
 
-/// Follows a finger.
+/// The state of a voice's effects.
 #[derive(Debug)]
 pub(crate) struct Follow {
     explored: Explored,
     effects: Effects,
-    /// How many times as fast as recorded the incoming samples are.
+    /// Speed of the incoming samples, in the recorded speed.
     base: f64,
-    /// Fastest reading at which nothing comes to lie above half the rate.
+    /// Highest reading speed at which no frequency exceeds half the rate, in the recorded speed.
     fastest: f64,
-    /// How many times as fast as recorded the texture is to be read.
+    /// Reading speed of the texture, in the recorded speed.
     ratio: f64,
     gain: f64,
-    /// Where there is one speed to read in proportion to.
+    /// If exactly one speed was recorded.
     warp: Option<Warp>,
     contact: Glide,
 }
 
 impl Follow {
-    /// For a voice of `rate_hz` that starts with a motion, else as recorded. Its samples come in read `base` times as fast
-    /// as recorded, and can be read `highest` times as fast until they reach half the rate.
+    /// Makes the effects of a voice of `rate_hz` that starts with a motion, else as recorded. Its source has `base` times
+    /// the recorded speed, and reaches half the rate at `highest` times the recorded speed.
     pub(crate) fn new(
         (explored, effects): (Explored, Effects),
         motion: Option<Motion>,
@@ -51,7 +51,7 @@ impl Follow {
         follow
     }
 
-    /// Follows to a motion; false where there is nothing to feel, and texture and level stay as they are.
+    /// Sets the motion; returns false if the voice is silent there, which leaves texture and level unchanged.
     pub(crate) fn set_motion(&mut self, motion: Motion) -> bool {
         let (speed_mm_s, force_n) = (motion.speed_mm_s, motion.force_n);
         let slides = slides(speed_mm_s, force_n);
@@ -66,31 +66,31 @@ impl Follow {
         felt
     }
 
-    /// Gain on the level.
+    /// Returns the gain of the level.
     pub(crate) fn gain(&self) -> f64 {
         self.gain
     }
 
-    /// Silences samples where the finger does not slide.
+    /// Fades samples out while the finger does not slide.
     pub(crate) fn apply_contact(&mut self, block: &mut [f32]) {
         self.contact.apply(block);
     }
 
-    /// Fills `out` with samples read as fast as the finger moves.
+    /// Fills `out` with samples of the source, read at the speed of the motion.
     pub(crate) fn read(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {
         match &mut self.warp {
-            // Exactly 1 as long as the motion is the one the voice was made for.
+            // The ratio is exactly 1 at the motion for which the voice was made.
             Some(warp) => warp.process(self.ratio / self.base, out, source),
             None => source(out),
         }
     }
 
-    /// Fastest reading, in the recorded speed.
+    /// Returns the highest reading speed, in the recorded speed.
     pub(crate) fn fastest(&self) -> f64 {
         self.fastest
     }
 
-    /// What it does.
+    /// Returns the effects that are on.
     pub(crate) fn effects(&self) -> Effects {
         self.effects
     }

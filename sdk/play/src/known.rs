@@ -1,4 +1,4 @@
-//! Recorded conditions of a representation, with its parameters and levels at them.
+//! Recorded conditions of a representation, with its parameters and levels.
 
 use htex_host::LoadedModel;
 
@@ -6,7 +6,7 @@ use crate::exploration::{Coverage, Effects, Explored};
 use crate::mesh::{Mesh, Weights};
 use crate::{Error, Motion};
 
-/// The motions that a representation was recorded at.
+/// The motions at which a representation was recorded.
 ///
 /// ```no_run
 /// use htex::{Asset, Effects, Motion};
@@ -21,19 +21,19 @@ pub struct Motions {
 }
 
 impl Motions {
-    /// What a voice with these effects makes of a motion, and whether it lies within what was recorded.
+    /// Returns how a voice with these effects plays a motion, and whether the motion lies within the recorded conditions.
     pub fn coverage(&self, motion: Motion, effects: Effects) -> Coverage {
         let nearest = self.mesh.motion(&self.weights(motion));
         self.explored.coverage(motion, nearest, effects)
     }
 
-    /// Weights of the conditions at a motion. Does not allocate.
+    /// Returns the weights of the conditions at a motion. Does not allocate.
     pub(crate) fn weights(&self, motion: Motion) -> Weights {
         self.mesh.weights(motion.speed_mm_s, motion.force_n)
     }
 }
 
-/// What is known of a representation: parameters and level at each condition.
+/// The recorded conditions of a representation, with parameters and level at each.
 #[derive(Debug, Clone)]
 pub(crate) struct Known {
     pub(crate) motions: Motions,
@@ -42,12 +42,12 @@ pub(crate) struct Known {
 }
 
 impl Known {
-    /// Numbers in the longest set of parameters.
+    /// Returns the length of the longest parameter set.
     pub(crate) fn longest(&self) -> usize {
         self.parameters.iter().map(Vec::len).max().unwrap_or(0)
     }
 
-    /// Parameters and level at a motion; the model decides in which space to mix.
+    /// Returns parameters and level at a motion, interpolated by the model.
     pub(crate) fn at(&self, model: &LoadedModel, motion: Motion) -> Result<(Vec<f64>, f64), Error> {
         let weights = self.motions.weights(motion);
         let level_rms = weights.iter().map(|(i, w)| w * self.level_rms[i]).sum();

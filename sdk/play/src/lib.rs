@@ -1,4 +1,4 @@
-//! Open a texture asset and play it: the core that scenes build on. Programs depend on the crate `htex`, which re-exports it.
+//! Opens and plays texture assets. Scenes build on this crate; programs depend on the crate `htex`, which re-exports it.
 //!
 //! ```no_run
 //! use htex::{Asset, Motion, VoiceOptions};
@@ -10,7 +10,7 @@
 //! # Ok::<(), htex::Error>(())
 //! ```
 //!
-//! [`Voice::render`] does not allocate, lock or touch files: it may run in an audio thread.
+//! [`Voice::render`] does not allocate, lock or access files: it may run in an audio thread.
 #![forbid(unsafe_code)]
 
 mod asset;
@@ -29,18 +29,18 @@ mod voice;
 pub use asset::Asset;
 pub use error::Error;
 pub use exploration::{Coverage, Effects, Explored, Reach, Recorded};
-/// An asset's data, as [`Asset::new`] takes it.
+/// An asset's data, the argument of [`Asset::new`].
 pub use htex_format::Asset as AssetData;
 pub use htex_format::{
     AtCondition, Condition, Finding, Limits, Manifest, Quantity, ReadError, Representation,
     Severity,
 };
 pub use htex_format::{FieldOrder, SAME_CONDITION};
-/// The motion as models get it: with a signed speed and a known position.
+/// The motion that models receive: with a signed speed and a known position.
 pub use htex_host::Motion as ModelMotion;
 pub use htex_host::{
-    Band, Descriptor, HostError, LoadedModel, Note, Origin, Registry, Search, Synthesis, WasmCache,
-    WasmCompiler, WasmLimits, WasmTotal,
+    Band, Descriptor, DescriptorError, HostError, LoadedModel, Note, OptionError, Origin, Registry,
+    Search, Synthesis, WasmCache, WasmCompiler, WasmLimits, WasmTotal,
 };
 pub use known::Motions;
 pub use motion::Motion;

@@ -2,14 +2,14 @@
 //!
 //! Weights are barycentric in the Delaunay triangulation of the known (speed, force) points, each axis divided by
 //! its largest value. A motion outside the hull has the weights of the hull's nearest point. Measured conditions
-//! never line up exactly, which two rules allow for:
+//! are not exactly aligned, so two rules apply:
 //!
-//! - Speeds that are the same within [`htex_format::SAME_CONDITION`] are one value, and forces alike (`axis`).
-//! - A condition that is the same as its foot on an edge of the hull lies on that edge. The sliver of a triangle
-//!   between them is not interpolated in: motions in it, and outside the hull beside it, have the weights of their
-//!   feet on the edge.
+//! - Speeds that are equal within [`htex_format::SAME_CONDITION`] are one value; the same holds for forces (`axis`).
+//! - A condition that is equal to its projection on an edge of the hull, within that tolerance, lies on that edge. The
+//!   narrow triangle between them is not interpolated in: motions in it, and outside the hull next to it, have the
+//!   weights of their projections on the edge.
 //!
-//! Weights are continuous in the motion, and a known condition has its own weight alone.
+//! Weights are continuous in the motion, and at a recorded condition only its own weight is not zero.
 
 mod axis;
 mod build;
@@ -35,12 +35,12 @@ impl Weights {
         }
     }
 
-    /// The pairs of condition and weight.
+    /// Iterates over the pairs of condition and weight.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         (0..self.count).map(|i| (self.condition[i], self.weight[i]))
     }
 
-    /// Leaves out conditions without weight, so that a known condition is played as it is.
+    /// Removes conditions of weight 0, so that a recorded condition is played without interpolation.
     fn without_zeros(self) -> Self {
         let mut kept = Self { count: 0, ..self };
         for (condition, weight) in self.iter().filter(|(_, w)| *w > 0.0) {
@@ -52,7 +52,7 @@ impl Weights {
     }
 }
 
-/// The known conditions.
+/// The triangulation of the recorded conditions.
 #[derive(Debug, Clone)]
 pub(crate) struct Mesh {
     conditions: Vec<[f64; 2]>,
@@ -66,28 +66,28 @@ pub(crate) struct Mesh {
 struct Face {
     corners: [usize; 3],
     places: [[f64; 2]; 3],
-    /// The edge of the hull that a sliver belongs to.
+    /// The edge of the hull that a narrow triangle belongs to.
     side: Option<usize>,
 }
 
-/// An edge of the hull, with all conditions that lie on it; or the line that all conditions lie on.
+/// An edge of the hull with all conditions on it, or the line on which all conditions lie.
 #[derive(Debug, Clone, PartialEq)]
 struct Side {
     from: [f64; 2],
     along: [f64; 2],
-    /// Conditions in their order along the edge, both ends included.
+    /// Conditions in their order along the edge, including both ends.
     conditions: Vec<usize>,
-    /// Place of each one's foot, 0 at the first and 1 at the last, strictly ascending.
+    /// Position of each projection on the edge, from 0 at the first to 1 at the last, strictly ascending.
     feet: Vec<f64>,
 }
 
 impl Mesh {
-    /// A mesh over points of (speed, force), of which there is at least one.
+    /// Makes a mesh of one or more points (speed, force).
     pub(crate) fn new(conditions: &[[f64; 2]]) -> Self {
         build::mesh(conditions)
     }
 
-    /// Weights at a motion. Does not allocate.
+    /// Returns the weights at a motion. Does not allocate.
     pub(crate) fn weights(&self, speed_mm_s: f64, force_n: f64) -> Weights {
         let [speed, force] = &self.axes;
         let q = [speed.place(speed_mm_s), force.place(force_n)];
@@ -95,7 +95,7 @@ impl Mesh {
         inside.unwrap_or_else(|| self.nearest(q)).without_zeros()
     }
 
-    /// The motion between conditions that weights stand for, (speed, force).
+    /// Returns the weighted mean of the conditions, (speed, force).
     pub(crate) fn motion(&self, weights: &Weights) -> [f64; 2] {
         let mean = |axis: usize| {
             weights
@@ -108,7 +108,7 @@ impl Mesh {
 
     fn within(&self, face: &Face, q: [f64; 2]) -> Option<Weights> {
         let [a, b, c] = face.places;
-        // Two triangles compute the same number, of opposite signs, for the edge between them: no motion is
+        // Two triangles compute numbers of equal size and opposite signs for their common edge, so that no motion is
         // outside of both.
         let areas = [area(q, b, c), area(q, c, a), area(q, a, b)];
         if areas.iter().any(|area| *area < 0.0) {
@@ -125,7 +125,7 @@ impl Mesh {
         })
     }
 
-    /// The weights of the hull's nearest point.
+    /// Returns the weights of the hull's nearest point.
     fn nearest(&self, q: [f64; 2]) -> Weights {
         let distance = |side: &Side| side.distance2(q);
         let nearest = self
@@ -137,7 +137,7 @@ impl Mesh {
 }
 
 impl Side {
-    /// A side without other conditions than its ends.
+    /// Makes a side with conditions at its ends only.
     fn new(ends: [usize; 2], places: &[[f64; 2]]) -> Self {
         let [from, to] = ends.map(|i| places[i]);
         Self {
@@ -148,7 +148,7 @@ impl Side {
         }
     }
 
-    /// Place of a point's foot on the line through the edge.
+    /// Returns the position of a point's projection on the line through the edge.
     fn foot(&self, q: [f64; 2]) -> f64 {
         let [x, y] = self.along;
         ((q[0] - self.from[0]) * x + (q[1] - self.from[1]) * y) / (x * x + y * y)
@@ -158,13 +158,13 @@ impl Side {
         [0, 1].map(|axis| self.from[axis] + place * self.along[axis])
     }
 
-    /// Squared distance from the edge.
+    /// Returns the squared distance from the edge.
     fn distance2(&self, q: [f64; 2]) -> f64 {
         let [x, y] = self.at(self.foot(q).clamp(0.0, 1.0));
         (x - q[0]) * (x - q[0]) + (y - q[1]) * (y - q[1])
     }
 
-    /// The weights at a point's foot on the edge.
+    /// Returns the weights at a point's projection on the edge.
     fn weights(&self, q: [f64; 2]) -> Weights {
         let place = self.foot(q).clamp(0.0, 1.0);
         let last = self.feet.len() - 1;
@@ -180,8 +180,7 @@ impl Side {
     }
 }
 
-/// Twice the signed area of a triangle whose corners but the first stand in either order: swapping them changes the
-/// sign alone.
+/// Returns twice the signed area of a triangle. Swapping the last two corners changes only the sign.
 fn area(q: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - q[0]) * (c[1] - q[1]) - (b[1] - q[1]) * (c[0] - q[0])
 }

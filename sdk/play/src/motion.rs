@@ -18,12 +18,12 @@ pub struct Motion {
     pub speed_mm_s: f64,
     /// Normal force, newtons; finite and not negative.
     pub force_n: f64,
-    /// Position along the path, mm; finite, and of either sign. `None` where it is not known.
+    /// Position along the path, mm; finite, of either sign. `None` if unknown.
     pub position_mm: Option<f64>,
 }
 
 impl Motion {
-    /// A scanning speed, mm/s, and a normal force, newtons, at an unknown position.
+    /// Makes a motion of a scanning speed, mm/s, and a normal force, newtons, at an unknown position.
     pub const fn new(speed_mm_s: f64, force_n: f64) -> Self {
         Self {
             speed_mm_s,
@@ -32,7 +32,7 @@ impl Motion {
         }
     }
 
-    /// The same motion at a position along the path, mm.
+    /// Sets the position along the path, mm.
     #[must_use]
     pub const fn with_position_mm(self, position_mm: f64) -> Self {
         Self {
@@ -59,7 +59,7 @@ impl Motion {
         }
     }
 
-    /// Whether speed and force, which choose the parameters, equal those of another motion.
+    /// Returns whether speed and force, which determine the parameters, equal those of another motion.
     pub(crate) fn has_conditions_of(&self, other: &Self) -> bool {
         (self.speed_mm_s, self.force_n) == (other.speed_mm_s, other.force_n)
     }

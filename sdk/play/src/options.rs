@@ -18,19 +18,18 @@ use crate::exploration::Effects;
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct VoiceOptions<'a> {
-    /// The representation, by its model's id or short name; else the one that comes nearest to the
-    /// recording by its nine-band error.
+    /// The representation, by its model's id or short name; else the one with the smallest nine-band error.
     pub model: Option<&'a str>,
     /// Rate of the samples, hertz.
     pub rate_hz: f64,
-    /// The same seed gives the same samples.
+    /// Seed of the noise; equal seeds give equal samples.
     pub seed: u64,
     /// The motion at the start; else that of the first condition.
     pub motion: Option<Motion>,
-    /// How samples are made: by the model's voice, or cheaper, with a spectrum that stays as it is
-    /// at the start. [`Asset::source`] is always streamed.
+    /// Method of synthesis: the model's voice, or one with less computation and a constant spectrum.
+    /// [`Asset::source`](crate::Asset::source) is always streamed.
     pub synthesis: Synthesis,
-    /// What a motion does beyond the recorded conditions; [`Asset::source`] has no effects.
+    /// Effects of a motion; [`Asset::source`](crate::Asset::source) has none.
     pub effects: Effects,
 }
 
@@ -77,14 +76,14 @@ impl<'a> VoiceOptions<'a> {
         self
     }
 
-    /// Sets how samples are made.
+    /// Sets the method of synthesis.
     #[must_use]
     pub fn with_synthesis(mut self, synthesis: Synthesis) -> Self {
         self.synthesis = synthesis;
         self
     }
 
-    /// Sets what a motion does beyond the recorded conditions.
+    /// Sets the effects of a motion.
     #[must_use]
     pub fn with_effects(mut self, effects: Effects) -> Self {
         self.effects = effects;

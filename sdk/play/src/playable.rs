@@ -1,4 +1,4 @@
-//! Which model plays a representation, and how its stored fields become the model's.
+//! The model of a representation, and the order of its fields.
 
 use htex_format::{FieldOrder, Representation, match_fields};
 use htex_host::{LoadedModel, Registry};
@@ -6,7 +6,16 @@ use semver::{Version, VersionReq};
 
 use crate::Error;
 
-/// The model of `registry` that can play a representation: of its id and of the same major version.
+/// Returns the model of `registry` that can play a representation: one with its id and the same major version.
+///
+/// ```no_run
+/// let asset = htex::Asset::open("sandpaper.htex")?;
+/// for representation in &asset.manifest().representations {
+///     let model = htex::model_of(asset.registry(), representation)?;
+///     println!("{} is played by version {}", representation.model, model.descriptor().version);
+/// }
+/// # Ok::<(), htex::Error>(())
+/// ```
 ///
 /// # Errors
 /// When there is no such model.
@@ -20,7 +29,7 @@ pub fn model_of<'a>(
     if wanted.is_some() && wanted == major(installed) {
         return Ok(model);
     }
-    // One that is shadowed by a newer one may still do.
+    // A model that a newer one shadows may have the right version.
     let other = wanted
         .and_then(|major| VersionReq::parse(&format!("={major}")).ok())
         .and_then(|wanted| registry.find_version(model.id(), &wanted).ok());
@@ -31,10 +40,18 @@ pub fn model_of<'a>(
     })
 }
 
-/// How a representation's fields are arranged for its model.
+/// Returns the order in which a representation's fields are passed to its model.
+///
+/// ```no_run
+/// let asset = htex::Asset::open("sandpaper.htex")?;
+/// let representation = &asset.manifest().representations[0];
+/// let model = htex::model_of(asset.registry(), representation)?;
+/// let order = htex::field_order(representation, model)?;
+/// # Ok::<(), htex::Error>(())
+/// ```
 ///
 /// # Errors
-/// [`Error::Fields`] when they are not the model's.
+/// [`Error::Fields`] when the fields differ from the model's.
 pub fn field_order<'a>(
     representation: &'a Representation,
     model: &LoadedModel,

@@ -1,4 +1,4 @@
-//! What a voice is made of: a texture's shape at the model's own rate, and its level.
+//! The source of a voice: a texture's shape at the model's own rate, and its level.
 
 use htex_host::{Band, LoadedModel, ModelVoice, Motion as ModelMotion};
 
@@ -7,13 +7,12 @@ use crate::known::Known;
 use crate::mesh::Weights;
 use crate::{Error, Motion};
 
-/// Most conditions that are mixed.
+/// Most conditions that are interpolated.
 const MIXED: usize = 3;
 
-/// Samples of unit RMS at the rate the model itself renders at, and the level they stand for. A
-/// renderer that brings many textures together resamples them once, behind their sum; [`crate::Voice`]
-/// does it for a single one. A source interpolates between conditions and does nothing else with a motion: what
-/// lies beyond ([`Effects`]) is its renderer's.
+/// Samples of unit RMS at the model's own rate, and their level. A renderer of many textures resamples their sum once;
+/// [`crate::Voice`] resamples a single texture. A source interpolates between conditions; other effects of a motion
+/// ([`Effects`]) are left to the renderer.
 ///
 /// ```no_run
 /// use htex::{Asset, VoiceOptions};
@@ -26,16 +25,16 @@ const MIXED: usize = 3;
 pub struct Source {
     known: Known,
     voice: ModelVoice,
-    /// Buffers for the sets to mix, and for the mix.
+    /// Buffers for the parameter sets to interpolate, and for the result.
     sets: Vec<f64>,
     mixed: Vec<f64>,
     rate_hz: f64,
     top_hz: f64,
     motion: Motion,
     level_rms: f64,
-    /// The model follows the motion itself.
+    /// Whether the model follows the motion itself.
     follows: bool,
-    /// Samples so far.
+    /// Samples rendered so far.
     frames: u64,
 }
 
@@ -65,44 +64,44 @@ impl Source {
         })
     }
 
-    /// The rate the model renders at, hertz.
+    /// Returns the rate at which the model renders, hertz.
     pub fn rate_hz(&self) -> f64 {
         self.rate_hz
     }
 
-    /// The frequency above which there is nothing, hertz.
+    /// Returns the highest frequency of the texture, hertz.
     pub fn top_hz(&self) -> f64 {
         self.top_hz
     }
 
-    /// RMS of the texture at the present motion, in the asset's unit.
+    /// Returns the RMS of the texture at the current motion, in the asset's unit.
     pub fn level_rms(&self) -> f64 {
         self.level_rms
     }
 
-    /// Whether the model follows the motion itself: it is told by [`Self::set_finger`], and neither its frequencies nor its
-    /// level are to be scaled by a motion.
+    /// Returns whether the model follows the motion itself: the renderer then calls [`Self::set_finger`], and scales
+    /// neither frequencies nor level.
     pub fn follows_motion(&self) -> bool {
         self.follows
     }
 
-    /// The motion that the spectrum is of.
+    /// Returns the motion of the current spectrum.
     pub(crate) fn motion(&self) -> Motion {
         self.motion
     }
 
-    /// Seconds of samples so far.
+    /// Returns the duration of the samples rendered so far, seconds.
     pub fn rendered_s(&self) -> f64 {
         self.frames as f64 / self.rate_hz
     }
 
-    /// Tells a model that follows the motion itself where the finger is `at_s` seconds after this source's first sample,
-    /// which may lie behind what was rendered already: a resampler reads ahead. The speed is negative where the position
-    /// falls; what is beyond the model ABI's ranges is clamped to them. Does nothing to other models. Does not allocate,
-    /// lock or do I/O for models that keep to the ABI.
+    /// Sets the motion of the finger at `at_s` seconds after this source's first sample, for a model that follows the
+    /// motion itself. The time may precede the samples rendered so far, because a resampler reads ahead. The speed is
+    /// negative while the position decreases; numbers are clamped to the ranges of the model ABI. Does nothing for other
+    /// models. Does not allocate, lock or do I/O if the model keeps to the ABI.
     ///
     /// # Errors
-    /// When a number is not finite, or the model refuses the motion; the source then plays on as before.
+    /// When a number is not finite, or the model refuses the motion; the source then continues unchanged.
     pub fn set_finger(&mut self, finger: ModelMotion, at_s: f64) -> Result<(), Error> {
         if !self.follows {
             return Ok(());
@@ -115,24 +114,23 @@ impl Source {
         Ok(self.voice.set_motion(motion.clamped())?)
     }
 
-    /// The conditions that are known.
+    /// Returns the recorded speeds and forces.
     pub fn explored(&self) -> Explored {
         self.known.motions.explored
     }
 
-    /// What a voice with these effects makes of a motion. Does not allocate.
+    /// Returns how a voice with these effects plays a motion. Does not allocate.
     pub fn coverage(&self, motion: Motion, effects: Effects) -> Coverage {
         self.known.motions.coverage(motion, effects)
     }
 
-    /// Glides to the spectrum at this motion, clamped to
-    /// the conditions the asset knows, and returns its level. A motion that is not new
-    /// costs nothing; a new one mixes parameters in the voice's own memory. Does not allocate, lock or
-    /// do I/O for the models of this project and others that keep to the ABI.
+    /// Changes gradually to the spectrum at this motion, clamped to the recorded conditions, and returns its level. An
+    /// unchanged motion takes no time; a new one interpolates parameters in the voice's own memory. Does not allocate,
+    /// lock or do I/O if the model keeps to the ABI, as the models of this project do.
     ///
     /// # Errors
-    /// When a value is out of range (see [`Motion`]), or the model cannot mix; the source then plays on
-    /// as before.
+    /// When a value is out of range (see [`Motion`]), or the model cannot interpolate; the source then continues
+    /// unchanged.
     pub fn set_motion(&mut self, motion: Motion) -> Result<f64, Error> {
         let motion = motion.checked()?;
         if self.motion.has_conditions_of(&motion) || self.known.parameters.len() < 2 {
@@ -146,7 +144,7 @@ impl Source {
         Ok(self.level_rms)
     }
 
-    /// Changes the spectrum to the mix of some conditions.
+    /// Changes the spectrum to that of weighted conditions.
     fn retune(&mut self, weights: &Weights) -> Result<(), Error> {
         let known = &self.known.parameters;
         if weights.count == 1 {
@@ -162,13 +160,13 @@ impl Source {
             .retune_mix(&self.sets, weights, &mut self.mixed)?)
     }
 
-    /// Fills `out` with the next `frames` samples of each source, one behind the other: what
-    /// [`Self::render`] gives of each, to the bit, in as few calls as models allow. In blocks of 256
-    /// frames AR takes some six tenths of the time then. Sources for which `out` is too short stay as
-    /// they are, and what is left of `out` is silent. Does not allocate, lock or do I/O.
+    /// Fills `out` with the next `frames` samples of each source, one source after another, bit-identical to
+    /// [`Self::render`] of each, in as few calls as the models allow. AR then takes about six tenths of the time in
+    /// blocks of 256 frames. If `out` is too short, the remaining sources are not advanced; if it is too long, the rest is
+    /// filled with zeros. Does not allocate, lock or do I/O.
     ///
     /// # Errors
-    /// The first, when a model fails; what it should have rendered is silent, and other sources play on.
+    /// The first error of a model. The samples of its source are zero, and other sources continue.
     pub fn render_together<'a>(
         sources: impl IntoIterator<Item = &'a mut Self>,
         frames: usize,
@@ -185,7 +183,7 @@ impl Source {
     /// Fills `out` with the next samples, of unit RMS. Does not allocate, lock or do I/O.
     ///
     /// # Errors
-    /// When the model fails; `out` is then silent.
+    /// When the model fails; `out` is then filled with zeros.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), Error> {
         self.frames += out.len() as u64;
         Ok(self.voice.render(out)?)

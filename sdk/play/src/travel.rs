@@ -1,10 +1,10 @@
-//! Where a finger is on its path: told, or integrated from its speed.
+//! The position of a finger on its path: given, or integrated from its speed.
 
 use htex_host::Motion as ModelMotion;
 
 use crate::Motion;
 
-/// The way of a finger, for models that follow the motion themselves.
+/// The position and direction of a finger, for models that follow the motion themselves.
 #[derive(Debug, Clone)]
 pub(crate) struct Travel {
     rate_hz: f64,
@@ -14,12 +14,12 @@ pub(crate) struct Travel {
     motion: ModelMotion,
     /// Whether a motion was set.
     set: bool,
-    /// The last position that was told, mm.
-    told_mm: Option<f64>,
+    /// The last given position, mm.
+    given_mm: Option<f64>,
 }
 
 impl Travel {
-    /// At position 0, sliding forward at a speed, mm/s; frames come at `rate_hz`.
+    /// Starts at position 0, moving forward at a speed, mm/s, with `rate_hz` frames per second.
     pub(crate) fn new(speed_mm_s: f64, rate_hz: f64) -> Self {
         Self {
             rate_hz,
@@ -30,19 +30,19 @@ impl Travel {
                 position_mm: 0.0,
             },
             set: false,
-            told_mm: None,
+            given_mm: None,
         }
     }
 
-    /// Goes so many frames on.
+    /// Advances by a number of frames.
     pub(crate) fn advance(&mut self, frames: usize) {
         self.frames += frames as u64;
     }
 
-    /// Takes a motion, checked; returns it as models get it if it is new.
+    /// Sets a checked motion; returns the motion for the model if it has changed.
     ///
-    /// The finger goes back where the position is less than the last one that was told, forward where it is more,
-    /// and on where it is the same or not known.
+    /// The finger moves backward if the position is less than the last given one, forward if it is greater, and keeps
+    /// its direction if the position is equal or unknown.
     pub(crate) fn set(&mut self, motion: Motion) -> Option<ModelMotion> {
         let Motion {
             speed_mm_s,
@@ -55,8 +55,8 @@ impl Travel {
             return None;
         }
         let on_mm = before.speed_mm_s * self.frames as f64 / self.rate_hz;
-        let back = match position_mm.zip(self.told_mm) {
-            Some((now, told)) if now != told => now < told,
+        let back = match position_mm.zip(self.given_mm) {
+            Some((now, before)) if now != before => now < before,
             _ => before.speed_mm_s.is_sign_negative(),
         };
         self.motion = ModelMotion {
@@ -64,7 +64,7 @@ impl Travel {
             force_n,
             position_mm: position_mm.unwrap_or(before.position_mm + on_mm),
         };
-        self.told_mm = position_mm.or(self.told_mm);
+        self.given_mm = position_mm.or(self.given_mm);
         (self.frames, self.set) = (0, true);
         Some(self.motion)
     }
@@ -74,8 +74,8 @@ impl Travel {
 mod tests {
     use super::*;
 
-    /// Speed and position of a motion that is new, after which so many frames go by.
-    fn told(travel: &mut Travel, at: (f64, Option<f64>), frames: usize) -> Option<(f64, f64)> {
+    /// Sets a motion and advances; returns speed and position if the motion has changed.
+    fn set(travel: &mut Travel, at: (f64, Option<f64>), frames: usize) -> Option<(f64, f64)> {
         let motion = travel.set(Motion {
             position_mm: at.1,
             ..Motion::new(at.0, 0.4)
@@ -85,15 +85,19 @@ mod tests {
     }
 
     #[test]
-    fn the_position_is_the_way_where_none_is_told() {
+    fn an_unknown_position_is_integrated_from_the_speed() {
         let mut travel = Travel::new(100.0, 1_000.0);
         travel.advance(500);
-        let mut told = |speed, frames| told(&mut travel, (speed, None), frames);
-        assert_eq!(told(100.0, 250), Some((100.0, 50.0)), "the first is new");
-        assert_eq!(told(100.0, 250), None);
-        assert_eq!(told(50.0, 1_000), Some((50.0, 100.0)));
-        assert_eq!(told(0.0, 1_000), Some((0.0, 150.0)));
-        assert_eq!(told(80.0, 0), Some((80.0, 150.0)), "it rested");
+        let mut set = |speed, frames| set(&mut travel, (speed, None), frames);
+        assert_eq!(set(100.0, 250), Some((100.0, 50.0)), "the first motion");
+        assert_eq!(set(100.0, 250), None);
+        assert_eq!(set(50.0, 1_000), Some((50.0, 100.0)));
+        assert_eq!(set(0.0, 1_000), Some((0.0, 150.0)));
+        assert_eq!(
+            set(80.0, 0),
+            Some((80.0, 150.0)),
+            "the position was constant at 0 mm/s"
+        );
         assert!(
             travel.set(Motion::new(80.0, 0.5)).is_some(),
             "another force"
@@ -101,15 +105,19 @@ mod tests {
     }
 
     #[test]
-    fn a_position_that_falls_is_the_way_back() {
+    fn a_decreasing_position_is_a_negative_speed() {
         let mut travel = Travel::new(0.0, 1_000.0);
-        let mut told = |speed, position| told(&mut travel, (speed, position), 10);
-        assert_eq!(told(100.0, Some(5.0)), Some((100.0, 5.0)));
-        assert_eq!(told(100.0, Some(5.5)), Some((100.0, 5.5)));
-        assert_eq!(told(100.0, Some(5.4)), Some((-100.0, 5.4)));
-        assert_eq!(told(0.0, Some(5.4)), Some((-0.0, 5.4)));
-        assert_eq!(told(100.0, Some(5.4)), Some((-100.0, 5.4)), "it goes on");
-        assert_eq!(told(50.0, None), Some((-50.0, 4.4)));
-        assert_eq!(told(50.0, Some(6.0)), Some((50.0, 6.0)));
+        let mut set = |speed, position| set(&mut travel, (speed, position), 10);
+        assert_eq!(set(100.0, Some(5.0)), Some((100.0, 5.0)));
+        assert_eq!(set(100.0, Some(5.5)), Some((100.0, 5.5)));
+        assert_eq!(set(100.0, Some(5.4)), Some((-100.0, 5.4)));
+        assert_eq!(set(0.0, Some(5.4)), Some((-0.0, 5.4)));
+        assert_eq!(
+            set(100.0, Some(5.4)),
+            Some((-100.0, 5.4)),
+            "the direction is kept"
+        );
+        assert_eq!(set(50.0, None), Some((-50.0, 4.4)));
+        assert_eq!(set(50.0, Some(6.0)), Some((50.0, 6.0)));
     }
 }

@@ -9,7 +9,7 @@ use crate::follow::Follow;
 use crate::travel::Travel;
 use crate::{Effects, Error, Motion, Source, VoiceOptions};
 
-// A voice is made in one thread and rendered in another.
+// A voice may be made in one thread and rendered in another.
 const _: () = {
     const fn assert_send<T: Send>() {}
     assert_send::<Voice>();
@@ -19,8 +19,8 @@ const _: () = {
 /// Length of a change of level, seconds.
 const RAMP_S: f64 = 0.010;
 
-/// An endless stream of samples in the asset's unit ([`Asset::quantity`](crate::Asset::quantity)) that follows the finger's motion as a scene does: see
-/// [`Effects`](crate::Effects).
+/// An endless stream of samples in the asset's unit ([`Asset::quantity`](crate::Asset::quantity)) that follows the
+/// finger's motion with the same [`Effects`](crate::Effects) as a scene.
 ///
 /// ```no_run
 /// use htex::{Asset, Motion, VoiceOptions};
@@ -39,15 +39,16 @@ pub struct Voice {
     still: Option<StillSound>,
     level_rms: Glide,
     follow: Follow,
-    /// Where the finger is, for a model that follows it; and the frames so far.
+    /// The finger's position, for a model that follows the motion.
     travel: Option<Travel>,
+    /// Frames rendered so far.
     frames: u64,
     rate_hz: f64,
 }
 
 impl Voice {
-    /// A voice as `options` want it: the source and the resampler it needs, or a sound that stands for them. The
-    /// resampler reads the source `base` times as fast as recorded.
+    /// Makes a voice of a source and the resampler it needs, or of a pre-rendered sound. The resampler reads the source
+    /// `base` times as fast as recorded.
     pub(crate) fn new(
         source: Source,
         still: Option<StillSound>,
@@ -56,17 +57,14 @@ impl Voice {
     ) -> Result<Self, Error> {
         let rate_hz = options.rate_hz;
         let ramp = (RAMP_S * rate_hz).ceil().max(1.0) as u32;
-        // A still sound is at the voice's rate already, as recorded.
+        // A still sound has the voice's rate and the recorded speed.
         let base = if still.is_some() { 1.0 } else { base };
-        // A sound that stays as it is can follow nothing itself.
+        // With a still sound, the model does not follow the motion.
         let travel = (source.follows_motion() && still.is_none())
             .then(|| Travel::new(source.motion().speed_mm_s, rate_hz));
         let effects = match travel {
             None => options.effects,
-            Some(_) => Effects {
-                contact: options.effects.contact,
-                ..Effects::NONE
-            },
+            Some(_) => Effects::NONE.with_contact(options.effects.contact),
         };
         let known = (source.explored(), effects);
         let follow = Follow::new(
@@ -88,27 +86,27 @@ impl Voice {
             rate_hz,
         };
         if let Some(motion) = options.motion {
-            voice.tell(motion)?;
+            voice.send_motion(motion)?;
         }
         Ok(voice)
     }
 
-    /// Follows the finger to this motion. Spectrum and level glide to those
-    /// between the conditions the asset knows, clamped to them; of a voice that is not streamed (see
-    /// [`Synthesis`](crate::Synthesis)) the level alone. Where the asset knows one speed, frequencies go in proportion to
-    /// the speed, 1/16 to 8 times as fast and as far as half the rate allows; where it knows one force, the level goes
-    /// in proportion to the force. A finger that does not slide (below 0.5 mm/s or at 0 N) feels nothing. Each of these
-    /// can be switched off ([`Effects`](crate::Effects)), and [`Self::coverage`] tells what becomes of a motion.
+    /// Sets the motion. Spectrum and level change gradually to those interpolated between the recorded conditions, and
+    /// are clamped to these; if the voice is not streamed ([`Synthesis`](crate::Synthesis)), only the level changes. If
+    /// one speed was recorded, frequencies are proportional to the speed, 1/16 to 8 times the recorded ones and up to half
+    /// the rate; if one force was recorded, the level is proportional to the force. A finger that does not slide (below
+    /// 0.5 mm/s or at 0 N) makes the voice silent. Each of these can be switched off ([`Effects`](crate::Effects));
+    /// [`Self::coverage`] reports them for a motion.
     ///
-    /// A motion that is not new costs nothing; a new one mixes parameters in the voice's own memory. Does not allocate,
-    /// lock or do I/O for the models of this project and others that keep to the ABI.
+    /// An unchanged motion takes no time; a new one interpolates parameters in the voice's own memory. Does not allocate,
+    /// lock or do I/O if the model keeps to the ABI, as the models of this project do.
     ///
     /// # Errors
-    /// When a value is out of range (see [`Motion`]), or the model cannot mix; the voice then plays on
-    /// as before.
+    /// When a value is out of range (see [`Motion`]), or the model cannot interpolate; the voice then continues
+    /// unchanged.
     pub fn set_motion(&mut self, motion: Motion) -> Result<(), Error> {
         let motion = motion.checked()?;
-        self.tell(motion)?;
+        self.send_motion(motion)?;
         if self.follow.set_motion(motion) {
             let level_rms = self.source.set_motion(motion)?;
             self.level_rms.set((level_rms * self.follow.gain()) as f32);
@@ -116,14 +114,14 @@ impl Voice {
         Ok(())
     }
 
-    /// Whether the model follows the motion itself (the extension `htex.motion/1`): then frequencies do not go with the
-    /// speed, nor the level with the force, but as the model has it. A voice that is not streamed follows as any other.
+    /// Returns whether the model follows the motion itself (the extension `htex.motion/1`): it then determines frequencies
+    /// and level, and neither is scaled. False for a voice that is not streamed.
     pub fn follows_motion(&self) -> bool {
         self.travel.is_some()
     }
 
-    /// Tells the model the motion, if it follows it itself.
-    fn tell(&mut self, motion: Motion) -> Result<(), Error> {
+    /// Passes the motion to a model that follows it.
+    fn send_motion(&mut self, motion: Motion) -> Result<(), Error> {
         let Some(travel) = &mut self.travel else {
             return Ok(());
         };
@@ -134,7 +132,8 @@ impl Voice {
             .set_finger(finger, self.frames as f64 / self.rate_hz)
     }
 
-    /// What this voice makes of a motion, and whether it lies within what was recorded. Does not allocate.
+    /// Returns how this voice plays a motion, and whether the motion lies within the recorded conditions. Does not
+    /// allocate.
     pub fn coverage(&self, motion: Motion) -> Coverage {
         let effects = self.follow.effects();
         let mut coverage = self.source.coverage(motion, effects);
@@ -153,7 +152,7 @@ impl Voice {
     /// Fills `out` with the next samples, in the asset's unit. Does not allocate, lock or do I/O.
     ///
     /// # Errors
-    /// When the model fails; what it should have rendered is silent.
+    /// When the model fails; the samples that it did not render are zero.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), Error> {
         let result = self.render_shape(out);
         self.level_rms.apply(out);
@@ -165,7 +164,7 @@ impl Voice {
         result
     }
 
-    /// Samples of unit RMS at the voice's rate.
+    /// Renders samples of unit RMS at the voice's rate.
     fn render_shape(&mut self, out: &mut [f32]) -> Result<(), Error> {
         let (source, resampler) = (&mut self.source, &mut self.resampler);
         let (still, mut result) = (&mut self.still, Ok(()));

@@ -49,11 +49,9 @@ fn motions(asset: &Asset, surface: &Surface) -> Result<Motions, htex_play::Error
 
 fn effects(scene: &Scene) -> Effects {
     let is_on = |effect| scene.effects.get(&effect) != Some(&Switch::Off);
-    Effects {
-        speed_scaling: is_on(Effect::SpeedScaling),
-        force_scaling: is_on(Effect::ForceScaling),
-        contact: true,
-    }
+    Effects::default()
+        .with_speed_scaling(is_on(Effect::SpeedScaling))
+        .with_force_scaling(is_on(Effect::ForceScaling))
 }
 
 /// The finger at the rows of a trace, or in constant motion; empty if the motion is live.

@@ -276,7 +276,7 @@ fn a_voice_reports_its_coverage_of_a_motion() {
     assert_eq!(fast.force, Reach::Inside);
     assert_eq!(
         fast.to_string(),
-        "240 mm/s is beyond what was recorded, and is played as 120 mm/s"
+        "240 mm/s is outside the recorded range, and is played as 120 mm/s"
     );
 }
 

@@ -36,11 +36,9 @@ pub fn compile_limits(input: &[u8]) -> bool {
     let text = model::text("1.0.0", &[], &heavy.text());
     let module = wat::parse_str(&text)
         .unwrap_or_else(|e| panic!("the maker of functions is wrong: {e}\n{heavy:?}"));
-    let limits = WasmLimits {
-        compile: ALLOWED,
-        cache: WasmCache::Off,
-        ..WasmLimits::default()
-    };
+    let limits = WasmLimits::default()
+        .with_compile(ALLOWED)
+        .with_cache(WasmCache::Off);
     let start = Instant::now();
     let loaded = LoadedModel::from_wasm_bytes("heavy.wasm", &module, &limits);
     let took = start.elapsed();

@@ -12,17 +12,15 @@ pub(crate) mod model;
 
 /// Tight limits of time and memory.
 pub(crate) fn limits() -> WasmLimits {
-    WasmLimits {
-        memory_bytes: 2 << 20,
-        table_elements: 100,
-        stack_bytes: 64 << 10,
-        voices: 2,
-        call: Duration::from_millis(500),
-        render: Duration::from_millis(500),
-        fuel: Some(100_000),
-        cache: WasmCache::Off,
-        ..WasmLimits::default()
-    }
+    WasmLimits::default()
+        .with_memory_bytes(2 << 20)
+        .with_table_elements(100)
+        .with_stack_bytes(64 << 10)
+        .with_voices(2)
+        .with_call(Duration::from_millis(500))
+        .with_render(Duration::from_millis(500))
+        .with_fuel(100_000)
+        .with_cache(WasmCache::Off)
 }
 
 /// Loads a module and makes every call. Input that does not begin as a module describes bodies for

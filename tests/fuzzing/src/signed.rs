@@ -143,11 +143,7 @@ fn manifest(plugin: Plugin) -> Manifest {
 
 /// Loads the model under tight limits, and plays it.
 fn load(data: htex_format::Asset) {
-    let search = Search {
-        limits: limits(),
-        builtin: false,
-        ..Search::builtin()
-    };
+    let search = Search::builtin().with_limits(limits()).with_builtin(false);
     let registry = Registry::search(&search).expect("nothing is searched");
     let asset = Asset::with_registry(data, registry).with_embedded();
     let mut block = [f32::NAN; 64];

@@ -31,7 +31,7 @@ pub(crate) struct Bench {
 
 impl Bench {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
-        let costs = bench(&self.subjects()?).map_err(Failure::Other)?;
+        let costs = bench(&self.subjects()?).map_err(|error| Failure::Other(error.to_string()))?;
         if self.json {
             print_json(&costs)?;
         } else {
@@ -89,10 +89,9 @@ fn add(
     match loaded.origin() {
         Origin::Wasm(file) => {
             subjects.push(subject("wasm", loaded));
-            let counted = WasmLimits {
-                fuel: Some(limits.fuel.unwrap_or(u64::MAX / 2)),
-                ..limits.clone()
-            };
+            let counted = limits
+                .clone()
+                .with_fuel(limits.fuel.unwrap_or(u64::MAX / 2));
             let counted = LoadedModel::from_file_within(file, &counted)?;
             subjects.push(subject("wasm, counted", &counted));
         }

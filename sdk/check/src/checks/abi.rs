@@ -14,13 +14,13 @@ pub(crate) fn owner(error: &HostError) -> &'static str {
     }
 }
 
-/// A model that was loaded has the marker and the exports.
+/// Passes: a loaded model has the marker and the exports.
 pub(crate) fn loaded(case: &Case) -> Found {
     let file = case.file.display();
     Ok(Finding::passed(format!("{file} was loaded")))
 }
 
-/// What loading does not already look at.
+/// Checks the parts of the descriptor that loading does not check.
 pub(crate) fn descriptor(case: &Case) -> Found {
     let descriptor = case.model.descriptor();
     if let Some(wrong) = wrong_in(descriptor) {
@@ -37,18 +37,18 @@ pub(crate) fn descriptor(case: &Case) -> Found {
 
 fn wrong_in(descriptor: &Descriptor) -> Option<String> {
     if descriptor.name.trim().is_empty() || descriptor.summary.trim().is_empty() {
-        return Some("`name` and `summary` must say something".to_owned());
+        return Some("`name` and `summary` must not be empty".to_owned());
     }
     let fields = descriptor.fields.iter().map(|f| (&f.name, &f.unit));
     let options = descriptor.options.iter().map(|o| (&o.name, &o.unit));
     for (name, unit) in fields.chain(options) {
         let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_';
         if name.is_empty() || !name.bytes().all(plain) {
-            return Some(format!("`{name}`: names are of a-z, 0-9 and _"));
+            return Some(format!("`{name}`: names consist of a-z, 0-9 and _"));
         }
         if unit.is_empty() {
             return Some(format!(
-                "`{name}` has no unit; `1` stands for a pure number"
+                "`{name}` has no unit; `1` is the unit of a pure number"
             ));
         }
     }
@@ -58,7 +58,7 @@ fn wrong_in(descriptor: &Descriptor) -> Option<String> {
         .find(|f| !store_works(f))
         .map(|f| {
             format!(
-                "`{}`: the store needs a finite, positive step, and only a list is packed",
+                "`{}`: the store needs a finite, positive step, and only lists can be packed",
                 f.name
             )
         })
@@ -93,14 +93,14 @@ fn wrong_default(option: &FitOption) -> Option<String> {
         ));
     }
     if option.integer && default.fract() != 0.0 {
-        return Some(format!("`{name}`: the default {default} is not whole"));
+        return Some(format!("`{name}`: the default {default} is not an integer"));
     }
     let last = option.choices.len().saturating_sub(1) as f64;
     let counted = option.choices.is_empty() || (option.min == 0.0 && option.max == last);
-    (!counted).then(|| format!("`{name}`: choices are counted from 0 to {last}"))
+    (!counted).then(|| format!("`{name}`: the range of its choices must be 0 to {last}"))
 }
 
-/// Made-up extensions are absent.
+/// Checks that made-up extensions are absent.
 pub(crate) fn extensions(case: &Case) -> Found {
     made_up_extensions(|id| case.model.has_extension(id))
 }

@@ -5,14 +5,14 @@ use htex_host::ModelVoice;
 use crate::case::{Case, Fitted};
 use htex_check_runner::{Finding, Found};
 
-/// Blocks in which a voice may still set itself up.
+/// Blocks of warm-up, in which a voice may allocate.
 const WARM_UP: usize = 64;
 const BLOCKS: usize = 1_000;
 const FRAMES: [usize; 4] = [1, 64, 256, 1_000];
 /// Blocks between two retunes.
 const BETWEEN: usize = 4;
 
-/// Rendering and retuning do not allocate.
+/// Checks that rendering and retuning do not allocate.
 pub(crate) fn none(case: &Case) -> Found {
     let sets = case.fitted()?;
     let mut voice = case.voice(&sets[0].parameters, case.seed)?;
@@ -45,17 +45,17 @@ fn play(
 fn grown(bytes: usize) -> Finding {
     let finding = match bytes {
         0 => Finding::passed(format!(
-            "the module's memory keeps its size over {BLOCKS} blocks"
+            "the size of the module's memory is constant over {BLOCKS} blocks"
         )),
         _ => Finding::failed(format!(
-            "the module's memory grows by {} KiB in {BLOCKS} blocks; make all buffers with the voice",
+            "the module's memory grows by {} KiB in {BLOCKS} blocks; allocate all buffers with the voice",
             bytes / 1024
         )),
     };
     finding.with("memory_bytes", bytes as f64)
 }
 
-/// Fails where a voice that is set up allocates while `play` runs, as far as that is seen.
+/// Fails if a voice allocates after its warm-up while `play` runs, as far as detected.
 pub(crate) fn none_while(
     voice: &mut ModelVoice,
     play: impl FnOnce(&mut ModelVoice) -> Result<(), Finding>,
@@ -74,7 +74,7 @@ pub(crate) fn none_while(
         None => format!("the allocator is called {calls} times"),
     };
     Err(Finding::failed(format!(
-        "{what} while the motion is told; make all buffers with the voice"
+        "{what} while motions are set; allocate all buffers with the voice"
     )))
 }
 
@@ -102,10 +102,10 @@ fn native(case: &Case, sets: &[Fitted], voice: &mut ModelVoice, out: &mut [f32])
     played?;
     let finding = match calls {
         0 => Finding::passed(format!(
-            "{BLOCKS} blocks call the allocator not once, making a voice {of_a_voice} times"
+            "{BLOCKS} blocks do not call the allocator; making a voice calls it {of_a_voice} times"
         )),
         _ => Finding::failed(format!(
-            "{BLOCKS} blocks with {} retunes call the allocator {calls} times; make all buffers with the voice",
+            "{BLOCKS} blocks with {} retunes call the allocator {calls} times; allocate all buffers with the voice",
             BLOCKS / BETWEEN
         )),
     };

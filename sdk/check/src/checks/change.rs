@@ -12,17 +12,17 @@ use htex_check_runner::{Finding, Found};
 const SAMPLES: usize = 40_000;
 /// Samples between two retunes.
 const BETWEEN: usize = 500;
-/// How much sharper than the steady sounds a retune may bend.
+/// Largest second difference around a retune, relative to that of the sounds without retunes.
 const SHARPER: f32 = 2.0;
-/// Distance of two magnitudes from which on a retune from one to the other must be measured, dB RMS: three times what a
-/// sound may be off.
+/// Least distance of two magnitudes for which a retune from one to the other is measured, dB RMS: three times the allowed
+/// error of a sound.
 const APART_DB: f64 = 3.0;
-/// Distance of a mixture's magnitude at its ends, relative to the largest.
+/// Allowed error of an interpolated magnitude at weights 0 and 1, relative to the largest.
 const AT_ENDS: f64 = 1e-6;
-/// Largest sample of a sound of unit RMS.
+/// Largest allowed sample of a sound of unit RMS.
 const LOUDEST: f32 = 100.0;
 
-/// Retunes bend no sharper than the sounds themselves.
+/// Checks that second differences at retunes are not much larger than those of the sounds without retunes.
 pub(crate) fn retune(case: &Case) -> Found {
     let Some((a, b)) = case.two_sets()? else {
         return Ok(Finding::skipped(
@@ -46,18 +46,18 @@ pub(crate) fn retune(case: &Case) -> Found {
     let ratio = sharpest_bend(&out) / steady;
     let finding = if ratio <= SHARPER {
         Finding::passed(format!(
-            "retunes bend {ratio:.2} times as sharply as the steady sounds"
+            "second differences at retunes are {ratio:.2} times those of the sounds without retunes"
         ))
     } else {
         Finding::failed(format!(
-            "retunes click: they bend {ratio:.1} times as sharply as the steady sounds; \
+            "retunes click: their second differences are {ratio:.1} times those of the sounds without retunes; \
              {SHARPER} times is allowed"
         ))
     };
     Ok(finding.with("bend_ratio", f64::from(ratio)))
 }
 
-/// After a retune the sound has the spectrum of the new parameters.
+/// Checks that after a retune the sound has the spectrum of the new parameters.
 pub(crate) fn follows(case: &Case) -> Found {
     let sets = case.fitted()?;
     let magnitudes = sets.iter().map(|set| case.magnitude(&set.parameters));
@@ -76,7 +76,7 @@ pub(crate) fn follows(case: &Case) -> Found {
         }
         stream.render(&mut sound)?;
         let distance = spectrum_distance_db(&sound, &magnitudes[now]);
-        // Written so that a distance that is not a number fails.
+        // The condition is negated so that NaN fails.
         if !matches!(distance.partial_cmp(&SPECTRUM_DB), Some(o) if o.is_le()) {
             return Err(Finding::failed(format!(
                 "retuned from `{}` to `{}`, the sound is {distance:.2} dB RMS from the magnitude of the new \
@@ -90,7 +90,7 @@ pub(crate) fn follows(case: &Case) -> Found {
     }
     if judged == 0.0 {
         return Ok(Finding::skipped(format!(
-            "no two reference spectra next to each other have magnitudes {APART_DB} dB apart"
+            "no two consecutive reference spectra have magnitudes that differ by {APART_DB} dB"
         )));
     }
     let message =
@@ -100,11 +100,11 @@ pub(crate) fn follows(case: &Case) -> Found {
         .with("retunes", judged))
 }
 
-/// Mixtures meet their ends and can be played.
+/// Checks that interpolation reproduces the sets at its ends, and that all results can be played.
 pub(crate) fn interpolate(case: &Case) -> Found {
     let sets = case.fitted()?;
     if sets.len() < 2 {
-        return Ok(Finding::skipped("one set of parameters cannot be mixed"));
+        return Ok(Finding::skipped("there is only one parameter set"));
     }
     let mut worst: f64 = 0.0;
     for pair in sets.windows(2) {
@@ -120,7 +120,7 @@ pub(crate) fn interpolate(case: &Case) -> Found {
             };
             let mix = case.model.interpolate(&[a, b], &[1.0 - weight, weight]);
             let mix = mix.map_err(|error| say(error.to_string()))?;
-            playable(case, &mix).map_err(&say)?;
+            playable(case, &mix).map_err(|finding| say(finding.message))?;
             let end = match step {
                 0 => a,
                 10 => b,
@@ -128,32 +128,31 @@ pub(crate) fn interpolate(case: &Case) -> Found {
             };
             let distance = relative_distance(case, &mix, end)?;
             if distance > AT_ENDS {
-                let what = format!("the magnitude misses that of the set by {distance:.1e}");
+                let what = format!("the magnitude differs from that of the set by {distance:.1e}");
                 return Err(say(what).with("end_distance", distance));
             }
             worst = worst.max(distance);
         }
     }
     let pairs = sets.len() - 1;
-    Ok(
-        Finding::passed(format!("eleven mixtures of {pairs} pairs can be played"))
-            .with("end_distance", worst),
-    )
+    Ok(Finding::passed(format!(
+        "eleven interpolations of {pairs} pairs can be played"
+    ))
+    .with("end_distance", worst))
 }
 
-fn playable(case: &Case, mix: &[f64]) -> Result<(), String> {
-    case.magnitude(mix).map_err(|error| error.to_string())?;
+/// Checks that a parameter set has a magnitude and finite samples.
+fn playable(case: &Case, mix: &[f64]) -> Result<(), Finding> {
+    case.magnitude(mix)?;
     let mut out = vec![0.0f32; SAMPLES];
-    let rendered = case.stream(mix, case.seed);
-    let rendered = rendered.and_then(|mut stream| stream.render(&mut out));
-    rendered.map_err(|error| error.to_string())?;
+    case.stream(mix, case.seed)?.render(&mut out)?;
     match out.iter().find(|x| !x.is_finite() || x.abs() > LOUDEST) {
         None => Ok(()),
-        Some(x) => Err(format!("a sample is {x}")),
+        Some(x) => Err(Finding::failed(format!("a sample is {x}"))),
     }
 }
 
-/// Largest difference of two sets' magnitudes, relative to the largest magnitude.
+/// Returns the largest difference of two sets' magnitudes, relative to the largest magnitude.
 fn relative_distance(case: &Case, a: &[f64], b: &[f64]) -> Result<f64, Finding> {
     let grid = fine_grid();
     let ask = |set: &[f64]| case.model.magnitude(set, Band::TACTILE, &grid);

@@ -1,4 +1,4 @@
-//! Fits, and what becomes of their parameters.
+//! Fits, and conversions of their parameters.
 
 use htex_host::{Band, Field, Kind, Store};
 use htex_model::{Values, flatten};
@@ -8,10 +8,10 @@ use crate::signal::distance_db;
 use crate::spectra::{HARD, REFERENCES};
 use htex_check_runner::{Finding, Found};
 
-/// How far storing may move a spectrum before it is worth a word, dB RMS.
+/// Change of a spectrum by storage above which there is a warning, dB RMS.
 const STORED_DB: f64 = 0.5;
 
-/// The five reference spectra.
+/// Fits the five reference spectra.
 pub(crate) fn reference(case: &Case) -> Found {
     let mut fitted = 0;
     for reference in REFERENCES {
@@ -25,7 +25,7 @@ pub(crate) fn reference(case: &Case) -> Found {
                 return Err(Finding::failed(message));
             }
             Ok(fit) if again != Ok(fit.clone()) => {
-                let message = format!("spectrum `{name}`: fitting again gives other numbers");
+                let message = format!("spectrum `{name}`: a second fit returns other numbers");
                 return Err(Finding::failed(message));
             }
             Ok(_) => fitted += 1,
@@ -35,7 +35,7 @@ pub(crate) fn reference(case: &Case) -> Found {
     }
     let (all, found) = (REFERENCES.len(), f64::from(fitted));
     if fitted == 0 {
-        return Err(Finding::failed("none of the reference spectra is fitted"));
+        return Err(Finding::failed("no reference spectrum is fitted"));
     }
     Ok(
         Finding::passed(format!("{fitted} of {all} reference spectra are fitted"))
@@ -43,7 +43,7 @@ pub(crate) fn reference(case: &Case) -> Found {
     )
 }
 
-/// Spectra that are hardly any.
+/// Fits degenerate spectra.
 pub(crate) fn hard(case: &Case) -> Found {
     let (mut fitted, mut refused) = (0.0, 0.0);
     let wide = Band::TACTILE.grid_hz();
@@ -70,7 +70,7 @@ pub(crate) fn hard(case: &Case) -> Found {
     )
 }
 
-/// Taken apart, put together, stored.
+/// Checks conversion of parameters to fields and back, and storage.
 pub(crate) fn round_trip(case: &Case) -> Found {
     let descriptor = case.model.descriptor();
     let mut worst: f64 = 0.0;
@@ -100,17 +100,16 @@ pub(crate) fn round_trip(case: &Case) -> Found {
             .map_err(|e| wrong(format!("stored parameters are refused: {e}")))?;
         worst = worst.max(distance_db(&after, &before));
     }
-    let message = format!("storing moves the spectrum by at most {worst:.3} dB RMS");
+    let message = format!("storage changes the spectrum by at most {worst:.3} dB RMS");
     let finding = if worst <= STORED_DB {
         Finding::passed(message)
     } else {
-        Finding::warning(message + "; a finer store may be worth its bytes")
+        Finding::warning(message + "; a store with smaller steps may be justified")
     };
     Ok(finding.with("stored_db", worst))
 }
 
-/// Numbers as a file gives them back. Steps at the ends of the range stay inside it, as an asset's
-/// writer does it.
+/// Returns numbers as a file stores them. At the ends of the range steps are rounded into it, as by the writer of assets.
 fn stored(field: &Field, numbers: &[f64]) -> Vec<f64> {
     let step = |x: f64, scale: f64, offset: f64, log: bool, most: f64| {
         let y = if log { x.ln() } else { x };

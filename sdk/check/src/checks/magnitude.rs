@@ -5,15 +5,15 @@ use htex_host::Band;
 use crate::case::{Case, Fitted};
 use htex_check_runner::{Finding, Found};
 
-/// Largest difference between two readings of one frequency, relative to the largest magnitude.
+/// Largest allowed difference between two results for one frequency, relative to the largest magnitude.
 const TOLERANCE: f64 = 1e-9;
 
-/// Every 0.5 Hz of the tactile band.
+/// Returns every 0.5 Hz of the tactile band.
 pub(crate) fn fine_grid() -> Vec<f64> {
     (40..=2000).map(|i| 0.5 * f64::from(i)).collect()
 }
 
-/// Finite, not negative, zero outside of the band.
+/// Checks that magnitudes are finite, not negative, and zero outside the band.
 pub(crate) fn sane(case: &Case) -> Found {
     let band = Band::TACTILE;
     let outside = [0.0, 1.0, 19.0, 1001.0, 5_000.0, 1e5];
@@ -26,7 +26,7 @@ pub(crate) fn sane(case: &Case) -> Found {
         let say = |what: String| Finding::failed(format!("spectrum `{reference}`: {what}"));
         let mut largest: f64 = 0.0;
         for grid in [band.grid_hz(), fine_grid()] {
-            // The host refuses what is not finite or negative.
+            // The host refuses magnitudes that are not finite or negative.
             let magnitude = case.model.magnitude(&parameters, band, &grid);
             let magnitude = magnitude.map_err(|error| say(error.to_string()))?;
             largest = magnitude.iter().copied().fold(largest, f64::max);
@@ -40,7 +40,7 @@ pub(crate) fn sane(case: &Case) -> Found {
         if let Some(i) = beyond.iter().position(|&m| m != 0.0) {
             let (m, f) = (beyond[i], outside[i]);
             return Err(say(format!(
-                "{m} at {f} Hz, outside of the band; it must be 0"
+                "{m} at {f} Hz, outside the band; it must be 0"
             )));
         }
     }
@@ -48,7 +48,7 @@ pub(crate) fn sane(case: &Case) -> Found {
     Ok(Finding::passed(message).with("magnitudes", asked as f64))
 }
 
-/// The same magnitude whatever else is asked for.
+/// Checks that a magnitude does not depend on the other frequencies of a call.
 pub(crate) fn grid(case: &Case) -> Found {
     let band = Band::TACTILE;
     let grid = band.grid_hz();
@@ -74,18 +74,18 @@ pub(crate) fn grid(case: &Case) -> Found {
                 let difference = (m - w).abs() / largest;
                 worst = worst.max(difference);
                 if difference > TOLERANCE {
-                    let what = format!("{m} at {f} Hz asked {way}, {w} on the 5 Hz grid");
+                    let what = format!("{m} at {f} Hz {way}, {w} on the 5 Hz grid");
                     return Err(Finding::failed(format!("spectrum `{reference}`: {what}"))
                         .with("relative_difference", difference));
                 }
             }
         }
     }
-    let message = "the same magnitudes on every grid";
+    let message = "magnitudes are equal on every grid";
     Ok(Finding::passed(message).with("relative_difference", worst))
 }
 
-/// Asks for chunks of the grid, each in descending order, and puts the results in place.
+/// Requests chunks of the grid, each in descending order, and reorders the results.
 fn by_chunks<E>(
     grid: &[f64],
     len: usize,

@@ -1,4 +1,4 @@
-//! The extension by which a voice is told the motion.
+//! The extension `htex.motion/1`.
 
 use htex_host::{FitCondition, MOTION_EXTENSION, ModelVoice, Motion, Status};
 
@@ -10,7 +10,7 @@ use htex_check_runner::{Finding, Found};
 
 const FRAMES: usize = 4_000;
 const BLOCKS: [usize; 4] = [1, 7, 64, 1_000];
-/// Samples between two motions on a way there and back.
+/// Samples between two motions of a movement forward and back.
 const BETWEEN: usize = 50;
 const MOTION: Motion = Motion {
     speed_mm_s: 80.0,
@@ -18,7 +18,7 @@ const MOTION: Motion = Motion {
     position_mm: 3.0,
 };
 
-/// The promises of `htex.motion/1`.
+/// Checks the guarantees of `htex.motion/1`.
 pub(crate) fn keeps_its_promises(case: &Case) -> Found {
     if !case.model.follows_motion() {
         return Ok(Finding::passed(format!(
@@ -34,11 +34,11 @@ pub(crate) fn keeps_its_promises(case: &Case) -> Found {
     there_and_back(&mut voice, FRAMES)?;
     allocation::none_while(&mut voice, |voice| there_and_back(voice, 10 * FRAMES))?;
     Ok(Finding::passed(format!(
-        "bad motions are refused, {FRAMES} samples of a motion are the same in any blocks, and nothing is allocated"
+        "invalid motions are refused, {FRAMES} samples of a motion are equal in all block sizes, and nothing is allocated"
     )))
 }
 
-/// A bad motion is a status, and the voice plays on as before; so is a handle that was freed.
+/// Checks that an invalid motion and a freed handle return a status, and that the voice continues unchanged.
 fn bad_motions_are_refused(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     let voices = || -> Result<ModelVoice, Finding> {
         let mut voice = case.voice(parameters, case.seed)?;
@@ -97,13 +97,13 @@ fn refused(result: Result<(), htex_host::HostError>, what: &str) -> Result<(), F
     match result {
         Err(htex_host::HostError::Call { status, .. }) if status != Status::Panicked => Ok(()),
         Ok(()) => Err(Finding::failed(format!(
-            "`htex_motion_1_set` takes {what}; it must return a status below 0"
+            "`htex_motion_1_set` accepts {what}; it must return a status below 0"
         ))),
         Err(error) => Err(Finding::failed(format!("{what}: {error}"))),
     }
 }
 
-/// The same samples of a constant motion in any blocks; told again or not.
+/// Checks that a constant motion gives equal samples in all block sizes, whether it is set again or not.
 fn blocks_make_no_difference(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     let render = |block: usize| -> Result<Vec<f32>, Finding> {
         let mut voice = case.voice(parameters, case.seed)?;
@@ -126,7 +126,7 @@ fn blocks_make_no_difference(case: &Case, parameters: &[f64]) -> Result<(), Find
     Ok(())
 }
 
-/// A retune and a motion before the same sample, in either order.
+/// Checks a retune and a motion before the same sample, in either order.
 fn order_makes_no_difference(case: &Case, parameters: &[f64]) -> Result<(), Finding> {
     let other = case.two_sets()?.map_or(parameters.to_vec(), |sets| sets.1);
     let render = |motion_first: bool| -> Result<Vec<f32>, Finding> {
@@ -141,7 +141,7 @@ fn order_makes_no_difference(case: &Case, parameters: &[f64]) -> Result<(), Find
         if motion_first {
             voice.set_motion(motion)?;
         }
-        // A voice may refuse, for one that has another rate; both then play on.
+        // A voice may refuse, for example if its rate would change; both then continue unchanged.
         let _ = voice.retune(&other);
         if !motion_first {
             voice.set_motion(motion)?;
@@ -152,12 +152,12 @@ fn order_makes_no_difference(case: &Case, parameters: &[f64]) -> Result<(), Find
     match first_difference(&render(true)?, &render(false)?) {
         None => Ok(()),
         Some(at) => Err(Finding::failed(format!(
-            "a retune before a motion against a motion before a retune: sample {at} differs"
+            "a retune before a motion and a motion before a retune: sample {at} differs"
         ))),
     }
 }
 
-/// A finger that goes there and back, faster and slower, and rests.
+/// A finger that moves forward and back, at different speeds, and stops.
 fn there_and_back(voice: &mut ModelVoice, samples: usize) -> Result<(), Finding> {
     let mut out = [0.0; BETWEEN];
     for i in 0..samples / BETWEEN {
@@ -177,7 +177,7 @@ fn there_and_back(voice: &mut ModelVoice, samples: usize) -> Result<(), Finding>
     Ok(voice.render(&mut out)?)
 }
 
-/// Fits of known, partly known and unknown conditions; the last is the fit of a host without the extension.
+/// Checks fits at known, partly known and unknown conditions; the last is the fit of a host without the extension.
 fn fits_take_conditions(case: &Case) -> Result<(), Finding> {
     let known = |speed_mm_s, force_n| FitCondition {
         speed_mm_s,
@@ -208,7 +208,7 @@ fn fits_take_conditions(case: &Case) -> Result<(), Finding> {
         );
         if taken.is_some() {
             return Err(Finding::failed(format!(
-                "`htex_motion_1_fit` takes {speed_mm_s} mm/s and {force_n} N; it must return HTEX_INVALID_ARGUMENT"
+                "`htex_motion_1_fit` accepts {speed_mm_s} mm/s and {force_n} N; it must return HTEX_INVALID_ARGUMENT"
             )));
         }
     }

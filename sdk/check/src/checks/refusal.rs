@@ -1,4 +1,4 @@
-//! What must be refused.
+//! Invalid arguments.
 
 use htex_host::{Band, HostError, Kind};
 use htex_model::{Values, flatten};
@@ -16,7 +16,7 @@ fn refused<T>(call: &str, what: &str, result: Result<T, HostError>) -> Result<()
     }
 }
 
-/// Parameters that break the descriptor.
+/// Checks that parameters that do not fit the descriptor are refused.
 pub(crate) fn parameters(case: &Case) -> Found {
     let (model, band) = (&case.model, Band::TACTILE);
     let good = case.parameters()?;
@@ -48,12 +48,12 @@ pub(crate) fn parameters(case: &Case) -> Found {
     }
     let count = broken.len();
     Ok(
-        Finding::passed(format!("{count} wrong sets of parameters are refused"))
+        Finding::passed(format!("{count} invalid parameter sets are refused"))
             .with("sets", count as f64),
     )
 }
 
-/// Sets that are wrong in one way each, and what that is.
+/// Returns sets with one error each, and its description.
 fn broken_sets(case: &Case, good: &[f64]) -> Result<Vec<(String, Vec<f64>)>, Finding> {
     let descriptor = case.model.descriptor();
     let values = Values::read(descriptor, good).map_err(|e| Finding::failed(e.message))?;
@@ -95,7 +95,7 @@ fn broken_sets(case: &Case, good: &[f64]) -> Result<Vec<(String, Vec<f64>)>, Fin
     Ok(broken)
 }
 
-/// Invalid bands.
+/// Checks that invalid bands are refused.
 pub(crate) fn band(case: &Case) -> Found {
     let good = case.parameters()?;
     let spectrum = [0.01, 0.02, 0.03, 0.02, 0.01];
@@ -130,12 +130,12 @@ pub(crate) fn band(case: &Case) -> Found {
         )?;
     }
     Ok(Finding::passed(format!(
-        "{} wrong bands are refused",
+        "{} invalid bands are refused",
         bands.len()
     )))
 }
 
-/// Invalid rates.
+/// Checks that invalid rates are refused.
 pub(crate) fn rate(case: &Case) -> Found {
     let good = case.parameters()?;
     let rates = [f64::NAN, 0.0, -1.0, f64::INFINITY, 1e12];
@@ -154,7 +154,7 @@ pub(crate) fn rate(case: &Case) -> Found {
         )?;
     }
     Ok(Finding::passed(format!(
-        "{} wrong rates are refused",
+        "{} invalid rates are refused",
         rates.len()
     )))
 }

@@ -14,7 +14,7 @@ fn differ(what: &str, at: usize) -> Finding {
     Finding::failed(format!("{what}: sample {at} differs")).with("sample", at as f64)
 }
 
-/// Twice the same.
+/// Checks that equal seeds give equal samples.
 pub(crate) fn reproducible(case: &Case) -> Found {
     for fitted in case.fitted()? {
         let render = || case.samples(&fitted.parameters, case.seed, SAMPLES, 256);
@@ -24,11 +24,11 @@ pub(crate) fn reproducible(case: &Case) -> Found {
         }
     }
     Ok(Finding::passed(format!(
-        "{SAMPLES} samples come out the same twice"
+        "{SAMPLES} samples are equal in two voices"
     )))
 }
 
-/// The same in any blocks.
+/// Checks that samples do not depend on block sizes.
 pub(crate) fn blocks(case: &Case) -> Found {
     let parameters = case.parameters()?;
     let whole = case.samples(&parameters, case.seed, SAMPLES, SAMPLES)?;
@@ -36,7 +36,7 @@ pub(crate) fn blocks(case: &Case) -> Found {
         let other = case.samples(&parameters, case.seed, SAMPLES, block)?;
         if let Some(at) = first_difference(&whole, &other) {
             return Err(differ(
-                &format!("blocks of {block} against one of {SAMPLES}"),
+                &format!("blocks of {block} and one of {SAMPLES}"),
                 at,
             ));
         }
@@ -44,13 +44,13 @@ pub(crate) fn blocks(case: &Case) -> Found {
     let mut voice = case.voice(&parameters, case.seed)?;
     voice
         .render(&mut [])
-        .map_err(|error| Finding::failed(format!("a block of no samples: {error}")))?;
+        .map_err(|error| Finding::failed(format!("an empty block: {error}")))?;
     Ok(Finding::passed(
-        "the same samples in blocks of 1, 7, 64, 1000 and 9000",
+        "samples are equal in blocks of 1, 7, 64, 1000 and 9000",
     ))
 }
 
-/// Other seeds, other samples.
+/// Checks that different seeds give different samples.
 pub(crate) fn seeds(case: &Case) -> Found {
     let parameters = case.parameters()?;
     let render = |seed| case.samples(&parameters, seed, SAMPLES, 256);
@@ -63,15 +63,15 @@ pub(crate) fn seeds(case: &Case) -> Found {
         .magnitude(&parameters, Band::TACTILE, &fine_grid())?;
     if is_line_spectrum(&fine) {
         return Ok(Finding::warning(
-            "two seeds give the same samples; the spectrum is made of lines, which need no chance",
+            "two seeds give equal samples; the spectrum consists of lines, which may have no random component",
         ));
     }
     Err(Finding::failed(
-        "two seeds give the same samples: the seed is ignored",
+        "two seeds give equal samples: the seed is ignored",
     ))
 }
 
-/// Several voices at a time sound as each does alone.
+/// Checks that several voices at a time have the samples of each alone.
 pub(crate) fn voices_apart(case: &Case) -> Found {
     let sets = case.two_sets()?;
     let (a, b) = match sets {
@@ -94,7 +94,7 @@ pub(crate) fn voices_apart(case: &Case) -> Found {
         (first.join(), second.join())
     });
     let (Ok(thread_a), Ok(thread_b)) = threads else {
-        return Err(Finding::failed("a voice on a thread of its own panicked"));
+        return Err(Finding::failed("a voice on a separate thread panicked"));
     };
     for (way, together, alone) in [
         ("the first of two voices in turns", &turns.0, &alone_a),
@@ -103,15 +103,15 @@ pub(crate) fn voices_apart(case: &Case) -> Found {
         ("the second of two voices on threads", &thread_b?, &alone_b),
     ] {
         if let Some(at) = first_difference(together, alone) {
-            return Err(differ(&format!("{way}, against it alone"), at));
+            return Err(differ(&format!("{way}, compared with it alone"), at));
         }
     }
     Ok(Finding::passed(
-        "two voices sound as each does alone, in turns and on threads",
+        "two voices have the samples of each alone, in turns and on threads",
     ))
 }
 
-/// What was freed is refused.
+/// Checks that a freed handle is refused.
 pub(crate) fn handles(case: &Case) -> Found {
     let parameters = case.parameters()?;
     let mut voice = case.voice(&parameters, case.seed)?;
@@ -135,16 +135,16 @@ pub(crate) fn handles(case: &Case) -> Found {
                 Err(HostError::Call { .. }) => others += 1.0,
                 Err(error) => return Err(error.into()),
                 Ok(()) => {
-                    let message = format!("`{call}` takes the handle of a voice {when}");
+                    let message = format!("`{call}` accepts the handle of a voice {when}");
                     return Err(Finding::failed(message));
                 }
             }
         }
-        // Takes the place of the freed voice, and must not be reached by its handle.
+        // May reuse the slot of the freed voice, and must not be reached by its handle.
         std::mem::forget(case.voice(&parameters, case.seed)?);
     }
     if others > 0.0 {
-        let message = "freed handles are refused, by another status than BAD_HANDLE";
+        let message = "freed handles are refused, with a status other than BAD_HANDLE";
         return Ok(Finding::warning(message).with("other_status", others));
     }
     Ok(Finding::passed("freed handles are refused"))

@@ -10,10 +10,10 @@ use htex_check_runner::{Finding, Found, Growth};
 const BLOCK: usize = 256;
 const BLOCKS: usize = 10_000;
 const VOICES: usize = 2_000;
-/// Cost from which on there is a warning: a tenth of one processor.
+/// Load of one processor from which on there is a warning.
 const BUDGET: f64 = 0.1;
 
-/// The process does not grow while a voice plays, or while voices are made and freed.
+/// Checks that memory does not grow while a voice plays, or while voices are made and freed.
 pub(crate) fn memory(case: &Case) -> Found {
     htex_check_runner::memory(|| {
         let sets = case.fitted()?;
@@ -40,7 +40,7 @@ pub(crate) fn memory(case: &Case) -> Found {
     })
 }
 
-/// Nanoseconds a sample.
+/// Measures nanoseconds per sample.
 pub(crate) fn cost(case: &Case) -> Found {
     let parameters = case.parameters()?;
     let rate_hz = case
@@ -56,13 +56,13 @@ pub(crate) fn cost(case: &Case) -> Found {
         }
         runs.push(start.elapsed().as_secs_f64() * 1e9 / (16 * BLOCK) as f64);
     }
-    // The first run warms up.
+    // The first run is a warm-up.
     let runs = &mut runs[1..];
     runs.sort_by(f64::total_cmp);
     let ns = runs[runs.len() / 2];
     let share = ns * 1e-9 * rate_hz;
     let message = format!(
-        "{ns:.1} ns a sample at {rate_hz} Hz: {:.3} % of one processor",
+        "{ns:.1} ns per sample at {rate_hz} Hz: {:.3} % of one processor",
         100.0 * share
     );
     let finding = if share < BUDGET {

@@ -1,4 +1,4 @@
-//! The samples of a voice against its magnitude.
+//! Comparison of a voice's samples with its magnitude.
 
 use htex_dsp::grid::level_rms;
 use htex_host::{Band, Stream};
@@ -10,31 +10,30 @@ use crate::signal::{
 };
 use htex_check_runner::{Finding, Found};
 
-/// How long sounds are judged, seconds: a minute of noise reads each bin within 0.2 dB.
+/// Duration of the measured sounds, seconds: with a minute of noise each bin is measured within 0.2 dB.
 pub(crate) const SECONDS: f64 = 60.0;
-/// How long sounds are searched for ill samples, seconds.
+/// Duration of the sounds that are searched for invalid samples, seconds.
 const SEARCHED: usize = 20;
-/// Relative error of an RMS that is always allowed.
+/// Allowed relative error of an RMS.
 const LEVEL: f64 = 0.02;
-/// Standard deviations of noise that are allowed.
+/// Allowed deviation of noise, in standard deviations.
 const SPREADS: f64 = 4.0;
-/// Distance of the sound's spectrum from the magnitude that is allowed, dB RMS.
+/// Allowed distance of the sound's spectrum from the magnitude, dB RMS.
 pub(crate) const SPECTRUM_DB: f64 = 1.0;
 
 fn about(fitted: &Fitted, what: &str) -> Finding {
     Finding::failed(format!("spectrum `{}`: {what}", fitted.reference))
 }
 
-/// A band inside the one that references are fitted in: two of them have their peaks outside.
+/// A part of the band in which references are fitted; two of them have peaks outside it.
 const NARROW: Band = Band {
     low_hz: 150.0,
     high_hz: 700.0,
 };
-/// Distance of the level in it from 1 that is allowed, dB: an order of 4 in a filter of the band lets
-/// through that much beside it.
+/// Allowed distance of the level in that band from 1, dB: a band filter of order 4 passes as much outside the band.
 const NARROW_DB: f64 = 1.5;
 
-/// One second of every reference.
+/// Renders one second of every reference.
 pub(crate) fn renders(case: &Case) -> Found {
     let mut voices = 0.0;
     for fitted in case.fitted()? {
@@ -43,14 +42,14 @@ pub(crate) fn renders(case: &Case) -> Found {
         let rendered = rendered.and_then(|mut stream| stream.render(&mut out));
         rendered.map_err(|error| about(&fitted, &error.to_string()))?;
         if out.iter().all(|&x| x == 0.0) {
-            return Err(about(&fitted, "a second of nothing but zeros"));
+            return Err(about(&fitted, "all samples of a second are zero"));
         }
         voices += 1.0;
     }
     Ok(Finding::passed(format!("{voices} voices render a second each")).with("voices", voices))
 }
 
-/// No infinite, undefined or subnormal sample, also after retunes.
+/// Checks that no sample is infinite, NaN or subnormal, also after retunes.
 pub(crate) fn clean(case: &Case) -> Found {
     let sets = case.fitted()?;
     let mut samples = 0.0;
@@ -71,10 +70,13 @@ pub(crate) fn clean(case: &Case) -> Found {
             voice.retune(&sets[second % sets.len()].parameters)?;
         }
     }
-    Ok(Finding::passed(format!("{samples} samples are clean")).with("samples", samples))
+    Ok(
+        Finding::passed(format!("{samples} samples are normal numbers or 0"))
+            .with("samples", samples),
+    )
 }
 
-/// A minute at the rate of the recordings.
+/// Renders a minute at the rate of the recordings.
 fn listen(case: &Case, fitted: &Fitted) -> Result<Vec<f32>, Finding> {
     let mut out = vec![0.0; (SECONDS * RATE_HZ) as usize];
     case.stream(&fitted.parameters, case.seed)?
@@ -82,14 +84,14 @@ fn listen(case: &Case, fitted: &Fitted) -> Result<Vec<f32>, Finding> {
     Ok(out)
 }
 
-/// Unit RMS, of the magnitude and of the sound: of the sound in all, or as the band's bins read it.
+/// Checks the unit RMS of the magnitude and of the sound: in total, or in the band's bins.
 pub(crate) fn level(case: &Case) -> Found {
     let mut worst: f64 = 0.0;
     for fitted in case.fitted()? {
         let magnitude = case.magnitude(&fitted.parameters)?;
         let sound = listen(case, &fitted)?;
         let (told, read) = (level_rms(&magnitude), level_rms(&measured_spectrum(&sound)));
-        // Written so that NaN fails.
+        // The condition is negated so that NaN fails.
         let in_all = rms(&sound);
         let is_nearer = (read - 1.0).abs() < (in_all - 1.0).abs();
         let heard = if is_nearer { read } else { in_all };
@@ -113,21 +115,21 @@ pub(crate) fn level(case: &Case) -> Found {
     Ok(Finding::passed(message).with("sound_rms_error", worst))
 }
 
-/// Distance of a sound at [`RATE_HZ`] from a magnitude, or from what noise of that density reads through the window, dB
-/// RMS: the window blurs a flank at the band's edge by more than is allowed.
+/// Returns the distance of a sound at [`RATE_HZ`] from a magnitude, or from the spectrum that the window measures for
+/// noise of that density, dB RMS: at the band's edge the window blurs a flank by more than the allowed distance.
 pub(crate) fn spectrum_distance_db(sound: &[f32], magnitude: &[f64]) -> f64 {
     let heard = measured_spectrum(sound);
     let blurred = distance_db(&heard, &read_as_noise(magnitude));
     distance_db(&heard, magnitude).min(blurred)
 }
 
-/// The sound's spectrum against the magnitude.
+/// Compares the sound's spectrum with the magnitude.
 pub(crate) fn spectrum(case: &Case) -> Found {
     let mut worst: f64 = 0.0;
     for fitted in case.fitted()? {
         let magnitude = case.magnitude(&fitted.parameters)?;
         let distance = spectrum_distance_db(&listen(case, &fitted)?, &magnitude);
-        // Written so that NaN fails.
+        // The condition is negated so that NaN fails.
         if !matches!(distance.partial_cmp(&SPECTRUM_DB), Some(o) if o.is_le()) {
             let what = format!(
                 "the sound is {distance:.2} dB RMS from the magnitude; {SPECTRUM_DB} dB is allowed"
@@ -140,7 +142,7 @@ pub(crate) fn spectrum(case: &Case) -> Found {
     Ok(Finding::passed(message).with("distance_db", worst))
 }
 
-/// Unit RMS in a band narrower than that of the fit, and nothing outside it.
+/// Checks unit RMS in a band narrower than that of the fit, and silence outside it.
 pub(crate) fn narrow_band(case: &Case) -> Found {
     let grid = NARROW.grid_hz();
     let (mut worst, mut voices) = (0.0f64, 0.0);
@@ -155,13 +157,13 @@ pub(crate) fn narrow_band(case: &Case) -> Found {
         stream.render(&mut out)?;
         let first = NARROW.first_bin() - Band::TACTILE.first_bin();
         let heard = &measured_spectrum(&out)[first..first + grid.len()];
-        for (level, place) in [(level_rms(heard), "in it"), (rms(&out), "in all")] {
+        for (level, place) in [(level_rms(heard), "in the band"), (rms(&out), "in total")] {
             let off_db = 20.0 * level.log10();
-            // Written so that NaN fails.
+            // The condition is negated so that NaN fails.
             if !matches!(off_db.abs().partial_cmp(&NARROW_DB), Some(o) if o.is_le()) {
                 let what = format!(
-                    "in the band {} to {} Hz the sound's RMS {place} is {off_db:.2} dB off 1; {NARROW_DB} dB \
-                     are allowed: what lies outside the band is not to be played",
+                    "in the band {} to {} Hz the sound's RMS {place} differs from 1 by {off_db:.2} dB; {NARROW_DB} dB \
+                     are allowed: frequencies outside the band must be silent",
                     NARROW.low_hz, NARROW.high_hz
                 );
                 return Err(about(&fitted, &what).with("level_db", off_db));

@@ -6,14 +6,14 @@ use crate::case::Case;
 use crate::signal::first_difference;
 use htex_check_runner::{Finding, Found};
 
-/// One more than a call takes.
+/// One more than the voices of a call.
 const VOICES: usize = 17;
 const FRAMES: [usize; 5] = [1, 256, 3, 64, 500];
-/// Before this block one of them is retuned.
+/// The block before which one voice is retuned.
 const RETUNED_AT: usize = 2;
 const RETUNED: usize = 5;
 
-/// The same as alone.
+/// Checks that samples of a common call equal those of separate calls.
 pub(crate) fn agrees(case: &Case) -> Found {
     if !case.model.has_extension(VOICES_EXTENSION)? {
         return Ok(Finding::passed(format!(
@@ -32,11 +32,11 @@ pub(crate) fn agrees(case: &Case) -> Found {
     let (mut alone, mut together) = (make()?, make()?);
     for (block, frames) in FRAMES.into_iter().enumerate() {
         if block == RETUNED_AT {
-            // A voice may refuse, for one that has another rate; both then play on.
+            // A voice may refuse, for example if its rate would change; both then continue unchanged.
             let retuned = [&mut alone, &mut together].map(|v| v[RETUNED].retune(&second).is_ok());
             if retuned[0] != retuned[1] {
                 return Err(Finding::failed(
-                    "one of two voices of the same history refuses to be retuned",
+                    "one of two voices with equal calls before refuses a retune",
                 ));
             }
         }
@@ -47,13 +47,13 @@ pub(crate) fn agrees(case: &Case) -> Found {
             voice.render(&mut own)?;
             if let Some(at) = first_difference(row, &own) {
                 return Err(Finding::failed(format!(
-                    "voice {i} of {VOICES}, {frames} frames: sample {at} differs from it alone"
+                    "voice {i} of {VOICES}, {frames} frames: sample {at} differs from that of a separate call"
                 ))
                 .with("sample", at as f64));
             }
         }
     }
     Ok(Finding::passed(format!(
-        "{VOICES} voices in common calls sound as each does alone"
+        "{VOICES} voices in common calls have the samples of separate calls"
     )))
 }

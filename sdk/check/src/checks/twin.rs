@@ -10,18 +10,20 @@ const PARAMETERS: f64 = 1e-6;
 /// Difference of samples that is allowed; unit RMS.
 const SAMPLES: f64 = 1e-4;
 
-/// Both fit and play alike.
+/// Compares the fits and the samples of both.
 pub(crate) fn agrees(case: &Case) -> Found {
     let Some(file) = other_file(case) else {
         return Ok(Finding::skipped(
-            "there is no other file of this model; --against names one",
+            "there is no other file of this model to compare with; name one",
         ));
     };
     let other = Case::load(&file, case.seed, None)
         .map_err(|error| Finding::failed(format!("the other file: {error}")))?;
     if case.model.descriptor() != other.model.descriptor() {
         let file = file.display();
-        return Err(Finding::failed(format!("{file} has another descriptor")));
+        return Err(Finding::failed(format!(
+            "{file} has a different descriptor"
+        )));
     }
     let (ours, theirs) = (case.fitted()?, other.fitted()?);
     if ours
@@ -30,14 +32,14 @@ pub(crate) fn agrees(case: &Case) -> Found {
         .ne(theirs.iter().map(|f| f.reference))
     {
         return Err(Finding::failed(
-            "they can be fitted to different reference spectra",
+            "the two models can be fitted to different reference spectra",
         ));
     }
     let (mut fits, mut sounds): (f64, f64) = (0.0, 0.0);
     for (a, b) in ours.iter().zip(&theirs) {
         let say = |what: &str| Finding::failed(format!("spectrum `{}`: {what}", a.reference));
         if a.parameters.len() != b.parameters.len() {
-            return Err(say("they have different numbers of parameters"));
+            return Err(say("the two models have different numbers of parameters"));
         }
         let relative = |(a, b): (&f64, &f64)| (a - b).abs() / a.abs().max(b.abs()).max(1e-12);
         let pairs = a.parameters.iter().zip(&b.parameters);
@@ -54,7 +56,7 @@ pub(crate) fn agrees(case: &Case) -> Found {
     let finding = if fits > PARAMETERS || sounds > SAMPLES {
         Finding::failed(message)
     } else if fits > 0.0 || sounds > 0.0 {
-        Finding::warning(message + ", not bit by bit")
+        Finding::warning(message + ", not bit-identical")
     } else {
         Finding::passed(message)
     };
@@ -63,7 +65,7 @@ pub(crate) fn agrees(case: &Case) -> Found {
         .with("sample_difference", sounds))
 }
 
-/// The file named, or the one of the other kind that lies beside this one: `libNAME.so`, `NAME.so`
+/// Returns the given other file, or the file of the other kind in the same folder: `libNAME.so`, `NAME.so`
 /// and `NAME.wasm` are the same model.
 fn other_file(case: &Case) -> Option<PathBuf> {
     if let Some(file) = &case.against {

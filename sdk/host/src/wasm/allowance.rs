@@ -1,14 +1,16 @@
-//! The time that a voice may take.
+//! The time limit of a voice.
 
 use std::time::Duration;
 
-/// How many times as long as they last samples may take to render.
+use super::fault::Fault;
+
+/// Longest rendering time of samples, in their duration.
 const TIMES: f64 = 10.0;
-/// What a voice has at its start, and at most.
+/// The time at the start, which is also the most.
 const FIRST: Duration = Duration::from_secs(1);
 
-/// The time of one voice: a second, and ten times as long as what it renders lasts. So whatever a module does, rendering
-/// takes a time proportional to what is rendered.
+/// The time of one voice: a second, and ten times the duration of its samples. Rendering therefore takes at most a time
+/// proportional to the duration of the samples.
 #[derive(Debug)]
 pub(super) struct Allowance {
     left: Duration,
@@ -32,12 +34,10 @@ impl Allowance {
         self.left = self.left.saturating_sub(time);
     }
 
-    pub(super) fn left(&self) -> Result<Duration, String> {
-        match self.left.is_zero() {
-            false => Ok(self.left),
-            true => Err(format!(
-                "the voice takes more than {TIMES} times as long as what it renders lasts"
-            )),
+    pub(super) fn left(&self) -> Result<Duration, Fault> {
+        if self.left.is_zero() {
+            return Err(Fault::VoiceTime { times: TIMES });
         }
+        Ok(self.left)
     }
 }

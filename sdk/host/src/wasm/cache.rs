@@ -1,7 +1,7 @@
 //! Compiled modules on disk.
 //!
-//! A file is named by the module's hash and the engine's, and begins with a keyed hash of its name and of what follows:
-//! damage is found, and what another user put there. See [`WasmCache`] on who is trusted.
+//! A file is named by the module's hash and the engine's, and begins with a keyed hash of its name and its content, which
+//! detects damaged files and files of other users. [`WasmCache`] documents who is trusted.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io;
@@ -14,19 +14,19 @@ use super::key::Key;
 use super::private;
 use crate::{WasmCache, folders};
 
-/// Most files that are kept.
+/// Most files in the cache.
 const MOST_FILES: usize = 64;
 const HASH: usize = blake3::OUT_LEN;
 const EXTENSION: &str = ".cwasm";
 
-/// A folder of compiled modules that is this user's alone, and the key of its files.
+/// A folder of compiled modules that only this user can write to, and the key of its files.
 pub(super) struct Cache {
     folder: PathBuf,
     key: Key,
 }
 
 impl Cache {
-    /// The cache, its folder and key made if need be; `None` where it is off, or not this user's alone.
+    /// Opens the cache, and creates its folder and key if absent; `None` if the cache is off, or not this user's alone.
     pub(super) fn of(cache: &WasmCache) -> Option<Self> {
         let folder = match cache {
             WasmCache::User => folders::cache()?.join("wasm"),
@@ -38,7 +38,7 @@ impl Cache {
         Some(Self { folder, key })
     }
 
-    /// A kept module, if its file is there, sound and this user's.
+    /// Returns a cached module if its file exists and is authentic.
     pub(super) fn find(&self, engine: &Engine, module: &[u8]) -> Option<Module> {
         let name = name(engine, module);
         let bytes = std::fs::read(self.folder.join(&name)).ok()?;
@@ -46,12 +46,12 @@ impl Cache {
         if self.key.tag(&name, artifact) != *<&[u8; HASH]>::try_from(tag).ok()? {
             return None;
         }
-        // SAFETY: the artifact is what `serialize` gave for this module: its tag was made with a key that this user
-        // alone can read. The engine itself refuses artifacts of other versions and settings.
+        // SAFETY: the artifact is the output of `serialize` for this module: its tag was made with a key that only this
+        // user can read. The engine refuses artifacts of other versions and settings.
         unsafe { Module::deserialize(engine, artifact) }.ok()
     }
 
-    /// Writes a file beside and renames it into place.
+    /// Writes a temporary file and renames it into place.
     pub(super) fn keep(&self, engine: &Engine, module: &[u8], artifact: &[u8]) -> io::Result<()> {
         self.keep_as(&name(engine, module), artifact)
     }
@@ -79,7 +79,7 @@ fn name(engine: &Engine, module: &[u8]) -> String {
     format!("{hash}-{:016x}{EXTENSION}", hasher.finish())
 }
 
-/// Whether a file is named as [`name`] names them.
+/// Returns whether a file name has the form of [`name`].
 fn is_own(name: &str) -> bool {
     let hex = |text: &str, len| text.len() == len && text.bytes().all(|c| c.is_ascii_hexdigit());
     name.strip_suffix(EXTENSION)
@@ -87,7 +87,7 @@ fn is_own(name: &str) -> bool {
         .is_some_and(|(module, engine)| hex(module, 2 * HASH) && hex(engine, 16))
 }
 
-/// Removes the cache's files written longest ago, so that the folder does not grow for ever. Others stay.
+/// Removes the cache's oldest files above the limit; other files are left.
 fn forget_oldest(folder: &Path) -> io::Result<()> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder)? {
@@ -133,7 +133,7 @@ mod tests {
             Some(Cache { folder, key })
         }
 
-        /// Whether the module is found; it is there afterwards.
+        /// Returns whether the module is found, and caches it.
         fn found(&self) -> bool {
             let cache = self.cache().unwrap();
             let found = cache.find(&self.engine, MODULE).is_some();
@@ -161,7 +161,7 @@ mod tests {
         flipped[whole.len() / 2] ^= 1;
         let artifact = &whole[HASH..];
         let unkeyed = [blake3::hash(artifact).as_bytes(), artifact].concat();
-        // A sound file of another module's name.
+        // An intact file under another module's name.
         let cache = place.cache().unwrap();
         let other = cache.key.tag("another", artifact);
         let renamed = [&other[..], artifact].concat();
@@ -170,10 +170,10 @@ mod tests {
             assert!(!place.found());
             assert!(place.found(), "made again");
         }
-        // Of another user, who has another key.
+        // A file of another user, who has another key.
         std::fs::remove_dir_all(place.dir.path().join("config")).unwrap();
         assert!(!place.found());
-        // An engine of other settings has a file of its own.
+        // An engine with other settings has a different file.
         place.engine = Engine::new(wasmtime::Config::new().consume_fuel(true)).unwrap();
         assert!(!place.found());
     }
@@ -223,7 +223,7 @@ mod tests {
         assert!(place.cache().is_none());
         set(&key, 0o600);
         assert!(place.cache().is_some());
-        // As root, another user's.
+        // Root can give the folder to another user.
         if std::os::unix::fs::chown(place.folder(), Some(12345), None).is_ok() {
             assert!(place.cache().is_none());
         }

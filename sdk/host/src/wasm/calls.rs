@@ -1,4 +1,4 @@
-//! The calls of the model ABI on an instance: arrays go into its room, answers come out of it.
+//! The calls of the model ABI on an instance: arrays are copied into its buffer, and results out of it.
 
 use htex_model::{Band, Motion};
 
@@ -17,17 +17,17 @@ impl Instance {
     }
 
     pub(super) fn descriptor(&mut self, out: &mut [u8]) -> Result<i64, Fault> {
-        let at = self.room(out.len().max(8))?;
+        let at = self.buffer(out.len().max(8))?;
         let len = self.call(Deadline::Call, |f| &f.descriptor, (at, out.len() as u32))?;
         out.copy_from_slice(self.bytes(at, out.len())?);
         Ok(len)
     }
 
-    /// The text behind the last negative answer.
+    /// The text of the last error.
     pub(super) fn last_error(&mut self) -> Result<String, Fault> {
-        let at = self.room(LONGEST_ERROR)?;
-        let room = (at, LONGEST_ERROR as u32);
-        let len = self.call(Deadline::Call, |f| &f.last_error, room)?;
+        let at = self.buffer(LONGEST_ERROR)?;
+        let buffer = (at, LONGEST_ERROR as u32);
+        let len = self.call(Deadline::Call, |f| &f.last_error, buffer)?;
         let len = usize::try_from(len).unwrap_or(0).min(LONGEST_ERROR);
         Ok(String::from_utf8_lossy(self.bytes(at, len)?).into_owned())
     }
@@ -40,7 +40,7 @@ impl Instance {
     ) -> Result<i64, Fault> {
         let bins = call.frequency_hz.len().min(call.magnitude.len());
         let numbers = 2 * bins + call.signal.len() + call.options.len() + parameters.len() + 1;
-        let frequency = self.room(numbers * 8)?;
+        let frequency = self.buffer(numbers * 8)?;
         let magnitude = self.write(frequency, &call.frequency_hz[..bins])?;
         let signal = self.write(magnitude, &call.magnitude[..bins])?;
         let options = self.write(signal, call.signal)?;
@@ -48,16 +48,16 @@ impl Instance {
         let out = self.write(level, &[f64::NAN])?;
         let (low, high) = call.band.edges();
         let (signals, knobs) = (call.signal.len() as u32, call.options.len() as u32);
-        let (rate_hz, room) = (call.signal_rate_hz, parameters.len() as u32);
+        let (rate_hz, capacity) = (call.signal_rate_hz, parameters.len() as u32);
         let bins = bins as u32;
-        let answer = if self.follows_motion() {
+        let returned = if self.follows_motion() {
             let (speed, force) = call.condition.numbers();
             self.call_if(
                 Deadline::Call,
                 |f| Some(&f.motion.as_ref()?.fit),
                 (
                     low, high, frequency, magnitude, bins, signal, signals, rate_hz, options,
-                    knobs, speed, force, out, room, level,
+                    knobs, speed, force, out, capacity, level,
                 ),
             )?
         } else {
@@ -66,13 +66,13 @@ impl Instance {
                 |f| &f.fit,
                 (
                     low, high, frequency, magnitude, bins, signal, signals, rate_hz, options,
-                    knobs, out, room, level,
+                    knobs, out, capacity, level,
                 ),
             )?
         };
         self.read(level, std::slice::from_mut(level_rms))?;
         self.read(out, parameters)?;
-        Ok(answer)
+        Ok(returned)
     }
 
     pub(super) fn magnitude(
@@ -83,11 +83,11 @@ impl Instance {
         magnitude: &mut [f64],
     ) -> Result<i64, Fault> {
         let bins = frequency_hz.len().min(magnitude.len());
-        let at = self.room((parameters.len() + 2 * bins) * 8)?;
+        let at = self.buffer((parameters.len() + 2 * bins) * 8)?;
         let frequency = self.write(at, parameters)?;
         let out = self.write(frequency, &frequency_hz[..bins])?;
         let (low, high) = band.edges();
-        let answer = self.call(
+        let returned = self.call(
             Deadline::Call,
             |f| &f.magnitude,
             (
@@ -101,7 +101,7 @@ impl Instance {
             ),
         )?;
         self.read(out, &mut magnitude[..bins])?;
-        Ok(answer)
+        Ok(returned)
     }
 
     pub(super) fn interpolate(
@@ -110,11 +110,11 @@ impl Instance {
         weights: &[f64],
         parameters: &mut [f64],
     ) -> Result<i64, Fault> {
-        let at = self.room((sets.len() + weights.len() + parameters.len()) * 8)?;
+        let at = self.buffer((sets.len() + weights.len() + parameters.len()) * 8)?;
         let behind = self.write(at, sets)?;
         let out = self.write(behind, weights)?;
         let (sets, weights) = ((at, sets.len() as u32), (behind, weights.len() as u32));
-        let answer = self.call(
+        let returned = self.call(
             Deadline::Call,
             |f| &f.interpolate,
             (
@@ -127,7 +127,7 @@ impl Instance {
             ),
         )?;
         self.read(out, parameters)?;
-        Ok(answer)
+        Ok(returned)
     }
 
     pub(super) fn voice_rate(
@@ -152,8 +152,8 @@ impl Instance {
         rate_hz: f64,
         seed: u64,
     ) -> Result<i64, Fault> {
-        // The voice's room for good, unless it is retuned to far more parameters.
-        self.room(4 * BLOCK)?;
+        // Allocated once for the voice, unless it is retuned to a parameter set that is longer than a block.
+        self.buffer(4 * BLOCK)?;
         let (at, len) = self.pass(parameters)?;
         let (low, high) = band.edges();
         self.call(
@@ -165,11 +165,11 @@ impl Instance {
 
     /// Renders at most [`BLOCK`] samples.
     pub(super) fn voice_render(&mut self, voice: i64, out: &mut [f32]) -> Result<i64, Fault> {
-        let at = self.room(4 * BLOCK)?;
-        let room = (voice, at, out.len() as u32);
-        let answer = self.call(Deadline::Render, |f| &f.voice_render, room)?;
+        let at = self.buffer(4 * BLOCK)?;
+        let block = (voice, at, out.len() as u32);
+        let returned = self.call(Deadline::Render, |f| &f.voice_render, block)?;
         self.read_samples(at, out)?;
-        Ok(answer)
+        Ok(returned)
     }
 
     pub(super) fn voice_retune(&mut self, voice: i64, parameters: &[f64]) -> Result<i64, Fault> {
@@ -198,13 +198,13 @@ impl Instance {
     }
 
     pub(super) fn extension(&mut self, id: &[u8]) -> Result<i64, Fault> {
-        let at = self.room(id.len())?;
+        let at = self.buffer(id.len())?;
         self.write_text(at, id)?;
         self.call(Deadline::Call, |f| &f.extension, (at, id.len() as u32))
     }
 
     fn pass(&mut self, numbers: &[f64]) -> Result<(u32, u32), Fault> {
-        let at = self.room(numbers.len() * 8)?;
+        let at = self.buffer(numbers.len() * 8)?;
         self.write(at, numbers)?;
         Ok((at, numbers.len() as u32))
     }

@@ -1,16 +1,24 @@
-//! The engine that compiles and runs modules, and the clock that interrupts them.
+//! The engine that compiles and runs modules, and the clock that interrupts modules.
 
 use std::time::Duration;
 
-use wasmtime::{Config, Engine, OptLevel, RegallocAlgorithm};
+use wasmtime::{Config, Engine, Module, OptLevel, RegallocAlgorithm};
 
-use super::compile::Effort;
+use super::compile_error::CompileError;
 use crate::WasmLimits;
 
 /// Shortest and longest time between two ticks.
 const TICK: (Duration, Duration) = (Duration::from_millis(1), Duration::from_millis(50));
 
-/// An engine whose epoch counts on as long as it lives.
+/// Optimisation by the compiler.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Effort {
+    Optimised,
+    /// As little as possible: compilation time is then nearly proportional to the module's size.
+    Quick,
+}
+
+/// An engine with a thread that increments its epoch.
 #[derive(Clone)]
 pub(super) struct WasmEngine {
     pub(super) engine: Engine,
@@ -19,11 +27,11 @@ pub(super) struct WasmEngine {
 
 impl WasmEngine {
     /// Starts an engine's clock.
-    pub(super) fn start(engine: Engine, limits: &WasmLimits) -> Result<Self, String> {
+    pub(super) fn start(engine: Engine, limits: &WasmLimits) -> Result<Self, CompileError> {
         let shortest = limits.call.min(limits.render);
         let tick = (shortest / 8).clamp(TICK.0, TICK.1);
         let clock = engine.weak();
-        // Ends within a tick after the last module of this engine is gone.
+        // The thread ends within a tick after the last module of this engine is dropped.
         let counting = move || {
             while let Some(engine) = clock.upgrade() {
                 engine.increment_epoch();
@@ -34,11 +42,13 @@ impl WasmEngine {
         std::thread::Builder::new()
             .name("htex-wasm-clock".to_owned())
             .spawn(counting)
-            .map_err(|e| format!("cannot start the clock that interrupts modules: {e}"))?;
+            .map_err(|error| CompileError::Clock {
+                what: error.to_string(),
+            })?;
         Ok(Self { engine, tick })
     }
 
-    /// A time in ticks, rounded up, and one more since the next tick may come at once.
+    /// Converts a time to ticks: rounded up, and one more because the first tick may come immediately.
     pub(super) fn ticks(&self, time: Duration) -> u64 {
         let ticks = time.as_nanos().div_ceil(self.tick.as_nanos().max(1));
         u64::try_from(ticks)
@@ -47,8 +57,8 @@ impl WasmEngine {
     }
 }
 
-/// An engine without a clock, which is enough to compile.
-pub(super) fn engine(limits: &WasmLimits, effort: Effort) -> Result<Engine, String> {
+/// Returns an engine without a clock; a clock is needed only to run modules.
+pub(super) fn engine(limits: &WasmLimits, effort: Effort) -> Result<Engine, CompileError> {
     let mut config = Config::new();
     if effort == Effort::Quick {
         config
@@ -59,9 +69,16 @@ pub(super) fn engine(limits: &WasmLimits, effort: Effort) -> Result<Engine, Stri
         .epoch_interruption(true)
         .consume_fuel(limits.fuel.is_some())
         .max_wasm_stack(limits.stack_bytes)
-        // Answers that differ between machines, and memories that the calls here do not know of.
+        // Relaxed operations have different results on different machines; calls use one 32-bit memory.
         .wasm_relaxed_simd(false)
         .wasm_memory64(false)
         .wasm_multi_memory(false);
-    Engine::new(&config).map_err(|e| format!("{e:#}"))
+    Engine::new(&config).map_err(CompileError::engine)
+}
+
+/// Compiles a module in this process.
+pub(super) fn here(engine: &Engine, bytes: &[u8]) -> Result<Module, CompileError> {
+    Module::new(engine, bytes).map_err(|error| CompileError::Invalid {
+        what: format!("{error:#}"),
+    })
 }

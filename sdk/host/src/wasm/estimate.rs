@@ -1,30 +1,34 @@
-//! How long compiling a module takes at most, found out before it is compiled.
+//! An upper bound of the time that compiling a module takes, computed before compilation.
 //!
-//! The compiler's time and memory grow faster than a module: with the operators of one function, with values that live
-//! across branches or join where blocks end, and with blocks within blocks. Each of these is a term here. The sum is a
-//! bound, within a factor of three for the modules it was compared with, and no guess at what is usual.
+//! The compiler's time and memory grow faster than a module: with the operators of one function, with values that are
+//! live across branches or merge where blocks end, and with nested blocks. Each of these is a term of the sum. For the
+//! modules that it was compared with, the sum is a bound within a factor of three.
 
 use wasmparser::{
     BinaryReaderError, FuncValidator, FunctionBody, Operator, OperatorsReader, Parser, Payload,
     ValidPayload, Validator, ValidatorResources, WasmFeatures,
 };
 
-/// Times that compiling a module takes at most, microseconds.
+use super::compile_error::CompileError;
+
+/// Longest compilation times of a module, microseconds.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Estimate {
-    /// With everything the compiler can do for the speed of the code.
+    /// With all optimisations.
     pub(super) optimised_us: f64,
-    /// With what takes a time proportional to the module, nearly.
+    /// With only those steps whose time is nearly proportional to the module's size.
     pub(super) quick_us: f64,
 }
 
-/// Estimates how long a module is compiled.
+/// Estimates the compilation time of a module.
 ///
 /// # Errors
-/// When it is no valid module of WebAssembly 2.0, which is what models may use (specification of the model ABI,
+/// When it is not a valid module of WebAssembly 2.0, the version that models may use (specification of the model ABI,
 /// section 7).
-pub(super) fn estimate(module: &[u8]) -> Result<Estimate, String> {
-    let wrong = |e: BinaryReaderError| format!("no valid module: {e}");
+pub(super) fn estimate(module: &[u8]) -> Result<Estimate, CompileError> {
+    let wrong = |error: BinaryReaderError| CompileError::Invalid {
+        what: error.to_string(),
+    };
     let mut validator = Validator::new_with_features(WasmFeatures::WASM2);
     let mut all = Estimate::default();
     for payload in Parser::new(0).parse_all(module) {
@@ -40,7 +44,7 @@ pub(super) fn estimate(module: &[u8]) -> Result<Estimate, String> {
     Ok(all)
 }
 
-/// What the entries of a section take.
+/// Returns the time of a section's entries, microseconds.
 fn section_us(section: &Payload<'_>) -> f64 {
     match section {
         Payload::TypeSection(s) => 25.0 * f64::from(s.count()) + s.range().len() as f64,
@@ -70,22 +74,22 @@ fn function_us(
     Ok(cost.estimate())
 }
 
-/// The cost of a function as far as its operators were seen.
+/// The cost of a function's operators so far.
 struct Cost {
     us: Estimate,
     locals: f64,
     operators: f64,
     blocks: f64,
-    /// Values that may differ between the ways to a place where ways join, over all ways.
+    /// Values that may differ between the paths to a merge point, summed over all paths.
     joined: f64,
-    /// The blocks around the operator, the function itself first.
+    /// The blocks that contain the operator, the function's body first.
     around: Vec<Block>,
 }
 
-/// A block that is not at its end yet.
+/// A block whose end has not been read.
 struct Block {
     is_loop: bool,
-    /// Ways to the place where those to this block join: its end, or the head of a loop.
+    /// Paths to the block's merge point: its end, or the head of a loop.
     ways: f64,
     /// Assignments to locals within it.
     assigned: f64,
@@ -151,7 +155,7 @@ impl Cost {
         self.us.quick_us += live * (0.7 + 0.00005 * depth);
     }
 
-    /// Where ways join, a local that was assigned in between may have another value on each.
+    /// At a merge point, a local that was assigned in the block may have a different value on each path.
     fn leave(&mut self) {
         let Some(block) = self.around.pop() else {
             return;
@@ -162,7 +166,7 @@ impl Cost {
         }
     }
 
-    /// Takes along what the loop that it goes to may change.
+    /// Adds a branch; a branch to a loop merges all live values there.
     fn branch(&mut self, relative_depth: u32, live: f64) {
         let at = self.around.len().checked_sub(1 + relative_depth as usize);
         let target = at.and_then(|at| self.around.get_mut(at));
@@ -204,7 +208,7 @@ impl Estimate {
     }
 }
 
-/// What an operator takes beyond a simple one, microseconds.
+/// Returns the time of an operator beyond that of a simple one, microseconds.
 fn more_us(operator: &Operator<'_>) -> f64 {
     use Operator as O;
     match operator {
@@ -230,8 +234,8 @@ fn more_us(operator: &Operator<'_>) -> f64 {
 mod tests {
     use super::*;
 
-    /// A function of a hundred blocks within one another, each with assignments and with branches to blocks further
-    /// out, took 1.25 s of a processor's time to compile with all optimisations.
+    /// A function of a hundred nested blocks, each with assignments and with branches to outer blocks, took 1.25 s of
+    /// processor time to compile with all optimisations.
     #[test]
     fn branches_out_of_nested_blocks_take_long() {
         let (mut body, mut n) = (String::new(), 0);

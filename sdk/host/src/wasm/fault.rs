@@ -1,41 +1,79 @@
-//! A call that did not come back in order.
+//! Errors of calls of a module.
 
 use htex_model::Status;
 use wasmtime::Trap;
 
 use crate::WasmLimits;
+use crate::sandbox::BudgetError;
 
-/// Why a call did not come back in order; its instance is not used again.
-#[derive(Debug, Clone)]
-pub(super) struct Fault(pub(super) String);
+/// An error of a call of a module, after which its instance is not used again.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub(super) enum Fault {
+    #[error(transparent)]
+    Budget(#[from] BudgetError),
+    #[error("the voice takes more than {times} times the duration of its samples to render")]
+    VoiceTime { times: f64 },
+    /// The time of the voice, or of the modules together, was used up during the call.
+    #[error("the module was stopped: {0}")]
+    Stopped(Box<Self>),
+    /// A resource was refused, or the engine reported an error that is not a trap.
+    #[error("the module was stopped: {what}")]
+    Refused { what: String },
+    #[error("the module was stopped: it ran longer than {ms} ms")]
+    Deadline { ms: u128 },
+    #[error("the module was stopped: it ran more than {instructions} instructions")]
+    Fuel { instructions: u64 },
+    #[error("the module was stopped: it used more than {bytes} bytes of stack")]
+    Stack { bytes: usize },
+    #[error("the module trapped: it panicked, or ran into `unreachable`")]
+    Unreachable,
+    #[error("the module trapped: {0}")]
+    Trap(Trap),
+    /// An error of the module's start function.
+    #[error("at its start: {0}")]
+    Start(Box<Self>),
+    #[error("the module exports no `memory`")]
+    NoMemory,
+    #[error("the module exports no function `{name}`; it is not an htex model")]
+    NoFunction { name: String },
+    #[error("`{name}` does not have the arguments of the model ABI: {what}")]
+    Signature { name: String, what: String },
+    #[error("the module does not have the extension of this call")]
+    NoExtension,
+    #[error("a call passes {bytes} bytes; the module's memory is limited to {most}")]
+    TooManyBytes { bytes: usize, most: usize },
+    #[error(
+        "`htex_model_alloc` returned {at:#x} for {len} bytes, which is not an aligned block in the module's memory"
+    )]
+    Allocation { at: u32, len: u32 },
+    #[error("an argument or result lies outside the module's memory")]
+    Outside,
+    #[error("`htex_model_voice_new` returned the handle 0")]
+    HandleZero,
+}
 
 impl Fault {
-    /// What the call answers in place of the module.
+    /// The status of a call that faulted.
     pub(super) const STATUS: i64 = Status::Failed as i64;
 
-    /// A trap, in words that name the limit if there was one.
+    /// Converts an error of the engine; the message of an exceeded limit names the limit.
     pub(super) fn of(error: &wasmtime::Error, limits: &WasmLimits, deadline_ms: u128) -> Self {
         let Some(trap) = error.downcast_ref::<Trap>() else {
-            // What `Usage` refuses is no trap but an error with its own words.
-            // Around it stand the functions that were running, a line each.
-            return Self(format!("the module was stopped: {}", error.root_cause()));
+            // An error of `Usage` is not a trap. Its context, the running functions one per line, is left out.
+            return Self::Refused {
+                what: error.root_cause().to_string(),
+            };
         };
-        Self(match trap {
-            Trap::Interrupt => {
-                format!("the module was stopped: it ran longer than {deadline_ms} ms")
-            }
-            Trap::OutOfFuel => format!(
-                "the module was stopped: it ran more than {} instructions",
-                limits.fuel.unwrap_or_default()
-            ),
-            Trap::StackOverflow => format!(
-                "the module was stopped: it used more than {} bytes of stack",
-                limits.stack_bytes
-            ),
-            Trap::UnreachableCodeReached => {
-                "the module trapped: it panicked, or ran into `unreachable`".to_owned()
-            }
-            other => format!("the module trapped: {other}"),
-        })
+        match *trap {
+            Trap::Interrupt => Self::Deadline { ms: deadline_ms },
+            Trap::OutOfFuel => Self::Fuel {
+                instructions: limits.fuel.unwrap_or_default(),
+            },
+            Trap::StackOverflow => Self::Stack {
+                bytes: limits.stack_bytes,
+            },
+            Trap::UnreachableCodeReached => Self::Unreachable,
+            other => Self::Trap(other),
+        }
     }
 }

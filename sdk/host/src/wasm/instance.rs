@@ -1,4 +1,4 @@
-//! One instance of a module: its functions, and a room in its memory for what is passed.
+//! One instance of a module: its functions, and a buffer in its memory for arguments and results.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -13,7 +13,7 @@ use super::usage::Usage;
 /// Addresses and lengths in the module's memory.
 type Usize = u32;
 
-/// The functions of the model ABI, as `htex_model::abi` has them.
+/// The functions of the model ABI (`htex_model::abi`).
 pub(super) struct Functions {
     pub(super) abi_version: TypedFunc<(), u32>,
     pub(super) descriptor: TypedFunc<(Usize, Usize), i64>,
@@ -27,13 +27,13 @@ pub(super) struct Functions {
     pub(super) voice_retune: TypedFunc<(i64, Usize, Usize), i64>,
     pub(super) voice_free: TypedFunc<i64, i64>,
     pub(super) extension: TypedFunc<(Usize, Usize), i64>,
-    /// Where the model has the extension `htex.motion/1`.
+    /// If the model has the extension `htex.motion/1`.
     pub(super) motion: Option<MotionFunctions>,
     alloc: TypedFunc<Usize, Usize>,
     free: TypedFunc<(Usize, Usize), ()>,
 }
 
-/// The functions of `htex.motion/1`, as `htex_model::motion_1` has them.
+/// The functions of `htex.motion/1` (`htex_model::motion_1`).
 pub(super) struct MotionFunctions {
     pub(super) set: TypedFunc<(i64, f64, f64, f64), i64>,
     pub(super) fit: TypedFunc<MotionFitParams, i64>,
@@ -75,19 +75,19 @@ type MotionFitParams = (
 
 type MagnitudeParams = (Usize, Usize, f64, f64, Usize, Usize, Usize);
 
-/// An instance, alone in its store.
+/// An instance with a separate store.
 pub(super) struct Instance {
     module: Arc<WasmModule>,
     store: Store<Usage>,
     memory: Memory,
     functions: Functions,
-    /// The time of a voice; other calls take theirs of the modules' budget.
+    /// The time of a voice; the time of other calls is part of the modules' budget.
     allowance: Option<Allowance>,
-    /// Where the room is, and its length; nowhere at first.
-    room: (Usize, Usize),
+    /// Address and length of the buffer; length 0 until it is allocated.
+    buffer: (Usize, Usize),
 }
 
-/// How long a call may take.
+/// The time limit of a call.
 #[derive(Clone, Copy)]
 pub(super) enum Deadline {
     Call,
@@ -98,46 +98,46 @@ impl Instance {
     /// Makes an instance, which runs the module's start function.
     pub(super) fn new(module: &Arc<WasmModule>) -> Result<Self, Fault> {
         let limits = &module.limits;
-        let usage = Usage::new(limits, &module.budget).map_err(Fault)?;
+        let usage = Usage::new(limits, &module.budget)?;
         let mut store = Store::new(&module.engine.engine, usage);
         store.limiter(|usage| usage);
-        let time = limits.call.min(module.budget.time_left().map_err(Fault)?);
+        let time = limits.call.min(module.budget.time_left()?);
         let fault = |e| Fault::of(&e, limits, time.as_millis());
         arm(&mut store, module, time).map_err(fault)?;
         let start = Instant::now();
         let raw = Raw::new(&mut store, &module.module, &[]);
         module.budget.spend(start.elapsed());
-        let raw = raw.map_err(|e| Fault(format!("at its start: {}", fault(e).0)))?;
+        let raw = raw.map_err(|error| Fault::Start(Box::new(fault(error))))?;
         let memory = raw
             .get_memory(&mut store, "memory")
-            .ok_or_else(|| Fault("the module exports no `memory`".to_owned()))?;
+            .ok_or(Fault::NoMemory)?;
         Ok(Self {
             module: Arc::clone(module),
             functions: Functions::of(&mut store, &raw, module.follows_motion())?,
             store,
             memory,
             allowance: None,
-            room: (0, 0),
+            buffer: (0, 0),
         })
     }
 
-    /// From now on this is a voice, which renders at a rate and has its own time.
-    pub(super) fn be_a_voice(&mut self, rate_hz: f64) {
+    /// Makes this the instance of a voice, which renders at a rate and has a separate time limit.
+    pub(super) fn limit_as_voice(&mut self, rate_hz: f64) {
         self.allowance = Some(Allowance::new(rate_hz));
     }
 
-    /// Adds the time of samples that were rendered.
+    /// Adds the time that rendered samples allow.
     pub(super) fn earn(&mut self, samples: usize) {
         if let Some(allowance) = &mut self.allowance {
             allowance.earn(samples);
         }
     }
 
-    /// The time that this instance may take.
-    fn time_left(&self) -> Result<Duration, String> {
+    /// Returns the time left to this instance.
+    fn time_left(&self) -> Result<Duration, Fault> {
         match &self.allowance {
             Some(allowance) => allowance.left(),
-            None => self.module.budget.time_left(),
+            None => Ok(self.module.budget.time_left()?),
         }
     }
 
@@ -169,23 +169,21 @@ impl Instance {
             Deadline::Call => self.module.limits.call,
             Deadline::Render => self.module.limits.render,
         };
-        let time = most.min(self.time_left().map_err(Fault)?);
+        let time = most.min(self.time_left()?);
         let Some(function) = function(&self.functions) else {
-            return Err(Fault(
-                "the module has not the extension of this call".to_owned(),
-            ));
+            return Err(Fault::NoExtension);
         };
         let start = Instant::now();
         let result = arm(&mut self.store, &self.module, time)
             .and_then(|()| function.call(&mut self.store, parameters));
         self.spend(start.elapsed());
         result.map_err(|e| match self.time_left() {
-            Err(used_up) => Fault(format!("the module was stopped: {used_up}")),
+            Err(used_up) => Fault::Stopped(Box::new(used_up)),
             Ok(_) => Fault::of(&e, &self.module.limits, time.as_millis()),
         })
     }
 
-    /// Whether the module has the extension `htex.motion/1`.
+    /// Returns whether the module has the extension `htex.motion/1`.
     pub(super) fn follows_motion(&self) -> bool {
         self.functions.motion.is_some()
     }
@@ -195,39 +193,34 @@ impl Instance {
         self.memory.data_size(&self.store)
     }
 
-    /// The address of a room of at least `bytes`, a multiple of 8, in the module's memory. It stays
-    /// where it is until a larger one is asked for.
-    pub(super) fn room(&mut self, bytes: usize) -> Result<Usize, Fault> {
-        if bytes <= self.room.1 as usize {
-            return Ok(self.room.0);
+    /// Returns the address of a buffer of at least `bytes`, a multiple of 8, in the module's memory. The buffer is
+    /// reallocated only for more bytes.
+    pub(super) fn buffer(&mut self, bytes: usize) -> Result<Usize, Fault> {
+        if bytes <= self.buffer.1 as usize {
+            return Ok(self.buffer.0);
         }
-        let too_much = || {
-            let most = self.module.limits.memory_bytes;
-            Fault(format!(
-                "a call passes {bytes} bytes; the module's memory is limited to {most}"
-            ))
+        let too_much = || Fault::TooManyBytes {
+            bytes,
+            most: self.module.limits.memory_bytes,
         };
         let bytes = bytes.next_power_of_two();
         let fits = bytes <= self.module.limits.memory_bytes;
         let len = Usize::try_from(bytes).ok().filter(|_| fits);
         let len = len.ok_or_else(too_much)?;
-        let old = std::mem::take(&mut self.room);
+        let old = std::mem::take(&mut self.buffer);
         if old.1 > 0 {
             self.call(Deadline::Call, |f| &f.free, old)?;
         }
         let at = self.call(Deadline::Call, |f| &f.alloc, len)?;
         let inside = u64::from(at) + u64::from(len) <= self.memory.data_size(&self.store) as u64;
         if at == 0 || at % 8 != 0 || !inside {
-            return Err(Fault(format!(
-                "`htex_model_alloc` answered {at:#x} for {len} bytes, which is no usable room in \
-                 the module's memory"
-            )));
+            return Err(Fault::Allocation { at, len });
         }
-        self.room = (at, len);
+        self.buffer = (at, len);
         Ok(at)
     }
 
-    /// Writes numbers at an address; answers the one behind them.
+    /// Writes numbers at an address; returns the address after them.
     pub(super) fn write(&mut self, at: Usize, numbers: &[f64]) -> Result<Usize, Fault> {
         let bytes = self.bytes_mut(at, numbers.len() * 8)?;
         for (to, x) in bytes.chunks_exact_mut(8).zip(numbers) {
@@ -265,22 +258,18 @@ impl Instance {
         let data = self.memory.data(&self.store);
         data.get(at as usize..)
             .and_then(|rest| rest.get(..len))
-            .ok_or_else(outside)
+            .ok_or(Fault::Outside)
     }
 
     fn bytes_mut(&mut self, at: Usize, len: usize) -> Result<&mut [u8], Fault> {
         let data = self.memory.data_mut(&mut self.store);
         data.get_mut(at as usize..)
             .and_then(|rest| rest.get_mut(..len))
-            .ok_or_else(outside)
+            .ok_or(Fault::Outside)
     }
 }
 
-fn outside() -> Fault {
-    Fault("what is passed lies outside the module's memory".to_owned())
-}
-
-/// Gives the next call its time and its instructions.
+/// Sets the time and the instructions of the next call.
 fn arm(store: &mut Store<Usage>, module: &WasmModule, time: Duration) -> wasmtime::Result<()> {
     store.set_epoch_deadline(module.engine.ticks(time));
     match module.limits.fuel {
@@ -329,14 +318,11 @@ fn get<P: WasmParams, R: WasmResults>(
     name: &str,
 ) -> Result<TypedFunc<P, R>, Fault> {
     let function = raw.get_func(&mut *store, name);
-    let function = function.ok_or_else(|| {
-        Fault(format!(
-            "the module exports no function `{name}`; it is no htex model"
-        ))
+    let function = function.ok_or_else(|| Fault::NoFunction {
+        name: name.to_owned(),
     })?;
-    function.typed(store).map_err(|e| {
-        Fault(format!(
-            "`{name}` has not the arguments of the model ABI: {e:#}"
-        ))
+    function.typed(store).map_err(|error| Fault::Signature {
+        name: name.to_owned(),
+        what: format!("{error:#}"),
     })
 }

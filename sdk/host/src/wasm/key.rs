@@ -1,4 +1,4 @@
-//! The key by which this user's compiled modules are told from others'.
+//! The key that authenticates this user's compiled modules.
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -6,11 +6,11 @@ use std::path::Path;
 
 use super::private;
 
-/// A secret of this user.
+/// A secret key of this user.
 pub(super) struct Key([u8; blake3::KEY_LEN]);
 
 impl Key {
-    /// Reads the key of a folder, made at random where there is none.
+    /// Reads the key in a folder; creates a random one if there is none.
     pub(super) fn of(folder: &Path) -> io::Result<Self> {
         private::folder(folder)?;
         let path = folder.join("wasm.key");
@@ -22,7 +22,7 @@ impl Key {
         Ok(Self(key))
     }
 
-    /// What nobody without the key can make, for a file's name and content.
+    /// Returns the keyed hash of a file's name and content.
     pub(super) fn tag(&self, name: &str, content: &[u8]) -> [u8; blake3::OUT_LEN] {
         let mut hasher = blake3::Hasher::new_keyed(&self.0);
         hasher.update(&(name.len() as u64).to_le_bytes());
@@ -32,7 +32,7 @@ impl Key {
     }
 }
 
-/// Writes a new key beside its place and links it there, whole, unless another process was first.
+/// Writes a new key to a temporary file and links it to its path, unless another process has created one.
 fn make(folder: &Path, path: &Path) -> io::Result<()> {
     let mut key = [0; blake3::KEY_LEN];
     getrandom::fill(&mut key).map_err(io::Error::other)?;

@@ -1,14 +1,15 @@
 //! Models in WASM modules, in a sandbox.
 //!
-//! A module imports nothing, so it can do nothing but compute: no file, no clock, no thread. What
-//! it may use of memory, stack and time is limited ([`WasmLimits`](crate::WasmLimits)), and so is compiling it. Each
-//! voice is an instance of its own, with its own memory: one that traps leaves the others alone, and rendering takes no
-//! lock. All other calls share one instance, made again after a trap.
+//! A module imports nothing, so it has no access to files, clocks or threads. Its memory, stack and time are limited
+//! ([`WasmLimits`](crate::WasmLimits)), and so is its compilation. Each voice has a separate instance with separate
+//! memory: a trap does not affect other voices, and rendering takes no lock. All other calls share one instance, which
+//! is recreated after a trap.
 
 mod allowance;
 mod cache;
 mod calls;
 mod compile;
+mod compile_error;
 mod engine;
 mod estimate;
 mod fault;
@@ -24,6 +25,8 @@ mod voice;
 use std::path::Path;
 use std::sync::Arc;
 
+use compile_error::CompileError;
+pub use compile_error::CompilerError;
 pub(crate) use model::WasmModel;
 use module::WasmModule;
 pub use process::serve_compiler;
@@ -31,11 +34,11 @@ pub use process::serve_compiler;
 use crate::HostError;
 use crate::sandbox::Sandbox;
 
-/// Loads a model from the bytes of a module that came from `origin` (for messages).
+/// Loads a model from the bytes of a module; messages name `origin`.
 pub(crate) fn load(origin: &str, bytes: &[u8], sandbox: &Sandbox) -> Result<WasmModel, HostError> {
-    let error = |what| HostError::Load {
+    let error = |error: CompileError| HostError::Load {
         path: origin.to_owned(),
-        what,
+        what: error.to_string(),
     };
     let module = WasmModule::new(bytes, sandbox).map_err(error)?;
     WasmModel::new(origin, Arc::new(module))
@@ -51,7 +54,7 @@ pub(crate) fn load_file(path: &Path, sandbox: &Sandbox) -> Result<WasmModel, Hos
     load(&origin, &bytes, sandbox)
 }
 
-/// Reads a file, and one byte more than a module may have at most.
+/// Reads a file, at most one byte more than the limit.
 fn read(path: &Path, most: usize) -> std::io::Result<Vec<u8>> {
     use std::io::Read;
     let mut bytes = Vec::new();

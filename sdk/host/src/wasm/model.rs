@@ -1,4 +1,4 @@
-//! A model in a module: the calls that are no voice's.
+//! A model in a module: the calls except those of voices.
 
 use std::cell::RefCell;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -11,10 +11,11 @@ use super::instance::Instance;
 use super::module::WasmModule;
 use super::voice::{WasmVoice, copy_text};
 use crate::HostError;
+use crate::marker::check_marker;
 use crate::raw::{RawFit, RawModel, RawVoice};
 
 std::thread_local! {
-    /// What stands behind the last negative answer on this thread, as in a native model.
+    /// The text of this thread's last error, as in a native model.
     static LAST_ERROR: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
@@ -22,7 +23,7 @@ std::thread_local! {
 pub(crate) struct WasmModel {
     module: Arc<WasmModule>,
     marker: u32,
-    /// The instance of the calls that are no voice's; none after a trap.
+    /// The instance of all calls except those of voices; none after a trap.
     shared: Mutex<Option<Instance>>,
 }
 
@@ -31,20 +32,20 @@ impl WasmModel {
     pub(super) fn new(origin: &str, module: Arc<WasmModule>) -> Result<Self, HostError> {
         let load = |fault: Fault| HostError::Load {
             path: origin.to_owned(),
-            what: fault.0,
+            what: fault.to_string(),
         };
         let mut instance = Instance::new(&module).map_err(load)?;
         let marker = instance.abi_version().map_err(|fault| HostError::Call {
             model: origin.to_owned(),
             call: "htex_model_abi_version",
             status: Status::Failed,
-            message: fault.0,
+            message: fault.to_string(),
         })?;
-        crate::model::check_marker(origin, marker)?;
-        // A module that fails at the question has no extension, and an instance that failed is not used again.
+        check_marker(origin, marker)?;
+        // A module that fails here does not have the extension, and a failed instance is not used again.
         let shared = match instance.extension(MotionTable::ID.as_bytes()) {
             Ok(1) => {
-                module.want_motion();
+                module.require_motion();
                 Some(Instance::new(&module).map_err(load)?)
             }
             Ok(_) => Some(instance),
@@ -57,7 +58,7 @@ impl WasmModel {
         })
     }
 
-    /// Calls the shared instance; `failed` makes an answer of a status.
+    /// Calls the shared instance; `failed` converts a status to the result of a failed call.
     fn call<T: Copy>(
         &self,
         failed: impl Fn(i64) -> T,
@@ -65,26 +66,26 @@ impl WasmModel {
         call: impl FnOnce(&mut Instance) -> Result<T, Fault>,
     ) -> T {
         let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
-        // Taken out: a fault drops the instance.
+        // The instance is taken out, so that a fault drops it.
         let result = shared
             .take()
             .map_or_else(|| Instance::new(&self.module), Ok)
             .and_then(|mut instance| {
-                let answer = call(&mut instance)?;
-                if is_negative(answer) {
+                let returned = call(&mut instance)?;
+                if is_negative(returned) {
                     remember(instance.last_error()?);
                 }
                 *shared = Some(instance);
-                Ok(answer)
+                Ok(returned)
             });
         result.unwrap_or_else(|fault| {
-            remember(fault.0);
+            remember(fault.to_string());
             failed(Fault::STATUS)
         })
     }
 
     fn status(&self, call: impl FnOnce(&mut Instance) -> Result<i64, Fault>) -> i64 {
-        self.call(|status| status, |answer| answer < 0, call)
+        self.call(|status| status, |returned| returned < 0, call)
     }
 }
 
@@ -134,7 +135,7 @@ impl RawModel for WasmModel {
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64 {
         self.call(
             |status| status as f64,
-            |answer| answer < 0.0,
+            |rate_hz| rate_hz < 0.0,
             |instance| instance.voice_rate(parameters, band, wanted_hz),
         )
     }

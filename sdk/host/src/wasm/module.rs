@@ -1,4 +1,4 @@
-//! A module: checked, compiled, ready to be instantiated.
+//! A module that is checked and compiled.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -6,11 +6,12 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use wasmtime::{ExternType, Module};
 
 use super::compile;
+use super::compile_error::CompileError;
 use super::engine::WasmEngine;
 use crate::WasmLimits;
 use crate::sandbox::{Budget, Sandbox};
 
-/// A compiled module and what its instances share.
+/// A compiled module, and the data that its instances share.
 pub(super) struct WasmModule {
     pub(super) engine: WasmEngine,
     pub(super) module: Module,
@@ -22,13 +23,12 @@ pub(super) struct WasmModule {
 
 impl WasmModule {
     /// Checks and compiles a module, or takes it from the cache.
-    pub(super) fn new(bytes: &[u8], sandbox: &Sandbox) -> Result<Self, String> {
+    pub(super) fn new(bytes: &[u8], sandbox: &Sandbox) -> Result<Self, CompileError> {
         let limits = &sandbox.limits;
         if bytes.len() > limits.module_bytes {
-            return Err(format!(
-                "the module is larger than the {} bytes allowed",
-                limits.module_bytes
-            ));
+            return Err(CompileError::TooLarge {
+                bytes: limits.module_bytes,
+            });
         }
         let module = compile::compiled(bytes, sandbox)?;
         check_imports(&module)?;
@@ -43,17 +43,17 @@ impl WasmModule {
         })
     }
 
-    /// Whether instances have the functions of `htex.motion/1`: no, until it is said.
+    /// Returns whether instances must have the functions of `htex.motion/1`.
     pub(super) fn follows_motion(&self) -> bool {
         self.follows_motion.load(Ordering::Relaxed)
     }
 
-    /// From now on instances must have the functions of `htex.motion/1`.
-    pub(super) fn want_motion(&self) {
+    /// Requires the functions of `htex.motion/1` of all later instances.
+    pub(super) fn require_motion(&self) {
         self.follows_motion.store(true, Ordering::Relaxed);
     }
 
-    /// Takes one of the places for voices; `None` when all are taken.
+    /// Counts one more voice; `None` at the limit.
     pub(super) fn place(self: &Arc<Self>) -> Option<Place> {
         let most = self.limits.voices;
         let take = |n: usize| (n < most).then_some(n + 1);
@@ -64,7 +64,7 @@ impl WasmModule {
     }
 }
 
-/// The place of one voice, given back when it is dropped.
+/// The count of one voice, released when it is dropped.
 pub(super) struct Place(Arc<WasmModule>);
 
 impl Drop for Place {
@@ -73,22 +73,20 @@ impl Drop for Place {
     }
 }
 
-/// A model imports nothing: whatever it asks for, it is refused.
-fn check_imports(module: &Module) -> Result<(), String> {
-    let Some(import) = module.imports().next() else {
-        return Ok(());
-    };
-    Err(format!(
-        "the module imports `{}.{}`; a model may import nothing (build it for \
-         wasm32-unknown-unknown, without files, clocks and randomness)",
-        import.module(),
-        import.name()
-    ))
+/// Refuses modules with imports.
+fn check_imports(module: &Module) -> Result<(), CompileError> {
+    match module.imports().next() {
+        None => Ok(()),
+        Some(import) => Err(CompileError::Import {
+            module: import.module().to_owned(),
+            name: import.name().to_owned(),
+        }),
+    }
 }
 
-fn check_memory(module: &Module) -> Result<(), String> {
+fn check_memory(module: &Module) -> Result<(), CompileError> {
     match module.get_export("memory") {
         Some(ExternType::Memory(_)) => Ok(()),
-        _ => Err("the module exports no `memory`; it is no htex model".to_owned()),
+        _ => Err(CompileError::NoMemory),
     }
 }

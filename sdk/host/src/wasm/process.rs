@@ -1,4 +1,4 @@
-//! Compiling in a process of its own, which is stopped where it takes too much.
+//! Compilation in a separate process, which is stopped if it exceeds its limits.
 
 use std::io::{Read, Write};
 use std::path::Path;
@@ -6,23 +6,26 @@ use std::process::{Command, Stdio};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
-use super::compile::{Effort, here};
-use super::engine::engine;
+use super::compile_error::{CompileError, CompilerError};
+use super::engine::{Effort, engine, here};
 use crate::WasmLimits;
 
-/// The first byte of an answer: machine code, or a sentence.
+/// The first byte of a reply: machine code follows, or an error message.
 const COMPILED: u8 = 0;
 const REFUSED: u8 = 1;
 
-/// Sends a module to a process that calls [`serve`], and answers its machine code.
+/// Sends a module to a process that calls [`serve_compiler`], and returns the machine code.
 pub(super) fn compile(
     (program, arguments): (&Path, &[String]),
     module: &[u8],
     limits: &WasmLimits,
     effort: Effort,
     time: Duration,
-) -> Result<Vec<u8>, String> {
-    let failed = |e: std::io::Error| format!("cannot start {} to compile: {e}", program.display());
+) -> Result<Vec<u8>, CompileError> {
+    let failed = |error: std::io::Error| CompileError::Start {
+        program: program.display().to_string(),
+        what: error.to_string(),
+    };
     let mut child = Command::new(program)
         .args(arguments)
         .args(Request::new(limits, effort, time).words())
@@ -32,17 +35,17 @@ pub(super) fn compile(
         .spawn()
         .map_err(failed)?;
     let (stdin, stdout) = (child.stdin.take(), child.stdout.take());
-    let (answer, answered) = mpsc::channel();
+    let (sender, receiver) = mpsc::channel();
     let result = std::thread::scope(|scope| {
-        // A process that ends early is found by its answer.
+        // A process that ends early is detected by its missing reply.
         scope.spawn(move || stdin.map(|mut pipe| pipe.write_all(module)));
         scope.spawn(move || {
             let mut bytes = Vec::new();
             let read = stdout.map(|mut pipe| pipe.read_to_end(&mut bytes));
-            let _ = answer.send(read.map(|_| bytes));
+            let _ = sender.send(read.map(|_| bytes));
         });
-        let result = answered.recv_timeout(time);
-        // Its pipes end with it, and so do the threads.
+        let result = receiver.recv_timeout(time);
+        // The end of the process closes its pipes, which ends the threads.
         let _ = child.kill();
         let _ = child.wait();
         result
@@ -50,46 +53,50 @@ pub(super) fn compile(
     match result {
         Ok(Some(bytes)) => match bytes.split_first() {
             Some((&COMPILED, artifact)) => Ok(artifact.to_vec()),
-            Some((_, sentence)) => Err(String::from_utf8_lossy(sentence).into_owned()),
-            None => Err(format!(
-                "the compiler ended without an answer: the module needs more than {} bytes to compile, or is made to \
-                 break it",
-                limits.compile_bytes
-            )),
+            Some((_, message)) => Err(CompileError::Refused {
+                what: String::from_utf8_lossy(message).into_owned(),
+            }),
+            None => Err(CompileError::NoReply {
+                bytes: limits.compile_bytes,
+            }),
         },
-        Err(RecvTimeoutError::Timeout) => Err(format!(
-            "the module took longer than {} ms to compile and was given up",
-            time.as_millis()
-        )),
-        Ok(None) | Err(RecvTimeoutError::Disconnected) => {
-            Err("the compiler's process has no output".to_owned())
-        }
+        Err(RecvTimeoutError::Timeout) => Err(CompileError::Timeout {
+            ms: time.as_millis(),
+        }),
+        Ok(None) | Err(RecvTimeoutError::Disconnected) => Err(CompileError::NoOutput),
     }
 }
 
-/// Compiles the module of standard input to standard output, as [`WasmCompiler::Program`](crate::WasmCompiler) asks
-/// with these arguments, behind its own. On Unix it bounds its memory and its processor time first.
+/// Compiles the module on standard input and writes the result to standard output. A host starts the program of
+/// [`WasmCompiler::Program`](crate::WasmCompiler) with the arguments given there, and these `arguments` after them. On
+/// Unix the process first limits its memory and its processor time.
+///
+/// ```no_run
+/// let arguments: Vec<String> = std::env::args().skip(1).collect();
+/// if let Some(("compile", limits)) = arguments.split_first().map(|(first, rest)| (&first[..], rest)) {
+///     htex_host::serve_compiler(limits)?;
+/// }
+/// # Ok::<(), htex_host::CompilerError>(())
+/// ```
 ///
 /// # Errors
-/// When the arguments are not those of a host of this version, or a pipe breaks.
-pub fn serve_compiler(arguments: &[String]) -> Result<(), String> {
-    let request =
-        Request::read(arguments).ok_or("this is called by a host, to compile a module")?;
-    request.bound_this_process()?;
+/// When the arguments are not those of a host of this version, the limits cannot be set, or a pipe breaks.
+pub fn serve_compiler(arguments: &[String]) -> Result<(), CompilerError> {
+    let request = Request::read(arguments).ok_or(CompilerError::Arguments)?;
+    request.limit_this_process()?;
     let mut module = Vec::new();
-    let pipe = |e: std::io::Error| e.to_string();
-    std::io::stdin().read_to_end(&mut module).map_err(pipe)?;
-    let (first, answer) = match request.compile(&module) {
+    std::io::stdin().read_to_end(&mut module)?;
+    let (first, reply) = match request.compile(&module) {
         Ok(artifact) => (COMPILED, artifact),
-        Err(sentence) => (REFUSED, sentence.into_bytes()),
+        Err(error) => (REFUSED, error.to_string().into_bytes()),
     };
     let mut out = std::io::stdout().lock();
-    out.write_all(&[first]).map_err(pipe)?;
-    out.write_all(&answer).map_err(pipe)?;
-    out.flush().map_err(pipe)
+    out.write_all(&[first])?;
+    out.write_all(&reply)?;
+    Ok(out.flush()?)
 }
 
-/// What the compiler has to know beside the module.
+/// The arguments of the compiler.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Request {
     quick: bool,
@@ -133,7 +140,7 @@ impl Request {
         })
     }
 
-    fn compile(self, module: &[u8]) -> Result<Vec<u8>, String> {
+    fn compile(self, module: &[u8]) -> Result<Vec<u8>, CompileError> {
         let limits = WasmLimits {
             stack_bytes: self.stack_bytes,
             fuel: self.fuel.then_some(1),
@@ -145,12 +152,12 @@ impl Request {
             Effort::Optimised
         };
         let module = here(&engine(&limits, effort)?, module)?;
-        module.serialize().map_err(|e| format!("{e:#}"))
+        module.serialize().map_err(CompileError::engine)
     }
 
-    /// What a process goes over ends it, and leaves no dump of its memory.
+    /// Sets the limits that end this process when they are exceeded, without a core dump.
     #[cfg(unix)]
-    fn bound_this_process(self) -> Result<(), String> {
+    fn limit_this_process(self) -> Result<(), CompilerError> {
         use rustix::process::{Resource, Rlimit, setrlimit};
         let bounds = [
             (Resource::Data, self.memory_bytes as u64),
@@ -166,13 +173,13 @@ impl Request {
                     maximum: most,
                 },
             )
-            .map_err(|e| format!("cannot bound the compiler's process: {e}"))?;
+            .map_err(|error| CompilerError::Limits(error.into()))?;
         }
         Ok(())
     }
 
     #[cfg(not(unix))]
-    fn bound_this_process(self) -> Result<(), String> {
+    fn limit_this_process(self) -> Result<(), CompilerError> {
         Ok(())
     }
 }

@@ -1,16 +1,16 @@
-//! What one instance takes of this machine.
+//! The memory that one instance uses.
 
 use std::sync::Arc;
 
 use wasmtime::ResourceLimiter;
 
 use crate::WasmLimits;
-use crate::sandbox::Budget;
+use crate::sandbox::{Budget, BudgetError};
 
 /// Most tables of a module.
 const TABLES: usize = 4;
 
-/// An instance's memory and place in the budget, given back when it is dropped.
+/// An instance's part of the budget, released when it is dropped.
 pub(super) struct Usage {
     budget: Arc<Budget>,
     memory_bytes: usize,
@@ -19,8 +19,8 @@ pub(super) struct Usage {
 }
 
 impl Usage {
-    /// Takes the place of an instance.
-    pub(super) fn new(limits: &WasmLimits, budget: &Arc<Budget>) -> Result<Self, String> {
+    /// Counts one more instance in the budget.
+    pub(super) fn new(limits: &WasmLimits, budget: &Arc<Budget>) -> Result<Self, BudgetError> {
         budget.take_instance()?;
         Ok(Self {
             budget: Arc::clone(budget),
@@ -38,7 +38,8 @@ impl Drop for Usage {
     }
 }
 
-/// An instance that asks for too much is stopped: an error is a trap, where `false` would be an answer to it.
+/// An instance that exceeds a limit is stopped: an error here is a trap, while `false` would only be the result of its
+/// instruction.
 impl ResourceLimiter for Usage {
     fn memory_growing(
         &mut self,
@@ -52,7 +53,7 @@ impl ResourceLimiter for Usage {
         let more = desired.saturating_sub(self.memory_bytes);
         self.budget
             .take_memory(more)
-            .map_err(wasmtime::Error::msg)?;
+            .map_err(wasmtime::Error::new)?;
         self.memory_bytes += more;
         Ok(true)
     }

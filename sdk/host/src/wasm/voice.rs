@@ -1,4 +1,4 @@
-//! A voice in an instance of its own.
+//! A voice in a separate instance.
 
 use std::sync::Arc;
 
@@ -10,19 +10,19 @@ use super::instance::Instance;
 use super::module::{Place, WasmModule};
 use crate::raw::RawVoice;
 
-/// A voice, alone in its instance; both are gone when it is dropped.
+/// A voice with its instance.
 pub(super) struct WasmVoice {
     instance: Instance,
     handle: i64,
-    /// What stands behind the last negative answer.
+    /// The text of the last error.
     last_error: String,
-    /// The instance trapped: it is not called again.
+    /// Whether the instance trapped; it is then not called again.
     faulted: bool,
     _place: Place,
 }
 
 impl WasmVoice {
-    /// Makes a voice; or answers why not, with the status.
+    /// Makes a voice; an error is a status and its text.
     pub(super) fn new(
         module: &Arc<WasmModule>,
         place: Place,
@@ -30,7 +30,7 @@ impl WasmVoice {
         rate_hz: f64,
         seed: u64,
     ) -> Result<Self, (i64, String)> {
-        let fault = |fault: Fault| (Fault::STATUS, fault.0);
+        let fault = |fault: Fault| (Fault::STATUS, fault.to_string());
         let mut instance = Instance::new(module).map_err(fault)?;
         let handle = instance.voice_new(parameters, band, rate_hz, seed);
         let handle = handle.map_err(fault)?;
@@ -38,9 +38,9 @@ impl WasmVoice {
             return Err((handle, instance.last_error().map_err(fault)?));
         }
         if handle == 0 {
-            return Err(fault(Fault("it answered the handle 0".to_owned())));
+            return Err(fault(Fault::HandleZero));
         }
-        instance.be_a_voice(rate_hz);
+        instance.limit_as_voice(rate_hz);
         Ok(Self {
             instance,
             handle,
@@ -50,17 +50,17 @@ impl WasmVoice {
         })
     }
 
-    /// Keeps what stands behind a negative answer.
-    fn answer(&mut self, result: Result<i64, Fault>) -> i64 {
-        let result = result.and_then(|answer| {
-            if answer < 0 {
+    /// Converts a result to a status, and stores the text of an error.
+    fn status_of(&mut self, result: Result<i64, Fault>) -> i64 {
+        let result = result.and_then(|status| {
+            if status < 0 {
                 self.last_error = self.instance.last_error()?;
             }
-            Ok(answer)
+            Ok(status)
         });
         result.unwrap_or_else(|fault| {
             self.faulted = true;
-            self.last_error = fault.0;
+            self.last_error = fault.to_string();
             Fault::STATUS
         })
     }
@@ -73,9 +73,9 @@ impl RawVoice for WasmVoice {
                 return Fault::STATUS;
             }
             let result = self.instance.voice_render(self.handle, block);
-            let answer = self.answer(result);
-            if answer < 0 {
-                return answer;
+            let status = self.status_of(result);
+            if status < 0 {
+                return status;
             }
             self.instance.earn(block.len());
         }
@@ -87,7 +87,7 @@ impl RawVoice for WasmVoice {
             return Fault::STATUS;
         }
         let result = self.instance.voice_retune(self.handle, parameters);
-        self.answer(result)
+        self.status_of(result)
     }
 
     fn set_motion(&mut self, motion: Motion) -> i64 {
@@ -95,7 +95,7 @@ impl RawVoice for WasmVoice {
             return Fault::STATUS;
         }
         let result = self.instance.motion_set(self.handle, motion);
-        self.answer(result)
+        self.status_of(result)
     }
 
     fn interpolate(&mut self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64 {
@@ -103,7 +103,7 @@ impl RawVoice for WasmVoice {
             return Fault::STATUS;
         }
         let result = self.instance.interpolate(sets, weights, parameters);
-        self.answer(result)
+        self.status_of(result)
     }
 
     fn free(&mut self) -> i64 {
@@ -111,7 +111,7 @@ impl RawVoice for WasmVoice {
             return Fault::STATUS;
         }
         let result = self.instance.voice_free(self.handle);
-        self.answer(result)
+        self.status_of(result)
     }
 
     fn memory_bytes(&self) -> Option<usize> {
@@ -123,7 +123,7 @@ impl RawVoice for WasmVoice {
     }
 }
 
-/// Copies what fits; answers the whole length.
+/// Copies as many bytes as fit; returns the length of the whole text.
 pub(super) fn copy_text(text: &str, out: &mut [u8]) -> i64 {
     let n = text.len().min(out.len());
     out[..n].copy_from_slice(&text.as_bytes()[..n]);

@@ -1,4 +1,4 @@
-//! A small model in WebAssembly text, of which a test makes any function misbehave.
+//! A small model in WebAssembly text, whose functions a test can replace.
 #![allow(dead_code)] // Each suite uses a part.
 
 use std::time::Duration;
@@ -7,7 +7,7 @@ use htex_host::{HostError, LoadedModel, WasmCache, WasmLimits};
 
 pub const ID: &str = "org.example.hostile";
 
-/// Name, signature and well-behaved body of each function.
+/// Name, signature and valid body of each function.
 pub const FUNCTIONS: &[(&str, &str, &str)] = &[
     ("abi_version", "(result i32)", "(i32.const 0x48540100)"),
     (
@@ -73,11 +73,10 @@ pub const FUNCTIONS: &[(&str, &str, &str)] = &[
     ("free", "(param i32 i32)", ""),
 ];
 
-/// What the model's samples are: the bytes 3e3e3e3e.
+/// Value of the model's samples: the bytes 3e3e3e3e.
 pub const SAMPLE: f32 = f32::from_bits(0x3e3e_3e3e);
 
-/// The text of a model of this version, with other bodies for some functions (an empty signature
-/// stays) and more fields.
+/// Returns the text of a model of this version, with other bodies for some functions and additional module fields.
 pub fn text(version: &str, changed: &[(&str, &str)], fields: &str) -> String {
     let json = format!(
         r#"{{"id":"{ID}","name":"H","version":"{version}","summary":"S.","fields":[{{"name":"x","unit":"1","kind":{{"type":"scalar"}},"min":0,"max":1,"store":{{"type":"f32"}},"description":"X."}}]}}"#
@@ -85,7 +84,7 @@ pub fn text(version: &str, changed: &[(&str, &str)], fields: &str) -> String {
     with_descriptor(&json, changed, fields)
 }
 
-/// As [`text`], with any text as its descriptor.
+/// As [`text`], with another descriptor.
 pub fn with_descriptor(json: &str, changed: &[(&str, &str)], fields: &str) -> String {
     let mut functions = String::new();
     for (name, signature, body) in FUNCTIONS {
@@ -115,12 +114,10 @@ pub fn with_descriptor(json: &str, changed: &[(&str, &str)], fields: &str) -> St
 
 /// Short times and no cache.
 pub fn limits() -> WasmLimits {
-    WasmLimits {
-        call: Duration::from_millis(200),
-        render: Duration::from_millis(100),
-        cache: WasmCache::Off,
-        ..WasmLimits::default()
-    }
+    WasmLimits::default()
+        .with_call(Duration::from_millis(200))
+        .with_render(Duration::from_millis(100))
+        .with_cache(WasmCache::Off)
 }
 
 pub fn load_within(wat: &str, limits: &WasmLimits) -> Result<LoadedModel, HostError> {

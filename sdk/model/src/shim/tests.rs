@@ -1,7 +1,7 @@
 use super::*;
 use crate::Band;
 
-/// A model whose voices count, from where the finger is.
+/// A model whose voices count, starting at the finger's position.
 struct Counting;
 struct Counter(f32);
 
@@ -153,11 +153,11 @@ fn memory_is_given_and_taken_back() {
     for len in [1, 8, 12_345] {
         let pointer = alloc(len);
         assert!(!pointer.is_null() && (pointer as usize).is_multiple_of(ALLOC_ALIGN));
-        // SAFETY: `len` zeroed bytes of our own.
+        // SAFETY: `len` zeroed bytes that were allocated here.
         let bytes = unsafe { core::slice::from_raw_parts_mut(pointer, len) };
         assert!(bytes.iter().all(|&b| b == 0));
         bytes.fill(0xff);
-        // SAFETY: as it was allocated.
+        // SAFETY: freed with the length of the allocation.
         unsafe { free(pointer, len) };
     }
     for impossible in [0, usize::MAX, isize::MAX as usize] {

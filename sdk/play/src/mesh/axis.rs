@@ -1,19 +1,19 @@
-//! One axis of a mesh: speeds or forces, those that are the same at one place.
+//! One axis of a mesh: speeds or forces, with equal values merged.
 
 use htex_format::Condition;
 
-/// Farthest place from 0, so that no motion is beyond numbers.
+/// Largest coordinate, so that all computed numbers are finite.
 const FAR: f64 = 1e100;
 
-/// Places of speeds or forces, in parts of the largest that is known. Ascending, and level over values that are the
-/// same.
+/// Coordinates of speeds or forces, relative to the largest recorded one. They ascend, and are constant over equal
+/// values.
 #[derive(Debug, Clone)]
 pub(super) struct Axis {
     groups: Vec<Group>,
     scale: f64,
 }
 
-/// Known values from the lowest to the highest of those that stand at one place.
+/// Recorded values with the same coordinate, from the lowest to the highest.
 #[derive(Debug, Clone)]
 struct Group {
     low: f64,
@@ -22,8 +22,8 @@ struct Group {
 }
 
 impl Axis {
-    /// An axis of known values, not negative, of which there is at least one. `merged`: those that are the same stand
-    /// at one place.
+    /// Makes an axis of one or more recorded values, not negative. If `merged`, values that are equal within the
+    /// tolerance have the same coordinate.
     pub(super) fn new(mut values: Vec<f64>, merged: bool) -> Self {
         values.sort_by(f64::total_cmp);
         let largest = values.last().copied().unwrap_or(0.0);
@@ -46,7 +46,7 @@ impl Axis {
         Self { groups, scale }
     }
 
-    /// The place of any speed or force. Does not allocate.
+    /// Returns the coordinate of a speed or force. Does not allocate.
     pub(super) fn place(&self, x: f64) -> f64 {
         let next = self.groups.partition_point(|group| group.high < x);
         let before = next.checked_sub(1).map(|i| &self.groups[i]);

@@ -1,4 +1,4 @@
-//! From known conditions to triangles, and to the edges of their hull.
+//! Triangulation of the recorded conditions, and the edges of their hull.
 
 use htex_format::Condition;
 use spade::{DelaunayTriangulation, HierarchyHintGenerator, Point2, Triangulation};
@@ -33,7 +33,7 @@ pub(super) fn mesh(conditions: &[[f64; 2]]) -> Mesh {
     }
 }
 
-/// Both axes, and the places of all conditions.
+/// Returns both axes, and the coordinates of all conditions.
 fn placed(conditions: &[[f64; 2]], merged: bool) -> ([Axis; 2], Vec<[f64; 2]>) {
     let values = |axis: usize| conditions.iter().map(|c| c[axis]).collect();
     let [speed, force] = [0, 1].map(|axis| Axis::new(values(axis), merged));
@@ -42,7 +42,7 @@ fn placed(conditions: &[[f64; 2]], merged: bool) -> ([Axis; 2], Vec<[f64; 2]>) {
     ([speed, force], places)
 }
 
-/// Whether no two conditions stand at one place.
+/// Returns whether all conditions have different coordinates.
 fn are_apart(places: &[[f64; 2]]) -> bool {
     let mut sorted = places.to_vec();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
@@ -50,20 +50,20 @@ fn are_apart(places: &[[f64; 2]]) -> bool {
 }
 
 type Triangles = (Vec<Face>, Vec<[usize; 2]>);
-/// Finds its way to a place in a time that hardly grows with the number of places.
+/// A triangulation with a hierarchy of hints: the time to locate a point is logarithmic in the number of points.
 type Delaunay = DelaunayTriangulation<Point2<f64>, (), (), (), HierarchyHintGenerator<f64>>;
 
-/// Places no farther from a line than this, in the largest speed and force, lie on it but for rounding.
+/// Largest distance from a line that is attributed to rounding, relative to the largest speed and force.
 const ROUNDING: f64 = 1e-9;
-/// As many places are triangulated in their own order, whatever it costs: where four lie on a circle, as on a grid, the
-/// order decides on the diagonal.
+/// Most points that are triangulated in their own order: if four points lie on a circle, as in a grid, the order
+/// determines the diagonal.
 const FEW: usize = 1000;
 
-/// The order in which places are triangulated; none where all are on the line of the two that lie farthest apart.
+/// Returns the order in which points are inserted; `None` if all lie on the given line.
 ///
-/// Each place that is added to a line costs as much as there are on it, so of many places three that span a triangle go
-/// first. The others follow as if shuffled: in an order of its own a place can turn as many triangles as there are, after
-/// a shuffle it turns six on average.
+/// Inserting a point into a line takes time proportional to the points on it, so of many points three that span a
+/// triangle are first. The others follow in pseudo-random order: an insertion then changes six triangles on average, and
+/// in other orders up to all of them.
 pub(super) fn order(places: &[[f64; 2]], line: &Side) -> Option<Vec<usize>> {
     let distance = |i: usize| line.distance2(places[i]);
     let farthest = (0..places.len()).max_by(|a, b| distance(*a).total_cmp(&distance(*b)))?;
@@ -79,7 +79,7 @@ pub(super) fn order(places: &[[f64; 2]], line: &Side) -> Option<Vec<usize>> {
     Some(order)
 }
 
-/// A number that stands for another, and looks like chance (SplitMix64, Steele et al. 2014).
+/// Returns a pseudo-random number for an index (SplitMix64, Steele et al. 2014).
 fn scattered(i: u64) -> u64 {
     let mut z = i.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -87,7 +87,7 @@ fn scattered(i: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// Triangles and hull edges; none if the points do not span a triangle.
+/// Returns triangles and hull edges; `None` if the points do not span a triangle.
 fn triangulate(places: &[[f64; 2]], line: &Side) -> Option<Triangles> {
     let mut mesh = Delaunay::new();
     let mut index = Vec::new();
@@ -114,7 +114,7 @@ fn triangulate(places: &[[f64; 2]], line: &Side) -> Option<Triangles> {
     (!faces.is_empty()).then_some((faces, edges))
 }
 
-/// The line of two places at its ends, and the conditions on it; none where there are not two places.
+/// Returns the line between the two extreme points, with the conditions on it; `None` if all points are equal.
 pub(super) fn line(places: &[[f64; 2]]) -> Option<Side> {
     let spread = |axis: usize| {
         let [low, high] = places.iter().fold([f64::INFINITY, 0.0], |[low, high], p| {
@@ -122,7 +122,7 @@ pub(super) fn line(places: &[[f64; 2]]) -> Option<Side> {
         });
         high - low
     };
-    // Along the axis that it runs along more: on the other, rounding may decide.
+    // Ordered along the axis of larger extent: along the other, rounding errors may determine the order.
     let along = usize::from(spread(1) > spread(0));
     let ordered = |a: &usize, b: &usize| {
         let (a, b) = (places[*a], places[*b]);
@@ -143,7 +143,7 @@ pub(super) fn line(places: &[[f64; 2]]) -> Option<Side> {
     Some(side)
 }
 
-/// Gives a side the slivers that lie on it, one behind the other, and their conditions.
+/// Assigns the narrow triangles on a side to it, one after another, with their conditions.
 fn take_slivers(
     index: usize,
     side: &mut Side,
@@ -156,7 +156,7 @@ fn take_slivers(
         .iter()
         .copied()
         .zip(side.feet.iter().copied());
-    // What lies ahead along the side, the next on top.
+    // The conditions that follow along the side, the next one last.
     let mut ahead: Vec<(usize, f64)> = ends.rev().collect();
     let mut behind: Vec<(usize, f64)> = ahead.pop().into_iter().collect();
     while let (Some(from), Some(to)) = (behind.last(), ahead.last()) {
@@ -177,7 +177,7 @@ fn take_slivers(
     (side.conditions, side.feet) = behind.into_iter().unzip();
 }
 
-/// The triangles over each edge.
+/// The triangles at each edge.
 struct Edges(Vec<([usize; 2], usize)>);
 
 impl Edges {
@@ -191,7 +191,7 @@ impl Edges {
         Self(edges)
     }
 
-    /// A triangle over an edge that no side has yet, and its third corner.
+    /// Returns a triangle at an edge that is not assigned to a side, and its third corner.
     fn beside(&self, ends: [usize; 2], faces: &[Face]) -> Option<(usize, usize)> {
         let edge = ascending(ends);
         let first = self.0.partition_point(|(other, _)| *other < edge);

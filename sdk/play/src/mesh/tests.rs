@@ -10,7 +10,7 @@ fn at(mesh: &Mesh, speed: f64, force: f64) -> Vec<(usize, f64)> {
 fn corners_edges_middle_and_outside_of_a_square() {
     let square = [[50.0, 0.2], [150.0, 0.2], [50.0, 0.8], [150.0, 0.8]];
     let mesh = Mesh::new(&square);
-    // Far outside: the nearest corner. Beside an edge: the edge's point.
+    // Far outside: the nearest corner. Next to an edge: the nearest point of the edge.
     assert_eq!(at(&mesh, 1e9, 100.0), [(3, 1.0)]);
     assert_eq!(at(&mesh, 1e300, 1e300), [(3, 1.0)]);
     let beside = at(&mesh, 100.0, 0.0);
@@ -20,7 +20,7 @@ fn corners_edges_middle_and_outside_of_a_square() {
             .iter()
             .all(|(i, w)| *i < 2 && (w - 0.5).abs() < 1e-12)
     );
-    // Anywhere inside: weights that give back the point.
+    // Inside: the weighted mean of the conditions is the point.
     for (speed, force) in [(60.0, 0.3), (100.0, 0.5), (149.0, 0.79)] {
         let weights = at(&mesh, speed, force);
         let mean = |axis: usize| {
@@ -36,7 +36,7 @@ fn corners_edges_middle_and_outside_of_a_square() {
 #[test]
 fn one_condition_and_conditions_on_a_line() {
     assert_eq!(at(&Mesh::new(&[[80.0, 0.4]]), 10.0, 3.0), [(0, 1.0)]);
-    // Forces that a hand took for one: the speed alone counts, whatever the force.
+    // Forces within the tolerance are one: the weights depend on the speed only.
     for forces in [[0.4, 0.4, 0.4], [0.4069, 0.4061, 0.4014]] {
         let line = Mesh::new(&[[160.0, forces[2]], [40.0, forces[0]], [80.0, forces[1]]]);
         for force in [0.0, 0.4, 0.407, 9.0] {
@@ -47,7 +47,7 @@ fn one_condition_and_conditions_on_a_line() {
     }
 }
 
-/// Conditions that recordings would have been merged to one of: each is still met.
+/// Conditions that are equal within the tolerance: each is still reproduced.
 #[test]
 fn conditions_that_are_the_same_stay_apart() {
     let points = [[40.0, 0.4], [80.0, 0.4], [80.1, 0.41], [80.0, 0.405]];
@@ -56,8 +56,8 @@ fn conditions_that_are_the_same_stay_apart() {
     }
 }
 
-/// As many conditions as an asset has room for, where each one could cost as much as there are: all on one line, on
-/// lines that turn every triangle, on slivers, round one that all triangles share.
+/// The largest number of conditions of an asset, in arrangements with slow insertions: on one line, on lines that change
+/// every triangle, in narrow triangles, and around a common corner of all triangles.
 fn many(count: usize) -> Vec<(&'static str, Vec<[f64; 2]>)> {
     let part = |i: usize| i as f64 / count as f64;
     let mixed = |i: usize| (i * 7919) % count;
@@ -102,7 +102,7 @@ fn many(count: usize) -> Vec<(&'static str, Vec<[f64; 2]>)> {
     ]
 }
 
-/// On a line that is level with no axis, rounding puts conditions to either side.
+/// On a line that is not parallel to an axis, rounding moves conditions to either side.
 #[test]
 fn conditions_on_a_slanted_line_are_each_met() {
     for steep in [-0.019, 0.011, 1.1] {
@@ -115,8 +115,8 @@ fn conditions_on_a_slanted_line_are_each_met() {
     }
 }
 
-/// What an asset of many conditions costs grows hardly faster than their number: each of these took from 5 s to a
-/// minute, and takes some tenths of a second.
+/// The time for many conditions is nearly proportional to their number: without the chosen order each of these takes
+/// from 5 s to a minute, and with it some tenths of a second.
 #[test]
 fn many_conditions_are_each_met_and_none_costs_as_much_as_all() {
     let count = 40_000;
@@ -128,7 +128,7 @@ fn many_conditions_are_each_met_and_none_costs_as_much_as_all() {
     }
 }
 
-/// Each place that is added to a line is compared with all that are on it.
+/// Each point that is inserted into a line is compared with all points on it.
 #[test]
 fn of_many_places_three_that_span_a_triangle_go_first() {
     for (what, places) in many(2_000) {
@@ -157,7 +157,7 @@ fn axis(
     })
 }
 
-/// Conditions as they are meant: lines along an axis, lines across, grids.
+/// Conditions as intended: lines parallel to an axis, other lines, grids.
 fn meant() -> impl Strategy<Value = Vec<[f64; 2]>> {
     let across =
         (axis(2..=6usize, 10.0), 0.1..0.4, 0.5..1.0f64).prop_map(|(speeds, low, steep)| {
@@ -171,7 +171,7 @@ fn meant() -> impl Strategy<Value = Vec<[f64; 2]>> {
     prop_oneof![1 => across, 3 => grid]
 }
 
-/// Conditions as a hand makes them, 1 % beside what was meant, and the level of each: powers of speed and force, within
+/// Conditions of a moving hand, within 1 % of the intended ones, and their levels: powers of speed and force, within
 /// 0.5 dB.
 fn measured() -> impl Strategy<Value = (Vec<[f64; 2]>, Vec<f64>)> {
     let scattered = meant().prop_flat_map(|points| {
@@ -190,7 +190,7 @@ fn measured() -> impl Strategy<Value = (Vec<[f64; 2]>, Vec<f64>)> {
     })
 }
 
-/// Motions to try: all over, 50 % beyond what is known, and close to each condition.
+/// Test motions: over the whole range, up to 50 % outside it, and close to each condition.
 fn motions() -> impl Strategy<Value = Vec<[f64; 2]>> {
     prop::collection::vec([0.0..1.0, 0.0..1.0], 24)
 }
@@ -198,7 +198,8 @@ fn motions() -> impl Strategy<Value = Vec<[f64; 2]>> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 10_000, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// On any measured lines and grids: each condition is met, has most of the weight near by, and nothing jumps.
+    /// For all measured lines and grids: each condition is reproduced, has most of the weight close to it, and weights
+    /// are continuous.
     #[test]
     fn measured_conditions_are_met_and_nothing_jumps(
         (points, levels) in measured(), places in motions(),

@@ -1,21 +1,21 @@
 //! A voice that follows the finger itself, by the extension `htex.motion/1`: a host then scales neither
 //! frequencies with the speed nor the level with the force.
 //!
-//! To begin with, the faster the finger, the stronger the texture, as it was recorded at 100 mm/s. The position is where
-//! a model comes in that is tied to the place; [`FitInput::condition`](htex_model::FitInput) tells a fit at which speed
-//! and force the recording was made.
+//! In this template the level is proportional to the speed, and 1 at 100 mm/s. A model may also use the position, for
+//! example for a pattern that is fixed to the surface; [`FitInput::condition`](htex_model::FitInput) contains the speed
+//! and force of the recording.
 
 use htex_model::{Error, Motion, MotionVoice, Values, Voice};
 use htex_shaped::ShapedVoice;
 
 use crate::Shape;
 
-/// Shaped noise whose level goes with the speed.
+/// Shaped noise whose level is proportional to the speed.
 pub struct Following {
     noise: ShapedVoice<Shape>,
     level: f32,
     goal: f32,
-    /// Part of the way to the goal that is made with each sample: nearly all in 10 ms.
+    /// Fraction of the remaining difference to the target that each sample adds: nearly all of it in 10 ms.
     part: f32,
 }
 
@@ -36,7 +36,7 @@ impl Voice for Following {
         for x in out {
             self.level += (self.goal - self.level) * self.part;
             *x *= self.level;
-            // No processor meets slow subnormal numbers.
+            // Avoids subnormal numbers, which are slow on some processors.
             if x.abs() < f32::MIN_POSITIVE {
                 *x = 0.0;
             }

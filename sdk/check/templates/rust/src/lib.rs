@@ -1,8 +1,8 @@
-//! {{LABEL}} ({{ID}}), to begin with one resonance. The spectrum is that of a two-pole band-pass filter,
+//! {{LABEL}} ({{ID}}), initially one resonance. The spectrum is that of a two-pole band-pass filter,
 //! `1 / sqrt(1 + ((f/centre - centre/f) centre/bandwidth)²)`, played as noise of that shape.
 //!
-//! `cargo build --release` makes the native library; with `--target wasm32-unknown-unknown`, the
-//! WASM module, which links no standard library: so it fits into an asset.
+//! `cargo build --release` builds the native library, and with `--target wasm32-unknown-unknown` the
+//! WASM module, which does not link the standard library and is therefore small enough for an asset.
 #![no_std]
 
 extern crate alloc;
@@ -61,7 +61,7 @@ impl Model for {{TYPE}} {
         let largest = input.magnitude.iter().copied().fold(0.0, f64::max);
         if largest <= 0.0 {
             return Err(Error::cannot_fit(
-                "the spectrum is silent: there is nothing to fit",
+                "the spectrum is silent, so the model cannot be fitted",
             ));
         }
         let band: Band = input.band.edges().into();
@@ -109,7 +109,7 @@ impl Model for {{TYPE}} {
     }
 }
 
-/// The curve of some parameters in a band.
+/// Returns the curve of parameters in a band.
 pub struct Shape {
     centre_hz: f64,
     bandwidth_hz: f64,
@@ -150,7 +150,7 @@ impl Curve for Shape {
     }
 }
 
-/// The resonance of least squared distance: searched from several centres, in the logarithms.
+/// Returns the resonance with the least squared error, searched from several centres in logarithmic parameters.
 fn best_shape(frequency_hz: &[f64], magnitude: &[f64], band: Band) -> Shape {
     let shape = |x: &[f64; 2]| Shape {
         centre_hz: libm::exp(x[0]).clamp(CENTRE_HZ.0, CENTRE_HZ.1),
@@ -176,7 +176,7 @@ fn best_shape(frequency_hz: &[f64], magnitude: &[f64], band: Band) -> Shape {
     shape(&[x, y])
 }
 
-/// The factor that brings a shape nearest to a spectrum.
+/// Returns the factor with which a shape is closest to a spectrum.
 fn scale(frequency_hz: &[f64], magnitude: &[f64], shape: &Shape) -> f64 {
     let (mut hm, mut hh) = (0.0, 0.0);
     for (&f, m) in frequency_hz.iter().zip(magnitude) {

@@ -7,7 +7,7 @@ use htex_author::AuthorError;
 use htex_format::plain;
 
 use crate::flags::with_flags;
-use crate::output::shown;
+use crate::shown::shown;
 
 /// An error, with its place.
 #[derive(Debug, thiserror::Error)]

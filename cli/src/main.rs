@@ -24,6 +24,7 @@ mod recordings;
 mod report;
 mod scenes;
 mod schemas;
+mod shown;
 mod signals;
 mod wasm_limits;
 mod wav;

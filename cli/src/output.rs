@@ -73,11 +73,6 @@ fn tame(value: &mut Value) {
     }
 }
 
-/// A path with control characters escaped.
-pub(crate) fn shown(path: &Path) -> String {
-    plain(&path.display().to_string()).into_owned()
-}
-
 /// Prints a warning.
 pub(crate) fn warn(warnings: &[String]) {
     for warning in warnings {

@@ -4,7 +4,7 @@ use std::fs::Metadata;
 use std::path::Path;
 
 use crate::failure::Failure;
-use crate::output::shown;
+use crate::shown::shown;
 
 /// Refuses outputs that are inputs, or each other, under any name.
 ///

@@ -7,7 +7,7 @@ use std::path::Path;
 use hound::{SampleFormat, WavSpec, WavWriter};
 
 use crate::failure::Failure;
-use crate::output::shown;
+use crate::shown::shown;
 
 /// Most bytes of samples a WAV file can hold.
 const MAX_FRAMES: u64 = (u32::MAX as u64 - 64) / 4;

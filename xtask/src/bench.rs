@@ -16,7 +16,7 @@ pub fn run(options: &[&str]) -> ExitCode {
             return ExitCode::FAILURE;
         }
     }
-    let built = crate::plugins::target().join("release");
+    let built = crate::places::target().join("release");
     let mut bench = Command::new(built.join("htex-bench"));
     bench.args(options);
     bench.env("HTEX_BENCH_COMMAND", built.join("htex"));
@@ -42,7 +42,7 @@ pub fn run(options: &[&str]) -> ExitCode {
 
 /// The Python of `target/peers`, else `python3`, if it has NumPy and SciPy.
 fn python() -> Option<PathBuf> {
-    let own = crate::plugins::target().join("peers/bin/python");
+    let own = crate::places::target().join("peers/bin/python");
     [own, "python3".into()].into_iter().find(|python| {
         let mut imports = Command::new(python);
         imports.args(["-c", "import numpy, scipy"]);

@@ -24,11 +24,11 @@ const TESTS: &[&str] = &[
 
 /// Writes all generated files. The whole workspace is built, with the features that `cargo test` builds it with.
 pub fn generate() -> ExitCode {
-    let mut cargo = Command::new(crate::plugins::cargo());
+    let mut cargo = Command::new(crate::places::cargo());
     cargo.args(["test", "--quiet", "--workspace"]);
     cargo.args(TESTS.iter().flat_map(|test| ["--test", test]));
     cargo.args(["--", "generated_"]).env(VARIABLE, "1");
-    match cargo.current_dir(crate::plugins::workspace()).status() {
+    match cargo.current_dir(crate::places::workspace()).status() {
         Ok(status) if status.success() => ExitCode::SUCCESS,
         Ok(_) => ExitCode::FAILURE,
         Err(error) => {
@@ -56,7 +56,7 @@ pub fn file(path: impl AsRef<str>, bytes: &[u8]) {
 #[allow(clippy::panic)] // It fails a test.
 pub fn file_with(path: impl AsRef<str>, bytes: &[u8], is_fresh: impl FnOnce(&[u8]) -> bool) {
     let name = path.as_ref();
-    let path = crate::plugins::workspace().join(name);
+    let path = crate::places::workspace().join(name);
     if is_written() {
         return write(&path, bytes).unwrap_or_else(|error| panic!("{name}: {error}"));
     }
@@ -83,7 +83,7 @@ pub fn folder(path: &str, files: &[File]) {
 pub fn only<'a>(path: &str, expected: impl IntoIterator<Item = &'a str>) {
     let expected: BTreeSet<&str> = expected.into_iter().collect();
     let failed = |error: io::Error| -> ! { panic!("{path}: {error}") };
-    let entries = fs::read_dir(crate::plugins::workspace().join(path));
+    let entries = fs::read_dir(crate::places::workspace().join(path));
     for entry in entries.unwrap_or_else(|error| failed(error)) {
         let entry = entry.unwrap_or_else(|error| failed(error));
         let name = format!("{path}/{}", entry.file_name().to_string_lossy());

@@ -4,5 +4,6 @@ pub mod bench;
 pub mod fuzz;
 pub mod generated;
 pub mod needs;
+mod places;
 pub mod plugins;
 mod wasm;

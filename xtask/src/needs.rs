@@ -104,5 +104,5 @@ pub fn say(text: &str) {
 }
 
 fn folder() -> PathBuf {
-    crate::plugins::target().join("skipped")
+    crate::places::target().join("skipped")
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::needs;
+use crate::places::{cargo, target, workspace};
 use crate::wasm::{PROFILE, TARGET, Toolchain};
 
 /// The models' short names.
@@ -115,20 +116,6 @@ fn place(built: &Path, name: &str) -> Result<(), String> {
         .and_then(|()| std::fs::copy(built, folder.join(&beside)))
         .and_then(|_| std::fs::rename(folder.join(&beside), folder.join(name)))
         .map_err(|error| format!("cannot copy {}: {error}", built.display()))
-}
-
-/// The cargo that runs this, else the one on the path.
-pub(crate) fn cargo() -> std::ffi::OsString {
-    std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
-}
-
-pub(crate) fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
-pub(crate) fn target() -> PathBuf {
-    let own = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
-    workspace().join(own.unwrap_or_else(|| "target".into()))
 }
 
 fn folder() -> PathBuf {

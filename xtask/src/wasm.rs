@@ -60,7 +60,7 @@ impl Toolchain {
 
     fn plain_cargo(&self, target: &Path) -> (Command, PathBuf) {
         match self {
-            Self::Ready => (Command::new(super::plugins::cargo()), target.to_owned()),
+            Self::Ready => (Command::new(crate::places::cargo()), target.to_owned()),
             Self::Debian { linker } => {
                 let mut command = Command::new("/usr/bin/cargo");
                 command

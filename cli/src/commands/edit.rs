@@ -8,8 +8,9 @@ use serde_json::Value;
 use crate::assets::AssetSummary;
 use crate::failure::Failure;
 use crate::metadata::MetadataArgs;
-use crate::output::{print, print_json, shown, write_file};
+use crate::output::{print, print_json, write_file};
 use crate::outputs::check_outputs;
+use crate::shown::shown;
 
 /// Change an asset's metadata without a new fit.
 ///

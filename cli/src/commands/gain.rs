@@ -9,9 +9,10 @@ use htex_scene::{Gain as Kept, Gains, Renderer};
 use crate::commands::play;
 use crate::failure::Failure;
 use crate::gains::{FeltArgs, gains, hash, key, recordings};
-use crate::output::{print, shown};
+use crate::output::print;
 use crate::playing::Output;
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs};
+use crate::shown::shown;
 use crate::signals::{self, interrupted};
 
 /// Steps of the level, decibels.

@@ -10,10 +10,11 @@ use htex_scene::{Renderer, output_name};
 use serde_json::json;
 
 use crate::failure::Failure;
-use crate::output::{note, print, print_json, shown};
+use crate::output::{note, print, print_json};
 use crate::playing::Output;
 use crate::progress::bar;
 use crate::scenes::{ChoiceArgs, Ready, SceneArgs, costs};
+use crate::shown::shown;
 use crate::signals::{self, interrupted};
 
 /// Frames in a block.

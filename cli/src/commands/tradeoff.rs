@@ -10,11 +10,12 @@ use htex_tradeoff::{Journal, Model, Point, Request, Subject, csv, page, sweep};
 
 use crate::failure::Failure;
 use crate::models::tool;
-use crate::output::{print, print_json, shown, warn, write_file};
+use crate::output::{print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
 use crate::progress::bar;
 use crate::recordings::RecordingArgs;
+use crate::shown::shown;
 
 /// Measure accuracy against bytes and time on your recordings, over models and knobs.
 ///

@@ -10,10 +10,11 @@ use serde_json::Value;
 
 use crate::failure::Failure;
 use crate::flags::with_flags;
-use crate::output::{print, print_json, shown, warn};
+use crate::output::{print, print_json, warn};
 use crate::recordings::RecordingArgs;
 use crate::scenes::SceneArgs;
 use crate::schemas::{ABSENT, ExtensionSchema, Named};
+use crate::shown::shown;
 use crate::wasm_limits::WasmLimit;
 
 /// Check assets, scenes (*.json), descriptors of models and devices (*.json) and recordings against
@@ -198,10 +199,10 @@ fn validate_json(path: &Path) -> Result<Report, Failure> {
     }
     if has("id") && has("settings") {
         let read = serde_json::from_str::<htex_device::Descriptor>(&text());
-        let problem = read
-            .map_err(|e| e.to_string())
-            .and_then(|d| d.check())
-            .err();
+        let problem = match read {
+            Ok(descriptor) => descriptor.check().err().map(|error| error.to_string()),
+            Err(error) => Some(error.to_string()),
+        };
         return descriptor(&document, problem, Named::device()?);
     }
     let mut report = SceneArgs::validate(path)?;

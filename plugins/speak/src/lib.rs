@@ -7,9 +7,9 @@ extern crate alloc;
 use alloc::vec::Vec;
 
 use htex_dsp::grid::GRID_HZ;
-use htex_dsp::noise::Uniform;
 use htex_dsp::peaks::select_peaks;
 use htex_dsp::sine_bank::{Sine, SineBank};
+use htex_dsp::uniform::Uniform;
 use htex_model::{
     Band, Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Store,
     Values, Voice, mix, text,

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{DeviceError, Settings};
 use crate::abi::MAX_SETTINGS;
+use crate::{DeviceError, Settings};
 
 /// An adapter's description; crosses the ABI as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -25,8 +25,10 @@ mod settings;
 pub mod shim;
 
 pub use adapter::{Adapter, Device, Status, StreamFormat};
-pub use capabilities::{Capabilities, Quantity, Rates};
-pub use descriptor::{Descriptor, Endpoint, FromScene, Profile, Setting, SettingKind};
+pub use capabilities::{Capabilities, CapabilitiesError, Quantity, Rates};
+pub use descriptor::{
+    Descriptor, DescriptorError, Endpoint, FromScene, Profile, Setting, SettingFault, SettingKind,
+};
 pub use devices::{DeviceNote, DeviceOrigin, DeviceSearch, Devices, KnownDevice};
 pub use error::DeviceError;
 pub use native::{NativeAdapter, NativeDevice};

@@ -61,7 +61,9 @@ impl NativeAdapter {
         })?;
         let descriptor: Descriptor =
             serde_json::from_str(&json).map_err(|e| wrong(e.to_string()))?;
-        descriptor.check().map_err(|error| wrong(error.to_string()))?;
+        descriptor
+            .check()
+            .map_err(|error| wrong(error.to_string()))?;
         Ok(Self {
             descriptor: Arc::new(descriptor),
             library,

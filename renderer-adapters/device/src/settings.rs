@@ -148,7 +148,10 @@ impl Settings {
     }
 }
 
-pub(crate) fn known<'a>(descriptor: &'a Descriptor, name: &str) -> Result<&'a Setting, DeviceError> {
+pub(crate) fn known<'a>(
+    descriptor: &'a Descriptor,
+    name: &str,
+) -> Result<&'a Setting, DeviceError> {
     let mut settings = descriptor.settings.iter();
     settings.find(|s| s.name == name).ok_or_else(|| {
         let known: Vec<&str> = descriptor.settings.iter().map(|s| &s.name[..]).collect();
@@ -180,19 +183,16 @@ enum Asked {
     Ignored(String),
 }
 
-fn asked(
-    setting: &Setting,
-    value: &str,
-    held: Option<&String>,
-    is_given: bool,
-) -> Asked {
+fn asked(setting: &Setting, value: &str, held: Option<&String>, is_given: bool) -> Asked {
     let held = held.map(String::as_str);
     match (setting.from_scene, held) {
         (FromScene::Any, _) if is_given => Asked::Given,
         (FromScene::Any, _) => Asked::Used,
-        (FromScene::Never, _) | (FromScene::Less | FromScene::More, None) => Asked::Ignored(format!(
-            "the scene's {value} is not used: it describes the hardware, which the user does"
-        )),
+        (FromScene::Never, _) | (FromScene::Less | FromScene::More, None) => {
+            Asked::Ignored(format!(
+                "the scene's {value} is not used: it describes the hardware, which the user does"
+            ))
+        }
         (FromScene::Less, Some(held)) if number(value) <= number(held) => Asked::Used,
         (FromScene::More, Some(held)) if number(value) >= number(held) => Asked::Used,
         (FromScene::Less, Some(held)) => Asked::Ignored(format!(

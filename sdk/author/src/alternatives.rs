@@ -6,8 +6,8 @@ use htex_host::{FitOption, LoadedModel};
 
 use crate::agreement;
 use crate::conditions::Group;
-use crate::fit::ModelRequest;
 use crate::level::{Level, stored_level};
+use crate::request::ModelRequest;
 use crate::stored::stored_fields;
 
 /// Nine-band RMS error above which a warning is given, decibels.

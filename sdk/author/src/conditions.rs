@@ -3,20 +3,11 @@
 use htex_format::{Condition, Source};
 use htex_host::FitCondition;
 
-use crate::fit::source_of;
 use crate::reading::read_take;
 use crate::spectrum::SegmentSpectra;
+use crate::take::{Take, source_of};
 use crate::warnings::Warnings;
-use crate::{AuthorError, Exploration, Recording, SpectrumOptions, TextureSpectrum};
-
-/// A recording and its condition as far as it is given.
-#[derive(Debug, Clone)]
-pub struct Take {
-    /// The recording.
-    pub recording: Recording,
-    /// Given speed and force; they take precedence over measured ones.
-    pub given: Exploration,
-}
+use crate::{AuthorError, Exploration, SpectrumOptions, TextureSpectrum};
 
 /// The spectrum of one condition.
 pub(crate) struct Group {

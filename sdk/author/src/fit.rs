@@ -6,55 +6,18 @@ use std::time::Instant;
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
 use htex_format::{
     Asset, AtCondition, Condition, FIRST_VERSION, Manifest, Provenance, Quality, Quantity,
-    Reference, Representation, Source, round_parameters,
+    Reference, Representation, round_parameters,
 };
 use htex_host::{HostError, LoadedModel};
 
 use crate::alternatives::warning;
-use crate::conditions::{Group, Take, group_takes};
+use crate::conditions::{Group, group_takes};
 use crate::level::{Level, stored_level};
+use crate::request::{AssetRequest, ModelRequest};
 use crate::spectrum::SpectrumRef;
 use crate::stored::stored_fields;
-use crate::{AuthorError, SpectrumOptions, TextureSpectrum, agreement, rendered_spectrum};
-
-/// A model to fit, with one value for each of its options.
-#[derive(Debug, Clone)]
-pub struct ModelRequest {
-    /// The model.
-    pub model: LoadedModel,
-    /// Its option values ([`LoadedModel::options`]).
-    pub options: Vec<f64>,
-}
-
-/// Options of an asset to be fitted.
-#[derive(Debug, Clone, Default)]
-pub struct AssetRequest {
-    /// Name of the texture.
-    pub name: String,
-    /// SPDX licence expression.
-    pub license: Option<String>,
-    /// Author of the asset.
-    pub author: Option<String>,
-    /// Search terms.
-    pub tags: Vec<String>,
-    /// Models, in the order of the representations.
-    pub models: Vec<ModelRequest>,
-    /// Options of the spectra.
-    pub spectrum: SpectrumOptions,
-    /// Level of the representations.
-    pub level: Level,
-    /// Models to try at their default options when a representation has a large band error; those in `models` are
-    /// always tried.
-    pub alternatives: Vec<LoadedModel>,
-    /// Whether to refuse recordings with errors or warnings.
-    pub strict: bool,
-    /// Whether to keep the recorded spectra in the asset.
-    pub keep_reference: bool,
-    /// Options that differ from their defaults, for the provenance.
-    pub recorded_options: BTreeMap<String, String>,
-    /// Program and version, for the provenance.
-    pub tool: String,
-}
+use crate::take::Take;
+use crate::{AuthorError, TextureSpectrum, agreement, rendered_spectrum};
 
 /// A fitted asset with the results that its file does not hold.
 #[derive(Debug, Clone)]
@@ -288,14 +251,5 @@ fn assemble(
             .then(|| spectra.iter().map(to_f32).collect()),
         plugins: Vec::new(),
         notes: Vec::new(),
-    }
-}
-
-/// Returns the provenance entry of a recording.
-pub(crate) fn source_of(take: &Take, segments: usize) -> Source {
-    Source {
-        file: take.recording.source.clone(),
-        rate_hz: take.recording.rate_hz,
-        segments: segments as u64,
     }
 }

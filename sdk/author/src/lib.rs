@@ -31,27 +31,30 @@ pub mod read;
 mod reading;
 pub mod recording;
 mod rendered;
+mod request;
 pub mod response;
 mod segments;
 pub mod simulate;
 mod spectrum;
 mod stored;
 mod sums;
+mod take;
 mod warnings;
 
-pub use conditions::Take;
 pub use error::AuthorError;
 pub use exploration::{Exploration, Spread};
 pub use findings::recording_findings;
-pub use fit::{AssetRequest, FittedAsset, ModelRequest, fit_asset, measure};
+pub use fit::{FittedAsset, fit_asset, measure};
 pub use level::{Level, stored_level};
 pub use metrics::{Agreement, agreement};
 pub use reading::{Reading, read_take, validate_recording};
 pub use recording::Recording;
 pub use rendered::{rendered_spectrum, spectrum_of_samples};
+pub use request::{AssetRequest, ModelRequest};
 pub use response::SetupResponse;
 pub use segments::{SegmentChoice, Segments, Sweep, Unread, choose_segments, segment_len};
 pub use spectrum::{
     Averaging, SegmentSpectra, SpectrumOptions, SpectrumRef, TextureSpectrum, segment_spectra,
 };
 pub use stored::stored_fields;
+pub use take::Take;

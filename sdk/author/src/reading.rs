@@ -4,13 +4,13 @@ use std::path::Path;
 
 use htex_format::{Finding, Findings, Report, Severity};
 
-use crate::conditions::Take;
 use crate::exploration::{exploration, keep_on_target};
 use crate::findings::{
     RECORDING_NOTED, RECORDING_UNREADABLE, RECORDING_UNUSABLE, judge_segments, recording_findings,
 };
 use crate::read::{ReadError, ReadOptions, read_recording};
 use crate::spectrum::spectra_of;
+use crate::take::Take;
 use crate::{AuthorError, Exploration, Recording, SegmentSpectra, SpectrumOptions, Spread};
 
 /// The result of reading a recording.

@@ -53,6 +53,7 @@ pub mod sine_bank;
 pub mod spectrum;
 pub mod triangles;
 pub mod trig;
+pub mod uniform;
 mod upsample;
 pub mod warp;
 mod wide;

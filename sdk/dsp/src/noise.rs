@@ -1,58 +1,10 @@
-//! Seeded random numbers: uniform phases and Gaussian noise.
+//! Seeded Gaussian noise.
 
 use crate::root::sqrt_f32;
-use rand_core::{Rng, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::circle::directions;
 use crate::random_lanes::{LANES, RandomLanes};
 use crate::wide::{Work, very_wide, wide};
-
-/// A seeded generator of uniform numbers; the same seed gives the same bits on every machine.
-///
-/// ```
-/// use htex_dsp::noise::Uniform;
-/// let (mut a, mut b) = (Uniform::new(7), Uniform::new(7));
-/// let x = a.next_unit();
-/// assert!((0.0..1.0).contains(&x) && x == b.next_unit());
-/// ```
-#[derive(Debug, Clone)]
-pub struct Uniform(Xoshiro256PlusPlus);
-
-impl Uniform {
-    /// A generator with this seed.
-    pub fn new(seed: u64) -> Self {
-        Self(Xoshiro256PlusPlus::seed_from_u64(seed))
-    }
-
-    /// The next number in `[0, 1)`, with 53 random bits.
-    pub fn next_unit(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
-    }
-
-    /// The next 64 random bits.
-    pub fn next_bits(&mut self) -> u64 {
-        self.0.next_u64()
-    }
-
-    /// Writes cosines and sines of angles uniform on the circle, with errors below 3e-7. The shorter slice
-    /// sets the number.
-    pub fn fill_directions(&mut self, cos: &mut [f32], sin: &mut [f32]) {
-        for (cos, sin) in cos.chunks_mut(DIRECTIONS).zip(sin.chunks_mut(DIRECTIONS)) {
-            let mut bits = [0; DIRECTIONS];
-            for two in bits.as_chunks_mut::<2>().0 {
-                let both = self.0.next_u64();
-                *two = [both as u32, (both >> 32) as u32];
-            }
-            let (new_cos, new_sin) = directions(bits);
-            cos.copy_from_slice(&new_cos[..cos.len()]);
-            sin.copy_from_slice(&new_sin[..sin.len()]);
-        }
-    }
-}
-
-/// Directions per step.
-const DIRECTIONS: usize = 4;
 
 /// Samples of Gaussian noise generated together; rendering is fastest in whole groups.
 pub const GROUP: usize = 2 * LANES;
@@ -234,6 +186,7 @@ fn ln(x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::uniform::Uniform;
 
     #[test]
     fn logarithms_are_exact_in_all_octaves() {

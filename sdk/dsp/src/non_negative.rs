@@ -229,7 +229,7 @@ mod tests {
     use super::*;
     use crate::Band;
     use crate::mel::MelBank;
-    use crate::noise::Uniform;
+    use crate::uniform::Uniform;
 
     /// Optimality conditions of a convex cost: its gradient is zero where the power is positive, and not
     /// negative where the power is zero.

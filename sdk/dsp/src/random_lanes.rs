@@ -1,6 +1,6 @@
 //! Random generators side by side in vector registers.
 
-use crate::noise::Uniform;
+use crate::uniform::Uniform;
 
 /// Number of generators, and of numbers per step.
 pub(crate) const LANES: usize = 8;

@@ -10,8 +10,8 @@ use alloc::vec::Vec;
 
 use crate::grid::{Band, GRID_HZ, ReadPart};
 use crate::inverse_fft::{InverseRealFft, Workspace, smooth_length};
-use crate::noise::Uniform;
 use crate::shared::Shared;
+use crate::uniform::Uniform;
 
 /// Minimum length of half a frame, seconds: components are at most 2.5 Hz apart.
 const HALF_S: f64 = 0.2;

@@ -204,7 +204,7 @@ fn tangent(mut x: f64, mut rest: f64, inverse: bool) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::noise::Uniform;
+    use crate::uniform::Uniform;
     use core::f64::consts::FRAC_PI_2;
 
     fn assert_same(x: f64) {

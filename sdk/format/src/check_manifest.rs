@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::check_plugins::check_plugins;
-use crate::check_representation::check_representations;
+use crate::check_representation::{check_representations, is_size};
 use crate::doi::check_doi;
 use crate::license::check_license;
 use crate::manifest::{Band, Condition, Manifest};
@@ -165,9 +165,4 @@ pub fn is_extension_name(name: &str) -> bool {
     };
     let number = revision.bytes().all(|b| b.is_ascii_digit()) && !revision.starts_with('0');
     parts().count() >= 3 && parts().all(word) && number && !revision.is_empty()
-}
-
-/// Whether a number is finite and not negative.
-pub(crate) fn is_size(number: f64) -> bool {
-    number.is_finite() && number >= 0.0
 }

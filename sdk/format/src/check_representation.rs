@@ -5,7 +5,6 @@ use std::fmt::Arguments;
 
 use htex_model::is_model_id;
 
-use crate::check_manifest::is_size;
 use crate::manifest::{AtCondition, Manifest, Quality, Representation, Steps, Store};
 use crate::quantity::Quantity;
 use crate::report::Findings;
@@ -215,4 +214,9 @@ fn check_quality(quality: &Quality, at: Arguments<'_>, findings: &mut Findings) 
             findings.add(rule::QUALITY_INVALID, format!("{at}/{key}"), message);
         }
     }
+}
+
+/// Whether a number is finite and not negative.
+pub(crate) fn is_size(number: f64) -> bool {
+    number.is_finite() && number >= 0.0
 }

@@ -9,10 +9,11 @@ use zip::{CompressionMethod, DateTime, System, ZipWriter};
 
 use crate::archive::too_large;
 use crate::check_manifest::check_manifest;
+use crate::entries::{MANIFEST, MEDIA_TYPE, MIMETYPE};
 use crate::limits::Limits;
 use crate::report::Findings;
 use crate::rules::FILE_TOO_LARGE;
-use crate::validate::{MANIFEST, MEDIA_TYPE, MIMETYPE, inspect};
+use crate::validate::inspect;
 use crate::{Asset, ReadError, WriteError, block, write_file};
 
 /// zlib-rs chooses the same matches on every processor, so the bytes are the same everywhere.

@@ -21,6 +21,7 @@ mod check_representation;
 mod container;
 mod document;
 mod doi;
+mod entries;
 mod error;
 mod fields;
 mod finding;

@@ -4,7 +4,7 @@ use schemars::Schema;
 use serde_json::{Value, json};
 
 use crate::Quantity;
-use crate::validate::{MANIFEST, MIMETYPE};
+use crate::entries::{MANIFEST, MIMETYPE};
 
 /// Pattern of a model's id, as [`htex_model::is_model_id`] checks it.
 pub(crate) const MODEL_ID: &str = r"^[a-z0-9_-]+(\.[a-z0-9_-]+){2,}$";

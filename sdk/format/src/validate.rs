@@ -8,6 +8,7 @@ use serde_json::Value;
 use crate::archive::Archive;
 use crate::block::{self, BlockError};
 use crate::check_manifest::check_manifest;
+use crate::entries::{MANIFEST, MEDIA_TYPE, MIMETYPE};
 use crate::fields::{KnownModel, check_fields};
 use crate::json_text;
 use crate::limits::Limits;
@@ -17,13 +18,6 @@ use crate::report::{Findings, Report};
 use crate::rules as rule;
 use crate::unpack::STORED;
 use crate::{Asset, Finding, Manifest, Plugin, Representation, Severity};
-
-/// Name of the entry that identifies an asset.
-pub(crate) const MIMETYPE: &str = "mimetype";
-/// Contents of that entry.
-pub(crate) const MEDIA_TYPE: &str = "application/vnd.htex+zip";
-/// Name of the manifest's entry.
-pub(crate) const MANIFEST: &str = "manifest.json";
 
 /// Validates the bytes of a `.htex` file and reports every broken rule that can be detected
 /// independently of earlier ones. Never panics, and reads no more than `limits` allow.

@@ -3,9 +3,8 @@
 use htex_format::Findings;
 use htex_play::{Asset, Coverage, Effects, Motions};
 
-use crate::call::topmost;
 use crate::file::{Effect, Motion, Scene, Surface, Switch};
-use crate::motion::Finger;
+use crate::motion::{Finger, topmost};
 use crate::rules as rule;
 use crate::trace::Trace;
 

@@ -9,7 +9,7 @@ use crate::SceneError;
 use crate::device::quantity_misfit;
 use crate::file::{Effect, Surface, Switch};
 use crate::load::LoadedScene;
-use crate::motion::{Course, Finger};
+use crate::motion::{Course, Finger, topmost};
 use crate::response::Inverse;
 
 /// Largest frequency ratio that a live motion is prepared for.
@@ -132,7 +132,7 @@ impl Call {
         if let Some(sentence) = misfit {
             return Err(SceneError::Quantity { sentence });
         }
-        let course = Course::of(scene);
+        let course = Course::new(&scene.scene.motion, scene.trace.as_ref());
         let duration_s = file
             .duration_s
             .or(scene.trace.as_ref().map(|t| t.duration_s()));
@@ -225,14 +225,6 @@ impl Call {
     pub(crate) fn ramp_frames(&self) -> u64 {
         (CONTACT_RAMP_S * self.rate_hz).ceil() as u64
     }
-}
-
-/// Index of the surface under the finger: the one on the highest layer.
-pub(crate) fn topmost(surfaces: &[Surface], finger: &Finger) -> Option<usize> {
-    let under = |i: &usize| finger.is_in(surfaces[*i].region.as_ref());
-    (0..surfaces.len())
-        .filter(under)
-        .max_by_key(|&i| surfaces[i].layer)
 }
 
 /// A surface played by one of its representations.

@@ -3,8 +3,8 @@
 use htex_format::{Findings, Rule};
 
 use crate::file::{Budget, Constant, DeviceChoice, Motion, Region, Scene, Surface};
+use crate::limits::Limits;
 use crate::rules as rule;
-use crate::validate::Limits;
 
 /// Largest absolute coordinate, mm: a kilometre.
 const FAR_MM: f64 = 1e6;

@@ -13,10 +13,11 @@ use htex_play::{Asset, Registry, VoiceOptions};
 use crate::check::check;
 use crate::device::{DeviceOverride, check_device, stem};
 use crate::file::{DeviceChoice, Motion, Scene, Surface, VERSION};
+use crate::limits::Limits;
 use crate::response::{self, Inverse, Response};
 use crate::rules as rule;
 use crate::trace::Trace;
-use crate::validate::{Limits, read_scene};
+use crate::validate::read_scene;
 
 /// Models and devices with which a scene is loaded.
 #[derive(Clone, Copy)]

@@ -2,8 +2,7 @@
 
 use htex_play::exploration::{MIN_SLIDING_MM_S, slides};
 
-use crate::file::{Constant, Motion, Region};
-use crate::load::LoadedScene;
+use crate::file::{Constant, Motion, Region, Surface};
 use crate::trace::Trace;
 
 /// Position, signed speed and force of the finger at one time. [`Self::motion`] is the part that a voice follows;
@@ -49,6 +48,14 @@ impl Finger {
     }
 }
 
+/// Index of the surface under the finger: the one on the highest layer.
+pub(crate) fn topmost(surfaces: &[Surface], finger: &Finger) -> Option<usize> {
+    let under = |i: &usize| finger.is_in(surfaces[*i].region.as_ref());
+    (0..surfaces.len())
+        .filter(under)
+        .max_by_key(|&i| surfaces[i].layer)
+}
+
 /// The motion of the finger over time.
 #[derive(Debug, Clone)]
 pub(crate) enum Course {
@@ -58,8 +65,8 @@ pub(crate) enum Course {
 }
 
 impl Course {
-    pub(crate) fn of(scene: &LoadedScene) -> Self {
-        match (&scene.scene.motion, &scene.trace) {
+    pub(crate) fn new(motion: &Motion, trace: Option<&Trace>) -> Self {
+        match (motion, trace) {
             (Motion::Constant(constant), _) => Self::Constant(*constant),
             (Motion::Trace(_), Some(trace)) => Self::Trace(trace.clone(), first_way(trace)),
             _ => Self::Live,

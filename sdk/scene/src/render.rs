@@ -2,11 +2,11 @@
 
 use crate::SceneError;
 use crate::ahead::Ahead;
-use crate::call::{Call, topmost};
+use crate::call::Call;
 use crate::file::{Effect, Surface};
 use crate::lane::{FingerOnPath, Lane};
 use crate::load::LoadedScene;
-use crate::motion::{Course, Finger};
+use crate::motion::{Course, Finger, topmost};
 use crate::path::Path;
 use crate::plan::{Mix, Plan, PlannedPart};
 use crate::stages::{Chain, Now, Place, Slot, StageRun, Told};
@@ -72,7 +72,7 @@ impl Renderer {
             .device
             .iter()
             .any(|(entry, _)| entry.effect == Effect::Contact);
-        let course = Course::of(scene);
+        let course = Course::new(&scene.scene.motion, scene.trace.as_ref());
         Ok(Self {
             surfaces: scene.scene.surfaces.clone(),
             path: Path::of(&course),

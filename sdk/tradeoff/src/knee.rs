@@ -3,7 +3,7 @@
 use htex_format::ErrorMeasure;
 use serde::Serialize;
 
-use crate::figure::{Against, Cost};
+use crate::against::{Against, Cost};
 use crate::front::front;
 use crate::point::Point;
 

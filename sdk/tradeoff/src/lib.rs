@@ -6,6 +6,7 @@
 #![forbid(unsafe_code)]
 
 mod accuracy;
+mod against;
 mod baseline;
 mod contender;
 mod csv;
@@ -20,6 +21,7 @@ mod measured;
 mod median;
 mod page;
 mod point;
+mod request;
 mod setting;
 mod settings;
 mod sound;
@@ -28,15 +30,17 @@ mod sweep;
 mod timing;
 mod tradeoff;
 
+pub use against::{Against, Cost};
 pub use csv::csv;
 pub use error::TradeoffError;
-pub use figure::{Against, Cost, figure};
+pub use figure::figure;
 pub use front::front;
 pub use journal::Journal;
 pub use knee::{Knee, knee};
 pub use page::page;
 pub use point::{Point, QUANTISED, RECORDING};
+pub use request::{Model, Request};
 pub use setting::Setting;
 pub use subject::Subject;
-pub use sweep::{LeftOut, Model, Progress, Request, Swept, sweep};
+pub use sweep::{LeftOut, Progress, Swept, sweep};
 pub use tradeoff::{Machine, Tradeoff};

@@ -6,8 +6,8 @@ use htex_host::{LoadedModel, Origin, Synthesis};
 
 use crate::contender::{Contender, Kind};
 use crate::point::{QUANTISED, RECORDING};
+use crate::request::{Model, Request};
 use crate::settings::{fit_settings, playing_settings};
-use crate::sweep::{Model, Request};
 use crate::{Machine, Setting, Subject, TradeoffError};
 
 /// Returns all settings of the table, and the baselines.

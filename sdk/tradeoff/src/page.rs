@@ -3,7 +3,8 @@
 use htex_format::ErrorMeasure;
 use htex_report::{Cell, HeatScale, Page, Row, Table, figures, list, paragraph};
 
-use crate::figure::{Cost, figure};
+use crate::against::Cost;
+use crate::figure::figure;
 use crate::knee::{Knee, along_front};
 use crate::{Point, QUANTISED, RECORDING, Tradeoff};
 

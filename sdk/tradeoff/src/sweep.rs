@@ -5,32 +5,15 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use htex_author::AuthorError;
-use htex_host::LoadedModel;
 use serde::Serialize;
 
 use crate::contender::Contender;
 use crate::journal::{Entry, Journal};
 use crate::lineup::{key, lineup};
 use crate::measured::Measured;
+use crate::request::Request;
 use crate::timing::{Timed, time};
 use crate::{Point, Subject, TradeoffError};
-
-/// A model, loaded in one or more ways: `built in`, `native`, `wasm`. The first is measured
-/// with all knobs, the others at their defaults.
-#[derive(Debug, Clone)]
-pub struct Model {
-    /// Name of a way of loading, and the model loaded so; at least one.
-    pub ways: Vec<(String, LoadedModel)>,
-}
-
-/// Options of a sweep.
-#[derive(Debug, Clone)]
-pub struct Request {
-    /// The models.
-    pub models: Vec<Model>,
-    /// Whether to vary one knob at a time with three values each, and to time fewer runs.
-    pub quick: bool,
-}
 
 /// A setting that could not be measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -4,7 +4,8 @@ use htex_format::ErrorMeasure;
 use serde::Serialize;
 
 use crate::Subject;
-use crate::figure::{Against, Cost, mark_front};
+use crate::against::{Against, Cost};
+use crate::figure::mark_front;
 use crate::knee::{Knee, along_front, knees};
 use crate::median::medians;
 use crate::point::Point;

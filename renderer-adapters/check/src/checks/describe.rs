@@ -66,14 +66,17 @@ pub(crate) fn endpoints(case: &Case) -> Found {
 /// The capabilities, with the given settings and with each profile.
 pub(crate) fn capabilities(case: &Case) -> Found {
     let can = case.capabilities()?;
-    can.check().map_err(Finding::failed)?;
+    let checked = can.check();
+    checked.map_err(|error| Finding::failed(error.to_string()))?;
     let profiles = &case.adapter.descriptor().profiles;
     for profile in profiles {
         let settings = case.settings_of(Some(&profile.name))?;
         let can = case.adapter.capabilities(&settings);
-        let checked = can.map_err(|e| e.to_string()).and_then(|can| can.check());
         let name = &profile.name;
-        checked.map_err(|what| Finding::failed(format!("profile `{name}`: {what}")))?;
+        let wrong =
+            |error: &dyn std::fmt::Display| Finding::failed(format!("profile `{name}`: {error}"));
+        let can = can.map_err(|error| wrong(&error))?;
+        can.check().map_err(|error| wrong(&error))?;
     }
     let unit = can.quantity.unit();
     let limit = can.limit.map_or("no limit".to_owned(), |limit| {

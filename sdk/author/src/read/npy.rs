@@ -17,7 +17,9 @@ enum NpyError {
     LongHeader(usize),
     #[error("the file ends at byte {0}, inside its header; copy it again")]
     EndInHeader(usize),
-    #[error("the header does not describe a plain array of at most two dimensions; save a (n,) or (n, 1..3) array")]
+    #[error(
+        "the header does not describe a plain array of at most two dimensions; save a (n,) or (n, 1..3) array"
+    )]
     NotPlain,
     #[error("not an NPY file that can be read: {0}")]
     Header(String),
@@ -131,7 +133,9 @@ fn deal<T: npyz::Deserialize>(
     to_f64: impl Fn(T) -> f64,
 ) -> Result<Vec<Vec<f64>>, NpyError> {
     let (order, items) = (npy.order(), npy.len());
-    let mut values = npy.data::<T>()?;
+    let mut values = npy
+        .data::<T>()
+        .map_err(|error| NpyError::Type(error.to_string()))?;
     let mut dealt = vec![Vec::new(); columns];
     let mut next = |held: u64| match values.next() {
         Some(Ok(value)) => Ok(to_f64(value)),

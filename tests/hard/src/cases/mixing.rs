@@ -5,7 +5,7 @@ use htex_dsp::line_spectrum::{
     line_spectral_frequencies_of_reflection,
 };
 use htex_dsp::linear_prediction::reflection_to_coefficients;
-use htex_dsp::noise::Uniform;
+use htex_dsp::uniform::Uniform;
 use htex_host::{Band, LoadedModel};
 
 use crate::seen::{fit_with, model, models, spectrum, told};

@@ -1,11 +1,12 @@
 //! What sound is made of.
 
 use htex_dsp::biquad::{Biquad, Cascade};
-use htex_dsp::noise::{GaussianNoise, Uniform};
+use htex_dsp::noise::GaussianNoise;
 use htex_dsp::peaks::{local_maxima, select_peaks};
 use htex_dsp::resample::Resampler;
 use htex_dsp::shaped_noise::ShapedNoise;
 use htex_dsp::sine_bank::{Sine, SineBank};
+use htex_dsp::uniform::Uniform;
 use htex_dsp::warp::Warp;
 use htex_host::Band;
 

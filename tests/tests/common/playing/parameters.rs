@@ -1,7 +1,7 @@
 //! Parameters of each model, drawn in ranges that cover its cases.
 
 use htex_dsp::linear_prediction::reflection_to_coefficients;
-use htex_dsp::noise::Uniform;
+use htex_dsp::uniform::Uniform;
 
 /// The flat array of a model for a condition of an asset.
 pub fn parameters(model: &str, asset: usize, condition: usize) -> Vec<f64> {

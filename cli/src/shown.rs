@@ -1,0 +1,10 @@
+//! Paths in messages.
+
+use std::path::Path;
+
+use htex_format::plain;
+
+/// A path with control characters escaped.
+pub(crate) fn shown(path: &Path) -> String {
+    plain(&path.display().to_string()).into_owned()
+}

@@ -52,11 +52,6 @@ pub fn analog_low_pass_magnitude(f_hz: f64, fc_hz: f64, order: usize) -> f64 {
     1.0 / crate::root::sqrt(1.0 + libm::pow(f_hz / fc_hz, 2.0 * order as f64))
 }
 
-/// Magnitude `|H|` of the analogue high-pass: `1 / sqrt(1 + (fc / f)^(2 order))`, 0 at 0 Hz.
-pub fn analog_high_pass_magnitude(f_hz: f64, fc_hz: f64, order: usize) -> f64 {
-    analog_low_pass_magnitude(fc_hz, f_hz, order)
-}
-
 fn design(kind: Kind, order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {
     if !(1..=MAX_ORDER).contains(&order) || !in_range(fc_hz, rate_hz) {
         return None;

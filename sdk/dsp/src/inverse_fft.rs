@@ -61,11 +61,7 @@ type Twiddles = Vec<(f32, f32)>;
 const LARGEST_RADIX: usize = 5;
 
 /// The smallest number from `least` on without a prime factor above 5.
-///
-/// ```
-/// assert_eq!(htex_dsp::inverse_fft::smooth_length(519), 540);
-/// ```
-pub fn smooth_length(least: usize) -> usize {
+pub(crate) fn smooth_length(least: usize) -> usize {
     let is_smooth = |n: &usize| factors(*n).is_some();
     (least.max(1)..).find(is_smooth).unwrap_or(least)
 }

@@ -122,26 +122,6 @@ pub fn levinson_durbin(autocorrelation: &[f64], order: usize) -> LinearPredictio
     stages.finish()
 }
 
-/// Autocorrelation lags `0..=order` from the power in equally spaced bins from 0 Hz to Nyquist inclusive:
-/// `r[m] = Σ P_k cos(π k m / (bins - 1))`.
-///
-/// The power is one-sided (a bin includes the power of its negative frequency), so `r[0]` is the total power.
-/// Bins outside the band have zero power, and the model approximates zero there.
-pub fn autocorrelation_from_power(power: &[f64], order: usize) -> Vec<f64> {
-    let nyquist = power.len().saturating_sub(1).max(1);
-    let cosine =
-        |turn: usize| crate::trig::cos(PI * (turn % (2 * nyquist)) as f64 / nyquist as f64);
-    (0..=order)
-        .map(|m| {
-            power
-                .iter()
-                .enumerate()
-                .map(|(k, p)| p * cosine(k * m))
-                .sum()
-        })
-        .collect()
-}
-
 /// Prediction coefficients from reflection coefficients.
 pub fn reflection_to_coefficients(reflection: &[f64]) -> Vec<f64> {
     let mut coefficients = alloc::vec![0.0; reflection.len()];
@@ -265,7 +245,7 @@ pub fn white_noise_gain(coefficients: &[f64]) -> Option<f64> {
 }
 
 /// RMS of the model's output for white noise of unit RMS: `sqrt(1 / Π(1 - k²))`.
-pub fn reflection_gain(reflection: &[f64]) -> f64 {
+pub(crate) fn reflection_gain(reflection: &[f64]) -> f64 {
     let error: f64 = reflection.iter().map(|k| (1.0 - k) * (1.0 + k)).product();
     1.0 / crate::root::sqrt(error)
 }
@@ -303,8 +283,8 @@ mod tests {
 
     #[test]
     fn a_pure_line_is_limited_and_reported() {
-        let power: Vec<f64> = (0..201).map(|k| if k == 40 { 1.0 } else { 0.0 }).collect();
-        let model = levinson_durbin(&autocorrelation_from_power(&power, 6), 6);
+        let lag = |m: usize| crate::trig::cos(PI * (40 * m) as f64 / 200.0);
+        let model = levinson_durbin(&(0..=6).map(lag).collect::<Vec<f64>>(), 6);
         assert_eq!(model.usable_stages, 2);
         assert!(model.adjusted && is_stable(&model.coefficients));
         let loudest = (1..200).max_by(|&a, &b| {

@@ -50,11 +50,6 @@ impl MelBank {
         &self.edges_hz
     }
 
-    /// The frequencies of the weights, hertz.
-    pub fn frequencies_hz(&self) -> &[f64] {
-        &self.frequencies_hz
-    }
-
     /// The weights.
     pub fn filters(&self) -> &TriangleBank {
         &self.bank

@@ -28,7 +28,7 @@ pub fn cos(x: f64) -> f64 {
 
 /// Sine and cosine of an angle in radians; NaN where it is not finite.
 #[inline(never)]
-pub fn sincos(x: f64) -> (f64, f64) {
+pub(crate) fn sincos(x: f64) -> (f64, f64) {
     let high = high_word(x);
     if high <= QUARTER_PI {
         let sine = if high < TINY { x } else { short_sine(x) };

@@ -9,8 +9,8 @@ use htex_dsp::lattice::AllPoleLattice;
 use htex_dsp::least_squares::PseudoInverse;
 use htex_dsp::line_spectrum::{from_line_spectral_frequencies, line_spectral_frequencies};
 use htex_dsp::linear_prediction::{
-    autocorrelation_from_power, coefficients_to_reflection, is_stable, levinson_durbin,
-    reflection_to_coefficients, stabilize, white_noise_gain,
+    coefficients_to_reflection, is_stable, levinson_durbin, reflection_to_coefficients, stabilize,
+    white_noise_gain,
 };
 use htex_dsp::peaks::{FREQUENCY_JND, select_peaks};
 use proptest::collection::vec;
@@ -32,6 +32,27 @@ fn power_spectrum() -> impl Strategy<Value = Vec<f64>> {
         0.0..1.0
     ];
     vec(bin, 2..300)
+}
+
+/// Autocorrelation lags `0..=order` from the power in equally spaced bins from 0 Hz to Nyquist inclusive:
+/// `r[m] = Σ P_k cos(π k m / (bins - 1))`.
+///
+/// The power is one-sided (a bin includes the power of its negative frequency), so `r[0]` is the total power.
+/// Bins outside the band have zero power, and the model approximates zero there.
+fn autocorrelation_from_power(power: &[f64], order: usize) -> Vec<f64> {
+    let nyquist = power.len().saturating_sub(1).max(1);
+    let cosine = |turn: usize| {
+        f64::cos(std::f64::consts::PI * (turn % (2 * nyquist)) as f64 / nyquist as f64)
+    };
+    (0..=order)
+        .map(|m| {
+            power
+                .iter()
+                .enumerate()
+                .map(|(k, p)| p * cosine(k * m))
+                .sum()
+        })
+        .collect()
 }
 
 proptest! {

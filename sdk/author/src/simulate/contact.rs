@@ -1,8 +1,9 @@
 //! Model of skin, rig and sensor: from the finger's motion to measured forces.
 
+use htex_dsp::biquad::{Biquad, Cascade};
 use htex_dsp::spectrum::Complex;
 
-use super::filters::Biquad;
+use super::filters::{low_pass, mode, response};
 use super::hand::Finger;
 use super::random::Random;
 use super::relief::Relief;
@@ -37,12 +38,12 @@ pub(super) struct Force {
 pub(super) struct Contact {
     friction: f64,
     relief: Relief,
-    skin: [Biquad; 2],
+    skin: [Cascade; 2],
 }
 
 impl Contact {
     pub(super) fn new(parameters: &Parameters, rate_hz: f64, random: &mut Random) -> Self {
-        let skin = Biquad::low_pass(SKIN.1, SKIN.0, rate_hz);
+        let skin = Cascade::new(&[low_pass(SKIN.1, SKIN.0, rate_hz)]);
         Self {
             friction: parameters.friction,
             relief: Relief::new(parameters, random),
@@ -75,59 +76,45 @@ impl Contact {
 
 /// The recording rig: a resonance in both lateral axes, and an anti-aliasing filter for low rates.
 pub(super) struct Rig {
-    mode: [Biquad; 2],
-    anti_alias: Option<[[Biquad; 2]; 3]>,
+    /// Sections of a lateral axis.
+    lateral: Vec<Biquad>,
+    x: Cascade,
+    y: Cascade,
+    z: Cascade,
 }
 
 impl Rig {
     /// Creates the rig. `inner_hz` is the rate of the physics, `rate_hz` the recording's, not above it.
     pub(super) fn new(inner_hz: f64, rate_hz: f64) -> Self {
         let (hz, damping, share) = MODE;
-        let mode = Biquad::mode(share, damping, hz, inner_hz);
         // Fourth-order Butterworth.
-        let low_pass =
-            [0.541_196_1, 1.306_563].map(|q| Biquad::low_pass(q, 0.4 * rate_hz, inner_hz));
-        let anti_alias =
-            (inner_hz > rate_hz).then(|| [low_pass.clone(), low_pass.clone(), low_pass]);
+        let anti_alias = match inner_hz > rate_hz {
+            true => [0.541_196_1, 1.306_563]
+                .map(|q| low_pass(q, 0.4 * rate_hz, inner_hz))
+                .to_vec(),
+            false => Vec::new(),
+        };
+        let lateral = [&[mode(share, damping, hz, inner_hz)], &anti_alias[..]].concat();
         Self {
-            mode: [mode.clone(), mode],
-            anti_alias,
+            x: Cascade::new(&lateral),
+            y: Cascade::new(&lateral),
+            z: Cascade::new(&anti_alias),
+            lateral,
         }
     }
 
     pub(super) fn tick(&mut self, force: Force) -> Force {
-        let [x, y] = &mut self.mode;
-        let force = Force {
-            x: x.tick(force.x),
-            y: y.tick(force.y),
-            z: force.z,
-        };
-        match &mut self.anti_alias {
-            None => force,
-            Some([x, y, z]) => Force {
-                x: chain(x, force.x),
-                y: chain(y, force.y),
-                z: chain(z, force.z),
-            },
+        Force {
+            x: self.x.tick(force.x),
+            y: self.y.tick(force.y),
+            z: self.z.tick(force.z),
         }
     }
-}
 
-impl Rig {
     /// Returns the rig's response to a lateral force at strictly increasing frequencies in hertz, for the rate
     /// it was created with.
     pub(super) fn response(&self, frequency_hz: Vec<f64>, inner_hz: f64) -> SetupResponse {
-        let lateral = &self.mode[..1];
-        let filters = || {
-            lateral
-                .iter()
-                .chain(self.anti_alias.iter().flat_map(|[x, ..]| x))
-        };
-        let at = |&hz: &f64| -> Complex<f64> {
-            filters()
-                .map(|filter| filter.response(hz, inner_hz))
-                .product()
-        };
+        let at = |&hz: &f64| response(&self.lateral, hz, inner_hz);
         let values: Vec<Complex<f64>> = frequency_hz.iter().map(at).collect();
         SetupResponse {
             magnitude: values.iter().map(|h| libm::hypot(h.re, h.im)).collect(),
@@ -135,10 +122,6 @@ impl Rig {
             frequency_hz,
         }
     }
-}
-
-fn chain(filters: &mut [Biquad], x: f64) -> f64 {
-    filters.iter_mut().fold(x, |x, filter| filter.tick(x))
 }
 
 /// Adds the sensor's noise and quantisation to a force.

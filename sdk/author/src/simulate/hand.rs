@@ -2,7 +2,9 @@
 
 use std::f64::consts::PI;
 
-use super::filters::{Biquad, OnePole};
+use htex_dsp::biquad::Cascade;
+
+use super::filters::{OnePole, band_pass};
 use super::random::Random;
 
 /// Length of a sweep, mm; the surface is 100 mm.
@@ -181,7 +183,7 @@ impl SlowNoise {
 
 /// Physiological tremor: noise of unit variance around 10 Hz.
 struct Tremor {
-    filter: Biquad,
+    filter: Cascade,
     gain: f64,
 }
 
@@ -189,7 +191,7 @@ impl Tremor {
     fn new(rate_hz: f64) -> Self {
         let power = PI * TREMOR_HZ / TREMOR_Q / rate_hz;
         Self {
-            filter: Biquad::band_pass(TREMOR_Q, TREMOR_HZ, rate_hz),
+            filter: Cascade::new(&[band_pass(TREMOR_Q, TREMOR_HZ, rate_hz)]),
             gain: 1.0 / libm::sqrt(power),
         }
     }

@@ -1,12 +1,11 @@
 //! Normal random numbers that are equal on every machine.
 
-use rand_core::{Rng, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus;
+use htex_dsp::uniform::Uniform;
 
 /// A stream of random numbers; streams of one seed with different labels are independent.
 #[derive(Debug, Clone)]
 pub(super) struct Random {
-    generator: Xoshiro256PlusPlus,
+    uniform: Uniform,
     spare: Option<f64>,
 }
 
@@ -15,14 +14,14 @@ impl Random {
         // The odd factor spreads small labels over all bits; the generator mixes further when it is seeded.
         let mixed = seed ^ label.wrapping_mul(0x9E37_79B9_7F4A_7C15);
         Self {
-            generator: Xoshiro256PlusPlus::seed_from_u64(mixed),
+            uniform: Uniform::new(mixed),
             spare: None,
         }
     }
 
     /// Returns a number uniform on [0, 1).
     pub(super) fn uniform(&mut self) -> f64 {
-        (self.generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+        self.uniform.next_unit()
     }
 
     /// Returns a number of zero mean and unit variance (Marsaglia's polar method).

@@ -9,7 +9,7 @@ use htex_tests::workspace;
 /// device families `adapter`.
 const ARROWS: &[(&str, &[&str])] = &[
     ("htex-dsp", &[]),
-    ("htex-model", &["htex-schema"]),
+    ("htex-model", &["htex-dsp", "htex-schema"]),
     ("htex-schema", &[]),
     ("htex-files", &[]),
     ("htex-native", &[]),

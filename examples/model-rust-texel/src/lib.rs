@@ -124,7 +124,7 @@ impl Model for Texel {
     }
 
     fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
-        economical_rate_hz(wanted_hz, band.edges().into())
+        economical_rate_hz(wanted_hz, band)
     }
 
     fn voice(

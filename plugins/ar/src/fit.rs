@@ -52,7 +52,7 @@ fn from_spectrum(input: &FitInput<'_>, order: usize, rate_hz: f64) -> Result<Fit
         coefficients: &coefficients,
         rate_hz,
     };
-    let level = filter.level(input.band.edges().into())?;
+    let level = filter.level(input.band)?;
     if coefficients != model.coefficients {
         // The error belongs to the filter before it was changed.
         return Ok(Fit {
@@ -101,7 +101,7 @@ fn from_signal(
         coefficients: &coefficients,
         rate_hz,
     };
-    filter.level(input.band.edges().into())?;
+    filter.level(input.band)?;
     Ok(Fit {
         parameters: flat(&coefficients, rate_hz),
         level_rms: recorded_level(input),

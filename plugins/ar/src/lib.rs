@@ -86,11 +86,10 @@ impl Model for Autoregression {
 
     fn magnitude(
         parameters: &Values<'_>,
-        band: htex_model::Band,
+        band: Band,
         frequency_hz: &[f64],
         magnitude: &mut [f64],
     ) -> Result<(), Error> {
-        let band: Band = band.edges().into();
         let filter = Filter::new(parameters)?;
         let level = filter.level(band)?;
         for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
@@ -146,17 +145,17 @@ impl Model for Autoregression {
         Ok(())
     }
 
-    fn voice_rate_hz(parameters: &Values<'_>, _: htex_model::Band, _: f64) -> f64 {
+    fn voice_rate_hz(parameters: &Values<'_>, _: Band, _: f64) -> f64 {
         parameters.scalar(MODEL_RATE)
     }
 
     fn voice(
         parameters: &Values<'_>,
-        band: htex_model::Band,
+        band: Band,
         rate_hz: f64,
         seed: u64,
     ) -> Result<Self::Voice, Error> {
-        AutoregressionVoice::new(parameters, band.edges().into(), rate_hz, seed)
+        AutoregressionVoice::new(parameters, band, rate_hz, seed)
     }
 }
 

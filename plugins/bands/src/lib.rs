@@ -133,7 +133,7 @@ impl Model for BandEnergies {
                 1 => Layout::Within,
                 _ => Layout::Edges,
             },
-            band: input.band.edges().into(),
+            band: input.band,
         };
         let power: Vec<f64> = input
             .magnitude
@@ -164,11 +164,10 @@ impl Model for BandEnergies {
 
     fn magnitude(
         parameters: &Values<'_>,
-        band: htex_model::Band,
+        band: Band,
         frequency_hz: &[f64],
         magnitude: &mut [f64],
     ) -> Result<(), Error> {
-        let band: Band = band.edges().into();
         let spectrum = Spectrum::new(parameters, band)?;
         for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
             *m = if band.contains(f) {
@@ -195,13 +194,13 @@ impl Model for BandEnergies {
         mix::linear(sets, weights, out)
     }
 
-    fn voice_rate_hz(_: &Values<'_>, band: htex_model::Band, wanted_hz: f64) -> f64 {
+    fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
         htex_shaped::voice_rate_hz(band, wanted_hz)
     }
 
     fn voice(
         parameters: &Values<'_>,
-        band: htex_model::Band,
+        band: Band,
         rate_hz: f64,
         seed: u64,
     ) -> Result<Self::Voice, Error> {

@@ -8,19 +8,12 @@ use htex_model::{Error, Fit, FitCondition, FitInput, Model, Numbers, Status, Val
 use htex_shaped::Curve;
 use proptest::prelude::*;
 
-fn model_band(band: Band) -> htex_model::Band {
-    htex_model::Band {
-        low_hz: band.low_hz,
-        high_hz: band.high_hz,
-    }
-}
-
 const WITHIN: f64 = 1.0;
 const EDGES: f64 = 2.0;
 
 fn fit(magnitude: &[f64], band: Band, options: [f64; 3]) -> Result<Fit, Error> {
     BandEnergies::fit(&FitInput {
-        band: model_band(band),
+        band,
         frequency_hz: &band.grid_hz(),
         magnitude,
         signal: &[],
@@ -36,7 +29,7 @@ fn shape(parameters: &[f64], band: Band) -> Vec<f64> {
     let values = Values::read(&descriptor, parameters).unwrap();
     let grid = band.grid_hz();
     let mut magnitude = vec![f64::NAN; grid.len()];
-    BandEnergies::magnitude(&values, model_band(band), &grid, &mut magnitude).unwrap();
+    BandEnergies::magnitude(&values, band, &grid, &mut magnitude).unwrap();
     magnitude
 }
 
@@ -266,7 +259,7 @@ fn interpolation_is_in_decibels_between_equal_bands() {
         &[3.0, 0.0, 20.0, 40.0, 1.0, 1.0],
         &[3.0, 0.0, 20.0, 40.0, 0.5, 0.0],
     ];
-    let band = model_band(Band::TACTILE);
+    let band = Band::TACTILE;
     let mut voice = BandEnergies::voice(&read(loud_low), band, 2_500.0, 1).unwrap();
     for other in others {
         let refused = mix(loud_low, other).unwrap_err();

@@ -105,7 +105,7 @@ impl Model for MelCepstrum {
                 "the spectrum is silent: all band energies are zero",
             ));
         }
-        let band: Band = input.band.edges().into();
+        let band: Band = input.band;
         let bands = input.options[BANDS_OPTION] as usize;
         let kept = (input.options[COEFFICIENTS_OPTION] as usize).min(bands);
         let inverse = Inverse::shared(bands, input.options[INVERSE_OPTION] as u8, band);
@@ -128,7 +128,7 @@ impl Model for MelCepstrum {
 
     fn magnitude(
         parameters: &Values<'_>,
-        band: htex_model::Band,
+        band: Band,
         frequency_hz: &[f64],
         magnitude: &mut [f64],
     ) -> Result<(), Error> {
@@ -150,13 +150,13 @@ impl Model for MelCepstrum {
         mix::linear(sets, weights, out)
     }
 
-    fn voice_rate_hz(_: &Values<'_>, band: htex_model::Band, wanted_hz: f64) -> f64 {
+    fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
         htex_shaped::voice_rate_hz(band, wanted_hz)
     }
 
     fn voice(
         parameters: &Values<'_>,
-        band: htex_model::Band,
+        band: Band,
         rate_hz: f64,
         seed: u64,
     ) -> Result<Self::Voice, Error> {

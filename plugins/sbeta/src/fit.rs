@@ -81,7 +81,7 @@ struct Fitted {
 
 impl Fitted {
     fn to(points: &[Peak], input: &FitInput<'_>) -> Self {
-        let band: Band = input.band.edges().into();
+        let band: Band = input.band;
         let bound = input.options[LOWER_BOUND].max(SMALLEST);
         let distance = match input.options[ERROR] as u32 {
             0 => Distance::Magnitude,
@@ -108,7 +108,7 @@ impl Fitted {
 /// As many bins as points are wanted, evenly spaced in log frequency, and the largest bin, which may be the
 /// only nonzero one.
 fn spread_bins(input: &FitInput<'_>, magnitude: &[f64]) -> Vec<Peak> {
-    let band: Band = input.band.edges().into();
+    let band: Band = input.band;
     let ratio = band.high_hz / band.low_hz;
     let (count, last) = (input.options[POINTS] as usize, magnitude.len() - 1);
     let mut bins: Vec<usize> = (0..count)

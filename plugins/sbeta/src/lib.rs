@@ -76,7 +76,7 @@ impl Model for SpectralBeta {
 
     fn magnitude(
         parameters: &Values<'_>,
-        band: htex_model::Band,
+        band: Band,
         frequency_hz: &[f64],
         magnitude: &mut [f64],
     ) -> Result<(), Error> {
@@ -91,13 +91,13 @@ impl Model for SpectralBeta {
         mix::linear(sets, weights, out)
     }
 
-    fn voice_rate_hz(_: &Values<'_>, band: htex_model::Band, wanted_hz: f64) -> f64 {
+    fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
         htex_shaped::voice_rate_hz(band, wanted_hz)
     }
 
     fn voice(
         parameters: &Values<'_>,
-        band: htex_model::Band,
+        band: Band,
         rate_hz: f64,
         seed: u64,
     ) -> Result<Self::Voice, Error> {

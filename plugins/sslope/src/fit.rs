@@ -40,7 +40,7 @@ pub(crate) fn fit(input: &FitInput<'_>) -> Result<Fit, Error> {
         order(slope(&points[peak..], 0).map(|s| -s)),
     );
     let peak_hz = input.frequency_hz[peak];
-    let shape = Shape::of(peak_hz, orders, input.band.edges().into())?;
+    let shape = Shape::of(peak_hz, orders, input.band)?;
     Ok(Fit {
         parameters: vec![peak_hz, orders.0, orders.1],
         // Magnitude of the recording at the peak.

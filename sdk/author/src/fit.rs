@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
+use htex_dsp::Band;
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
 use htex_format::{
     Asset, AtCondition, Condition, FIRST_VERSION, Manifest, Provenance, Quality, Quantity,
@@ -207,9 +208,7 @@ fn assemble(
     fitted: Vec<FittedModel>,
 ) -> Asset {
     // `group_takes` returns one spectrum per condition, all with the same band and quantity.
-    let band = spectra
-        .first()
-        .map_or((20.0, 1000.0), |s| (s.band.low_hz, s.band.high_hz));
+    let band = spectra.first().map_or(Band::TACTILE, |s| s.band);
     let quantity = spectra.first().map_or(Quantity::default(), |s| s.quantity);
     let (representations, parameters) = fitted
         .into_iter()
@@ -230,10 +229,7 @@ fn assemble(
             finger: None,
             quantity,
             unit: quantity.unit().to_owned(),
-            band: htex_format::Band {
-                low_hz: band.0,
-                high_hz: band.1,
-            },
+            band,
             provenance,
             conditions,
             representations,

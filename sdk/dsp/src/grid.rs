@@ -21,6 +21,11 @@ impl Band {
         high_hz: 1000.0,
     };
 
+    /// Both edges, hertz.
+    pub fn edges(self) -> (f64, f64) {
+        (self.low_hz, self.high_hz)
+    }
+
     /// Grid index (multiples of [`GRID_HZ`]) of the lowest bin in the band.
     pub fn first_bin(&self) -> usize {
         libm::ceil(self.low_hz / GRID_HZ - 1e-9) as usize

@@ -6,28 +6,21 @@ use crate::check_plugins::check_plugins;
 use crate::check_representation::{check_representations, is_size};
 use crate::doi::check_doi;
 use crate::license::check_license;
-use crate::manifest::{Band, Condition, Manifest};
+use htex_model::Band;
+
+use crate::manifest::{Condition, Manifest};
 use crate::pointer::escape;
 use crate::report::Findings;
 use crate::rules as rule;
 
-/// Spacing of the frequency grid of spectra, hertz.
-const GRID_HZ: f64 = 5.0;
-/// Tolerance of the band's edges, in grid steps.
-const EDGE: f64 = 1e-9;
 /// Highest upper edge of a band, hertz.
 const HIGHEST_HZ: f64 = 20_000.0;
 
-impl Band {
-    /// Counts the multiples of 5 Hz in the band, edges included: 197 for 20 to 1000 Hz. Returns `None`
-    /// for an invalid band.
-    pub(crate) fn grid_points(&self) -> Option<usize> {
-        let sane = 0.0 < self.low_hz && self.low_hz < self.high_hz && self.high_hz <= HIGHEST_HZ;
-        let first = (self.low_hz / GRID_HZ - EDGE).ceil();
-        let last = (self.high_hz / GRID_HZ + EDGE).floor();
-        // A band up to 1e300 Hz has more points than `usize` holds, so only valid bands are counted.
-        (sane && first <= last).then(|| (last - first) as usize + 1)
-    }
+/// Counts the multiples of 5 Hz in the band, edges included: 197 for 20 to 1000 Hz. Returns `None` for an invalid band.
+pub(crate) fn grid_points(band: Band) -> Option<usize> {
+    // Only valid bands are counted: one up to 1e300 Hz has more points than `usize` holds.
+    let valid = 0.0 < band.low_hz && band.low_hz < band.high_hz && band.high_hz <= HIGHEST_HZ;
+    valid.then(|| band.bins()).filter(|points| *points > 0)
 }
 
 /// Adds a finding for each rule that the manifest breaks by itself.
@@ -35,7 +28,7 @@ pub(crate) fn check_manifest(manifest: &Manifest, findings: &mut Findings) {
     check_words(manifest, findings);
     let band = manifest.band;
     findings.require(
-        band.grid_points().is_some(),
+        grid_points(band).is_some(),
         rule::BAND_INVALID,
         "/band",
         || {

@@ -9,6 +9,7 @@ use zip::{CompressionMethod, DateTime, System, ZipWriter};
 
 use crate::archive::too_large;
 use crate::check_manifest::check_manifest;
+use crate::check_manifest::grid_points;
 use crate::entries::{MANIFEST, MEDIA_TYPE, MIMETYPE};
 use crate::limits::Limits;
 use crate::report::Findings;
@@ -132,7 +133,7 @@ impl Asset {
             self.manifest.conditions.len(),
             spectra.len(),
         )?;
-        let points = self.manifest.band.grid_points().unwrap_or(0);
+        let points = grid_points(self.manifest.band).unwrap_or(0);
         for spectrum in spectra {
             count("magnitudes of a reference spectrum", points, spectrum.len())?;
         }

@@ -56,12 +56,13 @@ pub use error::{ReadError, WriteError, summary};
 pub use fields::{FieldMismatch, FieldOrder, KnownModel, match_fields, stored_unit};
 pub use finding::{Finding, Severity};
 pub use htex_files::{remove_unfinished, replace_file, write_file};
+pub use htex_model::Band;
 pub use json_text::{JsonError, parse_json};
 pub use license::check_license;
 pub use limits::Limits;
 pub use manifest::{
-    AtCondition, Band, Condition, FIRST_VERSION, Field, Manifest, Plugin, Provenance, Quality,
-    Reference, Representation, SAME_CONDITION, Signature, Source, Steps, Store, VERSION,
+    AtCondition, Condition, FIRST_VERSION, Field, Manifest, Plugin, Provenance, Quality, Reference,
+    Representation, SAME_CONDITION, Signature, Source, Steps, Store, VERSION,
 };
 pub use measure::ErrorMeasure;
 pub use page::{manifest_schema, report_schema, rules_page, validation_page};

@@ -5,6 +5,7 @@
 
 use std::collections::BTreeMap;
 
+use htex_model::Band;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -61,6 +62,8 @@ pub struct Manifest {
     /// Unit of the samples: [`Quantity::unit`].
     pub unit: String,
     /// Frequency band of the spectra.
+    #[serde(with = "BandText")]
+    #[schemars(with = "BandText")]
     pub band: Band,
     /// How the asset was made.
     #[serde(default, skip_serializing_if = "Provenance::is_empty")]
@@ -107,14 +110,16 @@ impl Manifest {
 }
 
 /// A frequency band, edges included.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Band {
+#[derive(Serialize, Deserialize, JsonSchema)]
+#[serde(remote = "Band")]
+#[schemars(rename = "Band")]
+struct BandText {
     /// Lower edge, hertz, above 0.
     #[schemars(range(max = 20000), extend("exclusiveMinimum" = 0))]
-    pub low_hz: f64,
+    low_hz: f64,
     /// Upper edge, hertz, above the lower.
     #[schemars(range(max = 20000), extend("exclusiveMinimum" = 0))]
-    pub high_hz: f64,
+    high_hz: f64,
 }
 
 /// How an asset was made.

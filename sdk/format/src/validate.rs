@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::archive::Archive;
 use crate::block::{self, BlockError};
-use crate::check_manifest::check_manifest;
+use crate::check_manifest::{check_manifest, grid_points};
 use crate::entries::{MANIFEST, MEDIA_TYPE, MIMETYPE};
 use crate::fields::{KnownModel, check_fields};
 use crate::json_text;
@@ -177,7 +177,7 @@ impl<'a> Payload<'a, '_> {
     fn reference(&mut self, manifest: &Manifest) -> Option<Vec<Vec<f32>>> {
         let reference = manifest.reference.as_ref()?;
         let bytes = self.entry(&reference.file, "/reference/file".to_owned())?;
-        let points = manifest.band.grid_points()?;
+        let points = grid_points(manifest.band)?;
         let conditions = manifest.conditions.len();
         let values = points.saturating_mul(conditions);
         if values.saturating_mul(size_of::<f32>()) != bytes.len() {

@@ -225,7 +225,7 @@ impl LoadedModel {
             return Err(self.error(call, Status::InvalidArgument, what));
         }
         let raw = RawFit {
-            band: abi_band(request.band),
+            band: request.band,
             frequency_hz: request.frequency_hz,
             magnitude: request.magnitude,
             signal: request.signal,
@@ -256,7 +256,7 @@ impl LoadedModel {
     ) -> Result<Vec<f64>, HostError> {
         let call = "magnitude";
         let mut magnitude = vec![f64::NAN; frequency_hz.len()];
-        let (raw, band) = (&self.raw, abi_band(band));
+        let (raw, band) = (&self.raw, band);
         self.check(
             call,
             raw.magnitude(parameters, band, frequency_hz, &mut magnitude),
@@ -307,7 +307,7 @@ impl LoadedModel {
         band: Band,
         wanted_hz: f64,
     ) -> Result<f64, HostError> {
-        let rate_hz = self.raw.voice_rate(parameters, abi_band(band), wanted_hz);
+        let rate_hz = self.raw.voice_rate(parameters, band, wanted_hz);
         if rate_hz < 0.0 {
             self.check("voice_rate", rate_hz as i64)?;
         }
@@ -328,7 +328,6 @@ impl LoadedModel {
         rate_hz: f64,
         seed: u64,
     ) -> Result<ModelVoice, HostError> {
-        let band = abi_band(band);
         match self.raw.voice_new(parameters, band, rate_hz, seed) {
             Ok(voice) => Ok(ModelVoice::new(self.clone(), voice)),
             Err(status) => {
@@ -410,13 +409,6 @@ impl LoadedModel {
             call,
             what,
         }
-    }
-}
-
-fn abi_band(band: Band) -> htex_model::Band {
-    htex_model::Band {
-        low_hz: band.low_hz,
-        high_hz: band.high_hz,
     }
 }
 

@@ -18,7 +18,7 @@ struct Plateau;
 struct Edges {
     low_hz: f64,
     high_hz: f64,
-    band: htex_dsp::Band,
+    band: Band,
 }
 
 impl Model for Plateau {
@@ -88,7 +88,7 @@ impl Model for Plateau {
 }
 
 impl Curve for Edges {
-    fn new(parameters: &Values<'_>, band: htex_dsp::Band) -> Result<Self, Error> {
+    fn new(parameters: &Values<'_>, band: Band) -> Result<Self, Error> {
         let mut edges = Self {
             low_hz: 0.0,
             high_hz: 0.0,

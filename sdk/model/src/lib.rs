@@ -56,6 +56,7 @@ pub use descriptor::descriptor_schema;
 #[cfg(feature = "host")]
 pub use descriptor::{Descriptor, Field, FitOption};
 pub use error::{Error, Status};
+pub use htex_dsp::Band;
 pub use id::is_model_id;
 pub use motion::{FitCondition, Motion, MotionVoice};
 pub use numbers::Numbers;
@@ -63,5 +64,5 @@ pub use numbers::Numbers;
 pub use platform::Lock;
 pub use static_descriptor::{StaticDescriptor, StaticField, StaticOption};
 pub use store::{Kind, Store};
-pub use traits::{Band, Fit, FitInput, Model, Voice};
+pub use traits::{Fit, FitInput, Model, Voice};
 pub use values::{Fields, Range, Values, flatten};

@@ -2,23 +2,9 @@
 
 use alloc::vec::Vec;
 
+use htex_dsp::Band;
+
 use crate::{Error, FitCondition, Numbers, StaticDescriptor, Values};
-
-/// The band a spectrum covers, inclusive, hertz: `0 < low_hz < high_hz`, both finite.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Band {
-    /// Lower edge, hertz.
-    pub low_hz: f64,
-    /// Upper edge, hertz.
-    pub high_hz: f64,
-}
-
-impl Band {
-    /// Both edges, hertz.
-    pub fn edges(self) -> (f64, f64) {
-        (self.low_hz, self.high_hz)
-    }
-}
 
 /// Input of a fit.
 #[derive(Debug, Clone, Copy)]

@@ -124,11 +124,7 @@ impl Asset {
 
     /// Returns the asset's band.
     pub fn band(&self) -> Band {
-        let band = self.data.manifest.band;
-        Band {
-            low_hz: band.low_hz,
-            high_hz: band.high_hz,
-        }
+        self.data.manifest.band
     }
 
     /// Makes a voice.

@@ -53,11 +53,10 @@ pub trait Curve: Sized + Send + 'static {
 /// If the parameters describe no spectrum.
 pub fn magnitude<C: Curve>(
     parameters: &Values<'_>,
-    band: htex_model::Band,
+    band: Band,
     frequency_hz: &[f64],
     magnitude: &mut [f64],
 ) -> Result<(), Error> {
-    let band: Band = band.edges().into();
     let curve = C::new(parameters, band)?;
     let level = curve.level();
     for (m, &f) in magnitude.iter_mut().zip(frequency_hz) {
@@ -72,8 +71,8 @@ pub fn magnitude<C: Curve>(
 
 /// Rate in hertz at which a shaped voice renders: an integer fraction of `wanted_hz`, as low as the band
 /// allows.
-pub fn voice_rate_hz(band: htex_model::Band, wanted_hz: f64) -> f64 {
-    economical_rate_hz(wanted_hz, band.edges().into())
+pub fn voice_rate_hz(band: Band, wanted_hz: f64) -> f64 {
+    economical_rate_hz(wanted_hz, band)
 }
 
 /// Random-phase noise with the spectrum of a curve.
@@ -89,11 +88,10 @@ impl<C: Curve> ShapedVoice<C> {
     /// If the parameters describe no spectrum.
     pub fn new(
         parameters: &Values<'_>,
-        band: htex_model::Band,
+        band: Band,
         rate_hz: f64,
         seed: u64,
     ) -> Result<Self, Error> {
-        let band = band.edges().into();
         let mut curve = C::new(parameters, band)?;
         let mut noise = ShapedNoise::new(rate_hz, band, seed);
         noise.start(|_, f| curve.at(f));

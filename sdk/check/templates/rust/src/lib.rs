@@ -64,7 +64,7 @@ impl Model for {{TYPE}} {
                 "the spectrum is silent, so the model cannot be fitted",
             ));
         }
-        let band: Band = input.band.edges().into();
+        let band: Band = input.band;
         let relative: Vec<f64> = input.magnitude.iter().map(|m| m / largest).collect();
         let shape = best_shape(input.frequency_hz, &relative, band);
         let scale = scale(input.frequency_hz, &relative, &shape);
@@ -77,7 +77,7 @@ impl Model for {{TYPE}} {
 
     fn magnitude(
         parameters: &Values<'_>,
-        band: htex_model::Band,
+        band: Band,
         frequency_hz: &[f64],
         magnitude: &mut [f64],
     ) -> Result<(), Error> {
@@ -92,13 +92,13 @@ impl Model for {{TYPE}} {
         mix::linear(sets, weights, out)
     }
 
-    fn voice_rate_hz(_: &Values<'_>, band: htex_model::Band, wanted_hz: f64) -> f64 {
+    fn voice_rate_hz(_: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
         htex_shaped::voice_rate_hz(band, wanted_hz)
     }
 
     fn voice(
         parameters: &Values<'_>,
-        band: htex_model::Band,
+        band: Band,
         rate_hz: f64,
         seed: u64,
     ) -> Result<Self::Voice, Error> {

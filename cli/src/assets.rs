@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use htex_format::{AtCondition, Condition, Field, Quality, Quantity, Representation, plain};
+use htex_format::{AtCondition, Condition, Quality, Quantity, Representation, StoredField, plain};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -307,7 +307,7 @@ impl RepresentationSummary {
 }
 
 impl AtSummary {
-    fn new(at: &AtCondition, fields: &[Field], flat: &[f64]) -> Self {
+    fn new(at: &AtCondition, fields: &[StoredField], flat: &[f64]) -> Self {
         Self {
             condition: at.condition,
             parameters: named_parameters(fields, flat),
@@ -318,7 +318,7 @@ impl AtSummary {
 }
 
 /// A flat array of parameters by the names of its fields.
-pub(crate) fn named_parameters(fields: &[Field], mut flat: &[f64]) -> Map<String, Value> {
+pub(crate) fn named_parameters(fields: &[StoredField], mut flat: &[f64]) -> Map<String, Value> {
     let mut named = Map::new();
     for field in fields {
         let value = if field.list {

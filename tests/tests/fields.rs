@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use htex::{Asset, Band, Error, Registry, VoiceOptions};
-use htex_format::{Field, FieldMismatch, Store, match_fields};
+use htex_format::{FieldMismatch, StoredAs, StoredField, match_fields};
 use htex_model::{Descriptor, StaticDescriptor, StaticField};
 use htex_tests::workspace;
 
@@ -76,11 +76,11 @@ fn a_field_with_a_default_may_be_absent() {
             StaticField::scalar("gain", "1", (0.0, 1.0), "Gain."),
         ]);
     let model = Descriptor::from(&MODEL);
-    let field = |name: &str, unit: &str, list| Field {
+    let field = |name: &str, unit: &str, list| StoredField {
         name: name.to_owned(),
         unit: unit.to_owned(),
         list,
-        store: Store::F64,
+        store: StoredAs::F64,
     };
     let stored = [field("gain", "", false), field("line_hz", "Hz", true)];
     let order = match_fields(&stored, &model).unwrap();

@@ -1,11 +1,11 @@
 //! Conversion of a model's parameter fields to those of an asset.
 
-use htex_format::{Field, Steps, Store, stored_unit};
+use htex_format::{Steps, StoredAs, StoredField, stored_unit};
 use htex_host::{Descriptor, Kind};
 
 /// Returns the asset's fields for a model.
-pub fn stored_fields(descriptor: &Descriptor) -> Vec<Field> {
-    let field = |f: &htex_host::Field| Field {
+pub fn stored_fields(descriptor: &Descriptor) -> Vec<StoredField> {
+    let field = |f: &htex_host::Field| StoredField {
         name: f.name.clone(),
         unit: stored_unit(&f.unit).to_owned(),
         list: matches!(f.kind, Kind::List { .. }),
@@ -14,13 +14,15 @@ pub fn stored_fields(descriptor: &Descriptor) -> Vec<Field> {
     descriptor.fields.iter().map(field).collect()
 }
 
-fn store(store: htex_host::Store) -> Store {
+fn store(store: htex_host::Store) -> StoredAs {
     let steps = |scale, offset, log| Steps { scale, offset, log };
     match store {
-        htex_host::Store::F64 => Store::F64,
-        htex_host::Store::F32 => Store::F32,
-        htex_host::Store::U16 { scale, offset, log } => Store::U16(steps(scale, offset, log)),
-        htex_host::Store::U8 { scale, offset, log } => Store::U8(steps(scale, offset, log)),
-        htex_host::Store::Packed { scale, offset, log } => Store::Packed(steps(scale, offset, log)),
+        htex_host::Store::F64 => StoredAs::F64,
+        htex_host::Store::F32 => StoredAs::F32,
+        htex_host::Store::U16 { scale, offset, log } => StoredAs::U16(steps(scale, offset, log)),
+        htex_host::Store::U8 { scale, offset, log } => StoredAs::U8(steps(scale, offset, log)),
+        htex_host::Store::Packed { scale, offset, log } => {
+            StoredAs::Packed(steps(scale, offset, log))
+        }
     }
 }

@@ -8,7 +8,7 @@ use bincode::config::{Configuration, standard};
 use bincode::{Decode, Encode};
 
 use crate::packed::{most_steps, pack, packed_bytes, unpack};
-use crate::{Field, Steps, Store, WriteError};
+use crate::{Steps, StoredAs, StoredField, WriteError};
 
 const CONFIGURATION: Configuration = standard();
 
@@ -36,14 +36,17 @@ pub(crate) enum BlockError {
 }
 
 /// Encodes the block of a representation from one flat array per condition.
-pub(crate) fn encode(fields: &[Field], conditions: &[Vec<f64>]) -> Result<Vec<u8>, WriteError> {
+pub(crate) fn encode(
+    fields: &[StoredField],
+    conditions: &[Vec<f64>],
+) -> Result<Vec<u8>, WriteError> {
     let mut out = Vec::new();
     for flat in conditions {
         for (field, values) in split(fields, flat)? {
             if field.list {
                 put(&mut out, values.len() as u64)?;
             }
-            if let Store::Packed(_) = field.store {
+            if let StoredAs::Packed(_) = field.store {
                 out.extend(pack(&steps_of(field, values)?));
                 continue;
             }
@@ -57,7 +60,7 @@ pub(crate) fn encode(fields: &[Field], conditions: &[Vec<f64>]) -> Result<Vec<u8
 
 /// Decodes a block into flat arrays. `values` is the number of values that may still be read; it is decremented.
 pub(crate) fn decode(
-    fields: &[Field],
+    fields: &[StoredField],
     conditions: usize,
     bytes: &[u8],
     values: &mut usize,
@@ -81,14 +84,14 @@ pub(crate) fn decode(
 ///
 /// # Errors
 /// As [`round_parameters`].
-pub fn stored_bytes(fields: &[Field], flat: &[f64]) -> Result<usize, WriteError> {
+pub fn stored_bytes(fields: &[StoredField], flat: &[f64]) -> Result<usize, WriteError> {
     let mut bytes = 0;
     for (field, values) in split(fields, flat)? {
         if field.list {
             bytes += shortest(values.len() as u64);
         }
         bytes += match field.store {
-            Store::Packed(_) => packed_bytes(&steps_of(field, values)?),
+            StoredAs::Packed(_) => packed_bytes(&steps_of(field, values)?),
             store => values.len() * store.bytes(),
         };
     }
@@ -96,7 +99,7 @@ pub fn stored_bytes(fields: &[Field], flat: &[f64]) -> Result<usize, WriteError>
 }
 
 /// Quantises a packed list into steps.
-fn steps_of(field: &Field, values: &[f64]) -> Result<Vec<u8>, WriteError> {
+fn steps_of(field: &StoredField, values: &[f64]) -> Result<Vec<u8>, WriteError> {
     let step = |(index, &value): (usize, &f64)| match quantise(field, index, value)? {
         Number::U8(q) => Ok(q),
         // `quantise` returns a byte for this store.
@@ -114,16 +117,16 @@ fn steps_of(field: &Field, values: &[f64]) -> Result<Vec<u8>, WriteError> {
 /// [`WriteError::Layout`] when `flat` does not follow `fields`.
 ///
 /// ```
-/// use htex_format::{Field, Steps, Store, round_parameters};
+/// use htex_format::{StoredField, Steps, StoredAs, round_parameters};
 ///
 /// let steps = Steps { scale: 0.5, offset: 20.0, log: false };
-/// let store = Store::U8(steps);
-/// let fields = [Field { name: "peak_hz".to_owned(), unit: "Hz".to_owned(), list: true, store }];
+/// let store = StoredAs::U8(steps);
+/// let fields = [StoredField { name: "peak_hz".to_owned(), unit: "Hz".to_owned(), list: true, store }];
 /// // A list of two values.
 /// assert_eq!(round_parameters(&fields, &[2.0, 30.2, 40.9])?, [2.0, 30.0, 41.0]);
 /// # Ok::<(), htex_format::WriteError>(())
 /// ```
-pub fn round_parameters(fields: &[Field], flat: &[f64]) -> Result<Vec<f64>, WriteError> {
+pub fn round_parameters(fields: &[StoredField], flat: &[f64]) -> Result<Vec<f64>, WriteError> {
     let mut rounded = Vec::with_capacity(flat.len());
     for (field, values) in split(fields, flat)? {
         if field.list {
@@ -138,9 +141,9 @@ pub fn round_parameters(fields: &[Field], flat: &[f64]) -> Result<Vec<f64>, Writ
 
 /// Splits a flat array into the values of each field, without the lengths of lists.
 pub(crate) fn split<'a>(
-    fields: &'a [Field],
+    fields: &'a [StoredField],
     flat: &'a [f64],
-) -> Result<Vec<(&'a Field, &'a [f64])>, WriteError> {
+) -> Result<Vec<(&'a StoredField, &'a [f64])>, WriteError> {
     let layout = |problem: String| Err(WriteError::Layout { problem });
     let mut rest = flat;
     let mut parts = Vec::with_capacity(fields.len());
@@ -177,20 +180,20 @@ enum Number {
     U8(u8),
 }
 
-fn quantise(field: &Field, index: usize, value: f64) -> Result<Number, WriteError> {
+fn quantise(field: &StoredField, index: usize, value: f64) -> Result<Number, WriteError> {
     let (number, low, high) = match field.store {
-        Store::F64 => (Some(Number::F64(value)), f64::MIN, f64::MAX),
-        Store::F32 => {
+        StoredAs::F64 => (Some(Number::F64(value)), f64::MIN, f64::MAX),
+        StoredAs::F32 => {
             let inside = (value as f32)
                 .is_finite()
                 .then_some(Number::F32(value as f32));
             (inside, f64::from(f32::MIN), f64::from(f32::MAX))
         }
-        Store::U16(steps) => {
+        StoredAs::U16(steps) => {
             let q = step(steps, value, f64::from(u16::MAX)).map(|q| Number::U16(q as u16));
             (q, steps.value(0), steps.value(u16::MAX))
         }
-        Store::U8(steps) | Store::Packed(steps) => {
+        StoredAs::U8(steps) | StoredAs::Packed(steps) => {
             let q = step(steps, value, f64::from(u8::MAX)).map(|q| Number::U8(q as u8));
             (q, steps.value(0), steps.value(u8::MAX.into()))
         }
@@ -224,12 +227,12 @@ impl Steps {
     }
 }
 
-fn value_of(number: Number, store: Store) -> f64 {
+fn value_of(number: Number, store: StoredAs) -> f64 {
     match (number, store) {
         (Number::F64(x), _) => x,
         (Number::F32(x), _) => f64::from(x),
-        (Number::U16(q), Store::U16(steps)) => steps.value(q),
-        (Number::U8(q), Store::U8(steps) | Store::Packed(steps)) => steps.value(q.into()),
+        (Number::U16(q), StoredAs::U16(steps)) => steps.value(q),
+        (Number::U8(q), StoredAs::U8(steps) | StoredAs::Packed(steps)) => steps.value(q.into()),
         (Number::U16(q), _) => f64::from(q),
         (Number::U8(q), _) => f64::from(q),
     }
@@ -261,7 +264,11 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn condition(&mut self, fields: &[Field], condition: usize) -> Result<Vec<f64>, BlockError> {
+    fn condition(
+        &mut self,
+        fields: &[StoredField],
+        condition: usize,
+    ) -> Result<Vec<f64>, BlockError> {
         let mut flat = Vec::new();
         for field in fields {
             let count = if field.list {
@@ -276,7 +283,7 @@ impl Reader<'_> {
                 .left
                 .checked_sub(count)
                 .ok_or(BlockError::TooMany(self.limit))?;
-            if let Store::Packed(steps) = field.store {
+            if let StoredAs::Packed(steps) = field.store {
                 let all = self.steps(field, condition, count)?;
                 flat.extend(all.into_iter().map(|q| steps.value(q.into())));
                 continue;
@@ -301,7 +308,7 @@ impl Reader<'_> {
     /// Reads the steps of a packed list. The manifest check has made sure that every step's value is finite.
     fn steps(
         &mut self,
-        field: &Field,
+        field: &StoredField,
         condition: usize,
         count: usize,
     ) -> Result<Vec<u8>, BlockError> {
@@ -314,7 +321,7 @@ impl Reader<'_> {
     }
 
     /// Reads a list's length, at most what the remaining bytes can hold.
-    fn length(&mut self, field: &Field, condition: usize) -> Result<usize, BlockError> {
+    fn length(&mut self, field: &StoredField, condition: usize) -> Result<usize, BlockError> {
         let before = self.bytes.len();
         let length = self
             .take::<u64>()
@@ -326,7 +333,7 @@ impl Reader<'_> {
             });
         }
         let most = match field.store {
-            Store::Packed(_) => most_steps(self.bytes.len()),
+            StoredAs::Packed(_) => most_steps(self.bytes.len()),
             store => self.bytes.len() / store.bytes(),
         };
         match usize::try_from(length) {
@@ -335,12 +342,12 @@ impl Reader<'_> {
         }
     }
 
-    fn number(&mut self, store: Store) -> Option<f64> {
+    fn number(&mut self, store: StoredAs) -> Option<f64> {
         let number = match store {
-            Store::F64 => Number::F64(self.take()?),
-            Store::F32 => Number::F32(self.take()?),
-            Store::U16(_) => Number::U16(u16::from_le_bytes(self.take()?)),
-            Store::U8(_) | Store::Packed(_) => Number::U8(self.take()?),
+            StoredAs::F64 => Number::F64(self.take()?),
+            StoredAs::F32 => Number::F32(self.take()?),
+            StoredAs::U16(_) => Number::U16(u16::from_le_bytes(self.take()?)),
+            StoredAs::U8(_) | StoredAs::Packed(_) => Number::U8(self.take()?),
         };
         Some(value_of(number, store))
     }
@@ -352,7 +359,7 @@ impl Reader<'_> {
     }
 }
 
-impl Store {
+impl StoredAs {
     /// Returns the bytes of a stored number. A packed number has no fixed size.
     fn bytes(self) -> usize {
         match self {
@@ -374,7 +381,7 @@ fn shortest(length: u64) -> usize {
     }
 }
 
-fn truncated(field: &Field, condition: usize) -> BlockError {
+fn truncated(field: &StoredField, condition: usize) -> BlockError {
     BlockError::Truncated {
         field: field.name.clone(),
         condition,

@@ -5,7 +5,7 @@ use std::fmt::Arguments;
 
 use htex_model::is_model_id;
 
-use crate::manifest::{AtCondition, Manifest, Quality, Representation, Steps, Store};
+use crate::manifest::{AtCondition, Manifest, Quality, Representation, Steps, StoredAs};
 use crate::quantity::Quantity;
 use crate::report::Findings;
 use crate::rules as rule;
@@ -76,10 +76,10 @@ fn check_fields(representation: &Representation, at: Arguments<'_>, findings: &m
             || format!("an earlier field has the name {name:?}; rename one"),
         );
         let valid = match field.store {
-            Store::F64 | Store::F32 => true,
-            Store::U16(steps) => steps.are_valid(u16::MAX),
-            Store::U8(steps) => steps.are_valid(u8::MAX.into()),
-            Store::Packed(steps) => field.list && steps.are_valid(u8::MAX.into()),
+            StoredAs::F64 | StoredAs::F32 => true,
+            StoredAs::U16(steps) => steps.are_valid(u16::MAX),
+            StoredAs::U8(steps) => steps.are_valid(u8::MAX.into()),
+            StoredAs::Packed(steps) => field.list && steps.are_valid(u8::MAX.into()),
         };
         findings.require(valid, rule::STORE_INVALID, format_args!("{at}/store"), || {
             "the steps are invalid: scale is not above 0, a step's value is not finite (with log: \

@@ -6,7 +6,7 @@ use semver::Version;
 use crate::block::split;
 use crate::report::Findings;
 use crate::rules as rule;
-use crate::{Field, Manifest, Representation, Rule, WriteError};
+use crate::{Manifest, Representation, Rule, StoredField, WriteError};
 
 /// A difference between the stored fields and the model's fields.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -89,7 +89,7 @@ impl FieldMismatch {
 /// The order in which a model's fields are taken from the parameters of an asset.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FieldOrder<'a> {
-    stored: &'a [Field],
+    stored: &'a [StoredField],
     parts: Vec<Part>,
 }
 
@@ -106,7 +106,7 @@ enum Part {
 /// # Errors
 /// Every mismatch: those of stored fields first, in their order.
 pub fn match_fields<'a>(
-    stored: &'a [Field],
+    stored: &'a [StoredField],
     model: &Descriptor,
 ) -> Result<FieldOrder<'a>, Vec<FieldMismatch>> {
     let all = stored.iter().enumerate();
@@ -129,7 +129,7 @@ pub fn match_fields<'a>(
     Err(mismatches)
 }
 
-fn mismatch(index: usize, stored: &Field, model: &Descriptor) -> Option<FieldMismatch> {
+fn mismatch(index: usize, stored: &StoredField, model: &Descriptor) -> Option<FieldMismatch> {
     let name = stored.name.clone();
     let Some(field) = model.fields.iter().find(|field| field.name == name) else {
         let names: Vec<&str> = model.fields.iter().map(|f| f.name.as_str()).collect();

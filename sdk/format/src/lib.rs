@@ -61,8 +61,8 @@ pub use json_text::{JsonError, parse_json};
 pub use license::check_license;
 pub use limits::Limits;
 pub use manifest::{
-    AtCondition, Condition, FIRST_VERSION, Field, Manifest, Plugin, Provenance, Quality, Reference,
-    Representation, SAME_CONDITION, Signature, Source, Steps, Store, VERSION,
+    AtCondition, Condition, FIRST_VERSION, Manifest, Plugin, Provenance, Quality, Reference,
+    Representation, SAME_CONDITION, Signature, Source, Steps, StoredAs, StoredField, VERSION,
 };
 pub use measure::ErrorMeasure;
 pub use page::{manifest_schema, report_schema, rules_page, validation_page};

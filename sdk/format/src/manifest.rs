@@ -199,7 +199,7 @@ pub struct Representation {
     pub model_version: String,
     /// Parameter fields, in the order of the flat array.
     #[schemars(extend("uniqueItems" = true))]
-    pub fields: Vec<Field>,
+    pub fields: Vec<StoredField>,
     /// The conditions at which the model is fitted, in the order of the parameter block.
     #[schemars(length(min = 1), extend("uniqueItems" = true))]
     pub at: Vec<AtCondition>,
@@ -210,7 +210,8 @@ pub struct Representation {
 
 /// A parameter field and its storage.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Field {
+#[schemars(rename = "Field")]
+pub struct StoredField {
     /// Name, as in the model's descriptor.
     #[schemars(length(min = 1))]
     pub name: String,
@@ -221,16 +222,17 @@ pub struct Field {
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub list: bool,
     /// Storage of each number.
-    #[serde(default, skip_serializing_if = "Store::is_f64")]
-    pub store: Store,
+    #[serde(default, skip_serializing_if = "StoredAs::is_f64")]
+    pub store: StoredAs,
 }
 
 /// Storage of a number. The integer kinds hold `q` for the value `offset + scale·q`, or with `log`
 /// `exp(offset + scale·q)`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "Store")]
 #[serde(rename_all = "lowercase")]
 #[schemars(transform = open_variants)]
-pub enum Store {
+pub enum StoredAs {
     /// IEEE 754 binary64.
     #[default]
     F64,
@@ -258,7 +260,7 @@ pub struct Steps {
     pub log: bool,
 }
 
-impl Store {
+impl StoredAs {
     fn is_f64(&self) -> bool {
         *self == Self::F64
     }

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{Fitted, asset, fitted, reference, steps};
-use htex_format::{Asset, Reference, Steps, Store, WriteError, round_parameters, stored_bytes};
+use htex_format::{Asset, Reference, Steps, StoredAs, WriteError, round_parameters, stored_bytes};
 use proptest::prelude::*;
 
 fn number() -> impl Strategy<Value = f64> {
@@ -14,7 +14,7 @@ fn number() -> impl Strategy<Value = f64> {
     ]
 }
 
-fn store() -> impl Strategy<Value = Store> {
+fn store() -> impl Strategy<Value = StoredAs> {
     let steps = (1e-6..1e3, -1e3..1e3).prop_map(|(scale, offset)| Steps {
         scale,
         offset,
@@ -26,13 +26,13 @@ fn store() -> impl Strategy<Value = Store> {
         log: true,
     });
     prop_oneof![
-        Just(Store::F64),
-        Just(Store::F32),
-        steps.clone().prop_map(Store::U16),
-        steps.prop_map(Store::U8),
-        log.clone().prop_map(Store::U16),
-        log.clone().prop_map(Store::U8),
-        log.prop_map(Store::Packed),
+        Just(StoredAs::F64),
+        Just(StoredAs::F32),
+        steps.clone().prop_map(StoredAs::U16),
+        steps.prop_map(StoredAs::U8),
+        log.clone().prop_map(StoredAs::U16),
+        log.clone().prop_map(StoredAs::U8),
+        log.prop_map(StoredAs::Packed),
     ]
 }
 
@@ -43,12 +43,12 @@ fn representation(i: usize, conditions: usize) -> impl Strategy<Value = Fitted> 
         let names = ["a", "b", "c", "d"];
         let numbered = fields.iter().zip(names);
         let shapes: Vec<_> = numbered
-            .map(|(&(_, length, _), name)| (name, "Hz", length, Store::F64))
+            .map(|(&(_, length, _), name)| (name, "Hz", length, StoredAs::F64))
             .collect();
         let (mut representation, mut flats) = fitted(&format!("m{i}"), conditions, &shapes);
         for (field, (store, ..)) in representation.fields.iter_mut().zip(&fields) {
             field.store = match *store {
-                Store::Packed(steps) if !field.list => Store::U8(steps),
+                StoredAs::Packed(steps) if !field.list => StoredAs::U8(steps),
                 store => store,
             };
         }
@@ -67,11 +67,11 @@ fn representation(i: usize, conditions: usize) -> impl Strategy<Value = Fitted> 
     })
 }
 
-fn inside(store: Store, place: f64, otherwise: f64) -> f64 {
+fn inside(store: StoredAs, place: f64, otherwise: f64) -> f64 {
     let (steps, last) = match store {
-        Store::U16(steps) => (steps, f64::from(u16::MAX)),
-        Store::U8(steps) | Store::Packed(steps) => (steps, f64::from(u8::MAX)),
-        Store::F64 | Store::F32 => return otherwise * place,
+        StoredAs::U16(steps) => (steps, f64::from(u16::MAX)),
+        StoredAs::U8(steps) | StoredAs::Packed(steps) => (steps, f64::from(u8::MAX)),
+        StoredAs::F64 | StoredAs::F32 => return otherwise * place,
     };
     let x = steps.offset + steps.scale * (place * last);
     if steps.log { x.exp() } else { x }
@@ -135,8 +135,8 @@ proptest! {
     fn rounding_is_to_the_nearest_step_and_done_once(
         scale in 1e-3..1e2f64, offset in -10.0..10.0f64, place in 0.0..255.0f64,
     ) {
-        let (mut fields, _) = (fitted("m", 1, &[("a", "", 0, Store::F64)]).0.fields, ());
-        fields[0].store = Store::U8(Steps { scale, offset, log: false });
+        let (mut fields, _) = (fitted("m", 1, &[("a", "", 0, StoredAs::F64)]).0.fields, ());
+        fields[0].store = StoredAs::U8(Steps { scale, offset, log: false });
         let value = offset + scale * place;
         let once = round_parameters(&fields, &[value]).unwrap();
         prop_assert!((once[0] - value).abs() <= scale * 0.500001);
@@ -146,9 +146,11 @@ proptest! {
 
 #[test]
 fn a_value_outside_its_store_is_named_with_its_range() {
-    let fields = fitted("m", 1, &[("peak_hz", "Hz", 2, Store::F64)]).0.fields;
+    let fields = fitted("m", 1, &[("peak_hz", "Hz", 2, StoredAs::F64)])
+        .0
+        .fields;
     let stored = |store| {
-        vec![htex_format::Field {
+        vec![htex_format::StoredField {
             store,
             ..fields[0].clone()
         }]
@@ -157,14 +159,14 @@ fn a_value_outside_its_store_is_named_with_its_range() {
         Err(error @ WriteError::OutOfRange { .. }) => error.to_string(),
         other => format!("{other:?}"),
     };
-    let text = message(Store::U8(steps(0.5)), 128.0);
+    let text = message(StoredAs::U8(steps(0.5)), 128.0);
     assert!(
         text.contains("peak_hz[1] is 128") && text.contains("0 to 127.5"),
         "{text}"
     );
-    assert!(message(Store::U16(steps(1.0)), -1.0).contains("0 to 65535"));
-    assert!(message(Store::F32, 1e300).contains("peak_hz[1]"));
-    assert!(message(Store::F64, f64::NAN).contains("is NaN"));
+    assert!(message(StoredAs::U16(steps(1.0)), -1.0).contains("0 to 65535"));
+    assert!(message(StoredAs::F32, 1e300).contains("peak_hz[1]"));
+    assert!(message(StoredAs::F64, f64::NAN).contains("is NaN"));
     assert!(matches!(
         round_parameters(&fields, &[3.0, 1.0, 2.0]),
         Err(WriteError::Layout { .. })

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{asset, fitted};
-use htex_format::{Asset, Steps, Store};
+use htex_format::{Asset, Steps, StoredAs};
 
 const TEXT: &str = include_str!("../../../spec/htex-1.md");
 
@@ -23,9 +23,9 @@ fn example() -> Vec<u8> {
 fn the_worked_block_is_what_the_code_writes_and_reads() {
     let steps = |scale, offset, log| Steps { scale, offset, log };
     let fields = [
-        ("weights", "", 2, Store::F32),
-        ("peak_hz", "Hz", 0, Store::U16(steps(0.5, 0.0, false))),
-        ("gain", "", 0, Store::U8(steps(0.1, -5.0, true))),
+        ("weights", "", 2, StoredAs::F32),
+        ("peak_hz", "Hz", 0, StoredAs::U16(steps(0.5, 0.0, false))),
+        ("gain", "", 0, StoredAs::U8(steps(0.1, -5.0, true))),
     ];
     let (representation, _) = fitted("example", 1, &fields);
     let flat = vec![2.0, 0.5, -0.25, 100.2, 0.135];

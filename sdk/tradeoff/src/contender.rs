@@ -2,7 +2,7 @@
 
 use htex_author::{Level, stored_fields, stored_level};
 use htex_dsp::grid::level_rms;
-use htex_format::{Field, Store, round_parameters, stored_bytes};
+use htex_format::{StoredAs, StoredField, round_parameters, stored_bytes};
 use htex_host::{Fit, HostError, LoadedModel};
 
 use crate::baseline::quantise;
@@ -85,11 +85,11 @@ impl Contender {
         })
     }
 
-    fn keep(&self, fields: &mut [Field]) {
+    fn keep(&self, fields: &mut [StoredField]) {
         let store = match self.setting.store {
             Keep::Model => return,
-            Keep::F32 => Store::F32,
-            Keep::F64 => Store::F64,
+            Keep::F32 => StoredAs::F32,
+            Keep::F64 => StoredAs::F64,
         };
         fields.iter_mut().for_each(|field| field.store = store);
     }

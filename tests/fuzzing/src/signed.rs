@@ -136,7 +136,7 @@ fn manifest(plugin: Plugin) -> Manifest {
     representation.model.clone_from(&plugin.model);
     representation.fields.truncate(1);
     representation.fields[0].list = false;
-    representation.fields[0].store = htex_format::Store::F32;
+    representation.fields[0].store = htex_format::StoredAs::F32;
     manifest.plugins = vec![plugin];
     manifest
 }

@@ -75,8 +75,8 @@ fn condition(i: usize) -> Condition {
 }
 
 /// Creates a representation whose fields are (name, unit, list length, store); length 0 is a scalar.
-pub fn fitted(model: &str, conditions: usize, fields: &[(&str, &str, usize, Store)]) -> Fitted {
-    let stored: Vec<Field> = fields.iter().map(field).collect();
+pub fn fitted(model: &str, conditions: usize, fields: &[(&str, &str, usize, StoredAs)]) -> Fitted {
+    let stored: Vec<StoredField> = fields.iter().map(field).collect();
     let representation = Representation {
         model: format!("org.htex.{model}"),
         model_version: "1.0.0".to_owned(),
@@ -88,8 +88,8 @@ pub fn fitted(model: &str, conditions: usize, fields: &[(&str, &str, usize, Stor
     (representation, parameters)
 }
 
-fn field(&(name, unit, length, store): &(&str, &str, usize, Store)) -> Field {
-    Field {
+fn field(&(name, unit, length, store): &(&str, &str, usize, StoredAs)) -> StoredField {
+    StoredField {
         name: name.to_owned(),
         unit: unit.to_owned(),
         list: length > 0,
@@ -97,7 +97,11 @@ fn field(&(name, unit, length, store): &(&str, &str, usize, Store)) -> Field {
     }
 }
 
-fn flat(condition: usize, fields: &[(&str, &str, usize, Store)], stored: &[Field]) -> Vec<f64> {
+fn flat(
+    condition: usize,
+    fields: &[(&str, &str, usize, StoredAs)],
+    stored: &[StoredField],
+) -> Vec<f64> {
     let mut flat = Vec::new();
     for &(name, _, length, _) in fields {
         if length > 0 {
@@ -156,44 +160,47 @@ pub fn steps(scale: f64) -> Steps {
 
 /// Two 32-bit floats.
 pub fn sbeta(conditions: usize) -> Fitted {
-    let fields = [("alpha", "", 0, Store::F32), ("beta", "", 0, Store::F32)];
+    let fields = [
+        ("alpha", "", 0, StoredAs::F32),
+        ("beta", "", 0, StoredAs::F32),
+    ];
     fitted("sbeta", conditions, &fields)
 }
 
 /// A packed list of 30 steps that rise slowly.
 pub fn bands(conditions: usize) -> Fitted {
     let fields = [
-        ("below_highest", "", 30, Store::Packed(steps(0.25))),
-        ("step_db", "dB", 0, Store::U8(steps(0.05))),
-        ("layout", "", 0, Store::U8(steps(1.0))),
+        ("below_highest", "", 30, StoredAs::Packed(steps(0.25))),
+        ("step_db", "dB", 0, StoredAs::U8(steps(0.05))),
+        ("layout", "", 0, StoredAs::U8(steps(1.0))),
     ];
     fitted("bands", conditions, &fields)
 }
 
 /// The paper's five models, with the stores of their descriptors.
 pub fn five(conditions: usize) -> Vec<Fitted> {
-    let hertz = Store::U16(steps(0.03125));
-    let order = Store::U16(steps(0.001));
-    let amplitude = Store::U16(Steps {
+    let hertz = StoredAs::U16(steps(0.03125));
+    let order = StoredAs::U16(steps(0.001));
+    let amplitude = StoredAs::U16(Steps {
         scale: 0.0002,
         offset: -10.0,
         log: true,
     });
-    let whole = Store::U8(steps(1.0));
+    let whole = StoredAs::U8(steps(1.0));
     vec![
         fitted(
             "ar",
             conditions,
             &[
-                ("coefficients", "", 6, Store::F64),
-                ("model_rate_hz", "Hz", 0, Store::F32),
+                ("coefficients", "", 6, StoredAs::F64),
+                ("model_rate_hz", "Hz", 0, StoredAs::F32),
             ],
         ),
         fitted(
             "mfcc",
             conditions,
             &[
-                ("cepstrum", "", 10, Store::F32),
+                ("cepstrum", "", 10, StoredAs::F32),
                 ("bands", "", 0, whole),
                 ("inverse", "", 0, whole),
             ],

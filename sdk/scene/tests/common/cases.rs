@@ -4,7 +4,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use htex_device::Devices;
-use htex_format::{AtCondition, Band, Condition, Field, Manifest, Quantity, Representation, Store};
+use htex_format::{
+    AtCondition, Band, Condition, Manifest, Quantity, Representation, StoredAs, StoredField,
+};
 use htex_play::Registry;
 use htex_scene::{Surroundings, validate};
 use serde_json::{Value, json};
@@ -138,12 +140,12 @@ fn asset(quantity: Quantity, models: &[&str]) -> Vec<u8> {
     asset.to_bytes().unwrap()
 }
 
-fn field(name: &str) -> Field {
-    Field {
+fn field(name: &str) -> StoredField {
+    StoredField {
         name: name.to_owned(),
         unit: if name == "peak_hz" { "Hz" } else { "" }.to_owned(),
         list: false,
-        store: Store::F64,
+        store: StoredAs::F64,
     }
 }
 

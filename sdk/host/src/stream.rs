@@ -1,12 +1,11 @@
-//! A voice with a resampler.
+//! A source of samples with a resampler.
 
 use htex_dsp::grid::Band;
 use htex_dsp::resample::Resampler;
 
 use crate::{HostError, LoadedModel, ModelVoice};
 
-/// Samples of unit RMS at a requested rate: a voice at its own rate, and a resampler if the rates
-/// differ.
+/// Samples at a requested rate: a source at its own rate, such as a voice, and a resampler if the rates differ.
 ///
 /// ```
 /// use htex_host::{Band, Registry, Stream};
@@ -17,10 +16,60 @@ use crate::{HostError, LoadedModel, ModelVoice};
 /// # Ok::<(), htex_host::HostError>(())
 /// ```
 #[derive(Debug)]
-pub struct Stream {
-    voice: ModelVoice,
+pub struct Stream<S = ModelVoice> {
+    source: S,
+    source_rate_hz: f64,
     resampler: Option<Resampler>,
-    voice_rate_hz: f64,
+}
+
+impl<S> Stream<S> {
+    /// Makes a stream at `rate_hz` of a source with samples at `source_rate_hz` and frequencies up to `top_hz`.
+    ///
+    /// # Errors
+    /// When the one rate cannot be converted to the other.
+    pub fn of(
+        source: S,
+        source_rate_hz: f64,
+        rate_hz: f64,
+        top_hz: f64,
+    ) -> Result<Self, HostError> {
+        Ok(Self {
+            resampler: Resampler::new(source_rate_hz, rate_hz, top_hz)?,
+            source,
+            source_rate_hz,
+        })
+    }
+
+    /// Returns the source.
+    pub fn source(&self) -> &S {
+        &self.source
+    }
+
+    /// Returns the source, to change it.
+    pub fn source_mut(&mut self) -> &mut S {
+        &mut self.source
+    }
+
+    /// Fills `out` with the next samples; `render` fills a block with those of the source. Does not allocate.
+    ///
+    /// # Errors
+    /// The last error of `render`.
+    pub fn render_by<E>(
+        &mut self,
+        out: &mut [f32],
+        render: impl Fn(&mut S, &mut [f32]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let Some(resampler) = &mut self.resampler else {
+            return render(&mut self.source, out);
+        };
+        let mut result = Ok(());
+        resampler.process(out, &mut |block| {
+            if let Err(error) = render(&mut self.source, block) {
+                result = Err(error);
+            }
+        });
+        result
+    }
 }
 
 impl Stream {
@@ -36,16 +85,13 @@ impl Stream {
         seed: u64,
     ) -> Result<Self, HostError> {
         let voice_rate_hz = model.voice_rate_hz(parameters, band, rate_hz)?;
-        Ok(Self {
-            voice: model.voice(parameters, band, voice_rate_hz, seed)?,
-            resampler: Resampler::new(voice_rate_hz, rate_hz, band.high_hz)?,
-            voice_rate_hz,
-        })
+        let voice = model.voice(parameters, band, voice_rate_hz, seed)?;
+        Self::of(voice, voice_rate_hz, rate_hz, band.high_hz)
     }
 
     /// Returns the rate at which the model renders, hertz.
     pub fn voice_rate_hz(&self) -> f64 {
-        self.voice_rate_hz
+        self.source_rate_hz
     }
 
     /// Fills `out` with the next samples. Does not allocate.
@@ -53,16 +99,7 @@ impl Stream {
     /// # Errors
     /// When the model fails; the samples that it did not render are zero.
     pub fn render(&mut self, out: &mut [f32]) -> Result<(), HostError> {
-        let Some(resampler) = &mut self.resampler else {
-            return self.voice.render(out);
-        };
-        let mut result = Ok(());
-        resampler.process(out, &mut |block| {
-            if let Err(error) = self.voice.render(block) {
-                result = Err(error);
-            }
-        });
-        result
+        self.render_by(out, ModelVoice::render)
     }
 
     /// Changes to other parameters without a click.
@@ -70,6 +107,6 @@ impl Stream {
     /// # Errors
     /// When the model refuses the parameters; the stream then continues unchanged.
     pub fn retune(&mut self, parameters: &[f64]) -> Result<(), HostError> {
-        self.voice.retune(parameters)
+        self.source.retune(parameters)
     }
 }

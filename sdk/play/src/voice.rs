@@ -1,8 +1,7 @@
 //! A playing texture.
 
 use htex_dsp::glide::Glide;
-use htex_dsp::resample::Resampler;
-use htex_host::{HostError, StillSound};
+use htex_host::{StillSound, Stream};
 
 use crate::exploration::{Coverage, Reach};
 use crate::follow::Follow;
@@ -33,9 +32,8 @@ const RAMP_S: f64 = 0.010;
 /// ```
 #[derive(Debug)]
 pub struct Voice {
-    source: Source,
-    resampler: Option<Resampler>,
-    /// Pre-rendered audio; `source` then supplies only the level.
+    stream: Stream<Source>,
+    /// Pre-rendered audio; the stream's source then supplies only the level.
     still: Option<StillSound>,
     level_rms: Glide,
     follow: Follow,
@@ -74,11 +72,11 @@ impl Voice {
             0.5 * rate_hz / source.top_hz(),
             rate_hz,
         );
-        let resampler = Resampler::new(source.rate_hz() * base, rate_hz, source.top_hz() * base);
+        let level_rms = source.level_rms() * follow.gain();
+        let (source_rate_hz, top_hz) = (source.rate_hz() * base, source.top_hz() * base);
         let mut voice = Self {
-            resampler: resampler.map_err(HostError::from)?,
-            level_rms: Glide::new((source.level_rms() * follow.gain()) as f32, ramp),
-            source,
+            level_rms: Glide::new(level_rms as f32, ramp),
+            stream: Stream::of(source, source_rate_hz, rate_hz, top_hz)?,
             still,
             follow,
             travel,
@@ -108,7 +106,7 @@ impl Voice {
         let motion = motion.checked()?;
         self.send_motion(motion)?;
         if self.follow.set_motion(motion) {
-            let level_rms = self.source.set_motion(motion)?;
+            let level_rms = self.stream.source_mut().set_motion(motion)?;
             self.level_rms.set((level_rms * self.follow.gain()) as f32);
         }
         Ok(())
@@ -128,7 +126,8 @@ impl Voice {
         let Some(finger) = travel.set(motion) else {
             return Ok(());
         };
-        self.source
+        self.stream
+            .source_mut()
             .set_finger(finger, self.frames as f64 / self.rate_hz)
     }
 
@@ -136,7 +135,7 @@ impl Voice {
     /// allocate.
     pub fn coverage(&self, motion: Motion) -> Coverage {
         let effects = self.follow.effects();
-        let mut coverage = self.source.coverage(motion, effects);
+        let mut coverage = self.stream.source().coverage(motion, effects);
         if self.follows_motion() {
             for reach in [&mut coverage.speed, &mut coverage.force] {
                 let beyond = matches!(reach, Reach::Clamped { .. } | Reach::Unknown);
@@ -166,19 +165,15 @@ impl Voice {
 
     /// Renders samples of unit RMS at the voice's rate.
     fn render_shape(&mut self, out: &mut [f32]) -> Result<(), Error> {
-        let (source, resampler) = (&mut self.source, &mut self.resampler);
-        let (still, mut result) = (&mut self.still, Ok(()));
-        let mut render = |block: &mut [f32]| {
-            if let Err(error) = source.render(block) {
-                result = Err(error);
+        let (stream, still, mut result) = (&mut self.stream, &mut self.still, Ok(()));
+        self.follow.read(out, &mut |block| match &mut *still {
+            Some(still) => still.render(block),
+            None => {
+                if let Err(error) = stream.render_by(block, Source::render) {
+                    result = Err(error);
+                }
             }
-        };
-        self.follow
-            .read(out, &mut |block| match (&mut *still, &mut *resampler) {
-                (Some(still), _) => still.render(block),
-                (None, Some(resampler)) => resampler.process(block, &mut render),
-                (None, None) => render(block),
-            });
+        });
         result
     }
 }

@@ -55,14 +55,73 @@ fn same_options_give_the_same_bytes_everywhere() {
     };
     assert_eq!(short(7), short(7));
     assert_ne!(short(7), short(8));
-    // The rows, without the first line, which has the version: detects machines and compilers whose results
-    // differ.
-    let bytes = short(7);
-    let first_row = bytes.iter().position(|byte| *byte == b'\n').unwrap();
-    assert_eq!(hash(&bytes[first_row..]), HASH);
 }
 
-const HASH: u64 = 0x75f2_fa7d_cfcc_8f48;
+/// Hash of the rows of a short simulation, without the first line of the file, which has the version.
+fn hash_of_rows(options: SimulationOptions) -> u64 {
+    let bytes = csv(&simulate(&SimulationOptions {
+        duration_s: 0.5,
+        ..options
+    })
+    .unwrap());
+    let first_row = bytes.iter().position(|byte| *byte == b'\n').unwrap();
+    hash(&bytes[first_row..])
+}
+
+/// Detects machines, compilers and changes of filters or generators whose results differ.
+#[test]
+fn simulations_are_bit_identical_everywhere() {
+    let seven = |surface| SimulationOptions {
+        seed: 7,
+        ..SimulationOptions::new(surface)
+    };
+    let of_surfaces = Surface::ALL.map(|surface| hash_of_rows(seven(surface)));
+    assert_eq!(
+        of_surfaces,
+        [
+            0x75f2_fa7d_cfcc_8f48,
+            0x752e_e377_4914_454a,
+            0x3299_60d7_4f77_e814,
+            0x2433_15ee_24a6_1977,
+            0x0461_b28a_c539_2653
+        ]
+    );
+    // Faster and harder; slower and lighter; at a rate that needs the anti-aliasing filter.
+    let of_motions = [
+        (20_000.0, 240.0, 2.5),
+        (20_000.0, 3.0, 0.05),
+        (2_000.0, 80.0, 0.4),
+    ]
+    .map(|(rate_hz, speed_mm_s, force_n)| {
+        hash_of_rows(SimulationOptions {
+            rate_hz,
+            speed_mm_s,
+            force_n,
+            ..seven(Surface::Sandpaper)
+        })
+    });
+    assert_eq!(
+        of_motions,
+        [
+            0x7582_9557_4748_7781,
+            0x59d5_ef30_9a60_fc85,
+            0x20ea_cb8b_6839_e74b
+        ]
+    );
+}
+
+/// The rig's response at a rate that needs the anti-aliasing filter.
+#[test]
+fn the_setup_response_is_bit_identical_everywhere() {
+    let options = SimulationOptions {
+        rate_hz: 2_000.0,
+        ..SimulationOptions::new(Surface::Vinyl)
+    };
+    let response = options.setup_response().unwrap();
+    let numbers = response.magnitude.iter().chain(&response.phase_rad);
+    let bytes: Vec<u8> = numbers.flat_map(|x| x.to_bits().to_le_bytes()).collect();
+    assert_eq!(hash(&bytes), 0x7c06_18d6_a273_20e4);
+}
 
 #[test]
 fn the_hand_keeps_within_the_papers_tolerance() {

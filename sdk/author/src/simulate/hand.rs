@@ -2,8 +2,10 @@
 
 use std::f64::consts::PI;
 
-use super::filters::{Biquad, OnePole};
-use super::random::Random;
+use htex_dsp::biquad::Cascade;
+use htex_dsp::normal::Normal;
+
+use super::filters::{OnePole, band_pass};
 
 /// Length of a sweep, mm; the surface is 100 mm.
 const SWEEP_MM: f64 = 83.0;
@@ -58,7 +60,7 @@ pub(super) struct Hand {
     speed_mm_s: f64,
     force_n: f64,
     step_s: f64,
-    random: Random,
+    random: Normal,
     sweep: Sweep,
     /// Time since the sweep's rest began, s.
     time_s: f64,
@@ -72,7 +74,7 @@ pub(super) struct Hand {
 }
 
 impl Hand {
-    pub(super) fn new(speed_mm_s: f64, force_n: f64, rate_hz: f64, random: Random) -> Self {
+    pub(super) fn new(speed_mm_s: f64, force_n: f64, rate_hz: f64, random: Normal) -> Self {
         let finger = Finger {
             along_mm: -SWEEP_MM / 2.0,
             across_mm: 0.0,
@@ -111,18 +113,18 @@ impl Hand {
 
     fn turn_round(&mut self) {
         self.direction = -self.direction;
-        let scatter = 1.0 + SPEED_SCATTER[0] * self.random.normal();
+        let scatter = 1.0 + SPEED_SCATTER[0] * self.random.next_normal();
         let speed = self.speed_mm_s * scatter;
-        let end = self.direction * SWEEP_MM / 2.0 + END_SCATTER_MM * self.random.normal();
+        let end = self.direction * SWEEP_MM / 2.0 + END_SCATTER_MM * self.random.next_normal();
         let length = (end - self.finger.along_mm).abs();
         let ramp_s = RAMP_S.min(0.25 * length / speed);
         self.time_s = 0.0;
         self.sweep = Sweep {
-            rest_s: REST_S[0] + (REST_S[1] - REST_S[0]) * self.random.uniform(),
+            rest_s: REST_S[0] + (REST_S[1] - REST_S[0]) * self.random.next_unit(),
             ramp_s,
             moving_s: length / speed + ramp_s,
             speed_mm_s: self.direction * speed,
-            contact: 1.0 + CONTACT_SCATTER[0] * self.random.normal(),
+            contact: 1.0 + CONTACT_SCATTER[0] * self.random.next_normal(),
         };
     }
 
@@ -173,15 +175,15 @@ impl SlowNoise {
         }
     }
 
-    fn tick(&mut self, random: &mut Random) -> f64 {
-        let x = self.gain * random.normal();
+    fn tick(&mut self, random: &mut Normal) -> f64 {
+        let x = self.gain * random.next_normal();
         self.filters.iter_mut().fold(x, |x, filter| filter.tick(x))
     }
 }
 
 /// Physiological tremor: noise of unit variance around 10 Hz.
 struct Tremor {
-    filter: Biquad,
+    filter: Cascade,
     gain: f64,
 }
 
@@ -189,12 +191,12 @@ impl Tremor {
     fn new(rate_hz: f64) -> Self {
         let power = PI * TREMOR_HZ / TREMOR_Q / rate_hz;
         Self {
-            filter: Biquad::band_pass(TREMOR_Q, TREMOR_HZ, rate_hz),
+            filter: Cascade::new(&[band_pass(TREMOR_Q, TREMOR_HZ, rate_hz)]),
             gain: 1.0 / libm::sqrt(power),
         }
     }
 
-    fn tick(&mut self, random: &mut Random) -> f64 {
-        self.gain * self.filter.tick(random.normal())
+    fn tick(&mut self, random: &mut Normal) -> f64 {
+        self.gain * self.filter.tick(random.next_normal())
     }
 }

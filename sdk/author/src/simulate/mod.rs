@@ -22,12 +22,12 @@
 mod contact;
 mod filters;
 mod hand;
-mod random;
 mod relief;
 mod surface;
 mod write;
 
 use htex_dsp::grid::{Band, GRID_HZ};
+use htex_dsp::normal::Normal;
 use thiserror::Error;
 
 pub use surface::Surface;
@@ -37,7 +37,6 @@ use crate::recording::{Recording, RecordingError};
 use crate::response::SetupResponse;
 use contact::{Contact, Force, Rig, sense};
 use hand::{Finger, Hand};
-use random::Random;
 use write::{FORCE_DECIMALS, POSITION_DECIMALS, rounded};
 
 /// Lowest rate of the physics, Hz.
@@ -234,7 +233,7 @@ pub fn simulate(options: &SimulationOptions) -> Result<Simulation, SimulationErr
     let parameters = options.surface.parameters();
     let samples = libm::round(options.rate_hz * options.duration_s) as usize;
     let (inner_steps, inner_hz) = (options.inner_steps(), options.inner_hz());
-    let stream = |part: u64| Random::new(options.seed, 16 * parameters.label + part);
+    let stream = |part: u64| stream(options.seed, 16 * parameters.label + part);
     let mut hand = Hand::new(options.speed_mm_s, options.force_n, inner_hz, stream(0));
     let mut contact = Contact::new(parameters, inner_hz, &mut stream(1));
     let mut rig = Rig::new(inner_hz, options.rate_hz);
@@ -248,4 +247,10 @@ pub fn simulate(options: &SimulationOptions) -> Result<Simulation, SimulationErr
         }
     }
     Ok(simulation)
+}
+
+/// Returns a stream of random numbers; streams of one seed with different labels are independent.
+fn stream(seed: u64, label: u64) -> Normal {
+    // The odd factor spreads small labels over all bits; the generator mixes further when it is seeded.
+    Normal::new(seed ^ label.wrapping_mul(0x9E37_79B9_7F4A_7C15))
 }

@@ -57,7 +57,7 @@ pub use fields::{FieldMismatch, FieldOrder, KnownModel, match_fields, stored_uni
 pub use finding::{Finding, Severity};
 pub use htex_files::{remove_unfinished, replace_file, write_file};
 pub use json_text::{JsonError, parse_json};
-pub use license::check_license;
+pub use license::{LicenseError, check_license};
 pub use limits::Limits;
 pub use manifest::{
     AtCondition, Band, Condition, FIRST_VERSION, Field, Manifest, Plugin, Provenance, Quality,

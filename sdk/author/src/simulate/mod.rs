@@ -11,7 +11,7 @@
 //! ```
 //! use htex_author::simulate::{SimulationOptions, Surface, simulate};
 //!
-//! let options = SimulationOptions { duration_s: 1.0, ..SimulationOptions::new(Surface::Vinyl) };
+//! let options = SimulationOptions::new(Surface::Vinyl).with_duration_s(1.0);
 //! let simulation = simulate(&options)?;
 //! let mut csv = Vec::new();
 //! simulation.write_csv(&mut csv)?;
@@ -46,6 +46,7 @@ const MAX_SAMPLES: f64 = 2e7;
 
 /// Errors of a simulation.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum SimulationError {
     /// There is no surface of this name.
     #[error(
@@ -71,6 +72,7 @@ pub enum SimulationError {
 
 /// Options of a simulation.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SimulationOptions {
     /// The surface.
     pub surface: Surface,
@@ -99,6 +101,41 @@ impl SimulationOptions {
             speed_mm_s: 80.0,
             force_n: 0.4,
         }
+    }
+
+    /// Sets the seed.
+    #[must_use]
+    pub fn with_seed(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        self
+    }
+
+    /// Sets the sample rate, hertz.
+    #[must_use]
+    pub fn with_rate_hz(mut self, rate_hz: f64) -> Self {
+        self.rate_hz = rate_hz;
+        self
+    }
+
+    /// Sets the length, seconds.
+    #[must_use]
+    pub fn with_duration_s(mut self, duration_s: f64) -> Self {
+        self.duration_s = duration_s;
+        self
+    }
+
+    /// Sets the speed between the turns, mm/s.
+    #[must_use]
+    pub fn with_speed_mm_s(mut self, speed_mm_s: f64) -> Self {
+        self.speed_mm_s = speed_mm_s;
+        self
+    }
+
+    /// Sets the normal force, newtons.
+    #[must_use]
+    pub fn with_force_n(mut self, force_n: f64) -> Self {
+        self.force_n = force_n;
+        self
     }
 
     /// Returns the simulated rig's response to a lateral force: a resonance at 620 Hz, and for rates below 20 kHz

@@ -24,6 +24,12 @@ const BY_CODE: &[(&str, &str)] = &[
     ("RECORDING_UNEVEN", "--from, --to"),
 ];
 
+/// Flags that turn on the check of a finding, by its code.
+const CHECKED_BY: &[(&str, &str)] = &[
+    ("PLUGIN_UNUSABLE", "--embedded-plugins"),
+    ("EXTENSION_SCHEMA_BROKEN", "--extension-schema"),
+];
+
 /// Flags by words of the reader's warnings, which have no code of their own.
 const BY_WORDS: &[(&str, &str)] = &[
     ("give the scale if", "--scale"),
@@ -36,7 +42,16 @@ const QUOTED: [(&str, &str); 2] = [("profile", "--profile"), ("setting", "--set"
 
 /// The flags that help against a finding with this code.
 pub(crate) fn of_code(code: &str) -> Option<&'static str> {
-    let entry = BY_CODE.iter().find(|(known, _)| *known == code);
+    listed(BY_CODE, code)
+}
+
+/// The flag of `htex validate` that turns on the check of findings with this code.
+pub(crate) fn of_check(code: &str) -> Option<&'static str> {
+    listed(CHECKED_BY, code)
+}
+
+fn listed(table: &[(&str, &'static str)], code: &str) -> Option<&'static str> {
+    let entry = table.iter().find(|(known, _)| *known == code);
     entry.map(|(_, flags)| *flags)
 }
 
@@ -160,9 +175,12 @@ mod tests {
     }
 
     #[test]
-    fn codes_of_the_table_are_codes_of_recordings() {
+    fn codes_of_the_tables_are_codes_of_findings() {
         for (code, _) in BY_CODE {
             assert!(htex_author::findings::explain(code).is_some(), "{code}");
+        }
+        for (code, _) in CHECKED_BY {
+            assert!(htex_format::explain(code).is_some(), "{code}");
         }
     }
 }

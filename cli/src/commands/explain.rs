@@ -4,7 +4,7 @@ use clap::Args;
 use htex_format::{RULES, explain};
 
 use crate::failure::Failure;
-use crate::flags::{of_code, with};
+use crate::flags::{of_check, of_code, with};
 use crate::output::print;
 
 /// Explain a finding's code: what it means and what to do.
@@ -36,7 +36,7 @@ impl Explain {
             "{}: {}\n\n{}\n\nWhat to do: {}\n",
             rule.code,
             rule.summary,
-            rule.explanation,
+            with(rule.explanation, of_check(rule.code)),
             with(rule.fix, of_code(rule.code))
         ))?;
         Ok(ExitCode::SUCCESS)

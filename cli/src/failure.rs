@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use htex_author::AuthorError;
 use htex_format::plain;
 
-use crate::flags::with_flags;
+use crate::flags::{of_author_error, of_read_error, with, with_flags};
 use crate::shown::shown;
 
 /// An error, with its place.
@@ -108,18 +108,27 @@ impl Failure {
     /// end only where this program ends them.
     pub(crate) fn to_lines(&self) -> Vec<String> {
         let text = self.to_string();
-        let text = with_flags(&text);
-        let lines: Vec<&str> = match self {
+        let (first, findings) = match self {
             // One line for each finding, with control characters escaped.
             Self::Findings { .. } | Self::Author(AuthorError::Strict { .. }) => {
-                text.lines().collect()
+                text.split_once('\n').unwrap_or((&text, ""))
             }
-            _ => vec![&text],
+            _ => (&text[..], ""),
         };
-        lines
-            .into_iter()
-            .map(|line| plain(line).into_owned())
-            .collect()
+        let first = with(first, self.flags());
+        let lines = std::iter::once(first).chain(findings.lines().map(with_flags));
+        lines.map(|line| plain(&line).into_owned()).collect()
+    }
+
+    /// The flags that help against the error.
+    fn flags(&self) -> Option<&'static str> {
+        match self {
+            Self::Author(error) | Self::Tradeoff(htex_tradeoff::TradeoffError::Author(error)) => {
+                of_author_error(error)
+            }
+            Self::Recording(error) => of_read_error(error),
+            _ => None,
+        }
     }
 }
 

@@ -83,13 +83,13 @@ impl MetadataArgs {
             .license
             .as_deref()
             .filter(|license| !license.is_empty());
-        let Some(Err((rule, message))) = license.map(check_license) else {
+        let Some(Err(error)) = license.map(check_license) else {
             return Ok(());
         };
-        if rule.severity == Severity::Error {
-            return Err(Failure::Usage(format!("--license: {message}")));
+        if error.rule().severity == Severity::Error {
+            return Err(Failure::Usage(format!("--license: {error}")));
         }
-        warn(&[format!("--license: {message}")]);
+        warn(&[format!("--license: {error}")]);
         Ok(())
     }
 

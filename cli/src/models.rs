@@ -38,7 +38,7 @@ pub(crate) fn model_requests(
         let own = options.iter().filter(|(owner, ..)| is(&model, owner));
         let own: Vec<(&str, &str)> = own.map(|(_, name, value)| (*name, *value)).collect();
         let options = model.options(&own)?;
-        Ok(ModelRequest { model, options })
+        Ok(ModelRequest::new(&model).with_options(options))
     };
     models.into_iter().map(request).collect()
 }

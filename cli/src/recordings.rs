@@ -162,37 +162,35 @@ impl RecordingArgs {
                 Some(map.map_err(|error| Failure::Usage(format!("--map {text}: {error}")))?)
             }
         };
-        Ok(ReadOptions {
-            rate_hz: self.rate,
-            map,
-            quantity: match self.quantity {
+        Ok(ReadOptions::default()
+            .with_rate_hz(self.rate)
+            .with_map(map)
+            .with_quantity(match self.quantity {
                 QuantityArg::LateralForce => Quantity::LateralForce,
                 QuantityArg::NormalForce => Quantity::NormalForce,
                 QuantityArg::Acceleration => Quantity::Acceleration,
                 QuantityArg::Velocity => Quantity::Velocity,
                 QuantityArg::Displacement => Quantity::Displacement,
-            },
-            scale: self.scale,
-            from_s: self.from,
-            to_s: self.to,
-            most_values: Some(self.most_numbers),
-        })
+            })
+            .with_scale(self.scale)
+            .with_from_s(self.from)
+            .with_to_s(self.to)
+            .with_most_values(self.most_numbers))
     }
 
     pub(crate) fn spectrum_options(&self) -> Result<SpectrumOptions, Failure> {
-        Ok(SpectrumOptions {
-            segments: match self.segments {
+        Ok(SpectrumOptions::default()
+            .with_segments(match self.segments {
                 SegmentsArg::Auto => SegmentChoice::Auto,
                 SegmentsArg::Sweeps => SegmentChoice::Sweeps,
                 SegmentsArg::Windows => SegmentChoice::Windows,
-            },
-            averaging: match self.averaging {
+            })
+            .with_averaging(match self.averaging {
                 AveragingArg::Magnitude => Averaging::Magnitude,
                 AveragingArg::Rms => Averaging::Rms,
                 AveragingArg::Complex => Averaging::Complex,
-            },
-            response: self.frf.as_deref().map(read_response).transpose()?,
-        })
+            })
+            .with_response(self.frf.as_deref().map(read_response).transpose()?))
     }
 
     /// The options that differ from their defaults, for the asset's provenance.

@@ -64,7 +64,32 @@ fn fit_warns_of_what_strict_refuses() {
         let run = place.run(&[&fit[..], &["--strict"]].concat());
         assert_eq!(run.code(), 1);
         assert!(run.error().contains(&code), "{}", run.error());
+        assert!(run.error().contains("(see --strict"), "{}", run.error());
         assert!(!place.path("x.htex").exists());
+    }
+    // The command names the flags that set what the libraries describe.
+    for arguments in [
+        &[
+            "fit",
+            &spec("recording_spike"),
+            "-o",
+            "x.htex",
+            "--model",
+            "bands",
+        ][..],
+        &["fit", &spec("recording_spike"), "-o", "x.htex", "--strict"],
+        &["validate", &spec("recording_spike")],
+        &["explain", "recording_spike"],
+    ] {
+        let run = place.run(arguments);
+        let printed = run.text() + &run.error();
+        let named = printed
+            .lines()
+            .any(|line| line.contains("repair") && line.ends_with("(see --from, --to)"));
+        assert!(
+            named || printed.contains("again (see --from, --to)."),
+            "{printed}"
+        );
     }
     let run = place.run(&[
         "fit",

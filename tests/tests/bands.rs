@@ -32,15 +32,9 @@ fn take(options: &SimulationOptions) -> Take {
 fn keep(take: &Take, options: &[(&str, &str)]) -> Kept {
     let model = Registry::builtin().find("bands").unwrap().clone();
     let options = model.options(options).unwrap();
-    let request = AssetRequest {
-        name: "A surface".to_owned(),
-        models: vec![ModelRequest { model, options }],
-        spectrum: SpectrumOptions {
-            averaging: Averaging::Rms,
-            ..SpectrumOptions::default()
-        },
-        ..AssetRequest::default()
-    };
+    let request = AssetRequest::new("A surface")
+        .with_models([ModelRequest::new(&model).with_options(options)])
+        .with_spectrum(SpectrumOptions::default().with_averaging(Averaging::Rms));
     let asset = fit_asset(std::slice::from_ref(take), &request)
         .unwrap()
         .asset;
@@ -64,11 +58,11 @@ fn unseen() -> Vec<SimulationOptions> {
         (100.0, 1.0, 34),
     ];
     let of = |surface| {
-        motions.map(|(speed_mm_s, force_n, seed)| SimulationOptions {
-            speed_mm_s,
-            force_n,
-            seed,
-            ..SimulationOptions::new(surface)
+        motions.map(|(speed_mm_s, force_n, seed)| {
+            SimulationOptions::new(surface)
+                .with_speed_mm_s(speed_mm_s)
+                .with_force_n(force_n)
+                .with_seed(seed)
         })
     };
     Surface::ALL.into_iter().flat_map(of).collect()

@@ -202,14 +202,7 @@ fn fitted(file: &Path, recording: &[f64]) -> Asset {
     let registry = Registry::search(&search).unwrap();
     let model = registry.models()[0].clone();
     assert!(model.follows_motion(), "{}", model.id());
-    let request = AssetRequest {
-        name: "followed".to_owned(),
-        models: vec![ModelRequest {
-            options: model.descriptor().default_options(),
-            model,
-        }],
-        ..AssetRequest::default()
-    };
+    let request = AssetRequest::new("followed").with_models([ModelRequest::new(&model)]);
     let take = Take {
         recording: Recording::new("made", RATE_HZ, vec![recording.to_vec()]).unwrap(),
         given: Exploration {

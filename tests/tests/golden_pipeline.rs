@@ -85,10 +85,7 @@ fn hold(name: &str, response: Option<SetupResponse>) {
     );
     near(segments.starts.clone(), "/segment_starts");
 
-    let options = SpectrumOptions {
-        response,
-        ..SpectrumOptions::default()
-    };
+    let options = SpectrumOptions::default().with_response(response);
     let part = segment_spectra(&recording, &options).unwrap();
     assert_eq!(part.warnings, [""; 0]);
     let spectrum = TextureSpectrum::average(&[part], Averaging::Magnitude).unwrap();

@@ -55,11 +55,9 @@ fn bytes() -> Vec<u8> {
 /// A texture recorded at these speeds, in all models.
 fn recorded_at(speeds_mm_s: &[f64]) -> Vec<u8> {
     let take = |speed_mm_s: f64| {
-        let options = SimulationOptions {
-            speed_mm_s,
-            duration_s: 4.0,
-            ..SimulationOptions::new(Surface::Sandpaper)
-        };
+        let options = SimulationOptions::new(Surface::Sandpaper)
+            .with_speed_mm_s(speed_mm_s)
+            .with_duration_s(4.0);
         Take {
             recording: simulate(&options)
                 .unwrap()
@@ -71,19 +69,16 @@ fn recorded_at(speeds_mm_s: &[f64]) -> Vec<u8> {
             },
         }
     };
-    let model = |model: &htex_host::LoadedModel| ModelRequest {
-        // The most expensive inverse.
-        options: match model.short_name() {
-            "mfcc" => model.options(&[("inverse", "nnls")]).unwrap(),
-            _ => model.descriptor().default_options(),
-        },
-        model: model.clone(),
+    let model = |model: &htex_host::LoadedModel| {
+        let request = ModelRequest::new(model);
+        match model.short_name() {
+            // The most expensive inverse.
+            "mfcc" => request.with_options(model.options(&[("inverse", "nnls")]).unwrap()),
+            _ => request,
+        }
     };
-    let request = AssetRequest {
-        name: "sandpaper".to_owned(),
-        models: Registry::builtin().models().iter().map(model).collect(),
-        ..AssetRequest::default()
-    };
+    let request =
+        AssetRequest::new("sandpaper").with_models(Registry::builtin().models().iter().map(model));
     let takes: Vec<Take> = speeds_mm_s.iter().map(|speed| take(*speed)).collect();
     let fitted = fit_asset(&takes, &request).unwrap();
     fitted.asset.to_bytes().unwrap()

@@ -122,10 +122,7 @@ impl Demo {
     }
 
     fn write_recording(&self, surface: Surface, csv: &Path) -> Result<(), Failure> {
-        let options = SimulationOptions {
-            seed: self.seed,
-            ..SimulationOptions::new(surface)
-        };
+        let options = SimulationOptions::new(surface).with_seed(self.seed);
         let simulation = simulate(&options).map_err(simulation_failure)?;
         let write =
             |file: &mut std::fs::File| simulation.write_csv(&mut std::io::BufWriter::new(file));
@@ -194,20 +191,18 @@ fn simulation_failure(error: SimulationError) -> Failure {
 }
 
 fn request(name: &str, rig: &SetupResponse) -> Result<AssetRequest, Failure> {
-    Ok(AssetRequest {
-        name: name.to_owned(),
-        license: Some("CC0-1.0".to_owned()),
-        author: Some("htex demo".to_owned()),
-        tags: vec!["simulated".to_owned()],
-        models: model_requests(&Registry::builtin(), &["all".to_owned()], &[])?,
-        spectrum: SpectrumOptions {
-            response: Some(rig.clone()),
-            ..SpectrumOptions::default()
-        },
-        recorded_options: BTreeMap::from([("frf".to_owned(), RIG.to_owned())]),
-        tool: tool(),
-        ..AssetRequest::default()
-    })
+    Ok(AssetRequest::new(name)
+        .with_license("CC0-1.0".to_owned())
+        .with_author("htex demo".to_owned())
+        .with_tags(vec!["simulated".to_owned()])
+        .with_models(model_requests(
+            &Registry::builtin(),
+            &["all".to_owned()],
+            &[],
+        )?)
+        .with_spectrum(SpectrumOptions::default().with_response(rig.clone()))
+        .with_recorded_options(BTreeMap::from([("frf".to_owned(), RIG.to_owned())]))
+        .with_tool(tool()))
 }
 
 fn play(asset: &htex::Asset, model: &str, file: &Path, wav: &Path) -> Result<(), Failure> {

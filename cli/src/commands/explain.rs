@@ -4,7 +4,7 @@ use clap::Args;
 use htex_format::{RULES, explain};
 
 use crate::failure::Failure;
-use crate::flags::with_flags;
+use crate::flags::{of_check, of_code, with};
 use crate::output::print;
 
 /// Explain a finding's code: what it means and what to do.
@@ -36,8 +36,8 @@ impl Explain {
             "{}: {}\n\n{}\n\nWhat to do: {}\n",
             rule.code,
             rule.summary,
-            rule.explanation,
-            with_flags(rule.fix)
+            with(rule.explanation, of_check(rule.code)),
+            with(rule.fix, of_code(rule.code))
         ))?;
         Ok(ExitCode::SUCCESS)
     }

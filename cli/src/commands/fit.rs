@@ -204,21 +204,18 @@ impl Fit {
             .output
             .file_stem()
             .map(|s| s.to_string_lossy().into_owned());
-        Ok(AssetRequest {
-            name: stem.unwrap_or_default(),
-            models: model_requests(registry, &self.model, &self.option)?,
-            spectrum: self.reading.spectrum_options()?,
-            level: match self.level {
+        Ok(AssetRequest::new(stem.unwrap_or_default())
+            .with_models(model_requests(registry, &self.model, &self.option)?)
+            .with_spectrum(self.reading.spectrum_options()?)
+            .with_level(match self.level {
                 LevelArg::Fitted => Level::Fitted,
                 LevelArg::Recording => Level::Recording,
-            },
-            alternatives: alternatives(registry),
-            strict: self.reading.strict(),
-            keep_reference: self.keep_reference,
-            recorded_options,
-            tool: tool(),
-            ..AssetRequest::default()
-        })
+            })
+            .with_alternatives(alternatives(registry))
+            .with_strict(self.reading.strict())
+            .with_keep_reference(self.keep_reference)
+            .with_recorded_options(recorded_options)
+            .with_tool(tool()))
     }
 }
 

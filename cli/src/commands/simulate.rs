@@ -55,14 +55,12 @@ impl Simulate {
             .into_iter()
             .chain(self.frf.as_deref());
         check_outputs(outputs, [])?;
-        let options = SimulationOptions {
-            seed: self.seed,
-            rate_hz: self.rate,
-            duration_s: self.seconds,
-            speed_mm_s: self.speed,
-            force_n: self.force,
-            ..SimulationOptions::new(self.surface)
-        };
+        let options = SimulationOptions::new(self.surface)
+            .with_seed(self.seed)
+            .with_rate_hz(self.rate)
+            .with_duration_s(self.seconds)
+            .with_speed_mm_s(self.speed)
+            .with_force_n(self.force);
         let usage = |error: SimulationError| Failure::Usage(error.to_string());
         let simulation = simulate(&options).map_err(usage)?;
         let write = |file: &mut std::fs::File| simulation.write_csv(&mut BufWriter::new(file));

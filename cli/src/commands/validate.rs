@@ -1,15 +1,18 @@
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use htex_format::{Findings, Limits, Report, Representation, Severity, explain, validate_with};
+use htex_format::{
+    Finding, Findings, Limits, Report, Representation, Severity, explain, validate_with,
+};
 use htex_host::{Registry, Search, WasmLimits};
 use serde_json::Value;
 
 use crate::failure::Failure;
-use crate::flags::with_flags;
+use crate::flags::{of_code, with, with_flags};
 use crate::output::{print, print_json, warn};
 use crate::recordings::RecordingArgs;
 use crate::scenes::SceneArgs;
@@ -249,11 +252,19 @@ fn text(path: &Path, report: &Report) -> String {
             "  {severity} {}{place}{}: {}\n",
             finding.code,
             htex_format::plain(&finding.pointer),
-            with_flags(&finding.message)
+            message(finding)
         );
         if let Some(rule) = &finding.schema_rule {
             text += &format!("    schema: {}\n", htex_format::plain(rule));
         }
     }
     text
+}
+
+/// A finding's message with the flags that help.
+fn message(finding: &Finding) -> Cow<'_, str> {
+    match of_code(&finding.code) {
+        None => with_flags(&finding.message),
+        flags => with(&finding.message, flags),
+    }
 }

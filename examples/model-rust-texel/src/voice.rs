@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use htex_dsp::noise::Uniform;
+use htex_dsp::uniform::Uniform;
 use htex_model::{Band, Error, Motion, MotionVoice, Values, Voice};
 
 use crate::comb::{Comb, LINES, heard};

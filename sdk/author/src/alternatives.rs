@@ -65,8 +65,8 @@ fn best(tried: impl Iterator<Item = Tried>) -> Option<Tried> {
     tried.min_by(|a, b| a.error_db.total_cmp(&b.error_db))
 }
 
-/// Returns the request's options with one of them set to another choice or to an end of its range, and the
-/// command-line text of each.
+/// Returns the request's options with one of them set to another choice or to an end of its range, each with its
+/// name, `model.option=value`.
 fn other_options(choice: &ModelRequest) -> Vec<(String, Vec<f64>)> {
     let mut others = Vec::new();
     let model = &choice.model;

@@ -8,6 +8,7 @@ use crate::hertz::hertz;
 
 /// An error of the authoring pipeline. Each message says what is wrong, where, and what to do.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum AuthorError {
     /// The sample rate is too low for the tactile band.
     #[error(
@@ -39,7 +40,7 @@ pub enum AuthorError {
     /// No sweep is long enough for a segment.
     #[error(
         "{source_name}: no complete sweep of 0.2 s or more (a sweep cut off by the beginning or the end does not count); \
-         try `segments windows` for a recording without back-and-forth sweeps"
+         choose windows for a recording without back-and-forth sweeps"
     )]
     NoSegments {
         /// The recording.
@@ -67,7 +68,7 @@ pub enum AuthorError {
     /// No segment is within the tolerance of the requested condition.
     #[error(
         "{source_name}: all {segments} segments differ from their target by more than 10 %: {comparison}; give the condition that \
-         was recorded, scale a column with `map`, or record again"
+         was recorded, correct the scale of a column, or record again"
     )]
     OffTarget {
         /// The recording.
@@ -77,8 +78,8 @@ pub enum AuthorError {
         /// The measured and the requested values.
         comparison: String,
     },
-    /// The recording has findings, and `strict` is set.
-    #[error("{source_name}: refused because of `strict` (`htex explain CODE` describes each finding):{}", lines(.findings))]
+    /// The recording has findings that are errors or warnings, and these were to be refused.
+    #[error("{source_name}: refused because of findings that are errors or warnings:{}", lines(.findings))]
     Strict {
         /// The recording.
         source_name: String,
@@ -104,7 +105,7 @@ pub enum AuthorError {
     /// Some recordings have a condition and others do not.
     #[error(
         "scanning speed and normal force are both known for only {known} of {all} conditions; \
-         give them for each recording: `at speed=80,force=0.4`, once per recording, in their order"
+         give both for each recording, in their order"
     )]
     UnknownConditions {
         /// Number of conditions with speed and force.

@@ -214,7 +214,7 @@ impl Known<'_> {
             let (what, unit) = (self.what, self.unit);
             findings.add(RECORDING_UNSTEADY, format!("/{}", self.signal), format!(
                 "the {what} differs from its median of {median:.4} {unit} by more than 10 %: from {low:.4} to {high:.4} {unit}; \
-                 choose a steady part with `from` and `to`, or give a target with `at`"
+                 choose a steady part, or give a target"
             ));
         }
         Some(median)

@@ -2,13 +2,15 @@
 
 /// Formats a rate with at most one decimal, or three below 10 Hz: `524.7 Hz`, `20000 Hz`.
 pub(crate) fn hertz(rate_hz: f64) -> String {
-    let text = match rate_hz.abs() < 10.0 {
-        true => format!("{rate_hz:.3}"),
-        false => format!("{rate_hz:.1}"),
+    let text = if rate_hz.abs() < 10.0 {
+        format!("{rate_hz:.3}")
+    } else {
+        format!("{rate_hz:.1}")
     };
-    let text = match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.'),
-        false => &text,
+    let text = if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        &text
     };
     format!("{text} Hz")
 }

@@ -73,12 +73,13 @@ pub fn read_take(
 fn refuse(recording: &Recording, findings: &[Finding]) -> Result<(), AuthorError> {
     let grave = findings.iter().filter(|f| f.severity != Severity::Info);
     let findings: Vec<Finding> = grave.cloned().collect();
-    match findings.is_empty() {
-        true => Ok(()),
-        false => Err(AuthorError::Strict {
+    if findings.is_empty() {
+        Ok(())
+    } else {
+        Err(AuthorError::Strict {
             source_name: recording.source.clone(),
             findings,
-        }),
+        })
     }
 }
 

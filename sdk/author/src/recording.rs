@@ -10,6 +10,7 @@ const LARGEST: f64 = 1e12;
 
 /// Errors of constructing a recording.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum RecordingError {
     /// The rate is zero, negative, NaN, or above [`MAX_RATE_HZ`].
     #[error("the sample rate is {rate_hz} Hz; it must be above 0 and at most {MAX_RATE_HZ} Hz")]
@@ -299,9 +300,10 @@ pub(crate) const fn most_axes(quantity: Quantity) -> usize {
 
 /// Checks that a sample rate is in range.
 pub(crate) fn check_rate(rate_hz: f64) -> Result<(), RecordingError> {
-    match rate_hz > 0.0 && rate_hz <= MAX_RATE_HZ {
-        true => Ok(()),
-        false => Err(RecordingError::Rate { rate_hz }),
+    if rate_hz > 0.0 && rate_hz <= MAX_RATE_HZ {
+        Ok(())
+    } else {
+        Err(RecordingError::Rate { rate_hz })
     }
 }
 

@@ -1,4 +1,4 @@
-//! What to fit: models and options of an asset.
+//! Options of fitting: the models and the asset.
 
 use std::collections::BTreeMap;
 
@@ -9,6 +9,7 @@ use crate::level::Level;
 
 /// A model to fit, with one value for each of its options.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct ModelRequest {
     /// The model.
     pub model: LoadedModel,
@@ -16,8 +17,38 @@ pub struct ModelRequest {
     pub options: Vec<f64>,
 }
 
+impl ModelRequest {
+    /// Requests a model at its default options.
+    #[must_use]
+    pub fn new(model: &LoadedModel) -> Self {
+        Self {
+            model: model.clone(),
+            options: model.descriptor().default_options(),
+        }
+    }
+
+    /// Sets the option values ([`LoadedModel::options`]).
+    #[must_use]
+    pub fn with_options(mut self, options: Vec<f64>) -> Self {
+        self.options = options;
+        self
+    }
+}
+
 /// Options of an asset to be fitted.
+///
+/// ```
+/// use htex_author::{AssetRequest, ModelRequest};
+/// use htex_host::Registry;
+///
+/// let registry = Registry::builtin();
+/// let request = AssetRequest::new("linen")
+///     .with_license("CC-BY-4.0".to_owned())
+///     .with_models(registry.models().iter().map(ModelRequest::new));
+/// assert_eq!(request.models.len(), registry.models().len());
+/// ```
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct AssetRequest {
     /// Name of the texture.
     pub name: String,
@@ -44,4 +75,92 @@ pub struct AssetRequest {
     pub recorded_options: BTreeMap<String, String>,
     /// Program and version, for the provenance.
     pub tool: String,
+}
+
+impl AssetRequest {
+    /// Requests an asset of this name, without models.
+    #[must_use]
+    pub fn new(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            ..Self::default()
+        }
+    }
+
+    /// Sets the SPDX licence expression.
+    #[must_use]
+    pub fn with_license(mut self, license: impl Into<Option<String>>) -> Self {
+        self.license = license.into();
+        self
+    }
+
+    /// Sets the author of the asset.
+    #[must_use]
+    pub fn with_author(mut self, author: impl Into<Option<String>>) -> Self {
+        self.author = author.into();
+        self
+    }
+
+    /// Sets the search terms.
+    #[must_use]
+    pub fn with_tags(mut self, tags: Vec<String>) -> Self {
+        self.tags = tags;
+        self
+    }
+
+    /// Sets the models, in the order of the representations.
+    #[must_use]
+    pub fn with_models(mut self, models: impl IntoIterator<Item = ModelRequest>) -> Self {
+        self.models = models.into_iter().collect();
+        self
+    }
+
+    /// Sets the options of the spectra.
+    #[must_use]
+    pub fn with_spectrum(mut self, spectrum: SpectrumOptions) -> Self {
+        self.spectrum = spectrum;
+        self
+    }
+
+    /// Sets the level of the representations.
+    #[must_use]
+    pub fn with_level(mut self, level: Level) -> Self {
+        self.level = level;
+        self
+    }
+
+    /// Sets models to try when a representation has a large band error.
+    #[must_use]
+    pub fn with_alternatives(mut self, alternatives: Vec<LoadedModel>) -> Self {
+        self.alternatives = alternatives;
+        self
+    }
+
+    /// Sets whether to refuse recordings with errors or warnings.
+    #[must_use]
+    pub fn with_strict(mut self, strict: bool) -> Self {
+        self.strict = strict;
+        self
+    }
+
+    /// Sets whether to keep the recorded spectra in the asset.
+    #[must_use]
+    pub fn with_keep_reference(mut self, keep_reference: bool) -> Self {
+        self.keep_reference = keep_reference;
+        self
+    }
+
+    /// Sets the options that differ from their defaults, for the provenance.
+    #[must_use]
+    pub fn with_recorded_options(mut self, recorded_options: BTreeMap<String, String>) -> Self {
+        self.recorded_options = recorded_options;
+        self
+    }
+
+    /// Sets program and version, for the provenance.
+    #[must_use]
+    pub fn with_tool(mut self, tool: impl Into<String>) -> Self {
+        self.tool = tool.into();
+        self
+    }
 }

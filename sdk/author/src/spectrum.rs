@@ -36,6 +36,7 @@ pub enum Averaging {
 
 /// Options of computing a texture spectrum.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct SpectrumOptions {
     /// Method of choosing segments.
     pub segments: SegmentChoice,
@@ -43,6 +44,29 @@ pub struct SpectrumOptions {
     pub averaging: Averaging,
     /// Response of the recording setup, which spectra are divided by.
     pub response: Option<SetupResponse>,
+}
+
+impl SpectrumOptions {
+    /// Sets the method of choosing segments.
+    #[must_use]
+    pub fn with_segments(mut self, segments: SegmentChoice) -> Self {
+        self.segments = segments;
+        self
+    }
+
+    /// Sets the method of averaging segments.
+    #[must_use]
+    pub fn with_averaging(mut self, averaging: Averaging) -> Self {
+        self.averaging = averaging;
+        self
+    }
+
+    /// Sets the response of the recording setup.
+    #[must_use]
+    pub fn with_response(mut self, response: impl Into<Option<SetupResponse>>) -> Self {
+        self.response = response.into();
+        self
+    }
 }
 
 /// The compensated spectra of a recording's segments, folded into one axis, in the band.

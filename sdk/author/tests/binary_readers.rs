@@ -15,11 +15,8 @@ fn wav_of_one_to_three_channels_and_all_depths() {
         let plain = read("w.wav", &bytes, &ReadOptions::default()).unwrap();
         assert_eq!(plain.axes, [[0.5, -0.5], [-0.25, 0.25]]);
         assert_eq!(plain.normal_n, Some(vec![0.75, 0.5]));
-        assert!(plain.rate_hz == 44_100.0 && has_warning(&plain, "--scale"));
-        let options = ReadOptions {
-            scale: Some(4.0),
-            ..ReadOptions::default()
-        };
+        assert!(plain.rate_hz == 44_100.0 && has_warning(&plain, "give the scale"));
+        let options = ReadOptions::default().with_scale(4.0);
         let scaled = read("w.dat", &bytes, &options).unwrap();
         assert_eq!((scaled.axes[0][0], scaled.warnings.len()), (2.0, 0));
     }
@@ -55,7 +52,7 @@ fn wav_of_one_to_three_channels_and_all_depths() {
         (
             bytes.clone(),
             mapped("lateral=#1", None),
-            "--map is for CSV",
+            "a column map is for CSV",
         ),
         (bytes.clone(), at(48_000.0), "44100 Hz"),
     ] {
@@ -86,7 +83,7 @@ fn npy_in_either_order_and_endianness() {
         assert!(
             read("n.npy", &bytes, &ReadOptions::default())
                 .unwrap_err()
-                .contains("--rate")
+                .contains("no sample rate; give one")
         );
     }
     let deep = format!("{}1{}", "(".repeat(3000), ")".repeat(3000));

@@ -10,10 +10,7 @@ use htex_author::recording::Recording;
 const BLOCK: usize = 256 << 10;
 
 fn read(text: impl AsRef<[u8]>) -> Result<Recording, String> {
-    let options = ReadOptions {
-        rate_hz: Some(1_000.0),
-        ..ReadOptions::default()
-    };
+    let options = ReadOptions::default().with_rate_hz(1_000.0);
     let read = recording_from_bytes(Path::new("long.csv"), text.as_ref(), &options);
     read.map_err(|error| error.to_string())
 }

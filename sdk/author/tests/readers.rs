@@ -49,7 +49,10 @@ fn two_axes_time_and_position_by_name() {
 fn volts_need_a_map_and_the_message_gives_it() {
     let text = "lateral_V,normal_V\n1,2\n3,4\n";
     let error = read("v.csv", text, &at(10_000.0)).unwrap_err();
-    assert!(error.contains("--map lateral=lateral_V:SCALE"), "{error}");
+    assert!(
+        error.contains("map it with its scale to N: lateral=lateral_V:SCALE"),
+        "{error}"
+    );
     let options = mapped("lateral=lateral_V:0.4444,normal=#2:0.31", Some(10_000.0));
     let recording = read("v.csv", text, &options).unwrap();
     assert_eq!(recording.axes, [[0.4444, 3.0 * 0.4444]]);
@@ -73,7 +76,7 @@ fn units_left_unsaid_are_assumed_aloud() {
     assert!(
         read("k.csv", text, &ReadOptions::default())
             .unwrap_err()
-            .contains("--rate")
+            .contains("no sample rate; give one")
     );
     let in_metres = text.replace("speed", "speed [m/s]");
     let recording = read("k.csv", in_metres, &at(1000.0)).unwrap();
@@ -97,7 +100,7 @@ fn delimiters_comments_quotes_and_headerless_files() {
     assert!(
         read("h.csv", "1,2\n3,4\n", &at(100.0))
             .unwrap_err()
-            .contains("--map lateral=#2")
+            .contains("map columns by number, as in lateral=#2")
     );
     let by_number = read("h.csv", "1,2\n3,4\n", &mapped("lateral=#2:2", Some(100.0))).unwrap();
     assert_eq!(by_number.axes, [[4.0, 8.0]]);
@@ -154,7 +157,7 @@ fn columns_that_could_be_either_are_asked_for() {
     assert!(
         read("m.csv", twice, &at(9.0))
             .unwrap_err()
-            .contains("--map normal=COLUMN")
+            .contains("map one of them, as in normal=COLUMN")
     );
     let chosen = read("m.csv", twice, &mapped("normal=force:2", Some(9.0))).unwrap();
     assert_eq!(chosen.normal_n, Some(vec![2.0, 2.0]));
@@ -199,7 +202,7 @@ fn the_time_column_gives_the_rate_or_says_why_not() {
     );
     let other = read("t.csv", &even, &at(1000.0)).unwrap();
     assert_eq!(other.rate_hz, 1000.0);
-    assert!(has_warning(&other, "2000 Hz, --rate is 1000 Hz"));
+    assert!(has_warning(&other, "2000 Hz, the given rate is 1000 Hz"));
     let gap = read(
         "t.csv",
         table(&["0", "1", "2", "3", "7", "8"]),

@@ -99,12 +99,10 @@ fn sound_recordings_at_any_rate_and_speed_have_no_warning() {
             (2_000.0, 120.0, 2),
             (1_000.0, 160.0, 3),
         ] {
-            let options = SimulationOptions {
-                rate_hz,
-                speed_mm_s,
-                seed,
-                ..SimulationOptions::new(surface)
-            };
+            let options = SimulationOptions::new(surface)
+                .with_rate_hz(rate_hz)
+                .with_speed_mm_s(speed_mm_s)
+                .with_seed(seed);
             let recording = simulate(&options).unwrap().to_recording("sound").unwrap();
             let target = Exploration {
                 speed_mm_s: Some(speed_mm_s),

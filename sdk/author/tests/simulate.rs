@@ -46,23 +46,70 @@ fn written_and_read_back_it_is_the_same_recording() {
 #[test]
 fn same_options_give_the_same_bytes_everywhere() {
     let short = |seed| {
-        let options = SimulationOptions {
-            seed,
-            duration_s: 0.5,
-            ..SimulationOptions::new(Surface::Sandpaper)
-        };
+        let options = SimulationOptions::new(Surface::Sandpaper)
+            .with_seed(seed)
+            .with_duration_s(0.5);
         csv(&simulate(&options).unwrap())
     };
     assert_eq!(short(7), short(7));
     assert_ne!(short(7), short(8));
-    // The rows, without the first line, which has the version: detects machines and compilers whose results
-    // differ.
-    let bytes = short(7);
-    let first_row = bytes.iter().position(|byte| *byte == b'\n').unwrap();
-    assert_eq!(hash(&bytes[first_row..]), HASH);
 }
 
-const HASH: u64 = 0x75f2_fa7d_cfcc_8f48;
+/// Hash of the rows of a short simulation, without the first line of the file, which has the version.
+fn hash_of_rows(options: SimulationOptions) -> u64 {
+    let bytes = csv(&simulate(&options.with_duration_s(0.5)).unwrap());
+    let first_row = bytes.iter().position(|byte| *byte == b'\n').unwrap();
+    hash(&bytes[first_row..])
+}
+
+/// Detects machines, compilers and changes of filters or generators whose results differ.
+#[test]
+fn simulations_are_bit_identical_everywhere() {
+    let seven = |surface| SimulationOptions::new(surface).with_seed(7);
+    let of_surfaces = Surface::ALL.map(|surface| hash_of_rows(seven(surface)));
+    assert_eq!(
+        of_surfaces,
+        [
+            0x75f2_fa7d_cfcc_8f48,
+            0x752e_e377_4914_454a,
+            0x3299_60d7_4f77_e814,
+            0x2433_15ee_24a6_1977,
+            0x0461_b28a_c539_2653
+        ]
+    );
+    // Faster and harder; slower and lighter; at a rate that needs the anti-aliasing filter.
+    let of_motions = [
+        (20_000.0, 240.0, 2.5),
+        (20_000.0, 3.0, 0.05),
+        (2_000.0, 80.0, 0.4),
+    ]
+    .map(|(rate_hz, speed_mm_s, force_n)| {
+        hash_of_rows(
+            seven(Surface::Sandpaper)
+                .with_rate_hz(rate_hz)
+                .with_speed_mm_s(speed_mm_s)
+                .with_force_n(force_n),
+        )
+    });
+    assert_eq!(
+        of_motions,
+        [
+            0x7582_9557_4748_7781,
+            0x59d5_ef30_9a60_fc85,
+            0x20ea_cb8b_6839_e74b
+        ]
+    );
+}
+
+/// The rig's response at a rate that needs the anti-aliasing filter.
+#[test]
+fn the_setup_response_is_bit_identical_everywhere() {
+    let options = SimulationOptions::new(Surface::Vinyl).with_rate_hz(2_000.0);
+    let response = options.setup_response().unwrap();
+    let numbers = response.magnitude.iter().chain(&response.phase_rad);
+    let bytes: Vec<u8> = numbers.flat_map(|x| x.to_bits().to_le_bytes()).collect();
+    assert_eq!(hash(&bytes), 0x7c06_18d6_a273_20e4);
+}
 
 #[test]
 fn the_hand_keeps_within_the_papers_tolerance() {
@@ -151,16 +198,8 @@ fn spectra_lie_as_in_the_paper() {
 #[test]
 fn texture_follows_speed_and_force() {
     let paper_conditions = SimulationOptions::new(Surface::CorrugatedPaper);
-    let slow = simulate(&SimulationOptions {
-        speed_mm_s: 40.0,
-        ..paper_conditions.clone()
-    })
-    .unwrap();
-    let light = simulate(&SimulationOptions {
-        force_n: 0.2,
-        ..paper_conditions.clone()
-    })
-    .unwrap();
+    let slow = simulate(&paper_conditions.clone().with_speed_mm_s(40.0)).unwrap();
+    let light = simulate(&paper_conditions.clone().with_force_n(0.2)).unwrap();
     let normal = simulate(&paper_conditions).unwrap();
     // Flutes 2 mm apart.
     assert!(amplitude_n(&normal, 40.0) > 3.0 * amplitude_n(&normal, 20.0));
@@ -171,10 +210,7 @@ fn texture_follows_speed_and_force() {
 
 #[test]
 fn low_rates_are_not_aliased() {
-    let options = SimulationOptions {
-        rate_hz: 1000.0,
-        ..SimulationOptions::new(Surface::CorrugatedPaper)
-    };
+    let options = SimulationOptions::new(Surface::CorrugatedPaper).with_rate_hz(1000.0);
     let simulation = simulate(&options).unwrap();
     assert_eq!(simulation.t_s.len(), 10_000);
     assert!(simulation.to_recording("low").is_ok());
@@ -189,31 +225,12 @@ fn low_rates_are_not_aliased() {
 fn options_out_of_range_are_refused_and_names_go_round() {
     let good = SimulationOptions::new(Surface::Vinyl);
     for bad in [
-        SimulationOptions {
-            rate_hz: f64::NAN,
-            ..good.clone()
-        },
-        SimulationOptions {
-            rate_hz: 0.0,
-            ..good.clone()
-        },
-        SimulationOptions {
-            duration_s: f64::INFINITY,
-            ..good.clone()
-        },
-        SimulationOptions {
-            speed_mm_s: -80.0,
-            ..good.clone()
-        },
-        SimulationOptions {
-            force_n: 0.0,
-            ..good.clone()
-        },
-        SimulationOptions {
-            rate_hz: 200_000.0,
-            duration_s: 600.0,
-            ..good
-        },
+        good.clone().with_rate_hz(f64::NAN),
+        good.clone().with_rate_hz(0.0),
+        good.clone().with_duration_s(f64::INFINITY),
+        good.clone().with_speed_mm_s(-80.0),
+        good.clone().with_force_n(0.0),
+        good.with_rate_hz(200_000.0).with_duration_s(600.0),
     ] {
         assert!(simulate(&bad).is_err(), "{bad:?}");
     }
@@ -242,10 +259,7 @@ fn dividing_by_the_rigs_response_gives_the_force_at_the_finger() {
     assert_eq!(written.magnitude, response.magnitude);
     let recording = simulate(&options).unwrap().to_recording("rec").unwrap();
     let spectrum = |response: Option<SetupResponse>| {
-        let options = SpectrumOptions {
-            response,
-            ..SpectrumOptions::default()
-        };
+        let options = SpectrumOptions::default().with_response(response);
         let part = segment_spectra(&recording, &options).unwrap();
         assert_eq!(part.warnings, [""; 0]);
         TextureSpectrum::average(&[part], options.averaging).unwrap()

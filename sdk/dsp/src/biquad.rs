@@ -3,6 +3,9 @@
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
+#[cfg(feature = "std")]
+use crate::spectrum::Complex;
+
 /// State smaller than this is set to zero, which avoids denormals: some processors handle them a hundred
 /// times slower. The threshold is some 200 decades below any perceptible amplitude.
 const SMALLEST_STATE: f64 = 1e-200;
@@ -44,6 +47,23 @@ impl Biquad {
             }
         };
         crate::root::sqrt(squared(self.b0, self.b1, self.b2) / squared(1.0, self.a1, self.a2))
+    }
+
+    /// Complex frequency response at `f_hz` for the sampling rate `rate_hz`, both in hertz. Near 0 Hz,
+    /// [`Self::magnitude`] is more accurate.
+    ///
+    /// ```
+    /// use htex_dsp::biquad::Biquad;
+    /// let delay = Biquad { b0: 0.0, b1: 1.0, ..Biquad::IDENTITY };
+    /// let response = delay.response(250.0, 1000.0);
+    /// assert!(response.re.abs() < 1e-15 && (response.im + 1.0).abs() < 1e-15);
+    /// ```
+    #[cfg(feature = "std")]
+    pub fn response(&self, f_hz: f64, rate_hz: f64) -> Complex<f64> {
+        let angle = -2.0 * PI * f_hz / rate_hz;
+        let delay = Complex::new(libm::cos(angle), libm::sin(angle));
+        let numerator = delay * (delay * self.b2 + self.b1) + self.b0;
+        numerator / (delay * (delay * self.a2 + self.a1) + 1.0)
     }
 
     /// Whether both poles lie inside the unit circle.

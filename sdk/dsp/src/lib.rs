@@ -38,6 +38,7 @@ pub mod mel;
 pub mod nelder_mead;
 pub mod noise;
 pub mod non_negative;
+pub mod normal;
 pub mod peaks;
 pub mod pipeline;
 mod polyphase;

@@ -56,9 +56,8 @@ fn check_words(manifest: &Manifest, findings: &mut Findings) {
         "",
         || "there is no license; add an SPDX expression".to_owned(),
     );
-    let license = manifest.license.as_deref().map(check_license);
-    if let Some(Err((rule, message))) = license {
-        findings.add(rule, "/license", message);
+    if let Some(Err(error)) = manifest.license.as_deref().map(check_license) {
+        findings.add(error.rule(), "/license", error.to_string());
     }
     if let Some(Err(error)) = manifest.doi.as_deref().map(check_doi) {
         findings.add(rule::DOI_INVALID, "/doi", error.to_string());

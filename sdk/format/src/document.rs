@@ -66,8 +66,11 @@ impl Document {
             return None;
         }
         let value = self.value(bytes, findings)?;
-        let newer = self.check_version(&value, findings)?;
-        Some(Opened { value, newer })
+        let minor = self.check_version(&value, findings)?;
+        Some(Opened {
+            value,
+            newer: minor > self.minor,
+        })
     }
 
     fn value(&self, bytes: &[u8], findings: &mut Findings) -> Option<Value> {
@@ -87,8 +90,8 @@ impl Document {
         }
     }
 
-    /// Whether the minor version is newer than the supported one. `None` when the document cannot be read.
-    fn check_version(&self, value: &Value, findings: &mut Findings) -> Option<bool> {
+    /// Returns the minor version; `None` when the document cannot be read.
+    fn check_version(&self, value: &Value, findings: &mut Findings) -> Option<u64> {
         let (rules, key, thing) = (&self.rules, self.version_key, self.thing);
         let (known_major, known_minor) = (self.major, self.minor);
         let Some(object) = value.as_object() else {
@@ -118,7 +121,7 @@ impl Document {
             let message = format!("{is} {known_major}.{known_minor}; update to see all of it");
             findings.add(rules.version_newer, pointer, message);
         }
-        Some(minor > known_minor)
+        Some(minor)
     }
 
     /// Converts the document to a `T` and returns it with pointers to the keys that no type knows. Returns

@@ -10,6 +10,7 @@ const SHOWN: usize = 3;
 
 /// Error of reading an asset.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReadError {
     /// The file could not be read.
     #[error("cannot read {}: {error}", .path.display())]
@@ -30,6 +31,7 @@ pub enum ReadError {
 
 /// Error of writing an asset.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum WriteError {
     /// The file could not be written; an existing file is unchanged.
     #[error("cannot write {}: {error}; the file is unchanged", .path.display())]

@@ -58,7 +58,7 @@ pub use finding::{Finding, Severity};
 pub use htex_files::{remove_unfinished, replace_file, write_file};
 pub use htex_model::Band;
 pub use json_text::{JsonError, parse_json};
-pub use license::check_license;
+pub use license::{LicenseError, check_license};
 pub use limits::Limits;
 pub use manifest::{
     AtCondition, Condition, FIRST_VERSION, Manifest, Plugin, Provenance, Quality, Reference,

@@ -11,19 +11,51 @@ const LISTED: ParseMode = ParseMode {
     ..ParseMode::STRICT
 };
 
+/// Error: a text is not an SPDX expression of listed licences.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LicenseError {
+    /// An id is not in the list (which grows).
+    #[error(
+        "{id:?} is not in the SPDX list; correct it, or write LicenseRef-NAME for a licence of your own"
+    )]
+    Unlisted {
+        /// The id.
+        id: String,
+    },
+    /// The grammar is wrong.
+    #[error("{license:?} is not an SPDX expression ({reason}); write one like CC-BY-4.0")]
+    Syntax {
+        /// The text.
+        license: String,
+        /// What the parser reports.
+        reason: String,
+    },
+}
+
+impl LicenseError {
+    /// Returns the broken rule: an error for wrong grammar, a warning for an unlisted id.
+    #[must_use]
+    pub fn rule(&self) -> &'static Rule {
+        match self {
+            Self::Unlisted { .. } => rule::LICENSE_UNKNOWN,
+            Self::Syntax { .. } => rule::LICENSE_INVALID,
+        }
+    }
+}
+
 /// Checks a text against the grammar of SPDX licence expressions and the list of licences.
 ///
 /// # Errors
-/// The broken rule and a message: an error for wrong grammar, a warning for an id that is not in
-/// the list (which grows).
+/// Wrong grammar, or an id that is not in the list.
 ///
 /// ```
 /// use htex_format::check_license;
 /// assert!(check_license("MIT OR Apache-2.0").is_ok());
-/// let (rule, _) = check_license("CC-BY-9.0").expect_err("there is no such licence");
-/// assert_eq!(rule.code, "LICENSE_UNKNOWN");
+/// let error = check_license("CC-BY-9.0").expect_err("there is no such licence");
+/// assert_eq!(error.rule().code, "LICENSE_UNKNOWN");
 /// ```
-pub fn check_license(license: &str) -> Result<(), (&'static Rule, String)> {
+pub fn check_license(license: &str) -> Result<(), LicenseError> {
     let Err(unlisted) = Expression::parse_mode(license, LISTED) else {
         return Ok(());
     };
@@ -32,20 +64,12 @@ pub fn check_license(license: &str) -> Result<(), (&'static Rule, String)> {
         ..LISTED
     };
     match Expression::parse_mode(license, any_id) {
-        Ok(_) => {
-            let word = license.get(unlisted.span).unwrap_or(license);
-            let message = format!(
-                "{word:?} is not in the SPDX list; correct it, or write LicenseRef-NAME for a \
-                 licence of your own"
-            );
-            Err((rule::LICENSE_UNKNOWN, message))
-        }
-        Err(error) => {
-            let message = format!(
-                "{license:?} is not an SPDX expression ({}); write one like CC-BY-4.0",
-                error.reason
-            );
-            Err((rule::LICENSE_INVALID, message))
-        }
+        Ok(_) => Err(LicenseError::Unlisted {
+            id: license.get(unlisted.span).unwrap_or(license).to_owned(),
+        }),
+        Err(error) => Err(LicenseError::Syntax {
+            license: license.to_owned(),
+            reason: error.reason.to_string(),
+        }),
     }
 }

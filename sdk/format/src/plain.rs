@@ -15,9 +15,10 @@ pub fn plain(text: &str) -> Cow<'_, str> {
     }
     let mut plain = String::with_capacity(text.len() + 8);
     for c in text.chars() {
-        match steers(c) {
-            true => plain.extend(c.escape_default()),
-            false => plain.push(c),
+        if steers(c) {
+            plain.extend(c.escape_default())
+        } else {
+            plain.push(c)
         }
     }
     Cow::Owned(plain)

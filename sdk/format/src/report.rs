@@ -21,7 +21,7 @@ pub struct Report {
     pub findings: Vec<Finding>,
 }
 
-/// The result of validating a file, as `htex validate --json` and the conformance reports write it;
+/// The result of validating a file, as the command and the conformance reports write it in JSON;
 /// its schema is `spec/schemas/report-1.json`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct FileReport {

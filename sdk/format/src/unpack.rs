@@ -54,9 +54,10 @@ fn inflate(data: &[u8], size: usize) -> Result<Vec<u8>, Damage> {
         .map_err(|_| Damage::Invalid)?;
     let (used, unpacked) = (stream.total_in(), stream.total_out());
     if status != Status::StreamEnd {
-        return Err(match unpacked > size as u64 {
-            true => Damage::TooLong(size),
-            false => Damage::Endless,
+        return Err(if unpacked > size as u64 {
+            Damage::TooLong(size)
+        } else {
+            Damage::Endless
         });
     }
     if unpacked != size as u64 {

@@ -22,15 +22,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         recording: simulate(&options)?.to_recording("simulated")?,
     };
     let registry = Registry::builtin();
-    let models = registry.models().iter().map(|model| ModelRequest {
-        options: model.descriptor().default_options(),
-        model: model.clone(),
-    });
-    let request = AssetRequest {
-        name: "Coarse cloth".to_owned(),
-        models: models.collect(),
-        ..AssetRequest::default()
-    };
+    let models = registry.models().iter().map(ModelRequest::new);
+    let request = AssetRequest::new("Coarse cloth").with_models(models);
     let fitted = fit_asset(&[take], &request)?;
     fitted.asset.write(&path)?;
     let models = fitted.asset.manifest.representations.len();

@@ -130,14 +130,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         recording: simulate(&options)?.to_recording("simulated")?,
     };
     let model = registry.find("org.example.plateau")?.clone();
-    let request = AssetRequest {
-        name: "Sandpaper".to_owned(),
-        models: vec![ModelRequest {
-            options: model.descriptor().default_options(),
-            model,
-        }],
-        ..AssetRequest::default()
-    };
+    let request = AssetRequest::new("Sandpaper").with_models([ModelRequest::new(&model)]);
     let fitted = fit_asset(&[take], &request)?;
 
     let asset = Asset::with_registry(fitted.asset, registry);

@@ -11,10 +11,7 @@ const ELSEWHERE: &str = "org.example.elsewhere";
 
 /// An asset of AR and sBeta. The named one gets another id, the smallest error, and an embedded module.
 fn asset() -> htex::AssetData {
-    let options = SimulationOptions {
-        duration_s: 3.0,
-        ..SimulationOptions::new(Surface::Sandpaper)
-    };
+    let options = SimulationOptions::new(Surface::Sandpaper).with_duration_s(3.0);
     let take = Take {
         recording: simulate(&options)
             .unwrap()
@@ -26,18 +23,8 @@ fn asset() -> htex::AssetData {
         },
     };
     let registry = Registry::builtin();
-    let model = |name: &str| {
-        let model = registry.find(name).unwrap().clone();
-        ModelRequest {
-            options: model.descriptor().default_options(),
-            model,
-        }
-    };
-    let request = AssetRequest {
-        name: "simulated".to_owned(),
-        models: vec![model("ar"), model("sbeta")],
-        ..AssetRequest::default()
-    };
+    let model = |name: &str| ModelRequest::new(registry.find(name).unwrap());
+    let request = AssetRequest::new("simulated").with_models([model("ar"), model("sbeta")]);
     let mut asset = fit_asset(&[take], &request).unwrap().asset;
     let brought = &mut asset.manifest.representations[0];
     let version = brought.model_version.clone();

@@ -20,6 +20,7 @@ pub fn open(path: &Path) -> Result<Response, ReadError> {
         let file = path.file_name().unwrap_or(path.as_os_str());
         return Err(ReadError::Option {
             file: file.to_string_lossy().into_owned(),
+            option: "response",
             problem:
                 "every magnitude is 0, which cannot be compensated; measure the response again"
                     .into(),

@@ -32,10 +32,7 @@ fn played(response: Option<Response>) -> (Vec<f32>, Option<String>) {
 /// Energies from 40 to 200, to 500, to 930 Hz, dB.
 fn energies_db(samples: &[f32]) -> [f64; 3] {
     let signal = samples.iter().map(|&x| f64::from(x)).collect();
-    let options = SpectrumOptions {
-        segments: SegmentChoice::Windows,
-        ..SpectrumOptions::default()
-    };
+    let options = SpectrumOptions::default().with_segments(SegmentChoice::Windows);
     let recording = Recording::new("played", RATE_HZ, vec![signal]).unwrap();
     let part = segment_spectra(&recording, &options).unwrap();
     let spectrum = TextureSpectrum::average(&[part], options.averaging).unwrap();

@@ -42,11 +42,9 @@ fn demodulated(drive: &[f32]) -> Vec<f64> {
 
 /// RMS-averaged magnitudes on the 5 Hz grid.
 fn magnitudes(signal: Vec<f64>) -> Vec<f64> {
-    let options = SpectrumOptions {
-        segments: SegmentChoice::Windows,
-        averaging: Averaging::Rms,
-        response: None,
-    };
+    let options = SpectrumOptions::default()
+        .with_segments(SegmentChoice::Windows)
+        .with_averaging(Averaging::Rms);
     let recording = Recording::new("drive", RATE_HZ, vec![signal]).unwrap();
     let part = segment_spectra(&recording, &options).unwrap();
     TextureSpectrum::average(&[part], options.averaging)

@@ -66,9 +66,10 @@ pub fn csv(tradeoff: &Tradeoff) -> String {
 /// Formats a cell of text, quoted if necessary. A cell that a spreadsheet would take for a formula gets an apostrophe in
 /// front, which marks text.
 fn text(text: &str) -> String {
-    let text = match text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
-        true => &format!("'{text}"),
-        false => text,
+    let text = if text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
+        &format!("'{text}")
+    } else {
+        text
     };
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))

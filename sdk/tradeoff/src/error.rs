@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 /// An error that ended a sweep; finished points are in its journal.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum TradeoffError {
     /// A recording is not usable, or a model failed.
     #[error(transparent)]

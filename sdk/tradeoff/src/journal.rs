@@ -14,14 +14,21 @@ use crate::timing::Timed;
 /// Start of the first line of a journal, followed by the key.
 const HEAD: &str = "htex tradeoff ";
 
+/// Result of measuring a contender on a recording.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) enum Outcome {
+    Measured(Measured),
+    Failed { reason: String },
+}
+
 /// A finished step. A contender is named by its id within its recording.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Entry {
-    /// The result of measuring a contender on a recording, or the reason why it failed.
+    /// The result of measuring a contender on a recording.
     Measured {
         recording: usize,
         contender: String,
-        outcome: Result<Measured, String>,
+        outcome: Outcome,
     },
     /// The times of all contenders of a recording.
     Timed {
@@ -133,7 +140,9 @@ mod tests {
         Entry::Measured {
             recording: 0,
             contender: contender.to_owned(),
-            outcome: Err("why".to_owned()),
+            outcome: Outcome::Failed {
+                reason: "why".to_owned(),
+            },
         }
     }
 

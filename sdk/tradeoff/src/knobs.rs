@@ -5,7 +5,7 @@
 pub struct Knob {
     /// A fit option of the model, or one of [`PLAYING`].
     pub name: &'static str,
-    /// Its values, from coarse to fine, as `htex fit --option` takes them.
+    /// Its values, from coarse to fine, as [`LoadedModel::options`](htex_host::LoadedModel::options) takes them.
     pub values: &'static [&'static str],
 }
 

@@ -42,9 +42,10 @@ pub fn page(tradeoff: &Tradeoff, command: &str) -> String {
         }
     }
     page.heading("Warnings");
-    page.html(&match tradeoff.warnings.is_empty() {
-        true => paragraph("None."),
-        false => list(&tradeoff.warnings),
+    page.html(&if tradeoff.warnings.is_empty() {
+        paragraph("None.")
+    } else {
+        list(&tradeoff.warnings)
     });
     page.heading("How this page was made");
     page.html(&htex_report::code_block(command));

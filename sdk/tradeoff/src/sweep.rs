@@ -8,9 +8,8 @@ use htex_author::AuthorError;
 use serde::Serialize;
 
 use crate::contender::Contender;
-use crate::journal::{Entry, Journal};
+use crate::journal::{Entry, Journal, Outcome};
 use crate::lineup::{key, lineup};
-use crate::measured::Measured;
 use crate::request::Request;
 use crate::timing::{Timed, time};
 use crate::{Point, Subject, TradeoffError};
@@ -81,12 +80,12 @@ pub fn sweep(
         step(contenders.len(), &subject.name);
         for one in &contenders {
             match measured.get(&one.id()) {
-                Some(Ok(measured)) => {
+                Some(Outcome::Measured(measured)) => {
                     let timed = timed.get(&one.id());
                     let point = timed.map(|timed| Point::new(&subject.name, one, measured, timed));
                     swept.points.extend(point);
                 }
-                Some(Err(reason)) => swept.left_out.push(LeftOut {
+                Some(Outcome::Failed { reason }) => swept.left_out.push(LeftOut {
                     recording: subject.name.clone(),
                     setting: one.id(),
                     reason: reason.clone(),
@@ -118,7 +117,8 @@ fn nothing_fitted(subject: &Subject, swept: &Swept) -> AuthorError {
     }
 }
 
-type Outcomes = BTreeMap<String, Result<Measured, String>>;
+/// Outcomes by contender.
+type Outcomes = BTreeMap<String, Outcome>;
 
 /// Measures what is not in the journal, on all cores.
 fn measure_all(
@@ -150,9 +150,13 @@ fn measure_all(
     let work = || {
         while let Some(one) = open.get(next.fetch_add(1, Ordering::Relaxed)) {
             let outcome = match one.measure(subject, quick) {
-                Ok(Some(measured)) => Ok(measured),
-                Ok(None) => Err("the repeatability of a single stroke is not known".to_owned()),
-                Err(error) => Err(error.to_string()),
+                Ok(Some(measured)) => Outcome::Measured(measured),
+                Ok(None) => Outcome::Failed {
+                    reason: "the repeatability of a single stroke is not known".to_owned(),
+                },
+                Err(error) => Outcome::Failed {
+                    reason: error.to_string(),
+                },
             };
             let contender = one.id();
             journal.keep(&Entry::Measured {
@@ -205,7 +209,8 @@ fn time_all(
             return Ok(times.iter().cloned().collect());
         }
     }
-    let is_measured = |one: &&Contender| matches!(measured.get(&one.id()), Some(Ok(_)));
+    let is_measured =
+        |one: &&Contender| matches!(measured.get(&one.id()), Some(Outcome::Measured(_)));
     let timed: Vec<&Contender> = contenders.iter().filter(is_measured).collect();
     let times = time(subject, &timed, quick)?;
     let times: Vec<(String, Timed)> = timed.iter().map(|one| one.id()).zip(times).collect();

@@ -104,16 +104,12 @@ fn asset(registry: &Registry, recording: htex_author::Recording) -> Result<Vec<u
     for model in registry.models() {
         let options = model.options(&[])?;
         let model = model.clone();
-        models.push(ModelRequest { model, options });
+        models.push(ModelRequest::new(&model).with_options(options));
     }
     let take = Take {
         recording,
         given: Default::default(),
     };
-    let wanted = AssetRequest {
-        name: "sandpaper".to_owned(),
-        models,
-        ..AssetRequest::default()
-    };
+    let wanted = AssetRequest::new("sandpaper").with_models(models);
     Ok(fit_asset(&[take], &wanted)?.asset.to_bytes()?)
 }

@@ -41,10 +41,7 @@ fn recording(name: &str, input: &[u8], rate_hz: f64) -> bool {
     let read = |options: &ReadOptions| recording_from_bytes(Path::new(name), input, options);
     let mut result = read(&ReadOptions::default());
     if matches!(result, Err(ReadError::NoRate { .. })) {
-        result = read(&ReadOptions {
-            rate_hz: Some(rate_hz),
-            ..ReadOptions::default()
-        });
+        result = read(&ReadOptions::default().with_rate_hz(rate_hz));
     }
     match result {
         Ok(recording) => {
@@ -76,10 +73,7 @@ fn take_spectra(recording: &Recording) {
         SegmentChoice::Sweeps,
         SegmentChoice::Windows,
     ] {
-        let options = SpectrumOptions {
-            segments,
-            ..SpectrumOptions::default()
-        };
+        let options = SpectrumOptions::default().with_segments(segments);
         let take = Take {
             recording: recording.clone(),
             given: Exploration::default(),

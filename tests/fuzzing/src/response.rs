@@ -20,10 +20,7 @@ pub fn response_csv(input: &[u8]) -> bool {
     }
     let steps: Vec<f64> = (0..40).map(|i| f64::from(i % 7)).collect();
     let recording = Recording::new("fuzzed", 100.0, vec![steps]).expect("forty numbers");
-    let options = SpectrumOptions {
-        response: Some(response),
-        ..SpectrumOptions::default()
-    };
+    let options = SpectrumOptions::default().with_response(response);
     match segment_spectra(&recording, &options) {
         Ok(spectra) => {
             spectra.warnings.iter().for_each(sentence);

@@ -11,8 +11,8 @@ Generated from the table of rules in `sdk/author/src/findings/rules.rs` by
 `cargo xtask generate`.
 
 `htex validate rec.csv` checks a recording (any file that is neither an asset nor a scene); `htex fit`, `process`,
-`compare` and `tradeoff` print the same findings as warnings and notes, and with `--strict` they refuse a recording with
-an error or a warning.
+`compare` and `tradeoff` print the same findings as warnings and notes, and a strict reading refuses a recording with
+an error or a warning. `htex explain CODE` names the flags that set what a remedy describes.
 
 A finding has a code, a severity, a JSON pointer and a message. The pointer is into the recording as an object of
 arrays, one per signal in use, named by its role: `time`, `lateral` (or `lateral_x` and `lateral_y`), `normal`, `speed`.

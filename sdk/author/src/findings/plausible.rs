@@ -30,7 +30,7 @@ pub(super) fn judge_friction(recording: &Recording, findings: &mut Findings) {
     if lateral > LARGEST_FRICTION * normal.max(0.0) {
         findings.add(RECORDING_FRICTION_IMPLAUSIBLE, "/normal", format!(
             "the lateral force is {lateral:.4} N (median) at a normal force of {normal:.4} N; correct the scale of one of \
-             them with `map`"
+             them"
         ));
     }
 }
@@ -45,7 +45,7 @@ pub(super) fn judge_speed(recording: &Recording, findings: &mut Findings) {
         .fold(0.0, |most: f64, speed| most.max(speed.abs()));
     if fastest < STILL_MM_S {
         findings.add(RECORDING_SPEED_ZERO, "/speed", format!(
-            "the speed does not exceed {fastest} mm/s in {:.2} s; remove the column, or give `speed`",
+            "the speed does not exceed {fastest} mm/s in {:.2} s; remove the column, or give the speed",
             recording.duration_s()
         ));
         return;
@@ -55,11 +55,11 @@ pub(super) fn judge_speed(recording: &Recording, findings: &mut Findings) {
     if !(slowest..=largest).contains(&sliding) {
         let guess = match sliding {
             low if low < slowest => format!(
-                "if it is in m/s ({:.4} mm/s), give `map` speed=COLUMN:1000",
+                "if it is in m/s ({:.4} mm/s), map it with a scale: speed=COLUMN:1000",
                 1e3 * low
             ),
             high => format!(
-                "if it is in um/s ({:.4} mm/s), give `map` speed=COLUMN:0.001",
+                "if it is in um/s ({:.4} mm/s), map it with a scale: speed=COLUMN:0.001",
                 1e-3 * high
             ),
         };

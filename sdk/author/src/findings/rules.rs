@@ -11,20 +11,20 @@ htex_format::rule_table! {
     RECORDING_UNREADABLE Error:
         "The file cannot be read as a recording.",
         "It is neither a table of numbers with a lateral force, nor a WAV or NPY file of one to three channels.",
-        "Correct it at the line in the message, or describe the columns with `map` and `rate`.";
+        "Correct it at the line in the message, or describe the columns by a column map and the sample rate.";
     RECORDING_UNUSABLE Error:
         "No texture spectrum can be computed from the recording.",
         "It is shorter than a segment of 0.2 s, sampled below 60 Hz, or has no complete sweep.",
-        "Record for 10 s at 2 kHz or more, or choose other segments (`segments`, `from`, `to`).";
+        "Record for 10 s at 2 kHz or more, or choose other segments or another part of the recording.";
     RECORDING_CLOCK_GAP Warning:
         "Samples are missing: the time column has gaps.",
         "The samples on both sides of a gap are treated as neighbours, which causes a step in the signal.",
-        "Cut the recording at the gap (`from`, `to`), or record without losing samples.";
+        "Cut the recording at the gap, or record without losing samples.";
     RECORDING_CLOCK_JITTER Warning:
         "The time column is uneven.",
         "The rate is the number of steps over the total time. If the samples were really taken at \
          these times, and not only stamped with them, lines in the spectrum are smeared.",
-        "Give the true rate with `rate`, or record with a hardware-clocked converter.";
+        "Give the true sample rate, or record with a hardware-clocked converter.";
     RECORDING_COARSE Warning:
         "The lateral force has fewer than 16 different values.",
         "The spectrum shows the steps of the converter, not the texture.",
@@ -37,33 +37,33 @@ htex_format::rule_table! {
     RECORDING_STUCK Error:
         "A sensor holds one value while the finger slides.",
         "The force of a sliding finger is never constant: the sensor, its cable or the logger failed.",
-        "Leave the stretch out (`from`, `to`), or record again.";
+        "Leave the stretch out, or record again.";
     RECORDING_SILENT Warning:
         "The lateral force stays at one value near zero for a second or more.",
         "The finger was lifted, or the sensor had no signal. Windows over such a stretch lower the spectrum.",
-        "Leave the stretch out (`from`, `to`), or remove a dead axis from the map.";
+        "Leave the stretch out, or remove a dead axis from the column map.";
     RECORDING_SPIKE Warning:
         "Single samples of the lateral force are outliers.",
         "A spike of interference or a bit error has energy at all frequencies and can exceed the texture in \
          its segment.",
-        "Leave it out (`from`, `to`), repair the samples, or record again.";
+        "Leave it out, repair the samples, or record again.";
     RECORDING_FORCE_OUTLIER Warning:
         "Single samples of the normal force are outliers.",
         "A finger cannot press so hard for so short a time. The condition is the median, which outliers do not change; \
          a mean would change.",
-        "Repair the samples, or give the force with `force`.";
+        "Repair the samples, or give the normal force.";
     RECORDING_FRICTION_IMPLAUSIBLE Error:
         "The lateral force is more than ten times the normal force.",
         "Fingers do not reach this coefficient of friction; one of the two columns has another unit or quantity.",
-        "Correct the scale of the column with `map`.";
+        "Correct the scale of the column in the column map.";
     RECORDING_SPEED_ZERO Error:
         "According to its speed or position, the finger never moves.",
         "A texture is recorded while sliding, and the condition would have a speed of 0.",
-        "Remove the column, give the speed with `speed`, or repair the tracker.";
+        "Remove the column, give the scanning speed, or repair the tracker.";
     RECORDING_SPEED_IMPLAUSIBLE Warning:
         "The speed is outside the range of a hand.",
         "Hands explore at 1 to 2000 mm/s. A speed column in m/s that is read as mm/s is 1000 times too low.",
-        "Give the factor to mm/s with `map speed=COLUMN:1000`, or name the unit in the column (`speed_m_s`).";
+        "Give the factor to mm/s in the column map, as in speed=COLUMN:1000, or name the unit in the column (`speed_m_s`).";
     RECORDING_SWEEPS_CUT_OFF Info:
         "Sweeps cut off by the beginning or the end of the recording are left out.",
         "The start or end of such a sweep is unknown, and so is its middle. The middle of the recorded part may be \
@@ -73,7 +73,7 @@ htex_format::rule_table! {
         "The recording is read in windows, because the middles of its sweeps would cover too little of it.",
         "One segment of 0.2 s in the middle of a sweep represents at most 2 s of sliding. Where this leaves more \
          than half of the sliding unused, windows over the whole recording average more of it.",
-        "No action is needed; `segments sweeps` reads only the middles of the sweeps, `from` and `to` choose a range.";
+        "No action is needed; the choice of sweeps as segments reads only their middles, and a range leaves parts out.";
     RECORDING_OFF_TARGET Warning:
         "Segments are left out because their speed or force differs from the target.",
         "With a target given and the motion known, a segment is used if the motion stays within 10 % of the \
@@ -82,14 +82,14 @@ htex_format::rule_table! {
     RECORDING_UNSTEADY Warning:
         "Speed or force differs from its own median by more than 10 %.",
         "The spectrum then mixes several conditions. Without a target no segment is left out.",
-        "Record more steadily, choose a steady part (`from`, `to`), or give a target with `at`.";
+        "Record more steadily, choose a steady part, or give a target.";
     RECORDING_UNEVEN Warning:
         "A few segments are much louder than the others.",
         "They are 12 dB or more above the median of all segments and dominate the average. Causes are knocks, spikes, \
          and windows over a recording that is mostly rest.",
-        "Check the times in the message, and choose a range with `from` and `to`.";
+        "Check the times in the message, and choose a range.";
     RECORDING_NOTED Info:
         "The reader made an assumption, or the recording is limited.",
         "Examples are columns without a unit, columns that are not used, a band that ends below 1000 Hz.",
-        "Name the columns with their units, or map them (`map`); record at 2 kHz or more.";
+        "Name the columns with their units, or map them; record at 2 kHz or more.";
 }

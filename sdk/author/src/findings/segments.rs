@@ -30,7 +30,7 @@ pub(crate) fn judge_segments(
     }
     if let Some(unread) = segments.unread {
         findings.add(RECORDING_READ_IN_WINDOWS, "/lateral", format!(
-            "read in windows ({}): its sweeps represent {:.1} of {:.1} s of sliding; `segments` sweeps reads only their middles",
+            "read in windows ({}): its sweeps represent {:.1} of {:.1} s of sliding; the choice of sweeps reads only their middles",
             seconds_read(recording, part),
             unread.represented_s,
             unread.sliding_s
@@ -88,7 +88,7 @@ fn judge_levels(recording: &Recording, part: &SegmentSpectra, findings: &mut Fin
         named.push(format!("{} more", loud.len() - NAMED));
     }
     let message = format!(
-        "{} of {} segments are 12 dB or more above the median of all: {}; check them and choose a range with `from` and `to`",
+        "{} of {} segments are 12 dB or more above the median of all: {}; check them and choose a range",
         loud.len(),
         levels.len(),
         named.join(", ")

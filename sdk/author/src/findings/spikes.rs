@@ -33,8 +33,7 @@ pub(super) fn judge_axis(recording: &Recording, axis: usize, findings: &mut Find
     let spikes = spikes(values, recording.rate_hz, 0.0);
     if let Some(first) = spikes.first() {
         let message = format!(
-            "the {words} has {} far from all others: {}; leave them out with `from` and `to`, or repair \
-             them",
+            "the {words} has {} far from all others: {}; leave them out, or repair them",
             count(spikes.len()),
             places(recording, recording.quantity, values, &spikes)
         );
@@ -52,7 +51,7 @@ pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
     if let Some(first) = spikes.first() {
         let message = format!(
             "the normal force has {} far from all others: {}; its median is {usual:.4} N (its mean would be \
-             {:.4} N), repair them or give `force`",
+             {:.4} N), repair them or give the force",
             count(spikes.len()),
             places(recording, Quantity::NormalForce, values, &spikes),
             values.iter().sum::<f64>() / values.len() as f64
@@ -88,9 +87,10 @@ fn spikes(values: &[f64], rate_hz: f64, floor: f64) -> Vec<usize> {
         is_one
     });
     let rare = FEW.max((RARE * (values.len() / block) as f64) as usize);
-    match found.len() > rare {
-        true => Vec::new(),
-        false => found.into_iter().map(|(at, _)| at).collect(),
+    if found.len() > rare {
+        Vec::new()
+    } else {
+        found.into_iter().map(|(at, _)| at).collect()
     }
 }
 

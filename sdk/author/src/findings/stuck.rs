@@ -32,7 +32,6 @@ pub(super) fn judge_axis(
     let (name, words) = (recording.axis_name(axis), axis_words(recording, axis));
     let magnitude = mean_size(values);
     let shortest = |seconds: f64| ((seconds * recording.rate_hz) as usize).max(2);
-    let usual_speed = recording.speed_mm_s.as_deref().map(mean_size);
     let (mut stuck, mut silent) = (Vec::new(), Vec::new());
     for run in runs(values, shortest(STUCK_S)) {
         let value = values[run.start];
@@ -40,11 +39,11 @@ pub(super) fn judge_axis(
             continue;
         }
         let is_friction = value.abs() > FRICTION * magnitude;
-        match usual_speed.and_then(|usual| moves(recording, usual, &run)) {
-            Some(true) => stuck.push(run),
-            None if is_friction => stuck.push(run),
-            None if run.len() >= shortest(SILENT_S) => silent.push(run),
-            _ => {}
+        match finger(recording, &run) {
+            Finger::Moves => stuck.push(run),
+            Finger::Unknown if is_friction => stuck.push(run),
+            Finger::Unknown if run.len() >= shortest(SILENT_S) => silent.push(run),
+            Finger::Rests | Finger::Unknown => {}
         }
     }
     for (rule, runs) in [(RECORDING_STUCK, stuck), (RECORDING_SILENT, silent)] {
@@ -82,10 +81,29 @@ pub(super) fn judge_normal(recording: &Recording, findings: &mut Findings) {
     }
 }
 
-/// Whether the finger moves in a stretch, compared with its mean speed; `None` if it never moves or its speed is not known.
-fn moves(recording: &Recording, usual_speed: f64, run: &Range<usize>) -> Option<bool> {
-    let here = mean_size(&recording.speed_mm_s.as_ref()?[run.clone()]);
-    (usual_speed > 0.0).then_some(here > RESTS * usual_speed)
+/// State of the finger in a stretch of a recording.
+enum Finger {
+    Moves,
+    Rests,
+    /// Its speed is not known, or 0 in the whole recording.
+    Unknown,
+}
+
+/// Compares the mean speed of a stretch with that of the recording.
+fn finger(recording: &Recording, run: &Range<usize>) -> Finger {
+    let Some(speed) = &recording.speed_mm_s else {
+        return Finger::Unknown;
+    };
+    let (usual, here) = (mean_size(speed), mean_size(&speed[run.clone()]));
+    if usual > 0.0 {
+        if here > RESTS * usual {
+            Finger::Moves
+        } else {
+            Finger::Rests
+        }
+    } else {
+        Finger::Unknown
+    }
 }
 
 /// Returns the mean of the magnitudes.
@@ -122,8 +140,8 @@ fn sentence(
         .cloned()
         .unwrap_or_default();
     format!(
-        "the {words} is constant for {:.2} of {:.2} s, longest at {:.4} {} from {:.3} to {:.3} s; leave it out with \
-         `from` and `to`, or record again",
+        "the {words} is constant for {:.2} of {:.2} s, longest at {:.4} {} from {:.3} to {:.3} s; leave it out, \
+         or record again",
         held as f64 / recording.rate_hz,
         recording.duration_s(),
         values[longest.start],

@@ -51,7 +51,7 @@ pub(crate) fn rate(
         (Ok(measured), Some(given)) => {
             if (measured / given - 1.0).abs() > DISAGREE {
                 noticed.warnings.push(format!(
-                    "The time column has a rate of {}, `rate` is {}; `rate` is used.",
+                    "The time column has a rate of {}, the given rate is {}; the given rate is used.",
                     hertz(measured),
                     hertz(given)
                 ));
@@ -59,7 +59,7 @@ pub(crate) fn rate(
             Ok(given)
         }
         (Err(error), Some(given)) => {
-            let sentence = format!("`rate` is used instead of the time column: {error}.");
+            let sentence = format!("The given rate is used instead of the time column: {error}.");
             noticed.warnings.push(sentence);
             Ok(given)
         }
@@ -103,7 +103,7 @@ fn measure(
     if let Some((row, gap)) = steps().enumerate().find(|(_, step)| *step > longest) {
         findings.add(RECORDING_CLOCK_GAP, format!("/time/{}", row + 1), format!(
             "{gaps} gap{} in the time column; the first, of {gap:.6} s, ends on line {}. Samples are taken as evenly \
-             spaced; cut the recording there with `from` and `to`",
+             spaced; cut the recording there",
             if gaps == 1 { "" } else { "s" },
             table.line_of_row(row + 1)
         ));
@@ -112,7 +112,7 @@ fn measure(
     if jitter > JITTER {
         let used = match given {
             None => format!("read at {}, the mean rate", hertz(rate_hz)),
-            Some(_) => "`rate` is used".to_owned(),
+            Some(_) => "the given rate is used".to_owned(),
         };
         findings.add(
             RECORDING_CLOCK_JITTER,

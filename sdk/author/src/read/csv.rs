@@ -17,9 +17,9 @@ pub(crate) fn read(mut blocks: Blocks<'_>, options: &ReadOptions) -> Result<Reco
     if options.scale.is_some() {
         return Err(ReadError::Option {
             file: file.to_owned(),
-            problem:
-                "`scale` is for WAV and NPY; scale a CSV's columns with `map` lateral=COLUMN:SCALE"
-                    .into(),
+            option: "scale",
+            problem: "a scale is for WAV and NPY; scale a CSV's columns in the column map, as in lateral=COLUMN:SCALE"
+                .into(),
         });
     }
     let head = blocks.head()?;

@@ -10,6 +10,7 @@ use crate::recording::RecordingError;
 ///
 /// Lines are counted from 1, as in an editor. `file` is the name without its directory.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum ReadError {
     /// The file cannot be opened or read.
     #[error("{file}: cannot be read: {source}")]
@@ -34,7 +35,7 @@ pub enum ReadError {
     /// The file holds more numbers than the limit.
     #[error(
         "{file}: it holds more than {limit} numbers, the limit of what is kept in memory; cut the recording into \
-         parts, or raise the limit by `most_numbers`"
+         parts, or raise the limit"
     )]
     TooManyValues {
         /// File name.
@@ -144,7 +145,7 @@ pub enum ReadError {
     },
     /// A time column does not increase.
     #[error(
-        "{file}, line {line}: the time after {before} s is {after} s; it must increase on every row (a column with too few decimals repeats values); repair the column, or give `rate` HZ to ignore it"
+        "{file}, line {line}: the time after {before} s is {after} s; it must increase on every row (a column with too few decimals repeats values); repair the column, or give the sample rate, which replaces it"
     )]
     Time {
         /// File name.
@@ -157,7 +158,7 @@ pub enum ReadError {
         after: f64,
     },
     /// The sample rate is not known.
-    #[error("{file}: it has no sample rate; give `rate` HZ")]
+    #[error("{file}: it has no sample rate; give one")]
     NoRate {
         /// File name.
         file: String,
@@ -167,7 +168,9 @@ pub enum ReadError {
     Option {
         /// File name.
         file: String,
-        /// The option, and what to do instead.
+        /// The option: a field of [`ReadOptions`](super::ReadOptions), or `response`.
+        option: &'static str,
+        /// Its value, and what to do instead.
         problem: String,
     },
     /// A WAV file is damaged or of an unsupported kind.

@@ -2,14 +2,11 @@
 //!
 //! ```no_run
 //! # use std::path::Path;
-//! use htex_author::read::{ReadOptions, read_recording};
+//! use htex_author::read::{ColumnMap, ReadOptions, read_recording};
 //!
 //! // Columns in volts: the map assigns roles and the sensor's newtons per volt.
-//! let options = ReadOptions {
-//!     rate_hz: Some(10_000.0),
-//!     map: Some("lateral=lateral_V:0.4444,normal=normal_V:0.31".parse()?),
-//!     ..ReadOptions::default()
-//! };
+//! let map = "lateral=lateral_V:0.4444,normal=normal_V:0.31".parse::<ColumnMap>()?;
+//! let options = ReadOptions::default().with_rate_hz(10_000.0).with_map(map);
 //! let recording = read_recording(Path::new("finger.csv"), &options)?;
 //! println!("{} s at {} Hz", recording.duration_s(), recording.rate_hz);
 //! # Ok::<(), htex_author::read::ReadError>(())
@@ -48,6 +45,7 @@ use value_limit::ValueLimit;
 
 /// Options of reading, for what a file does not state.
 #[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
 pub struct ReadOptions {
     /// Sample rate, hertz. Required for NPY and for a CSV without time column. It takes precedence over a time
     /// column and must equal a WAV's own rate.
@@ -64,6 +62,57 @@ pub struct ReadOptions {
     pub to_s: Option<f64>,
     /// Limit on the numbers kept in memory; [`MOST_VALUES`] when absent. Unused columns do not count.
     pub most_values: Option<usize>,
+}
+
+impl ReadOptions {
+    /// Sets the sample rate, hertz.
+    #[must_use]
+    pub fn with_rate_hz(mut self, rate_hz: impl Into<Option<f64>>) -> Self {
+        self.rate_hz = rate_hz.into();
+        self
+    }
+
+    /// Sets the roles of CSV columns.
+    #[must_use]
+    pub fn with_map(mut self, map: impl Into<Option<ColumnMap>>) -> Self {
+        self.map = map.into();
+        self
+    }
+
+    /// Sets the quantity of the texture's signal.
+    #[must_use]
+    pub fn with_quantity(mut self, quantity: Quantity) -> Self {
+        self.quantity = quantity;
+        self
+    }
+
+    /// Sets the value of a full-scale sample in WAV and NPY.
+    #[must_use]
+    pub fn with_scale(mut self, scale: impl Into<Option<f64>>) -> Self {
+        self.scale = scale.into();
+        self
+    }
+
+    /// Sets the start of the part to read, seconds of the file.
+    #[must_use]
+    pub fn with_from_s(mut self, from_s: impl Into<Option<f64>>) -> Self {
+        self.from_s = from_s.into();
+        self
+    }
+
+    /// Sets the end of the part to read, seconds of the file.
+    #[must_use]
+    pub fn with_to_s(mut self, to_s: impl Into<Option<f64>>) -> Self {
+        self.to_s = to_s.into();
+        self
+    }
+
+    /// Sets the limit on the numbers kept in memory.
+    #[must_use]
+    pub fn with_most_values(mut self, most_values: impl Into<Option<usize>>) -> Self {
+        self.most_values = most_values.into();
+        self
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -136,19 +185,24 @@ fn kind(path: &Path, bytes: &[u8]) -> Kind {
 }
 
 fn check_options(file: &str, options: &ReadOptions) -> Result<(), ReadError> {
-    let refuse = |problem| {
+    let refuse = |option, problem| {
         Err(ReadError::Option {
             file: file.to_owned(),
+            option,
             problem,
         })
     };
     match (options.rate_hz, options.scale) {
-        (Some(rate), _) if check_rate(rate).is_err() => refuse(format!(
-            "`rate` is {rate}; it must be above 0 and at most {MAX_RATE_HZ} Hz"
-        )),
-        (_, Some(scale)) if !scale.is_finite() || scale == 0.0 => {
-            refuse(format!("`scale` is {scale}; it must be finite and not 0"))
-        }
+        (Some(rate), _) if check_rate(rate).is_err() => refuse(
+            "rate_hz",
+            format!(
+                "the given sample rate is {rate}; it must be above 0 and at most {MAX_RATE_HZ} Hz"
+            ),
+        ),
+        (_, Some(scale)) if !scale.is_finite() || scale == 0.0 => refuse(
+            "scale",
+            format!("the given scale is {scale}; it must be finite and not 0"),
+        ),
         _ => Ok(()),
     }
 }
@@ -159,7 +213,8 @@ fn refuse_map(file: &str, options: &ReadOptions) -> Result<(), ReadError> {
         None => Ok(()),
         Some(_) => Err(ReadError::Option {
             file: file.to_owned(),
-            problem: "`map` is for CSV; in WAV and NPY the channels are lateral, or lateral x, y, or x, y, normal; of a motion \
+            option: "map",
+            problem: "a column map is for CSV; in WAV and NPY the channels are lateral, or lateral x, y, or x, y, normal; of a motion \
                   they are its axes"
                 .into(),
         }),
@@ -169,9 +224,10 @@ fn refuse_map(file: &str, options: &ReadOptions) -> Result<(), ReadError> {
 /// Returns the warning about samples without a scale.
 fn assumption(is_integer: bool, quantity: Quantity) -> String {
     let unit = quantity.unit();
-    match is_integer {
-        true => format!("Integer full scale is assumed to be 1 {unit}; give `scale` if it is not."),
-        false => format!("Samples are assumed to be in {unit}; give `scale` if they are not."),
+    if is_integer {
+        format!("Integer full scale is assumed to be 1 {unit}; give the scale if it is not.")
+    } else {
+        format!("Samples are assumed to be in {unit}; give the scale if they are not.")
     }
 }
 

@@ -99,7 +99,7 @@ impl Selection {
         Err(columns_error(
             table,
             format!(
-                "the map's {role} is not an axis of {}; its axes are {} (`quantity` sets the recorded quantity)",
+                "the map's {role} is not an axis of {}; its axes are {}; correct the map or choose the recorded quantity",
                 self.quantity.words(),
                 own.join(", ")
             ),
@@ -238,16 +238,16 @@ impl Selection {
         let problem = if let Some(refused) = refused.first() {
             refused.clone()
         } else if table.header.is_none() {
-            format!("there is no header row; assign columns by number, as in `map` {role}=#2")
+            format!("there is no header row; map columns by number, as in {role}=#2")
         } else if let Some(other) = self.other_quantity(table) {
             format!(
-                "no column has a known name of the {}, but one is a {}; give `quantity` {other} if that is the texture",
+                "no column has a known name of the {}, but one is a {}; choose the quantity {other} if that is the texture",
                 self.quantity.words(),
                 other.words()
             )
         } else {
             format!(
-                "no column has a known name of the {}; assign it with `map` {role}=COLUMN (and :SCALE to {})",
+                "no column has a known name of the {}; map a column, as in {role}=COLUMN (and :SCALE to {})",
                 self.quantity.words(),
                 self.quantity.unit()
             )
@@ -321,7 +321,7 @@ fn no_scale(name: &str, role: Role, unit: &Unit, quantity: Quantity) -> String {
         Unit::Scale(_) | Unit::Unsaid => ("no unit", base_unit(role, quantity)),
     };
     format!(
-        "Column {name:?} is in {unit}, not {target}; give its scale to {target}: `map` {role}={name}:SCALE"
+        "Column {name:?} is in {unit}, not {target}; map it with its scale to {target}: {role}={name}:SCALE"
     )
 }
 
@@ -329,7 +329,7 @@ fn two_columns(table: &Table<'_>, role: Role, a: usize, b: usize) -> ReadError {
     let (a, b) = (table.name(a), table.name(b));
     columns_error(
         table,
-        format!("{a:?} and {b:?} both match {role}; choose one with `map` {role}=COLUMN"),
+        format!("{a:?} and {b:?} both match {role}; map one of them, as in {role}=COLUMN"),
     )
 }
 

@@ -16,12 +16,13 @@ impl ValueLimit {
     /// Refuses more numbers than the limit.
     #[inline]
     pub(crate) fn check(self, file: &str, values: u64) -> Result<(), ReadError> {
-        match values <= self.most_values as u64 {
-            true => Ok(()),
-            false => Err(ReadError::TooManyValues {
+        if values <= self.most_values as u64 {
+            Ok(())
+        } else {
+            Err(ReadError::TooManyValues {
                 file: file.to_owned(),
                 limit: self.most_values,
-            }),
+            })
         }
     }
 }

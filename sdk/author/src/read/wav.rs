@@ -57,8 +57,9 @@ fn check(file: &str, spec: WavSpec, options: &ReadOptions) -> Result<(), ReadErr
     match options.rate_hz {
         Some(rate) if rate != own => Err(ReadError::Option {
             file: file.to_owned(),
+            option: "rate_hz",
             problem: format!(
-                "the file has {own} Hz, `rate` is {rate} Hz; remove `rate` or correct the file's header"
+                "the file has {own} Hz, the given sample rate is {rate} Hz; leave it out or correct the file's header"
             ),
         }),
         _ => Ok(()),

@@ -1,11 +1,11 @@
 //! Model of skin, rig and sensor: from the finger's motion to measured forces.
 
 use htex_dsp::biquad::{Biquad, Cascade};
+use htex_dsp::normal::Normal;
 use htex_dsp::spectrum::Complex;
 
-use super::filters::{low_pass, mode, response};
+use super::filters::{low_pass, mode};
 use super::hand::Finger;
-use super::random::Random;
 use super::relief::Relief;
 use super::surface::Parameters;
 use crate::response::SetupResponse;
@@ -21,6 +21,8 @@ const ACROSS: (f64, f64) = (0.25, 7.3);
 /// Lateral mode of the rig: frequency in Hz, damping ratio, part of the force that passes through it.
 /// The gain is about 5 dB at the peak and 1 far below.
 const MODE: (f64, f64, f64) = (620.0, 0.08, 0.25);
+/// Quality factors of the anti-aliasing filter: Butterworth, fourth order.
+const ANTI_ALIAS: [f64; 2] = [0.541_196_1, 1.306_563];
 /// White noise of each force channel at 20 kHz, newtons rms.
 const NOISE_N: f64 = 0.2e-3;
 /// Step of the converter, newtons: 16 bits over 5 N.
@@ -42,7 +44,7 @@ pub(super) struct Contact {
 }
 
 impl Contact {
-    pub(super) fn new(parameters: &Parameters, rate_hz: f64, random: &mut Random) -> Self {
+    pub(super) fn new(parameters: &Parameters, rate_hz: f64, random: &mut Normal) -> Self {
         let skin = Cascade::new(&[low_pass(SKIN.1, SKIN.0, rate_hz)]);
         Self {
             friction: parameters.friction,
@@ -76,7 +78,7 @@ impl Contact {
 
 /// The recording rig: a resonance in both lateral axes, and an anti-aliasing filter for low rates.
 pub(super) struct Rig {
-    /// Sections of a lateral axis.
+    /// The sections of a lateral axis.
     lateral: Vec<Biquad>,
     x: Cascade,
     y: Cascade,
@@ -87,14 +89,13 @@ impl Rig {
     /// Creates the rig. `inner_hz` is the rate of the physics, `rate_hz` the recording's, not above it.
     pub(super) fn new(inner_hz: f64, rate_hz: f64) -> Self {
         let (hz, damping, share) = MODE;
-        // Fourth-order Butterworth.
-        let anti_alias = match inner_hz > rate_hz {
-            true => [0.541_196_1, 1.306_563]
-                .map(|q| low_pass(q, 0.4 * rate_hz, inner_hz))
-                .to_vec(),
-            false => Vec::new(),
-        };
-        let lateral = [&[mode(share, damping, hz, inner_hz)], &anti_alias[..]].concat();
+        let anti_alias: &[f64] = if inner_hz > rate_hz { &ANTI_ALIAS } else { &[] };
+        let anti_alias: Vec<Biquad> = anti_alias
+            .iter()
+            .map(|q| low_pass(*q, 0.4 * rate_hz, inner_hz))
+            .collect();
+        let mut lateral = vec![mode(share, damping, hz, inner_hz)];
+        lateral.extend(&anti_alias);
         Self {
             x: Cascade::new(&lateral),
             y: Cascade::new(&lateral),
@@ -114,7 +115,12 @@ impl Rig {
     /// Returns the rig's response to a lateral force at strictly increasing frequencies in hertz, for the rate
     /// it was created with.
     pub(super) fn response(&self, frequency_hz: Vec<f64>, inner_hz: f64) -> SetupResponse {
-        let at = |&hz: &f64| response(&self.lateral, hz, inner_hz);
+        let at = |&hz: &f64| -> Complex<f64> {
+            let sections = self.lateral.iter();
+            sections
+                .map(|section| section.response(hz, inner_hz))
+                .product()
+        };
         let values: Vec<Complex<f64>> = frequency_hz.iter().map(at).collect();
         SetupResponse {
             magnitude: values.iter().map(|h| libm::hypot(h.re, h.im)).collect(),
@@ -125,9 +131,10 @@ impl Rig {
 }
 
 /// Adds the sensor's noise and quantisation to a force.
-pub(super) fn sense(force: Force, rate_hz: f64, random: &mut Random) -> Force {
+pub(super) fn sense(force: Force, rate_hz: f64, random: &mut Normal) -> Force {
     let noise = NOISE_N * libm::sqrt(rate_hz / 20_000.0);
-    let mut read = |force: f64| STEP_N * libm::round((force + noise * random.normal()) / STEP_N);
+    let mut read =
+        |force: f64| STEP_N * libm::round((force + noise * random.next_normal()) / STEP_N);
     Force {
         x: read(force.x),
         y: read(force.y),

@@ -3,9 +3,8 @@
 use std::f64::consts::PI;
 
 use htex_dsp::biquad::Biquad;
-use htex_dsp::spectrum::Complex;
 
-/// Returns `b2 s^2 + b1 s + b0` over `s^2 + s/q + 1`, s in units of 2 pi `hz`, by the bilinear transform, exact at `hz`.
+/// Designs `b2 s^2 + b1 s + b0` over `s^2 + s/q + 1`, s in units of 2 pi `hz`, by the bilinear transform, exact at `hz`.
 fn analog(numerator: [f64; 3], q: f64, hz: f64, rate_hz: f64) -> Biquad {
     let c = 1.0 / libm::tan(PI * hz / rate_hz);
     let [b2, b1, b0] = numerator;
@@ -27,19 +26,10 @@ pub(super) fn band_pass(q: f64, hz: f64, rate_hz: f64) -> Biquad {
     analog([0.0, 1.0 / q, 0.0], q, hz, rate_hz)
 }
 
-/// Returns a filter of unit gain with a part of the signal passing a resonance: `1 - share + share * mode`.
+/// Designs a filter of unit gain with a part of the signal passing a resonance: `1 - share + share * mode`.
 pub(super) fn mode(share: f64, damping: f64, hz: f64, rate_hz: f64) -> Biquad {
     let (rest, q) = (1.0 - share, 0.5 / damping);
     analog([rest, rest / q, 1.0], q, hz, rate_hz)
-}
-
-/// Returns the frequency response of sections in series.
-pub(super) fn response(sections: &[Biquad], hz: f64, rate_hz: f64) -> Complex<f64> {
-    let angle = -2.0 * PI * hz / rate_hz;
-    let delay = Complex::new(libm::cos(angle), libm::sin(angle));
-    let one =
-        |c: &Biquad| (delay * (delay * c.b2 + c.b1) + c.b0) / (delay * (delay * c.a2 + c.a1) + 1.0);
-    sections.iter().map(one).product()
 }
 
 /// First-order low-pass, `hz` well below half the rate.

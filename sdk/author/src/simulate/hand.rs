@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use htex_dsp::biquad::Cascade;
+use htex_dsp::normal::Normal;
 
 use super::filters::{OnePole, band_pass};
-use super::random::Random;
 
 /// Length of a sweep, mm; the surface is 100 mm.
 const SWEEP_MM: f64 = 83.0;
@@ -60,7 +60,7 @@ pub(super) struct Hand {
     speed_mm_s: f64,
     force_n: f64,
     step_s: f64,
-    random: Random,
+    random: Normal,
     sweep: Sweep,
     /// Time since the sweep's rest began, s.
     time_s: f64,
@@ -74,7 +74,7 @@ pub(super) struct Hand {
 }
 
 impl Hand {
-    pub(super) fn new(speed_mm_s: f64, force_n: f64, rate_hz: f64, random: Random) -> Self {
+    pub(super) fn new(speed_mm_s: f64, force_n: f64, rate_hz: f64, random: Normal) -> Self {
         let finger = Finger {
             along_mm: -SWEEP_MM / 2.0,
             across_mm: 0.0,
@@ -113,18 +113,18 @@ impl Hand {
 
     fn turn_round(&mut self) {
         self.direction = -self.direction;
-        let scatter = 1.0 + SPEED_SCATTER[0] * self.random.normal();
+        let scatter = 1.0 + SPEED_SCATTER[0] * self.random.next_normal();
         let speed = self.speed_mm_s * scatter;
-        let end = self.direction * SWEEP_MM / 2.0 + END_SCATTER_MM * self.random.normal();
+        let end = self.direction * SWEEP_MM / 2.0 + END_SCATTER_MM * self.random.next_normal();
         let length = (end - self.finger.along_mm).abs();
         let ramp_s = RAMP_S.min(0.25 * length / speed);
         self.time_s = 0.0;
         self.sweep = Sweep {
-            rest_s: REST_S[0] + (REST_S[1] - REST_S[0]) * self.random.uniform(),
+            rest_s: REST_S[0] + (REST_S[1] - REST_S[0]) * self.random.next_unit(),
             ramp_s,
             moving_s: length / speed + ramp_s,
             speed_mm_s: self.direction * speed,
-            contact: 1.0 + CONTACT_SCATTER[0] * self.random.normal(),
+            contact: 1.0 + CONTACT_SCATTER[0] * self.random.next_normal(),
         };
     }
 
@@ -175,8 +175,8 @@ impl SlowNoise {
         }
     }
 
-    fn tick(&mut self, random: &mut Random) -> f64 {
-        let x = self.gain * random.normal();
+    fn tick(&mut self, random: &mut Normal) -> f64 {
+        let x = self.gain * random.next_normal();
         self.filters.iter_mut().fold(x, |x, filter| filter.tick(x))
     }
 }
@@ -196,7 +196,7 @@ impl Tremor {
         }
     }
 
-    fn tick(&mut self, random: &mut Random) -> f64 {
-        self.gain * self.filter.tick(random.normal())
+    fn tick(&mut self, random: &mut Normal) -> f64 {
+        self.gain * self.filter.tick(random.next_normal())
     }
 }

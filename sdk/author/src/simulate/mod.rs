@@ -11,7 +11,7 @@
 //! ```
 //! use htex_author::simulate::{SimulationOptions, Surface, simulate};
 //!
-//! let options = SimulationOptions { duration_s: 1.0, ..SimulationOptions::new(Surface::Vinyl) };
+//! let options = SimulationOptions::new(Surface::Vinyl).with_duration_s(1.0);
 //! let simulation = simulate(&options)?;
 //! let mut csv = Vec::new();
 //! simulation.write_csv(&mut csv)?;
@@ -22,12 +22,12 @@
 mod contact;
 mod filters;
 mod hand;
-mod random;
 mod relief;
 mod surface;
 mod write;
 
 use htex_dsp::grid::{Band, GRID_HZ};
+use htex_dsp::normal::Normal;
 use thiserror::Error;
 
 pub use surface::Surface;
@@ -37,7 +37,6 @@ use crate::recording::{Recording, RecordingError};
 use crate::response::SetupResponse;
 use contact::{Contact, Force, Rig, sense};
 use hand::{Finger, Hand};
-use random::Random;
 use write::{FORCE_DECIMALS, POSITION_DECIMALS, rounded};
 
 /// Lowest rate of the physics, Hz.
@@ -47,6 +46,7 @@ const MAX_SAMPLES: f64 = 2e7;
 
 /// Errors of a simulation.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum SimulationError {
     /// There is no surface of this name.
     #[error(
@@ -72,6 +72,7 @@ pub enum SimulationError {
 
 /// Options of a simulation.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SimulationOptions {
     /// The surface.
     pub surface: Surface,
@@ -100,6 +101,41 @@ impl SimulationOptions {
             speed_mm_s: 80.0,
             force_n: 0.4,
         }
+    }
+
+    /// Sets the seed.
+    #[must_use]
+    pub fn with_seed(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        self
+    }
+
+    /// Sets the sample rate, hertz.
+    #[must_use]
+    pub fn with_rate_hz(mut self, rate_hz: f64) -> Self {
+        self.rate_hz = rate_hz;
+        self
+    }
+
+    /// Sets the length, seconds.
+    #[must_use]
+    pub fn with_duration_s(mut self, duration_s: f64) -> Self {
+        self.duration_s = duration_s;
+        self
+    }
+
+    /// Sets the speed between the turns, mm/s.
+    #[must_use]
+    pub fn with_speed_mm_s(mut self, speed_mm_s: f64) -> Self {
+        self.speed_mm_s = speed_mm_s;
+        self
+    }
+
+    /// Sets the normal force, newtons.
+    #[must_use]
+    pub fn with_force_n(mut self, force_n: f64) -> Self {
+        self.force_n = force_n;
+        self
     }
 
     /// Returns the simulated rig's response to a lateral force: a resonance at 620 Hz, and for rates below 20 kHz
@@ -234,7 +270,7 @@ pub fn simulate(options: &SimulationOptions) -> Result<Simulation, SimulationErr
     let parameters = options.surface.parameters();
     let samples = libm::round(options.rate_hz * options.duration_s) as usize;
     let (inner_steps, inner_hz) = (options.inner_steps(), options.inner_hz());
-    let stream = |part: u64| Random::new(options.seed, 16 * parameters.label + part);
+    let stream = |part: u64| stream(options.seed, 16 * parameters.label + part);
     let mut hand = Hand::new(options.speed_mm_s, options.force_n, inner_hz, stream(0));
     let mut contact = Contact::new(parameters, inner_hz, &mut stream(1));
     let mut rig = Rig::new(inner_hz, options.rate_hz);
@@ -248,4 +284,10 @@ pub fn simulate(options: &SimulationOptions) -> Result<Simulation, SimulationErr
         }
     }
     Ok(simulation)
+}
+
+/// Returns a stream of random numbers; streams of one seed with different labels are independent.
+fn stream(seed: u64, label: u64) -> Normal {
+    // The odd factor spreads small labels over all bits; the generator mixes further when it is seeded.
+    Normal::new(seed ^ label.wrapping_mul(0x9E37_79B9_7F4A_7C15))
 }

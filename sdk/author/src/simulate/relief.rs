@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
+use htex_dsp::normal::Normal;
+
 use super::filters::OnePole;
-use super::random::Random;
 use super::surface::{Grain, Line, Parameters};
 
 /// Points per millimetre: 1000 Hz at 80 mm/s is a period of 8 points; faster sweeps have longer periods.
@@ -25,7 +26,7 @@ pub(super) struct Relief {
 
 impl Relief {
     /// Creates a field whose standard deviation before smoothing by the contact is `parameters.relief`.
-    pub(super) fn new(parameters: &Parameters, random: &mut Random) -> Self {
+    pub(super) fn new(parameters: &Parameters, random: &mut Normal) -> Self {
         let power = parameters
             .lines
             .iter()
@@ -37,12 +38,12 @@ impl Relief {
                 .map(|grain| grain.weight * grain.weight)
                 .sum::<f64>();
         let unit = parameters.relief / libm::sqrt(power);
-        let mut field = |add: &mut dyn FnMut(&mut [f64], &mut Random)| {
+        let mut field = |add: &mut dyn FnMut(&mut [f64], &mut Normal)| {
             let mut values = vec![0.0; (LENGTH_MM * POINTS_PER_MM) as usize];
             add(&mut values, random);
             smooth(&values)
         };
-        let mut grains = |values: &mut [f64], random: &mut Random| {
+        let mut grains = |values: &mut [f64], random: &mut Normal| {
             parameters
                 .grains
                 .iter()
@@ -70,23 +71,23 @@ impl Relief {
     }
 }
 
-fn add_line(values: &mut [f64], line: &Line, unit: f64, random: &mut Random) {
+fn add_line(values: &mut [f64], line: &Line, unit: f64, random: &mut Normal) {
     let amplitude = unit * line.weight * libm::sqrt(2.0);
     let step = 2.0 * PI * line.per_mm / POINTS_PER_MM;
     let wander = line.wander / libm::sqrt(POINTS_PER_MM);
-    let mut phase = 2.0 * PI * random.uniform();
+    let mut phase = 2.0 * PI * random.next_unit();
     for value in values {
         *value += amplitude * libm::cos(phase);
-        phase += step + wander * random.normal();
+        phase += step + wander * random.next_normal();
     }
 }
 
-fn add_grain(values: &mut [f64], grain: &Grain, unit: f64, random: &mut Random) {
+fn add_grain(values: &mut [f64], grain: &Grain, unit: f64, random: &mut Normal) {
     let mut slow = OnePole::new(grain.from_per_mm, POINTS_PER_MM);
     let mut fast = [0; 2].map(|_| OnePole::new(grain.to_per_mm, POINTS_PER_MM));
     let mut noise: Vec<f64> = Vec::with_capacity(values.len());
     for _ in 0..values.len() {
-        let white = random.normal();
+        let white = random.next_normal();
         let high = white - slow.tick(white);
         noise.push(fast.iter_mut().fold(high, |x, filter| filter.tick(x)));
     }

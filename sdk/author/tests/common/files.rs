@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use htex_author::read::{ReadOptions, read_recording};
+use htex_author::read::{ColumnMap, ReadOptions, read_recording};
 use htex_author::recording::Recording;
 use tempfile::TempDir;
 
@@ -23,18 +23,13 @@ impl Folder {
 }
 
 pub fn at(rate_hz: f64) -> ReadOptions {
-    ReadOptions {
-        rate_hz: Some(rate_hz),
-        ..ReadOptions::default()
-    }
+    ReadOptions::default().with_rate_hz(rate_hz)
 }
 
 pub fn mapped(map: &str, rate_hz: Option<f64>) -> ReadOptions {
-    ReadOptions {
-        rate_hz,
-        map: Some(map.parse().unwrap()),
-        ..ReadOptions::default()
-    }
+    ReadOptions::default()
+        .with_rate_hz(rate_hz)
+        .with_map(map.parse::<ColumnMap>().unwrap())
 }
 
 pub fn read(

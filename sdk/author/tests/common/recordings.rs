@@ -73,11 +73,9 @@ struct Columns {
 
 impl Columns {
     fn new(seconds: f64) -> Self {
-        let options = SimulationOptions {
-            rate_hz: RATE_HZ,
-            duration_s: seconds,
-            ..SimulationOptions::new(Surface::Vinyl)
-        };
+        let options = SimulationOptions::new(Surface::Vinyl)
+            .with_rate_hz(RATE_HZ)
+            .with_duration_s(seconds);
         let simulation: Simulation = simulate(&options).unwrap();
         let speed_mm_s = simulation.to_recording("").unwrap().speed_mm_s.unwrap();
         Self {

@@ -68,9 +68,10 @@ fn placed(column: usize, row: usize, panel: &Plot) -> Element {
 }
 
 fn caption(textures: &[Texture], short_names: &[&str], height: f64) -> Element {
-    let kind = match textures.iter().all(|texture| texture.simulated) {
-        true => "simulated recording",
-        false => "recording",
+    let kind = if textures.iter().all(|texture| texture.simulated) {
+        "simulated recording"
+    } else {
+        "recording"
     };
     let name = |short: &&str| Some(&textures.iter().find_map(|t| t.model(short))?.model[..]);
     let names: Vec<&str> = short_names.iter().filter_map(name).collect();

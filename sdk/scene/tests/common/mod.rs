@@ -42,12 +42,10 @@ pub fn nine() -> &'static Asset {
 
 fn asset(surface: Simulated, conditions: &[(f64, f64)]) -> Asset {
     let take = |&(speed_mm_s, force_n): &(f64, f64)| {
-        let options = SimulationOptions {
-            speed_mm_s,
-            force_n,
-            duration_s: 4.0,
-            ..SimulationOptions::new(surface)
-        };
+        let options = SimulationOptions::new(surface)
+            .with_speed_mm_s(speed_mm_s)
+            .with_force_n(force_n)
+            .with_duration_s(4.0);
         Take {
             recording: simulate(&options)
                 .unwrap()
@@ -59,15 +57,8 @@ fn asset(surface: Simulated, conditions: &[(f64, f64)]) -> Asset {
             },
         }
     };
-    let model = |model: &htex_host::LoadedModel| ModelRequest {
-        options: model.descriptor().default_options(),
-        model: model.clone(),
-    };
-    let request = AssetRequest {
-        name: "simulated".to_owned(),
-        models: Registry::builtin().models().iter().map(model).collect(),
-        ..AssetRequest::default()
-    };
+    let request = AssetRequest::new("simulated")
+        .with_models(Registry::builtin().models().iter().map(ModelRequest::new));
     let takes: Vec<Take> = conditions.iter().map(take).collect();
     let fitted = fit_asset(&takes, &request).unwrap();
     Asset::from_bytes(&fitted.asset.to_bytes().unwrap()).unwrap()

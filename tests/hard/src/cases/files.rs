@@ -36,15 +36,8 @@ pub(crate) fn fitted(recordings: Vec<(Recording, f64)>) -> Result<FittedAsset, A
         },
     };
     let takes: Vec<Take> = recordings.into_iter().map(take).collect();
-    let model = |model: &htex_host::LoadedModel| ModelRequest {
-        options: model.descriptor().default_options(),
-        model: model.clone(),
-    };
-    let request = AssetRequest {
-        name: "hard".to_owned(),
-        models: Registry::builtin().models().iter().map(model).collect(),
-        ..AssetRequest::default()
-    };
+    let request = AssetRequest::new("hard")
+        .with_models(Registry::builtin().models().iter().map(ModelRequest::new));
     fit_asset(&takes, &request)
 }
 
@@ -103,14 +96,11 @@ fn words<T>(result: Result<T, impl std::fmt::Display>) -> String {
 
 /// The texture spectrum through a setup of some response at 20, 100, 105, 110 and 1000 Hz.
 fn through(magnitude: [f64; 5]) -> Result<TextureSpectrum, AuthorError> {
-    let options = SpectrumOptions {
-        response: Some(SetupResponse {
-            frequency_hz: vec![20.0, 100.0, 105.0, 110.0, 1_000.0],
-            magnitude: magnitude.to_vec(),
-            phase_rad: vec![0.0; 5],
-        }),
-        ..SpectrumOptions::default()
-    };
+    let options = SpectrumOptions::default().with_response(SetupResponse {
+        frequency_hz: vec![20.0, 100.0, 105.0, 110.0, 1_000.0],
+        magnitude: magnitude.to_vec(),
+        phase_rad: vec![0.0; 5],
+    });
     let part = segment_spectra(&recording(RATE_HZ, friction()), &options)?;
     TextureSpectrum::average(&[part], Averaging::Magnitude)
 }

@@ -140,7 +140,7 @@ fn a_hung_writer_ends_at_zero() {
         unreachable!("{error}")
     };
     assert!(
-        advice.contains("--set buffer_ms=100 (now 50 ms)"),
+        advice.contains("`setting buffer_ms=100` (now 50 ms)"),
         "{advice}"
     );
     assert_eq!((frames, device.status().underruns), (800, 1));

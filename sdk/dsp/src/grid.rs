@@ -6,6 +6,12 @@ use alloc::vec::Vec;
 pub const GRID_HZ: f64 = 5.0;
 
 /// The band a texture spectrum covers, inclusive at both ends, in hertz.
+///
+/// ```
+/// use htex_dsp::Band;
+/// assert_eq!(Band::TACTILE.edges(), (20.0, 1000.0));
+/// assert_eq!(Band::TACTILE.bins(), 197);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
     /// Lower edge, hertz.

@@ -9,6 +9,12 @@ use crate::{Finding, Severity};
 const SHOWN: usize = 3;
 
 /// Error of reading an asset.
+///
+/// ```
+/// use htex_format::{Asset, ReadError};
+/// let error = Asset::from_bytes(b"not an asset").unwrap_err();
+/// assert!(matches!(&error, ReadError::Invalid { findings } if !findings.is_empty()));
+/// ```
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadError {

@@ -86,7 +86,7 @@ impl FieldMismatch {
     }
 }
 
-/// The order in which a model's fields are taken from the parameters of an asset.
+/// The order in which a model's fields are taken from the parameters of an asset; [`match_fields`] returns it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FieldOrder<'a> {
     stored: &'a [StoredField],

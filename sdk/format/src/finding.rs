@@ -6,6 +6,12 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Severity of a finding.
+///
+/// ```
+/// use htex_format::Severity;
+/// assert!(Severity::Error < Severity::Info);
+/// assert_eq!(Severity::Warning.to_string(), "warning");
+/// ```
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
 )]
@@ -20,6 +26,15 @@ pub enum Severity {
 }
 
 /// A finding of validation.
+///
+/// ```
+/// use htex_format::{Limits, validate};
+/// let report = validate(b"not an asset", &Limits::default());
+/// for finding in &report.findings {
+///     println!("{} {finding}", finding.severity);
+/// }
+/// assert!(!report.valid);
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Finding {
     /// Stable code of the rule.

@@ -1,6 +1,11 @@
 //! Limits on files that are not trusted.
 
 /// Limits of reading, each checked before the bytes it bounds are read or unpacked.
+///
+/// ```
+/// let limits = htex_format::Limits { file_bytes: 1 << 20, ..Default::default() };
+/// assert!(!htex_format::validate(&[0; 2 << 20], &limits).valid);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
     /// Bytes of the file: 16 MiB.

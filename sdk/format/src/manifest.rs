@@ -22,6 +22,13 @@ pub const VERSION: &str = "1.1";
 pub const FIRST_VERSION: &str = "1.0";
 
 /// The manifest of an asset: one surface.
+///
+/// ```no_run
+/// let asset = htex_format::Asset::open("sandpaper.htex".as_ref())?;
+/// let manifest = &asset.manifest;
+/// println!("{} at {} conditions", manifest.name, manifest.conditions.len());
+/// # Ok::<(), htex_format::ReadError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(extend("oneOf" = quantities_and_units()))]
 pub struct Manifest {
@@ -161,6 +168,11 @@ pub struct Source {
 }
 
 /// An exploration condition; an absent value is unknown.
+///
+/// ```
+/// let condition = htex_format::Condition { speed_mm_s: Some(80.0), ..Default::default() };
+/// assert_eq!(condition.force_n, None);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Condition {
     /// Scanning speed, mm/s, not negative.
@@ -189,6 +201,14 @@ impl Condition {
 }
 
 /// The texture as one model describes it.
+///
+/// ```no_run
+/// # let asset = htex_format::Asset::open("sandpaper.htex".as_ref())?;
+/// for representation in &asset.manifest.representations {
+///     println!("{} at {} conditions", representation.model, representation.at.len());
+/// }
+/// # Ok::<(), htex_format::ReadError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Representation {
     /// Reverse-DNS id of the model.
@@ -271,6 +291,15 @@ fn is_zero(x: &f64) -> bool {
 }
 
 /// A representation at one condition.
+///
+/// ```no_run
+/// # let asset = htex_format::Asset::open("sandpaper.htex".as_ref())?;
+/// for at in &asset.manifest.representations[0].at {
+///     let condition = asset.manifest.conditions[at.condition];
+///     println!("{:?} mm/s: {} RMS", condition.speed_mm_s, at.level_rms);
+/// }
+/// # Ok::<(), htex_format::ReadError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AtCondition {
     /// Index into the asset's conditions.

@@ -1,6 +1,11 @@
 //! JSON Schemas (draft 2020-12) of htex's documents: generated from Rust types, and used for validation.
 //!
 //! ```
+//! /// A cloth.
+//! ///
+//! /// ```
+//! /// println!("an example in Rust");
+//! /// ```
 //! #[derive(schemars::JsonSchema)]
 //! struct Cloth {
 //!     /// Threads per centimetre.
@@ -9,6 +14,7 @@
 //! }
 //! let schema = htex_schema::document::<Cloth>("cloth-1.json", "Cloth");
 //! assert_eq!(schema["$id"], "https://htex.org/schemas/cloth-1.json");
+//! assert_eq!(schema["description"], "A cloth.");
 //! assert_eq!(schema["properties"]["dye"]["type"], "string");
 //! assert_eq!(schema["properties"]["threads"].get("format"), None);
 //! ```
@@ -45,7 +51,19 @@ fn made<T: JsonSchema>(file: &str, title: &str) -> Made {
     schema.insert("$id".to_owned(), json!(format!("{BASE}{file}")));
     schema.insert("title".to_owned(), json!(title));
     without_formats(&mut schema);
+    without_examples(&mut schema);
     schema
+}
+
+/// Removes examples in Rust from descriptions, which are doc comments.
+fn without_examples(schema: &mut Made) {
+    if let Some(Value::String(text)) = schema.get_mut("description") {
+        while let Some((before, code)) = text.split_once("```") {
+            let after = code.split_once("```").map_or("", |(_, after)| after);
+            *text = format!("{}{}", before.trim_end(), after.trim_end());
+        }
+    }
+    transform_subschemas(&mut (without_examples as fn(&mut Made)), schema);
 }
 
 /// Removes formats such as `double` and `uint64`, which the standard does not have.

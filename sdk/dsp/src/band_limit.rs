@@ -41,7 +41,7 @@ fn sections(band: Band, rate_hz: f64) -> Vec<Biquad> {
 }
 
 /// For each grid bin in the band and some beside it: the part of a noise's power that passes [`band_limit`]
-/// and is measured by the bins of the band ([`read_part`]). Near the edges bins are subdivided. A bin that
+/// and is measured by the bins of the band. Near the edges bins are subdivided. A bin that
 /// contains the Nyquist frequency counts up to it.
 ///
 /// It corrects the level of filtered noise. Without the correction noise would be too weak: by the filters'

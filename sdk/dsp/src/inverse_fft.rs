@@ -67,7 +67,7 @@ pub(crate) fn smooth_length(least: usize) -> usize {
 }
 
 impl InverseRealFft {
-    /// A transform to `2 * half` samples. If `half` is not a [`smooth_length`], the next one is used.
+    /// A transform to `2 * half` samples. If `half` has a prime factor above 5, the next number without one is used.
     pub fn new(half: usize) -> Self {
         let half = smooth_length(half);
         let (mut length, mut stride) = (half, 1);

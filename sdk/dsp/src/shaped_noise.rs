@@ -22,7 +22,7 @@ const FADE_S: f64 = 0.010;
 
 /// An endless stream of noise whose spectrum follows a magnitude curve, with unit RMS as measured by the bins
 /// of the band: all components are amplified to compensate for the power at the band's edges that the bins
-/// miss ([`read_part`](crate::grid::read_part)).
+/// miss (1/6 of the power of an edge bin).
 pub struct ShapedNoise {
     frames: Arc<Frames>,
     /// Half the amplitude of each component.

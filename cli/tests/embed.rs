@@ -91,7 +91,7 @@ fn a_third_party_model_travels_with_its_asset() {
     assert_eq!(forbidden.code(), 2);
     for words in [
         "org.example.bursts",
-        "brings it along",
+        "embeds it",
         "--no-embedded-plugins",
     ] {
         assert!(forbidden.error().contains(words), "{}", forbidden.error());

@@ -89,11 +89,7 @@ fn a_third_party_model_travels_with_its_asset() {
 
     let forbidden = place.run(&[&synth[..], &["--no-embedded-plugins"]].concat());
     assert_eq!(forbidden.code(), 2);
-    for words in [
-        "org.example.bursts",
-        "embeds it",
-        "--no-embedded-plugins",
-    ] {
+    for words in ["org.example.bursts", "embeds it", "--no-embedded-plugins"] {
         assert!(forbidden.error().contains(words), "{}", forbidden.error());
     }
 }

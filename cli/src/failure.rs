@@ -77,6 +77,7 @@ impl Failure {
                 file: shown(file),
                 findings,
             },
+            other => Self::Other(format!("{}: {other}", shown(file))),
         }
     }
 

@@ -121,7 +121,8 @@ fn sbeta_fits_of_ten_points() {
         // The scale is in the level: newtons at a frequency over the density there.
         let magnitude = fitted_magnitude(&sbeta, &fit);
         let u = htex_dsp::beta::log_unit(150.0, Band::TACTILE);
-        let density = htex_dsp::beta::beta_pdf(u, fit.parameters[0], fit.parameters[1]);
+        let [alpha, beta] = [fit.parameters[0], fit.parameters[1]];
+        let density = htex_dsp::beta::BetaDensity::new(alpha, beta).at(u);
         case.hold("/scale", &[magnitude[26] / density]);
         held += 1;
     }

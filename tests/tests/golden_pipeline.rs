@@ -5,7 +5,7 @@ use htex_author::{
     Averaging, Recording, SegmentChoice, SetupResponse, SpectrumOptions, TextureSpectrum,
     choose_segments, segment_spectra,
 };
-use htex_dsp::spectrum::resonator_response;
+use htex_dsp::spectrum::Complex;
 use htex_tests::Golden;
 
 const RATE_HZ: f64 = 20_000.0;
@@ -49,6 +49,12 @@ fn closed_form() -> Recording {
     .unwrap()
 }
 
+/// Response of a force sensor's mount as a damped resonator, `1 / (1 - (f/f₀)² + 2 i ζ f/f₀)`.
+fn resonator_response(f_hz: f64, resonance_hz: f64, damping_ratio: f64) -> Complex<f64> {
+    let r = f_hz / resonance_hz;
+    Complex::new(1.0, 0.0) / Complex::new(1.0 - r * r, 2.0 * damping_ratio * r)
+}
+
 /// The case's setup response, on a grid fine enough to be read back at the bins.
 fn response() -> SetupResponse {
     let frequency_hz: Vec<f64> = (0..=200).map(|k| f64::from(k) * 5.0).collect();
@@ -61,6 +67,18 @@ fn response() -> SetupResponse {
         phase_rad: values.iter().map(|h| h.arg()).collect(),
         frequency_hz,
     }
+}
+
+#[test]
+fn the_response_of_the_case_is_the_resonators() {
+    let case = Golden::case("pipeline", "hrec");
+    let [f0_hz, zeta] = ["f0_hz", "zeta"].map(|name| case.input(name)[0]);
+    let frequencies = case.input("f_hz");
+    let response = |f: &f64| resonator_response(*f, f0_hz, zeta);
+    let got: Vec<_> = frequencies.iter().map(response).collect();
+    case.hold("/re", &got.iter().map(|h| h.re).collect::<Vec<_>>());
+    case.hold("/im", &got.iter().map(|h| h.im).collect::<Vec<_>>());
+    case.hold("/abs", &got.iter().map(|h| h.norm()).collect::<Vec<_>>());
 }
 
 fn hold(name: &str, response: Option<SetupResponse>) {

@@ -13,6 +13,7 @@ mod fit;
 
 use alloc::sync::Arc;
 
+use htex_dsp::butterworth::analog_low_pass_magnitude;
 use htex_dsp::exponential::exponentials;
 use htex_dsp::grid::{Band, curve_level_rms};
 use htex_dsp::shaped_noise::ComponentsKey;
@@ -189,7 +190,8 @@ impl Curve for Shape {
     /// The value at the peak is one half.
     fn at(&self, frequency_hz: f64) -> f64 {
         let above = frequency_hz / self.peak_hz;
-        butterworth(above, self.low_pass) * butterworth(1.0 / above, self.high_pass)
+        analog_low_pass_magnitude(above, self.low_pass)
+            * analog_low_pass_magnitude(1.0 / above, self.high_pass)
     }
 
     fn level(&self) -> f64 {
@@ -222,9 +224,4 @@ impl Curve for Shape {
             }
         }
     }
-}
-
-/// Magnitude of a Butterworth low-pass of any positive order at `ratio` times its cut-off.
-fn butterworth(ratio: f64, order: f64) -> f64 {
-    1.0 / htex_dsp::root::sqrt(1.0 + libm::pow(ratio, 2.0 * order))
 }

@@ -1,7 +1,7 @@
 //! Errors across the ABI: from an error to a code and a text, and back.
 
-use crate::DeviceError;
 use crate::abi::Code;
+use crate::{AbiFault, DeviceError};
 
 /// The code and the last-error text of an error.
 pub(crate) fn outgoing(error: &DeviceError) -> (Code, String) {
@@ -44,7 +44,7 @@ pub(crate) fn incoming(code: Code, text: String, device: &str, library: &str) ->
         Code::Closed | Code::BadHandle => DeviceError::Closed(device.to_owned()),
         Code::InvalidArgument => DeviceError::Abi {
             library: library.to_owned(),
-            what: text,
+            fault: AbiFault::Call(text),
         },
         _ => DeviceError::Failed {
             device: device.to_owned(),

@@ -47,19 +47,18 @@ pub struct Setting {
     pub description: String,
 }
 
-/// What a scene may do with a setting. Settings that describe the hardware are given by a person: on the command line, or
-/// by the choice of a profile.
+/// What a scene may do with a setting. Settings that describe the hardware are given by the user, one by one or by the
+/// choice of a profile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum FromScene {
-    /// Set it, unless a person does.
+    /// Set it, unless the user does.
     #[default]
     Any,
-    /// Lower the number that a person, or the default, has given: a limit. The smallest of all that are stated
-    /// holds.
+    /// Lower the number given by the user or the default: a limit. The smallest number given applies.
     Less,
-    /// Raise the number that a person, or the default, has given: a ramp.
+    /// Raise the number given by the user or the default: a ramp.
     More,
     /// Nothing.
     Never,

@@ -1,7 +1,10 @@
 //! Errors of devices.
 
+use crate::abi::ABI_MAJOR;
+
 /// An error of an adapter or an open device.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DeviceError {
     /// A setting is not known, missing, or not usable.
     #[error("setting `{name}`: {what}")]
@@ -82,11 +85,32 @@ pub enum DeviceError {
         known: String,
     },
     /// A library is not a device of this ABI, or breaks it.
-    #[error("{library}: {what}")]
+    #[error("{library}: {fault}")]
     Abi {
         /// The library.
         library: String,
         /// The fault.
-        what: String,
+        fault: AbiFault,
     },
+}
+
+/// Fault of a library that is not a device of this ABI, or does not follow it.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AbiFault {
+    /// The system cannot load the file; its reason.
+    #[error("{0}")]
+    NotLoaded(String),
+    /// The marker is of another major version of the ABI, or of another ABI.
+    #[error("the marker {0:#x} is not of device ABI {ABI_MAJOR}.x, which this host loads")]
+    Marker(u32),
+    /// A function of the ABI is missing.
+    #[error("the library has no `{0}`; it is not an htex device")]
+    Symbol(&'static str),
+    /// The descriptor cannot be read, or is invalid.
+    #[error("descriptor: {0}")]
+    Descriptor(String),
+    /// A call returned what the ABI does not allow, or refused arguments that it allows.
+    #[error("{0}")]
+    Call(String),
 }

@@ -30,7 +30,7 @@ pub use descriptor::{
     Descriptor, DescriptorError, Endpoint, FromScene, Profile, Setting, SettingFault, SettingKind,
 };
 pub use devices::{DeviceNote, DeviceOrigin, DeviceSearch, Devices, KnownDevice};
-pub use error::DeviceError;
+pub use error::{AbiFault, DeviceError};
 pub use native::{NativeAdapter, NativeDevice};
 #[cfg(feature = "schemars")]
 pub use schemas::schemas;

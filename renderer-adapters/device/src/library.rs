@@ -5,12 +5,11 @@
 
 use std::path::Path;
 
-use crate::DeviceError;
 use crate::abi::{
-    ABI_MAJOR, ABI_MARKER, AbiVersion, CapabilitiesJson, CloseFn, Code, DescriptorJson,
-    DeviceTable, EndpointsJson, ExtensionFn, FinishFn, LastError, MAX_TEXT_BYTES, OpenFn, StatusFn,
-    WriteFn,
+    ABI_MARKER, AbiVersion, CapabilitiesJson, CloseFn, Code, DescriptorJson, DeviceTable,
+    EndpointsJson, ExtensionFn, FinishFn, LastError, MAX_TEXT_BYTES, OpenFn, StatusFn, WriteFn,
 };
+use crate::{AbiFault, DeviceError};
 
 /// Size of the buffer for a text at the first call, bytes.
 const USUAL_TEXT: usize = 16_384;
@@ -36,17 +35,17 @@ impl Library {
     /// Loads a library and fills a table from its symbols.
     pub(crate) fn load(path: &Path) -> Result<Self, DeviceError> {
         let name = path.display().to_string();
-        let error = |what: String| DeviceError::Abi {
+        let error = |fault: AbiFault| DeviceError::Abi {
             library: name.clone(),
-            what,
+            fault,
         };
         // SAFETY: running a library's initialisers is what the user asked for by naming it.
         let library = unsafe { htex_native::Library::from_file(path) };
-        let library = library.map_err(|e| error(e.to_string()))?;
+        let library = library.map_err(|e| error(AbiFault::NotLoaded(e.to_string())))?;
         // SAFETY: the marker comes first, and says that the other symbols have these types.
         let abi_version: AbiVersion =
             unsafe { symbol(library, "htex_device_abi_version", &error)? };
-        check_marker(abi_version()).map_err(|other| error(other.to_string()))?;
+        check_marker(abi_version()).map_err(&error)?;
         // SAFETY: a library with this marker exports these names with these types.
         let table = unsafe {
             DeviceTable {
@@ -77,7 +76,7 @@ impl Library {
             name: name.to_owned(),
             table,
         };
-        check_marker((table.abi_version)()).map_err(|other| library.broken(other.to_string()))?;
+        check_marker((table.abi_version)()).map_err(|fault| library.error(fault))?;
         Ok(library)
     }
 
@@ -124,22 +123,22 @@ impl Library {
 
     /// The error of a result that the ABI does not allow.
     pub(crate) fn broken(&self, what: impl Into<String>) -> DeviceError {
+        self.error(AbiFault::Call(what.into()))
+    }
+
+    /// The error of a fault of this library.
+    pub(crate) fn error(&self, fault: AbiFault) -> DeviceError {
         DeviceError::Abi {
             library: self.name.clone(),
-            what: what.into(),
+            fault,
         }
     }
 }
 
-/// Error: a library is of another major version of the ABI, or of another ABI.
-#[derive(Debug, thiserror::Error)]
-#[error("the marker {0:#x} is not of device ABI {ABI_MAJOR}.x, which this host loads")]
-struct OtherAbi(u32);
-
-fn check_marker(marker: u32) -> Result<(), OtherAbi> {
+fn check_marker(marker: u32) -> Result<(), AbiFault> {
     match marker >> 8 == ABI_MARKER >> 8 {
         true => Ok(()),
-        false => Err(OtherAbi(marker)),
+        false => Err(AbiFault::Marker(marker)),
     }
 }
 
@@ -149,14 +148,10 @@ fn check_marker(marker: u32) -> Result<(), OtherAbi> {
 /// The symbol has the type `T`.
 unsafe fn symbol<T: Copy>(
     library: htex_native::Library,
-    name: &str,
-    error: &impl Fn(String) -> DeviceError,
+    name: &'static str,
+    error: &impl Fn(AbiFault) -> DeviceError,
 ) -> Result<T, DeviceError> {
     // SAFETY: the caller's promise.
     let found = unsafe { library.symbol(name) };
-    found.ok_or_else(|| {
-        error(format!(
-            "the library has no `{name}`; it is not an htex device"
-        ))
-    })
+    found.ok_or_else(|| error(AbiFault::Symbol(name)))
 }

@@ -10,7 +10,7 @@ use crate::abi::{Code, DeviceTable, STATUS_NUMBERS};
 use crate::crossing::incoming;
 use crate::library::{Library, Trouble};
 use crate::{
-    Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, Settings, Status,
+    AbiFault, Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, Settings, Status,
     StreamFormat,
 };
 
@@ -55,7 +55,7 @@ impl NativeAdapter {
     fn new(library: Library) -> Result<Self, DeviceError> {
         // SAFETY: the buffer is live and of this length, by `Library::text`.
         let json = library.text(|out, len| unsafe { (library.table.descriptor)(out, len) });
-        let wrong = |what: String| library.broken(format!("descriptor: {what}"));
+        let wrong = |what: String| library.error(AbiFault::Descriptor(what));
         let json = json.map_err(|trouble| match trouble {
             Trouble::Told(_, text) | Trouble::Broken(text) => wrong(text),
         })?;

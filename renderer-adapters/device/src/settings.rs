@@ -11,9 +11,9 @@ pub struct Settings(BTreeMap<String, String>);
 /// Settings of a device, by their source.
 #[derive(Debug, Clone, Copy)]
 pub struct Stated<'a> {
-    /// A profile that a person chose, by name.
+    /// Name of the profile that the user chose.
     pub profile: Option<&'a str>,
-    /// Settings that a person gave.
+    /// Settings that the user gave.
     pub given: &'a BTreeMap<String, String>,
     /// Settings that a scene asks for: [`FromScene`] says which it gets.
     pub asked: &'a BTreeMap<String, String>,
@@ -163,8 +163,10 @@ pub(crate) fn known<'a>(
 fn missing(setting: &Setting) -> String {
     match setting.from_scene {
         FromScene::Never | FromScene::Less => {
-            "it must be given, by a person: a profile, or this setting on the command line"
-                .to_owned()
+            format!(
+                "the user must give it, not a scene: by a `profile`, or as `setting {}=VALUE`",
+                setting.name
+            )
         }
         _ => "it must be given".to_owned(),
     }

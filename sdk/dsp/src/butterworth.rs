@@ -47,9 +47,15 @@ pub fn high_pass(order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {
     design(Kind::HighPass, order, fc_hz, rate_hz)
 }
 
-/// Magnitude `|H|` of the analogue low-pass: `1 / sqrt(1 + (f / fc)^(2 order))`.
-pub fn analog_low_pass_magnitude(f_hz: f64, fc_hz: f64, order: usize) -> f64 {
-    1.0 / crate::root::sqrt(1.0 + libm::pow(f_hz / fc_hz, 2.0 * order as f64))
+/// Magnitude `|H|` of the analogue low-pass of any positive order at `ratio` times its cut-off:
+/// `1 / sqrt(1 + ratio^(2 order))`. The high-pass has this magnitude at `1 / ratio`.
+///
+/// ```
+/// use htex_dsp::butterworth::analog_low_pass_magnitude;
+/// assert!((analog_low_pass_magnitude(1.0, 2.5) - 0.5_f64.sqrt()).abs() < 1e-15);
+/// ```
+pub fn analog_low_pass_magnitude(ratio: f64, order: f64) -> f64 {
+    1.0 / crate::root::sqrt(1.0 + libm::pow(ratio, 2.0 * order))
 }
 
 fn design(kind: Kind, order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {

@@ -15,28 +15,15 @@ pub fn dct_ii(values: &[f64], out: &mut [f64]) {
     }
 }
 
-/// Inverse of [`dct_ii`]: `out.len()` values from the first coefficients, the missing ones taken
-/// as zero; coefficients beyond `out.len()` are ignored.
+/// Inverse of [`dct_ii`] with a precomputed table for a fixed number of output values.
 ///
 /// ```
-/// use htex_dsp::dct::{dct_ii, inverse_dct_ii};
+/// use htex_dsp::dct::{InverseDct, dct_ii};
 /// let mut coefficients = [0.0; 4];
 /// dct_ii(&[1.0, 5.0, 2.0, 0.0], &mut coefficients);
 /// let mut back = [0.0; 4];
-/// inverse_dct_ii(&coefficients, &mut back);
+/// InverseDct::new(4).run(&coefficients, &mut back);
 /// assert!((back[1] - 5.0).abs() < 1e-14);
-/// ```
-pub fn inverse_dct_ii(coefficients: &[f64], out: &mut [f64]) {
-    InverseDct::new(out.len()).run(coefficients, out);
-}
-
-/// [`inverse_dct_ii`] with a precomputed table for a fixed number of output values.
-///
-/// ```
-/// use htex_dsp::dct::InverseDct;
-/// let mut values = [0.0; 4];
-/// InverseDct::new(4).run(&[2.0], &mut values);
-/// assert_eq!(values, [1.0; 4]);
 /// ```
 #[derive(Debug, Clone)]
 pub struct InverseDct {
@@ -55,8 +42,8 @@ impl InverseDct {
         }
     }
 
-    /// As [`inverse_dct_ii`]; elements beyond the fixed number of values are left unchanged. Does not
-    /// allocate.
+    /// Writes the values of the first coefficients. Missing coefficients count as zero, and those beyond the number of
+    /// values are ignored; elements of `out` beyond that number are left unchanged. Does not allocate.
     pub fn run(&self, coefficients: &[f64], out: &mut [f64]) {
         let rows = self.cosines.chunks(self.scale.len().max(1));
         for (value, row) in out.iter_mut().zip(rows) {

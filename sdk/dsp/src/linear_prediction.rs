@@ -239,17 +239,6 @@ pub fn ar_magnitude(coefficients: &[f64], f_hz: f64, rate_hz: f64) -> f64 {
     1.0 / libm::hypot(re, im)
 }
 
-/// RMS of the model's output for white noise of unit RMS; `None` if it is unstable.
-pub fn white_noise_gain(coefficients: &[f64]) -> Option<f64> {
-    coefficients_to_reflection(coefficients).map(|k| reflection_gain(&k))
-}
-
-/// RMS of the model's output for white noise of unit RMS: `sqrt(1 / Π(1 - k²))`.
-pub(crate) fn reflection_gain(reflection: &[f64]) -> f64 {
-    let error: f64 = reflection.iter().map(|k| (1.0 - k) * (1.0 + k)).product();
-    1.0 / crate::root::sqrt(error)
-}
-
 /// Turns the coefficients of order m - 1 (all but the last element) into those of order m.
 pub(crate) fn step_up(a: &mut [f64], k: f64) {
     let Some((last, previous)) = a.split_last_mut() else {

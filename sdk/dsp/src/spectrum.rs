@@ -164,14 +164,6 @@ fn fold_bin(axes: impl Iterator<Item = Complex<f64>> + Clone) -> Complex<f64> {
     }
 }
 
-/// Response of a force sensor's mount as a damped resonator, `1 / (1 - (f/f₀)² + 2 i ζ f/f₀)`: 1 at 0 Hz, `-i
-/// / 2ζ` at resonance. Frequencies in hertz, dimensionless result. For simulations and tests; the paper
-/// measures the response of its setup with an impact hammer.
-pub fn resonator_response(f_hz: f64, resonance_hz: f64, damping_ratio: f64) -> Complex<f64> {
-    let r = f_hz / resonance_hz;
-    Complex::new(1.0, 0.0) / Complex::new(1.0 - r * r, 2.0 * damping_ratio * r)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

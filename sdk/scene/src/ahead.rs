@@ -1,22 +1,22 @@
-//! Rendering ahead while nothing changes.
+//! A buffer of samples rendered in advance, for scenes in constant motion.
 
-/// Samples rendered ahead at a time. Of 256, 512 and 1,024 the last one let one core play the most renderers
-/// in turn (`--example chains -- voices`).
+/// Samples rendered in advance at a time. Of 256, 512 and 1,024, with 1,024 one core plays the most renderers in
+/// turn (the example `chains`, mode `voices`).
 const AHEAD: usize = 1024;
 
-/// A buffer of rendered samples; those from `taken` on are not played yet.
+/// The buffer; samples from index `taken` on are not played yet.
 pub(crate) struct Ahead {
     samples: Vec<f32>,
     taken: usize,
-    /// Samples of the first buffer: fewer than of later ones, by an amount drawn from the seed, so that
-    /// renderers started together do not all fill their buffers at the same time.
+    /// Length of the first buffer, from 1 to [`AHEAD`], derived from the seed: renderers started together fill their
+    /// buffers at different times.
     first: usize,
 }
 
 impl Ahead {
-    /// `wanted`: whether the renderer renders ahead.
+    /// An empty buffer; without memory unless `wanted`.
     pub(crate) fn new(wanted: bool, seed: u64) -> Self {
-        // Multiples of the golden ratio, which are evenly distributed.
+        // Multiplication by 2⁶⁴ / φ distributes successive seeds evenly.
         let part = seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
         let first = (part * AHEAD as u64) >> 32;
         Self {
@@ -40,7 +40,7 @@ impl Ahead {
         frames
     }
 
-    /// Takes the buffer out to be filled with at most `left` samples; [`Self::end`] returns it.
+    /// Moves the buffer out, resized to the next length but at most `left` samples; [`Self::end`] moves it back.
     pub(crate) fn begin(&mut self, left: u64) -> Vec<f32> {
         let mut samples = std::mem::take(&mut self.samples);
         let frames = match samples.len() {
@@ -51,7 +51,7 @@ impl Ahead {
         samples
     }
 
-    /// Returns the filled buffer.
+    /// Takes the filled buffer back.
     pub(crate) fn end(&mut self, samples: Vec<f32>) {
         (self.samples, self.taken) = (samples, 0);
     }

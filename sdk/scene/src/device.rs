@@ -149,7 +149,7 @@ fn report_hardware(
     for Setting { name, .. } in descriptor.settings.iter().filter(is_asked) {
         let pointer = format!("/device/settings/{}", escape(name));
         findings.add(rule::DEVICE_HARDWARE, pointer, format!(
-            "the plan uses the scene's {name}; a player takes it from a profile or the command line, and \
+            "the plan uses the scene's {name}; a player takes it from a `profile` or a `setting` of the user, and \
              a scene can at most ask for a lower limit or a longer ramp"
         ));
     }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 /// An error of planning or playing a scene.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SceneError {
     /// A surface's asset or its model cannot be used.
     #[error("surface {surface} ({}): {source}", .asset.display())]

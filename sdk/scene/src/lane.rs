@@ -16,33 +16,34 @@ pub(crate) struct Lane {
     pub(crate) asset: std::path::PathBuf,
     pub(crate) synthesis: Synthesis,
     synthesis_run: Count,
-    /// True: neutral.
+    /// With whether it is neutral.
     interpolation: Option<(Count, bool)>,
     chain: Chain,
     crossfade: Option<(Crossfade, Count)>,
-    /// It is touched, or still fading.
+    /// Whether it is audible: touched, or fading out.
     pub(crate) sounds: bool,
-    /// Of a model that follows the motion itself.
+    /// `Some` if the model follows the motion itself.
     follower: Option<Follower>,
 }
 
-/// The time of a voice that is told where the finger is.
+/// The clock of a voice that receives the position of the finger.
 struct Follower {
-    /// How many times as fast as real time its samples are read.
+    /// Ratio of the voice's time to the scene's.
     pitch: f64,
+    /// Rate of the frames, hertz.
     rate_hz: f64,
-    /// Frames in which it was not rendered.
+    /// Frames during which the voice was not rendered.
     skipped: u64,
 }
 
-/// The finger at a time of the scene.
+/// Force and path position of the finger at one time of the scene.
 pub(crate) struct FingerOnPath {
     pub(crate) t_s: f64,
     pub(crate) force_n: f64,
     pub(crate) point: PathPoint,
 }
 
-/// How often a stage without samples of its own ran, and its time.
+/// Number of runs of a stage outside the chain, and their total time.
 #[derive(Default)]
 struct Count {
     blocks: u64,
@@ -79,7 +80,7 @@ impl Lane {
                     .push(Slot::new(entry.name, Some(part.surface), stage));
             }
         }
-        // The level comes behind what changes the rate, and before what changes the level.
+        // The level stage follows stages that change the rate and precedes stages that change the level.
         let scaled = planned.effects.contains_key(&Effect::SpeedScaling);
         let level = Level::new(part, synthesis.level_rms());
         let level = Slot::new("level", Some(part.surface), Box::new(level));
@@ -108,10 +109,11 @@ impl Lane {
         })
     }
 
+    /// Updates the stages at the start of a control block.
     pub(crate) fn follow(&mut self, now: &Now, touched: bool, timed: bool) {
         if let Some((crossfade, _)) = &mut self.crossfade {
             crossfade.set(touched);
-            // Decided here alone: the samples do not depend on the sizes of blocks.
+            // Changes only at control blocks, so that samples do not depend on the block sizes of the caller.
             self.sounds = touched || !crossfade.is_silent();
         }
         if let (Some((count, neutral)), true) = (&mut self.interpolation, touched) {
@@ -128,7 +130,8 @@ impl Lane {
         });
     }
 
-    /// Tells a model that follows the motion itself, while it is heard. Read faster, all its way is as many times as far.
+    /// Passes motion and position to a model that follows the motion itself, while its surface is audible. Position and
+    /// time are in the voice's time, so both are multiplied by the pitch.
     pub(crate) fn tell(&mut self, finger: &FingerOnPath) {
         let Some(follower) = self.follower.as_ref().filter(|_| self.sounds) else {
             return;
@@ -143,13 +146,14 @@ impl Lane {
         self.synthesis.set_finger(motion, at_s);
     }
 
-    /// Leaves out samples that nobody hears.
+    /// Counts frames during which the surface is silent and not rendered.
     pub(crate) fn skip(&mut self, frames: usize) {
         if let Some(follower) = &mut self.follower {
             follower.skipped += frames as u64;
         }
     }
 
+    /// Renders the surface through its stages and its crossfade.
     pub(crate) fn render(&mut self, timed: bool, out: &mut [f32]) {
         let (synthesis, count) = (&mut self.synthesis, &mut self.synthesis_run);
         self.chain.render(timed, out, &mut |block| {
@@ -160,6 +164,7 @@ impl Lane {
         }
     }
 
+    /// Statistics of all stages of the surface.
     pub(crate) fn runs(&self, frames: Option<u64>) -> Vec<StageRun> {
         let run = |name, count: &Count| StageRun {
             name,

@@ -51,6 +51,7 @@ pub struct LoadedScene {
 
 /// Error: a scene cannot be loaded.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum LoadError {
     /// The file cannot be read.
     #[error("cannot read {}: {error}", .path.display())]

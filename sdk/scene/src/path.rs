@@ -1,21 +1,22 @@
-//! How far a finger is along its path, for models that follow the motion themselves: forward in the direction of the
-//! first stroke, back against it, so that the same place is the same position on both ways.
+//! Position of the finger along its path, for models that follow the motion themselves. It increases in the direction
+//! of the first stroke and decreases against it, so that a place has the same position on forward and back strokes.
 
 use crate::motion::{Course, Finger};
 use crate::trace::Trace;
 
-/// Where the finger is on its path, over time.
+/// Position of the finger along its path over time.
 #[derive(Debug)]
 pub(crate) enum Path {
-    /// At one speed from the scene's beginning.
+    /// One speed, mm/s, from the start of the scene.
     Steady(f64),
     Trace(TracePath),
     Live(LivePath),
 }
 
-/// Speed along the path, mm/s, negative on the way back, and the position, mm.
+/// Speed and position along the path at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PathPoint {
+    /// Negative on the back stroke.
     pub(crate) speed_mm_s: f64,
     pub(crate) position_mm: f64,
 }
@@ -29,7 +30,7 @@ impl Path {
         }
     }
 
-    /// Where it is at a time, seconds. Does not allocate.
+    /// Speed and position at a time, seconds. Does not allocate.
     pub(crate) fn at(&self, t_s: f64) -> PathPoint {
         match self {
             Self::Steady(speed_mm_s) => PathPoint {
@@ -41,7 +42,7 @@ impl Path {
         }
     }
 
-    /// Takes a live finger at a time, seconds.
+    /// Updates the path of a live scene with the finger at a time, seconds.
     pub(crate) fn moved(&mut self, finger: &Finger, t_s: f64) {
         if let Self::Live(path) = self {
             path.moved(finger, t_s);
@@ -49,8 +50,8 @@ impl Path {
     }
 }
 
-/// The integral of a trace's velocity, which is as smooth as the speed that is heard: positions themselves have a
-/// tracker's steps.
+/// The path of a trace: the integral of its velocity. The positions of the trace have the steps of the tracker; the
+/// velocity is smoothed.
 #[derive(Debug)]
 pub(crate) struct TracePath {
     t_s: Vec<f64>,
@@ -79,7 +80,7 @@ impl TracePath {
         }
     }
 
-    /// The speed straight between rows, the position its integral; at rest outside them.
+    /// The speed interpolated linearly between rows, and its integral; at rest before the first and after the last row.
     fn at(&self, t_s: f64) -> PathPoint {
         let above = self.t_s.partition_point(|t| *t <= t_s);
         let row = above.saturating_sub(1);
@@ -101,7 +102,8 @@ impl TracePath {
     }
 }
 
-/// A finger that is heard of now and then: by its place where that is known, else by its speed.
+/// The path of a live finger between updates: the distance between successive places where both are known, else the
+/// integral of the speed.
 #[derive(Debug, Default)]
 pub(crate) struct LivePath {
     t_s: f64,
@@ -123,7 +125,7 @@ impl LivePath {
         self.position_mm = match self.at_mm.zip(finger.at_mm) {
             Some(([x0, y0], [x1, y1])) => {
                 let way = (x1 - x0).hypot(y1 - y0).copysign(finger.speed_mm_s);
-                // From the last place that was told: the integral since then is a guess.
+                // Replaces the integral of the speed since the last update, which is an extrapolation.
                 self.position_mm + way
             }
             None => integrated,

@@ -25,16 +25,16 @@ pub struct Renderer {
     sum: Vec<f32>,
     live: Finger,
     frame: u64,
-    /// Frames until the finger is looked at again.
+    /// Frames until the next control block.
     left: usize,
-    /// The finger is looked at.
+    /// Whether stages are updated at control blocks; else the scene does not change and is rendered ahead.
     follows: bool,
     ahead: Ahead,
     timed: bool,
     peak: f32,
 }
 
-/// What of the call the renderer needs.
+/// The part of the call that the renderer needs.
 struct Timing {
     rate_hz: f64,
     control: usize,
@@ -42,7 +42,7 @@ struct Timing {
     ramp: u64,
 }
 
-/// Surfaces of one rate, and what comes behind their sum.
+/// Surfaces of one rate, and the stages after their sum.
 struct MixChain {
     lanes: Vec<Lane>,
     chain: Chain,
@@ -154,8 +154,8 @@ impl Renderer {
         }
     }
 
-    /// While nothing changes, renders many samples at once even if few are requested, so that renderers that
-    /// run in turn load the memory of their chains once for many blocks.
+    /// Renders many samples at once even if few are requested, so that renderers that run in turn load the memory
+    /// of their chains once for many blocks. For scenes that do not change.
     fn render_ahead(&mut self, out: &mut [f32]) -> usize {
         let mut done = 0;
         loop {
@@ -177,7 +177,7 @@ impl Renderer {
 
     /// Renders at most `left` samples ahead.
     fn fill_ahead(&mut self, left: u64) {
-        // A finger that goes on as it began is told once.
+        // The motion is constant: one update at the start suffices.
         if self.frame == 0 {
             let (_, told) = self.finger();
             let lanes = self.mixes.iter_mut().flat_map(|mix| &mut mix.lanes);
@@ -190,12 +190,12 @@ impl Renderer {
         self.ahead.end(samples);
     }
 
-    /// Looks at the finger before every control block.
+    /// Updates the stages before every control block.
     fn render_blocks(&mut self, out: &mut [f32]) -> usize {
         let mut done = 0;
         while done < out.len() {
             if self.left == 0 {
-                self.look();
+                self.update();
             }
             let wanted = (out.len() - done).min(self.left).min(PIECE);
             let left = self.frames_left().unwrap_or(u64::MAX);
@@ -225,7 +225,7 @@ impl Renderer {
         self.peak = peak;
     }
 
-    /// The finger now, and where it is on its path.
+    /// The finger at the current frame, and its position along the path.
     fn finger(&self) -> (Finger, FingerOnPath) {
         let t_s = self.seconds();
         let finger = match self.course {
@@ -240,8 +240,8 @@ impl Renderer {
         (finger, told)
     }
 
-    /// Looks at the finger, and tells the stages.
-    fn look(&mut self) {
+    /// Starts a control block: passes the finger's motion to all stages.
+    fn update(&mut self) {
         self.left = self.call.control;
         let (finger, told) = self.finger();
         let now = Now {
@@ -271,8 +271,8 @@ impl Renderer {
         lanes.chain(behind).collect()
     }
 
-    /// Largest magnitude so far, in the unit of the device. While nothing changes, up to 1,024 samples are
-    /// rendered ahead; this value and the counts below include them.
+    /// Largest magnitude so far, in the unit of the device. In constant motion up to 1,024 samples are rendered ahead;
+    /// this value and the counts below include them.
     pub fn peak(&self) -> f64 {
         f64::from(self.peak)
     }
@@ -361,7 +361,7 @@ impl MixChain {
     }
 }
 
-/// The sum of the lanes that are to be felt.
+/// The sum of the audible surfaces.
 fn sum_of(lanes: &mut [Lane], piece: &mut [f32], timed: bool, out: &mut [f32]) {
     let mut first = true;
     for lane in lanes {

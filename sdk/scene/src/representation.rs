@@ -6,7 +6,7 @@ use crate::file::Budget;
 use crate::load::LoadedScene;
 
 /// Safety factor of a plan over the measured times of its stages. The fastest chain takes 1.3 times their sum
-/// in blocks of 64 (`--example chains`), because of the calls between stages and the peak measurement.
+/// in blocks of 64 (the example `chains`), because of the calls between stages and the peak measurement.
 const RESERVE: f64 = 1.5;
 
 /// A representation and the reason for its choice.

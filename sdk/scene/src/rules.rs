@@ -154,8 +154,8 @@ htex_format::rule_table! {
         "Give the `setting` to the player instead; remove it from the scene.";
     DEVICE_HARDWARE Warning:
         "The scene describes the hardware, or exceeds a limit.",
-        "A wrong gain or limit can apply hundreds of volts more to a finger. What describes the hardware comes from a \
-         profile or from the command line; a scene can only ask for a lower limit or a longer ramp.",
+        "A wrong gain or limit can apply hundreds of volts more to a finger. Settings of the \
+         hardware come from a profile or from the user; a scene can only ask for a lower limit or a longer ramp.",
         "Give the `profile` of the rig to the player; remove the setting from the scene.";
     DEVICE_SETTING Error:
         "A profile or a setting of the device cannot be used.",

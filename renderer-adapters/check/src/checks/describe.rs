@@ -1,15 +1,18 @@
 //! The marker, the exports, the descriptor, endpoints and capabilities.
 
 use htex_check_runner::{Finding, Found, made_up_extensions};
-use htex_device::{DeviceError, NativeAdapter, SettingKind};
+use htex_device::{AbiFault, DeviceError, NativeAdapter, SettingKind};
 
 use crate::case::Case;
 
 /// The check that a loading error belongs to.
 pub(crate) fn owner(error: &DeviceError) -> &'static str {
     match error {
-        DeviceError::Abi { what, .. } if what.starts_with("the marker") => "marker",
-        DeviceError::Abi { what, .. } if what.starts_with("descriptor") => "descriptor",
+        DeviceError::Abi { fault, .. } => match fault {
+            AbiFault::Marker(_) => "marker",
+            AbiFault::Descriptor(_) => "descriptor",
+            _ => "exports",
+        },
         _ => "exports",
     }
 }

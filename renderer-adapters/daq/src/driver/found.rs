@@ -51,12 +51,12 @@ const SEARCHED: &str = if cfg!(windows) {
 };
 
 fn of_file(path: &Path) -> Result<Table, TableError> {
-    // SAFETY: a person named this library as a driver.
+    // SAFETY: the user named this library as a driver.
     table(unsafe { Library::from_file(path) })
 }
 
 fn of_system(name: &str) -> Result<Table, TableError> {
-    // SAFETY: NI-DAQmx's own name, or one that a person gave.
+    // SAFETY: NI-DAQmx's own name, or one that the user gave.
     table(unsafe { Library::from_system(name) })
 }
 

@@ -4,7 +4,7 @@ use htex_dsp::estimation::{autocorrelation, burg, covariance, yule_walker};
 use htex_dsp::lattice::AllPoleLattice;
 use htex_dsp::linear_prediction::{
     ar_magnitude, coefficients_to_reflection, is_stable, levinson_durbin,
-    reflection_to_coefficients, stabilize, white_noise_gain, within_radius,
+    reflection_to_coefficients, stabilize, within_radius,
 };
 
 use crate::big::{Big, big};
@@ -231,20 +231,6 @@ const CASES: &[Case] = &[
             let pairs = found.iter().zip(&reference);
             let off = pairs.map(|(k, exact)| exact::relative_error(*k, exact));
             off.fold(2.0 - found.len() as f64, worse) / f64::EPSILON
-        },
-    ),
-    within(
-        "poles at radius 1 - 1e-12",
-        FILTER,
-        "RMS of its output",
-        Bound(1e-14, "of it", "256 bits"),
-        || {
-            // sqrt(1 / Π (1 - k²)), k from exact coefficients in 256 bits.
-            let [a1, a2] = rim();
-            let (k1, k2) = (big(a1) / (big(1.0) - big(a2)), big(a2));
-            let error = |k: Big| big(1.0) - k.clone() * k;
-            let reference = (big(1.0) / (error(k1) * error(k2))).sqrt();
-            reference.relative_error(white_noise_gain(&rim()).unwrap_or(f64::NAN))
         },
     ),
     within(

@@ -1,5 +1,6 @@
 //! What the commands that check models and devices share.
 
+use std::borrow::Cow;
 use std::fmt::Display;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -41,27 +42,34 @@ impl CheckArgs {
         })
     }
 
-    /// Prints the finding of a single check.
-    pub(crate) fn print_one(&self, name: &str, finding: &Finding) -> Result<ExitCode, Failure> {
+    /// Prints the finding of a single check; `worded` replaces options of its message by flags.
+    pub(crate) fn print_one(
+        &self,
+        name: &str,
+        finding: &Finding,
+        worded: fn(&str) -> Cow<'_, str>,
+    ) -> Result<ExitCode, Failure> {
         if self.json {
             print_json(finding)?;
         } else {
             let word = finding.outcome.word();
-            print(&format!("{name}: {word}: {}\n", finding.message))?;
+            print(&format!("{name}: {word}: {}\n", worded(&finding.message)))?;
         }
         Ok(exit_code(finding.outcome.is_bad()))
     }
 
-    /// Prints a report; `again` is the command that runs one check of it in a single process.
+    /// Prints a report; `worded` replaces options of its messages by flags, and `again` is the command that runs one check
+    /// of it in a single process.
     pub(crate) fn print_report<Subject: Display + Serialize>(
         &self,
         report: &Report<Subject>,
+        worded: fn(&str) -> Cow<'_, str>,
         again: impl Fn(&str) -> String,
     ) -> Result<ExitCode, Failure> {
         if self.json {
             print_json(report)?;
         } else {
-            print(&report.to_string())?;
+            print(&worded(&report.to_string()))?;
             if let Some(first) = report.bad().first() {
                 print(&format!("again, in one process: {}\n", again(first)))?;
             }

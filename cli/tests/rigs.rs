@@ -26,3 +26,13 @@ fn a_command_without_sound_says_how_to_get_it() {
         false => assert!(run.error().contains("--features audio"), "{}", run.error()),
     }
 }
+
+#[test]
+fn a_check_names_the_flag_of_a_missing_setting() {
+    let run = Place::new().run(&["device", "check", "daq"]);
+    assert!(
+        run.text().contains("give `--set amplifier_gain=…`"),
+        "{}",
+        run.text()
+    );
+}

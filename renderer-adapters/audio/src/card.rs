@@ -13,7 +13,7 @@ const FORMATS: [SampleFormat; 4] = [
 ];
 /// Preferred frames in a block.
 const BLOCK_FRAMES: u32 = 256;
-/// Highest rate that is reported, hertz: plugins of ALSA claim any.
+/// Highest rate that is reported, hertz: plugins of ALSA report unlimited ranges.
 const MAX_RATE_HZ: f64 = 768_000.0;
 /// The name of the card that the system prefers.
 pub(crate) const DEFAULT: &str = "default";
@@ -39,7 +39,7 @@ impl Card {
             .filter(|config| FORMATS.contains(&config.sample_format()))
             .collect();
         match configs.is_empty() {
-            true => Err(missing(name, "it has no format that is known here")),
+            true => Err(missing(name, "it has no supported sample format")),
             false => Ok(Self {
                 name: name.to_owned(),
                 device,
@@ -81,7 +81,7 @@ impl Card {
         Rates::List(all.into_iter().map(|r| r.0).collect())
     }
 
-    /// The best format at this rate, on two channels or as near to two as there are.
+    /// The best format at this rate, with two channels or the number closest to two.
     pub(crate) fn config(&self, rate_hz: f64) -> Result<(StreamConfig, SampleFormat), DeviceError> {
         let fits = |c: &&SupportedStreamConfigRange| {
             let rates = c.min_sample_rate()..=c.max_sample_rate();
@@ -102,7 +102,7 @@ impl Card {
     }
 }
 
-/// All cards that may play.
+/// All connected cards with an output.
 pub(crate) fn outputs() -> Result<Vec<cpal::Device>, DeviceError> {
     let outputs = cpal::default_host().output_devices();
     Ok(outputs

@@ -4,8 +4,8 @@
 //! Without it this crate is empty, so that a machine without ALSA builds all other crates.
 //!
 //! Samples wait in a ring of `buffer_ms`, and the sound card's own thread takes them from there
-//! (`player.rs`): it takes no lock, does not allocate and does not wait. A ring that runs dry is
-//! counted and fades to silence; playback goes on when samples come again.
+//! (`player.rs`): it takes no lock, does not allocate and does not wait. An empty ring is
+//! counted as an underrun and fades to silence; playback continues with the next samples.
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "cpal")]

@@ -29,7 +29,7 @@ pub(crate) struct Shared {
     pub(crate) underruns: AtomicU64,
     /// Latency from taking a frame to its output, frames.
     pub(crate) delay: AtomicU64,
-    /// After [`Wish::Drain`] or [`Wish::Stop`]: the last sound has left the card.
+    /// After [`Wish::Drain`] or [`Wish::Stop`]: the last sample has been output.
     pub(crate) silent: AtomicBool,
     /// Times the card asked for samples.
     pub(crate) calls: AtomicU64,
@@ -66,8 +66,7 @@ impl Player {
         }
     }
 
-    /// Fills interleaved frames, the same sample on all channels. `delay` frames are still to come
-    /// out before these.
+    /// Fills interleaved frames, the same sample on all channels. `delay` frames are output before these.
     pub(crate) fn fill<T: Copy>(
         &mut self,
         out: &mut [T],

@@ -95,7 +95,7 @@ impl Sound {
         checked
     }
 
-    /// Ends playback, and closes the card when the last sound has left it.
+    /// Ends playback, and closes the card when the last sample has been output.
     fn end(&mut self, wish: Wish) -> Result<(), DeviceError> {
         self.shared.wish(wish);
         let ended = self.wait_for_silence();
@@ -132,7 +132,7 @@ impl Device for Sound {
             self.peak = self.peak.max(f64::from(peak));
             self.written += pushed.len() as u64;
             left = rest;
-            // Half a buffer is kept full, whatever the pace of the writer.
+            // Playback starts when half of the buffer is full.
             if 2 * self.ring.slots() <= self.ring.buffer().capacity() {
                 self.play()?;
             }
@@ -161,7 +161,7 @@ impl Device for Sound {
 
     fn finish(&mut self) -> Result<(), DeviceError> {
         self.usable()?;
-        // The end is announced before the card's thread may find the ring empty.
+        // Set before the ring can become empty, which would count as an underrun.
         self.shared.wish(Wish::Drain);
         if self.written > 0 {
             self.play()?;
@@ -178,8 +178,8 @@ impl Drop for Sound {
     }
 }
 
-/// Handles errors of the card's thread: gaps are counted, errors after which it continues are
-/// left alone, the rest is told.
+/// Handles errors of the card's thread: underruns are counted, errors after which playback continues are ignored, and
+/// others are stored for the writer.
 fn reporter(
     shared: Arc<Shared>,
     failure: Arc<Mutex<Option<String>>>,

@@ -21,7 +21,7 @@ const TONE_HZ: f64 = 100.0;
 const EMPTY_WRITES: u32 = 5;
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// What is checked.
+/// The device under test.
 #[derive(Clone)]
 pub enum Subject {
     /// A library.
@@ -33,7 +33,7 @@ pub enum Subject {
 /// A loaded device, and its settings.
 pub struct Case {
     pub(crate) adapter: Arc<dyn Adapter>,
-    /// The same adapter, where it is a library's.
+    /// The same adapter, if it is a native library.
     pub(crate) native: Option<NativeAdapter>,
     profile: Option<String>,
     given: BTreeMap<String, String>,
@@ -68,7 +68,7 @@ impl Case {
         })
     }
 
-    /// The given settings, and for required ones that are missing a new file or the first endpoint.
+    /// The given settings; required ones that are missing are a new file or the first endpoint.
     pub(crate) fn settings(&self) -> Result<Settings, Finding> {
         self.settings_of(self.profile.as_deref())
     }

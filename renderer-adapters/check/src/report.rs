@@ -7,7 +7,7 @@ use serde::Serialize;
 /// All checks of one device.
 pub type Report = htex_check_runner::Report<DeviceName>;
 
-/// What was checked.
+/// The device that was checked.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DeviceName {
     /// A file or an id.

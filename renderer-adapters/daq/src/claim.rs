@@ -1,5 +1,5 @@
-//! An output belongs to one open device, whether or not its clock runs yet: the driver reserves an
-//! output only while a task runs.
+//! Reservation of outputs: each belongs to one open device. The driver reserves an output only while a task runs, and a
+//! device is open before that.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};

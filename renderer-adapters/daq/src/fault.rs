@@ -2,17 +2,17 @@
 
 use htex_device::DeviceError;
 
-/// No device, or no longer: not present (-88705), removed, absent, powered off, not accessible.
+/// The device is not or no longer available: not present (-88705), removed, absent, powered off, not accessible.
 const GONE: [i32; 8] = [
     -88705, -200045, -200170, -200194, -200220, -200324, -200175, -201003,
 ];
 /// Another task, or another program, has the output.
 const RESERVED: i32 = -50103;
-/// Samples came too late: the buffer, or the memory on the card, ran dry.
+/// Samples came too late: the buffer, or the memory on the card, became empty.
 const DRY: [i32; 5] = [-200290, -200291, -200016, -200018, -200621];
 
 /// The warning about a voltage that may remain at the display.
-pub(crate) const NOT_ZERO: &str = "the output could not be set to zero: switch the amplifier off";
+const NOT_ZERO: &str = "the output could not be set to zero: switch the amplifier off";
 
 /// An error code of the driver and its message.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,7 +42,7 @@ impl Fault {
         }
     }
 
-    /// The error of a device that was to be opened.
+    /// The error of a device that cannot be opened.
     pub(crate) fn missing(&self, device: &str) -> DeviceError {
         let Self { code, words } = self;
         match *code {

@@ -6,8 +6,8 @@
 //! The voltage is limited by:
 //! - a sample beyond `limit_v` is never output, and the driver's own channel limits are set to the same;
 //! - the output goes to zero before a stream, after it, on every error, and when the device is
-//!   dropped; a thread of the device notices a stream that runs dry, whether or not
-//!   samples are written again;
+//!   dropped; a thread of the device detects an empty buffer even if no more samples are
+//!   written;
 //! - a stream that does not begin or end at zero gets a ramp of `ramp_ms` *before its
 //!   first and after its last* sample. Samples themselves are never changed.
 #![deny(unsafe_code)]

@@ -4,7 +4,7 @@ use htex_device::{Capabilities, DeviceError, Quantity, Rates, Settings};
 
 use crate::driver::Driver;
 
-/// The rate at which the paper records forces, hertz; it gives none for its output.
+/// The rate at which the paper records forces, hertz; it states no output rate.
 const DEFAULT_RATE_HZ: f64 = 20_000.0;
 /// Preferred frames in a block.
 const BLOCK_FRAMES: u32 = 256;
@@ -43,10 +43,11 @@ impl Rig {
             ramp_s: settings.number("ramp_ms") / 1e3,
         };
         match rig.limit_v > 0.0 {
-            _ if !rig.device.contains('/') => {
-                Err(refuse("device", "an output is wanted, such as `Dev1/ao0`"))
-            }
-            false => Err(refuse("limit_v", "it is above zero")),
+            _ if !rig.device.contains('/') => Err(refuse(
+                "device",
+                "it must name an analog output, such as `Dev1/ao0`",
+            )),
+            false => Err(refuse("limit_v", "it must be above zero")),
             true => Ok(rig),
         }
     }
@@ -73,7 +74,7 @@ impl Rig {
         })
     }
 
-    /// Advice about samples that come too late.
+    /// Advice for samples that come too late.
     pub(crate) fn larger_buffer(&self) -> String {
         let buffer_ms = self.buffer_s * 1e3;
         format!(

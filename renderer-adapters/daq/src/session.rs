@@ -10,8 +10,9 @@ use crate::driver::{Driver, Task};
 use crate::fault::Fault;
 use crate::rig::Rig;
 
-/// Tries to output zero, and the pause between two, in which a transient fault passes.
+/// Attempts to output zero before the card is reset.
 const ATTEMPTS: usize = 5;
+/// Pause between two attempts, for transient faults.
 const PAUSE: Duration = Duration::from_millis(10);
 
 pub(crate) struct Session {
@@ -22,18 +23,20 @@ pub(crate) struct Session {
     rate_hz: f64,
     /// Most frames of the stream that wait in the driver's buffer and on the card.
     ahead: usize,
-    /// Frames the driver's buffer holds: a ramp before the stream may be longer than `ahead`.
+    /// Capacity of the driver's buffer, frames: a ramp before the stream may be longer than `ahead`.
     capacity: usize,
     /// `None` before the first sample and after the end.
     task: Option<Task>,
     /// An error that the next call returns, once.
     error: Option<DeviceError>,
     closed: bool,
+    /// Whether the output could not be set to zero at the end.
+    not_zero: bool,
     /// Frames in front of the stream: zeros, and a ramp if there is one.
     lead: u64,
     /// Frames given to the driver, the lead included.
     given: u64,
-    /// Frames that came out, the lead included.
+    /// Frames output so far, the lead included.
     generated: u64,
     /// The stream's last sample, volts of the card.
     last_v: f64,
@@ -61,6 +64,7 @@ impl Session {
             task: None,
             error: None,
             closed: false,
+            not_zero: false,
             lead: 0,
             given: 0,
             generated: 0,
@@ -94,8 +98,8 @@ impl Session {
         Ok(taken)
     }
 
-    /// Frames of the stream that may be given now. Waiting frames are counted by those that came out: the driver reports space in
-    /// its buffer as soon as samples have moved on to the card's own memory, which may hold a second of them.
+    /// Frames of the stream that may be given now, counted by the frames output so far: the driver reports space in its
+    /// buffer as soon as samples have moved to the card's own memory, which may hold a second of them.
     fn space(&mut self) -> Result<usize, DeviceError> {
         let generated = self.task.as_ref().map(Task::generated).transpose();
         self.generated = generated
@@ -113,7 +117,7 @@ impl Session {
         tail
     }
 
-    /// Gives the driver as many volts as fit that are not part of the stream.
+    /// Gives the driver as many voltages as fit; returns their number.
     pub(crate) fn give(&mut self, volts: &[f64]) -> Result<usize, DeviceError> {
         self.usable()?;
         let task = self.task.as_ref();
@@ -145,12 +149,12 @@ impl Session {
         }
     }
 
-    /// An error that was not returned yet.
-    pub(crate) fn untold(&self) -> Option<&DeviceError> {
-        self.error.as_ref()
+    /// An error that was not returned yet and that left a voltage at the display.
+    pub(crate) fn untold_danger(&self) -> Option<&DeviceError> {
+        self.error.as_ref().filter(|_| self.not_zero)
     }
 
-    /// Frames given to the driver, and frames that came out; both with the lead.
+    /// Frames given to the driver, and frames output so far; both with the lead.
     pub(crate) fn progress(&self) -> (u64, u64) {
         (self.given, self.generated)
     }
@@ -282,6 +286,7 @@ impl Session {
             self.generated = task.generated().unwrap_or(self.generated);
         }
         let zero = self.put_zero();
+        self.not_zero = zero.is_err();
         self.claim = None;
         zero
     }

@@ -1,4 +1,4 @@
-//! An open device: waits for space, and for the end.
+//! An open device: waits for space in the buffer, and at the end until all samples are output.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
@@ -16,7 +16,7 @@ const LOOK: Duration = Duration::from_millis(2);
 /// Time without output after which the clock is regarded as stopped.
 const STILL: Duration = Duration::from_secs(2);
 
-/// Zeros kept ready behind the end of a stream.
+/// Zeros given at a time after the end of a stream.
 const ZEROS: usize = 16_384;
 
 pub(crate) struct Stream {
@@ -36,7 +36,7 @@ impl Stream {
         let period = Duration::from_secs_f64((buffer_s / 4.0).min(0.1));
         let watchdog = Watchdog::start(&session, period).map_err(|error| DeviceError::Failed {
             device: device.clone(),
-            what: format!("no thread to watch over it: {error}"),
+            what: format!("cannot start its watchdog thread: {error}"),
         })?;
         Ok(Self {
             session,
@@ -49,8 +49,8 @@ impl Stream {
         self.session.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Gives the tail, and then zeros until the tail has come out, so that the clock never finds the
-    /// buffer empty.
+    /// Gives the tail, and then zeros until the tail has been output, so that the buffer is never empty while the
+    /// clock runs.
     fn drain(&self) -> Result<(), DeviceError> {
         let mut tail = self.session().tail();
         let (mut last, mut since) = (0, Instant::now());

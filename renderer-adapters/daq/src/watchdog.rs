@@ -8,7 +8,6 @@ use std::time::Duration;
 
 use htex_device::DeviceError;
 
-use crate::fault::NOT_ZERO;
 use crate::session::Session;
 
 /// Prints on standard error, which may be closed.
@@ -34,8 +33,8 @@ impl Watchdog {
                 let was_running = session.is_running();
                 session.watch();
                 // A writer that hangs makes no more calls: the warning about a remaining voltage is printed here.
-                let error = session.untold().filter(|_| was_running && !told);
-                if let Some(error) = error.filter(|e| e.to_string().contains(NOT_ZERO)) {
+                let danger = session.untold_danger();
+                if let Some(error) = danger.filter(|_| was_running && !told) {
                     say(error);
                     told = true;
                 }

@@ -5,17 +5,17 @@
 pub(crate) enum Encoding {
     /// The quantity itself.
     F32,
-    /// Whole steps, two's complement.
+    /// A whole number of steps, in two's complement.
     Integer {
         /// 16 or 24.
         bits: u16,
-        /// What one step stands for.
+        /// Size of one step, in the quantity's unit.
         step: f64,
     },
 }
 
 impl Encoding {
-    /// Integers of so many bits, whose full scale, 2^(bits-1) steps, stands for `full_scale`.
+    /// Integers of `bits` bits; `full_scale` is 2^(bits-1) steps.
     pub(crate) fn integer(bits: u16, full_scale: f64) -> Self {
         let steps = f64::from(1_i32 << (bits - 1));
         Self::Integer {
@@ -24,7 +24,7 @@ impl Encoding {
         }
     }
 
-    /// Bytes a sample.
+    /// Bytes per sample.
     pub(crate) fn bytes(self) -> u16 {
         match self {
             Self::F32 => 4,
@@ -44,8 +44,8 @@ impl Encoding {
     }
 }
 
-/// The nearest whole number of steps, of two equally near the even one. The caller has checked
-/// that there is a code for it.
+/// The nearest whole number of steps; ties go to the even one. The caller has checked that it is within the range of the
+/// encoding.
 pub(crate) fn code(sample: f32, step: f64) -> i32 {
     (f64::from(sample) / step).round_ties_even() as i32
 }
@@ -64,7 +64,7 @@ mod tests {
     }
 
     proptest! {
-        /// What the limit lets through has a code, and a quantised sample keeps it.
+        /// Samples within the limit have a code, and a quantised sample keeps its code.
         #[test]
         fn every_sample_within_the_limit_has_a_code(
             full_scale in 1e-6..1e3_f64, at in -1.0..=1.0_f64, bits in prop_oneof![Just(16), Just(24)]

@@ -10,7 +10,7 @@ use crate::encoding::Encoding;
 const RATES_HZ: (f64, f64) = (100.0, 1_000_000.0);
 /// The rate of friction recordings, hertz.
 const USUAL_RATE_HZ: f64 = 20_000.0;
-/// Samples a period of a carrier.
+/// Samples per period of a carrier.
 const PER_PERIOD: f64 = 10.0;
 const BLOCK_FRAMES: u32 = 4_096;
 
@@ -87,7 +87,7 @@ impl Plan {
             });
         }
         if self.form == Form::Wav && rate_hz.fract() != 0.0 {
-            let what = format!("a WAV file has a whole rate, and {rate_hz} Hz is not");
+            let what = format!("the rate of a WAV file is a whole number, and {rate_hz} Hz is not");
             return refuse("format", &what);
         }
         Ok(())
@@ -108,7 +108,7 @@ fn form(format: &str, path: &Path) -> Result<Form, DeviceError> {
         "raw" => Ok(Form::Raw),
         _ => refuse(
             "format",
-            "the file's extension is not wav, csv, npy or raw; name the kind",
+            "the file's extension is not wav, csv, npy or raw; name the format",
         ),
     }
 }
@@ -118,9 +118,9 @@ fn encoding(settings: &Settings, form: Form) -> Result<Encoding, DeviceError> {
     match (settings.text("encoding"), form) {
         (_, Form::Csv) if settings.text("encoding") != "f32" => refuse(
             "encoding",
-            "a CSV holds the quantity in its unit: f32 it is",
+            "a CSV holds the quantity in its unit; only f32 is supported",
         ),
-        ("i24", Form::Npy) => refuse("encoding", "NPY has no i24; there are f32 and i16"),
+        ("i24", Form::Npy) => refuse("encoding", "NPY has no i24; choose f32 or i16"),
         ("i24", _) => Ok(Encoding::integer(24, full_scale)),
         ("i16", _) => Ok(Encoding::integer(16, full_scale)),
         _ if full_scale != 1.0 => refuse(
@@ -131,7 +131,7 @@ fn encoding(settings: &Settings, form: Form) -> Result<Encoding, DeviceError> {
     }
 }
 
-/// A number that applies to voltages only; 0 stands for none.
+/// A setting that applies to voltages only; 0 means none.
 fn of_voltage(
     settings: &Settings,
     quantity: Quantity,

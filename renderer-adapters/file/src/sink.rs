@@ -1,4 +1,4 @@
-//! The four kinds of file, each written as the samples come.
+//! Streaming writers of the four kinds of file.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
@@ -97,7 +97,7 @@ impl Sink {
 fn wav_spec(encoding: Encoding, rate_hz: f64) -> WavSpec {
     WavSpec {
         channels: 1,
-        // Whole, and at most a million: `Plan::check_rate`.
+        // A whole number of at most a million, by `Plan::check_rate`.
         sample_rate: rate_hz as u32,
         bits_per_sample: 8 * encoding.bytes(),
         sample_format: match encoding {
@@ -132,7 +132,7 @@ fn check_wav_size(frames: u64, encoding: Encoding, rate_hz: f64) -> io::Result<(
     )))
 }
 
-/// Little-endian, one behind the other.
+/// Writes samples one after the other, little-endian.
 fn write_bytes(out: &mut impl Write, encoding: Encoding, samples: &[f32]) -> io::Result<()> {
     let mut all = samples.iter();
     match encoding {
@@ -144,7 +144,7 @@ fn write_bytes(out: &mut impl Write, encoding: Encoding, samples: &[f32]) -> io:
     }
 }
 
-/// A header for so many samples; it has the same length for any number.
+/// The header of a file of `frames` samples; its length does not depend on their number.
 fn npy_header(encoding: Encoding, frames: u64) -> io::Result<Vec<u8>> {
     let mut header = Vec::new();
     let shape = [frames];

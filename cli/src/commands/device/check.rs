@@ -6,6 +6,7 @@ use htex_device_check::{Finding, Runner, check, run_one};
 use crate::checking::CheckArgs;
 use crate::devices::{DeviceArgs, SettingArgs};
 use crate::failure::Failure;
+use crate::flags::with_flags;
 use crate::output::print_json;
 
 /// Check that a device keeps every promise of the device ABI; exit status 1 if it does not.
@@ -57,7 +58,7 @@ impl Check {
     pub(crate) fn run(self) -> Result<ExitCode, Failure> {
         if let Some(name) = &self.checking.reproduce {
             let finding = self.which.run_one(name)?;
-            return self.checking.print_one(name, &finding);
+            return self.checking.print_one(name, &finding, with_flags);
         }
         // A wrong name is reported once, not by each check.
         self.which.devices.subject(&self.which.device)?;
@@ -65,7 +66,7 @@ impl Check {
         let device = &self.which.device;
         let report = check(device, &self.runner()?);
         let again = |name: &str| format!("htex device check {device} --reproduce {name}");
-        self.checking.print_report(&report, again)
+        self.checking.print_report(&report, with_flags, again)
     }
 
     fn runner(&self) -> Result<Runner, Failure> {

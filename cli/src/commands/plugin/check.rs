@@ -54,14 +54,15 @@ impl Check {
         let Self { file, seed, .. } = &self;
         if let Some(name) = &self.checking.reproduce {
             let finding = run_one(file, name, *seed, self.against.as_deref()).map_err(unknown)?;
-            return self.checking.print_one(name, &finding);
+            return self.checking.print_one(name, &finding, |text| text.into());
         }
         let report = check(file, &self.options()?).map_err(unknown)?;
         let again = |name: &str| {
             let file = file.display();
             format!("htex plugin check {file} --reproduce {name} --seed {seed}")
         };
-        self.checking.print_report(&report, again)
+        self.checking
+            .print_report(&report, |text| text.into(), again)
     }
 
     fn options(&self) -> Result<Options, Failure> {

@@ -1,5 +1,6 @@
 //! Autoregressive model: the spectrum is that of white noise filtered by an all-pole filter (paper,
 //! Auto-regression; after Culbertson et al. 2014).
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
 #[macro_use]

@@ -5,6 +5,7 @@
 //! regression); thirty bands keep a spectrum within about 0.3 dB of the recording in third-octave bands.
 //! Stored is the piecewise linear curve with these energies: in decibels, with knots at the bands' apexes,
 //! over the axis on which the bands are equally spaced.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
 #[macro_use]

@@ -1,5 +1,6 @@
 //! Mel-frequency cepstral coefficients: the logarithm of the energies in mel bands, smoothed by truncating
 //! its cosine transform (paper, Mel Frequency Cepstral Coefficients).
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
 #[macro_use]

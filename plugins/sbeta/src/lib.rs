@@ -1,5 +1,6 @@
 //! Spectral beta: the envelope of the spectrum as a beta density on the normalised logarithmic frequency
 //! axis, two parameters (paper, Spectral beta).
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
 #[macro_use]

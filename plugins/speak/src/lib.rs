@@ -1,5 +1,6 @@
 //! Spectral peaks: the spectrum as a few sinusoids, at least a just-noticeable difference apart (paper,
 //! Spectral peak, eq. for y_sp).
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
 extern crate alloc;

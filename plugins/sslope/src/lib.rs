@@ -4,6 +4,7 @@
 //! The orders are integers with the paper's rounding to 20 dB per decade, and may be fractional with finer
 //! rounding or between two conditions. White noise is therefore shaped in the frequency domain by the
 //! Butterworth magnitude, which is defined for both, and not by a recursive filter.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
 #[macro_use]

@@ -16,6 +16,7 @@
 //! assert_eq!(texture.magnitude.len(), 197);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
 mod alternatives;

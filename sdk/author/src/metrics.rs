@@ -38,7 +38,7 @@ pub fn agreement(reference: SpectrumRef<'_>, magnitude: &[f64]) -> Agreement {
         spectral_correlation: pearson_correlation(reference.magnitude, magnitude),
         band_error_rms_db: rms(&error_db),
         band_error_db: error_db,
-        matching_gain_db: 20.0 * gain.log10(),
+        matching_gain_db: 20.0 * libm::log10(gain),
         band_error_matched_rms_db: rms(&band_error_db(&expected, &bank.energies(&matched))),
         third_octave_error_rms_db: third_octave_error_rms_db(
             reference.frequency_hz,

@@ -1,11 +1,11 @@
 //! The texture spectrum of a recording (paper, Texture processing).
 
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
+use htex_dsp::fft::RealFft;
 use htex_dsp::grid::{Band, GRID_HZ};
-use htex_dsp::spectrum::{Complex, SegmentAnalyzer, dft321};
+use htex_dsp::spectrum::{Complex, SegmentAnalyzer, dft321, magnitude};
 use htex_format::Quantity;
 use htex_host::FitRequest;
-use realfft::RealFftPlanner;
 
 use crate::hertz::hertz;
 use crate::response::raised;
@@ -289,18 +289,21 @@ fn inverse_response(
         .map(|(re, im)| Complex::new(re, im))
         .collect();
     let largest = response.largest_in(band);
-    let broken = values.iter().map(|h| h.norm()).find(|h| !h.is_finite());
+    let broken = values
+        .iter()
+        .map(|h| magnitude(*h))
+        .find(|h| !h.is_finite());
     if let Some(largest) = broken.or(Some(largest).filter(|l| *l < SMALLEST_RESPONSE)) {
         return Err(AuthorError::Response { largest });
     }
     let floor = RESPONSE_FLOOR * largest;
-    let gains = values.iter().map(|h| 1.0 / h.norm().max(floor));
+    let gains = values.iter().map(|h| 1.0 / magnitude(*h).max(floor));
     if let Some(raised) = raised(&band.grid_hz(), gains) {
         warnings.push(format!(
             "setup response: dividing by it raises {raised}; noise is raised equally"
         ));
     }
-    let floored = values.iter().filter(|h| h.norm() < floor).count();
+    let floored = values.iter().filter(|h| magnitude(**h) < floor).count();
     if floored > 0 {
         warnings.push(format!(
             "setup response: {floored} of {} bins lie more than 40 dB below its maximum in the \
@@ -309,7 +312,7 @@ fn inverse_response(
         ));
     }
     let invert = |h: &Complex<f64>| {
-        let norm = h.norm();
+        let norm = magnitude(*h);
         if norm == 0.0 {
             return Complex::new(1.0 / floor, 0.0);
         }
@@ -359,9 +362,9 @@ fn average(all: &[&[Complex<f64>]], bins: usize, averaging: Averaging) -> Vec<f6
         .map(|k| {
             let column = all.iter().map(|spectrum| spectrum[k]);
             match averaging {
-                Averaging::Magnitude => column.map(|x| x.norm()).sum::<f64>() / n,
+                Averaging::Magnitude => column.map(magnitude).sum::<f64>() / n,
                 Averaging::Rms => (column.map(|x| x.norm_sqr()).sum::<f64>() / n).sqrt(),
-                Averaging::Complex => (column.sum::<Complex<f64>>() / n).norm(),
+                Averaging::Complex => magnitude(column.sum::<Complex<f64>>() / n),
             }
         })
         .collect()
@@ -384,8 +387,8 @@ fn repeatability(band: Band, all: &[&[Complex<f64>]], averaging: Averaging) -> O
 /// Overlap-adds the half-overlapping windowed segments to one signal at four times the band's top.
 fn overlap_add(band: Band, all: &[&[Complex<f64>]]) -> (Vec<f64>, f64) {
     let len = 4 * band.last_bin();
-    let inverse = RealFftPlanner::new().plan_fft_inverse(len);
-    let (mut bins, mut frame) = (inverse.make_input_vec(), inverse.make_output_vec());
+    let mut fft = RealFft::new(len);
+    let (mut bins, mut frame) = (fft.make_bins(), vec![0.0; len]);
     let mut signal = vec![0.0; (all.len() + 1) * (len / 2)];
     for (i, spectrum) in all.iter().enumerate() {
         bins.fill(Complex::new(0.0, 0.0));
@@ -393,10 +396,9 @@ fn overlap_add(band: Band, all: &[&[Complex<f64>]]) -> (Vec<f64>, f64) {
             // The windowed sinusoid of amplitude A has magnitude A; the mean of its window is a half.
             *bin = x * 0.25;
         }
-        if inverse.process(&mut bins, &mut frame).is_ok() {
-            let place = &mut signal[i * (len / 2)..];
-            place.iter_mut().zip(&frame).for_each(|(s, x)| *s += x);
-        }
+        fft.inverse(&bins, &mut frame);
+        let place = &mut signal[i * (len / 2)..];
+        place.iter_mut().zip(&frame).for_each(|(s, x)| *s += x);
     }
     (signal, len as f64 * GRID_HZ)
 }

@@ -3,7 +3,6 @@
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
-#[cfg(feature = "std")]
 use crate::spectrum::Complex;
 
 /// State smaller than this is set to zero, which avoids denormals: some processors handle them a hundred
@@ -58,7 +57,6 @@ impl Biquad {
     /// let response = delay.response(250.0, 1000.0);
     /// assert!(response.re.abs() < 1e-15 && (response.im + 1.0).abs() < 1e-15);
     /// ```
-    #[cfg(feature = "std")]
     pub fn response(&self, f_hz: f64, rate_hz: f64) -> Complex<f64> {
         let angle = -2.0 * PI * f_hz / rate_hz;
         let delay = Complex::new(libm::cos(angle), libm::sin(angle));

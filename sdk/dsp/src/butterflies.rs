@@ -1,32 +1,55 @@
-//! Transforms of two to five numbers.
+//! Transforms of two to seven numbers.
+
+use core::ops::{Add, Sub};
 
 use crate::lanes::Lanes;
 
-/// A transform of `R` numbers, real and imaginary parts apart. A trait, as functions that are passed are not always
-/// compiled into the one that has the wide registers.
+/// A number, or several side by side.
+pub(crate) trait Number: Copy + Add<Output = Self> + Sub<Output = Self> {
+    /// The product with a constant, which is rounded to the precision of the number first.
+    fn times(self, factor: f64) -> Self;
+}
+
+impl Number for Lanes {
+    #[inline(always)]
+    fn times(self, factor: f64) -> Self {
+        self * factor as f32
+    }
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn times(self, factor: f64) -> Self {
+        self * factor
+    }
+}
+
+/// A transform of `R` numbers with positive exponents, real and imaginary parts apart. A trait, as functions that are passed
+/// are not always compiled into the one that has the wide registers.
 pub(crate) trait Butterfly<const R: usize> {
-    fn turn(re: [Lanes; R], im: [Lanes; R]) -> ([Lanes; R], [Lanes; R]);
+    fn turn<T: Number>(re: [T; R], im: [T; R]) -> ([T; R], [T; R]);
 }
 
 pub(crate) struct Two;
 pub(crate) struct Three;
 pub(crate) struct Four;
 pub(crate) struct Five;
+pub(crate) struct Seven;
 
 impl Butterfly<2> for Two {
     #[inline(always)]
-    fn turn([a, b]: [Lanes; 2], [ai, bi]: [Lanes; 2]) -> ([Lanes; 2], [Lanes; 2]) {
+    fn turn<T: Number>([a, b]: [T; 2], [ai, bi]: [T; 2]) -> ([T; 2], [T; 2]) {
         ([a + b, a - b], [ai + bi, ai - bi])
     }
 }
 
 impl Butterfly<3> for Three {
     #[inline(always)]
-    fn turn(re: [Lanes; 3], im: [Lanes; 3]) -> ([Lanes; 3], [Lanes; 3]) {
-        const SIN: f32 = 0.866_025_4;
+    fn turn<T: Number>(re: [T; 3], im: [T; 3]) -> ([T; 3], [T; 3]) {
+        const SIN: f64 = 0.866_025_403_784_438_6;
         let (sum, sum_i) = (re[1] + re[2], im[1] + im[2]);
-        let (turned, turned_i) = ((im[2] - im[1]) * SIN, (re[1] - re[2]) * SIN);
-        let (mean, mean_i) = (re[0] - sum * 0.5, im[0] - sum_i * 0.5);
+        let (turned, turned_i) = ((im[2] - im[1]).times(SIN), (re[1] - re[2]).times(SIN));
+        let (mean, mean_i) = (re[0] - sum.times(0.5), im[0] - sum_i.times(0.5));
         (
             [re[0] + sum, mean + turned, mean - turned],
             [im[0] + sum_i, mean_i + turned_i, mean_i - turned_i],
@@ -36,7 +59,7 @@ impl Butterfly<3> for Three {
 
 impl Butterfly<4> for Four {
     #[inline(always)]
-    fn turn(re: [Lanes; 4], im: [Lanes; 4]) -> ([Lanes; 4], [Lanes; 4]) {
+    fn turn<T: Number>(re: [T; 4], im: [T; 4]) -> ([T; 4], [T; 4]) {
         let (even, even_i) = Two::turn([re[0], re[2]], [im[0], im[2]]);
         let (odd, odd_i) = Two::turn([re[1], re[3]], [im[1], im[3]]);
         (
@@ -58,7 +81,7 @@ impl Butterfly<4> for Four {
 
 impl Butterfly<5> for Five {
     #[inline(always)]
-    fn turn(re: [Lanes; 5], im: [Lanes; 5]) -> ([Lanes; 5], [Lanes; 5]) {
+    fn turn<T: Number>(re: [T; 5], im: [T; 5]) -> ([T; 5], [T; 5]) {
         let (sum, sum_i) = (sums(re), sums(im));
         let (mean, mean_i) = (fifths(re[0], sum), fifths(im[0], sum_i));
         let (t, t_i) = (turned(im), turned(re));
@@ -82,24 +105,76 @@ impl Butterfly<5> for Five {
 }
 
 #[inline(always)]
-fn sums(x: [Lanes; 5]) -> [Lanes; 2] {
+fn sums<T: Number>(x: [T; 5]) -> [T; 2] {
     [x[1] + x[4], x[2] + x[3]]
 }
 
 /// By the cosines of one and of two fifths of a turn.
 #[inline(always)]
-fn fifths(first: Lanes, [a, b]: [Lanes; 2]) -> [Lanes; 2] {
-    const COS: [f32; 2] = [0.309_017, -0.809_017];
+fn fifths<T: Number>(first: T, [a, b]: [T; 2]) -> [T; 2] {
+    const COS: [f64; 2] = [0.309_016_994_374_947_45, -0.809_016_994_374_947_5];
     [
-        first + (a * COS[0] + b * COS[1]),
-        first + (a * COS[1] + b * COS[0]),
+        first + (a.times(COS[0]) + b.times(COS[1])),
+        first + (a.times(COS[1]) + b.times(COS[0])),
     ]
 }
 
 /// By the sines of one and of two fifths of a turn.
 #[inline(always)]
-fn turned(x: [Lanes; 5]) -> [Lanes; 2] {
-    const SIN: [f32; 2] = [0.951_056_54, 0.587_785_25];
+fn turned<T: Number>(x: [T; 5]) -> [T; 2] {
+    const SIN: [f64; 2] = [0.951_056_516_295_153_5, 0.587_785_252_292_473_1];
     let [a, b] = [x[1] - x[4], x[2] - x[3]];
-    [a * SIN[0] + b * SIN[1], a * SIN[1] - b * SIN[0]]
+    [
+        a.times(SIN[0]) + b.times(SIN[1]),
+        a.times(SIN[1]) - b.times(SIN[0]),
+    ]
+}
+
+impl Butterfly<7> for Seven {
+    #[inline(always)]
+    fn turn<T: Number>(re: [T; 7], im: [T; 7]) -> ([T; 7], [T; 7]) {
+        let (mut out_re, mut out_im) = (re, im);
+        for j in 1..7 {
+            out_re[0] = out_re[0] + re[j];
+            out_im[0] = out_im[0] + im[j];
+        }
+        for k in 1..4 {
+            let (mean, mean_i) = (sevenths(re, k), sevenths(im, k));
+            let (t, t_i) = (seventh_turns(im, k), seventh_turns(re, k));
+            (out_re[k], out_re[7 - k]) = (mean - t, mean + t);
+            (out_im[k], out_im[7 - k]) = (mean_i + t_i, mean_i - t_i);
+        }
+        (out_re, out_im)
+    }
+}
+
+/// By the cosines of `k`, `2 k` and `3 k` sevenths of a turn.
+#[inline(always)]
+fn sevenths<T: Number>(x: [T; 7], k: usize) -> T {
+    const COS: [f64; 4] = [
+        1.0,
+        0.623_489_801_858_733_5,
+        -0.222_520_933_956_314_4,
+        -0.900_968_867_902_419_1,
+    ];
+    (1..4).fold(x[0], |sum, j| {
+        let turn = j * k % 7;
+        sum + (x[j] + x[7 - j]).times(COS[turn.min(7 - turn)])
+    })
+}
+
+/// By the sines of `k`, `2 k` and `3 k` sevenths of a turn.
+#[inline(always)]
+fn seventh_turns<T: Number>(x: [T; 7], k: usize) -> T {
+    const SIN: [f64; 7] = [
+        0.0,
+        0.781_831_482_468_029_8,
+        0.974_927_912_181_823_6,
+        0.433_883_739_117_558_1,
+        -0.433_883_739_117_558_1,
+        -0.974_927_912_181_823_6,
+        -0.781_831_482_468_029_8,
+    ];
+    let by = |j: usize| (x[j] - x[7 - j]).times(SIN[j * k % 7]);
+    by(1) + by(2) + by(3)
 }

@@ -2,11 +2,12 @@
 //! beta density, Butterworth filters, noise, oscillators, spectral shaping and resampling.
 //!
 //! This crate knows no texture asset and no file. Without the `std` feature it is `no_std + alloc`
-//! and leaves out what needs an FFT. Elementary functions come from `libm`, so that the same
-//! inputs give the same bits in a native library and in a WASM module.
+//! and detects no vector instructions. Elementary functions come from `libm`, and FFTs are plain arithmetic,
+//! so that the same inputs give the same bits on every processor, in native libraries and in WASM modules.
 //!
 //! Frequencies are in hertz, rates in hertz, angles in radians, magnitudes in the unit of the
 //! signal unless a name says otherwise.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![deny(unsafe_code)] // Exception: two calls in `wide`.
 #![cfg_attr(not(feature = "std"), no_std)]
 extern crate alloc;
@@ -23,6 +24,7 @@ pub mod dct;
 mod direct_form;
 pub mod estimation;
 pub mod exponential;
+pub mod fft;
 pub mod fidelity;
 pub mod fir;
 pub mod glide;
@@ -50,7 +52,6 @@ pub mod seam;
 pub mod shaped_noise;
 pub mod shared;
 pub mod sine_bank;
-#[cfg(feature = "std")]
 pub mod spectrum;
 pub mod triangles;
 pub mod trig;

@@ -1,12 +1,10 @@
 //! Complex spectra of recorded segments, before they are averaged to a texture spectrum.
 
-use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use realfft::{RealFftPlanner, RealToComplex};
+pub use num_complex::Complex;
 
-pub use realfft::num_complex::Complex;
-
+use crate::fft::RealFft;
 use crate::window::hann_periodic;
 
 /// Error: a buffer's length does not match the analyser.
@@ -44,36 +42,26 @@ impl core::error::Error for WrongLength {}
 /// assert!((bins[2].norm() * analyzer.amplitude_scale() - 1.0).abs() < 1e-12);
 /// # Ok::<(), htex_dsp::spectrum::WrongLength>(())
 /// ```
+#[derive(Debug, Clone)]
 pub struct SegmentAnalyzer {
     window: Vec<f64>,
-    fft: Arc<dyn RealToComplex<f64>>,
+    fft: RealFft,
     input: Vec<f64>,
-    scratch: Vec<Complex<f64>>,
-}
-
-impl core::fmt::Debug for SegmentAnalyzer {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.debug_struct("SegmentAnalyzer")
-            .field("len", &self.window.len())
-            .finish_non_exhaustive()
-    }
 }
 
 impl SegmentAnalyzer {
     /// An analyser for segments of `len` samples.
     pub fn new(len: usize) -> Self {
-        let fft = RealFftPlanner::new().plan_fft_forward(len);
         Self {
             window: hann_periodic(len),
-            input: fft.make_input_vec(),
-            scratch: fft.make_scratch_vec(),
-            fft,
+            fft: RealFft::new(len),
+            input: alloc::vec![0.0; len],
         }
     }
 
     /// A buffer for one spectrum: `len / 2 + 1` bins, from 0 Hz to Nyquist.
     pub fn make_bins(&self) -> Vec<Complex<f64>> {
-        self.fft.make_output_vec()
+        self.fft.make_bins()
     }
 
     /// Factor from a windowed bin's magnitude to the amplitude of a sinusoid: `2 / Σw`, which is `4 / len`.
@@ -92,11 +80,13 @@ impl SegmentAnalyzer {
         bins: &mut [Complex<f64>],
     ) -> Result<(), WrongLength> {
         self.check("segment", self.window.len(), segment.len())?;
+        self.check("spectrum buffer", self.window.len() / 2 + 1, bins.len())?;
         let mean = segment.iter().sum::<f64>() / segment.len() as f64;
         for ((input, sample), weight) in self.input.iter_mut().zip(segment).zip(&self.window) {
             *input = (sample - mean) * weight;
         }
-        self.transform_input(bins)
+        self.fft.forward(&self.input, bins);
+        Ok(())
     }
 
     /// Transforms the segment unchanged: no mean removal, no window. Otherwise as [`Self::analyze`].
@@ -109,21 +99,9 @@ impl SegmentAnalyzer {
         bins: &mut [Complex<f64>],
     ) -> Result<(), WrongLength> {
         self.check("segment", self.window.len(), segment.len())?;
-        self.input.copy_from_slice(segment);
-        self.transform_input(bins)
-    }
-
-    fn transform_input(&mut self, bins: &mut [Complex<f64>]) -> Result<(), WrongLength> {
-        let (expected, got) = (self.fft.complex_len(), bins.len());
-        self.check("spectrum buffer", expected, got)?;
-        let result = self
-            .fft
-            .process_with_scratch(&mut self.input, bins, &mut self.scratch);
-        result.map_err(|_| WrongLength {
-            what: "spectrum buffer",
-            expected,
-            got,
-        })
+        self.check("spectrum buffer", self.window.len() / 2 + 1, bins.len())?;
+        self.fft.forward(segment, bins);
+        Ok(())
     }
 
     fn check(&self, what: &'static str, expected: usize, got: usize) -> Result<(), WrongLength> {
@@ -153,15 +131,19 @@ pub fn dft321(axes: &[Vec<Complex<f64>>]) -> Vec<Complex<f64>> {
 }
 
 fn fold_bin(axes: impl Iterator<Item = Complex<f64>> + Clone) -> Complex<f64> {
-    let norm = |z: Complex<f64>| libm::hypot(z.re, z.im);
-    let magnitude = axes.clone().map(norm).fold(0.0, libm::hypot);
+    let folded = axes.clone().map(magnitude).fold(0.0, libm::hypot);
     let sum: Complex<f64> = axes.sum();
-    let length = norm(sum);
+    let length = magnitude(sum);
     if length > 0.0 {
-        sum / length * magnitude
+        sum / length * folded
     } else {
-        Complex::new(magnitude, 0.0)
+        Complex::new(folded, 0.0)
     }
+}
+
+/// Magnitude of a complex number, with the same bits on every machine, which `Complex::norm` does not have.
+pub fn magnitude(z: Complex<f64>) -> f64 {
+    libm::hypot(z.re, z.im)
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@
 //! assert!(!report.valid);
 //! assert_eq!(report.findings[0].code, "ARCHIVE_INVALID");
 //! ```
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
 mod archive;

@@ -13,6 +13,7 @@
 //! # Ok::<(), htex_host::HostError>(())
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 // `export_model!` in a unit test names a Cargo feature that this crate does not have.
 #![cfg_attr(test, allow(unexpected_cfgs))]
 

@@ -11,6 +11,7 @@
 //! ```
 //!
 //! [`Voice::render`] does not allocate, lock or access files: it may run in an audio thread.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
 mod asset;

@@ -1,5 +1,6 @@
 //! Scenes: surfaces, a motion, and a device. The planner finds the shortest chain of stages for a scene and
 //! states the reason for each stage that is included or left out; the renderer runs exactly that chain.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
 mod ahead;

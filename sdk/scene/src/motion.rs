@@ -81,7 +81,7 @@ impl Course {
                 force_n: constant.force_n,
                 at_mm: constant.from_mm.map(|[x, y]| {
                     let way = constant.speed_mm_s * t_s;
-                    let (sin, cos) = constant.direction_deg.to_radians().sin_cos();
+                    let (sin, cos) = libm::sincos(constant.direction_deg.to_radians());
                     [x + way * cos, y + way * sin]
                 }),
             },

@@ -62,7 +62,7 @@ pub(crate) struct TracePath {
 impl TracePath {
     /// The path of a trace whose first stroke goes `way`.
     fn new(trace: &Trace, way: [f64; 2]) -> Self {
-        let signed = |[x, y]: &[f64; 2]| x.hypot(*y).copysign(x * way[0] + y * way[1]);
+        let signed = |[x, y]: &[f64; 2]| libm::hypot(*x, *y).copysign(x * way[0] + y * way[1]);
         let speed_mm_s: Vec<f64> = trace.velocity_mm_s.iter().map(signed).collect();
         let mut position_mm = Vec::with_capacity(speed_mm_s.len());
         let mut sum = 0.0;
@@ -124,7 +124,7 @@ impl LivePath {
         let integrated = self.at(t_s).position_mm;
         self.position_mm = match self.at_mm.zip(finger.at_mm) {
             Some(([x0, y0], [x1, y1])) => {
-                let way = (x1 - x0).hypot(y1 - y0).copysign(finger.speed_mm_s);
+                let way = libm::hypot(x1 - x0, y1 - y0).copysign(finger.speed_mm_s);
                 // Replaces the integral of the speed since the last update, which is an extrapolation.
                 self.position_mm + way
             }

@@ -168,7 +168,7 @@ fn check_drive(call: &Call, loudest_rms: f64) -> Result<(), SceneError> {
     match percent > MOST_CLAMPED_PERCENT {
         false => Ok(()),
         true => Err(SceneError::Clamped {
-            above_db: 20.0 * over.log10(),
+            above_db: 20.0 * libm::log10(over),
             percent,
             most_percent: MOST_CLAMPED_PERCENT,
         }),
@@ -198,7 +198,7 @@ fn notes(call: &Call, constant: bool, loudest_rms: f64) -> Vec<String> {
     }
     // With the levels `own` the two differ.
     if call.level_rms > 0.0 && loudest_rms > 0.0 && loudest_rms != call.level_rms {
-        let db = 20.0 * (loudest_rms / call.level_rms).log10();
+        let db = 20.0 * libm::log10(loudest_rms / call.level_rms);
         notes.push(format!(
             "levels are not normalised: the loudest texture, {} RMS, is {db:+.1} dB relative to the reference of {}",
             call.quantity.text(loudest_rms),
@@ -210,7 +210,7 @@ fn notes(call: &Call, constant: bool, loudest_rms: f64) -> Vec<String> {
             "the drive's shift is {HEADROOM} times the RMS, since a stream's minimum is not known: \
              against a shift by the minimum of ten seconds of noise (about 4 times the RMS) the texture \
              is {:.1} dB weaker at the same largest voltage",
-            20.0 * (HEADROOM / 4.0).log10()
+            20.0 * libm::log10(HEADROOM / 4.0)
         )),
         Quantity::Sound => notes.push(format!(
             "a preview by ear: the level is {} dB relative to full scale, independent of the texture's level{}",

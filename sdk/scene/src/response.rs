@@ -49,7 +49,7 @@ impl Inverse {
             largest: response.largest_in(band),
             response: response.clone(),
             band,
-            floor: 10f64.powf(-depth_db / 20.0),
+            floor: libm::pow(10.0, -depth_db / 20.0),
         }
     }
 
@@ -57,7 +57,7 @@ impl Inverse {
     /// largest magnitude in the band; 0 where the response is 0.
     pub(crate) fn at(&self, frequency_hz: f64) -> f64 {
         let (re, im) = self.response.at(frequency_hz);
-        let part = re.hypot(im) / self.largest;
+        let part = libm::hypot(re, im) / self.largest;
         let gain = part / (part * part + self.floor * self.floor);
         if gain.is_finite() { gain } else { 0.0 }
     }

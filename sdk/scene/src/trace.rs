@@ -67,7 +67,10 @@ impl Trace {
         let velocity_mm_s: Vec<[f64; 2]> = vx.iter().zip(vy).map(|(x, y)| [*x, y]).collect();
         let speed_mm_s = match columns.speed_mm_s {
             Some(speed) => speed.iter().map(|v| v.abs()).collect(),
-            None => velocity_mm_s.iter().map(|[x, y]| x.hypot(*y)).collect(),
+            None => velocity_mm_s
+                .iter()
+                .map(|[x, y]| libm::hypot(*x, *y))
+                .collect(),
         };
         Self {
             t_s,

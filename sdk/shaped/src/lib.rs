@@ -1,6 +1,7 @@
 //! Shared code of models that describe a spectrum by a curve and play it as noise.
 //!
 //! A model supplies the [`Curve`]; this crate provides the magnitude at unit RMS and the voice.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 
 extern crate alloc;

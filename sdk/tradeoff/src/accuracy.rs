@@ -27,6 +27,6 @@ pub(crate) fn accuracy(reference: SpectrumRef<'_>, magnitude: &[f64]) -> Accurac
         band_error_rms_db: found.band_error_rms_db,
         third_octave_error_rms_db: found.third_octave_error_rms_db.unwrap_or(FAR_DB),
         log_spectral_distance_db: found.log_spectral_distance_db.unwrap_or(FAR_DB),
-        level_error_db: (20.0 * ratio.log10()).clamp(-FAR_DB, FAR_DB),
+        level_error_db: (20.0 * libm::log10(ratio)).clamp(-FAR_DB, FAR_DB),
     }
 }

@@ -20,22 +20,25 @@ pub(crate) fn quantise(magnitude: &[f64]) -> (Vec<f64>, usize) {
     if top <= 0.0 {
         return (vec![0.0; magnitude.len()], bytes);
     }
-    let logs: Vec<f64> = magnitude.iter().map(|m| m.max(FLOOR * top).ln()).collect();
+    let logs: Vec<f64> = magnitude
+        .iter()
+        .map(|m| libm::log(m.max(FLOOR * top)))
+        .collect();
     let single = |x: f64| f64::from(x as f32);
     let low = single(logs.iter().copied().fold(f64::INFINITY, f64::min));
-    let step = (single(top.ln()) - low) / STEPS;
+    let step = (single(libm::log(top)) - low) / STEPS;
     // The rounding error in energy is carried to the next bin, up to half a step, so that
     // bands keep their energies.
     let mut left_over = 0.0;
     let stored = |log: &f64| {
         if step <= 0.0 {
-            return low.exp();
+            return libm::exp(low);
         }
-        let (exact, power) = ((log - low) / step, (2.0 * log).exp());
+        let (exact, power) = ((log - low) / step, libm::exp(2.0 * log));
         let carried = f64::clamp(left_over, -step * power, step * power);
-        let wanted = (0.5 * (power + carried).max(0.5 * power).ln() - low) / step;
+        let wanted = (0.5 * libm::log((power + carried).max(0.5 * power)) - low) / step;
         let nearest = wanted.round().clamp(exact.floor(), exact.ceil());
-        let stored = (low + step * nearest.clamp(0.0, STEPS)).exp();
+        let stored = libm::exp(low + step * nearest.clamp(0.0, STEPS));
         left_over = power + carried - stored * stored;
         stored
     };

@@ -37,7 +37,7 @@ pub struct Knee {
 /// ends, with cost on a logarithmic axis; the first point of a front of one or two.
 pub fn knee(front: &[(f64, f64)]) -> Option<usize> {
     let (&(low, high_error), &(high, low_error)) = (front.first()?, front.last()?);
-    let across = |cost: f64| (cost / low).ln() / (high / low).ln();
+    let across = |cost: f64| libm::log(cost / low) / libm::log(high / low);
     let below = |&(cost, error): &(f64, f64)| {
         let line = high_error + across(cost) * (low_error - high_error);
         if high > low { line - error } else { 0.0 }

@@ -3,6 +3,7 @@
 //! [`sweep`] fits, measures and times the settings of [`knobs`] on some [`Subject`]s, with two
 //! baselines. [`Tradeoff::new`] finds fronts, knees and warnings in the result; [`page`] and [`csv`]
 //! write it. An interrupted sweep continues from its [`Journal`].
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
 mod accuracy;

@@ -80,7 +80,7 @@ fn judge_levels(recording: &Recording, part: &SegmentSpectra, findings: &mut Fin
         format!(
             "{:.2} to {to:.2} s by {:.1} dB",
             recording.second(*start),
-            20.0 * (level / usual).log10()
+            20.0 * libm::log10(level / usual)
         )
     };
     let mut named: Vec<String> = loud.iter().take(NAMED).map(place).collect();

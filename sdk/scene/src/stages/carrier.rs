@@ -25,7 +25,7 @@ fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
     let cycles = carrier_hz / call.rate_hz;
     // A phase in 64-bit fixed point does not drift.
     let step = (cycles.fract() * 2f64.powi(64)) as u64;
-    let (sin, cos) = (std::f64::consts::TAU * cycles).sin_cos();
+    let (sin, cos) = libm::sincos(std::f64::consts::TAU * cycles);
     Box::new(Carrier {
         step,
         turn: [cos, sin],

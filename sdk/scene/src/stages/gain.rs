@@ -73,7 +73,7 @@ fn need(call: &Call) -> Need {
 }
 
 fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
-    let db = |db: f64| 10f64.powf(db / 20.0);
+    let db = |db: f64| libm::pow(10.0, db / 20.0);
     let gain = match call.device.quantity {
         _ if neutral => 1.0,
         Quantity::Sound => brings_level_to(db(call.level_dbfs), call),

@@ -1,0 +1,252 @@
+//! Assets: opening, inspecting, spectrum and level.
+
+use std::ffi::c_char;
+
+use htex::Asset;
+
+use crate::handles::Table;
+use crate::motion::{htex_motion, motion};
+use crate::options::{Models, htex_open_options, models};
+use crate::pointers::{needed_text, place, slice, slice_mut, text, write_text};
+use crate::status::{Failure, guarded, htex_status};
+
+/// An opened asset. Several threads may use it at a time. Zero is no asset.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct htex_asset {
+    /// Private.
+    pub id: u64,
+}
+
+/// A condition of a recording.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct htex_condition {
+    /// Scanning speed, mm/s; NAN if it is not known.
+    pub speed_mm_s: f64,
+    /// Normal force, N; NAN if it is not known.
+    pub force_n: f64,
+}
+
+/// A band of frequencies.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct htex_band {
+    /// Lowest frequency, Hz.
+    pub low_hz: f64,
+    /// Highest frequency, Hz.
+    pub high_hz: f64,
+}
+
+pub(crate) static ASSETS: Table<Asset> = Table::new();
+
+fn keep(data: htex::AssetData, models: Models, out: *mut htex_asset) -> Result<(), Failure> {
+    // SAFETY: the place is the caller's.
+    let out = unsafe { place(out) }?;
+    let asset = Asset::with_registry(data, models.registry);
+    let asset = match models.embedded {
+        true => asset.with_embedded(),
+        false => asset,
+    };
+    out.id = ASSETS.insert(asset)?;
+    Ok(())
+}
+
+/// [any thread; reads a file] Opens an asset file. `options` may be NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_asset_open(
+    path: *const c_char,
+    options: *const htex_open_options,
+    out: *mut htex_asset,
+) -> htex_status {
+    guarded(|| {
+        // SAFETY: the pointers are the caller's.
+        let (path, models) = unsafe { (needed_text(path)?, models(options)?) };
+        let data = htex::AssetData::open(path.as_ref()).map_err(htex::Error::from)?;
+        keep(data, models, out)
+    })
+}
+
+/// [any thread] Opens an asset in memory. The bytes are copied. `options` may be NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_asset_from_bytes(
+    bytes: *const u8,
+    len: usize,
+    options: *const htex_open_options,
+    out: *mut htex_asset,
+) -> htex_status {
+    guarded(|| {
+        // SAFETY: the pointers are the caller's.
+        let (bytes, models) = unsafe { (slice(bytes, len)?, models(options)?) };
+        let data = htex::AssetData::from_bytes(bytes).map_err(htex::Error::from)?;
+        keep(data, models, out)
+    })
+}
+
+/// [any thread] Frees an asset; its voices play on. HTEX_STATUS_BUSY if another thread uses it at this moment.
+#[unsafe(no_mangle)]
+pub extern "C" fn htex_asset_free(asset: htex_asset) -> htex_status {
+    guarded(|| ASSETS.remove(asset.id).map(drop))
+}
+
+/// [any thread] The asset's manifest as JSON: name, conditions, representations, qualities and all else that it states. Writes
+/// at most `capacity` bytes with the zero at the end, and the length without the zero to `length`, which may be NULL; a `capacity`
+/// of 0 asks for the length.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_asset_manifest_json(
+    asset: htex_asset,
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> htex_status {
+    guarded(|| {
+        let asset = ASSETS.shared(asset.id)?;
+        let json = serde_json::to_string(asset.manifest())
+            .map_err(|error| Failure::of(htex_status::HTEX_STATUS_INTERNAL, error))?;
+        // SAFETY: the pointers are the caller's.
+        unsafe { write_text(&json, out, capacity, length) }
+    })
+}
+
+/// [any thread] Unit of the samples, such as "N". Written as by htex_asset_manifest_json.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_asset_unit(
+    asset: htex_asset,
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> htex_status {
+    guarded(|| {
+        let unit = ASSETS.shared(asset.id)?.quantity().unit();
+        // SAFETY: the pointers are the caller's.
+        unsafe { write_text(unit, out, capacity, length) }
+    })
+}
+
+/// [any thread] Band of the asset's spectra.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_asset_band(asset: htex_asset, out: *mut htex_band) -> htex_status {
+    guarded(|| {
+        let band = ASSETS.shared(asset.id)?.band();
+        // SAFETY: the place is the caller's.
+        *unsafe { place(out) }? = htex_band {
+            low_hz: band.low_hz,
+            high_hz: band.high_hz,
+        };
+        Ok(())
+    })
+}
+
+/// [any thread] Number of recorded conditions.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_asset_condition_count(
+    asset: htex_asset,
+    out: *mut usize,
+) -> htex_status {
+    guarded(|| {
+        let asset = ASSETS.shared(asset.id)?;
+        // SAFETY: the place is the caller's.
+        *unsafe { place(out) }? = asset.manifest().conditions.len();
+        Ok(())
+    })
+}
+
+/// [any thread] A recorded condition, counted from 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_asset_condition(
+    asset: htex_asset,
+    index: usize,
+    out: *mut htex_condition,
+) -> htex_status {
+    guarded(|| {
+        let asset = ASSETS.shared(asset.id)?;
+        let condition = asset.manifest().conditions.get(index);
+        let condition = condition.ok_or(Failure::argument(
+            "no condition of this index; htex_asset_condition_count tells how many there are",
+        ))?;
+        // SAFETY: the place is the caller's.
+        *unsafe { place(out) }? = htex_condition {
+            speed_mm_s: condition.speed_mm_s.unwrap_or(f64::NAN),
+            force_n: condition.force_n.unwrap_or(f64::NAN),
+        };
+        Ok(())
+    })
+}
+
+/// [any thread] Number of representations.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_asset_representation_count(
+    asset: htex_asset,
+    out: *mut usize,
+) -> htex_status {
+    guarded(|| {
+        let asset = ASSETS.shared(asset.id)?;
+        // SAFETY: the place is the caller's.
+        *unsafe { place(out) }? = asset.manifest().representations.len();
+        Ok(())
+    })
+}
+
+/// [any thread] Id of the model of a representation, counted from 0. Written as by htex_asset_manifest_json.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_asset_representation_model(
+    asset: htex_asset,
+    index: usize,
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> htex_status {
+    guarded(|| {
+        let asset = ASSETS.shared(asset.id)?;
+        let representation = asset.manifest().representations.get(index);
+        let representation = representation.ok_or(Failure::argument(
+            "no representation of this index; htex_asset_representation_count tells how many there are",
+        ))?;
+        // SAFETY: the pointers are the caller's.
+        unsafe { write_text(&representation.model, out, capacity, length) }
+    })
+}
+
+/// [any thread; may load a model] Magnitudes of the texture spectrum at frequencies in Hz, in the asset's unit. `model` may be NULL (the
+/// representation of least error), and so may `at` (its first condition); between conditions it is interpolated.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_asset_magnitude(
+    asset: htex_asset,
+    model: *const c_char,
+    at: *const htex_motion,
+    frequency_hz: *const f64,
+    magnitude: *mut f64,
+    len: usize,
+) -> htex_status {
+    guarded(|| {
+        let asset = ASSETS.shared(asset.id)?;
+        // SAFETY: the pointers are the caller's.
+        let (model, at) = unsafe { (text(model)?, motion(at)?) };
+        // SAFETY: as above.
+        let frequency_hz = unsafe { slice(frequency_hz, len) }?;
+        let computed = asset.magnitude(model, at, frequency_hz)?;
+        // SAFETY: as above. `frequency_hz` is not used any more, and may be the same array.
+        let magnitude = unsafe { slice_mut(magnitude, len) }?;
+        magnitude.copy_from_slice(&computed);
+        Ok(())
+    })
+}
+
+/// [any thread; may load a model] Level of a representation, RMS in the asset's unit. `model` and `at` as for htex_asset_magnitude.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_asset_level_rms(
+    asset: htex_asset,
+    model: *const c_char,
+    at: *const htex_motion,
+    out: *mut f64,
+) -> htex_status {
+    guarded(|| {
+        let asset = ASSETS.shared(asset.id)?;
+        // SAFETY: the pointers are the caller's.
+        let (model, at) = unsafe { (text(model)?, motion(at)?) };
+        let (_, level_rms) = asset.parameters(model, at)?;
+        // SAFETY: the place is the caller's.
+        *unsafe { place(out) }? = level_rms;
+        Ok(())
+    })
+}

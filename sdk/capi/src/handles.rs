@@ -1,0 +1,333 @@
+//! Handles of objects: an index and a generation, so that the handle of a freed object is recognised.
+//!
+//! A lookup neither locks nor allocates. An object is used by one thread at a time, or read by several: a counter in its
+//! slot says which, and a call that would break the rule fails at once.
+
+use std::cell::UnsafeCell;
+use std::ops::{Deref, DerefMut};
+use std::sync::atomic::{AtomicPtr, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use crate::status::{Failure, htex_status};
+
+/// Chunk `c` has `FIRST << c` slots.
+const FIRST: usize = 64;
+const CHUNKS: usize = 20;
+
+/// The users of an object that is used exclusively.
+const EXCLUSIVE: u64 = u32::MAX as u64;
+/// Most readers at a time; far more than threads.
+const MOST_USERS: u64 = EXCLUSIVE - 1;
+
+/// The objects of one kind.
+pub(crate) struct Table<T> {
+    chunks: [AtomicPtr<Slot<T>>; CHUNKS],
+    spare: Mutex<Spare>,
+}
+
+/// Free indices, and how many there have ever been.
+struct Spare {
+    free: Vec<usize>,
+    made: usize,
+}
+
+/// A place for an object.
+struct Slot<T> {
+    /// Generation in the upper half, odd while an object is here; users in the lower half.
+    state: AtomicU64,
+    value: UnsafeCell<Option<T>>,
+}
+
+// SAFETY: a value is reached through `state` alone: exclusively, or by several readers, which `Table::shared` allows only
+// where the value is `Sync`.
+unsafe impl<T: Send> Sync for Slot<T> {}
+
+const fn generation(state: u64) -> u64 {
+    state >> 32
+}
+
+const fn users(state: u64) -> u64 {
+    state & EXCLUSIVE
+}
+
+impl<T: Send + 'static> Table<T> {
+    pub(crate) const fn new() -> Self {
+        Self {
+            chunks: [const { AtomicPtr::new(std::ptr::null_mut()) }; CHUNKS],
+            spare: Mutex::new(Spare {
+                free: Vec::new(),
+                made: 0,
+            }),
+        }
+    }
+
+    /// Keeps an object; returns its handle, which is never 0. Allocates and locks.
+    pub(crate) fn insert(&self, value: T) -> Result<u64, Failure> {
+        let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
+        let index = match spare.free.pop() {
+            Some(index) => index,
+            None => {
+                let index = spare.made;
+                self.make_chunk(index)?;
+                spare.made += 1;
+                index
+            }
+        };
+        let Some(slot) = self.slot(index) else {
+            return Err(FULL);
+        };
+        let next = generation(slot.state.load(Ordering::Relaxed)) + 1;
+        // SAFETY: the slot is empty, its index was spare, and the lock is held.
+        unsafe { *slot.value.get() = Some(value) };
+        slot.state.store(next << 32, Ordering::Release);
+        Ok(next << 32 | (index as u64 + 1))
+    }
+
+    /// Makes the chunk of an index if it is the first in it.
+    fn make_chunk(&self, index: usize) -> Result<(), Failure> {
+        let (chunk, _) = place(index);
+        let pointer = self.chunks.get(chunk).ok_or(FULL)?;
+        if pointer.load(Ordering::Relaxed).is_null() {
+            let slots: Box<[Slot<T>]> = (0..FIRST << chunk)
+                .map(|_| Slot {
+                    state: AtomicU64::new(0),
+                    value: UnsafeCell::new(None),
+                })
+                .collect();
+            // Slots live as long as the program: stale handles are looked up in them.
+            pointer.store(Box::leak(slots).as_mut_ptr(), Ordering::Release);
+        }
+        Ok(())
+    }
+
+    fn slot(&self, index: usize) -> Option<&'static Slot<T>>
+    {
+        let (chunk, offset) = place(index);
+        let slots = self.chunks.get(chunk)?.load(Ordering::Acquire);
+        // SAFETY: a chunk that is there has `FIRST << chunk` slots, which are never freed.
+        (!slots.is_null()).then(|| unsafe { &*slots.add(offset) })
+    }
+
+    /// The slot of a handle, and its generation.
+    fn find(&self, handle: u64) -> Result<(&'static Slot<T>, u64, usize), Failure>
+    {
+        let index = (handle & EXCLUSIVE).checked_sub(1).ok_or(BAD)? as usize;
+        let slot = self.slot(index).ok_or(BAD)?;
+        let wanted = generation(handle);
+        if wanted.is_multiple_of(2) || generation(slot.state.load(Ordering::Relaxed)) != wanted {
+            return Err(BAD);
+        }
+        Ok((slot, wanted, index))
+    }
+
+    /// Changes the users of a slot of a generation, as `change` says: `None` if they may not.
+    fn enter(
+        slot: &Slot<T>,
+        wanted: u64,
+        change: impl Fn(u64) -> Option<u64>,
+    ) -> Result<(), Failure> {
+        let result = slot
+            .state
+            .fetch_update(Ordering::Acquire, Ordering::Relaxed, |state| {
+                (generation(state) == wanted)
+                    .then(|| change(users(state)).map(|users| wanted << 32 | users))
+                    .flatten()
+            });
+        match result {
+            Ok(_) => Ok(()),
+            Err(state) if generation(state) == wanted => Err(BUSY),
+            Err(_) => Err(BAD),
+        }
+    }
+
+    /// The object of a handle, for this call alone.
+    pub(crate) fn exclusive(&self, handle: u64) -> Result<Exclusive<T>, Failure>
+    {
+        let (slot, wanted, _) = self.find(handle)?;
+        Self::enter(slot, wanted, |users| (users == 0).then_some(EXCLUSIVE))?;
+        // SAFETY: the slot is of this generation, so it has an object, and this is its only user.
+        match unsafe { &mut *slot.value.get() } {
+            Some(value) => Ok(Exclusive { value, slot }),
+            None => Err(BAD),
+        }
+    }
+
+    /// The object of a handle, which other threads may read too.
+    pub(crate) fn shared(&self, handle: u64) -> Result<Shared<T>, Failure>
+    where
+        T: Sync,
+    {
+        let (slot, wanted, _) = self.find(handle)?;
+        Self::enter(slot, wanted, |users| (users < MOST_USERS).then_some(users + 1))?;
+        // SAFETY: the slot is of this generation, so it has an object, and all its users read.
+        match unsafe { &*slot.value.get() } {
+            Some(value) => Ok(Shared { value, slot }),
+            None => Err(BAD),
+        }
+    }
+
+    /// Takes an object out; its handle is then bad.
+    pub(crate) fn remove(&self, handle: u64) -> Result<T, Failure>
+    {
+        let (slot, wanted, index) = self.find(handle)?;
+        Self::enter(slot, wanted, |users| (users == 0).then_some(EXCLUSIVE))?;
+        // SAFETY: this is the only user.
+        let value = unsafe { (*slot.value.get()).take() };
+        slot.state.store(((wanted + 1) & EXCLUSIVE) << 32, Ordering::Release);
+        let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
+        // The last generation is not used again: a handle of the first would be its twin.
+        if wanted + 1 < EXCLUSIVE {
+            spare.free.push(index);
+        }
+        value.ok_or(BAD)
+    }
+}
+
+/// The chunk of an index, and its place there.
+const fn place(index: usize) -> (usize, usize) {
+    let chunk = (index / FIRST + 1).ilog2() as usize;
+    (chunk, index - FIRST * ((1 << chunk) - 1))
+}
+
+const BAD: Failure = Failure::plain(
+    htex_status::HTEX_STATUS_BAD_HANDLE,
+    "no such object; it may have been freed, or be of another kind",
+);
+const BUSY: Failure = Failure::plain(
+    htex_status::HTEX_STATUS_BUSY,
+    "another thread uses the object; use it from one thread at a time",
+);
+const FULL: Failure = Failure::plain(
+    htex_status::HTEX_STATUS_INTERNAL,
+    "67 million objects of a kind are in use; free some",
+);
+
+/// An object that only this call uses.
+pub(crate) struct Exclusive<T: 'static> {
+    value: &'static mut T,
+    slot: &'static Slot<T>,
+}
+
+/// An object that this call reads.
+pub(crate) struct Shared<T: 'static> {
+    value: &'static T,
+    slot: &'static Slot<T>,
+}
+
+impl<T> Deref for Exclusive<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        self.value
+    }
+}
+
+impl<T> DerefMut for Exclusive<T> {
+    fn deref_mut(&mut self) -> &mut T {
+        self.value
+    }
+}
+
+impl<T> Drop for Exclusive<T> {
+    fn drop(&mut self) {
+        self.slot.state.fetch_sub(EXCLUSIVE, Ordering::Release);
+    }
+}
+
+impl<T> Deref for Shared<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        self.value
+    }
+}
+
+impl<T> Drop for Shared<T> {
+    fn drop(&mut self) {
+        self.slot.state.fetch_sub(1, Ordering::Release);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+    use super::*;
+
+    #[test]
+    fn indices_fill_the_chunks_one_after_the_other() {
+        let mut next = (0, 0);
+        for index in 0..100_000 {
+            assert_eq!(place(index), next);
+            next.1 += 1;
+            if next.1 == FIRST << next.0 {
+                next = (next.0 + 1, 0);
+            }
+        }
+    }
+
+    #[test]
+    fn freed_handles_and_other_numbers_are_bad() {
+        static TABLE: Table<String> = Table::new();
+        let a = TABLE.insert("a".to_owned()).unwrap();
+        assert_eq!(TABLE.remove(a).unwrap(), "a");
+        let b = TABLE.insert("b".to_owned()).unwrap();
+        assert_ne!(a, b);
+        for bad in [0, a, b + 1, b ^ 1 << 32, b + (1 << 33), u64::MAX, 1] {
+            assert!(TABLE.shared(bad).is_err(), "{bad:#x}");
+            assert!(TABLE.exclusive(bad).is_err(), "{bad:#x}");
+            assert!(TABLE.remove(bad).is_err(), "{bad:#x}");
+        }
+        assert_eq!(*TABLE.shared(b).unwrap(), "b");
+    }
+
+    #[test]
+    fn an_object_has_one_user_or_several_readers() {
+        static TABLE: Table<u32> = Table::new();
+        let handle = TABLE.insert(1).unwrap();
+        {
+            let (_a, _b) = (TABLE.shared(handle).unwrap(), TABLE.shared(handle).unwrap());
+            assert!(TABLE.exclusive(handle).is_err() && TABLE.remove(handle).is_err());
+        }
+        {
+            let mut only = TABLE.exclusive(handle).unwrap();
+            *only += 1;
+            assert!(TABLE.shared(handle).is_err() && TABLE.exclusive(handle).is_err());
+        }
+        assert_eq!(TABLE.remove(handle).unwrap(), 2);
+    }
+
+    /// Threads make, use and free objects, and try handles of the others: no update is lost, and no handle finds
+    /// another's object.
+    #[test]
+    fn threads_meet_at_one_table() {
+        static TABLE: Table<(u64, u64)> = Table::new();
+        static LAST: AtomicU64 = AtomicU64::new(0);
+        std::thread::scope(|scope| {
+            for thread in 0..4 {
+                scope.spawn(move || {
+                    for round in 0..2_000 {
+                        let handle = TABLE.insert((thread, 0)).unwrap();
+                        LAST.store(handle, Ordering::Relaxed);
+                        for n in 0..3 {
+                            let mut object = loop {
+                                match TABLE.exclusive(handle) {
+                                    Ok(object) => break object,
+                                    Err(_) => std::thread::yield_now(),
+                                }
+                            };
+                            assert_eq!(*object, (thread, n), "round {round}");
+                            object.1 += 1;
+                        }
+                        if let Ok(other) = TABLE.shared(LAST.load(Ordering::Relaxed)) {
+                            assert!(other.0 < 4 && other.1 <= 3);
+                        }
+                        while TABLE.remove(handle).is_err() {
+                            std::thread::yield_now();
+                        }
+                        assert!(TABLE.shared(handle).is_err());
+                    }
+                });
+            }
+        });
+    }
+}

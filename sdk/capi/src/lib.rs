@@ -1,0 +1,43 @@
+//! libhtex: the player and the scenes of [`htex`] as C functions. `include/htex.h` is generated from this crate.
+//!
+//! - Objects are handles, a number each. A freed handle, a foreign number or an object that another thread uses at
+//!   the same time is an error, not undefined behaviour ([`handles`]).
+//! - A call returns a [`htex_status`]; the text of the last error of a thread is [`htex_last_error`]. No call unwinds.
+//! - A struct of options begins with its size in bytes. Zero in the other fields selects the defaults, so programs
+//!   that were compiled against an older header still run.
+#![allow(non_camel_case_types)] // The names of the C header.
+#![allow(clippy::missing_safety_doc)] // Stated once: see `pointers`.
+
+mod asset;
+mod handles;
+mod log;
+mod motion;
+mod options;
+mod pointers;
+mod scene;
+mod status;
+mod voice;
+
+pub use asset::*;
+pub use log::{htex_log_callback, htex_log_level, htex_set_log};
+pub use motion::htex_motion;
+pub use options::{htex_open_options, htex_voice_options};
+pub use scene::*;
+pub use status::{htex_last_error, htex_status};
+pub use voice::*;
+
+/// Version of this interface, major and minor: 0x00010000 is 1.0. A minor version only adds.
+pub const HTEX_API_VERSION: u32 = 0x0001_0000;
+
+/// [any thread] Version of the interface of the library that is loaded, as HTEX_API_VERSION.
+#[unsafe(no_mangle)]
+pub extern "C" fn htex_api_version() -> u32 {
+    HTEX_API_VERSION
+}
+
+/// [any thread] Version of the library, such as "0.1.0". Static.
+#[unsafe(no_mangle)]
+pub extern "C" fn htex_version() -> *const std::ffi::c_char {
+    const TEXT: &str = concat!(env!("CARGO_PKG_VERSION"), "\0");
+    TEXT.as_ptr().cast()
+}

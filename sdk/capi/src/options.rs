@@ -1,0 +1,176 @@
+//! Options of opening an asset and of a voice.
+
+use std::ffi::c_char;
+use std::path::PathBuf;
+
+use htex::{Effects, Registry, Search, Synthesis, VoiceOptions};
+
+use crate::log::{htex_log_level, log};
+use crate::motion::{htex_motion, motion};
+use crate::pointers::{needed_text, slice, text};
+use crate::status::{Failure, htex_status};
+
+/// Options of opening an asset or a scene. Set `size` to sizeof(htex_open_options) and the rest to zero for the defaults.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct htex_open_options {
+    /// sizeof(htex_open_options).
+    pub size: usize,
+    /// Files of models to load, native libraries or WASM modules. A native library runs with all rights of the program.
+    pub plugins: *const *const c_char,
+    /// Number of `plugins`.
+    pub plugins_len: usize,
+    /// Not 0: models that assets bring along are not run. By default they run, in a sandbox.
+    pub no_embedded: u32,
+    /// Not 0: installed models are searched for too: in the folders of HTEX_PLUGIN_PATH and in the user's.
+    pub installed: u32,
+}
+
+/// Options of a voice. Set `size` to sizeof(htex_voice_options) and the rest to zero for the defaults.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct htex_voice_options {
+    /// sizeof(htex_voice_options).
+    pub size: usize,
+    /// The model of the representation, by its id or short name; NULL: the representation of least error.
+    pub model: *const c_char,
+    /// Rate of the samples, Hz; 0: 20000.
+    pub rate_hz: f64,
+    /// Seed of the noise. Equal seeds give equal samples.
+    pub seed: u64,
+    /// Motion of the start; NULL: the first recorded condition.
+    pub motion: *const htex_motion,
+    /// How samples are made: "streamed", "loop:SECONDS" or "filter:TAPS"; NULL: streamed.
+    pub synthesis: *const c_char,
+    /// Not 0: frequencies do not follow speeds beyond the recorded ones.
+    pub no_speed_scaling: u32,
+    /// Not 0: the level does not follow forces beyond the recorded ones.
+    pub no_force_scaling: u32,
+    /// Not 0: a finger that rests is not silent.
+    pub no_contact: u32,
+}
+
+/// The first `size` bytes of a struct of options, with zeros for the rest.
+///
+/// # Safety
+/// NULL, or `size` bytes of a struct `T` that begins with its size.
+pub(crate) unsafe fn options<T: Copy>(pointer: *const T, zeros: T) -> Result<T, Failure> {
+    if pointer.is_null() {
+        return Ok(zeros);
+    }
+    if !pointer.is_aligned() {
+        return Err(Failure::argument("the options are misaligned"));
+    }
+    // SAFETY: the struct begins with its size.
+    let size = unsafe { pointer.cast::<usize>().read() };
+    if !(size_of::<usize>()..=4096).contains(&size) {
+        return Err(Failure::argument(
+            "the options' size is not that of their struct; set it to sizeof the struct",
+        ));
+    }
+    let mut options = zeros;
+    // SAFETY: both have as many bytes; all are numbers and pointers, of which zero is one.
+    unsafe {
+        let to = (&raw mut options).cast::<u8>();
+        to.copy_from_nonoverlapping(pointer.cast(), size.min(size_of::<T>()));
+    }
+    // What a newer header has beyond this struct must have its default.
+    // SAFETY: `size` bytes are there.
+    let rest = unsafe {
+        let known = size_of::<T>().min(size);
+        slice(pointer.cast::<u8>().add(known), size - known)
+    }?;
+    if rest.iter().any(|byte| *byte != 0) {
+        return Err(Failure::plain(
+            htex_status::HTEX_STATUS_UNSUPPORTED,
+            "an option is set that this version of the library does not know; install a newer one",
+        ));
+    }
+    Ok(options)
+}
+
+/// The models, and whether those of assets may run.
+pub(crate) struct Models {
+    pub(crate) registry: Registry,
+    pub(crate) embedded: bool,
+}
+
+/// # Safety
+/// As [`options`].
+pub(crate) unsafe fn models(pointer: *const htex_open_options) -> Result<Models, Failure> {
+    const ZEROS: htex_open_options = htex_open_options {
+        size: 0,
+        plugins: std::ptr::null(),
+        plugins_len: 0,
+        no_embedded: 0,
+        installed: 0,
+    };
+    // SAFETY: as here.
+    let options = unsafe { options(pointer, ZEROS) }?;
+    // SAFETY: the array and its texts are the caller's.
+    let files: Result<_, _> = unsafe { slice(options.plugins, options.plugins_len) }?
+        .iter()
+        .map(|file| unsafe { needed_text(*file) }.map(PathBuf::from))
+        .collect();
+    let mut search = Search::builtin();
+    search.files = files?;
+    search.env = options.installed != 0;
+    search.user_dir = options.installed != 0;
+    let registry = Registry::search(&search).map_err(htex::Error::from)?;
+    for note in registry.notes() {
+        log(htex_log_level::HTEX_LOG_WARNING, &note.to_string());
+    }
+    Ok(Models {
+        registry,
+        embedded: options.no_embedded == 0,
+    })
+}
+
+/// # Safety
+/// As [`options`]; the texts live as long as the result.
+pub(crate) unsafe fn voice_options<'a>(
+    pointer: *const htex_voice_options,
+) -> Result<VoiceOptions<'a>, Failure> {
+    const ZEROS: htex_voice_options = htex_voice_options {
+        size: 0,
+        model: std::ptr::null(),
+        rate_hz: 0.0,
+        seed: 0,
+        motion: std::ptr::null(),
+        synthesis: std::ptr::null(),
+        no_speed_scaling: 0,
+        no_force_scaling: 0,
+        no_contact: 0,
+    };
+    // SAFETY: as here.
+    let options = unsafe { options(pointer, ZEROS) }?;
+    // SAFETY: as here.
+    let (model, synthesis, motion) = unsafe {
+        (
+            text(options.model)?,
+            text(options.synthesis)?,
+            motion(options.motion)?,
+        )
+    };
+    let effects = Effects {
+        speed_scaling: options.no_speed_scaling == 0,
+        force_scaling: options.no_force_scaling == 0,
+        contact: options.no_contact == 0,
+    };
+    let synthesis: Synthesis = match synthesis {
+        Some(text) => text.parse().map_err(htex::Error::from)?,
+        None => Synthesis::Streamed,
+    };
+    let mut voice = VoiceOptions::default()
+        .with_seed(options.seed)
+        .with_motion(motion)
+        .with_synthesis(synthesis)
+        .with_effects(effects);
+    if let Some(model) = model {
+        voice = voice.with_model(model);
+    }
+    if options.rate_hz != 0.0 {
+        voice = voice.with_rate_hz(options.rate_hz);
+    }
+    Ok(voice)
+}

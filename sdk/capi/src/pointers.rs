@@ -1,0 +1,116 @@
+//! Pointers of C as Rust values. A caller of a C function promises what C cannot check: a pointer that is not NULL
+//! points to as many values as its length says, and they stay there during the call.
+
+use std::ffi::{CStr, c_char};
+
+use crate::status::{Failure, htex_status};
+
+/// The values at `pointer`; an empty slice for a length of 0.
+///
+/// # Safety
+/// As the module says.
+pub(crate) unsafe fn slice<'a, T>(pointer: *const T, len: usize) -> Result<&'a [T], Failure> {
+    if len == 0 {
+        return Ok(&[]);
+    }
+    check(pointer, len)?;
+    // SAFETY: `len` values are there, aligned, and no more than memory can hold.
+    Ok(unsafe { std::slice::from_raw_parts(pointer, len) })
+}
+
+/// As [`slice`], to be written.
+///
+/// # Safety
+/// As the module says, and nothing else uses the values during the call.
+pub(crate) unsafe fn slice_mut<'a, T>(pointer: *mut T, len: usize) -> Result<&'a mut [T], Failure> {
+    if len == 0 {
+        return Ok(&mut []);
+    }
+    check(pointer, len)?;
+    // SAFETY: as in `slice`, and the caller's alone.
+    Ok(unsafe { std::slice::from_raw_parts_mut(pointer, len) })
+}
+
+fn check<T>(pointer: *const T, len: usize) -> Result<(), Failure> {
+    let possible = len <= isize::MAX as usize / size_of::<T>().max(1);
+    if pointer.is_null() || !pointer.is_aligned() || !possible {
+        return Err(Failure::argument(
+            "an array is NULL, misaligned or too long; give an array of the length that is passed with it",
+        ));
+    }
+    Ok(())
+}
+
+/// The place at which a result is written.
+///
+/// # Safety
+/// As the module says.
+pub(crate) unsafe fn place<'a, T>(pointer: *mut T) -> Result<&'a mut T, Failure> {
+    if pointer.is_null() || !pointer.is_aligned() {
+        return Err(Failure::argument(
+            "the pointer for the result is NULL or misaligned",
+        ));
+    }
+    // SAFETY: a value of the caller's is there.
+    Ok(unsafe { &mut *pointer })
+}
+
+/// A text; `None` for NULL.
+///
+/// # Safety
+/// As the module says: the text ends with a zero byte.
+pub(crate) unsafe fn text<'a>(pointer: *const c_char) -> Result<Option<&'a str>, Failure> {
+    if pointer.is_null() {
+        return Ok(None);
+    }
+    // SAFETY: the caller's text ends with a zero.
+    let text = unsafe { CStr::from_ptr(pointer) };
+    match text.to_str() {
+        Ok(text) => Ok(Some(text)),
+        Err(_) => Err(Failure::argument("a text is not UTF-8")),
+    }
+}
+
+/// A text that must be there.
+///
+/// # Safety
+/// As [`text`].
+pub(crate) unsafe fn needed_text<'a>(pointer: *const c_char) -> Result<&'a str, Failure> {
+    // SAFETY: as here.
+    unsafe { text(pointer) }?.ok_or(Failure::argument("a text is NULL"))
+}
+
+/// Writes a text with a zero at its end, and its length without the zero to `length` unless that is NULL. With a
+/// `capacity` of 0 only the length.
+///
+/// # Safety
+/// As the module says.
+pub(crate) unsafe fn write_text(
+    text: &str,
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> Result<(), Failure> {
+    if !length.is_null() {
+        // SAFETY: as here.
+        *unsafe { place(length) }? = text.len();
+    }
+    // SAFETY: as here.
+    let out = unsafe { slice_mut(out.cast::<u8>(), capacity) }?;
+    let Some(space) = out.len().checked_sub(1) else {
+        return match length.is_null() {
+            true => Err(Failure::argument("neither a buffer nor a place for the length is given")),
+            false => Ok(()),
+        };
+    };
+    let len = text.floor_char_boundary(space);
+    out[..len].copy_from_slice(&text.as_bytes()[..len]);
+    out[len] = 0;
+    if len < text.len() {
+        return Err(Failure::plain(
+            htex_status::HTEX_STATUS_TRUNCATED,
+            "the buffer is too small for the text; ask for its length with a capacity of 0",
+        ));
+    }
+    Ok(())
+}

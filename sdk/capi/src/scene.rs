@@ -1,0 +1,170 @@
+//! Scenes: loading, planning, following a finger, rendering. Without the feature `scene` each call says so.
+
+use std::ffi::c_char;
+
+use crate::options::htex_open_options;
+use crate::status::htex_status;
+
+/// A planned scene that is playing. One thread at a time may use it. Zero is no scene.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct htex_scene {
+    /// Private.
+    pub id: u64,
+}
+
+/// Options of a scene. Set `size` to sizeof(htex_scene_options) and the rest to zero for the defaults.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct htex_scene_options {
+    /// sizeof(htex_scene_options).
+    pub size: usize,
+    /// Rate of the samples, Hz; 0: 20000.
+    pub rate_hz: f64,
+}
+
+/// Position and motion of a finger over a scene.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct htex_finger {
+    /// Scanning speed, mm/s; negative on the back stroke.
+    pub speed_mm_s: f64,
+    /// Normal force, N; not negative.
+    pub force_n: f64,
+    /// Position, mm; both NAN if it is not known: then the finger is on every surface without a region.
+    pub x_mm: f64,
+    /// See `x_mm`.
+    pub y_mm: f64,
+}
+
+/// [any thread; reads files] Loads a scene file and its assets and plans it. Its samples have the assets' unit: the scene's own device is
+/// not used. `open` and `options` may be NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_scene_open(
+    path: *const c_char,
+    open: *const htex_open_options,
+    options: *const htex_scene_options,
+    out: *mut htex_scene,
+) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    unsafe { calls::open(path, open, options, out) }
+}
+
+/// [one thread at a time; not the real-time thread] Frees a scene.
+#[unsafe(no_mangle)]
+pub extern "C" fn htex_scene_free(scene: htex_scene) -> htex_status {
+    calls::free(scene)
+}
+
+/// [one thread at a time] The plan as JSON: the stages that run and those that are left out, with the reasons. Written as by
+/// htex_asset_manifest_json.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_scene_plan_json(
+    scene: htex_scene,
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    unsafe { calls::plan_json(scene, out, capacity, length) }
+}
+
+/// [one thread at a time] Rate of the samples, Hz.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_scene_rate_hz(scene: htex_scene, out: *mut f64) -> htex_status {
+    // SAFETY: the place is the caller's.
+    unsafe { calls::rate_hz(scene, out) }
+}
+
+/// [one thread at a time; real-time: neither allocates nor locks] Sets position and motion of the finger of a scene whose motion is live; in
+/// other scenes it changes nothing.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_scene_set_finger(
+    scene: htex_scene,
+    finger: *const htex_finger,
+) -> htex_status {
+    // SAFETY: the finger is the caller's.
+    unsafe { calls::set_finger(scene, finger) }
+}
+
+/// [one thread at a time; real-time: neither allocates nor locks] Renders the next samples; writes their number, which is smaller at the end of the
+/// scene, to `rendered`. If a model fails, its surface is silent, the others play on, and the call returns the error.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_scene_render(
+    scene: htex_scene,
+    out: *mut f32,
+    frames: usize,
+    rendered: *mut usize,
+) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    unsafe { calls::render(scene, out, frames, rendered) }
+}
+
+/// [one thread at a time; real-time: neither allocates nor locks] Ends the scene with a ramp to silence, as early as possible.
+#[unsafe(no_mangle)]
+pub extern "C" fn htex_scene_stop(scene: htex_scene) -> htex_status {
+    calls::stop(scene)
+}
+
+#[cfg(feature = "scene")]
+#[path = "scene/calls.rs"]
+mod calls;
+
+#[cfg(not(feature = "scene"))]
+mod calls {
+    //! What a library without scenes returns.
+    use super::*;
+    use crate::status::{Failure, guarded};
+
+    fn absent() -> htex_status {
+        guarded(|| {
+            Err(Failure::plain(
+                htex_status::HTEX_STATUS_UNSUPPORTED,
+                "this build of the library has no scenes; build it with the feature `scene`",
+            ))
+        })
+    }
+
+    pub(super) unsafe fn open(
+        _: *const c_char,
+        _: *const htex_open_options,
+        _: *const htex_scene_options,
+        _: *mut htex_scene,
+    ) -> htex_status {
+        absent()
+    }
+
+    pub(super) fn free(_: htex_scene) -> htex_status {
+        absent()
+    }
+
+    pub(super) unsafe fn plan_json(
+        _: htex_scene,
+        _: *mut c_char,
+        _: usize,
+        _: *mut usize,
+    ) -> htex_status {
+        absent()
+    }
+
+    pub(super) unsafe fn rate_hz(_: htex_scene, _: *mut f64) -> htex_status {
+        absent()
+    }
+
+    pub(super) unsafe fn set_finger(_: htex_scene, _: *const htex_finger) -> htex_status {
+        absent()
+    }
+
+    pub(super) unsafe fn render(
+        _: htex_scene,
+        _: *mut f32,
+        _: usize,
+        _: *mut usize,
+    ) -> htex_status {
+        absent()
+    }
+
+    pub(super) fn stop(_: htex_scene) -> htex_status {
+        absent()
+    }
+}

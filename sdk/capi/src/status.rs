@@ -1,0 +1,153 @@
+//! Statuses of calls, and the text of the last error of a thread.
+
+use std::cell::UnsafeCell;
+use std::ffi::c_char;
+use std::fmt::{self, Write};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Status of a call. Later versions may return further values; all but HTEX_STATUS_OK are errors.
+#[repr(i32)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum htex_status {
+    /// The call succeeded.
+    HTEX_STATUS_OK = 0,
+    /// A pointer is NULL or misaligned, a text is not UTF-8, or a number is out of its range.
+    HTEX_STATUS_INVALID_ARGUMENT = 1,
+    /// The handle was freed, or was never one of this kind.
+    HTEX_STATUS_BAD_HANDLE = 2,
+    /// Another thread uses the object at this moment.
+    HTEX_STATUS_BUSY = 3,
+    /// A file could not be read.
+    HTEX_STATUS_IO = 4,
+    /// The asset is invalid.
+    HTEX_STATUS_INVALID_ASSET = 5,
+    /// The asset has no such representation.
+    HTEX_STATUS_NO_REPRESENTATION = 6,
+    /// A model is missing, incompatible or not allowed to run.
+    HTEX_STATUS_NO_MODEL = 7,
+    /// A model failed.
+    HTEX_STATUS_MODEL = 8,
+    /// A speed, force or position is invalid.
+    HTEX_STATUS_INVALID_MOTION = 9,
+    /// The scene is invalid, or cannot be planned.
+    HTEX_STATUS_INVALID_SCENE = 10,
+    /// This build of the library lacks the feature.
+    HTEX_STATUS_UNSUPPORTED = 11,
+    /// The buffer is too small; it has the beginning of the text.
+    HTEX_STATUS_TRUNCATED = 12,
+    /// An error of the library itself. The object of the call must be freed.
+    HTEX_STATUS_INTERNAL = 13,
+}
+
+/// An error of a call: its status and its text.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    status: htex_status,
+    text: Text,
+}
+
+#[derive(Debug)]
+enum Text {
+    Plain(&'static str),
+    Of(Box<dyn std::error::Error>),
+}
+
+impl Failure {
+    /// An error with a fixed text; does not allocate.
+    pub(crate) const fn plain(status: htex_status, text: &'static str) -> Self {
+        let text = Text::Plain(text);
+        Self { status, text }
+    }
+
+    pub(crate) const fn argument(text: &'static str) -> Self {
+        Self::plain(htex_status::HTEX_STATUS_INVALID_ARGUMENT, text)
+    }
+
+    /// As an error of an `htex` crate.
+    pub(crate) fn of(status: htex_status, error: impl std::error::Error + 'static) -> Self {
+        let text = Text::Of(Box::new(error));
+        Self { status, text }
+    }
+}
+
+impl From<htex::Error> for Failure {
+    fn from(error: htex::Error) -> Self {
+        use htex::{Error, HostError, ReadError};
+        use htex_status::*;
+        let status = match &error {
+            Error::Read(ReadError::Io { .. }) => HTEX_STATUS_IO,
+            Error::Read(_) => HTEX_STATUS_INVALID_ASSET,
+            Error::NoRepresentation { .. } => HTEX_STATUS_NO_REPRESENTATION,
+            Error::Motion { .. } | Error::Position { .. } => HTEX_STATUS_INVALID_MOTION,
+            Error::Model(HostError::Synthesis { .. } | HostError::Rates { .. }) => {
+                HTEX_STATUS_INVALID_ARGUMENT
+            }
+            Error::Model(HostError::Call { .. } | HostError::Broken { .. }) => HTEX_STATUS_MODEL,
+            _ => HTEX_STATUS_NO_MODEL,
+        };
+        Self::of(status, error)
+    }
+}
+
+/// Bytes of the last error's text, with the zero at its end.
+const TEXT_BYTES: usize = 1024;
+
+/// The text of a thread's last error, in memory of the thread: setting it allocates nothing.
+#[repr(C)] // `bytes` comes first: `htex_last_error` returns its address.
+struct LastError {
+    bytes: [u8; TEXT_BYTES],
+    len: usize,
+}
+
+thread_local! {
+    static LAST: UnsafeCell<LastError> = const {
+        UnsafeCell::new(LastError { bytes: [0; TEXT_BYTES], len: 0 })
+    };
+}
+
+impl Write for LastError {
+    /// Appends what fits, in whole characters.
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        let space = TEXT_BYTES - 1 - self.len;
+        let len = text.floor_char_boundary(space);
+        self.bytes[self.len..self.len + len].copy_from_slice(&text.as_bytes()[..len]);
+        self.len += len;
+        self.bytes[self.len] = 0;
+        if len < text.len() { Err(fmt::Error) } else { Ok(()) }
+    }
+}
+
+fn remember(text: &Text) {
+    LAST.with(|last| {
+        // SAFETY: only this thread has access, and `write!` calls nothing that comes back here.
+        let last = unsafe { &mut *last.get() };
+        last.len = 0;
+        // An error means that the text was cut.
+        let _ = match text {
+            Text::Plain(text) => last.write_str(text),
+            Text::Of(error) => write!(last, "{error}"),
+        };
+    });
+}
+
+/// [any thread] Text of the last error of the calling thread, in English, UTF-8 and at most 1023 bytes; empty if there was
+/// none. Valid until the thread's next call that fails. A call that succeeds leaves it as it is.
+#[unsafe(no_mangle)]
+pub extern "C" fn htex_last_error() -> *const c_char {
+    LAST.with(|last| last.get().cast::<c_char>().cast_const())
+}
+
+/// Runs the body of a C function: keeps the text of an error, and stops panics.
+pub(crate) fn guarded(body: impl FnOnce() -> Result<(), Failure>) -> htex_status {
+    let result = catch_unwind(AssertUnwindSafe(body)).unwrap_or(Err(Failure::plain(
+        htex_status::HTEX_STATUS_INTERNAL,
+        "an error of the library itself; please report it",
+    )));
+    match result {
+        Ok(()) => htex_status::HTEX_STATUS_OK,
+        Err(failure) => {
+            remember(&failure.text);
+            failure.status
+        }
+    }
+}

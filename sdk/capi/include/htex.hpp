@@ -1,0 +1,321 @@
+/* htex.hpp: libhtex for C++17. Objects free themselves and can be moved; nothing throws: a call that can fail returns a
+ * Result, which has a value or a status with its text.
+ *
+ * SPDX-License-Identifier: MIT OR Apache-2.0
+ */
+#ifndef HTEX_HPP
+#define HTEX_HPP
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "htex.h"
+
+namespace htex {
+
+using Motion = htex_motion;
+using Finger = htex_finger;
+using Condition = htex_condition;
+
+/* A motion at an unknown position. */
+inline Motion motion(double speed_mm_s, double force_n) noexcept
+{
+    return {speed_mm_s, force_n, NAN};
+}
+
+/* A status and the text of its error, which is empty on success. */
+struct Status {
+    htex_status code = HTEX_STATUS_OK;
+    std::string text;
+
+    explicit operator bool() const noexcept { return code == HTEX_STATUS_OK; }
+};
+
+inline Status status_of(htex_status code)
+{
+    return code == HTEX_STATUS_OK ? Status{} : Status{code, htex_last_error()};
+}
+
+/* A value, or the status of the call that has none. */
+template <typename T> class Result {
+public:
+    Result(T value) : value_(std::move(value)) {}
+    Result(Status status) : status_(std::move(status)) {}
+
+    explicit operator bool() const noexcept { return value_.has_value(); }
+    T &operator*() noexcept { return *value_; }
+    const T &operator*() const noexcept { return *value_; }
+    T *operator->() noexcept { return &*value_; }
+    const T *operator->() const noexcept { return &*value_; }
+    const Status &status() const noexcept { return status_; }
+
+private:
+    std::optional<T> value_;
+    Status status_;
+};
+
+namespace detail {
+
+/* A handle that is freed once. */
+template <typename Handle, htex_status (*Free)(Handle)> class Owned {
+public:
+    Owned() noexcept = default;
+    explicit Owned(Handle handle) noexcept : handle_(handle) {}
+    Owned(Owned &&other) noexcept : handle_(std::exchange(other.handle_, Handle{0})) {}
+    Owned &operator=(Owned &&other) noexcept
+    {
+        std::swap(handle_, other.handle_);
+        return *this;
+    }
+    Owned(const Owned &) = delete;
+    Owned &operator=(const Owned &) = delete;
+    ~Owned()
+    {
+        if (handle_.id != 0)
+            Free(handle_);
+    }
+    Handle get() const noexcept { return handle_; }
+
+private:
+    Handle handle_{0};
+};
+
+/* The text that a function writes. */
+template <typename Call> Result<std::string> text(Call call)
+{
+    size_t length = 0;
+    if (Status status = status_of(call(nullptr, 0, &length)); !status)
+        return status;
+    std::string text(length + 1, '\0');
+    if (Status status = status_of(call(text.data(), text.size(), &length)); !status)
+        return status;
+    text.resize(length);
+    return text;
+}
+
+} /* namespace detail */
+
+/* Options of a voice; see htex_voice_options. */
+struct VoiceOptions {
+    std::optional<std::string> model;
+    double rate_hz = 0.0;
+    uint64_t seed = 0;
+    std::optional<Motion> motion;
+    std::optional<std::string> synthesis;
+    bool speed_scaling = true;
+    bool force_scaling = true;
+    bool contact = true;
+};
+
+/* A playing texture. [one thread at a time] */
+class Voice {
+public:
+    Voice() noexcept = default;
+
+    /* [real-time] The code alone: the text of an error is not copied, which would allocate. */
+    htex_status set_motion(const Motion &motion) noexcept
+    {
+        return htex_voice_set_motion(handle_.get(), &motion);
+    }
+    /* [real-time] */
+    htex_status render(float *out, size_t frames) noexcept
+    {
+        return htex_voice_render(handle_.get(), out, frames);
+    }
+    /* [real-time] */
+    htex_status render_path(const Motion *motions, size_t motions_len, float *out, size_t frames) noexcept
+    {
+        return htex_voice_render_path(handle_.get(), motions, motions_len, out, frames);
+    }
+    Result<std::string> coverage(const Motion &motion) const
+    {
+        return detail::text([&](char *out, size_t capacity, size_t *length) {
+            return htex_voice_coverage(handle_.get(), &motion, out, capacity, length);
+        });
+    }
+
+private:
+    friend class Asset;
+    explicit Voice(htex_voice handle) noexcept : handle_(handle) {}
+    detail::Owned<htex_voice, htex_voice_free> handle_;
+};
+
+/* Options of opening; see htex_open_options. */
+struct OpenOptions {
+    std::vector<std::string> plugins;
+    bool embedded = true;
+    bool installed = false;
+
+    template <typename Call> htex_status with(Call call) const
+    {
+        std::vector<const char *> files;
+        for (const std::string &plugin : plugins)
+            files.push_back(plugin.c_str());
+        htex_open_options options{};
+        options.size = sizeof options;
+        options.plugins = files.data();
+        options.plugins_len = files.size();
+        options.no_embedded = !embedded;
+        options.installed = installed;
+        return call(&options);
+    }
+};
+
+/* An opened asset. [any thread] */
+class Asset {
+public:
+    Asset() noexcept = default;
+
+    static Result<Asset> open(const std::string &path, const OpenOptions &options = {})
+    {
+        htex_asset asset{};
+        htex_status code = options.with(
+            [&](const htex_open_options *open) { return htex_asset_open(path.c_str(), open, &asset); });
+        return made(code, asset);
+    }
+    static Result<Asset> from_bytes(const uint8_t *bytes, size_t len, const OpenOptions &options = {})
+    {
+        htex_asset asset{};
+        htex_status code = options.with(
+            [&](const htex_open_options *open) { return htex_asset_from_bytes(bytes, len, open, &asset); });
+        return made(code, asset);
+    }
+
+    Result<Voice> voice(const VoiceOptions &options = {}) const
+    {
+        htex_voice_options c{};
+        c.size = sizeof c;
+        c.model = options.model ? options.model->c_str() : nullptr;
+        c.rate_hz = options.rate_hz;
+        c.seed = options.seed;
+        c.motion = options.motion ? &*options.motion : nullptr;
+        c.synthesis = options.synthesis ? options.synthesis->c_str() : nullptr;
+        c.no_speed_scaling = !options.speed_scaling;
+        c.no_force_scaling = !options.force_scaling;
+        c.no_contact = !options.contact;
+        htex_voice voice{};
+        if (Status status = status_of(htex_voice_new(handle_.get(), &c, &voice)); !status)
+            return status;
+        return Voice(voice);
+    }
+
+    Result<std::string> manifest_json() const
+    {
+        return detail::text([&](char *out, size_t capacity, size_t *length) {
+            return htex_asset_manifest_json(handle_.get(), out, capacity, length);
+        });
+    }
+    Result<std::string> unit() const
+    {
+        return detail::text([&](char *out, size_t capacity, size_t *length) {
+            return htex_asset_unit(handle_.get(), out, capacity, length);
+        });
+    }
+    /* Ids of the models of the representations. */
+    Result<std::vector<std::string>> models() const
+    {
+        size_t count = 0;
+        if (Status status = status_of(htex_asset_representation_count(handle_.get(), &count)); !status)
+            return status;
+        std::vector<std::string> models;
+        for (size_t i = 0; i < count; i++) {
+            Result<std::string> model = detail::text([&](char *out, size_t capacity, size_t *length) {
+                return htex_asset_representation_model(handle_.get(), i, out, capacity, length);
+            });
+            if (!model)
+                return model.status();
+            models.push_back(std::move(*model));
+        }
+        return models;
+    }
+    Result<std::vector<Condition>> conditions() const
+    {
+        size_t count = 0;
+        if (Status status = status_of(htex_asset_condition_count(handle_.get(), &count)); !status)
+            return status;
+        std::vector<Condition> conditions(count);
+        for (size_t i = 0; i < count; i++)
+            if (Status status = status_of(htex_asset_condition(handle_.get(), i, &conditions[i])); !status)
+                return status;
+        return conditions;
+    }
+    /* Magnitudes of the texture spectrum, in the asset's unit. */
+    Result<std::vector<double>> magnitude(const std::vector<double> &frequency_hz,
+                                          const std::optional<std::string> &model = {},
+                                          const std::optional<Motion> &at = {}) const
+    {
+        std::vector<double> magnitude(frequency_hz.size());
+        htex_status code = htex_asset_magnitude(handle_.get(), model ? model->c_str() : nullptr,
+                                                at ? &*at : nullptr, frequency_hz.data(),
+                                                magnitude.data(), magnitude.size());
+        if (Status status = status_of(code); !status)
+            return status;
+        return magnitude;
+    }
+
+private:
+    explicit Asset(htex_asset handle) noexcept : handle_(handle) {}
+    static Result<Asset> made(htex_status code, htex_asset asset)
+    {
+        if (Status status = status_of(code); !status)
+            return status;
+        return Asset(asset);
+    }
+    detail::Owned<htex_asset, htex_asset_free> handle_;
+};
+
+/* A playing scene. [one thread at a time] */
+class Scene {
+public:
+    Scene() noexcept = default;
+
+    static Result<Scene> open(const std::string &path, double rate_hz = 0.0, const OpenOptions &options = {})
+    {
+        htex_scene_options scene_options{};
+        scene_options.size = sizeof scene_options;
+        scene_options.rate_hz = rate_hz;
+        htex_scene scene{};
+        htex_status code = options.with([&](const htex_open_options *open) {
+            return htex_scene_open(path.c_str(), open, &scene_options, &scene);
+        });
+        if (Status status = status_of(code); !status)
+            return status;
+        return Scene(scene);
+    }
+    Result<std::string> plan_json() const
+    {
+        return detail::text([&](char *out, size_t capacity, size_t *length) {
+            return htex_scene_plan_json(handle_.get(), out, capacity, length);
+        });
+    }
+    double rate_hz() const noexcept
+    {
+        double rate_hz = NAN;
+        htex_scene_rate_hz(handle_.get(), &rate_hz);
+        return rate_hz;
+    }
+    /* [real-time] */
+    htex_status set_finger(const Finger &finger) noexcept
+    {
+        return htex_scene_set_finger(handle_.get(), &finger);
+    }
+    /* [real-time] */
+    htex_status render(float *out, size_t frames, size_t &rendered) noexcept
+    {
+        return htex_scene_render(handle_.get(), out, frames, &rendered);
+    }
+    /* [real-time] */
+    htex_status stop() noexcept { return htex_scene_stop(handle_.get()); }
+
+private:
+    explicit Scene(htex_scene handle) noexcept : handle_(handle) {}
+    detail::Owned<htex_scene, htex_scene_free> handle_;
+};
+
+} /* namespace htex */
+
+#endif

@@ -1,0 +1,172 @@
+//! Programs that link to the library.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use xtask::needs::{self, Need};
+
+/// An asset with five conditions.
+pub fn asset() -> PathBuf {
+    workspace().join("spec/playing-conformance/five_conditions.htex")
+}
+
+fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn capi(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(file)
+}
+
+/// A language and its compiler.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Language {
+    C,
+    Clang,
+    Cxx,
+    Csharp,
+}
+
+impl Language {
+    pub const ALL: [Self; 4] = [Self::C, Self::Clang, Self::Cxx, Self::Csharp];
+
+    fn compiler(self) -> (&'static str, &'static Need) {
+        match self {
+            Self::C => ("cc", &needs::CC),
+            Self::Clang => ("clang", &needs::CLANG),
+            Self::Cxx => ("c++", &needs::CXX),
+            Self::Csharp => ("mcs", &needs::MONO),
+        }
+    }
+
+    fn source(self) -> &'static str {
+        match self {
+            Self::C | Self::Clang => "main.c",
+            Self::Cxx => "main.cpp",
+            Self::Csharp => "Main.cs",
+        }
+    }
+
+    pub fn example(self) -> PathBuf {
+        capi(match self {
+            Self::C | Self::Clang => "examples/play.c",
+            Self::Cxx => "examples/play.cpp",
+            Self::Csharp => "examples/Play.cs",
+        })
+    }
+
+    /// The program of this language in the README.
+    pub fn in_readme(self, readme: &str) -> String {
+        let fence = match self {
+            Self::C | Self::Clang => "```c\n",
+            Self::Cxx => "```cpp\n",
+            Self::Csharp => "```csharp\n",
+        };
+        let (_, rest) = readme.split_once(fence).unwrap();
+        let (code, _) = rest.split_once("```").unwrap();
+        match self {
+            Self::Csharp => format!("static class Program {{ static void Main() {{\n{code}}} }}\n"),
+            _ => code.to_owned(),
+        }
+    }
+
+    /// A printed sample: in C and C++ as a hexadecimal float.
+    pub fn number(self, text: &str) -> f32 {
+        match self {
+            Self::Csharp => text.parse().unwrap(),
+            _ => hexadecimal(text),
+        }
+    }
+}
+
+fn hexadecimal(text: &str) -> f32 {
+    let (sign, text) = match text.strip_prefix('-') {
+        Some(rest) => (-1.0, rest),
+        None => (1.0, text),
+    };
+    let (digits, exponent) = text.strip_prefix("0x").unwrap().split_once('p').unwrap();
+    let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
+    let mantissa = u64::from_str_radix(&format!("{whole}{fraction}"), 16).unwrap() as f64;
+    let exponent: i32 = exponent.parse().unwrap();
+    (sign * mantissa * 2f64.powi(exponent - 4 * fraction.len() as i32)) as f32
+}
+
+/// A folder with the library and a program.
+pub struct Project {
+    language: Language,
+    folder: PathBuf,
+}
+
+impl Project {
+    /// An empty project; `None` without a compiler of the language.
+    pub fn new(language: Language, name: &str) -> Option<Self> {
+        let (compiler, need) = language.compiler();
+        let there = Command::new(compiler).arg("--version").output().is_ok();
+        if !need.met(there) {
+            return None;
+        }
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{language:?}"));
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        fs::copy(library(), folder.join("libhtex.so")).unwrap();
+        // The name that the library states for itself.
+        fs::copy(library(), folder.join("libhtex.so.0")).unwrap();
+        Some(Self { language, folder })
+    }
+
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Builds a program; a warning is an error.
+    pub fn build(&self, source: &str) -> PathBuf {
+        let file = self.folder.join(self.language.source());
+        fs::write(&file, source).unwrap();
+        let program = self.folder.join("program.exe");
+        let mut compiler = Command::new(self.language.compiler().0);
+        match self.language {
+            Language::Csharp => compiler
+                .args(["-warnaserror", "-langversion:7"])
+                .arg(format!("-out:{}", program.display()))
+                .arg(&file)
+                .arg(capi("unity/Runtime/Htex.cs")),
+            native => compiler
+                .args(["-O1", "-Wall", "-Wextra", "-Werror", "-pedantic"])
+                .arg(if native == Language::Cxx { "-std=c++17" } else { "-std=c11" })
+                .arg(&file)
+                .arg("-I")
+                .arg(capi("include"))
+                .arg("-L")
+                .arg(&self.folder)
+                .args(["-lhtex", "-lm", "-o"])
+                .arg(&program),
+        };
+        let built = compiler.output().unwrap();
+        let errors = String::from_utf8_lossy(&built.stderr);
+        assert!(built.status.success(), "{compiler:?}: {errors}");
+        program
+    }
+
+    pub fn run(&self, program: &Path, arguments: &[&OsStr]) -> Output {
+        let mut command = match self.language {
+            Language::Csharp => {
+                let mut mono = Command::new("mono");
+                mono.arg(program);
+                mono
+            }
+            _ => Command::new(program),
+        };
+        command.args(arguments).current_dir(&self.folder);
+        command.env("LD_LIBRARY_PATH", &self.folder);
+        command.output().unwrap()
+    }
+}
+
+/// The shared library as cargo built it for these tests.
+fn library() -> PathBuf {
+    let tests = std::env::current_exe().unwrap();
+    let built = tests.ancestors().nth(2).unwrap();
+    built.join("libhtex_c.so")
+}

@@ -1,0 +1,70 @@
+//! Programs in C, C++ and C# render the samples of the Rust crate, bit for bit.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+#[path = "common/programs.rs"]
+mod programs;
+
+use std::fs;
+use std::path::Path;
+
+use htex::{Asset, Motion, VoiceOptions};
+use programs::{Language, Project, asset};
+
+/// The samples of the examples' stroke.
+fn stroke(asset: &Path) -> Vec<u8> {
+    let asset = Asset::open(asset).unwrap();
+    let mut voice = asset.voice(&VoiceOptions::default().with_seed(7)).unwrap();
+    let mut bytes = Vec::new();
+    for block in 0..625 {
+        let mut samples = [0.0f32; 64];
+        let motion = Motion::new(40.0 + 0.2 * f64::from(block), 0.4);
+        voice.set_motion(motion).unwrap();
+        voice.render(&mut samples).unwrap();
+        bytes.extend(samples.iter().flat_map(|x| x.to_le_bytes()));
+    }
+    bytes
+}
+
+#[test]
+fn examples_play_the_same_samples() {
+    let expected = stroke(&asset());
+    for language in Language::ALL {
+        let Some(project) = Project::new(language, "example") else {
+            continue;
+        };
+        let program = project.build(&fs::read_to_string(language.example()).unwrap());
+        let out = project.folder().join("stroke.f32");
+        let run = project.run(&program, &[asset().as_os_str(), out.as_os_str()]);
+        assert!(run.status.success(), "{language:?}: {run:?}");
+        assert!(fs::read(&out).unwrap() == expected, "{language:?}");
+        // A file that is not there, and one that is no asset.
+        for bad in ["missing.htex", "bad.htex"] {
+            fs::write(project.folder().join("bad.htex"), b"PK\x03\x04 no asset").unwrap();
+            let path = project.folder().join(bad);
+            let run = project.run(&program, &[path.as_os_str(), out.as_os_str()]);
+            let text = String::from_utf8_lossy(&run.stderr);
+            assert_eq!(run.status.code(), Some(1), "{language:?}: {text}");
+            assert!(text.contains(bad) || text.contains("asset"), "{text}");
+        }
+    }
+}
+
+#[test]
+fn examples_of_the_readme_run() {
+    let readme = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
+    let mut voice = Asset::open(asset()).unwrap().voice(&VoiceOptions::default()).unwrap();
+    let mut block = [0.0f32; 64];
+    voice.set_motion(Motion::new(80.0, 0.4)).unwrap();
+    voice.render(&mut block).unwrap();
+    for language in Language::ALL {
+        let Some(project) = Project::new(language, "readme") else {
+            continue;
+        };
+        let program = project.build(&language.in_readme(&readme));
+        fs::copy(asset(), project.folder().join("sandpaper.htex")).unwrap();
+        let run = project.run(&program, &[]);
+        assert!(run.status.success(), "{language:?}: {run:?}");
+        let printed = String::from_utf8(run.stdout).unwrap();
+        assert_eq!(language.number(printed.trim()), block[63], "{language:?}");
+    }
+}

@@ -1,0 +1,100 @@
+// A texture as a Unity component, beside an AudioSource whose output drives an actuator or a loudspeaker.
+//
+// SPDX-License-Identifier: MIT OR Apache-2.0
+using System;
+using System.IO;
+using UnityEngine;
+
+namespace Htex
+{
+    /// <summary>Plays a texture at the speed and force that scripts set, in the audio thread.</summary>
+    [RequireComponent(typeof(AudioSource))]
+    public sealed class HtexSource : MonoBehaviour
+    {
+        /// <summary>The asset, a path from the folder StreamingAssets.</summary>
+        public string Asset = "texture.htex";
+        /// <summary>The model of the representation; empty: the one of least error.</summary>
+        public string Model = "";
+        /// <summary>Seed of the noise.</summary>
+        public int Seed;
+        /// <summary>Factor from the asset's unit to full scale.</summary>
+        public float Gain = 10.0f;
+        /// <summary>Scanning speed, mm/s. Set it from any script.</summary>
+        public volatile float SpeedMmS;
+        /// <summary>Normal force, N. Set it from any script.</summary>
+        public volatile float ForceN = 0.4f;
+
+        private Asset asset;
+        private Voice voice;
+        private float[] samples = new float[0];
+        private volatile string failure;
+
+        private void OnEnable()
+        {
+            try
+            {
+                asset = Htex.Asset.Open(Path.Combine(Application.streamingAssetsPath, Asset));
+                voice = asset.Voice(new VoiceOptions
+                {
+                    Model = Model == "" ? null : Model,
+                    RateHz = AudioSettings.outputSampleRate,
+                    Seed = (ulong)Seed,
+                    Motion = new Motion(0.0, 0.0),
+                });
+            }
+            catch (HtexException error)
+            {
+                Debug.LogError("htex: " + error.Message);
+                enabled = false;
+            }
+        }
+
+        private void OnDisable()
+        {
+            if (voice != null)
+                voice.Dispose();
+            if (asset != null)
+                asset.Dispose();
+            voice = null;
+            asset = null;
+        }
+
+        private void Update()
+        {
+            string text = failure;
+            if (text == null)
+                return;
+            failure = null;
+            Debug.LogError("htex: " + text);
+        }
+
+        /// <summary>Called by Unity in the audio thread. Invalid speeds and forces count as 0.</summary>
+        private void OnAudioFilterRead(float[] data, int channels)
+        {
+            Voice playing = voice;
+            if (playing == null || failure != null)
+                return;
+            int frames = data.Length / channels;
+            if (samples.Length != frames)
+                samples = new float[frames];
+            try
+            {
+                playing.SetMotion(new Motion(Valid(SpeedMmS), Valid(ForceN)));
+                playing.Render(samples);
+            }
+            catch (Exception error)
+            {
+                failure = error.Message;
+                return;
+            }
+            for (int frame = 0; frame < frames; frame++)
+                for (int channel = 0; channel < channels; channel++)
+                    data[frame * channels + channel] += Gain * samples[frame];
+        }
+
+        private static double Valid(float number)
+        {
+            return number >= 0.0f && number <= float.MaxValue ? number : 0.0;
+        }
+    }
+}

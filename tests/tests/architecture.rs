@@ -110,6 +110,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-scene",
         ],
     ),
+    ("htex-capi", &["htex", "adapter"]),
     ("xtask", &[]),
 ];
 

@@ -1,6 +1,7 @@
 //! Tasks of developers and of tests.
 
 pub mod bench;
+pub mod dist;
 pub mod fuzz;
 pub mod generated;
 pub mod needs;

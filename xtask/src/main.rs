@@ -2,6 +2,7 @@
 
 use std::process::{Command, ExitCode};
 
+use xtask::dist::Dist;
 use xtask::{fuzz, plugins};
 
 const TASKS: &str = "\
@@ -15,6 +16,7 @@ cargo xtask bench     measures htex beside plain loops in C and NumPy, SciPy, li
 cargo xtask fuzz      fuzzes the TARGETS named, or all of fuzz/fuzz_targets, each for --seconds N (60)
                       or --executions N, --jobs N (2) at a time; with --address under the address
                       sanitizer, which needs a nightly toolchain; see fuzz/README.md
+cargo xtask dist --prefix DIR [--small]  builds and installs libhtex for C, C++ and C#
 cargo xtask generate  writes the generated files of spec/: schemas, pages, conformance files; and
                       the seeds of the fuzz targets";
 
@@ -24,6 +26,7 @@ fn main() -> ExitCode {
         ["plugins", ref options @ ..] => build_plugins(options),
         ["bench", ref options @ ..] => xtask::bench::run(options),
         ["fuzz", ref options @ ..] => fuzz_targets(options),
+        ["dist", ref options @ ..] => dist(options),
         ["ci"] => run("bash", &[".ci/run"]),
         ["generate"] => xtask::generated::generate(),
         _ => usage(),
@@ -77,6 +80,26 @@ fn build_plugins(options: &[&str]) -> ExitCode {
             println!("{}", folder.display());
             ExitCode::SUCCESS
         }
+        Err(error) => {
+            eprintln!("xtask: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Installs libhtex.
+fn dist(options: &[&str]) -> ExitCode {
+    let (prefix, small) = match *options {
+        ["--prefix", prefix] => (prefix, false),
+        ["--prefix", prefix, "--small"] | ["--small", "--prefix", prefix] => (prefix, true),
+        _ => return usage(),
+    };
+    let options = Dist {
+        prefix: prefix.into(),
+        small,
+    };
+    match xtask::dist::dist(&options) {
+        Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("xtask: {error}");
             ExitCode::FAILURE

@@ -28,6 +28,41 @@ pub const WASM_CLANG: Need = Need {
     for_wasm: true,
 };
 
+/// A compiler of C.
+pub const CC: Need = Need {
+    what: "a C compiler",
+    how: "apt-get install gcc",
+    for_wasm: false,
+};
+
+/// Another compiler of C.
+pub const CLANG: Need = Need {
+    what: "clang",
+    how: "apt-get install clang",
+    for_wasm: false,
+};
+
+/// A compiler of C++17.
+pub const CXX: Need = Need {
+    what: "a C++ compiler",
+    how: "apt-get install g++",
+    for_wasm: false,
+};
+
+/// A compiler of C# and its runtime.
+pub const MONO: Need = Need {
+    what: "mono",
+    how: "apt-get install mono-mcs mono-runtime libmono-system-core4.0-cil",
+    for_wasm: false,
+};
+
+/// A checker of memory accesses.
+pub const VALGRIND: Need = Need {
+    what: "valgrind",
+    how: "apt-get install valgrind",
+    for_wasm: false,
+};
+
 /// Sound on Linux.
 pub const ALSA: Need = Need {
     what: "ALSA",

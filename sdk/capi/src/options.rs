@@ -112,10 +112,11 @@ pub(crate) unsafe fn models(pointer: *const htex_open_options) -> Result<Models,
         .iter()
         .map(|file| unsafe { needed_text(*file) }.map(PathBuf::from))
         .collect();
-    let mut search = Search::builtin();
-    search.files = files?;
-    search.env = options.installed != 0;
-    search.user_dir = options.installed != 0;
+    let installed = options.installed != 0;
+    let search = Search::builtin()
+        .with_files(files?)
+        .with_env(installed)
+        .with_user_dir(installed);
     let registry = Registry::search(&search).map_err(htex::Error::from)?;
     for note in registry.notes() {
         log(htex_log_level::HTEX_LOG_WARNING, &note.to_string());
@@ -152,11 +153,10 @@ pub(crate) unsafe fn voice_options<'a>(
             motion(options.motion)?,
         )
     };
-    let effects = Effects {
-        speed_scaling: options.no_speed_scaling == 0,
-        force_scaling: options.no_force_scaling == 0,
-        contact: options.no_contact == 0,
-    };
+    let effects = Effects::default()
+        .with_speed_scaling(options.no_speed_scaling == 0)
+        .with_force_scaling(options.no_force_scaling == 0)
+        .with_contact(options.no_contact == 0);
     let synthesis: Synthesis = match synthesis {
         Some(text) => text.parse().map_err(htex::Error::from)?,
         None => Synthesis::Streamed,

@@ -3,6 +3,14 @@
 
 use std::path::Path;
 
+use htex_c::HTEX_API_VERSION;
+
+/// FNV-1a of the listing of each minor version of this major, oldest first. Lines are only added.
+const FROZEN: &[(&str, u64)] = &[("1.0", 0)];
+
+const THAW: &str = "The interface of libhtex is frozen: programs were compiled against it. Take the change back; or, if it only \
+    adds, raise the minor version in HTEX_API_VERSION, and add the new listing's version and hash to FROZEN.";
+
 /// The header as the functions are now.
 fn header() -> String {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -16,4 +24,56 @@ fn header() -> String {
 #[test]
 fn generated_header_is_fresh() {
     xtask::generated::file("sdk/capi/include/htex.h", header().as_bytes());
+}
+
+#[test]
+fn generated_listing_is_frozen() {
+    let (version, hash) = FROZEN.last().unwrap();
+    let (major, minor) = (HTEX_API_VERSION >> 16, HTEX_API_VERSION & 0xffff);
+    assert_eq!(*version, format!("{major}.{minor}"), "{THAW}");
+    let now = listing(&header());
+    assert_eq!(fnv(now.as_bytes()), *hash, "{THAW}");
+    let path = format!("spec/abi/libhtex-{version}.txt");
+    xtask::generated::file(&path, now.as_bytes());
+    for (earlier, hash) in &FROZEN[..FROZEN.len() - 1] {
+        let path = format!("../../spec/abi/libhtex-{earlier}.txt");
+        let kept = std::fs::read_to_string(path).unwrap();
+        assert_eq!(fnv(kept.as_bytes()), *hash, "{THAW}");
+        assert!(kept.lines().all(|line| now.contains(line)), "{THAW}");
+    }
+}
+
+/// The declarations, one on each line, without comments.
+fn listing(header: &str) -> String {
+    let mut code = String::new();
+    let mut rest = header;
+    while let Some((before, comment)) = rest.split_once("/*") {
+        code.push_str(before);
+        rest = comment.split_once("*/").unwrap().1;
+    }
+    code.push_str(rest);
+    let without = |line: &&str| {
+        !(line.is_empty() || line.starts_with("//") || (line.starts_with('#') && !line.starts_with("#define HTEX_API")))
+    };
+    let lines = code.lines().map(str::trim).filter(without);
+    let mut listing = String::new();
+    for line in lines {
+        let line = line.split("//").next().unwrap().trim_end();
+        listing.push_str(line);
+        // A declaration ends here, or a member.
+        let ends = line.ends_with([';', ',', '{', '}']) && !line.ends_with(",") || line.starts_with('#');
+        listing.push(if ends || is_constant(line) { '\n' } else { ' ' });
+    }
+    listing
+}
+
+/// Whether this is a constant of an enumeration.
+fn is_constant(line: &str) -> bool {
+    line.starts_with("HTEX_") && line.ends_with(',')
+}
+
+fn fnv(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
+    })
 }

@@ -1,0 +1,303 @@
+//! Invalid use of the C functions is an error with a status and a text, whatever is passed that C cannot exclude.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+use std::ffi::{CStr, CString, c_char, c_void};
+use std::path::{Path, PathBuf};
+use std::ptr::{null, null_mut};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use htex_c::htex_status::*;
+use htex_c::*;
+
+fn asset_path() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../spec/playing-conformance/five_conditions.htex")
+}
+
+fn last_error() -> String {
+    // SAFETY: a text of the library that ends with a zero.
+    unsafe { CStr::from_ptr(htex_last_error()) }.to_str().unwrap().to_owned()
+}
+
+fn opened() -> htex_asset {
+    let path = CString::new(asset_path().to_str().unwrap()).unwrap();
+    let mut asset = htex_asset { id: 0 };
+    // SAFETY: live pointers.
+    let status = unsafe { htex_asset_open(path.as_ptr(), null(), &mut asset) };
+    assert_eq!(status, HTEX_STATUS_OK, "{}", last_error());
+    asset
+}
+
+fn voice_of(asset: htex_asset) -> htex_voice {
+    let mut voice = htex_voice { id: 0 };
+    // SAFETY: live pointers.
+    let status = unsafe { htex_voice_new(asset, null(), &mut voice) };
+    assert_eq!(status, HTEX_STATUS_OK, "{}", last_error());
+    voice
+}
+
+fn is(status: htex_status, expected: htex_status) {
+    assert_eq!(status, expected, "{}", last_error());
+    assert!(!last_error().is_empty());
+}
+
+const MOTION: htex_motion = htex_motion {
+    speed_mm_s: 80.0,
+    force_n: 0.4,
+    position_mm: f64::NAN,
+};
+
+#[test]
+fn freed_and_foreign_handles_are_refused() {
+    let asset = opened();
+    let voice = voice_of(asset);
+    assert_eq!(htex_asset_free(asset), HTEX_STATUS_OK);
+    let mut block = [0.0f32; 64];
+    // SAFETY: live pointers.
+    unsafe {
+        // The voice plays on without its asset.
+        assert_eq!(htex_voice_render(voice, block.as_mut_ptr(), 64), HTEX_STATUS_OK);
+        let mut out = htex_voice { id: 0 };
+        is(htex_voice_new(asset, null(), &mut out), HTEX_STATUS_BAD_HANDLE);
+        assert_eq!(htex_voice_free(voice), HTEX_STATUS_OK);
+        for id in [0, voice.id, asset.id, 1, u64::MAX, voice.id + 1] {
+            let voice = htex_voice { id };
+            is(htex_voice_render(voice, block.as_mut_ptr(), 64), HTEX_STATUS_BAD_HANDLE);
+            is(htex_voice_set_motion(voice, &MOTION), HTEX_STATUS_BAD_HANDLE);
+            is(htex_voice_free(voice), HTEX_STATUS_BAD_HANDLE);
+            is(htex_asset_free(htex_asset { id }), HTEX_STATUS_BAD_HANDLE);
+            is(htex_scene_stop(htex_scene { id }), HTEX_STATUS_BAD_HANDLE);
+        }
+    }
+}
+
+#[test]
+fn null_and_misaligned_pointers_are_refused() {
+    let asset = opened();
+    let voice = voice_of(asset);
+    let mut bytes = [0u8; 64];
+    let odd = bytes[1..].as_mut_ptr();
+    // SAFETY: the functions look at these pointers before they use them.
+    unsafe {
+        let bad = HTEX_STATUS_INVALID_ARGUMENT;
+        is(htex_asset_open(null(), null(), null_mut()), bad);
+        is(htex_asset_open(c"x.htex".as_ptr(), null(), null_mut()), HTEX_STATUS_IO);
+        is(htex_asset_open(c"\xff".as_ptr(), null(), null_mut()), bad);
+        is(htex_asset_from_bytes(null(), 10, null(), null_mut()), bad);
+        is(htex_asset_manifest_json(asset, null_mut(), 10, null_mut()), bad);
+        is(htex_asset_manifest_json(asset, null_mut(), 0, null_mut()), bad);
+        is(htex_asset_condition(asset, 1_000, null_mut()), bad);
+        is(htex_asset_condition(asset, 0, null_mut()), bad);
+        is(htex_voice_new(asset, null(), null_mut()), bad);
+        is(htex_voice_render(voice, null_mut(), 64), bad);
+        is(htex_voice_render(voice, odd.cast(), 8), bad);
+        is(htex_voice_render(voice, null_mut(), usize::MAX), bad);
+        is(htex_voice_set_motion(voice, null()), bad);
+        is(htex_voice_set_motion(voice, odd.cast()), bad);
+        is(htex_voice_render_path(voice, null(), 2, null_mut(), usize::MAX), bad);
+        is(htex_scene_open(null(), null(), null(), null_mut()), bad);
+        assert_eq!(htex_voice_render(voice, null_mut(), 0), HTEX_STATUS_OK);
+    }
+    htex_voice_free(voice);
+    htex_asset_free(asset);
+}
+
+#[test]
+fn motions_out_of_range_leave_the_voice_as_it_was() {
+    let asset = opened();
+    let (voice, twin) = (voice_of(asset), voice_of(asset));
+    let wrong = [f64::NAN, f64::INFINITY, -1.0];
+    let mut blocks = [[0.0f32; 256]; 2];
+    // SAFETY: live pointers.
+    unsafe {
+        assert_eq!(htex_voice_set_motion(voice, &MOTION), HTEX_STATUS_OK);
+        assert_eq!(htex_voice_set_motion(twin, &MOTION), HTEX_STATUS_OK);
+        for number in wrong {
+            for motion in [
+                htex_motion { speed_mm_s: number, ..MOTION },
+                htex_motion { force_n: number, ..MOTION },
+            ] {
+                is(htex_voice_set_motion(voice, &motion), HTEX_STATUS_INVALID_MOTION);
+            }
+        }
+        let motion = htex_motion { position_mm: f64::INFINITY, ..MOTION };
+        is(htex_voice_set_motion(voice, &motion), HTEX_STATUS_INVALID_MOTION);
+        for (voice, block) in [voice, twin].into_iter().zip(&mut blocks) {
+            assert_eq!(htex_voice_render(voice, block.as_mut_ptr(), 256), HTEX_STATUS_OK);
+        }
+    }
+    assert_eq!(blocks[0], blocks[1]);
+    htex_voice_free(voice);
+    htex_voice_free(twin);
+    htex_asset_free(asset);
+}
+
+#[test]
+fn options_are_checked_by_their_size() {
+    let asset = opened();
+    let mut voice = htex_voice { id: 0 };
+    let mut options = htex_voice_options {
+        size: size_of::<htex_voice_options>(),
+        model: null(),
+        rate_hz: 0.0,
+        seed: 3,
+        motion: null(),
+        synthesis: null(),
+        no_speed_scaling: 0,
+        no_force_scaling: 0,
+        no_contact: 0,
+    };
+    let mut new = |options: &htex_voice_options| {
+        // SAFETY: live pointers.
+        let status = unsafe { htex_voice_new(asset, options, &mut voice) };
+        if status == HTEX_STATUS_OK {
+            htex_voice_free(voice);
+        }
+        status
+    };
+    assert_eq!(new(&options), HTEX_STATUS_OK);
+    options.size = 0;
+    is(new(&options), HTEX_STATUS_INVALID_ARGUMENT);
+    // A program that was compiled against an older, shorter struct.
+    options.size = size_of::<usize>();
+    assert_eq!(new(&options), HTEX_STATUS_OK);
+    options.size = size_of::<htex_voice_options>();
+    options.model = c"nothing".as_ptr();
+    is(new(&options), HTEX_STATUS_NO_REPRESENTATION);
+    options.model = null();
+    options.synthesis = c"somehow".as_ptr();
+    is(new(&options), HTEX_STATUS_INVALID_ARGUMENT);
+    options.synthesis = null();
+    options.rate_hz = f64::NAN;
+    assert_ne!(new(&options), HTEX_STATUS_OK);
+
+    // One compiled against a newer, longer struct, with an option that is not known here.
+    #[repr(C)]
+    struct Newer {
+        known: htex_voice_options,
+        more: u64,
+    }
+    options.rate_hz = 0.0;
+    options.size = size_of::<Newer>();
+    let mut newer = Newer { known: options, more: 0 };
+    // SAFETY: `size` bytes are there.
+    let at = |newer: &Newer| unsafe { &*(&raw const *newer).cast::<htex_voice_options>() };
+    assert_eq!(new(at(&newer)), HTEX_STATUS_OK);
+    newer.more = 1;
+    is(new(at(&newer)), HTEX_STATUS_UNSUPPORTED);
+    htex_asset_free(asset);
+}
+
+#[test]
+fn texts_tell_their_length() {
+    let asset = opened();
+    let mut length = 0;
+    // SAFETY: live pointers.
+    unsafe {
+        assert_eq!(htex_asset_manifest_json(asset, null_mut(), 0, &mut length), HTEX_STATUS_OK);
+        let mut text = vec![1 as c_char; length + 1];
+        let status = htex_asset_manifest_json(asset, text.as_mut_ptr(), text.len(), null_mut());
+        assert_eq!(status, HTEX_STATUS_OK);
+        let text = CStr::from_ptr(text.as_ptr()).to_str().unwrap();
+        assert_eq!(text.len(), length);
+        let json: serde_json::Value = serde_json::from_str(text).unwrap();
+        assert_eq!(json["conditions"].as_array().unwrap().len(), 5);
+        let mut short = [1 as c_char; 8];
+        let status = htex_asset_manifest_json(asset, short.as_mut_ptr(), 8, &mut length);
+        is(status, HTEX_STATUS_TRUNCATED);
+        assert_eq!(CStr::from_ptr(short.as_ptr()).to_bytes().len(), 7);
+    }
+    htex_asset_free(asset);
+}
+
+/// Mutated files are refused or play; they neither crash nor leave handles.
+#[test]
+fn mutated_files_are_errors() {
+    let original = std::fs::read(asset_path()).unwrap();
+    let mut state = 1u64;
+    let mut random = |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    let (mut refused, mut played) = (0, 0);
+    for _ in 0..100_000 {
+        let mut bytes = original.clone();
+        for _ in 0..1 + random(4) {
+            let at = random(bytes.len());
+            match random(4) {
+                0 => bytes.truncate(at.max(1)),
+                1 => bytes[at] ^= 1 << random(8),
+                2 => bytes[at] = random(256) as u8,
+                _ => bytes.insert(at, random(256) as u8),
+            }
+        }
+        let mut asset = htex_asset { id: 0 };
+        // SAFETY: live pointers.
+        let status = unsafe { htex_asset_from_bytes(bytes.as_ptr(), bytes.len(), null(), &mut asset) };
+        if status != HTEX_STATUS_OK {
+            is(status, HTEX_STATUS_INVALID_ASSET);
+            refused += 1;
+            continue;
+        }
+        let mut voice = htex_voice { id: 0 };
+        // SAFETY: live pointers.
+        if unsafe { htex_voice_new(asset, null(), &mut voice) } == HTEX_STATUS_OK {
+            let mut block = [0.0f32; 64];
+            // SAFETY: live pointers.
+            unsafe { htex_voice_render(voice, block.as_mut_ptr(), 64) };
+            assert!(block.iter().all(|x| x.is_finite()));
+            htex_voice_free(voice);
+            played += 1;
+        }
+        assert_eq!(htex_asset_free(asset), HTEX_STATUS_OK);
+    }
+    println!("{refused} refused, {played} played");
+    assert!(refused > 50_000);
+}
+
+static MESSAGES: AtomicUsize = AtomicUsize::new(0);
+
+unsafe extern "C" fn count(_: htex_log_level, message: *const c_char, context: *mut c_void) {
+    assert!(!message.is_null() && context as usize == 42);
+    MESSAGES.fetch_add(1, Ordering::Relaxed);
+}
+
+/// A scene plays the samples of the Rust crate; its notes go to the log.
+#[cfg(feature = "scene")]
+#[test]
+fn a_scene_plays_and_reports() {
+    let folder = tempfile::tempdir().unwrap();
+    let asset = asset_path().canonicalize().unwrap();
+    let scene = serde_json::json!({
+        "htex_scene": "1.0",
+        "surfaces": [{ "asset": asset }],
+        "motion": "live",
+        "device": { "adapter": "org.htex.file" }
+    });
+    let path = folder.path().join("scene.json");
+    std::fs::write(&path, scene.to_string()).unwrap();
+    let path = CString::new(path.to_str().unwrap()).unwrap();
+    let mut playing = htex_scene { id: 0 };
+    let mut samples = [0.0f32; 2_000];
+    let finger = htex_finger { speed_mm_s: 80.0, force_n: 0.4, x_mm: 1.0, y_mm: 1.0 };
+    // SAFETY: live pointers.
+    unsafe {
+        htex_set_log(Some(count), 42 as *mut c_void);
+        let status = htex_scene_open(path.as_ptr(), null(), null(), &mut playing);
+        assert_eq!(status, HTEX_STATUS_OK, "{}", last_error());
+        htex_set_log(None, null_mut());
+        let mut length = 0;
+        assert_eq!(htex_scene_plan_json(playing, null_mut(), 0, &mut length), HTEX_STATUS_OK);
+        assert!(length > 100);
+        assert_eq!(htex_scene_set_finger(playing, &finger), HTEX_STATUS_OK);
+        let lost = htex_finger { x_mm: f64::NAN, ..finger };
+        is(htex_scene_set_finger(playing, &lost), HTEX_STATUS_INVALID_MOTION);
+        let mut rendered = 0;
+        let status = htex_scene_render(playing, samples.as_mut_ptr(), 2_000, &mut rendered);
+        assert_eq!((status, rendered), (HTEX_STATUS_OK, 2_000));
+        assert_eq!(htex_scene_stop(playing), HTEX_STATUS_OK);
+        while rendered > 0 {
+            htex_scene_render(playing, samples.as_mut_ptr(), 2_000, &mut rendered);
+        }
+        assert_eq!(htex_scene_free(playing), HTEX_STATUS_OK);
+    }
+}

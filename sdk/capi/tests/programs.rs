@@ -6,9 +6,11 @@ mod programs;
 
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 use htex::{Asset, Motion, VoiceOptions};
 use programs::{Language, Project, asset};
+use xtask::needs;
 
 /// The samples of the examples' stroke.
 fn stroke(asset: &Path) -> Vec<u8> {
@@ -66,5 +68,28 @@ fn examples_of_the_readme_run() {
         assert!(run.status.success(), "{language:?}: {run:?}");
         let printed = String::from_utf8(run.stdout).unwrap();
         assert_eq!(language.number(printed.trim()), block[63], "{language:?}");
+    }
+}
+
+/// The example in C under valgrind, and with the sanitizers of gcc and clang: neither invalid accesses nor leaks.
+#[test]
+fn the_example_has_no_memory_errors() {
+    let source = fs::read_to_string(Language::C.example()).unwrap();
+    let run = |project: &Project, under: &[&str], more: &[&str]| {
+        let program = project.build_with(&source, more);
+        let out = project.folder().join("stroke.f32");
+        let run = project.run_under(under, &program, &[asset().as_os_str(), out.as_os_str()]);
+        assert!(run.status.success(), "{under:?} {more:?}: {run:?}");
+        assert!(fs::read(&out).unwrap() == stroke(&asset()), "{under:?} {more:?}");
+    };
+    let valgrind = Command::new("valgrind").arg("--version").output().is_ok();
+    if needs::VALGRIND.met(valgrind) {
+        let under = ["valgrind", "--quiet", "--error-exitcode=9", "--leak-check=full", "--errors-for-leak-kinds=definite"];
+        run(&Project::new(Language::C, "valgrind").unwrap(), &under, &[]);
+    }
+    for language in [Language::C, Language::Clang] {
+        if let Some(project) = Project::new(language, "sanitized") {
+            run(&project, &[], &["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]);
+        }
     }
 }

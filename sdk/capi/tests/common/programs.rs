@@ -122,6 +122,11 @@ impl Project {
 
     /// Builds a program; a warning is an error.
     pub fn build(&self, source: &str) -> PathBuf {
+        self.build_with(source, &[])
+    }
+
+    /// As [`Self::build`], with further arguments of the compiler.
+    pub fn build_with(&self, source: &str, more: &[&str]) -> PathBuf {
         let file = self.folder.join(self.language.source());
         fs::write(&file, source).unwrap();
         let program = self.folder.join("program.exe");
@@ -143,20 +148,29 @@ impl Project {
                 .args(["-lhtex", "-lm", "-o"])
                 .arg(&program),
         };
-        let built = compiler.output().unwrap();
+        let built = compiler.args(more).output().unwrap();
         let errors = String::from_utf8_lossy(&built.stderr);
         assert!(built.status.success(), "{compiler:?}: {errors}");
         program
     }
 
     pub fn run(&self, program: &Path, arguments: &[&OsStr]) -> Output {
-        let mut command = match self.language {
-            Language::Csharp => {
-                let mut mono = Command::new("mono");
-                mono.arg(program);
-                mono
+        let under: &[&str] = match self.language {
+            Language::Csharp => &["mono"],
+            _ => &[],
+        };
+        self.run_under(under, program, arguments)
+    }
+
+    /// Runs a program by another one with its arguments.
+    pub fn run_under(&self, under: &[&str], program: &Path, arguments: &[&OsStr]) -> Output {
+        let mut command = match under {
+            [] => Command::new(program),
+            [first, rest @ ..] => {
+                let mut command = Command::new(first);
+                command.args(rest).arg(program);
+                command
             }
-            _ => Command::new(program),
         };
         command.args(arguments).current_dir(&self.folder);
         command.env("LD_LIBRARY_PATH", &self.folder);

@@ -102,6 +102,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         &[
             "htex",
             "htex-author",
+            "htex-capi",
             "adapter",
             "htex-device",
             "htex-format",

@@ -12,7 +12,7 @@ impl Bytes<'_> {
         *first
     }
 
-    fn number(&mut self) -> u64 {
+    pub(crate) fn number(&mut self) -> u64 {
         u64::from_le_bytes([0; 8].map(|_: u8| self.next()))
     }
 }

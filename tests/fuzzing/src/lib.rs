@@ -4,12 +4,13 @@
 //! The programs in `fuzz/` call these functions, and so does the test that runs all seeds and
 //! regressions (`tests/tests/regressions.rs`): a finding is the same in both.
 #![cfg(feature = "wasm")]
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // A panic is a finding.
 
 mod asset;
 mod block;
 mod body;
+mod capi;
 mod compile;
 mod container;
 mod descriptor;
@@ -28,6 +29,7 @@ mod signed;
 
 pub use asset::open_asset;
 pub use block::parameter_block;
+pub use capi::c_calls;
 pub use compile::compile_limits;
 pub use descriptor::descriptor;
 pub use manifest::manifest;
@@ -69,6 +71,7 @@ pub const TARGETS: &[Target] = &[
     target("printed_text", printed_text),
     target("output_name", output_name),
     target("compile_limits", compile_limits),
+    target("c_calls", c_calls),
 ];
 
 const fn target(name: &'static str, run: fn(&[u8]) -> bool) -> Target {

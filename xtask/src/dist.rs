@@ -58,13 +58,22 @@ pub fn dist(options: &Dist) -> Result<(), String> {
     put(&built.join("libhtex_c.a"), &libraries.join("libhtex.a"))?;
     let source = workspace().join("sdk/capi");
     for header in HEADERS {
-        put(&source.join("include").join(header), &prefix.join("include").join(header))?;
+        put(
+            &source.join("include").join(header),
+            &prefix.join("include").join(header),
+        )?;
     }
     for file in UNITY {
-        put(&source.join("unity").join(file), &prefix.join("share/htex/unity").join(file))?;
+        put(
+            &source.join("unity").join(file),
+            &prefix.join("share/htex/unity").join(file),
+        )?;
     }
     write(libraries.join("pkgconfig/htex.pc"), pkg_config(&version))?;
-    write(libraries.join("cmake/htex/htexConfig.cmake"), CMAKE.to_owned())?;
+    write(
+        libraries.join("cmake/htex/htexConfig.cmake"),
+        CMAKE.to_owned(),
+    )?;
     write(
         libraries.join("cmake/htex/htexConfigVersion.cmake"),
         CMAKE_VERSION.replace("@VERSION@", &version),
@@ -124,7 +133,9 @@ fn link(_: &str, _: &Path) -> io::Result<()> {
 fn version() -> Result<String, String> {
     let path = workspace().join("Cargo.toml");
     let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let version = text.lines().find_map(|line| line.strip_prefix("version = "));
+    let version = text
+        .lines()
+        .find_map(|line| line.strip_prefix("version = "));
     let version = version.ok_or("Cargo.toml has no version")?;
     Ok(version.trim_matches('"').to_owned())
 }

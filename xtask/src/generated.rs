@@ -15,6 +15,7 @@ const TESTS: &[&str] = &[
     "abi",
     "conformance",
     "device_abi",
+    "header",
     "page",
     "playing",
     "recording_conformance",

@@ -1,6 +1,7 @@
 //! Tasks of developers and of tests.
 
 pub mod bench;
+pub mod bindings;
 pub mod dist;
 pub mod fuzz;
 pub mod generated;
@@ -8,3 +9,4 @@ pub mod needs;
 mod places;
 pub mod plugins;
 mod wasm;
+pub mod web;

@@ -17,6 +17,9 @@ cargo xtask fuzz      fuzzes the TARGETS named, or all of fuzz/fuzz_targets, eac
                       or --executions N, --jobs N (2) at a time; with --address under the address
                       sanitizer, which needs a nightly toolchain; see fuzz/README.md
 cargo xtask dist --prefix DIR [--small]  builds and installs libhtex for C, C++ and C#
+cargo xtask bindings  tests the bindings to other languages and on other processors, all or those named: c, web,
+                      processors, costs (times against Rust); says what is missing
+cargo xtask web --out DIR  builds the npm package `htex` for browsers and Node.js
 cargo xtask generate  writes the generated files of spec/: schemas, pages, conformance files; and
                       the seeds of the fuzz targets";
 
@@ -27,6 +30,8 @@ fn main() -> ExitCode {
         ["bench", ref options @ ..] => xtask::bench::run(options),
         ["fuzz", ref options @ ..] => fuzz_targets(options),
         ["dist", ref options @ ..] => dist(options),
+        ["bindings", ref names @ ..] => done(xtask::bindings::test(names)),
+        ["web", "--out", out] => done(xtask::web::web(out.as_ref())),
         ["ci"] => run("bash", &[".ci/run"]),
         ["generate"] => xtask::generated::generate(),
         _ => usage(),
@@ -98,7 +103,11 @@ fn dist(options: &[&str]) -> ExitCode {
         prefix: prefix.into(),
         small,
     };
-    match xtask::dist::dist(&options) {
+    done(xtask::dist::dist(&options))
+}
+
+fn done(result: Result<(), String>) -> ExitCode {
+    match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("xtask: {error}");

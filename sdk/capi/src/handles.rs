@@ -100,8 +100,7 @@ impl<T: Send + 'static> Table<T> {
         Ok(())
     }
 
-    fn slot(&self, index: usize) -> Option<&'static Slot<T>>
-    {
+    fn slot(&self, index: usize) -> Option<&'static Slot<T>> {
         let (chunk, offset) = place(index);
         let slots = self.chunks.get(chunk)?.load(Ordering::Acquire);
         // SAFETY: a chunk that is there has `FIRST << chunk` slots, which are never freed.
@@ -109,8 +108,7 @@ impl<T: Send + 'static> Table<T> {
     }
 
     /// The slot of a handle, and its generation.
-    fn find(&self, handle: u64) -> Result<(&'static Slot<T>, u64, usize), Failure>
-    {
+    fn find(&self, handle: u64) -> Result<(&'static Slot<T>, u64, usize), Failure> {
         let index = (handle & EXCLUSIVE).checked_sub(1).ok_or(BAD)? as usize;
         let slot = self.slot(index).ok_or(BAD)?;
         let wanted = generation(handle);
@@ -141,8 +139,7 @@ impl<T: Send + 'static> Table<T> {
     }
 
     /// The object of a handle, for this call alone.
-    pub(crate) fn exclusive(&self, handle: u64) -> Result<Exclusive<T>, Failure>
-    {
+    pub(crate) fn exclusive(&self, handle: u64) -> Result<Exclusive<T>, Failure> {
         let (slot, wanted, _) = self.find(handle)?;
         Self::enter(slot, wanted, |users| (users == 0).then_some(EXCLUSIVE))?;
         // SAFETY: the slot is of this generation, so it has an object, and this is its only user.
@@ -158,7 +155,9 @@ impl<T: Send + 'static> Table<T> {
         T: Sync,
     {
         let (slot, wanted, _) = self.find(handle)?;
-        Self::enter(slot, wanted, |users| (users < MOST_USERS).then_some(users + 1))?;
+        Self::enter(slot, wanted, |users| {
+            (users < MOST_USERS).then_some(users + 1)
+        })?;
         // SAFETY: the slot is of this generation, so it has an object, and all its users read.
         match unsafe { &*slot.value.get() } {
             Some(value) => Ok(Shared { value, slot }),
@@ -167,13 +166,13 @@ impl<T: Send + 'static> Table<T> {
     }
 
     /// Takes an object out; its handle is then bad.
-    pub(crate) fn remove(&self, handle: u64) -> Result<T, Failure>
-    {
+    pub(crate) fn remove(&self, handle: u64) -> Result<T, Failure> {
         let (slot, wanted, index) = self.find(handle)?;
         Self::enter(slot, wanted, |users| (users == 0).then_some(EXCLUSIVE))?;
         // SAFETY: this is the only user.
         let value = unsafe { (*slot.value.get()).take() };
-        slot.state.store(((wanted + 1) & EXCLUSIVE) << 32, Ordering::Release);
+        slot.state
+            .store(((wanted + 1) & EXCLUSIVE) << 32, Ordering::Release);
         let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
         // The last generation is not used again: a handle of the first would be its twin.
         if wanted + 1 < EXCLUSIVE {

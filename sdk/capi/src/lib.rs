@@ -9,6 +9,8 @@
 #![allow(clippy::missing_safety_doc)] // Stated once: see `pointers`.
 
 mod asset;
+#[cfg(target_family = "wasm")]
+mod browser;
 mod handles;
 mod log;
 mod motion;
@@ -19,9 +21,11 @@ mod status;
 mod voice;
 
 pub use asset::*;
+#[cfg(target_family = "wasm")]
+pub use browser::{htex_alloc, htex_free};
 pub use log::{htex_log_callback, htex_log_level, htex_set_log};
 pub use motion::htex_motion;
-pub use options::{htex_open_options, htex_voice_options};
+pub use options::{htex_bytes, htex_open_options, htex_voice_options};
 pub use scene::*;
 pub use status::{htex_last_error, htex_status};
 pub use voice::*;

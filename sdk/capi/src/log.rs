@@ -16,8 +16,9 @@ pub enum htex_log_level {
 }
 
 /// Receives a message, UTF-8, valid during the call. `context` is that of htex_set_log.
-pub type htex_log_callback =
-    Option<unsafe extern "C" fn(level: htex_log_level, message: *const c_char, context: *mut c_void)>;
+pub type htex_log_callback = Option<
+    unsafe extern "C" fn(level: htex_log_level, message: *const c_char, context: *mut c_void),
+>;
 
 struct Log {
     callback: unsafe extern "C" fn(htex_log_level, *const c_char, *mut c_void),

@@ -10,6 +10,16 @@ use crate::motion::{htex_motion, motion};
 use crate::pointers::{needed_text, slice, text};
 use crate::status::{Failure, htex_status};
 
+/// Bytes in memory.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct htex_bytes {
+    /// The first byte.
+    pub data: *const u8,
+    /// Number of bytes.
+    pub len: usize,
+}
+
 /// Options of opening an asset or a scene. Set `size` to sizeof(htex_open_options) and the rest to zero for the defaults.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
@@ -24,6 +34,10 @@ pub struct htex_open_options {
     pub no_embedded: u32,
     /// Not 0: installed models are searched for too: in the folders of HTEX_PLUGIN_PATH and in the user's.
     pub installed: u32,
+    /// WASM modules of models, in memory; they run in a sandbox. The bytes are used during the call alone.
+    pub modules: *const htex_bytes,
+    /// Number of `modules`.
+    pub modules_len: usize,
 }
 
 /// Options of a voice. Set `size` to sizeof(htex_voice_options) and the rest to zero for the defaults.
@@ -104,6 +118,8 @@ pub(crate) unsafe fn models(pointer: *const htex_open_options) -> Result<Models,
         plugins_len: 0,
         no_embedded: 0,
         installed: 0,
+        modules: std::ptr::null(),
+        modules_len: 0,
     };
     // SAFETY: as here.
     let options = unsafe { options(pointer, ZEROS) }?;
@@ -117,7 +133,15 @@ pub(crate) unsafe fn models(pointer: *const htex_open_options) -> Result<Models,
         .with_files(files?)
         .with_env(installed)
         .with_user_dir(installed);
-    let registry = Registry::search(&search).map_err(htex::Error::from)?;
+    let mut registry = Registry::search(&search).map_err(htex::Error::from)?;
+    // SAFETY: the array is the caller's.
+    let modules = unsafe { slice(options.modules, options.modules_len) }?;
+    for (index, module) in modules.iter().enumerate() {
+        // SAFETY: the bytes are the caller's.
+        let bytes = unsafe { slice(module.data, module.len) }?;
+        let added = registry.add_wasm_bytes(&format!("module {index}"), bytes);
+        added.map_err(htex::Error::from)?;
+    }
     for note in registry.notes() {
         log(htex_log_level::HTEX_LOG_WARNING, &note.to_string());
     }

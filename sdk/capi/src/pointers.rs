@@ -99,7 +99,9 @@ pub(crate) unsafe fn write_text(
     let out = unsafe { slice_mut(out.cast::<u8>(), capacity) }?;
     let Some(space) = out.len().checked_sub(1) else {
         return match length.is_null() {
-            true => Err(Failure::argument("neither a buffer nor a place for the length is given")),
+            true => Err(Failure::argument(
+                "neither a buffer nor a place for the length is given",
+            )),
             false => Ok(()),
         };
     };

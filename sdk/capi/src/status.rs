@@ -113,7 +113,11 @@ impl Write for LastError {
         self.bytes[self.len..self.len + len].copy_from_slice(&text.as_bytes()[..len]);
         self.len += len;
         self.bytes[self.len] = 0;
-        if len < text.len() { Err(fmt::Error) } else { Ok(()) }
+        if len < text.len() {
+            Err(fmt::Error)
+        } else {
+            Ok(())
+        }
     }
 }
 

@@ -53,7 +53,9 @@ fn listing(header: &str) -> String {
     }
     code.push_str(rest);
     let without = |line: &&str| {
-        !(line.is_empty() || line.starts_with("//") || (line.starts_with('#') && !line.starts_with("#define HTEX_API")))
+        !(line.is_empty()
+            || line.starts_with("//")
+            || (line.starts_with('#') && !line.starts_with("#define HTEX_API")))
     };
     let lines = code.lines().map(str::trim).filter(without);
     let mut listing = String::new();
@@ -61,7 +63,8 @@ fn listing(header: &str) -> String {
         let line = line.split("//").next().unwrap().trim_end();
         listing.push_str(line);
         // A declaration ends here, or a member.
-        let ends = line.ends_with([';', ',', '{', '}']) && !line.ends_with(",") || line.starts_with('#');
+        let ends =
+            line.ends_with([';', ',', '{', '}']) && !line.ends_with(",") || line.starts_with('#');
         listing.push(if ends || is_constant(line) { '\n' } else { ' ' });
     }
     listing

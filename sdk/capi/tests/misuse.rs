@@ -10,12 +10,16 @@ use htex_c::htex_status::*;
 use htex_c::*;
 
 fn asset_path() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../spec/playing-conformance/five_conditions.htex")
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../spec/playing-conformance/five_conditions.htex")
 }
 
 fn last_error() -> String {
     // SAFETY: a text of the library that ends with a zero.
-    unsafe { CStr::from_ptr(htex_last_error()) }.to_str().unwrap().to_owned()
+    unsafe { CStr::from_ptr(htex_last_error()) }
+        .to_str()
+        .unwrap()
+        .to_owned()
 }
 
 fn opened() -> htex_asset {
@@ -55,14 +59,26 @@ fn freed_and_foreign_handles_are_refused() {
     // SAFETY: live pointers.
     unsafe {
         // The voice plays on without its asset.
-        assert_eq!(htex_voice_render(voice, block.as_mut_ptr(), 64), HTEX_STATUS_OK);
+        assert_eq!(
+            htex_voice_render(voice, block.as_mut_ptr(), 64),
+            HTEX_STATUS_OK
+        );
         let mut out = htex_voice { id: 0 };
-        is(htex_voice_new(asset, null(), &mut out), HTEX_STATUS_BAD_HANDLE);
+        is(
+            htex_voice_new(asset, null(), &mut out),
+            HTEX_STATUS_BAD_HANDLE,
+        );
         assert_eq!(htex_voice_free(voice), HTEX_STATUS_OK);
         for id in [0, voice.id, asset.id, 1, u64::MAX, voice.id + 1] {
             let voice = htex_voice { id };
-            is(htex_voice_render(voice, block.as_mut_ptr(), 64), HTEX_STATUS_BAD_HANDLE);
-            is(htex_voice_set_motion(voice, &MOTION), HTEX_STATUS_BAD_HANDLE);
+            is(
+                htex_voice_render(voice, block.as_mut_ptr(), 64),
+                HTEX_STATUS_BAD_HANDLE,
+            );
+            is(
+                htex_voice_set_motion(voice, &MOTION),
+                HTEX_STATUS_BAD_HANDLE,
+            );
             is(htex_voice_free(voice), HTEX_STATUS_BAD_HANDLE);
             is(htex_asset_free(htex_asset { id }), HTEX_STATUS_BAD_HANDLE);
             is(htex_scene_stop(htex_scene { id }), HTEX_STATUS_BAD_HANDLE);
@@ -80,11 +96,20 @@ fn null_and_misaligned_pointers_are_refused() {
     unsafe {
         let bad = HTEX_STATUS_INVALID_ARGUMENT;
         is(htex_asset_open(null(), null(), null_mut()), bad);
-        is(htex_asset_open(c"x.htex".as_ptr(), null(), null_mut()), HTEX_STATUS_IO);
+        is(
+            htex_asset_open(c"x.htex".as_ptr(), null(), null_mut()),
+            HTEX_STATUS_IO,
+        );
         is(htex_asset_open(c"\xff".as_ptr(), null(), null_mut()), bad);
         is(htex_asset_from_bytes(null(), 10, null(), null_mut()), bad);
-        is(htex_asset_manifest_json(asset, null_mut(), 10, null_mut()), bad);
-        is(htex_asset_manifest_json(asset, null_mut(), 0, null_mut()), bad);
+        is(
+            htex_asset_manifest_json(asset, null_mut(), 10, null_mut()),
+            bad,
+        );
+        is(
+            htex_asset_manifest_json(asset, null_mut(), 0, null_mut()),
+            bad,
+        );
         is(htex_asset_condition(asset, 1_000, null_mut()), bad);
         is(htex_asset_condition(asset, 0, null_mut()), bad);
         is(htex_voice_new(asset, null(), null_mut()), bad);
@@ -93,7 +118,10 @@ fn null_and_misaligned_pointers_are_refused() {
         is(htex_voice_render(voice, null_mut(), usize::MAX), bad);
         is(htex_voice_set_motion(voice, null()), bad);
         is(htex_voice_set_motion(voice, odd.cast()), bad);
-        is(htex_voice_render_path(voice, null(), 2, null_mut(), usize::MAX), bad);
+        is(
+            htex_voice_render_path(voice, null(), 2, null_mut(), usize::MAX),
+            bad,
+        );
         is(htex_scene_open(null(), null(), null(), null_mut()), bad);
         assert_eq!(htex_voice_render(voice, null_mut(), 0), HTEX_STATUS_OK);
     }
@@ -113,16 +141,34 @@ fn motions_out_of_range_leave_the_voice_as_it_was() {
         assert_eq!(htex_voice_set_motion(twin, &MOTION), HTEX_STATUS_OK);
         for number in wrong {
             for motion in [
-                htex_motion { speed_mm_s: number, ..MOTION },
-                htex_motion { force_n: number, ..MOTION },
+                htex_motion {
+                    speed_mm_s: number,
+                    ..MOTION
+                },
+                htex_motion {
+                    force_n: number,
+                    ..MOTION
+                },
             ] {
-                is(htex_voice_set_motion(voice, &motion), HTEX_STATUS_INVALID_MOTION);
+                is(
+                    htex_voice_set_motion(voice, &motion),
+                    HTEX_STATUS_INVALID_MOTION,
+                );
             }
         }
-        let motion = htex_motion { position_mm: f64::INFINITY, ..MOTION };
-        is(htex_voice_set_motion(voice, &motion), HTEX_STATUS_INVALID_MOTION);
+        let motion = htex_motion {
+            position_mm: f64::INFINITY,
+            ..MOTION
+        };
+        is(
+            htex_voice_set_motion(voice, &motion),
+            HTEX_STATUS_INVALID_MOTION,
+        );
         for (voice, block) in [voice, twin].into_iter().zip(&mut blocks) {
-            assert_eq!(htex_voice_render(voice, block.as_mut_ptr(), 256), HTEX_STATUS_OK);
+            assert_eq!(
+                htex_voice_render(voice, block.as_mut_ptr(), 256),
+                HTEX_STATUS_OK
+            );
         }
     }
     assert_eq!(blocks[0], blocks[1]);
@@ -178,7 +224,10 @@ fn options_are_checked_by_their_size() {
     }
     options.rate_hz = 0.0;
     options.size = size_of::<Newer>();
-    let mut newer = Newer { known: options, more: 0 };
+    let mut newer = Newer {
+        known: options,
+        more: 0,
+    };
     // SAFETY: `size` bytes are there.
     let at = |newer: &Newer| unsafe { &*(&raw const *newer).cast::<htex_voice_options>() };
     assert_eq!(new(at(&newer)), HTEX_STATUS_OK);
@@ -193,7 +242,10 @@ fn texts_tell_their_length() {
     let mut length = 0;
     // SAFETY: live pointers.
     unsafe {
-        assert_eq!(htex_asset_manifest_json(asset, null_mut(), 0, &mut length), HTEX_STATUS_OK);
+        assert_eq!(
+            htex_asset_manifest_json(asset, null_mut(), 0, &mut length),
+            HTEX_STATUS_OK
+        );
         let mut text = vec![1 as c_char; length + 1];
         let status = htex_asset_manifest_json(asset, text.as_mut_ptr(), text.len(), null_mut());
         assert_eq!(status, HTEX_STATUS_OK);
@@ -215,7 +267,9 @@ fn mutated_files_are_errors() {
     let original = std::fs::read(asset_path()).unwrap();
     let mut state = 1u64;
     let mut random = |below: usize| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) as usize % below
     };
     let (mut refused, mut played) = (0, 0);
@@ -232,7 +286,8 @@ fn mutated_files_are_errors() {
         }
         let mut asset = htex_asset { id: 0 };
         // SAFETY: live pointers.
-        let status = unsafe { htex_asset_from_bytes(bytes.as_ptr(), bytes.len(), null(), &mut asset) };
+        let status =
+            unsafe { htex_asset_from_bytes(bytes.as_ptr(), bytes.len(), null(), &mut asset) };
         if status != HTEX_STATUS_OK {
             is(status, HTEX_STATUS_INVALID_ASSET);
             refused += 1;
@@ -278,7 +333,12 @@ fn a_scene_plays_and_reports() {
     let path = CString::new(path.to_str().unwrap()).unwrap();
     let mut playing = htex_scene { id: 0 };
     let mut samples = [0.0f32; 2_000];
-    let finger = htex_finger { speed_mm_s: 80.0, force_n: 0.4, x_mm: 1.0, y_mm: 1.0 };
+    let finger = htex_finger {
+        speed_mm_s: 80.0,
+        force_n: 0.4,
+        x_mm: 1.0,
+        y_mm: 1.0,
+    };
     // SAFETY: live pointers.
     unsafe {
         htex_set_log(Some(count), 42 as *mut c_void);
@@ -286,11 +346,20 @@ fn a_scene_plays_and_reports() {
         assert_eq!(status, HTEX_STATUS_OK, "{}", last_error());
         htex_set_log(None, null_mut());
         let mut length = 0;
-        assert_eq!(htex_scene_plan_json(playing, null_mut(), 0, &mut length), HTEX_STATUS_OK);
+        assert_eq!(
+            htex_scene_plan_json(playing, null_mut(), 0, &mut length),
+            HTEX_STATUS_OK
+        );
         assert!(length > 100);
         assert_eq!(htex_scene_set_finger(playing, &finger), HTEX_STATUS_OK);
-        let lost = htex_finger { x_mm: f64::NAN, ..finger };
-        is(htex_scene_set_finger(playing, &lost), HTEX_STATUS_INVALID_MOTION);
+        let lost = htex_finger {
+            x_mm: f64::NAN,
+            ..finger
+        };
+        is(
+            htex_scene_set_finger(playing, &lost),
+            HTEX_STATUS_INVALID_MOTION,
+        );
         let mut rendered = 0;
         let status = htex_scene_render(playing, samples.as_mut_ptr(), 2_000, &mut rendered);
         assert_eq!((status, rendered), (HTEX_STATUS_OK, 2_000));

@@ -54,7 +54,10 @@ fn examples_play_the_same_samples() {
 #[test]
 fn examples_of_the_readme_run() {
     let readme = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
-    let mut voice = Asset::open(asset()).unwrap().voice(&VoiceOptions::default()).unwrap();
+    let mut voice = Asset::open(asset())
+        .unwrap()
+        .voice(&VoiceOptions::default())
+        .unwrap();
     let mut block = [0.0f32; 64];
     voice.set_motion(Motion::new(80.0, 0.4)).unwrap();
     voice.render(&mut block).unwrap();
@@ -80,16 +83,29 @@ fn the_example_has_no_memory_errors() {
         let out = project.folder().join("stroke.f32");
         let run = project.run_under(under, &program, &[asset().as_os_str(), out.as_os_str()]);
         assert!(run.status.success(), "{under:?} {more:?}: {run:?}");
-        assert!(fs::read(&out).unwrap() == stroke(&asset()), "{under:?} {more:?}");
+        assert!(
+            fs::read(&out).unwrap() == stroke(&asset()),
+            "{under:?} {more:?}"
+        );
     };
     let valgrind = Command::new("valgrind").arg("--version").output().is_ok();
     if needs::VALGRIND.met(valgrind) {
-        let under = ["valgrind", "--quiet", "--error-exitcode=9", "--leak-check=full", "--errors-for-leak-kinds=definite"];
+        let under = [
+            "valgrind",
+            "--quiet",
+            "--error-exitcode=9",
+            "--leak-check=full",
+            "--errors-for-leak-kinds=definite",
+        ];
         run(&Project::new(Language::C, "valgrind").unwrap(), &under, &[]);
     }
     for language in [Language::C, Language::Clang] {
         if let Some(project) = Project::new(language, "sanitized") {
-            run(&project, &[], &["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]);
+            run(
+                &project,
+                &[],
+                &["-fsanitize=address,undefined", "-fno-sanitize-recover=all"],
+            );
         }
     }
 }

@@ -149,7 +149,7 @@ mod tests {
             len in prop_oneof![1..400usize, Just(4_000), Just(8_820), Just(9_600), Just(2_205), Just(4_003), Just(10_006)],
             seed in any::<u64>(),
         ) {
-            let mut noise = crate::noise::WhiteNoise::new(seed);
+            let mut noise = crate::noise::GaussianNoise::new(seed);
             let signal: Vec<f64> = (0..len).map(|_| f64::from(noise.next_sample())).collect();
             let (forward, inverse) = peers(len);
 

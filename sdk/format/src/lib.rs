@@ -46,6 +46,8 @@ mod stages;
 mod typed;
 mod unpack;
 mod validate;
+#[cfg(feature = "write")]
+mod writing;
 mod zip_records;
 
 pub use asset::Asset;

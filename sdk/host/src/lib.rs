@@ -18,6 +18,7 @@
 #![cfg_attr(test, allow(unexpected_cfgs))]
 
 mod builtin;
+mod clock;
 mod descriptor;
 mod error;
 pub mod folders;
@@ -32,7 +33,7 @@ mod own;
 mod raw;
 mod registry;
 // Without modules the budget is not used.
-#[cfg_attr(not(feature = "wasm"), allow(dead_code))]
+#[cfg_attr(not(any(feature = "wasm", target_family = "wasm")), allow(dead_code))]
 mod sandbox;
 mod search;
 mod stream;
@@ -41,6 +42,13 @@ mod table;
 mod together;
 mod voice;
 #[cfg(feature = "wasm")]
+mod wasm;
+// In a browser or in Node.js, which run the modules.
+#[cfg(test)]
+#[path = "browser/sections.rs"]
+mod sections;
+#[cfg(all(target_family = "wasm", not(feature = "wasm")))]
+#[path = "browser/mod.rs"]
 mod wasm;
 
 pub use descriptor::{DescriptorError, read_descriptor};
@@ -62,5 +70,5 @@ pub use voice::ModelVoice;
 #[cfg(feature = "wasm")]
 pub use wasm::{CompilerError, serve_compiler};
 
-/// Whether this build runs WASM modules (feature `wasm`).
-pub const RUNS_WASM: bool = cfg!(feature = "wasm");
+/// Whether this build runs WASM modules: by the engine of the feature `wasm`, or by the browser it runs in.
+pub const RUNS_WASM: bool = cfg!(any(feature = "wasm", target_family = "wasm"));

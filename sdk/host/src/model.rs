@@ -160,7 +160,7 @@ impl LoadedModel {
     }
 
     /// As [`Self::from_wasm_bytes`], in a sandbox that other models may share.
-    #[cfg(feature = "wasm")]
+    #[cfg(any(feature = "wasm", target_family = "wasm"))]
     pub(crate) fn from_wasm_in(
         name: &str,
         bytes: &[u8],
@@ -171,7 +171,7 @@ impl LoadedModel {
         Self::new(origin, Arc::new(raw))
     }
 
-    #[cfg(not(feature = "wasm"))]
+    #[cfg(not(any(feature = "wasm", target_family = "wasm")))]
     pub(crate) fn from_wasm_in(name: &str, _: &[u8], _: &Sandbox) -> Result<Self, HostError> {
         Err(no_wasm(name))
     }

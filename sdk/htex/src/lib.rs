@@ -15,6 +15,7 @@
 //! # Features
 //! - `wasm` (default): runs models that are embedded in assets, in a sandbox. Without it the program is smaller, and only
 //!   representations of built-in models can be played.
+//! - `write` (default): `format::Asset::write` and `to_bytes`.
 //! - `author`: `htex::author`, which reads recordings and makes assets.
 //! - `scene`: `htex::scene`, which plans and renders scenes, and `htex::device`, the devices they are played on.
 #![forbid(unsafe_code)]

@@ -2,6 +2,7 @@
 //!
 //! No library is ever unloaded: function pointers, open devices and voices point into it.
 
+#[cfg(any(unix, windows))]
 use std::error::Error;
 use std::ffi::OsStr;
 use std::path::{Path, absolute};
@@ -13,7 +14,15 @@ pub struct LoadError(String);
 
 /// A loaded library.
 #[derive(Debug, Clone, Copy)]
-pub struct Library(&'static libloading::Library);
+pub struct Library(&'static Loaded);
+
+#[cfg(any(unix, windows))]
+use libloading::Library as Loaded;
+
+/// What is loaded where there are no native libraries: nothing.
+#[cfg(not(any(unix, windows)))]
+#[derive(Debug)]
+enum Loaded {}
 
 impl Library {
     /// Loads the library in a file. A relative path, a bare file name among them, starts at the current folder; the
@@ -49,13 +58,33 @@ impl Library {
     #[must_use]
     pub unsafe fn symbol<T: Copy>(self, name: &str) -> Option<T> {
         // SAFETY: guaranteed by the caller.
-        let found = unsafe { self.0.get::<T>(name) };
-        found.ok().map(|symbol| *symbol)
+        unsafe { symbol(self.0, name) }
     }
 }
 
 /// # Safety
+/// The symbol has the type `T`.
+#[cfg(any(unix, windows))]
+unsafe fn symbol<T: Copy>(loaded: &Loaded, name: &str) -> Option<T> {
+    // SAFETY: guaranteed by the caller.
+    let found = unsafe { loaded.get::<T>(name) };
+    found.ok().map(|symbol| *symbol)
+}
+
+#[cfg(not(any(unix, windows)))]
+unsafe fn symbol<T>(loaded: &Loaded, _: &str) -> Option<T> {
+    match *loaded {}
+}
+
+#[cfg(not(any(unix, windows)))]
+unsafe fn load(_: &OsStr) -> Result<Library, LoadError> {
+    let none = "there are no native libraries on this platform; use a WASM module";
+    Err(LoadError(none.to_owned()))
+}
+
+/// # Safety
 /// Runs the library's initialisers.
+#[cfg(any(unix, windows))]
 unsafe fn load(name: &OsStr) -> Result<Library, LoadError> {
     // SAFETY: guaranteed by the caller.
     let loaded = unsafe { libloading::Library::new(name) };
@@ -64,6 +93,7 @@ unsafe fn load(name: &OsStr) -> Result<Library, LoadError> {
 }
 
 /// Returns the system loader's message, which is the source of libloading's error.
+#[cfg(any(unix, windows))]
 fn reason(error: &libloading::Error) -> String {
     match error.source() {
         Some(source) => source.to_string(),

@@ -81,7 +81,7 @@ fn measure_model(model: &LoadedModel) -> Result<(f64, f64), HostError> {
 fn fitted(model: &LoadedModel, corner_hz: f64) -> Result<Vec<f64>, HostError> {
     let band = Band::TACTILE;
     let grid = band.grid_hz();
-    let shape = |f: &f64| (1.2 + (f / 17.0).sin()) / (1.0 + (f / corner_hz).powi(2));
+    let shape = |f: &f64| (1.2 + libm::sin(f / 17.0)) / (1.0 + (f / corner_hz).powi(2));
     let magnitude: Vec<f64> = grid.iter().map(shape).collect();
     let request = FitRequest {
         band,
@@ -128,7 +128,7 @@ fn stages(mac_ns: f64) -> Result<BTreeMap<String, f64>, UnusableRates> {
 fn measure_stage(stage: &mut dyn Stage) -> f64 {
     let mut at = 0;
     let input: Vec<f32> = (0..4 * BLOCK)
-        .map(|n| (n as f32 * 0.7).sin() * 0.1)
+        .map(|n| libm::sinf(n as f32 * 0.7) * 0.1)
         .collect();
     let mut source = move |block: &mut [f32]| {
         for piece in block.chunks_mut(BLOCK) {

@@ -65,7 +65,8 @@ impl Calls<'_> {
     fn open(&mut self, bytes: &[u8]) {
         let mut asset = htex_asset { id: 0 };
         // SAFETY: live pointers.
-        let status = unsafe { htex_asset_from_bytes(bytes.as_ptr(), bytes.len(), null(), &mut asset) };
+        let status =
+            unsafe { htex_asset_from_bytes(bytes.as_ptr(), bytes.len(), null(), &mut asset) };
         if self.told(status) {
             self.assets.push(asset);
         }
@@ -98,12 +99,16 @@ impl Calls<'_> {
 
     fn asset(&mut self) -> htex_asset {
         let all: Vec<u64> = self.assets.iter().map(|asset| asset.id).collect();
-        htex_asset { id: self.handle(&all) }
+        htex_asset {
+            id: self.handle(&all),
+        }
     }
 
     fn voice(&mut self) -> htex_voice {
         let all: Vec<u64> = self.voices.iter().map(|voice| voice.id).collect();
-        htex_voice { id: self.handle(&all) }
+        htex_voice {
+            id: self.handle(&all),
+        }
     }
 
     fn one(&mut self) {
@@ -129,15 +134,31 @@ impl Calls<'_> {
     }
 
     fn new_voice(&mut self) {
-        let names = [null(), c"ar".as_ptr(), c"sbeta".as_ptr(), c"bands".as_ptr(), c"none".as_ptr()];
-        let ways = [null(), null(), c"loop:0.1".as_ptr(), c"filter:15".as_ptr(), c"x".as_ptr()];
+        let names = [
+            null(),
+            c"ar".as_ptr(),
+            c"sbeta".as_ptr(),
+            c"bands".as_ptr(),
+            c"none".as_ptr(),
+        ];
+        let ways = [
+            null(),
+            null(),
+            c"loop:0.1".as_ptr(),
+            c"filter:15".as_ptr(),
+            c"x".as_ptr(),
+        ];
         let (asset, motion) = (self.asset(), self.motion());
         let options = htex_voice_options {
             size: size_of::<htex_voice_options>(),
             model: names[usize::from(self.bytes.next()) % names.len()],
             rate_hz: [0.0, 8_000.0, 20_000.0, self.number()][usize::from(self.bytes.next()) % 4],
             seed: self.bytes.next().into(),
-            motion: if self.bytes.next() % 2 == 0 { null() } else { &motion },
+            motion: if self.bytes.next().is_multiple_of(2) {
+                null()
+            } else {
+                &motion
+            },
             synthesis: ways[usize::from(self.bytes.next()) % ways.len()],
             no_speed_scaling: (self.bytes.next() % 2).into(),
             no_force_scaling: 0,
@@ -166,7 +187,14 @@ impl Calls<'_> {
         let mut level = 0.0;
         // SAFETY: live arrays of four numbers.
         unsafe {
-            self.told(htex_asset_magnitude(asset, null(), &at, hz.as_ptr(), magnitude.as_mut_ptr(), 4));
+            self.told(htex_asset_magnitude(
+                asset,
+                null(),
+                &at,
+                hz.as_ptr(),
+                magnitude.as_mut_ptr(),
+                4,
+            ));
             self.told(htex_asset_level_rms(asset, null(), &at, &mut level));
         }
         assert!(level.is_finite());
@@ -179,9 +207,25 @@ impl Calls<'_> {
         let mut length = 0;
         // SAFETY: `capacity` is less than the length.
         unsafe {
-            self.told(htex_asset_manifest_json(asset, text.as_mut_ptr(), capacity, &mut length));
-            self.told(htex_asset_unit(asset, text.as_mut_ptr(), capacity, &mut length));
-            self.told(htex_voice_coverage(voice, &motion, text.as_mut_ptr(), capacity, &mut length));
+            self.told(htex_asset_manifest_json(
+                asset,
+                text.as_mut_ptr(),
+                capacity,
+                &mut length,
+            ));
+            self.told(htex_asset_unit(
+                asset,
+                text.as_mut_ptr(),
+                capacity,
+                &mut length,
+            ));
+            self.told(htex_voice_coverage(
+                voice,
+                &motion,
+                text.as_mut_ptr(),
+                capacity,
+                &mut length,
+            ));
         }
     }
 }

@@ -36,7 +36,7 @@ impl From<LoadError> for Failure {
     fn from(error: LoadError) -> Self {
         let status = match &error {
             LoadError::Io { .. } => htex_status::HTEX_STATUS_IO,
-            LoadError::Invalid { .. } => htex_status::HTEX_STATUS_INVALID_SCENE,
+            _ => htex_status::HTEX_STATUS_INVALID_SCENE,
         };
         Self::of(status, error)
     }
@@ -116,7 +116,9 @@ fn settings(path: &Path, rate_hz: f64) -> BTreeMap<String, String> {
     let quantity = quantity().map(|quantity| ("quantity", quantity.name().to_owned()));
     let rate = (rate_hz != 0.0).then(|| ("rate_hz", rate_hz.to_string()));
     let given = [quantity, rate].into_iter().flatten();
-    given.map(|(name, value)| (name.to_owned(), value)).collect()
+    given
+        .map(|(name, value)| (name.to_owned(), value))
+        .collect()
 }
 
 fn start(scene: &LoadedScene, devices: &Devices) -> Result<(Renderer, Plan), Failure> {
@@ -178,7 +180,10 @@ pub(super) unsafe fn render(
         // SAFETY: the pointers are the caller's.
         let (out, rendered) = unsafe { (slice_mut(out, frames)?, place(rendered)?) };
         *rendered = scene.renderer.render(out);
-        scene.renderer.take_failure().map_or(Ok(()), |error| Err(error.into()))
+        scene
+            .renderer
+            .take_failure()
+            .map_or(Ok(()), |error| Err(error.into()))
     })
 }
 

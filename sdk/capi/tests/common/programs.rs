@@ -139,7 +139,11 @@ impl Project {
                 .arg(capi("unity/Runtime/Htex.cs")),
             native => compiler
                 .args(["-O1", "-Wall", "-Wextra", "-Werror", "-pedantic"])
-                .arg(if native == Language::Cxx { "-std=c++17" } else { "-std=c11" })
+                .arg(if native == Language::Cxx {
+                    "-std=c++17"
+                } else {
+                    "-std=c11"
+                })
                 .arg(&file)
                 .arg("-I")
                 .arg(capi("include"))

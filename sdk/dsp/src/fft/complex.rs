@@ -139,8 +139,7 @@ impl Stage {
         let out_re = to.re.chunks_exact_mut(R * self.stride);
         let out = out_re.zip(to.im.chunks_exact_mut(R * self.stride));
         for ((p, twiddle), (out_re, out_im)) in twiddles.iter().enumerate().zip(out) {
-            let at = |row: &[f64]| &row[p * self.stride..][..self.stride];
-            let (re, im) = (re.map(at), im.map(at));
+            let (re, im) = (parts(re, p, self.stride), parts(im, p, self.stride));
             let (out_re, out_im) = (
                 rows_mut::<R>(out_re, self.stride),
                 rows_mut::<R>(out_im, self.stride),
@@ -161,6 +160,12 @@ impl Stage {
 #[inline(always)]
 fn rows<const R: usize>(from: &[f64], len: usize) -> [&[f64]; R] {
     core::array::from_fn(|j| &from[j * len..][..len])
+}
+
+/// The parts `p` of rows, of `len` numbers each.
+#[inline(always)]
+fn parts<const R: usize>(rows: [&[f64]; R], p: usize, len: usize) -> [&[f64]; R] {
+    core::array::from_fn(|j| &rows[j][p * len..][..len])
 }
 
 /// `R` rows of `len` numbers each.

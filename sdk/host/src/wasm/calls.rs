@@ -19,7 +19,7 @@ impl Instance {
     pub(super) fn descriptor(&mut self, out: &mut [u8]) -> Result<i64, Fault> {
         let at = self.buffer(out.len().max(8))?;
         let len = self.call(Deadline::Call, |f| &f.descriptor, (at, out.len() as u32))?;
-        out.copy_from_slice(self.bytes(at, out.len())?);
+        self.read_bytes(at, out)?;
         Ok(len)
     }
 
@@ -28,8 +28,9 @@ impl Instance {
         let at = self.buffer(LONGEST_ERROR)?;
         let buffer = (at, LONGEST_ERROR as u32);
         let len = self.call(Deadline::Call, |f| &f.last_error, buffer)?;
-        let len = usize::try_from(len).unwrap_or(0).min(LONGEST_ERROR);
-        Ok(String::from_utf8_lossy(self.bytes(at, len)?).into_owned())
+        let mut text = vec![0; usize::try_from(len).unwrap_or(0).min(LONGEST_ERROR)];
+        self.read_bytes(at, &mut text)?;
+        Ok(String::from_utf8_lossy(&text).into_owned())
     }
 
     pub(super) fn fit(

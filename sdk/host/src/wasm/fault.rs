@@ -1,9 +1,7 @@
 //! Errors of calls of a module.
 
 use htex_model::Status;
-use wasmtime::Trap;
 
-use crate::WasmLimits;
 use crate::sandbox::BudgetError;
 
 /// An error of a call of a module, after which its instance is not used again.
@@ -28,7 +26,7 @@ pub(super) enum Fault {
     #[error("the module trapped: it panicked, or ran into `unreachable`")]
     Unreachable,
     #[error("the module trapped: {0}")]
-    Trap(Trap),
+    Trap(String),
     /// An error of the module's start function.
     #[error("at its start: {0}")]
     Start(Box<Self>),
@@ -55,25 +53,4 @@ pub(super) enum Fault {
 impl Fault {
     /// The status of a call that faulted.
     pub(super) const STATUS: i64 = Status::Failed as i64;
-
-    /// Converts an error of the engine; the message of an exceeded limit names the limit.
-    pub(super) fn of(error: &wasmtime::Error, limits: &WasmLimits, deadline_ms: u128) -> Self {
-        let Some(trap) = error.downcast_ref::<Trap>() else {
-            // An error of `Usage` is not a trap. Its context, the running functions one per line, is left out.
-            return Self::Refused {
-                what: error.root_cause().to_string(),
-            };
-        };
-        match *trap {
-            Trap::Interrupt => Self::Deadline { ms: deadline_ms },
-            Trap::OutOfFuel => Self::Fuel {
-                instructions: limits.fuel.unwrap_or_default(),
-            },
-            Trap::StackOverflow => Self::Stack {
-                bytes: limits.stack_bytes,
-            },
-            Trap::UnreachableCodeReached => Self::Unreachable,
-            other => Self::Trap(other),
-        }
-    }
 }

@@ -253,8 +253,13 @@ impl Instance {
         Ok(())
     }
 
-    /// The bytes at an address.
-    pub(super) fn bytes(&self, at: Usize, len: usize) -> Result<&[u8], Fault> {
+    /// Reads bytes at an address.
+    pub(super) fn read_bytes(&self, at: Usize, out: &mut [u8]) -> Result<(), Fault> {
+        out.copy_from_slice(self.bytes(at, out.len())?);
+        Ok(())
+    }
+
+    fn bytes(&self, at: Usize, len: usize) -> Result<&[u8], Fault> {
         let data = self.memory.data(&self.store);
         data.get(at as usize..)
             .and_then(|rest| rest.get(..len))

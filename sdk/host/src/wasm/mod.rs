@@ -19,6 +19,8 @@ mod model;
 mod module;
 mod private;
 mod process;
+mod shared;
+mod trap;
 mod usage;
 mod voice;
 

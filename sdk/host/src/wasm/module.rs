@@ -1,13 +1,13 @@
 //! A module that is checked and compiled.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use wasmtime::{ExternType, Module};
 
 use super::compile;
 use super::compile_error::CompileError;
 use super::engine::WasmEngine;
+use super::shared::Shared;
 use crate::WasmLimits;
 use crate::sandbox::{Budget, Sandbox};
 
@@ -17,8 +17,7 @@ pub(super) struct WasmModule {
     pub(super) module: Module,
     pub(super) limits: WasmLimits,
     pub(super) budget: Arc<Budget>,
-    voices: AtomicUsize,
-    follows_motion: AtomicBool,
+    pub(super) shared: Shared,
 }
 
 impl WasmModule {
@@ -38,38 +37,8 @@ impl WasmModule {
             module,
             limits: limits.clone(),
             budget: Arc::clone(&sandbox.budget),
-            voices: AtomicUsize::new(0),
-            follows_motion: AtomicBool::new(false),
+            shared: Shared::default(),
         })
-    }
-
-    /// Returns whether instances must have the functions of `htex.motion/1`.
-    pub(super) fn follows_motion(&self) -> bool {
-        self.follows_motion.load(Ordering::Relaxed)
-    }
-
-    /// Requires the functions of `htex.motion/1` of all later instances.
-    pub(super) fn require_motion(&self) {
-        self.follows_motion.store(true, Ordering::Relaxed);
-    }
-
-    /// Counts one more voice; `None` at the limit.
-    pub(super) fn place(self: &Arc<Self>) -> Option<Place> {
-        let most = self.limits.voices;
-        let take = |n: usize| (n < most).then_some(n + 1);
-        let taken = self
-            .voices
-            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, take);
-        taken.ok().map(|_| Place(Arc::clone(self)))
-    }
-}
-
-/// The count of one voice, released when it is dropped.
-pub(super) struct Place(Arc<WasmModule>);
-
-impl Drop for Place {
-    fn drop(&mut self) {
-        self.0.voices.fetch_sub(1, Ordering::Relaxed);
     }
 }
 

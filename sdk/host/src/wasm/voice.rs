@@ -7,7 +7,8 @@ use htex_model::{Band, Motion};
 use super::calls::BLOCK;
 use super::fault::Fault;
 use super::instance::Instance;
-use super::module::{Place, WasmModule};
+use super::module::WasmModule;
+use super::shared::Place;
 use crate::raw::RawVoice;
 
 /// A voice with its instance.

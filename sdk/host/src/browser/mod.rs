@@ -1,0 +1,44 @@
+//! Models in WASM modules, run by the browser or Node.js that runs this program.
+//!
+//! As with the engine of the feature `wasm`: a module imports nothing, its memory and tables are limited, each voice has a
+//! separate instance, and an instance that trapped is not called again. A call cannot be interrupted from here: one that
+//! took longer than its limit is an error afterwards, and an endless loop ends with the worker that runs it
+//! (`sdk/web/src/guarded.js`).
+
+#[path = "../wasm/allowance.rs"]
+mod allowance;
+#[path = "../wasm/calls.rs"]
+mod calls;
+// Some faults only the engine of the feature `wasm` reports.
+#[allow(dead_code)]
+#[path = "../wasm/fault.rs"]
+mod fault;
+mod imports;
+mod instance;
+#[path = "../wasm/model.rs"]
+mod model;
+mod module;
+mod sections;
+#[path = "../wasm/shared.rs"]
+mod shared;
+mod typed;
+#[path = "../wasm/voice.rs"]
+mod voice;
+
+use std::sync::Arc;
+
+pub(crate) use imports::now_ms;
+pub(crate) use model::WasmModel;
+use module::WasmModule;
+
+use crate::HostError;
+use crate::sandbox::Sandbox;
+
+/// Loads a model from the bytes of a module; messages name `origin`.
+pub(crate) fn load(origin: &str, bytes: &[u8], sandbox: &Sandbox) -> Result<WasmModel, HostError> {
+    let module = WasmModule::new(bytes, sandbox).map_err(|error| HostError::Load {
+        path: origin.to_owned(),
+        what: error.to_string(),
+    })?;
+    WasmModel::new(origin, Arc::new(module))
+}

@@ -1,0 +1,211 @@
+//! Limits of memory and tables, written into a module: a browser enforces the limits that a module states, and no others.
+
+use crate::WasmLimits;
+
+/// Bytes of a page of memory.
+const PAGE: usize = 1 << 16;
+/// Ids of sections.
+const IMPORT: u8 = 2;
+const TABLE: u8 = 4;
+const MEMORY: u8 = 5;
+/// Flag of limits: a maximum follows.
+const HAS_MAXIMUM: u8 = 1;
+
+/// A module states more than is allowed, or its sections cannot be read.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub(super) enum SectionError {
+    #[error("invalid module: its section {id} cannot be read")]
+    Invalid { id: u8 },
+    #[error("invalid module: it does not begin with the bytes of WASM, version 1")]
+    Header,
+    #[error(
+        "the module has imports; a model may import nothing (build it for wasm32-unknown-unknown, without files, clocks and \
+         randomness)"
+    )]
+    Import,
+    #[error("the module was stopped: its memory is limited to {bytes} bytes")]
+    Memory { bytes: usize },
+    #[error("the module was stopped: a table is limited to {elements} elements")]
+    Table { elements: usize },
+    #[error("the module has memories or tables of a kind that models may not have")]
+    Kind,
+}
+
+/// The module with at most the memory and the table elements of `limits`.
+pub(super) fn limited(module: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, SectionError> {
+    let mut rest = module
+        .strip_prefix(b"\0asm\x01\0\0\0")
+        .ok_or(SectionError::Header)?;
+    let mut out = module[..8].to_vec();
+    while let Some((&id, behind)) = rest.split_first() {
+        let invalid = SectionError::Invalid { id };
+        rest = behind;
+        let len = number(&mut rest).ok_or(invalid.clone())?;
+        let (body, behind) = rest.split_at_checked(len as usize).ok_or(invalid.clone())?;
+        rest = behind;
+        match id {
+            IMPORT if body != [0] => return Err(SectionError::Import),
+            MEMORY | TABLE => {
+                let body = within(id, body, limits)?;
+                out.push(id);
+                push(&mut out, body.len() as u32);
+                out.extend(body);
+            }
+            _ => {
+                out.push(id);
+                push(&mut out, len);
+                out.extend(body);
+            }
+        }
+    }
+    Ok(out)
+}
+
+/// The memories or tables of a section with maxima.
+fn within(id: u8, mut body: &[u8], limits: &WasmLimits) -> Result<Vec<u8>, SectionError> {
+    let invalid = SectionError::Invalid { id };
+    let (most, above) = match id {
+        MEMORY => {
+            let bytes = limits.memory_bytes;
+            (bytes / PAGE, SectionError::Memory { bytes })
+        }
+        _ => {
+            let elements = limits.table_elements;
+            (elements, SectionError::Table { elements })
+        }
+    };
+    let count = number(&mut body).ok_or(invalid.clone())?;
+    if id == MEMORY && count > 1 {
+        return Err(SectionError::Kind);
+    }
+    let mut out = Vec::new();
+    push(&mut out, count);
+    for _ in 0..count {
+        if id == TABLE {
+            // A reference type of one byte; others begin with a byte that stands for none.
+            let kind = byte(&mut body).ok_or(invalid.clone())?;
+            if !matches!(kind, 0x70 | 0x6f) {
+                return Err(SectionError::Kind);
+            }
+            out.push(kind);
+        }
+        let flags = byte(&mut body).ok_or(invalid.clone())?;
+        if flags > HAS_MAXIMUM {
+            return Err(SectionError::Kind);
+        }
+        let least = number(&mut body).ok_or(invalid.clone())?;
+        let stated = match flags {
+            HAS_MAXIMUM => number(&mut body).ok_or(invalid.clone())?,
+            _ => u32::MAX,
+        };
+        if least as usize > most {
+            return Err(above);
+        }
+        out.push(HAS_MAXIMUM);
+        push(&mut out, least);
+        push(
+            &mut out,
+            stated.min(u32::try_from(most).unwrap_or(u32::MAX)),
+        );
+    }
+    if body.is_empty() {
+        Ok(out)
+    } else {
+        Err(invalid)
+    }
+}
+
+fn byte(rest: &mut &[u8]) -> Option<u8> {
+    let (first, behind) = rest.split_first()?;
+    *rest = behind;
+    Some(*first)
+}
+
+/// A number of at most 32 bits (LEB128).
+fn number(rest: &mut &[u8]) -> Option<u32> {
+    let mut value = 0u64;
+    for shift in [0, 7, 14, 21, 28] {
+        let next = byte(rest)?;
+        value |= u64::from(next & 0x7f) << shift;
+        if next < 0x80 {
+            return u32::try_from(value).ok();
+        }
+    }
+    None
+}
+
+fn push(out: &mut Vec<u8>, mut value: u32) {
+    while value >= 0x80 {
+        out.push(value as u8 | 0x80);
+        value >>= 7;
+    }
+    out.push(value as u8);
+}
+
+#[cfg(all(test, feature = "wasm"))]
+mod tests {
+    use super::*;
+    use wasmparser::{Parser, Payload, Validator};
+
+    /// Maxima of the memories and tables of a valid module.
+    fn maxima(module: &[u8]) -> Vec<Option<u64>> {
+        Validator::new().validate_all(module).unwrap();
+        let mut all = Vec::new();
+        for payload in Parser::new(0).parse_all(module) {
+            match payload.unwrap() {
+                Payload::MemorySection(section) => {
+                    all.extend(section.into_iter().map(|m| m.unwrap().maximum));
+                }
+                Payload::TableSection(section) => {
+                    all.extend(section.into_iter().map(|t| t.unwrap().ty.maximum));
+                }
+                _ => {}
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn memories_and_tables_get_maxima() {
+        let limits = WasmLimits::default()
+            .with_memory_bytes(10 * PAGE)
+            .with_table_elements(300);
+        for (text, expected) in [
+            ("(module (memory 1) (table 2 funcref))", vec![300, 10]),
+            (
+                "(module (memory 1 4) (table 2 200 funcref) (table 1 externref))",
+                vec![200, 300, 4],
+            ),
+            ("(module (memory 10 65536) (func (export \"f\")))", vec![10]),
+            (
+                "(module (table 300 funcref) (func $f) (elem (i32.const 0) $f) (memory 0) (data (i32.const 0) \"\"))",
+                vec![300, 10],
+            ),
+        ] {
+            let module = limited(&wat::parse_str(text).unwrap(), &limits).unwrap();
+            let expected: Vec<_> = expected.into_iter().map(Some).collect();
+            assert_eq!(maxima(&module), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn modules_above_the_limits_are_refused() {
+        let limits = WasmLimits::default().with_memory_bytes(10 * PAGE);
+        for (text, words) in [
+            ("(module (memory 11))", "memory is limited to 655360 bytes"),
+            (
+                "(module (table 10001 funcref))",
+                "limited to 10000 elements",
+            ),
+            ("(module (import \"a\" \"b\" (func)))", "import nothing"),
+            ("(module (memory 1) (memory 1))", "of a kind"),
+            ("(module (memory i64 1))", "of a kind"),
+        ] {
+            let error = limited(&wat::parse_str(text).unwrap(), &limits).unwrap_err();
+            assert!(error.to_string().contains(words), "{text}: {error}");
+        }
+        assert_eq!(limited(b"PK", &limits), Err(SectionError::Header));
+        let cut = b"\0asm\x01\0\0\0\x05\x04\x01\x00";
+        assert_eq!(limited(cut, &limits), Err(SectionError::Invalid { id: 5 }));
+    }
+}

@@ -1,0 +1,187 @@
+// The library of `sdk/capi`, compiled to WASM, with its C functions as methods. Structs have the layout of 32-bit WASM.
+
+import { Guests, decode, encode } from "./guests.js";
+
+/** Names of the statuses of the C interface (`htex_status`), by number. */
+const STATUS = [
+  "ok",
+  "invalid-argument",
+  "bad-handle",
+  "busy",
+  "io",
+  "invalid-asset",
+  "no-representation",
+  "no-model",
+  "model",
+  "invalid-motion",
+  "invalid-scene",
+  "unsupported",
+  "truncated",
+  "internal",
+];
+
+/** An error of the library; `code` is the kind, such as "invalid-asset". */
+export class HtexError extends Error {
+  constructor(message, code) {
+    super(message);
+    this.name = "HtexError";
+    this.code = code;
+  }
+}
+
+/** Sizes of structs: htex_open_options, htex_voice_options, htex_bytes. */
+const OPEN_OPTIONS = 28;
+const VOICE_OPTIONS = 48;
+const BYTES = 8;
+/** Bytes for results, at the start of each call. */
+const RESULTS = 64;
+
+export class Core {
+  /** Instantiates the compiled library, at once. */
+  static now(module) {
+    const guests = new Guests();
+    return new Core(new WebAssembly.Instance(module, { htex: guests.imports() }), guests);
+  }
+
+  /** Instantiates the compiled library. */
+  static async make(module) {
+    const guests = new Guests();
+    return new Core(await WebAssembly.instantiate(module, { htex: guests.imports() }), guests);
+  }
+
+  constructor(instance, guests) {
+    this.exports = instance.exports;
+    guests.memory = this.exports.memory;
+    this.results = this.allocate(RESULTS);
+  }
+
+  version() {
+    const at = this.exports.htex_version();
+    const bytes = new Uint8Array(this.exports.memory.buffer, at);
+    return decode(bytes.subarray(0, bytes.indexOf(0)));
+  }
+
+  /** Calls a function that returns a status. */
+  call(name, ...values) {
+    let status;
+    try {
+      status = this.exports[name](...values);
+    } catch (error) {
+      throw new HtexError(`an error of the library itself; please report it: ${error.message}`, "internal");
+    }
+    if (status !== 0) throw this.error(status);
+  }
+
+  error(status) {
+    const at = this.exports.htex_last_error();
+    const bytes = new Uint8Array(this.exports.memory.buffer, at);
+    return new HtexError(decode(bytes.slice(0, bytes.indexOf(0))), STATUS[status] ?? `status-${status}`);
+  }
+
+  view() {
+    return new DataView(this.exports.memory.buffer);
+  }
+
+  allocate(bytes) {
+    const at = this.exports.htex_alloc(bytes);
+    if (at === 0) throw new HtexError(`${bytes} bytes of memory cannot be allocated`, "internal");
+    return at;
+  }
+
+  /** Runs `body` with an arena: `take(bytes)` allocates memory that is freed afterwards. */
+  scope(body) {
+    const taken = [];
+    const take = (bytes) => {
+      const at = this.allocate(bytes);
+      taken.push([at, bytes]);
+      return at;
+    };
+    try {
+      return body(take);
+    } finally {
+      for (const [at, bytes] of taken) this.exports.htex_free(at, bytes);
+    }
+  }
+
+  /** Copies bytes to memory of an arena. */
+  put(take, bytes) {
+    const at = take(Math.max(bytes.length, 1));
+    new Uint8Array(this.exports.memory.buffer, at, bytes.length).set(bytes);
+    return at;
+  }
+
+  putText(take, text) {
+    if (text === undefined || text === null) return 0;
+    return this.put(take, encode(`${text}\0`));
+  }
+
+  /** Numbers of 64 bits, at an address that is a multiple of 8. */
+  putNumbers(take, numbers) {
+    const at = take(8 * Math.max(numbers.length, 1));
+    new Float64Array(this.exports.memory.buffer, at, numbers.length).set(numbers);
+    return at;
+  }
+
+  putMotion(take, motion) {
+    if (!motion) return 0;
+    const { speed = 0, force = 0, position = NaN } = motion;
+    return this.putNumbers(take, [speed, force, position]);
+  }
+
+  /** The options of opening; see `OpenOptions` in index.d.ts. */
+  putOpenOptions(take, { modules = [], embedded = true }) {
+    const list = take(BYTES * Math.max(modules.length, 1));
+    modules.forEach((module, i) => {
+      const bytes = toBytes(module);
+      const at = this.put(take, bytes);
+      this.view().setUint32(list + BYTES * i, at, true);
+      this.view().setUint32(list + BYTES * i + 4, bytes.length, true);
+    });
+    const at = take(OPEN_OPTIONS);
+    const view = this.view();
+    new Uint8Array(view.buffer, at, OPEN_OPTIONS).fill(0);
+    view.setUint32(at, OPEN_OPTIONS, true);
+    view.setUint32(at + 12, embedded ? 0 : 1, true);
+    view.setUint32(at + 20, list, true);
+    view.setUint32(at + 24, modules.length, true);
+    return at;
+  }
+
+  /** The options of a voice; see `VoiceOptions` in index.d.ts. */
+  putVoiceOptions(take, options) {
+    const { model, rate = 20_000, seed = 0, motion, synthesis } = options;
+    const { speedScaling = true, forceScaling = true, contact = true } = options;
+    const texts = [this.putText(take, model), this.putMotion(take, motion), this.putText(take, synthesis)];
+    const at = take(VOICE_OPTIONS);
+    const view = this.view();
+    new Uint8Array(view.buffer, at, VOICE_OPTIONS).fill(0);
+    view.setUint32(at, VOICE_OPTIONS, true);
+    view.setUint32(at + 4, texts[0], true);
+    view.setFloat64(at + 8, rate, true);
+    view.setBigUint64(at + 16, BigInt.asUintN(64, BigInt(seed)), true);
+    view.setUint32(at + 24, texts[1], true);
+    view.setUint32(at + 28, texts[2], true);
+    view.setUint32(at + 32, speedScaling ? 0 : 1, true);
+    view.setUint32(at + 36, forceScaling ? 0 : 1, true);
+    view.setUint32(at + 40, contact ? 0 : 1, true);
+    return at;
+  }
+
+  /** The text that a function writes: asked for its length first. */
+  text(name, ...values) {
+    this.call(name, ...values, 0, 0, this.results);
+    const len = this.view().getUint32(this.results, true);
+    return this.scope((take) => {
+      const at = take(len + 1);
+      this.call(name, ...values, at, len + 1, 0);
+      return decode(new Uint8Array(this.exports.memory.buffer, at, len));
+    });
+  }
+}
+
+/** Bytes of an ArrayBuffer, a typed array or a DataView. */
+export function toBytes(data) {
+  if (data instanceof ArrayBuffer) return new Uint8Array(data);
+  if (ArrayBuffer.isView(data)) return new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
+  throw new TypeError("bytes are an ArrayBuffer or a view of one");
+}

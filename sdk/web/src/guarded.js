@@ -1,0 +1,73 @@
+// Voices of models that are not trusted, in a worker that is ended when it does not return.
+
+import { HtexError } from "./core.js";
+
+/** Milliseconds between two questions whether the worker returns. */
+const ASKED_MS = 250;
+
+export class GuardedWorker {
+  /** `limit`: milliseconds of the longest call. */
+  constructor({ limit = 2_000 } = {}) {
+    this.limit = limit;
+    this.waiting = new Map();
+    this.last = 0;
+    this.heard = Date.now();
+    this.worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+    this.worker.onmessage = ({ data }) => this.receive(data);
+    this.worker.onerror = ({ message }) => this.end(new HtexError(`the worker failed: ${message}`, "internal"));
+    this.timer = setInterval(() => this.ask(), ASKED_MS);
+  }
+
+  receive({ pong, id, error, ...result }) {
+    this.heard = Date.now();
+    if (pong) {
+      this.asked = false;
+      return;
+    }
+    const { resolve, reject } = this.waiting.get(id) ?? {};
+    if (error) reject?.(new HtexError(error.message, error.code));
+    else resolve?.(result);
+  }
+
+  ask() {
+    if (!this.asked) {
+      this.heard = Date.now();
+      this.asked = true;
+      this.worker.postMessage({ ping: true });
+    } else if (Date.now() - this.heard > this.limit) {
+      this.end(new HtexError(`a model ran longer than ${this.limit} ms and was stopped`, "model"));
+    }
+  }
+
+  request(message, transfer = [], failed = () => {}) {
+    if (this.ended) return Promise.reject(this.ended);
+    this.last += 1;
+    const id = this.last;
+    const done = new Promise((resolve, reject) => {
+      const both = (error) => (reject(error), failed(error));
+      this.waiting.set(id, { resolve, reject: both });
+    });
+    this.worker.postMessage({ id, ...message }, transfer);
+    return done;
+  }
+
+  /** Plays a voice through a port; `failed` is called with an error, at any later time too. */
+  play(description, port, failed) {
+    return this.request({ description, port }, [port], failed);
+  }
+
+  /** Renders samples of a voice. */
+  async render(description, frames) {
+    return (await this.request({ description, frames })).samples;
+  }
+
+  /** Ends the worker; what it was asked for fails with the error. */
+  end(error = new HtexError("the worker was ended", "internal")) {
+    if (this.ended) return;
+    this.ended = error;
+    clearInterval(this.timer);
+    this.worker.terminate();
+    for (const { reject } of this.waiting.values()) reject(error);
+    this.waiting.clear();
+  }
+}

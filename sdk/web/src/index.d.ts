@@ -1,0 +1,160 @@
+/** Textures of touch in the browser and in Node.js. */
+
+/** Bytes. */
+export type Bytes = ArrayBuffer | ArrayBufferView;
+
+/** An error of the library. */
+export class HtexError extends Error {
+  readonly name: "HtexError";
+  /** The kind of error: "invalid-argument", "invalid-asset", "no-representation", "no-model", "model", "invalid-motion", "bad-handle",
+   * "unsupported", "internal" and others. */
+  readonly code: string;
+}
+
+/** Motion of a finger over a texture, at one moment. */
+export interface Motion {
+  /** Scanning speed, mm/s; finite and not negative. Default 0. */
+  speed?: number;
+  /** Normal force, N; finite and not negative. Default 0. */
+  force?: number;
+  /** Position along the path, mm, for models that follow it. */
+  position?: number;
+}
+
+export interface OpenOptions {
+  /** WASM modules of models. They precede the built-in ones. */
+  modules?: Bytes[];
+  /** Whether models that the asset brings along may run, in a sandbox. Default true. */
+  embedded?: boolean;
+}
+
+export interface VoiceOptions {
+  /** The model of the representation, by its id or short name. Default: the representation of least error. */
+  model?: string;
+  /** Rate of the samples, Hz. Default 20000. */
+  rate?: number;
+  /** Seed of the noise: equal seeds give equal samples. Default 0. */
+  seed?: number | bigint;
+  /** Motion of the start. Default: the first recorded condition. */
+  motion?: Motion;
+  /** How samples are made. Default "streamed". */
+  synthesis?: "streamed" | `loop:${number}` | `filter:${number}`;
+  /** Whether frequencies follow speeds beyond the recorded ones. Default true. */
+  speedScaling?: boolean;
+  /** Whether the level follows forces beyond the recorded ones. Default true. */
+  forceScaling?: boolean;
+  /** Whether a finger that rests is silent. Default true. */
+  contact?: boolean;
+}
+
+export interface At {
+  /** The model of the representation. Default: the representation of least error. */
+  model?: string;
+  /** The motion; between conditions the spectrum is interpolated. Default: the first recorded condition. */
+  at?: Motion;
+}
+
+/** A texture asset. */
+export class Texture {
+  private constructor();
+  /** The manifest: name, conditions, representations, qualities and all else that the asset states. */
+  readonly manifest: Record<string, unknown> & { name: string };
+  readonly name: string;
+  /** Unit of the samples, such as "N". */
+  readonly unit: string;
+  /** Lowest and highest frequency of the spectra, Hz. */
+  readonly band: [number, number];
+  /** The recorded conditions; NaN where a speed or force is not known. */
+  readonly conditions: { speed: number; force: number }[];
+  /** Ids of the models of the representations. */
+  readonly models: string[];
+  /** Whether models of modules may run. */
+  readonly hasModules: boolean;
+  /** Magnitudes of the texture spectrum at frequencies in Hz, in the unit. */
+  spectrum(frequencies: ArrayLike<number>, options?: At): Float64Array;
+  /** Level of a representation, RMS in the unit. */
+  level(options?: At): number;
+  /** Makes a voice. */
+  voice(options?: VoiceOptions): Voice;
+  /** Frees the memory of the texture; its voices play on. */
+  free(): void;
+}
+
+/** A playing texture. */
+export class Voice {
+  private constructor();
+  /** Sets the motion: mm/s, N, and mm along the path. Spectrum and level glide to it. */
+  setMotion(speed: number, force: number, position?: number): void;
+  /** Renders the next samples, in the texture's unit. They do not depend on the lengths of the blocks. */
+  render(frames: number): Float32Array;
+  /** As before, to an array, without allocating. */
+  render(out: Float32Array): Float32Array;
+  /** Renders a block of `frames` samples at each motion. */
+  renderPath(speeds: ArrayLike<number>, forces: ArrayLike<number>, frames: number, positions?: ArrayLike<number>): Float32Array;
+  /** How the voice plays a motion, and whether that is within the recorded conditions, as English text. */
+  coverage(motion: Motion): string;
+  /** Frees the memory of the voice. */
+  free(): void;
+}
+
+/** Opens a texture: its bytes, or its address. */
+export function open(source: Bytes | string | URL, options?: OpenOptions): Promise<Texture>;
+
+/** Sets the library: the address of `htex.wasm`, its bytes, or the compiled module. Before the first `open`. */
+export function setLibrary(library: string | URL | Bytes | WebAssembly.Module): void;
+
+/** Prepares an audio context for nodes; must have returned before `new HtexNode`. */
+export function prepare(context: BaseAudioContext): Promise<void>;
+
+export interface NodeOptions extends Omit<VoiceOptions, "rate"> {
+  /** Factor from the texture's unit to full scale. Default: an RMS of 0.1, -20 dB, at the first condition. */
+  gain?: number;
+  /** Whether models of modules may run in the audio thread, where a call that does not return stops all sound. Default: only for textures
+   * without modules; others play in a worker, 32 ms later. */
+  trusted?: boolean;
+  /** A worker that several nodes share. */
+  worker?: GuardedWorker;
+  /** Longest call of a module in the worker, ms. Default 2000. */
+  limit?: number;
+}
+
+/** Plays a texture. Has an event `error`, whose property of that name is an HtexError. */
+export class HtexNode extends AudioWorkletNode {
+  constructor(context: BaseAudioContext, texture: Texture, options?: NodeOptions);
+  /** Scanning speed, mm/s. */
+  readonly speed: AudioParam;
+  /** Normal force, N. */
+  readonly force: AudioParam;
+  /** Factor from the texture's unit to full scale. */
+  readonly gain: AudioParam;
+  /** Position along the path, mm, for models that follow it. */
+  set position(position: number);
+  /** Resolves when the voice is made. */
+  readonly ready: Promise<void>;
+  /** The error after which the node is silent. */
+  readonly error?: HtexError;
+  /** Frames that a worker did not deliver in time. */
+  readonly missed: number;
+  /** Ends the voice; the node cannot be used again. */
+  stop(): void;
+}
+
+/** A worker that renders voices of models that are not trusted, and is ended when a call takes too long. */
+export class GuardedWorker {
+  constructor(options?: { limit?: number });
+  /** Ends the worker. */
+  end(): void;
+}
+
+export interface PointerOptions {
+  /** Millimetres of a CSS pixel. Default 25.4 / 96. */
+  mmPerPixel?: number;
+  /** Force in N of a pressure of 0 to 1. Default 0.8 times the pressure; a mouse has 0.5. */
+  force?: (pressure: number) => number;
+}
+
+/** Calls `moved` with the motion of a pointer over an element. Returns a function that ends this. */
+export function followPointer(element: HTMLElement, moved: (motion: Required<Motion>) => void, options?: PointerOptions): () => void;
+
+/** Lets a node follow a pointer over an element. Returns a function that ends this. */
+export function follow(element: HTMLElement, node: HtexNode, options?: PointerOptions): () => void;

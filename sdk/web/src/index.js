@@ -1,0 +1,8 @@
+// Textures of touch in the browser and in Node.js.
+
+export { HtexError } from "./core.js";
+export { Texture, Voice } from "./texture.js";
+export { open, setLibrary, library } from "./library.js";
+export { HtexNode, prepare } from "./node.js";
+export { GuardedWorker } from "./guarded.js";
+export { follow, followPointer } from "./pointer.js";

@@ -1,0 +1,166 @@
+// Textures and their voices.
+
+import { HtexError, toBytes } from "./core.js";
+
+/** Frames that are rendered at once; longer blocks are rendered in parts. */
+const BLOCK = 4096;
+
+/** Frees what its owner did not free. */
+const abandoned =
+  typeof FinalizationRegistry === "undefined" ? null : new FinalizationRegistry(({ core, free, id }) => core.exports[free](id));
+
+/** What has a handle in the library. */
+class Handle {
+  constructor(core, id, free) {
+    this.core = core;
+    this.id = id;
+    this.freeing = free;
+    abandoned?.register(this, { core, free, id }, this);
+  }
+
+  /** Frees the memory of the object, which is not used afterwards. */
+  free() {
+    abandoned?.unregister(this);
+    this.core.call(this.freeing, this.id);
+  }
+}
+
+/** A texture asset. */
+export class Texture extends Handle {
+  constructor(core, data, options = {}) {
+    const bytes = toBytes(data);
+    const id = core.scope((take) => {
+      const at = core.put(take, bytes);
+      core.call("htex_asset_from_bytes", at, bytes.length, core.putOpenOptions(take, options), core.results);
+      return core.view().getBigUint64(core.results, true);
+    });
+    super(core, id, "htex_asset_free");
+  }
+
+  /** The manifest: name, conditions, representations, qualities and all else that the asset states. */
+  get manifest() {
+    this.read ??= JSON.parse(this.core.text("htex_asset_manifest_json", this.id));
+    return this.read;
+  }
+
+  get name() {
+    return this.manifest.name;
+  }
+
+  /** Unit of the samples, such as "N". */
+  get unit() {
+    return this.core.text("htex_asset_unit", this.id);
+  }
+
+  /** Lowest and highest frequency of the spectra, Hz. */
+  get band() {
+    this.core.call("htex_asset_band", this.id, this.core.results);
+    const view = this.core.view();
+    return [view.getFloat64(this.core.results, true), view.getFloat64(this.core.results + 8, true)];
+  }
+
+  /** The recorded conditions: speed in mm/s and force in N, or NaN where one is not known. */
+  get conditions() {
+    const known = (x) => x ?? NaN;
+    return this.manifest.conditions.map((c) => ({ speed: known(c.speed_mm_s), force: known(c.force_n) }));
+  }
+
+  /** Ids of the models of the representations. */
+  get models() {
+    return this.manifest.representations.map((representation) => representation.model);
+  }
+
+  /** Magnitudes of the texture spectrum at frequencies in Hz, in the unit. */
+  spectrum(frequencies, { model, at } = {}) {
+    const { core } = this;
+    return core.scope((take) => {
+      const numbers = core.putNumbers(take, frequencies);
+      const [name, motion] = [core.putText(take, model), core.putMotion(take, at)];
+      core.call("htex_asset_magnitude", this.id, name, motion, numbers, numbers, frequencies.length);
+      return new Float64Array(core.exports.memory.buffer, numbers, frequencies.length).slice();
+    });
+  }
+
+  /** Level of a representation, RMS in the unit. */
+  level({ model, at } = {}) {
+    const { core } = this;
+    return core.scope((take) => {
+      const [name, motion] = [core.putText(take, model), core.putMotion(take, at)];
+      core.call("htex_asset_level_rms", this.id, name, motion, core.results);
+      return core.view().getFloat64(core.results, true);
+    });
+  }
+
+  /** Makes a voice. */
+  voice(options = {}) {
+    return new Voice(this, options);
+  }
+}
+
+/** A playing texture. */
+export class Voice extends Handle {
+  constructor(texture, options) {
+    const { core } = texture;
+    const id = core.scope((take) => {
+      core.call("htex_voice_new", texture.id, core.putVoiceOptions(take, options), core.results);
+      return core.view().getBigUint64(core.results, true);
+    });
+    super(core, id, "htex_voice_free");
+    core.rendering ??= core.allocate(4 * BLOCK);
+  }
+
+  /** Sets the motion of the finger: speed in mm/s, force in N, and the position along the path in mm if it is known. */
+  setMotion(speed, force, position = NaN) {
+    const { core } = this;
+    const view = core.view();
+    view.setFloat64(core.results, speed, true);
+    view.setFloat64(core.results + 8, force, true);
+    view.setFloat64(core.results + 16, position, true);
+    core.call("htex_voice_set_motion", this.id, core.results);
+  }
+
+  /** Renders the next samples, in the texture's unit, to a Float32Array, or to a new one of a length. Does not allocate for
+   * an array that is given. */
+  render(out) {
+    if (typeof out === "number") {
+      if (!Number.isInteger(out) || out < 0) throw new HtexError(`${out} frames; give a whole number`, "invalid-argument");
+      out = new Float32Array(out);
+    }
+    if (!(out instanceof Float32Array)) throw new TypeError("give a Float32Array, or a number of frames");
+    const { core } = this;
+    for (let from = 0; from < out.length; from += BLOCK) {
+      const frames = Math.min(BLOCK, out.length - from);
+      core.call("htex_voice_render", this.id, core.rendering, frames);
+      if (core.samples?.buffer !== core.exports.memory.buffer) {
+        core.samples = new Float32Array(core.exports.memory.buffer, core.rendering, BLOCK);
+      }
+      if (frames === BLOCK) out.set(core.samples, from);
+      else for (let i = 0; i < frames; i++) out[from + i] = core.samples[i];
+    }
+    return out;
+  }
+
+  /** Renders a block of `frames` samples at each motion: arrays of speeds, forces and, optionally, positions. */
+  renderPath(speeds, forces, frames, positions) {
+    const { core } = this;
+    const count = speeds.length;
+    if (forces.length !== count || (positions && positions.length !== count)) {
+      throw new HtexError("the arrays of the motion differ in length", "invalid-argument");
+    }
+    return core.scope((take) => {
+      const motions = core.putNumbers(take, new Float64Array(3 * count));
+      const view = new Float64Array(core.exports.memory.buffer, motions, 3 * count);
+      for (let i = 0; i < count; i++) view.set([speeds[i], forces[i], positions ? positions[i] : NaN], 3 * i);
+      const out = take(Math.max(4 * count * frames, 8));
+      core.call("htex_voice_render_path", this.id, motions, count, out, frames);
+      return new Float32Array(core.exports.memory.buffer, out, count * frames).slice();
+    });
+  }
+
+  /** How the voice plays a motion, and whether that is within the recorded conditions, as English text. */
+  coverage(motion) {
+    const { core } = this;
+    return core.scope((take) => core.text("htex_voice_coverage", this.id, core.putMotion(take, motion)));
+  }
+}
+

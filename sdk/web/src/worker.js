@@ -1,0 +1,63 @@
+// A worker that renders the voices of models that are not trusted. The page ends it when a call takes too long.
+
+import { Stage } from "./stage.js";
+
+/** Frames of a block, and blocks that are rendered ahead: 32 ms at 48 kHz. */
+const FRAMES = 256;
+const AHEAD = 6;
+
+const stage = new Stage();
+
+function report(id, error) {
+  postMessage({ id, error: { message: error.message, code: error.code } });
+}
+
+/** Plays a voice through a port to an audio worklet. */
+function play({ id, description, port }) {
+  let voice;
+  const attempt = (run) => {
+    try {
+      if (voice !== null) run();
+    } catch (error) {
+      voice = null;
+      report(id, error);
+    }
+  };
+  const render = (block) => {
+    voice.render(block);
+    port.postMessage(block, [block.buffer]);
+  };
+  port.onmessage = ({ data: { block, motion, stop } }) =>
+    attempt(() => {
+      if (motion) voice.setMotion(...motion);
+      if (block) render(block);
+      if (stop) {
+        voice.free();
+        voice = null;
+        port.close();
+      }
+    });
+  attempt(() => {
+    voice = stage.voice(description);
+    for (let i = 0; i < AHEAD; i++) render(new Float32Array(FRAMES));
+    postMessage({ id, ready: true });
+  });
+}
+
+/** Renders samples at once. */
+function render({ id, description, frames }) {
+  try {
+    const voice = stage.voice(description);
+    const samples = voice.render(frames);
+    voice.free();
+    postMessage({ id, samples }, [samples.buffer]);
+  } catch (error) {
+    report(id, error);
+  }
+}
+
+addEventListener("message", ({ data }) => {
+  if (data.ping) postMessage({ pong: data.ping });
+  else if (data.port) play(data);
+  else render(data);
+});

@@ -1,0 +1,139 @@
+// The package in Node.js.
+
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { cp, mkdir, mkdtemp, readFile, writeFile } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import path from "node:path";
+import test from "node:test";
+import { pathToFileURL } from "node:url";
+
+import { HTEX_FIXTURES, HTEX_PACKAGE, MODELS, bytes, difference, samples } from "./fixtures.mjs";
+
+/** The motion of the command's samples. */
+const MOTION = { speed: 80, force: 0.5 };
+
+const { open, HtexError, HtexNode } = await import(pathToFileURL(path.join(HTEX_PACKAGE, "index.js")));
+
+for (const model of MODELS) {
+  test(`${model} has the samples of the command`, async () => {
+    const texture = await open(await bytes("vinyl.htex"));
+    const voice = texture.voice({ model, rate: 48000, seed: 7, motion: MOTION });
+    const expected = await samples(`${model}.wav`);
+    const first = voice.render(100);
+    const rest = voice.render(new Float32Array(expected.length - 100));
+    const all = new Float32Array(expected.length);
+    all.set(first);
+    all.set(rest, 100);
+    assert.equal(difference(all, expected), -1);
+    voice.free();
+    texture.free();
+  });
+}
+
+test("a model that an asset brings along has the samples of the engine", async () => {
+  const texture = await open(await bytes("bursts.htex"));
+  assert.ok(texture.hasModules);
+  const voice = texture.voice({ model: "bursts", rate: 48000, seed: 7, motion: MOTION });
+  assert.equal(difference(voice.render(96000), await samples("bursts.wav")), -1);
+  const forbidden = await open(await bytes("bursts.htex"), { embedded: false });
+  assert.throws(() => forbidden.voice({ model: "bursts" }), { name: "HtexError", code: "no-model" });
+});
+
+test("all models as modules have the samples of the built-in ones", async () => {
+  for (const model of MODELS) {
+    const modules = [await bytes(`htex_${model}.wasm`)];
+    const texture = await open(await bytes("vinyl.htex"), { modules });
+    assert.ok(texture.hasModules);
+    const voice = texture.voice({ model, rate: 48000, seed: 7, motion: MOTION });
+    const expected = await samples(`${model}.wav`);
+    assert.equal(difference(voice.render(expected.length), expected), -1, model);
+    voice.setMotion(123, 0.31);
+    voice.render(1000);
+    voice.free();
+  }
+});
+
+test("a texture tells what it is", async () => {
+  const texture = await open(await bytes("vinyl.htex"));
+  assert.equal(texture.unit, "N");
+  assert.equal(texture.models.length, 6);
+  assert.deepEqual(texture.band, [20, 1000]);
+  const [{ speed, force }] = texture.conditions;
+  assert.ok(Math.abs(speed - 80) < 2 && Math.abs(force - 0.5) < 0.01);
+  const magnitudes = texture.spectrum([50, 100, 2000], { model: "bands" });
+  assert.ok(magnitudes[0] > 0 && magnitudes[2] === 0);
+  assert.ok(texture.level() > 0);
+  const voice = texture.voice();
+  assert.match(voice.coverage({ speed: 80, force: 0.5 }), /\w/);
+  const path = voice.renderPath([80, 90], [0.5, 0.4], 64);
+  assert.equal(path.length, 128);
+});
+
+test("bad input is an error of its kind", async () => {
+  const whole = await bytes("vinyl.htex");
+  const error = (code) => (e) => e instanceof HtexError && e.code === code && e.message.length > 10;
+  await assert.rejects(open(new Uint8Array(0)), error("invalid-asset"));
+  await assert.rejects(open(whole.subarray(0, 200)), error("invalid-asset"));
+  await assert.rejects(open(42), TypeError);
+  const texture = await open(whole);
+  assert.throws(() => texture.voice({ model: "none" }), error("no-representation"));
+  assert.throws(() => texture.voice({ rate: NaN }), HtexError);
+  assert.throws(() => texture.voice({ synthesis: "loud" }), error("invalid-argument"));
+  const voice = texture.voice();
+  assert.throws(() => voice.setMotion(NaN, 0.4), error("invalid-motion"));
+  assert.throws(() => voice.setMotion(80, -1), error("invalid-motion"));
+  assert.throws(() => voice.render(1.5), error("invalid-argument"));
+  assert.throws(() => voice.render([]), TypeError);
+  assert.throws(() => voice.renderPath([1], [], 8), error("invalid-argument"));
+  voice.free();
+  assert.throws(() => voice.render(8), error("bad-handle"));
+  assert.throws(() => new HtexNode({}, texture), error("unsupported"));
+});
+
+test("mutated files never crash", async () => {
+  const whole = await bytes("bursts.htex");
+  let random = 1;
+  const next = (below) => {
+    random = (Math.imul(random, 1664525) + 1013904223) >>> 0;
+    return Math.floor((random / 2 ** 32) * below);
+  };
+  let opened = 0;
+  for (let i = 0; i < 3000; i++) {
+    const copy = Uint8Array.from(whole.subarray(0, i % 3 === 0 ? next(whole.length) : whole.length));
+    for (let k = next(4); k >= 0 && copy.length > 0; k--) copy[next(copy.length)] = next(256);
+    try {
+      const texture = await open(copy, { embedded: i % 50 === 0 });
+      const voice = texture.voice();
+      assert.ok(voice.render(64).every(Number.isFinite));
+      voice.free();
+      texture.free();
+      opened += 1;
+    } catch (error) {
+      assert.ok(error instanceof HtexError, `${error?.stack}`);
+      assert.notEqual(error.code, "internal");
+    }
+  }
+  assert.ok(opened < 3000);
+});
+
+test("a module above its limits is refused", async () => {
+  const asset = await bytes("vinyl.htex");
+  // A memory of 2,000 pages of 64 KiB, above the 64 MiB of a model.
+  const large = Uint8Array.from([0, 97, 115, 109, 1, 0, 0, 0, 5, 4, 1, 0, 0xd0, 0x0f]);
+  await assert.rejects(open(asset, { modules: [large] }), /memory is limited/);
+  await assert.rejects(open(asset, { modules: [large.subarray(0, 8)] }), /not an htex model/);
+  await assert.rejects(open(asset, { modules: [Uint8Array.of(1, 2, 3)] }), /does not begin/);
+});
+
+test("the example of the README runs", async () => {
+  const folder = await mkdtemp(path.join(tmpdir(), "htex-web-"));
+  await mkdir(path.join(folder, "node_modules"));
+  await cp(HTEX_PACKAGE, path.join(folder, "node_modules/htex"), { recursive: true });
+  await cp(path.join(HTEX_FIXTURES, "vinyl.htex"), path.join(folder, "cloth.htex"));
+  const readme = await readFile(path.join(HTEX_PACKAGE, "README.md"), "utf8");
+  const [, example] = readme.match(/```js\n([\s\S]*?)```/);
+  await writeFile(path.join(folder, "play.mjs"), example);
+  const printed = execFileSync(process.execPath, ["play.mjs"], { cwd: folder, encoding: "utf8" });
+  assert.match(printed, /N 20000/);
+});

@@ -1,0 +1,195 @@
+//! Tests of the bindings to other languages, which need more than Rust: `cargo xtask bindings`.
+
+mod c;
+mod costs;
+mod fixtures;
+mod processors;
+mod web;
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::places::target;
+
+/// A binding: its name, the programs that its tests need, and the tests.
+struct Binding {
+    name: &'static str,
+    needs: &'static [Program],
+    test: fn(&Path) -> Result<(), String>,
+}
+
+/// A program and how to install it.
+struct Program {
+    /// Its name, or several of which one suffices.
+    names: &'static [&'static str],
+    how: &'static str,
+}
+
+const CC: Program = Program {
+    names: &["cc"],
+    how: "apt-get install gcc",
+};
+const CLANG: Program = Program {
+    names: &["clang"],
+    how: "apt-get install clang lld",
+};
+const PKG_CONFIG: Program = Program {
+    names: &["pkg-config"],
+    how: "apt-get install pkg-config",
+};
+const CMAKE: Program = Program {
+    names: &["cmake"],
+    how: "apt-get install cmake",
+};
+const SDL2: Program = Program {
+    names: &["sdl2-config"],
+    how: "apt-get install libsdl2-dev",
+};
+const MONO: Program = Program {
+    names: &["mono"],
+    how: "apt-get install mono-mcs mono-runtime",
+};
+const NODE: Program = Program {
+    names: &["node"],
+    how: "install Node.js from version 20",
+};
+const NPM: Program = Program {
+    names: &["npm"],
+    how: "apt-get install npm",
+};
+const CHROMIUM: Program = Program {
+    names: &["chromium", "chromium-browser", "google-chrome"],
+    how: "apt-get install chromium",
+};
+const QEMU_USER: [Program; 2] = [
+    Program {
+        names: &["qemu-x86_64"],
+        how: "apt-get install qemu-user",
+    },
+    Program {
+        names: &["qemu-aarch64"],
+        how: "apt-get install qemu-user",
+    },
+];
+
+const BINDINGS: [Binding; 4] = [
+    Binding {
+        name: "c",
+        needs: &[CC, PKG_CONFIG, CMAKE, SDL2],
+        test: c::test,
+    },
+    Binding {
+        name: "web",
+        needs: &[NODE, NPM, CHROMIUM, CLANG],
+        test: web::test,
+    },
+    Binding {
+        name: "processors",
+        needs: &QEMU_USER,
+        test: processors::test,
+    },
+    Binding {
+        name: "costs",
+        needs: &[CC, MONO, NODE],
+        test: costs::test,
+    },
+];
+
+/// Tests the named bindings, or all.
+///
+/// # Errors
+/// A message with what is missing, or with the test that failed; its own output has been printed.
+pub fn test(names: &[&str]) -> Result<(), String> {
+    let known = BINDINGS.map(|binding| binding.name);
+    if let Some(name) = names.iter().find(|name| !known.contains(name)) {
+        return Err(format!(
+            "no binding `{name}`; there are {}",
+            known.join(", ")
+        ));
+    }
+    let chosen = BINDINGS
+        .iter()
+        .filter(|binding| names.is_empty() || names.contains(&binding.name));
+    let mut failed = Vec::new();
+    for binding in chosen {
+        let missing: Vec<String> = binding.needs.iter().filter_map(Program::missing).collect();
+        if !missing.is_empty() {
+            failed.push(format!("{}: {}", binding.name, missing.join("; ")));
+            continue;
+        }
+        eprintln!("bindings: {}", binding.name);
+        let folder = target().join("bindings").join(binding.name);
+        let tested = prepare(&folder).and_then(|()| (binding.test)(&folder));
+        failed.extend(tested.err().map(|what| format!("{}: {what}", binding.name)));
+    }
+    if failed.is_empty() {
+        Ok(())
+    } else {
+        Err(failed.join("\n"))
+    }
+}
+
+impl Program {
+    /// The first of the names that is installed.
+    fn find(&self) -> Option<&'static str> {
+        let there = |name: &&&str| Command::new(name).arg("--version").output().is_ok();
+        self.names.iter().find(there).copied()
+    }
+
+    /// What is missing, and how to install it.
+    fn missing(&self) -> Option<String> {
+        let names = self.names.join(" or ");
+        match self.find() {
+            Some(_) => None,
+            None => Some(format!("{names} is missing ({})", self.how)),
+        }
+    }
+}
+
+/// An empty folder.
+fn prepare(folder: &Path) -> Result<(), String> {
+    let wrong = |error: std::io::Error| format!("{}: {error}", folder.display());
+    if folder.exists() {
+        std::fs::remove_dir_all(folder).map_err(wrong)?;
+    }
+    std::fs::create_dir_all(folder).map_err(wrong)
+}
+
+/// A program, its folder and its environment; arguments are added.
+fn program(name: impl AsRef<OsStr>, folder: &Path) -> Command {
+    let mut command = Command::new(name);
+    command.current_dir(folder);
+    command
+}
+
+/// Runs a program to its end.
+fn run(command: &mut Command) -> Result<(), String> {
+    let name = command.get_program().to_string_lossy().into_owned();
+    let status = command
+        .status()
+        .map_err(|error| format!("{name}: {error}"))?;
+    if status.success() {
+        return Ok(());
+    }
+    let arguments: Vec<_> = command.get_args().map(OsStr::to_string_lossy).collect();
+    Err(format!("{name} {}: {status}", arguments.join(" ")))
+}
+
+/// Copies a file to a folder under a name.
+fn copy(from: &Path, to: &Path) -> Result<(), String> {
+    let wrong = |error| format!("{}: {error}", from.display());
+    std::fs::copy(from, to).map(drop).map_err(wrong)
+}
+
+/// The files in a folder.
+fn files(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let wrong = |error: std::io::Error| format!("{}: {error}", folder.display());
+    let entries = std::fs::read_dir(folder).map_err(wrong)?;
+    let paths: Result<Vec<_>, _> = entries.map(|entry| entry.map(|e| e.path())).collect();
+    Ok(paths
+        .map_err(wrong)?
+        .into_iter()
+        .filter(|path| path.is_file())
+        .collect())
+}

@@ -1,0 +1,114 @@
+//! Assets and samples that the `htex` command writes, which the bindings are compared with.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use super::{copy, files, program, run};
+use crate::places::{cargo, target, workspace};
+use crate::plugins;
+
+/// Length, rate and seed of the samples, and their motion, which single precision represents.
+const SECONDS: &str = "2";
+const RATE: &str = "48000";
+const SEED: &str = "7";
+const SPEED: &str = "80";
+const FORCE: &str = "0.5";
+
+/// The `htex` command, built as the tests of the workspace build it.
+pub(super) fn command() -> Result<PathBuf, String> {
+    let mut build = Command::new(cargo());
+    run(build
+        .args(["build", "--locked", "--package", "htex-cli"])
+        .current_dir(workspace()))?;
+    let name = format!("htex{}", std::env::consts::EXE_SUFFIX);
+    Ok(target().join("debug").join(name))
+}
+
+/// Writes an asset of six models (`vinyl.htex`), one that brings its model along (`bursts.htex`), their samples at 48 kHz, the
+/// spectrum of Bands, what the command tells of the asset, the models as modules, and a module that does not return.
+pub(super) fn write(folder: &Path) -> Result<(), String> {
+    std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let command = command()?;
+    let htex = |arguments: &[&str]| {
+        run(program(&command, folder)
+            .args(arguments)
+            .stdout(Stdio::null()))
+    };
+    for module in files(&plugins::wasm()?)? {
+        if let (Some(name), true) = (
+            module.file_name(),
+            module.extension().is_some_and(|e| e == "wasm"),
+        ) {
+            copy(&module, &folder.join(name))?;
+        }
+    }
+    clang(folder, "examples/model-c-bursts/bursts.c", "bursts.wasm")?;
+    clang(folder, "sdk/web/tests/endless.c", "endless.wasm")?;
+    htex(&[
+        "simulate",
+        "--surface",
+        "vinyl",
+        "--force",
+        FORCE,
+        "-o",
+        "vinyl.csv",
+    ])?;
+    htex(&["fit", "vinyl.csv", "-o", "vinyl.htex"])?;
+    let embedded = ["--embed-plugin", "bursts.wasm", "-o", "bursts.htex"];
+    htex(
+        &[
+            &["fit", "vinyl.csv", "--model", "bursts,sbeta"][..],
+            &embedded,
+        ]
+        .concat(),
+    )?;
+    let synth = |asset: &str, model: &str| {
+        let out = format!("{model}.wav");
+        let what = ["synth", asset, "--model", model, "-o", &out];
+        let length = ["--seconds", SECONDS, "--rate", RATE, "--seed", SEED];
+        let motion = ["--speed", SPEED, "--force", FORCE];
+        htex(&[&what[..], &length, &motion].concat())
+    };
+    for model in plugins::MODELS {
+        synth("vinyl.htex", model)?;
+    }
+    synth("bursts.htex", "bursts")?;
+    let printed = |arguments: &[&str], out: &str| {
+        let file = folder.join(out);
+        let file = std::fs::File::create(&file).map_err(|error| format!("{out}: {error}"))?;
+        run(program(&command, folder).args(arguments).stdout(file))
+    };
+    let spectrum = ["spectrum", "vinyl.htex", "--model", "bands", "--json"];
+    printed(&spectrum, "spectrum.json")?;
+    printed(&["info", "vinyl.htex", "--json"], "info.json")
+}
+
+/// Compiles a model in C to a module.
+fn clang(folder: &Path, source: &str, out: &str) -> Result<(), String> {
+    let workspace = std::fs::canonicalize(workspace()).map_err(|error| error.to_string())?;
+    let flags = [
+        "--target=wasm32",
+        "-std=c11",
+        "-O2",
+        "-ffp-contract=off",
+        "-fno-math-errno",
+    ];
+    let link = [
+        "-fvisibility=hidden",
+        "-ffreestanding",
+        "-nostdlib",
+        "-Wl,--no-entry",
+        "-o",
+        out,
+    ];
+    let mut clang = program("clang", folder);
+    clang.args(flags).args(link);
+    for include in [
+        "spec/include",
+        "sdk/check/templates/c",
+        "examples/model-c-bursts",
+    ] {
+        clang.arg("-I").arg(workspace.join(include));
+    }
+    run(clang.arg(workspace.join(source)))
+}

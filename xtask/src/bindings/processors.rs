@@ -1,0 +1,161 @@
+//! The command on other processors, emulated: the same files, byte for byte.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use super::{files, fixtures, program, run};
+use crate::places::{cargo, target, workspace};
+use crate::plugins::MODELS;
+
+/// Another architecture that the command is built for.
+const AARCH64: &str = "aarch64-unknown-linux-musl";
+
+/// Emulated processors of this machine's architecture: with AVX2, with AVX, and with neither.
+const X86: [&str; 3] = ["Haswell-noTSX", "SandyBridge", "Nehalem"];
+
+const SURFACES: [&str; 3] = ["vinyl", "corrugated-paper", "coarse-fabric"];
+
+pub(super) fn test(folder: &Path) -> Result<(), String> {
+    let folder = std::fs::canonicalize(folder).map_err(|error| error.to_string())?;
+    let native = fixtures::command()?;
+    let native = std::fs::canonicalize(&native).map_err(|error| error.to_string())?;
+    let expected = written(&folder.join("native"), std::slice::from_ref(&native))?;
+    let mut all: Vec<(String, Vec<PathBuf>)> = Vec::new();
+    if cfg!(target_arch = "x86_64") {
+        all.extend(X86.map(|cpu| {
+            let under = ["qemu-x86_64", "-cpu", cpu].map(PathBuf::from);
+            (
+                cpu.to_owned(),
+                [&under[..], std::slice::from_ref(&native)].concat(),
+            )
+        }));
+    }
+    all.push((
+        "aarch64".to_owned(),
+        vec!["qemu-aarch64".into(), aarch64()?],
+    ));
+    let mut differ = Vec::new();
+    for (name, command) in all {
+        let found = written(&folder.join(&name), &command)?;
+        let other = expected
+            .iter()
+            .filter(|(file, bytes)| found.get(*file) != Some(bytes));
+        let other: Vec<&str> = other.map(|(file, _)| &file[..]).collect();
+        eprintln!(
+            "bindings: {name}: {} files, {} differ",
+            expected.len(),
+            other.len()
+        );
+        if !other.is_empty() {
+            differ.push(format!("{name}: {} differ", other.join(", ")));
+        }
+    }
+    if differ.is_empty() {
+        Ok(())
+    } else {
+        Err(differ.join("; "))
+    }
+}
+
+/// Builds the command for another architecture.
+fn aarch64() -> Result<PathBuf, String> {
+    let mut build = Command::new(cargo());
+    build
+        .args([
+            "build",
+            "--locked",
+            "--package",
+            "htex-cli",
+            "--no-default-features",
+        ])
+        .args(["--profile", "quick", "--target", AARCH64])
+        .env("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_MUSL_LINKER", "rust-lld")
+        .env("CC_aarch64_unknown_linux_musl", "clang")
+        .current_dir(workspace());
+    run(&mut build)
+        .map_err(|error| format!("{error}; rustup target add {AARCH64} brings the target"))?;
+    let built = target().join(AARCH64).join("quick/htex");
+    std::fs::canonicalize(built).map_err(|error| error.to_string())
+}
+
+/// All files that a command writes: recordings, spectra, assets, samples of all models at several motions, and of a scene.
+fn written(folder: &Path, command: &[PathBuf]) -> Result<BTreeMap<String, Vec<u8>>, String> {
+    std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let htex = |arguments: &[&str], out: Option<&str>| {
+        let mut htex = program(&command[0], folder);
+        htex.args(&command[1..]).args(arguments);
+        let path = out.map(|out| folder.join(out));
+        let file = path.map(std::fs::File::create).transpose();
+        let file = file.map_err(|error| format!("{}: {error}", folder.display()))?;
+        run(htex.stdout(file.map_or_else(Stdio::null, Stdio::from)))
+    };
+    for surface in SURFACES {
+        let [csv, asset] = ["csv", "htex"].map(|kind| format!("{surface}.{kind}"));
+        htex(&["simulate", "--surface", surface, "-o", &csv], None)?;
+        htex(
+            &["process", &csv, "--json"],
+            Some(&format!("{surface}.json")),
+        )?;
+        htex(&["fit", &csv, "-o", &asset, "--keep-reference"], None)?;
+        for model in MODELS {
+            let out = format!("{surface}-{model}.wav");
+            let what = [
+                "synth",
+                &asset,
+                "--model",
+                model,
+                "--seconds",
+                "1",
+                "-o",
+                &out,
+            ];
+            htex(
+                &[
+                    &what[..],
+                    &["--rate", "44100", "--speed", "97", "--force", "0.3"],
+                ]
+                .concat(),
+                None,
+            )?;
+        }
+    }
+    // Another rate, whose segments have a prime length, and a fit to signals.
+    htex(
+        &[
+            "simulate",
+            "--surface",
+            "sandpaper",
+            "--rate",
+            "10015",
+            "-o",
+            "sandpaper.csv",
+        ],
+        None,
+    )?;
+    let burg = [
+        "fit",
+        "sandpaper.csv",
+        "--model",
+        "ar",
+        "--option",
+        "ar.method=burg",
+    ];
+    htex(&[&burg[..], &["-o", "sandpaper.htex"]].concat(), None)?;
+    let scene = workspace().join("examples/scenes/two-swatches.scene.json");
+    let scene = std::fs::canonicalize(scene).map_err(|error| error.to_string())?;
+    htex(
+        &["render", &scene.to_string_lossy(), "-o", "scene.wav"],
+        None,
+    )?;
+    let read = |file: PathBuf| {
+        let name = file
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        let bytes = std::fs::read(&file).map_err(|error| format!("{}: {error}", file.display()))?;
+        Ok::<_, String>((name, bytes))
+    };
+    files(folder)?.into_iter().map(read).collect()
+}

@@ -1,0 +1,59 @@
+//! The npm package, in Node.js, in Chromium and in a bundler.
+
+use std::path::Path;
+
+use super::{CHROMIUM, copy, files, fixtures, program, run};
+use crate::places::workspace;
+
+pub(super) fn test(folder: &Path) -> Result<(), String> {
+    let folder = std::fs::canonicalize(folder).map_err(|error| error.to_string())?;
+    let (package, fixtures) = (folder.join("htex"), folder.join("fixtures"));
+    crate::web::web(&package)?;
+    fixtures::write(&fixtures)?;
+    let tests = folder.join("tests");
+    std::fs::create_dir_all(&tests).map_err(|error| error.to_string())?;
+    for file in files(&workspace().join("sdk/web/tests"))? {
+        copy(&file, &tests.join(file.file_name().unwrap_or_default()))?;
+    }
+    let quiet = ["--silent", "--no-audit", "--no-fund"];
+    run(program("npm", &tests).arg("install").args(quiet))?;
+    run(program("npm", &tests)
+        .arg("install")
+        .args(quiet)
+        .args(["--no-save"])
+        .arg(&package))?;
+    let strict = [
+        "tsc",
+        "--strict",
+        "--noUncheckedIndexedAccess",
+        "--noEmit",
+        "--target",
+        "es2022",
+    ];
+    let module = ["--module", "nodenext", "--lib", "es2022,dom", "types.ts"];
+    run(program("npx", &tests).args(strict).args(module))?;
+    let chromium = CHROMIUM.find().unwrap_or("chromium");
+    let example = workspace().join("examples/web");
+    run(program("node", &tests)
+        .args([
+            "--test",
+            "--test-concurrency=1",
+            "node.test.mjs",
+            "browser.test.mjs",
+        ])
+        .env("HTEX_PACKAGE", &package)
+        .env("HTEX_FIXTURES", &fixtures)
+        .env(
+            "HTEX_EXAMPLE",
+            std::fs::canonicalize(example).map_err(|error| error.to_string())?,
+        )
+        .env("HTEX_CHROMIUM", which(chromium)))
+}
+
+/// The path of a program.
+fn which(name: &str) -> std::path::PathBuf {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let mut all = std::env::split_paths(&path).map(|folder| folder.join(name));
+    all.find(|file| file.is_file())
+        .unwrap_or_else(|| name.into())
+}

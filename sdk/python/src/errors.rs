@@ -41,7 +41,12 @@ impl<T, E: IntoPyErr> OrRaise<T> for Result<T, E> {
 /// Makes the `OSError` of a file; its subclass, such as `FileNotFoundError`, follows from the system's number.
 pub(crate) fn of_file(path: &Path, error: &io::Error) -> PyErr {
     match error.raw_os_error() {
-        Some(number) => PyOSError::new_err((number, error.to_string(), path.to_owned())),
+        Some(number) => {
+            let text = error.to_string();
+            let text = text.split(" (os error").next().unwrap_or_default();
+            let file = path.as_os_str().to_owned();
+            PyOSError::new_err((number, text.to_owned(), file))
+        }
         None => PyOSError::new_err(format!("{}: {error}", path.display())),
     }
 }

@@ -102,7 +102,7 @@ def test_a_fit_is_that_of_the_command(place: pathlib.Path) -> None:
     fit = htex.fit(place / "rec.csv", name="cloth", license="CC0-1.0")
     assert fit.texture.to_bytes() == (place / "cloth.htex").read_bytes()
     flags = ["--model", "ar,bands", "--option", "ar.order=6", "--level", "fitted", "--averaging", "magnitude"]
-    flags += ["--keep-reference", "--tag", "a,b", "--name", "Cloth", "--at", "speed=90,force=0.5", "--doi", "10.1000/xyz"]
+    flags += ["--keep-reference", "--tag", "a,b", "--name", "Cloth", "--at", "speed=82,force=0.41", "--doi", "10.1000/xyz"]
     command("fit", "rec.csv", "-o", "other.htex", *flags, cwd=place)
     fit = htex.fit(
         [place / "rec.csv"],
@@ -113,7 +113,7 @@ def test_a_fit_is_that_of_the_command(place: pathlib.Path) -> None:
         keep_reference=True,
         tags=["a", "b"],
         name="Cloth",
-        conditions=[(90, 0.5)],
+        conditions=[(82, 0.41)],
         doi="10.1000/xyz",
     )
     assert fit.texture.to_bytes() == (place / "other.htex").read_bytes()

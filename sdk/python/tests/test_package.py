@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 
@@ -24,7 +25,7 @@ def test_the_command_ends_with_its_status(place: pathlib.Path) -> None:
 
 def test_the_command_starts_itself_again(place: pathlib.Path) -> None:
     said = command("device", "check", "file", cwd=place).stdout
-    assert "ok" in said
+    assert "memory" in said and "failed" not in said
 
 
 def test_the_script_is_installed(place: pathlib.Path) -> None:
@@ -35,22 +36,20 @@ def test_the_script_is_installed(place: pathlib.Path) -> None:
     assert run.returncode == 0 and "bands" in run.stdout
 
 
-def test_types_are_strict() -> None:
-    package = pathlib.Path(htex.__file__).parent
-    for words in [
-        ["mypy", "--strict", str(package)],
-        ["mypy.stubtest", "htex._htex", "--ignore-missing-stub"],
-    ]:
-        pytest.importorskip("mypy")
-        run = subprocess.run([sys.executable, "-m", *words], capture_output=True, text=True, timeout=600)
+def test_types_are_strict(tmp_path: pathlib.Path) -> None:
+    pytest.importorskip("mypy")
+    for words in [["mypy", "--strict", "-p", "htex"], ["mypy.stubtest", "htex._htex"]]:
+        words = [sys.executable, "-m", *words]
+        run = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=600)
         assert run.returncode == 0, run.stdout + run.stderr
 
 
-def test_the_examples_of_the_readme_run(place: pathlib.Path) -> None:
+def test_the_examples_of_the_readme_run(place: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    shutil.copy(place / "rec.csv", tmp_path)
     text = (HERE.parent / "README.md").read_text(encoding="utf-8")
     blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     assert len(blocks) == 2
     for block in blocks:
-        run = subprocess.run([sys.executable, "-c", block], cwd=place, capture_output=True, text=True, timeout=300)
+        run = subprocess.run([sys.executable, "-c", block], cwd=tmp_path, capture_output=True, text=True, timeout=300)
         assert run.returncode == 0, run.stderr
-    assert (place / "cloth.wav").stat().st_size == 44 + 2 * 480_000
+    assert (tmp_path / "cloth.wav").stat().st_size == 44 + 2 * 480_000

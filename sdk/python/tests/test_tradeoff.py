@@ -20,9 +20,9 @@ def test_a_sweep_is_a_table(place: pathlib.Path) -> None:
     assert (abs(error - fit["band_error_rms_db"][0]) < 1e-3).any()
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
-    import htex.plot
+    from htex import plot
 
-    axes = htex.plot.tradeoff(found)
+    axes = plot.tradeoff(found)
     assert len(axes.collections) == 3
     with pytest.raises(htex.OptionError):
         htex.tradeoff(place / "rec.csv", error="loudness")  # type: ignore[arg-type]
@@ -31,9 +31,9 @@ def test_a_sweep_is_a_table(place: pathlib.Path) -> None:
 def test_spectra_are_drawn(texture: htex.Texture, place: pathlib.Path) -> None:
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
-    import htex.plot
+    from htex import plot
 
     found = htex.process(place / "rec.csv")
-    axes = htex.plot.texture(texture, reference=found.spectrum)
+    axes = plot.texture(texture, reference=found.spectrum)
     assert len(axes.lines) == 1 + len(texture.models)
     assert axes.get_ylabel() == "magnitude / N"

@@ -8,6 +8,19 @@ import numpy.typing as npt
 from ._data import Condition, Coverage, Quantity, Spectrum
 
 __version__: str
+__all__ = [
+    "Scene",
+    "Texture",
+    "Voice",
+    "__version__",
+    "agreement",
+    "fit",
+    "models",
+    "open",
+    "process",
+    "run",
+    "tradeoff",
+]
 
 _Path = str | os.PathLike[str]
 _At = Condition | tuple[float | None, float | None]
@@ -88,12 +101,12 @@ class Scene:
         cls,
         path: _Path,
         *,
-        plugins: Sequence[_Path] = [],
+        plugins: Sequence[_Path] = ...,
         embedded: bool = True,
         installed: bool = False,
         device: str | None = None,
         profile: str | None = None,
-        settings: Mapping[str, Any] = {},
+        settings: Mapping[str, Any] = ...,
         quantity_gain: float | None = None,
     ) -> Scene: ...
     @property
@@ -116,11 +129,11 @@ class Scene:
 def open(
     source: _Path | bytes | bytearray | memoryview | _Readable,
     *,
-    plugins: Sequence[_Path] = [],
+    plugins: Sequence[_Path] = ...,
     embedded: bool = True,
     installed: bool = False,
 ) -> Texture: ...
-def models(*, plugins: Sequence[_Path] = [], installed: bool = False) -> list[dict[str, Any]]: ...
+def models(*, plugins: Sequence[_Path] = ..., installed: bool = False) -> list[dict[str, Any]]: ...
 def process(source: Any, reading: Mapping[str, Any]) -> dict[str, Any]: ...
 def fit(sources: Sequence[Any], reading: Mapping[str, Any], request: Mapping[str, Any]) -> tuple[Texture, dict[str, Any]]: ...
 def tradeoff(sources: Sequence[Any], reading: Mapping[str, Any], request: Mapping[str, Any]) -> dict[str, Any]: ...

@@ -47,7 +47,7 @@ pub(crate) fn of_file(path: &Path, error: &io::Error) -> PyErr {
             let file = path.as_os_str().to_owned();
             PyOSError::new_err((number, text.to_owned(), file))
         }
-        None => PyOSError::new_err(format!("{}: {error}", path.display())),
+        None => io::Error::new(error.kind(), format!("{}: {error}", path.display())).into(),
     }
 }
 

@@ -1,18 +1,32 @@
 //! Motions over time: one speed and one force for each block of samples.
 
 use htex::Motion;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use crate::errors::{MotionError, option};
 use crate::python::zeros;
 
 /// A number for all blocks, or one for each.
-#[derive(FromPyObject)]
 pub(crate) enum Series {
     /// One number.
     Constant(f64),
     /// A number for each block.
     Each(Vec<f64>),
+}
+
+impl FromPyObject<'_, '_> for Series {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        if let Ok(x) = value.extract() {
+            return Ok(Self::Constant(x));
+        }
+        value.extract().map(Self::Each).map_err(|_| {
+            let text = "expected a number, or one number for each block of samples";
+            PyTypeError::new_err(text)
+        })
+    }
 }
 
 impl Series {

@@ -183,8 +183,11 @@ def test_unusable_fits_are_refused(place: pathlib.Path) -> None:
     ]:
         with pytest.raises(error):
             htex.fit(place / "rec.csv", **options)
-    with pytest.raises(htex.OptionError):
-        htex.fit([])
+    for function in [htex.fit, htex.tradeoff]:
+        with pytest.raises(htex.OptionError):
+            function([])
+        with pytest.raises(htex.OptionError):
+            function(place / "rec.csv", models=[])
 
 
 def test_unusable_spectra_are_refused() -> None:

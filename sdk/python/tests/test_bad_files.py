@@ -103,6 +103,8 @@ def test_unusable_sources_are_refused(place: pathlib.Path, tmp_path: pathlib.Pat
     ]:
         with pytest.raises(error):
             htex.open(source)  # type: ignore[arg-type]
+    with pytest.raises(IsADirectoryError):
+        htex.open(place / "cloth.htex").save(tmp_path)
     with pytest.raises(FileNotFoundError) as found:
         htex.open(tmp_path / "missing.htex")
     assert found.value.filename == str(tmp_path / "missing.htex")

@@ -28,6 +28,17 @@ def test_the_command_starts_itself_again(place: pathlib.Path) -> None:
     assert "memory" in said and "failed" not in said
 
 
+def test_one_process_runs_the_command_several_times(place: pathlib.Path) -> None:
+    program = """
+from htex import _htex
+for words, status in [(["info", "cloth.htex"], 0), (["info", "no.htex"], 1), (["device", "check", "file"], 1)]:
+    assert _htex.run(["htex", *words], []) == status
+"""
+    run = subprocess.run([sys.executable, "-c", program], cwd=place, capture_output=True, text=True, timeout=60)
+    assert run.returncode == 0, run.stderr
+    assert "cannot find this program" in run.stderr
+
+
 def test_the_script_is_installed(place: pathlib.Path) -> None:
     script = pathlib.Path(sys.executable).with_name("htex")
     if not script.exists():

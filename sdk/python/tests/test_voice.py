@@ -122,6 +122,11 @@ def test_unusable_options_are_refused(texture: htex.Texture) -> None:
     for block, speed in [(0, [80.0]), (64, [80.0, 80.0])]:
         with pytest.raises(htex.OptionError):
             voice.render_path(speed, [0.4], block=block)
+    for speed in ["fast", None, [[80.0]]]:
+        with pytest.raises(TypeError, match="one number for each block"):
+            voice.render_path(speed, 0.4)  # type: ignore[arg-type]
+    with pytest.raises(htex.OptionError):
+        voice.render_path([80.0] * 3, 0.4, block=2**63)
     with pytest.raises(MemoryError):
         voice.render(2**61)
     with pytest.raises(OverflowError):

@@ -112,10 +112,7 @@ def fit(
     first file. ``plugins`` are files of further models, or folders of them; ``installed`` adds those of the user.
     The other keywords are those of ``process``, and metadata of the asset.
     """
-    sources = [_source(recording) for recording in _list(recordings)]
-    if not sources:
-        raise _errors.OptionError("no recordings; give at least one")
-    wanted = [models] if isinstance(models, str) else list(models)
+    sources = _sources(recordings)
     texture, rest = _htex.fit(
         sources,
         _reading(
@@ -134,7 +131,7 @@ def fit(
             strict=strict,
         ),
         {
-            "models": [] if "all" in wanted else wanted,
+            "models": _models(models),
             "options": [
                 (model, option, str(value))
                 for model, own in (options or {}).items()
@@ -188,9 +185,8 @@ def tradeoff(
 
     ``journal`` is a file from which an interrupted sweep continues. The other keywords are those of ``fit``.
     """
-    wanted = [models] if isinstance(models, str) else list(models)
     found = _htex.tradeoff(
-        [_source(recording) for recording in _list(recordings)],
+        _sources(recordings),
         _reading(
             rate_hz=rate_hz,
             map=map,
@@ -207,7 +203,7 @@ def tradeoff(
             strict=strict,
         ),
         {
-            "models": [] if "all" in wanted else wanted,
+            "models": _models(models),
             "quick": quick,
             "error": error,
             "plugins": list(plugins),
@@ -263,12 +259,22 @@ def _reading(**options: Any) -> dict[str, Any]:
     return options
 
 
-def _list(recordings: Any) -> list[Any]:
-    """Return recordings as a list; a list of numbers is one recording."""
-    if not isinstance(recordings, (list, tuple)):
-        return [recordings]
-    is_array = bool(recordings) and isinstance(recordings[0], (int, float))
-    return [recordings] if is_array else list(recordings)
+def _models(models: str | Iterable[str]) -> list[str]:
+    """Return the names of models; none stands for all of them."""
+    names = [models] if isinstance(models, str) else list(models)
+    if not names:
+        raise _errors.OptionError('no models; name at least one, or give "all"')
+    return [] if "all" in names else names
+
+
+def _sources(recordings: Any) -> list[Any]:
+    """Return the sources of recordings; a list of numbers is one recording."""
+    several = isinstance(recordings, (list, tuple))
+    if several and not recordings:
+        raise _errors.OptionError("no recordings; give at least one")
+    if not several or isinstance(recordings[0], (int, float)):
+        return [_source(recordings)]
+    return [_source(recording) for recording in recordings]
 
 
 def _source(recording: Any) -> Any:

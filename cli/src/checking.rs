@@ -2,15 +2,15 @@
 
 use std::borrow::Cow;
 use std::fmt::Display;
-use std::path::PathBuf;
-use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::Args;
 use htex_check_runner::{Finding, Report, Runner};
 use serde::Serialize;
 
+use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::invocation::{self, Program};
 use crate::output::{print, print_json};
 
 /// How checks are run and reported.
@@ -35,9 +35,10 @@ impl CheckArgs {
         &self,
         arguments: impl IntoIterator<Item = std::ffi::OsString>,
     ) -> Result<Runner, Failure> {
+        let program = this_program()?;
         Ok(Runner {
-            program: this_program()?,
-            arguments: arguments.into_iter().collect(),
+            program: program.file.into(),
+            arguments: program.arguments.into_iter().chain(arguments).collect(),
             timeout: timeout(self.timeout)?,
         })
     }
@@ -48,7 +49,7 @@ impl CheckArgs {
         name: &str,
         finding: &Finding,
         worded: fn(&str) -> Cow<'_, str>,
-    ) -> Result<ExitCode, Failure> {
+    ) -> Result<Exit, Failure> {
         if self.json {
             print_json(finding)?;
         } else {
@@ -65,7 +66,7 @@ impl CheckArgs {
         report: &Report<Subject>,
         worded: fn(&str) -> Cow<'_, str>,
         again: impl Fn(&str) -> String,
-    ) -> Result<ExitCode, Failure> {
+    ) -> Result<Exit, Failure> {
         if self.json {
             print_json(report)?;
         } else {
@@ -85,15 +86,10 @@ fn timeout(seconds: f64) -> Result<Duration, Failure> {
         .ok_or_else(|| Failure::Usage(format!("--timeout {seconds}: seconds, more than 0")))
 }
 
-fn this_program() -> Result<PathBuf, Failure> {
-    std::env::current_exe()
-        .map_err(|error| Failure::Other(format!("cannot find this program: {error}")))
+fn this_program() -> Result<Program, Failure> {
+    invocation::program().map_err(|error| Failure::Other(error.to_string()))
 }
 
-fn exit_code(bad: bool) -> ExitCode {
-    if bad {
-        ExitCode::FAILURE
-    } else {
-        ExitCode::SUCCESS
-    }
+fn exit_code(bad: bool) -> Exit {
+    if bad { Exit::FAILURE } else { Exit::SUCCESS }
 }

@@ -1,11 +1,11 @@
 //! The error that a failed command ends with.
 
 use std::path::Path;
-use std::process::ExitCode;
 
 use htex_author::AuthorError;
 use htex_format::plain;
 
+use crate::exit::Exit;
 use crate::flags::{of_author_error, of_read_error, with, with_flags};
 use crate::shown::shown;
 
@@ -47,7 +47,7 @@ pub(crate) enum Failure {
 
 impl Failure {
     /// 2 for wrong usage, else 1.
-    pub(crate) fn exit_code(&self) -> ExitCode {
+    pub(crate) fn exit_code(&self) -> Exit {
         use htex_device::DeviceError::{Rate, Setting, Unknown};
         use htex_host::HostError::{Option, UnknownModel};
         match self {
@@ -57,8 +57,8 @@ impl Failure {
             | Self::Asset {
                 error: htex::Error::Model(UnknownModel { .. }) | htex::Error::EmbeddedOff { .. },
                 ..
-            } => ExitCode::from(2),
-            _ => ExitCode::FAILURE,
+            } => Exit::USAGE,
+            _ => Exit::FAILURE,
         }
     }
 

@@ -6,7 +6,7 @@
 //! output to zero.
 
 use std::io::{BufReader, BufWriter, Read, Write};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
@@ -15,6 +15,8 @@ use htex_device::{
     StreamFormat,
 };
 use serde::{Deserialize, Serialize};
+
+use crate::invocation;
 
 /// Longest message, bytes: a second at a million samples a second.
 const LONGEST: u32 = 4 << 20;
@@ -161,7 +163,8 @@ impl Guarded {
 
 /// The command that starts this program as the guardian of a device.
 fn start(known: &KnownDevice) -> std::io::Result<Child> {
-    let mut command = Command::new(std::env::current_exe()?);
+    let program = invocation::program().map_err(std::io::Error::other)?;
+    let mut command = program.command();
     command.arg("guard");
     if let DeviceOrigin::Library(path) = &known.origin {
         command.arg("--device-file").arg(path);

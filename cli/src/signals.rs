@@ -1,5 +1,6 @@
 //! Handling of Ctrl-C, of a closed terminal, and of a request to end.
 
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
 
 use crate::failure::Failure;
@@ -17,9 +18,19 @@ const IGNORED: u8 = 2;
 
 static MEANING: AtomicU8 = AtomicU8::new(ENDS);
 static SIGNALS: AtomicUsize = AtomicUsize::new(0);
+/// The result of installing the handler.
+static HANDLED: OnceLock<Result<(), String>> = OnceLock::new();
 
 /// From now on signals end the program and remove unfinished files.
 pub(crate) fn handle() -> Result<(), Failure> {
+    MEANING.store(ENDS, Ordering::Relaxed);
+    SIGNALS.store(0, Ordering::Relaxed);
+    let handled = HANDLED.get_or_init(install).clone();
+    handled.map_err(|error| Failure::Other(format!("cannot catch Ctrl-C: {error}")))
+}
+
+/// Installs the handler, once in a process.
+fn install() -> Result<(), String> {
     let handler = || match MEANING.load(Ordering::Relaxed) {
         ENDS => {
             htex_format::remove_unfinished();
@@ -35,8 +46,7 @@ pub(crate) fn handle() -> Result<(), Failure> {
             ),
         },
     };
-    ctrlc::set_handler(handler)
-        .map_err(|error| Failure::Other(format!("cannot catch Ctrl-C: {error}")))
+    ctrlc::set_handler(handler).map_err(|error| error.to_string())
 }
 
 /// From now on a signal sets [`interrupted`]. The ramp to zero is never cut short: a second signal prints that the ramp

@@ -1,8 +1,11 @@
 //! Limits of WASM models by name, for the command line.
 
+use std::path::PathBuf;
 use std::time::Duration;
 
 use htex_host::{WasmCompiler, WasmLimits};
+
+use crate::invocation;
 
 /// One limit and its value.
 #[derive(Debug, Clone, Copy)]
@@ -90,12 +93,23 @@ impl WasmLimit {
     /// The default limits with these changed; modules are compiled by another process of this program.
     pub(crate) fn all(given: &[Self]) -> WasmLimits {
         let mut limits = WasmLimits::default();
-        if let Ok(program) = std::env::current_exe() {
-            limits.compiler = WasmCompiler::Program(program, vec![COMPILE.to_owned()]);
+        if let Some((program, arguments)) = compiler() {
+            limits.compiler = WasmCompiler::Program(program, arguments);
         }
         given
             .iter()
             .for_each(|limit| (limit.set)(&mut limits, limit.value));
         limits
     }
+}
+
+/// The program that compiles modules, and its arguments; `None` if it is not known, or has arguments that are not Unicode.
+fn compiler() -> Option<(PathBuf, Vec<String>)> {
+    let program = invocation::program().ok()?;
+    let words = program
+        .arguments
+        .into_iter()
+        .map(|word| word.into_string().ok());
+    let arguments: Option<Vec<String>> = words.chain([Some(COMPILE.to_owned())]).collect();
+    Some((program.file.into(), arguments?))
 }

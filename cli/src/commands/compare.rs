@@ -1,11 +1,11 @@
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::Args;
 use htex_author::{Exploration, TextureSpectrum, measure, read_take};
 use serde::Serialize;
 
 use crate::assets::short_name;
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{note, print, print_json, warn};
 use crate::plugins::PlayerArgs;
@@ -54,7 +54,7 @@ struct Compared {
 }
 
 impl Compare {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let (spectrum, found, warnings) = self.spectrum()?;
         let asset = self.player.open(&self.asset)?;
         let (held, recorded) = (asset.quantity(), spectrum.quantity);
@@ -79,7 +79,7 @@ impl Compare {
             warn(&comparison.warnings);
             print(&comparison.to_text())?;
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 
     fn spectrum(&self) -> Result<(TextureSpectrum, Exploration, Vec<String>), Failure> {

@@ -1,7 +1,6 @@
-use std::process::ExitCode;
-
 use clap::Args;
 
+use crate::exit::Exit;
 use crate::failure::Failure;
 
 /// Compile the WASM module on standard input for the process that started this one (internal).
@@ -13,9 +12,9 @@ pub(crate) struct CompileModule {
 }
 
 impl CompileModule {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         htex_host::serve_compiler(&self.arguments)
             .map_err(|error| Failure::Other(error.to_string()))?;
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 }

@@ -1,6 +1,5 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use clap::Args;
 use htex::VoiceOptions;
@@ -15,6 +14,7 @@ use serde::Serialize;
 
 use super::simulate::write_response;
 use crate::assets::{AssetSummary, RepresentationSummary, short_name};
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::models::{model_requests, tool};
 use crate::output::{print, print_json, write_file};
@@ -54,7 +54,7 @@ pub(crate) struct Demo {
 }
 
 impl Demo {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         std::fs::create_dir_all(&self.dir).map_err(|error| Failure::write(&self.dir, error))?;
         let rig = SimulationOptions::new(Surface::Sandpaper)
             .setup_response()
@@ -83,7 +83,7 @@ impl Demo {
                 report.display()
             ))?;
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 
     /// Simulates, fits, validates and plays one surface.

@@ -1,11 +1,11 @@
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::Args;
 use htex_format::Limits;
 use serde_json::Value;
 
 use crate::assets::AssetSummary;
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::metadata::MetadataArgs;
 use crate::output::{print, print_json, write_file};
@@ -34,7 +34,7 @@ pub(crate) struct Edit {
 }
 
 impl Edit {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         if !self.metadata.is_given() {
             let sentence = "nothing to change: give at least one of the metadata, such as --author";
             return Err(Failure::Usage(sentence.to_owned()));
@@ -54,7 +54,7 @@ impl Edit {
         } else {
             print(&summary.to_text())?;
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 
     /// Refuses an asset that would lose data: entries that its manifest does not name, and keys inside it

@@ -1,8 +1,7 @@
-use std::process::ExitCode;
-
 use clap::Args;
 use htex_format::{RULES, explain};
 
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::flags::{of_check, of_code, with};
 use crate::output::print;
@@ -15,7 +14,7 @@ pub(crate) struct Explain {
 }
 
 impl Explain {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let Some(code) = self.code else {
             let lines = RULES
                 .iter()
@@ -23,7 +22,7 @@ impl Explain {
                 .chain(htex_author::findings::RULES)
                 .map(|rule| format!("{:36} {}\n", rule.code, rule.summary));
             print(&lines.collect::<String>())?;
-            return Ok(ExitCode::SUCCESS);
+            return Ok(Exit::SUCCESS);
         };
         let code = code.to_uppercase();
         let rule = explain(&code)
@@ -39,6 +38,6 @@ impl Explain {
             with(rule.explanation, of_check(rule.code)),
             with(rule.fix, of_code(rule.code))
         ))?;
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 }

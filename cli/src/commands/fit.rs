@@ -1,5 +1,4 @@
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use clap::Args;
 use htex_author::{AssetRequest, FittedAsset, Level, fit_asset};
@@ -8,7 +7,9 @@ use htex_host::{LoadedModel, Origin, Registry};
 use htex_report::{TextureReport, texture_report};
 
 use crate::assets::AssetSummary;
+use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::invocation;
 use crate::metadata::MetadataArgs;
 use crate::models::{model_requests, tool};
 use crate::output::{note, print, print_json, warn, write_file};
@@ -88,7 +89,7 @@ enum LevelArg {
 }
 
 impl Fit {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let files = self
             .recordings
             .iter()
@@ -128,7 +129,7 @@ impl Fit {
             summary.warnings.clear();
             print(&summary.to_text())?;
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 
     fn write_report(
@@ -226,7 +227,7 @@ fn command_line() -> String {
         word if !word.is_empty() && word.chars().all(is_plain) => word.into_owned(),
         word => format!("'{}'", word.replace('\'', r"'\''")),
     };
-    let words = std::env::args_os().skip(1).map(quoted);
+    let words = invocation::arguments().into_iter().map(quoted);
     let words: Vec<String> = std::iter::once("htex".to_owned()).chain(words).collect();
     words.join(" ")
 }

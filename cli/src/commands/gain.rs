@@ -1,5 +1,4 @@
 use std::path::PathBuf;
-use std::process::ExitCode;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use clap::Args;
@@ -7,6 +6,7 @@ use htex_device::Quantity;
 use htex_scene::{Gain as Kept, Gains, Renderer};
 
 use crate::commands::play;
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::gains::{FeltArgs, gains, hash, key, recordings};
 use crate::output::print;
@@ -68,7 +68,7 @@ enum Wish {
 }
 
 impl Gain {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let device = self.choice.to_override(None, false)?;
         if !self.choice.names_device() && crate::scenes::is_asset(&self.file) {
             let sentence = "--device is missing: a gain is for one device";
@@ -109,7 +109,7 @@ impl Gain {
         Gains::update(&file, |gains| gains.put(kept, &hash))
             .map_err(|error| Failure::write(&file, error))?;
         print(&text)?;
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 }
 

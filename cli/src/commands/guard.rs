@@ -1,8 +1,7 @@
-use std::process::ExitCode;
-
 use clap::Args;
 
 use crate::devices::DeviceArgs;
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::guardian::hold;
 
@@ -15,12 +14,12 @@ pub(crate) struct Guard {
 }
 
 impl Guard {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         // Only the end of the pipe ends this process.
         crate::signals::ignore();
         let devices = self.devices.devices_quietly()?;
         let (from, to) = (std::io::stdin().lock(), std::io::stdout().lock());
         hold(|id| devices.find(id).cloned(), from, to);
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 }

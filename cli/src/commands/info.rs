@@ -1,10 +1,10 @@
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::Args;
 use htex_host::Registry;
 
 use crate::assets::AssetSummary;
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{print, print_json};
 
@@ -24,7 +24,7 @@ pub(crate) struct Info {
 }
 
 impl Info {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let asset = htex_format::Asset::open(&self.asset)
             .map_err(|error| Failure::asset(&self.asset, error))?;
         let bytes = std::fs::metadata(&self.asset).map_or(0, |m| m.len());
@@ -42,6 +42,6 @@ impl Info {
         } else {
             print(&summary.to_text())?;
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 }

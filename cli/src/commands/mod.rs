@@ -23,8 +23,7 @@ mod synth;
 mod tradeoff;
 mod validate;
 
-use std::process::ExitCode;
-
+use crate::exit::Exit;
 use crate::failure::Failure;
 
 /// All subcommands.
@@ -55,7 +54,7 @@ pub(crate) enum Command {
 }
 
 impl Command {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         match self {
             Self::Demo(args) => args.run(),
             Self::Simulate(args) => args.run(),

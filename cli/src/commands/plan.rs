@@ -1,11 +1,11 @@
 use std::fmt::Write;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::Args;
 use htex_report::{Chain, ChainStage};
 use htex_scene::{Costs, Plan as Planned};
 
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{print, print_json, warn, write_file};
 use crate::scenes::{ChoiceArgs, SceneArgs, costs, costs_file};
@@ -38,7 +38,7 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let ready = self
             .with
             .open(&self.scene, &self.choice.to_override(None, true)?)?;
@@ -60,7 +60,7 @@ impl Plan {
         } else {
             print(&text(&plan))?;
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 
     fn measured(&self) -> Result<Costs, Failure> {

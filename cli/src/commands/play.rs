@@ -1,5 +1,4 @@
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::Args;
 use htex_device::Status;
@@ -8,6 +7,7 @@ use htex_scene::{DeviceOverride, Plan, Renderer};
 
 #[cfg(not(feature = "audio"))]
 use crate::devices::with_sound;
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::gains::{FeltArgs, apply_kept};
 use crate::motions::{Motions, Moved};
@@ -56,7 +56,7 @@ pub(crate) struct Play {
 }
 
 impl Play {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let ready = self.load()?;
         self.choice.check_unnamed(&ready)?;
         let plan = ready.plan(&costs())?;
@@ -78,7 +78,7 @@ impl Play {
         }
         let status = output.finish()?;
         print(&text(&ready, &plan, &status, &renderer))?;
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 
     fn load(&self) -> Result<Ready, Failure> {

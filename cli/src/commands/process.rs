@@ -1,10 +1,10 @@
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::Args;
 use htex_author::{Reading, Recording, TextureSpectrum, read_take};
 use serde_json::{Value, json};
 
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{note, print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
@@ -34,7 +34,7 @@ pub(crate) struct Process {
 }
 
 impl Process {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let inputs = [self.recording.as_path()]
             .into_iter()
             .chain(self.reading.frf());
@@ -59,7 +59,7 @@ impl Process {
             let suffix = spectrum.quantity.suffix();
             print(&format!("frequency_hz,magnitude_{suffix}\n{rows}"))?;
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 }
 

@@ -1,7 +1,6 @@
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use clap::Args;
 use htex_device::{Capabilities, Quantity, Settings, StreamFormat};
@@ -9,6 +8,7 @@ use htex_scene::file::Motion;
 use htex_scene::{Renderer, output_name};
 use serde_json::json;
 
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{note, print, print_json};
 use crate::playing::Output;
@@ -49,7 +49,7 @@ pub(crate) struct Render {
 }
 
 impl Render {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let mut ready = self
             .with
             .open(&self.scene, &self.choice.to_override(None, true)?)?;
@@ -101,7 +101,7 @@ impl Render {
                 &renderer,
             ))?;
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 
     /// Sets the requested length, and refuses a scene without end.

@@ -1,8 +1,7 @@
-use std::process::ExitCode;
-
 use clap::{Args, ValueEnum};
 use htex_host::Registry;
 
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::print;
 
@@ -27,7 +26,7 @@ enum What {
 }
 
 impl Schema {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let value = match self.what {
             What::Manifest => Ok(htex_format::manifest_schema()),
             What::Scene => Ok(htex_scene::scene_schema()),
@@ -41,6 +40,6 @@ impl Schema {
         let text = value.and_then(|value| serde_json::to_string_pretty(&value));
         let text = text.map_err(|error| Failure::Other(format!("cannot write JSON: {error}")))?;
         print(&(text + "\n"))?;
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 }

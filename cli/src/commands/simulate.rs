@@ -1,11 +1,11 @@
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use clap::Args;
 use htex_author::SetupResponse;
 use htex_author::simulate::{SimulationError, SimulationOptions, Surface, simulate};
 
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::outputs::check_outputs;
 
@@ -50,7 +50,7 @@ pub(crate) struct Simulate {
 }
 
 impl Simulate {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let outputs = [self.output.as_path()]
             .into_iter()
             .chain(self.frf.as_deref());
@@ -69,7 +69,7 @@ impl Simulate {
         if let Some(frf) = &self.frf {
             write_response(&options.setup_response().map_err(usage)?, frf)?;
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 }
 

@@ -1,9 +1,9 @@
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::Args;
 use serde_json::json;
 
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{print, print_json, warn};
 use crate::plugins::PlayerArgs;
@@ -74,7 +74,7 @@ impl ChoiceArgs {
 }
 
 impl Spectrum {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let failure = |error| Failure::asset(&self.asset, error);
         let asset = self.player.open(&self.asset)?;
         let grid = htex::Band::TACTILE.grid_hz();
@@ -102,6 +102,6 @@ impl Spectrum {
             let suffix = quantity.suffix();
             print(&format!("frequency_hz,magnitude_{suffix}\n{rows}"))?;
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 }

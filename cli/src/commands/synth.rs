@@ -1,10 +1,10 @@
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::Args;
 use htex::{Effects, Synthesis, VoiceOptions};
 
 use crate::commands::spectrum::ChoiceArgs;
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::warn;
 use crate::outputs::check_outputs;
@@ -53,7 +53,7 @@ pub(crate) struct Synth {
 }
 
 impl Synth {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         if !(self.seconds > 0.0 && self.seconds <= 1e9) {
             let sentence = format!("--seconds {}: more than 0, at most 1e9", self.seconds);
             return Err(Failure::Usage(sentence));
@@ -81,6 +81,6 @@ impl Synth {
         write_wav(&self.output, self.rate, frames, |block| {
             voice.render(block).map_err(failure)
         })?;
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 }

@@ -1,5 +1,4 @@
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use clap::Args;
 use htex_author::simulate::{SimulationOptions, Surface, simulate};
@@ -8,7 +7,9 @@ use htex_format::ErrorMeasure;
 use htex_host::{LoadedModel, Origin, Registry};
 use htex_tradeoff::{Journal, Model, Point, Request, Subject, csv, page, sweep};
 
+use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::invocation;
 use crate::models::tool;
 use crate::output::{print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
@@ -77,7 +78,7 @@ impl ErrorArg {
 }
 
 impl Tradeoff {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let [csv_file, json_file, part_file] =
             ["csv", "json", "part"].map(|e| self.output.with_extension(e));
         if [&csv_file, &json_file, &part_file].contains(&&self.output) {
@@ -122,7 +123,7 @@ impl Tradeoff {
             warn(&tradeoff.warnings);
             print(&to_text(&tradeoff, &self.output))?;
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 
     /// The models asked for, each with all ways in which it was found.
@@ -205,8 +206,8 @@ fn way(origin: &Origin) -> (u8, &'static str) {
 
 /// The command as it was given.
 fn command() -> String {
-    let arguments = std::env::args_os()
-        .skip(1)
+    let arguments = invocation::arguments()
+        .into_iter()
         .map(|argument| argument.to_string_lossy().into_owned());
     let quoted = arguments.map(|a| {
         if a.contains([' ', '\'']) {

@@ -2,7 +2,6 @@ use std::borrow::Cow;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use clap::Args;
 use htex_format::{
@@ -11,6 +10,7 @@ use htex_format::{
 use htex_host::{Registry, Search, WasmLimits};
 use serde_json::Value;
 
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::flags::{of_code, with, with_flags};
 use crate::output::{print, print_json, warn};
@@ -56,7 +56,7 @@ pub(crate) struct Validate {
 }
 
 impl Validate {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let schemas = self
             .extension_schema
             .iter()
@@ -91,9 +91,9 @@ impl Validate {
             print_json(&reports)?;
         }
         Ok(if all_valid {
-            ExitCode::SUCCESS
+            Exit::SUCCESS
         } else {
-            ExitCode::FAILURE
+            Exit::FAILURE
         })
     }
 

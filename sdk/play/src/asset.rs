@@ -106,6 +106,11 @@ impl Asset {
         self.embedded && self.embeds(id) || self.registry.find(id).is_ok()
     }
 
+    /// Returns the data of the file.
+    pub fn data(&self) -> &htex_format::Asset {
+        &self.data
+    }
+
     /// Returns the manifest.
     pub fn manifest(&self) -> &Manifest {
         &self.data.manifest

@@ -45,7 +45,13 @@ impl Motion {
     ///
     /// # Errors
     /// [`Error::Motion`] if the speed or the force is negative or not finite; [`Error::Position`] if the position is not finite.
-    pub(crate) fn checked(self) -> Result<Self, Error> {
+    ///
+    /// ```
+    /// use htex::Motion;
+    /// assert!(Motion::new(80.0, 0.4).checked().is_ok());
+    /// assert!(Motion::new(f64::NAN, 0.4).checked().is_err());
+    /// ```
+    pub fn checked(self) -> Result<Self, Error> {
         let in_range = |x: f64| x.is_finite() && x >= 0.0;
         if !(in_range(self.speed_mm_s) && in_range(self.force_n)) {
             return Err(Error::Motion {

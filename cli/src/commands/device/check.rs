@@ -1,10 +1,9 @@
-use std::process::ExitCode;
-
 use clap::Args;
 use htex_device_check::{Finding, Runner, check, run_one};
 
 use crate::checking::CheckArgs;
 use crate::devices::{DeviceArgs, SettingArgs};
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::flags::with_flags;
 use crate::output::print_json;
@@ -55,7 +54,7 @@ impl Which {
 }
 
 impl Check {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         if let Some(name) = &self.checking.reproduce {
             let finding = self.which.run_one(name)?;
             return self.checking.print_one(name, &finding, with_flags);
@@ -79,8 +78,8 @@ impl Check {
 }
 
 impl CheckOne {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         print_json(&self.which.run_one(&self.name)?)?;
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 }

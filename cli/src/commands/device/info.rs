@@ -1,10 +1,9 @@
-use std::process::ExitCode;
-
 use clap::Args;
 use htex_device::{Capabilities, Descriptor, Profile, Setting, SettingKind};
 use serde_json::json;
 
 use crate::devices::{DeviceArgs, SettingArgs};
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{print, print_json, tamed};
 
@@ -27,7 +26,7 @@ pub(crate) struct Info {
 }
 
 impl Info {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let known = self.devices.named(&self.device)?;
         let descriptor = known.descriptor();
         let resolved = self.settings.resolve(known.adapter.as_ref());
@@ -50,7 +49,7 @@ impl Info {
                 descriptor_text(&tamed(descriptor))
             ))?;
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 }
 

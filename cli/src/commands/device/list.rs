@@ -1,11 +1,10 @@
-use std::process::ExitCode;
-
 use clap::Args;
 use htex_device::{Devices, KnownDevice};
 use htex_format::plain;
 use serde_json::{Value, json};
 
 use crate::devices::DeviceArgs;
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{print, print_json, tamed};
 
@@ -24,14 +23,14 @@ pub(crate) struct List {
 }
 
 impl List {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let devices = self.devices.devices_quietly()?;
         if self.json {
             print_json(&json(&devices))?;
         } else {
             print(&text(&devices))?;
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 }
 

@@ -4,10 +4,9 @@ mod check;
 mod info;
 mod list;
 
-use std::process::ExitCode;
-
 use clap::{Args, Subcommand};
 
+use crate::exit::Exit;
 use crate::failure::Failure;
 
 /// List, inspect and check devices.
@@ -27,7 +26,7 @@ enum Command {
 }
 
 impl Device {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         match self.command {
             Command::List(args) => args.run(),
             Command::Info(args) => args.run(),

@@ -1,11 +1,11 @@
 use std::path::Path;
-use std::process::ExitCode;
 
 use clap::Args;
 use htex_check::{BLOCKS, Cost, Subject, bench};
 use htex_host::{LoadedModel, Origin, Registry, WasmLimits};
 
 use crate::commands::plugin::named::named;
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{print, print_json};
 use crate::plugins::PluginArgs;
@@ -30,14 +30,14 @@ pub(crate) struct Bench {
 }
 
 impl Bench {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let costs = bench(&self.subjects()?).map_err(|error| Failure::Other(error.to_string()))?;
         if self.json {
             print_json(&costs)?;
         } else {
             print(&table(&costs))?;
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 
     fn subjects(&self) -> Result<Vec<Subject>, Failure> {

@@ -1,10 +1,10 @@
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::Args;
 use htex_check::{Options, UnknownCheck, check, run_one};
 
 use crate::checking::CheckArgs;
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::print_json;
 
@@ -50,7 +50,7 @@ pub(crate) struct CheckOne {
 }
 
 impl Check {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let Self { file, seed, .. } = &self;
         if let Some(name) = &self.checking.reproduce {
             let finding = run_one(file, name, *seed, self.against.as_deref()).map_err(unknown)?;
@@ -78,10 +78,10 @@ impl Check {
 }
 
 impl CheckOne {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let finding = run_one(&self.file, &self.name, self.seed, self.against.as_deref());
         print_json(&finding.map_err(unknown)?)?;
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 }
 

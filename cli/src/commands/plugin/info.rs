@@ -1,9 +1,8 @@
-use std::process::ExitCode;
-
 use clap::Args;
 use htex_host::{Descriptor, Field, FitOption, Kind};
 
 use crate::commands::plugin::named::named;
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{print, print_json, tamed};
 use crate::plugins::PluginArgs;
@@ -24,14 +23,14 @@ pub(crate) struct Info {
 }
 
 impl Info {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let model = named(&self.model, &self.plugins)?;
         if self.json {
             print_json(model.descriptor())?;
         } else {
             print(&text(&tamed(model.descriptor())))?;
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 }
 

@@ -1,10 +1,9 @@
-use std::process::ExitCode;
-
 use clap::Args;
 use htex_format::plain;
 use htex_host::Registry;
 use serde_json::{Value, json};
 
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{print, print_json};
 use crate::plugins::PluginArgs;
@@ -24,14 +23,14 @@ pub(crate) struct List {
 }
 
 impl List {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let registry = self.plugins.registry_quietly()?;
         if self.json {
             print_json(&json(&registry))?;
         } else {
             print(&text(&registry))?;
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 }
 

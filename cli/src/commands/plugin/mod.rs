@@ -7,10 +7,9 @@ mod list;
 mod named;
 mod new;
 
-use std::process::ExitCode;
-
 use clap::{Args, Subcommand};
 
+use crate::exit::Exit;
 use crate::failure::Failure;
 
 /// Inspect, check and time texture models.
@@ -32,7 +31,7 @@ enum Command {
 }
 
 impl Plugin {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         match self.command {
             Command::List(args) => args.run(),
             Command::Info(args) => args.run(),

@@ -1,9 +1,9 @@
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
 use htex_check::templates;
 
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{print, write_file};
 
@@ -46,7 +46,7 @@ impl Lang {
 }
 
 impl New {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         let dir = self.dir.clone().unwrap_or_else(|| (&self.name).into());
         self.check(&dir)?;
         let sdk = (self.lang == Lang::Rust).then(|| self.sdk()).transpose()?;
@@ -63,7 +63,7 @@ impl New {
             Lang::C => format!("{dir}\nbuild: sh {dir}/build.sh\n"),
         })?;
         print(&format!("then:  {dir}/README.md\n"))?;
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 
     /// Refuses an invalid name, and a folder that exists.

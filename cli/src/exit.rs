@@ -1,0 +1,19 @@
+//! The exit status of the command.
+
+/// An exit status: unlike `std::process::ExitCode` its number can be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Exit(u8);
+
+impl Exit {
+    /// Nothing failed and nothing was found.
+    pub(crate) const SUCCESS: Self = Self(0);
+    /// A failure, or findings.
+    pub(crate) const FAILURE: Self = Self(1);
+    /// Wrong usage.
+    pub(crate) const USAGE: Self = Self(2);
+
+    /// Returns the status that the process ends with.
+    pub(crate) fn code(self) -> u8 {
+        self.0
+    }
+}

@@ -1,0 +1,61 @@
+//! How the command was started: its arguments, and the program that starts it again.
+
+use std::ffi::OsString;
+use std::process::Command;
+use std::sync::{Mutex, PoisonError};
+
+/// Arguments and program of the current run.
+static CURRENT: Mutex<Invocation> = Mutex::new(Invocation {
+    arguments: Vec::new(),
+    program: Vec::new(),
+});
+
+struct Invocation {
+    arguments: Vec<OsString>,
+    program: Vec<OsString>,
+}
+
+/// Error: the program that starts the command again is not known.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot find this program; start it by the path of its file")]
+pub(crate) struct UnknownProgram;
+
+/// The program that starts the command again, and its first arguments: `python -m htex`.
+#[derive(Debug, Clone)]
+pub(crate) struct Program {
+    pub(crate) file: OsString,
+    pub(crate) arguments: Vec<OsString>,
+}
+
+impl Program {
+    /// Returns a command that starts the program.
+    pub(crate) fn command(&self) -> Command {
+        let mut command = Command::new(&self.file);
+        command.args(&self.arguments);
+        command
+    }
+}
+
+/// Keeps the arguments (without the program's name) and the program of this run.
+pub(crate) fn set(arguments: Vec<OsString>, program: Vec<OsString>) {
+    *CURRENT.lock().unwrap_or_else(PoisonError::into_inner) = Invocation { arguments, program };
+}
+
+/// Returns the arguments of this run, without the program's name.
+pub(crate) fn arguments() -> Vec<OsString> {
+    let current = CURRENT.lock().unwrap_or_else(PoisonError::into_inner);
+    current.arguments.clone()
+}
+
+/// Returns the program that starts the command again.
+///
+/// # Errors
+/// When it is not known.
+pub(crate) fn program() -> Result<Program, UnknownProgram> {
+    let current = CURRENT.lock().unwrap_or_else(PoisonError::into_inner);
+    let (file, arguments) = current.program.split_first().ok_or(UnknownProgram)?;
+    Ok(Program {
+        file: file.clone(),
+        arguments: arguments.to_vec(),
+    })
+}

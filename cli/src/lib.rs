@@ -1,0 +1,103 @@
+//! The `htex` command as a library: parses, calls the SDK, prints. [`run`] is the whole command; the program `htex` and the
+//! Python package call it.
+#![forbid(unsafe_code)]
+
+mod assets;
+mod checking;
+mod commands;
+mod devices;
+mod exit;
+mod failure;
+mod flags;
+mod gains;
+mod guardian;
+mod invocation;
+mod metadata;
+mod models;
+mod motions;
+#[cfg(not(feature = "schemas"))]
+mod no_schemas;
+mod output;
+mod outputs;
+mod playing;
+mod plugins;
+mod progress;
+mod recording_plot;
+mod recordings;
+mod report;
+mod scenes;
+mod schemas;
+mod shown;
+mod signals;
+mod wasm_limits;
+mod wav;
+
+use std::ffi::OsString;
+
+use clap::Parser;
+
+use commands::Command;
+
+/// Texture assets for touch: fit, inspect, measure and play them.
+///
+/// Turns a recording of a finger sliding over a surface into a `.htex` file of a few hundred bytes,
+/// with models of its spectrum and the measured error of each.
+#[derive(Parser)]
+#[command(name = "htex", version, max_term_width = 100, after_help = first_steps())]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+fn first_steps() -> String {
+    let play = if cfg!(feature = "audio") {
+        "play it by ear, or on a device"
+    } else {
+        "play it on a device (--device); by ear only in a build with `--features audio`"
+    };
+    format!(
+        "\
+First steps:
+  htex demo out                       simulate five surfaces, fit all models, write out/report.html
+  htex fit rec.csv -o cloth.htex      fit all models to a recording of yours
+  htex info cloth.htex                what the file holds, and how good it is
+  htex synth cloth.htex -o cloth.wav  play it to a file
+  htex play cloth.htex                {play}
+
+Exit status: 0 ok, 1 findings or failure, 2 wrong usage."
+    )
+}
+
+/// Runs the command and returns its exit status: 0 ok, 1 findings or failure, 2 wrong usage.
+///
+/// `arguments` are those of a program, the first of them its name. `program` starts the command again, in a process of its own:
+/// the file, and arguments that precede those of the command, such as `python -m htex`. Checks of models and devices and the
+/// output of a display need it. An empty `program` is not known, and they fail with an error.
+///
+/// The first call handles Ctrl-C for the rest of the process. At most one call may run at a time.
+///
+/// ```
+/// let program = vec![std::env::current_exe()?.into_os_string()];
+/// assert_eq!(htex_cli::run(["htex".into(), "--version".into()], program), 0);
+/// # Ok::<(), std::io::Error>(())
+/// ```
+pub fn run(arguments: impl IntoIterator<Item = OsString>, program: Vec<OsString>) -> u8 {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    invocation::set(arguments.iter().skip(1).cloned().collect(), program);
+    let command = match Cli::try_parse_from(arguments) {
+        Ok(cli) => cli.command,
+        Err(error) => {
+            // A closed standard output or standard error is no error of the command.
+            let _ = error.print();
+            return u8::try_from(error.exit_code()).unwrap_or(exit::Exit::USAGE.code());
+        }
+    };
+    match signals::handle().and_then(|()| command.run()) {
+        Ok(exit) => exit.code(),
+        Err(failure) => {
+            let lines = failure.to_lines();
+            crate::output::tell!("htex: {}", lines.join("\n"));
+            failure.exit_code().code()
+        }
+    }
+}

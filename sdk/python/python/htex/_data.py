@@ -1,0 +1,214 @@
+"""The data classes of the package. All of them can be pickled."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal
+
+from . import _htex
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+Quantity = Literal["lateral_force", "normal_force", "acceleration", "velocity", "displacement"]
+"""A physical quantity, as a manifest names it."""
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A condition at which a texture was recorded; an unknown value is ``None``."""
+
+    speed_mm_s: float | None = None
+    """Scanning speed, mm/s."""
+    force_n: float | None = None
+    """Normal force, newtons."""
+    repeatability_rms_db: float | None = None
+    """RMS difference between odd and even segments of the recording in nine bands, decibels."""
+
+
+@dataclass(frozen=True, eq=False)
+class Spectrum:
+    """A texture spectrum: a sinusoid of amplitude A on the grid has magnitude A."""
+
+    frequency_hz: npt.NDArray[np.float64]
+    """Frequencies, hertz."""
+    magnitude: npt.NDArray[np.float64]
+    """Magnitudes, in ``unit``."""
+    quantity: Quantity
+    """Physical quantity."""
+    unit: str
+    """Unit of the magnitudes."""
+    band_hz: tuple[float, float]
+    """Lower and upper edge of the band, hertz."""
+
+    def __repr__(self) -> str:
+        low, high = self.band_hz
+        return f"<htex.Spectrum of {len(self.magnitude)} magnitudes in {self.unit}, {low:g} to {high:g} Hz>"
+
+
+@dataclass(frozen=True)
+class Reach:
+    """The relation of a speed or force to the recorded ones."""
+
+    kind: Literal["inside", "unknown", "scaled", "followed", "clamped"]
+    """How it is played."""
+    asked: float | None = None
+    """The requested value."""
+    recorded: float | None = None
+    """The recorded value that the texture is scaled from."""
+    played: float | None = None
+    """The recorded value that is played instead."""
+    factor: float | None = None
+    """Factor of all frequencies for a speed, of the level for a force."""
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """The relation of a motion to the recorded conditions, and how a voice plays it."""
+
+    inside: bool
+    """Whether the texture is played as recorded or interpolated between recordings."""
+    slides: bool
+    """Whether the voice is audible."""
+    excess: float
+    """Relative distance of the motion from the one that is played."""
+    description: str
+    """One sentence; empty if nothing differs from the recording."""
+    speed: Reach
+    """Speed, mm/s."""
+    force: Reach
+    """Normal force, newtons."""
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """Agreement of magnitudes with a reference."""
+
+    spectral_correlation: float
+    """Pearson correlation of the magnitudes."""
+    band_error_db: list[float]
+    """Energy relative to the reference's in each of nine bands, decibels."""
+    band_error_rms_db: float
+    """RMS of the nine band errors, decibels."""
+    matching_gain_db: float
+    """Gain that makes the total energies equal, decibels."""
+    band_error_matched_rms_db: float
+    """RMS of the nine band errors after that gain, decibels."""
+    third_octave_error_rms_db: float | None
+    """RMS error over third-octave bands, decibels; ``None`` for a reference without energy in them."""
+    log_spectral_distance_db: float | None
+    """RMS over the bins of the difference in decibels; ``None`` for a silent reference."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Processed:
+    """The texture spectrum of a recording, with what was read."""
+
+    spectrum: Spectrum
+    """The spectrum."""
+    condition: Condition
+    """Speed and force: the given values, else the measured medians."""
+    rate_hz: float
+    """Sample rate of the recording, hertz."""
+    segments: int
+    """Number of averaged segments."""
+    from_sweeps: bool
+    """Whether the segments are in sweeps, else in evenly spaced windows."""
+    read_s: list[tuple[float, float]]
+    """The stretches that were read, seconds."""
+    speed_spread_mm_s: tuple[float, float] | None
+    """Lowest and highest speed over the segments, mm/s."""
+    force_spread_n: tuple[float, float] | None
+    """Lowest and highest normal force over the segments, newtons."""
+    simulated: bool
+    """Whether the file says that it comes from a simulator."""
+    findings: list[dict[str, Any]]
+    """Findings, with stable codes."""
+    warnings: list[str]
+    """Warnings, as sentences."""
+    notes: list[str]
+    """Notes, as sentences."""
+
+    def __repr__(self) -> str:
+        return f"<htex.Processed: {self.segments} segments at {self.rate_hz:g} Hz, {self.spectrum!r}>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Fit:
+    """Models fitted to recordings."""
+
+    texture: _htex.Texture
+    """The texture."""
+    spectra: list[Spectrum]
+    """The recorded spectrum of each condition."""
+    fit_ms: list[float]
+    """Time of the fits of each model, milliseconds."""
+    skipped: list[tuple[str, str]]
+    """Models that could not be fitted, with reasons."""
+    notes: list[str]
+    """Notes about the recordings, as sentences."""
+
+    @property
+    def warnings(self) -> list[str]:
+        """The warnings that the asset holds, as sentences."""
+        found: list[str] = self.texture.manifest.get("provenance", {}).get("warnings", [])
+        return found
+
+    def table(self) -> dict[str, list[Any]]:
+        """Return the error of each model at each condition, as columns that pandas and polars take."""
+        return quality_table(self.texture)
+
+    def __repr__(self) -> str:
+        return f"<htex.Fit of {self.texture!r}>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Tradeoff:
+    """Accuracy against bytes and time."""
+
+    columns: dict[str, list[Any]]
+    """Every setting on every recording, as columns that pandas and polars take."""
+    knees: list[dict[str, Any]]
+    """Knees of the fronts."""
+    left_out: list[dict[str, Any]]
+    """Settings that could not be measured, with reasons."""
+    warnings: list[str]
+    """Warnings, as sentences."""
+    about: dict[str, Any] = field(default_factory=dict)
+    """Program, machine, measure of the error, and recordings."""
+
+    def __repr__(self) -> str:
+        rows = len(self.columns.get("model", []))
+        return f"<htex.Tradeoff of {rows} points>"
+
+
+def quality_table(texture: _htex.Texture) -> dict[str, list[Any]]:
+    """Return the stored error of each model at each condition, as columns."""
+    rows: list[dict[str, Any]] = []
+    for representation in texture.manifest["representations"]:
+        for at in representation["at"]:
+            condition = texture.conditions[at["condition"]]
+            row = {
+                "model": representation["model"],
+                "speed_mm_s": condition.speed_mm_s,
+                "force_n": condition.force_n,
+                "level_rms": at["level_rms"],
+            }
+            quality = at.get("quality", {})
+            row.update({name: value for name, value in quality.items() if name != "band_error_db"})
+            rows.append(row)
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    return {name: [row.get(name) for row in rows] for name in names}
+
+
+def _reopen(
+    data: bytes, plugins: list[str | os.PathLike[str]], embedded: bool, installed: bool
+) -> _htex.Texture:
+    """Open a pickled texture."""
+    return _htex.open(data, plugins=plugins, embedded=embedded, installed=installed)
+
+
+for _class in (Condition, Spectrum, Reach, Coverage, Agreement, Processed, Fit, Tradeoff):
+    _class.__module__ = "htex"

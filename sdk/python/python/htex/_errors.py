@@ -1,0 +1,36 @@
+"""The exceptions of the package.
+
+An error that the system reports for a file is an ``OSError``, such as ``FileNotFoundError``.
+"""
+
+
+class Error(Exception):
+    """An error of this package."""
+
+
+class AssetError(Error):
+    """A file is not a valid asset, or an asset breaks a rule of the format."""
+
+
+class ModelError(Error):
+    """A model is missing, cannot be loaded, or failed."""
+
+
+class MotionError(Error, ValueError):
+    """A speed, force or position is out of range or not finite."""
+
+
+class OptionError(Error, ValueError):
+    """An argument is out of range or unknown."""
+
+
+class RecordingError(Error):
+    """A recording cannot be read, or holds no texture."""
+
+
+class SceneError(Error):
+    """A scene is invalid, or cannot be planned or played."""
+
+
+for _class in (Error, AssetError, ModelError, MotionError, OptionError, RecordingError, SceneError):
+    _class.__module__ = "htex"

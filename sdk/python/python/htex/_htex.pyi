@@ -1,0 +1,146 @@
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol, final
+
+import numpy as np
+import numpy.typing as npt
+
+from ._data import Condition, Coverage, Quantity, Spectrum
+
+__version__: str
+__all__ = [
+    "Scene",
+    "Texture",
+    "Voice",
+    "__version__",
+    "agreement",
+    "fit",
+    "models",
+    "open",
+    "process",
+    "run",
+    "tradeoff",
+]
+
+_Path = str | os.PathLike[str]
+_At = Condition | tuple[float | None, float | None]
+_Series = float | Sequence[float] | npt.NDArray[np.floating[Any]]
+
+class _Readable(Protocol):
+    def read(self) -> bytes: ...
+
+@final
+class Texture:
+    """A texture: an opened asset, and the models that play it."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def quantity(self) -> Quantity: ...
+    @property
+    def unit(self) -> str: ...
+    @property
+    def band_hz(self) -> tuple[float, float]: ...
+    @property
+    def manifest(self) -> dict[str, Any]: ...
+    @property
+    def conditions(self) -> list[Condition]: ...
+    @property
+    def models(self) -> list[str]: ...
+    def spectrum(
+        self,
+        frequency_hz: Sequence[float] | npt.NDArray[np.floating[Any]] | None = None,
+        model: str | None = None,
+        at: _At | None = None,
+    ) -> Spectrum: ...
+    def level(self, model: str | None = None, at: _At | None = None) -> float: ...
+    def parameters(self, model: str | None = None, at: _At | None = None) -> dict[str, float | list[float]]: ...
+    def save(self, path: _Path) -> None: ...
+    def to_bytes(self) -> bytes: ...
+    def voice(
+        self,
+        model: str | None = None,
+        rate_hz: float = 20000.0,
+        seed: int = 0,
+        speed_mm_s: float | None = None,
+        force_n: float | None = None,
+        position_mm: float | None = None,
+        synthesis: str = "streamed",
+        *,
+        speed_scaling: bool = True,
+        force_scaling: bool = True,
+        contact: bool = True,
+    ) -> Voice: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class Voice:
+    """A voice: an endless stream of samples in the texture's unit, which follows the motion of the finger."""
+
+    @property
+    def model(self) -> str: ...
+    @property
+    def rate_hz(self) -> float: ...
+    @property
+    def seed(self) -> int: ...
+    @property
+    def unit(self) -> str: ...
+    def render(self, n: int) -> npt.NDArray[np.float32]: ...
+    def render_into(self, array: npt.NDArray[np.float32]) -> None: ...
+    def set_motion(self, speed_mm_s: float, force_n: float, position_mm: float | None = None) -> None: ...
+    def render_path(
+        self, speed_mm_s: _Series, force_n: _Series, position_mm: _Series | None = None, block: int = 64
+    ) -> npt.NDArray[np.float32]: ...
+    def coverage(self, speed_mm_s: float, force_n: float) -> Coverage: ...
+
+@final
+class Scene:
+    """A scene with its assets and its device, which is not opened."""
+
+    def __new__(
+        cls,
+        path: _Path,
+        *,
+        plugins: Sequence[_Path] = ...,
+        embedded: bool = True,
+        installed: bool = False,
+        device: str | None = None,
+        profile: str | None = None,
+        settings: Mapping[str, Any] = ...,
+        quantity_gain: float | None = None,
+    ) -> Scene: ...
+    @property
+    def unit(self) -> str: ...
+    @property
+    def rate_hz(self) -> float: ...
+    @property
+    def notes(self) -> list[str]: ...
+    def plan(self) -> dict[str, Any]: ...
+    def render(self, seconds: float | None = None) -> npt.NDArray[np.float32]: ...
+    def render_path(
+        self,
+        speed_mm_s: _Series,
+        force_n: _Series,
+        x_mm: _Series | None = None,
+        y_mm: _Series | None = None,
+        block: int = 64,
+    ) -> npt.NDArray[np.float32]: ...
+
+def open(
+    source: _Path | bytes | bytearray | memoryview | _Readable,
+    *,
+    plugins: Sequence[_Path] = ...,
+    embedded: bool = True,
+    installed: bool = False,
+) -> Texture: ...
+def models(*, plugins: Sequence[_Path] = ..., installed: bool = False) -> list[dict[str, Any]]: ...
+def process(source: Any, reading: Mapping[str, Any]) -> dict[str, Any]: ...
+def fit(sources: Sequence[Any], reading: Mapping[str, Any], request: Mapping[str, Any]) -> tuple[Texture, dict[str, Any]]: ...
+def tradeoff(sources: Sequence[Any], reading: Mapping[str, Any], request: Mapping[str, Any]) -> dict[str, Any]: ...
+def agreement(
+    frequency_hz: npt.NDArray[np.float64],
+    band_hz: tuple[float, float],
+    reference: npt.NDArray[np.float64],
+    magnitude: npt.NDArray[np.float64],
+) -> dict[str, Any]: ...
+def run(arguments: Sequence[str], program: Sequence[str]) -> int: ...

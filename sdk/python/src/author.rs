@@ -1,0 +1,279 @@
+//! Recordings to spectra and textures, and the agreement of spectra.
+
+use std::path::PathBuf;
+
+use htex::format::Manifest;
+use htex::host::{LoadedModel, Origin, Registry};
+use htex::{AssetData, Band};
+use htex_author::{
+    AssetRequest, FittedAsset, Level, ModelRequest, SpectrumRef, TextureSpectrum, fit_asset,
+    read_take,
+};
+use pyo3::prelude::*;
+use serde_json::{Value, json};
+
+use crate::errors::{OrRaise, option};
+use crate::models::registry;
+use crate::python::from_json;
+use crate::reading::{Pair, Reading, Source, unknown};
+use crate::texture::Texture;
+
+/// Program and version, for an asset's provenance: those of the command.
+const TOOL: &str = concat!("htex ", env!("CARGO_PKG_VERSION"));
+
+/// Returns the texture spectrum of a recording, with what was read.
+#[pyfunction]
+pub(crate) fn process(
+    py: Python<'_>,
+    source: Source,
+    reading: Reading,
+) -> PyResult<Bound<'_, PyAny>> {
+    let value = py.detach(|| processed(source, &reading))?;
+    from_json(py, &value)
+}
+
+fn processed(source: Source, reading: &Reading) -> PyResult<Value> {
+    let options = reading.spectrum_options()?;
+    let takes = reading.takes(&[source], &[])?;
+    let take = takes.first().ok_or_else(|| option("no recording"))?;
+    let read = read_take(take, &options, reading.strict).or_raise()?;
+    let part = std::slice::from_ref(&read.part);
+    let spectrum = TextureSpectrum::average(part, options.averaging).or_raise()?;
+    let recording = &take.recording;
+    let stretches = read.part.segments.stretches().into_iter();
+    let read_s = stretches.map(|part| [part.start, part.end].map(|at| recording.second(at)));
+    Ok(json!({
+        "spectrum": described(&spectrum),
+        "rate_hz": recording.rate_hz,
+        "segments": spectrum.segments,
+        "from_sweeps": read.part.segments.from_sweeps,
+        "read_s": read_s.collect::<Vec<_>>(),
+        "condition": {
+            "speed_mm_s": read.condition.speed_mm_s,
+            "force_n": read.condition.force_n,
+            "repeatability_rms_db": spectrum.repeatability_rms_db,
+        },
+        "speed_spread_mm_s": read.spread.speed_mm_s,
+        "force_spread_n": read.spread.force_n,
+        "simulated": recording.simulated,
+        "findings": read.findings,
+        "warnings": read.warnings,
+        "notes": read.notes,
+    }))
+}
+
+/// The fields of a `Spectrum`.
+fn described(spectrum: &TextureSpectrum) -> Value {
+    json!({
+        "frequency_hz": spectrum.frequency_hz,
+        "magnitude": spectrum.magnitude,
+        "quantity": spectrum.quantity,
+        "unit": spectrum.quantity.unit(),
+        "band_hz": [spectrum.band.low_hz, spectrum.band.high_hz],
+    })
+}
+
+/// Options of a fit: the keywords of the package's function.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Fit {
+    models: Vec<String>,
+    /// Model, option, value.
+    options: Vec<(String, String, String)>,
+    conditions: Vec<Pair>,
+    level: String,
+    keep_reference: bool,
+    plugins: Vec<PathBuf>,
+    installed: bool,
+    name: String,
+    author: Option<String>,
+    license: Option<String>,
+    tags: Vec<String>,
+    description: Option<String>,
+    origin: Option<String>,
+    doi: Option<String>,
+    sensor: Option<String>,
+    finger: Option<String>,
+}
+
+/// Fits models to recordings; returns the texture, and what its file does not hold.
+#[pyfunction]
+pub(crate) fn fit<'py>(
+    py: Python<'py>,
+    sources: Vec<Source>,
+    reading: Reading,
+    request: Fit,
+) -> PyResult<(Texture, Bound<'py, PyAny>)> {
+    let (texture, rest) = py.detach(|| fitted(&sources, &reading, request))?;
+    Ok((texture, from_json(py, &rest)?))
+}
+
+fn fitted(sources: &[Source], reading: &Reading, fit: Fit) -> PyResult<(Texture, Value)> {
+    let registry = registry(&fit.plugins, fit.installed)?;
+    let request = fit.request(&registry, reading)?;
+    let takes = reading.takes(sources, &fit.conditions)?;
+    let mut fitted = fit_asset(&takes, &request).or_raise()?;
+    fit.describe(&mut fitted.asset.manifest);
+    let rest = rest(&fitted);
+    // The texture is what its file holds: levels and errors have fewer digits there.
+    let bytes = fitted.asset.to_bytes().or_raise()?;
+    let stored = AssetData::from_bytes(&bytes).or_raise()?;
+    Ok((
+        Texture::new(stored, fit.plugins, true, fit.installed)?,
+        rest,
+    ))
+}
+
+fn rest(fitted: &FittedAsset) -> Value {
+    json!({
+        "spectra": fitted.spectra.iter().map(described).collect::<Vec<_>>(),
+        "fit_ms": fitted.fit_ms,
+        "skipped": fitted.skipped,
+        "notes": fitted.notes,
+    })
+}
+
+impl Fit {
+    fn request(&self, registry: &Registry, reading: &Reading) -> PyResult<AssetRequest> {
+        let level = match &self.level[..] {
+            "recording" => Level::Recording,
+            "fitted" => Level::Fitted,
+            other => return Err(unknown("level", other, "recording, fitted")),
+        };
+        let mut recorded = reading.recorded();
+        for (model, name, value) in &self.options {
+            recorded.insert(format!("{model}.{name}"), value.clone());
+        }
+        if level == Level::Fitted {
+            recorded.insert("level".to_owned(), self.level.clone());
+        }
+        let builtin = registry.models().iter();
+        let builtin = builtin.filter(|model| *model.origin() == Origin::Builtin);
+        Ok(AssetRequest::new(self.name.clone())
+            .with_models(self.requested(registry)?)
+            .with_spectrum(reading.spectrum_options()?)
+            .with_level(level)
+            .with_alternatives(builtin.cloned().collect())
+            .with_strict(reading.strict)
+            .with_keep_reference(self.keep_reference)
+            .with_recorded_options(recorded)
+            .with_tool(TOOL))
+    }
+
+    /// Returns the models, each with its options.
+    fn requested(&self, registry: &Registry) -> PyResult<Vec<ModelRequest>> {
+        let models = named(registry, &self.models)?;
+        for (owner, ..) in &self.options {
+            if !models.iter().any(|model| is(model, owner)) {
+                let there: Vec<&str> = models.iter().map(LoadedModel::short_name).collect();
+                return Err(unknown("a model in options", owner, &there.join(", ")));
+            }
+        }
+        let request = |model: &LoadedModel| {
+            let own = self.options.iter().filter(|(owner, ..)| is(model, owner));
+            let own: Vec<(&str, &str)> = own.map(|(_, n, v)| (&n[..], &v[..])).collect();
+            let options = model.options(&own).or_raise()?;
+            Ok(ModelRequest::new(model).with_options(options))
+        };
+        models.iter().map(request).collect()
+    }
+
+    /// Writes the metadata into a manifest.
+    fn describe(&self, manifest: &mut Manifest) {
+        manifest.tags.clone_from(&self.tags);
+        for (given, kept) in [
+            (&self.author, &mut manifest.author),
+            (&self.license, &mut manifest.license),
+            (&self.description, &mut manifest.description),
+            (&self.origin, &mut manifest.source),
+            (&self.doi, &mut manifest.doi),
+            (&self.sensor, &mut manifest.sensor),
+            (&self.finger, &mut manifest.finger),
+        ] {
+            kept.clone_from(given);
+        }
+        manifest.declare_version();
+    }
+}
+
+/// Returns the models of these names, each once; without names, all.
+pub(crate) fn named(registry: &Registry, names: &[String]) -> PyResult<Vec<LoadedModel>> {
+    if names.is_empty() {
+        return Ok(registry.models().to_vec());
+    }
+    let mut models: Vec<LoadedModel> = Vec::new();
+    for name in names {
+        let model = registry.find(name).or_raise()?;
+        if !models.iter().any(|m| m.id() == model.id()) {
+            models.push(model.clone());
+        }
+    }
+    Ok(models)
+}
+
+fn is(model: &LoadedModel, name: &str) -> bool {
+    model.id() == name || model.short_name().eq_ignore_ascii_case(name)
+}
+
+/// Compares magnitudes with those of a reference at the same frequencies.
+#[pyfunction]
+pub(crate) fn agreement<'py>(
+    py: Python<'py>,
+    frequency_hz: Vec<f64>,
+    band_hz: (f64, f64),
+    reference: Vec<f64>,
+    magnitude: Vec<f64>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let band = Band {
+        low_hz: band_hz.0,
+        high_hz: band_hz.1,
+    };
+    check(&frequency_hz, band, &reference, &magnitude)?;
+    let reference = SpectrumRef {
+        band,
+        frequency_hz: &frequency_hz,
+        magnitude: &reference,
+    };
+    let found = py.detach(|| htex_author::agreement(reference, &magnitude));
+    from_json(
+        py,
+        &json!({
+            "spectral_correlation": found.spectral_correlation,
+            "band_error_db": found.band_error_db,
+            "band_error_rms_db": found.band_error_rms_db,
+            "matching_gain_db": found.matching_gain_db,
+            "band_error_matched_rms_db": found.band_error_matched_rms_db,
+            "third_octave_error_rms_db": found.third_octave_error_rms_db,
+            "log_spectral_distance_db": found.log_spectral_distance_db,
+        }),
+    )
+}
+
+/// Refuses spectra that cannot be compared.
+fn check(frequency_hz: &[f64], band: Band, reference: &[f64], magnitude: &[f64]) -> PyResult<()> {
+    let (frequencies, expected, got) = (frequency_hz.len(), reference.len(), magnitude.len());
+    if frequencies == 0 || frequencies != expected || frequencies != got {
+        return Err(option(format!(
+            "{frequencies} frequencies, {expected} magnitudes of the reference and {got} to compare; \
+             give equally many, at least one"
+        )));
+    }
+    let is_band = band.low_hz > 0.0 && band.low_hz < band.high_hz && band.high_hz <= 20_000.0;
+    if !is_band {
+        let (low, high) = band.edges();
+        return Err(option(format!(
+            "the band is {low} to {high} Hz; its edges ascend, above 0 and up to 20,000 Hz"
+        )));
+    }
+    let ascend = frequency_hz.windows(2).all(|pair| pair[0] < pair[1]);
+    if !(ascend && frequency_hz[0] > 0.0 && frequency_hz[frequencies - 1].is_finite()) {
+        return Err(option("frequencies must be finite, above 0 and ascending"));
+    }
+    let is_magnitude = |m: &f64| (0.0..=1e12).contains(m);
+    match reference.iter().chain(magnitude).all(is_magnitude) {
+        true => Ok(()),
+        false => Err(option(
+            "magnitudes must be 0 to 1e12; one is not, or is not a number",
+        )),
+    }
+}

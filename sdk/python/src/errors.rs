@@ -1,0 +1,157 @@
+//! The package's exceptions, and the one that each error becomes.
+
+use std::io;
+use std::path::Path;
+
+use htex::format::{ReadError, WriteError};
+use htex::host::HostError;
+use htex_author::AuthorError;
+use htex_author::read::ReadError as RecordingReadError;
+use htex_scene::{LoadError, SceneError as PlayError};
+use htex_tradeoff::TradeoffError;
+use pyo3::exceptions::PyOSError;
+use pyo3::import_exception;
+use pyo3::prelude::*;
+
+import_exception!(htex._errors, AssetError);
+import_exception!(htex._errors, ModelError);
+import_exception!(htex._errors, MotionError);
+import_exception!(htex._errors, OptionError);
+import_exception!(htex._errors, RecordingError);
+import_exception!(htex._errors, SceneError);
+
+/// An error that becomes an exception: of this package, or `OSError` when the system reports it.
+pub(crate) trait IntoPyErr {
+    /// Makes the exception.
+    fn into_py_err(self) -> PyErr;
+}
+
+/// The conversion of a result's error to an exception.
+pub(crate) trait OrRaise<T> {
+    /// Converts the error to an exception.
+    fn or_raise(self) -> PyResult<T>;
+}
+
+impl<T, E: IntoPyErr> OrRaise<T> for Result<T, E> {
+    fn or_raise(self) -> PyResult<T> {
+        self.map_err(IntoPyErr::into_py_err)
+    }
+}
+
+/// Makes the `OSError` of a file; its subclass, such as `FileNotFoundError`, follows from the system's number.
+pub(crate) fn of_file(path: &Path, error: &io::Error) -> PyErr {
+    match error.raw_os_error() {
+        Some(number) => {
+            let text = error.to_string();
+            let text = text.split(" (os error").next().unwrap_or_default();
+            let file = path.as_os_str().to_owned();
+            PyOSError::new_err((number, text.to_owned(), file))
+        }
+        None => io::Error::new(error.kind(), format!("{}: {error}", path.display())).into(),
+    }
+}
+
+/// Makes the exception of an invalid argument.
+pub(crate) fn option(text: impl Into<String>) -> PyErr {
+    OptionError::new_err(text.into())
+}
+
+impl IntoPyErr for ReadError {
+    fn into_py_err(self) -> PyErr {
+        match self {
+            Self::Io { path, error } => of_file(&path, &error),
+            other => AssetError::new_err(other.to_string()),
+        }
+    }
+}
+
+impl IntoPyErr for WriteError {
+    fn into_py_err(self) -> PyErr {
+        match self {
+            Self::Io { path, error } => of_file(&path, &error),
+            other => AssetError::new_err(other.to_string()),
+        }
+    }
+}
+
+impl IntoPyErr for HostError {
+    fn into_py_err(self) -> PyErr {
+        match self {
+            Self::Option { .. } | Self::Synthesis { .. } | Self::Rates { .. } => {
+                option(self.to_string())
+            }
+            other => ModelError::new_err(other.to_string()),
+        }
+    }
+}
+
+impl IntoPyErr for htex::Error {
+    fn into_py_err(self) -> PyErr {
+        match self {
+            Self::Read(error) => error.into_py_err(),
+            Self::Model(error) => error.into_py_err(),
+            Self::Motion { .. } | Self::Position { .. } => MotionError::new_err(self.to_string()),
+            Self::Fields { .. } => AssetError::new_err(self.to_string()),
+            other => ModelError::new_err(other.to_string()),
+        }
+    }
+}
+
+impl IntoPyErr for RecordingReadError {
+    fn into_py_err(self) -> PyErr {
+        match self {
+            Self::Io { file, source } => of_file(Path::new(&file), &source),
+            Self::Option { .. } | Self::NoRate { .. } => option(self.to_string()),
+            other => RecordingError::new_err(other.to_string()),
+        }
+    }
+}
+
+impl IntoPyErr for AuthorError {
+    fn into_py_err(self) -> PyErr {
+        match self {
+            Self::Model(error) => error.into_py_err(),
+            Self::Read(error) => error.into_py_err(),
+            Self::Asset(error) => error.into_py_err(),
+            Self::Write { path, error } => of_file(&path, &error),
+            Self::NothingFitted { .. } => ModelError::new_err(self.to_string()),
+            other => RecordingError::new_err(other.to_string()),
+        }
+    }
+}
+
+impl IntoPyErr for LoadError {
+    fn into_py_err(self) -> PyErr {
+        match self {
+            Self::Io { path, error } => of_file(&path, &error),
+            other => SceneError::new_err(other.to_string()),
+        }
+    }
+}
+
+impl IntoPyErr for PlayError {
+    fn into_py_err(self) -> PyErr {
+        match self {
+            Self::Motion { .. } => MotionError::new_err(self.to_string()),
+            other => SceneError::new_err(other.to_string()),
+        }
+    }
+}
+
+impl IntoPyErr for htex_device::DeviceError {
+    fn into_py_err(self) -> PyErr {
+        SceneError::new_err(self.to_string())
+    }
+}
+
+impl IntoPyErr for TradeoffError {
+    fn into_py_err(self) -> PyErr {
+        match self {
+            Self::Author(error) => error.into_py_err(),
+            Self::Model(error) => error.into_py_err(),
+            Self::Store(error) => error.into_py_err(),
+            Self::Journal { path, error } => of_file(&path, &error),
+            other => option(other.to_string()),
+        }
+    }
+}

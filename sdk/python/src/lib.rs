@@ -1,0 +1,43 @@
+//! The extension module of the Python package `htex`. The package's Python files hold the data classes, the exceptions and the
+//! command; this module opens, plays, fits and sweeps, and releases the interpreter while it does.
+#![forbid(unsafe_code)]
+
+mod author;
+mod command;
+mod errors;
+mod models;
+mod path;
+mod python;
+mod reading;
+mod scene;
+mod texture;
+mod tradeoff;
+mod voice;
+
+use pyo3::prelude::*;
+
+/// The functions and classes of the package that are written in Rust.
+#[pymodule]
+mod _htex {
+    use super::*;
+
+    #[pymodule_export]
+    use crate::author::{agreement, fit, process};
+    #[pymodule_export]
+    use crate::command::run;
+    #[pymodule_export]
+    use crate::models::models;
+    #[pymodule_export]
+    use crate::scene::Scene;
+    #[pymodule_export]
+    use crate::texture::{Texture, open};
+    #[pymodule_export]
+    use crate::tradeoff::tradeoff;
+    #[pymodule_export]
+    use crate::voice::Voice;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

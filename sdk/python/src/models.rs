@@ -1,0 +1,31 @@
+//! The models: where they are searched, and those that are found.
+
+use std::path::PathBuf;
+
+use htex::host::{Registry, Search};
+use pyo3::prelude::*;
+
+use crate::errors::OrRaise;
+use crate::python::from_json;
+
+/// Searches models: plugin files and folders of them, the installed ones if requested, and the built-in ones.
+pub(crate) fn registry(plugins: &[PathBuf], installed: bool) -> PyResult<Registry> {
+    let (dirs, files) = plugins.iter().cloned().partition(|path| path.is_dir());
+    let places = Search::builtin()
+        .with_env(installed)
+        .with_user_dir(installed);
+    Registry::search(&places.with_files(files).with_dirs(dirs)).or_raise()
+}
+
+/// Returns the descriptors of the models that are found.
+#[pyfunction]
+#[pyo3(signature = (*, plugins=Vec::new(), installed=false))]
+pub(crate) fn models(
+    py: Python<'_>,
+    plugins: Vec<PathBuf>,
+    installed: bool,
+) -> PyResult<Bound<'_, PyAny>> {
+    let registry = py.detach(|| registry(&plugins, installed))?;
+    let descriptors: Vec<_> = registry.models().iter().map(|m| m.descriptor()).collect();
+    from_json(py, &descriptors)
+}

@@ -1,0 +1,244 @@
+//! Scenes: surfaces, a motion and a device.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use htex::host::{Registry, folders};
+use htex_device::{Capabilities, DeviceSearch, Devices};
+use htex_scene::file::Motion;
+use htex_scene::{Costs, DeviceOverride, Finger, LoadedScene, Plan, Renderer, Surroundings, plan};
+use numpy::{IntoPyArray, PyArray1};
+use pyo3::prelude::*;
+
+use crate::errors::{MotionError, OrRaise, SceneError, option};
+use crate::models::registry;
+use crate::path::{Series, count};
+use crate::python::{from_json, zeros};
+
+/// A scene with its assets and its device, which is not opened.
+#[pyclass(frozen, module = "htex")]
+pub(crate) struct Scene {
+    file: PathBuf,
+    models: Registry,
+    embedded: bool,
+    devices: Devices,
+    device: DeviceOverride,
+    loaded: LoadedScene,
+    able: Capabilities,
+}
+
+#[pymethods]
+impl Scene {
+    #[new]
+    #[pyo3(signature = (path, *, plugins=Vec::new(), embedded=true, installed=false, device=None, profile=None,
+                        settings=BTreeMap::new(), quantity_gain=None))]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        py: Python<'_>,
+        path: PathBuf,
+        plugins: Vec<PathBuf>,
+        embedded: bool,
+        installed: bool,
+        device: Option<String>,
+        profile: Option<String>,
+        settings: BTreeMap<String, Bound<'_, PyAny>>,
+        quantity_gain: Option<f64>,
+    ) -> PyResult<Self> {
+        let mut texts = BTreeMap::new();
+        for (name, value) in settings {
+            texts.insert(name, value.str()?.to_string());
+        }
+        let device = DeviceOverride {
+            adapter: device,
+            profile,
+            settings: texts,
+            quantity_gain,
+            rehearsal: true,
+            ..DeviceOverride::default()
+        };
+        py.detach(|| {
+            let models = registry(&plugins, installed)?;
+            let devices = devices(installed)?;
+            let around = Surroundings {
+                models: &models,
+                embedded,
+                devices: &devices,
+            };
+            let loaded = LoadedScene::open(&path, &around, &device).or_raise()?;
+            let known = devices.find(&loaded.scene.device.adapter).or_raise()?;
+            let able = known.adapter.capabilities(&loaded.settings).or_raise()?;
+            Ok(Self {
+                file: path,
+                models,
+                embedded,
+                device,
+                loaded,
+                able,
+                devices,
+            })
+        })
+    }
+
+    /// Unit of the samples: that of the device.
+    #[getter]
+    fn unit(&self) -> &'static str {
+        self.able.quantity.unit()
+    }
+
+    /// Findings that are not errors.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.loaded.notes.iter().map(ToString::to_string).collect()
+    }
+
+    /// Returns the plan: stages with reasons and costs, effects that are left out, chosen models.
+    fn plan<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let plan = py.detach(|| self.planned(&self.loaded))?;
+        from_json(py, &plan)
+    }
+
+    /// Rate of the samples, hertz.
+    #[getter]
+    fn rate_hz(&self, py: Python<'_>) -> PyResult<f64> {
+        Ok(py.detach(|| self.planned(&self.loaded))?.rate_hz)
+    }
+
+    /// Returns the samples of the scene at its own motion.
+    #[pyo3(signature = (seconds=None))]
+    fn render<'py>(
+        &self,
+        py: Python<'py>,
+        seconds: Option<f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let samples = py.detach(|| {
+            let mut loaded = self.loaded.clone();
+            if let Some(seconds) = seconds {
+                if !(seconds > 0.0 && seconds <= 1e9) {
+                    return Err(option(format!(
+                        "seconds is {seconds}; more than 0, at most 1e9"
+                    )));
+                }
+                loaded.scene.duration_s = Some(seconds);
+            }
+            if loaded.scene.motion == Motion::Live {
+                let text = "the motion of the scene is live; give it to render_path";
+                return Err(SceneError::new_err(text));
+            }
+            let plan = self.planned(&loaded)?;
+            let frames = plan.frames.ok_or_else(|| {
+                SceneError::new_err("the scene has no end; give seconds, or add duration_s to it")
+            })?;
+            let mut samples = zeros(usize::try_from(frames).unwrap_or(usize::MAX))?;
+            let mut renderer = Renderer::new(&loaded, &plan).or_raise()?;
+            let rendered = renderer.render(&mut samples);
+            samples.truncate(rendered);
+            failed(&mut renderer)?;
+            Ok(samples)
+        })?;
+        Ok(samples.into_pyarray(py))
+    }
+
+    /// Returns the samples of the scene at another motion: one speed, force and position for each block of samples.
+    #[pyo3(signature = (speed_mm_s, force_n, x_mm=None, y_mm=None, block=64))]
+    fn render_path<'py>(
+        &self,
+        py: Python<'py>,
+        speed_mm_s: Series,
+        force_n: Series,
+        x_mm: Option<Series>,
+        y_mm: Option<Series>,
+        block: usize,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        if x_mm.is_some() != y_mm.is_some() {
+            return Err(option(
+                "a position has two coordinates; give x_mm and y_mm, or neither",
+            ));
+        }
+        let samples = py.detach(|| {
+            let given = [
+                Some(&speed_mm_s),
+                Some(&force_n),
+                x_mm.as_ref(),
+                y_mm.as_ref(),
+            ];
+            let samples = count(&given, block)?;
+            let loaded = self.live()?;
+            let plan = self.planned(&loaded)?;
+            let mut renderer = Renderer::new(&loaded, &plan).or_raise()?;
+            let mut samples = zeros(samples)?;
+            for (i, part) in samples.chunks_mut(block).enumerate() {
+                let at_mm = x_mm.as_ref().zip(y_mm.as_ref());
+                let finger = Finger {
+                    speed_mm_s: speed_mm_s.at(i),
+                    force_n: force_n.at(i),
+                    at_mm: at_mm.map(|(x, y)| [x.at(i), y.at(i)]),
+                };
+                let moved = renderer.set_motion(finger);
+                moved.map_err(|error| MotionError::new_err(format!("block {i}: {error}")))?;
+                renderer.render(part);
+            }
+            failed(&mut renderer)?;
+            Ok::<_, PyErr>(samples)
+        })?;
+        Ok(samples.into_pyarray(py))
+    }
+
+    fn __repr__(&self) -> String {
+        let (file, surfaces) = (self.file.display(), self.loaded.scene.surfaces.len());
+        let device = &self.loaded.scene.device.adapter;
+        format!(
+            "<htex.Scene {file}: {surfaces} surface(s), device {device} in {}>",
+            self.unit()
+        )
+    }
+}
+
+impl Scene {
+    fn planned(&self, loaded: &LoadedScene) -> PyResult<Plan> {
+        plan(loaded, &self.able, &costs()).or_raise()
+    }
+
+    /// Loads the scene for a motion that is given while it plays.
+    fn live(&self) -> PyResult<LoadedScene> {
+        let around = Surroundings {
+            models: &self.models,
+            embedded: self.embedded,
+            devices: &self.devices,
+        };
+        let device = DeviceOverride {
+            live: true,
+            ..self.device.clone()
+        };
+        let mut loaded = LoadedScene::open(&self.file, &around, &device).or_raise()?;
+        loaded.scene.motion = Motion::Live;
+        loaded.scene.duration_s = None;
+        loaded.trace = None;
+        Ok(loaded)
+    }
+}
+
+fn failed(renderer: &mut Renderer) -> PyResult<()> {
+    renderer.take_failure().map_or(Ok(()), Err).or_raise()
+}
+
+/// The devices that the command has, and the installed ones if requested.
+fn devices(installed: bool) -> PyResult<Devices> {
+    let search = DeviceSearch {
+        env: installed,
+        user_dir: installed,
+        ..DeviceSearch::default()
+    };
+    let builtin: Vec<Arc<dyn htex_device::Adapter>> = vec![
+        Arc::new(htex_device_file::FileAdapter),
+        Arc::new(htex_device_daq::Daq::new()),
+    ];
+    Devices::search(builtin, &search).or_raise()
+}
+
+/// Costs that the command measured on this machine, else the built-in ones.
+fn costs() -> Costs {
+    let file = folders::cache().map(|folder| folder.join("costs.json"));
+    let kept = file.and_then(|file| Costs::load(&file));
+    kept.unwrap_or_else(Costs::embedded)
+}

@@ -1,0 +1,367 @@
+//! Textures: opened assets.
+
+use std::path::{Path, PathBuf};
+
+use htex::format::write_file;
+use htex::{Asset, AssetData, Effects, Motion, Synthesis, VoiceOptions};
+use htex_host::Kind;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyList, PyTuple};
+
+use crate::errors::{OrRaise, of_file, option};
+use crate::models::registry;
+use crate::python::{data, from_json, spectrum};
+use crate::voice::Voice;
+
+/// Speed (mm/s) and force (newtons) where neither the caller nor the asset states them: the usual ones of the paper.
+const USUAL: (f64, f64) = (80.0, 0.4);
+
+/// A texture: an opened asset, and the models that play it.
+#[pyclass(frozen, module = "htex")]
+pub(crate) struct Texture {
+    asset: Asset,
+    plugins: Vec<PathBuf>,
+    embedded: bool,
+    installed: bool,
+}
+
+/// Opens a texture: a path, bytes, or an object with the method `read`.
+#[pyfunction]
+#[pyo3(signature = (source, *, plugins=Vec::new(), embedded=true, installed=false))]
+pub(crate) fn open(
+    py: Python<'_>,
+    source: &Bound<'_, PyAny>,
+    plugins: Vec<PathBuf>,
+    embedded: bool,
+    installed: bool,
+) -> PyResult<Texture> {
+    let opened = Source::of(source)?;
+    py.detach(|| {
+        let data = match &opened {
+            Source::File(path) => AssetData::open(path),
+            Source::Bytes(bytes) => AssetData::from_bytes(bytes),
+        };
+        Texture::new(data.or_raise()?, plugins, embedded, installed)
+    })
+}
+
+/// A file, or the bytes of one.
+pub(crate) enum Source {
+    File(PathBuf),
+    Bytes(Vec<u8>),
+}
+
+impl Source {
+    /// Reads an argument: a path, bytes, or an object with the method `read`, which is called.
+    pub(crate) fn of(source: &Bound<'_, PyAny>) -> PyResult<Self> {
+        if let Ok(bytes) = source.cast::<PyBytes>() {
+            return Ok(Self::Bytes(bytes.as_bytes().to_vec()));
+        }
+        if let Ok(path) = source.extract::<PathBuf>() {
+            return Ok(Self::File(path));
+        }
+        let read = match source.hasattr("read")? {
+            true => source.call_method0("read")?,
+            false => source.clone(),
+        };
+        // `bytes` takes objects with a buffer; a number or a text would be something else.
+        let is_buffer =
+            read.cast::<PyBytes>().is_ok() || is_named(&read, &["bytearray", "memoryview"])?;
+        if !is_buffer {
+            let class = read.get_type().name()?;
+            let text =
+                format!("expected a path, bytes or a file opened in binary mode, got {class}");
+            return Err(PyTypeError::new_err(text));
+        }
+        let bytes = read
+            .py()
+            .import("builtins")?
+            .call_method1("bytes", (read,))?;
+        Ok(Self::Bytes(bytes.cast::<PyBytes>()?.as_bytes().to_vec()))
+    }
+}
+
+fn is_named(value: &Bound<'_, PyAny>, names: &[&str]) -> PyResult<bool> {
+    let class = value.get_type().name()?;
+    Ok(names.iter().any(|name| class == *name))
+}
+
+impl Texture {
+    /// Makes a texture of an asset's data.
+    pub(crate) fn new(
+        data: AssetData,
+        plugins: Vec<PathBuf>,
+        embedded: bool,
+        installed: bool,
+    ) -> PyResult<Self> {
+        let asset = Asset::with_registry(data, registry(&plugins, installed)?);
+        Ok(Self {
+            asset: if embedded {
+                asset.with_embedded()
+            } else {
+                asset
+            },
+            plugins,
+            embedded,
+            installed,
+        })
+    }
+
+    /// Returns the motion at a condition; a missing value is that of the first condition.
+    fn motion(&self, at: Option<At>) -> Option<Motion> {
+        let At {
+            speed_mm_s,
+            force_n,
+        } = at?;
+        if speed_mm_s.is_none() && force_n.is_none() {
+            return None;
+        }
+        let first = self.asset.manifest().conditions.first();
+        let speed = speed_mm_s.or(first.and_then(|c| c.speed_mm_s));
+        let force = force_n.or(first.and_then(|c| c.force_n));
+        Some(Motion::new(
+            speed.unwrap_or(USUAL.0),
+            force.unwrap_or(USUAL.1),
+        ))
+    }
+
+    fn bytes(&self) -> PyResult<Vec<u8>> {
+        self.asset.data().to_bytes().or_raise()
+    }
+}
+
+/// A speed and a force: a `Condition`, or a pair of numbers or `None`.
+#[derive(Clone, Copy)]
+pub(crate) struct At {
+    speed_mm_s: Option<f64>,
+    force_n: Option<f64>,
+}
+
+impl<'py> FromPyObject<'_, 'py> for At {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let (speed_mm_s, force_n) = match value.hasattr("speed_mm_s")? {
+            true => (
+                value.getattr("speed_mm_s")?.extract()?,
+                value.getattr("force_n")?.extract()?,
+            ),
+            false => value.extract()?,
+        };
+        Ok(Self {
+            speed_mm_s,
+            force_n,
+        })
+    }
+}
+
+#[pymethods]
+impl Texture {
+    /// Name of the texture.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.asset.manifest().name
+    }
+
+    /// Physical quantity of the samples, such as `lateral_force`.
+    #[getter]
+    fn quantity(&self) -> &'static str {
+        self.asset.quantity().name()
+    }
+
+    /// Unit of the samples, such as `N`.
+    #[getter]
+    fn unit(&self) -> &'static str {
+        self.asset.quantity().unit()
+    }
+
+    /// Lower and upper edge of the band, hertz.
+    #[getter]
+    fn band_hz(&self) -> (f64, f64) {
+        self.asset.band().edges()
+    }
+
+    /// The manifest.
+    #[getter]
+    fn manifest<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        from_json(py, self.asset.manifest())
+    }
+
+    /// The conditions at which the texture was recorded.
+    #[getter]
+    fn conditions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let list = PyList::empty(py);
+        for condition in &self.asset.manifest().conditions {
+            let fields = PyDict::new(py);
+            fields.set_item("speed_mm_s", condition.speed_mm_s)?;
+            fields.set_item("force_n", condition.force_n)?;
+            fields.set_item("repeatability_rms_db", condition.repeatability_rms_db)?;
+            list.append(data(py, "Condition", &fields)?)?;
+        }
+        Ok(list)
+    }
+
+    /// Ids of the models of the representations.
+    #[getter]
+    fn models(&self) -> Vec<&str> {
+        let all = &self.asset.manifest().representations;
+        all.iter().map(|r| r.model.as_str()).collect()
+    }
+
+    /// Returns the magnitudes of a representation at a condition.
+    #[pyo3(signature = (frequency_hz=None, model=None, at=None))]
+    fn spectrum<'py>(
+        &self,
+        py: Python<'py>,
+        frequency_hz: Option<Vec<f64>>,
+        model: Option<&str>,
+        at: Option<At>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let frequency_hz = frequency_hz.unwrap_or_else(|| self.asset.band().grid_hz());
+        let motion = self.motion(at);
+        let magnitude = py.detach(|| self.asset.magnitude(model, motion, &frequency_hz));
+        let (quantity, band) = (self.asset.quantity(), self.asset.band());
+        spectrum(py, quantity, band, frequency_hz, magnitude.or_raise()?)
+    }
+
+    /// Returns the level of a representation at a condition: RMS in the band, in the unit of the samples.
+    #[pyo3(signature = (model=None, at=None))]
+    fn level(&self, py: Python<'_>, model: Option<&str>, at: Option<At>) -> PyResult<f64> {
+        let motion = self.motion(at);
+        let (_, level) = py
+            .detach(|| self.asset.parameters(model, motion))
+            .or_raise()?;
+        Ok(level)
+    }
+
+    /// Returns the parameters of a representation at a condition, by their names.
+    #[pyo3(signature = (model=None, at=None))]
+    fn parameters<'py>(
+        &self,
+        py: Python<'py>,
+        model: Option<&str>,
+        at: Option<At>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let motion = self.motion(at);
+        let (flat, loaded) = py
+            .detach(|| {
+                let (flat, _) = self.asset.parameters(model, motion)?;
+                Ok::<_, htex::Error>((flat, self.asset.loaded_model(model)?))
+            })
+            .or_raise()?;
+        let named = PyDict::new(py);
+        let mut rest = flat.into_iter();
+        for field in &loaded.descriptor().fields {
+            let first = rest.next().unwrap_or(f64::NAN);
+            match field.kind {
+                Kind::Scalar => named.set_item(&field.name, first)?,
+                Kind::List { .. } => {
+                    let list: Vec<f64> = rest.by_ref().take(first as usize).collect();
+                    named.set_item(&field.name, list)?;
+                }
+            }
+        }
+        Ok(named)
+    }
+
+    /// Writes the asset to a file, which appears complete or not at all.
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        py.detach(|| write(&path, &self.bytes()?))
+    }
+
+    /// Returns the asset as the bytes of a file.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = py.detach(|| self.bytes())?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// Makes a voice.
+    #[pyo3(signature = (model=None, rate_hz=20_000.0, seed=0, speed_mm_s=None, force_n=None, position_mm=None,
+                        synthesis="streamed", *, speed_scaling=true, force_scaling=true, contact=true))]
+    #[allow(clippy::too_many_arguments)]
+    fn voice(
+        &self,
+        py: Python<'_>,
+        model: Option<&str>,
+        rate_hz: f64,
+        seed: u64,
+        speed_mm_s: Option<f64>,
+        force_n: Option<f64>,
+        position_mm: Option<f64>,
+        synthesis: &str,
+        speed_scaling: bool,
+        force_scaling: bool,
+        contact: bool,
+    ) -> PyResult<Voice> {
+        check_rate(rate_hz)?;
+        let motion = self.motion(Some(At {
+            speed_mm_s,
+            force_n,
+        }));
+        let motion = match (motion, position_mm) {
+            (Some(motion), Some(position)) => Some(motion.with_position_mm(position)),
+            (None, Some(_)) => {
+                let text = "a position needs a motion: give speed_mm_s, force_n or both";
+                return Err(option(text));
+            }
+            (motion, None) => motion,
+        };
+        let mut options = VoiceOptions::default()
+            .with_rate_hz(rate_hz)
+            .with_seed(seed)
+            .with_motion(motion)
+            .with_synthesis(synthesis.parse::<Synthesis>().or_raise()?)
+            .with_effects(
+                Effects::default()
+                    .with_speed_scaling(speed_scaling)
+                    .with_force_scaling(force_scaling)
+                    .with_contact(contact),
+            );
+        options.model = model;
+        let id = self.asset.representation_id(model).or_raise()?.to_owned();
+        let voice = py.detach(|| self.asset.voice(&options)).or_raise()?;
+        let unit = self.asset.quantity().unit();
+        Ok(Voice::new(voice, id, rate_hz, seed, unit))
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let reopen = py.import("htex._data")?.getattr("_reopen")?;
+        let bytes = self.to_bytes(py)?;
+        let arguments = (bytes, self.plugins.clone(), self.embedded, self.installed);
+        Ok((reopen, arguments.into_pyobject(py)?))
+    }
+
+    fn __repr__(&self) -> String {
+        let (name, quantity) = (self.name(), self.quantity());
+        let models: Vec<&str> = self.models().iter().map(|id| short(id)).collect();
+        let conditions = self.asset.manifest().conditions.len();
+        format!(
+            "<htex.Texture {name:?}: {quantity} in {}, {conditions} condition(s), models {}>",
+            self.unit(),
+            models.join(", ")
+        )
+    }
+}
+
+/// Returns the last part of a model's id.
+pub(crate) fn short(id: &str) -> &str {
+    id.rsplit('.').next().unwrap_or(id)
+}
+
+fn write(path: &Path, bytes: &[u8]) -> PyResult<()> {
+    write_file(path, bytes).map_err(|error| of_file(path, &error))
+}
+
+/// Refuses rates that the command refuses.
+fn check_rate(rate_hz: f64) -> PyResult<()> {
+    match (100.0..=1e6).contains(&rate_hz) {
+        true => Ok(()),
+        false => Err(option(format!(
+            "rate_hz is {rate_hz}; 100 to 1,000,000 Hz are allowed"
+        ))),
+    }
+}

@@ -1,0 +1,79 @@
+//! Accuracy against bytes and time.
+
+use std::path::PathBuf;
+
+use htex::format::ErrorMeasure;
+use htex_tradeoff::{Journal, Model, Request, Subject, Tradeoff, sweep};
+use pyo3::prelude::*;
+
+use crate::author::named;
+use crate::errors::{OrRaise, of_file};
+use crate::models::registry;
+use crate::python::from_json;
+use crate::reading::{Reading, Source, unknown};
+
+/// Options of a sweep: the keywords of the package's function.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Sweep {
+    models: Vec<String>,
+    quick: bool,
+    error: String,
+    plugins: Vec<PathBuf>,
+    installed: bool,
+    journal: Option<PathBuf>,
+}
+
+/// Measures models and options on recordings; returns the points, knees and warnings.
+#[pyfunction]
+pub(crate) fn tradeoff(
+    py: Python<'_>,
+    sources: Vec<Source>,
+    reading: Reading,
+    request: Sweep,
+) -> PyResult<Bound<'_, PyAny>> {
+    let tradeoff = py.detach(|| measured(&sources, &reading, &request))?;
+    from_json(py, &tradeoff)
+}
+
+fn measured(sources: &[Source], reading: &Reading, request: &Sweep) -> PyResult<Tradeoff> {
+    let error = match &request.error[..] {
+        "nine_band" => ErrorMeasure::NineBand,
+        "third_octave" => ErrorMeasure::ThirdOctave,
+        "log_spectral" => ErrorMeasure::LogSpectral,
+        other => {
+            return Err(unknown(
+                "error",
+                other,
+                "nine_band, third_octave, log_spectral",
+            ));
+        }
+    };
+    let registry = registry(&request.plugins, request.installed)?;
+    let models = named(&registry, &request.models)?.into_iter();
+    let models = models.map(|model| Model {
+        ways: vec![(model.origin().to_string(), model)],
+    });
+    let swept = Request {
+        models: models.collect(),
+        quick: request.quick,
+    };
+    let options = reading.spectrum_options()?;
+    let takes = reading.takes(sources, &[])?;
+    let mut subjects: Vec<Subject> = Vec::new();
+    for (i, take) in takes.iter().enumerate() {
+        let mut subject = Subject::new(take, &options, reading.strict).or_raise()?;
+        if subjects.iter().any(|other| other.name == subject.name) {
+            subject.name += &format!(" #{}", i + 1);
+        }
+        subjects.push(subject);
+    }
+    let folder = tempfile::tempdir().map_err(|error| of_file(&std::env::temp_dir(), &error))?;
+    let kept = request.journal.clone();
+    let file = kept.unwrap_or_else(|| folder.path().join("sweep.part"));
+    let mut journal = Journal::new(&file);
+    let swept = sweep(&subjects, &swept, &mut journal, &|_, _, _| {}).or_raise()?;
+    journal.discard().or_raise()?;
+    let tool = concat!("htex ", env!("CARGO_PKG_VERSION"));
+    Ok(Tradeoff::new(tool, &subjects, swept, error))
+}

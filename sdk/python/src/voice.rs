@@ -1,0 +1,195 @@
+//! Voices: endless streams of samples that follow a motion.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use htex::{Motion, Reach};
+use numpy::{IntoPyArray, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::errors::OrRaise;
+use crate::path::{Path, Series};
+use crate::python::{data, zeros};
+
+/// A voice: an endless stream of samples in the texture's unit, which follows the motion of the finger.
+#[pyclass(frozen, module = "htex")]
+pub(crate) struct Voice {
+    voice: Mutex<htex::Voice>,
+    model: String,
+    rate_hz: f64,
+    seed: u64,
+    unit: &'static str,
+}
+
+impl Voice {
+    pub(crate) fn new(
+        voice: htex::Voice,
+        model: String,
+        rate_hz: f64,
+        seed: u64,
+        unit: &'static str,
+    ) -> Self {
+        Self {
+            voice: Mutex::new(voice),
+            model,
+            rate_hz,
+            seed,
+            unit,
+        }
+    }
+
+    /// Waits for a call of another thread; called without the interpreter.
+    fn lock(&self) -> MutexGuard<'_, htex::Voice> {
+        self.voice.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[pymethods]
+impl Voice {
+    /// Id of the model.
+    #[getter]
+    fn model(&self) -> &str {
+        &self.model
+    }
+
+    /// Rate of the samples, hertz.
+    #[getter]
+    fn rate_hz(&self) -> f64 {
+        self.rate_hz
+    }
+
+    /// Seed of the noise.
+    #[getter]
+    fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Unit of the samples.
+    #[getter]
+    fn unit(&self) -> &'static str {
+        self.unit
+    }
+
+    /// Returns the next `n` samples.
+    fn render<'py>(&self, py: Python<'py>, n: usize) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let samples = py.detach(|| {
+            let mut samples = zeros(n)?;
+            self.lock().render(&mut samples).or_raise()?;
+            Ok::<_, PyErr>(samples)
+        })?;
+        Ok(samples.into_pyarray(py))
+    }
+
+    /// Fills an array with the next samples; neither copies nor allocates.
+    fn render_into(&self, py: Python<'_>, array: &Bound<'_, PyAny>) -> PyResult<()> {
+        let Ok(array) = array.cast::<PyArray1<f32>>() else {
+            let text = "expected a one-dimensional NumPy array of float32";
+            return Err(PyTypeError::new_err(text));
+        };
+        if !array.is_c_contiguous() {
+            let text = "the array is not contiguous; give one without gaps, or render and copy";
+            return Err(PyValueError::new_err(text));
+        }
+        let mut borrowed = array.try_readwrite().map_err(|error| {
+            PyValueError::new_err(format!("the array cannot be written to: {error}"))
+        })?;
+        let samples = borrowed
+            .as_slice_mut()
+            .map_err(|error| PyValueError::new_err(error.to_string()))?;
+        py.detach(|| self.lock().render(samples).or_raise())
+    }
+
+    /// Sets the motion of the following samples.
+    #[pyo3(signature = (speed_mm_s, force_n, position_mm=None))]
+    fn set_motion(
+        &self,
+        py: Python<'_>,
+        speed_mm_s: f64,
+        force_n: f64,
+        position_mm: Option<f64>,
+    ) -> PyResult<()> {
+        let motion = Motion::new(speed_mm_s, force_n);
+        let motion = match position_mm {
+            Some(position) => motion.with_position_mm(position),
+            None => motion,
+        };
+        py.detach(|| self.lock().set_motion(motion).or_raise())
+    }
+
+    /// Returns the samples of a path: one motion for each block of samples.
+    #[pyo3(signature = (speed_mm_s, force_n, position_mm=None, block=64))]
+    fn render_path<'py>(
+        &self,
+        py: Python<'py>,
+        speed_mm_s: Series,
+        force_n: Series,
+        position_mm: Option<Series>,
+        block: usize,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let samples = py.detach(|| {
+            let path = Path::new(&speed_mm_s, &force_n, position_mm.as_ref(), block)?;
+            let mut samples = path.buffer()?;
+            let mut voice = self.lock();
+            for (motion, block) in path.motions.iter().zip(samples.chunks_mut(path.block)) {
+                voice.set_motion(*motion).or_raise()?;
+                voice.render(block).or_raise()?;
+            }
+            Ok::<_, PyErr>(samples)
+        })?;
+        Ok(samples.into_pyarray(py))
+    }
+
+    /// Returns how this voice plays a motion.
+    fn coverage<'py>(
+        &self,
+        py: Python<'py>,
+        speed_mm_s: f64,
+        force_n: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let motion = Motion::new(speed_mm_s, force_n).checked().or_raise()?;
+        let coverage = py.detach(|| self.lock().coverage(motion));
+        let fields = PyDict::new(py);
+        fields.set_item("inside", coverage.is_inside())?;
+        fields.set_item("slides", coverage.slides)?;
+        fields.set_item("excess", coverage.excess())?;
+        fields.set_item("description", coverage.to_string())?;
+        fields.set_item("speed", reach(py, coverage.speed)?)?;
+        fields.set_item("force", reach(py, coverage.force)?)?;
+        data(py, "Coverage", &fields)
+    }
+
+    fn __repr__(&self) -> String {
+        let (model, rate, unit) = (&self.model, self.rate_hz, self.unit);
+        format!(
+            "<htex.Voice of {model} at {rate} Hz in {unit}, seed {}>",
+            self.seed
+        )
+    }
+}
+
+fn reach(py: Python<'_>, reach: Reach) -> PyResult<Bound<'_, PyAny>> {
+    let fields = PyDict::new(py);
+    let kind = match reach {
+        Reach::Inside => "inside",
+        Reach::Unknown => "unknown",
+        Reach::Followed => "followed",
+        Reach::Scaled {
+            asked,
+            recorded,
+            factor,
+        } => {
+            fields.set_item("asked", asked)?;
+            fields.set_item("recorded", recorded)?;
+            fields.set_item("factor", factor)?;
+            "scaled"
+        }
+        Reach::Clamped { asked, played } => {
+            fields.set_item("asked", asked)?;
+            fields.set_item("played", played)?;
+            "clamped"
+        }
+    };
+    fields.set_item("kind", kind)?;
+    data(py, "Reach", &fields)
+}

@@ -1,0 +1,177 @@
+"""Samples: equal to the command's, in blocks, along paths, in threads."""
+
+from __future__ import annotations
+
+import pathlib
+import threading
+
+import numpy as np
+import pytest
+from conftest import command
+from scipy import signal
+from scipy.io import wavfile
+
+import htex
+
+N = 40_000
+
+
+def played(place: pathlib.Path, *flags: str) -> np.ndarray:
+    command("synth", "cloth.htex", "--seconds", "2", "-o", "out.wav", *flags, cwd=place)
+    return wavfile.read(place / "out.wav")[1]
+
+
+@pytest.mark.parametrize("model", ["ar", "bands", "mfcc", "sbeta", "sslope", "speak"])
+def test_samples_are_those_of_the_command(texture: htex.Texture, place: pathlib.Path, model: str) -> None:
+    expected = played(place, "--model", model, "--seed", "7")
+    samples = texture.voice(model=model, rate_hz=20_000, seed=7).render(N)
+    assert samples.dtype == np.float32
+    assert samples.tobytes() == expected.tobytes()
+
+
+def test_motion_synthesis_and_effects_are_those_of_the_command(texture: htex.Texture, place: pathlib.Path) -> None:
+    expected = played(place, "--model", "ar", "--speed", "130", "--force", "0.7")
+    assert texture.voice("ar", speed_mm_s=130, force_n=0.7).render(N).tobytes() == expected.tobytes()
+    expected = played(place, "--model", "ar", "--speed", "130", "--as-recorded")
+    off = {"speed_scaling": False, "force_scaling": False, "contact": False}
+    assert texture.voice("ar", speed_mm_s=130, **off).render(N).tobytes() == expected.tobytes()
+    for synthesis in ["loop:0.5", "filter:255"]:
+        expected = played(place, "--model", "ar", "--quality", synthesis)
+        assert texture.voice("ar", synthesis=synthesis).render(N).tobytes() == expected.tobytes()
+
+
+@pytest.mark.parametrize("model", ["ar", "bands", "mfcc"])
+def test_samples_have_the_spectrum_that_scipy_measures(texture: htex.Texture, model: str) -> None:
+    samples = texture.voice(model=model).render(20_000 * 120)
+    frequency, power = signal.welch(samples, 20_000, "hann", 4000, scaling="spectrum")
+    inside = (frequency >= 40) & (frequency <= 960)
+    expected = texture.spectrum(frequency[inside], model=model).magnitude
+    # In groups of eight bins, each of which averages about 1200 windows.
+    of = lambda x: np.add.reduceat(x, np.arange(0, len(x) - 8, 8))[:-1]
+    error_db = 10 * np.log10(of(2 * power[inside]) / of(expected**2))
+    assert abs(error_db).max() < 0.7
+    rms = np.sqrt(np.mean(signal.sosfilt(signal.butter(8, [15, 1100], "bandpass", fs=20_000, output="sos"), samples) ** 2))
+    assert 20 * abs(np.log10(rms / texture.level(model=model))) < 1.0
+
+
+def test_blocks_do_not_change_the_samples(texture: htex.Texture) -> None:
+    whole = texture.voice("ar").render(N)
+    voice = texture.voice("ar")
+    blocks = np.zeros(N, dtype=np.float32)
+    for start in range(0, N, 1000):
+        voice.render_into(blocks[start : start + 1000])
+    assert whole.tobytes() == blocks.tobytes()
+
+
+def test_a_path_is_its_motions_in_turn(texture: htex.Texture) -> None:
+    speed = np.linspace(40, 160, 200)
+    by_path = texture.voice("ar").render_path(speed, 0.5, block=64)
+    voice = texture.voice("ar")
+    parts = []
+    for x in speed:
+        voice.set_motion(x, 0.5)
+        parts.append(voice.render(64))
+    assert by_path.tobytes() == np.concatenate(parts).tobytes()
+    assert len(voice.render_path([80.0], [0.4], [1.0], block=10)) == 10
+    assert len(voice.render_path([], [], block=10)) == 0
+
+
+def test_coverage_tells_how_a_motion_is_played(texture: htex.Texture) -> None:
+    voice = texture.voice("ar")
+    recorded = texture.conditions[0]
+    assert recorded.speed_mm_s is not None and recorded.force_n is not None
+    assert voice.coverage(recorded.speed_mm_s, recorded.force_n).inside
+    faster = voice.coverage(2 * recorded.speed_mm_s, recorded.force_n)
+    assert faster.speed.kind == "scaled" and faster.speed.factor == pytest.approx(2.0, rel=1e-3)
+    assert not voice.coverage(0.0, 0.4).slides
+
+
+@pytest.mark.parametrize(
+    "motion", [(np.nan, 0.4), (-1.0, 0.4), (80.0, np.inf), (80.0, -0.1), (80.0, 0.4, np.nan)]
+)
+def test_an_invalid_motion_changes_nothing(texture: htex.Texture, motion: tuple[float, ...]) -> None:
+    voice, other = texture.voice("ar"), texture.voice("ar")
+    with pytest.raises(htex.MotionError):
+        voice.set_motion(*motion)
+    series = [[80.0, motion[0]], [0.4, motion[1]]]
+    if len(motion) == 3:
+        series.append([0.0, motion[2]])
+    with pytest.raises(htex.MotionError, match="block 1"):
+        voice.render_path(*series)
+    if len(motion) == 2:
+        with pytest.raises(htex.MotionError):
+            voice.coverage(*motion)
+    assert voice.render(1000).tobytes() == other.render(1000).tobytes()
+
+
+def test_unusable_arrays_are_refused(texture: htex.Texture) -> None:
+    voice = texture.voice("ar")
+    read_only = np.zeros(10, dtype=np.float32)
+    read_only.flags.writeable = False
+    for array, error in [
+        (np.zeros(10, dtype=np.float64), TypeError),
+        (np.zeros((2, 5), dtype=np.float32), TypeError),
+        ([0.0] * 10, TypeError),
+        (np.zeros(20, dtype=np.float32)[::2], ValueError),
+        (read_only, ValueError),
+        (np.zeros(10, dtype=">f4"), TypeError),
+    ]:
+        with pytest.raises(error):
+            voice.render_into(array)
+    voice.render_into(np.zeros(0, dtype=np.float32))
+
+
+def test_unusable_options_are_refused(texture: htex.Texture) -> None:
+    for options, error in [
+        ({"model": "wavelet"}, htex.ModelError),
+        ({"rate_hz": 0.0}, htex.OptionError),
+        ({"rate_hz": np.nan}, htex.OptionError),
+        ({"synthesis": "granular"}, htex.OptionError),
+        ({"speed_mm_s": np.nan}, htex.MotionError),
+        ({"position_mm": 1.0}, htex.OptionError),
+        ({"seed": -1}, OverflowError),
+    ]:
+        with pytest.raises(error):
+            texture.voice(**options)
+    voice = texture.voice("ar")
+    for block, speed in [(0, [80.0]), (64, [80.0, 80.0])]:
+        with pytest.raises(htex.OptionError):
+            voice.render_path(speed, [0.4], block=block)
+    for speed in ["fast", None, [[80.0]]]:
+        with pytest.raises(TypeError, match="one number for each block"):
+            voice.render_path(speed, 0.4)  # type: ignore[arg-type]
+    with pytest.raises(htex.OptionError):
+        voice.render_path([80.0] * 3, 0.4, block=2**63)
+    with pytest.raises(MemoryError):
+        voice.render(2**61)
+    with pytest.raises(OverflowError):
+        voice.render(-1)
+
+
+def test_another_thread_runs_while_samples_are_rendered(texture: htex.Texture) -> None:
+    voice = texture.voice("ar", rate_hz=48_000)
+    ticks, done = [], threading.Event()
+
+    def count() -> None:
+        while not done.wait(0.001):
+            ticks.append(1)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    voice.render(4_000_000)
+    during = len(ticks)
+    done.set()
+    thread.join()
+    assert during > 5
+
+
+def test_a_voice_is_shared_by_threads(texture: htex.Texture) -> None:
+    voice = texture.voice("ar")
+    parts: list[np.ndarray] = []
+    threads = [threading.Thread(target=lambda: parts.append(voice.render(5000))) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    whole = texture.voice("ar").render(40_000).reshape(8, 5000)
+    assert {part.tobytes() for part in parts} == {row.tobytes() for row in whole}

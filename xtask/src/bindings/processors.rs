@@ -33,7 +33,7 @@ pub(super) fn test(folder: &Path) -> Result<(), String> {
     }
     all.push((
         "aarch64".to_owned(),
-        vec!["qemu-aarch64".into(), aarch64()?],
+        vec!["qemu-aarch64".into(), aarch64(&folder)?],
     ));
     let mut differ = Vec::new();
     for (name, command) in all {
@@ -58,8 +58,11 @@ pub(super) fn test(folder: &Path) -> Result<(), String> {
     }
 }
 
-/// Builds the command for another architecture.
-fn aarch64() -> Result<PathBuf, String> {
+/// Builds the command for another architecture, with the linker of the Rust toolchain.
+fn aarch64(folder: &Path) -> Result<PathBuf, String> {
+    // musl has all of libdl in libc, and the target comes without the empty library of that name.
+    let empty = folder.join("libdl.a");
+    std::fs::write(&empty, "!<arch>\n").map_err(|error| format!("{}: {error}", empty.display()))?;
     let mut build = Command::new(cargo());
     build
         .args([
@@ -71,6 +74,10 @@ fn aarch64() -> Result<PathBuf, String> {
         ])
         .args(["--profile", "quick", "--target", AARCH64])
         .env("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_MUSL_LINKER", "rust-lld")
+        .env(
+            "CARGO_TARGET_AARCH64_UNKNOWN_LINUX_MUSL_RUSTFLAGS",
+            format!("-Lnative={}", folder.display()),
+        )
         .env("CC_aarch64_unknown_linux_musl", "clang")
         .current_dir(workspace());
     run(&mut build)

@@ -7,9 +7,9 @@ use std::process::{Command, Output};
 
 use xtask::needs::{self, Need};
 
-/// An asset with five conditions.
+/// An asset of one condition.
 pub fn asset() -> PathBuf {
-    workspace().join("spec/playing-conformance/five_conditions.htex")
+    workspace().join("examples/scenes/vinyl.htex")
 }
 
 fn workspace() -> PathBuf {
@@ -158,6 +158,19 @@ impl Project {
         program
     }
 
+    /// Whether a program builds with these arguments of the compiler.
+    pub fn builds(&self, arguments: &[&str]) -> bool {
+        let file = self.folder.join("empty.c");
+        fs::write(&file, "int main(void) { return 0; }\n").unwrap();
+        let mut compiler = Command::new(self.language.compiler().0);
+        compiler
+            .args(arguments)
+            .arg(&file)
+            .arg("-o")
+            .arg(self.folder.join("empty"));
+        compiler.output().is_ok_and(|built| built.status.success())
+    }
+
     pub fn run(&self, program: &Path, arguments: &[&OsStr]) -> Output {
         let under: &[&str] = match self.language {
             Language::Csharp => &["mono"],
@@ -185,6 +198,6 @@ impl Project {
 /// The shared library as cargo built it for these tests.
 fn library() -> PathBuf {
     let tests = std::env::current_exe().unwrap();
-    let built = tests.ancestors().nth(2).unwrap();
+    let built = tests.parent().unwrap();
     built.join("libhtex_c.so")
 }

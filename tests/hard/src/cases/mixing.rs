@@ -86,9 +86,20 @@ fn round_trip(filters: &[Vec<f64>]) -> f64 {
     off.fold(0.0, worse)
 }
 
+/// Two samples that differ from zero, 3 ms apart: their spectrum is a comb.
+fn clicks() -> Vec<f64> {
+    let first = impulse();
+    let delayed = std::iter::repeat_n(0.0, 60).chain(first.iter().copied());
+    first
+        .iter()
+        .zip(delayed)
+        .map(|(x, y)| x + 0.5 * y)
+        .collect()
+}
+
 /// Whether mixes of fits to unlike recordings, at weights near 0 and 1 too, are shapes that play.
 fn mixes(model: &LoadedModel) -> Vec<bool> {
-    let recordings = [noise(), friction(), impulse(), tone(300.0), far_apart()];
+    let recordings = [noise(), friction(), clicks(), tone(300.0), far_apart()];
     let fitted: Vec<Vec<f64>> = recordings
         .iter()
         .map(|x| crate::seen::fit(model, &spectrum(x)).unwrap().parameters)

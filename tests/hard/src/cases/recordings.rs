@@ -49,7 +49,12 @@ const CASES: &[Case] = &[
     refused("a constant 3 N", "every model", "fit", "CannotFit", || {
         refusal_of_all(&[3.0; SAMPLES])
     }),
-    lives("one sample of 1 N", ALL, || every_model(&impulse())),
+    lives("one sample of 1 N", BUT_SPEAK, || {
+        every_model_but(&["speak"], &impulse())
+    }),
+    refused("one sample of 1 N", "sPeak", "fit", NO_PEAK, || {
+        refusal("speak", &impulse())
+    }),
     lives("a tone of 500 Hz", ALL, || every_model(&tone(500.0))),
     lives("a tone of 999 Hz", BUT_SPEAK, || {
         every_model_but(&["speak"], &tone(999.0))

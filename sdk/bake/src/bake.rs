@@ -5,15 +5,17 @@ use htex_player::Block;
 use htex_player::layout::{MOST_HALF, MOST_LEVEL};
 
 use crate::encode::{Condition, Kind, encode};
-use crate::filter::Design;
+use crate::filter::{Bins, Design, Wanted};
 use crate::interpolator::Interpolator;
-use crate::reading::{distance_db, of_filter, of_tones};
+use crate::reading::{distance_db, of_tones};
 use crate::texture::{Moment, Texture};
 use crate::tones::{self, Tone};
 use crate::{BakeError, Grid};
 
-/// Largest error of the nine bands at a condition up to which the shortest filter is taken, dB. Longer errors are reported.
-pub const TOLERANCE_DB: f64 = 0.1;
+/// Largest error of the nine bands at a condition up to which the shortest filter is taken, dB.
+const TOLERANCE_DB: f64 = 0.1;
+/// Most conditions that are inserted between the wanted ones.
+const MOST_CONDITIONS: usize = 64;
 /// Lengths of one side of the filter that are tried.
 const HALVES: [usize; 7] = [32, 64, 96, 128, 192, 256, MOST_HALF];
 
@@ -23,6 +25,8 @@ const HALVES: [usize; 7] = [32, 64, 96, 128, 192, 256, MOST_HALF];
 pub struct Baked {
     /// The block.
     pub bytes: Vec<u8>,
+    /// The conditions of the block: the wanted ones, and those between them that the accuracy needs.
+    pub grid: Grid,
     /// The id of the baked model.
     pub model: String,
     /// Rate at which noise or sinusoids are computed, hertz.
@@ -38,7 +42,8 @@ pub struct Baked {
 }
 
 /// Bakes a representation, named by its id or short name, else the best one, at the conditions of a grid. The block plays at
-/// `rate_hz`.
+/// `rate_hz`. Conditions are inserted midway between neighbours until the error there is at most `within_db`, or the block has
+/// 64 conditions.
 ///
 /// # Errors
 /// When the asset cannot be played, or a condition or the rate is out of range.
@@ -47,8 +52,29 @@ pub fn bake(
     model: Option<&str>,
     grid: &Grid,
     rate_hz: f64,
+    within_db: f64,
 ) -> Result<Baked, BakeError> {
     let texture = Texture::new(asset, model)?;
+    let mut grid = grid.clone();
+    loop {
+        let (baked, worst) = bake_grid(&texture, &grid, rate_hz)?;
+        // More conditions do not help where the filters themselves are less accurate.
+        let reachable_db = within_db.max(1.1 * baked.at_conditions_db);
+        let refined = grid.refined(&worst, reachable_db);
+        let is_last = refined == grid || refined.motions().count() > MOST_CONDITIONS;
+        if baked.between_db <= within_db || is_last {
+            return Ok(baked);
+        }
+        grid = refined;
+    }
+}
+
+/// Bakes the conditions of a grid; returns the errors midway between them, too.
+fn bake_grid(
+    texture: &Texture<'_>,
+    grid: &Grid,
+    rate_hz: f64,
+) -> Result<(Baked, Vec<(Motion, f64)>), BakeError> {
     let moments: Vec<Moment> = grid
         .motions()
         .map(|motion| texture.at(motion))
@@ -59,12 +85,12 @@ pub fn bake(
     let fastest = moments.iter().map(|m| m.ratio).fold(0.0, f64::max);
     let interpolator = Interpolator::new(rate_hz, fastest * texture.band().high_hz)?;
     let shape = match texture.id() == tones::MODEL {
-        true => Shape::tones(&texture, &moments)?,
-        false => Shape::noise(&texture, &moments, &interpolator)?,
+        true => Shape::tones(texture, &moments)?,
+        false => Shape::noise(texture, &moments, &interpolator)?,
     };
-    let mut between_db: f64 = 0.0;
+    let mut between = Vec::new();
     for (motion, mixed) in grid.midpoints() {
-        between_db = between_db.max(shape.error_db(&texture, motion, &mixed)?);
+        between.push((motion, shape.error_db(texture, motion, &mixed)?));
     }
     let conditions: Vec<Condition> = (0..moments.len())
         .map(|i| shape.condition(i, interpolator.internal_hz))
@@ -76,15 +102,17 @@ pub fn bake(
         Kind::Noise => (2 * size + 1, 0),
         Kind::Tones { .. } => (0, size),
     };
-    Ok(Baked {
+    let baked = Baked {
         bytes,
+        grid: grid.clone(),
         model: texture.id().to_owned(),
         internal_rate_hz: interpolator.internal_hz,
         taps,
         tones,
         at_conditions_db: shape.at_conditions_db,
-        between_db,
-    })
+        between_db: between.iter().map(|(_, error)| *error).fold(0.0, f64::max),
+    };
+    Ok((baked, between))
 }
 
 fn check_level(moment: &Moment) -> Result<(), BakeError> {
@@ -132,29 +160,42 @@ impl Shape {
         interpolator: &Interpolator,
     ) -> Result<Self, BakeError> {
         let design = Design::new(interpolator.internal_hz);
-        let hz = design.frequencies_hz();
+        let (hz, band) = (design.frequencies_hz(), texture.band());
         let wanted = |moment: &Moment| {
             let recorded: Vec<f64> = hz.iter().map(|hz| hz / moment.ratio).collect();
-            texture.magnitude(moment, &recorded)
+            Ok(Wanted {
+                magnitude: texture.magnitude(moment, &recorded)?,
+                stated: texture.magnitude(moment, &band.grid_hz())?,
+            })
         };
-        let wanted: Vec<Vec<f64>> = moments.iter().map(wanted).collect::<Result<_, _>>()?;
-        let filters = |half| wanted.iter().map(|m| design.filter(m, half)).collect();
-        let mut shape = Self {
-            spectra: Spectra::Noise(Design::new(interpolator.internal_hz), Vec::new()),
-            levels: Vec::new(),
-            at_conditions_db: f64::INFINITY,
+        let wanted: Result<Vec<Wanted>, BakeError> = moments.iter().map(wanted).collect();
+        let wanted = wanted?;
+        let filters = |half: usize| {
+            let moments = moments.iter().map(|m| Bins::new(band, m.ratio));
+            let filter = |(wanted, bins): (&Wanted, Bins)| design.filter(wanted, &bins, half);
+            wanted.iter().zip(moments).map(filter).collect()
         };
+        let mut best: Option<Self> = None;
         for half in HALVES {
-            let design = Design::new(interpolator.internal_hz);
-            let tried = Self::of(Spectra::Noise(design, filters(half)), texture, moments)?;
-            if tried.at_conditions_db < shape.at_conditions_db {
-                shape = tried;
-            }
-            if shape.at_conditions_db <= TOLERANCE_DB {
+            let spectra = Spectra::Noise(design.clone(), filters(half));
+            let tried = Self::of(spectra, texture, moments)?;
+            let is_within = tried.at_conditions_db <= TOLERANCE_DB;
+            best = match best {
+                Some(best) if best.at_conditions_db <= tried.at_conditions_db => Some(best),
+                _ => Some(tried),
+            };
+            if is_within {
                 break;
             }
         }
-        Ok(shape)
+        match best {
+            Some(best) => Ok(best),
+            None => Self::of(
+                Spectra::Noise(design.clone(), filters(MOST_HALF)),
+                texture,
+                moments,
+            ),
+        }
     }
 
     fn tones(texture: &Texture<'_>, moments: &[Moment]) -> Result<Self, BakeError> {
@@ -201,7 +242,7 @@ impl Shape {
                 let energy = 2.0 * side.iter().map(|c| c * c).sum::<f64>() - side[0] * side[0];
                 let scale = 1.0 / energy.sqrt();
                 side.iter_mut().for_each(|c| *c *= scale);
-                of_filter(design, &side, band, ratio)
+                Bins::new(band, ratio).read(design, &side)
             }
             Spectra::Tones(tones, _) => {
                 let mut sum = vec![(0.0, 0.0); tones[mixed[0]].len()];

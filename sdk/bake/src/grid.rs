@@ -81,6 +81,42 @@ impl Grid {
         forces.flat_map(move |&force| self.speeds_mm_s.iter().map(at(force)))
     }
 
+    /// Returns the grid with the motions whose errors exceed `within_db` on both axes. An axis with 32 values stays.
+    pub(crate) fn refined(&self, errors: &[(Motion, f64)], within_db: f64) -> Self {
+        let worst = || errors.iter().filter(|(_, error)| *error > within_db);
+        let axis = |own: &[f64], more: Vec<f64>| {
+            let mut all: Vec<f64> = own.iter().copied().chain(more).collect();
+            all = all.iter().map(|x| f64::from(*x as f32)).collect();
+            all.sort_by(f64::total_cmp);
+            all.dedup();
+            match all.len() <= MOST_ON_AXIS {
+                true => all,
+                false => own.to_vec(),
+            }
+        };
+        // A cell's centre is refined by its edges first.
+        let on = |axis: &[f64], x: f64| axis.contains(&x);
+        let speeds = worst().filter(|(m, _)| on(&self.forces_n, m.force_n));
+        let forces = worst().filter(|(m, _)| on(&self.speeds_mm_s, m.speed_mm_s));
+        let refined = Self {
+            speeds_mm_s: axis(
+                &self.speeds_mm_s,
+                speeds.map(|(m, _)| m.speed_mm_s).collect(),
+            ),
+            forces_n: axis(&self.forces_n, forces.map(|(m, _)| m.force_n).collect()),
+        };
+        if refined != *self {
+            return refined;
+        }
+        Self {
+            speeds_mm_s: axis(
+                &self.speeds_mm_s,
+                worst().map(|(m, _)| m.speed_mm_s).collect(),
+            ),
+            forces_n: self.forces_n.clone(),
+        }
+    }
+
     /// Returns the centre of each cell and of each edge between neighbours, with the indices of the conditions that are
     /// mixed there in equal parts.
     pub(crate) fn midpoints(&self) -> Vec<(Motion, Vec<usize>)> {

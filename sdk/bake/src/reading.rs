@@ -4,19 +4,11 @@ use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db};
 use htex_dsp::grid::GRID_HZ;
 use htex_host::Band;
 
-use crate::filter::Design;
+use crate::filter::hann;
 use crate::tones::Tone;
 
 /// Bands this far below the strongest, as energies, are not compared: 40 dB.
 const FAINT: f64 = 1e-4;
-
-/// Returns the magnitude on the band's grid of unit white noise through a filter, with frequencies divided by `ratio`.
-pub(crate) fn of_filter(design: &Design, side: &[f64], band: Band, ratio: f64) -> Vec<f64> {
-    let grid = band.grid_hz().into_iter();
-    // A bin holds the power of its width, and the sum of squared magnitudes is three times the power.
-    let power = |hz: f64| 3.0 * GRID_HZ * ratio * design.density(side, hz * ratio);
-    grid.map(|hz| power(hz).sqrt()).collect()
-}
 
 /// Returns the magnitude on the band's grid of sinusoids, with frequencies divided by `ratio`, through a Hann window.
 pub(crate) fn of_tones(tones: &[Tone], band: Band, ratio: f64) -> Vec<f64> {
@@ -27,22 +19,6 @@ pub(crate) fn of_tones(tones: &[Tone], band: Band, ratio: f64) -> Vec<f64> {
         seen.map(|m| m * m).sum::<f64>().sqrt()
     };
     band.grid_hz().into_iter().map(at).collect()
-}
-
-/// The main lobe of the Hann window's transform; 1 at its centre.
-fn hann(bins: f64) -> f64 {
-    let d = bins.abs();
-    if d >= 2.0 {
-        return 0.0;
-    }
-    if d < 1e-6 {
-        return 1.0;
-    }
-    if (d - 1.0).abs() < 1e-6 {
-        return 0.5;
-    }
-    let a = std::f64::consts::PI * d;
-    a.sin() / (a * (1.0 - d * d))
 }
 
 /// Returns the largest error of the nine bands, dB, among those within 40 dB of the strongest.

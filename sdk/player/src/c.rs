@@ -8,7 +8,7 @@ use core::slice;
 use crate::{Block, OpenError, Player};
 
 /// Bytes of `htex_player` in the header.
-const SIZE: usize = 16 * 1024;
+const SIZE: usize = 8704;
 const ALIGNMENT: usize = 8;
 const _: () = assert!(size_of::<Player<'_>>() <= SIZE && align_of::<Player<'_>>() <= ALIGNMENT);
 

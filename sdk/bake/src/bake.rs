@@ -165,7 +165,7 @@ impl Shape {
             let recorded: Vec<f64> = hz.iter().map(|hz| hz / moment.ratio).collect();
             Ok(Wanted {
                 magnitude: texture.magnitude(moment, &recorded)?,
-                stated: texture.magnitude(moment, &band.grid_hz())?,
+                stated: texture.read(moment)?,
             })
         };
         let wanted: Result<Vec<Wanted>, BakeError> = moments.iter().map(wanted).collect();
@@ -272,7 +272,7 @@ impl Shape {
         let mut read = self.read(mixed, texture, moment.ratio);
         read.iter_mut().for_each(|m| *m *= level);
         let band = texture.band();
-        let mut model = texture.magnitude(&moment, &band.grid_hz())?;
+        let mut model = texture.read(&moment)?;
         model.iter_mut().for_each(|m| *m *= moment.level_rms);
         Ok(distance_db(&model, &read, band))
     }

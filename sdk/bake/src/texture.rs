@@ -1,9 +1,17 @@
 //! The texture of a representation at any motion, with the effects of a motion as a voice has them.
 
+use htex_dsp::grid::GRID_HZ;
 use htex_host::{Band, LoadedModel};
 use htex_play::{Asset, Explored, Motion};
 
 use crate::BakeError;
+use crate::filter::hann;
+
+/// Models whose voices read as their magnitude states: sPeak's magnitude is that of sinusoids through the window, and the
+/// voice of Bands compensates the window's blur. Other voices play their magnitude.
+const READ_AS_STATED: [&str; 2] = ["org.htex.speak", "org.htex.bands"];
+/// Points of a bin at which a magnitude is read.
+const IN_BIN: i32 = 8;
 
 /// A representation of an asset.
 pub(crate) struct Texture<'a> {
@@ -65,5 +73,38 @@ impl<'a> Texture<'a> {
     /// Returns the magnitude of unit RMS at recorded frequencies, hertz: those before the moment's ratio.
     pub(crate) fn magnitude(&self, moment: &Moment, hz: &[f64]) -> Result<Vec<f64>, BakeError> {
         Ok(self.model.magnitude(&moment.parameters, self.band(), hz)?)
+    }
+
+    /// Returns the magnitude of unit RMS on the band's grid that a recording of the host's voice reads through a Hann
+    /// window.
+    pub(crate) fn read(&self, moment: &Moment) -> Result<Vec<f64>, BakeError> {
+        let grid = self.band().grid_hz();
+        if READ_AS_STATED.contains(&&self.id[..]) {
+            return self.magnitude(moment, &grid);
+        }
+        // Positions in the window's main lobe, in bins, and their weights.
+        let place = |i: i32| f64::from(i) / f64::from(IN_BIN);
+        let lobe: Vec<(f64, f64)> = (-2 * IN_BIN..=2 * IN_BIN)
+            .map(|i| (place(i), hann(place(i)).powi(2)))
+            .collect();
+        let mut dense = Vec::with_capacity(grid.len() * lobe.len());
+        for hz in grid {
+            dense.extend(lobe.iter().map(|(d, _)| (hz + d * GRID_HZ).max(0.0)));
+        }
+        let magnitude = self.magnitude(moment, &dense)?;
+        let power = |part: &[f64]| -> f64 {
+            let weighed = part
+                .iter()
+                .zip(&lobe)
+                .map(|(m, (_, weight))| weight * m * m);
+            weighed.sum()
+        };
+        let mut read: Vec<f64> = magnitude.chunks(lobe.len()).map(power).collect();
+        read.iter_mut().for_each(|power| *power = power.sqrt());
+        let rms = htex_dsp::grid::level_rms(&read);
+        if rms > 0.0 {
+            read.iter_mut().for_each(|m| *m /= rms);
+        }
+        Ok(read)
     }
 }

@@ -62,7 +62,8 @@ fn on_board(program: &Path, block: &Path) -> String {
     let mut qemu = Command::new("qemu-system-arm");
     qemu.args(["-M", "mps2-an386", "-nographic", "-monitor", "none"]);
     qemu.args(["-serial", "none", "-icount", "shift=0"]);
-    qemu.args(["-semihosting-config", "enable=on,target=native"]);
+    qemu.args(["-semihosting-config", "enable=on,target=native,chardev=out"]);
+    qemu.args(["-chardev", "stdio,id=out"]);
     let block = format!("loader,file={},addr=0x200000,force-raw=on", block.display());
     qemu.arg("-kernel").arg(program).args(["-device", &block]);
     let mut timed = Command::new("timeout");

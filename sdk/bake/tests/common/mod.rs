@@ -54,7 +54,7 @@ pub fn player() -> PathBuf {
 
 /// The folder where programs for boards are built.
 pub fn built() -> PathBuf {
-    xtask::places::target().join("board")
+    PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("board")
 }
 
 /// Runs a command, and returns its standard output.

@@ -12,7 +12,7 @@ extern "C" {
 
 /* The memory of one playing texture. Its contents are private; a player may be copied and needs no release. */
 typedef struct htex_player {
-    uint64_t memory[1088];
+    uint64_t memory[1248];
 } htex_player;
 
 /* Status: 0, or one of these. */

@@ -245,9 +245,14 @@ impl<'a> Block<'a> {
         self.forces.iter()
     }
 
-    /// Returns the coefficients of the interpolator: phases, coefficients of a phase, and both in a row.
-    pub(crate) fn upsampling(&self) -> (usize, usize, Words<'a>) {
-        (self.up, self.row, self.rows)
+    /// Returns the number of samples for each sample of the internal rate.
+    pub(crate) fn up(&self) -> usize {
+        self.up
+    }
+
+    /// Returns the coefficients of a phase of the interpolator.
+    pub(crate) fn row(&self, phase: usize) -> Words<'a> {
+        self.rows.part(phase * self.row, self.row)
     }
 
     /// Returns the length of a change of the motion, samples at the internal rate.

@@ -8,7 +8,7 @@ use core::slice;
 use crate::{Block, OpenError, Player};
 
 /// Bytes of `htex_player` in the header.
-const SIZE: usize = 8704;
+const SIZE: usize = 9984;
 const ALIGNMENT: usize = 8;
 const _: () = assert!(size_of::<Player<'_>>() <= SIZE && align_of::<Player<'_>>() <= ALIGNMENT);
 
@@ -40,10 +40,17 @@ pub unsafe extern "C" fn htex_player_open(
     }
     // SAFETY: The caller guarantees `length` bytes that outlive the player.
     let bytes: &'static [u8] = unsafe { slice::from_raw_parts(block, length) };
-    match Block::open(bytes) {
-        // SAFETY: The caller guarantees the memory; the pointer is neither null nor misaligned.
-        Ok(block) => unsafe { player.write(Player::new(block, seed)) },
+    let block = match Block::open(bytes) {
+        Ok(block) => block,
         Err(error) => return error as c_int,
+    };
+    // SAFETY: The caller guarantees the memory; the pointer is neither null nor misaligned. Zeros are valid for all of
+    // `memory`, numbers and `bool`s, and both fields are written before the reference is made. A player written as a
+    // value would be made on the stack first.
+    unsafe {
+        (&raw mut (*player).memory).write_bytes(0, 1);
+        (&raw mut (*player).block).write(block);
+        (*player).start(seed);
     }
     0
 }

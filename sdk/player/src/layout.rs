@@ -17,7 +17,7 @@ pub const RANDOM_PHASE: u8 = 1;
 /// Most coefficients on one side of a noise filter's centre; their number is a multiple of four.
 pub const MOST_HALF: usize = 320;
 /// Most sinusoids.
-pub const MOST_TONES: usize = 128;
+pub const MOST_TONES: usize = 64;
 /// Highest ratio of the rate of the samples to the internal rate.
 pub const MOST_UP: usize = 64;
 /// Most coefficients of a phase of the interpolator; their number is a multiple of four.

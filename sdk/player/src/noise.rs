@@ -23,23 +23,24 @@ pub(crate) struct Noise {
 }
 
 impl Noise {
-    pub(crate) fn new(half: usize, seed: u32) -> Self {
-        let mut noise = Self {
-            random: Random::new(seed),
-            half,
-            centre: 0.0,
-            centre_step: 0.0,
-            side: [0.0; MOST_HALF],
-            step: [0.0; MOST_HALF],
-            history: [0.0; 2 * (2 * MOST_HALF + 1)],
-            next: 0,
-        };
-        // The first sample is already stationary noise.
-        for _ in 0..noise.taps() {
-            let input = noise.random.noise();
-            noise.push(input);
+    pub(crate) const ZERO: Self = Self {
+        random: Random::ZERO,
+        half: 0,
+        centre: 0.0,
+        centre_step: 0.0,
+        side: [0.0; MOST_HALF],
+        step: [0.0; MOST_HALF],
+        history: [0.0; 2 * (2 * MOST_HALF + 1)],
+        next: 0,
+    };
+
+    /// Starts noise; all numbers are zero before. The first sample is already stationary.
+    pub(crate) fn start(&mut self, half: usize, seed: u32) {
+        (self.half, self.random) = (half, Random::new(seed));
+        for _ in 0..self.taps() {
+            let input = self.random.noise();
+            self.push(input);
         }
-        noise
     }
 
     fn taps(&self) -> usize {
@@ -75,7 +76,7 @@ impl Noise {
     }
 
     /// Moves the coefficients by one step of the glide.
-    pub(crate) fn glide(&mut self) {
+    fn glide(&mut self) {
         self.centre += self.centre_step;
         let moved = self.side.iter_mut().zip(&self.step);
         for (c, step) in moved.take(self.half) {
@@ -84,7 +85,7 @@ impl Noise {
     }
 
     /// Sets all coefficients to zero.
-    pub(crate) fn silence(&mut self) {
+    fn silence(&mut self) {
         self.centre = 0.0;
         self.side.fill(0.0);
     }
@@ -102,8 +103,18 @@ impl Noise {
         }
     }
 
-    /// Returns the next sample.
-    pub(crate) fn tick(&mut self) -> f32 {
+    /// Returns the next sample, after a step of a glide, or of a glide to silence that ends.
+    pub(crate) fn next(&mut self, is_gliding: bool, becomes_silent: bool) -> f32 {
+        if is_gliding {
+            self.glide();
+        }
+        if becomes_silent {
+            self.silence();
+        }
+        self.tick()
+    }
+
+    fn tick(&mut self) -> f32 {
         let input = self.random.noise();
         self.push(input);
         let inputs = self.history.get(self.next..self.next + self.taps());

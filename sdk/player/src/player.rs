@@ -6,35 +6,30 @@ use crate::noise::Noise;
 use crate::tones::Tones;
 use crate::upsampler::Upsampler;
 
-/// The source at the internal rate.
+/// Numbers that change while a block is played. It is valid with all bytes zero.
 #[derive(Debug, Clone)]
-#[allow(clippy::large_enum_variant)] // There is no heap, and a player holds one of them.
-enum Source {
-    Noise(Noise),
-    Tones(Tones),
+pub(crate) struct Memory {
+    noise: Noise,
+    tones: Tones,
+    upsampler: Upsampler,
+    /// Phase of the next sample; 0 needs a new one of the internal rate.
+    phase: usize,
+    /// Remaining steps of the current glide.
+    gliding: u32,
+    is_silent: bool,
+    is_started: bool,
 }
 
-impl Source {
-    fn glide(&mut self) {
-        match self {
-            Self::Noise(noise) => noise.glide(),
-            Self::Tones(tones) => tones.glide(),
-        }
-    }
-
-    fn silence(&mut self) {
-        match self {
-            Self::Noise(noise) => noise.silence(),
-            Self::Tones(tones) => tones.silence(),
-        }
-    }
-
-    fn tick(&mut self) -> f32 {
-        match self {
-            Self::Noise(noise) => noise.tick(),
-            Self::Tones(tones) => tones.tick(),
-        }
-    }
+impl Memory {
+    const ZERO: Self = Self {
+        noise: Noise::ZERO,
+        tones: Tones::ZERO,
+        upsampler: Upsampler::ZERO,
+        phase: 0,
+        gliding: 0,
+        is_silent: false,
+        is_started: false,
+    };
 }
 
 /// An endless stream of samples of a block, in the asset's unit. The samples do not depend on the lengths of the buffers.
@@ -51,42 +46,32 @@ impl Source {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Player<'a> {
-    block: Block<'a>,
-    source: Source,
-    upsampler: Upsampler<'a>,
-    up: usize,
-    /// Phase of the next sample; 0 needs a new one of the source.
-    phase: usize,
-    /// Remaining steps of the current glide.
-    gliding: u32,
-    is_silent: bool,
-    is_started: bool,
+    pub(crate) block: Block<'a>,
+    pub(crate) memory: Memory,
 }
 
 impl<'a> Player<'a> {
     /// Makes a player at the first condition. Players of different seeds have independent noise.
     pub fn new(block: Block<'a>, seed: u32) -> Self {
-        let (up, row, rows) = block.upsampling();
-        let source = match block.kind() {
-            Kind::Noise { half } => Source::Noise(Noise::new(half, seed)),
+        let mut player = Self {
+            block,
+            memory: Memory::ZERO,
+        };
+        player.start(seed);
+        player
+    }
+
+    /// Starts to play; all numbers of the memory are zero before.
+    pub(crate) fn start(&mut self, seed: u32) {
+        match self.block.kind() {
+            Kind::Noise { half } => self.memory.noise.start(half, seed),
             Kind::Tones {
                 count,
                 random_phase,
-            } => Source::Tones(Tones::new(count, random_phase, seed)),
-        };
-        let mut player = Self {
-            block,
-            source,
-            upsampler: Upsampler::new(rows, row),
-            up,
-            phase: 0,
-            gliding: 0,
-            is_silent: false,
-            is_started: false,
-        };
-        let (speed, force) = block.first();
-        player.retune(speed, force, false);
-        player
+            } => self.memory.tones.start(count, random_phase, seed),
+        }
+        let (speed, force) = self.block.first();
+        self.retune(speed, force, false);
     }
 
     /// Returns the block.
@@ -113,15 +98,16 @@ impl<'a> Player<'a> {
         if is_silent {
             target.level = 0.0;
         }
-        let samples = match self.is_started {
+        let samples = match self.memory.is_started {
             true => self.block.glide(),
             false => 0,
         };
-        match &mut self.source {
-            Source::Noise(noise) => noise.retune(&self.block, target, samples),
-            Source::Tones(tones) => tones.retune(&self.block, target, samples),
+        let Memory { noise, tones, .. } = &mut self.memory;
+        match self.block.kind() {
+            Kind::Noise { .. } => noise.retune(&self.block, target, samples),
+            Kind::Tones { .. } => tones.retune(&self.block, target, samples),
         }
-        (self.gliding, self.is_silent) = (samples, is_silent);
+        (self.memory.gliding, self.memory.is_silent) = (samples, is_silent);
     }
 
     /// Fills `out` with the next samples.
@@ -144,32 +130,34 @@ impl<'a> Player<'a> {
     }
 
     fn tick(&mut self) -> f32 {
-        self.is_started = true;
-        if self.up == 1 {
+        self.memory.is_started = true;
+        if self.block.up() == 1 {
             return self.next();
         }
-        if self.phase == 0 {
+        let phase = self.memory.phase;
+        let row = self.block.row(phase);
+        if phase == 0 {
             let input = self.next();
-            self.upsampler.push(input);
+            self.memory.upsampler.push(input, row.len());
         }
-        let sample = self.upsampler.at(self.phase);
-        self.phase += 1;
-        if self.phase >= self.up {
-            self.phase = 0;
-        }
-        sample
+        self.memory.phase = match phase + 1 < self.block.up() {
+            true => phase + 1,
+            false => 0,
+        };
+        self.memory.upsampler.at(row)
     }
 
-    /// Returns the next sample of the source.
+    /// Returns the next sample at the internal rate.
     fn next(&mut self) -> f32 {
-        if self.gliding > 0 {
-            self.source.glide();
-            self.gliding -= 1;
-            if self.gliding == 0 && self.is_silent {
-                self.source.silence();
-            }
+        let memory = &mut self.memory;
+        let is_last = memory.gliding == 1;
+        let is_gliding = memory.gliding > 0;
+        memory.gliding = memory.gliding.saturating_sub(1);
+        let becomes_silent = is_last && memory.is_silent;
+        match self.block.kind() {
+            Kind::Noise { .. } => memory.noise.next(is_gliding, becomes_silent),
+            Kind::Tones { .. } => memory.tones.next(is_gliding, becomes_silent),
         }
-        self.source.tick()
     }
 }
 

@@ -11,6 +11,8 @@ pub(crate) struct Random {
 }
 
 impl Random {
+    pub(crate) const ZERO: Self = Self { state: [0; 4] };
+
     pub(crate) fn new(seed: u32) -> Self {
         let mut counter = seed;
         let mut next = || {

@@ -10,13 +10,23 @@ const CYCLES: f32 = 1.0 / 4_294_967_296.0;
 const LEAST_POWER: f32 = 1e-9;
 
 /// A sinusoid whose frequency and amplitude glide. Frequencies are in cycles per sample of the internal rate.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 struct Tone {
     phase: u32,
     frequency: f32,
     frequency_step: f32,
     amplitude: f32,
     amplitude_step: f32,
+}
+
+impl Tone {
+    const ZERO: Self = Self {
+        phase: 0,
+        frequency: 0.0,
+        frequency_step: 0.0,
+        amplitude: 0.0,
+        amplitude_step: 0.0,
+    };
 }
 
 /// A sum of sinusoids.
@@ -27,14 +37,19 @@ pub(crate) struct Tones {
 }
 
 impl Tones {
-    /// Makes sinusoids that start at their crests, or at phases drawn from the seed.
-    pub(crate) fn new(count: usize, random_phase: bool, seed: u32) -> Self {
-        let mut random = Random::new(seed);
-        let mut tones = [Tone::default(); MOST_TONES];
+    pub(crate) const ZERO: Self = Self {
+        tones: [Tone::ZERO; MOST_TONES],
+        count: 0,
+    };
+
+    /// Starts sinusoids at their crests, or at phases drawn from the seed; all numbers are zero before.
+    pub(crate) fn start(&mut self, count: usize, random_phase: bool, seed: u32) {
+        self.count = count;
         if random_phase {
-            tones.iter_mut().for_each(|tone| tone.phase = random.bits());
+            let mut random = Random::new(seed);
+            let tones = self.tones.iter_mut();
+            tones.for_each(|tone| tone.phase = random.bits());
         }
-        Self { tones, count }
     }
 
     fn sounding(&mut self) -> &mut [Tone] {
@@ -69,7 +84,7 @@ impl Tones {
     }
 
     /// Moves frequencies and amplitudes by one step of the glide.
-    pub(crate) fn glide(&mut self) {
+    fn glide(&mut self) {
         for tone in self.sounding() {
             tone.frequency += tone.frequency_step;
             tone.amplitude += tone.amplitude_step;
@@ -77,14 +92,24 @@ impl Tones {
     }
 
     /// Sets all amplitudes to zero.
-    pub(crate) fn silence(&mut self) {
+    fn silence(&mut self) {
         self.sounding()
             .iter_mut()
             .for_each(|tone| tone.amplitude = 0.0);
     }
 
-    /// Returns the next sample.
-    pub(crate) fn tick(&mut self) -> f32 {
+    /// Returns the next sample, after a step of a glide, or of a glide to silence that ends.
+    pub(crate) fn next(&mut self, is_gliding: bool, becomes_silent: bool) -> f32 {
+        if is_gliding {
+            self.glide();
+        }
+        if becomes_silent {
+            self.silence();
+        }
+        self.tick()
+    }
+
+    fn tick(&mut self) -> f32 {
         let mut sum = 0.0;
         for tone in self.sounding() {
             sum += tone.amplitude * cosine(tone.phase);

@@ -3,49 +3,38 @@
 use crate::layout::MOST_ROW;
 use crate::words::Words;
 
-/// A polyphase low-pass filter. Each sample has its row of coefficients, from the oldest input to the newest.
+/// A polyphase low-pass filter with `row` coefficients for each phase, from the oldest input to the newest.
 #[derive(Debug, Clone)]
-pub(crate) struct Upsampler<'a> {
-    rows: Words<'a>,
-    row: usize,
+pub(crate) struct Upsampler {
     /// Each input is stored twice, so that the newest inputs are always contiguous.
     history: [f32; 2 * MOST_ROW],
     next: usize,
 }
 
-impl<'a> Upsampler<'a> {
-    pub(crate) fn new(rows: Words<'a>, row: usize) -> Self {
-        Self {
-            rows,
-            row,
-            history: [0.0; 2 * MOST_ROW],
-            next: 0,
-        }
-    }
+impl Upsampler {
+    pub(crate) const ZERO: Self = Self {
+        history: [0.0; 2 * MOST_ROW],
+        next: 0,
+    };
 
-    pub(crate) fn push(&mut self, input: f32) {
-        for place in [self.next, self.next + self.row] {
+    pub(crate) fn push(&mut self, input: f32, row: usize) {
+        for place in [self.next, self.next + row] {
             if let Some(place) = self.history.get_mut(place) {
                 *place = input;
             }
         }
         self.next += 1;
-        if self.next >= self.row {
+        if self.next >= row {
             self.next = 0;
         }
     }
 
-    /// Returns the sample of a phase.
-    pub(crate) fn at(&self, phase: usize) -> f32 {
-        let inputs = self.history.get(self.next..self.next + self.row);
+    /// Returns the sample of a phase with these coefficients.
+    pub(crate) fn at(&self, coefficients: Words<'_>) -> f32 {
+        let inputs = self.history.get(self.next..self.next + coefficients.len());
         let inputs = inputs.unwrap_or(&[]).as_chunks::<4>().0;
         let mut sums = [0.0f32; 4];
-        for (c, x) in self
-            .rows
-            .part(phase * self.row, self.row)
-            .fours()
-            .zip(inputs)
-        {
+        for (c, x) in coefficients.fours().zip(inputs) {
             for i in 0..4 {
                 sums[i] += c[i] * x[i];
             }

@@ -13,6 +13,8 @@ use htex_bake::{Grid, bake};
 use htex_player::{Block, Player};
 use xtask::needs::{ARM_GCC, BARE_TARGET, Need, QEMU_ARM};
 
+/// The stack of the C program; an overflow is a fault.
+const STACK: &str = "-Wl,--defsym=stack_size=1024";
 const TARGET: &str = "thumbv7em-none-eabihf";
 /// Most flash memory of the C program with the player, bytes.
 const MOST_FLASH: u64 = 96 * 1024;
@@ -102,10 +104,9 @@ fn a_cortex_m4f_returns_the_bits_of_the_host() {
             "{model}: {output}"
         );
         let instructions = number(&output, "instructions per sample");
-        println!(
-            "{model}, {} bytes: {output}",
-            block.metadata().unwrap().len()
-        );
+        let bytes = std::fs::read(&block).unwrap();
+        let kind = Block::open(&bytes).unwrap().kind();
+        println!("{model}, {} bytes, {kind:?}: {output}", bytes.len());
         assert!(
             (50..MOST_INSTRUCTIONS).contains(&instructions),
             "{model}: {output}"
@@ -177,7 +178,7 @@ fn a_c_program_plays_on_a_cortex_m4f() {
         "-mfloat-abi=hard",
         "-mfpu=fpv4-sp-d16",
     ]);
-    gcc.args(["-nostartfiles", "-Wl,--gc-sections", "-o"])
+    gcc.args(["-nostartfiles", "-Wl,--gc-sections", STACK, "-o"])
         .arg(&program);
     gcc.arg("-I").arg(player().join("include"));
     gcc.arg("-T")

@@ -13,7 +13,7 @@ use htex_bake::{Grid, bake};
 use htex_player::{Block, Player};
 use xtask::needs::{ARM_GCC, BARE_TARGET, Need, QEMU_ARM};
 
-/// The stack of the C program; an overflow is a fault.
+/// The stack of the C program; with an overflow, data is lost and the test fails.
 const STACK: &str = "-Wl,--defsym=stack_size=1024";
 const TARGET: &str = "thumbv7em-none-eabihf";
 /// Most flash memory of the C program with the player, bytes.

@@ -1,5 +1,6 @@
 //! Baking a representation.
 
+use htex_dsp::grid::GRID_HZ;
 use htex_play::{Asset, Motion};
 use htex_player::Block;
 use htex_player::layout::{MOST_HALF, MOST_LEVEL};
@@ -159,7 +160,11 @@ impl Shape {
         moments: &[Moment],
         interpolator: &Interpolator,
     ) -> Result<Self, BakeError> {
-        let design = Design::new(interpolator.internal_hz);
+        let slowest = moments
+            .iter()
+            .map(|m| m.ratio)
+            .fold(f64::INFINITY, f64::min);
+        let design = Design::new(interpolator.internal_hz, GRID_HZ * slowest);
         let (hz, band) = (design.frequencies_hz(), texture.band());
         let wanted = |moment: &Moment| {
             let recorded: Vec<f64> = hz.iter().map(|hz| hz / moment.ratio).collect();

@@ -11,10 +11,10 @@ const ROUNDS: usize = 24;
 const CORRECTION: (f64, f64) = (0.05, 20.0);
 /// Shape of the Kaiser window of the coefficients.
 const WINDOW: f64 = 3.0;
-/// Largest distance of the frequencies at which filters are designed, hertz.
-const SPACING_HZ: f64 = 1.25;
-/// Fewest frequencies, four for each coefficient of the longest filter.
-const FEWEST: usize = 1280;
+/// Distance of the frequencies at which filters are designed, in bins.
+const SPACING: f64 = 0.25;
+/// Number of frequencies: at least four for each coefficient of the longest filter.
+const STEPS: (usize, usize) = (1280, 8192);
 
 /// The frequencies at which filters of a rate are designed and read, evenly spaced from 0 to half the rate.
 #[derive(Clone)]
@@ -26,8 +26,10 @@ pub(crate) struct Design {
 }
 
 impl Design {
-    pub(crate) fn new(rate_hz: f64) -> Self {
-        let steps = ((0.5 * rate_hz / SPACING_HZ).ceil() as usize).max(FEWEST);
+    /// Makes a design for bins of at least `spacing_hz`.
+    pub(crate) fn new(rate_hz: f64, spacing_hz: f64) -> Self {
+        let wanted = 0.5 * rate_hz / (SPACING * spacing_hz);
+        let steps = (wanted.ceil() as usize).clamp(STEPS.0, STEPS.1);
         let cosine = (0..2 * steps).map(|i| (PI * i as f64 / steps as f64).cos());
         Self {
             rate_hz,

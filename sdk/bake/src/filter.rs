@@ -6,11 +6,13 @@ use htex_dsp::grid::GRID_HZ;
 use htex_host::Band;
 
 /// Rounds in which the filter's spectrum is compared with the stated one.
-const ROUNDS: usize = 24;
+const ROUNDS: usize = 80;
+/// Relative correction of all bins at which the rounds end.
+const SMALL: f64 = 0.003;
 /// Range of the correction of a magnitude.
 const CORRECTION: (f64, f64) = (0.05, 20.0);
 /// Shape of the Kaiser window of the coefficients.
-const WINDOW: f64 = 3.0;
+const WINDOW: f64 = 2.0;
 /// Distance of the frequencies at which filters are designed, in bins.
 const SPACING: f64 = 0.25;
 /// Number of frequencies: at least four for each coefficient of the longest filter.
@@ -61,6 +63,9 @@ impl Design {
                 false => 1.0,
             };
             let corrections: Vec<f64> = wanted.stated.iter().zip(&read).map(ratio).collect();
+            if corrections.iter().all(|c| (c - 1.0).abs() < SMALL) {
+                break;
+            }
             for (i, (m, original)) in magnitude.iter_mut().zip(&wanted.magnitude).enumerate() {
                 let (least, most) = (original * CORRECTION.0, original * CORRECTION.1);
                 *m = (*m * bins.between(&corrections, self.hz(i))).clamp(least, most);

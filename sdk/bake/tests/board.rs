@@ -7,6 +7,7 @@ mod script;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::OnceLock;
 
 use common::{MODELS, asset, built, has, player, run};
 use htex_bake::{Grid, bake};
@@ -41,22 +42,32 @@ fn cargo(project: &Path, target: Option<&str>) -> PathBuf {
     built().join(target.unwrap_or("")).join("release")
 }
 
+/// Blocks of all models, baked once.
+fn baked() -> &'static [(&'static str, Vec<u8>)] {
+    static BAKED: OnceLock<Vec<(&str, Vec<u8>)>> = OnceLock::new();
+    BAKED.get_or_init(|| {
+        let asset = asset();
+        let grid = Grid::new(vec![60.0, 120.0], vec![0.3, 0.6]).unwrap();
+        let block = |model| {
+            bake(&asset, Some(model), &grid, 8_000.0, 0.3)
+                .unwrap()
+                .bytes
+        };
+        MODELS.map(|model| (model, block(model))).into()
+    })
+}
+
 /// Blocks of all models as files, with the hashes of the host's player.
 fn blocks(folder: &str) -> Vec<(&'static str, PathBuf, u32)> {
     let folder = built().join("blocks").join(folder);
     std::fs::create_dir_all(&folder).unwrap();
-    let (asset, grid) = (
-        asset(),
-        Grid::new(vec![60.0, 120.0], vec![0.3, 0.6]).unwrap(),
-    );
-    let block = |model| {
-        let baked = bake(&asset, Some(model), &grid, 8_000.0, 0.3).unwrap();
+    let block = |(model, bytes): &(&'static str, Vec<u8>)| {
         let path = folder.join(format!("{model}.bin"));
-        std::fs::write(&path, &baked.bytes).unwrap();
-        let mut player = Player::new(Block::open(&baked.bytes).unwrap(), script::SEED);
-        (model, path, script::hash(&mut player))
+        std::fs::write(&path, bytes).unwrap();
+        let mut player = Player::new(Block::open(bytes).unwrap(), script::SEED);
+        (*model, path, script::hash(&mut player))
     };
-    MODELS.map(block).into()
+    baked().iter().map(block).collect()
 }
 
 /// Runs a program on the board with a block in memory; an instruction takes a nanosecond of its clock.

@@ -42,6 +42,11 @@ const FLAGS: &[(&str, &str)] = &[
     ),
     ("synth cloth.htex -o cloth.wav", "--seconds=@"),
     (
+        "bake cloth.htex -o cloth.bin",
+        "--rate=@ --within=@ --at=speed=@,force=0.4 --grid=speed=@:80:2,force=0.4 --grid=speed=80,force=0.2:@:3 \
+         --grid=speed=40:80:@,force=0.4",
+    ),
+    (
         "spectrum cloth.htex",
         "--speed=@ --force=@ --wasm-limit=memory-mib=@ --wasm-limit=fuel=@",
     ),

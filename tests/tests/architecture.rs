@@ -31,6 +31,11 @@ const ARROWS: &[(&str, &[&str])] = &[
         &["htex-check-runner", "htex-dsp", "htex-host", "htex-model"],
     ),
     ("htex-play", &["htex-dsp", "htex-format", "htex-host"]),
+    ("htex-player", &[]),
+    (
+        "htex-bake",
+        &["htex-dsp", "htex-host", "htex-play", "htex-player"],
+    ),
     (
         "htex",
         &[
@@ -69,6 +74,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         &[
             "htex",
             "htex-author",
+            "htex-bake",
             "htex-check",
             "htex-check-runner",
             "adapter",

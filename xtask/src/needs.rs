@@ -77,6 +77,27 @@ pub const ALSA: Need = Need {
     for_wasm: false,
 };
 
+/// Builds Rust for boards with a Cortex-M4F.
+pub const BARE_TARGET: Need = Need {
+    what: "a Rust toolchain for Cortex-M4F",
+    how: "rustup target add thumbv7em-none-eabihf",
+    for_wasm: false,
+};
+
+/// Emulates a board with a Cortex-M4F.
+pub const QEMU_ARM: Need = Need {
+    what: "QEMU for ARM boards",
+    how: "apt-get install qemu-system-arm",
+    for_wasm: false,
+};
+
+/// Builds C for boards with a Cortex-M4F.
+pub const ARM_GCC: Need = Need {
+    what: "a C compiler for ARM boards",
+    how: "apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi",
+    for_wasm: false,
+};
+
 /// Another player, written in Python.
 pub const SCIPY: Need = Need {
     what: "Python with NumPy and SciPy",

@@ -1,5 +1,6 @@
 //! The subcommands, one file each: arguments and execution.
 
+mod bake;
 mod compare;
 #[cfg(feature = "wasm")]
 mod compile_module;
@@ -39,6 +40,7 @@ pub(crate) enum Command {
     Explain(explain::Explain),
     Spectrum(spectrum::Spectrum),
     Synth(synth::Synth),
+    Bake(bake::Bake),
     Compare(compare::Compare),
     Tradeoff(tradeoff::Tradeoff),
     Plan(plan::Plan),
@@ -66,6 +68,7 @@ impl Command {
             Self::Explain(args) => args.run(),
             Self::Spectrum(args) => args.run(),
             Self::Synth(args) => args.run(),
+            Self::Bake(args) => args.run(),
             Self::Compare(args) => args.run(),
             Self::Tradeoff(args) => args.run(),
             Self::Plan(args) => args.run(),

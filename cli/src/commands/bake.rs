@@ -1,0 +1,237 @@
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Args;
+use htex::{Asset, Motion};
+use htex_bake::{Baked, Grid};
+use serde_json::json;
+
+use crate::failure::Failure;
+use crate::output::{print, print_json, warn};
+use crate::outputs::check_outputs;
+use crate::plugins::PlayerArgs;
+use crate::scenes::USUAL;
+use crate::shown::shown;
+
+/// Write a texture as a block of bytes for the player on microcontrollers (docs/microcontroller.md).
+///
+/// The block has a filter or sinusoids for each condition of a grid of speeds and forces; the player interpolates between
+/// them. The command prints the block's size and its error in nine bands, at the conditions and midway between them.
+#[derive(Args)]
+pub(crate) struct Bake {
+    /// The asset
+    asset: PathBuf,
+
+    /// The representation, by its model's short name or id [default: least nine-band error]
+    #[arg(long, value_name = "ID")]
+    model: Option<String>,
+
+    /// A condition: speed=80,force=0.4; may be given several times, for all combinations of some speeds and forces
+    /// [default: the asset's first condition]
+    #[arg(long, value_name = "CONDITION", conflicts_with = "grid")]
+    at: Vec<String>,
+
+    /// A grid of conditions, each axis FIRST:LAST:COUNT or one number: speed=40:160:3,force=0.2:0.6:3
+    #[arg(long, value_name = "GRID")]
+    grid: Option<String>,
+
+    /// Sampling rate of the player, Hz
+    #[arg(long, default_value_t = 8_000.0, value_name = "HZ")]
+    rate: f64,
+
+    /// Largest error of nine bands between conditions, dB; conditions are inserted until it is reached, to at most 64
+    #[arg(long, default_value_t = 0.3, value_name = "DB")]
+    within: f64,
+
+    #[command(flatten)]
+    player: PlayerArgs,
+
+    /// The file to write: a C array if it ends in .h, a Rust array if it ends in .rs, else (.bin) the bytes
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+
+    /// Print JSON instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+impl Bake {
+    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+        check_outputs([self.output.as_path()], [self.asset.as_path()])?;
+        let (stem, format) = named(&self.output)?;
+        let given = self.given()?;
+        if !(self.within > 0.0 && self.within.is_finite()) {
+            let sentence = format!("--within {}: a number of decibels above 0", self.within);
+            return Err(Failure::Usage(sentence));
+        }
+        let asset = self.player.open(&self.asset)?;
+        let grid = match given {
+            Some(grid) => grid,
+            None => first_condition(&asset).map_err(|error| self.failure(error))?,
+        };
+        let baked = htex_bake::bake(&asset, self.model.as_deref(), &grid, self.rate, self.within)
+            .map_err(|error| self.failure(error))?;
+        let written = match format {
+            Format::Bytes => baked.bytes.clone(),
+            Format::C => htex_bake::c_header(&stem, &baked.bytes).into_bytes(),
+            Format::Rust => htex_bake::rust_source(&stem, &baked.bytes).into_bytes(),
+        };
+        htex_format::write_file(&self.output, &written)
+            .map_err(|error| Failure::write(&self.output, error))?;
+        let error_db = baked.at_conditions_db.max(baked.between_db);
+        if error_db > self.within {
+            warn(&[format!(
+                "the block is up to {error_db:.2} dB from the model: a narrower grid, or a lower rate, is more accurate \
+                 (see --grid, --rate)"
+            )]);
+        }
+        match self.json {
+            true => print_json(&report(&baked, self.rate))?,
+            false => print(&text(&self.output, &baked, self.rate))?,
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+
+    fn failure(&self, error: htex_bake::BakeError) -> Failure {
+        use htex_bake::BakeError::{Asset, Axis, Incomplete, Model, Rate};
+        match error {
+            Asset(error) => Failure::asset(&self.asset, error),
+            Model(error) => Failure::asset(&self.asset, error),
+            Rate { .. } => Failure::Usage(format!("--rate {error}")),
+            Axis { .. } | Incomplete { .. } => Failure::Usage(format!("--at, --grid: {error}")),
+            error => Failure::Other(format!("{}: {error}", shown(&self.asset))),
+        }
+    }
+
+    /// The conditions of the command line.
+    fn given(&self) -> Result<Option<Grid>, Failure> {
+        if let Some(text) = &self.grid {
+            let [speeds, forces] = axes("--grid", text, span)?;
+            return Grid::new(speeds, forces)
+                .map(Some)
+                .map_err(|error| self.failure(error));
+        }
+        let mut motions = Vec::new();
+        for text in &self.at {
+            let [speed, force] = axes("--at", text, |value| value.trim().parse().ok())?;
+            motions.push(Motion::new(speed, force));
+        }
+        match motions.is_empty() {
+            true => Ok(None),
+            false => Grid::of_conditions(&motions)
+                .map(Some)
+                .map_err(|error| self.failure(error)),
+        }
+    }
+}
+
+enum Format {
+    Bytes,
+    C,
+    Rust,
+}
+
+/// The name of the array, and the format.
+fn named(output: &Path) -> Result<(String, Format), Failure> {
+    let text = |part: Option<&std::ffi::OsStr>| part.and_then(|p| p.to_str()).map(str::to_owned);
+    let stem = text(output.file_stem()).unwrap_or_default();
+    let format = match text(output.extension()).as_deref() {
+        Some("bin") => Format::Bytes,
+        Some("h") => Format::C,
+        Some("rs") => Format::Rust,
+        _ => {
+            return Err(Failure::Usage(format!(
+                "{}: the name ends in .bin, .h or .rs",
+                shown(output)
+            )));
+        }
+    };
+    Ok((stem, format))
+}
+
+/// The grid of the asset's first condition.
+fn first_condition(asset: &Asset) -> Result<Grid, htex_bake::BakeError> {
+    let first = asset.manifest().conditions.first();
+    let speed = first.and_then(|c| c.speed_mm_s).unwrap_or(USUAL.0);
+    let force = first.and_then(|c| c.force_n).unwrap_or(USUAL.1);
+    Grid::new(vec![speed], vec![force])
+}
+
+/// Reads `speed=…,force=…`.
+fn axes<T>(flag: &str, text: &str, read: impl Fn(&str) -> Option<T>) -> Result<[T; 2], Failure> {
+    let (mut speed, mut force) = (None, None);
+    for part in text.split(',') {
+        match part.split_once('=').map(|(key, value)| (key.trim(), value)) {
+            Some(("speed", value)) => speed = read(value),
+            Some(("force", value)) => force = read(value),
+            _ => {}
+        }
+    }
+    match (speed, force, text.split(',').count()) {
+        (Some(speed), Some(force), 2) => Ok([speed, force]),
+        _ => Err(Failure::Usage(format!(
+            "{flag} {text}: a speed and a force, such as speed=80,force=0.4{}",
+            match flag {
+                "--grid" => " or speed=40:160:3,force=0.2:0.6:3 (first, last, count from 2 to 32)",
+                _ => " (mm/s, N)",
+            }
+        ))),
+    }
+}
+
+/// Reads `FIRST:LAST:COUNT`, or one number.
+fn span(text: &str) -> Option<Vec<f64>> {
+    let parts: Vec<&str> = text.split(':').map(str::trim).collect();
+    match parts[..] {
+        [one] => Some(vec![one.parse().ok()?]),
+        [first, last, count] => {
+            let (first, last): (f64, f64) = (first.parse().ok()?, last.parse().ok()?);
+            let count: u32 = count.parse().ok()?;
+            let step = (last - first) / f64::from(count.checked_sub(1)?);
+            (2..=32)
+                .contains(&count)
+                .then(|| (0..count).map(|i| first + f64::from(i) * step).collect())
+        }
+        _ => None,
+    }
+}
+
+fn report(baked: &Baked, rate_hz: f64) -> serde_json::Value {
+    json!({
+        "model": baked.model,
+        "bytes": baked.bytes.len(),
+        "rate_hz": rate_hz,
+        "internal_rate_hz": baked.internal_rate_hz,
+        "taps": baked.taps,
+        "tones": baked.tones,
+        "speeds_mm_s": baked.grid.speeds_mm_s(),
+        "forces_n": baked.grid.forces_n(),
+        "error_at_conditions_db": baked.at_conditions_db,
+        "error_between_db": baked.between_db,
+    })
+}
+
+fn text(output: &Path, baked: &Baked, rate_hz: f64) -> String {
+    let Baked {
+        model,
+        at_conditions_db,
+        between_db,
+        ..
+    } = baked;
+    let content = match baked.taps {
+        0 => format!("{} sinusoids", baked.tones),
+        taps => format!("a filter of {taps} coefficients"),
+    };
+    let conditions = baked.grid.motions().count();
+    let between = match conditions {
+        1 => String::new(),
+        _ => format!(", {between_db:.2} dB midway between them"),
+    };
+    format!(
+        "{}: {} bytes, {model} at {rate_hz} Hz, {conditions} conditions, {content} at {:.1} Hz\n\
+         largest error of nine bands: {at_conditions_db:.2} dB at the conditions{between}\n",
+        shown(output),
+        baked.bytes.len(),
+        baked.internal_rate_hz,
+    )
+}

@@ -1,0 +1,26 @@
+//! Converts assets to blocks for players on microcontrollers (`spec/baked-1.md`, `htex_player`).
+//!
+//! ```no_run
+//! use htex_bake::{Grid, bake};
+//! let asset = htex_play::Asset::open("sandpaper.htex")?;
+//! let baked = bake(&asset, None, &Grid::new(vec![40.0, 160.0], vec![0.4])?, 8_000.0, 0.3)?;
+//! println!("{} bytes, within {:.2} dB", baked.bytes.len(), baked.between_db);
+//! # Ok::<(), htex_bake::BakeError>(())
+//! ```
+#![forbid(unsafe_code)]
+
+mod bake;
+mod encode;
+mod error;
+mod filter;
+mod grid;
+mod interpolator;
+mod reading;
+mod source;
+mod texture;
+mod tones;
+
+pub use bake::{Baked, bake};
+pub use error::BakeError;
+pub use grid::Grid;
+pub use source::{c_header, rust_source};

@@ -1,0 +1,32 @@
+//! Spectra of baked conditions as recordings of them would read, and their distance from the model's.
+
+use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db};
+use htex_dsp::grid::GRID_HZ;
+use htex_host::Band;
+
+use crate::filter::hann;
+use crate::tones::Tone;
+
+/// Bands this far below the strongest, as energies, are not compared: 40 dB.
+const FAINT: f64 = 1e-4;
+
+/// Returns the magnitude on the band's grid of sinusoids, with frequencies divided by `ratio`, through a Hann window.
+pub(crate) fn of_tones(tones: &[Tone], band: Band, ratio: f64) -> Vec<f64> {
+    let at = |hz: f64| {
+        let seen = tones
+            .iter()
+            .map(|&(f, a)| a * hann((hz - f / ratio) / GRID_HZ));
+        seen.map(|m| m * m).sum::<f64>().sqrt()
+    };
+    band.grid_hz().into_iter().map(at).collect()
+}
+
+/// Returns the largest error of the nine bands, dB, among those within 40 dB of the strongest.
+pub(crate) fn distance_db(reference: &[f64], read: &[f64], band: Band) -> f64 {
+    let bank = BandBank::new(BAND_COUNT, band, &band.grid_hz());
+    let [reference, read] = [reference, read].map(|magnitude| bank.energies(magnitude));
+    let strongest = reference.iter().copied().fold(0.0, f64::max);
+    let errors = band_error_db(&reference, &read).into_iter().zip(&reference);
+    let compared = errors.filter(|(_, energy)| **energy >= FAINT * strongest);
+    compared.map(|(error, _)| error.abs()).fold(0.0, f64::max)
+}

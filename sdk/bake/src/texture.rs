@@ -1,0 +1,110 @@
+//! The texture of a representation at any motion, with the effects of a motion as a voice has them.
+
+use htex_dsp::grid::GRID_HZ;
+use htex_host::{Band, LoadedModel};
+use htex_play::{Asset, Explored, Motion};
+
+use crate::BakeError;
+use crate::filter::hann;
+
+/// Models whose voices read as their magnitude states: sPeak's magnitude is that of sinusoids through the window, and the
+/// voice of Bands compensates the window's blur. Other voices play their magnitude.
+const READ_AS_STATED: [&str; 2] = ["org.htex.speak", "org.htex.bands"];
+/// Points of a bin at which a magnitude is read.
+const IN_BIN: i32 = 8;
+
+/// A representation of an asset.
+pub(crate) struct Texture<'a> {
+    asset: &'a Asset,
+    model: LoadedModel,
+    /// The representation's id.
+    id: String,
+    explored: Explored,
+}
+
+/// A texture at one motion.
+pub(crate) struct Moment {
+    pub(crate) parameters: Vec<f64>,
+    /// RMS in the asset's unit.
+    pub(crate) level_rms: f64,
+    /// Factor of all frequencies.
+    pub(crate) ratio: f64,
+    /// The motion.
+    pub(crate) motion: Motion,
+}
+
+impl<'a> Texture<'a> {
+    pub(crate) fn new(asset: &'a Asset, model: Option<&str>) -> Result<Self, BakeError> {
+        let loaded = asset.loaded_model(model)?;
+        let id = asset.representation_id(model)?.to_owned();
+        if loaded.follows_motion() {
+            return Err(BakeError::FollowsMotion { model: id });
+        }
+        let manifest = asset.manifest();
+        let stored = manifest.representations.iter().find(|r| r.model == id);
+        let at = stored.map_or(&[][..], |r| &r.at);
+        Ok(Self {
+            asset,
+            model: loaded,
+            explored: Explored::new(at, &manifest.conditions),
+            id,
+        })
+    }
+
+    pub(crate) fn id(&self) -> &str {
+        &self.id
+    }
+
+    pub(crate) fn band(&self) -> Band {
+        self.asset.band()
+    }
+
+    /// Returns the texture at a motion.
+    pub(crate) fn at(&self, motion: Motion) -> Result<Moment, BakeError> {
+        let (parameters, level_rms) = self.asset.parameters(Some(&self.id), Some(motion))?;
+        Ok(Moment {
+            parameters,
+            level_rms: level_rms * self.explored.force_gain(motion.force_n),
+            ratio: self.explored.speed_ratio(motion.speed_mm_s),
+            motion,
+        })
+    }
+
+    /// Returns the magnitude of unit RMS at recorded frequencies, hertz: those before the moment's ratio.
+    pub(crate) fn magnitude(&self, moment: &Moment, hz: &[f64]) -> Result<Vec<f64>, BakeError> {
+        Ok(self.model.magnitude(&moment.parameters, self.band(), hz)?)
+    }
+
+    /// Returns the magnitude of unit RMS on the band's grid that a recording of the host's voice reads through a Hann
+    /// window.
+    pub(crate) fn read(&self, moment: &Moment) -> Result<Vec<f64>, BakeError> {
+        let grid = self.band().grid_hz();
+        if READ_AS_STATED.contains(&&self.id[..]) {
+            return self.magnitude(moment, &grid);
+        }
+        // Positions in the window's main lobe, in bins, and their weights.
+        let place = |i: i32| f64::from(i) / f64::from(IN_BIN);
+        let lobe: Vec<(f64, f64)> = (-2 * IN_BIN..=2 * IN_BIN)
+            .map(|i| (place(i), hann(place(i)).powi(2)))
+            .collect();
+        let mut dense = Vec::with_capacity(grid.len() * lobe.len());
+        for hz in grid {
+            dense.extend(lobe.iter().map(|(d, _)| (hz + d * GRID_HZ).max(0.0)));
+        }
+        let magnitude = self.magnitude(moment, &dense)?;
+        let power = |part: &[f64]| -> f64 {
+            let weighed = part
+                .iter()
+                .zip(&lobe)
+                .map(|(m, (_, weight))| weight * m * m);
+            weighed.sum()
+        };
+        let mut read: Vec<f64> = magnitude.chunks(lobe.len()).map(power).collect();
+        read.iter_mut().for_each(|power| *power = power.sqrt());
+        let rms = htex_dsp::grid::level_rms(&read);
+        if rms > 0.0 {
+            read.iter_mut().for_each(|m| *m /= rms);
+        }
+        Ok(read)
+    }
+}

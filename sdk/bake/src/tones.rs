@@ -1,0 +1,66 @@
+//! Sinusoids of sPeak.
+
+use htex_host::Band;
+use htex_player::layout::MOST_TONES;
+
+use crate::BakeError;
+use crate::texture::Moment;
+
+/// The model whose parameters are sinusoids.
+pub(crate) const MODEL: &str = "org.htex.speak";
+/// Frequencies that differ by less are one sinusoid, hertz.
+const SAME_HZ: f64 = 0.01;
+
+/// Frequency in hertz and amplitude, in any scale.
+pub(crate) type Tone = (f64, f64);
+
+/// The sinusoids of conditions, as many for each, and whether phases are random. Conditions with the same number of
+/// sinusoids are matched by index, as the model does; others by frequency, with zero amplitude where one is absent.
+pub(crate) fn of_moments(
+    moments: &[Moment],
+    band: Band,
+) -> Result<(Vec<Vec<Tone>>, bool), BakeError> {
+    let read: Option<Vec<(Vec<Tone>, bool)>> = moments.iter().map(|m| read(m, band)).collect();
+    // The model accepted the parameters before.
+    let read = read.unwrap_or_default();
+    let random = read.first().is_some_and(|(_, random)| *random);
+    let all: Vec<Vec<Tone>> = read.into_iter().map(|(tones, _)| tones).collect();
+    let count = all.first().map_or(0, Vec::len);
+    let all = match all.iter().all(|tones| tones.len() == count) {
+        true => all,
+        false => matched(&all),
+    };
+    let count = all.first().map_or(0, Vec::len);
+    match count <= MOST_TONES {
+        true => Ok((all, random)),
+        false => Err(BakeError::Tones {
+            count,
+            most: MOST_TONES,
+        }),
+    }
+}
+
+/// Reads the model's fields: a list of frequencies, a list of amplitudes, the phase.
+fn read(moment: &Moment, band: Band) -> Option<(Vec<Tone>, bool)> {
+    let (&count, rest) = moment.parameters.split_first()?;
+    let (frequencies, rest) = rest.split_at_checked(count as usize)?;
+    let (amplitudes, rest) = rest.get(1..)?.split_at_checked(count as usize)?;
+    let tone = |(&hz, &amplitude): (&f64, &f64)| match band.contains(hz) {
+        true => (hz * moment.ratio, amplitude),
+        false => (hz * moment.ratio, 0.0),
+    };
+    let tones = frequencies.iter().zip(amplitudes).map(tone).collect();
+    Some((tones, *rest.first()? >= 0.5))
+}
+
+fn matched(all: &[Vec<Tone>]) -> Vec<Vec<Tone>> {
+    let mut union: Vec<f64> = all.iter().flatten().map(|(hz, _)| *hz).collect();
+    union.sort_by(f64::total_cmp);
+    union.dedup_by(|a, b| *a - *b < SAME_HZ);
+    let amplitude = |tones: &[Tone], hz: f64| -> f64 {
+        let same = tones.iter().filter(|(f, _)| (f - hz).abs() < SAME_HZ);
+        same.map(|(_, amplitude)| amplitude).sum()
+    };
+    let row = |tones: &Vec<Tone>| union.iter().map(|&hz| (hz, amplitude(tones, hz))).collect();
+    all.iter().map(row).collect()
+}

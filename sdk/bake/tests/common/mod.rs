@@ -1,0 +1,71 @@
+//! An asset of all models, and files of tests.
+#![allow(dead_code)] // Each suite uses a part of it.
+
+use std::path::PathBuf;
+use std::process::Command;
+use std::sync::OnceLock;
+
+use htex_author::simulate::{SimulationOptions, Surface, simulate};
+use htex_author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
+use htex_play::{Asset, AssetData, Registry};
+
+/// The built-in models.
+pub const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
+
+/// An asset of every built-in model, recorded at two speeds and two forces.
+pub fn asset() -> Asset {
+    Asset::new(data())
+}
+
+/// Its data.
+pub fn data() -> AssetData {
+    static DATA: OnceLock<AssetData> = OnceLock::new();
+    let data = DATA.get_or_init(|| {
+        let takes = [(60.0, 0.3), (120.0, 0.3), (60.0, 0.6), (120.0, 0.6)].map(take);
+        let models = Registry::builtin();
+        let models = models.models().iter().map(ModelRequest::new);
+        let request = AssetRequest::new("simulated").with_models(models);
+        fit_asset(&takes, &request).unwrap().asset
+    });
+    data.clone()
+}
+
+fn take((speed_mm_s, force_n): (f64, f64)) -> Take {
+    let options = SimulationOptions::new(Surface::CoarseFabric)
+        .with_speed_mm_s(speed_mm_s)
+        .with_force_n(force_n)
+        .with_duration_s(4.0);
+    Take {
+        recording: simulate(&options)
+            .unwrap()
+            .to_recording("simulated")
+            .unwrap(),
+        given: Exploration {
+            speed_mm_s: Some(speed_mm_s),
+            force_n: Some(force_n),
+        },
+    }
+}
+
+/// The folder of the player's crate.
+pub fn player() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../player")
+}
+
+/// The folder where programs for boards are built.
+pub fn built() -> PathBuf {
+    PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("board")
+}
+
+/// Runs a command, and returns its standard output.
+pub fn run(command: &mut Command) -> String {
+    let done = command.output().unwrap();
+    let error = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.success(), "{command:?}: {error}");
+    String::from_utf8(done.stdout).unwrap()
+}
+
+/// Whether a program is installed.
+pub fn has(program: &str) -> bool {
+    Command::new(program).arg("--version").output().is_ok()
+}

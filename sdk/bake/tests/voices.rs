@@ -1,0 +1,106 @@
+//! A player of a baked block has the spectrum of the host's voice, at its conditions and between them.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+mod common;
+
+use common::{MODELS, asset};
+use htex_author::{
+    Averaging, Recording, SegmentChoice, SpectrumOptions, TextureSpectrum, segment_spectra,
+};
+use htex_bake::{Grid, bake};
+use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db};
+use htex_play::{Asset, Band, Motion, VoiceOptions};
+use htex_player::{Block, Player};
+
+const RATE_HZ: f64 = 8_000.0;
+const SECONDS: f64 = 400.0;
+/// Largest error of a band, dB. 400 s of each voice scatter by 0.1 dB in the lowest bands.
+const WITHIN_DB: f64 = 0.3;
+/// Bands this far below the strongest are not compared: 40 dB.
+const FAINT: f64 = 1e-4;
+
+fn energies(samples: Vec<f32>) -> Vec<f64> {
+    let samples = samples.into_iter().map(f64::from).collect();
+    let recording = Recording::new("samples", RATE_HZ, vec![samples]).unwrap();
+    let options = SpectrumOptions::default()
+        .with_segments(SegmentChoice::Windows)
+        .with_averaging(Averaging::Rms);
+    let part = segment_spectra(&recording, &options).unwrap();
+    let spectrum = TextureSpectrum::average(&[part], Averaging::Rms).unwrap();
+    let bank = BandBank::new(BAND_COUNT, Band::TACTILE, &Band::TACTILE.grid_hz());
+    bank.energies(&spectrum.magnitude)
+}
+
+fn of_host(asset: &Asset, model: &str, motion: Motion) -> Vec<f64> {
+    let mut options = VoiceOptions::default()
+        .with_rate_hz(RATE_HZ)
+        .with_motion(Some(motion))
+        .with_seed(3);
+    options.model = Some(model);
+    let mut samples = vec![0.0; (SECONDS * RATE_HZ) as usize];
+    asset.voice(&options).unwrap().render(&mut samples).unwrap();
+    energies(samples)
+}
+
+fn of_player(block: &[u8], motion: Motion) -> Vec<f64> {
+    let mut player = Player::new(Block::open(block).unwrap(), 5);
+    assert!(player.set_motion(motion.speed_mm_s as f32, motion.force_n as f32));
+    let mut samples = vec![0.0; (SECONDS * RATE_HZ) as usize];
+    player.render(&mut samples);
+    energies(samples)
+}
+
+/// Largest error of the bands within 40 dB of the strongest, dB.
+fn largest_db(host: &[f64], player: &[f64]) -> f64 {
+    let strongest = host.iter().copied().fold(0.0, f64::max);
+    let errors = band_error_db(host, player).into_iter().zip(host);
+    let compared = errors.filter(|(_, energy)| **energy > FAINT * strongest);
+    compared.map(|(error, _)| error.abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_player_has_the_spectrum_of_the_host() {
+    let asset = asset();
+    let grid = Grid::new(vec![60.0, 120.0], vec![0.3, 0.6]).unwrap();
+    let mut failed = Vec::new();
+    for model in MODELS {
+        let baked = bake(&asset, Some(model), &grid, RATE_HZ, 0.2).unwrap();
+        // A recorded condition, and a motion between all of them.
+        for (speed, force) in [(120.0, 0.3), (87.0, 0.43)] {
+            let motion = Motion::new(speed, force);
+            let error = largest_db(
+                &of_host(&asset, model, motion),
+                &of_player(&baked.bytes, motion),
+            );
+            println!("{model} at {speed} mm/s, {force} N: {error:.3} dB");
+            if error > WITHIN_DB {
+                failed.push(format!("{model} at {speed} mm/s, {force} N: {error:.3} dB"));
+            }
+        }
+    }
+    assert!(failed.is_empty(), "{failed:?}");
+}
+
+#[test]
+fn one_recorded_speed_scales_frequencies_and_level() {
+    let mut data = common::data();
+    for representation in &mut data.manifest.representations {
+        representation.at.truncate(1);
+    }
+    for parameters in &mut data.parameters {
+        parameters.truncate(1);
+    }
+    let asset = Asset::new(data);
+    let grid = Grid::new(vec![45.0, 60.0], vec![0.2, 0.3]).unwrap();
+    let baked = bake(&asset, Some("sslope"), &grid, RATE_HZ, 0.2).unwrap();
+    let motion = Motion::new(45.0, 0.2);
+    let (host, player) = (
+        of_host(&asset, "sslope", motion),
+        of_player(&baked.bytes, motion),
+    );
+    let error = largest_db(&host, &player);
+    assert!(error < WITHIN_DB, "{error}");
+    // It is not the texture as recorded.
+    let recorded = of_host(&asset, "sslope", Motion::new(60.0, 0.3));
+    assert!(largest_db(&recorded, &player) > 2.0);
+}

@@ -1,0 +1,57 @@
+//! Plays the block at [`BLOCK`] by the script of the tests and prints a hash of its samples and the instructions per sample.
+//!
+//! `docs/microcontroller.md` has the commands; `sdk/bake/tests/board.rs` compares the hash with that of the host.
+#![no_std]
+#![no_main]
+
+mod board;
+#[path = "../../../tests/common/script.rs"]
+mod script;
+
+use core::fmt::Write;
+use core::slice;
+
+use board::{Console, Timer};
+use htex_player::{Block, Player};
+
+/// Address and size of the memory for the block.
+const BLOCK: (usize, usize) = (0x0020_0000, 0x0010_0000);
+
+/// Samples whose instructions are counted.
+const COUNTED: usize = 2000;
+
+/// Runs after reset.
+pub(crate) fn main() -> ! {
+    // SAFETY: The board has memory there, which nothing writes to.
+    let bytes = unsafe { slice::from_raw_parts(BLOCK.0 as *const u8, BLOCK.1) };
+    match Block::open(bytes) {
+        Ok(block) => play(block),
+        Err(error) => {
+            let _ = writeln!(Console, "error: {error}");
+        }
+    }
+    board::exit()
+}
+
+fn play(block: Block<'_>) {
+    let mut player = Player::new(block, script::SEED);
+    let _ = writeln!(Console, "hash {:08x}", script::hash(&mut player));
+    let mut buffer = [0.0; 50];
+    let timer = Timer::start();
+    for _ in 0..COUNTED / buffer.len() {
+        player.render(&mut buffer);
+    }
+    let steady = timer.instructions();
+    player.set_motion(80.0, 0.4);
+    let timer = Timer::start();
+    player.set_motion(45.0, 0.3);
+    let set = timer.instructions();
+    let timer = Timer::start();
+    player.render(&mut buffer);
+    let gliding = timer.instructions();
+    let per = |instructions: u32, samples: usize| instructions / samples as u32;
+    let _ = writeln!(Console, "instructions per sample {}", per(steady, COUNTED));
+    let _ = writeln!(Console, "while gliding {}", per(gliding, buffer.len()));
+    let _ = writeln!(Console, "to set a motion {set}");
+    let _ = writeln!(Console, "bytes of a player {}", size_of::<Player<'_>>());
+}

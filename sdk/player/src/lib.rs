@@ -1,0 +1,29 @@
+//! Plays baked textures on microcontrollers.
+//!
+//! [`Block::open`] validates the bytes that `htex bake` wrote (`spec/baked-1.md`), and [`Player`] renders them. There is no
+//! heap and no panic; the render path computes in single precision, in one order, so that the samples are bit-identical on
+//! every processor.
+//!
+//! ```
+//! use htex_player::{Block, OpenError};
+//! assert!(matches!(Block::open(b"not a block"), Err(OpenError::TooShort)));
+//! ```
+#![no_std]
+#![cfg_attr(not(feature = "c"), forbid(unsafe_code))]
+
+mod block;
+#[cfg(feature = "c")]
+mod c;
+mod crc;
+pub mod layout;
+mod noise;
+mod player;
+mod random;
+mod tones;
+mod upsampler;
+mod weights;
+mod words;
+
+pub use block::{Block, Kind, OpenError};
+pub use crc::crc32;
+pub use player::Player;

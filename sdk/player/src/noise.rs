@@ -1,0 +1,138 @@
+//! White noise through a symmetrical filter.
+
+use crate::block::{Block, Target};
+use crate::layout::MOST_HALF;
+use crate::random::Random;
+
+/// Least energy of a mixed filter that is scaled to a level.
+const LEAST_ENERGY: f32 = 1e-9;
+
+/// Noise with the spectrum of a symmetrical filter, whose coefficients glide.
+#[derive(Debug, Clone)]
+pub(crate) struct Noise {
+    random: Random,
+    half: usize,
+    centre: f32,
+    centre_step: f32,
+    /// The coefficients on one side, outwards.
+    side: [f32; MOST_HALF],
+    step: [f32; MOST_HALF],
+    /// Each input is stored twice, so that the newest inputs are always contiguous.
+    history: [f32; 2 * (2 * MOST_HALF + 1)],
+    next: usize,
+}
+
+impl Noise {
+    pub(crate) const ZERO: Self = Self {
+        random: Random::ZERO,
+        half: 0,
+        centre: 0.0,
+        centre_step: 0.0,
+        side: [0.0; MOST_HALF],
+        step: [0.0; MOST_HALF],
+        history: [0.0; 2 * (2 * MOST_HALF + 1)],
+        next: 0,
+    };
+
+    /// Starts noise; all numbers are zero before. The first sample is already stationary.
+    pub(crate) fn start(&mut self, half: usize, seed: u32) {
+        (self.half, self.random) = (half, Random::new(seed));
+        for _ in 0..self.taps() {
+            let input = self.random.noise();
+            self.push(input);
+        }
+    }
+
+    fn taps(&self) -> usize {
+        2 * self.half + 1
+    }
+
+    /// Starts a glide of `samples` to the filter of a motion; 0 sets it at once.
+    pub(crate) fn retune(&mut self, block: &Block<'_>, target: Target, samples: u32) {
+        let half = self.half;
+        let (mut centre, step) = (0.0, self.step.get_mut(..half).unwrap_or(&mut []));
+        step.fill(0.0);
+        for (condition, weight) in target.weights.iter() {
+            let values = block.values(condition);
+            centre += weight * values.at(0);
+            let side = values.part(1, half);
+            for (sum, c) in step.iter_mut().zip(side.iter()) {
+                *sum += weight * c;
+            }
+        }
+        let energy = centre * centre + 2.0 * step.iter().map(|c| c * c).sum::<f32>();
+        let gain = match energy > LEAST_ENERGY {
+            true => target.level / libm::sqrtf(energy),
+            false => 0.0,
+        };
+        let part = 1.0 / samples.max(1) as f32;
+        self.centre_step = (centre * gain - self.centre) * part;
+        for (step, c) in step.iter_mut().zip(&self.side) {
+            *step = (*step * gain - c) * part;
+        }
+        if samples == 0 {
+            self.glide();
+        }
+    }
+
+    /// Moves the coefficients by one step of the glide.
+    fn glide(&mut self) {
+        self.centre += self.centre_step;
+        let moved = self.side.iter_mut().zip(&self.step);
+        for (c, step) in moved.take(self.half) {
+            *c += step;
+        }
+    }
+
+    /// Sets all coefficients to zero.
+    fn silence(&mut self) {
+        self.centre = 0.0;
+        self.side.fill(0.0);
+    }
+
+    fn push(&mut self, input: f32) {
+        let taps = self.taps();
+        for place in [self.next, self.next + taps] {
+            if let Some(place) = self.history.get_mut(place) {
+                *place = input;
+            }
+        }
+        self.next += 1;
+        if self.next >= taps {
+            self.next = 0;
+        }
+    }
+
+    /// Returns the next sample, after a step of a glide, or of a glide to silence that ends.
+    pub(crate) fn next(&mut self, is_gliding: bool, becomes_silent: bool) -> f32 {
+        if is_gliding {
+            self.glide();
+        }
+        if becomes_silent {
+            self.silence();
+        }
+        self.tick()
+    }
+
+    fn tick(&mut self) -> f32 {
+        let input = self.random.noise();
+        self.push(input);
+        let inputs = self.history.get(self.next..self.next + self.taps());
+        let Some((before, [middle, after @ ..])) =
+            inputs.and_then(|inputs| inputs.split_at_checked(self.half))
+        else {
+            return 0.0;
+        };
+        // The side's length is a multiple of four, and so are those beside it.
+        let before = before.as_rchunks::<4>().1.iter().rev();
+        let after = after.as_chunks::<4>().0;
+        let side = self.side.as_chunks::<4>().0;
+        let mut sums = [0.0f32; 4];
+        for ((c, a), b) in side.iter().zip(after).zip(before) {
+            for i in 0..4 {
+                sums[i] += c[i] * (a[i] + b[3 - i]);
+            }
+        }
+        self.centre * middle + ((sums[0] + sums[1]) + (sums[2] + sums[3]))
+    }
+}

@@ -1,0 +1,166 @@
+//! A playing texture.
+
+use crate::block::{Block, Kind};
+use crate::layout::MIN_SLIDING_MM_S;
+use crate::noise::Noise;
+use crate::tones::Tones;
+use crate::upsampler::Upsampler;
+
+/// Numbers that change while a block is played. It is valid with all bytes zero.
+#[derive(Debug, Clone)]
+pub(crate) struct Memory {
+    noise: Noise,
+    tones: Tones,
+    upsampler: Upsampler,
+    /// Phase of the next sample; 0 needs a new one of the internal rate.
+    phase: usize,
+    /// Remaining steps of the current glide.
+    gliding: u32,
+    is_silent: bool,
+    is_started: bool,
+}
+
+impl Memory {
+    const ZERO: Self = Self {
+        noise: Noise::ZERO,
+        tones: Tones::ZERO,
+        upsampler: Upsampler::ZERO,
+        phase: 0,
+        gliding: 0,
+        is_silent: false,
+        is_started: false,
+    };
+}
+
+/// An endless stream of samples of a block, in the asset's unit. The samples do not depend on the lengths of the buffers.
+///
+/// ```no_run
+/// use htex_player::{Block, Player};
+/// # fn run(bytes: &[u8]) -> Result<(), htex_player::OpenError> {
+/// let mut player = Player::new(Block::open(bytes)?, 7);
+/// let mut buffer = [0.0; 64];
+/// player.set_motion(80.0, 0.4);
+/// player.render(&mut buffer);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone)]
+pub struct Player<'a> {
+    pub(crate) block: Block<'a>,
+    pub(crate) memory: Memory,
+}
+
+impl<'a> Player<'a> {
+    /// Makes a player at the first condition. Players of different seeds have independent noise.
+    pub fn new(block: Block<'a>, seed: u32) -> Self {
+        let mut player = Self {
+            block,
+            memory: Memory::ZERO,
+        };
+        player.start(seed);
+        player
+    }
+
+    /// Starts to play; all numbers of the memory are zero before.
+    pub(crate) fn start(&mut self, seed: u32) {
+        match self.block.kind() {
+            Kind::Noise { half } => self.memory.noise.start(half, seed),
+            Kind::Tones {
+                count,
+                random_phase,
+            } => self.memory.tones.start(count, random_phase, seed),
+        }
+        let (speed, force) = self.block.first();
+        self.retune(speed, force, false);
+    }
+
+    /// Returns the block.
+    pub fn block(&self) -> &Block<'a> {
+        &self.block
+    }
+
+    /// Sets the motion: speed in mm/s, of either sign, and normal force in newtons. Spectrum and level glide to it; before
+    /// the first sample they are set at once. A motion beyond the grid is clamped to it, and the player is silent while
+    /// the finger does not slide (below 0.5 mm/s, or without force). Returns false, without a change, if a number is not
+    /// finite.
+    pub fn set_motion(&mut self, speed_mm_s: f32, force_n: f32) -> bool {
+        if !(speed_mm_s.is_finite() && force_n.is_finite()) {
+            return false;
+        }
+        let speed = speed_mm_s.abs();
+        let is_silent = speed < MIN_SLIDING_MM_S || force_n <= 0.0;
+        self.retune(speed, force_n, is_silent);
+        true
+    }
+
+    fn retune(&mut self, speed: f32, force: f32, is_silent: bool) {
+        let mut target = self.block.target(speed, force);
+        if is_silent {
+            target.level = 0.0;
+        }
+        let samples = match self.memory.is_started {
+            true => self.block.glide(),
+            false => 0,
+        };
+        let Memory { noise, tones, .. } = &mut self.memory;
+        match self.block.kind() {
+            Kind::Noise { .. } => noise.retune(&self.block, target, samples),
+            Kind::Tones { .. } => tones.retune(&self.block, target, samples),
+        }
+        (self.memory.gliding, self.memory.is_silent) = (samples, is_silent);
+    }
+
+    /// Fills `out` with the next samples.
+    pub fn render(&mut self, out: &mut [f32]) {
+        out.iter_mut().for_each(|x| *x = self.tick());
+    }
+
+    /// Fills `out` with the next samples as integers: `full_scale`, in the asset's unit, becomes 32767, and larger samples
+    /// are limited. If `full_scale` is not above zero the integers are zero.
+    pub fn render_i16(&mut self, out: &mut [i16], full_scale: f32) {
+        let gain = match full_scale > 0.0 {
+            true => 32_767.0 / full_scale,
+            false => 0.0,
+        };
+        for x in out {
+            let scaled = self.tick() * gain;
+            // Conversions to integers truncate and saturate.
+            *x = (scaled + if scaled < 0.0 { -0.5 } else { 0.5 }) as i16;
+        }
+    }
+
+    fn tick(&mut self) -> f32 {
+        self.memory.is_started = true;
+        if self.block.up() == 1 {
+            return self.next();
+        }
+        let phase = self.memory.phase;
+        let row = self.block.row(phase);
+        if phase == 0 {
+            let input = self.next();
+            self.memory.upsampler.push(input, row.len());
+        }
+        self.memory.phase = match phase + 1 < self.block.up() {
+            true => phase + 1,
+            false => 0,
+        };
+        self.memory.upsampler.at(row)
+    }
+
+    /// Returns the next sample at the internal rate.
+    fn next(&mut self) -> f32 {
+        let memory = &mut self.memory;
+        let is_last = memory.gliding == 1;
+        let is_gliding = memory.gliding > 0;
+        memory.gliding = memory.gliding.saturating_sub(1);
+        let becomes_silent = is_last && memory.is_silent;
+        match self.block.kind() {
+            Kind::Noise { .. } => memory.noise.next(is_gliding, becomes_silent),
+            Kind::Tones { .. } => memory.tones.next(is_gliding, becomes_silent),
+        }
+    }
+}
+
+/// Most bytes of a player, and so of the memory of a voice.
+const MOST_BYTES: usize = 16 * 1024;
+const _: () = assert!(size_of::<Player<'_>>() <= MOST_BYTES);

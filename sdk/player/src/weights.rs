@@ -1,0 +1,46 @@
+//! Weights of the conditions at a motion.
+
+use crate::words::Words;
+
+/// Up to four conditions of the grid and their bilinear weights.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Weights {
+    of: [(usize, f32); 4],
+}
+
+impl Weights {
+    /// Weighs the corners around a motion, which is clamped to the grid. Conditions are stored with speeds varying first.
+    pub(crate) fn new(speeds: Words<'_>, forces: Words<'_>, speed: f32, force: f32) -> Self {
+        let (s, u) = place(speeds, speed);
+        let (f, v) = place(forces, force);
+        let columns = speeds.len();
+        let at = |speed: usize, force: usize| force * columns + speed;
+        Self {
+            of: [
+                (at(s, f), (1.0 - u) * (1.0 - v)),
+                (at(s + 1, f), u * (1.0 - v)),
+                (at(s, f + 1), (1.0 - u) * v),
+                (at(s + 1, f + 1), u * v),
+            ],
+        }
+    }
+
+    /// Returns the conditions with a weight above zero.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (usize, f32)> + '_ {
+        self.of.iter().copied().filter(|(_, weight)| *weight > 0.0)
+    }
+}
+
+/// Returns the index below a value on an ascending axis, and the position between it and the next one.
+fn place(axis: Words<'_>, value: f32) -> (usize, f32) {
+    let above = axis.iter().take_while(|x| *x <= value).count();
+    if above == 0 {
+        return (0, 0.0);
+    }
+    let below = above - 1;
+    if above >= axis.len() {
+        return (below, 0.0);
+    }
+    let (low, high) = (axis.at(below), axis.at(above));
+    (below, (value - low) / (high - low))
+}

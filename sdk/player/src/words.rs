@@ -1,0 +1,38 @@
+//! Numbers of a block, read in place.
+
+/// Little-endian single-precision numbers at any alignment.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Words<'a>(&'a [[u8; 4]]);
+
+impl<'a> Words<'a> {
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
+        Self(bytes.as_chunks::<4>().0)
+    }
+
+    pub(crate) fn len(self) -> usize {
+        self.0.len()
+    }
+
+    /// Returns the number at an index; zero beyond the end.
+    pub(crate) fn at(self, index: usize) -> f32 {
+        self.0
+            .get(index)
+            .map_or(0.0, |word| f32::from_le_bytes(*word))
+    }
+
+    /// Returns `count` numbers from an index; none if they extend beyond the end.
+    pub(crate) fn part(self, from: usize, count: usize) -> Self {
+        let end = from.saturating_add(count);
+        Self(self.0.get(from..end).unwrap_or(&[]))
+    }
+
+    pub(crate) fn iter(self) -> impl DoubleEndedIterator<Item = f32> + ExactSizeIterator + 'a {
+        self.0.iter().map(|word| f32::from_le_bytes(*word))
+    }
+
+    /// Returns the numbers in fours.
+    pub(crate) fn fours(self) -> impl Iterator<Item = [f32; 4]> + 'a {
+        let fours = self.0.as_chunks::<4>().0.iter();
+        fours.map(|four| four.map(f32::from_le_bytes))
+    }
+}

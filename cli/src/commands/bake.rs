@@ -1,5 +1,4 @@
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use clap::Args;
 use htex::{Asset, Motion};
@@ -56,7 +55,7 @@ pub(crate) struct Bake {
 }
 
 impl Bake {
-    pub(crate) fn run(self) -> Result<ExitCode, Failure> {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
         check_outputs([self.output.as_path()], [self.asset.as_path()])?;
         let (stem, format) = named(&self.output)?;
         let given = self.given()?;
@@ -89,7 +88,7 @@ impl Bake {
             true => print_json(&report(&baked, self.rate))?,
             false => print(&text(&self.output, &baked, self.rate))?,
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(Exit::SUCCESS)
     }
 
     fn failure(&self, error: htex_bake::BakeError) -> Failure {

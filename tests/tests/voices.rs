@@ -123,11 +123,25 @@ fn retunes_do_not_click() {
 #[test]
 fn a_retuned_voice_plays_what_one_made_so_plays() {
     const SEED: u64 = 21;
-    for (model, parameters) in fitted() {
-        if model.short_name() == "speak" {
-            continue;
-        }
-        let other = louder_at_one_end(&model);
+    let models = fitted();
+    let (ar, usual) = &models[0];
+    let of_order = |order: usize| {
+        let coefficients = (0..order).map(|k| 0.25 * (-0.7f64).powi(k as i32));
+        let rate_hz = usual[usual.len() - 1];
+        [order as f64]
+            .into_iter()
+            .chain(coefficients)
+            .chain([rate_hz])
+            .collect()
+    };
+    let pairs = models
+        .iter()
+        .filter(|(model, _)| model.short_name() != "speak");
+    let pairs =
+        pairs.map(|(model, parameters)| (model, parameters.clone(), louder_at_one_end(model)));
+    // Orders that rise and fall, with a direct form and as a lattice.
+    let orders = [(3, 8), (5, 30)].map(|(low, high)| (ar, of_order(low), of_order(high)));
+    for (model, parameters, other) in pairs.chain(orders) {
         let rate_hz = model
             .voice_rate_hz(&parameters, Band::TACTILE, RATE_HZ)
             .unwrap();

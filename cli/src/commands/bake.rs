@@ -5,6 +5,7 @@ use htex::{Asset, Motion};
 use htex_bake::{Baked, Grid};
 use serde_json::json;
 
+use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{print, print_json, warn};
 use crate::outputs::check_outputs;

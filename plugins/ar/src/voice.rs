@@ -70,7 +70,8 @@ impl AutoregressionVoice {
             rate_hz,
             passed,
             noise: GaussianNoise::new(seed),
-            filter: AllPole::new(parameters.list(COEFFICIENTS)).ok_or_else(unstable)?,
+            filter: AllPole::with_max_order(parameters.list(COEFFICIENTS), MAX_ORDER)
+                .ok_or_else(unstable)?,
             edges: band_limit(band, rate_hz),
             gain: target.gain,
             target,
@@ -181,17 +182,15 @@ impl Voice for AutoregressionVoice {
     }
 
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
-        let order = parameters.list(COEFFICIENTS).len();
-        if parameters.scalar(MODEL_RATE) != self.rate_hz || order > self.filter.order() {
+        if parameters.scalar(MODEL_RATE) != self.rate_hz {
             return Err(Error::argument(text![
-                "a voice of order ",
-                self.filter.order(),
-                " at ",
+                "a voice at ",
                 self.rate_hz,
-                " Hz accepts filters of this rate and at most this order only",
+                " Hz accepts filters of this rate only",
             ]));
         }
         self.target = Target::new(parameters, &self.passed)?;
+        self.filter.raise_order(parameters.list(COEFFICIENTS).len());
         self.ramp_left = self.ramp_len;
         let scale = 1.0 / f64::from(self.ramp_len);
         self.step.gain = (self.target.gain - self.gain) * scale;

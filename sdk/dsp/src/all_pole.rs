@@ -48,6 +48,14 @@ pub struct AllPole {
 pub struct AllPoles<'a>([&'a mut AllPole; VOICES]);
 
 impl AllPole {
+    /// Returns a filter with zero state; `None` if a pole lies on or outside the unit circle. Its order can be raised up to
+    /// `max_order` without an allocation.
+    pub fn with_max_order(coefficients: &[f64], max_order: usize) -> Option<Self> {
+        let mut filter = Self::new(coefficients)?;
+        filter.lattice.reserve(max_order);
+        Some(filter)
+    }
+
     /// Returns a filter with zero state; `None` if a pole lies on or outside the unit circle.
     pub fn new(coefficients: &[f64]) -> Option<Self> {
         let mut reflection = coefficients.to_vec();
@@ -64,7 +72,17 @@ impl AllPole {
         Some(filter)
     }
 
-    /// Order of the filter; constant.
+    /// Makes the filter one of at least this order; the new reflection coefficients are 0.
+    pub fn raise_order(&mut self, order: usize) {
+        if order > self.order() {
+            // The state of the present order first.
+            self.reflection_mut();
+            self.lattice.raise_order(order);
+            self.unsettled = order;
+        }
+    }
+
+    /// Order of the filter.
     pub fn order(&self) -> usize {
         self.lattice.order()
     }
@@ -215,6 +233,36 @@ mod tests {
                 }
                 for (y, x) in group.iter().zip(expected) {
                     assert!((y - x).abs() < 1e-11, "{n}: {y} {x}");
+                }
+            }
+        }
+    }
+
+    /// A filter of a raised order equals a lattice that had this order from the start.
+    #[test]
+    fn a_raised_order_changes_nothing() {
+        for (low, high) in [(1, 4), (3, 16), (8, 40), (20, 64)] {
+            let coefficients: Vec<f64> = (0..low).map(|i| 0.5 / (i + low) as f64).collect();
+            let mut filter = AllPole::with_max_order(&coefficients, 64).unwrap();
+            let mut padded = coefficients.clone();
+            assert!(step_down_in_place(&mut padded));
+            padded.resize(high, 0.0);
+            let mut lattice = AllPoleLattice::new(&padded);
+            let mut noise = GaussianNoise::new(4);
+            for n in 0..200 {
+                if n == 50 {
+                    filter.raise_order(high);
+                }
+                if n >= 70 {
+                    for all in [filter.reflection_mut(), lattice.reflection_mut()] {
+                        all[high - 1] = 0.3;
+                    }
+                }
+                let mut group: Group = [(); GROUP].map(|()| noise.next_sample().into());
+                let expected = group.map(|x| lattice.tick(x));
+                filter.process(core::slice::from_mut(&mut group));
+                for (y, x) in group.iter().zip(expected) {
+                    assert!((y - x).abs() < 1e-11, "{low} to {high}, {n}: {y} {x}");
                 }
             }
         }

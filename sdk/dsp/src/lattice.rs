@@ -28,7 +28,22 @@ impl AllPoleLattice {
         }
     }
 
-    /// Order of the filter; constant.
+    /// Makes the filter one of at least this order; the new coefficients are 0, so that it stays the same filter. Does not allocate
+    /// after [`Self::reserve`] of this order.
+    pub fn raise_order(&mut self, order: usize) {
+        let order = order.max(self.order());
+        self.reflection.resize(order, 0.0);
+        self.delayed.resize(order, 0.0);
+    }
+
+    /// Reserves memory for filters up to this order.
+    pub fn reserve(&mut self, max_order: usize) {
+        let more = max_order.saturating_sub(self.order());
+        self.reflection.reserve_exact(more);
+        self.delayed.reserve_exact(more);
+    }
+
+    /// Order of the filter.
     pub fn order(&self) -> usize {
         self.reflection.len()
     }

@@ -3,39 +3,15 @@
 
 mod common;
 
-use std::path::Path;
-use std::process::Command;
-
 use common::Place;
 
 /// Builds the third-party example in C to `bursts.wasm`; false without a compiler for it.
 fn build_bursts(place: &Place) -> bool {
-    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let flags = [
-        "--target=wasm32",
-        "-std=c11",
-        "-O2",
-        "-ffp-contract=off",
-        "-fno-math-errno",
-    ];
-    let link = [
-        "-fvisibility=hidden",
-        "-ffreestanding",
-        "-nostdlib",
-        "-Wl,--no-entry",
-    ];
-    let built = Command::new("clang")
-        .args(flags)
-        .args(link)
-        .arg("-I")
-        .arg(workspace.join("spec/include"))
-        .arg("-I")
-        .arg(workspace.join("sdk/check/templates/c"))
-        .arg("-o")
-        .arg(place.path("bursts.wasm"))
-        .arg(workspace.join("examples/model-c-bursts/bursts.c"))
-        .status();
-    xtask::needs::WASM_CLANG.met(built.is_ok_and(|status| status.success()))
+    let built = xtask::c_module::build(
+        "examples/model-c-bursts/bursts.c",
+        place.path("bursts.wasm").as_ref(),
+    );
+    xtask::needs::WASM_CLANG.met(built.is_ok())
 }
 
 /// Fits a recording by the example and by sBeta to `b.htex`, which embeds the example.

@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod bindings;
+pub mod c_module;
 pub mod dist;
 pub mod fuzz;
 pub mod generated;

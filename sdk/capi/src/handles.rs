@@ -229,7 +229,9 @@ impl<T> DerefMut for Exclusive<T> {
 
 impl<T> Drop for Exclusive<T> {
     fn drop(&mut self) {
-        self.slot.state.fetch_sub(EXCLUSIVE, Ordering::Release);
+        // No other thread changes the state of a slot that is used exclusively, so that a store suffices.
+        let state = self.slot.state.load(Ordering::Relaxed);
+        self.slot.state.store(state & !EXCLUSIVE, Ordering::Release);
     }
 }
 

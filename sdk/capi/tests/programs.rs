@@ -74,6 +74,45 @@ fn examples_of_the_readme_run() {
     }
 }
 
+/// C# passes modules to the library: a model in C is loaded, and other bytes are an error that names their place.
+#[test]
+fn modules_reach_the_library_from_csharp() {
+    let Some(project) = Project::new(Language::Csharp, "modules") else {
+        return;
+    };
+    let module = project.folder().join("bursts.wasm");
+    let source = "examples/model-c-bursts/bursts.c";
+    if !needs::WASM_CLANG.met(xtask::c_module::build(source, &module).is_ok()) {
+        return;
+    }
+    let program = project.build(
+        r#"
+        using System; using System.IO; using Htex;
+        static class Program
+        {
+            static void Main(string[] paths)
+            {
+                var module = File.ReadAllBytes(paths[1]);
+                using (Asset.Open(paths[0], new OpenOptions { Modules = new[] { module } }))
+                    Console.WriteLine("opened");
+                Array.Resize(ref module, module.Length / 2);
+                try { Asset.Open(paths[0], new OpenOptions { Modules = new[] { File.ReadAllBytes(paths[1]), module } }); }
+                catch (HtexException error) { Console.WriteLine(error.Message); }
+                try { Asset.Open(paths[0], new OpenOptions { Modules = new[] { module, null } }); }
+                catch (HtexException error) { Console.WriteLine(error.Message); }
+            }
+        }
+        "#,
+    );
+    let run = project.run(&program, &[asset().as_os_str(), module.as_os_str()]);
+    let printed = String::from_utf8_lossy(&run.stdout);
+    let lines: Vec<&str> = printed.lines().collect();
+    assert_eq!(lines.len(), 3, "{run:?}");
+    assert_eq!(lines[0], "opened");
+    assert!(lines[1].contains("module 1"), "{printed}");
+    assert!(lines[2].contains("module 0"), "{printed}");
+}
+
 /// The example in C under valgrind, and with the sanitizers of gcc and clang: neither invalid accesses nor leaks.
 #[test]
 fn the_example_has_no_memory_errors() {

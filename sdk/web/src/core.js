@@ -35,6 +35,12 @@ const VOICE_OPTIONS = 48;
 const BYTES = 8;
 /** Bytes for results, at the start of each call. */
 const RESULTS = 64;
+/** Frames that are rendered at once; longer blocks are rendered in parts. */
+export const BLOCK = 4096;
+
+function fault(error) {
+  return new HtexError(`an error of the library itself; please report it: ${error.message}`, "internal");
+}
 
 export class Core {
   /** Instantiates the compiled library, at once. */
@@ -53,6 +59,8 @@ export class Core {
     this.exports = instance.exports;
     guests.memory = this.exports.memory;
     this.results = this.allocate(RESULTS);
+    this.rendering = this.allocate(4 * BLOCK);
+    this.samples = new Float32Array(0);
   }
 
   version() {
@@ -67,9 +75,23 @@ export class Core {
     try {
       status = this.exports[name](...values);
     } catch (error) {
-      throw new HtexError(`an error of the library itself; please report it: ${error.message}`, "internal");
+      throw fault(error);
     }
     if (status !== 0) throw this.error(status);
+  }
+
+  /** Renders at most BLOCK frames of a voice. The samples stand in the library's memory until the next call. */
+  render(id, frames) {
+    let status;
+    try {
+      status = this.exports.htex_voice_render(id, this.rendering, frames);
+    } catch (error) {
+      throw fault(error);
+    }
+    if (status !== 0) throw this.error(status);
+    // Views of memory that has grown are empty.
+    if (this.samples.length !== frames) this.samples = new Float32Array(this.exports.memory.buffer, this.rendering, frames);
+    return this.samples;
   }
 
   error(status) {

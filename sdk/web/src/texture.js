@@ -1,9 +1,6 @@
 // Textures and their voices.
 
-import { HtexError, toBytes } from "./core.js";
-
-/** Frames that are rendered at once; longer blocks are rendered in parts. */
-const BLOCK = 4096;
+import { BLOCK, HtexError, toBytes } from "./core.js";
 
 /** Frees what its owner did not free. */
 const abandoned =
@@ -106,7 +103,6 @@ export class Voice extends Handle {
       return core.view().getBigUint64(core.results, true);
     });
     super(core, id, "htex_voice_free");
-    core.rendering ??= core.allocate(4 * BLOCK);
   }
 
   /** Sets the motion of the finger: speed in mm/s, force in N, and the position along the path in mm if it is known. */
@@ -129,13 +125,7 @@ export class Voice extends Handle {
     if (!(out instanceof Float32Array)) throw new TypeError("give a Float32Array, or a number of frames");
     const { core } = this;
     for (let from = 0; from < out.length; from += BLOCK) {
-      const frames = Math.min(BLOCK, out.length - from);
-      core.call("htex_voice_render", this.id, core.rendering, frames);
-      if (core.samples?.buffer !== core.exports.memory.buffer) {
-        core.samples = new Float32Array(core.exports.memory.buffer, core.rendering, BLOCK);
-      }
-      if (frames === BLOCK) out.set(core.samples, from);
-      else for (let i = 0; i < frames; i++) out[from + i] = core.samples[i];
+      out.set(core.render(this.id, Math.min(BLOCK, out.length - from)), from);
     }
     return out;
   }

@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 
 use super::{copy, files, program, run};
 use crate::places::{cargo, target, workspace};
-use crate::plugins;
+use crate::{c_module, plugins};
 
 /// Length, rate and seed of the samples, and their motion, which single precision represents.
 const SECONDS: &str = "2";
@@ -42,8 +42,13 @@ pub(super) fn write(folder: &Path) -> Result<(), String> {
             copy(&module, &folder.join(name))?;
         }
     }
-    clang(folder, "examples/model-c-bursts/bursts.c", "bursts.wasm")?;
-    clang(folder, "sdk/web/tests/endless.c", "endless.wasm")?;
+    for source in [
+        "examples/model-c-bursts/bursts.c",
+        "sdk/web/tests/endless.c",
+    ] {
+        let name = Path::new(source).with_extension("wasm");
+        c_module::build(source, &folder.join(name.file_name().unwrap_or_default()))?;
+    }
     htex(&[
         "simulate",
         "--surface",
@@ -81,34 +86,4 @@ pub(super) fn write(folder: &Path) -> Result<(), String> {
     let spectrum = ["spectrum", "vinyl.htex", "--model", "bands", "--json"];
     printed(&spectrum, "spectrum.json")?;
     printed(&["info", "vinyl.htex", "--json"], "info.json")
-}
-
-/// Compiles a model in C to a module.
-fn clang(folder: &Path, source: &str, out: &str) -> Result<(), String> {
-    let workspace = std::fs::canonicalize(workspace()).map_err(|error| error.to_string())?;
-    let flags = [
-        "--target=wasm32",
-        "-std=c11",
-        "-O2",
-        "-ffp-contract=off",
-        "-fno-math-errno",
-    ];
-    let link = [
-        "-fvisibility=hidden",
-        "-ffreestanding",
-        "-nostdlib",
-        "-Wl,--no-entry",
-        "-o",
-        out,
-    ];
-    let mut clang = program("clang", folder);
-    clang.args(flags).args(link);
-    for include in [
-        "spec/include",
-        "sdk/check/templates/c",
-        "examples/model-c-bursts",
-    ] {
-        clang.arg("-I").arg(workspace.join(include));
-    }
-    run(clang.arg(workspace.join(source)))
 }

@@ -6,6 +6,7 @@
 //
 // SPDX-License-Identifier: MIT OR Apache-2.0
 using System;
+using System.Collections.Generic;
 using System.Runtime.InteropServices;
 using System.Text;
 
@@ -103,6 +104,8 @@ namespace Htex
     {
         /// <summary>Files of models to load.</summary>
         public string[] Plugins = new string[0];
+        /// <summary>WASM modules of models, which run in a sandbox.</summary>
+        public byte[][] Modules = new byte[0][];
         /// <summary>Whether models that assets bring along run, in a sandbox.</summary>
         public bool Embedded = true;
         /// <summary>Whether installed models are searched for.</summary>
@@ -257,7 +260,11 @@ namespace Htex
         /// <summary>Renders the next samples, in the asset's unit.</summary>
         public void Render(float[] samples)
         {
-            Native.Check(Native.htex_voice_render(Id, samples, Native.Length(samples)));
+            // A reference is passed twice as fast as an array; an empty array has none to pass.
+            if (samples.Length > 0)
+                Native.Check(Native.htex_voice_render(Id, ref samples[0], (UIntPtr)samples.Length));
+            else
+                Native.Check(Native.htex_voice_render(Id, ref Native.None, UIntPtr.Zero));
         }
 
         /// <summary>Renders a block of `frames` samples for each motion.</summary>
@@ -330,7 +337,10 @@ namespace Htex
         public int Render(float[] samples)
         {
             UIntPtr rendered;
-            Native.Check(Native.htex_scene_render(Id, samples, Native.Length(samples), out rendered));
+            if (samples.Length > 0)
+                Native.Check(Native.htex_scene_render(Id, ref samples[0], (UIntPtr)samples.Length, out rendered));
+            else
+                Native.Check(Native.htex_scene_render(Id, ref Native.None, UIntPtr.Zero, out rendered));
             return (int)rendered;
         }
 
@@ -350,6 +360,9 @@ namespace Htex
         private const string Library = "htex";
 #endif
 
+        /// <summary>What an empty array refers to; never written.</summary>
+        internal static float None;
+
         [StructLayout(LayoutKind.Sequential)]
         internal struct Handle
         {
@@ -363,6 +376,15 @@ namespace Htex
             internal IntPtr Plugins;
             internal UIntPtr PluginsLen;
             internal uint NoEmbedded, Installed;
+            internal IntPtr Modules;
+            internal UIntPtr ModulesLen;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct Bytes
+        {
+            internal IntPtr Data;
+            internal UIntPtr Len;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -383,39 +405,38 @@ namespace Htex
             internal double RateHz;
         }
 
-        /// <summary>Options of opening, with their texts in place.</summary>
+        /// <summary>Options of opening; all that they point to stays in place until they are disposed of.</summary>
         internal sealed class Open : IDisposable
         {
             internal OpenOptionsC Options;
-            private readonly GCHandle[] texts;
-            private readonly GCHandle list;
+            private readonly List<GCHandle> pinned = new List<GCHandle>();
 
             internal Open(OpenOptions options)
             {
                 options = options ?? new OpenOptions();
-                texts = new GCHandle[options.Plugins.Length];
-                var addresses = new IntPtr[texts.Length];
-                for (int i = 0; i < texts.Length; i++)
-                {
-                    texts[i] = Pin(Utf8(options.Plugins[i]));
-                    addresses[i] = Address(texts[i]);
-                }
-                list = Pin(addresses);
+                var plugins = Array.ConvertAll(options.Plugins, plugin => Keep(Utf8(plugin)));
+                var modules = Array.ConvertAll(options.Modules, module => new Bytes { Data = Keep(module), Len = Length(module) });
                 Options = new OpenOptionsC
                 {
                     Size = (UIntPtr)Marshal.SizeOf(typeof(OpenOptionsC)),
-                    Plugins = Address(list),
-                    PluginsLen = (UIntPtr)texts.Length,
+                    Plugins = Keep(plugins),
+                    PluginsLen = Length(plugins),
                     NoEmbedded = options.Embedded ? 0u : 1u,
                     Installed = options.Installed ? 1u : 0u,
+                    Modules = Keep(modules),
+                    ModulesLen = Length(modules),
                 };
+            }
+
+            private IntPtr Keep(object value)
+            {
+                pinned.Add(Pin(value));
+                return Address(pinned[pinned.Count - 1]);
             }
 
             public void Dispose()
             {
-                foreach (var text in texts)
-                    Unpin(text);
-                Unpin(list);
+                pinned.ForEach(Unpin);
             }
         }
 
@@ -493,7 +514,7 @@ namespace Htex
         [DllImport(Library)] internal static extern Status htex_voice_new(Handle asset, ref VoiceOptions options, out Handle voice);
         [DllImport(Library)] internal static extern Status htex_voice_free(Handle voice);
         [DllImport(Library)] internal static extern Status htex_voice_set_motion(Handle voice, ref Motion motion);
-        [DllImport(Library)] internal static extern Status htex_voice_render(Handle voice, [Out] float[] samples, UIntPtr frames);
+        [DllImport(Library)] internal static extern Status htex_voice_render(Handle voice, ref float samples, UIntPtr frames);
         [DllImport(Library)] internal static extern Status htex_voice_render_path(Handle voice, Motion[] motions, UIntPtr motionsLength, [Out] float[] samples, UIntPtr frames);
         [DllImport(Library)] internal static extern Status htex_voice_coverage(Handle voice, ref Motion motion, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
         [DllImport(Library)] internal static extern Status htex_scene_open(byte[] path, ref OpenOptionsC options, ref SceneOptions sceneOptions, out Handle scene);
@@ -501,7 +522,7 @@ namespace Htex
         [DllImport(Library)] internal static extern Status htex_scene_plan_json(Handle scene, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
         [DllImport(Library)] internal static extern Status htex_scene_rate_hz(Handle scene, out double rateHz);
         [DllImport(Library)] internal static extern Status htex_scene_set_finger(Handle scene, ref Finger finger);
-        [DllImport(Library)] internal static extern Status htex_scene_render(Handle scene, [Out] float[] samples, UIntPtr frames, out UIntPtr rendered);
+        [DllImport(Library)] internal static extern Status htex_scene_render(Handle scene, ref float samples, UIntPtr frames, out UIntPtr rendered);
         [DllImport(Library)] internal static extern Status htex_scene_stop(Handle scene);
     }
 }

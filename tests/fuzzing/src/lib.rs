@@ -8,6 +8,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // A panic is a finding.
 
 mod asset;
+mod baked;
 mod block;
 mod body;
 mod capi;
@@ -28,6 +29,7 @@ pub mod seeds;
 mod signed;
 
 pub use asset::open_asset;
+pub use baked::baked_block;
 pub use block::parameter_block;
 pub use capi::c_calls;
 pub use compile::compile_limits;
@@ -72,6 +74,7 @@ pub const TARGETS: &[Target] = &[
     target("output_name", output_name),
     target("compile_limits", compile_limits),
     target("c_calls", c_calls),
+    target("baked_block", baked_block),
 ];
 
 const fn target(name: &'static str, run: fn(&[u8]) -> bool) -> Target {

@@ -43,7 +43,23 @@ pub fn seeds() -> Vec<Seed> {
     seeds.extend(modules());
     seeds.extend(words());
     seeds.extend(calls());
+    seeds.extend(blocks());
     seeds
+}
+
+/// Baked blocks of noise and of sinusoids, with two motions of the grid before each.
+fn blocks() -> Vec<Seed> {
+    let vinyl = include_bytes!("../../../examples/scenes/vinyl.htex");
+    let asset = htex::Asset::from_bytes(vinyl).expect("an example");
+    let grid = htex_bake::Grid::new(vec![60.0, 80.0], vec![0.4]).expect("a sound grid");
+    let seed = |model: &str| {
+        let baked = htex_bake::bake(&asset, Some(model), &grid, 8_000.0, 1.0);
+        let block = baked.expect("a texture that can be baked").bytes;
+        let motions = [70.0f32, 0.4, 0.0, 0.0].map(f32::to_le_bytes).concat();
+        let all = [&[1], &motions[..], &block].concat();
+        ("baked_block", model.to_owned(), all)
+    };
+    ["sslope", "speak"].map(seed).to_vec()
 }
 
 /// Calls of libhtex: two voices that render and are freed, the second twice.

@@ -2,6 +2,8 @@
 
 use std::sync::{Arc, LazyLock};
 
+use htex_model::abi::ModelTable;
+
 use crate::table::TableModel;
 use crate::{LoadedModel, Origin};
 
@@ -15,13 +17,47 @@ pub(crate) fn models() -> &'static [LoadedModel] {
     &MODELS
 }
 
+/// The table of a model's crate, with the fit only in programs that fit: otherwise nothing links it, nor what it computes with.
+macro_rules! model {
+    ($model:ident) => {{
+        #[cfg(feature = "fit")]
+        static TABLE: &ModelTable = &$model::TABLE;
+        #[cfg(not(feature = "fit"))]
+        static TABLE: &ModelTable = &ModelTable {
+            fit: without_fits,
+            ..$model::TABLE
+        };
+        TableModel::new(TABLE, Some(&$model::VOICES))
+    }};
+}
+
 fn tables() -> [TableModel; 6] {
     [
-        TableModel::new(&htex_ar::TABLE, Some(&htex_ar::VOICES)),
-        TableModel::new(&htex_mfcc::TABLE, Some(&htex_mfcc::VOICES)),
-        TableModel::new(&htex_speak::TABLE, Some(&htex_speak::VOICES)),
-        TableModel::new(&htex_sbeta::TABLE, Some(&htex_sbeta::VOICES)),
-        TableModel::new(&htex_sslope::TABLE, Some(&htex_sslope::VOICES)),
-        TableModel::new(&htex_bands::TABLE, Some(&htex_bands::VOICES)),
+        model!(htex_ar),
+        model!(htex_mfcc),
+        model!(htex_speak),
+        model!(htex_sbeta),
+        model!(htex_sslope),
+        model!(htex_bands),
     ]
+}
+
+/// A fit that fails.
+#[cfg(not(feature = "fit"))]
+unsafe extern "C" fn without_fits(
+    _band_low_hz: f64,
+    _band_high_hz: f64,
+    _frequency_hz: *const f64,
+    _magnitude: *const f64,
+    _bins: usize,
+    _signal: *const f64,
+    _signal_len: usize,
+    _signal_rate_hz: f64,
+    _options: *const f64,
+    _options_len: usize,
+    _parameters: *mut f64,
+    _capacity: usize,
+    _level_rms: *mut f64,
+) -> i64 {
+    htex_model::Status::CannotFit as i64
 }

@@ -197,10 +197,11 @@ impl LoadedModel {
         id.rsplit('.').next().unwrap_or(id)
     }
 
-    /// Fits the model to a spectrum.
+    /// Fits the model to a spectrum. Needs the feature `fit`.
     ///
     /// # Errors
     /// [`HostError::Call`] with the model's reason.
+    #[cfg(feature = "fit")]
     pub fn fit(&self, request: &FitRequest<'_>) -> Result<Fit, HostError> {
         self.fit_at(request, FitCondition::default())
     }
@@ -210,6 +211,7 @@ impl LoadedModel {
     ///
     /// # Errors
     /// As [`Self::fit`]; for a model that follows the motion also when a speed or force is negative or not finite.
+    #[cfg(feature = "fit")]
     pub fn fit_at(
         &self,
         request: &FitRequest<'_>,

@@ -21,6 +21,7 @@ pub(crate) trait RawModel: Send + Sync {
     fn abi_version(&self) -> u32;
     fn descriptor(&self, out: &mut [u8]) -> i64;
     fn last_error(&self, out: &mut [u8]) -> i64;
+    #[cfg_attr(not(feature = "fit"), allow(dead_code))]
     fn fit(&self, call: &RawFit<'_>, parameters: &mut [f64], level_rms: &mut f64) -> i64;
     fn magnitude(
         &self,

@@ -4,6 +4,7 @@ mod c;
 mod costs;
 mod fixtures;
 mod processors;
+mod python;
 mod web;
 
 use std::ffi::OsStr;
@@ -58,6 +59,10 @@ const NPM: Program = Program {
     names: &["npm"],
     how: "apt-get install npm",
 };
+const PYTHON: Program = Program {
+    names: &["python3"],
+    how: "apt-get install python3 python3-venv",
+};
 const CHROMIUM: Program = Program {
     names: &["chromium", "chromium-browser", "google-chrome"],
     how: "apt-get install chromium",
@@ -73,11 +78,16 @@ const QEMU_USER: [Program; 2] = [
     },
 ];
 
-const BINDINGS: [Binding; 4] = [
+const BINDINGS: [Binding; 5] = [
     Binding {
         name: "c",
         needs: &[CC, PKG_CONFIG, CMAKE, SDL2],
         test: c::test,
+    },
+    Binding {
+        name: "python",
+        needs: &[PYTHON],
+        test: python::test,
     },
     Binding {
         name: "web",
@@ -91,7 +101,7 @@ const BINDINGS: [Binding; 4] = [
     },
     Binding {
         name: "costs",
-        needs: &[CC, MONO, NODE],
+        needs: &[CC, MONO, NODE, PYTHON],
         test: costs::test,
     },
 ];

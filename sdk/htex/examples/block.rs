@@ -1,33 +1,34 @@
-//! Prints the time of a sample, ns: the least of several runs over blocks of 64. Other languages are compared with it
-//! (`cargo xtask bindings costs`).
+//! Prints the time of a sample, ns: the least of several runs over blocks of 64 samples, or of another length. Other languages
+//! are compared with it (`cargo xtask bindings costs`).
 //!
-//! `cargo run --release -p htex --example block -- cloth.htex ar`
+//! `cargo run --release -p htex --example block -- cloth.htex ar 64`
 
 use std::time::Instant;
 
 use htex::{Asset, VoiceOptions};
 
-const BLOCK: usize = 64;
-const BLOCKS: usize = 30_000;
+/// Samples of a run.
+const SAMPLES: usize = 1_920_000;
 const RUNS: usize = 5;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [path, model] = &arguments[..] else {
-        return Err("give an asset and a model: block FILE.htex MODEL".into());
+    let [path, model, block] = &arguments[..] else {
+        return Err("give an asset, a model and a length: block FILE.htex MODEL SAMPLES".into());
     };
+    let mut samples = vec![0.0f32; block.parse()?];
+    let blocks = SAMPLES / samples.len().max(1);
     let asset = Asset::open(path)?;
     let options = VoiceOptions::default().with_model(model).with_seed(7);
     let mut voice = asset.voice(&options)?;
     let mut least = f64::INFINITY;
     for _ in 0..RUNS {
-        let mut samples = [0.0f32; BLOCK];
         let start = Instant::now();
-        for _ in 0..BLOCKS {
+        for _ in 0..blocks {
             voice.render(&mut samples)?;
             std::hint::black_box(&samples);
         }
-        least = least.min(start.elapsed().as_secs_f64() * 1e9 / (BLOCK * BLOCKS) as f64);
+        least = least.min(start.elapsed().as_secs_f64() * 1e9 / (samples.len() * blocks) as f64);
     }
     println!("{least:.4}");
     Ok(())

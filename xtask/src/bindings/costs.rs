@@ -1,4 +1,4 @@
-//! What a block of 64 samples costs in each language, against Rust, in one run turn about.
+//! What a sample costs in each language, against Rust with blocks of the same length, in one run turn about.
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -11,10 +11,14 @@ use crate::places::{cargo, target, workspace};
 const ROUNDS: usize = 5;
 const MODELS: [&str; 2] = ["ar", "sbeta"];
 
-/// A language, the program that prints its time, and the most that it may cost.
+/// Samples of a block of an audio thread, and of a second, which scripts ask for at once.
+const LENGTHS: [usize; 2] = [64, 20_000];
+
+/// A language, the program that prints its time, the samples of a call, and the most that it may cost.
 struct Cost {
     language: &'static str,
     command: Vec<OsString>,
+    samples: usize,
     most: f64,
 }
 
@@ -29,6 +33,7 @@ pub(super) fn test(folder: &Path) -> Result<(), String> {
             for (least, cost) in least.iter_mut().zip(&all) {
                 let mut measured = program(&cost.command[0], &folder);
                 measured.args(&cost.command[1..]).arg(&asset).arg(model);
+                measured.arg(cost.samples.to_string());
                 measured.env("LD_LIBRARY_PATH", folder.join("prefix/lib"));
                 measured.env("HTEX_PACKAGE", folder.join("htex"));
                 let output = measured.output().map_err(|error| error.to_string())?;
@@ -41,11 +46,13 @@ pub(super) fn test(folder: &Path) -> Result<(), String> {
             }
         }
         for (ns, cost) in least.iter().zip(&all) {
-            let (ratio, most) = (ns / least[0], cost.most);
+            // The first rows are those of Rust.
+            let rust = LENGTHS.iter().position(|length| *length == cost.samples);
+            let (ratio, most) = (ns / least[rust.unwrap_or_default()], cost.most);
             let over = if ratio > most { "  over the goal" } else { "" };
             println!(
-                "{model:6} {:8} {ns:7.2} ns a sample  {ratio:5.3} of Rust, goal {most}{over}",
-                cost.language
+                "{model:6} {:8} {:6} a call {ns:7.2} ns a sample  {ratio:5.3} of Rust, goal {most}{over}",
+                cost.language, cost.samples
             );
         }
     }
@@ -90,28 +97,27 @@ fn programs(folder: &Path, workspace: &Path) -> Result<Vec<Cost>, String> {
         &workspace.join("sdk/web/tests/block.mjs"),
         &folder.join("block.mjs"),
     )?;
+    let python = super::python::environment(folder, "test")?;
     let rust = std::fs::canonicalize(target().join("release/examples/block"));
+    let rust = rust.map_err(|error| error.to_string())?;
     let words = |words: &[&str]| words.iter().map(OsString::from).collect();
+    let cost = |language, command, samples, most| Cost {
+        language,
+        command,
+        samples,
+        most,
+    };
+    let [block, second] = LENGTHS;
+    let python = vec![
+        python.into(),
+        workspace.join("sdk/python/tests/costs/block.py").into(),
+    ];
     Ok(vec![
-        Cost {
-            language: "Rust",
-            command: vec![rust.map_err(|e| e.to_string())?.into()],
-            most: 1.0,
-        },
-        Cost {
-            language: "C",
-            command: words(&["./block"]),
-            most: 1.02,
-        },
-        Cost {
-            language: "C#",
-            command: words(&["mono", "Block.exe"]),
-            most: 1.2,
-        },
-        Cost {
-            language: "Node.js",
-            command: words(&["node", "block.mjs"]),
-            most: 2.0,
-        },
+        cost("Rust", vec![rust.clone().into()], block, 1.0),
+        cost("Rust", vec![rust.into()], second, 1.0),
+        cost("C", words(&["./block"]), block, 1.02),
+        cost("C#", words(&["mono", "Block.exe"]), block, 1.2),
+        cost("Node.js", words(&["node", "block.mjs"]), block, 2.0),
+        cost("Python", python, second, 1.05),
     ])
 }

@@ -20,7 +20,7 @@ int main(int argc, char **argv)
     htex_asset asset;
     htex_voice voice;
     htex_voice_options options = {.size = sizeof options, .model = argv[2], .seed = 7};
-    if (argc != 3 || htex_asset_open(argv[1], NULL, &asset) || htex_voice_new(asset, &options, &voice))
+    if (argc < 3 || htex_asset_open(argv[1], NULL, &asset) || htex_voice_new(asset, &options, &voice))
         return 1;
     double least = 1e30;
     for (int run = 0; run < RUNS; run++) {

@@ -1,0 +1,43 @@
+//! The Python package: its wheel in an empty environment, its tests against the installed package.
+
+use std::path::{Path, PathBuf};
+
+use super::{files, program, run};
+use crate::places::{target, workspace};
+
+pub(super) fn test(folder: &Path) -> Result<(), String> {
+    let folder = std::fs::canonicalize(folder).map_err(|error| error.to_string())?;
+    let python = environment(&folder, "test")?;
+    // Outside the sources, so that the installed package is imported; its README's examples are among the tests.
+    let tests = package()?.join("tests");
+    run(program(python, &folder)
+        .args(["-m", "pytest", "-q", "-p", "no:cacheprovider"])
+        .arg(tests)
+        .env("PYTHONDONTWRITEBYTECODE", "1"))
+}
+
+/// Builds the wheel and installs it, with the dependencies of an extra, into an empty environment; returns its interpreter.
+pub(super) fn environment(folder: &Path, extra: &str) -> Result<PathBuf, String> {
+    let venv = folder.join("venv");
+    run(program("python3", folder).args(["-m", "venv"]).arg(&venv))?;
+    let python = venv.join("bin/python");
+    let pip = |arguments: &[&str]| {
+        let mut pip = program(&python, folder);
+        pip.args(["-m", "pip", "--disable-pip-version-check", "--quiet"])
+            .args(arguments);
+        pip
+    };
+    let built = std::path::absolute(target().join("python")).map_err(|error| error.to_string())?;
+    run(pip(&["wheel", "--no-deps", "--wheel-dir", "wheel"])
+        .arg(package()?)
+        .env("CARGO_TARGET_DIR", built))?;
+    let wheels = files(&folder.join("wheel"))?;
+    let wheel = wheels.first().ok_or("pip wheel wrote no wheel")?;
+    run(pip(&["install"]).arg(format!("{}[{extra}]", wheel.display())))?;
+    Ok(python)
+}
+
+/// The folder of the sources.
+fn package() -> Result<PathBuf, String> {
+    std::fs::canonicalize(workspace().join("sdk/python")).map_err(|error| error.to_string())
+}

@@ -5,6 +5,17 @@ import { HtexError } from "./core.js";
 /** Milliseconds between two questions whether the worker returns. */
 const ASKED_MS = 250;
 
+let keys = 0;
+
+/** What a worklet or a worker needs to make a voice. */
+export function describe(texture, options, rate) {
+  texture.key ??= `texture ${(keys += 1)}`;
+  const { model, seed, synthesis, speedScaling, forceScaling, contact, motion } = options;
+  const voice = { model, seed, synthesis, speedScaling, forceScaling, contact, motion, rate };
+  const module = texture.core.module;
+  return { module, key: texture.key, bytes: texture.bytes, open: texture.options, voice };
+}
+
 export class GuardedWorker {
   /** `limit`: milliseconds of the longest call. */
   constructor({ limit = 2_000 } = {}) {
@@ -24,7 +35,8 @@ export class GuardedWorker {
       this.asked = false;
       return;
     }
-    const { resolve, reject } = this.waiting.get(id) ?? {};
+    const { resolve, reject, isOnce } = this.waiting.get(id) ?? {};
+    if (isOnce) this.waiting.delete(id);
     if (error) reject?.(new HtexError(error.message, error.code));
     else resolve?.(result);
   }
@@ -39,13 +51,14 @@ export class GuardedWorker {
     }
   }
 
-  request(message, transfer = [], failed = () => {}) {
+  /** Sends a message; the promise is of its result. `failed` is called with an error, and with later ones too. */
+  request(message, transfer = [], failed = null) {
     if (this.ended) return Promise.reject(this.ended);
     this.last += 1;
     const id = this.last;
     const done = new Promise((resolve, reject) => {
-      const both = (error) => (reject(error), failed(error));
-      this.waiting.set(id, { resolve, reject: both });
+      const both = (error) => (reject(error), failed?.(error));
+      this.waiting.set(id, { resolve, reject: both, isOnce: !failed });
     });
     this.worker.postMessage({ id, ...message }, transfer);
     return done;
@@ -56,8 +69,9 @@ export class GuardedWorker {
     return this.request({ description, port }, [port], failed);
   }
 
-  /** Renders samples of a voice. */
-  async render(description, frames) {
+  /** Renders the first samples of a new voice. */
+  async render(texture, frames, options = {}) {
+    const description = describe(texture, options, options.rate);
     return (await this.request({ description, frames })).samples;
   }
 

@@ -141,7 +141,10 @@ export class HtexNode extends AudioWorkletNode {
 
 /** A worker that renders voices of models that are not trusted, and is ended when a call takes too long. */
 export class GuardedWorker {
+  /** `limit`: longest call, ms. Default 2000. */
   constructor(options?: { limit?: number });
+  /** Renders the first samples of a new voice, in the texture's unit. */
+  render(texture: Texture, frames: number, options?: VoiceOptions): Promise<Float32Array>;
   /** Ends the worker. */
   end(): void;
 }

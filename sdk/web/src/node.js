@@ -1,7 +1,7 @@
 // A texture as a node of the Web Audio API.
 
 import { compiled } from "./library.js";
-import { GuardedWorker } from "./guarded.js";
+import { GuardedWorker, describe } from "./guarded.js";
 import { HtexError } from "./core.js";
 
 /** RMS of full scale that a node plays at by default: -20 dB. */
@@ -11,17 +11,6 @@ const LEVEL = 0.1;
 function usualGain(texture, model) {
   const level = texture.level({ model });
   return level > 0 ? LEVEL / level : 0;
-}
-
-let keys = 0;
-
-/** What a worklet or a worker needs to make a voice. */
-function describe(texture, options, rate) {
-  texture.key ??= `texture ${(keys += 1)}`;
-  const { model, seed, synthesis, speedScaling, forceScaling, contact, motion } = options;
-  const voice = { model, seed, synthesis, speedScaling, forceScaling, contact, motion, rate };
-  const module = texture.core.module;
-  return { module, key: texture.key, bytes: texture.bytes, open: texture.options, voice };
 }
 
 /** Loads the worklet; once for each context. */

@@ -14,6 +14,7 @@ export async function play(context: AudioContext, element: HTMLElement): Promise
   followPointer(element, ({ speed, force, position }) => console.log(speed + force + position));
   const voice: Voice = texture.voice({ synthesis: "loop:2", motion: { speed: 80 } });
   const samples: Float32Array = voice.render(voice.renderPath([80], [0.4], 64));
+  const guarded: Float32Array = await new GuardedWorker().render(texture, 64, { rate: 8000 });
   try {
     await node.ready;
   } catch (error) {
@@ -22,5 +23,5 @@ export async function play(context: AudioContext, element: HTMLElement): Promise
   end();
   // @ts-expect-error: the rate of a node is that of its context.
   new HtexNode(context, texture, { rate: 8000 });
-  return samples.length + texture.spectrum([50], { at: { speed: 80, force: 0.4 } })[0]! + texture.level() + texture.band[0];
+  return samples.length + guarded.length + texture.spectrum([50], { at: { speed: 80, force: 0.4 } })[0]! + texture.level() + texture.band[0];
 }

@@ -5,107 +5,24 @@ use std::time::Duration;
 
 use super::allowance::Allowance;
 use super::fault::Fault;
+use super::functions::{Find, Functions, Usize};
 use super::imports::{GuestInstance, Outside};
 use super::module::WasmModule;
 use super::typed::{Parameters, Returned, TypedFunc};
 use crate::clock::Instant;
 use crate::sandbox::{Budget, BudgetError};
 
-/// Addresses and lengths in the module's memory.
-type Usize = u32;
+/// The functions that are asked for, by their place in the list.
+#[derive(Default)]
+struct Names(Vec<&'static str>);
 
-/// The names of the functions of [`Functions`], by index.
-const NAMES: &str = "htex_model_abi_version,htex_model_descriptor,htex_model_last_error,htex_model_fit,\
-                     htex_model_magnitude,htex_model_interpolate,htex_model_voice_rate,htex_model_voice_new,\
-                     htex_model_voice_render,htex_model_voice_retune,htex_model_voice_free,htex_model_extension,\
-                     htex_model_alloc,htex_model_free";
-/// Those of models that follow the motion.
-const MOTION_NAMES: &str = "htex_motion_1_set,htex_motion_1_fit";
-
-/// The functions of the model ABI (`htex_model::abi`).
-pub(super) struct Functions {
-    pub(super) abi_version: TypedFunc<(), u32>,
-    pub(super) descriptor: TypedFunc<(Usize, Usize), i64>,
-    pub(super) last_error: TypedFunc<(Usize, Usize), i64>,
-    pub(super) fit: TypedFunc<FitParams, i64>,
-    pub(super) magnitude: TypedFunc<MagnitudeParams, i64>,
-    pub(super) interpolate: TypedFunc<(Usize, Usize, Usize, Usize, Usize, Usize), i64>,
-    pub(super) voice_rate: TypedFunc<(Usize, Usize, f64, f64, f64), f64>,
-    pub(super) voice_new: TypedFunc<(Usize, Usize, f64, f64, f64, u64), i64>,
-    pub(super) voice_render: TypedFunc<(i64, Usize, Usize), i64>,
-    pub(super) voice_retune: TypedFunc<(i64, Usize, Usize), i64>,
-    pub(super) voice_free: TypedFunc<i64, i64>,
-    pub(super) extension: TypedFunc<(Usize, Usize), i64>,
-    alloc: TypedFunc<Usize, Usize>,
-    free: TypedFunc<(Usize, Usize), ()>,
-    /// If the model has the extension `htex.motion/1`.
-    pub(super) motion: Option<MotionFunctions>,
-}
-
-/// The functions of `htex.motion/1` (`htex_model::motion_1`).
-pub(super) struct MotionFunctions {
-    pub(super) set: TypedFunc<(i64, f64, f64, f64), i64>,
-    pub(super) fit: TypedFunc<MotionFitParams, i64>,
-}
-
-type FitParams = (
-    f64,
-    f64,
-    Usize,
-    Usize,
-    Usize,
-    Usize,
-    Usize,
-    f64,
-    Usize,
-    Usize,
-    Usize,
-    Usize,
-    Usize,
-);
-
-type MotionFitParams = (
-    f64,
-    f64,
-    Usize,
-    Usize,
-    Usize,
-    Usize,
-    Usize,
-    f64,
-    Usize,
-    Usize,
-    f64,
-    f64,
-    Usize,
-    Usize,
-    Usize,
-);
-
-type MagnitudeParams = (Usize, Usize, f64, f64, Usize, Usize, Usize);
-
-impl Functions {
-    fn new(motion: bool) -> Self {
-        Self {
-            abi_version: TypedFunc::new(0),
-            descriptor: TypedFunc::new(1),
-            last_error: TypedFunc::new(2),
-            fit: TypedFunc::new(3),
-            magnitude: TypedFunc::new(4),
-            interpolate: TypedFunc::new(5),
-            voice_rate: TypedFunc::new(6),
-            voice_new: TypedFunc::new(7),
-            voice_render: TypedFunc::new(8),
-            voice_retune: TypedFunc::new(9),
-            voice_free: TypedFunc::new(10),
-            extension: TypedFunc::new(11),
-            alloc: TypedFunc::new(12),
-            free: TypedFunc::new(13),
-            motion: motion.then(|| MotionFunctions {
-                set: TypedFunc::new(14),
-                fit: TypedFunc::new(15),
-            }),
-        }
+impl Find for Names {
+    fn find<P: Parameters, R: Returned>(
+        &mut self,
+        name: &'static str,
+    ) -> Result<TypedFunc<P, R>, Fault> {
+        self.0.push(name);
+        Ok(TypedFunc::new(self.0.len() as u32 - 1))
     }
 }
 
@@ -133,20 +50,17 @@ impl Instance {
     pub(super) fn new(module: &Arc<WasmModule>) -> Result<Self, Fault> {
         let mut usage = Usage::new(&module.budget)?;
         module.budget.time_left()?;
-        let motion = module.follows_motion();
-        let names = match motion {
-            true => format!("{NAMES},{MOTION_NAMES}"),
-            false => NAMES.to_owned(),
-        };
+        let mut names = Names::default();
+        let functions = Functions::of(&mut names, module.follows_motion())?;
         let start = Instant::now();
-        let guest = module.guest.instance(&names);
+        let guest = module.guest.instance(&names.0.join(","));
         module.budget.spend(start.elapsed());
         let guest = guest.map_err(|what| Fault::Start(Box::new(Fault::Refused { what })))?;
         usage.grow(guest.memory_bytes())?;
         Ok(Self {
             module: Arc::clone(module),
             guest,
-            functions: Functions::new(motion),
+            functions,
             usage,
             allowance: None,
             buffer: (0, 0),

@@ -13,6 +13,8 @@ mod calls;
 #[allow(dead_code)]
 #[path = "../wasm/fault.rs"]
 mod fault;
+#[path = "../wasm/functions.rs"]
+mod functions;
 mod imports;
 mod instance;
 #[path = "../wasm/model.rs"]

@@ -3,77 +3,14 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use wasmtime::{Instance as Raw, Memory, Store, TypedFunc, WasmParams, WasmResults};
+use wasmtime::{Instance as Raw, Memory, Store};
 
 use super::allowance::Allowance;
 use super::fault::Fault;
+use super::functions::{Find, Functions, Usize};
 use super::module::WasmModule;
+use super::typed::{Parameters, Returned, TypedFunc};
 use super::usage::Usage;
-
-/// Addresses and lengths in the module's memory.
-type Usize = u32;
-
-/// The functions of the model ABI (`htex_model::abi`).
-pub(super) struct Functions {
-    pub(super) abi_version: TypedFunc<(), u32>,
-    pub(super) descriptor: TypedFunc<(Usize, Usize), i64>,
-    pub(super) last_error: TypedFunc<(Usize, Usize), i64>,
-    pub(super) fit: TypedFunc<FitParams, i64>,
-    pub(super) magnitude: TypedFunc<MagnitudeParams, i64>,
-    pub(super) interpolate: TypedFunc<(Usize, Usize, Usize, Usize, Usize, Usize), i64>,
-    pub(super) voice_rate: TypedFunc<(Usize, Usize, f64, f64, f64), f64>,
-    pub(super) voice_new: TypedFunc<(Usize, Usize, f64, f64, f64, u64), i64>,
-    pub(super) voice_render: TypedFunc<(i64, Usize, Usize), i64>,
-    pub(super) voice_retune: TypedFunc<(i64, Usize, Usize), i64>,
-    pub(super) voice_free: TypedFunc<i64, i64>,
-    pub(super) extension: TypedFunc<(Usize, Usize), i64>,
-    /// If the model has the extension `htex.motion/1`.
-    pub(super) motion: Option<MotionFunctions>,
-    alloc: TypedFunc<Usize, Usize>,
-    free: TypedFunc<(Usize, Usize), ()>,
-}
-
-/// The functions of `htex.motion/1` (`htex_model::motion_1`).
-pub(super) struct MotionFunctions {
-    pub(super) set: TypedFunc<(i64, f64, f64, f64), i64>,
-    pub(super) fit: TypedFunc<MotionFitParams, i64>,
-}
-
-type FitParams = (
-    f64,
-    f64,
-    Usize,
-    Usize,
-    Usize,
-    Usize,
-    Usize,
-    f64,
-    Usize,
-    Usize,
-    Usize,
-    Usize,
-    Usize,
-);
-
-type MotionFitParams = (
-    f64,
-    f64,
-    Usize,
-    Usize,
-    Usize,
-    Usize,
-    Usize,
-    f64,
-    Usize,
-    Usize,
-    f64,
-    f64,
-    Usize,
-    Usize,
-    Usize,
-);
-
-type MagnitudeParams = (Usize, Usize, f64, f64, Usize, Usize, Usize);
 
 /// An instance with a separate store.
 pub(super) struct Instance {
@@ -111,9 +48,14 @@ impl Instance {
         let memory = raw
             .get_memory(&mut store, "memory")
             .ok_or(Fault::NoMemory)?;
+        let mut exports = Exports {
+            store: &mut store,
+            raw: &raw,
+        };
+        let functions = Functions::of(&mut exports, module.follows_motion())?;
         Ok(Self {
             module: Arc::clone(module),
-            functions: Functions::of(&mut store, &raw, module.follows_motion())?,
+            functions,
             store,
             memory,
             allowance: None,
@@ -149,7 +91,7 @@ impl Instance {
     }
 
     /// Calls one of the functions within the deadline.
-    pub(super) fn call<P: WasmParams, R: WasmResults>(
+    pub(super) fn call<P: Parameters, R: Returned>(
         &mut self,
         deadline: Deadline,
         function: impl Fn(&Functions) -> &TypedFunc<P, R>,
@@ -159,7 +101,7 @@ impl Instance {
     }
 
     /// As [`Self::call`], of a function that only some models have.
-    pub(super) fn call_if<P: WasmParams, R: WasmResults>(
+    pub(super) fn call_if<P: Parameters, R: Returned>(
         &mut self,
         deadline: Deadline,
         function: impl Fn(&Functions) -> Option<&TypedFunc<P, R>>,
@@ -283,51 +225,26 @@ fn arm(store: &mut Store<Usage>, module: &WasmModule, time: Duration) -> wasmtim
     }
 }
 
-impl Functions {
-    fn of(store: &mut Store<Usage>, raw: &Raw, motion: bool) -> Result<Self, Fault> {
-        let motion = motion
-            .then(|| MotionFunctions::of(store, raw))
-            .transpose()?;
-        Ok(Self {
-            motion,
-            abi_version: get(store, raw, "htex_model_abi_version")?,
-            descriptor: get(store, raw, "htex_model_descriptor")?,
-            last_error: get(store, raw, "htex_model_last_error")?,
-            fit: get(store, raw, "htex_model_fit")?,
-            magnitude: get(store, raw, "htex_model_magnitude")?,
-            interpolate: get(store, raw, "htex_model_interpolate")?,
-            voice_rate: get(store, raw, "htex_model_voice_rate")?,
-            voice_new: get(store, raw, "htex_model_voice_new")?,
-            voice_render: get(store, raw, "htex_model_voice_render")?,
-            voice_retune: get(store, raw, "htex_model_voice_retune")?,
-            voice_free: get(store, raw, "htex_model_voice_free")?,
-            extension: get(store, raw, "htex_model_extension")?,
-            alloc: get(store, raw, "htex_model_alloc")?,
-            free: get(store, raw, "htex_model_free")?,
-        })
-    }
+/// A new instance, and its store.
+struct Exports<'a> {
+    store: &'a mut Store<Usage>,
+    raw: &'a Raw,
 }
 
-impl MotionFunctions {
-    fn of(store: &mut Store<Usage>, raw: &Raw) -> Result<Self, Fault> {
-        Ok(Self {
-            set: get(store, raw, "htex_motion_1_set")?,
-            fit: get(store, raw, "htex_motion_1_fit")?,
-        })
+impl Find for Exports<'_> {
+    fn find<P: Parameters, R: Returned>(
+        &mut self,
+        name: &'static str,
+    ) -> Result<TypedFunc<P, R>, Fault> {
+        let function = self.raw.get_func(&mut *self.store, name);
+        let function = function.ok_or_else(|| Fault::NoFunction {
+            name: name.to_owned(),
+        })?;
+        function
+            .typed(&*self.store)
+            .map_err(|error| Fault::Signature {
+                name: name.to_owned(),
+                what: format!("{error:#}"),
+            })
     }
-}
-
-fn get<P: WasmParams, R: WasmResults>(
-    store: &mut Store<Usage>,
-    raw: &Raw,
-    name: &str,
-) -> Result<TypedFunc<P, R>, Fault> {
-    let function = raw.get_func(&mut *store, name);
-    let function = function.ok_or_else(|| Fault::NoFunction {
-        name: name.to_owned(),
-    })?;
-    function.typed(store).map_err(|error| Fault::Signature {
-        name: name.to_owned(),
-        what: format!("{error:#}"),
-    })
 }

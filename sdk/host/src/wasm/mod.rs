@@ -13,6 +13,7 @@ mod compile_error;
 mod engine;
 mod estimate;
 mod fault;
+mod functions;
 mod instance;
 mod key;
 mod model;
@@ -21,6 +22,7 @@ mod private;
 mod process;
 mod shared;
 mod trap;
+mod typed;
 mod usage;
 mod voice;
 

@@ -14,11 +14,11 @@ const SEED: &str = "7";
 const SPEED: &str = "80";
 const FORCE: &str = "0.5";
 
-/// The `htex` command, built as the tests of the workspace build it.
+/// The `htex` command, built as the tests of the workspace build it: with the features of the whole workspace, so that nothing is built twice.
 pub(super) fn command() -> Result<PathBuf, String> {
     let mut build = Command::new(cargo());
     run(build
-        .args(["build", "--locked", "--package", "htex-cli"])
+        .args(["build", "--locked", "--workspace", "--bin", "htex"])
         .current_dir(workspace()))?;
     let name = format!("htex{}", std::env::consts::EXE_SUFFIX);
     Ok(target().join("debug").join(name))

@@ -210,10 +210,12 @@ impl Fit {
     }
 }
 
-/// Returns the models of these names, each once; without names, all.
+/// Returns the models of these names, each once; without names, all, and those that are written in Python last.
 pub(crate) fn named(registry: &Registry, names: &[String]) -> PyResult<Vec<LoadedModel>> {
     if names.is_empty() {
-        return Ok(registry.models().to_vec());
+        let mut all = registry.models().to_vec();
+        all.sort_by_key(|model| matches!(model.origin(), Origin::Runtime(_)));
+        return Ok(all);
     }
     let mut models: Vec<LoadedModel> = Vec::new();
     for name in names {

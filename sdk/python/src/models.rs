@@ -16,8 +16,7 @@ pub(crate) fn registry(plugins: &[PathBuf], installed: bool) -> PyResult<Registr
     let places = Search::builtin()
         .with_env(installed)
         .with_user_dir(installed);
-    let mut registry =
-        Registry::search(&places.with_files(files).with_dirs(dirs)).or_raise()?;
+    let mut registry = Registry::search(&places.with_files(files).with_dirs(dirs)).or_raise()?;
     python_model::add_to(&mut registry)?;
     Ok(registry)
 }

@@ -174,7 +174,8 @@ class _Voice:
         import numpy as np
 
         returned = self.voice.render(n)
-        samples = np.ascontiguousarray(returned, dtype=np.float32)
+        with np.errstate(over="ignore"):
+            samples = np.ascontiguousarray(returned, dtype=np.float32)
         if samples.shape != (n,) or np.ndim(returned) != 1:
             raise ValueError(
                 f"render returned an array of shape {np.shape(returned)} for {n} samples; return one number for each"

@@ -18,8 +18,10 @@ __all__ = [
     "models",
     "open",
     "process",
+    "register_model",
     "run",
     "tradeoff",
+    "unregister_model",
 ]
 
 _Path = str | os.PathLike[str]

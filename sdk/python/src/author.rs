@@ -131,7 +131,7 @@ fn raise_of_python(registry: &Registry, skipped: &[(String, String)]) -> PyResul
     for (id, reason) in skipped {
         let model = registry.find(id).or_raise()?;
         if matches!(model.origin(), Origin::Runtime(_)) {
-            let text = format!("model {id}: fit: {reason}");
+            let text = format!("model {id} cannot be fitted: {reason}");
             return Err(causes::attach(ModelError::new_err(text)));
         }
     }

@@ -9,7 +9,7 @@ use htex_format::{
     Asset, AtCondition, Condition, FIRST_VERSION, Manifest, Provenance, Quality, Quantity,
     Reference, Representation, round_parameters,
 };
-use htex_host::{HostError, LoadedModel};
+use htex_host::{HostError, LoadedModel, Origin};
 
 use crate::alternatives::warning;
 use crate::conditions::{Group, group_takes};
@@ -50,6 +50,7 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
         match fit_model(choice, &grouped.groups, request.level) {
             Ok(one) => {
                 warnings.extend(band_error_warning(choice, &one, &grouped.groups, request));
+                warnings.extend(origin_warning(&choice.model));
                 fitted.push(one);
             }
             Err(AuthorError::Model(HostError::Call { call, message, .. })) => {
@@ -134,6 +135,17 @@ fn fit_model(
         parameters,
         fit_ms,
     })
+}
+
+/// Returns the warning of a representation whose model no other program can load.
+fn origin_warning(model: &LoadedModel) -> Option<String> {
+    let Origin::Runtime(origin) = model.origin() else {
+        return None;
+    };
+    Some(format!(
+        "{} is a model of {origin}; it plays only in programs that register a model of this id",
+        model.id()
+    ))
 }
 
 /// Returns the warning of a representation with a large band error.

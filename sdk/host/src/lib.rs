@@ -32,6 +32,7 @@ mod origin;
 mod own;
 mod raw;
 mod registry;
+mod runtime;
 // Without modules the budget is not used.
 #[cfg_attr(not(any(feature = "wasm", target_family = "wasm")), allow(dead_code))]
 mod sandbox;
@@ -62,6 +63,7 @@ pub use model::{FitRequest, LoadedModel, MOTION_EXTENSION};
 pub use note::Note;
 pub use origin::Origin;
 pub use registry::Registry;
+pub use runtime::{RuntimeModel, RuntimeVoice};
 pub use search::Search;
 pub use stream::Stream;
 pub use synthesis::{StillSound, Synthesis};

@@ -17,6 +17,8 @@ pub enum Origin {
     Builtin,
     /// A type that this program registered.
     Own,
+    /// An object that this program registered while it runs; the text says what it is written in.
+    Runtime(String),
     /// A native library, which runs with all rights of this program.
     Native(PathBuf),
     /// A WASM module in a file, which runs in a sandbox.
@@ -31,6 +33,7 @@ impl std::fmt::Display for Origin {
             Self::Builtin => f.write_str("built in"),
             Self::Own => f.write_str("part of this program"),
             Self::Native(path) | Self::Wasm(path) => path.display().fmt(f),
+            Self::Runtime(text) => f.write_str(text),
             Self::Embedded(name) => write!(f, "embedded in {name}"),
         }
     }

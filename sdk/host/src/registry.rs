@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use htex_model::{Model, MotionVoice};
+use htex_model::{Descriptor, Model, MotionVoice};
 use semver::{Version, VersionReq};
 
 use crate::builtin;
 use crate::own::OwnModel;
+use crate::runtime::{Described, RuntimeModel};
 use crate::sandbox::Sandbox;
 use crate::{HostError, LoadedModel, Note, Origin, Search, WasmLimits};
 
@@ -159,6 +160,23 @@ impl Registry {
     fn add_own<M: Model>(&mut self, model: OwnModel<M>) -> Result<(), HostError> {
         let model = LoadedModel::new(Origin::Own, Arc::new(model))?;
         self.add(Rank::File, model);
+        Ok(())
+    }
+
+    /// Adds a model that is described while the program runs. `written_in` is its [`Origin::Runtime`]. It precedes other
+    /// models as [`Self::add_model`] says.
+    ///
+    /// # Errors
+    /// When the descriptor is invalid, or longer than 1 MiB in JSON.
+    pub fn add_runtime_model(
+        &mut self,
+        written_in: &str,
+        descriptor: Descriptor,
+        model: Arc<dyn RuntimeModel>,
+    ) -> Result<(), HostError> {
+        let raw = Described::new(descriptor, model)?;
+        let origin = Origin::Runtime(written_in.to_owned());
+        self.add(Rank::File, LoadedModel::new(origin, Arc::new(raw))?);
         Ok(())
     }
 

@@ -1,4 +1,4 @@
-//! Checks of arguments, common to all models.
+//! Checks of arguments, common to all models. A host uses them for models that have no C functions.
 
 use crate::abi::{MAX_BAND_HZ, MAX_RATE_HZ, MIN_BINS, MIN_RATE_HZ};
 use crate::voices_1::MAX_VOICES;
@@ -22,7 +22,11 @@ pub(crate) fn check_handles(handles: &[i64]) -> Result<(), Error> {
     }
 }
 
-pub(crate) fn band((low_hz, high_hz): (f64, f64)) -> Result<Band, Error> {
+/// Makes the band of two edges, hertz.
+///
+/// # Errors
+/// When the edges do not ascend, or are not above 0 and at most 1 MHz.
+pub fn band((low_hz, high_hz): (f64, f64)) -> Result<Band, Error> {
     if low_hz > 0.0 && low_hz < high_hz && high_hz <= MAX_BAND_HZ {
         return Ok(Band { low_hz, high_hz });
     }
@@ -35,7 +39,11 @@ pub(crate) fn band((low_hz, high_hz): (f64, f64)) -> Result<Band, Error> {
     ]))
 }
 
-pub(crate) fn check_rate(rate_hz: f64) -> Result<(), Error> {
+/// Checks the rate of a signal or a voice, hertz.
+///
+/// # Errors
+/// When it is not 1 Hz to 10 MHz.
+pub fn check_rate(rate_hz: f64) -> Result<(), Error> {
     if (MIN_RATE_HZ..=MAX_RATE_HZ).contains(&rate_hz) {
         return Ok(());
     }
@@ -46,7 +54,11 @@ pub(crate) fn check_rate(rate_hz: f64) -> Result<(), Error> {
     ]))
 }
 
-pub(crate) fn finite(name: &str, numbers: &[f64]) -> Result<(), Error> {
+/// Checks that all numbers of an argument are finite.
+///
+/// # Errors
+/// Names the argument and the first index that is not.
+pub fn finite(name: &str, numbers: &[f64]) -> Result<(), Error> {
     match numbers.iter().position(|x| !x.is_finite()) {
         None => Ok(()),
         Some(i) => Err(Error::argument(text![
@@ -59,10 +71,20 @@ pub(crate) fn finite(name: &str, numbers: &[f64]) -> Result<(), Error> {
     }
 }
 
+/// Checks the input of a fit, options included.
 pub(crate) fn check_fit_input(
     input: &FitInput<'_>,
     descriptor: &StaticDescriptor,
 ) -> Result<(), Error> {
+    check_recording(input)?;
+    check_options(input.options, descriptor)
+}
+
+/// Checks the spectrum and the signal that a model is fitted to.
+///
+/// # Errors
+/// When a number is not finite, the spectrum is too short, does not ascend or is negative, or the rate is invalid.
+pub fn check_recording(input: &FitInput<'_>) -> Result<(), Error> {
     finite("frequency_hz", input.frequency_hz)?;
     finite("magnitude", input.magnitude)?;
     finite("signal", input.signal)?;
@@ -79,7 +101,7 @@ pub(crate) fn check_fit_input(
     if !input.signal.is_empty() {
         check_rate(input.signal_rate_hz)?;
     }
-    check_options(input.options, descriptor)
+    Ok(())
 }
 
 fn check_options(values: &[f64], descriptor: &StaticDescriptor) -> Result<(), Error> {
@@ -111,7 +133,11 @@ fn check_options(values: &[f64], descriptor: &StaticDescriptor) -> Result<(), Er
     Ok(())
 }
 
-pub(crate) fn check_weights(weights: &[f64]) -> Result<(), Error> {
+/// Checks the weights of an interpolation.
+///
+/// # Errors
+/// When one lies outside 0 to 1, or they do not sum to 1.
+pub fn check_weights(weights: &[f64]) -> Result<(), Error> {
     let sum: f64 = weights.iter().sum();
     let sane = weights.iter().all(|w| (0.0..=1.0).contains(w)) && (sum - 1.0).abs() < 1e-6;
     if sane {

@@ -19,7 +19,7 @@ pub mod abi;
 #[cfg(any(test, all(target_family = "wasm", not(feature = "std"))))]
 mod arena;
 #[cfg(any(feature = "std", target_family = "wasm"))]
-mod arguments;
+pub mod arguments;
 #[cfg(not(any(feature = "std", target_family = "wasm")))]
 mod bare;
 mod decimal;

@@ -12,7 +12,8 @@ use htex_author::{
 use pyo3::prelude::*;
 use serde_json::{Value, json};
 
-use crate::errors::{OrRaise, option};
+use crate::causes;
+use crate::errors::{ModelError, OrRaise, option};
 use crate::models::registry;
 use crate::python::from_json;
 use crate::reading::{Pair, Reading, Source, unknown};
@@ -113,6 +114,7 @@ fn fitted(sources: &[Source], reading: &Reading, fit: Fit) -> PyResult<(Texture,
     let request = fit.request(&registry, reading)?;
     let takes = reading.takes(sources, &fit.conditions)?;
     let mut fitted = fit_asset(&takes, &request).or_raise()?;
+    raise_of_python(&registry, &fitted.skipped)?;
     fit.describe(&mut fitted.asset.manifest);
     let rest = rest(&fitted);
     // The texture is what its file holds: levels and errors have fewer digits there.
@@ -122,6 +124,18 @@ fn fitted(sources: &[Source], reading: &Reading, fit: Fit) -> PyResult<(Texture,
         Texture::new(stored, fit.plugins, true, fit.installed)?,
         rest,
     ))
+}
+
+/// Raises the error of a model that is written in Python: others that cannot be fitted are left out.
+fn raise_of_python(registry: &Registry, skipped: &[(String, String)]) -> PyResult<()> {
+    for (id, reason) in skipped {
+        let model = registry.find(id).or_raise()?;
+        if matches!(model.origin(), Origin::Runtime(_)) {
+            let text = format!("model {id} cannot be fitted: {reason}");
+            return Err(causes::attach(ModelError::new_err(text)));
+        }
+    }
+    Ok(())
 }
 
 fn rest(fitted: &FittedAsset) -> Value {
@@ -196,10 +210,12 @@ impl Fit {
     }
 }
 
-/// Returns the models of these names, each once; without names, all.
+/// Returns the models of these names, each once; without names, all, and those that are written in Python last.
 pub(crate) fn named(registry: &Registry, names: &[String]) -> PyResult<Vec<LoadedModel>> {
     if names.is_empty() {
-        return Ok(registry.models().to_vec());
+        let mut all = registry.models().to_vec();
+        all.sort_by_key(|model| matches!(model.origin(), Origin::Runtime(_)));
+        return Ok(all);
     }
     let mut models: Vec<LoadedModel> = Vec::new();
     for name in names {

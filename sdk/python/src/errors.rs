@@ -13,6 +13,8 @@ use pyo3::exceptions::PyOSError;
 use pyo3::import_exception;
 use pyo3::prelude::*;
 
+use crate::causes;
+
 import_exception!(htex._errors, AssetError);
 import_exception!(htex._errors, ModelError);
 import_exception!(htex._errors, MotionError);
@@ -34,7 +36,7 @@ pub(crate) trait OrRaise<T> {
 
 impl<T, E: IntoPyErr> OrRaise<T> for Result<T, E> {
     fn or_raise(self) -> PyResult<T> {
-        self.map_err(IntoPyErr::into_py_err)
+        self.map_err(|error| causes::attach(error.into_py_err()))
     }
 }
 

@@ -3,11 +3,14 @@
 #![forbid(unsafe_code)]
 
 mod author;
+mod causes;
 mod command;
 mod errors;
 mod models;
 mod path;
 mod python;
+mod python_model;
+mod python_voice;
 mod reading;
 mod scene;
 mod texture;
@@ -27,6 +30,8 @@ mod _htex {
     use crate::command::run;
     #[pymodule_export]
     use crate::models::models;
+    #[pymodule_export]
+    use crate::python_model::{register_model, unregister_model};
     #[pymodule_export]
     use crate::scene::Scene;
     #[pymodule_export]

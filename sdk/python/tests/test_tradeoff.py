@@ -37,3 +37,8 @@ def test_spectra_are_drawn(texture: htex.Texture, place: pathlib.Path) -> None:
     axes = plot.texture(texture, reference=found.spectrum)
     assert len(axes.lines) == 1 + len(texture.models)
     assert axes.get_ylabel() == "magnitude / N"
+    axes.set_xlim(20, 1000)
+    axes.figure.canvas.draw()
+    ticks = [tick.label1.get_text() for tick in axes.xaxis.get_major_ticks() if 20 <= tick.get_loc() <= 1000]
+    assert axes.get_xscale() == "log" and ticks == ["20", "50", "100", "200", "500", "1000"]
+    assert not any(tick.label1.get_text() for tick in axes.xaxis.get_minor_ticks())

@@ -27,7 +27,8 @@ from ._errors import (
     RecordingError,
     SceneError,
 )
-from ._htex import Scene, Texture, Voice, __version__, models, open
+from ._htex import Scene, Texture, Voice, __version__, models, open, unregister_model
+from ._models import Field, register_model
 
 __all__ = [
     "Agreement",
@@ -35,6 +36,7 @@ __all__ = [
     "Condition",
     "Coverage",
     "Error",
+    "Field",
     "Fit",
     "ModelError",
     "MotionError",
@@ -55,5 +57,7 @@ __all__ = [
     "open",
     "process",
     "quality_table",
+    "register_model",
     "tradeoff",
+    "unregister_model",
 ]

@@ -18,11 +18,22 @@ def spectrum(spectrum: Spectrum | Processed, *, ax: Axes | None = None, label: s
         spectrum = spectrum.spectrum
     ax = _axes(ax)
     ax.loglog(spectrum.frequency_hz, spectrum.magnitude, label=label)
-    ax.set_xlabel("frequency / Hz")
+    frequencies(ax)
     ax.set_ylabel(f"magnitude / {spectrum.unit}")
     if label is not None:
         ax.legend()
     return ax
+
+
+def frequencies(ax: Axes) -> None:
+    """Make the horizontal axis one of frequencies: logarithmic, with ticks at 20, 50, 100 Hz and so on."""
+    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+
+    ax.set_xscale("log")
+    ax.set_xlabel("frequency / Hz")
+    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    ax.xaxis.set_minor_formatter(NullFormatter())
 
 
 def texture(

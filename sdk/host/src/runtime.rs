@@ -1,0 +1,357 @@
+//! Models that are described while the program runs: objects instead of types, such as models of a scripting language.
+
+use std::cell::RefCell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+
+use htex_model::abi::ABI_MARKER;
+use htex_model::arguments::{band, check_rate, check_recording, check_weights, finite};
+use htex_model::{
+    Band, Descriptor, Error, Fit, FitInput, Motion, Numbers, Status, Values, mix, text,
+};
+
+use crate::HostError;
+use crate::raw::{RawFit, RawModel, RawVoice};
+
+thread_local! {
+    /// The text of this thread's last error.
+    static LAST_ERROR: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// A model that is an object. Units and arguments are those of [`htex_model::Model`], and arguments are checked before
+/// each call in the same way; panics become errors.
+///
+/// ```
+/// use std::sync::Arc;
+/// use htex_host::{Band, Registry, RuntimeModel, RuntimeVoice};
+/// use htex_model::{Descriptor, Error, Fit, FitInput, StaticDescriptor, StaticField, Values};
+/// /// A constant.
+/// struct Constant(f32);
+/// impl RuntimeModel for Constant {
+///     fn fit(&self, _: &FitInput<'_>) -> Result<Fit, Error> {
+///         Ok(Fit { parameters: vec![0.5], level_rms: 1.0 })
+///     }
+///     fn magnitude(&self, _: &Values<'_>, _: Band, _: &[f64], m: &mut [f64]) -> Result<(), Error> {
+///         m.fill(1.0);
+///         Ok(())
+///     }
+///     fn voice(&self, _: &Values<'_>, _: Band, _: f64, _: u64) -> Result<Box<dyn RuntimeVoice>, Error> {
+///         Ok(Box::new(Constant(self.0)))
+///     }
+/// }
+/// impl RuntimeVoice for Constant {
+///     fn render(&mut self, out: &mut [f32]) -> Result<(), Error> {
+///         out.fill(self.0);
+///         Ok(())
+///     }
+///     fn retune(&mut self, _: &Values<'_>) -> Result<(), Error> {
+///         Ok(())
+///     }
+/// }
+/// let fields = &[StaticField::scalar("unused", "1", (0.0, 1.0), "Unused.")];
+/// let descriptor = StaticDescriptor::new("org.example.constant", "Constant", "1.0.0", "A constant.").fields(fields);
+/// let mut registry = Registry::builtin();
+/// registry.add_runtime_model("Rust", Descriptor::from(&descriptor), Arc::new(Constant(0.25)))?;
+/// let model = registry.find("constant")?;
+/// let mut block = [0.0; 4];
+/// model.voice(&[0.5], Band::TACTILE, 2_000.0, 0)?.render(&mut block)?;
+/// assert_eq!((block, &model.origin().to_string()[..]), ([0.25; 4], "Rust"));
+/// # Ok::<(), htex_host::HostError>(())
+/// ```
+pub trait RuntimeModel: Send + Sync + 'static {
+    /// As [`htex_model::Model::fit`]; the condition is unknown.
+    ///
+    /// # Errors
+    /// When the model cannot describe the spectrum.
+    fn fit(&self, input: &FitInput<'_>) -> Result<Fit, Error>;
+
+    /// As [`htex_model::Model::magnitude`].
+    ///
+    /// # Errors
+    /// When the parameters describe no spectrum.
+    fn magnitude(
+        &self,
+        parameters: &Values<'_>,
+        band: Band,
+        frequency_hz: &[f64],
+        magnitude: &mut [f64],
+    ) -> Result<(), Error>;
+
+    /// As [`htex_model::Model::interpolate`]; the default is linear.
+    ///
+    /// # Errors
+    /// When the sets cannot be interpolated.
+    fn interpolate(
+        &self,
+        sets: &[Values<'_>],
+        weights: &[f64],
+        out: &mut Numbers<'_>,
+    ) -> Result<(), Error> {
+        mix::linear(sets, weights, out)
+    }
+
+    /// As [`htex_model::Model::voice_rate_hz`].
+    fn voice_rate_hz(&self, _parameters: &Values<'_>, _band: Band, wanted_hz: f64) -> f64 {
+        wanted_hz
+    }
+
+    /// As [`htex_model::Model::voice`].
+    ///
+    /// # Errors
+    /// When no voice can be made of these parameters at this rate.
+    fn voice(
+        &self,
+        parameters: &Values<'_>,
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Box<dyn RuntimeVoice>, Error>;
+}
+
+/// A voice of a [`RuntimeModel`]: as [`htex_model::Voice`], but rendering may fail.
+pub trait RuntimeVoice: Send {
+    /// Fills `out` with the next samples.
+    ///
+    /// # Errors
+    /// When there are no samples; the host then plays zeros.
+    fn render(&mut self, out: &mut [f32]) -> Result<(), Error>;
+
+    /// As [`htex_model::Voice::retune`].
+    ///
+    /// # Errors
+    /// When the voice cannot change to these parameters.
+    fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error>;
+}
+
+/// A model with its descriptor.
+pub(crate) struct Described {
+    shared: Arc<Shared>,
+}
+
+/// What a model and its voices share.
+struct Shared {
+    descriptor: Descriptor,
+    json: Vec<u8>,
+    model: Arc<dyn RuntimeModel>,
+}
+
+impl Described {
+    /// Makes the model.
+    ///
+    /// # Errors
+    /// When the descriptor has a number that JSON cannot hold.
+    pub(crate) fn new(
+        descriptor: Descriptor,
+        model: Arc<dyn RuntimeModel>,
+    ) -> Result<Self, HostError> {
+        let json = serde_json::to_vec(&descriptor).map_err(|error| HostError::Broken {
+            model: descriptor.id.clone(),
+            call: "htex_model_descriptor",
+            what: error.to_string(),
+        })?;
+        Ok(Self {
+            shared: Arc::new(Shared {
+                descriptor,
+                json,
+                model,
+            }),
+        })
+    }
+}
+
+impl Shared {
+    fn values<'a>(&self, parameters: &'a [f64]) -> Result<Values<'a>, Error> {
+        Values::read(&self.descriptor, parameters)
+    }
+
+    fn fit(&self, call: &RawFit<'_>) -> Result<Fit, Error> {
+        let input = FitInput {
+            band: band(call.band.edges())?,
+            frequency_hz: call.frequency_hz,
+            magnitude: call.magnitude,
+            signal: call.signal,
+            signal_rate_hz: call.signal_rate_hz,
+            options: call.options,
+            condition: Default::default(),
+        };
+        check_recording(&input)?;
+        let (got, wanted) = (input.options.len(), self.descriptor.options.len());
+        if got != wanted {
+            let message = text![got, " option values; ", wanted, " are required"];
+            return Err(Error::new(Status::InvalidOption, message));
+        }
+        let fit = self.model.fit(&input)?;
+        self.values(&fit.parameters)?;
+        Ok(fit)
+    }
+
+    fn interpolate(&self, mut flat: &[f64], weights: &[f64], out: &mut [f64]) -> i64 {
+        returned(|| {
+            check_weights(weights)?;
+            let mut sets = Vec::with_capacity(weights.len());
+            for _ in weights {
+                let (set, used) = Values::read_first(&self.descriptor, flat)?;
+                sets.push(set);
+                flat = &flat[used..];
+            }
+            let mut mixed = Numbers::new(out);
+            self.model.interpolate(&sets, weights, &mut mixed)?;
+            Ok(mixed.count() as i64)
+        })
+    }
+}
+
+impl RawModel for Described {
+    fn abi_version(&self) -> u32 {
+        ABI_MARKER
+    }
+
+    fn descriptor(&self, out: &mut [u8]) -> i64 {
+        copy(&self.shared.json, out)
+    }
+
+    fn last_error(&self, out: &mut [u8]) -> i64 {
+        last_error(out)
+    }
+
+    fn fit(&self, call: &RawFit<'_>, parameters: &mut [f64], level_rms: &mut f64) -> i64 {
+        returned(|| {
+            let fit = self.shared.fit(call)?;
+            *level_rms = fit.level_rms;
+            Ok(copy(&fit.parameters, parameters))
+        })
+    }
+
+    fn magnitude(
+        &self,
+        parameters: &[f64],
+        of: Band,
+        frequency_hz: &[f64],
+        magnitude: &mut [f64],
+    ) -> i64 {
+        returned(|| {
+            finite("frequency_hz", frequency_hz)?;
+            let values = self.shared.values(parameters)?;
+            let model = &self.shared.model;
+            model.magnitude(&values, band(of.edges())?, frequency_hz, magnitude)?;
+            Ok(0)
+        })
+    }
+
+    fn interpolate(&self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64 {
+        self.shared.interpolate(sets, weights, parameters)
+    }
+
+    fn extension(&self, _: &[u8]) -> i64 {
+        0
+    }
+
+    fn follows_motion(&self) -> bool {
+        false
+    }
+
+    fn voice_rate(&self, parameters: &[f64], of: Band, wanted_hz: f64) -> f64 {
+        let mut rate_hz = 0.0;
+        let status = returned(|| {
+            check_rate(wanted_hz)?;
+            let values = self.shared.values(parameters)?;
+            let model = &self.shared.model;
+            rate_hz = model.voice_rate_hz(&values, band(of.edges())?, wanted_hz);
+            check_rate(rate_hz).map(|()| 0)
+        });
+        if status < 0 { status as f64 } else { rate_hz }
+    }
+
+    fn voice_new(
+        &self,
+        parameters: &[f64],
+        of: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Box<dyn RawVoice>, i64> {
+        let mut voice = None;
+        let status = returned(|| {
+            check_rate(rate_hz)?;
+            let values = self.shared.values(parameters)?;
+            let model = &self.shared.model;
+            voice = Some(model.voice(&values, band(of.edges())?, rate_hz, seed)?);
+            Ok(0)
+        });
+        match voice {
+            Some(_) => Ok(Box::new(DescribedVoice {
+                shared: self.shared.clone(),
+                voice,
+            })),
+            None => Err(status),
+        }
+    }
+}
+
+/// A voice; none after it was freed.
+struct DescribedVoice {
+    shared: Arc<Shared>,
+    voice: Option<Box<dyn RuntimeVoice>>,
+}
+
+impl DescribedVoice {
+    fn call(
+        &mut self,
+        with: impl FnOnce(&mut dyn RuntimeVoice, &Shared) -> Result<(), Error>,
+    ) -> i64 {
+        let Self { shared, voice } = self;
+        returned(|| {
+            let freed = || Error::new(Status::BadHandle, "no such voice; it was freed");
+            let voice = voice.as_deref_mut().ok_or_else(freed)?;
+            with(voice, shared).map(|()| 0)
+        })
+    }
+}
+
+impl RawVoice for DescribedVoice {
+    fn render(&mut self, out: &mut [f32]) -> i64 {
+        self.call(|voice, _| voice.render(out))
+    }
+
+    fn retune(&mut self, parameters: &[f64]) -> i64 {
+        self.call(|voice, shared| voice.retune(&shared.values(parameters)?))
+    }
+
+    fn set_motion(&mut self, _: Motion) -> i64 {
+        0
+    }
+
+    fn interpolate(&mut self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64 {
+        self.shared.interpolate(sets, weights, parameters)
+    }
+
+    fn free(&mut self) -> i64 {
+        let freed = self.call(|_, _| Ok(()));
+        self.voice = None;
+        freed
+    }
+
+    fn last_error(&self, out: &mut [u8]) -> i64 {
+        last_error(out)
+    }
+}
+
+/// Runs a call; an error or a panic becomes a status and the last-error text.
+fn returned(call: impl FnOnce() -> Result<i64, Error>) -> i64 {
+    let panicked = |_| Err(Error::new(Status::Panicked, "the model panicked"));
+    let result = catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(panicked);
+    result.unwrap_or_else(|error| {
+        LAST_ERROR.with(|last| *last.borrow_mut() = error.message);
+        error.status as i64
+    })
+}
+
+fn last_error(out: &mut [u8]) -> i64 {
+    LAST_ERROR.with(|last| copy(last.borrow().as_bytes(), out))
+}
+
+/// Copies as many values as fit; returns the number of all values.
+fn copy<T: Copy>(from: &[T], out: &mut [T]) -> i64 {
+    let fit = from.len().min(out.len());
+    out[..fit].copy_from_slice(&from[..fit]);
+    from.len() as i64
+}

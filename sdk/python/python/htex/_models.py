@@ -1,0 +1,198 @@
+"""Models that are written in Python."""
+
+from __future__ import annotations
+
+import inspect
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+
+from . import _htex
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    Numbers = npt.NDArray[np.float64]
+
+Parameters = Mapping[str, Any]
+"""Parameters by name: a number for a scalar field, a list of numbers for a list."""
+
+
+@dataclass(frozen=True)
+class Field:
+    """A parameter of a model that is written in Python."""
+
+    name: str
+    """Name, units included, such as ``peak_hz``."""
+    unit: str
+    """Unit symbol; ``1`` for a pure number."""
+    min: float
+    """Smallest value allowed."""
+    max: float
+    """Largest value allowed."""
+    description: str = ""
+    """Meaning of the parameter."""
+    most: int | None = None
+    """Most numbers of a list; ``None`` for one number."""
+
+    def _described(self) -> dict[str, Any]:
+        scalar = self.most is None
+        return {
+            "name": self.name,
+            "unit": self.unit,
+            "kind": {"type": "scalar"} if scalar else {"type": "list", "max_len": self.most},
+            "min": self.min,
+            "max": self.max,
+            "store": {"type": "f32"},
+            "description": self.description,
+        }
+
+
+class Model(Protocol):
+    """What a class has that ``register_model`` takes."""
+
+    id: str
+    fields: Sequence[Field]
+
+    def fit(self, frequency_hz: Numbers, magnitude: Numbers) -> Parameters: ...
+    def magnitude(self, parameters: Any, frequency_hz: Numbers) -> npt.ArrayLike: ...
+
+
+_Class = TypeVar("_Class", bound="type[Model]")
+
+
+def register_model(model: _Class) -> _Class:
+    """Register a model that is written in Python, for prototypes; usable as a decorator.
+
+    ``model`` is a class that is made without arguments. It has ``id`` (reverse-DNS, such as ``org.example.plateau``),
+    ``fields`` (a list of ``Field``), and these methods:
+
+    - ``fit(frequency_hz, magnitude)`` returns the parameters of a spectrum, by name;
+    - ``magnitude(parameters, frequency_hz)`` returns a magnitude for each frequency, in any scale; a voice plays noise
+      with these magnitudes;
+    - ``voice(parameters, rate_hz, seed)``, if there is one, returns an object that plays instead. Its ``render(n)``
+      returns the next ``n`` samples, of unit RMS; its ``retune(parameters)`` changes the parameters, for textures with
+      several conditions.
+
+    ``name``, ``version`` and the first line of the class's documentation describe the model in ``htex.models()``.
+
+    The model is known to this process only: to all later calls of ``fit``, ``open``, ``tradeoff``, ``models`` and ``Scene``,
+    not to the command. It replaces a registered model of the same id. Its methods run under the interpreter's lock and are
+    slow; a model for others to use is written in Rust or C. An exception in them becomes a ``ModelError`` with the exception
+    as its cause.
+    """
+    if not inspect.isclass(model):
+        raise TypeError(f"expected a class, got {type(model).__name__}; give the class itself, not an object")
+    for name in ("id", "fields", "fit", "magnitude"):
+        if not hasattr(model, name):
+            raise TypeError(f"class {model.__name__} has no `{name}`; a model has id, fields, fit and magnitude")
+    fields = list(model.fields)
+    for field in fields:
+        if not isinstance(field, Field):
+            raise TypeError(f"fields of class {model.__name__}: expected htex.Field, got {type(field).__name__}")
+    documentation = inspect.getdoc(model) or model.__name__
+    descriptor = {
+        "id": model.id,
+        "name": getattr(model, "name", model.__name__),
+        "version": getattr(model, "version", "0.0.0"),
+        "summary": documentation.splitlines()[0],
+        "fields": [field._described() for field in fields],
+    }
+    adapter = _Adapter(model(), fields)
+    _htex.register_model(json.dumps(descriptor), adapter, hasattr(model, "voice"))
+    return model
+
+
+class _Adapter:
+    """A model with arrays for parameters, whose results are checked."""
+
+    def __init__(self, model: Any, fields: list[Field]) -> None:
+        self.model = model
+        self.fields = fields
+
+    def fit(self, frequency_hz: Numbers, magnitude: Numbers) -> list[float]:
+        return self._flat(self.model.fit(frequency_hz, magnitude))
+
+    def magnitude(self, flat: Numbers, frequency_hz: Numbers) -> Numbers:
+        import numpy as np
+
+        returned = self.model.magnitude(self._named(flat), frequency_hz.copy())
+        found = np.asarray(returned, dtype=np.float64)
+        if found.shape != frequency_hz.shape:
+            raise ValueError(
+                f"magnitude returned an array of shape {found.shape} for {len(frequency_hz)} frequencies; "
+                "return one magnitude for each"
+            )
+        invalid = ~(np.isfinite(found) & (found >= 0))
+        if invalid.any():
+            at = int(invalid.argmax())
+            raise ValueError(
+                f"magnitude returned {found[at]} at {frequency_hz[at]:g} Hz; return finite numbers from 0"
+            )
+        return found
+
+    def voice(self, flat: Numbers, rate_hz: float, seed: int) -> _Voice:
+        return _Voice(self, self.model.voice(self._named(flat), rate_hz, seed))
+
+    def _flat(self, parameters: Any) -> list[float]:
+        names = [field.name for field in self.fields]
+        if not isinstance(parameters, Mapping):
+            raise TypeError(f"fit returned {type(parameters).__name__}; return a dict with {', '.join(names)}")
+        if set(parameters) != set(names):
+            raise ValueError(f"fit returned {', '.join(map(str, parameters))}; return {', '.join(names)}")
+        flat: list[float] = []
+        for field in self.fields:
+            value = parameters[field.name]
+            if field.most is None:
+                flat.append(float(value))
+            else:
+                numbers = [float(x) for x in value]
+                flat += [float(len(numbers)), *numbers]
+        return flat
+
+    def _named(self, flat: Numbers) -> dict[str, float | list[float]]:
+        named: dict[str, float | list[float]] = {}
+        rest = iter(flat.tolist())
+        for field in self.fields:
+            first = next(rest)
+            named[field.name] = first if field.most is None else [next(rest) for _ in range(int(first))]
+        return named
+
+
+class _Voice:
+    """A voice whose samples are checked."""
+
+    def __init__(self, adapter: _Adapter, voice: Any) -> None:
+        if not hasattr(voice, "render"):
+            raise TypeError(f"voice returned {type(voice).__name__}, which has no render(n)")
+        self.adapter = adapter
+        self.voice = voice
+
+    def render(self, n: int) -> npt.NDArray[np.float32]:
+        import numpy as np
+
+        returned = self.voice.render(n)
+        with np.errstate(over="ignore"):
+            samples = np.ascontiguousarray(returned, dtype=np.float32)
+        if samples.shape != (n,) or np.ndim(returned) != 1:
+            raise ValueError(
+                f"render returned an array of shape {np.shape(returned)} for {n} samples; return one number for each"
+            )
+        finite = np.isfinite(samples)
+        if not finite.all():
+            at = int((~finite).argmax())
+            raise ValueError(f"render returned {samples[at]} at sample {at} of {n}; return finite numbers")
+        return samples
+
+    def retune(self, flat: Numbers) -> None:
+        if not hasattr(self.voice, "retune"):
+            raise TypeError(
+                f"{type(self.voice).__name__} has no retune(parameters), which changes the parameters between conditions"
+            )
+        self.voice.retune(self.adapter._named(flat))
+
+
+for _class in (Field, register_model):
+    _class.__module__ = "htex"

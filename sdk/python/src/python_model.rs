@@ -1,0 +1,204 @@
+//! Models that are written in Python. They run under the interpreter's lock, in this process only.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use htex::host::{Descriptor, Registry, RuntimeModel, RuntimeVoice, read_descriptor};
+use htex_dsp::Band;
+use htex_dsp::grid::level_rms;
+use htex_dsp::shaped_noise::{ShapedNoise, economical_rate_hz};
+use htex_model::{Error, Fit, FitInput, Status, Values};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+use crate::causes;
+use crate::errors::{OrRaise, option};
+use crate::python_voice::{PlayedVoice, ShapedVoice};
+
+/// The origin of these models in messages and assets.
+const ORIGIN: &str = "Python, this process only";
+
+/// The registered models, in the order of their registration.
+static REGISTERED: Mutex<Vec<(Descriptor, Arc<PythonModel>)>> = Mutex::new(Vec::new());
+
+/// Waits for a call of another thread; called without the interpreter.
+fn registered() -> MutexGuard<'static, Vec<(Descriptor, Arc<PythonModel>)>> {
+    REGISTERED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Registers a model, or replaces the one of its id. `adapter` converts parameters and checks results.
+#[pyfunction]
+pub(crate) fn register_model(
+    py: Python<'_>,
+    descriptor: &str,
+    adapter: Py<PyAny>,
+    plays: bool,
+) -> PyResult<()> {
+    let descriptor = read_descriptor(descriptor).map_err(|error| option(error.to_string()))?;
+    let id = descriptor.id.clone();
+    let builtin = Registry::builtin();
+    if builtin.models().iter().any(|model| model.id() == id) {
+        let text = format!("the id {id} is that of a built-in model; choose another");
+        return Err(option(text));
+    }
+    let model = Arc::new(PythonModel { adapter, plays });
+    let old = py.detach(|| {
+        let mut all = registered();
+        let old = all.iter().position(|(other, _)| other.id == id);
+        let old = old.map(|i| all.remove(i));
+        all.push((descriptor, model));
+        old
+    });
+    drop(old);
+    Ok(())
+}
+
+/// Removes a model from later searches; returns whether there was one of this id.
+#[pyfunction]
+pub(crate) fn unregister_model(py: Python<'_>, id: &str) -> bool {
+    let old = py.detach(|| {
+        let mut all = registered();
+        let old = all.iter().position(|(other, _)| other.id == id);
+        old.map(|i| all.remove(i))
+    });
+    old.is_some()
+}
+
+/// Adds the registered models to those of a search.
+pub(crate) fn add_to(registry: &mut Registry) -> PyResult<()> {
+    let all = registered().clone();
+    for (descriptor, model) in all {
+        registry
+            .add_runtime_model(ORIGIN, descriptor, model)
+            .or_raise()?;
+    }
+    Ok(())
+}
+
+/// A model: an object of the package that calls the author's class.
+pub(crate) struct PythonModel {
+    adapter: Py<PyAny>,
+    /// Whether the class makes its own voices; else noise is shaped by its magnitudes.
+    plays: bool,
+}
+
+/// Keeps the exception of a call, and makes the model's error of it.
+pub(crate) fn failed(py: Python<'_>, error: PyErr) -> Error {
+    Error::new(Status::Failed, causes::keep(py, error))
+}
+
+fn array<'py>(py: Python<'py>, numbers: &[f64]) -> Bound<'py, PyArray1<f64>> {
+    PyArray1::from_slice(py, numbers)
+}
+
+/// Returns the numbers of an array or a sequence, of which there must be `wanted`.
+fn numbers(value: &Bound<'_, PyAny>, wanted: usize) -> PyResult<Vec<f64>> {
+    let numbers: Vec<f64> = value.extract()?;
+    match numbers.len() == wanted {
+        true => Ok(numbers),
+        false => Err(option(format!(
+            "{} numbers for {wanted} frequencies",
+            numbers.len()
+        ))),
+    }
+}
+
+impl PythonModel {
+    /// Returns the magnitudes of parameters at frequencies in the band, at unit RMS on the grid.
+    pub(crate) fn curve(
+        &self,
+        parameters: &[f64],
+        band: Band,
+        frequency_hz: &[f64],
+    ) -> Result<Vec<f64>, Error> {
+        // One call of Python: the grid, which gives the level, and then the frequencies.
+        let mut all = band.grid_hz();
+        let bins = all.len();
+        all.extend(frequency_hz);
+        let mut magnitude = Python::attach(|py| {
+            let called = || {
+                let adapter = self.adapter.bind(py);
+                let arguments = (array(py, parameters), array(py, &all));
+                numbers(&adapter.call_method1("magnitude", arguments)?, all.len())
+            };
+            called().map_err(|error| failed(py, error))
+        })?;
+        let level = level_rms(&magnitude[..bins]);
+        if !(level.is_finite() && level > 0.0) {
+            return Err(Error::parameters(
+                "the magnitude is 0 at all frequencies of the band's grid, or too large",
+            ));
+        }
+        let mut asked = magnitude.split_off(bins);
+        asked.iter_mut().for_each(|m| *m /= level);
+        Ok(asked)
+    }
+}
+
+impl RuntimeModel for PythonModel {
+    fn fit(&self, input: &FitInput<'_>) -> Result<Fit, Error> {
+        let parameters = Python::attach(|py| {
+            let called = || {
+                let arguments = (array(py, input.frequency_hz), array(py, input.magnitude));
+                let fitted = self.adapter.bind(py).call_method1("fit", arguments)?;
+                fitted.extract::<Vec<f64>>()
+            };
+            called().map_err(|error| failed(py, error))
+        })?;
+        Ok(Fit {
+            parameters,
+            level_rms: level_rms(input.magnitude),
+        })
+    }
+
+    fn magnitude(
+        &self,
+        parameters: &Values<'_>,
+        band: Band,
+        frequency_hz: &[f64],
+        magnitude: &mut [f64],
+    ) -> Result<(), Error> {
+        let inside: Vec<f64> = frequency_hz
+            .iter()
+            .copied()
+            .filter(|hz| band.contains(*hz))
+            .collect();
+        let mut curve = self.curve(parameters.flat(), band, &inside)?.into_iter();
+        for (m, hz) in magnitude.iter_mut().zip(frequency_hz) {
+            let found = band.contains(*hz).then(|| curve.next()).flatten();
+            *m = found.unwrap_or(0.0);
+        }
+        Ok(())
+    }
+
+    fn voice_rate_hz(&self, _: &Values<'_>, band: Band, wanted_hz: f64) -> f64 {
+        match self.plays {
+            true => wanted_hz,
+            false => economical_rate_hz(wanted_hz, band),
+        }
+    }
+
+    fn voice(
+        &self,
+        parameters: &Values<'_>,
+        band: Band,
+        rate_hz: f64,
+        seed: u64,
+    ) -> Result<Box<dyn RuntimeVoice>, Error> {
+        let model = Python::attach(|py| Self {
+            adapter: self.adapter.clone_ref(py),
+            plays: self.plays,
+        });
+        if self.plays {
+            let voice = Python::attach(|py| {
+                let arguments = (array(py, parameters.flat()), rate_hz, seed);
+                let made = model.adapter.bind(py).call_method1("voice", arguments);
+                made.map(Bound::unbind).map_err(|error| failed(py, error))
+            })?;
+            return Ok(Box::new(PlayedVoice::new(voice)));
+        }
+        let mut noise = ShapedNoise::new(rate_hz, band, seed);
+        let curve = model.curve(parameters.flat(), band, noise.component_hz())?;
+        noise.start(|i, _| curve[i]);
+        Ok(Box::new(ShapedVoice::new(model, band, noise)))
+    }
+}

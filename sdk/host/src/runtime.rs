@@ -48,8 +48,8 @@ thread_local! {
 ///         Ok(())
 ///     }
 /// }
-/// let fields = &[StaticField::scalar("unused", "1", (0.0, 1.0), "Unused.")];
-/// let descriptor = StaticDescriptor::new("org.example.constant", "Constant", "1.0.0", "A constant.").fields(fields);
+/// const FIELDS: &[StaticField] = &[StaticField::scalar("unused", "1", (0.0, 1.0), "Unused.")];
+/// let descriptor = StaticDescriptor::new("org.example.constant", "Constant", "1.0.0", "A constant.").fields(FIELDS);
 /// let mut registry = Registry::builtin();
 /// registry.add_runtime_model("Rust", Descriptor::from(&descriptor), Arc::new(Constant(0.25)))?;
 /// let model = registry.find("constant")?;

@@ -99,6 +99,8 @@ impl Tradeoff {
         let request = Request {
             models: self.models()?,
             quick: self.quick,
+            // Without its path, a journal is continued by every build.
+            program: std::env::current_exe().unwrap_or_default(),
         };
         let subjects = self.subjects()?;
         let mut journal = Journal::new(&part_file);

@@ -32,11 +32,17 @@ pub(crate) fn tradeoff(
     reading: Reading,
     request: Sweep,
 ) -> PyResult<Bound<'_, PyAny>> {
-    let tradeoff = py.detach(|| measured(&sources, &reading, &request))?;
+    let program: PathBuf = py.import("htex._htex")?.getattr("__file__")?.extract()?;
+    let tradeoff = py.detach(|| measured(&sources, &reading, &request, program))?;
     from_json(py, &tradeoff)
 }
 
-fn measured(sources: &[Source], reading: &Reading, request: &Sweep) -> PyResult<Tradeoff> {
+fn measured(
+    sources: &[Source],
+    reading: &Reading,
+    request: &Sweep,
+    program: PathBuf,
+) -> PyResult<Tradeoff> {
     let error = match &request.error[..] {
         "nine_band" => ErrorMeasure::NineBand,
         "third_octave" => ErrorMeasure::ThirdOctave,
@@ -57,6 +63,7 @@ fn measured(sources: &[Source], reading: &Reading, request: &Sweep) -> PyResult<
     let swept = Request {
         models: models.collect(),
         quick: request.quick,
+        program,
     };
     let options = reading.spectrum_options()?;
     let takes = reading.takes(sources, &[])?;

@@ -69,7 +69,7 @@ pub(crate) fn key(subjects: &[Subject], contenders: &[Contender], request: &Requ
         hasher.update(&(text.len() as u64).to_le_bytes());
         hasher.update(text.as_bytes());
     };
-    add(&std::env::current_exe().map_or_else(|_| String::new(), |program| build(&program)));
+    add(&build(&request.program));
     add(&format!("{:?} {}", Machine::here(), request.quick));
     for subject in subjects {
         add(&subject.name);

@@ -1,5 +1,7 @@
 //! What to sweep.
 
+use std::path::PathBuf;
+
 use htex_host::LoadedModel;
 
 /// A model, loaded in one or more ways: `built in`, `native`, `wasm`. The first is measured
@@ -17,4 +19,6 @@ pub struct Request {
     pub models: Vec<Model>,
     /// Whether to vary one knob at a time with three values each, and to time fewer runs.
     pub quick: bool,
+    /// The file of the program or library with this code: a journal of another build is not continued.
+    pub program: PathBuf,
 }

@@ -1,5 +1,5 @@
 //! Models that are objects: their errors, panics and voices.
-#![allow(clippy::unwrap_used)] // Test code: a failure is a failed test.
+#![allow(clippy::unwrap_used, clippy::panic)] // Test code: a failure is a failed test.
 
 use std::sync::Arc;
 

@@ -70,6 +70,8 @@ fn programs(folder: &Path, workspace: &Path) -> Result<Vec<Cost>, String> {
         "htex",
         "--example",
         "block",
+        // Without the engine of modules, whose link takes minutes: built-in models are measured.
+        "--no-default-features",
     ]);
     run(build.current_dir(workspace))?;
     let prefix = folder.join("prefix");

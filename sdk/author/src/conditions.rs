@@ -64,6 +64,7 @@ pub(crate) fn group_takes(
             speed_mm_s: condition.speed_mm_s,
             force_n: condition.force_n,
             repeatability_rms_db: spectrum.repeatability_rms_db,
+            segments: None,
         });
         groups.push(Group {
             spectrum,
@@ -118,6 +119,6 @@ fn check_known(gatherings: &[Gathering]) -> Result<(), AuthorError> {
 }
 
 /// Rounds to four digits, the precision of measured speeds and forces.
-fn four_digits(x: f64) -> f64 {
+pub(crate) fn four_digits(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)
 }

@@ -96,6 +96,75 @@ pub enum AuthorError {
         /// The allowed range.
         allowed: &'static str,
     },
+    /// The text of a grid is not valid.
+    #[error(
+        "grid {text}: {problem}; it looks like auto, speed=40,80,160 (mm/s) or force=0.3,0.6 (N)"
+    )]
+    GridText {
+        /// The text, at most 80 characters.
+        text: String,
+        /// What is wrong.
+        problem: String,
+    },
+    /// The recording does not say how the finger moves, which a grid of conditions needs.
+    #[error(
+        "{source_name}: the {what} is not in the file, and a grid of conditions needs it at every sample: name the column of \
+         {columns}, or give one {what} for the whole recording, or fit without a grid"
+    )]
+    NoMotion {
+        /// The recording.
+        source_name: String,
+        /// Speed or force.
+        what: &'static str,
+        /// Columns that have it.
+        columns: &'static str,
+    },
+    /// In no window are speed and force steady.
+    #[error(
+        "{source_name}: in none of {windows} windows of 0.2 s do speed and force stay within 10 % of their means while the \
+         finger slides; stroke more evenly, or correct the columns of position, speed and normal force"
+    )]
+    NothingSteady {
+        /// The recording.
+        source_name: String,
+        /// Number of windows.
+        windows: usize,
+    },
+    /// Speed and force are constant, so there is no grid.
+    #[error(
+        "the motion is constant: {:.4} to {:.4} mm/s and {:.4} to {:.4} N; fit without a grid, which gives one condition",
+        .speed_mm_s[0], .speed_mm_s[1], .force_n[0], .force_n[1]
+    )]
+    GridConstant {
+        /// Range of the speed, mm/s.
+        speed_mm_s: [f64; 2],
+        /// Range of the force, newtons.
+        force_n: [f64; 2],
+    },
+    /// There are too few steady windows for a single condition.
+    #[error(
+        "only {segments} windows of 0.2 s are steady, and a condition needs {needed}; record for longer: one or two minutes of \
+         strokes at all speeds and forces"
+    )]
+    GridFew {
+        /// Number of steady windows.
+        segments: usize,
+        /// Fewest for one condition.
+        needed: usize,
+    },
+    /// No cell of the grid has enough windows.
+    #[error(
+        "no cell of the grid has {needed} steady windows; {segments} are at {motion}: choose lines there, fewer lines, or \
+         record for longer"
+    )]
+    GridEmpty {
+        /// Number of steady windows.
+        segments: usize,
+        /// Fewest for one condition.
+        needed: usize,
+        /// The ranges of speed and force.
+        motion: String,
+    },
     /// A model could not be fitted or measured.
     #[error(transparent)]
     Model(#[from] HostError),

@@ -59,7 +59,7 @@ pub struct Spread {
 }
 
 /// A known signal of the motion: its name, unit, samples and target.
-struct Known<'a> {
+pub(crate) struct Known<'a> {
     what: &'static str,
     signal: &'static str,
     unit: &'static str,
@@ -70,7 +70,7 @@ struct Known<'a> {
 }
 
 /// Returns the recording's speed and normal force, where they are known.
-fn known(recording: &Recording, target: Exploration) -> [Option<Known<'_>>; 2] {
+pub(crate) fn known(recording: &Recording, target: Exploration) -> [Option<Known<'_>>; 2] {
     let half = (HALF_AVERAGE_S * recording.rate_hz).round() as usize;
     let make = |what, signal, unit, values, target| Known {
         what,
@@ -96,6 +96,14 @@ impl Known<'_> {
         averages.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
             [low.min(value), high.max(value)]
         })
+    }
+
+    /// Returns the mean over a segment, if the averages stay within `part` of it.
+    pub(crate) fn steady_mean(&self, start: usize, len: usize, part: f64) -> Option<f64> {
+        let mean = self.average.mean(start, start + len);
+        let [low, high] = self.range(start, len);
+        let is_near = |value: f64| (value - mean).abs() <= part * mean.abs();
+        (is_near(low) && is_near(high)).then_some(mean)
     }
 
     fn spread(&self, segments: &Segments) -> [f64; 2] {

@@ -12,7 +12,8 @@ use htex_format::{
 use htex_host::{HostError, LoadedModel, Origin};
 
 use crate::alternatives::warning;
-use crate::conditions::{Group, group_takes};
+use crate::conditions::{Group, Grouped, group_takes};
+use crate::grid::{GridReport, group_grid, left_out};
 use crate::level::{Level, stored_level};
 use crate::request::{AssetRequest, ModelRequest};
 use crate::spectrum::SpectrumRef;
@@ -33,6 +34,8 @@ pub struct FittedAsset {
     pub spectra: Vec<TextureSpectrum>,
     /// Findings of the recordings below a warning: what was left out, and why.
     pub notes: Vec<String>,
+    /// The grid of the conditions, if one was requested.
+    pub grid: Option<GridReport>,
 }
 
 /// Fits every model at every condition, measures the parameters as stored, and returns the asset.
@@ -42,13 +45,23 @@ pub struct FittedAsset {
 /// # Errors
 /// When a recording is not usable, or no model could be fitted.
 pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, AuthorError> {
-    let grouped = group_takes(takes, &request.spectrum, request.strict)?;
-    let (mut warnings, notes) = (grouped.warnings, grouped.notes);
+    let (mut grouped, grid) = match &request.grid {
+        None => (group_takes(takes, &request.spectrum, request.strict)?, None),
+        Some(grid) => {
+            let (grouped, report) = group_grid(takes, grid, &request.spectrum, request.strict)?;
+            (grouped, Some(report))
+        }
+    };
+    let mut warnings = std::mem::take(&mut grouped.warnings);
+    let notes = std::mem::take(&mut grouped.notes);
     let mut fitted = Vec::new();
     let mut skipped = Vec::new();
     for choice in &request.models {
         match fit_model(choice, &grouped.groups, request.level) {
-            Ok(one) => {
+            Ok(mut one) => {
+                if grid.is_some() {
+                    one.leave_out(&choice.model, &grouped);
+                }
                 warnings.extend(band_error_warning(choice, &one, &grouped.groups, request));
                 warnings.extend(origin_warning(&choice.model));
                 fitted.push(one);
@@ -86,6 +99,7 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
         skipped,
         spectra,
         notes,
+        grid,
     })
 }
 
@@ -93,6 +107,23 @@ struct FittedModel {
     representation: Representation,
     parameters: Vec<Vec<f64>>,
     fit_ms: f64,
+}
+
+impl FittedModel {
+    /// Adds the leave-one-out error of each condition that the others surround.
+    fn leave_out(&mut self, model: &LoadedModel, grouped: &Grouped) {
+        let level_rms: Vec<f64> = self
+            .representation
+            .at
+            .iter()
+            .map(|at| at.level_rms)
+            .collect();
+        let (conditions, groups) = (&grouped.conditions, &grouped.groups);
+        let errors = left_out(model, conditions, groups, &self.parameters, &level_rms);
+        for (at, error) in self.representation.at.iter_mut().zip(errors) {
+            at.left_out = error;
+        }
+    }
 }
 
 fn fit_model(
@@ -120,6 +151,7 @@ fn fit_model(
             condition,
             level_rms,
             quality: Some(quality),
+            left_out: None,
         });
         parameters.push(stored);
     }

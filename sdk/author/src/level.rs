@@ -2,11 +2,14 @@
 
 use htex_dsp::grid::level_rms;
 use htex_host::{Fit, HostError, LoadedModel};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::SpectrumRef;
 
 /// The source of a representation's level.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
 pub enum Level {
     /// The recording's RMS in the band: the asset plays at the level of its recording, and a copy of a copy at the
     /// level of the first. A model whose level is a part of its parameters

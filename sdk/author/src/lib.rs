@@ -21,10 +21,12 @@
 
 mod alternatives;
 mod conditions;
+mod embed;
 mod error;
 mod exploration;
 pub mod findings;
 mod fit;
+pub mod grid;
 mod hertz;
 mod level;
 mod metrics;
@@ -35,17 +37,21 @@ mod rendered;
 mod request;
 pub mod response;
 mod segments;
+pub mod settings;
 pub mod simulate;
 mod spectrum;
 mod stored;
 mod sums;
 mod take;
+mod velocity;
 mod warnings;
 
+pub use embed::{EmbedError, embed_plugins};
 pub use error::AuthorError;
 pub use exploration::{Exploration, Spread};
 pub use findings::recording_findings;
 pub use fit::{FittedAsset, fit_asset, measure};
+pub use grid::{CellStatus, Grid, GridCell, GridReport};
 pub use level::{Level, stored_level};
 pub use metrics::{Agreement, agreement};
 pub use reading::{Reading, read_take, validate_recording};
@@ -59,3 +65,4 @@ pub use spectrum::{
 };
 pub use stored::stored_fields;
 pub use take::Take;
+pub use velocity::velocity;

@@ -9,7 +9,7 @@ use crate::findings::{
     RECORDING_NOTED, RECORDING_UNREADABLE, RECORDING_UNUSABLE, judge_segments, recording_findings,
 };
 use crate::read::{ReadError, ReadOptions, read_recording};
-use crate::spectrum::spectra_of;
+use crate::spectrum::{Trend, spectra_of};
 use crate::take::Take;
 use crate::{AuthorError, Exploration, Recording, SegmentSpectra, SpectrumOptions, Spread};
 
@@ -43,7 +43,7 @@ pub fn read_take(
 ) -> Result<Reading, AuthorError> {
     let recording = &take.recording;
     let mut of_segments = Findings::default();
-    let part = spectra_of(recording, options, |segments| {
+    let part = spectra_of(recording, options, Trend::Mean, |segments| {
         keep_on_target(recording, segments, take.given, &mut of_segments)
     })?;
     judge_segments(recording, &part, &mut of_segments);
@@ -53,16 +53,12 @@ pub fn read_take(
     if strict {
         refuse(recording, &findings)?;
     }
-    let sentences = |info: bool| {
-        let chosen = findings
-            .iter()
-            .filter(move |f| (f.severity == Severity::Info) == info);
-        chosen.map(|f| format!("{}: {}: {}", recording.source, f.code, f.message))
-    };
     let noticed = recording.warnings.iter().chain(&part.warnings).cloned();
     Ok(Reading {
-        warnings: noticed.chain(sentences(false)).collect(),
-        notes: sentences(true).collect(),
+        warnings: noticed
+            .chain(sentences(recording, &findings, false))
+            .collect(),
+        notes: sentences(recording, &findings, true).collect(),
         part,
         condition,
         spread,
@@ -70,7 +66,20 @@ pub fn read_take(
     })
 }
 
-fn refuse(recording: &Recording, findings: &[Finding]) -> Result<(), AuthorError> {
+/// Returns the findings of severity info, or those above it, as sentences.
+pub(crate) fn sentences(
+    recording: &Recording,
+    findings: &[Finding],
+    info: bool,
+) -> impl Iterator<Item = String> {
+    let chosen = findings
+        .iter()
+        .filter(move |f| (f.severity == Severity::Info) == info);
+    chosen.map(|f| format!("{}: {}: {}", recording.source, f.code, f.message))
+}
+
+/// Returns an error if a finding is an error or a warning.
+pub(crate) fn refuse(recording: &Recording, findings: &[Finding]) -> Result<(), AuthorError> {
     let grave = findings.iter().filter(|f| f.severity != Severity::Info);
     let findings: Vec<Finding> = grave.cloned().collect();
     if findings.is_empty() {

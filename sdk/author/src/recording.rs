@@ -237,13 +237,18 @@ impl Recording {
                 ends_s: self.second(self.samples()),
             });
         }
+        self.keep(from, to);
+        Ok(self)
+    }
+
+    /// Keeps the samples from `from` to before `to`, both up to the number of samples.
+    pub(crate) fn keep(&mut self, from: usize, to: usize) {
         let (normal, speed) = (&mut self.normal_n, &mut self.speed_mm_s);
         for signal in self.axes.iter_mut().chain(normal).chain(speed) {
             signal.truncate(to);
             signal.drain(..from);
         }
         self.first_sample += from;
-        Ok(self)
     }
 
     /// Returns the time of a sample in its file, seconds.

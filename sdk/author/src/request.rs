@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use htex_host::LoadedModel;
 
 use crate::SpectrumOptions;
+use crate::grid::Grid;
 use crate::level::Level;
 
 /// A model to fit, with one value for each of its options.
@@ -69,6 +70,8 @@ pub struct AssetRequest {
     pub alternatives: Vec<LoadedModel>,
     /// Whether to refuse recordings with errors or warnings.
     pub strict: bool,
+    /// A grid of conditions from recordings of a free motion; without it, each recording has one condition.
+    pub grid: Option<Grid>,
     /// Whether to keep the recorded spectra in the asset.
     pub keep_reference: bool,
     /// Options that differ from their defaults, for the provenance.
@@ -140,6 +143,13 @@ impl AssetRequest {
     #[must_use]
     pub fn with_strict(mut self, strict: bool) -> Self {
         self.strict = strict;
+        self
+    }
+
+    /// Sets a grid of conditions, for recordings of a free motion.
+    #[must_use]
+    pub fn with_grid(mut self, grid: impl Into<Option<Grid>>) -> Self {
+        self.grid = grid.into();
         self
     }
 

@@ -3,6 +3,8 @@
 use std::ops::Range;
 
 use htex_format::Quantity;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::Recording;
 use crate::sums::Sums;
@@ -21,7 +23,8 @@ const REPRESENTED_S: f64 = 2.0;
 const REPRESENTED: f64 = 0.5;
 
 /// Method of choosing segments.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
 pub enum SegmentChoice {
     /// Sweeps if the recording has them and their segments represent at least half of its sliding, else windows.
     ///
@@ -34,6 +37,17 @@ pub enum SegmentChoice {
     /// Windows over the whole recording, each overlapping the previous by half (Welch 1967). Without overlap, Hann
     /// windows leave half of it unused, and the level of 10 s of noise is uncertain by 0.2 dB.
     Windows,
+}
+
+impl SegmentChoice {
+    /// Returns the name in a recipe and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Sweeps => "sweeps",
+            Self::Windows => "windows",
+        }
+    }
 }
 
 /// A stretch of the recording in which the signal exceeds the threshold.

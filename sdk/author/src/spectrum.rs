@@ -1,11 +1,15 @@
 //! The texture spectrum of a recording (paper, Texture processing).
 
+use std::borrow::Cow;
+
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
 use htex_dsp::fft::RealFft;
 use htex_dsp::grid::{Band, GRID_HZ};
 use htex_dsp::spectrum::{Complex, SegmentAnalyzer, dft321, magnitude};
 use htex_format::Quantity;
 use htex_host::FitRequest;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::hertz::hertz;
 use crate::response::raised;
@@ -22,7 +26,8 @@ const FEWEST_BINS: usize = 3;
 const GRID_TOLERANCE: f64 = 1e-3;
 
 /// Method of averaging segments.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
 pub enum Averaging {
     /// Mean of the magnitudes: one reading of "averaged the FFTs" (paper, Texture processing). The mean of noise is
     /// 1.05 dB, a factor of √π/2, below its RMS (Rayleigh distribution).
@@ -32,6 +37,17 @@ pub enum Averaging {
     Rms,
     /// Magnitude of the mean of the complex spectra: keeps only what is in phase in all segments.
     Complex,
+}
+
+impl Averaging {
+    /// Returns the name in a recipe and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Magnitude => "magnitude",
+            Self::Rms => "rms",
+            Self::Complex => "complex",
+        }
+    }
 }
 
 /// Options of computing a texture spectrum.
@@ -134,18 +150,28 @@ impl TextureSpectrum {
             .iter()
             .flat_map(|part| part.spectra.iter().map(Vec::as_slice))
             .collect();
-        let frequency_hz = first.band.grid_hz();
-        let (signal, signal_rate_hz) = overlap_add(first.band, &all);
-        Ok(Self {
-            quantity: first.quantity,
-            band: first.band,
-            magnitude: average(&all, frequency_hz.len(), averaging),
+        Ok(Self::of(first.quantity, first.band, &all, averaging))
+    }
+
+    /// Averages spectra on the grid of a band.
+    pub(crate) fn of(
+        quantity: Quantity,
+        band: Band,
+        all: &[&[Complex<f64>]],
+        averaging: Averaging,
+    ) -> Self {
+        let frequency_hz = band.grid_hz();
+        let (signal, signal_rate_hz) = overlap_add(band, all);
+        Self {
+            quantity,
+            band,
+            magnitude: average(all, frequency_hz.len(), averaging),
             segments: all.len(),
-            repeatability_rms_db: repeatability(first.band, &all, averaging),
+            repeatability_rms_db: repeatability(band, all, averaging),
             frequency_hz,
             signal,
             signal_rate_hz,
-        })
+        }
     }
 
     /// Returns the request to fit a model, with one value for each of its options.
@@ -179,13 +205,23 @@ pub fn segment_spectra(
     recording: &Recording,
     options: &SpectrumOptions,
 ) -> Result<SegmentSpectra, AuthorError> {
-    spectra_of(recording, options, |_| Ok(()))
+    spectra_of(recording, options, Trend::Mean, |_| Ok(()))
+}
+
+/// What is removed from a segment before it is windowed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Trend {
+    /// Its mean.
+    Mean,
+    /// The straight line of least squares.
+    Linear,
 }
 
 /// Computes the spectra of the segments that `keep` retains.
 pub(crate) fn spectra_of(
     recording: &Recording,
     options: &SpectrumOptions,
+    trend: Trend,
     keep: impl FnOnce(&mut Segments) -> Result<(), AuthorError>,
 ) -> Result<SegmentSpectra, AuthorError> {
     let mut warnings = Vec::new();
@@ -199,7 +235,7 @@ pub(crate) fn spectra_of(
         .map(|r| inverse_response(r, band, &mut warnings))
         .transpose()?;
     let mut spectra = Vec::with_capacity(segments.starts.len());
-    let mut reader = SegmentReader::new(segments.len, band);
+    let mut reader = SegmentReader::new(segments.len, band, trend);
     for &start in &segments.starts {
         let mut bins = reader.read(&recording.axes, start)?;
         if let Some(inverse) = &inverse {
@@ -311,40 +347,65 @@ fn inverse_response(
             values.len()
         ));
     }
-    let invert = |h: &Complex<f64>| {
-        let norm = magnitude(*h);
-        if norm == 0.0 {
-            return Complex::new(1.0 / floor, 0.0);
-        }
-        h.conj() / (norm * norm.max(floor))
+    Ok(values.iter().map(|h| inverse(*h, floor)).collect())
+}
+
+/// Returns `1 / H` at frequencies in hertz, with `|H|` limited by the floor of the band.
+pub(crate) fn inverse_at(
+    response: &SetupResponse,
+    band: Band,
+    frequency_hz: impl Iterator<Item = f64>,
+) -> Vec<Complex<f64>> {
+    let floor = RESPONSE_FLOOR * response.largest_in(band);
+    let at = |hz: f64| {
+        let (re, im) = response.at(hz);
+        inverse(Complex::new(re, im), floor)
     };
-    Ok(values.iter().map(invert).collect())
+    frequency_hz.map(at).collect()
+}
+
+fn inverse(h: Complex<f64>, floor: f64) -> Complex<f64> {
+    let norm = magnitude(h);
+    if norm == 0.0 {
+        return Complex::new(1.0 / floor, 0.0);
+    }
+    h.conj() / (norm * norm.max(floor))
 }
 
 /// Computes spectra of segments: mean removed, Hann window, FFT; axes folded into one (Landin 2010).
-struct SegmentReader {
+pub(crate) struct SegmentReader {
     analyzer: SegmentAnalyzer,
     len: usize,
     band: Band,
+    trend: Trend,
 }
 
 impl SegmentReader {
-    fn new(len: usize, band: Band) -> Self {
+    pub(crate) fn new(len: usize, band: Band, trend: Trend) -> Self {
         Self {
             analyzer: SegmentAnalyzer::new(len),
             len,
             band,
+            trend,
         }
     }
 
-    fn read(&mut self, axes: &[Vec<f64>], start: usize) -> Result<Vec<Complex<f64>>, AuthorError> {
+    pub(crate) fn read(
+        &mut self,
+        axes: &[Vec<f64>],
+        start: usize,
+    ) -> Result<Vec<Complex<f64>>, AuthorError> {
         let scale = self.analyzer.amplitude_scale();
         let mut spectra = Vec::with_capacity(axes.len());
         for axis in axes {
             let mut bins = self.analyzer.make_bins();
             let segment = axis.get(start..start + self.len).unwrap_or_default();
+            let level = match self.trend {
+                Trend::Mean => Cow::Borrowed(segment),
+                Trend::Linear => Cow::Owned(without_line(segment)),
+            };
             self.analyzer
-                .analyze(segment, &mut bins)
+                .analyze(&level, &mut bins)
                 .map_err(|_| AuthorError::BandsDiffer)?;
             let in_band = self.band.first_bin()..=self.band.last_bin();
             let bin = |k: usize| bins.get(k).copied().unwrap_or_default();
@@ -354,6 +415,17 @@ impl SegmentReader {
         folded.iter_mut().for_each(|bin| *bin *= scale);
         Ok(folded)
     }
+}
+
+/// Subtracts the straight line of least squares through equally spaced samples, except for its mean.
+fn without_line(segment: &[f64]) -> Vec<f64> {
+    let middle = 0.5 * (segment.len() as f64 - 1.0);
+    let place = |i: usize| i as f64 - middle;
+    let samples = || segment.iter().enumerate();
+    let both: f64 = samples().map(|(i, x)| place(i) * x).sum();
+    let own: f64 = samples().map(|(i, _)| place(i) * place(i)).sum();
+    let slope = if own > 0.0 { both / own } else { 0.0 };
+    samples().map(|(i, x)| x - slope * place(i)).collect()
 }
 
 fn average(all: &[&[Complex<f64>]], bins: usize, averaging: Averaging) -> Vec<f64> {

@@ -51,8 +51,13 @@ fn wav_of_one_to_three_channels_and_all_depths() {
         ),
         (
             bytes.clone(),
-            mapped("lateral=#1", None),
-            "a column map is for CSV",
+            mapped("lateral=#2", None),
+            "the map's column #2 does not exist; the columns are: ch1",
+        ),
+        (
+            bytes.clone(),
+            mapped("lateral=#1", None).with_scale(2.0),
+            "put the scale into the map",
         ),
         (bytes.clone(), at(48_000.0), "44100 Hz"),
     ] {
@@ -97,7 +102,11 @@ fn npy_in_either_order_and_endianness() {
             npy_header("<f4", "False", "(4294967296, 4294967296)"),
             "not describe a plain array",
         ),
-        (npy_header("<f4", "False", "(1, 4)"), "shape is [1, 4]"),
+        (npy_header("<f4", "False", "(1, 4)"), "4 channels"),
+        (
+            npy_header("<f4", "False", "(1, 4000)"),
+            "shape is [1, 4000]",
+        ),
         (npy_header("<f4", "False", "()"), "shape is []"),
         (npy_header("<c8", "False", "(2,)"), "f4, f8, i2 or i4"),
         (npy_header("|O", "False", "(2,)"), "f4, f8, i2 or i4"),

@@ -120,6 +120,40 @@ impl Drop for Unfinished {
     }
 }
 
+/// A file for what does not fit into memory while another is written. Dropping it removes it.
+#[derive(Debug)]
+pub struct Scratch(NamedTempFile);
+
+impl Scratch {
+    /// Creates a file beside `path`, where there is as much space as for the result; in the system's folder of temporary files
+    /// when `path` is a pipe or a device.
+    ///
+    /// # Errors
+    /// When the folder does not exist, or the system reports an error.
+    pub fn beside(path: &Path) -> io::Result<Self> {
+        let path = followed(path)?;
+        let is_special = path.metadata().is_ok_and(|is| !is.is_file());
+        let file = if is_special {
+            builder().tempfile()?
+        } else {
+            builder().tempfile_in(folder(&path))?
+        };
+        unfinished(|all| all.insert(file.path().to_owned()));
+        Ok(Self(file))
+    }
+
+    /// Returns the file to write to and to read from.
+    pub fn file(&mut self) -> &mut File {
+        self.0.as_file_mut()
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        unfinished(|all| all.remove(self.0.path()));
+    }
+}
+
 /// Writes a file beside `path` and renames it to `path` when `write` succeeds.
 ///
 /// # Errors
@@ -211,6 +245,23 @@ mod tests {
         assert!(failed.is_err());
         assert_eq!(fs::read(&path)?, b"old");
         assert_eq!(fs::read_dir(folder.path())?.count(), 1);
+        Ok(())
+    }
+
+    #[test]
+    fn scratch_is_removed_and_keeps_what_is_written() -> Outcome {
+        use std::io::{Read, Seek};
+        let folder = tempfile::tempdir()?;
+        let mut scratch = Scratch::beside(&folder.path().join("a.htexlib"))?;
+        scratch.file().write_all(b"kept aside")?;
+        scratch.file().rewind()?;
+        let mut read = String::new();
+        scratch.file().read_to_string(&mut read)?;
+        assert_eq!(read, "kept aside");
+        assert_eq!(fs::read_dir(folder.path())?.count(), 1);
+        drop(scratch);
+        assert_eq!(fs::read_dir(folder.path())?.count(), 0);
+        Scratch::beside(Path::new("/dev/null"))?;
         Ok(())
     }
 

@@ -5,7 +5,7 @@ use std::fmt::Arguments;
 
 use htex_model::is_model_id;
 
-use crate::manifest::{AtCondition, Manifest, Quality, Representation, Steps, StoredAs};
+use crate::manifest::{AtCondition, LeftOut, Manifest, Quality, Representation, Steps, StoredAs};
 use crate::quantity::Quantity;
 use crate::report::Findings;
 use crate::rules as rule;
@@ -156,6 +156,9 @@ fn check_fit(fitted: &AtCondition, quantity: Quantity, at: Arguments<'_>, findin
     if let Some(quality) = &fitted.quality {
         check_quality(quality, format_args!("{at}/quality"), findings);
     }
+    if let Some(left_out) = &fitted.left_out {
+        check_left_out(left_out, format_args!("{at}/left_out"), findings);
+    }
 }
 
 fn check_quality(quality: &Quality, at: Arguments<'_>, findings: &mut Findings) {
@@ -207,10 +210,31 @@ fn check_quality(quality: &Quality, at: Arguments<'_>, findings: &mut Findings) 
         ),
         ("rounding_error_db", quality.rounding_error_db),
     ];
+    check_sizes(sizes, "measure again", at, findings);
+}
+
+fn check_left_out(left_out: &LeftOut, at: Arguments<'_>, findings: &mut Findings) {
+    let sizes = [
+        ("band_error_rms_db", Some(left_out.band_error_rms_db)),
+        (
+            "third_octave_error_rms_db",
+            left_out.third_octave_error_rms_db,
+        ),
+    ];
+    check_sizes(sizes, "fit again", at, findings);
+}
+
+/// Adds a finding for each number that is negative or not finite.
+fn check_sizes<'a>(
+    sizes: impl IntoIterator<Item = (&'a str, Option<f64>)>,
+    what_to_do: &str,
+    at: Arguments<'_>,
+    findings: &mut Findings,
+) {
     for (key, number) in sizes {
         if let Some(number) = number.filter(|number| !is_size(*number)) {
             let message =
-                format!("{number} is negative or not finite; measure again or remove {key}");
+                format!("{number} is negative or not finite; {what_to_do} or remove {key}");
             findings.add(rule::QUALITY_INVALID, format!("{at}/{key}"), message);
         }
     }

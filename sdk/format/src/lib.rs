@@ -23,6 +23,7 @@ mod container;
 mod document;
 mod doi;
 mod entries;
+mod entry_ranges;
 mod error;
 mod fields;
 mod finding;
@@ -55,6 +56,7 @@ pub use block::{round_parameters, stored_bytes};
 pub use check_manifest::is_extension_name;
 pub use document::{Document, DocumentRules, Opened};
 pub use doi::{InvalidDoi, check_doi};
+pub use entry_ranges::{EntryRange, entry_ranges};
 pub use error::{ReadError, WriteError, summary};
 pub use fields::{FieldMismatch, FieldOrder, KnownModel, match_fields, stored_unit};
 pub use finding::{Finding, Severity};
@@ -64,8 +66,9 @@ pub use json_text::{JsonError, parse_json};
 pub use license::{LicenseError, check_license};
 pub use limits::Limits;
 pub use manifest::{
-    AtCondition, Condition, FIRST_VERSION, Manifest, Plugin, Provenance, Quality, Reference,
-    Representation, SAME_CONDITION, Signature, Source, Steps, StoredAs, StoredField, VERSION,
+    AtCondition, Condition, FIRST_VERSION, LeftOut, Manifest, Plugin, Provenance, Quality,
+    Reference, Representation, SAME_CONDITION, Signature, Source, Steps, StoredAs, StoredField,
+    VERSION,
 };
 pub use measure::ErrorMeasure;
 pub use page::{manifest_schema, report_schema, rules_page, validation_page};

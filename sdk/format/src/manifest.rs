@@ -17,7 +17,7 @@ use crate::schema_words::{
 
 /// The newest version of the format that this crate supports. The writer declares the lowest version that has all
 /// keys of the asset: [`Manifest::declare_version`].
-pub const VERSION: &str = "1.1";
+pub const VERSION: &str = "1.2";
 /// The first version of the format; an asset without later keys declares it.
 pub const FIRST_VERSION: &str = "1.0";
 
@@ -110,8 +110,18 @@ impl Manifest {
             &self.sensor,
             &self.finger,
         ];
-        if self.htex == FIRST_VERSION && words.iter().any(|word| word.is_some()) {
-            self.htex = VERSION.to_owned();
+        let has_words = words.iter().any(|word| word.is_some());
+        let mut fits = self.representations.iter().flat_map(|r| &r.at);
+        let has_grid = self.conditions.iter().any(|c| c.segments.is_some())
+            || fits.any(|at| at.left_out.is_some());
+        let lowest = match (has_grid, has_words) {
+            (true, _) => VERSION,
+            (false, true) => "1.1",
+            (false, false) => FIRST_VERSION,
+        };
+        let is_older = ["1.0", "1.1"].contains(&self.htex.as_str()) && *self.htex < *lowest;
+        if is_older {
+            self.htex = lowest.to_owned();
         }
     }
 }
@@ -187,6 +197,9 @@ pub struct Condition {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0))]
     pub repeatability_rms_db: Option<f64>,
+    /// Number of segments that were averaged at this condition (1.2).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub segments: Option<u64>,
 }
 
 /// Largest relative difference of two speeds, or two forces, that count as the same: a hand asked to keep a speed
@@ -311,6 +324,22 @@ pub struct AtCondition {
     /// Agreement with the recording.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quality: Option<Quality>,
+    /// Error of the interpolation between the other conditions at this one, leave-one-out (1.2).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub left_out: Option<LeftOut>,
+}
+
+/// Leave-one-out error: agreement with the recorded spectrum of what a player interpolates at a condition without its own
+/// parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LeftOut {
+    /// RMS of the nine band errors, decibels.
+    #[schemars(range(min = 0))]
+    pub band_error_rms_db: f64,
+    /// RMS error over third-octave bands, decibels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0))]
+    pub third_octave_error_rms_db: Option<f64>,
 }
 
 /// Agreement with the recorded spectrum, of the model's magnitudes unless stated otherwise.

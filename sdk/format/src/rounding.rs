@@ -23,6 +23,10 @@ fn round_at(at: &mut AtCondition) {
     if let Some(quality) = &mut at.quality {
         round_quality(quality);
     }
+    if let Some(left_out) = &mut at.left_out {
+        let third_octave = left_out.third_octave_error_rms_db.iter_mut();
+        four_decimals(third_octave.chain([&mut left_out.band_error_rms_db]));
+    }
 }
 
 fn round_quality(quality: &mut Quality) {

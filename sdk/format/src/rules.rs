@@ -291,9 +291,9 @@ rule_table! {
         "It is the RMS of the texture in the band, in the asset's unit: up to 1,000,000 N or m/s2, 10,000 m/s or 100 m.",
         "Correct it; a smooth surface has a level of 0.";
     QUALITY_INVALID Error:
-        "A number of `quality` is out of range.",
+        "A number of `quality` or `left_out` is out of range.",
         "There must be nine band errors; correlations are from -1 to 1; an RMS is finite and not negative.",
-        "Measure again, or remove `quality`.";
+        "Measure again, or remove `quality` or `left_out`.";
     PARAMETERS_ENTRY_INVALID Error:
         "Two parts of the asset use the same entry, or one uses an entry of the container.",
         "Every block needs its own entry, other than `mimetype` and `manifest.json`.",

@@ -46,6 +46,24 @@ impl Asset {
         Ok(Self::new(htex_format::Asset::from_bytes(bytes)?).with_embedded())
     }
 
+    /// Opens a texture of a library; its models are the embedded and the built-in ones.
+    ///
+    /// ```no_run
+    /// let library = htex::Library::open("cloth.htexlib".as_ref())?;
+    /// let asset = htex::Asset::from_library(&library, "woven/cotton")?;
+    /// # Ok::<(), htex::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the library has no texture of this name, or it cannot be read or is not a valid asset.
+    #[cfg(feature = "library")]
+    pub fn from_library<S: htex_library::Source>(
+        library: &htex_library::Library<S>,
+        name: &str,
+    ) -> Result<Self, Error> {
+        Self::from_bytes(&library.get(name)?)
+    }
+
     /// Makes an asset of its data; its models are the built-in ones.
     pub fn new(data: htex_format::Asset) -> Self {
         Self::with_registry(data, Registry::builtin())

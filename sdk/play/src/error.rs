@@ -13,6 +13,10 @@ pub enum Error {
     /// The file is not a usable asset.
     #[error(transparent)]
     Read(#[from] htex_format::ReadError),
+    /// A library or a texture of it cannot be read.
+    #[cfg(feature = "library")]
+    #[error(transparent)]
+    Library(#[from] htex_library::LibraryError),
     /// A model is missing, or returned an error.
     #[error(transparent)]
     Model(#[from] htex_host::HostError),

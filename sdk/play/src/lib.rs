@@ -44,6 +44,7 @@ pub use htex_host::{
     Search, Synthesis, WasmCache, WasmCompiler, WasmLimits, WasmTotal,
 };
 pub use known::Motions;
+pub use mesh::{Mesh, Weights};
 pub use motion::Motion;
 pub use options::VoiceOptions;
 pub use playable::{field_order, model_of};

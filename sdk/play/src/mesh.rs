@@ -18,9 +18,12 @@ mod tests;
 
 use axis::Axis;
 
+/// Largest distance from an edge, relative to the largest speed and force, that is attributed to rounding.
+const ON_SIDE: f64 = 1e-9;
+
 /// Weights of up to three conditions, summing to one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Weights {
+pub struct Weights {
     pub(crate) condition: [usize; 3],
     pub(crate) weight: [f64; 3],
     pub(crate) count: usize,
@@ -35,8 +38,8 @@ impl Weights {
         }
     }
 
-    /// Iterates over the pairs of condition and weight.
-    pub(crate) fn iter(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+    /// Iterates over the pairs of condition, by its index, and weight.
+    pub fn iter(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         (0..self.count).map(|i| (self.condition[i], self.weight[i]))
     }
 
@@ -52,9 +55,18 @@ impl Weights {
     }
 }
 
-/// The triangulation of the recorded conditions.
+/// The triangulation of recorded conditions, by the rules of section 11 of the format's specification.
+///
+/// ```
+/// use htex_play::Mesh;
+///
+/// let mesh = Mesh::new(&[[40.0, 0.3], [160.0, 0.3], [40.0, 1.2]]);
+/// let weights: Vec<(usize, f64)> = mesh.weights(100.0, 0.3).iter().collect();
+/// assert_eq!(weights, [(0, 0.5), (1, 0.5)]);
+/// assert!(mesh.surrounds(50.0, 0.4) && !mesh.surrounds(160.0, 1.2));
+/// ```
 #[derive(Debug, Clone)]
-pub(crate) struct Mesh {
+pub struct Mesh {
     conditions: Vec<[f64; 2]>,
     axes: [Axis; 2],
     faces: Vec<Face>,
@@ -82,17 +94,31 @@ struct Side {
 }
 
 impl Mesh {
-    /// Makes a mesh of one or more points (speed, force).
-    pub(crate) fn new(conditions: &[[f64; 2]]) -> Self {
+    /// Makes a mesh of one or more points: speed, mm/s, and force, newtons, finite and not negative.
+    pub fn new(conditions: &[[f64; 2]]) -> Self {
         build::mesh(conditions)
     }
 
     /// Returns the weights at a motion. Does not allocate.
-    pub(crate) fn weights(&self, speed_mm_s: f64, force_n: f64) -> Weights {
+    pub fn weights(&self, speed_mm_s: f64, force_n: f64) -> Weights {
         let [speed, force] = &self.axes;
         let q = [speed.place(speed_mm_s), force.place(force_n)];
         let inside = self.faces.iter().find_map(|face| self.within(face, q));
         inside.unwrap_or_else(|| self.nearest(q)).without_zeros()
+    }
+
+    /// Returns whether a motion lies inside the mesh, or on its edge; a mesh on a line surrounds the motions on it.
+    pub fn surrounds(&self, speed_mm_s: f64, force_n: f64) -> bool {
+        let [speed, force] = &self.axes;
+        let q = [speed.place(speed_mm_s), force.place(force_n)];
+        let on_side = |side: &Side| side.distance2(q) <= ON_SIDE * ON_SIDE;
+        self.faces.iter().any(|face| self.within(face, q).is_some())
+            || self.sides.iter().any(on_side)
+    }
+
+    /// Iterates over the triangles, by the indices of their conditions.
+    pub fn triangles(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
+        self.faces.iter().map(|face| face.corners)
     }
 
     /// Returns the weighted mean of the conditions, (speed, force).

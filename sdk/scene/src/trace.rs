@@ -3,10 +3,7 @@
 use std::path::Path;
 
 use htex_author::read::{ReadError, TraceColumns, read_trace};
-
-/// Half the support of the triangle over which the velocity is averaged, seconds. Trackers are slow and
-/// quantised (60 Hz, 0.1 mm): a shorter window would show their steps instead of the motion.
-const REACH_S: f64 = 0.05;
+use htex_author::velocity;
 
 /// A motion over time. The vectors have equal lengths of at least 2; time 0 is the first row.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,14 +53,13 @@ impl Trace {
 
     /// Makes a trace from columns.
     ///
-    /// The velocity is the second difference, over 50 ms, of the position's integral: the slope of the
-    /// position (linear between rows) averaged with a triangular window of 100 ms. It is exact for a constant
-    /// velocity, and insensitive to a tracker of 60 Hz that repeats its last value. Within 50 ms of the ends
-    /// it is constant. Negative forces, caused by a sensor's offset, become 0.
+    /// The velocity is that of [`velocity`]: exact when it is constant, and insensitive to the steps of a tracker of 60 Hz.
+    /// Negative forces, caused by a sensor's offset, become 0.
     pub fn new(columns: TraceColumns) -> Self {
         let start_s = columns.t_s.first().copied().unwrap_or(0.0);
         let t_s: Vec<f64> = columns.t_s.iter().map(|t| t - start_s).collect();
-        let (vx, vy) = (velocity(&t_s, &columns.x_mm), velocity(&t_s, &columns.y_mm));
+        let along = |position: &[f64]| velocity(&t_s, position, t_s.iter().copied());
+        let (vx, vy) = (along(&columns.x_mm), along(&columns.y_mm));
         let velocity_mm_s: Vec<[f64; 2]> = vx.iter().zip(vy).map(|(x, y)| [*x, y]).collect();
         let speed_mm_s = match columns.speed_mm_s {
             Some(speed) => speed.iter().map(|v| v.abs()).collect(),
@@ -121,61 +117,6 @@ impl Trace {
     /// Time from the first row to the last, seconds.
     pub fn duration_s(&self) -> f64 {
         self.t_s.last().copied().unwrap_or(0.0)
-    }
-}
-
-/// Velocity at each row, mm/s.
-fn velocity(t_s: &[f64], x_mm: &[f64]) -> Vec<f64> {
-    let end_s = t_s.last().copied().unwrap_or(0.0);
-    let reach_s = REACH_S.min(end_s / 2.0);
-    if reach_s <= 0.0 {
-        return vec![0.0; t_s.len()];
-    }
-    let mut before = Integral::new(t_s, x_mm);
-    let (mut here, mut after) = (before.clone(), before.clone());
-    let mut at = |t: f64| {
-        let t = t.clamp(reach_s, end_s - reach_s);
-        let outer = before.at(t - reach_s) + after.at(t + reach_s);
-        (outer - 2.0 * here.at(t)) / (reach_s * reach_s)
-    };
-    t_s.iter().map(|t| at(*t)).collect()
-}
-
-/// The integral of the position (minus the first one) from the first row on, evaluated at ascending times.
-#[derive(Clone)]
-struct Integral<'a> {
-    t_s: &'a [f64],
-    x_mm: &'a [f64],
-    row: usize,
-    sum: f64,
-}
-
-impl<'a> Integral<'a> {
-    fn new(t_s: &'a [f64], x_mm: &'a [f64]) -> Self {
-        Self {
-            t_s,
-            x_mm,
-            row: 0,
-            sum: 0.0,
-        }
-    }
-
-    /// Time and position of a row.
-    fn point(&self, row: usize) -> (f64, f64) {
-        (self.t_s[row], self.x_mm[row] - self.x_mm[0])
-    }
-
-    fn at(&mut self, t_s: f64) -> f64 {
-        let last = self.t_s.len() - 1;
-        while self.row + 1 < last && self.t_s[self.row + 1] <= t_s {
-            let ((t0, x0), (t1, x1)) = (self.point(self.row), self.point(self.row + 1));
-            self.sum += 0.5 * (x0 + x1) * (t1 - t0);
-            self.row += 1;
-        }
-        let ((t0, x0), (t1, x1)) = (self.point(self.row), self.point(self.row + 1));
-        let ahead = t_s - t0;
-        let slope = (x1 - x0) / (t1 - t0);
-        self.sum + ahead * (x0 + 0.5 * slope * ahead)
     }
 }
 

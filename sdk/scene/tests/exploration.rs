@@ -287,6 +287,7 @@ fn forces_within_tolerance_count_as_one() {
         speed_mm_s: Some(speed),
         force_n: Some(force),
         repeatability_rms_db: None,
+        segments: None,
     };
     let conditions = [
         condition(40.0, 0.4069),
@@ -297,6 +298,7 @@ fn forces_within_tolerance_count_as_one() {
         condition,
         level_rms: 1.0,
         quality: None,
+        left_out: None,
     });
     let explored = Explored::new(&at, &conditions);
     assert!(matches!(explored.speed, Recorded::Several { .. }) && explored.force.is_one());

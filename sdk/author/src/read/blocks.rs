@@ -1,7 +1,7 @@
 //! Reading of files in blocks of whole lines: a reused buffer takes less memory and time than one as large as the
 //! file.
 
-use std::io::{BufReader, Cursor, Read};
+use std::io::Read;
 
 use super::ReadError;
 use super::text::{Lines, checked, without_mark};
@@ -50,13 +50,6 @@ impl<'a> Blocks<'a> {
             self.ended = read == 0;
         }
         Ok(&self.buffer[..self.filled])
-    }
-
-    /// Returns all remaining bytes.
-    pub(crate) fn rest(mut self) -> Result<impl Read + 'a, ReadError> {
-        self.front()?;
-        self.buffer.truncate(self.filled);
-        Ok(BufReader::new(Cursor::new(self.buffer).chain(self.source)))
     }
 
     /// Returns the next lines, which follow `before` others; `None` at the end. A line longer than a block is returned in

@@ -3,7 +3,7 @@
 use htex_format::Findings;
 
 use super::ReadError;
-use super::table::Table;
+use super::sheet::Sheet;
 use crate::findings::{RECORDING_CLOCK_GAP, RECORDING_CLOCK_JITTER};
 use crate::hertz::hertz;
 use crate::recording::check_rate;
@@ -30,9 +30,23 @@ pub(crate) struct Noticed {
     pub(crate) findings: Findings,
 }
 
+/// Returns the rate to read at without a time column: the given one, or else the file's own.
+pub(crate) fn given(own: Option<f64>, given: Option<f64>, noticed: &mut Noticed) -> Option<f64> {
+    if let (Some(own), Some(given)) = (own, given)
+        && (own / given - 1.0).abs() > DISAGREE
+    {
+        noticed.warnings.push(format!(
+            "The file has a rate of {}, the given rate is {}; the given rate is used.",
+            hertz(own),
+            hertz(given)
+        ));
+    }
+    given.or(own)
+}
+
 /// Returns the rate in hertz; `given` takes precedence over the time column `time_s`.
 pub(crate) fn rate(
-    table: &Table<'_>,
+    sheet: &dyn Sheet,
     time_s: Option<&[f64]>,
     given: Option<f64>,
     noticed: &mut Noticed,
@@ -40,11 +54,11 @@ pub(crate) fn rate(
     let measured = match (time_s, given) {
         (None, None) => {
             return Err(ReadError::NoRate {
-                file: table.file.to_owned(),
+                file: sheet.columns().file.clone(),
             });
         }
         (None, Some(given)) => return Ok(given),
-        (Some(time_s), _) => measure(table, time_s, given, noticed),
+        (Some(time_s), _) => measure(sheet, time_s, given, noticed),
     };
     match (measured, given) {
         (measured, None) => measured,
@@ -68,7 +82,7 @@ pub(crate) fn rate(
 
 /// Returns the number of steps over the time they take, without gaps.
 fn measure(
-    table: &Table<'_>,
+    sheet: &dyn Sheet,
     time_s: &[f64],
     given: Option<f64>,
     noticed: &mut Noticed,
@@ -76,8 +90,8 @@ fn measure(
     let steps = || time_s.windows(2).map(|pair| pair[1] - pair[0]);
     if let Some(row) = steps().position(|step| step <= 0.0) {
         return Err(ReadError::Time {
-            file: table.file.to_owned(),
-            line: table.line_of_row(row + 1),
+            file: sheet.columns().file.clone(),
+            place: sheet.place(row + 1),
             before: time_s[row],
             after: time_s[row + 1],
         });
@@ -96,16 +110,16 @@ fn measure(
     let mean: f64 = sum / count;
     let rate_hz = snap(1.0 / mean);
     check_rate(rate_hz).map_err(|source| ReadError::Recording {
-        file: table.file.to_owned(),
+        file: sheet.columns().file.clone(),
         source,
     })?;
     let findings = &mut noticed.findings;
     if let Some((row, gap)) = steps().enumerate().find(|(_, step)| *step > longest) {
         findings.add(RECORDING_CLOCK_GAP, format!("/time/{}", row + 1), format!(
-            "{gaps} gap{} in the time column; the first, of {gap:.6} s, ends on line {}. Samples are taken as evenly \
+            "{gaps} gap{} in the time column; the first, of {gap:.6} s, ends on {}. Samples are taken as evenly \
              spaced; cut the recording there",
             if gaps == 1 { "" } else { "s" },
-            table.line_of_row(row + 1)
+            sheet.place(row + 1)
         ));
     }
     let jitter = (squares / count / (mean * mean) - 1.0).max(0.0).sqrt();
@@ -137,7 +151,8 @@ fn longest_step(mut steps: Vec<f64>) -> f64 {
     factor * median * (1.0 + 1e-6)
 }
 
-fn snap(rate_hz: f64) -> f64 {
+/// Returns the integer that a rate is nearly equal to, or the rate.
+pub(crate) fn snap(rate_hz: f64) -> f64 {
     let whole = rate_hz.round();
     if (rate_hz - whole).abs() <= WHOLE * whole {
         whole

@@ -4,6 +4,7 @@ use std::io;
 
 use thiserror::Error;
 
+use super::sheet::Place;
 use crate::recording::RecordingError;
 
 /// Errors of reading a recording, a setup response or a motion trace.
@@ -50,7 +51,7 @@ pub enum ReadError {
         file: String,
     },
     /// The file has a header but fewer than two rows.
-    #[error("{file}: {rows} row(s) of numbers after the header; a recording needs at least 2")]
+    #[error("{file}: {rows} row(s) of numbers; a recording needs at least 2")]
     TooFewRows {
         /// File name.
         file: String,
@@ -59,7 +60,7 @@ pub enum ReadError {
     },
     /// NUL bytes or invalid UTF-8.
     #[error(
-        "{file}, line {line}: {what}, which is not text; give a CSV saved as UTF-8, a WAV or an NPY file"
+        "{file}, line {line}: {what}, which is not text; give a CSV saved as UTF-8, or a binary file of a known kind"
     )]
     NotText {
         /// File name.
@@ -113,13 +114,13 @@ pub enum ReadError {
     },
     /// A cell is not a finite number.
     #[error(
-        "{file}, line {line}, column {column:?}: {problem}; every sample must be a finite number with a decimal point"
+        "{file}, {place}, column {column:?}: {problem}; every sample must be a finite number with a decimal point"
     )]
     Cell {
         /// File name.
         file: String,
-        /// The line.
-        line: usize,
+        /// The line or row.
+        place: Place,
         /// The column's name, or `#` and its number.
         column: String,
         /// What is wrong with the cell.
@@ -135,9 +136,45 @@ pub enum ReadError {
         /// The names of the columns.
         columns: String,
     },
+    /// Columns that are used together have different lengths.
+    #[error(
+        "{file}: column {first:?} has {rows} numbers, {other:?} has {got}; map columns of equal lengths, such as those of one run"
+    )]
+    Lengths {
+        /// File name.
+        file: String,
+        /// A column.
+        first: String,
+        /// Its numbers.
+        rows: usize,
+        /// Another column.
+        other: String,
+        /// Its numbers.
+        got: usize,
+    },
+    /// A file is damaged or of an unsupported kind.
+    #[error("{file}, {place}: {problem}")]
+    Damaged {
+        /// File name.
+        file: String,
+        /// A byte, a channel, a data set.
+        place: String,
+        /// What is wrong, and what to do.
+        problem: String,
+    },
+    /// The file is of a kind whose reader was not built.
+    #[error(
+        "{file}: this build does not read Parquet, Arrow and HDF5 (MATLAB 7.3); build with the feature lab-files, use the Python package, \
+         or convert the file to CSV"
+    )]
+    NotBuilt {
+        /// File name.
+        file: String,
+    },
     /// A column map is malformed.
     #[error(
-        "column map: {problem}; write ROLE=COLUMN[:SCALE], comma separated, as in lateral=lateral_V:0.4444,normal=#3"
+        "column map: {problem}; write ROLE=COLUMN[:SCALE] or ROLE=EXPRESSION, comma separated, as in \
+         lateral=lateral_V:0.4444,normal=-#3*0.31"
     )]
     Map {
         /// What is wrong.
@@ -145,13 +182,13 @@ pub enum ReadError {
     },
     /// A time column does not increase.
     #[error(
-        "{file}, line {line}: the time after {before} s is {after} s; it must increase on every row (a column with too few decimals repeats values); repair the column, or give the sample rate, which replaces it"
+        "{file}, {place}: the time after {before} s is {after} s; it must increase on every row (a column with too few decimals repeats values); repair the column, or give the sample rate, which replaces it"
     )]
     Time {
         /// File name.
         file: String,
-        /// The line of the later time.
-        line: usize,
+        /// The line or row of the later time.
+        place: Place,
         /// Time of the previous row, seconds.
         before: f64,
         /// Time of this row, seconds.

@@ -1,9 +1,14 @@
-//! The column map, in which the user assigns roles: `lateral=lateral_V:0.4444,normal=#3`.
+//! The column map, in which the user assigns roles: `lateral=lateral_V:0.4444,normal=-#3*0.31`.
 
 use std::fmt;
 use std::str::FromStr;
 
 use super::ReadError;
+use super::expression::{Expression, Problem};
+use super::token::{Kind, Token, tokens};
+
+/// Longest map, bytes.
+const MOST_BYTES: usize = 16 << 10;
 
 /// The role of a column: the signal that it holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -95,23 +100,30 @@ impl fmt::Display for ColumnRef {
     }
 }
 
-/// An entry `ROLE=COLUMN[:SCALE]` of a column map.
+/// An entry `ROLE=EXPRESSION[:SCALE]` of a column map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapEntry {
-    /// The role of the column.
+    /// The role of the values.
     pub role: Role,
-    /// The column.
-    pub column: ColumnRef,
-    /// Factor from the column's unit to the role's (N, the quantity's, mm/s, s, mm); `None` uses the unit in the column's name.
+    /// The column, or what is computed from columns.
+    pub values: Expression,
+    /// Factor to the role's unit (N, the quantity's, mm/s, s, mm). Without it a column has the unit in its name, and the values of an
+    /// expression are in the role's unit.
     pub scale: Option<f64>,
 }
 
 /// The user's assignment of columns to roles.
 ///
+/// A role's values are a column or an expression: sums, differences, products and quotients of numbers and columns, with
+/// parentheses. Columns are given by name, by number (`#3`), by path (`/run1/fx`), or in quotes if the name contains an
+/// operator. A text that is the name of a column as a whole is that column.
+///
 /// ```
 /// # use htex_author::read::ColumnMap;
-/// let map: ColumnMap = "lateral=lateral_V:0.4444,normal=#3".parse()?;
+/// let map: ColumnMap = "lateral=lateral_V:0.4444,normal=-#3*0.31".parse()?;
 /// assert_eq!(map.entries().len(), 2);
+/// let error = "lateral=(fx1+fx2".parse::<ColumnMap>().unwrap_err();
+/// assert!(error.to_string().contains("character 9: '(' is not closed"));
 /// # Ok::<(), htex_author::read::ReadError>(())
 /// ```
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -126,16 +138,36 @@ impl ColumnMap {
         &self.entries
     }
 
-    fn add(&mut self, entry: MapEntry) -> Result<(), ReadError> {
+    fn add(&mut self, entry: MapEntry) -> Result<(), String> {
         for other in &self.entries {
             if other.role == entry.role {
-                return Err(problem(format!("role {} is given twice", entry.role)));
+                return Err(format!("role {} is given twice", entry.role));
             }
-            if other.column == entry.column {
-                return Err(problem(format!("column {} is given twice", entry.column)));
+            if let (Some(column), true) = (
+                entry.values.column(),
+                other.values.column() == entry.values.column(),
+            ) {
+                return Err(format!("column {column} is given twice"));
             }
         }
         self.entries.push(entry);
+        Ok(())
+    }
+
+    fn check_axes(&self) -> Result<(), String> {
+        let has = |role| self.entries.iter().any(|entry| entry.role == role);
+        let lateral = (Role::Lateral, &[Role::LateralX, Role::LateralY][..]);
+        let signal = (
+            Role::Signal,
+            &[Role::SignalX, Role::SignalY, Role::SignalZ][..],
+        );
+        for (one, several) in [lateral, signal] {
+            if has(one) && several.iter().any(|role| has(*role)) {
+                return Err(format!(
+                    "{one} is a single axis, {one}_x and {one}_y are two axes; give one or the other"
+                ));
+            }
+        }
         Ok(())
     }
 }
@@ -144,78 +176,103 @@ impl FromStr for ColumnMap {
     type Err = ReadError;
 
     fn from_str(text: &str) -> Result<Self, ReadError> {
+        if text.len() > MOST_BYTES {
+            return Err(ReadError::Map {
+                problem: format!("{} bytes, more than the limit of {MOST_BYTES}", text.len()),
+            });
+        }
+        let refuse = |problem: Problem| ReadError::Map {
+            problem: problem.in_text(text),
+        };
         let mut map = Self::default();
-        for part in text.split(',') {
-            map.add(parse_entry(part.trim())?)?;
+        let tokens = tokens(text).map_err(refuse)?;
+        for tokens in tokens.split(|token| token.kind == Kind::Comma) {
+            let entry = parse_entry(text, tokens).map_err(refuse)?;
+            map.add(entry)
+                .map_err(|problem| ReadError::Map { problem })?;
         }
-        let has = |role| map.entries.iter().any(|entry| entry.role == role);
-        let lateral = (Role::Lateral, &[Role::LateralX, Role::LateralY][..]);
-        let signal = (
-            Role::Signal,
-            &[Role::SignalX, Role::SignalY, Role::SignalZ][..],
-        );
-        for (one, several) in [lateral, signal] {
-            if has(one) && several.iter().any(|role| has(*role)) {
-                return Err(problem(format!(
-                    "{one} is a single axis, {one}_x and {one}_y are two axes; give one or the other"
-                )));
-            }
-        }
+        map.check_axes()
+            .map_err(|problem| ReadError::Map { problem })?;
         Ok(map)
     }
 }
 
-fn parse_entry(text: &str) -> Result<MapEntry, ReadError> {
-    let Some((role, column)) = text.split_once('=') else {
-        return Err(problem(format!("{text:?} has no '='")));
+impl Problem {
+    /// Returns the sentence with the place in the text, in characters from 1.
+    fn in_text(self, text: &str) -> String {
+        match self.at.and_then(|at| text.get(..at)) {
+            Some(before) => format!("character {}: {}", before.chars().count() + 1, self.what),
+            None => self.what,
+        }
+    }
+}
+
+/// Parses the tokens of `ROLE=EXPRESSION[:SCALE]`.
+fn parse_entry(text: &str, tokens: &[Token]) -> Result<MapEntry, Problem> {
+    let nowhere = |what: String| Problem { at: None, what };
+    let Some(equals) = tokens.iter().position(|token| token.kind == Kind::Equals) else {
+        return Err(match tokens {
+            [] => nowhere("an entry between commas is empty".into()),
+            [first, ..] => Problem::at(first, "this entry has no '='"),
+        });
     };
-    let (column, scale) = split_scale(column.trim())?;
+    let (before, values) = (&tokens[..equals], &tokens[equals + 1..]);
+    let role = match before {
+        [] => "",
+        [first, ..] => text[first.start..tokens[equals].start].trim(),
+    };
+    let role = parse_role(role).map_err(|what| Problem::at(&tokens[0], what))?;
+    let (values, scale) = split_scale(values)?;
+    if values.is_empty() {
+        let what = "a column name is missing after '='";
+        return Err(Problem::at(&tokens[equals], what));
+    }
     Ok(MapEntry {
-        role: parse_role(role.trim())?,
-        column: parse_column(column)?,
+        role,
+        values: Expression::parse(text, values)?,
         scale,
     })
 }
 
-fn parse_role(text: &str) -> Result<Role, ReadError> {
-    Role::ALL
-        .into_iter()
-        .find(|role| role.name() == text)
-        .ok_or_else(|| {
-            let names: Vec<_> = Role::ALL.iter().map(|role| role.name()).collect();
-            problem(format!(
-                "unknown role {text:?}; the roles are {}",
-                names.join(", ")
-            ))
-        })
+fn parse_role(text: &str) -> Result<Role, String> {
+    let found = Role::ALL.into_iter().find(|role| role.name() == text);
+    found.ok_or_else(|| {
+        let names: Vec<_> = Role::ALL.iter().map(|role| role.name()).collect();
+        format!("unknown role {text:?}; the roles are {}", names.join(", "))
+    })
 }
 
-fn parse_column(text: &str) -> Result<ColumnRef, ReadError> {
-    match text.strip_prefix('#') {
-        None if text.is_empty() => Err(problem("a column name is missing after '='".into())),
-        None => Ok(ColumnRef::Name(text.to_owned())),
-        Some(number) => match number.parse() {
-            Ok(number) if number > 0 => Ok(ColumnRef::Number(number)),
-            _ => Err(problem(format!(
-                "{text:?} is not a column number; the first column is #1"
-            ))),
-        },
-    }
-}
-
-/// Splits at the last colon; a colon in a column's name requires a scale after it.
-fn split_scale(text: &str) -> Result<(&str, Option<f64>), ReadError> {
-    let Some((column, scale)) = text.rsplit_once(':') else {
-        return Ok((text, None));
+/// Splits at the last colon. A name that contains a colon is quoted, or has a scale after it.
+fn split_scale(tokens: &[Token]) -> Result<(&[Token], Option<f64>), Problem> {
+    let is_colon = |token: &Token| token.kind == Kind::Colon;
+    let Some(colon) = tokens.iter().rposition(is_colon) else {
+        return Ok((tokens, None));
     };
-    match scale.trim().parse::<f64>() {
-        Ok(scale) if scale.is_finite() && scale != 0.0 => Ok((column.trim_end(), Some(scale))),
-        _ => Err(problem(format!(
-            "{scale:?} is not a scale; write a finite number other than 0"
-        ))),
+    let (sign, number) = match &tokens[colon + 1..] {
+        [
+            Token {
+                kind: Kind::Minus, ..
+            },
+            number,
+        ] => (-1.0, number),
+        [
+            Token {
+                kind: Kind::Plus, ..
+            },
+            number,
+        ]
+        | [number] => (1.0, number),
+        _ => return Err(not_a_scale(&tokens[colon])),
+    };
+    match number.kind {
+        Kind::Number(scale) if scale != 0.0 => Ok((&tokens[..colon], Some(sign * scale))),
+        _ => Err(not_a_scale(&tokens[colon])),
     }
 }
 
-fn problem(problem: String) -> ReadError {
-    ReadError::Map { problem }
+fn not_a_scale(colon: &Token) -> Problem {
+    Problem::at(
+        colon,
+        "what follows is not a scale; write a finite number other than 0, or quote a name that contains ':'",
+    )
 }

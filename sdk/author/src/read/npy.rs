@@ -1,12 +1,13 @@
-//! Recordings as NumPy arrays: `(n,)` or `(n, 1..=3)` of f4, f8, i2 or i4.
+//! NumPy arrays: `(n,)` or `(n, channels)` of f4, f8, i2 or i4.
 
-use std::io::{ErrorKind, Read};
+use std::io::{BufReader, ErrorKind, Read};
 
-use npyz::{DType, NpyFile, Order, TypeChar};
+use npyz::{DType, NpyFile, TypeChar};
 
-use super::blocks::Blocks;
-use super::{ReadError, ReadOptions, assumption, from_channels, refuse_map};
-use crate::recording::Recording;
+use super::ReadError;
+use super::channels::{Order, Samples, channel_names};
+use super::input::Opened;
+use super::value_limit::ValueLimit;
 
 /// Problem of an array, and what to do.
 #[derive(Debug, thiserror::Error)]
@@ -18,15 +19,13 @@ enum NpyError {
     #[error("the file ends at byte {0}, inside its header; copy it again")]
     EndInHeader(usize),
     #[error(
-        "the header does not describe a plain array of at most two dimensions; save a (n,) or (n, 1..3) array"
+        "the header does not describe a plain array of at most two dimensions; save a (n,) or (n, channels) array"
     )]
     NotPlain,
     #[error("not an NPY file that can be read: {0}")]
     Header(String),
-    #[error("the array's shape is {0:?}; expected (n,) or (n, 1..3), one row per sample")]
+    #[error("the array's shape is {0:?}; expected (n,) or (n, channels), one row per sample")]
     Shape(Vec<u64>),
-    #[error("{0} rows are more than fit in memory")]
-    Rows(u64),
     #[error("the array holds records; save a plain float array")]
     Records,
     #[error("the array's type is {0}; expected f4, f8, i2 or i4 (in NumPy: array.astype('f8'))")]
@@ -39,34 +38,38 @@ enum NpyError {
 
 /// Longest header, bytes; NumPy writes 118 for such arrays.
 const MAX_HEADER: usize = 4096;
+/// Most channels: an array with its axes exchanged has one for each sample.
+const MAX_CHANNELS: u64 = 256;
 
-/// Reads an NPY file, value by value.
-pub(crate) fn read(mut blocks: Blocks<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
-    let file = blocks.file;
-    refuse_map(file, options)?;
-    let Some(rate_hz) = options.rate_hz else {
-        return Err(ReadError::NoRate {
-            file: file.to_owned(),
-        });
-    };
-    check_header(blocks.front()?).map_err(|problem| broken(file, problem))?;
-    let limit = blocks.limit;
-    let npy = NpyFile::new(blocks.rest()?).map_err(|error| {
+/// Opens an NPY file, whose values are then read one by one.
+pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>, ReadError> {
+    let file = opened.file.clone();
+    check_header(&opened.front).map_err(|problem| broken(&file, problem))?;
+    let npy = NpyFile::new(BufReader::new(opened.stream())).map_err(|error| {
         // The parser's messages have a picture of the position below the first line.
         let text = error.to_string();
         let first = htex_format::plain(text.lines().next().unwrap_or_default().trim_end());
-        broken(file, NpyError::Header(first.into_owned()))
+        broken(&file, NpyError::Header(first.into_owned()))
     })?;
-    let shape = shape(npy.shape()).map_err(|problem| broken(file, problem))?;
-    limit.check(file, npy.len())?;
-    let (channels, is_integer) = channels(npy, shape).map_err(|problem| broken(file, problem))?;
-    let mut recording = from_channels(file, rate_hz, channels, options)?;
-    if options.scale.is_none() {
-        recording
-            .warnings
-            .push(assumption(is_integer, options.quantity));
-    }
-    Ok(recording)
+    let (rows, width) = shape(npy.shape()).map_err(|problem| broken(&file, problem))?;
+    let order = match npy.order() {
+        npyz::Order::C => Order::Interleaved,
+        npyz::Order::Fortran => Order::Planar(rows),
+    };
+    let columns = channel_names(&file, width);
+    let in_file = file.clone();
+    let (values, are_integers) = values(npy).map_err(|problem| broken(&file, problem))?;
+    Ok(Samples {
+        columns,
+        rate_hz: None,
+        are_integers,
+        frames: Some(rows),
+        limit,
+        order,
+        samples: Box::new(
+            values.map(move |value| value.map_err(|problem| broken(&in_file, problem))),
+        ),
+    })
 }
 
 /// Refuses headers that would make the parser recurse, overflow or allocate without bound.
@@ -94,74 +97,49 @@ fn check_header(bytes: &[u8]) -> Result<(), NpyError> {
     Ok(())
 }
 
-/// Rows and columns of an array.
-type Shape = (usize, usize);
-
-fn shape(shape: &[u64]) -> Result<Shape, NpyError> {
-    let (rows, columns) = match shape {
-        [rows] => (*rows, 1),
-        [rows, columns @ 1..=3] => (*rows, *columns),
-        _ => {
-            return Err(NpyError::Shape(shape.to_vec()));
-        }
-    };
-    let rows = usize::try_from(rows).map_err(|_| NpyError::Rows(rows))?;
-    Ok((rows, columns as usize))
+/// Returns the rows and columns of an array.
+fn shape(shape: &[u64]) -> Result<(u64, usize), NpyError> {
+    match shape {
+        [rows] => Ok((*rows, 1)),
+        [rows, columns @ 1..=MAX_CHANNELS] => Ok((*rows, *columns as usize)),
+        _ => Err(NpyError::Shape(shape.to_vec())),
+    }
 }
 
-/// Returns the columns, with integers as fractions of full scale, and whether the values are integers.
-fn channels(npy: NpyFile<impl Read>, shape: Shape) -> Result<(Vec<Vec<f64>>, bool), NpyError> {
+type Values<'a> = Box<dyn Iterator<Item = Result<f64, NpyError>> + 'a>;
+
+/// Returns the values in the order of the file, with integers as fractions of full scale, and whether they are integers.
+fn values<'a>(npy: NpyFile<impl Read + 'a>) -> Result<(Values<'a>, bool), NpyError> {
     let DType::Plain(kind) = npy.dtype() else {
         return Err(NpyError::Records);
     };
     match (kind.type_char(), kind.size_field()) {
-        (TypeChar::Float, 4) => Ok((deal(npy, shape, |x: f32| x.into())?, false)),
-        (TypeChar::Float, 8) => Ok((deal(npy, shape, |x: f64| x)?, false)),
-        (TypeChar::Int, 2) => Ok((deal(npy, shape, |x: i16| f64::from(x) / 32_768.0)?, true)),
+        (TypeChar::Float, 4) => Ok((converted(npy, |x: f32| x.into())?, false)),
+        (TypeChar::Float, 8) => Ok((converted(npy, |x: f64| x)?, false)),
+        (TypeChar::Int, 2) => Ok((converted(npy, |x: i16| f64::from(x) / 32_768.0)?, true)),
         (TypeChar::Int, 4) => Ok((
-            deal(npy, shape, |x: i32| f64::from(x) / 2_147_483_648.0)?,
+            converted(npy, |x: i32| f64::from(x) / 2_147_483_648.0)?,
             true,
         )),
         _ => Err(NpyError::Type(kind.to_string())),
     }
 }
 
-/// Distributes the values to their columns.
-fn deal<T: npyz::Deserialize>(
-    npy: NpyFile<impl Read>,
-    (rows, columns): Shape,
-    to_f64: impl Fn(T) -> f64,
-) -> Result<Vec<Vec<f64>>, NpyError> {
-    let (order, items) = (npy.order(), npy.len());
+/// Returns the values as `f64`; a file that is too short is an error after its last value.
+fn converted<'a, T: npyz::Deserialize + 'a>(
+    npy: NpyFile<impl Read + 'a>,
+    to_f64: impl Fn(T) -> f64 + 'a,
+) -> Result<Values<'a>, NpyError> {
+    let items = npy.len();
     let mut values = npy
         .data::<T>()
         .map_err(|error| NpyError::Type(error.to_string()))?;
-    let mut dealt = vec![Vec::new(); columns];
-    let mut next = |held: u64| match values.next() {
+    let value = move |read: u64| match values.next() {
         Some(Ok(value)) => Ok(to_f64(value)),
         Some(Err(error)) if error.kind() != ErrorKind::UnexpectedEof => Err(error.into()),
-        _ => Err(NpyError::End { read: held, items }),
+        _ => Err(NpyError::End { read, items }),
     };
-    let mut held = 0;
-    match order {
-        Order::C => {
-            for _ in 0..rows {
-                for column in &mut dealt {
-                    column.push(next(held)?);
-                    held += 1;
-                }
-            }
-        }
-        Order::Fortran => {
-            for column in &mut dealt {
-                for _ in 0..rows {
-                    column.push(next(held)?);
-                    held += 1;
-                }
-            }
-        }
-    }
-    Ok(dealt)
+    Ok(Box::new((0..items).map(value)))
 }
 
 fn broken(file: &str, problem: NpyError) -> ReadError {

@@ -1,20 +1,46 @@
-//! Selection of a table's columns, with their roles and units.
+//! Selection of a file's columns, with their roles and units.
 
 use htex_format::Quantity;
 
 use super::ReadError;
 use super::columns::{Unit, base_unit, recognise, unit_in};
-use super::map::{ColumnMap, ColumnRef, MapEntry, Role};
-use super::table::Table;
+use super::expression::Formula;
+use super::find::{columns_error, find, no_scale, two_columns, whole_column};
+use super::map::{ColumnMap, MapEntry, Role};
+use super::sheet::Columns;
 
-/// A selected column.
+/// What a role's values are.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Chosen {
     pub(crate) role: Role,
-    /// Index from 0.
-    pub(crate) column: usize,
+    pub(crate) values: Values,
     /// Factor to the role's base unit.
     pub(crate) scale: f64,
+}
+
+/// A column, or what is computed from columns. Indices are from 0.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Values {
+    Column(usize),
+    Formula { formula: Formula, text: String },
+}
+
+impl Chosen {
+    fn new(role: Role, column: usize, scale: f64) -> Self {
+        Self {
+            role,
+            values: Values::Column(column),
+            scale,
+        }
+    }
+
+    /// Returns the columns, in the order of their use, with repetitions.
+    pub(crate) fn columns(&self) -> Vec<usize> {
+        match &self.values {
+            Values::Column(column) => vec![*column],
+            Values::Formula { formula, .. } => formula.columns().collect(),
+        }
+    }
 }
 
 /// Returns the roles of a quantity's axes: the role of a single one, and those of several.
@@ -34,17 +60,42 @@ pub(crate) fn all_axis_roles(quantity: Quantity) -> impl Iterator<Item = Role> {
     [one].into_iter().chain(several.iter().copied())
 }
 
+/// Selects the motion of a tracker: time, and position or speed.
+pub(crate) fn select_motion(
+    columns: &Columns,
+    map: Option<&ColumnMap>,
+) -> Result<Selection, ReadError> {
+    let mut selection = Selection {
+        is_motion: true,
+        ..Selection::default()
+    };
+    for entry in map.map_or(&[][..], ColumnMap::entries) {
+        selection.take_mapped(columns, entry)?;
+    }
+    let refused = selection.take_named(columns)?;
+    let moves = [Role::Speed, Role::X, Role::Y].map(|role| selection.has(role));
+    if moves.contains(&true) {
+        return Ok(selection);
+    }
+    let problem = refused.into_iter().next().unwrap_or_else(|| {
+        "no column of the tracker has a known name of a position or a speed; map them, as in time=COLUMN,x=COLUMN:SCALE".to_owned()
+    });
+    Err(columns_error(columns, problem))
+}
+
 /// The selected columns, and the assumptions made.
 #[derive(Debug, Default)]
 pub(crate) struct Selection {
     quantity: Quantity,
+    /// Whether only the motion of the finger is selected.
+    is_motion: bool,
     pub(crate) chosen: Vec<Chosen>,
     pub(crate) warnings: Vec<String>,
 }
 
 /// Assigns columns by the map, then by their names, and requires an axis of the quantity.
 pub(crate) fn select(
-    table: &Table<'_>,
+    columns: &Columns,
     map: Option<&ColumnMap>,
     quantity: Quantity,
 ) -> Result<Selection, ReadError> {
@@ -53,21 +104,21 @@ pub(crate) fn select(
         ..Selection::default()
     };
     for entry in map.map_or(&[][..], ColumnMap::entries) {
-        selection.take_mapped(table, entry)?;
+        selection.take_mapped(columns, entry)?;
     }
-    let refused = if table.header.is_some() {
-        selection.take_named(table)?
+    let refused = if columns.are_named {
+        selection.take_named(columns)?
     } else {
-        selection.take_single(table);
+        selection.take_single(columns);
         Vec::new()
     };
-    selection.insist_on_axis(table, &refused)?;
+    selection.insist_on_axis(columns, &refused)?;
     selection.warnings.extend(
         refused
             .into_iter()
             .map(|refused| format!("{refused}; it is not used.")),
     );
-    selection.warn_of_unused(table);
+    selection.warn_of_unused(columns);
     Ok(selection)
 }
 
@@ -82,7 +133,8 @@ impl Selection {
     }
 
     fn claims(&self, column: usize) -> bool {
-        self.chosen.iter().any(|chosen| chosen.column == column)
+        let mut chosen = self.chosen.iter();
+        chosen.any(|chosen| chosen.columns().contains(&column))
     }
 
     fn has_axis(&self) -> bool {
@@ -90,14 +142,25 @@ impl Selection {
     }
 
     /// Returns the role of a map's entry; refuses axes of other quantities.
-    fn mapped_role(&self, table: &Table<'_>, role: Role) -> Result<Role, ReadError> {
+    fn mapped_role(&self, columns: &Columns, role: Role) -> Result<Role, ReadError> {
+        if self.is_motion {
+            return match role {
+                Role::Time | Role::Speed | Role::X | Role::Y => Ok(role),
+                _ => Err(columns_error(
+                    columns,
+                    format!(
+                        "the map's {role} is not a role of a tracker; its roles are time, x, y, speed"
+                    ),
+                )),
+            };
+        }
         let is_axis = ![Role::Normal, Role::Speed, Role::Time, Role::X, Role::Y].contains(&role);
         if !is_axis || all_axis_roles(self.quantity).any(|own| own == role) {
             return Ok(role);
         }
         let own: Vec<&str> = all_axis_roles(self.quantity).map(Role::name).collect();
         Err(columns_error(
-            table,
+            columns,
             format!(
                 "the map's {role} is not an axis of {}; its axes are {}; correct the map or choose the recorded quantity",
                 self.quantity.words(),
@@ -106,52 +169,89 @@ impl Selection {
         ))
     }
 
-    fn take_mapped(&mut self, table: &Table<'_>, entry: &MapEntry) -> Result<(), ReadError> {
-        let column = find(table, &entry.column)?;
-        if self.claims(column) {
-            return Err(columns_error(
-                table,
-                format!("the map uses column {} twice", entry.column),
-            ));
-        }
-        let role = self.mapped_role(table, entry.role)?;
-        let scale = match (
-            entry.scale,
-            unit_in(&table.name(column), role, self.quantity),
-        ) {
-            (Some(scale), _) | (None, Unit::Scale(scale)) => scale,
-            (None, Unit::Unsaid) => self.assume_unit(table, column, role),
-            (None, unit) => {
-                return Err(columns_error(
-                    table,
-                    no_scale(&table.name(column), role, &unit, self.quantity),
-                ));
-            }
+    fn take_mapped(&mut self, columns: &Columns, entry: &MapEntry) -> Result<(), ReadError> {
+        let role = self.mapped_role(columns, entry.role)?;
+        let chosen = match whole_column(columns, &entry.values)? {
+            Some(column) => self.mapped_column(columns, role, column, entry)?,
+            None => self.mapped_formula(columns, role, entry)?,
         };
-        self.chosen.push(Chosen {
-            role,
-            column,
-            scale,
-        });
+        self.chosen.push(chosen);
         Ok(())
     }
 
+    fn mapped_column(
+        &mut self,
+        columns: &Columns,
+        role: Role,
+        column: usize,
+        entry: &MapEntry,
+    ) -> Result<Chosen, ReadError> {
+        let is_same = |chosen: &Chosen| chosen.values == Values::Column(column);
+        if self.chosen.iter().any(is_same) {
+            let problem = format!("the map uses column {} twice", columns.name(column));
+            return Err(columns_error(columns, problem));
+        }
+        let unit = unit_in(columns.last_part(column), role, self.quantity);
+        let scale = match (entry.scale, unit) {
+            (Some(scale), _) | (None, Unit::Scale(scale)) => scale,
+            (None, Unit::Unsaid) => self.assume_unit(columns, column, role),
+            (None, unit) => {
+                let problem = no_scale(&columns.name(column), role, &unit, self.quantity);
+                return Err(columns_error(columns, problem));
+            }
+        };
+        Ok(Chosen::new(role, column, scale))
+    }
+
+    /// The numbers of the columns are taken as they are in the file, since a factor between units may be part of the expression.
+    fn mapped_formula(
+        &mut self,
+        columns: &Columns,
+        role: Role,
+        entry: &MapEntry,
+    ) -> Result<Chosen, ReadError> {
+        let formula = entry.values.resolve(|column| find(columns, column))?;
+        if entry.scale.is_none() && !entry.values.has_number() {
+            let target = base_unit(role, self.quantity);
+            let is_other = |column: &usize| {
+                let unit = unit_in(columns.last_part(*column), role, self.quantity);
+                !matches!(unit, Unit::Unsaid | Unit::Scale(1.0))
+            };
+            if let Some(column) = formula.columns().find(is_other) {
+                self.warnings.push(format!(
+                    "The expression {} ({role}) is taken to be in {target}, but column {:?} has another unit; multiply by the \
+                     factor.",
+                    entry.values,
+                    columns.name(column)
+                ));
+            }
+        }
+        Ok(Chosen {
+            role,
+            values: Values::Formula {
+                formula,
+                text: entry.values.to_string(),
+            },
+            scale: entry.scale.unwrap_or(1.0),
+        })
+    }
+
     /// Assigns columns by their names; returns why some with a known name cannot be used.
-    fn take_named(&mut self, table: &Table<'_>) -> Result<Vec<String>, ReadError> {
+    fn take_named(&mut self, columns: &Columns) -> Result<Vec<String>, ReadError> {
         let mut refused = Vec::new();
-        for role in self.open_roles(table) {
+        for role in self.open_roles(columns) {
             let mut found = None;
-            for column in self.candidates(table, role) {
-                let name = table.name(column);
-                match recognise(&name, self.quantity) {
+            for column in self.candidates(columns, role) {
+                let name = columns.name(column);
+                match recognise(columns.last_part(column), self.quantity) {
                     // A column x or y without unit may as well be a force or an acceleration.
-                    Some((Role::X | Role::Y, Unit::Unsaid)) => {}
+                    Some((Role::X | Role::Y, Unit::Unsaid)) if !self.is_motion => {}
                     Some((_, unit @ (Unit::Volts | Unit::Unknown(_)))) => {
                         refused.push(no_scale(&name, role, &unit, self.quantity))
                     }
                     Some((_, unit)) => match found.replace((column, unit)) {
                         None => {}
-                        Some((other, _)) => return Err(two_columns(table, role, other, column)),
+                        Some((other, _)) => return Err(two_columns(columns, role, other, column)),
                     },
                     None => {}
                 }
@@ -159,32 +259,44 @@ impl Selection {
             if let Some((column, unit)) = found {
                 let scale = match unit {
                     Unit::Scale(scale) => scale,
-                    _ => self.assume_unit(table, column, role),
+                    _ => self.assume_unit(columns, column, role),
                 };
-                self.chosen.push(Chosen {
-                    role,
-                    column,
-                    scale,
-                });
+                self.chosen.push(Chosen::new(role, column, scale));
             }
         }
         Ok(refused)
     }
 
-    fn candidates(&self, table: &Table<'_>, role: Role) -> Vec<usize> {
+    /// Returns the columns whose names have a role. Once a column is selected, they are in its group or in one around it.
+    fn candidates(&self, columns: &Columns, role: Role) -> Vec<usize> {
         let is_candidate = |column: &usize| {
             !self.claims(*column)
-                && recognise(&table.name(*column), self.quantity)
+                && recognise(columns.last_part(*column), self.quantity)
                     .is_some_and(|(named, _)| named == role)
         };
-        (0..table.width).filter(is_candidate).collect()
+        let all = (0..columns.width()).filter(is_candidate);
+        let mut selected = self.chosen.iter().flat_map(Chosen::columns);
+        let Some(first) = selected.next() else {
+            return all.collect();
+        };
+        // Another run of the same file has columns of the same names.
+        let group = columns.group(first);
+        let around: Vec<usize> = all
+            .filter(|column| group.starts_with(columns.group(*column)))
+            .collect();
+        let nearest = around
+            .iter()
+            .map(|column| columns.group(*column).len())
+            .max();
+        let is_nearest = |column: &usize| Some(columns.group(*column).len()) == nearest;
+        around.into_iter().filter(is_nearest).collect()
     }
 
     /// Returns the roles that names may fill: several axes before a single one; position only without a speed.
-    fn open_roles(&self, table: &Table<'_>) -> Vec<Role> {
-        let named = |role| !self.candidates(table, role).is_empty();
+    fn open_roles(&self, columns: &Columns) -> Vec<Role> {
+        let named = |role| !self.candidates(columns, role).is_empty();
         let mut roles = Vec::new();
-        if !self.has_axis() {
+        if !self.is_motion && !self.has_axis() {
             let (one, several) = axis_roles(self.quantity);
             let count = several.iter().filter(|role| named(**role)).count();
             if count > 1 || !named(one) {
@@ -194,7 +306,8 @@ impl Selection {
             }
         }
         for role in [Role::Normal, Role::Time] {
-            if !self.has(role) && !roles.contains(&role) {
+            let is_closed = self.has(role) || (self.is_motion && role == Role::Normal);
+            if !is_closed && !roles.contains(&role) {
                 roles.push(role);
             }
         }
@@ -210,36 +323,32 @@ impl Selection {
     }
 
     /// Assigns a single column without a name to the texture's signal.
-    fn take_single(&mut self, table: &Table<'_>) {
-        if table.width == 1 && self.chosen.is_empty() {
+    fn take_single(&mut self, columns: &Columns) {
+        if columns.width() == 1 && self.chosen.is_empty() {
             let (role, _) = axis_roles(self.quantity);
-            let scale = self.assume_unit(table, 0, role);
-            self.chosen.push(Chosen {
-                role,
-                column: 0,
-                scale,
-            });
+            let scale = self.assume_unit(columns, 0, role);
+            self.chosen.push(Chosen::new(role, 0, scale));
         }
     }
 
-    fn assume_unit(&mut self, table: &Table<'_>, column: usize, role: Role) -> f64 {
-        let (name, unit) = (table.name(column), base_unit(role, self.quantity));
+    fn assume_unit(&mut self, columns: &Columns, column: usize, role: Role) -> f64 {
+        let (name, unit) = (columns.name(column), base_unit(role, self.quantity));
         self.warnings.push(format!(
             "Column {name:?} ({role}) has no unit; {unit} is assumed."
         ));
         1.0
     }
 
-    fn insist_on_axis(&self, table: &Table<'_>, refused: &[String]) -> Result<(), ReadError> {
+    fn insist_on_axis(&self, columns: &Columns, refused: &[String]) -> Result<(), ReadError> {
         if self.has_axis() {
             return Ok(());
         }
         let (role, _) = axis_roles(self.quantity);
         let problem = if let Some(refused) = refused.first() {
             refused.clone()
-        } else if table.header.is_none() {
+        } else if !columns.are_named {
             format!("there is no header row; map columns by number, as in {role}=#2")
-        } else if let Some(other) = self.other_quantity(table) {
+        } else if let Some(other) = self.other_quantity(columns) {
             format!(
                 "no column has a known name of the {}, but one is a {}; choose the quantity {other} if that is the texture",
                 self.quantity.words(),
@@ -252,91 +361,28 @@ impl Selection {
                 self.quantity.unit()
             )
         };
-        Err(columns_error(table, problem))
+        Err(columns_error(columns, problem))
     }
 
     /// Returns another quantity whose names include a column's name.
-    fn other_quantity(&self, table: &Table<'_>) -> Option<Quantity> {
+    fn other_quantity(&self, columns: &Columns) -> Option<Quantity> {
         let is_there = |quantity: &Quantity| {
             let is_axis = |role| all_axis_roles(*quantity).any(|axis| axis == role);
-            (0..table.width)
-                .filter_map(|column| recognise(&table.name(column), *quantity))
+            (0..columns.width())
+                .filter_map(|column| recognise(columns.last_part(column), *quantity))
                 .any(|(role, _)| is_axis(role))
         };
         let mut others = Quantity::ALL.iter().copied();
         others.find(|other| *other != self.quantity && is_there(other))
     }
 
-    fn warn_of_unused(&mut self, table: &Table<'_>) {
-        let unused = |column: &usize| !self.claims(*column);
-        let names: Vec<_> = (0..table.width)
-            .filter(unused)
-            .map(|column| table.name(column))
+    fn warn_of_unused(&mut self, columns: &Columns) {
+        let unused: Vec<usize> = (0..columns.width())
+            .filter(|column| !self.claims(*column))
             .collect();
-        if !names.is_empty() {
+        if !unused.is_empty() {
             self.warnings
-                .push(format!("Columns not used: {}.", names.join(", ")));
+                .push(format!("Columns not used: {}.", columns.list_of(&unused)));
         }
-    }
-}
-
-fn find(table: &Table<'_>, column: &ColumnRef) -> Result<usize, ReadError> {
-    let found: Vec<usize> = match column {
-        ColumnRef::Number(number) => (0..table.width)
-            .filter(|column| column + 1 == *number)
-            .collect(),
-        ColumnRef::Name(name) => by_name(table, name),
-    };
-    match found.as_slice() {
-        [column] => Ok(*column),
-        [] => Err(columns_error(
-            table,
-            format!("the map's column {column} does not exist"),
-        )),
-        _ => Err(columns_error(
-            table,
-            format!("several columns have the name {column}; give the number, as in #2"),
-        )),
-    }
-}
-
-/// Returns the columns with exactly this name, or else those that differ only in case.
-fn by_name(table: &Table<'_>, name: &str) -> Vec<usize> {
-    let names = table.header.as_deref().unwrap_or_default();
-    let matching = |same: fn(&str, &str) -> bool| -> Vec<usize> {
-        (0..names.len())
-            .filter(|column| same(names[*column], name))
-            .collect()
-    };
-    match matching(|a, b| a == b) {
-        exact if !exact.is_empty() => exact,
-        _ => matching(str::eq_ignore_ascii_case),
-    }
-}
-
-fn no_scale(name: &str, role: Role, unit: &Unit, quantity: Quantity) -> String {
-    let (unit, target) = match unit {
-        Unit::Volts => ("volts", base_unit(role, quantity)),
-        Unit::Unknown(unit) => (unit.as_str(), base_unit(role, quantity)),
-        Unit::Scale(_) | Unit::Unsaid => ("no unit", base_unit(role, quantity)),
-    };
-    format!(
-        "Column {name:?} is in {unit}, not {target}; map it with its scale to {target}: {role}={name}:SCALE"
-    )
-}
-
-fn two_columns(table: &Table<'_>, role: Role, a: usize, b: usize) -> ReadError {
-    let (a, b) = (table.name(a), table.name(b));
-    columns_error(
-        table,
-        format!("{a:?} and {b:?} both match {role}; map one of them, as in {role}=COLUMN"),
-    )
-}
-
-fn columns_error(table: &Table<'_>, problem: String) -> ReadError {
-    ReadError::Columns {
-        file: table.file.to_owned(),
-        problem,
-        columns: table.names(),
     }
 }

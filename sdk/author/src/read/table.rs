@@ -6,6 +6,7 @@
 use super::ReadError;
 use super::blocks::Blocks;
 use super::number::{parse_number, parse_plain_row};
+use super::sheet::{Columns, Numbers, Place};
 use super::text::Lines;
 use super::value_limit::ValueLimit;
 
@@ -32,15 +33,6 @@ pub(crate) struct Table<'a> {
     rows: Lines<'a>,
     /// Rows whose line is not the one after the previous row, with their lines; the first row is always listed.
     runs: Vec<(usize, usize)>,
-}
-
-/// Columns of numbers, and whether a comment marks them as simulated.
-#[derive(Debug)]
-pub(crate) struct Numbers {
-    /// One vector per wanted column, of equal length.
-    pub(crate) columns: Vec<Vec<f64>>,
-    /// Whether a comment contains "simulated".
-    pub(crate) simulated: bool,
 }
 
 impl<'a> Table<'a> {
@@ -87,14 +79,17 @@ impl<'a> Table<'a> {
 
     /// Returns all column names, for messages.
     pub(crate) fn names(&self) -> String {
-        const MANY: usize = 20;
-        let mut names: Vec<_> = (0..self.width.min(MANY))
-            .map(|column| self.name(column))
-            .collect();
-        if self.width > MANY {
-            names.push(format!("and {} more", self.width - MANY));
+        self.columns().list()
+    }
+
+    /// Returns the columns.
+    pub(crate) fn columns(&self) -> Columns {
+        match &self.header {
+            Some(names) => {
+                Columns::new(self.file, names.iter().map(|name| (*name).to_owned()), None)
+            }
+            None => Columns::unnamed(self.file, self.width),
         }
-        names.join(", ")
     }
 
     /// Reads the wanted columns (counted from 0, each below `width`), from the text that the table was created from and
@@ -125,7 +120,11 @@ impl<'a> Table<'a> {
                 rows,
             });
         }
-        Ok(Numbers { columns, simulated })
+        Ok(Numbers {
+            columns,
+            simulated,
+            ..Numbers::default()
+        })
     }
 
     /// Reads the rows of a block, up to the limit of numbers.
@@ -232,7 +231,7 @@ impl<'a> Table<'a> {
         };
         ReadError::Cell {
             file: self.file.to_owned(),
-            line,
+            place: Place::Line(line),
             column: self.name(column),
             problem,
         }

@@ -8,6 +8,7 @@ use super::filters::{low_pass, mode};
 use super::hand::Finger;
 use super::relief::Relief;
 use super::surface::Parameters;
+use super::track::Track;
 use crate::response::SetupResponse;
 
 /// Speed range over which Coulomb friction reverses, mm/s: the fingertip shears before it slides.
@@ -15,9 +16,9 @@ const TURN_MM_S: f64 = 5.0;
 /// Extra friction near standstill (Stribeck): as a part, and the speed over which it decays, mm/s.
 const STRIBECK: (f64, f64) = (0.15, 15.0);
 /// Low-pass of the skin: frequency in Hz and quality factor, second order.
-const SKIN: (f64, f64) = (900.0, 0.6);
+pub(super) const SKIN: (f64, f64) = (900.0, 0.6);
 /// Part of the texture that acts across the sweep, and the offset along the sweep at which it is read, mm.
-const ACROSS: (f64, f64) = (0.25, 7.3);
+pub(super) const ACROSS: (f64, f64) = (0.25, 7.3);
 /// Lateral mode of the rig: frequency in Hz, damping ratio, part of the force that passes through it.
 /// The gain is about 5 dB at the peak and 1 far below.
 const MODE: (f64, f64, f64) = (620.0, 0.08, 0.25);
@@ -39,16 +40,40 @@ pub(super) struct Force {
 /// Contact of skin and relief: the friction of the finger, before the rig.
 pub(super) struct Contact {
     friction: f64,
-    relief: Relief,
+    material: Material,
     skin: [Cascade; 2],
 }
 
+/// Where the texture is read.
+pub(super) enum Material {
+    /// One piece, at the finger's position.
+    Piece(Relief),
+    /// Without end, along the path: one relief for each lateral axis, and the time of a step, s.
+    Endless(Box<[Track; 2]>, f64),
+}
+
+impl Material {
+    /// Returns the texture across and along the sweep at a finger.
+    fn read(&mut self, finger: &Finger) -> [f64; 2] {
+        match self {
+            Self::Piece(relief) => {
+                [ACROSS.1, 0.0].map(|ahead| relief.at(finger.along_mm + ahead, finger.across_mm))
+            }
+            Self::Endless(tracks, step_s) => {
+                let distance = libm::hypot(finger.along_mm_s, finger.across_mm_s) * *step_s;
+                let [across, along] = &mut **tracks;
+                [across.advance(distance), along.advance(distance)]
+            }
+        }
+    }
+}
+
 impl Contact {
-    pub(super) fn new(parameters: &Parameters, rate_hz: f64, random: &mut Normal) -> Self {
+    pub(super) fn new(parameters: &Parameters, rate_hz: f64, material: Material) -> Self {
         let skin = Cascade::new(&[low_pass(SKIN.1, SKIN.0, rate_hz)]);
         Self {
             friction: parameters.friction,
-            relief: Relief::new(parameters, random),
+            material,
             skin: [skin.clone(), skin],
         }
     }
@@ -64,9 +89,9 @@ impl Contact {
         };
         let slowness = speed / STRIBECK.1;
         let friction = self.friction * (1.0 + STRIBECK.0 * libm::exp(-slowness * slowness));
-        let texture = |along_mm: f64| finger.contact * self.relief.at(along_mm, finger.across_mm);
-        let along = sliding * finger.normal_n * texture(finger.along_mm);
-        let across = sliding * finger.normal_n * ACROSS.0 * texture(finger.along_mm + ACROSS.1);
+        let texture = self.material.read(finger).map(|x| finger.contact * x);
+        let along = sliding * finger.normal_n * texture[1];
+        let across = sliding * finger.normal_n * ACROSS.0 * texture[0];
         let steady = finger.normal_n * friction;
         Force {
             x: steady * slope * sliding.abs() + self.skin[0].tick(across),
@@ -104,6 +129,11 @@ impl Rig {
         }
     }
 
+    /// Returns the filters of a lateral axis.
+    pub(super) fn lateral(&self) -> &[Biquad] {
+        &self.lateral
+    }
+
     pub(super) fn tick(&mut self, force: Force) -> Force {
         Force {
             x: self.x.tick(force.x),
@@ -128,6 +158,13 @@ impl Rig {
             frequency_hz,
         }
     }
+}
+
+/// Returns the one-sided density of the noise and the quantisation of both lateral axes, newtons squared per hertz.
+pub(super) fn noise_density(rate_hz: f64) -> f64 {
+    let noise = NOISE_N * NOISE_N / 20_000.0;
+    let quantisation = STEP_N * STEP_N / 12.0 / rate_hz;
+    4.0 * (noise + quantisation)
 }
 
 /// Adds the sensor's noise and quantisation to a force.

@@ -47,6 +47,31 @@ impl OnePole {
         }
     }
 
+    /// Creates a low-pass whose output is already at a constant input.
+    pub(super) fn settled(hz: f64, rate_hz: f64, state: f64) -> Self {
+        Self {
+            state,
+            ..Self::new(hz, rate_hz)
+        }
+    }
+
+    /// Returns the squared gain at a frequency.
+    pub(super) fn low_pass_power(&self, hz: f64, rate_hz: f64) -> f64 {
+        let part = 1.0 - self.keep;
+        part * part / self.pole_power(hz, rate_hz)
+    }
+
+    /// Returns the squared gain of the input minus the output at a frequency.
+    pub(super) fn high_pass_power(&self, hz: f64, rate_hz: f64) -> f64 {
+        // 1 - (1 - k) / (1 - k / z) = k (1 - 1 / z) / (1 - k / z).
+        let difference = 2.0 - 2.0 * libm::cos(2.0 * PI * hz / rate_hz);
+        self.keep * self.keep * difference / self.pole_power(hz, rate_hz)
+    }
+
+    fn pole_power(&self, hz: f64, rate_hz: f64) -> f64 {
+        1.0 + self.keep * (self.keep - 2.0 * libm::cos(2.0 * PI * hz / rate_hz))
+    }
+
     pub(super) fn tick(&mut self, x: f64) -> f64 {
         self.state = x + self.keep * (self.state - x);
         self.state

@@ -24,6 +24,7 @@ const TREMOR_HZ: f64 = 10.0;
 const TREMOR_Q: f64 = 4.0;
 /// Scatter of the heading, radians, and the rate at which the finger returns to the middle, 1/mm.
 const HEADING: f64 = 0.03;
+const HEADING_HZ: f64 = 1.5;
 const DRAW_BACK: f64 = 0.02;
 /// Scatter of the strength of contact between sweeps and within a sweep, relative.
 const CONTACT_SCATTER: [f64; 2] = [0.07, 0.08];
@@ -41,6 +42,45 @@ pub(super) struct Finger {
     pub(super) normal_n: f64,
     /// Strength of contact with the texture; 1 on average.
     pub(super) contact: f64,
+}
+
+impl Finger {
+    /// Makes a finger at rest, in the middle across the sweep.
+    pub(super) fn at_rest(along_mm: f64, normal_n: f64) -> Self {
+        Self {
+            along_mm,
+            across_mm: 0.0,
+            along_mm_s: 0.0,
+            across_mm_s: 0.0,
+            normal_n,
+            contact: 1.0,
+        }
+    }
+}
+
+/// The direction of the finger, which wanders around that of the sweep.
+pub(super) struct Heading(SlowNoise);
+
+impl Heading {
+    /// Creates a direction that changes at frequencies up to about `hz`.
+    pub(super) fn new(hz: f64, rate_hz: f64) -> Self {
+        Self(SlowNoise::new(hz, rate_hz))
+    }
+
+    /// Moves the finger for a step at a velocity along the sweep.
+    pub(super) fn steer(
+        &mut self,
+        finger: &mut Finger,
+        along_mm_s: f64,
+        step_s: f64,
+        random: &mut Normal,
+    ) {
+        finger.along_mm_s = along_mm_s;
+        let heading = HEADING * self.0.tick(random) - DRAW_BACK * finger.across_mm;
+        finger.across_mm_s = along_mm_s.abs() * heading;
+        finger.along_mm += finger.along_mm_s * step_s;
+        finger.across_mm += finger.across_mm_s * step_s;
+    }
 }
 
 /// A rest and the sweep after it.
@@ -69,20 +109,12 @@ pub(super) struct Hand {
     drift: SlowNoise,
     tremor: Tremor,
     unevenness: SlowNoise,
-    heading: SlowNoise,
+    heading: Heading,
     grip: SlowNoise,
 }
 
 impl Hand {
     pub(super) fn new(speed_mm_s: f64, force_n: f64, rate_hz: f64, random: Normal) -> Self {
-        let finger = Finger {
-            along_mm: -SWEEP_MM / 2.0,
-            across_mm: 0.0,
-            along_mm_s: 0.0,
-            across_mm_s: 0.0,
-            normal_n: force_n,
-            contact: 1.0,
-        };
         Self {
             speed_mm_s,
             force_n,
@@ -91,11 +123,11 @@ impl Hand {
             sweep: Sweep::default(),
             time_s: 0.0,
             direction: -1.0,
-            finger,
+            finger: Finger::at_rest(-SWEEP_MM / 2.0, force_n),
             drift: SlowNoise::new(1.0, rate_hz),
             tremor: Tremor::new(rate_hz),
             unevenness: SlowNoise::new(3.0, rate_hz),
-            heading: SlowNoise::new(1.5, rate_hz),
+            heading: Heading::new(HEADING_HZ, rate_hz),
             grip: SlowNoise::new(2.0, rate_hz),
         }
     }
@@ -130,12 +162,9 @@ impl Hand {
 
     fn steer(&mut self) {
         let uneven = 1.0 + SPEED_SCATTER[1] * self.unevenness.tick(&mut self.random);
-        let finger = &mut self.finger;
-        finger.along_mm_s = self.sweep.speed_mm_s * self.sweep.envelope(self.time_s) * uneven;
-        let heading = HEADING * self.heading.tick(&mut self.random) - DRAW_BACK * finger.across_mm;
-        finger.across_mm_s = finger.along_mm_s.abs() * heading;
-        finger.along_mm += finger.along_mm_s * self.step_s;
-        finger.across_mm += finger.across_mm_s * self.step_s;
+        let along_mm_s = self.sweep.speed_mm_s * self.sweep.envelope(self.time_s) * uneven;
+        self.heading
+            .steer(&mut self.finger, along_mm_s, self.step_s, &mut self.random);
     }
 
     fn press(&mut self) {

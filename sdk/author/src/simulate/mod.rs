@@ -21,9 +21,12 @@
 
 mod contact;
 mod filters;
+mod free;
 mod hand;
 mod relief;
 mod surface;
+mod track;
+mod truth;
 mod write;
 
 use htex_dsp::grid::{Band, GRID_HZ};
@@ -31,12 +34,16 @@ use htex_dsp::normal::Normal;
 use thiserror::Error;
 
 pub use surface::Surface;
+pub use truth::Truth;
 
 use crate::read::motion::speed_mm_s;
 use crate::recording::{Recording, RecordingError};
 use crate::response::SetupResponse;
-use contact::{Contact, Force, Rig, sense};
+use contact::{Contact, Force, Material, Rig, sense};
+use free::FreeHand;
 use hand::{Finger, Hand};
+use relief::Relief;
+use track::Track;
 use write::{FORCE_DECIMALS, POSITION_DECIMALS, rounded};
 
 /// Lowest rate of the physics, Hz.
@@ -68,6 +75,60 @@ pub enum SimulationError {
         /// Largest allowed value.
         high: f64,
     },
+    /// The true spectrum of sweeps is not known.
+    #[error(
+        "the true spectrum is known for a free motion only; sweeps run over one fixed piece of the material"
+    )]
+    NoTruth,
+}
+
+/// The motion of the simulated hand.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub enum Motion {
+    /// To-and-fro sweeps at one speed and one force, over one piece of the material.
+    #[default]
+    Sweeps,
+    /// Strokes of random speed and force, over material without end.
+    Free(FreeMotion),
+}
+
+/// A free motion: strokes of 0.6 to 1.6 s in both directions, each with its own speed and force, which change slowly by up
+/// to 10 %. The logarithms of both are distributed evenly over their ranges.
+///
+/// The finger is always on material that it has not touched before, and the strength of contact does not vary. The spectrum
+/// of a steady part is therefore a known function of speed and force: [`SimulationOptions::truth`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct FreeMotion {
+    /// Lowest and highest speed, 1 to 500 mm/s.
+    pub speed_mm_s: [f64; 2],
+    /// Lowest and highest normal force, 0.01 to 10 N.
+    pub force_n: [f64; 2],
+}
+
+impl FreeMotion {
+    /// Sets the lowest and highest speed, mm/s.
+    #[must_use]
+    pub const fn with_speed_mm_s(self, speed_mm_s: [f64; 2]) -> Self {
+        Self { speed_mm_s, ..self }
+    }
+
+    /// Sets the lowest and highest normal force, newtons.
+    #[must_use]
+    pub const fn with_force_n(self, force_n: [f64; 2]) -> Self {
+        Self { force_n, ..self }
+    }
+}
+
+impl Default for FreeMotion {
+    /// The speeds and forces of a recording of a bare finger that strokes freely: 36 to 280 mm/s, 0.15 to 3.8 N.
+    fn default() -> Self {
+        Self {
+            speed_mm_s: [36.0, 280.0],
+            force_n: [0.15, 3.8],
+        }
+    }
 }
 
 /// Options of a simulation.
@@ -87,6 +148,8 @@ pub struct SimulationOptions {
     pub speed_mm_s: f64,
     /// Normal force, 0.01 to 10 N.
     pub force_n: f64,
+    /// The motion; a free one has its own ranges of speed and force.
+    pub motion: Motion,
 }
 
 impl SimulationOptions {
@@ -100,6 +163,7 @@ impl SimulationOptions {
             duration_s: 10.0,
             speed_mm_s: 80.0,
             force_n: 0.4,
+            motion: Motion::Sweeps,
         }
     }
 
@@ -135,6 +199,13 @@ impl SimulationOptions {
     #[must_use]
     pub fn with_force_n(mut self, force_n: f64) -> Self {
         self.force_n = force_n;
+        self
+    }
+
+    /// Sets a free motion instead of sweeps.
+    #[must_use]
+    pub fn with_free_motion(mut self, free: FreeMotion) -> Self {
+        self.motion = Motion::Free(free);
         self
     }
 
@@ -186,19 +257,83 @@ impl SimulationOptions {
                 MAX_SAMPLES,
             ),
         ];
-        match ranges
-            .into_iter()
-            .find(|(_, value, low, high)| !(*low..=*high).contains(value))
-        {
-            None => Ok(()),
-            Some((option, value, low, high)) => Err(SimulationError::Range {
-                option,
-                value,
-                low,
-                high,
-            }),
+        for (option, value, low, high) in ranges {
+            check_range(option, value, low, high)?;
+        }
+        match &self.motion {
+            Motion::Sweeps => Ok(()),
+            Motion::Free(free) => free.check(),
         }
     }
+
+    /// Makes the hand, at the rate of the physics.
+    fn hand(&self, random: Normal) -> AnyHand {
+        let rate_hz = self.inner_hz();
+        match self.motion {
+            Motion::Sweeps => {
+                let hand = Hand::new(self.speed_mm_s, self.force_n, rate_hz, random);
+                AnyHand::Sweeping(Box::new(hand))
+            }
+            Motion::Free(free) => {
+                let hand = FreeHand::new(free.speed_mm_s, free.force_n, rate_hz, random);
+                AnyHand::Free(Box::new(hand))
+            }
+        }
+    }
+
+    /// Makes the material; `stream` returns the random numbers of a part of it.
+    fn material(&self, stream: impl Fn(u64) -> Normal) -> Material {
+        let parameters = self.surface.parameters();
+        match self.motion {
+            Motion::Sweeps => Material::Piece(Relief::new(parameters, &mut stream(1))),
+            Motion::Free(_) => {
+                let tracks = [1, 3].map(|part| Track::new(parameters, stream(part)));
+                Material::Endless(Box::new(tracks), 1.0 / self.inner_hz())
+            }
+        }
+    }
+}
+
+impl FreeMotion {
+    fn check(&self) -> Result<(), SimulationError> {
+        let [slowest, fastest] = self.speed_mm_s;
+        let [lightest, firmest] = self.force_n;
+        check_range("lowest speed_mm_s", slowest, 1.0, 500.0)?;
+        check_range("highest speed_mm_s", fastest, slowest, 500.0)?;
+        check_range("lowest force_n", lightest, 0.01, 10.0)?;
+        check_range("highest force_n", firmest, lightest, 10.0)
+    }
+}
+
+enum AnyHand {
+    Sweeping(Box<Hand>),
+    Free(Box<FreeHand>),
+}
+
+impl AnyHand {
+    fn tick(&mut self) -> Finger {
+        match self {
+            Self::Sweeping(hand) => hand.tick(),
+            Self::Free(hand) => hand.tick(),
+        }
+    }
+}
+
+fn check_range(
+    option: &'static str,
+    value: f64,
+    low: f64,
+    high: f64,
+) -> Result<(), SimulationError> {
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    Err(SimulationError::Range {
+        option,
+        value,
+        low,
+        high,
+    })
 }
 
 /// A simulated recording; all signals have the same length.
@@ -271,8 +406,8 @@ pub fn simulate(options: &SimulationOptions) -> Result<Simulation, SimulationErr
     let samples = libm::round(options.rate_hz * options.duration_s) as usize;
     let (inner_steps, inner_hz) = (options.inner_steps(), options.inner_hz());
     let stream = |part: u64| stream(options.seed, 16 * parameters.label + part);
-    let mut hand = Hand::new(options.speed_mm_s, options.force_n, inner_hz, stream(0));
-    let mut contact = Contact::new(parameters, inner_hz, &mut stream(1));
+    let mut hand = options.hand(stream(0));
+    let mut contact = Contact::new(parameters, inner_hz, options.material(stream));
     let mut rig = Rig::new(inner_hz, options.rate_hz);
     let mut noise = stream(2);
     let mut simulation = Simulation::new(options, samples);

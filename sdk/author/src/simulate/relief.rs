@@ -8,7 +8,7 @@ use super::filters::OnePole;
 use super::surface::{Grain, Line, Parameters};
 
 /// Points per millimetre: 1000 Hz at 80 mm/s is a period of 8 points; faster sweeps have longer periods.
-const POINTS_PER_MM: f64 = 100.0;
+pub(super) const POINTS_PER_MM: f64 = 100.0;
 /// Length of the surface with a margin, mm, centred on 0.
 const LENGTH_MM: f64 = 120.0;
 /// Standard deviation of the Gaussian over which one ridge's contact averages, mm: -3 dB at 6.6 periods
@@ -27,17 +27,7 @@ pub(super) struct Relief {
 impl Relief {
     /// Creates a field whose standard deviation before smoothing by the contact is `parameters.relief`.
     pub(super) fn new(parameters: &Parameters, random: &mut Normal) -> Self {
-        let power = parameters
-            .lines
-            .iter()
-            .map(|line| line.weight * line.weight)
-            .sum::<f64>()
-            + parameters
-                .grains
-                .iter()
-                .map(|grain| grain.weight * grain.weight)
-                .sum::<f64>();
-        let unit = parameters.relief / libm::sqrt(power);
+        let unit = parameters.unit();
         let mut field = |add: &mut dyn FnMut(&mut [f64], &mut Normal)| {
             let mut values = vec![0.0; (LENGTH_MM * POINTS_PER_MM) as usize];
             add(&mut values, random);
@@ -99,8 +89,14 @@ fn add_grain(values: &mut [f64], grain: &Grain, unit: f64, random: &mut Normal) 
         .for_each(|(value, x)| *value += scale * x);
 }
 
-/// Convolves with the contact's Gaussian.
-fn smooth(values: &[f64]) -> Vec<f64> {
+/// Returns the contact's Gaussian, normalised to a sum of 1.
+pub(super) fn contact_kernel() -> Vec<f64> {
+    let (kernel, total) = gaussian();
+    kernel.iter().map(|weight| weight / total).collect()
+}
+
+/// Returns the contact's Gaussian and its sum.
+fn gaussian() -> (Vec<f64>, f64) {
     let sigma = CONTACT_MM * POINTS_PER_MM;
     let reach = libm::ceil(4.0 * sigma) as usize;
     let weight = |offset: usize| {
@@ -108,7 +104,14 @@ fn smooth(values: &[f64]) -> Vec<f64> {
         libm::exp(-0.5 * (x / sigma) * (x / sigma))
     };
     let kernel: Vec<f64> = (0..=2 * reach).map(weight).collect();
-    let total: f64 = kernel.iter().sum();
+    let total = kernel.iter().sum();
+    (kernel, total)
+}
+
+/// Convolves with the contact's Gaussian.
+fn smooth(values: &[f64]) -> Vec<f64> {
+    let (kernel, total) = gaussian();
+    let reach = kernel.len() / 2;
     let at = |point: usize| {
         let sum: f64 = kernel
             .iter()
@@ -118,6 +121,18 @@ fn smooth(values: &[f64]) -> Vec<f64> {
         sum / total
     };
     (0..values.len()).map(at).collect()
+}
+
+/// Returns the weights of Catmull–Rom's interpolation for a position from 0 to 1 between the second and the third of four
+/// values.
+pub(super) fn cubic_weights(t: f64) -> [f64; 4] {
+    let (t2, t3) = (t * t, t * t * t);
+    [
+        0.5 * (2.0 * t2 - t - t3),
+        0.5 * (2.0 - 5.0 * t2 + 3.0 * t3),
+        0.5 * (t + 4.0 * t2 - 3.0 * t3),
+        0.5 * (t3 - t2),
+    ]
 }
 
 /// Interpolates by Catmull–Rom; constant beyond the ends.

@@ -109,6 +109,15 @@ pub(super) struct Parameters {
     pub(super) grains: &'static [Grain],
 }
 
+impl Parameters {
+    /// Returns the standard deviation of a part of the relief of weight 1.
+    pub(super) fn unit(&self) -> f64 {
+        let lines = self.lines.iter().map(|line| line.weight * line.weight);
+        let grains = self.grains.iter().map(|grain| grain.weight * grain.weight);
+        self.relief / libm::sqrt(lines.sum::<f64>() + grains.sum::<f64>())
+    }
+}
+
 const SANDPAPER: Parameters = Parameters {
     label: 1,
     friction: 0.75,

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::Simulation;
+use super::{Motion, Simulation};
 
 /// Decimals of each kind of column: 1 us, 0.1 uN (the noise is 0.2 mN), 0.1 um.
 const TIME_DECIMALS: u32 = 6;
@@ -27,13 +27,18 @@ impl Simulation {
     /// Those of the writer.
     pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
         let options = &self.options;
+        let motion = match options.motion {
+            Motion::Sweeps => format!("{} mm/s, {} N", options.speed_mm_s, options.force_n),
+            Motion::Free(free) => {
+                let ([slow, fast], [light, firm]) = (free.speed_mm_s, free.force_n);
+                format!("free motion, {slow} to {fast} mm/s, {light} to {firm} N")
+            }
+        };
         writeln!(
             out,
-            "# simulated recording, no finger and no sensor: surface {}, seed {}, {} mm/s, {} N, {} Hz, htex {}",
+            "# simulated recording, no finger and no sensor: surface {}, seed {}, {motion}, {} Hz, htex {}",
             options.surface,
             options.seed,
-            options.speed_mm_s,
-            options.force_n,
             options.rate_hz,
             env!("CARGO_PKG_VERSION")
         )?;

@@ -65,6 +65,10 @@ pub(super) fn manifests() -> Vec<Named> {
             m["htex"] = json!("1.1");
             m["doi"] = json!("https://doi.org/10.5281/zenodo.1234567");
         }),
+        ("quality_invalid_left_out", |m| {
+            m["htex"] = json!("1.2");
+            m["representations"][0]["at"][0]["left_out"] = json!({ "band_error_rms_db": -0.5 });
+        }),
         ("license_invalid", |m| m["license"] = json!("CC BY 4.0")),
         ("license_unknown", |m| m["license"] = json!("CC-BY-9.0")),
         ("field_unknown", |m| {

@@ -71,6 +71,7 @@ fn condition(i: usize) -> Condition {
         speed_mm_s: Some(40.0 + 20.0 * i as f64),
         force_n: Some(0.5),
         repeatability_rms_db: Some(0.8137),
+        segments: None,
     }
 }
 
@@ -146,6 +147,7 @@ fn at(i: usize) -> AtCondition {
             samples_log_spectral_distance_db: Some(2.8011),
             rounding_error_db: Some(0.0003),
         }),
+        left_out: None,
     }
 }
 

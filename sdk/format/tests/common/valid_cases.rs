@@ -52,13 +52,24 @@ pub(super) fn valid() -> Vec<Named> {
             }),
         ),
         (
+            "valid_grid",
+            with_manifest(|m| {
+                m["htex"] = json!("1.2");
+                m["conditions"][0]["segments"] = json!(23);
+                m["representations"][0]["at"][0]["left_out"] = json!({
+                    "band_error_rms_db": 0.8123,
+                    "third_octave_error_rms_db": 1.0412,
+                });
+            }),
+        ),
+        (
             "valid_field_order",
             with_manifest(|m| {
                 let fields = m["representations"][0]["fields"].as_array_mut();
                 fields.unwrap().reverse();
             }),
         ),
-        ("valid_newer_store", with_store_key("1.2")),
+        ("valid_newer_store", with_store_key("1.3")),
         ("valid_field_of_newer_model", with_newer_model()),
         (
             "valid_newer_minor",

@@ -96,6 +96,7 @@ fn asset(quantity: Quantity, models: &[&str]) -> Vec<u8> {
             condition: 0,
             level_rms: 0.02,
             quality: None,
+            left_out: None,
         }],
         parameters: format!("parameters/{model}.bin"),
     };
@@ -104,6 +105,7 @@ fn asset(quantity: Quantity, models: &[&str]) -> Vec<u8> {
         speed_mm_s: Some(80.0),
         force_n: Some(0.4),
         repeatability_rms_db: None,
+        segments: None,
     };
     let asset = htex_format::Asset {
         manifest: Manifest {

@@ -1,0 +1,77 @@
+//! Models' modules that travel in an asset.
+
+use std::path::{Path, PathBuf};
+
+use htex_format::{Asset, Plugin};
+use htex_host::{LoadedModel, Origin, Registry};
+
+/// An error of putting modules into an asset.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum EmbedError {
+    /// The file is no WASM module.
+    #[error("{file}: only WASM modules can be embedded")]
+    NoModule {
+        /// The file.
+        file: PathBuf,
+    },
+    /// The module's model is not fitted.
+    #[error("{file}: {model} was not fitted; fit it, too")]
+    NotFitted {
+        /// The file.
+        file: PathBuf,
+        /// Id of its model.
+        model: String,
+    },
+    /// The file cannot be read.
+    #[error("cannot read {file}: {error}")]
+    Read {
+        /// The file.
+        file: PathBuf,
+        /// The system's error.
+        error: std::io::Error,
+    },
+}
+
+/// Puts the modules of fitted models into an asset, signed with an ed25519 secret key if there is one. `registry` has loaded the
+/// models from these files.
+///
+/// # Errors
+/// See [`EmbedError`].
+pub fn embed_plugins(
+    asset: &mut Asset,
+    registry: &Registry,
+    files: &[PathBuf],
+    secret_key: Option<&[u8; 32]>,
+) -> Result<(), EmbedError> {
+    for file in files {
+        let model = model_of(registry, file)?;
+        let representations = &asset.manifest.representations;
+        if !representations.iter().any(|r| r.model == model.id()) {
+            return Err(EmbedError::NotFitted {
+                file: file.clone(),
+                model: model.id().to_owned(),
+            });
+        }
+        let module = std::fs::read(file).map_err(|error| EmbedError::Read {
+            file: file.clone(),
+            error,
+        })?;
+        let plugin = Plugin::new(model.id(), &model.descriptor().version, &module);
+        asset.manifest.plugins.push(match secret_key {
+            Some(key) => plugin.signed(key),
+            None => plugin,
+        });
+        asset.plugins.push(module);
+    }
+    Ok(())
+}
+
+/// Returns the model that was loaded from a module.
+fn model_of<'a>(registry: &'a Registry, file: &Path) -> Result<&'a LoadedModel, EmbedError> {
+    let of_file = |m: &&LoadedModel| matches!(m.origin(), Origin::Wasm(path) if path == file);
+    let model = registry.models().iter().find(of_file);
+    model.ok_or_else(|| EmbedError::NoModule {
+        file: file.to_owned(),
+    })
+}

@@ -1,0 +1,113 @@
+//! The cells of a grid: the steady windows around each crossing of its lines.
+
+use super::lines::Lines;
+
+/// Windows from which a cell is not widened. In third octaves the power of as many windows of noise scatters by 0.5 dB
+/// (RMS over 17 bands from 20 Hz).
+const ENOUGH: usize = 32;
+/// Fewest windows of a condition, with those of a widened cell.
+pub(super) const FEWEST: usize = 8;
+/// Ratio of speeds up to which a cell may be widened, and factor by which it may be for speeds and forces.
+const WIDENED_RATIO: f64 = 1.19;
+const WIDENED: [f64; 2] = [2.0, 1.5];
+/// Distance up to which windows tell how the texture changes around a crossing, relative to that of the widest cell.
+const SURROUNDINGS: f64 = 2.0;
+
+/// The windows around a crossing of two lines.
+#[derive(Debug)]
+pub(super) struct Cell {
+    /// The crossing: logarithms of mm/s and newtons.
+    pub(super) at: [f64; 2],
+    /// Indices of the windows inside the cell, in their order.
+    pub(super) own: Vec<usize>,
+    /// Indices of the nearest windows outside, in their order, as many as complete [`ENOUGH`].
+    pub(super) borrowed: Vec<usize>,
+    /// Indices of the windows of a wider neighbourhood, the cell's included.
+    pub(super) around: Vec<usize>,
+    /// Whether there are windows inside, or borrowed ones at lower and at higher speeds.
+    surrounded: bool,
+}
+
+impl Cell {
+    /// Returns the windows that are averaged; `None` if they are too few.
+    pub(super) fn used(&self) -> Option<Vec<usize>> {
+        let all = self.own.len() + self.borrowed.len();
+        if !self.surrounded || all < FEWEST {
+            return None;
+        }
+        let mut used: Vec<usize> = self.own.iter().chain(&self.borrowed).copied().collect();
+        used.sort_unstable();
+        Some(used)
+    }
+}
+
+/// Makes the cells of all crossings, by speed and then by force.
+pub(super) fn gather(lines: &Lines, motions: &[[f64; 2]]) -> Vec<Cell> {
+    let [speeds, forces] = &lines.axes;
+    let mut cells = Vec::with_capacity(speeds.len() * forces.len());
+    for i in 0..speeds.len() {
+        for j in 0..forces.len() {
+            let halves = [Lines::halves(speeds, i), Lines::halves(forces, j)];
+            cells.push(cell([speeds[i], forces[j]], halves, motions));
+        }
+    }
+    cells
+}
+
+fn cell(at: [f64; 2], halves: [[f64; 2]; 2], motions: &[[f64; 2]]) -> Cell {
+    let widest = |halves: [f64; 2]| {
+        let reach = libm::log(WIDENED_RATIO);
+        halves.map(|half| (WIDENED[0] * half).max(reach))
+    };
+    let wide = [widest(halves[0]), halves[1].map(|half| WIDENED[1] * half)];
+    let distances = |halves: [[f64; 2]; 2]| -> Vec<f64> {
+        let distance = |motion: &[f64; 2]| distance(at, halves, *motion);
+        motions.iter().map(distance).collect()
+    };
+    let (inside, around) = (distances(halves), distances(wide));
+    let all = 0..motions.len();
+    let own: Vec<usize> = all.clone().filter(|i| inside[*i] < 1.0).collect();
+    let mut borrowed: Vec<usize> = all
+        .clone()
+        .filter(|i| inside[*i] >= 1.0 && around[*i] < 1.0)
+        .collect();
+    borrowed.sort_by(|a, b| around[*a].total_cmp(&around[*b]));
+    borrowed.truncate(ENOUGH.saturating_sub(own.len()));
+    borrowed.sort_unstable();
+    let slower = |i: &usize| motions[*i][0] < at[0];
+    let both_sides = borrowed.iter().any(slower) && !borrowed.iter().all(slower);
+    Cell {
+        surrounded: !own.is_empty() || both_sides,
+        at,
+        own,
+        borrowed,
+        around: all.filter(|i| around[*i] < SURROUNDINGS).collect(),
+    }
+}
+
+/// Returns whether the median cell has windows for a denser grid: half of [`ENOUGH`].
+pub(super) fn are_full(cells: &[Cell]) -> bool {
+    let mut counts: Vec<usize> = cells
+        .iter()
+        .map(|cell| cell.own.len() + cell.borrowed.len())
+        .collect();
+    counts.sort_unstable();
+    counts
+        .get(counts.len() / 2)
+        .is_some_and(|count| 2 * count >= ENOUGH)
+}
+
+/// Returns the larger of a motion's two distances from a crossing, in halves of the spacing: below 1 inside the cell.
+fn distance(at: [f64; 2], halves: [[f64; 2]; 2], motion: [f64; 2]) -> f64 {
+    let along = |axis: usize| {
+        let difference = motion[axis] - at[axis];
+        let [below, above] = halves[axis];
+        // The lower edge belongs to the cell, the upper one to the next.
+        if difference < 0.0 {
+            -difference / below * (1.0 - 1e-12)
+        } else {
+            difference / above
+        }
+    };
+    along(0).max(along(1))
+}

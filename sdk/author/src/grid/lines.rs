@@ -1,0 +1,112 @@
+//! The lines of a grid: given, or chosen from the motions of the steady windows.
+
+use super::cells::FEWEST;
+use super::request::Grid;
+use crate::AuthorError;
+use crate::findings::quantile;
+
+/// Parts of the windows whose speeds, and forces, a chosen grid covers.
+const COVERED: [f64; 2] = [0.01, 0.99];
+/// Ratios of neighbouring speeds that are tried in turn: a quarter to a twelfth of an octave. Within 5 % a player treats speeds
+/// as one.
+pub(super) const SPEED_RATIOS: [f64; 3] = [1.19, 1.12, 1.06];
+/// Largest ratio of neighbouring forces that is chosen. The level changes smoothly with the force, and players
+/// interpolate it linearly.
+const FORCE_RATIO: f64 = 4.0;
+/// Ratio of the highest to the lowest speed or force up to which it counts as constant.
+const CONSTANT: f64 = 1.15;
+/// Distance of the outermost lines from the ends of the covered range, in spacings.
+const MARGIN: f64 = 0.25;
+/// Half the width of the cells of a single line, as a ratio.
+const SINGLE: f64 = 1.25;
+
+/// The lines of both axes, in logarithms of mm/s and of newtons, ascending.
+pub(super) struct Lines {
+    pub(super) axes: [Vec<f64>; 2],
+}
+
+impl Lines {
+    /// Returns the given lines, and those of axes without: equally spaced in the logarithm, over the range of 98 % of the
+    /// windows, as few as a ratio of at most `speed_ratio` between speeds and 4 between forces allows.
+    pub(super) fn choose(
+        grid: &Grid,
+        motions: &[[f64; 2]],
+        speed_ratio: f64,
+    ) -> Result<Self, AuthorError> {
+        let given = |lines: &Option<Vec<f64>>| {
+            let logs = |lines: &Vec<f64>| lines.iter().map(|x| libm::log(*x)).collect();
+            lines.as_ref().map(logs)
+        };
+        let (speeds, forces) = (given(&grid.speed_mm_s), given(&grid.force_n));
+        if motions.len() < FEWEST {
+            return Err(AuthorError::GridFew {
+                segments: motions.len(),
+                needed: FEWEST,
+            });
+        }
+        let [speed, force] = [0, 1].map(|axis| Covered::of(motions, axis));
+        if speed.is_constant() && force.is_constant() && speeds.is_none() && forces.is_none() {
+            return Err(AuthorError::GridConstant {
+                speed_mm_s: [speed.low, speed.high].map(libm::exp),
+                force_n: [force.low, force.high].map(libm::exp),
+            });
+        }
+        Ok(Self {
+            axes: [
+                speeds.unwrap_or_else(|| speed.at_most(speed_ratio)),
+                forces.unwrap_or_else(|| force.at_most(FORCE_RATIO)),
+            ],
+        })
+    }
+
+    /// Returns half the distance to the neighbours of a line, below and above; outside the outermost lines as far as inside.
+    pub(super) fn halves(lines: &[f64], i: usize) -> [f64; 2] {
+        let half = |a: Option<&f64>, b: Option<&f64>| Some(0.5 * (b? - a?));
+        let below = half(i.checked_sub(1).and_then(|k| lines.get(k)), lines.get(i));
+        let above = half(lines.get(i), lines.get(i + 1));
+        let single = libm::log(SINGLE);
+        [
+            below.or(above).unwrap_or(single),
+            above.or(below).unwrap_or(single),
+        ]
+    }
+}
+
+/// The range of a speed or force that a chosen grid covers, in the logarithm.
+struct Covered {
+    low: f64,
+    high: f64,
+}
+
+impl Covered {
+    fn of(motions: &[[f64; 2]], axis: usize) -> Self {
+        let at = |part| quantile(part, motions.len(), |i| motions[i][axis]).unwrap_or(0.0);
+        let [low, high] = COVERED.map(at);
+        Self { low, high }
+    }
+
+    fn is_constant(&self) -> bool {
+        self.high - self.low < libm::log(CONSTANT)
+    }
+
+    /// Returns the fewest lines with ratios of at most `ratio` between neighbours.
+    fn at_most(&self, ratio: f64) -> Vec<f64> {
+        if self.is_constant() {
+            return self.lines(1);
+        }
+        let spacings = (self.high - self.low) / libm::log(ratio);
+        let count = libm::ceil(spacings + 1.0 - 2.0 * MARGIN - 1e-9);
+        self.lines((count as usize).max(2))
+    }
+
+    /// Returns equally spaced lines; a single one is in the middle.
+    fn lines(&self, count: usize) -> Vec<f64> {
+        if count < 2 {
+            return vec![0.5 * (self.low + self.high)];
+        }
+        let spacing = (self.high - self.low) / (count as f64 - 1.0 + 2.0 * MARGIN);
+        (0..count)
+            .map(|i| self.low + (MARGIN + i as f64) * spacing)
+            .collect()
+    }
+}

@@ -1,0 +1,94 @@
+//! Spectra of windows over equal paths.
+//!
+//! Most of a texture's spectrum is its relief, read at the finger's speed. A window that the finger passes at another speed than
+//! that of its grid line is therefore taken as long as the finger needs for the path of 0.2 s at the line's speed: its bins
+//! then lie at the frequencies that the relief has at the line (order tracking, as for rotating machines). Lines of a weave
+//! are not blurred by the scatter of the speed within a cell; what does not follow the speed is blurred by as much.
+
+use std::collections::BTreeMap;
+
+use htex_dsp::Band;
+use htex_dsp::spectrum::Complex;
+
+use crate::spectrum::{SegmentReader, Trend, inverse_at};
+use crate::{AuthorError, SpectrumOptions, Take};
+
+/// Largest ratio of a window's speed to the line's that is compensated.
+const MOST: f64 = 1.5;
+/// Steps of a window's length, in parts of 0.2 s: few lengths, of which each has tables.
+const STEPS: f64 = 100.0;
+
+/// A steady window.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Window {
+    /// Index of its recording.
+    pub(super) take: usize,
+    /// First sample of its 0.2 s.
+    pub(super) start: usize,
+    /// Number of samples in 0.2 s.
+    pub(super) len: usize,
+    /// Logarithms of the mean speed, mm/s, and the mean force, N.
+    pub(super) motion: [f64; 2],
+}
+
+/// A reader of the windows of some recordings.
+pub(super) struct Paths<'a> {
+    takes: &'a [Take],
+    options: &'a SpectrumOptions,
+    band: Band,
+    readers: BTreeMap<usize, SegmentReader>,
+    inverses: BTreeMap<[usize; 2], Vec<Complex<f64>>>,
+}
+
+impl<'a> Paths<'a> {
+    pub(super) fn new(takes: &'a [Take], options: &'a SpectrumOptions, band: Band) -> Self {
+        Self {
+            takes,
+            options,
+            band,
+            readers: BTreeMap::new(),
+            inverses: BTreeMap::new(),
+        }
+    }
+
+    /// Returns the spectrum of a window over the path of 0.2 s at a speed, given by its logarithm, on the band's grid.
+    pub(super) fn read(
+        &mut self,
+        window: &Window,
+        log_speed: f64,
+    ) -> Result<Vec<Complex<f64>>, AuthorError> {
+        let recording = &self.takes[window.take].recording;
+        let len = self.length(window, log_speed);
+        let middle = window.start + window.len / 2;
+        let last = recording.samples().saturating_sub(len);
+        let start = middle.saturating_sub(len / 2).min(last);
+        let band = self.band;
+        let reader = self.readers.entry(len);
+        let reader = reader.or_insert_with(|| SegmentReader::new(len, band, Trend::Linear));
+        let mut bins = reader.read(&recording.axes, start)?;
+        if let Some(response) = &self.options.response {
+            let faster = window.len as f64 / len as f64;
+            let inverse = self.inverses.entry([window.len, len]).or_insert_with(|| {
+                let frequency_hz = band.grid_hz().into_iter().map(|f| f * faster);
+                inverse_at(response, band, frequency_hz)
+            });
+            bins.iter_mut().zip(inverse).for_each(|(bin, h)| *bin *= *h);
+        }
+        Ok(bins)
+    }
+
+    /// Returns the samples of the path of 0.2 s at a speed; those of 0.2 s if the recording's rate does not suffice for the
+    /// band then.
+    fn length(&self, window: &Window, log_speed: f64) -> usize {
+        let most = libm::log(MOST);
+        let ratio = libm::exp((log_speed - window.motion[0]).clamp(-most, most));
+        let step = libm::round(window.len as f64 / (2.0 * STEPS)).max(1.0) * 2.0;
+        let len = (libm::round(window.len as f64 * ratio / step) * step) as usize;
+        let samples = self.takes[window.take].recording.samples();
+        if len / 2 >= self.band.last_bin() && len <= samples {
+            len
+        } else {
+            window.len
+        }
+    }
+}

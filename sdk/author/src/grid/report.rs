@@ -1,0 +1,140 @@
+//! The description of a fitted grid.
+
+use htex_format::Condition;
+use htex_play::Mesh;
+use serde::Serialize;
+
+use super::cells::Cell;
+use super::leave_out::motion;
+use super::lines::Lines;
+use crate::TextureSpectrum;
+use crate::conditions::four_digits;
+
+/// Whether a cell became a condition.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum CellStatus {
+    /// It has enough windows.
+    Fitted,
+    /// It has enough windows with the nearest ones of its neighbours.
+    Widened,
+    /// It has too few windows and is not a condition.
+    Thin,
+}
+
+/// A cell of a grid, around the crossing of two lines.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct GridCell {
+    /// Speed of the crossing, mm/s.
+    pub speed_mm_s: f64,
+    /// Normal force of the crossing, newtons.
+    pub force_n: f64,
+    /// Number of steady windows inside.
+    pub segments: usize,
+    /// Number of windows that were averaged, with those of its neighbours; 0 if it is thin.
+    pub averaged: usize,
+    /// Nine-band RMS difference between the odd and the even windows, decibels.
+    pub repeatability_rms_db: Option<f64>,
+    /// Whether it became a condition.
+    pub status: CellStatus,
+    /// Index of its condition in the asset.
+    pub condition: Option<usize>,
+}
+
+/// A grid of conditions, as it was gathered from recordings.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct GridReport {
+    /// Speeds of the lines, mm/s.
+    pub speed_mm_s: Vec<f64>,
+    /// Normal forces of the lines, newtons.
+    pub force_n: Vec<f64>,
+    /// Number of windows of 0.2 s in the recordings, half overlapping.
+    pub windows: usize,
+    /// Number of steady windows.
+    pub steady: usize,
+    /// The cells, by speed and then by force.
+    pub cells: Vec<GridCell>,
+    /// Triangles between conditions, by their indices, between which players interpolate.
+    pub triangles: Vec<[usize; 3]>,
+    /// Mean speed in mm/s and force in newtons of each steady window.
+    #[serde(skip)]
+    pub motions: Vec<[f64; 2]>,
+}
+
+impl GridReport {
+    pub(super) fn new(windows: usize, motions: &[[f64; 2]], lines: &Lines) -> Self {
+        let natural = |axis: usize| {
+            let values = lines.axes[axis].iter();
+            values.map(|log| four_digits(libm::exp(*log))).collect()
+        };
+        Self {
+            speed_mm_s: natural(0),
+            force_n: natural(1),
+            windows,
+            steady: motions.len(),
+            cells: Vec::new(),
+            triangles: Vec::new(),
+            motions: motions.iter().map(|logs| logs.map(libm::exp)).collect(),
+        }
+    }
+
+    pub(super) fn add_thin(&mut self, cell: &Cell) {
+        self.cells.push(described(cell, CellStatus::Thin));
+    }
+
+    pub(super) fn add_fitted(&mut self, cell: &Cell, spectrum: &TextureSpectrum, condition: usize) {
+        let status = if cell.borrowed.is_empty() {
+            CellStatus::Fitted
+        } else {
+            CellStatus::Widened
+        };
+        self.cells.push(GridCell {
+            averaged: spectrum.segments,
+            repeatability_rms_db: spectrum.repeatability_rms_db,
+            condition: Some(condition),
+            ..described(cell, status)
+        });
+    }
+
+    pub(super) fn add_mesh(&mut self, conditions: &[Condition]) {
+        let points: Vec<[f64; 2]> = conditions.iter().map(motion).collect();
+        self.triangles = Mesh::new(&points).triangles().collect();
+    }
+
+    /// Returns the cell of a crossing, by the indices of its lines.
+    #[must_use]
+    pub fn cell(&self, speed: usize, force: usize) -> Option<&GridCell> {
+        let inside = force < self.force_n.len();
+        self.cells
+            .get(speed * self.force_n.len() + force)
+            .filter(|_| inside)
+    }
+
+    /// Describes the ranges of the steady windows' motions.
+    pub(super) fn motion_text(&self) -> String {
+        let range = |axis: usize| {
+            let values = self.motions.iter().map(|motion| motion[axis]);
+            values.fold([f64::INFINITY, 0.0], |[low, high], x| {
+                [x.min(low), x.max(high)]
+            })
+        };
+        let ([slow, fast], [light, firm]) = (range(0), range(1));
+        format!("{slow:.4} to {fast:.4} mm/s and {light:.4} to {firm:.4} N")
+    }
+}
+
+fn described(cell: &Cell, status: CellStatus) -> GridCell {
+    let [speed_mm_s, force_n] = cell.at.map(|log| four_digits(libm::exp(log)));
+    GridCell {
+        speed_mm_s,
+        force_n,
+        segments: cell.own.len(),
+        averaged: 0,
+        repeatability_rms_db: None,
+        status,
+        condition: None,
+    }
+}

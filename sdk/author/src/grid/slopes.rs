@@ -1,0 +1,120 @@
+//! Correction of windows to the speed and force of their crossing.
+//!
+//! The windows are read over equal paths ([`super::paths`]). In each third-octave band the logarithm of the energy is regressed linearly on the logarithms of speed and force, over
+//! the windows around the crossing. A window's spectrum is scaled by the change that this predicts between its motion and
+//! the crossing. The windows of a cell then count equally, where firm ones would otherwise dominate the mean.
+
+use htex_dsp::Band;
+use htex_dsp::spectrum::Complex;
+
+use super::cells::Cell;
+use super::paths::{Paths, Window};
+use crate::AuthorError;
+
+/// Fewest windows of a regression.
+const FEWEST: usize = 12;
+/// Smallest standard deviation of an axis over which a slope is determined, in the logarithm.
+const LEAST_SPREAD: f64 = 0.02;
+/// Largest slope of a power: textures do not change faster than by this power of speed or force.
+const STEEPEST: f64 = 6.0;
+/// Energy that is added to silent bands, relative to the band's mean.
+const FLOOR: f64 = 1e-9;
+
+/// The spectrum of a window over the path of its cell, and its motion.
+struct Read {
+    index: usize,
+    motion: [f64; 2],
+    spectrum: Vec<Complex<f64>>,
+}
+
+/// Returns the spectra of the windows `used`, corrected to the crossing of their cell.
+pub(super) fn corrected(
+    paths: &mut Paths<'_>,
+    windows: &[Window],
+    cell: &Cell,
+    used: &[usize],
+    band: Band,
+) -> Result<Vec<Vec<Complex<f64>>>, AuthorError> {
+    let octaves = third_octaves(band);
+    let mut around = Vec::with_capacity(cell.around.len());
+    for &index in &cell.around {
+        around.push(Read {
+            index,
+            motion: windows[index].motion,
+            spectrum: paths.read(&windows[index], cell.at[0])?,
+        });
+    }
+    let slopes: Vec<[f64; 2]> = octaves
+        .iter()
+        .map(|bins| slopes(&around, cell.at, bins))
+        .collect();
+    let correct = |window: &Read| {
+        let mut spectrum = window.spectrum.clone();
+        for (bins, slope) in octaves.iter().zip(&slopes) {
+            let change = [0, 1].map(|axis| slope[axis] * (window.motion[axis] - cell.at[axis]));
+            let gain = libm::exp(-0.5 * (change[0] + change[1]));
+            let bins = spectrum.get_mut(bins.clone());
+            bins.into_iter().flatten().for_each(|bin| *bin *= gain);
+        }
+        spectrum
+    };
+    let is_used = |window: &&Read| used.binary_search(&window.index).is_ok();
+    Ok(around.iter().filter(is_used).map(correct).collect())
+}
+
+/// Returns the bins of each third octave from the band's lower edge, the last one with what remains.
+pub(super) fn third_octaves(band: Band) -> Vec<std::ops::Range<usize>> {
+    let grid = band.grid_hz();
+    let mut bands: Vec<std::ops::Range<usize>> = Vec::new();
+    let mut start = 0;
+    while let Some(from) = grid.get(start) {
+        let end = start + grid[start..].partition_point(|f| *f < from * libm::cbrt(2.0));
+        bands.push(start..end);
+        start = end;
+    }
+    bands
+}
+
+/// Returns the slopes of the logarithm of a band's energy over the logarithms of speed and force.
+fn slopes(windows: &[Read], at: [f64; 2], bins: &std::ops::Range<usize>) -> [f64; 2] {
+    if windows.len() < FEWEST {
+        return [0.0; 2];
+    }
+    let energy = |window: &Read| {
+        let bins = window.spectrum.get(bins.clone()).unwrap_or_default();
+        bins.iter().map(Complex::norm_sqr).sum::<f64>()
+    };
+    let energies: Vec<f64> = windows.iter().map(energy).collect();
+    let count = energies.len() as f64;
+    let floor = FLOOR * energies.iter().sum::<f64>() / count;
+    if floor <= 0.0 {
+        return [0.0; 2];
+    }
+    let logs: Vec<f64> = energies.iter().map(|e| libm::log(e + floor)).collect();
+    let rows = || {
+        let place = |window: &Read| [0, 1].map(|axis| window.motion[axis] - at[axis]);
+        windows.iter().map(place).zip(&logs)
+    };
+    let mean = |value: &dyn Fn([f64; 2], f64) -> f64| {
+        rows().map(|(x, y)| value(x, *y)).sum::<f64>() / count
+    };
+    let [mx, my, ml] = [mean(&|x, _| x[0]), mean(&|x, _| x[1]), mean(&|_, y| y)];
+    let xx = mean(&|x, _| (x[0] - mx) * (x[0] - mx));
+    let yy = mean(&|x, _| (x[1] - my) * (x[1] - my));
+    let xy = mean(&|x, _| (x[0] - mx) * (x[1] - my));
+    let xl = mean(&|x, y| (x[0] - mx) * (y - ml));
+    let yl = mean(&|x, y| (x[1] - my) * (y - ml));
+    let least = LEAST_SPREAD * LEAST_SPREAD;
+    let determinant = xx * yy - xy * xy;
+    let slopes = match (xx > least, yy > least) {
+        // Speed and force that rise together have no separate slopes.
+        (true, true) if determinant > 0.1 * xx * yy => [
+            (xl * yy - yl * xy) / determinant,
+            (yl * xx - xl * xy) / determinant,
+        ],
+        (true, false) => [xl / xx, 0.0],
+        (false, true) => [0.0, yl / yy],
+        _ => [0.0; 2],
+    };
+    slopes.map(|slope| slope.clamp(-STEEPEST, STEEPEST))
+}

@@ -1,0 +1,130 @@
+//! Lengths in Thrift's compact protocol (<https://github.com/apache/thrift/blob/master/doc/specs/thrift-compact-protocol.md>), by which
+//! Parquet writes its headers. The library that reads them takes as many turns for a list as it claims to have elements.
+
+/// Deepest nesting of structures and lists.
+const DEEPEST: usize = 32;
+
+/// Returns the length of the structure at the beginning of `bytes`.
+///
+/// # Errors
+/// When it is not whole: an element of a list takes at least a byte.
+pub(crate) fn struct_len(bytes: &[u8]) -> Result<usize, &'static str> {
+    let mut walk = Walk { bytes, at: 0 };
+    walk.fields(0)?;
+    Ok(walk.at)
+}
+
+struct Walk<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl Walk<'_> {
+    fn fields(&mut self, depth: usize) -> Result<(), &'static str> {
+        if depth > DEEPEST {
+            return Err("its header is nested too deeply");
+        }
+        loop {
+            let header = self.byte()?;
+            let (delta, kind) = (header >> 4, header & 0x0f);
+            if kind == 0 {
+                return Ok(());
+            }
+            if delta == 0 {
+                self.varint()?;
+            }
+            // A field of type true or false has no further bytes.
+            if kind > 2 {
+                self.value(kind, depth)?;
+            }
+        }
+    }
+
+    fn value(&mut self, kind: u8, depth: usize) -> Result<(), &'static str> {
+        match kind {
+            1..=3 => self.skip(1),
+            4..=6 => self.varint().map(drop),
+            7 => self.skip(8),
+            8 => {
+                let length = self.varint()?;
+                self.skip(length)
+            }
+            9 | 10 => {
+                let header = self.byte()?;
+                let count = match header >> 4 {
+                    15 => self.varint()?,
+                    count => u64::from(count),
+                };
+                self.elements(count, &[header & 0x0f], depth)
+            }
+            11 => match self.varint()? {
+                0 => Ok(()),
+                count => {
+                    let kinds = self.byte()?;
+                    self.elements(count, &[kinds >> 4, kinds & 0x0f], depth)
+                }
+            },
+            12 => self.fields(depth + 1),
+            13 => self.skip(16),
+            _ => Err("its header has a value of an unknown type"),
+        }
+    }
+
+    fn elements(&mut self, count: u64, kinds: &[u8], depth: usize) -> Result<(), &'static str> {
+        if depth > DEEPEST {
+            return Err("its header is nested too deeply");
+        }
+        if count > (self.bytes.len() - self.at) as u64 {
+            return Err("its header claims a list longer than the file");
+        }
+        for _ in 0..count {
+            for kind in kinds {
+                self.value(*kind, depth + 1)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn varint(&mut self) -> Result<u64, &'static str> {
+        let mut value = 0;
+        for shift in (0..64).step_by(7) {
+            let byte = self.byte()?;
+            value |= u64::from(byte & 0x7f) << shift;
+            if byte < 0x80 {
+                return Ok(value);
+            }
+        }
+        Err("its header has a number of more than 64 bits")
+    }
+
+    fn byte(&mut self) -> Result<u8, &'static str> {
+        let byte = self.bytes.get(self.at).copied();
+        self.at += 1;
+        byte.ok_or("its header is cut off")
+    }
+
+    fn skip(&mut self, length: u64) -> Result<(), &'static str> {
+        let left = (self.bytes.len() - self.at) as u64;
+        if length > left {
+            return Err("its header is cut off");
+        }
+        self.at += length as usize;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_are_those_of_whole_structures() {
+        // Field 1, i32: 3; field 2, list of two booleans; the end.
+        assert_eq!(struct_len(&[0x15, 0x06, 0x19, 0x21, 1, 2, 0, 9]), Ok(7));
+        // Two thousand million booleans in seven bytes.
+        let long = [0x19, 0xf1, 0xff, 0xff, 0xff, 0xff, 0x07, 0];
+        assert!(struct_len(&long).is_err());
+        assert!(struct_len(&[0x15]).is_err() && struct_len(&[]).is_err());
+        assert!(struct_len(&[0x1c; 100]).is_err());
+    }
+}

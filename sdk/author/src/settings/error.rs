@@ -1,0 +1,63 @@
+//! Errors of settings.
+
+use htex_host::HostError;
+
+use crate::AuthorError;
+use crate::read::ReadError;
+
+/// A setting that cannot be used.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SettingsError {
+    /// A map of columns cannot be read.
+    #[error("{keyword} {text}: {error}")]
+    Map {
+        /// Its name: `map` or `tracker_map`.
+        keyword: &'static str,
+        /// The map.
+        text: String,
+        /// What is wrong with it.
+        error: Box<ReadError>,
+    },
+    /// There are neither one tracker nor one for each recording.
+    #[error("{trackers} trackers for {recordings} recordings; give one for each, or one for all")]
+    Trackers {
+        /// Trackers that are given.
+        trackers: usize,
+        /// Recordings.
+        recordings: usize,
+    },
+    /// The response of the recording setup cannot be read.
+    #[error(transparent)]
+    Response(Box<ReadError>),
+    /// A model is not known, or an option of it is not.
+    #[error(transparent)]
+    Model(#[from] HostError),
+    /// An option names a model that is not fitted.
+    #[error("option {model}.{name}: no such model is fitted; there are {}", .fitted.join(", "))]
+    ModelNotFitted {
+        /// The model that the option names.
+        model: String,
+        /// The option.
+        name: String,
+        /// Short names of the models that are fitted.
+        fitted: Vec<String>,
+    },
+    /// An option is not of the form `MODEL.NAME=VALUE`.
+    #[error("option {text}: it looks like MODEL.NAME=VALUE, e.g. ar.order=6")]
+    OptionForm {
+        /// The text.
+        text: String,
+    },
+    /// The grid cannot be read.
+    #[error(transparent)]
+    Grid(Box<AuthorError>),
+    /// Metadata that the asset's validation would refuse.
+    #[error("{field}: {problem}")]
+    Metadata {
+        /// The field.
+        field: &'static str,
+        /// What is wrong with it, and what to do.
+        problem: String,
+    },
+}

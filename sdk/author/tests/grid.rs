@@ -1,0 +1,292 @@
+//! Grids of conditions from one recording of a free motion, against the simulator's true spectra.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
+
+use htex_author::simulate::{FreeMotion, SimulationOptions, Surface, simulate};
+use htex_author::{
+    AssetRequest, CellStatus, Exploration, FittedAsset, Grid, ModelRequest, Recording,
+    SpectrumOptions, Take, fit_asset,
+};
+use htex_dsp::fidelity::third_octave_error_rms_db;
+use htex_dsp::normal::Normal;
+use htex_host::Registry;
+use htex_play::{Asset, Mesh, Motion};
+
+fn free(surface: Surface, seconds: f64) -> SimulationOptions {
+    SimulationOptions::new(surface)
+        .with_free_motion(FreeMotion::default())
+        .with_duration_s(seconds)
+        .with_rate_hz(5_000.0)
+}
+
+fn take(options: &SimulationOptions) -> Take {
+    Take {
+        recording: simulate(options).unwrap().to_recording("free.csv").unwrap(),
+        given: Exploration::default(),
+    }
+}
+
+/// Fits with the rig's response divided out, as a user does (`--frf`).
+fn fit_at_finger(options: &SimulationOptions, models: &[&str]) -> FittedAsset {
+    let spectrum = SpectrumOptions::default().with_response(options.setup_response().unwrap());
+    fit_with(&[take(options)], models, Grid::default(), spectrum)
+}
+
+fn fit(takes: &[Take], models: &[&str], grid: Grid) -> FittedAsset {
+    fit_with(takes, models, grid, SpectrumOptions::default())
+}
+
+fn fit_with(takes: &[Take], models: &[&str], grid: Grid, spectrum: SpectrumOptions) -> FittedAsset {
+    let registry = Registry::builtin();
+    let of = |name: &&str| ModelRequest::new(registry.find(name).unwrap());
+    let request = AssetRequest::new("grid")
+        .with_models(models.iter().map(of))
+        .with_spectrum(spectrum)
+        .with_grid(grid);
+    fit_asset(takes, &request).unwrap()
+}
+
+/// Third-octave errors of what a player interpolates, at random motions inside the mesh.
+fn errors_db(asset: &Asset, model: &str, options: &SimulationOptions, count: usize) -> Vec<f64> {
+    let truth = options.truth().unwrap();
+    let rig = options.setup_response().unwrap();
+    let conditions = &asset.manifest().conditions;
+    let points: Vec<[f64; 2]> = conditions
+        .iter()
+        .map(|c| [c.speed_mm_s.unwrap(), c.force_n.unwrap()])
+        .collect();
+    let mesh = Mesh::new(&points);
+    let mut random = Normal::new(99);
+    let mut errors = Vec::new();
+    while errors.len() < count {
+        let log = |low: f64, high: f64, part: f64| low * (high / low).powf(part);
+        let speed = log(36.0, 280.0, random.next_unit());
+        let force = log(0.15, 3.8, random.next_unit());
+        if !mesh.surrounds(speed, force) {
+            continue;
+        }
+        let motion = Motion::new(speed, force);
+        let grid = truth.frequency_hz();
+        let recorded = truth.magnitude(speed, force).unwrap();
+        let at_finger = recorded.iter().zip(&grid).map(|(magnitude, f)| {
+            let (re, im) = rig.at(*f);
+            magnitude / re.hypot(im)
+        });
+        let truth_at: Vec<f64> = at_finger.collect();
+        let played = asset.magnitude(Some(model), Some(motion), &grid).unwrap();
+        errors.push(third_octave_error_rms_db(&grid, &truth_at, &played).unwrap());
+    }
+    errors.sort_by(f64::total_cmp);
+    errors
+}
+
+fn thirds(options: &SimulationOptions, fitted: FittedAsset) -> Vec<f64> {
+    errors_db(&Asset::new(fitted.asset), "bands", options, 200)
+}
+
+/// Inside the mesh a player is within 1 dB of the truth in third octaves (RMS over the bands).
+#[test]
+fn one_free_recording_gives_the_truth_inside_the_mesh() {
+    let options = free(Surface::Sandpaper, 120.0);
+    let fitted = fit_at_finger(&options, &["bands"]);
+    let report = fitted.grid.clone().unwrap();
+    let conditions = &fitted.asset.manifest.conditions;
+    assert!(conditions.len() >= 18 && conditions.len() == fitted.spectra.len());
+    assert!(
+        conditions
+            .iter()
+            .all(|c| c.segments.is_some_and(|n| n >= 8))
+    );
+    assert!(!report.triangles.is_empty() && report.steady < report.windows);
+    // Each cell names its condition, and the mesh spans most of the motions.
+    for cell in report.cells.iter().filter(|c| c.status != CellStatus::Thin) {
+        let condition = &conditions[cell.condition.unwrap()];
+        assert_eq!(condition.speed_mm_s, Some(cell.speed_mm_s));
+        assert_eq!(condition.force_n, Some(cell.force_n));
+    }
+    let [slow, fast] = [0, report.speed_mm_s.len() - 1].map(|i| report.speed_mm_s[i]);
+    assert!(slow < 45.0 && fast > 220.0, "{slow} to {fast} mm/s");
+    assert_eq!(
+        fitted.asset.manifest.provenance.recordings[0].segments,
+        report.steady as u64
+    );
+    // The leave-one-out error, known without the truth, bounds what a player does.
+    let at = &fitted.asset.manifest.representations[0].at;
+    let left: Vec<f64> = at
+        .iter()
+        .filter_map(|at| at.left_out?.third_octave_error_rms_db)
+        .collect();
+    assert!(left.len() * 2 > at.len(), "{} of {}", left.len(), at.len());
+    let left_db = (left.iter().map(|x| x * x).sum::<f64>() / left.len() as f64).sqrt();
+    let mut written = fitted.asset.clone();
+    written.manifest.declare_version();
+    assert_eq!(written.manifest.htex, "1.2");
+    let errors = thirds(&options, fitted);
+    let [half, most, all] = [0.5, 0.95, 1.0].map(|part| {
+        let last = errors.len() as f64 - 1.0;
+        errors[(part * last) as usize]
+    });
+    println!("median {half:.2}, 95 % {most:.2}, worst {all:.2} dB; left out {left_db:.2} dB");
+    assert!(
+        half < 0.7 && most < 1.0 && all < 1.3,
+        "{half}, {most}, {all} dB"
+    );
+    assert!(left_db < 1.2 && left_db > half);
+}
+
+#[test]
+fn given_lines_are_the_conditions_and_far_lines_stay_empty() {
+    let options = free(Surface::Vinyl, 30.0);
+    let takes = [take(&options)];
+    let grid = Grid::parse(["speed=60,90,135,1000", "force=0.5,1.5"]).unwrap();
+    let fitted = fit(&takes, &["bands"], grid);
+    let speeds: Vec<f64> = fitted
+        .asset
+        .manifest
+        .conditions
+        .iter()
+        .map(|c| c.speed_mm_s.unwrap())
+        .collect();
+    assert_eq!(speeds, [60.0, 60.0, 90.0, 90.0, 135.0, 135.0]);
+    let report = fitted.grid.unwrap();
+    let at = |speed, force| report.cell(speed, force).unwrap().status;
+    assert_eq!([at(3, 0), at(3, 1)], [CellStatus::Thin; 2]);
+    // In two parts the recording gives nearly the same windows, and the same conditions.
+    let half = |from: Option<f64>, to: Option<f64>| Take {
+        recording: takes[0].recording.clone().between(from, to).unwrap(),
+        given: Exploration::default(),
+    };
+    let halves = [half(None, Some(15.0)), half(Some(15.0), None)];
+    let grid = Grid::parse(["speed=60,90,135", "force=0.5,1.5"]).unwrap();
+    assert_eq!(
+        fit(&halves, &["bands"], grid)
+            .asset
+            .manifest
+            .conditions
+            .len(),
+        6
+    );
+}
+
+#[test]
+fn recordings_without_a_free_motion_are_refused_with_what_to_do() {
+    let registry = Registry::builtin();
+    let bands = [ModelRequest::new(registry.find("bands").unwrap())];
+    let refused = |recording: Recording, given: Exploration, grid: &str| {
+        let request = AssetRequest::new("x")
+            .with_models(bands.clone())
+            .with_grid(grid.parse::<Grid>().unwrap());
+        let take = Take { recording, given };
+        fit_asset(&[take], &request).unwrap_err().to_string()
+    };
+    let one = Exploration::default();
+    let moving = take(&free(Surface::Vinyl, 10.0)).recording;
+    let still = Recording {
+        speed_mm_s: None,
+        ..moving.clone()
+    };
+    assert!(refused(still, one, "auto").contains("the speed is not in the file"));
+    let constant = SimulationOptions::new(Surface::Vinyl).with_rate_hz(5_000.0);
+    let constant = simulate(&constant).unwrap().to_recording("sweeps").unwrap();
+    assert!(refused(constant, one, "auto").contains("the motion is constant"));
+    let text = refused(moving.clone(), one, "speed=900,950");
+    assert!(text.contains("no cell") && text.contains("mm/s"), "{text}");
+    let short = moving.clone().between(None, Some(1.0)).unwrap();
+    assert!(refused(short, one, "auto").contains("record for longer"));
+    let restless = Recording {
+        speed_mm_s: Some(
+            (0..moving.samples())
+                .map(|i| (i / 200 % 2) as f64 * 100.0)
+                .collect(),
+        ),
+        ..moving.clone()
+    };
+    assert!(refused(restless, one, "auto").contains("stroke more evenly"));
+    // A given force stands for a column, and leaves lines of speed alone.
+    let unpressed = Recording {
+        normal_n: None,
+        ..moving
+    };
+    let given = Exploration {
+        force_n: Some(0.5),
+        ..one
+    };
+    assert!(refused(unpressed.clone(), one, "auto").contains("the normal force"));
+    let request = AssetRequest::new("x")
+        .with_models(bands)
+        .with_grid(Grid::default());
+    let take = Take {
+        recording: unpressed,
+        given,
+    };
+    let fitted = fit_asset(&[take], &request).unwrap();
+    assert_eq!(fitted.grid.unwrap().force_n, [0.5]);
+    for (text, why) in [
+        ("speed", "neither"),
+        ("speed=", "not a number"),
+        ("speed=0", "not above 0"),
+        ("force=NaN", "not above 0"),
+        ("speed=80,82", "5 %"),
+    ] {
+        let error = text.parse::<Grid>().unwrap_err().to_string();
+        assert!(error.contains(why), "{error}");
+    }
+    assert!(Grid::parse(["speed=1", "speed=2"]).is_err());
+}
+
+/// The measurement behind the numbers of the manual: `cargo test -p htex-author --test grid -- --ignored --nocapture`.
+#[test]
+#[ignore = "a measurement of minutes: all models over all surfaces"]
+fn errors_inside_the_mesh() {
+    let models = std::env::var("MODELS").unwrap_or("bands,ar,mfcc,sbeta,sslope,speak".to_owned());
+    let models: Vec<&str> = models.split(',').collect();
+    let seconds = std::env::var("SECONDS").map_or(120.0, |s| s.parse().unwrap());
+    let wanted = std::env::var("SURFACES").unwrap_or_default();
+    let surfaces = Surface::ALL
+        .into_iter()
+        .filter(|s| wanted.is_empty() || wanted.contains(s.name()));
+    for surface in surfaces {
+        let options = free(surface, seconds);
+        let fitted = fit_at_finger(&options, &models);
+        let report = fitted.grid.unwrap();
+        let asset = Asset::new(fitted.asset);
+        let of = |status| report.cells.iter().filter(|c| c.status == status).count();
+        println!(
+            "{surface}: {} steady of {} windows, {} x {} lines, {} fitted, {} widened, {} thin",
+            report.steady,
+            report.windows,
+            report.speed_mm_s.len(),
+            report.force_n.len(),
+            of(CellStatus::Fitted),
+            of(CellStatus::Widened),
+            of(CellStatus::Thin)
+        );
+        for &model in &models {
+            let Ok(id) = asset.representation_id(Some(model)) else {
+                continue;
+            };
+            let representation = asset.manifest().representations.iter();
+            let representation = representation.clone().find(|r| r.model == id).unwrap();
+            let left: Vec<f64> = representation
+                .at
+                .iter()
+                .filter_map(|at| at.left_out?.third_octave_error_rms_db)
+                .collect();
+            let mean = (left.iter().map(|x| x * x).sum::<f64>() / left.len() as f64).sqrt();
+            let own: Vec<f64> = representation
+                .at
+                .iter()
+                .filter_map(|at| at.quality.as_ref()?.third_octave_error_rms_db)
+                .collect();
+            let own = (own.iter().map(|x| x * x).sum::<f64>() / own.len() as f64).sqrt();
+            let errors = errors_db(&asset, model, &options, 500);
+            println!(
+                "  {model}: median {:.2}, 95 % {:.2}, worst {:.2} dB; own conditions {own:.2} dB, left out {mean:.2} dB of {}",
+                errors[250],
+                errors[475],
+                errors[499],
+                left.len()
+            );
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! Where the entries of an archive are, for programs that store equal entries of several assets once.
+
+use std::ops::Range;
+
+use crate::zip_records;
+
+/// An entry of an archive: its name, and the bytes of its data in the file, packed as they are.
+///
+/// ```no_run
+/// let bytes = std::fs::read("sandpaper.htex")?;
+/// for entry in htex_format::entry_ranges(&bytes) {
+///     println!("{}: {} bytes", entry.name, entry.data.len());
+/// }
+/// # Ok::<(), std::io::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct EntryRange {
+    /// Name of the entry.
+    pub name: String,
+    /// Bytes of its data in the file.
+    pub data: Range<usize>,
+}
+
+/// Returns the entries of a valid asset in the order of the file; of other bytes, those that can be found.
+pub fn entry_ranges(bytes: &[u8]) -> Vec<EntryRange> {
+    let Some(end) = zip_records::find_end(bytes) else {
+        return Vec::new();
+    };
+    let mut at = end.directory_at as usize;
+    let directory = (0..end.entries).map_while(|_| {
+        let (central, next) = zip_records::central(bytes, at)?;
+        at = next;
+        let start = usize::try_from(central.local_at).ok()?;
+        let local = zip_records::local(bytes, start, central.common.packed)?;
+        Some(EntryRange {
+            name: String::from_utf8_lossy(central.name).into_owned(),
+            data: local.data,
+        })
+    });
+    directory.collect()
+}

@@ -1,0 +1,96 @@
+//! An entry of the index: what is known of a texture without opening it.
+
+use std::ops::Range;
+
+use serde::{Serialize, Serializer};
+
+/// What the index states of a texture.
+///
+/// ```no_run
+/// let library = htex_library::Library::open("cloth.htexlib".as_ref())?;
+/// if let Some(entry) = library.entry("woven/cotton")? {
+///     println!("{} bytes, recorded at {:?} mm/s", entry.bytes, entry.conditions.speed_mm_s);
+/// }
+/// # Ok::<(), htex_library::LibraryError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Entry {
+    /// Name in the library, with `/` between its parts ([`crate::check_name`]).
+    pub name: String,
+    /// Search terms of the texture, in its order.
+    pub tags: Vec<String>,
+    /// Range of the conditions at which the texture was recorded.
+    pub conditions: Conditions,
+    /// Ids of the models that describe the texture, in its order.
+    pub models: Vec<String>,
+    /// Bytes of the texture's `.htex` file.
+    pub bytes: u64,
+    /// BLAKE3 of the texture's `.htex` file; hexadecimal in JSON.
+    #[serde(serialize_with = "hexadecimal")]
+    pub blake3: [u8; 32],
+    #[serde(skip)]
+    pub(crate) place: Place,
+}
+
+/// Range of recorded conditions: the least and the greatest known speed and force.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Conditions {
+    /// Scanning speeds, mm/s; `None` when no speed is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_mm_s: Option<Interval>,
+    /// Normal forces, newtons; `None` when no force is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force_n: Option<Interval>,
+}
+
+/// A closed interval of numbers that are finite and not negative.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Interval {
+    /// Least value.
+    pub min: f64,
+    /// Greatest value.
+    pub max: f64,
+}
+
+/// Where the bytes of a texture are.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(crate) struct Place {
+    /// The texture's own bytes, from the start of the payload.
+    pub own: Range<u64>,
+    /// Shared objects among its own bytes, in order.
+    pub cuts: Vec<Cut>,
+}
+
+/// A shared object in a texture.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Cut {
+    /// Number of the texture's own bytes before it.
+    pub at: u64,
+    /// The object, from the start of the shared part.
+    pub object: Range<u64>,
+}
+
+impl Entry {
+    /// Returns the BLAKE3 of the texture as 64 hexadecimal digits.
+    pub fn blake3_hex(&self) -> String {
+        blake3::Hash::from_bytes(self.blake3).to_hex().to_string()
+    }
+}
+
+impl Interval {
+    /// Returns the smallest interval that contains all numbers; `None` for no numbers.
+    pub(crate) fn of(numbers: impl IntoIterator<Item = f64>) -> Option<Self> {
+        numbers.into_iter().fold(None, |interval, x| {
+            let Self { min, max } = interval.unwrap_or(Self { min: x, max: x });
+            Some(Self {
+                min: min.min(x),
+                max: max.max(x),
+            })
+        })
+    }
+}
+
+fn hexadecimal<S: Serializer>(hash: &[u8; 32], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&blake3::Hash::from_bytes(*hash).to_hex())
+}

@@ -1,0 +1,93 @@
+//! Errors of reading and writing libraries.
+
+use std::io;
+use std::path::PathBuf;
+
+use htex_format::{Finding, ReadError, plain, summary};
+
+use crate::name::InvalidName;
+
+/// Error of reading or writing a library.
+///
+/// ```
+/// use htex_library::{Library, LibraryError};
+/// let error = Library::open_source(&b"not a library"[..]).map(|_| ()).unwrap_err();
+/// assert!(matches!(&error, LibraryError::Invalid { findings } if findings[0].code == "LIBRARY_UNRECOGNISED"));
+/// ```
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LibraryError {
+    /// The file could not be opened.
+    #[error("cannot open {}: {error}", .path.display())]
+    Open {
+        /// The file.
+        path: PathBuf,
+        /// The system's error.
+        #[source]
+        error: io::Error,
+    },
+    /// Bytes of the library could not be read.
+    #[error("cannot read {length} bytes at byte {at} of the library: {error}")]
+    Read {
+        /// Offset in the file.
+        at: u64,
+        /// Number of bytes.
+        length: u64,
+        /// The source's error.
+        #[source]
+        error: io::Error,
+    },
+    /// The file breaks a rule of the format.
+    #[error("not a valid library: {}", summary(.findings))]
+    Invalid {
+        /// The broken rule, with its code.
+        findings: Vec<Finding>,
+    },
+    /// The library has no texture of this name.
+    #[error("there is no texture {} in the library; list its entries to see their names", plain(.name))]
+    Absent {
+        /// The name.
+        name: String,
+    },
+    /// The library could not be written; an existing file is unchanged.
+    #[error("cannot write {}: {error}; the file is unchanged", .path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// The system's error.
+        #[source]
+        error: io::Error,
+    },
+    /// A name is not allowed.
+    #[error("{:?} is not a name: {problem}", plain(.name))]
+    Name {
+        /// The name.
+        name: String,
+        /// The rule that it breaks.
+        #[source]
+        problem: InvalidName,
+    },
+    /// Two textures have the same name.
+    #[error("two textures have the name {}; rename one", plain(.name))]
+    Duplicate {
+        /// The name.
+        name: String,
+    },
+    /// A texture to be added is not a valid asset.
+    #[error("{}: {error}", plain(.name))]
+    Asset {
+        /// Name of the texture.
+        name: String,
+        /// The reader's error.
+        #[source]
+        error: Box<ReadError>,
+    },
+    /// The index has limits that a texture or the library exceeds.
+    #[error("{}: {problem}", plain(.name))]
+    Limit {
+        /// Name of the texture, or of the library.
+        name: String,
+        /// The limit, and what to do.
+        problem: String,
+    },
+}

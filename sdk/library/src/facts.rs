@@ -1,0 +1,34 @@
+//! What the index states of an asset, from its manifest.
+
+use htex_format::Manifest;
+
+use crate::entry::{Conditions, Interval};
+
+/// Most tags, and most models, of a texture in the index.
+pub(crate) const MOST_WORDS: usize = 64;
+
+/// Tags, models and conditions of an asset.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Facts {
+    pub tags: Vec<String>,
+    pub models: Vec<String>,
+    pub conditions: Conditions,
+}
+
+impl Facts {
+    pub(crate) fn of(manifest: &Manifest) -> Self {
+        let representations = manifest.representations.iter();
+        let known = manifest.conditions.iter();
+        // A sum with zero has no sign of zero, which the manifest may have.
+        let speeds = known.clone().filter_map(|c| c.speed_mm_s).map(|x| x + 0.0);
+        let forces = known.filter_map(|c| c.force_n).map(|x| x + 0.0);
+        Self {
+            tags: manifest.tags.clone(),
+            models: representations.map(|r| r.model.clone()).collect(),
+            conditions: Conditions {
+                speed_mm_s: Interval::of(speeds),
+                force_n: Interval::of(forces),
+            },
+        }
+    }
+}

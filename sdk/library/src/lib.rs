@@ -1,0 +1,77 @@
+//! The `.htexlib` file: thousands of textures in one file, opened one at a time.
+//!
+//! `spec/htexlib-1.md` is the normative text. The index comes first, sorted by name and in compressed pages: one texture takes three
+//! reads whatever the size of the library, the start of the file, a page of the index and the texture.
+//!
+//! ```
+//! use htex_library::{Library, Writer};
+//! # use htex_format::{Asset, Manifest};
+//! # let manifest: Manifest = serde_json::from_str(r#"{
+//! #     "htex": "1.0", "name": "Cotton", "license": "CC0-1.0", "quantity": "lateral_force", "unit": "N",
+//! #     "tags": ["textile"], "band": { "low_hz": 20, "high_hz": 1000 },
+//! #     "conditions": [{ "speed_mm_s": 80, "force_n": 0.4 }],
+//! #     "representations": [{ "model": "org.htex.sbeta", "model_version": "1.0.0",
+//! #         "fields": [{ "name": "alpha", "store": "f32" }, { "name": "beta", "store": "f32" }],
+//! #         "at": [{ "condition": 0, "level_rms": 0.02 }], "parameters": "parameters/sbeta.bin" }] }"#)?;
+//! # let asset = Asset { manifest, parameters: vec![vec![vec![1.5, 4.0]]], reference: None, plugins: vec![], notes: vec![] };
+//! # let cotton = asset.to_bytes()?;
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("cloth.htexlib");
+//! let mut writer = Writer::create(&path, "Cloth")?;
+//! writer.add("woven/cotton", &cotton)?;
+//! writer.finish()?;
+//!
+//! let library = Library::open(&path)?;
+//! assert_eq!(library.get("woven/cotton")?, cotton);
+//! for entry in library.entries() {
+//!     let entry = entry?;
+//!     println!("{}: {} bytes, {:?}", entry.name, entry.bytes, entry.tags);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! [`Index`] and [`Opening`] do no input or output: they state which bytes of the file they need. [`Library`] reads them from a
+//! [`Source`]; a browser fetches them.
+#![forbid(unsafe_code)]
+
+#[cfg(feature = "write")]
+mod encode;
+mod entry;
+mod error;
+mod facts;
+mod fault;
+mod header;
+mod index;
+mod leaf;
+mod library;
+mod limits;
+mod name;
+mod opening;
+mod page;
+mod query;
+mod root;
+mod rules;
+#[cfg(feature = "write")]
+mod sharing;
+mod source;
+#[cfg(feature = "write")]
+mod spool;
+mod validate;
+mod wire;
+#[cfg(feature = "write")]
+mod writer;
+
+pub use entry::{Conditions, Entry, Interval};
+pub use error::LibraryError;
+pub use header::{EXTENSION, MAGIC};
+pub use index::Index;
+pub use library::{Entries, Library};
+pub use limits::Limits;
+pub use name::{InvalidName, check_name};
+pub use opening::{FIRST_READ, Opening, Progress};
+pub use query::Query;
+pub use rules::{RULES, explain, findings_page};
+pub use source::{LocalFile, Source};
+pub use validate::{validate, validate_source};
+#[cfg(feature = "write")]
+pub use writer::{Packed, Writer};

@@ -1,0 +1,166 @@
+//! The bytes of textures while a library is written: a file beside it, with every embedded module once.
+
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+use std::ops::Range;
+use std::path::Path;
+
+use htex_files::Scratch;
+use htex_format::entry_ranges;
+
+/// Entries of archives that are shared: embedded models.
+const MODULES: &str = "plugins/";
+/// Least bytes of a shared object: below, its place in the index takes a good part of them.
+const LEAST_SHARED: usize = 64;
+
+/// A writer of the file.
+pub(crate) struct Spool {
+    scratch: Scratch,
+    buffer: Vec<u8>,
+    end: u64,
+    modules: Vec<Module>,
+    by_hash: HashMap<[u8; 32], u32>,
+}
+
+/// An embedded module.
+pub(crate) struct Module {
+    pub blake3: [u8; 32],
+    /// Its bytes in the spool.
+    pub at: Range<u64>,
+    /// How often it occurs.
+    pub uses: u64,
+}
+
+/// The bytes of a texture in the spool.
+#[derive(Debug, Clone)]
+pub(crate) struct Spooled {
+    /// All but the modules.
+    pub own: Range<u64>,
+    /// Modules: number of own bytes before each, and its index.
+    pub modules: Box<[(u32, u32)]>,
+}
+
+/// Bytes that are gathered before they are written.
+const BUFFER_BYTES: usize = 1 << 20;
+
+impl Spool {
+    pub(crate) fn beside(path: &Path) -> io::Result<Self> {
+        Ok(Self {
+            scratch: Scratch::beside(path)?,
+            buffer: Vec::new(),
+            end: 0,
+            modules: Vec::new(),
+            by_hash: HashMap::new(),
+        })
+    }
+
+    /// Adds a valid asset.
+    pub(crate) fn add(&mut self, asset: &[u8]) -> io::Result<Spooled> {
+        let modules = entry_ranges(asset).into_iter();
+        let modules =
+            modules.filter(|e| e.name.starts_with(MODULES) && e.data.len() >= LEAST_SHARED);
+        let ranges: Vec<Range<usize>> = modules.map(|entry| entry.data).collect();
+        let mut found = Vec::with_capacity(ranges.len());
+        for range in &ranges {
+            found.push(self.add_module(&asset[range.clone()])?);
+        }
+        let start = self.end;
+        let (mut at, mut cuts) = (0, Vec::with_capacity(ranges.len()));
+        for (range, module) in ranges.iter().zip(found) {
+            self.write(&asset[at..range.start])?;
+            cuts.push(((self.end - start) as u32, module));
+            at = range.end;
+        }
+        self.write(&asset[at..])?;
+        Ok(Spooled {
+            own: start..self.end,
+            modules: cuts.into(),
+        })
+    }
+
+    /// Adds a module, or counts another use of one. Returns its index.
+    fn add_module(&mut self, bytes: &[u8]) -> io::Result<u32> {
+        let blake3 = *blake3::hash(bytes).as_bytes();
+        if let Some(index) = self.by_hash.get(&blake3) {
+            self.modules[*index as usize].uses += 1;
+            return Ok(*index);
+        }
+        let at = self.end;
+        self.write(bytes)?;
+        let index = self.modules.len() as u32;
+        self.by_hash.insert(blake3, index);
+        self.modules.push(Module {
+            blake3,
+            at: at..self.end,
+            uses: 1,
+        });
+        Ok(index)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.buffer.extend_from_slice(bytes);
+        self.end += bytes.len() as u64;
+        if self.buffer.len() >= BUFFER_BYTES {
+            self.flush()?;
+        }
+        Ok(())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.scratch.file().write_all(&self.buffer)?;
+        self.buffer.clear();
+        Ok(())
+    }
+
+    /// Ends the writing.
+    pub(crate) fn finish(mut self) -> io::Result<(SpoolReader, Vec<Module>)> {
+        self.flush()?;
+        self.scratch.file().rewind()?;
+        let file = self.scratch.file().try_clone()?;
+        let reader = SpoolReader {
+            file: BufReader::with_capacity(BUFFER_BYTES, file),
+            at: 0,
+            _scratch: self.scratch,
+        };
+        Ok((reader, self.modules))
+    }
+}
+
+/// A reader of the file, which is removed with it.
+pub(crate) struct SpoolReader {
+    file: BufReader<File>,
+    at: u64,
+    _scratch: Scratch,
+}
+
+impl SpoolReader {
+    /// Copies a range to a file.
+    pub(crate) fn copy(
+        &mut self,
+        range: Range<u64>,
+        to: &mut BufWriter<&mut File>,
+    ) -> io::Result<()> {
+        if range.start != self.at {
+            self.seek(range.start)?;
+        }
+        let length = range.end - range.start;
+        let copied = io::copy(&mut (&mut self.file).take(length), to)?;
+        self.at = range.start + copied;
+        if copied == length {
+            return Ok(());
+        }
+        Err(io::Error::new(
+            io::ErrorKind::UnexpectedEof,
+            "the temporary file was cut off",
+        ))
+    }
+
+    fn seek(&mut self, to: u64) -> io::Result<()> {
+        match i64::try_from(i128::from(to) - i128::from(self.at)) {
+            // Stays in the buffer where it can.
+            Ok(offset) => self.file.seek_relative(offset),
+            Err(_) => self.file.seek(SeekFrom::Start(to)).map(|_| ()),
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! Numbers and texts of pages: little-endian numbers, LEB128 integers, and texts that share their start with the one before.
+
+/// Longest text of a page: a name, a tag, the id of a model, bytes.
+pub(crate) const TEXT_BYTES: usize = 255;
+/// Most bytes of an integer of 64 bits, seven bits a byte.
+const VARINT_BYTES: usize = 10;
+
+/// A page whose contents cannot be read: the offset in the unpacked page, and what is wrong there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("{problem} at byte {at} of the unpacked page")]
+pub(crate) struct Malformed {
+    pub at: usize,
+    pub problem: &'static str,
+}
+
+/// A reader of an unpacked page.
+pub(crate) struct Cursor<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Cursor<'a> {
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
+        Self { bytes, at: 0 }
+    }
+
+    pub(crate) fn malformed(&self, problem: &'static str) -> Malformed {
+        Malformed {
+            at: self.at,
+            problem,
+        }
+    }
+
+    pub(crate) fn rest(&self) -> usize {
+        self.bytes.len() - self.at
+    }
+
+    pub(crate) fn take(&mut self, count: usize) -> Result<&'a [u8], Malformed> {
+        let end = self.at.checked_add(count);
+        let taken = end.and_then(|end| self.bytes.get(self.at..end));
+        let taken = taken.ok_or(self.malformed("the page ends within a value"))?;
+        self.at += count;
+        Ok(taken)
+    }
+
+    pub(crate) fn array<const N: usize>(&mut self) -> Result<[u8; N], Malformed> {
+        let mut array = [0; N];
+        array.copy_from_slice(self.take(N)?);
+        Ok(array)
+    }
+
+    pub(crate) fn byte(&mut self) -> Result<u8, Malformed> {
+        self.array().map(|[byte]| byte)
+    }
+
+    /// Reads an integer in LEB128 without superfluous bytes.
+    pub(crate) fn varint(&mut self) -> Result<u64, Malformed> {
+        let mut value = 0u64;
+        for i in 0..VARINT_BYTES {
+            let byte = self.byte()?;
+            let bits = u64::from(byte & 0x7f);
+            if i == VARINT_BYTES - 1 && byte > 1 {
+                return Err(self.malformed("an integer exceeds 64 bits"));
+            }
+            value |= bits << (7 * i);
+            if byte & 0x80 == 0 {
+                let is_shortest = byte != 0 || i == 0;
+                return if is_shortest {
+                    Ok(value)
+                } else {
+                    Err(self.malformed("an integer has superfluous bytes"))
+                };
+            }
+        }
+        Err(self.malformed("an integer exceeds 64 bits"))
+    }
+
+    /// Reads a count of values that take at least `least` bytes each, so that it is bounded by the page.
+    pub(crate) fn count(&mut self, least: usize) -> Result<usize, Malformed> {
+        let count = self.varint()?;
+        let most = self.rest() / least.max(1);
+        match usize::try_from(count) {
+            Ok(count) if count <= most => Ok(count),
+            _ => Err(self.malformed("the page is too short for a count")),
+        }
+    }
+
+    /// Reads the length of a text.
+    fn length(&mut self) -> Result<usize, Malformed> {
+        match usize::try_from(self.varint()?) {
+            Ok(length) if length <= TEXT_BYTES => Ok(length),
+            _ => Err(self.malformed("a text is longer than 255 bytes")),
+        }
+    }
+
+    pub(crate) fn text(&mut self) -> Result<&'a str, Malformed> {
+        let length = self.length()?;
+        let bytes = self.take(length)?;
+        std::str::from_utf8(bytes).map_err(|_| self.malformed("a text is not UTF-8"))
+    }
+
+    /// Replaces `text`, the text before, by the next one.
+    pub(crate) fn following(&mut self, text: &mut Vec<u8>) -> Result<(), Malformed> {
+        let shared = self.length()?;
+        if shared > text.len() {
+            return Err(self.malformed("a text shares more than the text before it has"));
+        }
+        let rest = self.length()?;
+        if shared + rest > TEXT_BYTES {
+            return Err(self.malformed("a text is longer than 255 bytes"));
+        }
+        text.truncate(shared);
+        text.extend_from_slice(self.take(rest)?);
+        Ok(())
+    }
+}
+
+/// Appends an integer in LEB128.
+#[cfg(feature = "write")]
+pub(crate) fn put_varint(page: &mut Vec<u8>, mut value: u64) {
+    while value >= 0x80 {
+        page.push(value as u8 | 0x80);
+        value >>= 7;
+    }
+    page.push(value as u8);
+}
+
+/// Appends a text of at most 255 bytes.
+#[cfg(feature = "write")]
+pub(crate) fn put_text(page: &mut Vec<u8>, text: &str) {
+    put_varint(page, text.len() as u64);
+    page.extend_from_slice(text.as_bytes());
+}
+
+/// Appends a text of at most 255 bytes after the text before it.
+#[cfg(feature = "write")]
+pub(crate) fn put_following(page: &mut Vec<u8>, before: &[u8], text: &[u8]) {
+    let shared = common_prefix(before, text);
+    put_varint(page, shared as u64);
+    put_varint(page, (text.len() - shared) as u64);
+    page.extend_from_slice(&text[shared..]);
+}
+
+/// Bytes that two texts have in common at their start.
+#[cfg(feature = "write")]
+pub(crate) fn common_prefix(a: &[u8], b: &[u8]) -> usize {
+    a.iter().zip(b).take_while(|(a, b)| a == b).count()
+}
+
+/// Bytes of an integer in LEB128.
+#[cfg(feature = "write")]
+pub(crate) fn varint_bytes(value: u64) -> usize {
+    let bits = u64::BITS - (value | 1).leading_zeros();
+    bits.div_ceil(7) as usize
+}
+
+#[cfg(all(test, feature = "write"))]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn integers_and_texts_are_read_as_written(
+            value: u64, shift in 0u32..64, before: Vec<u8>, text in proptest::collection::vec(0u8..4, 0..255),
+        ) {
+            let value = value >> shift;
+            let mut page = Vec::new();
+            put_varint(&mut page, value);
+            prop_assert_eq!(page.len(), varint_bytes(value));
+            put_following(&mut page, &before, &text);
+            let mut cursor = Cursor::new(&page);
+            prop_assert_eq!(cursor.varint(), Ok(value));
+            let mut read = before;
+            prop_assert_eq!(cursor.following(&mut read), Ok(()));
+            prop_assert_eq!(read, text);
+            prop_assert_eq!(cursor.rest(), 0);
+        }
+    }
+
+    /// Examples of LEB128 from DWARF 5, appendix C, and what is refused.
+    #[test]
+    fn integers_have_one_form() {
+        let read = |bytes: &[u8]| Cursor::new(bytes).varint().map_err(|m| m.problem);
+        assert_eq!(read(&[2]), Ok(2));
+        assert_eq!(read(&[0x80, 1]), Ok(128));
+        assert_eq!(read(&[0xb9, 0x64]), Ok(12857));
+        assert_eq!(read(&[0x80, 0]), Err("an integer has superfluous bytes"));
+        assert_eq!(read(&[0x80]), Err("the page ends within a value"));
+        let most = [[0xff; 9].as_slice(), &[1]].concat();
+        assert_eq!(read(&most), Ok(u64::MAX));
+        let over = [[0xff; 9].as_slice(), &[2]].concat();
+        assert_eq!(read(&over), Err("an integer exceeds 64 bits"));
+    }
+}

@@ -1,0 +1,94 @@
+//! The specification's example, limits and conformance files, held against encoders and a reader that share no code with the crate.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::cases::{cases, four, limits};
+use common::pack;
+use common::raw::Raw;
+use htex_library::{Library, Limits};
+use serde_json::{Value, json};
+
+const TEXT: &str = include_str!("../../../spec/htexlib-1.md");
+/// What `tests/peers/library.py`, a reader written from the specification alone, prints for the valid conformance files.
+const LISTED: &str = include_str!("../../../tests/golden/library.json");
+
+/// Bytes of the code block of this name.
+fn example(name: &str) -> Vec<u8> {
+    let (_, rest) = TEXT.split_once(&format!("```hex {name}\n")).unwrap();
+    let (block, _) = rest.split_once("```").unwrap();
+    let bytes = block.lines().map(|line| line.split('#').next().unwrap());
+    bytes
+        .flat_map(str::split_whitespace)
+        .map(|b| u8::from_str_radix(b, 16).unwrap())
+        .collect()
+}
+
+/// The contents of the page at a range of bytes, by the inflater that zlib has.
+fn unpacked(page: &[u8]) -> Vec<u8> {
+    use std::io::Read;
+    let mut contents = Vec::new();
+    let mut inflater = flate2::read::DeflateDecoder::new(&page[8..]);
+    inflater.read_to_end(&mut contents).unwrap();
+    contents
+}
+
+#[test]
+fn the_example_is_what_the_writer_and_another_encoder_write() {
+    let (_, file) = pack("One", &four()[..1]);
+    assert_eq!(file[..128], example("header"));
+    assert_eq!(unpacked(&file[128..146]), example("root"));
+    assert_eq!(unpacked(&file[146..244]), example("leaf"));
+    let raw = Raw::of(&four()[..1], 1);
+    assert_eq!(raw.page(1), example("leaf"));
+    let kept = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../spec/library-conformance/valid_one.htexlib"
+    );
+    assert_eq!(std::fs::read(kept).unwrap(), file);
+}
+
+/// Both encoders write the same pages of four textures, some of whose names begin alike.
+#[test]
+fn pages_of_several_entries_are_those_of_another_encoder() {
+    let (_, file) = pack("Raw", &four());
+    let library = Library::open_source(file.as_slice()).unwrap();
+    let leaf = library.index().leaf_range(0).unwrap();
+    let raw = Raw::of(&four(), 4);
+    assert_eq!(
+        unpacked(&file[leaf.start as usize..leaf.end as usize]),
+        raw.page(1)
+    );
+    let payload = file.len() - raw.payload.len();
+    assert_eq!(file[payload..], raw.payload);
+}
+
+#[test]
+fn entries_are_those_that_another_reader_lists() {
+    let mut valid: Vec<_> = cases()
+        .into_iter()
+        .filter(|c| c.name.starts_with("valid"))
+        .collect();
+    valid.sort_by(|a, b| a.name.cmp(&b.name));
+    let listed: Vec<Value> = LISTED
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    assert_eq!(valid.len(), listed.len());
+    for (case, listed) in valid.iter().zip(listed) {
+        let library = Library::open_source(case.bytes.as_slice()).unwrap();
+        let entries: Vec<_> = library.entries().map(|entry| entry.unwrap()).collect();
+        let ours = json!({ "name": library.name(), "entries": entries });
+        assert_eq!(ours, listed, "{}", case.name);
+    }
+}
+
+#[test]
+fn the_text_names_every_limit_and_its_default() {
+    for (name, value) in limits(&Limits::default()) {
+        assert!(
+            TEXT.contains(&format!("| `{name}` | {value} |")),
+            "{name} {value}"
+        );
+    }
+}

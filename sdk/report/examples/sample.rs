@@ -26,6 +26,7 @@ fn report() -> TextureReport {
             "Every number on this page is invented, to show what a report looks like.".to_owned(),
         ],
         textures: (0..TEXTURES.len()).map(texture).collect(),
+        pictures: Vec::new(),
         command: "cargo run -p htex-report --example sample -- report.html".to_owned(),
     }
 }

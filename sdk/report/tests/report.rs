@@ -76,6 +76,7 @@ fn hostile_report(values: &[f64]) -> TextureReport {
         title: HOSTILE.to_owned(),
         intro: vec![HOSTILE.to_owned()],
         textures: vec![texture, Texture::default()],
+        pictures: vec![Plot::new(HOSTILE, Axis::log(HOSTILE), Axis::log(HOSTILE)).to_svg()],
         command: HOSTILE.to_owned(),
     }
 }

@@ -9,6 +9,8 @@ pub struct TextureReport {
     pub intro: Vec<String>,
     /// The textures, in the order of the page.
     pub textures: Vec<Texture>,
+    /// Further pictures, as SVG, before the spectra.
+    pub pictures: Vec<String>,
     /// The command that generates this page.
     pub command: String,
 }

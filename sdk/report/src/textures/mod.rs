@@ -10,7 +10,7 @@ pub use data::{ModelResult, Texture, TextureReport};
 pub use picture::spectra_picture;
 
 use crate::markup::Element;
-use crate::page::{Page, code_block, list, paragraph};
+use crate::page::{Page, code_block, figures, list, paragraph};
 
 /// Returns the report as a self-contained HTML page.
 pub fn texture_report(report: &TextureReport) -> String {
@@ -20,6 +20,10 @@ pub fn texture_report(report: &TextureReport) -> String {
     }
     page.html(&simulation_notice(report));
     how_to_read(&mut page);
+    if !report.pictures.is_empty() {
+        page.heading("Conditions");
+        page.html(&figures(&report.pictures));
+    }
     page.heading("Spectra");
     page.html(&spectra::section(report));
     page.heading("How close the models come");

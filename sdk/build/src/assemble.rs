@@ -1,0 +1,259 @@
+//! Puts the results of a build together: textures, library, report, catalogue.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use htex_format::Asset;
+use htex_library::{Packed, Writer};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use walkdir::WalkDir;
+
+use crate::BuildError;
+use crate::build::BuildOptions;
+use crate::catalogue::catalogue;
+use crate::dist::Dist;
+use crate::gates::missed;
+use crate::hashes::Stamp;
+use crate::job::Job;
+use crate::made::Made;
+use crate::plan::{Plan, PlannedTexture};
+use crate::report::{LibraryReport, REPORT, Report, Status, TextureReport};
+
+/// The report's file.
+const REPORT_FILE: &str = "build-report.json";
+
+/// The file of what is known of the library that was written last.
+const KEPT_LIBRARY: &str = ".htex-build/library.json";
+
+/// A finished build.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Built {
+    /// Its report, as in `build-report.json`.
+    pub report: Report,
+}
+
+/// Writes everything; `made` returns what the job with a key made.
+pub(crate) fn assemble(
+    plan: &Plan,
+    jobs: &[(String, Job)],
+    made: &(dyn Fn(&str) -> Option<Made> + Sync),
+    dist: &Dist,
+    options: &BuildOptions,
+) -> Result<Built, BuildError> {
+    dist.remove_parts()?;
+    let before = previous(dist);
+    let file = format!("{}.htexlib", plan.library);
+    let path = dist.file(&file);
+    let found = |key: &str, texture: &PlannedTexture| {
+        made(key).ok_or_else(|| BuildError::Damaged {
+            problem: format!("{}: it was kept and is gone", texture.name),
+        })
+    };
+    let library = |error| BuildError::Library {
+        file: path.clone(),
+        error,
+    };
+    let report = |((key, job), texture): (&(String, Job), &PlannedTexture)| {
+        let made = found(key, texture)?;
+        let report = judged(texture, key, job, &made)?;
+        if report.status == Status::Built {
+            dist.put(&dist.texture(&texture.name), &made.asset)?;
+            if options.browser_package.is_none() {
+                dist.put(&dist.sound(&texture.name), &made.sound)?;
+            }
+        }
+        Ok(report)
+    };
+    let planned = jobs.par_iter().zip(&plan.textures);
+    let textures: Vec<TextureReport> = planned.map(report).collect::<Result<_, BuildError>>()?;
+    let contents = contents(plan, &textures);
+    let packed = match kept_library(dist, &path, &contents) {
+        Some(packed) => packed,
+        None => {
+            // Beside it, a kill would leave the writer's files.
+            let written = dist.parts()?.join(&file);
+            let mut writer = Writer::create(&written, &plan.library).map_err(library)?;
+            for (texture, report) in plan.textures.iter().zip(&textures) {
+                if report.status == Status::Built {
+                    let made = found(&report.key, texture)?;
+                    writer.add(&texture.name, &made.asset).map_err(library)?;
+                }
+            }
+            let packed = writer.finish().map_err(library)?;
+            fs::rename(&written, &path).map_err(|error| BuildError::write(&path, error))?;
+            keep_library(dist, &path, contents, &packed)?
+        }
+    };
+    if let Some(package) = &options.browser_package {
+        copy_package(package, dist)?;
+    }
+    let report = Report {
+        report: REPORT.to_owned(),
+        program: options.program.clone(),
+        library: library_report(plan, file, &packed, &textures),
+        textures,
+    };
+    let page = catalogue(&report, options.browser_package.is_some());
+    dist.put(&dist.file("index.html"), page.as_bytes())?;
+    dist.put(&dist.file(REPORT_FILE), &json(&report)?)?;
+    remove_stale(before, &report, dist, options)?;
+    Ok(Built { report })
+}
+
+/// Reports a texture, with the gates that it misses.
+fn judged(
+    texture: &PlannedTexture,
+    key: &str,
+    job: &Job,
+    made: &Made,
+) -> Result<TextureReport, BuildError> {
+    let asset = match &made.asset[..] {
+        [] => None,
+        bytes => Some(
+            Asset::from_bytes(bytes).map_err(|error| BuildError::Damaged {
+                problem: format!("{}: {error}", texture.name),
+            })?,
+        ),
+    };
+    let mut report = TextureReport::new(job, key, made, asset.as_ref());
+    if let Some(asset) = &report.asset {
+        report.missed.extend(missed(&texture.gates, asset));
+    }
+    if !report.missed.is_empty() {
+        report.status = Status::LeftOut;
+    }
+    Ok(report)
+}
+
+/// The library's file as it was written last.
+#[derive(Serialize, Deserialize)]
+struct KeptLibrary {
+    /// Hash of its name and its textures' names and hashes.
+    contents: String,
+    stamp: Stamp,
+    bytes: u64,
+    blake3: String,
+}
+
+fn contents(plan: &Plan, textures: &[TextureReport]) -> String {
+    let built = textures.iter().filter(|t| t.status == Status::Built);
+    let named = built.map(|t| (&t.name, t.asset.as_ref().map(|asset| &asset.blake3)));
+    let parts = serde_json::json!([plan.library, named.collect::<Vec<_>>()]);
+    blake3::hash(parts.to_string().as_bytes())
+        .to_hex()
+        .to_string()
+}
+
+/// Returns the library that is there, if it has these contents and nobody wrote to it since.
+fn kept_library(dist: &Dist, path: &Path, contents: &str) -> Option<KeptLibrary> {
+    let bytes = fs::read(dist.file(KEPT_LIBRARY)).ok()?;
+    let kept: KeptLibrary = serde_json::from_slice(&bytes).ok()?;
+    let same = kept.contents == contents && Stamp::of(path).ok()? == kept.stamp;
+    same.then_some(kept)
+}
+
+fn keep_library(
+    dist: &Dist,
+    path: &Path,
+    contents: String,
+    packed: &Packed,
+) -> Result<KeptLibrary, BuildError> {
+    let kept = KeptLibrary {
+        contents,
+        stamp: Stamp::of(path).map_err(|error| BuildError::read(path, error))?,
+        bytes: packed.bytes,
+        blake3: blake3::Hash::from_bytes(packed.blake3).to_hex().to_string(),
+    };
+    let json = serde_json::to_vec(&kept).unwrap_or_default();
+    dist.put(&dist.file(KEPT_LIBRARY), &json)?;
+    Ok(kept)
+}
+
+fn library_report(
+    plan: &Plan,
+    file: String,
+    packed: &KeptLibrary,
+    textures: &[TextureReport],
+) -> LibraryReport {
+    let built = textures
+        .iter()
+        .filter(|t| t.status == Status::Built)
+        .count();
+    LibraryReport {
+        name: plan.library.clone(),
+        file,
+        bytes: packed.bytes,
+        blake3: packed.blake3.clone(),
+        textures: built,
+        left_out: textures.len() - built,
+    }
+}
+
+/// Copies the browser package beside the catalogue.
+fn copy_package(package: &Path, dist: &Dist) -> Result<(), BuildError> {
+    let entry = package.join("index.js");
+    if !entry.is_file() {
+        let problem = "there is no index.js; give the folder of the browser package";
+        return Err(BuildError::plan(package.display().to_string(), problem));
+    }
+    for file in WalkDir::new(package).follow_links(true) {
+        let file = file.map_err(|error| BuildError::read(package, error.into()))?;
+        if file.file_type().is_file() {
+            let bytes =
+                fs::read(file.path()).map_err(|error| BuildError::read(file.path(), error))?;
+            let inside = file.path().strip_prefix(package).unwrap_or(file.path());
+            dist.put(&dist.file("browser").join(inside), &bytes)?;
+        }
+    }
+    Ok(())
+}
+
+fn json(report: &Report) -> Result<Vec<u8>, BuildError> {
+    let text = serde_json::to_string_pretty(report).map_err(|error| BuildError::Damaged {
+        problem: error.to_string(),
+    })?;
+    Ok((text + "\n").into_bytes())
+}
+
+/// The report of the build before, if there is one.
+fn previous(dist: &Dist) -> Option<Report> {
+    let bytes = fs::read(dist.file(REPORT_FILE)).ok()?;
+    serde_json::from_slice(&bytes).ok()
+}
+
+/// Removes files that an earlier build wrote and this one did not.
+fn remove_stale(
+    before: Option<Report>,
+    now: &Report,
+    dist: &Dist,
+    options: &BuildOptions,
+) -> Result<(), BuildError> {
+    let Some(before) = before else {
+        return Ok(());
+    };
+    let built = |report: &Report| -> BTreeSet<String> {
+        let built = report.textures.iter().filter(|t| t.status == Status::Built);
+        built.map(|t| t.name.clone()).collect()
+    };
+    let kept = built(now);
+    for name in built(&before)
+        .iter()
+        .filter(|name| htex_library::check_name(name).is_ok())
+    {
+        if !kept.contains(name) {
+            dist.remove(&dist.texture(name))?;
+        }
+        if !kept.contains(name) || options.browser_package.is_some() {
+            dist.remove(&dist.sound(name))?;
+        }
+    }
+    let is_file =
+        !before.library.file.contains(['/', '\\']) && before.library.file.ends_with(".htexlib");
+    if is_file && before.library.file != now.library.file {
+        dist.remove(&dist.file(&before.library.file))?;
+    }
+    Ok(())
+}

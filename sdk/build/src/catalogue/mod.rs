@@ -1,0 +1,62 @@
+//! The catalogue: a page to search, sort and listen through a library.
+
+use serde_json::{Value, json};
+
+use crate::report::{Report, TextureReport};
+
+const PAGE: &str = include_str!("page.html");
+const STYLE: &str = include_str!("style.css");
+const SCRIPT: &str = include_str!("script.js");
+
+/// Returns the page. Textures are played by the browser package if it lies beside the page, in `browser`, else from `sounds`.
+pub(crate) fn catalogue(report: &Report, browser_package: bool) -> String {
+    let textures: Vec<Value> = report.textures.iter().map(texture).collect();
+    let data = json!({
+        "library": report.library,
+        "textures": textures,
+        "browserPackage": browser_package,
+    });
+    // Inside a script, only `<` could end it.
+    let data = data.to_string().replace('<', "\\u003c");
+    PAGE.replace("@STYLE@", STYLE)
+        .replace("@SCRIPT@", SCRIPT)
+        .replace("@TITLE@", &escaped(&report.library.name))
+        .replace("@DATA@", &data)
+}
+
+fn texture(texture: &TextureReport) -> Value {
+    let missed: Vec<(&str, &str)> = texture
+        .missed
+        .iter()
+        .map(|m| (&m.gate[..], &m.reason[..]))
+        .collect();
+    let Some(asset) = &texture.asset else {
+        return json!({
+            "name": texture.name, "tags": [], "license": "", "author": "", "errors": [], "levels": [], "missed": missed,
+        });
+    };
+    let errors = asset.band_error_rms_db.iter();
+    let errors =
+        errors.map(|(id, error)| (id.rsplit('.').next().unwrap_or(id), hundredths(*error)));
+    json!({
+        "name": texture.name,
+        "tags": asset.tags,
+        "license": asset.license.as_deref().unwrap_or_default(),
+        "author": asset.author.as_deref().unwrap_or_default(),
+        "errors": errors.collect::<Vec<_>>(),
+        "repeatability": asset.repeatability_rms_db.map(hundredths),
+        "bytes": asset.bytes,
+        "levels": asset.spectrum,
+        "missed": missed,
+    })
+}
+
+fn hundredths(value: f64) -> f64 {
+    (value * 100.0).round() / 100.0
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+}

@@ -1,0 +1,151 @@
+//! Hashes of files, kept from build to build as long as size and times of a file stay.
+
+use std::collections::BTreeMap;
+use std::fs::{File, Metadata};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use serde::{Deserialize, Serialize};
+
+/// A file that changed this shortly before it was hashed may change again without a change of its time, since file systems keep
+/// times in steps of up to 2 s (FAT).
+const RACY: Duration = Duration::from_secs(2);
+
+/// Size and times of a file, by which a change is noticed without reading it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Stamp {
+    /// Size, bytes.
+    pub bytes: u64,
+    /// Time of the last change of the contents, nanoseconds since 1970.
+    modified_ns: u64,
+    /// Number of the file on its file system; 0 where there is none.
+    number: u64,
+}
+
+impl Stamp {
+    /// Returns the stamp of a file.
+    ///
+    /// # Errors
+    /// Those of the system; a file without a time of change.
+    pub fn of(file: &Path) -> io::Result<Self> {
+        Self::of_metadata(&file.metadata()?)
+    }
+
+    fn of_metadata(metadata: &Metadata) -> io::Result<Self> {
+        let since = metadata.modified()?.duration_since(UNIX_EPOCH);
+        Ok(Self {
+            bytes: metadata.len(),
+            modified_ns: nanoseconds(since.unwrap_or_default()),
+            number: number(metadata),
+        })
+    }
+}
+
+/// Until the year 2554.
+fn nanoseconds(time: Duration) -> u64 {
+    u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
+}
+
+#[cfg(unix)]
+fn number(metadata: &Metadata) -> u64 {
+    std::os::unix::fs::MetadataExt::ino(metadata)
+}
+
+#[cfg(not(unix))]
+fn number(_: &Metadata) -> u64 {
+    0
+}
+
+/// A file's content hash, and its stamp when it was hashed.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Hashed {
+    /// BLAKE3 of the contents, hexadecimal.
+    pub blake3: String,
+    /// Size and times.
+    pub stamp: Stamp,
+}
+
+/// Known hashes by path.
+#[derive(Debug, Default)]
+pub(crate) struct Hashes {
+    known: BTreeMap<PathBuf, Hashed>,
+    /// Hashes of this build's files.
+    used: Mutex<BTreeMap<PathBuf, Hashed>>,
+}
+
+impl Hashes {
+    /// Reads the hashes that an earlier build kept; a file that is absent or damaged holds none.
+    pub(crate) fn open(file: &Path) -> Self {
+        let known = std::fs::read(file).ok();
+        let known = known.and_then(|bytes| serde_json::from_slice(&bytes).ok());
+        Self {
+            known: known.unwrap_or_default(),
+            used: Mutex::default(),
+        }
+    }
+
+    /// Whether the hash of a file is known without reading it.
+    pub(crate) fn is_known(&self, path: &Path) -> bool {
+        let known = self.known.get(path).map(|hashed| hashed.stamp);
+        known.is_some() && known == Stamp::of(path).ok()
+    }
+
+    /// Adds hashes of files, which hold as long as their stamps do.
+    pub(crate) fn add(&self, hashed: impl IntoIterator<Item = (PathBuf, Hashed)>) {
+        let mut used = self.used.lock().unwrap_or_else(PoisonError::into_inner);
+        used.extend(self.known.clone());
+        used.extend(hashed);
+    }
+
+    /// Returns the hash of a file; reads it only if it changed since it was hashed last.
+    pub(crate) fn of(&self, path: &Path) -> io::Result<Hashed> {
+        let used = |hashes: &Mutex<BTreeMap<PathBuf, Hashed>>| {
+            let used = hashes.lock().unwrap_or_else(PoisonError::into_inner);
+            used.get(path).cloned()
+        };
+        if let Some(hashed) = used(&self.used) {
+            return Ok(hashed);
+        }
+        let stamp = Stamp::of(path)?;
+        let hashed = match self.known.get(path) {
+            Some(hashed) if hashed.stamp == stamp => hashed.clone(),
+            _ => hash(path)?,
+        };
+        let mut used = self.used.lock().unwrap_or_else(PoisonError::into_inner);
+        used.insert(path.to_owned(), hashed.clone());
+        Ok(hashed)
+    }
+
+    /// Returns the hashes to keep for the next build as JSON: those of files that have not just changed.
+    pub(crate) fn to_keep(&self) -> Vec<u8> {
+        let used = self.used.lock().unwrap_or_else(PoisonError::into_inner);
+        let now = SystemTime::now()
+            .duration_since(UNIX_EPOCH)
+            .unwrap_or_default();
+        let settled =
+            |hashed: &Hashed| hashed.stamp.modified_ns + nanoseconds(RACY) < nanoseconds(now);
+        let kept: BTreeMap<&PathBuf, &Hashed> = used.iter().filter(|(_, h)| settled(h)).collect();
+        serde_json::to_vec(&kept).unwrap_or_default()
+    }
+}
+
+/// Hashes a file that does not change meanwhile.
+pub(crate) fn hash(path: &Path) -> io::Result<Hashed> {
+    let mut file = File::open(path)?;
+    let before = Stamp::of_metadata(&file.metadata()?)?;
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(&mut file)?;
+    if Stamp::of(path)? != before {
+        return Err(changed());
+    }
+    Ok(Hashed {
+        blake3: hasher.finalize().to_hex().to_string(),
+        stamp: before,
+    })
+}
+
+pub(crate) fn changed() -> io::Error {
+    io::Error::other("it changed while it was read; start again when it is complete")
+}

@@ -1,0 +1,319 @@
+//! A job: the fit of one texture, as data. Equal jobs give equal bytes, on any machine.
+
+use std::path::{Path, PathBuf};
+
+use htex_author::read::{ReadError, read_recording};
+use htex_author::settings::{FitSettings, Metadata, ReadingSettings};
+use htex_author::{AuthorError, Exploration, FittedAsset, Take, embed_plugins, fit_asset};
+use htex_host::{Registry, Search, WasmLimits};
+use serde::{Deserialize, Serialize};
+
+use crate::BuildError;
+use crate::hashes::{Hashed, Hashes, Stamp, changed, hash};
+use crate::made::{Made, Outcome, Record};
+use crate::plan::PlannedTexture;
+use crate::sound::sound;
+use crate::thumbnail::thumbnail;
+
+/// The meaning of jobs and of what is made of them. Another one makes everything again.
+const JOB: &str = "htex-job/1";
+
+/// The fit of one texture.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Job {
+    /// Kind and version of the job, and the program that fits.
+    pub program: String,
+    /// Name of the texture.
+    pub texture: String,
+    /// The recordings.
+    pub recordings: Vec<JobRecording>,
+    /// How they are read; files are in `files`.
+    pub reading: ReadingSettings,
+    /// How they are fitted.
+    pub fit: FitSettings,
+    /// The texture's metadata.
+    pub metadata: Metadata,
+    /// The setup's response.
+    pub response: Option<JobFile>,
+    /// Plugins of models.
+    pub plugins: Vec<JobFile>,
+    /// How many of them, the last ones, travel in the asset.
+    pub embedded: usize,
+}
+
+/// A recording of a job.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct JobRecording {
+    /// Its file.
+    pub file: JobFile,
+    /// The file of its tracker.
+    pub tracker: Option<JobFile>,
+    /// Speed, mm/s, if it is given.
+    pub speed_mm_s: Option<f64>,
+    /// Normal force, newtons, if it is given.
+    pub force_n: Option<f64>,
+}
+
+/// A file that a job reads.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct JobFile {
+    /// Where it is.
+    pub path: PathBuf,
+    /// Its contents.
+    #[serde(flatten)]
+    pub hashed: Hashed,
+}
+
+impl JobFile {
+    /// Returns the file's name without its folder.
+    pub fn name(&self) -> String {
+        let name = self.path.file_name().unwrap_or_default();
+        name.to_string_lossy().into_owned()
+    }
+}
+
+impl Job {
+    /// Returns the job of a texture whose recipe lies in `folder`; hashes its files.
+    pub(crate) fn new(
+        texture: &PlannedTexture,
+        folder: &Path,
+        plugins: &[PathBuf],
+        program: &str,
+        hashes: &Hashes,
+    ) -> Result<Self, BuildError> {
+        let file = |path: PathBuf| {
+            let hashed = hashes
+                .of(&path)
+                .map_err(|error| BuildError::read(&path, error))?;
+            Ok(JobFile { path, hashed })
+        };
+        let recordings = texture.recordings.iter().map(|recording| {
+            Ok(JobRecording {
+                file: file(folder.join(&recording.file))?,
+                tracker: recording
+                    .tracker
+                    .as_ref()
+                    .map(|path| file(folder.join(path)))
+                    .transpose()?,
+                speed_mm_s: recording.speed_mm_s,
+                force_n: recording.force_n,
+            })
+        });
+        let reading = texture.settings.reading(folder);
+        let embedded = texture
+            .settings
+            .embed_plugins
+            .as_deref()
+            .unwrap_or_default();
+        let all = plugins.iter().chain(embedded);
+        Ok(Self {
+            program: program.to_owned(),
+            texture: texture.name.clone(),
+            recordings: recordings.collect::<Result<_, _>>()?,
+            response: reading.response.clone().map(file).transpose()?,
+            reading,
+            fit: texture.settings.fit(),
+            metadata: texture.metadata.clone(),
+            plugins: all
+                .map(|path| file(folder.join(path)))
+                .collect::<Result<_, _>>()?,
+            embedded: embedded.len(),
+        })
+    }
+
+    /// Returns the key of what this job makes: a hash of everything that its bytes depend on. Folders and times of files are no
+    /// part of it, their names and contents are.
+    pub fn key(&self) -> String {
+        let named = |file: &JobFile| (file.name(), file.hashed.blake3.clone());
+        let recordings = self.recordings.iter().map(|r| {
+            (
+                named(&r.file),
+                r.tracker.as_ref().map(named),
+                r.speed_mm_s,
+                r.force_n,
+            )
+        });
+        let reading = ReadingSettings {
+            response: None,
+            ..self.reading.clone()
+        };
+        let parts = serde_json::json!([
+            JOB,
+            self.program,
+            self.texture,
+            recordings.collect::<Vec<_>>(),
+            reading,
+            self.fit,
+            self.metadata,
+            self.response.as_ref().map(named),
+            self.plugins.iter().map(named).collect::<Vec<_>>(),
+            self.embedded,
+        ]);
+        blake3::hash(parts.to_string().as_bytes())
+            .to_hex()
+            .to_string()
+    }
+
+    /// Returns the size of the recordings, bytes.
+    pub fn recording_bytes(&self) -> u64 {
+        self.recordings
+            .iter()
+            .map(|r| r.file.hashed.stamp.bytes)
+            .sum()
+    }
+
+    /// Reads the recordings, fits the models, and returns the asset. A recording that cannot be used, or a model that fails, is a
+    /// result too: [`Outcome::Refused`].
+    ///
+    /// # Errors
+    /// When a file cannot be read, or is not the one that was hashed.
+    pub fn run(&self, workbench: &mut Workbench) -> Result<Made, BuildError> {
+        self.check_files()?;
+        let registry = workbench.registry(self);
+        let fitted = registry.and_then(|registry| self.fitted(registry));
+        // What was read is what was hashed, or the key is wrong.
+        self.check_files()?;
+        Ok(match fitted {
+            Err(Stopped::File(error)) => return Err(error),
+            Err(Stopped::Outcome(outcome)) => Made::refused(outcome),
+            Ok((fitted, asset, sound)) => Made {
+                record: Record {
+                    outcome: Outcome::Fitted,
+                    segments: fitted.spectra.iter().map(|s| s.segments).collect(),
+                    thumbnail: fitted.spectra.first().map(thumbnail).unwrap_or_default(),
+                },
+                asset,
+                sound,
+            },
+        })
+    }
+
+    fn fitted(&self, registry: &Registry) -> Result<(FittedAsset, Vec<u8>, Vec<u8>), Stopped> {
+        let reading = ReadingSettings {
+            trackers: self.trackers().map(|file| file.path.clone()).collect(),
+            ..self.reading.clone()
+        };
+        let request = self
+            .fit
+            .request(registry, &reading, &self.texture, &self.program);
+        let request = request.map_err(refused)?;
+        let takes = self.recordings.iter().map(|recording| self.take(recording));
+        let takes = takes.collect::<Result<Vec<Take>, _>>()?;
+        let mut fitted = fit_asset(&takes, &request).map_err(|error| match error {
+            AuthorError::Strict { .. } => Stopped::Outcome(Outcome::NotStrict(error.to_string())),
+            other => refused(other),
+        })?;
+        self.metadata.apply(&mut fitted.asset.manifest);
+        let travelling = self.plugins.len() - self.embedded.min(self.plugins.len());
+        let files: Vec<PathBuf> = self.plugins[travelling..]
+            .iter()
+            .map(|f| f.path.clone())
+            .collect();
+        embed_plugins(&mut fitted.asset, registry, &files, None).map_err(refused)?;
+        let bytes = fitted.asset.to_bytes().map_err(refused)?;
+        let sound = sound(&bytes, registry).map_err(refused)?;
+        Ok((fitted, bytes, sound))
+    }
+
+    /// Reads a recording.
+    fn take(&self, recording: &JobRecording) -> Result<Take, Stopped> {
+        let reading = ReadingSettings {
+            trackers: recording
+                .tracker
+                .iter()
+                .map(|file| file.path.clone())
+                .collect(),
+            ..self.reading.clone()
+        };
+        let options = reading
+            .read_options(1)
+            .map_err(refused)?
+            .pop()
+            .unwrap_or_default();
+        let given = Exploration {
+            speed_mm_s: recording.speed_mm_s,
+            force_n: recording.force_n,
+        };
+        let file = &recording.file.path;
+        match read_recording(file, &options) {
+            Ok(recording) => Ok(Take { recording, given }),
+            Err(ReadError::Io { source, .. }) => Err(Stopped::File(BuildError::read(file, source))),
+            Err(error) => Err(refused(error)),
+        }
+    }
+
+    fn trackers(&self) -> impl Iterator<Item = &JobFile> {
+        self.recordings
+            .iter()
+            .filter_map(|recording| recording.tracker.as_ref())
+    }
+
+    fn files(&self) -> impl Iterator<Item = &JobFile> {
+        let recordings = self.recordings.iter().map(|recording| &recording.file);
+        let rest = self.response.iter().chain(&self.plugins);
+        recordings.chain(self.trackers()).chain(rest)
+    }
+
+    /// Refuses a file that is not the one that was hashed: by size and time, or where these differ, by its contents.
+    fn check_files(&self) -> Result<(), BuildError> {
+        for file in self.files() {
+            let read = |error| BuildError::read(&file.path, error);
+            if Stamp::of(&file.path).map_err(read)? == file.hashed.stamp {
+                continue;
+            }
+            if hash(&file.path).map_err(read)?.blake3 != file.hashed.blake3 {
+                return Err(read(changed()));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Why there is no asset.
+enum Stopped {
+    /// A result.
+    Outcome(Outcome),
+    /// A file cannot be read now; it may be later.
+    File(BuildError),
+}
+
+fn refused(error: impl std::fmt::Display) -> Stopped {
+    Stopped::Outcome(Outcome::Refused(error.to_string()))
+}
+
+/// The models that a thread fits with, loaded once for each set of plugins.
+#[derive(Debug)]
+pub struct Workbench {
+    limits: WasmLimits,
+    loaded: Option<(Vec<PathBuf>, Registry)>,
+}
+
+impl Workbench {
+    /// Returns a workbench that loads WASM models under `limits`.
+    pub fn new(limits: WasmLimits) -> Self {
+        Self {
+            limits,
+            loaded: None,
+        }
+    }
+
+    /// Returns the built-in models and the plugins of a job. Those that are installed on a machine are not used: a build is the
+    /// same on all.
+    fn registry(&mut self, job: &Job) -> Result<&Registry, Stopped> {
+        let files: Vec<PathBuf> = job.plugins.iter().map(|file| file.path.clone()).collect();
+        if self
+            .loaded
+            .as_ref()
+            .is_none_or(|(loaded, _)| *loaded != files)
+        {
+            let search = Search::builtin()
+                .with_limits(self.limits.clone())
+                .with_files(files.clone());
+            self.loaded = Some((files, Registry::search(&search).map_err(refused)?));
+        }
+        match &self.loaded {
+            Some((_, registry)) => Ok(registry),
+            None => Err(refused("no models are loaded")),
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! Recipes: recordings in, a checked library of textures out.
+//!
+//! A recipe is data, a build is a function of it. The key of a texture is the hash of everything its bytes depend on: the contents
+//! of its recordings, its settings, the program and the plugins. What has been made for a key is kept, so that going on after a kill,
+//! building only what changed and building on many machines ([`Build::pending`], [`Job::run`], [`Build::store`]) are one mechanism.
+//!
+//! ```no_run
+//! use htex_build::{Build, BuildOptions};
+//!
+//! let options = BuildOptions::new("my-pipeline 1.0").with_keep_going(true);
+//! let mut build = Build::open("library.toml".as_ref(), "dist".as_ref(), options)?;
+//! println!("{} of {} textures to fit", build.pending().len(), build.plan().textures.len());
+//! build.run(&|job| println!("{}", job.texture))?;
+//! let built = build.finish()?;
+//! println!("{} textures", built.report.library.textures);
+//! # Ok::<(), htex_build::BuildError>(())
+//! ```
+#![forbid(unsafe_code)]
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
+mod assemble;
+mod build;
+mod cache;
+mod catalogue;
+mod dist;
+mod error;
+mod gates;
+mod hashes;
+mod inputs;
+mod job;
+mod made;
+mod plan;
+mod recipe;
+mod report;
+mod sound;
+mod template;
+mod thumbnail;
+
+pub use assemble::Built;
+pub use build::{Build, BuildOptions, hash_file, remember, unhashed};
+pub use error::BuildError;
+pub use hashes::{Hashed, Stamp};
+pub use job::{Job, JobFile, JobRecording, Workbench};
+pub use made::{Made, Outcome, Record};
+pub use plan::{Plan, PlannedRecording, PlannedTexture};
+pub use recipe::{
+    At, BandErrorGate, Gates, LibraryPart, ModelOptions, NumberOrTemplate, OneOrMore, Override,
+    Recipe, Settings, Textures,
+};
+pub use report::{
+    AssetReport, LibraryReport, Missed, REPORT, RecordingReport, Report, Status, TextureReport,
+    recipe_schema, report_schema,
+};
+pub use thumbnail::Thumbnail;

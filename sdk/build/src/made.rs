@@ -1,0 +1,131 @@
+//! What a job makes, and its bytes: a line of JSON with lengths and a hash, then the parts.
+
+use serde::{Deserialize, Serialize};
+
+use crate::BuildError;
+use crate::thumbnail::Thumbnail;
+
+/// Longest first line, bytes.
+const MOST_HEADER: usize = 1 << 20;
+
+/// What a job makes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Made {
+    /// What the asset does not hold.
+    pub record: Record,
+    /// The asset; empty if there is none.
+    pub asset: Vec<u8>,
+    /// A second of its sound, a WAV; empty if there is none.
+    pub sound: Vec<u8>,
+}
+
+/// What is known of a fit and not in its asset.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Segments of each condition.
+    pub segments: Vec<usize>,
+    /// The recorded spectrum of the first condition.
+    pub thumbnail: Thumbnail,
+}
+
+/// How a fit ended.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// There is an asset.
+    Fitted,
+    /// The gate `strict`: recordings have findings.
+    NotStrict(String),
+    /// A recording, a setting or a model cannot be used.
+    Refused(String),
+}
+
+#[derive(Serialize, Deserialize)]
+struct Header {
+    key: String,
+    record: Record,
+    asset_bytes: usize,
+    sound_bytes: usize,
+    /// BLAKE3 of key, record and parts.
+    blake3: String,
+}
+
+impl Header {
+    fn hash(&self, asset: &[u8], sound: &[u8]) -> Result<String, serde_json::Error> {
+        let mut hasher = blake3::Hasher::new();
+        let lengths = (&self.key, &self.record, self.asset_bytes, self.sound_bytes);
+        hasher.update(&serde_json::to_vec(&lengths)?);
+        hasher.update(asset).update(sound);
+        Ok(hasher.finalize().to_hex().to_string())
+    }
+}
+
+impl Made {
+    pub(crate) fn refused(outcome: Outcome) -> Self {
+        Self {
+            record: Record {
+                outcome,
+                segments: Vec::new(),
+                thumbnail: Thumbnail::default(),
+            },
+            asset: Vec::new(),
+            sound: Vec::new(),
+        }
+    }
+
+    /// Returns the bytes, for the job with this key.
+    ///
+    /// # Errors
+    /// When the record cannot be written as JSON.
+    pub fn to_bytes(&self, key: &str) -> Result<Vec<u8>, BuildError> {
+        let damaged = |error: serde_json::Error| BuildError::Damaged {
+            problem: error.to_string(),
+        };
+        let mut header = Header {
+            key: key.to_owned(),
+            record: self.record.clone(),
+            asset_bytes: self.asset.len(),
+            sound_bytes: self.sound.len(),
+            blake3: String::new(),
+        };
+        header.blake3 = header.hash(&self.asset, &self.sound).map_err(damaged)?;
+        let mut bytes = serde_json::to_vec(&header).map_err(damaged)?;
+        bytes.push(b'\n');
+        bytes.extend_from_slice(&self.asset);
+        bytes.extend_from_slice(&self.sound);
+        Ok(bytes)
+    }
+
+    /// Reads the bytes of the job with this key.
+    ///
+    /// # Errors
+    /// When they are not those of this job, or a bit of them changed.
+    pub fn from_bytes(key: &str, bytes: &[u8]) -> Result<Self, BuildError> {
+        let damaged = |problem: &str| BuildError::Damaged {
+            problem: problem.to_owned(),
+        };
+        let line = bytes.iter().take(MOST_HEADER).position(|b| *b == b'\n');
+        let line = line.ok_or_else(|| damaged("it has no first line"))?;
+        let header: Header = serde_json::from_slice(&bytes[..line])
+            .map_err(|error| damaged(&format!("its first line: {error}")))?;
+        if header.key != key {
+            return Err(damaged("it is that of another job"));
+        }
+        let parts = &bytes[line + 1..];
+        let length = header.asset_bytes.checked_add(header.sound_bytes);
+        if length != Some(parts.len()) {
+            return Err(damaged("it is too short or too long"));
+        }
+        let (asset, sound) = parts.split_at(header.asset_bytes);
+        if header.hash(asset, sound).ok().as_deref() != Some(&header.blake3) {
+            return Err(damaged("its hash differs"));
+        }
+        Ok(Self {
+            record: header.record,
+            asset: asset.to_vec(),
+            sound: sound.to_vec(),
+        })
+    }
+}

@@ -1,0 +1,294 @@
+//! The plan: the textures that a recipe asks for, each with its recordings and settings.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use globset::GlobSet;
+use htex_author::settings::Metadata;
+
+use crate::BuildError;
+use crate::inputs::{Input, glob_set, inputs, slashed};
+use crate::recipe::{Gates, NumberOrTemplate, Recipe, Settings, Textures};
+use crate::template::{Fields, fill};
+
+/// The textures of a recipe.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// Name of the library.
+    pub library: String,
+    /// The textures, sorted by name.
+    pub textures: Vec<PlannedTexture>,
+}
+
+/// A texture to be made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlannedTexture {
+    /// Its name, unique in the library.
+    pub name: String,
+    /// Its recordings, sorted by file.
+    pub recordings: Vec<PlannedRecording>,
+    /// Its settings, with files relative to the recipe.
+    pub settings: Settings,
+    /// Its metadata, with templates filled.
+    pub metadata: Metadata,
+    /// What its asset must hold.
+    pub gates: Gates,
+}
+
+/// A recording of a texture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlannedRecording {
+    /// The file, relative to the recipe.
+    pub file: PathBuf,
+    /// The tracker's file, relative to the recipe.
+    pub tracker: Option<PathBuf>,
+    /// Speed, mm/s, if the recipe states it.
+    pub speed_mm_s: Option<f64>,
+    /// Normal force, newtons, if the recipe states it.
+    pub force_n: Option<f64>,
+}
+
+impl PlannedTexture {
+    /// Returns the files that its job reads, relative to the recipe, but the plugins of the whole library.
+    pub(crate) fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        let recordings = self
+            .recordings
+            .iter()
+            .flat_map(|r| std::iter::once(&r.file).chain(&r.tracker));
+        let settings = &self.settings;
+        recordings
+            .chain(&settings.response)
+            .chain(settings.embed_plugins.iter().flatten())
+    }
+}
+
+impl Plan {
+    /// Finds the recordings of a recipe that lies in `folder`. Files in the build's own `output` folder are no recordings.
+    ///
+    /// # Errors
+    /// When a glob matches nothing, a template or a pattern fails, a name cannot be one, or two recordings of a texture have
+    /// different settings.
+    pub fn new(recipe: &Recipe, folder: &Path, output: &Path) -> Result<Self, BuildError> {
+        check_name("library.name", &recipe.library.name)?;
+        if recipe.library.name.contains('/') {
+            let problem = "`/` is not possible in the name of a file; leave it out";
+            return Err(BuildError::plan("library.name", problem));
+        }
+        if recipe.textures.is_empty() {
+            let problem = "there is none; add a [[textures]] with `recordings`";
+            return Err(BuildError::plan("textures", problem));
+        }
+        let overrides = Overrides::new(recipe)?;
+        let mut textures: BTreeMap<String, PlannedTexture> = BTreeMap::new();
+        for (i, rule) in recipe.textures.iter().enumerate() {
+            let place = format!("textures[{i}]");
+            let settings = rule.settings.clone().over(recipe.defaults.clone());
+            for input in inputs(rule, &place, folder, output)? {
+                let planned = planned(rule, &settings, &overrides, input, &place)?;
+                gather(&mut textures, planned, &place)?;
+            }
+        }
+        overrides.check_used(&textures)?;
+        let mut textures: Vec<PlannedTexture> = textures.into_values().collect();
+        for texture in &mut textures {
+            texture.recordings.sort_by(|a, b| a.file.cmp(&b.file));
+        }
+        check_folders(&textures)?;
+        Ok(Self {
+            library: recipe.library.name.clone(),
+            textures,
+        })
+    }
+}
+
+/// The overrides of a recipe.
+struct Overrides<'a>(Vec<(GlobSet, &'a Settings)>);
+
+impl<'a> Overrides<'a> {
+    fn new(recipe: &'a Recipe) -> Result<Self, BuildError> {
+        let overrides = recipe.overrides.iter().enumerate();
+        let compiled = overrides.map(|(i, one)| {
+            let set = glob_set(&one.textures, &format!("overrides[{i}].textures"))?;
+            Ok((set, &one.settings))
+        });
+        compiled.collect::<Result<_, _>>().map(Self)
+    }
+
+    fn over(&self, name: &str, settings: Settings) -> Settings {
+        let own = self.0.iter().filter(|(set, _)| set.is_match(name));
+        own.fold(settings, |under, (_, own)| (*own).clone().over(under))
+    }
+
+    /// An override of nothing is a misspelt name.
+    fn check_used(&self, textures: &BTreeMap<String, PlannedTexture>) -> Result<(), BuildError> {
+        for (i, (set, _)) in self.0.iter().enumerate() {
+            if !textures.keys().any(|name| set.is_match(name)) {
+                let problem = "no texture has such a name; correct it, or leave the override out";
+                return Err(BuildError::plan(
+                    format!("overrides[{i}].textures"),
+                    problem,
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Plans the texture of one recording.
+fn planned(
+    rule: &Textures,
+    settings: &Settings,
+    overrides: &Overrides<'_>,
+    input: Input,
+    place: &str,
+) -> Result<PlannedTexture, BuildError> {
+    let Input { file, mut fields } = input;
+    let shown = slashed(&file);
+    let wrong = |key: &str, problem: String| {
+        BuildError::plan(format!("{place}.{key}"), format!("{shown}: {problem}"))
+    };
+    let template = match (&rule.name, fields.get("name")) {
+        (Some(template), _) => template.clone(),
+        (None, Some(_)) => "{name}".to_owned(),
+        (None, None) => "{stem}".to_owned(),
+    };
+    let name = fill(&template, &fields).map_err(|problem| wrong("name", problem))?;
+    check_name(&format!("{place}.name"), &name)?;
+    fields.insert("name".to_owned(), name.clone());
+    let mut settings = overrides.over(&name, settings.clone());
+    let at = std::mem::take(&mut settings.at);
+    let condition = |key: &str, given: Option<NumberOrTemplate>| {
+        number(key, given, &fields).map_err(|problem| wrong("at", problem))
+    };
+    let tracker = settings.tracker.take().map(|text| fill(&text, &fields));
+    let tracker = tracker.transpose();
+    let recording = PlannedRecording {
+        file,
+        tracker: tracker
+            .map_err(|problem| wrong("tracker", problem))?
+            .map(PathBuf::from),
+        speed_mm_s: condition("speed_mm_s", at.speed_mm_s)?,
+        force_n: condition("force_n", at.force_n)?,
+    };
+    let metadata = filled(settings.metadata(), &fields).map_err(|(key, p)| wrong(key, p))?;
+    let gates = std::mem::take(&mut settings.gates);
+    settings.gates.strict = gates.strict;
+    Ok(PlannedTexture {
+        name,
+        recordings: vec![recording],
+        settings,
+        metadata,
+        gates,
+    })
+}
+
+/// Returns a speed or a force: the given one, else that of the table's column.
+fn number(
+    key: &str,
+    given: Option<NumberOrTemplate>,
+    fields: &Fields,
+) -> Result<Option<f64>, String> {
+    let text = match given {
+        Some(NumberOrTemplate::Number(number)) => return Ok(Some(number)),
+        Some(NumberOrTemplate::Template(template)) => fill(&template, fields)?,
+        None => fields.get(key).cloned().unwrap_or_default(),
+    };
+    let text = text.trim();
+    if text.is_empty() {
+        return Ok(None);
+    }
+    let number = text
+        .parse()
+        .map_err(|_| format!("{key} is `{text}`; it is a number"))?;
+    Ok(Some(number))
+}
+
+/// Fills the templates of metadata.
+fn filled(mut metadata: Metadata, fields: &Fields) -> Result<Metadata, (&'static str, String)> {
+    let texts = [
+        ("author", &mut metadata.author),
+        ("license", &mut metadata.license),
+        ("description", &mut metadata.description),
+        ("source", &mut metadata.source),
+        ("doi", &mut metadata.doi),
+        ("sensor", &mut metadata.sensor),
+        ("finger", &mut metadata.finger),
+    ];
+    for (key, text) in texts {
+        if let Some(text) = text {
+            *text = fill(text, fields).map_err(|problem| (key, problem))?;
+        }
+    }
+    for tag in metadata.tags.iter_mut().flatten() {
+        *tag = fill(tag, fields).map_err(|problem| ("tags", problem))?;
+    }
+    metadata
+        .check()
+        .map_err(|error| ("metadata", error.to_string()))?;
+    Ok(metadata)
+}
+
+/// Adds a recording's texture to those of the plan.
+fn gather(
+    textures: &mut BTreeMap<String, PlannedTexture>,
+    planned: PlannedTexture,
+    place: &str,
+) -> Result<(), BuildError> {
+    let Some(known) = textures.get_mut(&planned.name) else {
+        textures.insert(planned.name.clone(), planned);
+        return Ok(());
+    };
+    let twice = |recording: &PlannedRecording| {
+        known
+            .recordings
+            .iter()
+            .any(|other| other.file == recording.file)
+    };
+    if let Some(recording) = planned.recordings.iter().find(|recording| twice(recording)) {
+        let problem = format!(
+            "{} is a recording of the texture {} twice; let one rule find it",
+            slashed(&recording.file),
+            planned.name
+        );
+        return Err(BuildError::plan(place, problem));
+    }
+    let same = (&known.settings, &known.metadata, &known.gates)
+        == (&planned.settings, &planned.metadata, &planned.gates);
+    if !same {
+        let file = |texture: &PlannedTexture| {
+            texture
+                .recordings
+                .first()
+                .map(|r| slashed(&r.file))
+                .unwrap_or_default()
+        };
+        let problem = format!(
+            "{} and {} are recordings of one texture, {}, and have different settings; give them the same, or other names",
+            file(known),
+            file(&planned),
+            planned.name
+        );
+        return Err(BuildError::plan(place, problem));
+    }
+    known.recordings.extend(planned.recordings);
+    Ok(())
+}
+
+fn check_name(place: &str, name: &str) -> Result<(), BuildError> {
+    htex_library::check_name(name).map_err(|error| BuildError::plan(place, error.to_string()))
+}
+
+/// Refuses a texture whose file would be the folder of another's.
+fn check_folders(textures: &[PlannedTexture]) -> Result<(), BuildError> {
+    for pair in textures.windows(2) {
+        let (folder, inside) = (format!("{}.htex/", pair[0].name), &pair[1].name);
+        if inside.starts_with(&folder) {
+            let problem = format!(
+                "{} and {inside} cannot both be files; rename one",
+                pair[0].name
+            );
+            return Err(BuildError::plan("textures", problem));
+        }
+    }
+    Ok(())
+}

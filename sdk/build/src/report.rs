@@ -1,0 +1,219 @@
+//! The report of a build: `build-report.json`. It has no times and no folders: equal builds have equal reports.
+
+use std::collections::BTreeMap;
+
+use htex_format::Asset;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::job::Job;
+use crate::made::{Made, Outcome};
+use crate::recipe::Recipe;
+use crate::thumbnail::Thumbnail;
+
+/// Name and version of the report's form.
+pub const REPORT: &str = "htex-build-report/1";
+
+/// The report of a build.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Report {
+    /// `htex-build-report/1`.
+    pub report: String,
+    /// Program and version that built.
+    pub program: String,
+    /// The library.
+    pub library: LibraryReport,
+    /// All textures of the recipe, by name.
+    pub textures: Vec<TextureReport>,
+}
+
+/// The library of a build.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LibraryReport {
+    /// Its name.
+    pub name: String,
+    /// Its file, in the folder of the report.
+    pub file: String,
+    /// Its size, bytes.
+    pub bytes: u64,
+    /// BLAKE3 of its index, which holds the hashes of all textures, hexadecimal.
+    pub blake3: String,
+    /// Number of its textures.
+    pub textures: usize,
+    /// Number of textures that were left out.
+    pub left_out: usize,
+}
+
+/// A texture of a build.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct TextureReport {
+    /// Its name.
+    pub name: String,
+    /// Whether it is in the library.
+    pub status: Status,
+    /// Hash of everything that its bytes depend on.
+    pub key: String,
+    /// Its recordings.
+    pub recordings: Vec<RecordingReport>,
+    /// Why it is left out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub missed: Vec<Missed>,
+    /// Its asset, also of one that is left out for its gates.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub asset: Option<AssetReport>,
+}
+
+/// Whether a texture is in the library.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// It is.
+    Built,
+    /// It misses a gate, or could not be fitted.
+    LeftOut,
+}
+
+/// A recording of a texture.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RecordingReport {
+    /// File name without its folder.
+    pub file: String,
+    /// Its size, bytes.
+    pub bytes: u64,
+    /// BLAKE3 of its contents, hexadecimal.
+    pub blake3: String,
+}
+
+/// A gate that a texture misses.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Missed {
+    /// The gate by its key in the recipe; `fit` if there is no asset.
+    pub gate: String,
+    /// What is wrong, in a sentence.
+    pub reason: String,
+}
+
+/// The asset of a texture.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct AssetReport {
+    /// Its size, bytes.
+    pub bytes: u64,
+    /// BLAKE3 of the asset, hexadecimal.
+    pub blake3: String,
+    /// SPDX licence expression.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub license: Option<String>,
+    /// Who made it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub author: Option<String>,
+    /// Search terms.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tags: Vec<String>,
+    /// Whether a recording comes from a simulator.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub simulated: bool,
+    /// Number of conditions.
+    pub conditions: usize,
+    /// Speeds of the conditions, least and largest, mm/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_mm_s: Option<[f64; 2]>,
+    /// Normal forces of the conditions, least and largest, newtons.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force_n: Option<[f64; 2]>,
+    /// Fewest segments of a condition.
+    pub segments: usize,
+    /// Largest difference between odd and even segments of a condition in nine bands, RMS, decibels: what an error is compared with.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub repeatability_rms_db: Option<f64>,
+    /// Largest nine-band RMS error over the conditions of each model, decibels, by id.
+    pub band_error_rms_db: BTreeMap<String, f64>,
+    /// Warnings of the fit.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
+    /// The recorded spectrum of the first condition: 48 points evenly spaced in log frequency; 63 is the largest magnitude, 0 is 40 dB
+    /// below or less.
+    #[schemars(with = "Vec<u8>")]
+    pub spectrum: Thumbnail,
+}
+
+impl TextureReport {
+    /// Reports a texture; `asset` is its asset if it has one.
+    pub(crate) fn new(job: &Job, key: &str, made: &Made, asset: Option<&Asset>) -> Self {
+        let recordings = job.recordings.iter().map(|recording| RecordingReport {
+            file: recording.file.name(),
+            bytes: recording.file.hashed.stamp.bytes,
+            blake3: recording.file.hashed.blake3.clone(),
+        });
+        Self {
+            name: job.texture.clone(),
+            status: Status::Built,
+            key: key.to_owned(),
+            recordings: recordings.collect(),
+            missed: match &made.record.outcome {
+                Outcome::Fitted => Vec::new(),
+                Outcome::NotStrict(reason) => vec![Missed::new("strict", reason)],
+                Outcome::Refused(reason) => vec![Missed::new("fit", reason)],
+            },
+            asset: asset.map(|asset| AssetReport::new(made, asset)),
+        }
+    }
+}
+
+impl Missed {
+    pub(crate) fn new(gate: &str, reason: impl Into<String>) -> Self {
+        Self {
+            gate: gate.to_owned(),
+            reason: reason.into(),
+        }
+    }
+}
+
+impl AssetReport {
+    fn new(made: &Made, asset: &Asset) -> Self {
+        let manifest = &asset.manifest;
+        let conditions = || manifest.conditions.iter();
+        let errors = manifest.representations.iter().map(|representation| {
+            let qualities = representation
+                .at
+                .iter()
+                .filter_map(|at| at.quality.as_ref());
+            let worst = qualities.map(|q| q.band_error_rms_db).fold(0.0, f64::max);
+            (representation.model.clone(), worst)
+        });
+        Self {
+            bytes: made.asset.len() as u64,
+            blake3: blake3::hash(&made.asset).to_hex().to_string(),
+            license: manifest.license.clone(),
+            author: manifest.author.clone(),
+            tags: manifest.tags.clone(),
+            simulated: manifest.provenance.simulated,
+            conditions: manifest.conditions.len(),
+            speed_mm_s: range(conditions().filter_map(|c| c.speed_mm_s)),
+            force_n: range(conditions().filter_map(|c| c.force_n)),
+            segments: made.record.segments.iter().copied().min().unwrap_or(0),
+            repeatability_rms_db: conditions()
+                .filter_map(|c| c.repeatability_rms_db)
+                .reduce(f64::max),
+            band_error_rms_db: errors.collect(),
+            warnings: manifest.provenance.warnings.clone(),
+            spectrum: made.record.thumbnail.clone(),
+        }
+    }
+}
+
+fn range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+    values.fold(None, |range, value| match range {
+        None => Some([value, value]),
+        Some([low, high]) => Some([f64::min(low, value), f64::max(high, value)]),
+    })
+}
+
+/// Returns the JSON Schema of [`Report`]: `spec/schemas/build-report-1.json`.
+pub fn report_schema() -> serde_json::Value {
+    htex_schema::document::<Report>("build-report-1.json", "report of the build of a library")
+}
+
+/// Returns the JSON Schema of [`Recipe`], for editors that check TOML: `spec/schemas/recipe-1.json`.
+pub fn recipe_schema() -> serde_json::Value {
+    htex_schema::document::<Recipe>("recipe-1.json", "recipe of a library of textures")
+}

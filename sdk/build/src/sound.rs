@@ -1,0 +1,45 @@
+//! A second of a texture as sound, for catalogues.
+
+use std::io::Cursor;
+
+use htex_host::Registry;
+use htex_play::{Asset, VoiceOptions};
+
+/// Rate of the sound, hertz: twice the band's upper edge and a little, so that browsers play it and files are small.
+const RATE_HZ: u32 = 8_000;
+/// Its length, samples.
+const SAMPLES: usize = RATE_HZ as usize;
+/// Its RMS, of full scale.
+const RMS: f32 = 0.1;
+/// Length of the fade at both ends, samples.
+const FADE: usize = 200;
+
+/// Returns a second of the asset's first representation as a WAV of 16 bits, at the same loudness for all textures.
+pub(crate) fn sound(asset: &[u8], registry: &Registry) -> Result<Vec<u8>, String> {
+    let text = |error: &dyn std::fmt::Display| error.to_string();
+    let data = htex_format::Asset::from_bytes(asset).map_err(|e| text(&e))?;
+    let asset = Asset::with_registry(data, registry.clone());
+    let options = VoiceOptions::default().with_rate_hz(f64::from(RATE_HZ));
+    let mut voice = asset.voice(&options).map_err(|e| text(&e))?;
+    let mut samples = vec![0.0_f32; SAMPLES];
+    voice.render(&mut samples).map_err(|e| text(&e))?;
+    let power: f32 = samples.iter().map(|x| x * x).sum::<f32>() / SAMPLES as f32;
+    let gain = if power > 0.0 { RMS / power.sqrt() } else { 0.0 };
+    let specification = hound::WavSpec {
+        channels: 1,
+        sample_rate: RATE_HZ,
+        bits_per_sample: 16,
+        sample_format: hound::SampleFormat::Int,
+    };
+    let mut bytes = Cursor::new(Vec::new());
+    let mut writer = hound::WavWriter::new(&mut bytes, specification).map_err(|e| text(&e))?;
+    for (i, sample) in samples.iter().enumerate() {
+        let from_end = i.min(SAMPLES - 1 - i).min(FADE) as f32 / FADE as f32;
+        let value = (sample * gain * from_end).clamp(-1.0, 1.0);
+        writer
+            .write_sample((value * 32_767.0) as i16)
+            .map_err(|e| text(&e))?;
+    }
+    writer.finalize().map_err(|e| text(&e))?;
+    Ok(bytes.into_inner())
+}

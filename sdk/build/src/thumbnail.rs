@@ -1,0 +1,61 @@
+//! Spectra small enough for a page of thousands.
+
+use htex_author::TextureSpectrum;
+use serde::{Deserialize, Serialize};
+
+/// Points of a thumbnail, spaced evenly in log frequency over the band.
+const POINTS: usize = 48;
+/// Range of a thumbnail below its largest magnitude, decibels.
+const RANGE_DB: f64 = 40.0;
+/// Steps of that range.
+const STEPS: f64 = 63.0;
+
+/// A spectrum of 48 points, evenly spaced in log frequency over its band: 63 is its largest magnitude, 0 is 40 dB below it or less.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Thumbnail(pub Vec<u8>);
+
+/// Returns the thumbnail of a spectrum.
+pub(crate) fn thumbnail(spectrum: &TextureSpectrum) -> Thumbnail {
+    of_magnitudes(&spectrum.frequency_hz, &spectrum.magnitude)
+}
+
+/// Returns the thumbnail of magnitudes on ascending frequencies.
+pub(crate) fn of_magnitudes(frequency_hz: &[f64], magnitude: &[f64]) -> Thumbnail {
+    let (Some(low), Some(high)) = (frequency_hz.first(), frequency_hz.last()) else {
+        return Thumbnail::default();
+    };
+    let largest = magnitude.iter().copied().fold(0.0, f64::max);
+    let step = libm::pow(high / low, 1.0 / POINTS as f64);
+    let mut edge = *low;
+    let points = (0..POINTS).map(|_| {
+        let (from, to) = (edge, edge * step);
+        edge = to;
+        let within = frequency_hz.iter().zip(magnitude);
+        let within = within.filter(|(f, _)| (from..=to).contains(*f));
+        let peak = within.map(|(_, m)| *m).fold(0.0, f64::max);
+        // Below 50 Hz the grid of 5 Hz is coarser than the points.
+        let peak = if peak > 0.0 {
+            peak
+        } else {
+            nearest(frequency_hz, magnitude, from)
+        };
+        level(peak, largest)
+    });
+    Thumbnail(points.collect())
+}
+
+fn nearest(frequency_hz: &[f64], magnitude: &[f64], at: f64) -> f64 {
+    let above = frequency_hz.partition_point(|f| *f < at);
+    magnitude.get(above).copied().unwrap_or_default()
+}
+
+fn level(magnitude: f64, largest: f64) -> u8 {
+    if magnitude <= 0.0 || largest <= 0.0 {
+        return 0;
+    }
+    let below_db = 20.0 * libm::log10(largest / magnitude);
+    (STEPS * (1.0 - below_db / RANGE_DB))
+        .clamp(0.0, STEPS)
+        .round() as u8
+}

@@ -1,0 +1,171 @@
+//! From a failed request to one error that says what to do.
+
+use std::io;
+use std::time::Instant;
+
+use super::Store;
+use super::log::Last;
+use crate::StorageError;
+use crate::location::{Place, Scheme};
+
+/// The failure of an operation.
+pub(super) enum Fail {
+    /// A request failed before its body.
+    Request(Box<object_store::Error>),
+    /// A body broke off and could not be resumed.
+    Body,
+    /// The total time is over.
+    Slow,
+    /// The task ended without a result.
+    Ended,
+    /// The local file that is read or written.
+    Local(io::Error),
+    Own(StorageError),
+}
+
+impl From<object_store::Error> for Fail {
+    fn from(error: object_store::Error) -> Self {
+        Self::Request(Box::new(error))
+    }
+}
+
+impl Store {
+    /// The error of a failure. Texts of the library and of the server are not quoted: they may hold signatures and keys.
+    pub(super) fn explain(&self, fail: Fail, begun: Instant) -> StorageError {
+        use object_store::Error;
+        let uri = self.location.to_string();
+        let seconds = begun.elapsed().as_secs_f64();
+        let last = self.log.last();
+        match fail {
+            Fail::Own(error) => error,
+            Fail::Local(error) => StorageError::io(format_args!("the local copy of {uri}"), error),
+            Fail::Slow => StorageError::TooSlow {
+                uri,
+                limit_s: self.settings.total.as_secs_f64(),
+                what: format!("{} bytes came in, {}", self.log.bytes(), words(&last)),
+            },
+            Fail::Ended => self.unavailable("the transfer ended unexpectedly".to_owned(), seconds),
+            Fail::Request(error) if matches!(*error, Error::NotFound { .. }) => {
+                StorageError::Missing { uri }
+            }
+            Fail::Request(error) if matches!(*error, Error::NotSupported { .. }) => {
+                StorageError::NoRanges { uri }
+            }
+            // After a body that broke off, a good response is one of another version of the file.
+            Fail::Body
+                if matches!(
+                    last,
+                    Last::Status {
+                        status: 200..=299,
+                        ..
+                    }
+                ) =>
+            {
+                StorageError::Changed { uri }
+            }
+            Fail::Request(_) | Fail::Body => self.by_last(last, seconds),
+        }
+    }
+
+    fn by_last(&self, last: Last, seconds: f64) -> StorageError {
+        let (uri, what) = (self.location.to_string(), words(&last));
+        let (status, code) = match last {
+            Last::Status { status, code } => (status, code),
+            Last::NotFollowed(_) => return StorageError::Refused { uri, what },
+            Last::Nothing | Last::Cut(_) => return self.unavailable(what, seconds),
+        };
+        match status {
+            404 => StorageError::Missing { uri },
+            412 => StorageError::Changed { uri },
+            401 | 403 => self.denied(what, code.as_deref()),
+            400 if code.as_deref().is_some_and(is_of_credentials) => {
+                self.denied(what, code.as_deref())
+            }
+            300..=399 => StorageError::Refused {
+                uri,
+                what: format!(
+                    "{what}: it is elsewhere; set AWS_REGION to the region of the bucket"
+                ),
+            },
+            416 => StorageError::Refused {
+                uri,
+                what: format!("{what}: the range begins after the end of the file"),
+            },
+            408 | 429 | 500.. => self.unavailable(what, seconds),
+            200..=299 => StorageError::Refused {
+                uri,
+                what: format!(
+                    "{what}, without the size of the file or with a header that is not valid"
+                ),
+            },
+            _ => StorageError::Refused { uri, what },
+        }
+    }
+
+    fn unavailable(&self, what: String, seconds: f64) -> StorageError {
+        StorageError::Unavailable {
+            uri: self.location.to_string(),
+            what,
+            requests: self.log.requests(),
+            seconds,
+        }
+    }
+
+    fn denied(&self, what: String, code: Option<&str>) -> StorageError {
+        let scheme = match self.location.place() {
+            Place::Remote(uri) => uri.scheme,
+            Place::Local(_) => Scheme::Https,
+        };
+        StorageError::Denied {
+            uri: self.location.to_string(),
+            what,
+            advice: self.advice(scheme, code),
+        }
+    }
+
+    fn advice(&self, scheme: Scheme, code: Option<&str>) -> String {
+        let given = match scheme {
+            Scheme::S3 => "AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY",
+            Scheme::Gs => "GOOGLE_APPLICATION_CREDENTIALS",
+            Scheme::Az => "AZURE_STORAGE_ACCOUNT_KEY or AZURE_STORAGE_SAS_KEY",
+            Scheme::Http | Scheme::Https => {
+                return "htex sends no credentials to web servers; a signed link works until it expires".to_owned();
+            }
+        };
+        let sentence = match code {
+            Some("ExpiredToken" | "TokenRefreshRequired") => {
+                "the credentials have expired; get new ones, AWS_SESSION_TOKEN among them"
+            }
+            Some("InvalidAccessKeyId") => "no such key exists there; check AWS_ACCESS_KEY_ID",
+            Some("SignatureDoesNotMatch") => {
+                "the secret does not belong to the key; check AWS_SECRET_ACCESS_KEY"
+            }
+            Some("RequestTimeTooSkewed") => "the clock of this machine is wrong; set it",
+            Some("AuthorizationHeaderMalformed") => "set AWS_REGION to the region of the bucket",
+            _ if !self.is_signed => return format!("no credentials are set; set {given}"),
+            _ => return format!("these credentials may not do this, or are wrong; check {given}"),
+        };
+        sentence.to_owned()
+    }
+}
+
+/// Codes of S3 for credentials, which come with the status 400.
+fn is_of_credentials(code: &str) -> bool {
+    matches!(
+        code,
+        "ExpiredToken" | "InvalidToken" | "TokenRefreshRequired" | "AuthorizationHeaderMalformed"
+    )
+}
+
+fn words(last: &Last) -> String {
+    match last {
+        Last::Nothing => "no response".to_owned(),
+        Last::Status { status, code: None } => format!("status {status}"),
+        Last::Status {
+            status,
+            code: Some(code),
+        } => format!("status {status}, {code}"),
+        Last::Cut(cause) => cause.clone(),
+        Last::NotFollowed(reason) => (*reason).to_owned(),
+    }
+}

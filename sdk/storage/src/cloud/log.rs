@@ -1,0 +1,183 @@
+//! The requests of one file, counted and remembered for its errors.
+
+use std::error::Error;
+use std::pin::Pin;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::task::{Context, Poll, ready};
+
+use async_trait::async_trait;
+use bytes::Bytes;
+use http_body::{Body, Frame};
+use http_body_util::{BodyExt, Limited};
+use object_store::ClientOptions;
+use object_store::client::{
+    HttpClient, HttpConnector, HttpError, HttpRequest, HttpResponse, HttpResponseBody, HttpService,
+};
+
+use super::client::NotFollowed;
+
+/// Most bytes that are read of a refusal, for its code.
+const MOST_REFUSAL_BYTES: usize = 65_536;
+
+/// What was sent and received.
+#[derive(Debug, Default)]
+pub(crate) struct Log {
+    requests: AtomicU64,
+    bytes: AtomicU64,
+    last: Mutex<Last>,
+}
+
+/// How the last request ended.
+#[derive(Debug, Default, Clone)]
+pub(crate) enum Last {
+    #[default]
+    Nothing,
+    Status {
+        status: u16,
+        /// The server's word for it, such as `NoSuchKey`.
+        code: Option<String>,
+    },
+    /// No response, or a part of one.
+    Cut(String),
+    /// This side does not follow.
+    NotFollowed(&'static str),
+}
+
+impl Log {
+    pub(crate) fn requests(&self) -> u64 {
+        self.requests.load(Ordering::Relaxed)
+    }
+
+    /// Bytes of bodies that were received.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.bytes.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn last(&self) -> Last {
+        self.last
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone()
+    }
+
+    fn ended(&self, last: Last) {
+        *self.last.lock().unwrap_or_else(PoisonError::into_inner) = last;
+    }
+
+    fn failed(&self, error: &HttpError) {
+        self.ended(cause(error));
+    }
+}
+
+/// The deepest cause, which names neither a URL nor a header.
+fn cause(error: &HttpError) -> Last {
+    let mut cause: &(dyn Error + 'static) = error;
+    while let Some(source) = cause.source() {
+        cause = source;
+    }
+    if let Some(NotFollowed(reason)) = cause.downcast_ref() {
+        return Last::NotFollowed(reason);
+    }
+    let text = cause.to_string();
+    Last::Cut(match text.is_empty() || text.contains("://") {
+        true => "the connection failed".to_owned(),
+        false => text,
+    })
+}
+
+/// Connects a store to a client whose requests are logged.
+#[derive(Debug)]
+pub(crate) struct Connector {
+    pub(crate) client: reqwest::Client,
+    pub(crate) log: Arc<Log>,
+}
+
+impl HttpConnector for Connector {
+    fn connect(&self, _: &ClientOptions) -> object_store::Result<HttpClient> {
+        Ok(HttpClient::new(Logged {
+            client: self.client.clone(),
+            log: Arc::clone(&self.log),
+        }))
+    }
+}
+
+#[derive(Debug)]
+struct Logged {
+    client: reqwest::Client,
+    log: Arc<Log>,
+}
+
+#[async_trait]
+impl HttpService for Logged {
+    async fn call(&self, request: HttpRequest) -> Result<HttpResponse, HttpError> {
+        self.log.requests.fetch_add(1, Ordering::Relaxed);
+        let response = HttpService::call(&self.client, request).await;
+        let response = response.inspect_err(|error| self.log.failed(error))?;
+        let (parts, body) = response.into_parts();
+        let status = parts.status.as_u16();
+        if parts.status.is_success() {
+            self.log.ended(Last::Status { status, code: None });
+            let log = Arc::clone(&self.log);
+            let body = HttpResponseBody::new(Counted { body, log });
+            return Ok(HttpResponse::from_parts(parts, body));
+        }
+        // A refusal without its end is one without a code.
+        let text = Limited::new(body, MOST_REFUSAL_BYTES).collect().await;
+        let text = text.map(|text| text.to_bytes()).unwrap_or_default();
+        let named = parts.headers.get("x-ms-error-code");
+        let named = named.and_then(|code| Some(code.to_str().ok()?.to_owned()));
+        let code = named
+            .or_else(|| code_in(&text))
+            .filter(|code| is_code(code));
+        self.log.ended(Last::Status { status, code });
+        Ok(HttpResponse::from_parts(parts, text.into()))
+    }
+}
+
+/// The `<Code>` of an error document of S3 and of stores like it.
+fn code_in(document: &[u8]) -> Option<String> {
+    let text = std::str::from_utf8(document).ok()?;
+    let (_, rest) = text.split_once("<Code>")?;
+    Some(rest.split_once("</Code>")?.0.to_owned())
+}
+
+/// Whether a word can be shown: the rest of the document may quote the request, its signature included.
+fn is_code(word: &str) -> bool {
+    (1..=48).contains(&word.len()) && word.chars().all(|c| c.is_ascii_alphabetic())
+}
+
+/// A body whose bytes and failures are logged.
+struct Counted {
+    body: HttpResponseBody,
+    log: Arc<Log>,
+}
+
+impl Body for Counted {
+    type Data = Bytes;
+    type Error = HttpError;
+
+    fn poll_frame(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+    ) -> Poll<Option<Result<Frame<Bytes>, HttpError>>> {
+        let frame = ready!(Pin::new(&mut self.body).poll_frame(context));
+        match &frame {
+            Some(Ok(frame)) => {
+                let bytes = frame.data_ref().map_or(0, Bytes::len);
+                self.log.bytes.fetch_add(bytes as u64, Ordering::Relaxed);
+            }
+            Some(Err(error)) => self.log.failed(error),
+            None => {}
+        }
+        Poll::Ready(frame)
+    }
+
+    fn is_end_stream(&self) -> bool {
+        self.body.is_end_stream()
+    }
+
+    fn size_hint(&self) -> http_body::SizeHint {
+        self.body.size_hint()
+    }
+}

@@ -1,0 +1,168 @@
+//! Files elsewhere: object stores and web servers.
+
+mod client;
+mod explain;
+mod log;
+mod read;
+mod stores;
+mod write;
+
+use std::sync::{Arc, OnceLock, mpsc};
+use std::time::{Duration, Instant};
+
+use futures_util::StreamExt;
+use object_store::ObjectStore;
+use object_store::path::Path;
+use tokio::runtime::{Builder, Runtime};
+
+pub(crate) use client::Clients;
+pub(crate) use read::Version;
+
+use crate::listing::{self, Entry, MOST_ENTRIES};
+use crate::location::Uri;
+use crate::{Location, Settings, Stat, StorageError, Variables};
+use explain::Fail;
+use log::{Connector, Log};
+use stores::Parts;
+
+/// Threads that wait for the network, for all files of the process.
+const THREADS: usize = 2;
+
+/// A file in its store.
+#[derive(Clone)]
+pub(crate) struct Store {
+    store: Arc<dyn ObjectStore>,
+    key: Path,
+    location: Location,
+    is_signed: bool,
+    settings: Settings,
+    log: Arc<Log>,
+}
+
+impl Store {
+    /// Prepares the store of a location; nothing is sent yet.
+    pub(crate) fn open(
+        location: &Location,
+        uri: &Uri,
+        (settings, variables, clients): (&Settings, &Variables, &Clients),
+    ) -> Result<Self, StorageError> {
+        let problem = |problem| StorageError::Settings {
+            uri: location.to_string(),
+            problem,
+        };
+        let client = match uri.scheme.is_read_only() {
+            true => clients.web(settings),
+            false => clients.stores(settings),
+        };
+        let log = Arc::new(Log::default());
+        let connector = Connector {
+            client: client.map_err(problem)?,
+            log: Arc::clone(&log),
+        };
+        let parts = Parts {
+            uri,
+            settings,
+            variables,
+            connector,
+        };
+        let opened = parts.open().map_err(problem)?;
+        Ok(Self {
+            store: opened.store,
+            key: opened.key,
+            location: location.clone(),
+            is_signed: opened.is_signed,
+            settings: settings.clone(),
+            log,
+        })
+    }
+
+    /// Requests that were sent, and bytes of bodies that were received.
+    pub(crate) fn usage(&self) -> (u64, u64) {
+        (self.log.requests(), self.log.bytes())
+    }
+
+    /// Size and version; `None` when there is no such file.
+    pub(crate) fn stat(&self) -> Result<Option<Stat>, StorageError> {
+        use object_store::ObjectStoreExt;
+        let here = self.clone();
+        let found = self.run(async move { Ok(here.store.head(&here.key).await?) });
+        match found {
+            Ok(meta) => Ok(Some(Stat {
+                bytes: meta.size,
+                etag: meta.e_tag,
+            })),
+            Err(StorageError::Missing { .. }) => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The files below a key whose names relative to it match a pattern.
+    pub(crate) fn list(&self, pattern: glob::Pattern) -> Result<Vec<Entry>, StorageError> {
+        let here = self.clone();
+        self.run(async move {
+            let mut found = Vec::new();
+            let mut all = here.store.list(Some(&here.key));
+            while let Some(meta) = all.next().await {
+                let meta = meta?;
+                let name = meta.location.as_ref();
+                let prefix = here.key.as_ref();
+                let relative = name
+                    .strip_prefix(prefix)
+                    .unwrap_or(name)
+                    .trim_start_matches('/');
+                if !listing::matches(&pattern, relative) {
+                    continue;
+                }
+                if found.len() == MOST_ENTRIES {
+                    return Err(Fail::Own(listing::too_many(&here.location)));
+                }
+                found.push(Entry {
+                    location: here.location.with_key(name),
+                    bytes: meta.size,
+                });
+            }
+            Ok(found)
+        })
+    }
+
+    /// Runs requests on the runtime and waits for them, at most the total time.
+    fn run<T: Send + 'static>(
+        &self,
+        work: impl Future<Output = Result<T, Fail>> + Send + 'static,
+    ) -> Result<T, StorageError> {
+        self.run_within(self.settings.total, work)
+    }
+
+    fn run_within<T: Send + 'static>(
+        &self,
+        limit: Duration,
+        work: impl Future<Output = Result<T, Fail>> + Send + 'static,
+    ) -> Result<T, StorageError> {
+        let begun = Instant::now();
+        let (send, receive) = mpsc::sync_channel(1);
+        // The caller may itself be a task, where blocking on the runtime would panic: the thread waits for a channel.
+        runtime(&self.location)?.spawn(async move {
+            let done = tokio::time::timeout(limit, work).await;
+            let _ = send.send(done.unwrap_or(Err(Fail::Slow)));
+        });
+        let done = receive.recv().unwrap_or(Err(Fail::Ended));
+        done.map_err(|fail| self.explain(fail, begun))
+    }
+}
+
+/// The runtime of all files of the process.
+fn runtime(location: &Location) -> Result<&'static Runtime, StorageError> {
+    static RUNTIME: OnceLock<Result<Runtime, String>> = OnceLock::new();
+    let runtime = RUNTIME.get_or_init(|| {
+        let mut builder = Builder::new_multi_thread();
+        builder.worker_threads(THREADS).thread_name("htex-storage");
+        builder
+            .enable_all()
+            .build()
+            .map_err(|error| error.to_string())
+    });
+    runtime.as_ref().map_err(|error| StorageError::Settings {
+        uri: location.to_string(),
+        problem: format!("no threads for the network: {error}"),
+    })
+}

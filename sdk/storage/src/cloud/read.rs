@@ -1,0 +1,185 @@
+//! Reading whole files, and ranges of one version of a file.
+
+use std::fs::File;
+use std::io::{self, Seek, Write};
+use std::ops::Range;
+
+use futures_util::StreamExt;
+use object_store::{GetOptions, GetRange, GetResult, ObjectMeta};
+
+use super::Store;
+use super::explain::Fail;
+use super::log::Last;
+use crate::StorageError;
+
+/// One version of a file, as far as the server tells versions apart.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Version {
+    pub(crate) bytes: u64,
+    pub(crate) etag: Option<String>,
+    /// Where there is no tag: when it was written, and else the same time for all.
+    modified: i64,
+}
+
+impl Version {
+    fn of(meta: &ObjectMeta) -> Self {
+        let modified = match meta.e_tag {
+            Some(_) => 0,
+            None => meta.last_modified.timestamp_millis(),
+        };
+        Self {
+            bytes: meta.size,
+            etag: meta.e_tag.clone(),
+            modified,
+        }
+    }
+
+    /// The tag for `If-Match`, which compares strong ones only.
+    fn strong_etag(&self) -> Option<String> {
+        self.etag.clone().filter(|etag| !etag.starts_with("W/"))
+    }
+}
+
+/// Bytes of a range, and the version that they are of.
+pub(crate) struct Part {
+    pub(crate) bytes: Vec<u8>,
+    pub(crate) version: Version,
+}
+
+/// What takes the bytes of a file.
+trait Sink: Send + 'static {
+    /// Drops what was taken.
+    fn start_over(&mut self) -> io::Result<()>;
+    fn take(&mut self, bytes: &[u8]) -> io::Result<()>;
+}
+
+impl Sink for Vec<u8> {
+    fn start_over(&mut self) -> io::Result<()> {
+        self.clear();
+        Ok(())
+    }
+
+    fn take(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.extend_from_slice(bytes);
+        Ok(())
+    }
+}
+
+impl Sink for File {
+    fn start_over(&mut self) -> io::Result<()> {
+        self.set_len(0)?;
+        self.rewind()
+    }
+
+    fn take(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.write_all(bytes)
+    }
+}
+
+impl Store {
+    /// The whole file.
+    pub(crate) fn read(&self, most_bytes: u64) -> Result<Vec<u8>, StorageError> {
+        let here = self.clone();
+        self.run(async move { here.whole(Vec::new(), most_bytes).await })
+    }
+
+    /// The whole file, into a local one.
+    pub(crate) fn download(&self, file: File, most_bytes: u64) -> Result<File, StorageError> {
+        let here = self.clone();
+        self.run(async move { here.whole(file, most_bytes).await })
+    }
+
+    /// A range, cut off at the end of the file; of this version, if one is given.
+    pub(crate) fn part(
+        &self,
+        range: Range<u64>,
+        version: Option<Version>,
+    ) -> Result<Part, StorageError> {
+        let here = self.clone();
+        self.run(async move { here.range(range, version).await })
+    }
+
+    async fn whole<S: Sink>(self, mut sink: S, most_bytes: u64) -> Result<S, Fail> {
+        for attempt in 0.. {
+            let found = self
+                .store
+                .get_opts(&self.key, GetOptions::default())
+                .await?;
+            let version = Version::of(&found.meta);
+            self.check_size(version.bytes, most_bytes)?;
+            sink.start_over().map_err(Fail::Local)?;
+            match Self::take_all(found, version.bytes, &mut sink).await {
+                // The library resumes at the same version, which only a tag tells.
+                Err(Fail::Body) if version.etag.is_none() && attempt < self.settings.retries => {
+                    tokio::time::sleep(self.settings.first_pause).await;
+                }
+                done => return done.map(|()| sink),
+            }
+        }
+        Err(Fail::Ended)
+    }
+
+    async fn take_all(found: GetResult, bytes: u64, sink: &mut impl Sink) -> Result<(), Fail> {
+        let mut rest = bytes;
+        let mut stream = found.into_stream();
+        while let Some(chunk) = stream.next().await {
+            let chunk = chunk.map_err(|_| Fail::Body)?;
+            rest = rest.checked_sub(chunk.len() as u64).ok_or(Fail::Body)?;
+            sink.take(&chunk).map_err(Fail::Local)?;
+        }
+        match rest {
+            0 => Ok(()),
+            _ => Err(Fail::Body),
+        }
+    }
+
+    async fn range(self, range: Range<u64>, version: Option<Version>) -> Result<Part, Fail> {
+        let options = GetOptions {
+            range: Some(GetRange::Bounded(range.clone())),
+            if_match: version.as_ref().and_then(Version::strong_etag),
+            ..GetOptions::default()
+        };
+        let found = match self.store.get_opts(&self.key, options).await {
+            Err(_) if range.start == 0 && self.is_beyond_end() => return Ok(Part::of_empty()),
+            found => found?,
+        };
+        let is = Version::of(&found.meta);
+        if version.is_some_and(|version| version != is) {
+            let uri = self.location.to_string();
+            return Err(Fail::Own(StorageError::Changed { uri }));
+        }
+        let mut bytes = Vec::new();
+        let len = found.range.end - found.range.start;
+        Self::take_all(found, len, &mut bytes).await?;
+        Ok(Part { bytes, version: is })
+    }
+
+    /// Whether the last range began after the end of the file: the first byte of an empty file does.
+    fn is_beyond_end(&self) -> bool {
+        matches!(self.log.last(), Last::Status { status: 416, .. })
+    }
+
+    fn check_size(&self, bytes: u64, most_bytes: u64) -> Result<(), Fail> {
+        match bytes <= most_bytes {
+            true => Ok(()),
+            false => Err(Fail::Own(StorageError::TooLarge {
+                uri: self.location.to_string(),
+                most_bytes,
+            })),
+        }
+    }
+}
+
+impl Part {
+    fn of_empty() -> Self {
+        let version = Version {
+            bytes: 0,
+            etag: None,
+            modified: 0,
+        };
+        Self {
+            bytes: Vec::new(),
+            version,
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Writing files that are whole or not there: one request, or parts that become a file by the last request.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use object_store::{MultipartUpload, ObjectStoreExt, PutPayload};
+use tokio::task::JoinSet;
+
+use super::Store;
+use super::explain::Fail;
+use crate::StorageError;
+
+/// Files up to this size are one request.
+const MOST_SINGLE_BYTES: u64 = 16 << 20;
+/// Size of a part; the last one may be smaller. S3 takes 10,000 parts of 5 MiB and more.
+const PART_BYTES: u64 = 8 << 20;
+/// Most bytes of a file: that many parts.
+const MOST_BYTES: u64 = 10_000 * PART_BYTES;
+/// Parts that are sent at the same time.
+const MOST_AT_ONCE: usize = 4;
+/// Time for taking parts back after a failure.
+const ABORT: Duration = Duration::from_secs(10);
+
+impl Store {
+    /// Writes a file in one request.
+    pub(crate) fn write(&self, bytes: Vec<u8>) -> Result<(), StorageError> {
+        let here = self.clone();
+        self.run(async move {
+            let payload = PutPayload::from(bytes);
+            here.store.put(&here.key, payload).await?;
+            Ok(())
+        })
+    }
+
+    /// Writes a local file.
+    pub(crate) fn upload(&self, path: &Path) -> Result<(), StorageError> {
+        let read = |error| StorageError::io(path.display(), error);
+        let mut file = File::open(path).map_err(read)?;
+        let len = file.metadata().map_err(read)?.len();
+        if len > MOST_BYTES {
+            return Err(StorageError::TooLarge {
+                uri: path.display().to_string(),
+                most_bytes: MOST_BYTES,
+            });
+        }
+        if len <= MOST_SINGLE_BYTES {
+            let mut bytes = Vec::new();
+            file.read_to_end(&mut bytes).map_err(read)?;
+            return self.write(bytes);
+        }
+        let limit = self.settings.total + 2 * ABORT;
+        self.run_within(limit, self.clone().in_parts(file))
+    }
+
+    /// Sends the parts and then completes the file, or takes the parts back.
+    async fn in_parts(self, file: File) -> Result<(), Fail> {
+        let begun = Instant::now();
+        let mut upload = self.store.put_multipart(&self.key).await?;
+        let work = async {
+            send(file, &mut *upload).await?;
+            upload.complete().await?;
+            Ok(())
+        };
+        let done = tokio::time::timeout(self.settings.total, work).await;
+        let fail = match done.unwrap_or(Err(Fail::Slow)) {
+            Ok(()) => return Ok(()),
+            // Explained before the next request is the last one.
+            Err(fail) => Fail::Own(self.explain(fail, begun)),
+        };
+        let _ = tokio::time::timeout(ABORT, upload.abort()).await;
+        Err(fail)
+    }
+}
+
+/// Sends a file in parts.
+async fn send(file: File, upload: &mut dyn MultipartUpload) -> Result<(), Fail> {
+    let mut parts = JoinSet::new();
+    let sent = send_parts(file, upload, &mut parts).await;
+    if sent.is_err() {
+        // A part that arrives after the others were taken back would stay.
+        let rest = async { while parts.join_next().await.is_some() {} };
+        let _ = tokio::time::timeout(ABORT, rest).await;
+    }
+    sent
+}
+
+/// Their order is that of the calls of `put_part`.
+async fn send_parts(
+    mut file: File,
+    upload: &mut dyn MultipartUpload,
+    parts: &mut JoinSet<object_store::Result<()>>,
+) -> Result<(), Fail> {
+    loop {
+        let mut part = Vec::new();
+        let taken = (&mut file).take(PART_BYTES).read_to_end(&mut part);
+        if taken.map_err(Fail::Local)? == 0 {
+            break;
+        }
+        if parts.len() == MOST_AT_ONCE {
+            wait(parts).await?;
+        }
+        parts.spawn(upload.put_part(part.into()));
+    }
+    while !parts.is_empty() {
+        wait(parts).await?;
+    }
+    Ok(())
+}
+
+async fn wait(parts: &mut JoinSet<object_store::Result<()>>) -> Result<(), Fail> {
+    match parts.join_next().await {
+        None | Some(Ok(Ok(()))) => Ok(()),
+        Some(Ok(Err(error))) => Err(error.into()),
+        Some(Err(_)) => Err(Fail::Ended),
+    }
+}

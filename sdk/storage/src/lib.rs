@@ -1,0 +1,257 @@
+//! Files by URI: local paths, `https://`, `s3://`, `gs://` and `az://`, read and written in blocking calls.
+//!
+//! - A write is whole or not there: one request, or parts that become a file by the last request. Local files are renamed into
+//!   place.
+//! - Failures that pass (503, 429, a stalled or cut connection) are retried with growing pauses, within a total time
+//!   ([`Settings`]); a body that was cut is resumed at the same version of the file.
+//! - Credentials come from the variables of the environment alone, and no message holds one ([`StorageError`]).
+//! - [`Remote`] reads ranges of one version of a file, and counts its requests and bytes.
+//!
+//! Local files need nothing else; the rest is the feature `cloud`, by the crates `object_store`, `reqwest` and `rustls`.
+//!
+//! ```
+//! use htex_storage::{Location, Storage};
+//!
+//! let folder = tempfile::tempdir()?;
+//! let storage = Storage::from_environment()?;
+//! let location = Location::parse(folder.path().join("cloth.csv").as_os_str())?; // or "s3://bucket/cloth.csv"
+//! storage.write(&location, b"1,2,3")?;
+//! assert_eq!(storage.read(&location, 1_000)?, b"1,2,3");
+//! assert_eq!(storage.read_range(&location, 2..5)?, b"2,3");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+#![forbid(unsafe_code)]
+
+#[cfg(feature = "cloud")]
+mod cloud;
+mod error;
+mod listing;
+mod local;
+mod location;
+#[cfg(not(feature = "cloud"))]
+mod no_cloud;
+mod remote;
+mod settings;
+
+#[cfg(not(feature = "cloud"))]
+use no_cloud as cloud;
+
+use std::fs::File;
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
+
+pub use error::StorageError;
+pub use listing::Entry;
+pub use location::Location;
+pub use remote::{Remote, Usage};
+pub use settings::{Settings, Variables};
+
+use cloud::{Clients, Store};
+use location::Place;
+
+/// Size and version of a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Stat {
+    /// Its size.
+    pub bytes: u64,
+    /// Its entity tag, where the store has one. It changes with the content.
+    pub etag: Option<String>,
+}
+
+/// Access to files by [`Location`]. A clone shares its connections.
+#[derive(Debug, Clone, Default)]
+pub struct Storage {
+    settings: Settings,
+    variables: Variables,
+    clients: Arc<Clients>,
+}
+
+impl Storage {
+    /// With these limits and variables.
+    pub fn new(settings: Settings, variables: Variables) -> Self {
+        Self {
+            settings,
+            variables,
+            clients: Arc::default(),
+        }
+    }
+
+    /// With the variables of the process: `AWS_*`, `GOOGLE_*`, `AZURE_*`, `HTEX_STORAGE_TIMEOUT_S`.
+    ///
+    /// # Errors
+    /// As [`Settings::from_variables`].
+    pub fn from_environment() -> Result<Self, StorageError> {
+        let variables = Variables::of_process();
+        Ok(Self::new(Settings::from_variables(&variables)?, variables))
+    }
+
+    /// Reads a whole file of at most `most_bytes`.
+    ///
+    /// # Errors
+    /// When there is no such file, it is larger, or it cannot be read.
+    pub fn read(&self, location: &Location, most_bytes: u64) -> Result<Vec<u8>, StorageError> {
+        match location.place() {
+            Place::Local(path) => local::read(path, most_bytes),
+            Place::Remote(uri) => self.store(location, uri)?.read(most_bytes),
+        }
+    }
+
+    /// Copies a whole file of at most `most_bytes` into an open local one, which is empty. After an error that holds a part.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn download(
+        &self,
+        location: &Location,
+        into: File,
+        most_bytes: u64,
+    ) -> Result<(), StorageError> {
+        match location.place() {
+            Place::Local(path) => local::copy(path, into, most_bytes),
+            Place::Remote(uri) => self
+                .store(location, uri)?
+                .download(into, most_bytes)
+                .map(drop),
+        }
+    }
+
+    /// Size and version of a file; `None` when there is no such file.
+    ///
+    /// # Errors
+    /// When that cannot be found out.
+    pub fn stat(&self, location: &Location) -> Result<Option<Stat>, StorageError> {
+        match location.place() {
+            Place::Local(path) => local::stat(path),
+            Place::Remote(uri) => self.store(location, uri)?.stat(),
+        }
+    }
+
+    /// Whether there is such a file.
+    ///
+    /// # Errors
+    /// As [`Self::stat`].
+    pub fn exists(&self, location: &Location) -> Result<bool, StorageError> {
+        Ok(self.stat(location)?.is_some())
+    }
+
+    /// The size of a file.
+    ///
+    /// # Errors
+    /// As [`Self::stat`], and when there is no such file.
+    pub fn size(&self, location: &Location) -> Result<u64, StorageError> {
+        let stat = self.stat(location)?;
+        stat.map(|stat| stat.bytes)
+            .ok_or_else(|| StorageError::Missing {
+                uri: location.to_string(),
+            })
+    }
+
+    /// Reads a range of bytes. To read several of one file, [`Self::open`] it.
+    ///
+    /// # Errors
+    /// As [`Self::read`], and when the range ends after the file.
+    pub fn read_range(
+        &self,
+        location: &Location,
+        range: Range<u64>,
+    ) -> Result<Vec<u8>, StorageError> {
+        let wanted = range.end.saturating_sub(range.start);
+        if wanted == 0 {
+            return Ok(Vec::new());
+        }
+        let remote = self.open_at(location, range.clone())?;
+        if wanted > remote.head().len() as u64 {
+            return Err(remote.out_of_range(range));
+        }
+        Ok(remote.into_head())
+    }
+
+    /// Opens one version of a file for reads of ranges. The one request for the first `head_bytes` gives the size too; reads within
+    /// these bytes cost no further request.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn open(&self, location: &Location, head_bytes: u32) -> Result<Remote, StorageError> {
+        self.open_at(location, 0..u64::from(head_bytes.max(1)))
+    }
+
+    fn open_at(&self, location: &Location, head: Range<u64>) -> Result<Remote, StorageError> {
+        match location.place() {
+            Place::Local(path) => Remote::of_file(location, path, head),
+            Place::Remote(uri) => Remote::of_store(location, self.store(location, uri)?, head),
+        }
+    }
+
+    /// Lists the files below a folder whose names relative to it match a pattern, by name: `*.csv`, `**/*.htex`. At most 100,000.
+    ///
+    /// # Errors
+    /// As [`Self::read`]; when the pattern is malformed; of a web server.
+    pub fn list(&self, folder: &Location, pattern: &str) -> Result<Vec<Entry>, StorageError> {
+        let pattern = listing::pattern(folder, pattern)?;
+        let mut found = match folder.place() {
+            Place::Local(path) => listing::of_folder(path, &pattern)?,
+            Place::Remote(uri) if uri.scheme.is_read_only() => {
+                let uri = folder.to_string();
+                return Err(StorageError::NoList { uri });
+            }
+            Place::Remote(uri) => {
+                let uri = uri.without_last_slash();
+                self.store(&folder.with_key(&uri.path), &uri)?
+                    .list(pattern)?
+            }
+        };
+        found.sort_by_cached_key(|entry| entry.location.to_string());
+        Ok(found)
+    }
+
+    /// Writes a file, or replaces it; it is whole or not there.
+    ///
+    /// # Errors
+    /// When it cannot be written; what was there before is then unchanged.
+    pub fn write(&self, location: &Location, bytes: &[u8]) -> Result<(), StorageError> {
+        match location.place() {
+            Place::Local(path) => local::write(path, bytes),
+            Place::Remote(uri) => self.writable(location, uri)?.write(bytes.to_vec()),
+        }
+    }
+
+    /// Writes a copy of a local file, as [`Self::write`] does: above 16 MiB in parts of 8 MiB, which are taken back after a failure.
+    ///
+    /// # Errors
+    /// As [`Self::write`], and when the local file cannot be read.
+    pub fn write_file(&self, location: &Location, file: &Path) -> Result<(), StorageError> {
+        match location.place() {
+            Place::Local(path) => local::write_copy(path, file),
+            Place::Remote(uri) => self.writable(location, uri)?.upload(file),
+        }
+    }
+
+    /// Checks whether a file there could be written, as far as that is known without a request: its scheme, and the settings of its store.
+    ///
+    /// # Errors
+    /// When it could not.
+    pub fn check_writable(&self, location: &Location) -> Result<(), StorageError> {
+        match location.place() {
+            Place::Local(_) => Ok(()),
+            Place::Remote(uri) => self.writable(location, uri).map(drop),
+        }
+    }
+
+    fn writable(&self, location: &Location, uri: &location::Uri) -> Result<Store, StorageError> {
+        match uri.scheme.is_read_only() {
+            true => Err(StorageError::ReadOnly {
+                uri: location.to_string(),
+            }),
+            false => self.store(location, uri),
+        }
+    }
+
+    fn store(&self, location: &Location, uri: &location::Uri) -> Result<Store, StorageError> {
+        Store::open(
+            location,
+            uri,
+            (&self.settings, &self.variables, &self.clients),
+        )
+    }
+}

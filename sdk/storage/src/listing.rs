@@ -1,0 +1,79 @@
+//! Lists of files by a pattern.
+
+use std::path::Path;
+
+use glob::{MatchOptions, Pattern};
+
+use crate::{Location, StorageError};
+
+/// Most files of a list.
+pub(crate) const MOST_ENTRIES: usize = 100_000;
+/// Most folders within each other.
+const MOST_DEPTH: usize = 64;
+
+/// A file of a list.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Entry {
+    /// Where it is.
+    pub location: Location,
+    /// Its size.
+    pub bytes: u64,
+}
+
+/// Parses a pattern: `*` and `?` stay within one folder, `**` goes through all.
+pub(crate) fn pattern(location: &Location, text: &str) -> Result<Pattern, StorageError> {
+    Pattern::new(text).map_err(|error| StorageError::Uri {
+        uri: location.to_string(),
+        problem: format!("the pattern {text}: {error}"),
+    })
+}
+
+pub(crate) fn matches(pattern: &Pattern, relative: &str) -> bool {
+    let options = MatchOptions {
+        require_literal_separator: true,
+        ..MatchOptions::new()
+    };
+    pattern.matches_with(relative, options)
+}
+
+pub(crate) fn too_many(location: &Location) -> StorageError {
+    StorageError::Uri {
+        uri: location.to_string(),
+        problem: format!(
+            "more than {MOST_ENTRIES} files match; name a folder or pattern with fewer"
+        ),
+    }
+}
+
+/// The files below a local folder whose names relative to it match. Links to folders are not followed.
+pub(crate) fn of_folder(folder: &Path, pattern: &Pattern) -> Result<Vec<Entry>, StorageError> {
+    let mut found = Vec::new();
+    let mut open = vec![(folder.to_owned(), 0)];
+    while let Some((path, depth)) = open.pop() {
+        let failed = |error| StorageError::io(path.display(), error);
+        for entry in std::fs::read_dir(&path).map_err(failed)? {
+            let entry = entry.map_err(failed)?;
+            let (kind, path) = (entry.file_type().map_err(failed)?, entry.path());
+            if kind.is_dir() && depth < MOST_DEPTH {
+                open.push((path, depth + 1));
+                continue;
+            }
+            let relative = path.strip_prefix(folder).unwrap_or(&path);
+            let relative = relative
+                .to_string_lossy()
+                .replace(std::path::MAIN_SEPARATOR, "/");
+            let Ok(is) = path.metadata() else { continue };
+            if !is.is_file() || !matches(pattern, &relative) {
+                continue;
+            }
+            if found.len() == MOST_ENTRIES {
+                return Err(too_many(&folder.to_owned().into()));
+            }
+            found.push(Entry {
+                location: path.into(),
+                bytes: is.len(),
+            });
+        }
+    }
+    Ok(found)
+}

@@ -1,0 +1,60 @@
+//! Files of this machine.
+
+use std::fs::File;
+use std::io::{self, ErrorKind, Read};
+use std::path::Path;
+
+use crate::{Stat, StorageError};
+
+pub(crate) fn read(path: &Path, most_bytes: u64) -> Result<Vec<u8>, StorageError> {
+    let mut bytes = Vec::new();
+    let file = opened(path)?;
+    let taken = file
+        .take(most_bytes.saturating_add(1))
+        .read_to_end(&mut bytes);
+    let taken = taken.map_err(|error| StorageError::io(path.display(), error))?;
+    check(path, taken as u64, most_bytes)?;
+    Ok(bytes)
+}
+
+pub(crate) fn copy(path: &Path, mut into: File, most_bytes: u64) -> Result<(), StorageError> {
+    let mut from = opened(path)?.take(most_bytes.saturating_add(1));
+    let copied = io::copy(&mut from, &mut into);
+    let copied = copied.map_err(|error| StorageError::io(path.display(), error))?;
+    check(path, copied, most_bytes)
+}
+
+pub(crate) fn stat(path: &Path) -> Result<Option<Stat>, StorageError> {
+    match path.metadata() {
+        Ok(is) => Ok(is.is_file().then_some(Stat {
+            bytes: is.len(),
+            etag: None,
+        })),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(StorageError::io(path.display(), error)),
+    }
+}
+
+pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), StorageError> {
+    htex_files::write_file(path, bytes).map_err(|error| StorageError::io(path.display(), error))
+}
+
+pub(crate) fn write_copy(path: &Path, of: &Path) -> Result<(), StorageError> {
+    let mut from = opened(of)?;
+    htex_files::replace_file(path, |into| io::copy(&mut from, into).map(drop))
+        .map_err(|error| StorageError::io(path.display(), error))
+}
+
+pub(crate) fn opened(path: &Path) -> Result<File, StorageError> {
+    File::open(path).map_err(|error| StorageError::io(path.display(), error))
+}
+
+fn check(path: &Path, bytes: u64, most_bytes: u64) -> Result<(), StorageError> {
+    match bytes <= most_bytes {
+        true => Ok(()),
+        false => Err(StorageError::TooLarge {
+            uri: path.display().to_string(),
+            most_bytes,
+        }),
+    }
+}

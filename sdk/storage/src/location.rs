@@ -1,0 +1,384 @@
+//! Where a file is: a local path, or a URI.
+
+use std::ffi::OsStr;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use percent_encoding::percent_decode_str;
+
+use crate::StorageError;
+
+/// The known schemes, for messages.
+const KNOWN: &str = "s3://, gs://, az://, https://, http:// and file://";
+
+/// A local path, or a file elsewhere.
+///
+/// It is displayed without the query of a URL, which may carry a signature.
+///
+/// ```
+/// use htex_storage::Location;
+///
+/// let plain = Location::parse("surfaces/cloth.htex".as_ref())?;
+/// assert!(plain.local().is_some());
+/// let elsewhere = Location::parse("s3://surfaces/cloth.htex".as_ref())?;
+/// assert_eq!(elsewhere.file_name(), Some("cloth.htex".to_owned()));
+/// # Ok::<(), htex_storage::StorageError>(())
+/// ```
+#[derive(Clone, PartialEq, Eq, Hash)]
+pub struct Location(Place);
+
+#[derive(Clone, PartialEq, Eq, Hash)]
+pub(crate) enum Place {
+    Local(PathBuf),
+    Remote(Uri),
+}
+
+/// A file elsewhere.
+#[derive(Clone, PartialEq, Eq, Hash)]
+pub(crate) struct Uri {
+    pub(crate) scheme: Scheme,
+    /// The bucket, the container, or the host with its port.
+    pub(crate) authority: String,
+    /// The key as it is written, or the path of a URL with its escapes, without the slash before it.
+    pub(crate) path: String,
+    /// Of a URL alone; never displayed.
+    pub(crate) query: Option<String>,
+}
+
+/// The kind of a store.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(crate) enum Scheme {
+    S3,
+    Gs,
+    Az,
+    Http,
+    Https,
+}
+
+impl Location {
+    /// Reads an argument.
+    ///
+    /// `s3://BUCKET/KEY`, `gs://BUCKET/KEY` and `az://CONTAINER/KEY` take the key as it is written; `https://…` and `http://…` are
+    /// URLs; `file:///PATH` has escapes (`%20`). Everything else is a path of this machine and stays as it is, whether it is Unicode or
+    /// not.
+    ///
+    /// # Errors
+    /// A URI of another scheme, one with a user name or password, one that is not complete, or one that is not Unicode.
+    pub fn parse(argument: &OsStr) -> Result<Self, StorageError> {
+        let lossy = argument.to_string_lossy();
+        let Some((scheme, rest)) = split_scheme(&lossy) else {
+            return Ok(Self(Place::Local(argument.into())));
+        };
+        let wrong = |problem: &str| StorageError::Uri {
+            uri: without_secrets(&lossy),
+            problem: problem.to_owned(),
+        };
+        if argument.to_str().is_none() {
+            return Err(wrong(
+                "a URI is Unicode text; write a path without a scheme",
+            ));
+        }
+        let scheme = match &*scheme.to_ascii_lowercase() {
+            "file" => return Ok(Self(Place::Local(file_path(rest).map_err(&wrong)?))),
+            "s3" => Scheme::S3,
+            "gs" => Scheme::Gs,
+            "az" => Scheme::Az,
+            "http" => Scheme::Http,
+            "https" => Scheme::Https,
+            _ => {
+                let problem = format!(
+                    "its scheme is none of {KNOWN}; if it is a file of this machine, write ./ before it"
+                );
+                return Err(wrong(&problem));
+            }
+        };
+        let uri = Uri::new(scheme, rest).map_err(wrong)?;
+        Ok(Self(Place::Remote(uri)))
+    }
+
+    /// The path, for a file of this machine.
+    pub fn local(&self) -> Option<&Path> {
+        match &self.0 {
+            Place::Local(path) => Some(path),
+            Place::Remote(_) => None,
+        }
+    }
+
+    /// The last part of the path, which a local copy is named by: for a URL without its escapes.
+    pub fn file_name(&self) -> Option<String> {
+        match &self.0 {
+            Place::Local(path) => Some(path.file_name()?.to_string_lossy().into_owned()),
+            Place::Remote(uri) => uri.file_name(),
+        }
+    }
+
+    /// The same store with another key.
+    pub(crate) fn with_key(&self, key: &str) -> Self {
+        match &self.0 {
+            Place::Local(path) => Self(Place::Local(path.join(key))),
+            Place::Remote(uri) => Self(Place::Remote(Uri {
+                path: key.to_owned(),
+                ..uri.clone()
+            })),
+        }
+    }
+
+    pub(crate) fn place(&self) -> &Place {
+        &self.0
+    }
+}
+
+impl From<PathBuf> for Location {
+    fn from(path: PathBuf) -> Self {
+        Self(Place::Local(path))
+    }
+}
+
+impl Uri {
+    fn new(scheme: Scheme, rest: &str) -> Result<Self, &'static str> {
+        let is_url = matches!(scheme, Scheme::Http | Scheme::Https);
+        // A fragment is never sent; in a key `#` and `?` are characters like any other.
+        let (rest, query) = match is_url.then(|| rest.split('#').next().unwrap_or(rest)) {
+            Some(rest) => match rest.split_once('?') {
+                Some((before, query)) => (before, Some(query.to_owned())),
+                None => (rest, None),
+            },
+            None => (rest, None),
+        };
+        let (authority, path) = rest.split_once('/').unwrap_or((rest, ""));
+        if authority.contains('@') {
+            return Err(
+                "it holds a user name or a password; credentials are read from the environment alone",
+            );
+        }
+        if authority.is_empty() {
+            return Err(match is_url {
+                true => "the host is missing, as in https://HOST/PATH",
+                false => "the bucket is missing, as in s3://BUCKET/KEY",
+            });
+        }
+        Ok(Self {
+            scheme,
+            authority: authority.to_owned(),
+            path: path.to_owned(),
+            query,
+        })
+    }
+
+    /// The key of a folder.
+    pub(crate) fn without_last_slash(&self) -> Self {
+        Self {
+            path: self.path.trim_end_matches('/').to_owned(),
+            ..self.clone()
+        }
+    }
+
+    fn file_name(&self) -> Option<String> {
+        let last = self
+            .path
+            .rsplit('/')
+            .next()
+            .filter(|name| !name.is_empty())?;
+        let name = match self.scheme {
+            Scheme::Http | Scheme::Https => {
+                percent_decode_str(last).decode_utf8_lossy().into_owned()
+            }
+            _ => last.to_owned(),
+        };
+        // What the escapes hide may not lead elsewhere.
+        let is_safe = |c: char| !matches!(c, '/' | '\\' | ':' | '\0');
+        let is_name = name.chars().all(is_safe) && name != "." && name != "..";
+        is_name.then_some(name)
+    }
+}
+
+impl Scheme {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::S3 => "s3",
+            Self::Gs => "gs",
+            Self::Az => "az",
+            Self::Http => "http",
+            Self::Https => "https",
+        }
+    }
+
+    /// Whether files are only read.
+    pub(crate) fn is_read_only(self) -> bool {
+        matches!(self, Self::Http | Self::Https)
+    }
+}
+
+impl fmt::Display for Location {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.0 {
+            Place::Local(path) => path.display().fmt(f),
+            Place::Remote(uri) => uri.fmt(f),
+        }
+    }
+}
+
+impl fmt::Display for Uri {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let query = if self.query.is_some() { "?…" } else { "" };
+        let (scheme, authority, path) = (self.scheme.name(), &self.authority, &self.path);
+        write!(f, "{scheme}://{authority}/{path}{query}")
+    }
+}
+
+impl fmt::Debug for Location {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self}")
+    }
+}
+
+impl fmt::Debug for Uri {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self}")
+    }
+}
+
+/// Splits `scheme://rest`. A single letter is a drive of Windows.
+fn split_scheme(text: &str) -> Option<(&str, &str)> {
+    let (scheme, rest) = text.split_once("://")?;
+    let is_scheme = scheme.len() > 1
+        && scheme.starts_with(|c: char| c.is_ascii_alphabetic())
+        && scheme
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || "+-.".contains(c));
+    is_scheme.then_some((scheme, rest))
+}
+
+/// The path of `file://…`: that of this machine, with its escapes resolved.
+fn file_path(rest: &str) -> Result<PathBuf, &'static str> {
+    let (host, _) = rest.split_once('/').unwrap_or((rest, ""));
+    if !host.is_empty() && host != "localhost" {
+        return Err("a file of this machine has three slashes, as in file:///home/a/cloth.htex");
+    }
+    let bytes: Vec<u8> = percent_decode_str(&rest[host.len()..]).collect();
+    if bytes.is_empty() || bytes.contains(&0) {
+        return Err("the path is missing, or has a NUL character");
+    }
+    os_path(bytes)
+}
+
+#[cfg(unix)]
+fn os_path(bytes: Vec<u8>) -> Result<PathBuf, &'static str> {
+    use std::os::unix::ffi::OsStringExt;
+    Ok(std::ffi::OsString::from_vec(bytes).into())
+}
+
+#[cfg(not(unix))]
+fn os_path(bytes: Vec<u8>) -> Result<PathBuf, &'static str> {
+    let text = String::from_utf8(bytes).map_err(|_| "the path is not Unicode")?;
+    // file:///C:/cloth.htex
+    let has_drive = text.as_bytes().get(2) == Some(&b':');
+    Ok(if has_drive { &text[1..] } else { &text[..] }.into())
+}
+
+/// A URI for a message about its form: without what stands before an `@`, and without its query.
+fn without_secrets(text: &str) -> String {
+    let Some((scheme, rest)) = split_scheme(text) else {
+        return text.to_owned();
+    };
+    let (rest, query) = match rest.split_once('?') {
+        Some((before, _)) => (before, "?…"),
+        None => (rest, ""),
+    };
+    let (authority, path) = match rest.split_once('/') {
+        Some((authority, path)) => (authority, format!("/{path}")),
+        None => (rest, String::new()),
+    };
+    let host = match authority.rsplit_once('@') {
+        Some((_, host)) => format!("…@{host}"),
+        None => authority.to_owned(),
+    };
+    format!("{scheme}://{host}{path}{query}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parsed(text: &str) -> Location {
+        Location::parse(text.as_ref()).unwrap()
+    }
+
+    #[test]
+    fn paths_stay_as_they_are() {
+        for text in [
+            "cloth.htex",
+            "/a/b c.csv",
+            "C:\\a.csv",
+            "C://a.csv",
+            "s3:a",
+            "-",
+            "a%20b",
+            "",
+        ] {
+            assert_eq!(parsed(text).local(), Some(Path::new(text)));
+            assert_eq!(parsed(text).to_string(), text);
+        }
+        assert_eq!(
+            parsed("file:///a%20b.csv").local(),
+            Some(Path::new("/a b.csv"))
+        );
+        assert_eq!(parsed("FILE://localhost/a").local(), Some(Path::new("/a")));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn names_need_not_be_unicode() {
+        use std::os::unix::ffi::OsStrExt;
+        let name = OsStr::from_bytes(b"clo\xfft\x80.csv");
+        let location = Location::parse(name).unwrap();
+        assert_eq!(location.local(), Some(Path::new(name)));
+        assert_eq!(
+            parsed("file:///clo%FFt")
+                .local()
+                .unwrap()
+                .as_os_str()
+                .as_bytes(),
+            b"/clo\xfft"
+        );
+        assert!(Location::parse(OsStr::from_bytes(b"s3://b/clo\xff")).is_err());
+    }
+
+    #[test]
+    fn keys_are_literal_and_queries_are_not_shown() {
+        let key = parsed("s3://bucket/a b/%20?c#d.csv");
+        let Place::Remote(uri) = key.place() else {
+            panic!()
+        };
+        assert_eq!((&*uri.authority, &*uri.path), ("bucket", "a b/%20?c#d.csv"));
+        assert_eq!(key.file_name().as_deref(), Some("%20?c#d.csv"));
+        let url = parsed("https://host:8/a%20b.csv?sig=SECRET#part");
+        assert_eq!(url.to_string(), "https://host:8/a%20b.csv?…");
+        assert_eq!(format!("{url:?}"), url.to_string());
+        assert_eq!(url.file_name().as_deref(), Some("a b.csv"));
+        for hidden in [
+            "https://h/..%2fetc",
+            "https://h/%2e%2e",
+            "s3://b/a/",
+            "https://h",
+            "s3://b/a/..",
+        ] {
+            assert_eq!(parsed(hidden).file_name(), None, "{hidden}");
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_said_without_secrets() {
+        for (text, words) in [
+            ("https://me:SECRET@host/a?sig=SECRET", "password"),
+            ("ftp://me:SECRET@host/a", "its scheme"),
+            ("s3:///key", "bucket"),
+            ("https:///key", "host"),
+            ("file://server/a", "three slashes"),
+        ] {
+            let error = Location::parse(text.as_ref()).unwrap_err().to_string();
+            assert!(error.contains(words), "{error}");
+            assert!(!error.contains("SECRET"), "{error}");
+        }
+    }
+}

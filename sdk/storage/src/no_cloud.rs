@@ -1,0 +1,70 @@
+//! In place of the stores where the feature `cloud` is off: every URI of one is an error.
+
+use std::convert::Infallible;
+use std::fs::File;
+use std::ops::Range;
+use std::path::Path;
+
+use crate::location::Uri;
+use crate::{Entry, Location, Settings, Stat, StorageError, Variables};
+
+#[derive(Debug, Default)]
+pub(crate) struct Clients;
+
+/// No store.
+pub(crate) struct Store(Infallible);
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Version {
+    pub(crate) bytes: u64,
+    pub(crate) etag: Option<String>,
+}
+
+pub(crate) struct Part {
+    pub(crate) bytes: Vec<u8>,
+    pub(crate) version: Version,
+}
+
+impl Store {
+    pub(crate) fn open(
+        location: &Location,
+        _: &Uri,
+        _: (&Settings, &Variables, &Clients),
+    ) -> Result<Self, StorageError> {
+        Err(StorageError::NoCloud {
+            uri: location.to_string(),
+        })
+    }
+
+    pub(crate) fn usage(&self) -> (u64, u64) {
+        match self.0 {}
+    }
+
+    pub(crate) fn stat(&self) -> Result<Option<Stat>, StorageError> {
+        match self.0 {}
+    }
+
+    pub(crate) fn list(&self, _: glob::Pattern) -> Result<Vec<Entry>, StorageError> {
+        match self.0 {}
+    }
+
+    pub(crate) fn read(&self, _: u64) -> Result<Vec<u8>, StorageError> {
+        match self.0 {}
+    }
+
+    pub(crate) fn download(&self, _: File, _: u64) -> Result<File, StorageError> {
+        match self.0 {}
+    }
+
+    pub(crate) fn part(&self, _: Range<u64>, _: Option<Version>) -> Result<Part, StorageError> {
+        match self.0 {}
+    }
+
+    pub(crate) fn write(&self, _: Vec<u8>) -> Result<(), StorageError> {
+        match self.0 {}
+    }
+
+    pub(crate) fn upload(&self, _: &Path) -> Result<(), StorageError> {
+        match self.0 {}
+    }
+}

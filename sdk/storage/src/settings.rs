@@ -1,0 +1,102 @@
+//! Time limits and retries, and the variables that credentials are read from.
+
+use std::fmt;
+use std::time::Duration;
+
+use crate::StorageError;
+
+/// Name of the variable for [`Settings::total`], seconds.
+const TIMEOUT: &str = "HTEX_STORAGE_TIMEOUT_S";
+
+/// Time limits and retries of one operation.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Settings {
+    /// Most time of an operation with all of its retries: 600 s, or the variable `HTEX_STORAGE_TIMEOUT_S`.
+    pub total: Duration,
+    /// Most time without a byte, and for a connection: 30 s. The request is then sent again.
+    pub stall: Duration,
+    /// Most times that a request is sent again: 6.
+    pub retries: usize,
+    /// Pause before the first retry: 0.2 s. Later ones are random, up to twice the one before.
+    pub first_pause: Duration,
+    /// Longest pause: 10 s.
+    pub longest_pause: Duration,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            total: Duration::from_secs(600),
+            stall: Duration::from_secs(30),
+            retries: 6,
+            first_pause: Duration::from_millis(200),
+            longest_pause: Duration::from_secs(10),
+        }
+    }
+}
+
+impl Settings {
+    /// The defaults with the total time of the environment.
+    ///
+    /// # Errors
+    /// When `HTEX_STORAGE_TIMEOUT_S` is not a number of seconds from 0.1 to 86,400.
+    pub fn from_variables(variables: &Variables) -> Result<Self, StorageError> {
+        let mut settings = Self::default();
+        if let Some(text) = variables.get(TIMEOUT) {
+            let seconds = text.trim().parse::<f64>().unwrap_or(f64::NAN);
+            if !(0.1..=86_400.0).contains(&seconds) {
+                return Err(StorageError::Settings {
+                    uri: TIMEOUT.to_owned(),
+                    problem: "not a number of seconds from 0.1 to 86400".to_owned(),
+                });
+            }
+            settings.total = Duration::from_secs_f64(seconds);
+        }
+        Ok(settings)
+    }
+}
+
+/// Variables by name, which credentials and endpoints are read from. Their values are not displayed.
+#[derive(Clone, Default)]
+pub struct Variables(Vec<(String, String)>);
+
+impl Variables {
+    /// Those of the process. Names and values that are not Unicode are left out.
+    pub fn of_process() -> Self {
+        let text = |(name, value): (std::ffi::OsString, std::ffi::OsString)| {
+            Some((name.into_string().ok()?, value.into_string().ok()?))
+        };
+        Self(std::env::vars_os().filter_map(text).collect())
+    }
+
+    fn get(&self, name: &str) -> Option<&str> {
+        let mut all = self.0.iter();
+        all.find_map(|(of, value)| (of == name).then_some(&value[..]))
+    }
+
+    /// Set variables whose names begin with this.
+    #[cfg(feature = "cloud")]
+    pub(crate) fn with_prefix<'a>(
+        &'a self,
+        prefix: &'a str,
+    ) -> impl Iterator<Item = (&'a str, &'a str)> {
+        let both = self.0.iter().map(|(name, value)| (&name[..], &value[..]));
+        both.filter(move |(name, value)| name.starts_with(prefix) && !value.is_empty())
+    }
+}
+
+impl<N: Into<String>, V: Into<String>> FromIterator<(N, V)> for Variables {
+    fn from_iter<I: IntoIterator<Item = (N, V)>>(pairs: I) -> Self {
+        let text = |(name, value): (N, V)| (name.into(), value.into());
+        Self(pairs.into_iter().map(text).collect())
+    }
+}
+
+impl fmt::Debug for Variables {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list()
+            .entries(self.0.iter().map(|(name, _)| name))
+            .finish()
+    }
+}

@@ -1,0 +1,126 @@
+//! Writes are whole or not there.
+#![cfg(feature = "cloud")]
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+mod common;
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use common::{MOST, at, bytes, said, settings, storage};
+use htex_object_server::{Fault, Seen, Server};
+use htex_storage::Storage;
+use tempfile::TempDir;
+
+const NAME: &str = "surfaces/cloth.htex";
+const URI: &str = "s3://surfaces/cloth.htex";
+/// Three parts.
+const LARGE: usize = 20 << 20;
+
+fn local(folder: &TempDir, bytes: &[u8]) -> PathBuf {
+    let path = folder.path().join("local");
+    std::fs::write(&path, bytes).unwrap();
+    path
+}
+
+fn is_part(request: &Seen, number: usize) -> bool {
+    request.method == "PUT" && request.path.contains(&format!("partNumber={number}"))
+}
+
+#[test]
+fn a_small_file_is_one_request() {
+    let (server, folder) = (Server::start(), TempDir::new().unwrap());
+    let small = bytes(100_000);
+    storage(&server).write(&at(URI), &small).unwrap();
+    assert_eq!(server.get(NAME).unwrap(), small);
+    assert_eq!(server.requests().len(), 1);
+    let file = local(&folder, b"other");
+    storage(&server).write_file(&at(URI), &file).unwrap();
+    assert_eq!(server.get(NAME).unwrap(), b"other");
+    assert_eq!(server.requests().len(), 2);
+    assert!(
+        said(storage(&server).write_file(&at(URI), &folder.path().join("none"))).contains("none")
+    );
+}
+
+#[test]
+fn a_large_file_is_one_of_parts() {
+    let (server, folder) = (Server::start(), TempDir::new().unwrap());
+    let large = bytes(LARGE);
+    let file = local(&folder, &large);
+    // The second part fails once.
+    let failed = std::sync::atomic::AtomicBool::new(false);
+    server.fail(move |_, request| {
+        match is_part(request, 2) && !failed.swap(true, std::sync::atomic::Ordering::Relaxed) {
+            true => Fault::CutRequest(1_000_000),
+            false => Fault::None,
+        }
+    });
+    storage(&server).write_file(&at(URI), &file).unwrap();
+    assert_eq!(storage(&server).read(&at(URI), MOST).unwrap(), large);
+    let methods: Vec<String> = server.requests().into_iter().map(|r| r.method).collect();
+    assert_eq!(methods, ["POST", "PUT", "PUT", "PUT", "PUT", "POST", "GET"]);
+}
+
+/// The old file stays as it is; where there was none, there is none.
+#[test]
+fn a_write_that_fails_leaves_nothing() {
+    let (server, folder) = (Server::start(), TempDir::new().unwrap());
+    let (small, large) = (bytes(1_000_000), bytes(LARGE));
+    type Rule = fn(&Seen) -> Fault;
+    let cases: [(&str, &[u8], Rule); 7] = [
+        ("refused", &small, |_| Fault::Status(403, "AccessDenied")),
+        ("failing", &small, |_| Fault::Status(500, "InternalError")),
+        ("cut", &small, |_| Fault::CutRequest(300_000)),
+        ("no beginning", &large, |_| Fault::Status(503, "SlowDown")),
+        ("part 2 failing", &large, |r| match is_part(r, 2) {
+            true => Fault::Status(500, "InternalError"),
+            false => Fault::None,
+        }),
+        ("part 3 cut", &large, |r| match is_part(r, 3) {
+            true => Fault::CutRequest(100_000),
+            false => Fault::None,
+        }),
+        ("no end", &large, |r| {
+            match r.method == "POST" && r.path.contains("uploadId") {
+                true => Fault::Status(500, "InternalError"),
+                false => Fault::None,
+            }
+        }),
+    ];
+    for old in [None, Some(b"the old file")] {
+        if let Some(old) = old {
+            server.put(NAME, old);
+        }
+        let before = server.files();
+        for (name, bytes, rule) in cases {
+            server.fail(move |_, request| rule(request));
+            let file = local(&folder, bytes);
+            let text = said(storage(&server).write_file(&at(URI), &file));
+            assert!(text.starts_with(URI), "{name}: {text}");
+            assert_eq!(
+                server.get(NAME).as_deref(),
+                old.map(|old| &old[..]),
+                "{name}"
+            );
+            assert_eq!(server.files(), before, "{name}");
+        }
+    }
+}
+
+/// The parts are taken back after the time is over too.
+#[test]
+fn a_write_that_takes_too_long_leaves_nothing() {
+    let (server, folder) = (Server::start(), TempDir::new().unwrap());
+    let file = local(&folder, &bytes(LARGE));
+    let mut settings = settings();
+    settings.total = Duration::from_secs(3);
+    let storage = Storage::new(settings, server.variables().into_iter().collect());
+    server.fail(|_, request| match is_part(request, 2) {
+        true => Fault::Delay(Duration::from_secs(600)),
+        false => Fault::None,
+    });
+    assert!(said(storage.write_file(&at(URI), &file)).contains("not done within 3 s"));
+    assert!(server.files().is_empty(), "{:?}", server.files());
+    assert_eq!(server.requests().last().unwrap().method, "DELETE");
+}

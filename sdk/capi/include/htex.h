@@ -20,7 +20,7 @@
 /*
  Version of this interface, major and minor: 0x00010000 is 1.0. A minor version only adds.
  */
-#define HTEX_API_VERSION 65536
+#define HTEX_API_VERSION 65537
 
 /*
  Status of a call. Later versions may return further values; all but HTEX_STATUS_OK are errors.
@@ -86,6 +86,14 @@ enum htex_status
      An error of the library itself. The object of the call must be freed.
      */
     HTEX_STATUS_INTERNAL = 13,
+    /*
+     The library of textures is invalid (1.1).
+     */
+    HTEX_STATUS_INVALID_LIBRARY = 14,
+    /*
+     The library has no texture of this name (1.1).
+     */
+    HTEX_STATUS_ABSENT = 15,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -224,6 +232,16 @@ typedef struct htex_motion {
      */
     double position_mm;
 } htex_motion;
+
+/*
+ An opened library. Several threads may use it at a time. Zero is no library.
+ */
+typedef struct htex_library {
+    /*
+     Private.
+     */
+    uint64_t id;
+} htex_library;
 
 /*
  Receives a message, UTF-8, valid during the call. `context` is that of htex_set_log.
@@ -422,6 +440,59 @@ htex_status htex_asset_level_rms(struct htex_asset asset,
                                  const char *model,
                                  const struct htex_motion *at,
                                  double *out);
+
+/*
+ [any thread; reads a file] Opens a library file (1.1). Its index is read page by page, its textures one at a time.
+ */
+htex_status htex_library_open(const char *path, struct htex_library *out);
+
+/*
+ [any thread] Frees a library; its assets stay open (1.1). HTEX_STATUS_BUSY if another thread uses it at this moment.
+ */
+htex_status htex_library_free(struct htex_library library);
+
+/*
+ [any thread] Name of the library, which may be empty (1.1). Written as by htex_asset_manifest_json.
+ */
+htex_status htex_library_name(struct htex_library library, char *out, size_t capacity, size_t *length);
+
+/*
+ [any thread] Number of textures (1.1).
+ */
+htex_status htex_library_count(struct htex_library library, uint64_t *out);
+
+/*
+ [any thread] Number of pages of the index (1.1).
+ */
+htex_status htex_library_page_count(struct htex_library library, size_t *out);
+
+/*
+ [any thread; reads the file] The entries of a page of the index, counted from 0, as a JSON array (1.1): the textures' names in ascending order, tags, models, ranges of
+ recorded speeds and forces, bytes and hashes. Written as by htex_asset_manifest_json.
+ */
+htex_status htex_library_page_json(struct htex_library library,
+                                   size_t page,
+                                   char *out,
+                                   size_t capacity,
+                                   size_t *length);
+
+/*
+ [any thread; reads the file] The entry of a texture as JSON, as in htex_library_page_json (1.1); HTEX_STATUS_ABSENT if there is none of this
+ name.
+ */
+htex_status htex_library_entry_json(struct htex_library library,
+                                    const char *name,
+                                    char *out,
+                                    size_t capacity,
+                                    size_t *length);
+
+/*
+ [any thread; reads the file] Opens a texture of the library (1.1); HTEX_STATUS_ABSENT if there is none of this name. `options` may be NULL.
+ */
+htex_status htex_library_asset(struct htex_library library,
+                               const char *name,
+                               const struct htex_open_options *options,
+                               struct htex_asset *out);
 
 /*
  [any thread] Sets the function that receives messages; NULL: none, which is the default. It is called in the thread

@@ -258,6 +258,7 @@ public:
     }
 
 private:
+    friend class Library;
     explicit Asset(htex_asset handle) noexcept : handle_(handle) {}
     static Result<Asset> made(htex_status code, htex_asset asset)
     {
@@ -266,6 +267,67 @@ private:
         return Asset(asset);
     }
     detail::Owned<htex_asset, htex_asset_free> handle_;
+};
+
+/* An opened library: a file with thousands of textures. [any thread] */
+class Library {
+public:
+    Library() noexcept = default;
+
+    static Result<Library> open(const std::string &path)
+    {
+        htex_library library{};
+        if (Status status = status_of(htex_library_open(path.c_str(), &library)); !status)
+            return status;
+        return Library(library);
+    }
+
+    /* Opens a texture; reads only its bytes. */
+    Result<Asset> asset(const std::string &name, const OpenOptions &options = {}) const
+    {
+        htex_asset asset{};
+        htex_status code = options.with([&](const htex_open_options *open) {
+            return htex_library_asset(handle_.get(), name.c_str(), open, &asset);
+        });
+        return Asset::made(code, asset);
+    }
+    Result<std::string> name() const
+    {
+        return detail::text([&](char *out, size_t capacity, size_t *length) {
+            return htex_library_name(handle_.get(), out, capacity, length);
+        });
+    }
+    Result<uint64_t> count() const
+    {
+        uint64_t count = 0;
+        if (Status status = status_of(htex_library_count(handle_.get(), &count)); !status)
+            return status;
+        return count;
+    }
+    Result<size_t> page_count() const
+    {
+        size_t count = 0;
+        if (Status status = status_of(htex_library_page_count(handle_.get(), &count)); !status)
+            return status;
+        return count;
+    }
+    /* The entries of a page of the index; see htex_library_page_json. */
+    Result<std::string> page_json(size_t page) const
+    {
+        return detail::text([&](char *out, size_t capacity, size_t *length) {
+            return htex_library_page_json(handle_.get(), page, out, capacity, length);
+        });
+    }
+    Result<std::string> entry_json(const std::string &name) const
+    {
+        return detail::text([&](char *out, size_t capacity, size_t *length) {
+            return htex_library_entry_json(handle_.get(), name.c_str(), out, capacity, length);
+        });
+    }
+
+private:
+    explicit Library(htex_library handle) noexcept : handle_(handle) {}
+    detail::Owned<htex_library, htex_library_free> handle_;
 };
 
 /* A playing scene. [one thread at a time] */

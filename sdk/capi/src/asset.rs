@@ -40,7 +40,11 @@ pub struct htex_band {
 
 pub(crate) static ASSETS: Table<Asset> = Table::new();
 
-fn keep(data: htex::AssetData, models: Models, out: *mut htex_asset) -> Result<(), Failure> {
+pub(crate) fn keep(
+    data: htex::AssetData,
+    models: Models,
+    out: *mut htex_asset,
+) -> Result<(), Failure> {
     // SAFETY: the place is the caller's.
     let out = unsafe { place(out) }?;
     let asset = Asset::with_registry(data, models.registry);

@@ -1,6 +1,9 @@
 //! Memory for the arguments and results of JavaScript (`sdk/web/src/core.js`), which has no other way to get any. Not
 //! part of the C interface.
 
+#[cfg(feature = "library")]
+mod library;
+
 use std::alloc::{Layout, alloc, dealloc};
 
 /// Alignment of all that is allocated.

@@ -1,4 +1,4 @@
-//! libhtex: the player and the scenes of [`htex`] as C functions. `include/htex.h` is generated from this crate.
+//! libhtex: the player, the libraries and the scenes of [`htex`] as C functions. `include/htex.h` is generated from this crate.
 //!
 //! - Objects are handles, a number each. A freed handle, a foreign number or an object that another thread uses at
 //!   the same time is an error, not undefined behaviour (`handles`).
@@ -12,6 +12,7 @@ mod asset;
 #[cfg(target_family = "wasm")]
 mod browser;
 mod handles;
+mod library;
 mod log;
 mod motion;
 mod options;
@@ -23,6 +24,7 @@ mod voice;
 pub use asset::*;
 #[cfg(target_family = "wasm")]
 pub use browser::{htex_alloc, htex_free};
+pub use library::*;
 pub use log::{htex_log_callback, htex_log_level, htex_set_log};
 pub use motion::htex_motion;
 pub use options::{htex_bytes, htex_open_options, htex_voice_options};
@@ -31,7 +33,7 @@ pub use status::{htex_last_error, htex_status};
 pub use voice::*;
 
 /// Version of this interface, major and minor: 0x00010000 is 1.0. A minor version only adds.
-pub const HTEX_API_VERSION: u32 = 0x0001_0000;
+pub const HTEX_API_VERSION: u32 = 0x0001_0001;
 
 /// [any thread] Version of the interface of the library that is loaded, as HTEX_API_VERSION.
 #[unsafe(no_mangle)]

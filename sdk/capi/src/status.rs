@@ -37,6 +37,10 @@ pub enum htex_status {
     HTEX_STATUS_TRUNCATED = 12,
     /// An error of the library itself. The object of the call must be freed.
     HTEX_STATUS_INTERNAL = 13,
+    /// The library of textures is invalid (1.1).
+    HTEX_STATUS_INVALID_LIBRARY = 14,
+    /// The library has no texture of this name (1.1).
+    HTEX_STATUS_ABSENT = 15,
 }
 
 /// An error of a call: its status and its text.

@@ -86,6 +86,44 @@ fn freed_and_foreign_handles_are_refused() {
 }
 
 #[test]
+fn libraries_refuse_what_is_none() {
+    let path = CString::new(asset_path().to_str().unwrap()).unwrap();
+    let mut library = htex_library { id: 0 };
+    let (mut asset, mut count, mut pages) = (htex_asset { id: 0 }, 0, 0);
+    // SAFETY: live pointers, and NULL ones, which the functions look at before they use them.
+    unsafe {
+        let bad = HTEX_STATUS_INVALID_ARGUMENT;
+        is(htex_library_open(null(), &mut library), bad);
+        is(htex_library_open(path.as_ptr(), null_mut()), bad);
+        is(
+            htex_library_open(c"no.htexlib".as_ptr(), &mut library),
+            HTEX_STATUS_IO,
+        );
+        is(
+            htex_library_open(path.as_ptr(), &mut library),
+            HTEX_STATUS_INVALID_LIBRARY,
+        );
+        let bad = HTEX_STATUS_BAD_HANDLE;
+        is(htex_library_count(library, &mut count), bad);
+        is(htex_library_page_count(library, &mut pages), bad);
+        is(htex_library_name(library, null_mut(), 0, &mut pages), bad);
+        is(
+            htex_library_page_json(library, 0, null_mut(), 0, &mut pages),
+            bad,
+        );
+        is(
+            htex_library_entry_json(library, c"a".as_ptr(), null_mut(), 0, &mut pages),
+            bad,
+        );
+        is(
+            htex_library_asset(library, c"a".as_ptr(), null(), &mut asset),
+            bad,
+        );
+        is(htex_library_free(library), bad);
+    }
+}
+
+#[test]
 fn null_and_misaligned_pointers_are_refused() {
     let asset = opened();
     let voice = voice_of(asset);

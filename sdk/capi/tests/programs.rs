@@ -74,6 +74,94 @@ fn examples_of_the_readme_run() {
     }
 }
 
+/// A program that prints the number of textures of a library, its first page, and the model of one texture.
+fn look_into_a_library(language: Language) -> &'static str {
+    match language {
+        Language::C | Language::Clang => {
+            r#"
+            #include <stdio.h>
+            #include <htex.h>
+            int main(int argc, char **argv)
+            {
+                htex_library library;
+                htex_asset asset;
+                uint64_t count;
+                char text[4096];
+                if (htex_library_open(argv[argc - 1], &library) || htex_library_count(library, &count)
+                    || htex_library_page_json(library, 0, text, sizeof text, NULL))
+                    return 1;
+                printf("%d\n%s\n", (int)count, text);
+                if (htex_library_asset(library, "floor/vinyl", NULL, &asset)
+                    || htex_asset_representation_model(asset, 0, text, sizeof text, NULL))
+                    return 1;
+                printf("%s\n", text);
+                if (htex_library_asset(library, "none", NULL, &asset) != HTEX_STATUS_ABSENT)
+                    return 1;
+                printf("%s\n", htex_last_error());
+                return htex_asset_free(asset) || htex_library_free(library);
+            }"#
+        }
+        Language::Cxx => {
+            r#"
+            #include <iostream>
+            #include <htex.hpp>
+            int main(int argc, char **argv)
+            {
+                auto library = htex::Library::open(argv[argc - 1]);
+                if (!library)
+                    return 1;
+                std::cout << *library->count() << "\n" << *library->page_json(0) << "\n";
+                std::cout << library->asset("floor/vinyl")->models()->at(0) << "\n";
+                std::cout << library->asset("none").status().text << "\n";
+            }"#
+        }
+        Language::Csharp => {
+            r#"
+            using System; using Htex;
+            static class Program
+            {
+                static void Main(string[] paths)
+                {
+                    using (var library = Library.Open(paths[0]))
+                    {
+                        Console.WriteLine(library.Count);
+                        Console.WriteLine(library.PageJson(0));
+                        using (var asset = library.Asset("floor/vinyl")) Console.WriteLine(asset.Models[0]);
+                        try { library.Asset("none"); }
+                        catch (HtexException error) { Console.WriteLine(error.Message); }
+                    }
+                }
+            }"#
+        }
+    }
+}
+
+#[test]
+fn libraries_open_in_each_language() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.htexlib");
+    let mut writer = htex::library::Writer::create(&path, "A").unwrap();
+    writer
+        .add("floor/vinyl", &fs::read(asset()).unwrap())
+        .unwrap();
+    writer.finish().unwrap();
+    let library = htex::Library::open(&path).unwrap();
+    let entry = library.entry("floor/vinyl").unwrap().unwrap();
+    let absent = library.get("none").unwrap_err().to_string();
+    let json = serde_json::to_string(&[&entry]).unwrap();
+    let expected = format!("1\n{json}\n{}\n{absent}\n", entry.models[0]);
+    for language in Language::ALL {
+        let Some(project) = Project::new(language, "library") else {
+            continue;
+        };
+        let program = project.build(&format!("{}\n", look_into_a_library(language)));
+        let run = project.run(&program, &[path.as_os_str()]);
+        assert!(run.status.success(), "{language:?}: {run:?}");
+        let printed = String::from_utf8(run.stdout).unwrap();
+        assert_eq!(printed, expected, "{language:?}");
+    }
+}
+
 /// C# passes modules to the library: a model in C is loaded, and other bytes are an error that names their place.
 #[test]
 fn modules_reach_the_library_from_csharp() {

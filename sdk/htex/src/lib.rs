@@ -17,6 +17,7 @@
 //!   representations of built-in models can be played.
 //! - `write` (default): `format::Asset::write` and `to_bytes`.
 //! - `author`: `htex::author`, which reads recordings and makes assets.
+//! - `library`: `htex::Library`, a file with thousands of textures, of which `Asset::from_library` opens one; `htex::library` has all of it.
 //! - `scene`: `htex::scene`, which plans and renders scenes, and `htex::device`, the devices they are played on.
 #![forbid(unsafe_code)]
 
@@ -28,6 +29,11 @@ pub use htex_device as device;
 pub use htex_format as format;
 /// The models: registry, loaders, calls.
 pub use htex_host as host;
+/// The file with thousands of textures.
+#[cfg(feature = "library")]
+pub use htex_library as library;
+#[cfg(feature = "library")]
+pub use htex_library::Library;
 pub use htex_play::*;
 #[cfg(feature = "scene")]
 pub use htex_scene as scene;

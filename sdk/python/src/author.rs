@@ -2,12 +2,11 @@
 
 use std::path::PathBuf;
 
-use htex::format::Manifest;
-use htex::host::{LoadedModel, Origin, Registry};
+use htex::host::{Origin, Registry};
 use htex::{AssetData, Band};
+use htex_author::settings::{FitSettings, Metadata, OptionSetting, SettingsError};
 use htex_author::{
-    AssetRequest, FittedAsset, Level, ModelRequest, SpectrumRef, TextureSpectrum, fit_asset,
-    read_take,
+    AssetRequest, FittedAsset, Level, SpectrumRef, TextureSpectrum, fit_asset, read_take,
 };
 use pyo3::prelude::*;
 use serde_json::{Value, json};
@@ -20,7 +19,7 @@ use crate::reading::{Pair, Reading, Source, unknown};
 use crate::texture::Texture;
 
 /// Program and version, for an asset's provenance: those of the command.
-const TOOL: &str = concat!("htex ", env!("CARGO_PKG_VERSION"));
+pub(crate) const TOOL: &str = concat!("htex ", env!("CARGO_PKG_VERSION"));
 
 /// Returns the texture spectrum of a recording, with what was read.
 #[pyfunction]
@@ -84,6 +83,8 @@ pub(crate) struct Fit {
     conditions: Vec<Pair>,
     level: String,
     keep_reference: bool,
+    /// Lines of a grid; empty without one.
+    grid: Vec<String>,
     plugins: Vec<PathBuf>,
     installed: bool,
     name: String,
@@ -115,7 +116,7 @@ fn fitted(sources: &[Source], reading: &Reading, fit: Fit) -> PyResult<(Texture,
     let takes = reading.takes(sources, &fit.conditions)?;
     let mut fitted = fit_asset(&takes, &request).or_raise()?;
     raise_of_python(&registry, &fitted.skipped)?;
-    fit.describe(&mut fitted.asset.manifest);
+    fit.metadata().apply(&mut fitted.asset.manifest);
     let rest = rest(&fitted);
     // The texture is what its file holds: levels and errors have fewer digits there.
     let bytes = fitted.asset.to_bytes().or_raise()?;
@@ -144,6 +145,7 @@ fn rest(fitted: &FittedAsset) -> Value {
         "fit_ms": fitted.fit_ms,
         "skipped": fitted.skipped,
         "notes": fitted.notes,
+        "grid": fitted.grid,
     })
 }
 
@@ -154,81 +156,41 @@ impl Fit {
             "fitted" => Level::Fitted,
             other => return Err(unknown("level", other, "recording, fitted")),
         };
-        let mut recorded = reading.recorded();
-        for (model, name, value) in &self.options {
-            recorded.insert(format!("{model}.{name}"), value.clone());
-        }
-        if level == Level::Fitted {
-            recorded.insert("level".to_owned(), self.level.clone());
-        }
-        let builtin = registry.models().iter();
-        let builtin = builtin.filter(|model| *model.origin() == Origin::Builtin);
-        Ok(AssetRequest::new(self.name.clone())
-            .with_models(self.requested(registry)?)
-            .with_spectrum(reading.spectrum_options()?)
-            .with_level(level)
-            .with_alternatives(builtin.cloned().collect())
-            .with_strict(reading.strict)
-            .with_keep_reference(self.keep_reference)
-            .with_recorded_options(recorded)
-            .with_tool(TOOL))
-    }
-
-    /// Returns the models, each with its options.
-    fn requested(&self, registry: &Registry) -> PyResult<Vec<ModelRequest>> {
-        let models = named(registry, &self.models)?;
-        for (owner, ..) in &self.options {
-            if !models.iter().any(|model| is(model, owner)) {
-                let there: Vec<&str> = models.iter().map(LoadedModel::short_name).collect();
-                return Err(unknown("a model in options", owner, &there.join(", ")));
-            }
-        }
-        let request = |model: &LoadedModel| {
-            let own = self.options.iter().filter(|(owner, ..)| is(model, owner));
-            let own: Vec<(&str, &str)> = own.map(|(_, n, v)| (&n[..], &v[..])).collect();
-            let options = model.options(&own).or_raise()?;
-            Ok(ModelRequest::new(model).with_options(options))
+        let option = |(model, name, value): &(String, String, String)| {
+            let value = OptionSetting::Text(value.clone());
+            (format!("{model}.{name}"), value)
         };
-        models.iter().map(request).collect()
+        let settings = FitSettings {
+            models: Some(self.models.clone()),
+            options: self.options.iter().map(option).collect(),
+            level: Some(level),
+            keep_reference: Some(self.keep_reference),
+            strict: Some(reading.strict),
+            grid: Some(self.grid.clone()).filter(|lines| !lines.is_empty()),
+        };
+        let request = settings.request(registry, &reading.settings()?, &self.name, TOOL);
+        request.map_err(|error| match error {
+            SettingsError::ModelNotFitted { model, fitted, .. } => {
+                unknown("a model in options", &model, &fitted.join(", "))
+            }
+            other => reading.raised(other),
+        })
     }
 
-    /// Writes the metadata into a manifest.
-    fn describe(&self, manifest: &mut Manifest) {
-        manifest.tags.clone_from(&self.tags);
-        for (given, kept) in [
-            (&self.author, &mut manifest.author),
-            (&self.license, &mut manifest.license),
-            (&self.description, &mut manifest.description),
-            (&self.origin, &mut manifest.source),
-            (&self.doi, &mut manifest.doi),
-            (&self.sensor, &mut manifest.sensor),
-            (&self.finger, &mut manifest.finger),
-        ] {
-            kept.clone_from(given);
-        }
-        manifest.declare_version();
-    }
-}
-
-/// Returns the models of these names, each once; without names, all, and those that are written in Python last.
-pub(crate) fn named(registry: &Registry, names: &[String]) -> PyResult<Vec<LoadedModel>> {
-    if names.is_empty() {
-        let mut all = registry.models().to_vec();
-        all.sort_by_key(|model| matches!(model.origin(), Origin::Runtime(_)));
-        return Ok(all);
-    }
-    let mut models: Vec<LoadedModel> = Vec::new();
-    for name in names {
-        let model = registry.find(name).or_raise()?;
-        if !models.iter().any(|m| m.id() == model.id()) {
-            models.push(model.clone());
+    /// Returns the texture's metadata.
+    fn metadata(&self) -> Metadata {
+        Metadata {
+            name: None,
+            author: self.author.clone(),
+            license: self.license.clone(),
+            description: self.description.clone(),
+            tags: Some(self.tags.clone()),
+            source: self.origin.clone(),
+            doi: self.doi.clone(),
+            sensor: self.sensor.clone(),
+            finger: self.finger.clone(),
         }
     }
-    Ok(models)
-}
-
-fn is(model: &LoadedModel, name: &str) -> bool {
-    model.id() == name || model.short_name().eq_ignore_ascii_case(name)
 }
 
 /// Compares magnitudes with those of a reference at the same frequencies.

@@ -16,6 +16,8 @@ use pyo3::prelude::*;
 use crate::causes;
 
 import_exception!(htex._errors, AssetError);
+import_exception!(htex._errors, BuildError);
+import_exception!(htex._errors, LibraryError);
 import_exception!(htex._errors, ModelError);
 import_exception!(htex._errors, MotionError);
 import_exception!(htex._errors, OptionError);
@@ -92,6 +94,7 @@ impl IntoPyErr for htex::Error {
         match self {
             Self::Read(error) => error.into_py_err(),
             Self::Model(error) => error.into_py_err(),
+            Self::Library(error) => error.into_py_err(),
             Self::Motion { .. } | Self::Position { .. } => MotionError::new_err(self.to_string()),
             Self::Fields { .. } => AssetError::new_err(self.to_string()),
             other => ModelError::new_err(other.to_string()),
@@ -117,6 +120,7 @@ impl IntoPyErr for AuthorError {
             Self::Asset(error) => error.into_py_err(),
             Self::Write { path, error } => of_file(&path, &error),
             Self::NothingFitted { .. } => ModelError::new_err(self.to_string()),
+            Self::GridText { .. } => option(self.to_string()),
             other => RecordingError::new_err(other.to_string()),
         }
     }

@@ -3,9 +3,11 @@
 #![forbid(unsafe_code)]
 
 mod author;
+mod build;
 mod causes;
 mod command;
 mod errors;
+mod library;
 mod models;
 mod path;
 mod python;
@@ -27,7 +29,11 @@ mod _htex {
     #[pymodule_export]
     use crate::author::{agreement, fit, process};
     #[pymodule_export]
+    use crate::build::{Build, hash_file, remember, run_job, unhashed};
+    #[pymodule_export]
     use crate::command::run;
+    #[pymodule_export]
+    use crate::library::{Library, pack};
     #[pymodule_export]
     use crate::models::models;
     #[pymodule_export]

@@ -1,11 +1,10 @@
 //! Recordings: where they come from, and how they are read.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use htex::Quantity;
-use htex_author::read::{ColumnMap, ReadOptions, read_recording, recording_from_bytes};
-use htex_author::response::read_response;
+use htex_author::read::{ReadOptions, read_recording, recording_from_bytes};
+use htex_author::settings::{ReadingSettings, SettingsError};
 use htex_author::{Averaging, Exploration, Recording, SegmentChoice, SpectrumOptions, Take};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
@@ -28,6 +27,8 @@ pub(crate) enum Source {
 pub(crate) struct Reading {
     rate_hz: Option<f64>,
     map: Option<String>,
+    tracker: Option<PathBuf>,
+    tracker_map: Option<String>,
     quantity: String,
     scale: Option<f64>,
     response: Option<PathBuf>,
@@ -47,7 +48,8 @@ pub(crate) type Pair = (Option<f64>, Option<f64>);
 impl Reading {
     /// Reads recordings. `conditions` has one entry for each of them, or one for all, or none.
     pub(crate) fn takes(&self, sources: &[Source], conditions: &[Pair]) -> PyResult<Vec<Take>> {
-        let options = self.read_options()?;
+        let options = self.settings()?.read_options(sources.len());
+        let options = options.map_err(|error| self.raised(error))?;
         if conditions.len() > 1 && conditions.len() != sources.len() {
             let (given, wanted) = (conditions.len(), sources.len());
             return Err(option(format!(
@@ -62,17 +64,17 @@ impl Reading {
                 force_n: force_n.or(self.force_n),
             }
         };
-        let take = |(i, source)| {
+        let take = |(i, (source, options))| {
             Ok(Take {
-                recording: read(source, &options)?,
+                recording: read(source, options)?,
                 given: given(i),
             })
         };
-        sources.iter().enumerate().map(take).collect()
+        sources.iter().zip(&options).enumerate().map(take).collect()
     }
 
-    /// Returns the options of computing spectra.
-    pub(crate) fn spectrum_options(&self) -> PyResult<SpectrumOptions> {
+    /// Returns the keywords as settings.
+    pub(crate) fn settings(&self) -> PyResult<ReadingSettings> {
         let segments = match &self.segments[..] {
             "auto" => SegmentChoice::Auto,
             "sweeps" => SegmentChoice::Sweeps,
@@ -85,57 +87,41 @@ impl Reading {
             "complex" => Averaging::Complex,
             other => return Err(unknown("averaging", other, "rms, magnitude, complex")),
         };
-        let response = self.response.as_deref().map(|file| {
-            let read = read_response(file);
-            read.map_err(|error| raised(file, error))
-        });
-        Ok(SpectrumOptions::default()
-            .with_segments(segments)
-            .with_averaging(averaging)
-            .with_response(response.transpose()?))
-    }
-
-    /// Returns the options that differ from their defaults, under the names that the command gives them.
-    pub(crate) fn recorded(&self) -> BTreeMap<String, String> {
-        let number = |value: Option<f64>| value.map(|x| x.to_string());
-        let unless = |text: &str, usual: &str| (text != usual).then(|| text.replace('_', "-"));
-        let file = self.response.as_deref().and_then(Path::file_name);
-        let entries = [
-            ("rate", number(self.rate_hz)),
-            ("map", self.map.clone()),
-            (
-                "quantity",
-                unless(&self.quantity, Quantity::default().name()),
-            ),
-            ("scale", number(self.scale)),
-            ("from", number(self.from_s)),
-            ("to", number(self.to_s)),
-            ("frf", file.map(|name| name.to_string_lossy().into_owned())),
-            ("segments", unless(&self.segments, "auto")),
-            ("averaging", unless(&self.averaging, "rms")),
-        ];
-        let said = entries.into_iter();
-        said.filter_map(|(key, value)| Some((key.to_owned(), value?)))
-            .collect()
-    }
-
-    fn read_options(&self) -> PyResult<ReadOptions> {
-        let map = self.map.as_ref().map(|text| {
-            let map = text.parse::<ColumnMap>();
-            map.map_err(|error| option(format!("map {text}: {error}")))
-        });
         let quantity = Quantity::from_name(&self.quantity).ok_or_else(|| {
             let known: Vec<&str> = Quantity::ALL.iter().map(|q| q.name()).collect();
             unknown("quantity", &self.quantity, &known.join(", "))
         })?;
-        Ok(ReadOptions::default()
-            .with_rate_hz(self.rate_hz)
-            .with_map(map.transpose()?)
-            .with_quantity(quantity)
-            .with_scale(self.scale)
-            .with_from_s(self.from_s)
-            .with_to_s(self.to_s)
-            .with_most_values(self.most_values))
+        Ok(ReadingSettings {
+            rate_hz: self.rate_hz,
+            map: self.map.clone(),
+            trackers: self.tracker.iter().cloned().collect(),
+            tracker_map: self.tracker_map.clone(),
+            quantity: Some(quantity),
+            scale: self.scale,
+            response: self.response.clone(),
+            from_s: self.from_s,
+            to_s: self.to_s,
+            most_values: self.most_values,
+            segments: Some(segments),
+            averaging: Some(averaging),
+        })
+    }
+
+    /// Returns the options of computing spectra.
+    pub(crate) fn spectrum_options(&self) -> PyResult<SpectrumOptions> {
+        let options = self.settings()?.spectrum_options();
+        options.map_err(|error| self.raised(error))
+    }
+
+    /// Makes the exception of a setting.
+    pub(crate) fn raised(&self, error: SettingsError) -> PyErr {
+        match (error, &self.response) {
+            (SettingsError::Response(error), Some(file)) => raised(file, *error),
+            (SettingsError::Response(error), None) => (*error).into_py_err(),
+            (SettingsError::Model(error), _) => error.into_py_err(),
+            (SettingsError::Grid(error), _) => (*error).into_py_err(),
+            (other, _) => option(other.to_string()),
+        }
     }
 }
 

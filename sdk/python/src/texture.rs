@@ -197,6 +197,7 @@ impl Texture {
             fields.set_item("speed_mm_s", condition.speed_mm_s)?;
             fields.set_item("force_n", condition.force_n)?;
             fields.set_item("repeatability_rms_db", condition.repeatability_rms_db)?;
+            fields.set_item("segments", condition.segments)?;
             list.append(data(py, "Condition", &fields)?)?;
         }
         Ok(list)
@@ -271,7 +272,7 @@ impl Texture {
     }
 
     /// Returns the asset as the bytes of a file.
-    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+    pub(crate) fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let bytes = py.detach(|| self.bytes())?;
         Ok(PyBytes::new(py, &bytes))
     }

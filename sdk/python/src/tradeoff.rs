@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use htex::format::ErrorMeasure;
+use htex_author::settings::named_models;
 use htex_tradeoff::{Journal, Model, Request, Subject, Tradeoff, sweep};
 use pyo3::prelude::*;
 
-use crate::author::named;
 use crate::errors::{OrRaise, of_file};
 use crate::models::registry;
 use crate::python::from_json;
@@ -56,7 +56,9 @@ fn measured(
         }
     };
     let registry = registry(&request.plugins, request.installed)?;
-    let models = named(&registry, &request.models)?.into_iter();
+    let models = named_models(&registry, &request.models)
+        .or_raise()?
+        .into_iter();
     let models = models.map(|model| Model {
         ways: vec![(model.origin().to_string(), model)],
     });

@@ -221,3 +221,21 @@ def test_another_thread_runs_during_a_fit(place: pathlib.Path) -> None:
     done.set()
     thread.join()
     assert during > 5
+
+
+def test_expressions_and_a_tracker_are_options_of_reading(tmp_path: pathlib.Path) -> None:
+    force = closed_form()
+    columns = [np.arange(len(force)) / 20_000 + 5, 0.5 * force[:, 0] + 0.1, 0.5 * force[:, 0] - 0.1, force[:, 1]]
+    recording, tracker = tmp_path / "force.csv", tmp_path / "tracker.csv"
+    np.savetxt(recording, np.stack(columns, axis=1), delimiter=",", header="t_s,a,b,y", comments="")
+    stamp = np.arange(4.9, 15.2, 1 / 60)
+    np.savetxt(tracker, np.stack([1000 * stamp, 80 * stamp], axis=1), delimiter=",", header="stamp,px", comments="")
+    reading = {"map": "lateral_x=a+b,lateral_y=y", "tracker": tracker, "tracker_map": "time=stamp:0.001,x=px:1"}
+    found = htex.process(recording, **reading)
+    plain = htex.process(force, rate_hz=20_000)
+    np.testing.assert_allclose(found.spectrum.magnitude, plain.spectrum.magnitude, rtol=1e-6, atol=1e-12)
+    assert found.condition.speed_mm_s == pytest.approx(80, rel=1e-3)
+    with pytest.raises(htex.OptionError, match="character 11"):
+        htex.process(recording, map="lateral=a+*b")
+    with pytest.raises(htex.RecordingError, match="map them, as in time=COLUMN,x=COLUMN:SCALE"):
+        htex.process(recording, map="lateral=a", tracker=tracker)

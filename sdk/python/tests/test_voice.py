@@ -162,7 +162,7 @@ def test_another_thread_runs_while_samples_are_rendered(texture: htex.Texture) -
     during = len(ticks)
     done.set()
     thread.join()
-    assert during > 5
+    assert during > 1
 
 
 def test_a_voice_is_shared_by_threads(texture: htex.Texture) -> None:

@@ -18,6 +18,8 @@ const STATUS = [
   "unsupported",
   "truncated",
   "internal",
+  "invalid-library",
+  "absent",
 ];
 
 /** An error of the library; `code` is the kind, such as "invalid-asset". */

@@ -7,7 +7,7 @@ export type Bytes = ArrayBuffer | ArrayBufferView;
 export class HtexError extends Error {
   readonly name: "HtexError";
   /** The kind of error: "invalid-argument", "invalid-asset", "no-representation", "no-model", "model", "invalid-motion", "bad-handle",
-   * "unsupported", "internal" and others. */
+   * "unsupported", "internal", "invalid-library", "absent", "io" and others. */
   readonly code: string;
 }
 
@@ -99,6 +99,48 @@ export class Voice {
 
 /** Opens a texture: its bytes, or its address. */
 export function open(source: Bytes | string | URL, options?: OpenOptions): Promise<Texture>;
+
+/** The least and the greatest of some numbers. */
+export interface Interval {
+  min: number;
+  max: number;
+}
+
+/** What a library states of a texture. */
+export interface LibraryEntry {
+  /** Name in the library, with `/` between its parts. */
+  name: string;
+  tags: string[];
+  /** Recorded speeds, mm/s, and forces, N; absent if none is known. */
+  conditions: { speed_mm_s?: Interval; force_n?: Interval };
+  /** Ids of the models of the representations. */
+  models: string[];
+  /** Bytes of the texture. */
+  bytes: number;
+  /** BLAKE3 of the texture, hexadecimal. */
+  blake3: string;
+}
+
+/** A library: one `.htexlib` file with thousands of textures, of which ranges are fetched. */
+export class Library {
+  private constructor();
+  /** Opens a library: its address, or its bytes. `fetch` is called for ranges, for example to add headers. */
+  static open(source: Bytes | string | URL, options?: { fetch?: typeof fetch }): Promise<Library>;
+  /** Name of the library; may be empty. */
+  readonly name: string;
+  /** Number of textures. */
+  readonly count: number;
+  /** The entries of all textures, in ascending order of their names. Reads the index, page by page. */
+  entries(): AsyncGenerator<LibraryEntry>;
+  /** The entry of a texture; undefined if there is none of this name. */
+  entry(name: string): Promise<LibraryEntry | undefined>;
+  /** The bytes of a texture's `.htex` file; an HtexError of the kind "absent" if there is none of this name. */
+  bytes(name: string): Promise<Uint8Array>;
+  /** Opens a texture: two requests, one if the page of the index is known. */
+  texture(name: string, options?: OpenOptions): Promise<Texture>;
+  /** Frees the memory of the library; its textures stay open. */
+  free(): void;
+}
 
 /** Sets the library: the address of `htex.wasm`, its bytes, or the compiled module. Before the first `open`. */
 export function setLibrary(library: string | URL | Bytes | WebAssembly.Module): void;

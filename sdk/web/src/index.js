@@ -3,6 +3,7 @@
 export { HtexError } from "./core.js";
 export { Texture, Voice } from "./texture.js";
 export { open, setLibrary } from "./library.js";
+export { Library } from "./htexlib.js";
 export { HtexNode, prepare } from "./node.js";
 export { GuardedWorker } from "./guarded.js";
 export { follow, followPointer } from "./pointer.js";

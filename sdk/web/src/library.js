@@ -34,7 +34,7 @@ export function compiled() {
 }
 
 /** The library in this thread. */
-function library() {
+export function library() {
   core ??= compiled().then(async (compiledModule) => Object.assign(await Core.make(compiledModule), { module: compiledModule }));
   return core;
 }

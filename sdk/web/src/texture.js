@@ -7,7 +7,7 @@ const abandoned =
   typeof FinalizationRegistry === "undefined" ? null : new FinalizationRegistry(({ core, free, id }) => core.exports[free](id));
 
 /** What has a handle in the library. */
-class Handle {
+export class Handle {
   constructor(core, id, free) {
     this.core = core;
     this.id = id;

@@ -1,6 +1,6 @@
 // Uses each declaration of the package; `tsc --strict` checks it.
 
-import { GuardedWorker, HtexError, HtexNode, Texture, Voice, follow, followPointer, open, prepare, setLibrary } from "htex";
+import { GuardedWorker, HtexError, HtexNode, Library, Texture, Voice, follow, followPointer, open, prepare, setLibrary } from "htex";
 
 export async function play(context: AudioContext, element: HTMLElement): Promise<number> {
   setLibrary(new URL("htex.wasm", "https://example.org/"));
@@ -24,4 +24,16 @@ export async function play(context: AudioContext, element: HTMLElement): Promise
   // @ts-expect-error: the rate of a node is that of its context.
   new HtexNode(context, texture, { rate: 8000 });
   return samples.length + guarded.length + texture.spectrum([50], { at: { speed: 80, force: 0.4 } })[0]! + texture.level() + texture.band[0];
+}
+
+export async function search(tag: string): Promise<Texture[]> {
+  const library: Library = await Library.open("cloth.htexlib", { fetch: (url, init) => fetch(url, { ...init, credentials: "include" }) });
+  const found: Texture[] = [];
+  for await (const { name, tags, conditions } of library.entries()) {
+    if (tags.includes(tag) && (conditions.speed_mm_s?.max ?? 0) > 100) found.push(await library.texture(name));
+  }
+  const bytes: Uint8Array = await library.bytes("oak");
+  console.log(library.name, library.count - bytes.length, (await library.entry("oak"))?.blake3);
+  library.free();
+  return found;
 }

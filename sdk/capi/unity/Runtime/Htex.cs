@@ -1,6 +1,6 @@
 // Htex.cs: libhtex for C#, in one file. C# 7.3, .NET Standard 2.0, mono, Unity (Mono and IL2CPP).
 //
-// Assets, voices and scenes are SafeHandles: they are freed with Dispose, or when they are collected. Calls that can fail throw
+// Assets, libraries, voices and scenes are SafeHandles: they are freed with Dispose, or when they are collected. Calls that can fail throw
 // HtexException; Voice.Render, Voice.SetMotion, Scene.Render and Scene.SetFinger allocate nothing unless they fail, and may be
 // called in an audio thread.
 //
@@ -29,6 +29,8 @@ namespace Htex
         Unsupported = 11,
         Truncated = 12,
         Internal = 13,
+        InvalidLibrary = 14,
+        Absent = 15,
     }
 
     /// <summary>Error of a call of libhtex.</summary>
@@ -115,7 +117,7 @@ namespace Htex
     /// <summary>An opened asset. Several threads may use it.</summary>
     public sealed class Asset : SafeHandle
     {
-        private Asset(ulong id) : base(IntPtr.Zero, true)
+        internal Asset(ulong id) : base(IntPtr.Zero, true)
         {
             Native.Keep(this, id, SetHandle);
         }
@@ -205,6 +207,82 @@ namespace Htex
         public Voice Voice(VoiceOptions options = null)
         {
             return new Voice(this, options ?? new VoiceOptions());
+        }
+    }
+
+    /// <summary>An opened library: a file with thousands of textures. Several threads may use it.</summary>
+    public sealed class Library : SafeHandle
+    {
+        private Library(ulong id) : base(IntPtr.Zero, true)
+        {
+            Native.Keep(this, id, SetHandle);
+        }
+
+        public override bool IsInvalid { get { return handle == IntPtr.Zero; } }
+
+        private Native.Handle Id { get { return new Native.Handle { Id = (ulong)(long)handle }; } }
+
+        protected override bool ReleaseHandle()
+        {
+            return Native.htex_library_free(Id) == Status.Ok;
+        }
+
+        public static Library Open(string path)
+        {
+            Native.Handle library;
+            Native.Check(Native.htex_library_open(Native.Utf8(path), out library));
+            return new Library(library.Id);
+        }
+
+        /// <summary>Opens a texture; reads only its bytes.</summary>
+        public Asset Asset(string name, OpenOptions options = null)
+        {
+            using (var open = new Native.Open(options))
+            {
+                Native.Handle asset;
+                Native.Check(Native.htex_library_asset(Id, Native.Utf8(name), ref open.Options, out asset));
+                return new Asset(asset.Id);
+            }
+        }
+
+        public string Name
+        {
+            get { return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_library_name(Id, o, c, out l)); }
+        }
+
+        /// <summary>Number of textures.</summary>
+        public ulong Count
+        {
+            get
+            {
+                ulong count;
+                Native.Check(Native.htex_library_count(Id, out count));
+                return count;
+            }
+        }
+
+        /// <summary>Number of pages of the index.</summary>
+        public int PageCount
+        {
+            get
+            {
+                UIntPtr count;
+                Native.Check(Native.htex_library_page_count(Id, out count));
+                return (int)count;
+            }
+        }
+
+        /// <summary>The entries of a page of the index as a JSON array; see htex_library_page_json.</summary>
+        public string PageJson(int page)
+        {
+            return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_library_page_json(Id, (UIntPtr)page, o, c, out l));
+        }
+
+        /// <summary>The entry of a texture as JSON.</summary>
+        public string EntryJson(string name)
+        {
+            var text = Native.Utf8(name);
+            return Native.Text((byte[] o, UIntPtr c, out UIntPtr l) => Native.htex_library_entry_json(Id, text, o, c, out l));
         }
     }
 
@@ -511,6 +589,14 @@ namespace Htex
         [DllImport(Library)] internal static extern Status htex_asset_representation_count(Handle asset, out UIntPtr count);
         [DllImport(Library)] internal static extern Status htex_asset_representation_model(Handle asset, UIntPtr index, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
         [DllImport(Library)] internal static extern Status htex_asset_magnitude(Handle asset, byte[] model, Motion[] at, double[] frequencyHz, [Out] double[] magnitude, UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_library_open(byte[] path, out Handle library);
+        [DllImport(Library)] internal static extern Status htex_library_free(Handle library);
+        [DllImport(Library)] internal static extern Status htex_library_name(Handle library, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_library_count(Handle library, out ulong count);
+        [DllImport(Library)] internal static extern Status htex_library_page_count(Handle library, out UIntPtr count);
+        [DllImport(Library)] internal static extern Status htex_library_page_json(Handle library, UIntPtr page, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_library_entry_json(Handle library, byte[] name, [Out] byte[] text, UIntPtr capacity, out UIntPtr length);
+        [DllImport(Library)] internal static extern Status htex_library_asset(Handle library, byte[] name, ref OpenOptionsC options, out Handle asset);
         [DllImport(Library)] internal static extern Status htex_voice_new(Handle asset, ref VoiceOptions options, out Handle voice);
         [DllImport(Library)] internal static extern Status htex_voice_free(Handle voice);
         [DllImport(Library)] internal static extern Status htex_voice_set_motion(Handle voice, ref Motion motion);

@@ -7,11 +7,13 @@
 from __future__ import annotations
 
 from ._author import agreement, fit, process, tradeoff
+from ._build import build
 from ._data import (
     Agreement,
     Condition,
     Coverage,
     Fit,
+    LibraryEntry,
     Processed,
     Reach,
     Spectrum,
@@ -20,24 +22,30 @@ from ._data import (
 )
 from ._errors import (
     AssetError,
+    BuildError,
     Error,
+    LibraryError,
     ModelError,
     MotionError,
     OptionError,
     RecordingError,
     SceneError,
 )
-from ._htex import Scene, Texture, Voice, __version__, models, open, unregister_model
+from ._htex import Library, Scene, Texture, Voice, __version__, models, open, pack, unregister_model
 from ._models import Field, register_model
 
 __all__ = [
     "Agreement",
     "AssetError",
+    "BuildError",
     "Condition",
     "Coverage",
     "Error",
     "Field",
     "Fit",
+    "Library",
+    "LibraryEntry",
+    "LibraryError",
     "ModelError",
     "MotionError",
     "OptionError",
@@ -52,9 +60,11 @@ __all__ = [
     "Voice",
     "__version__",
     "agreement",
+    "build",
     "fit",
     "models",
     "open",
+    "pack",
     "process",
     "quality_table",
     "register_model",

@@ -24,6 +24,8 @@ def process(
     *,
     rate_hz: float | None = None,
     map: str | None = None,
+    tracker: str | os.PathLike[str] | None = None,
+    tracker_map: str | None = None,
     quantity: Quantity = "lateral_force",
     scale: float | None = None,
     response: str | os.PathLike[str] | None = None,
@@ -38,11 +40,11 @@ def process(
 ) -> Processed:
     """Compute the texture spectrum of a recording, as ``htex process`` does.
 
-    ``recording`` is a file (CSV, WAV or NPY), the bytes of one, or an array: one row per sample; one column is the
+    ``recording`` is a file (CSV, WAV, FLAC, NPY, MATLAB, HDF5, TDMS, Parquet, Arrow), the bytes of one, or an array: one row per sample; one column is the
     lateral force, two are its axes, three are its axes and the normal force. An array needs ``rate_hz``.
 
-    ``map`` names and scales the columns of a CSV file: ``lateral=lateral_V:0.4444,normal=normal_V:0.31``. ``scale`` is
-    the value of a full-scale sample. ``response`` is a CSV file with the response of the setup. ``strict`` refuses
+    ``map`` names and scales the columns of a file: ``lateral=lateral_V:0.4444,normal=-(fz1+fz2)*0.31``. ``tracker`` is a file
+    with the finger's motion at its own rate, whose columns ``tracker_map`` names. ``scale`` is the value of a full-scale sample. ``response`` is a CSV file with the response of the setup. ``strict`` refuses
     recordings with findings that are errors or warnings.
     """
     found = _htex.process(
@@ -50,6 +52,8 @@ def process(
         _reading(
             rate_hz=rate_hz,
             map=map,
+            tracker=tracker,
+            tracker_map=tracker_map,
             quantity=quantity,
             scale=scale,
             response=response,
@@ -80,6 +84,7 @@ def fit(
     conditions: Sequence[Condition | tuple[float | None, float | None]] = (),
     level: Literal["recording", "fitted"] = "recording",
     keep_reference: bool = False,
+    grid: Literal["auto"] | Mapping[Literal["speed_mm_s", "force_n"], Iterable[float]] | None = None,
     plugins: Sequence[str | os.PathLike[str]] = (),
     installed: bool = False,
     author: str | None = None,
@@ -92,6 +97,8 @@ def fit(
     finger: str | None = None,
     rate_hz: float | None = None,
     map: str | None = None,
+    tracker: str | os.PathLike[str] | None = None,
+    tracker_map: str | None = None,
     quantity: Quantity = "lateral_force",
     scale: float | None = None,
     response: str | os.PathLike[str] | None = None,
@@ -109,7 +116,8 @@ def fit(
     ``recordings`` is one recording or a list of them, each as ``process`` takes it. ``models`` are short names or ids,
     or ``"all"``. ``options`` are those of the models: ``{"ar": {"order": 6}}``. ``conditions`` are pairs of speed (mm/s)
     and force (N), one for each recording or one for all. ``name`` is the name of the texture; by default that of the
-    first file. ``plugins`` are files of further models, or folders of them; ``installed`` adds those of the user.
+    first file. ``grid`` gathers recordings of a free motion in many conditions: ``"auto"``, or the lines of one or both axes,
+    ``{"speed_mm_s": [40, 80, 160], "force_n": [0.3, 0.6]}``. ``plugins`` are files of further models, or folders of them; ``installed`` adds those of the user.
     The other keywords are those of ``process``, and metadata of the asset.
     """
     sources = _sources(recordings)
@@ -118,6 +126,8 @@ def fit(
         _reading(
             rate_hz=rate_hz,
             map=map,
+            tracker=tracker,
+            tracker_map=tracker_map,
             quantity=quantity,
             scale=scale,
             response=response,
@@ -140,6 +150,7 @@ def fit(
             "conditions": [_pair(condition) for condition in conditions],
             "level": level,
             "keep_reference": keep_reference,
+            "grid": _grid(grid),
             "plugins": list(plugins),
             "installed": installed,
             "name": _stem(sources[0]) if name is None else name,
@@ -158,6 +169,17 @@ def fit(
     return Fit(texture=texture, **rest)
 
 
+def _grid(grid: str | Mapping[Any, Iterable[float]] | None) -> list[str]:
+    """Return the lines of a grid as the command takes them; an empty list without a grid."""
+    if grid is None:
+        return []
+    if isinstance(grid, str):
+        return [grid]
+    names = {"speed_mm_s": "speed", "force_n": "force"}
+    axes = [f"{names.get(axis, axis)}={','.join(map(str, lines))}" for axis, lines in grid.items()]
+    return axes or ["auto"]
+
+
 def tradeoff(
     recordings: Recording | Sequence[Recording],
     *,
@@ -169,6 +191,8 @@ def tradeoff(
     journal: str | os.PathLike[str] | None = None,
     rate_hz: float | None = None,
     map: str | None = None,
+    tracker: str | os.PathLike[str] | None = None,
+    tracker_map: str | None = None,
     quantity: Quantity = "lateral_force",
     scale: float | None = None,
     response: str | os.PathLike[str] | None = None,
@@ -190,6 +214,8 @@ def tradeoff(
         _reading(
             rate_hz=rate_hz,
             map=map,
+            tracker=tracker,
+            tracker_map=tracker_map,
             quantity=quantity,
             scale=scale,
             response=response,

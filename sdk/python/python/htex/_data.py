@@ -26,6 +26,28 @@ class Condition:
     """Normal force, newtons."""
     repeatability_rms_db: float | None = None
     """RMS difference between odd and even segments of the recording in nine bands, decibels."""
+    segments: int | None = None
+    """Number of segments that were averaged, where the asset states it."""
+
+
+@dataclass(frozen=True)
+class LibraryEntry:
+    """What a library states of a texture."""
+
+    name: str
+    """Name in the library, with ``/`` between its parts."""
+    tags: tuple[str, ...]
+    """Search terms."""
+    models: tuple[str, ...]
+    """Ids of the models that describe it."""
+    speed_mm_s: tuple[float, float] | None
+    """Least and greatest recorded speed, mm/s; ``None`` when none is known."""
+    force_n: tuple[float, float] | None
+    """Least and greatest recorded force, newtons; ``None`` when none is known."""
+    bytes: int
+    """Bytes of the texture's file."""
+    blake3: str
+    """BLAKE3 of the texture's file, hexadecimal."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,6 +171,9 @@ class Fit:
     """Models that could not be fitted, with reasons."""
     notes: list[str]
     """Notes about the recordings, as sentences."""
+    grid: dict[str, Any] | None = None
+    """The grid of the conditions, if one was requested: its lines, its cells with their segments, repeatability and status,
+    and the triangles between conditions."""
 
     @property
     def warnings(self) -> list[str]:

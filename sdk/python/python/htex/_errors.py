@@ -12,6 +12,14 @@ class AssetError(Error):
     """A file is not a valid asset, or an asset breaks a rule of the format."""
 
 
+class BuildError(Error):
+    """A recipe is wrong, or a library cannot be built."""
+
+
+class LibraryError(Error):
+    """A file is not a valid library, or a texture cannot be in one."""
+
+
 class ModelError(Error):
     """A model is missing, cannot be loaded, or failed."""
 
@@ -32,5 +40,15 @@ class SceneError(Error):
     """A scene is invalid, or cannot be planned or played."""
 
 
-for _class in (Error, AssetError, ModelError, MotionError, OptionError, RecordingError, SceneError):
+for _class in (
+    Error,
+    AssetError,
+    BuildError,
+    LibraryError,
+    ModelError,
+    MotionError,
+    OptionError,
+    RecordingError,
+    SceneError,
+):
     _class.__module__ = "htex"

@@ -1,26 +1,34 @@
 import os
-from collections.abc import Mapping, Sequence
+import pathlib
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Protocol, final
 
 import numpy as np
 import numpy.typing as npt
 
-from ._data import Condition, Coverage, Quantity, Spectrum
+from ._data import Condition, Coverage, LibraryEntry, Quantity, Spectrum
 
 __version__: str
 __all__ = [
+    "Build",
+    "Library",
     "Scene",
     "Texture",
     "Voice",
     "__version__",
     "agreement",
     "fit",
+    "hash_file",
     "models",
     "open",
+    "pack",
     "process",
     "register_model",
+    "remember",
     "run",
+    "run_job",
     "tradeoff",
+    "unhashed",
     "unregister_model",
 ]
 
@@ -76,6 +84,39 @@ class Texture:
     def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
+class Library:
+    """A library: one file with thousands of textures, each of which is read when it is asked for."""
+
+    def __new__(
+        cls,
+        source: _Path | bytes | bytearray | memoryview | _Readable,
+        *,
+        plugins: Sequence[_Path] = ...,
+        embedded: bool = True,
+        installed: bool = False,
+    ) -> Library: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def names(self) -> list[str]: ...
+    @property
+    def entries(self) -> list[LibraryEntry]: ...
+    def find(
+        self,
+        *words: str,
+        tags: Sequence[str] = ...,
+        speed_mm_s: float | None = None,
+        force_n: float | None = None,
+        model: str | None = None,
+    ) -> list[LibraryEntry]: ...
+    def entry(self, name: str) -> LibraryEntry: ...
+    def to_bytes(self, name: str) -> bytes: ...
+    def __getitem__(self, name: str, /) -> Texture: ...
+    def __contains__(self, name: str, /) -> bool: ...
+    def __len__(self) -> int: ...
+    def __iter__(self) -> Iterator[str]: ...
+
+@final
 class Voice:
     """A voice: an endless stream of samples in the texture's unit, which follows the motion of the finger."""
 
@@ -128,6 +169,22 @@ class Scene:
         block: int = 64,
     ) -> npt.NDArray[np.float32]: ...
 
+@final
+class Build:
+    """A build of a library that is planned."""
+
+    def __new__(cls, recipe: str, output: str, keep_going: bool) -> Build: ...
+    @property
+    def textures(self) -> int: ...
+    def pending(self) -> list[tuple[str, str, int]]: ...
+    def store(self, key: str, made: bytes) -> None: ...
+    def run(self) -> None: ...
+    def finish(self) -> dict[str, Any]: ...
+
+def run_job(key: str, job: str) -> bytes: ...
+def unhashed(recipe: str, output: str) -> list[pathlib.Path]: ...
+def hash_file(file: _Path) -> str: ...
+def remember(output: str, hashed: Sequence[tuple[_Path, str]]) -> None: ...
 def open(
     source: _Path | bytes | bytearray | memoryview | _Readable,
     *,
@@ -135,6 +192,12 @@ def open(
     embedded: bool = True,
     installed: bool = False,
 ) -> Texture: ...
+def pack(
+    path: _Path,
+    textures: Mapping[str, _Path | bytes | bytearray | memoryview | _Readable | Texture],
+    *,
+    name: str = "",
+) -> int: ...
 def models(*, plugins: Sequence[_Path] = ..., installed: bool = False) -> list[dict[str, Any]]: ...
 def register_model(descriptor: str, adapter: Any, plays: bool) -> None: ...
 def unregister_model(id: str) -> bool: ...

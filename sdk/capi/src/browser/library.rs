@@ -1,0 +1,263 @@
+//! Libraries whose bytes JavaScript fetches (`sdk/web/src/htexlib.js`): each call says which bytes it needs next, and is given
+//! them. Offsets are doubles, as in JavaScript: a file has less than 2^53 bytes.
+
+use std::ffi::c_char;
+use std::ops::Range;
+
+use htex::library::{Entry, Index, LibraryError, Limits, Opening, Progress};
+
+use crate::handles::Table;
+use crate::pointers::{needed_text, place, slice, slice_mut, write_text};
+use crate::status::{Failure, guarded, htex_status};
+
+/// A library that is being opened, or is open.
+enum State {
+    /// `None` after an error.
+    Opening(Option<Opening>),
+    /// The page that was read last: its entries.
+    Open(Box<Index>, Vec<Entry>),
+}
+
+static INDEXES: Table<State> = Table::new();
+
+impl State {
+    fn index(&self) -> Result<&Index, Failure> {
+        match self {
+            Self::Open(index, _) => Ok(index),
+            Self::Opening(_) => Err(Failure::argument("the library is not open yet")),
+        }
+    }
+
+    /// The index, and the entry of this name in the page that was read last.
+    fn entry(&self, name: &str) -> Result<(&Index, &Entry), Failure> {
+        let index = self.index()?;
+        let entries = match self {
+            Self::Open(_, entries) => entries.as_slice(),
+            Self::Opening(_) => &[],
+        };
+        match entries.iter().find(|entry| entry.name == name) {
+            Some(entry) => Ok((index, entry)),
+            None => Err(absent(name)),
+        }
+    }
+}
+
+fn absent(name: &str) -> Failure {
+    let name = name.to_owned();
+    LibraryError::Absent { name }.into()
+}
+
+/// Starts to open a library.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_new(out: *mut u64) -> htex_status {
+    guarded(|| {
+        let opening = Opening::new(Limits::default());
+        // SAFETY: the place is the caller's.
+        *unsafe { place(out) }? = INDEXES.insert(State::Opening(Some(opening)))?;
+        Ok(())
+    })
+}
+
+/// Frees a library.
+#[unsafe(no_mangle)]
+pub extern "C" fn htex_index_free(index: u64) -> htex_status {
+    guarded(|| INDEXES.remove(index).map(drop))
+}
+
+/// The bytes that are needed to open the library: start and end, which are equal when it is open.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_wanted(index: u64, out: *mut f64) -> htex_status {
+    guarded(|| {
+        let state = INDEXES.shared(index)?;
+        let wanted = match &*state {
+            State::Opening(Some(opening)) => opening.wanted(),
+            _ => 0..0,
+        };
+        // SAFETY: the place is the caller's.
+        unsafe { write_range(&wanted, out) }
+    })
+}
+
+/// Takes the wanted bytes; fewer if the file ends before them. The file has `file_bytes` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_give(
+    index: u64,
+    bytes: *const u8,
+    len: usize,
+    file_bytes: f64,
+) -> htex_status {
+    guarded(|| {
+        let mut state = INDEXES.exclusive(index)?;
+        // SAFETY: the pointers are the caller's.
+        let bytes = unsafe { slice(bytes, len) }?;
+        let State::Opening(opening) = &mut *state else {
+            return Err(Failure::argument("the library is open already"));
+        };
+        let opening = opening.take();
+        let opening = opening.ok_or(Failure::argument("the library could not be opened"))?;
+        *state = match opening.give(bytes, file_bytes as u64)? {
+            Progress::More(opening) => State::Opening(Some(opening)),
+            Progress::Open(index) => State::Open(Box::new(index), Vec::new()),
+        };
+        Ok(())
+    })
+}
+
+/// The library's name and its numbers of textures and of pages, as JSON.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_json(
+    index: u64,
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> htex_status {
+    guarded(|| {
+        let state = INDEXES.shared(index)?;
+        let index = state.index()?;
+        let json = serde_json::json!({
+            "name": index.name(),
+            "count": index.len(),
+            "pages": index.leaves(),
+        });
+        // SAFETY: the pointers are the caller's.
+        unsafe { write_text(&json.to_string(), out, capacity, length) }
+    })
+}
+
+/// The page of the index that has a texture, if any has it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_page_of(
+    index: u64,
+    name: *const c_char,
+    out: *mut u32,
+) -> htex_status {
+    guarded(|| {
+        let state = INDEXES.shared(index)?;
+        // SAFETY: the pointers are the caller's.
+        let (name, out) = unsafe { (needed_text(name)?, place(out)?) };
+        let page = state.index()?.leaf_of(name);
+        *out = page.ok_or_else(|| absent(name))? as u32;
+        Ok(())
+    })
+}
+
+/// The bytes of a page: start and end.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_page_range(
+    index: u64,
+    page: u32,
+    out: *mut f64,
+) -> htex_status {
+    guarded(|| {
+        let state = INDEXES.shared(index)?;
+        let range = state.index()?.leaf_range(page as usize);
+        let range = range.ok_or(Failure::argument("no page of this index"))?;
+        // SAFETY: the place is the caller's.
+        unsafe { write_range(&range, out) }
+    })
+}
+
+/// Reads a page of the index, of which the next calls look up entries.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_read_page(
+    index: u64,
+    page: u32,
+    bytes: *const u8,
+    len: usize,
+) -> htex_status {
+    guarded(|| {
+        let mut state = INDEXES.exclusive(index)?;
+        // SAFETY: the pointers are the caller's.
+        let bytes = unsafe { slice(bytes, len) }?;
+        let read = state.index()?.read_leaf(page as usize, bytes)?;
+        if let State::Open(_, entries) = &mut *state {
+            *entries = read;
+        }
+        Ok(())
+    })
+}
+
+/// The entries of the page that was read, as JSON.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_entries_json(
+    index: u64,
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> htex_status {
+    guarded(|| {
+        let state = INDEXES.shared(index)?;
+        let entries = match &*state {
+            State::Open(_, entries) => entries.as_slice(),
+            State::Opening(_) => &[],
+        };
+        let json = serde_json::to_string(entries)
+            .map_err(|error| Failure::of(htex_status::HTEX_STATUS_INTERNAL, error))?;
+        // SAFETY: the pointers are the caller's.
+        unsafe { write_text(&json, out, capacity, length) }
+    })
+}
+
+/// The bytes of a texture of the page that was read: start and end of each of at most `capacity` ranges. Writes
+/// their number to `length`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_ranges(
+    index: u64,
+    name: *const c_char,
+    out: *mut f64,
+    capacity: usize,
+    length: *mut usize,
+) -> htex_status {
+    guarded(|| {
+        let state = INDEXES.shared(index)?;
+        // SAFETY: the pointers are the caller's.
+        let (name, length) = unsafe { (needed_text(name)?, place(length)?) };
+        let (index, entry) = state.entry(name)?;
+        let ranges = index.asset_ranges(entry);
+        *length = ranges.len();
+        for (i, range) in ranges.iter().take(capacity).enumerate() {
+            // SAFETY: two numbers for each of `capacity` ranges.
+            unsafe { write_range(range, out.wrapping_add(2 * i)) }?;
+        }
+        Ok(())
+    })
+}
+
+/// Makes a texture of the page that was read of the bytes of its ranges, one after the other, and compares them with its
+/// hash. The texture has as many bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_index_assemble(
+    index: u64,
+    name: *const c_char,
+    bytes: *const u8,
+    len: usize,
+    out: *mut u8,
+) -> htex_status {
+    guarded(|| {
+        let state = INDEXES.shared(index)?;
+        // SAFETY: the pointers are the caller's.
+        let (name, mut bytes) = unsafe { (needed_text(name)?, slice(bytes, len)?) };
+        let (index, entry) = state.entry(name)?;
+        let mut parts = Vec::new();
+        for range in index.asset_ranges(entry) {
+            let length = usize::try_from(range.end - range.start).unwrap_or(usize::MAX);
+            let part = bytes.split_off(..length);
+            parts.push(part.ok_or(Failure::argument("bytes of the ranges are missing"))?);
+        }
+        let asset = index.assemble(entry, &parts)?;
+        // SAFETY: as many bytes as the ranges have.
+        unsafe { slice_mut(out, len) }?[..asset.len()].copy_from_slice(&asset);
+        Ok(())
+    })
+}
+
+/// Writes start and end of a range.
+///
+/// # Safety
+/// As for pointers: there are two numbers, or the pointer is NULL.
+unsafe fn write_range(range: &Range<u64>, out: *mut f64) -> Result<(), Failure> {
+    // SAFETY: as here.
+    let out = unsafe { slice_mut(out, 2) }?;
+    out.copy_from_slice(&[range.start as f64, range.end as f64]);
+    Ok(())
+}

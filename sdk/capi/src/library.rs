@@ -1,0 +1,167 @@
+//! Libraries: files with thousands of textures. Without the feature `library` each call says so.
+
+use std::ffi::c_char;
+
+use crate::asset::htex_asset;
+use crate::options::htex_open_options;
+use crate::status::htex_status;
+
+/// An opened library. Several threads may use it at a time. Zero is no library.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct htex_library {
+    /// Private.
+    pub id: u64,
+}
+
+/// [any thread; reads a file] Opens a library file (1.1). Its index is read page by page, its textures one at a time.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_library_open(
+    path: *const c_char,
+    out: *mut htex_library,
+) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    unsafe { calls::open(path, out) }
+}
+
+/// [any thread] Frees a library; its assets stay open (1.1). HTEX_STATUS_BUSY if another thread uses it at this moment.
+#[unsafe(no_mangle)]
+pub extern "C" fn htex_library_free(library: htex_library) -> htex_status {
+    calls::free(library)
+}
+
+/// [any thread] Name of the library, which may be empty (1.1). Written as by htex_asset_manifest_json.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_library_name(
+    library: htex_library,
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    unsafe { calls::name(library, out, capacity, length) }
+}
+
+/// [any thread] Number of textures (1.1).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_library_count(library: htex_library, out: *mut u64) -> htex_status {
+    // SAFETY: the place is the caller's.
+    unsafe { calls::count(library, out) }
+}
+
+/// [any thread] Number of pages of the index (1.1).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_library_page_count(
+    library: htex_library,
+    out: *mut usize,
+) -> htex_status {
+    // SAFETY: the place is the caller's.
+    unsafe { calls::page_count(library, out) }
+}
+
+/// [any thread; reads the file] The entries of a page of the index, counted from 0, as a JSON array (1.1): the textures' names in ascending order, tags, models, ranges of
+/// recorded speeds and forces, bytes and hashes. Written as by htex_asset_manifest_json.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_library_page_json(
+    library: htex_library,
+    page: usize,
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    unsafe { calls::page_json(library, page, out, capacity, length) }
+}
+
+/// [any thread; reads the file] The entry of a texture as JSON, as in htex_library_page_json (1.1); HTEX_STATUS_ABSENT if there is none of this
+/// name.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_library_entry_json(
+    library: htex_library,
+    name: *const c_char,
+    out: *mut c_char,
+    capacity: usize,
+    length: *mut usize,
+) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    unsafe { calls::entry_json(library, name, out, capacity, length) }
+}
+
+/// [any thread; reads the file] Opens a texture of the library (1.1); HTEX_STATUS_ABSENT if there is none of this name. `options` may be NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn htex_library_asset(
+    library: htex_library,
+    name: *const c_char,
+    options: *const htex_open_options,
+    out: *mut htex_asset,
+) -> htex_status {
+    // SAFETY: the pointers are the caller's.
+    unsafe { calls::asset(library, name, options, out) }
+}
+
+#[cfg(feature = "library")]
+#[path = "library/calls.rs"]
+mod calls;
+
+#[cfg(not(feature = "library"))]
+mod calls {
+    //! What a build without libraries returns.
+    use super::*;
+    use crate::status::{Failure, guarded};
+
+    fn absent() -> htex_status {
+        guarded(|| {
+            Err(Failure::plain(
+                htex_status::HTEX_STATUS_UNSUPPORTED,
+                "this build of the library opens no libraries of textures; build it with the feature `library`",
+            ))
+        })
+    }
+
+    pub(super) unsafe fn open(_: *const c_char, _: *mut htex_library) -> htex_status {
+        absent()
+    }
+    pub(super) fn free(_: htex_library) -> htex_status {
+        absent()
+    }
+    pub(super) unsafe fn name(
+        _: htex_library,
+        _: *mut c_char,
+        _: usize,
+        _: *mut usize,
+    ) -> htex_status {
+        absent()
+    }
+    pub(super) unsafe fn count(_: htex_library, _: *mut u64) -> htex_status {
+        absent()
+    }
+    pub(super) unsafe fn page_count(_: htex_library, _: *mut usize) -> htex_status {
+        absent()
+    }
+    pub(super) unsafe fn page_json(
+        _: htex_library,
+        _: usize,
+        _: *mut c_char,
+        _: usize,
+        _: *mut usize,
+    ) -> htex_status {
+        absent()
+    }
+    pub(super) unsafe fn entry_json(
+        _: htex_library,
+        _: *const c_char,
+        _: *mut c_char,
+        _: usize,
+        _: *mut usize,
+    ) -> htex_status {
+        absent()
+    }
+    pub(super) unsafe fn asset(
+        _: htex_library,
+        _: *const c_char,
+        _: *const htex_open_options,
+        _: *mut htex_asset,
+    ) -> htex_status {
+        absent()
+    }
+}

@@ -1,0 +1,33 @@
+"""Libraries from recipes."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from . import _htex
+
+Path = str | os.PathLike[str]
+
+
+def build(recipe: Path, output: Path, *, keep_going: bool = False) -> dict[str, Any]:
+    """Build a library of textures from a recipe, as ``htex build`` does.
+
+    What has been fitted stays in ``output``: a build that was ended goes on where it was, and one that is run again fits what
+    changed.
+
+    Args:
+        recipe: The recipe, ``library.toml``.
+        output: The folder of the results.
+        keep_going: Leave out a texture that cannot be made instead of raising.
+
+    Returns:
+        The report, as in ``build-report.json``: ``report["library"]`` and ``report["textures"]``.
+
+    Raises:
+        BuildError: The recipe is wrong, or a texture cannot be made.
+        OSError: A file cannot be read or written.
+    """
+    planned = _htex.Build(os.fspath(recipe), os.fspath(output), keep_going)
+    planned.run()
+    return planned.finish()

@@ -1,0 +1,170 @@
+"""Libraries from recipes, built by a Dask cluster.
+
+The recipe and the results are those of :func:`htex.build`; only the fits are done by the workers of the cluster. Every worker needs
+this package, in the same version, and the recordings under the same paths.
+
+>>> from distributed import Client
+>>> import htex.dask
+>>> htex.dask.build("library.toml", Client("tcp://scheduler:8786"))  # doctest: +SKIP
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pathlib
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from . import _htex
+from ._build import Path
+from ._errors import BuildError
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+__all__ = ["build"]
+
+# Key of a job, the job as JSON, bytes of its recordings.
+Job = tuple[str, str, int]
+# Files that a worker hashes at a time.
+_FILES = 32
+# Pause between two attempts to reach the scheduler, seconds.
+_PAUSE_S = 2.0
+
+
+def build(
+    recipe: Path,
+    client: Client,
+    output: Path = "dist",
+    *,
+    keep_going: bool = False,
+    shard_bytes: int = 64_000_000,
+    patience_s: float = 300.0,
+    done: Callable[[str], None] | None = None,
+) -> dict[str, Any]:
+    """Build a library of textures from a recipe on a Dask cluster.
+
+    The results are the same bytes as those of :func:`htex.build`. A worker that is lost has its work done by others, and each
+    result is written once, here. When the scheduler is lost, the build goes on when it is there again. When the build itself is
+    ended, what has been fitted stays in ``output``.
+
+    Args:
+        recipe: The recipe, ``library.toml``.
+        client: The cluster.
+        output: The folder of the results.
+        keep_going: Leave out a texture that cannot be made instead of raising.
+        shard_bytes: Bytes of recordings that a worker gets at a time; a texture with more is given alone.
+        patience_s: Longest time without scheduler or workers, seconds.
+        done: Called with the key of each job that is done.
+
+    Returns:
+        The report, as in ``build-report.json``.
+
+    Raises:
+        BuildError: The recipe is wrong, a texture cannot be made, or the cluster was away for too long.
+        OSError: A file cannot be read or written.
+    """
+    source, target = str(pathlib.Path(recipe).resolve()), os.fspath(output)
+    patience = _Patience(patience_s)
+    # Contents are hashed where they are read fastest: on the workers.
+    while files := _htex.unhashed(source, target):
+        hashed: list[tuple[pathlib.Path, str]] = []
+        with patience:
+            try:
+                batches = [files[i : i + _FILES] for i in range(0, len(files), _FILES)]
+                for part in _results(client, _hash, batches):
+                    hashed += part
+                    patience.renew()
+            finally:
+                _htex.remember(target, hashed)
+            break  # What is still not known has just changed; it is read here.
+    planned = _htex.Build(source, target, keep_going)
+    while pending := planned.pending():
+        with patience:
+            for results in _results(client, _run, list(_shards(pending, shard_bytes))):
+                for key, made in results:
+                    planned.store(key, made)
+                    if done is not None:
+                        done(key)
+                patience.renew()
+    return planned.finish()
+
+
+class _Patience:
+    """Waits when the cluster is away, for a time at most."""
+
+    def __init__(self, longest_s: float) -> None:
+        self.longest_s = longest_s
+        self.renew()
+
+    def renew(self) -> None:
+        """Note that the cluster is there."""
+        self.seen = time.monotonic()
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> bool:
+        if not isinstance(error, _lost()):
+            return False
+        if time.monotonic() - self.seen > self.longest_s:
+            words = f"the cluster was away for {self.longest_s:g} s ({error}); what was fitted is kept, run the build again"
+            raise BuildError(words) from error
+        time.sleep(_PAUSE_S)
+        return True
+
+
+def _shards(pending: Iterable[Job], shard_bytes: int) -> Iterator[list[tuple[str, str]]]:
+    """Gather jobs, in the order of their keys, which are content hashes."""
+    shard: list[tuple[str, str]] = []
+    size = 0
+    for key, job, recording_bytes in sorted(pending):
+        if shard and size + recording_bytes > shard_bytes:
+            yield shard
+            shard, size = [], 0
+        shard.append((key, job))
+        size += recording_bytes
+    if shard:
+        yield shard
+
+
+def _results(client: Client, work: Callable[[Any], Any], parts: Sequence[Any]) -> Iterator[Any]:
+    """Do parts of work on the cluster; yield what they give as they end."""
+    from distributed import as_completed
+
+    names = [_name(work, part) for part in parts]
+    futures = client.map(work, parts, key=names, retries=3, pure=True)
+    try:
+        for future in as_completed(futures):  # type: ignore[no-untyped-call]
+            yield future.result(timeout=60)
+            future.release()
+    finally:
+        # What is not needed any more is not done: after an error, or when the caller stops.
+        for future in futures:
+            future.release()  # type: ignore[no-untyped-call]
+
+
+def _name(work: Callable[[Any], Any], part: Any) -> str:
+    """Name a part of work by its contents, so that equal parts are done once."""
+    digest = hashlib.blake2b(repr(part).encode(), digest_size=16).hexdigest()
+    return f"htex{work.__name__}-{digest}"
+
+
+def _hash(files: Sequence[pathlib.Path]) -> list[tuple[pathlib.Path, str]]:
+    """Hash files on a worker."""
+    return [(file, _htex.hash_file(file)) for file in files]
+
+
+def _run(shard: list[tuple[str, str]]) -> list[tuple[str, bytes]]:
+    """Do jobs on a worker."""
+    return [(key, _htex.run_job(key, job)) for key, job in shard]
+
+
+def _lost() -> tuple[type[BaseException], ...]:
+    """Exceptions of a scheduler or of workers that are away."""
+    from distributed import CancelledError, KilledWorker
+    from distributed.comm.core import CommClosedError
+
+    return (CancelledError, KilledWorker, CommClosedError, TimeoutError)

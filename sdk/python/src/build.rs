@@ -1,0 +1,142 @@
+//! Builds of libraries, and their jobs, which run anywhere.
+
+use std::path::PathBuf;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use htex::host::WasmLimits;
+use htex_build::{BuildError, BuildOptions, Job, Workbench};
+use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
+use pyo3::types::PyBytes;
+
+use crate::author::TOOL;
+use crate::errors::{BuildError as Raised, of_file, option};
+use crate::python::from_json;
+
+/// A build of a library that is planned.
+#[pyclass(frozen, module = "htex._htex")]
+pub(crate) struct Build(Mutex<Option<htex_build::Build>>);
+
+#[pymethods]
+impl Build {
+    /// Reads a recipe and hashes its recordings.
+    #[new]
+    fn new(py: Python<'_>, recipe: PathBuf, output: PathBuf, keep_going: bool) -> PyResult<Self> {
+        let options = BuildOptions::new(TOOL).with_keep_going(keep_going);
+        let build = py.detach(|| htex_build::Build::open(&recipe, &output, options));
+        Ok(Self(Mutex::new(Some(build.map_err(raised)?))))
+    }
+
+    /// The jobs to do: key, job as JSON, bytes of its recordings.
+    fn pending(&self) -> PyResult<Vec<(String, String, u64)>> {
+        let build = self.lock();
+        let jobs = open(&build)?.pending().map(|(key, job)| {
+            let text = serde_json::to_string(job).map_err(|error| option(error.to_string()))?;
+            Ok((key.to_owned(), text, job.recording_bytes()))
+        });
+        jobs.collect()
+    }
+
+    /// Number of the recipe's textures.
+    #[getter]
+    fn textures(&self) -> PyResult<usize> {
+        Ok(open(&self.lock())?.plan().textures.len())
+    }
+
+    /// Keeps what a job made.
+    fn store(&self, py: Python<'_>, key: &str, made: PyBackedBytes) -> PyResult<()> {
+        py.detach(|| match &mut *self.lock() {
+            Some(build) => build.store(key, &made).map_err(raised),
+            None => Err(finished()),
+        })
+    }
+
+    /// Does the pending jobs here.
+    fn run(&self, py: Python<'_>) -> PyResult<()> {
+        py.detach(|| match &mut *self.lock() {
+            Some(build) => build.run(&|_| ()).map_err(raised),
+            None => Err(finished()),
+        })
+    }
+
+    /// Writes the results and returns the report.
+    fn finish<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let build = self.lock().take().ok_or_else(finished)?;
+        let built = py.detach(|| build.finish()).map_err(raised)?;
+        let report = serde_json::to_value(&built.report);
+        from_json(py, &report.map_err(|error| option(error.to_string()))?)
+    }
+}
+
+impl Build {
+    fn lock(&self) -> MutexGuard<'_, Option<htex_build::Build>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+fn open<'a>(
+    build: &'a MutexGuard<'_, Option<htex_build::Build>>,
+) -> PyResult<&'a htex_build::Build> {
+    build.as_ref().ok_or_else(finished)
+}
+
+fn finished() -> PyErr {
+    option("the build is finished; make another one")
+}
+
+/// The files of a recipe whose hashes are not known.
+#[pyfunction]
+pub(crate) fn unhashed(py: Python<'_>, recipe: PathBuf, output: PathBuf) -> PyResult<Vec<PathBuf>> {
+    py.detach(|| htex_build::unhashed(&recipe, &output))
+        .map_err(raised)
+}
+
+/// Hashes a file; returns the hash as JSON.
+#[pyfunction]
+pub(crate) fn hash_file(py: Python<'_>, file: PathBuf) -> PyResult<String> {
+    let hashed = py.detach(|| htex_build::hash_file(&file)).map_err(raised)?;
+    serde_json::to_string(&hashed).map_err(|error| option(error.to_string()))
+}
+
+/// Keeps hashes of files for the build that follows.
+#[pyfunction]
+pub(crate) fn remember(
+    py: Python<'_>,
+    output: PathBuf,
+    hashed: Vec<(PathBuf, String)>,
+) -> PyResult<()> {
+    let hashed = hashed.into_iter().map(|(file, text)| {
+        let hashed = serde_json::from_str(&text);
+        Ok((file, hashed.map_err(|error| option(error.to_string()))?))
+    });
+    let hashed = hashed.collect::<PyResult<Vec<_>>>()?;
+    py.detach(|| htex_build::remember(&output, hashed))
+        .map_err(raised)
+}
+
+/// Does a job, given as JSON, with the key that it has; returns what it made.
+#[pyfunction]
+pub(crate) fn run_job<'py>(py: Python<'py>, key: &str, job: &str) -> PyResult<Bound<'py, PyBytes>> {
+    let job: Job = serde_json::from_str(job)
+        .map_err(|error| option(format!("the job cannot be read: {error}")))?;
+    if job.program != TOOL || job.key() != key {
+        let given = &job.program;
+        return Err(option(format!(
+            "the job is one of {given} and this is {TOOL}; install the same version everywhere"
+        )));
+    }
+    let made = py.detach(|| {
+        let made = job.run(&mut Workbench::new(WasmLimits::default()))?;
+        made.to_bytes(key)
+    });
+    Ok(PyBytes::new(py, &made.map_err(raised)?))
+}
+
+fn raised(error: BuildError) -> PyErr {
+    match error {
+        BuildError::Read { file, error } | BuildError::Write { file, error } => {
+            of_file(&file, &error)
+        }
+        other => Raised::new_err(other.to_string()),
+    }
+}

@@ -1,0 +1,222 @@
+//! Libraries: one file with thousands of textures.
+
+use std::path::{Path, PathBuf};
+
+use htex::AssetData;
+use htex::library::{Entry, Interval, LibraryError, LocalFile, Query, Source as Bytes, Writer};
+use pyo3::exceptions::PyKeyError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyTuple};
+
+use crate::errors::{IntoPyErr, LibraryError as Raised, OrRaise, of_file};
+use crate::python::data;
+use crate::texture::{Source, Texture};
+
+/// A library: one file with thousands of textures, each of which is read when it is asked for.
+#[pyclass(frozen, module = "htex")]
+pub(crate) struct Library {
+    library: htex::Library<Origin>,
+    plugins: Vec<PathBuf>,
+    embedded: bool,
+    installed: bool,
+}
+
+/// The bytes of a library: a file, or memory.
+enum Origin {
+    File(LocalFile),
+    Memory(Vec<u8>),
+}
+
+impl Bytes for Origin {
+    fn len(&self) -> std::io::Result<u64> {
+        match self {
+            Self::File(file) => file.len(),
+            Self::Memory(bytes) => Bytes::len(bytes),
+        }
+    }
+
+    fn read_at(&self, offset: u64, buffer: &mut [u8]) -> std::io::Result<usize> {
+        match self {
+            Self::File(file) => file.read_at(offset, buffer),
+            Self::Memory(bytes) => bytes.read_at(offset, buffer),
+        }
+    }
+}
+
+impl IntoPyErr for LibraryError {
+    fn into_py_err(self) -> PyErr {
+        match self {
+            Self::Open { path, error } | Self::Write { path, error } => of_file(&path, &error),
+            Self::Read { ref error, .. } if error.raw_os_error().is_some() => {
+                std::io::Error::new(error.kind(), self.to_string()).into()
+            }
+            Self::Absent { name } => PyKeyError::new_err(name),
+            Self::Asset { error, .. } => error.into_py_err(),
+            other => Raised::new_err(other.to_string()),
+        }
+    }
+}
+
+#[pymethods]
+impl Library {
+    #[new]
+    #[pyo3(signature = (source, *, plugins=Vec::new(), embedded=true, installed=false))]
+    fn open(
+        py: Python<'_>,
+        source: &Bound<'_, PyAny>,
+        plugins: Vec<PathBuf>,
+        embedded: bool,
+        installed: bool,
+    ) -> PyResult<Self> {
+        let source = Source::of(source)?;
+        let opened = py.detach(|| {
+            let origin = match source {
+                Source::File(path) => Origin::File(LocalFile::open(&path)?),
+                Source::Bytes(bytes) => Origin::Memory(bytes),
+            };
+            htex::Library::open_source(origin)
+        });
+        Ok(Self {
+            library: opened.or_raise()?,
+            plugins,
+            embedded,
+            installed,
+        })
+    }
+
+    /// Name of the library; may be empty.
+    #[getter]
+    fn name(&self) -> &str {
+        self.library.name()
+    }
+
+    /// Names of all textures, in ascending order.
+    #[getter]
+    fn names(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let entries = py.detach(|| self.matching(&Query::default()))?;
+        Ok(entries.into_iter().map(|entry| entry.name).collect())
+    }
+
+    /// The entries of all textures, in ascending order of their names.
+    #[getter]
+    fn entries<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        let entries = py.detach(|| self.matching(&Query::default()))?;
+        entries.iter().map(|entry| entry_data(py, entry)).collect()
+    }
+
+    /// Returns the entries of the textures that have all that is asked for.
+    #[pyo3(signature = (*words, tags=Vec::new(), speed_mm_s=None, force_n=None, model=None))]
+    fn find<'py>(
+        &self,
+        py: Python<'py>,
+        words: &Bound<'py, PyTuple>,
+        tags: Vec<String>,
+        speed_mm_s: Option<f64>,
+        force_n: Option<f64>,
+        model: Option<String>,
+    ) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        let query = Query {
+            words: words.extract()?,
+            tags,
+            speed_mm_s,
+            force_n,
+            model,
+        };
+        let entries = py.detach(|| self.matching(&query))?;
+        entries.iter().map(|entry| entry_data(py, entry)).collect()
+    }
+
+    /// Returns the entry of a texture.
+    fn entry<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let entry = py.detach(|| self.library.entry(name)).or_raise()?;
+        let entry = entry.ok_or_else(|| PyKeyError::new_err(name.to_owned()))?;
+        entry_data(py, &entry)
+    }
+
+    /// Returns the bytes of a texture's `.htex` file.
+    fn to_bytes<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = py.detach(|| self.library.get(name)).or_raise()?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    fn __getitem__(&self, py: Python<'_>, name: &str) -> PyResult<Texture> {
+        py.detach(|| {
+            let bytes = self.library.get(name).or_raise()?;
+            let data = AssetData::from_bytes(&bytes).or_raise()?;
+            Texture::new(data, self.plugins.clone(), self.embedded, self.installed)
+        })
+    }
+
+    fn __contains__(&self, py: Python<'_>, name: &str) -> PyResult<bool> {
+        let entry = py.detach(|| self.library.entry(name)).or_raise()?;
+        Ok(entry.is_some())
+    }
+
+    fn __len__(&self) -> usize {
+        usize::try_from(self.library.len()).unwrap_or(usize::MAX)
+    }
+
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.names(py)?.into_pyobject(py)?.call_method0("__iter__")
+    }
+
+    fn __repr__(&self) -> String {
+        let (name, count) = (self.library.name(), self.library.len());
+        format!("<htex.Library {name:?}: {count} texture(s)>")
+    }
+}
+
+impl Library {
+    fn matching(&self, query: &Query) -> PyResult<Vec<Entry>> {
+        let entries = self.library.entries();
+        let matching = entries.filter(|entry| !matches!(entry, Ok(e) if !query.matches(e)));
+        matching.collect::<Result<_, _>>().or_raise()
+    }
+}
+
+/// Makes a `LibraryEntry`.
+fn entry_data<'py>(py: Python<'py>, entry: &Entry) -> PyResult<Bound<'py, PyAny>> {
+    let range = |interval: Option<Interval>| interval.map(|i| (i.min, i.max));
+    let fields = PyDict::new(py);
+    fields.set_item("name", &entry.name)?;
+    fields.set_item("tags", PyTuple::new(py, &entry.tags)?)?;
+    fields.set_item("models", PyTuple::new(py, &entry.models)?)?;
+    fields.set_item("speed_mm_s", range(entry.conditions.speed_mm_s))?;
+    fields.set_item("force_n", range(entry.conditions.force_n))?;
+    fields.set_item("bytes", entry.bytes)?;
+    fields.set_item("blake3", entry.blake3_hex())?;
+    data(py, "LibraryEntry", &fields)
+}
+
+/// Packs textures into a library, by their names: paths, bytes, objects with the method `read`, or `Texture`s.
+#[pyfunction]
+#[pyo3(signature = (path, textures, *, name=""))]
+pub(crate) fn pack(
+    py: Python<'_>,
+    path: PathBuf,
+    textures: &Bound<'_, PyAny>,
+    name: &str,
+) -> PyResult<u64> {
+    let mut writer = Writer::create(&path, name).or_raise()?;
+    for pair in textures.call_method0("items")?.try_iter()? {
+        let (name, texture): (String, Bound<'_, PyAny>) = pair?.extract()?;
+        let bytes = texture_bytes(py, &texture)?;
+        py.detach(|| writer.add(&name, &bytes)).or_raise()?;
+    }
+    let packed = py.detach(|| writer.finish()).or_raise()?;
+    Ok(packed.bytes)
+}
+
+fn texture_bytes(py: Python<'_>, texture: &Bound<'_, PyAny>) -> PyResult<Vec<u8>> {
+    if let Ok(texture) = texture.cast::<Texture>() {
+        return Ok(texture.get().to_bytes(py)?.as_bytes().to_vec());
+    }
+    match Source::of(texture)? {
+        Source::Bytes(bytes) => Ok(bytes),
+        Source::File(path) => read(&path),
+    }
+}
+
+fn read(path: &Path) -> PyResult<Vec<u8>> {
+    std::fs::read(path).map_err(|error| of_file(path, &error))
+}

@@ -1,0 +1,162 @@
+"""Libraries from recipes: here, and on a cluster of processes."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+
+import pytest
+from conftest import command
+from distributed import Client
+
+import htex
+import htex.dask
+
+RECIPE = """
+[library]
+name = "surfaces"
+[[textures]]
+recordings = "*.csv"
+license = "CC0-1.0"
+models = ["ar", "bands", "mfcc"]
+at = { speed_mm_s = 80, force_n = 0.4 }
+"""
+
+
+@pytest.fixture(scope="module")
+def recipe(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
+    """A recipe of twelve recordings of 2 s."""
+    folder = tmp_path_factory.mktemp("recipe")
+    for seed in range(4):
+        for surface in ("vinyl", "sandpaper", "coarse-fabric"):
+            name = f"{surface}-{seed}.csv"
+            command("simulate", "--surface", surface, "--seed", seed, "--seconds", 2, "-o", name, cwd=folder)
+    (folder / "library.toml").write_text(RECIPE)
+    return folder / "library.toml"
+
+
+@pytest.fixture(scope="module")
+def local(recipe: pathlib.Path) -> dict[str, bytes]:
+    """What a build on this machine writes."""
+    report = htex.build(recipe, recipe.parent / "local")
+    assert report["library"]["textures"] == 12
+    return results(recipe.parent / "local")
+
+
+def results(folder: pathlib.Path) -> dict[str, bytes]:
+    """All files of a build but what is kept for the next one."""
+    files = (file for file in folder.rglob("*") if file.is_file() and ".htex-build" not in file.parts)
+    return {str(file.relative_to(folder)): file.read_bytes() for file in files}
+
+
+class Cluster:
+    """A scheduler and workers, each a process, on loopback."""
+
+    def __init__(self, folder: pathlib.Path) -> None:
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            self.address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
+        self.folder = folder
+        self.processes: list[subprocess.Popen[bytes]] = []
+        self.start_scheduler()
+
+    def start(self, *words: str) -> subprocess.Popen[bytes]:
+        environment = os.environ | {
+            # A worker that does not answer is lost after 3 s instead of 5 min.
+            "DASK_DISTRIBUTED__SCHEDULER__WORKER_TTL": "3s",
+            "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "10",
+        }
+        program = [sys.executable, "-m", *words]
+        log = open(self.folder / f"{len(self.processes)}.log", "wb")
+        process = subprocess.Popen(program, env=environment, stdout=log, stderr=log, cwd=self.folder)
+        self.processes.append(process)
+        return process
+
+    def start_scheduler(self) -> None:
+        port = self.address.rpartition(":")[2]
+        self.scheduler = self.start(
+            "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", port, "--no-dashboard"
+        )
+
+    def start_worker(self) -> subprocess.Popen[bytes]:
+        return self.start(
+            "distributed.cli.dask_worker", self.address, "--no-nanny", "--nthreads", "1", "--no-dashboard", "--host", "127.0.0.1"
+        )
+
+    def stop(self) -> None:
+        for process in self.processes:
+            process.kill()
+        for process in self.processes:
+            process.wait()
+
+
+@pytest.fixture
+def cluster(tmp_path: pathlib.Path) -> Iterator[Cluster]:
+    running = Cluster(tmp_path)
+    yield running
+    running.stop()
+
+
+def test_a_worker_that_is_killed_and_one_that_hangs_change_nothing(
+    recipe: pathlib.Path, local: dict[str, bytes], cluster: Cluster
+) -> None:
+    first, hanging = cluster.start_worker(), cluster.start_worker()
+    with Client(cluster.address, timeout=60) as client:
+        client.wait_for_workers(2, timeout=60)
+        done: list[str] = []
+
+        def disturb(key: str) -> None:
+            done.append(key)
+            if len(done) == 1:
+                first.send_signal(signal.SIGKILL)
+                hanging.send_signal(signal.SIGSTOP)
+                cluster.start_worker()
+
+        report = htex.dask.build(recipe, client, recipe.parent / "dask", shard_bytes=1, done=disturb)
+    assert report["library"]["textures"] == 12
+    assert len(done) == len(set(done)) == 12
+    assert results(recipe.parent / "dask") == local
+
+
+def test_a_scheduler_that_is_lost_is_waited_for(
+    recipe: pathlib.Path, local: dict[str, bytes], cluster: Cluster
+) -> None:
+    cluster.start_worker()
+    with Client(cluster.address, timeout=60) as client:
+        client.wait_for_workers(1, timeout=60)
+        done: list[str] = []
+
+        def disturb(key: str) -> None:
+            done.append(key)
+            if len(done) == 3:
+                cluster.scheduler.kill()
+                cluster.scheduler.wait()
+                time.sleep(1)
+                cluster.start_scheduler()
+                cluster.start_worker()
+
+        htex.dask.build(recipe, client, recipe.parent / "restarted", shard_bytes=1, done=disturb)
+    assert len(set(done)) == 12
+    assert results(recipe.parent / "restarted") == local
+
+
+def test_what_cannot_be_made_is_named(recipe: pathlib.Path, cluster: Cluster, tmp_path: pathlib.Path) -> None:
+    cluster.start_worker()
+    (tmp_path / "broken.csv").write_text("t_s,lateral_n\n0,1\n0.1,zero\n")
+    (tmp_path / "library.toml").write_text(RECIPE)
+    with Client(cluster.address, timeout=60) as client:
+        with pytest.raises(htex.BuildError, match="broken.*zero"):
+            htex.dask.build(tmp_path / "library.toml", client, tmp_path / "dist")
+        report = htex.dask.build(tmp_path / "library.toml", client, tmp_path / "dist", keep_going=True)
+    assert report["library"]["left_out"] == 1
+    with pytest.raises(htex.BuildError, match="broken.*zero"):
+        htex.build(tmp_path / "library.toml", tmp_path / "dist")
+    with pytest.raises(htex.BuildError, match="no file matches"):
+        (tmp_path / "broken.csv").unlink()
+        htex.build(tmp_path / "library.toml", tmp_path / "dist")

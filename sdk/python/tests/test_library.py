@@ -1,0 +1,84 @@
+"""Libraries: packing, searching and opening."""
+
+from __future__ import annotations
+
+import json
+import pathlib
+
+import numpy as np
+import pytest
+from conftest import command
+
+import htex
+
+
+@pytest.fixture(scope="module")
+def library(texture: htex.Texture, place: pathlib.Path) -> htex.Library:
+    """Three textures: of an object, of bytes, of a file."""
+    cloth = place / "cloth.htex"
+    path = place / "three.htexlib"
+    textures = {"woven/b": texture, "woven/a": cloth.read_bytes(), "Felt": cloth}
+    assert htex.pack(path, textures, name="Three") == path.stat().st_size
+    return htex.Library(path)
+
+
+def test_a_library_names_its_textures(library: htex.Library) -> None:
+    assert (library.name, len(library)) == ("Three", 3)
+    assert library.names == ["Felt", "woven/a", "woven/b"] == list(library)
+    assert "woven/a" in library and "woven" not in library
+    assert repr(library) == '<htex.Library "Three": 3 texture(s)>'
+
+
+def test_a_texture_plays_as_its_file(library: htex.Library, texture: htex.Texture, place: pathlib.Path) -> None:
+    assert library.to_bytes("Felt") == (place / "cloth.htex").read_bytes()
+    played = library["woven/a"].voice(model="ar", seed=7).render(1000)
+    assert np.array_equal(played, texture.voice(model="ar", seed=7).render(1000))
+    for absent in [library.__getitem__, library.entry, library.to_bytes]:
+        with pytest.raises(KeyError, match="velvet"):
+            absent("velvet")
+
+
+def test_entries_are_those_of_the_command(library: htex.Library, place: pathlib.Path) -> None:
+    listed = json.loads(command("lib", "ls", "three.htexlib", "--json", cwd=place).stdout)
+    assert len(listed) == 3
+    for entry, said in zip(library.entries, listed, strict=True):
+        assert (entry.name, list(entry.tags), list(entry.models)) == (said["name"], said["tags"], said["models"])
+        assert (entry.bytes, entry.blake3) == (said["bytes"], said["blake3"])
+        speed = said["conditions"]["speed_mm_s"]
+        assert entry.speed_mm_s == (speed["min"], speed["max"])
+        assert library.entry(entry.name) == entry
+
+
+def test_searches_need_all_that_is_asked_for(library: htex.Library) -> None:
+    def names(*words: str, **rest: float | str) -> list[str]:
+        return [entry.name for entry in library.find(*words, **rest)]  # type: ignore[arg-type]
+
+    assert names("WOVEN") == ["woven/a", "woven/b"]
+    assert names("woven", "b", model="ar") == ["woven/b"]
+    speed = library.entry("Felt").speed_mm_s
+    assert speed is not None and len(names(speed_mm_s=speed[0])) == 3
+    assert names(speed_mm_s=1e5) == [] == names(model="none")
+    assert library.find(tags=["none"]) == []
+
+
+def test_what_is_wrong_is_an_exception_and_leaves_nothing(place: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    path = tmp_path / "a.htexlib"
+    cloth = place / "cloth.htex"
+    for textures, error, words in [
+        ({"../a": cloth}, htex.LibraryError, "not a name"),
+        ({"a": b"no texture"}, htex.AssetError, "ARCHIVE_INVALID"),
+        ({"a": tmp_path / "none.htex"}, FileNotFoundError, "none.htex"),
+        ({"a": 3}, TypeError, "int"),
+    ]:
+        with pytest.raises(error, match=words):
+            htex.pack(path, textures)  # type: ignore[arg-type]
+    with pytest.raises(FileNotFoundError):
+        htex.pack(tmp_path / "no" / "where.htexlib", {})
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(htex.LibraryError, match="LIBRARY_UNRECOGNISED"):
+        htex.Library(cloth)
+    with pytest.raises(FileNotFoundError):
+        htex.Library(path)
+    whole = (place / "three.htexlib").read_bytes()
+    with pytest.raises(htex.LibraryError, match="LIBRARY_TRUNCATED"):
+        htex.Library(whole[:-1])

@@ -1,0 +1,184 @@
+// Libraries: files with thousands of textures, of which ranges are fetched. The library in WASM says which.
+
+import { HtexError, toBytes } from "./core.js";
+import { library, open } from "./library.js";
+import { Handle } from "./texture.js";
+
+/** Pages of the index that are kept, at most 40 KiB each. */
+const KEPT_PAGES = 16;
+
+/** A file on a server, by HTTP range requests. */
+class Remote {
+  constructor(url, fetcher) {
+    this.url = url;
+    this.fetcher = fetcher;
+  }
+
+  /** The bytes from `start` to `end`, fewer at the end of the file. */
+  async read(start, end) {
+    if (this.whole) return this.whole.subarray(start, end);
+    const response = await this.fetcher(this.url, { headers: { Range: `bytes=${start}-${end - 1}` } });
+    if (response.status === 200) {
+      // A server without ranges sends the file.
+      this.whole = new Uint8Array(await response.arrayBuffer());
+      this.size = this.whole.length;
+      return this.whole.subarray(start, end);
+    }
+    if (response.status === 416) throw new HtexError(`${this.url}: the file is empty or has changed; open it again`, "io");
+    if (response.status !== 206) throw new HtexError(`${this.url}: ${response.status} ${response.statusText}`, "io");
+    this.check(response, start);
+    return new Uint8Array(await response.arrayBuffer());
+  }
+
+  /** Notes the length of the file and its version; both must stay. */
+  check(response, start) {
+    const [, first, size] = /^bytes (\d+)-\d+\/(\d+)$/.exec(response.headers.get("Content-Range") ?? "") ?? [];
+    if (size === undefined || Number(first) !== start) {
+      throw new HtexError(`${this.url}: the server sends another range than was asked for, or does not show its Content-Range`, "io");
+    }
+    const version = response.headers.get("ETag");
+    if (this.size !== undefined && (this.size !== Number(size) || this.version !== version)) {
+      throw new HtexError(`${this.url}: the file has changed; open it again`, "io");
+    }
+    this.size = Number(size);
+    this.version = version;
+  }
+}
+
+/** A file in memory. */
+class Local {
+  constructor(bytes) {
+    this.bytes = bytes;
+    this.size = bytes.length;
+  }
+
+  async read(start, end) {
+    return this.bytes.subarray(start, end);
+  }
+}
+
+/** An opened library. */
+export class Library extends Handle {
+  /** Opens a library: its address, or its bytes. */
+  static async open(source, { fetch: fetcher = globalThis.fetch.bind(globalThis) } = {}) {
+    const isAddress = typeof source === "string" || source instanceof URL;
+    const file = isAddress ? new Remote(new URL(source, globalThis.location?.href), fetcher) : new Local(toBytes(source));
+    const opened = new Library(await library(), file);
+    try {
+      await opened.start();
+    } catch (error) {
+      opened.free();
+      throw error;
+    }
+    return opened;
+  }
+
+  constructor(core, file) {
+    core.call("htex_index_new", core.results);
+    super(core, core.view().getBigUint64(core.results, true), "htex_index_free");
+    this.file = file;
+    this.pages = new Map();
+  }
+
+  /** Reads the header and the root page: one range, two of a huge library. */
+  async start() {
+    const { core } = this;
+    for (;;) {
+      const [start, end] = this.numbers("htex_index_wanted");
+      if (start === end) break;
+      const bytes = await this.file.read(start, end);
+      core.scope((take) => core.call("htex_index_give", this.id, core.put(take, bytes), bytes.length, this.file.size));
+    }
+    const { name, count, pages } = JSON.parse(core.text("htex_index_json", this.id));
+    Object.assign(this, { name, count, pageCount: pages });
+  }
+
+  /** Start and end of a range that a function writes. */
+  numbers(name, ...values) {
+    const { core } = this;
+    core.call(name, this.id, ...values, core.results);
+    const view = core.view();
+    return [view.getFloat64(core.results, true), view.getFloat64(core.results + 8, true)];
+  }
+
+  /** The bytes of a page of the index; the ones used last are kept. */
+  page(number) {
+    const [start, end] = this.numbers("htex_index_page_range", number);
+    const bytes = this.pages.get(number) ?? this.file.read(start, end);
+    this.pages.delete(number);
+    this.pages.set(number, bytes);
+    bytes.catch(() => this.pages.delete(number));
+    if (this.pages.size > KEPT_PAGES) this.pages.delete(this.pages.keys().next().value);
+    return bytes;
+  }
+
+  /** Makes a page the one whose entries are looked up. */
+  read(number, bytes) {
+    const { core } = this;
+    core.scope((take) => core.call("htex_index_read_page", this.id, number, core.put(take, bytes), bytes.length));
+  }
+
+  /** The page that has a texture, if any has it. */
+  pageOf(name) {
+    const { core } = this;
+    return core.scope((take) => {
+      core.call("htex_index_page_of", this.id, core.putText(take, name), core.results);
+      return core.view().getUint32(core.results, true);
+    });
+  }
+
+  /** The entries of all textures, in ascending order of their names. */
+  async *entries() {
+    for (let number = 0; number < this.pageCount; number++) {
+      const bytes = await this.page(number);
+      this.read(number, bytes);
+      yield* JSON.parse(this.core.text("htex_index_entries_json", this.id));
+    }
+  }
+
+  /** The entry of a texture; undefined if there is none of this name. */
+  async entry(name) {
+    if (this.count === 0) return undefined;
+    const number = this.pageOf(name);
+    this.read(number, await this.page(number));
+    return JSON.parse(this.core.text("htex_index_entries_json", this.id)).find((entry) => entry.name === name);
+  }
+
+  /** The bytes of a texture's `.htex` file. */
+  async bytes(name) {
+    const { core } = this;
+    const number = this.pageOf(name);
+    const page = await this.page(number);
+    this.read(number, page);
+    const ranges = this.ranges(name);
+    const parts = await Promise.all(ranges.map(([start, end]) => (start === end ? new Uint8Array(0) : this.file.read(start, end))));
+    const all = new Uint8Array(parts.reduce((sum, part) => sum + part.length, 0));
+    parts.reduce((at, part) => (all.set(part, at), at + part.length), 0);
+    // Another call may have read another page meanwhile.
+    this.read(number, page);
+    return core.scope((take) => {
+      const [given, out] = [core.put(take, all), take(Math.max(all.length, 1))];
+      core.call("htex_index_assemble", this.id, core.putText(take, name), given, all.length, out);
+      return new Uint8Array(core.exports.memory.buffer, out, all.length).slice();
+    });
+  }
+
+  /** The ranges of a texture of the page that was read. */
+  ranges(name) {
+    const { core } = this;
+    return core.scope((take) => {
+      const text = core.putText(take, name);
+      core.call("htex_index_ranges", this.id, text, 0, 0, core.results);
+      const count = core.view().getUint32(core.results, true);
+      const at = core.putNumbers(take, new Float64Array(2 * count));
+      core.call("htex_index_ranges", this.id, text, at, count, core.results);
+      const numbers = new Float64Array(core.exports.memory.buffer, at, 2 * count).slice();
+      return Array.from({ length: count }, (_, i) => [numbers[2 * i], numbers[2 * i + 1]]);
+    });
+  }
+
+  /** Opens a texture. */
+  async texture(name, options = {}) {
+    return open(await this.bytes(name), options);
+  }
+}

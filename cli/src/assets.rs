@@ -3,7 +3,10 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use htex_format::{AtCondition, Condition, Quality, Quantity, Representation, StoredField, plain};
+use htex_author::GridReport;
+use htex_format::{
+    AtCondition, Condition, LeftOut, Quality, Quantity, Representation, StoredField, plain,
+};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -37,6 +40,9 @@ pub(crate) struct AssetSummary {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     plugins: Vec<PluginSummary>,
     pub(crate) representations: Vec<RepresentationSummary>,
+    /// The grid that the conditions were gathered in, after a fit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) grid: Option<GridReport>,
     pub(crate) repeatability_rms_db: Option<f64>,
     pub(crate) warnings: Vec<String>,
     pub(crate) notes: Vec<String>,
@@ -76,6 +82,8 @@ pub(crate) struct AtSummary {
     level_rms: f64,
     #[serde(flatten)]
     pub(crate) quality: Option<Quality>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    left_out: Option<LeftOut>,
 }
 
 impl AssetSummary {
@@ -111,6 +119,7 @@ impl AssetSummary {
             conditions: manifest.conditions.clone(),
             plugins: plugins(asset),
             representations,
+            grid: None,
             repeatability_rms_db: manifest
                 .conditions
                 .first()
@@ -176,6 +185,7 @@ impl AssetSummary {
                 text += &row(r, at, self.quantity);
             }
         }
+        text += &self.left_out_text();
         for line in self.warnings.iter().chain(&self.notes) {
             let _ = writeln!(text, "note: {}", plain(line));
         }
@@ -200,6 +210,54 @@ impl AssetSummary {
             .filter_map(|(name, text)| Some((name, text.as_ref()?)));
         said.map(|(name, text)| format!("{name}: {}\n", plain(text)))
             .collect()
+    }
+}
+
+impl AssetSummary {
+    /// The leave-one-out errors of each model, where they are known: RMS and largest over the conditions.
+    fn left_out_text(&self) -> String {
+        let mut text = String::new();
+        for r in &self.representations {
+            let all: Vec<LeftOut> = r.at.iter().filter_map(|at| at.left_out).collect();
+            let bands = Spread::of(all.iter().map(|one| one.band_error_rms_db));
+            let octaves = Spread::of(all.iter().filter_map(|one| one.third_octave_error_rms_db));
+            let Some((bands, octaves)) = bands.zip(octaves) else {
+                continue;
+            };
+            if text.is_empty() {
+                text +=
+                    "\n  model    left out  bands/dB: RMS  largest  third-oct/dB: RMS  largest\n";
+            }
+            let _ = writeln!(
+                text,
+                "  {:8} {:>8}  {:>13.2}  {:>7.2}  {:>17.2}  {:>7.2}",
+                short_name(&r.model),
+                all.len(),
+                bands.rms,
+                bands.largest,
+                octaves.rms,
+                octaves.largest
+            );
+        }
+        text
+    }
+}
+
+/// RMS and largest of some errors.
+struct Spread {
+    rms: f64,
+    largest: f64,
+}
+
+impl Spread {
+    /// `None` without errors.
+    fn of(errors: impl Iterator<Item = f64>) -> Option<Self> {
+        let errors: Vec<f64> = errors.collect();
+        let squares: f64 = errors.iter().map(|error| error * error).sum();
+        (!errors.is_empty()).then(|| Self {
+            rms: (squares / errors.len() as f64).sqrt(),
+            largest: errors.iter().copied().fold(0.0, f64::max),
+        })
     }
 }
 
@@ -265,6 +323,9 @@ fn short_number(x: f64) -> String {
 /// Speed, force and repeatability of a condition, as far as they are known.
 fn condition_text(condition: &Condition) -> String {
     let mut text = motion_text(condition);
+    if let Some(segments) = condition.segments {
+        let _ = write!(text, ", {segments} segments");
+    }
     if let Some(db) = condition.repeatability_rms_db {
         let _ = write!(text, ", the recording itself repeats within {db:.2} dB");
     }
@@ -313,6 +374,7 @@ impl AtSummary {
             parameters: named_parameters(fields, flat),
             level_rms: at.level_rms,
             quality: at.quality.clone(),
+            left_out: at.left_out,
         }
     }
 }

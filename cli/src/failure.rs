@@ -7,6 +7,7 @@ use htex_format::plain;
 
 use crate::exit::Exit;
 use crate::flags::{of_author_error, of_read_error, with, with_flags};
+use crate::located::named;
 use crate::shown::shown;
 
 /// An error, with its place.
@@ -22,8 +23,15 @@ pub(crate) enum Failure {
     Device(#[from] htex_device::DeviceError),
     #[error(transparent)]
     Tradeoff(#[from] htex_tradeoff::TradeoffError),
+    #[error(transparent)]
+    Storage(#[from] htex_storage::StorageError),
     #[error("{file}: {error}{}", flag_of(.error))]
     Asset { file: String, error: htex::Error },
+    #[error("{file}: {error}")]
+    Library {
+        file: String,
+        error: htex_library::LibraryError,
+    },
     #[error("{file}: {}", findings_text(.findings))]
     Findings {
         file: String,
@@ -33,6 +41,12 @@ pub(crate) enum Failure {
     Scene {
         file: String,
         error: Box<htex_scene::SceneError>,
+    },
+    #[cfg(feature = "build")]
+    #[error("{recipe}: {error}")]
+    Build {
+        recipe: String,
+        error: htex_build::BuildError,
     },
     #[error("cannot read {file}: {error}")]
     Read { file: String, error: std::io::Error },
@@ -50,10 +64,12 @@ impl Failure {
     pub(crate) fn exit_code(&self) -> Exit {
         use htex_device::DeviceError::{Rate, Setting, Unknown};
         use htex_host::HostError::{Option, UnknownModel};
+        use htex_storage::StorageError::{NoCloud, ReadOnly};
         match self {
             Self::Usage(_)
             | Self::Model(Option { .. } | UnknownModel { .. })
             | Self::Device(Setting { .. } | Rate { .. } | Unknown { .. })
+            | Self::Storage(NoCloud { .. } | ReadOnly { .. })
             | Self::Asset {
                 error: htex::Error::Model(UnknownModel { .. }) | htex::Error::EmbeddedOff { .. },
                 ..
@@ -66,6 +82,19 @@ impl Failure {
         Self::Asset {
             file: shown(file),
             error: error.into(),
+        }
+    }
+
+    /// A library that could not be read or written.
+    pub(crate) fn library(file: &Path, error: htex_library::LibraryError) -> Self {
+        use htex_library::LibraryError::{Open, Write};
+        match error {
+            Open { path, error } => Self::read(&path, error),
+            Write { path, error } => Self::write(&path, error),
+            error => Self::Library {
+                file: shown(file),
+                error,
+            },
         }
     }
 
@@ -89,6 +118,20 @@ impl Failure {
         }
     }
 
+    /// A build that stopped.
+    #[cfg(feature = "build")]
+    pub(crate) fn build(recipe: &Path, error: htex_build::BuildError) -> Self {
+        use htex_build::BuildError;
+        match error {
+            BuildError::Read { file, error } => Self::read(&file, error),
+            BuildError::Write { file, error } => Self::write(&file, error),
+            error => Self::Build {
+                recipe: shown(recipe),
+                error,
+            },
+        }
+    }
+
     pub(crate) fn read(file: &Path, error: std::io::Error) -> Self {
         Self::Read {
             file: shown(file),
@@ -108,7 +151,7 @@ impl Failure {
     /// The message, line by line. It may quote files and their names: control characters are escaped, and lines
     /// end only where this program ends them.
     pub(crate) fn to_lines(&self) -> Vec<String> {
-        let text = self.to_string();
+        let text = named(&self.to_string());
         let (first, findings) = match self {
             // One line for each finding, with control characters escaped.
             Self::Findings { .. } | Self::Author(AuthorError::Strict { .. }) => {

@@ -71,10 +71,12 @@ pub(crate) fn of_read_error(error: &ReadError) -> Option<&'static str> {
         ReadError::TooManyValues { .. } => Some("--most-numbers"),
         ReadError::Time { .. } | ReadError::NoRate { .. } => Some("--rate"),
         ReadError::Columns { .. } => Some("--map, --quantity"),
+        ReadError::Lengths { .. } => Some("--map"),
         ReadError::Option { option, .. } => match *option {
             "rate_hz" => Some("--rate"),
             "scale" => Some("--scale"),
             "map" => Some("--map"),
+            "tracker" => Some("--tracker, --tracker-map"),
             _ => None,
         },
         _ => None,
@@ -86,6 +88,11 @@ pub(crate) fn of_author_error(error: &AuthorError) -> Option<&'static str> {
     match error {
         AuthorError::NoSegments { .. } => Some("--segments windows"),
         AuthorError::OffTarget { .. } => Some("--speed, --force, --at, --map"),
+        AuthorError::NoMotion { .. } => Some("--map, --speed, --force, --grid"),
+        AuthorError::NothingSteady { .. } => Some("--map, --grid"),
+        AuthorError::GridConstant { .. }
+        | AuthorError::GridFew { .. }
+        | AuthorError::GridEmpty { .. } => Some("--grid"),
         AuthorError::UnknownConditions { .. } => Some("--at speed=80,force=0.4"),
         AuthorError::Strict { .. } => Some("--strict; `htex explain CODE` describes each"),
         AuthorError::Read(error) => of_read_error(error),

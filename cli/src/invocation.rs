@@ -36,7 +36,7 @@ impl Program {
     }
 }
 
-/// Keeps the arguments (without the program's name) and the program of this run.
+/// Keeps the shown arguments (without the program's name) and the program of this run.
 pub(crate) fn set(arguments: Vec<OsString>, program: Vec<OsString>) {
     *CURRENT.lock().unwrap_or_else(PoisonError::into_inner) = Invocation { arguments, program };
 }

@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod assets;
+mod bounded;
 mod checking;
 mod commands;
 mod devices;
@@ -10,8 +11,10 @@ mod exit;
 mod failure;
 mod flags;
 mod gains;
+mod grid;
 mod guardian;
 mod invocation;
+mod located;
 mod metadata;
 mod models;
 mod motions;
@@ -37,6 +40,8 @@ use std::ffi::OsString;
 use clap::Parser;
 
 use commands::Command;
+use exit::Exit;
+use failure::Failure;
 
 /// Texture assets for touch: fit, inspect, measure and play them.
 ///
@@ -83,16 +88,27 @@ Exit status: 0 ok, 1 findings or failure, 2 wrong usage."
 /// ```
 pub fn run(arguments: impl IntoIterator<Item = OsString>, program: Vec<OsString>) -> u8 {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    invocation::set(arguments.iter().skip(1).cloned().collect(), program);
+    let shown = arguments
+        .iter()
+        .skip(1)
+        .cloned()
+        .map(located::without_secrets);
+    invocation::set(shown.collect(), program);
+    let code = parse_and_run(arguments);
+    located::clear();
+    code
+}
+
+fn parse_and_run(arguments: Vec<OsString>) -> u8 {
     let command = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli.command,
         Err(error) => {
             // A closed standard output or standard error is no error of the command.
             let _ = error.print();
-            return u8::try_from(error.exit_code()).unwrap_or(exit::Exit::USAGE.code());
+            return u8::try_from(error.exit_code()).unwrap_or(Exit::USAGE.code());
         }
     };
-    match signals::handle().and_then(|()| command.run()) {
+    match run_command(command) {
         Ok(exit) => exit.code(),
         Err(failure) => {
             let lines = failure.to_lines();
@@ -100,4 +116,15 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, program: Vec<OsString>
             failure.exit_code().code()
         }
     }
+}
+
+/// Runs a command between the downloads of its inputs and the uploads of its outputs.
+fn run_command(command: Command) -> Result<Exit, Failure> {
+    signals::handle()?;
+    located::fetch()?;
+    let exit = command.run()?;
+    // A command may have asked for signals, and from here on nothing looks at them.
+    signals::handle()?;
+    located::put()?;
+    Ok(exit)
 }

@@ -10,6 +10,7 @@ use serde_json::Value;
 
 use crate::failure::Failure;
 use crate::flags::with_flags;
+use crate::located::named;
 
 /// Prints a line on standard error; unlike `eprintln!` it does not panic when that is closed.
 macro_rules! tell {
@@ -33,8 +34,15 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     write(&lines)
 }
 
-fn write(text: &str) -> Result<(), Failure> {
-    match std::io::stdout().lock().write_all(text.as_bytes()) {
+/// Writes text as it is to standard output, with the names that files elsewhere have there.
+pub(crate) fn write(text: &str) -> Result<(), Failure> {
+    write_bytes(named(text).as_bytes())
+}
+
+/// Writes bytes to standard output.
+pub(crate) fn write_bytes(bytes: &[u8]) -> Result<(), Failure> {
+    let mut output = std::io::stdout().lock();
+    match output.write_all(bytes).and_then(|()| output.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             Err(Failure::write(Path::new("standard output"), error))
         }
@@ -76,14 +84,14 @@ fn tame(value: &mut Value) {
 /// Prints a warning.
 pub(crate) fn warn(warnings: &[String]) {
     for warning in warnings {
-        tell!("warning: {}", plain(&with_flags(warning)));
+        tell!("warning: {}", plain(&named(&with_flags(warning))));
     }
 }
 
 /// Prints a note.
 pub(crate) fn note(notes: &[String]) {
     for note in notes {
-        tell!("note: {}", plain(&with_flags(note)));
+        tell!("note: {}", plain(&named(&with_flags(note))));
     }
 }
 

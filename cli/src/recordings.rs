@@ -1,17 +1,17 @@
 //! Arguments for reading recordings, shared by the commands that read them.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use htex_author::read::{ColumnMap, MOST_VALUES, ReadOptions, read_recording};
-use htex_author::response::read_response;
+use htex_author::read::{MOST_VALUES, read_recording};
+use htex_author::settings::ReadingSettings;
 use htex_author::{
     Averaging, Exploration, SegmentChoice, SpectrumOptions, Take, validate_recording,
 };
 use htex_format::{Quantity, Report};
 
 use crate::failure::Failure;
+use crate::located;
 
 /// Options of reading recordings.
 #[derive(Args)]
@@ -21,25 +21,34 @@ pub(crate) struct RecordingArgs {
     #[arg(long, value_name = "HZ")]
     rate: Option<f64>,
 
-    /// Names and scales other people's CSV columns: ROLE=COLUMN or ROLE=COLUMN:SCALE, e.g.
-    /// lateral=lateral_V:0.4444,normal=normal_V:0.31. Roles: lateral, lateral_x, lateral_y (of other quantities:
-    /// signal, signal_x, signal_y, signal_z), normal, speed, time, x, y; columns by name or number (#3); scales lead
-    /// to N, the quantity's unit, mm/s, s, mm
+    /// Names and scales other people's columns and channels: ROLE=COLUMN, ROLE=COLUMN:SCALE or ROLE=EXPRESSION, e.g.
+    /// lateral=lateral_V:0.4444,normal=-(fz1+fz2)*0.31. Roles: lateral, lateral_x, lateral_y (of other quantities:
+    /// signal, signal_x, signal_y, signal_z), normal, speed, time, x, y; columns by name, number (#3) or path (/run1/fx),
+    /// in quotes if the name has an operator; the values are in N, the quantity's unit, mm/s, s, mm
     #[arg(long, value_name = "MAP")]
     map: Option<String>,
+
+    /// The finger's motion from a tracker at its own rate: a file with the columns time and x, y (or speed), in times of the
+    /// recording's clock; a recording without times begins at 0 s. One for each recording, or one for all
+    #[arg(long, value_name = "FILE")]
+    tracker: Vec<PathBuf>,
+
+    /// Names and scales the tracker's columns, as --map does: time=stamp_ms:0.001,x=#2,y=#3
+    #[arg(long, value_name = "MAP", requires = "tracker")]
+    tracker_map: Option<String>,
 
     /// What the texture's signal is: a force in N, an acceleration in m/s2 (tool tips), a velocity in m/s, a
     /// displacement in m
     #[arg(long, value_enum, default_value = "lateral-force")]
     quantity: QuantityArg,
 
-    /// What a full-scale sample in WAV and NPY files is, in the quantity's unit
+    /// What a full-scale sample in WAV, FLAC and NPY files is, in the quantity's unit
     #[arg(long, value_name = "UNITS")]
     scale: Option<f64>,
 
     /// Response of the recording setup to divide out: CSV with columns frequency_hz,
     /// magnitude and, if known, phase_rad
-    #[arg(long, value_name = "CSV")]
+    #[arg(long, value_name = "CSV", value_parser = located::RECORDING)]
     frf: Option<PathBuf>,
 
     /// Reads the recording from this time on, s
@@ -84,7 +93,7 @@ pub(crate) struct RecordingArgs {
     strict: bool,
 }
 
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
+#[derive(Clone, Copy, ValueEnum)]
 enum QuantityArg {
     #[value(alias = "lateral_force")]
     LateralForce,
@@ -95,14 +104,14 @@ enum QuantityArg {
     Displacement,
 }
 
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
+#[derive(Clone, Copy, ValueEnum)]
 enum SegmentsArg {
     Auto,
     Sweeps,
     Windows,
 }
 
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
+#[derive(Clone, Copy, ValueEnum)]
 enum AveragingArg {
     Magnitude,
     Rms,
@@ -110,24 +119,57 @@ enum AveragingArg {
 }
 
 impl RecordingArgs {
-    /// The file of a response that is read.
-    pub(crate) fn frf(&self) -> Option<&Path> {
-        self.frf.as_deref()
+    /// The files that are read with the recordings: a response, trackers.
+    pub(crate) fn inputs(&self) -> impl Iterator<Item = &Path> {
+        self.frf.iter().chain(&self.tracker).map(PathBuf::as_path)
     }
 
     pub(crate) fn strict(&self) -> bool {
         self.strict
     }
 
+    /// What was given, as settings.
+    pub(crate) fn settings(&self) -> ReadingSettings {
+        ReadingSettings {
+            rate_hz: self.rate,
+            map: self.map.clone(),
+            trackers: self.tracker.clone(),
+            tracker_map: self.tracker_map.clone(),
+            quantity: Some(match self.quantity {
+                QuantityArg::LateralForce => Quantity::LateralForce,
+                QuantityArg::NormalForce => Quantity::NormalForce,
+                QuantityArg::Acceleration => Quantity::Acceleration,
+                QuantityArg::Velocity => Quantity::Velocity,
+                QuantityArg::Displacement => Quantity::Displacement,
+            }),
+            scale: self.scale,
+            response: self.frf.clone(),
+            from_s: self.from,
+            to_s: self.to,
+            most_values: Some(self.most_numbers),
+            segments: Some(match self.segments {
+                SegmentsArg::Auto => SegmentChoice::Auto,
+                SegmentsArg::Sweeps => SegmentChoice::Sweeps,
+                SegmentsArg::Windows => SegmentChoice::Windows,
+            }),
+            averaging: Some(match self.averaging {
+                AveragingArg::Magnitude => Averaging::Magnitude,
+                AveragingArg::Rms => Averaging::Rms,
+                AveragingArg::Complex => Averaging::Complex,
+            }),
+        }
+    }
+
     /// Reads recordings, each with the condition that was given for it.
     pub(crate) fn read(&self, files: &[PathBuf]) -> Result<Vec<Take>, Failure> {
-        let options = self.read_options()?;
+        let options = self.settings().read_options(files.len())?;
         let given = self.conditions(files.len())?;
+        let given = options.iter().zip(given);
         files
             .iter()
             .zip(given)
-            .map(|(file, given)| {
-                let recording = read_recording(file, &options)?;
+            .map(|(file, (options, given))| {
+                let recording = read_recording(file, options)?;
                 Ok(Take { recording, given })
             })
             .collect()
@@ -135,86 +177,33 @@ impl RecordingArgs {
 
     /// Reads one recording, with its condition.
     pub(crate) fn read_one(&self, file: &Path) -> Result<Take, Failure> {
-        let recording = read_recording(file, &self.read_options()?)?;
-        let given = self.conditions(1)?.pop().unwrap_or_default();
-        Ok(Take { recording, given })
+        self.read(&[file.to_owned()])?
+            .pop()
+            .ok_or_else(|| Failure::Usage("a recording is missing".to_owned()))
     }
 
     /// The findings in one recording.
     pub(crate) fn validate(&self, file: &Path) -> Result<Report, Failure> {
         let given = self.conditions(1)?.pop().unwrap_or_default();
-        let (read, options) = (self.read_options()?, self.spectrum_options()?);
-        Ok(validate_recording(file, &read, given, &options)?)
+        let settings = self.settings();
+        let read = settings.read_options(1)?.pop().unwrap_or_default();
+        Ok(validate_recording(
+            file,
+            &read,
+            given,
+            &settings.spectrum_options()?,
+        )?)
     }
 
     /// Whether any option of reading recordings was given.
     pub(crate) fn is_given(&self) -> bool {
         let condition = self.speed.is_some() || self.force.is_some() || !self.at.is_empty();
         let bounded = self.most_numbers != MOST_VALUES;
-        condition || self.strict || bounded || !self.recorded_options().is_empty()
-    }
-
-    fn read_options(&self) -> Result<ReadOptions, Failure> {
-        let map = match &self.map {
-            None => None,
-            Some(text) => {
-                let map = text.parse::<ColumnMap>();
-                Some(map.map_err(|error| Failure::Usage(format!("--map {text}: {error}")))?)
-            }
-        };
-        Ok(ReadOptions::default()
-            .with_rate_hz(self.rate)
-            .with_map(map)
-            .with_quantity(match self.quantity {
-                QuantityArg::LateralForce => Quantity::LateralForce,
-                QuantityArg::NormalForce => Quantity::NormalForce,
-                QuantityArg::Acceleration => Quantity::Acceleration,
-                QuantityArg::Velocity => Quantity::Velocity,
-                QuantityArg::Displacement => Quantity::Displacement,
-            })
-            .with_scale(self.scale)
-            .with_from_s(self.from)
-            .with_to_s(self.to)
-            .with_most_values(self.most_numbers))
+        condition || self.strict || bounded || !self.settings().recorded().is_empty()
     }
 
     pub(crate) fn spectrum_options(&self) -> Result<SpectrumOptions, Failure> {
-        Ok(SpectrumOptions::default()
-            .with_segments(match self.segments {
-                SegmentsArg::Auto => SegmentChoice::Auto,
-                SegmentsArg::Sweeps => SegmentChoice::Sweeps,
-                SegmentsArg::Windows => SegmentChoice::Windows,
-            })
-            .with_averaging(match self.averaging {
-                AveragingArg::Magnitude => Averaging::Magnitude,
-                AveragingArg::Rms => Averaging::Rms,
-                AveragingArg::Complex => Averaging::Complex,
-            })
-            .with_response(self.frf.as_deref().map(read_response).transpose()?))
-    }
-
-    /// The options that differ from their defaults, for the asset's provenance.
-    pub(crate) fn recorded_options(&self) -> BTreeMap<String, String> {
-        let name = |value: &dyn std::fmt::Display| Some(value.to_string());
-        let file = |path: &PathBuf| path.file_name().map(|f| f.to_string_lossy().into_owned());
-        let entries = [
-            ("rate", self.rate.as_ref().and_then(|v| name(v))),
-            ("map", self.map.clone()),
-            (
-                "quantity",
-                value_name(self.quantity, QuantityArg::LateralForce),
-            ),
-            ("scale", self.scale.as_ref().and_then(|v| name(v))),
-            ("from", self.from.as_ref().and_then(|v| name(v))),
-            ("to", self.to.as_ref().and_then(|v| name(v))),
-            ("frf", self.frf.as_ref().and_then(file)),
-            ("segments", value_name(self.segments, SegmentsArg::Auto)),
-            ("averaging", value_name(self.averaging, AveragingArg::Rms)),
-        ];
-        let said = entries
-            .into_iter()
-            .filter_map(|(key, value)| Some((key.to_owned(), value?)));
-        said.collect()
+        Ok(self.settings().spectrum_options()?)
     }
 
     /// A condition for each of `count` recordings.
@@ -237,12 +226,6 @@ impl RecordingArgs {
             ))),
         }
     }
-}
-
-/// The name of a choice if it is not the default.
-fn value_name<T: ValueEnum + PartialEq>(value: T, default: T) -> Option<String> {
-    let chosen = (value != default).then_some(value)?;
-    chosen.to_possible_value().map(|v| v.get_name().to_owned())
 }
 
 /// Reads `speed=80,force=0.4`; a quantity that is left out stays as it was.

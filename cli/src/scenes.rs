@@ -12,10 +12,12 @@ use serde_json::Value;
 
 use crate::devices::{DeviceArgs, SettingArgs};
 use crate::failure::Failure;
+use crate::located;
 use crate::output::{note, warn};
 use crate::outputs::check_outputs;
 use crate::plugins::{PlayerArgs, PluginArgs};
 use crate::schemas::Named;
+use crate::shown::shown;
 
 /// Default motion: the paper's usual speed (mm/s) and force (newtons).
 pub(crate) const USUAL: (f64, f64) = (80.0, 0.4);
@@ -111,6 +113,12 @@ impl SceneArgs {
 
     /// Loads a scene file.
     pub(crate) fn open(&self, file: &Path, device: &DeviceOverride) -> Result<Ready, Failure> {
+        if located::is_copy(file) {
+            return Err(Failure::Usage(format!(
+                "{}: a scene names files beside it; download its folder and name the scene there",
+                shown(file)
+            )));
+        }
         self.load(file, |around| LoadedScene::open(file, around, device))
     }
 

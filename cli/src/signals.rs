@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
 
 use crate::failure::Failure;
+use crate::located;
 use crate::output::tell;
 
 /// Exit status of an interrupted program, by convention.
@@ -34,6 +35,7 @@ fn install() -> Result<(), String> {
     let handler = || match MEANING.load(Ordering::Relaxed) {
         ENDS => {
             htex_format::remove_unfinished();
+            located::remove_copies();
             std::process::exit(INTERRUPTED);
         }
         IGNORED => {}

@@ -41,6 +41,7 @@ const FLAGS: &[(&str, &str)] = &[
         "--speed=@ --force=@ --rate=@ --seed=@ --quality=loop:@ --quality=filter:@",
     ),
     ("synth cloth.htex -o cloth.wav", "--seconds=@"),
+    ("lib find cloth.htexlib", "--speed=@ --force=@"),
     (
         "bake cloth.htex -o cloth.bin",
         "--rate=@ --within=@ --at=speed=@,force=0.4 --grid=speed=@:80:2,force=0.4 --grid=speed=80,force=0.2:@:3 \
@@ -66,6 +67,8 @@ fn flags_at_edges_end_well_or_in_a_sentence() {
     let made = "simulate --surface vinyl --seconds 2 -o rec.csv";
     assert_eq!(place.run(&words(made)).code(), 0);
     let made = "fit rec.csv --license CC0-1.0 -o cloth.htex";
+    assert_eq!(place.run(&words(made)).code(), 0);
+    let made = "lib pack cloth.htexlib cloth.htex";
     assert_eq!(place.run(&words(made)).code(), 0);
     let scene = r#"{"htex_scene": "1.0", "surfaces": [{"asset": "cloth.htex"}],
         "motion": {"constant": {"speed_mm_s": 80, "force_n": 0.4}}, "duration_s": 0.1}"#;

@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::assets::short_name;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::located;
 use crate::output::{note, print, print_json, warn};
 use crate::plugins::PlayerArgs;
 use crate::recordings::RecordingArgs;
@@ -17,10 +18,12 @@ use crate::recordings::RecordingArgs;
 /// condition.
 #[derive(Args)]
 pub(crate) struct Compare {
-    /// The recording: CSV, WAV or NPY
+    /// The recording: CSV, WAV, FLAC, NPY, MATLAB, TDMS, Parquet, Arrow, HDF5
+    #[arg(value_parser = located::RECORDING)]
     recording: PathBuf,
 
     /// The asset
+    #[arg(value_parser = located::ASSET)]
     asset: PathBuf,
 
     #[command(flatten)]

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use htex::VoiceOptions;
 use htex_author::read::{ReadOptions, read_recording};
+use htex_author::settings::FitSettings;
 use htex_author::simulate::{SimulationError, SimulationOptions, Surface, simulate};
 use htex_author::{
     AssetRequest, AuthorError, Exploration, SetupResponse, SpectrumOptions, Take, fit_asset,
@@ -16,7 +17,7 @@ use super::simulate::write_response;
 use crate::assets::{AssetSummary, RepresentationSummary, short_name};
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::models::{model_requests, tool};
+use crate::models::tool;
 use crate::output::{print, print_json, write_file};
 use crate::progress::bar;
 use crate::report::Reported;
@@ -139,6 +140,7 @@ impl Demo {
                     .to_owned(),
             ],
             textures,
+            pictures: Vec::new(),
             command: format!("htex demo {} --seed {}", self.dir.display(), self.seed),
         }
     }
@@ -195,11 +197,7 @@ fn request(name: &str, rig: &SetupResponse) -> Result<AssetRequest, Failure> {
         .with_license("CC0-1.0".to_owned())
         .with_author("htex demo".to_owned())
         .with_tags(vec!["simulated".to_owned()])
-        .with_models(model_requests(
-            &Registry::builtin(),
-            &["all".to_owned()],
-            &[],
-        )?)
+        .with_models(FitSettings::default().models(&Registry::builtin())?)
         .with_spectrum(SpectrumOptions::default().with_response(rig.clone()))
         .with_recorded_options(BTreeMap::from([("frf".to_owned(), RIG.to_owned())]))
         .with_tool(tool()))

@@ -7,7 +7,8 @@ use serde_json::Value;
 use crate::assets::AssetSummary;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::metadata::MetadataArgs;
+use crate::located;
+use crate::metadata::{MetadataArgs, checked};
 use crate::output::{print, print_json, write_file};
 use crate::outputs::check_outputs;
 use crate::shown::shown;
@@ -19,10 +20,11 @@ use crate::shown::shown;
 #[derive(Args)]
 pub(crate) struct Edit {
     /// The asset
+    #[arg(value_parser = located::ASSET)]
     asset: PathBuf,
 
     /// The asset to write [default: the asset itself]
-    #[arg(short, long, value_name = "HTEX")]
+    #[arg(short, long, value_name = "HTEX", value_parser = located::OUTPUT)]
     output: Option<PathBuf>,
 
     #[command(flatten)]
@@ -34,17 +36,24 @@ pub(crate) struct Edit {
 }
 
 impl Edit {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
-        if !self.metadata.is_given() {
+    pub(crate) fn run(mut self) -> Result<Exit, Failure> {
+        let metadata = std::mem::take(&mut self.metadata).given();
+        if metadata.is_empty() {
             let sentence = "nothing to change: give at least one of the metadata, such as --author";
             return Err(Failure::Usage(sentence.to_owned()));
         }
+        if self.output.is_none() && located::is_copy(&self.asset) {
+            let file = located::named(&shown(&self.asset));
+            return Err(Failure::Usage(format!(
+                "{file}: an asset elsewhere is not replaced; name another file to write by -o FILE"
+            )));
+        }
         check_outputs(self.output.as_deref(), [self.asset.as_path()])?;
-        self.metadata.check()?;
+        checked(&metadata)?;
         let mut asset = htex_format::Asset::open(&self.asset)
             .map_err(|error| Failure::asset(&self.asset, error))?;
         self.check_kept(&asset)?;
-        self.metadata.apply(&mut asset.manifest);
+        metadata.apply(&mut asset.manifest);
         let output = self.output.as_ref().unwrap_or(&self.asset);
         let bytes = asset.to_bytes().map_err(htex_author::AuthorError::from)?;
         write_file(output, &bytes)?;

@@ -18,6 +18,7 @@ impl Explain {
         let Some(code) = self.code else {
             let lines = RULES
                 .iter()
+                .chain(htex_library::RULES)
                 .chain(htex_scene::RULES)
                 .chain(htex_author::findings::RULES)
                 .map(|rule| format!("{:36} {}\n", rule.code, rule.summary));
@@ -26,6 +27,7 @@ impl Explain {
         };
         let code = code.to_uppercase();
         let rule = explain(&code)
+            .or_else(|| htex_library::explain(&code))
             .or_else(|| htex_scene::explain(&code))
             .or_else(|| htex_author::findings::explain(&code));
         let rule = rule.ok_or_else(|| {

@@ -1,17 +1,19 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_author::{AssetRequest, FittedAsset, Level, fit_asset};
-use htex_format::Plugin;
-use htex_host::{LoadedModel, Origin, Registry};
+use htex_author::settings::FitSettings;
+use htex_author::{AssetRequest, EmbedError, FittedAsset, Level, embed_plugins, fit_asset};
+use htex_host::Registry;
 use htex_report::{TextureReport, texture_report};
 
 use crate::assets::AssetSummary;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::grid::{grid_plot, grid_text};
 use crate::invocation;
-use crate::metadata::MetadataArgs;
-use crate::models::{model_requests, tool};
+use crate::located;
+use crate::metadata::{MetadataArgs, checked};
+use crate::models::tool;
 use crate::output::{note, print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
@@ -24,8 +26,8 @@ use crate::report::Reported;
 /// condition; others become further conditions of the same texture.
 #[derive(Args)]
 pub(crate) struct Fit {
-    /// Recordings of one texture: CSV, WAV or NPY
-    #[arg(required = true)]
+    /// Recordings of one texture: CSV, WAV, FLAC, NPY, MATLAB, TDMS, Parquet, Arrow, HDF5
+    #[arg(required = true, value_parser = located::RECORDING)]
     recordings: Vec<PathBuf>,
 
     /// Models by short name or id, comma-separated, or `all`
@@ -48,7 +50,7 @@ pub(crate) struct Fit {
     level: LevelArg,
 
     /// The asset to write
-    #[arg(short, long, value_name = "HTEX")]
+    #[arg(short, long, value_name = "HTEX", value_parser = located::OUTPUT)]
     output: PathBuf,
 
     /// Keep the recorded spectrum in the asset (788 bytes a condition, before compression)
@@ -64,8 +66,17 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "FILE", requires = "embed_plugin")]
     sign_with: Option<PathBuf>,
 
+    /// Fit a grid of conditions to recordings in which speed and force change freely: `auto`, or lines as
+    /// speed=40,80,160 and force=0.3,0.6, each in a --grid of its own
+    #[arg(long, value_name = "LINES")]
+    grid: Vec<String>,
+
+    /// Draw the grid: steady windows over speed and force, mesh, repeatability
+    #[arg(long, value_name = "SVG", requires = "grid")]
+    grid_svg: Option<PathBuf>,
+
     /// Draw the spectra and errors of all models into this HTML page, as `htex demo` does
-    #[arg(long, value_name = "HTML")]
+    #[arg(long, value_name = "HTML", value_parser = located::OUTPUT)]
     report: Option<PathBuf>,
 
     #[command(flatten)]
@@ -82,14 +93,14 @@ pub(crate) struct Fit {
     json: bool,
 }
 
-#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
+#[derive(Clone, Copy, clap::ValueEnum)]
 enum LevelArg {
     Fitted,
     Recording,
 }
 
 impl Fit {
-    pub(crate) fn run(self) -> Result<Exit, Failure> {
+    pub(crate) fn run(mut self) -> Result<Exit, Failure> {
         let files = self
             .recordings
             .iter()
@@ -97,16 +108,18 @@ impl Fit {
             .chain(&self.sign_with);
         let files = files.chain(self.plugins.files()).map(PathBuf::as_path);
         let outputs = [&self.output].into_iter().chain(&self.report);
+        let outputs = outputs.chain(&self.grid_svg);
         check_outputs(
             outputs.map(PathBuf::as_path),
-            files.chain(self.reading.frf()),
+            files.chain(self.reading.inputs()),
         )?;
         let registry = self.plugins.registry_with(&self.embed_plugin)?;
-        self.metadata.check()?;
+        let metadata = std::mem::take(&mut self.metadata).given();
+        checked(&metadata)?;
         let request = self.request(&registry)?;
         let takes = self.reading.read(&self.recordings)?;
         let mut fitted = fit_asset(&takes, &request)?;
-        self.metadata.apply(&mut fitted.asset.manifest);
+        metadata.apply(&mut fitted.asset.manifest);
         self.embed(&mut fitted.asset, &registry)?;
         let bytes = fitted
             .asset
@@ -117,17 +130,25 @@ impl Fit {
         for (r, ms) in summary.representations.iter_mut().zip(&fitted.fit_ms) {
             r.fit_ms = Some(*ms);
         }
+        if let (Some(file), Some(grid)) = (&self.grid_svg, &fitted.grid) {
+            let picture = grid_plot(&fitted.asset.manifest.name, grid).to_svg();
+            write_file(file, picture.as_bytes())?;
+        }
         if let Some(file) = &self.report {
             self.write_report(file, &fitted, &summary, registry)?;
         }
         if self.json {
             summary.notes.extend(fitted.notes);
+            summary.grid = fitted.grid;
             print_json(&summary)?;
         } else {
             warn(&summary.warnings);
             note(&fitted.notes);
             summary.warnings.clear();
             print(&summary.to_text())?;
+            if let Some(grid) = &fitted.grid {
+                print(&grid_text(grid))?;
+            }
         }
         Ok(Exit::SUCCESS)
     }
@@ -148,10 +169,15 @@ impl Fit {
             recording_bytes: sizes.map(|size| size.map_or(0, |m| m.len())).sum(),
         };
         let textures = reported.textures();
+        let (grid, name) = (fitted.grid.as_ref(), fitted.asset.manifest.name.clone());
         let page = TextureReport {
             title: format!("{}: recording and models", fitted.asset.manifest.name),
             textures: textures.map_err(|error| Failure::asset(&self.output, error))?,
             command: command_line(),
+            pictures: grid
+                .map(|grid| grid_plot(&name, grid).to_svg())
+                .into_iter()
+                .collect(),
             ..TextureReport::default()
         };
         write_file(file, texture_report(&page).as_bytes())
@@ -160,63 +186,35 @@ impl Fit {
     /// Puts the modules of fitted models into the asset.
     fn embed(&self, asset: &mut htex_format::Asset, registry: &Registry) -> Result<(), Failure> {
         let secret_key = self.sign_with.as_deref().map(secret_key).transpose()?;
-        for file in &self.embed_plugin {
-            let of_file =
-                |m: &&LoadedModel| matches!(m.origin(), Origin::Wasm(path) if path == file);
-            let model = registry.models().iter().find(of_file).ok_or_else(|| {
+        let embedded = embed_plugins(asset, registry, &self.embed_plugin, secret_key.as_ref());
+        embedded.map_err(|error| match error {
+            EmbedError::Read { file, error } => Failure::read(&file, error),
+            EmbedError::NotFitted { file, model } => {
                 let file = file.display();
                 Failure::Usage(format!(
-                    "--embed-plugin {file}: only WASM modules can be embedded"
+                    "--embed-plugin {file}: {model} was not fitted; add it to --model"
                 ))
-            })?;
-            if !asset
-                .manifest
-                .representations
-                .iter()
-                .any(|r| r.model == model.id())
-            {
-                let (file, id) = (file.display(), model.id());
-                let sentence =
-                    format!("--embed-plugin {file}: {id} was not fitted; add it to --model");
-                return Err(Failure::Usage(sentence));
             }
-            let module = std::fs::read(file).map_err(|error| Failure::read(file, error))?;
-            let mut plugin = Plugin::new(model.id(), &model.descriptor().version, &module);
-            if let Some(key) = &secret_key {
-                plugin = plugin.signed(key);
-            }
-            asset.manifest.plugins.push(plugin);
-            asset.plugins.push(module);
-        }
-        Ok(())
+            other => Failure::Usage(format!("--embed-plugin {other}")),
+        })
     }
 
     fn request(&self, registry: &Registry) -> Result<AssetRequest, Failure> {
-        let mut recorded_options = self.reading.recorded_options();
-        for option in &self.option {
-            if let Some((name, value)) = option.split_once('=') {
-                recorded_options.insert(name.to_owned(), value.to_owned());
-            }
-        }
-        if self.level == LevelArg::Fitted {
-            recorded_options.insert("level".to_owned(), "fitted".to_owned());
-        }
-        let stem = self
-            .output
-            .file_stem()
-            .map(|s| s.to_string_lossy().into_owned());
-        Ok(AssetRequest::new(stem.unwrap_or_default())
-            .with_models(model_requests(registry, &self.model, &self.option)?)
-            .with_spectrum(self.reading.spectrum_options()?)
-            .with_level(match self.level {
+        let mut settings = FitSettings {
+            models: Some(self.model.clone()),
+            level: Some(match self.level {
                 LevelArg::Fitted => Level::Fitted,
                 LevelArg::Recording => Level::Recording,
-            })
-            .with_alternatives(alternatives(registry))
-            .with_strict(self.reading.strict())
-            .with_keep_reference(self.keep_reference)
-            .with_recorded_options(recorded_options)
-            .with_tool(tool()))
+            }),
+            keep_reference: Some(self.keep_reference),
+            strict: Some(self.reading.strict()),
+            grid: Some(self.grid.clone()).filter(|lines| !lines.is_empty()),
+            ..FitSettings::default()
+        };
+        settings.add_options(&self.option)?;
+        let stem = self.output.file_stem();
+        let name = stem.map(|s| s.to_string_lossy()).unwrap_or_default();
+        Ok(settings.request(registry, &self.reading.settings(), &name, &tool())?)
     }
 }
 
@@ -230,13 +228,6 @@ fn command_line() -> String {
     let words = invocation::arguments().into_iter().map(quoted);
     let words: Vec<String> = std::iter::once("htex".to_owned()).chain(words).collect();
     words.join(" ")
-}
-
-/// The models that come with this program: a plugin runs only where it is asked for.
-fn alternatives(registry: &Registry) -> Vec<LoadedModel> {
-    let models = registry.models().iter();
-    let builtin = models.filter(|model| *model.origin() == Origin::Builtin);
-    builtin.cloned().collect()
 }
 
 /// Reads an ed25519 secret key.

@@ -6,6 +6,7 @@ use htex_host::Registry;
 use crate::assets::AssetSummary;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::located;
 use crate::output::{print, print_json};
 
 /// Show an asset's contents and each model's distance from the recording.
@@ -16,6 +17,7 @@ use crate::output::{print, print_json};
 #[derive(Args)]
 pub(crate) struct Info {
     /// The asset
+    #[arg(value_parser = located::ASSET)]
     asset: PathBuf,
 
     /// Print JSON instead of a table

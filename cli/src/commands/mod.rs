@@ -1,6 +1,8 @@
 //! The subcommands, one file each: arguments and execution.
 
 mod bake;
+#[cfg(feature = "build")]
+mod build;
 mod compare;
 #[cfg(feature = "wasm")]
 mod compile_module;
@@ -12,6 +14,7 @@ mod fit;
 mod gain;
 mod guard;
 mod info;
+mod lib;
 mod plan;
 mod play;
 mod plugin;
@@ -41,6 +44,8 @@ pub(crate) enum Command {
     Spectrum(spectrum::Spectrum),
     Synth(synth::Synth),
     Bake(bake::Bake),
+    #[cfg(feature = "build")]
+    Build(build::Build),
     Compare(compare::Compare),
     Tradeoff(tradeoff::Tradeoff),
     Plan(plan::Plan),
@@ -50,6 +55,7 @@ pub(crate) enum Command {
     Guard(guard::Guard),
     #[cfg(feature = "wasm")]
     CompileModule(compile_module::CompileModule),
+    Lib(lib::Lib),
     Schema(schema::Schema),
     Plugin(plugin::Plugin),
     Device(device::Device),
@@ -69,6 +75,8 @@ impl Command {
             Self::Spectrum(args) => args.run(),
             Self::Synth(args) => args.run(),
             Self::Bake(args) => args.run(),
+            #[cfg(feature = "build")]
+            Self::Build(args) => args.run(),
             Self::Compare(args) => args.run(),
             Self::Tradeoff(args) => args.run(),
             Self::Plan(args) => args.run(),
@@ -78,6 +86,7 @@ impl Command {
             Self::Guard(args) => args.run(),
             #[cfg(feature = "wasm")]
             Self::CompileModule(args) => args.run(),
+            Self::Lib(args) => args.run(),
             Self::Schema(args) => args.run(),
             Self::Plugin(args) => args.run(),
             Self::Device(args) => args.run(),

@@ -7,6 +7,7 @@ use htex_scene::{Costs, Plan as Planned};
 
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::located;
 use crate::output::{print, print_json, warn, write_file};
 use crate::scenes::{ChoiceArgs, SceneArgs, costs, costs_file};
 
@@ -16,6 +17,7 @@ use crate::scenes::{ChoiceArgs, SceneArgs, costs, costs_file};
 #[derive(Args)]
 pub(crate) struct Plan {
     /// The scene
+    #[arg(value_parser = located::ASSET)]
     scene: PathBuf,
 
     /// Measure the costs on this machine first, and keep them for later plans
@@ -23,7 +25,7 @@ pub(crate) struct Plan {
     measure: bool,
 
     /// Draw the chain
-    #[arg(long, value_name = "SVG")]
+    #[arg(long, value_name = "SVG", value_parser = located::OUTPUT)]
     svg: Option<PathBuf>,
 
     /// Print JSON

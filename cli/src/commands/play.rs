@@ -10,6 +10,7 @@ use crate::devices::with_sound;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::gains::{FeltArgs, apply_kept};
+use crate::located;
 use crate::motions::{Motions, Moved};
 use crate::output::{note, print};
 use crate::playing::Output;
@@ -26,6 +27,7 @@ use crate::signals::{self, interrupted};
 )]
 pub(crate) struct Play {
     /// The scene or the asset
+    #[arg(value_parser = located::ASSET)]
     file: PathBuf,
 
     /// Read the motion from standard input while it plays: lines `speed_mm_s force_n [x_mm y_mm]`, a

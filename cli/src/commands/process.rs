@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::located;
 use crate::output::{note, print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::recording_plot::recording_plot;
@@ -18,14 +19,15 @@ use crate::recordings::RecordingArgs;
 /// that grid reads A.
 #[derive(Args)]
 pub(crate) struct Process {
-    /// The recording: CSV, WAV or NPY
+    /// The recording: CSV, WAV, FLAC, NPY, MATLAB, TDMS, Parquet, Arrow, HDF5
+    #[arg(value_parser = located::RECORDING)]
     recording: PathBuf,
 
     #[command(flatten)]
     reading: RecordingArgs,
 
     /// Draw the recording with the segments that are read, and those left out, as an SVG picture
-    #[arg(long, value_name = "SVG")]
+    #[arg(long, value_name = "SVG", value_parser = located::OUTPUT)]
     svg: Option<PathBuf>,
 
     /// Print JSON instead of CSV
@@ -37,7 +39,7 @@ impl Process {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let inputs = [self.recording.as_path()]
             .into_iter()
-            .chain(self.reading.frf());
+            .chain(self.reading.inputs());
         check_outputs(self.svg.as_deref(), inputs)?;
         let take = self.reading.read_one(&self.recording)?;
         let options = self.reading.spectrum_options()?;

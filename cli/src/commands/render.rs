@@ -10,6 +10,7 @@ use serde_json::json;
 
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::located;
 use crate::output::{note, print, print_json};
 use crate::playing::Output;
 use crate::progress::bar;
@@ -27,10 +28,11 @@ const BLOCK: usize = 4096;
 #[derive(Args)]
 pub(crate) struct Render {
     /// The scene
+    #[arg(value_parser = located::ASSET)]
     scene: PathBuf,
 
     /// The file to write, or to replace [default: the scene's name with .wav, if there is no such file]
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE", value_parser = located::OUTPUT)]
     output: Option<PathBuf>,
 
     /// Length, s, in place of the scene's

@@ -21,6 +21,12 @@ enum What {
     Scene,
     /// JSON Schema of reports of validation
     Report,
+    /// JSON Schema of recipes (`htex build`)
+    #[cfg(feature = "build")]
+    Recipe,
+    /// JSON Schema of `build-report.json`
+    #[cfg(feature = "build")]
+    BuildReport,
     /// Each model's parameters and fit options, with units and ranges
     Models,
 }
@@ -31,6 +37,10 @@ impl Schema {
             What::Manifest => Ok(htex_format::manifest_schema()),
             What::Scene => Ok(htex_scene::scene_schema()),
             What::Report => Ok(htex_format::report_schema()),
+            #[cfg(feature = "build")]
+            What::Recipe => Ok(htex_build::recipe_schema()),
+            #[cfg(feature = "build")]
+            What::BuildReport => Ok(htex_build::report_schema()),
             What::Models => {
                 let registry = Registry::builtin();
                 let all: Vec<_> = registry.models().iter().map(|m| m.descriptor()).collect();

@@ -1,12 +1,14 @@
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use htex_author::SetupResponse;
-use htex_author::simulate::{SimulationError, SimulationOptions, Surface, simulate};
+use htex_author::simulate::{FreeMotion, SimulationError, SimulationOptions, Surface, simulate};
 
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::located;
 use crate::outputs::check_outputs;
 
 /// Write a simulated recording of a finger sliding over a surface.
@@ -24,12 +26,12 @@ pub(crate) struct Simulate {
     seed: u64,
 
     /// Where to write it: CSV with columns t_s,fx_n,fy_n,fz_n,x_mm,y_mm
-    #[arg(short, long, value_name = "CSV")]
+    #[arg(short, long, value_name = "CSV", value_parser = located::OUTPUT)]
     output: PathBuf,
 
     /// Where to write the simulated rig's response as well: CSV with columns
     /// frequency_hz,magnitude,phase_rad, for `htex fit --frf`
-    #[arg(long, value_name = "CSV")]
+    #[arg(long, value_name = "CSV", value_parser = located::OUTPUT)]
     frf: Option<PathBuf>,
 
     /// Length, s
@@ -40,36 +42,100 @@ pub(crate) struct Simulate {
     #[arg(long, default_value_t = 20_000.0, value_name = "HZ")]
     rate: f64,
 
-    /// Scanning speed, mm/s
-    #[arg(long, default_value_t = 80.0, value_name = "MM_S")]
-    speed: f64,
+    /// How the finger moves: to-and-fro sweeps at one speed and force, or freely, in strokes of random speed and force
+    #[arg(long, value_enum, default_value = "sweeps")]
+    motion: MotionArg,
 
-    /// Normal force, N
-    #[arg(long, default_value_t = 0.4, value_name = "N")]
-    force: f64,
+    /// Scanning speed, mm/s; of a free motion the lowest and the highest, 36:280 unless given
+    #[arg(long, value_name = "MM_S")]
+    speed: Option<Range>,
+
+    /// Normal force, N; of a free motion the lowest and the highest, 0.15:3.8 unless given
+    #[arg(long, value_name = "N")]
+    force: Option<Range>,
+
+    /// Where to write the true spectra of a free motion: JSON with the magnitudes at any speed and force
+    #[arg(long, value_name = "JSON")]
+    truth: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum MotionArg {
+    Sweeps,
+    Free,
+}
+
+/// One number, or the lowest and the highest: `80`, `36:280`.
+#[derive(Clone, Copy)]
+struct Range([f64; 2]);
+
+impl FromStr for Range {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |part: &str| {
+            let number = part.trim().parse::<f64>();
+            number.map_err(|_| format!("{part:?} is not a number; write 80, or 36:280"))
+        };
+        let (low, high) = text.split_once(':').unwrap_or((text, text));
+        Ok(Self([number(low)?, number(high)?]))
+    }
 }
 
 impl Simulate {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let outputs = [self.output.as_path()]
             .into_iter()
-            .chain(self.frf.as_deref());
+            .chain(self.frf.as_deref())
+            .chain(self.truth.as_deref());
         check_outputs(outputs, [])?;
-        let options = SimulationOptions::new(self.surface)
-            .with_seed(self.seed)
-            .with_rate_hz(self.rate)
-            .with_duration_s(self.seconds)
-            .with_speed_mm_s(self.speed)
-            .with_force_n(self.force);
+        let options = self.options()?;
         let usage = |error: SimulationError| Failure::Usage(error.to_string());
         let simulation = simulate(&options).map_err(usage)?;
         let write = |file: &mut std::fs::File| simulation.write_csv(&mut BufWriter::new(file));
         htex_format::replace_file(&self.output, write)
             .map_err(|error| Failure::write(&self.output, error))?;
+        if let Some(file) = &self.truth {
+            let truth = options.truth().map_err(usage)?;
+            let write = |file: &mut std::fs::File| truth.write_json(&mut BufWriter::new(file));
+            htex_format::replace_file(file, write).map_err(|error| Failure::write(file, error))?;
+        }
         if let Some(frf) = &self.frf {
             write_response(&options.setup_response().map_err(usage)?, frf)?;
         }
         Ok(Exit::SUCCESS)
+    }
+
+    fn options(&self) -> Result<SimulationOptions, Failure> {
+        let options = SimulationOptions::new(self.surface)
+            .with_seed(self.seed)
+            .with_rate_hz(self.rate)
+            .with_duration_s(self.seconds);
+        if self.motion == MotionArg::Free {
+            let mut free = FreeMotion::default();
+            if let Some(Range(speed_mm_s)) = self.speed {
+                free = free.with_speed_mm_s(speed_mm_s);
+            }
+            if let Some(Range(force_n)) = self.force {
+                free = free.with_force_n(force_n);
+            }
+            return Ok(options.with_free_motion(free));
+        }
+        if self.truth.is_some() {
+            return Err(Failure::Usage(
+                "--truth: the true spectrum is known for --motion free only".to_owned(),
+            ));
+        }
+        let one = |range: Option<Range>, name: &str, otherwise: f64| match range {
+            None => Ok(otherwise),
+            Some(Range([low, high])) if low == high => Ok(low),
+            Some(_) => Err(Failure::Usage(format!(
+                "--{name}: sweeps have one value; a range needs --motion free"
+            ))),
+        };
+        Ok(options
+            .with_speed_mm_s(one(self.speed, "speed", 80.0)?)
+            .with_force_n(one(self.force, "force", 0.4)?))
     }
 }
 

@@ -5,6 +5,7 @@ use serde_json::json;
 
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::located;
 use crate::output::{print, print_json, warn};
 use crate::plugins::PlayerArgs;
 use crate::scenes::USUAL;
@@ -16,6 +17,7 @@ use crate::scenes::USUAL;
 #[derive(Args)]
 pub(crate) struct Spectrum {
     /// The asset
+    #[arg(value_parser = located::ASSET)]
     asset: PathBuf,
 
     #[command(flatten)]

@@ -6,6 +6,7 @@ use htex::{Effects, Synthesis, VoiceOptions};
 use crate::commands::spectrum::ChoiceArgs;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::located;
 use crate::output::warn;
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
@@ -15,6 +16,7 @@ use crate::wav::write_wav;
 #[derive(Args)]
 pub(crate) struct Synth {
     /// The asset
+    #[arg(value_parser = located::ASSET)]
     asset: PathBuf,
 
     #[command(flatten)]
@@ -48,7 +50,7 @@ pub(crate) struct Synth {
     quality: Synthesis,
 
     /// The WAV file to write
-    #[arg(short, long, value_name = "WAV")]
+    #[arg(short, long, value_name = "WAV", value_parser = located::OUTPUT)]
     output: PathBuf,
 }
 

@@ -25,7 +25,7 @@ use crate::shown::shown;
 /// when the same command is given again.
 #[derive(Args)]
 pub(crate) struct Tradeoff {
-    /// Recordings: CSV, WAV or NPY
+    /// Recordings: CSV, WAV, FLAC, NPY, MATLAB, TDMS, Parquet, Arrow, HDF5
     #[arg(required_unless_present = "simulated")]
     recordings: Vec<PathBuf>,
 
@@ -94,7 +94,7 @@ impl Tradeoff {
             .map(PathBuf::as_path);
         check_outputs(
             [&*self.output, &csv_file, &json_file, &part_file],
-            files.chain(self.reading.frf()),
+            files.chain(self.reading.inputs()),
         )?;
         let request = Request {
             models: self.models()?,

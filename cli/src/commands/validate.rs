@@ -8,11 +8,15 @@ use htex_format::{
     Finding, Findings, Limits, Report, Representation, Severity, explain, validate_with,
 };
 use htex_host::{Registry, Search, WasmLimits};
+use htex_library::{EXTENSION, MAGIC};
 use serde_json::Value;
 
+use super::lib::check;
+use crate::bounded::read_asset;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::flags::{of_code, with, with_flags};
+use crate::located;
 use crate::output::{print, print_json, warn};
 use crate::recordings::RecordingArgs;
 use crate::scenes::SceneArgs;
@@ -20,17 +24,17 @@ use crate::schemas::{ABSENT, ExtensionSchema, Named};
 use crate::shown::shown;
 use crate::wasm_limits::WasmLimit;
 
-/// Check assets, scenes (*.json), descriptors of models and devices (*.json) and recordings against
+/// Check assets, libraries, scenes (*.json), descriptors of models and devices (*.json) and recordings against
 /// their formats and JSON Schemas; exit status 1 if one is not valid.
 ///
 /// Each finding has a stable code (`htex explain CODE`), a severity, a JSON pointer into the
 /// document or the recording and, where a JSON Schema says the same, the rule of the schema. Fields of
-/// models that this program has are compared with the models'. A file that is neither called *.htex or
-/// *.json nor begins as a ZIP archive is read as a recording.
+/// models that this program has are compared with the models'. A file that is neither called *.htex, *.htexlib or
+/// *.json nor begins as a ZIP archive or a library is read as a recording.
 #[derive(Args)]
 pub(crate) struct Validate {
     /// The files
-    #[arg(required = true)]
+    #[arg(required = true, value_parser = located::RECORDING)]
     files: Vec<PathBuf>,
 
     /// Validate the extension of this name against a JSON Schema (draft 2020-12); nothing is fetched. May be
@@ -62,39 +66,29 @@ impl Validate {
             .iter()
             .map(|a| ExtensionSchema::read(a));
         let schemas = schemas.collect::<Result<Vec<_>, _>>()?;
-        let mut all_valid = true;
-        let mut reports = Vec::new();
         let kinds: Vec<Kind> = self.files.iter().map(|path| kind(path)).collect();
         if self.reading.is_given() && !kinds.contains(&Kind::Recording) {
             let sentence =
                 "the options for reading recordings go with a recording, and none is given";
             return Err(Failure::Usage(sentence.to_owned()));
         }
-        if let (Some(absent), true) = (ABSENT, kinds.iter().any(|kind| *kind != Kind::Recording)) {
+        let by_schema = |kind| matches!(kind, Kind::Asset | Kind::Document);
+        if let (Some(absent), true) = (ABSENT, kinds.iter().copied().any(by_schema)) {
             warn(&[format!("documents are held to their rules alone: {absent}")]);
         }
-        for (path, kind) in self.files.iter().zip(kinds) {
+        let mut refused = false;
+        let reports = self.files.iter().zip(kinds).map(|(path, kind)| {
             let report = match kind {
                 Kind::Asset => self.validate_asset(path, &schemas),
+                Kind::Library => check(path),
                 Kind::Document => validate_json(path),
                 Kind::Recording => self.reading.validate(path),
             }?;
-            let refused = self.reading.strict() && kind == Kind::Recording && !is_clean(&report);
-            all_valid &= report.valid && !refused;
-            if self.json {
-                reports.push(report.of_file(&path.display().to_string()));
-            } else {
-                print(&text(path, &report))?;
-            }
-        }
-        if self.json {
-            print_json(&reports)?;
-        }
-        Ok(if all_valid {
-            Exit::SUCCESS
-        } else {
-            Exit::FAILURE
-        })
+            refused |= self.reading.strict() && kind == Kind::Recording && !is_clean(&report);
+            Ok((path.as_path(), report))
+        });
+        let exit = report(reports, self.json)?;
+        Ok(if refused { Exit::FAILURE } else { exit })
     }
 
     fn validate_asset(&self, path: &Path, schemas: &[ExtensionSchema]) -> Result<Report, Failure> {
@@ -106,9 +100,35 @@ impl Validate {
     }
 }
 
+/// Prints reports as they come, or all of them as JSON; exit status 1 if one is not valid.
+pub(super) fn report<'a>(
+    reports: impl Iterator<Item = Result<(&'a Path, Report), Failure>>,
+    is_json: bool,
+) -> Result<Exit, Failure> {
+    let (mut all_valid, mut printed) = (true, Vec::new());
+    for report in reports {
+        let (path, report) = report?;
+        all_valid &= report.valid;
+        if is_json {
+            printed.push(report.of_file(&path.display().to_string()));
+        } else {
+            print(&text(path, &report))?;
+        }
+    }
+    if is_json {
+        print_json(&printed)?;
+    }
+    Ok(if all_valid {
+        Exit::SUCCESS
+    } else {
+        Exit::FAILURE
+    })
+}
+
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Asset,
+    Library,
     /// A scene or a descriptor.
     Document,
     Recording,
@@ -120,11 +140,15 @@ fn kind(path: &Path) -> Kind {
         path.extension()
             .is_some_and(|e| e.eq_ignore_ascii_case(name))
     };
-    let mut first = [0; 2];
-    let read = File::open(path).and_then(|mut file| file.read_exact(&mut first));
+    let mut first = Vec::new();
+    let most = MAGIC.len() as u64;
+    // A file that cannot be read is an error where its contents are read.
+    let _ = File::open(path).and_then(|file| file.take(most).read_to_end(&mut first));
+    let begins = |start: &[u8]| first.starts_with(start);
     match () {
         () if called("json") => Kind::Document,
-        () if called("htex") || read.is_ok() && first == *b"PK" => Kind::Asset,
+        () if called(EXTENSION) || begins(&MAGIC) => Kind::Library,
+        () if called("htex") || begins(b"PK") => Kind::Asset,
         () => Kind::Recording,
     }
 }
@@ -137,7 +161,7 @@ fn is_clean(report: &Report) -> bool {
 /// Validates an asset; one that is too large is not read to its end.
 fn validate_asset(path: &Path, extensions: &[ExtensionSchema]) -> Result<Report, Failure> {
     let limits = Limits::default();
-    let bytes = read_at_most(path, &limits)?;
+    let bytes = read_asset(path)?;
     let models = Registry::builtin();
     let known = |r: &Representation| {
         let model = htex::model_of(&models, r).ok()?;
@@ -180,18 +204,9 @@ fn is_of_major_1(document: &Value, key: &str) -> bool {
     version.is_some_and(|version| version.starts_with("1."))
 }
 
-/// The file's bytes; of a file that is too large, one more than allowed.
-fn read_at_most(path: &Path, limits: &Limits) -> Result<Vec<u8>, Failure> {
-    let mut bytes = Vec::new();
-    File::open(path)
-        .and_then(|file| file.take(limits.file_bytes + 1).read_to_end(&mut bytes))
-        .map_err(|error| Failure::Other(format!("{}: {error}", shown(path))))?;
-    Ok(bytes)
-}
-
 /// Validates a scene or a descriptor, told apart by their keys.
 fn validate_json(path: &Path) -> Result<Report, Failure> {
-    let bytes = read_at_most(path, &Limits::default())?;
+    let bytes = read_asset(path)?;
     let document = htex_format::parse_json(&bytes).unwrap_or_default();
     let text = || String::from_utf8_lossy(&bytes);
     let has = |key: &str| document.get(key).is_some();

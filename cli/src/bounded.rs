@@ -1,0 +1,19 @@
+//! Reading of files that may be too large.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use htex_format::Limits;
+
+use crate::failure::Failure;
+
+/// Returns a file's bytes; of a file that is larger than an asset may be, one more than allowed.
+pub(crate) fn read_asset(path: &Path) -> Result<Vec<u8>, Failure> {
+    let mut bytes = Vec::new();
+    let most = Limits::default().file_bytes.saturating_add(1);
+    File::open(path)
+        .and_then(|file| file.take(most).read_to_end(&mut bytes))
+        .map_err(|error| Failure::read(path, error))?;
+    Ok(bytes)
+}

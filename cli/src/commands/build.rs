@@ -1,0 +1,194 @@
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+use clap::Args;
+use htex_build::{Build as Recipe, BuildOptions, Built, Job, Status, TextureReport};
+use serde::Serialize;
+
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::models::tool;
+use crate::output::{print, print_json};
+use crate::progress;
+use crate::shown::shown;
+use crate::wasm_limits::WasmLimit;
+
+/// Build a library of textures from a recipe.
+///
+/// Fits the recordings that the recipe names and writes DIR/NAME.htexlib, DIR/textures, DIR/build-report.json and the
+/// catalogue DIR/index.html. What has been fitted stays in DIR/.htex-build: a build that was killed goes on where it was, and one
+/// that is run again fits what changed. A texture that misses a gate of the recipe is left out, and the exit status is 1.
+#[derive(Args)]
+pub(crate) struct Build {
+    /// The recipe: library.toml (its JSON Schema: `htex schema recipe`)
+    recipe: PathBuf,
+
+    /// The folder of the results
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+
+    /// Textures to fit at the same time [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+
+    /// Go on after a texture that cannot be made, and leave it out
+    #[arg(long)]
+    keep_going: bool,
+
+    /// Say what would be fitted, and fit nothing
+    #[arg(long)]
+    dry_run: bool,
+
+    /// Folder of the browser package: the catalogue plays textures with a copy of it instead of short sounds
+    #[arg(long, value_name = "DIR")]
+    browser_package: Option<PathBuf>,
+
+    /// What a WASM model may use, by name; see `htex fit --help`
+    #[arg(long, value_name = "NAME=N", value_parser = WasmLimit::parse)]
+    wasm_limit: Vec<WasmLimit>,
+
+    /// Print JSON instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+/// The result of a build, as JSON.
+#[derive(Serialize)]
+struct Summary<'a> {
+    library: String,
+    library_bytes: u64,
+    textures: usize,
+    fitted: usize,
+    unchanged: usize,
+    recordings: usize,
+    recording_bytes: u64,
+    seconds: f64,
+    left_out: Vec<&'a TextureReport>,
+}
+
+/// What is fitted by a build.
+struct Work {
+    textures: usize,
+    recordings: usize,
+    bytes: u64,
+}
+
+impl Build {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
+        let start = Instant::now();
+        let options = BuildOptions::new(tool())
+            .with_jobs(self.jobs.map_or(0, usize::from))
+            .with_keep_going(self.keep_going)
+            .with_limits(WasmLimit::all(&self.wasm_limit))
+            .with_browser_package(self.browser_package.clone());
+        let failure = |error| Failure::build(&self.recipe, error);
+        let mut build = Recipe::open(&self.recipe, &self.output, options).map_err(failure)?;
+        let work = Work::of(&build);
+        if self.dry_run {
+            return self.announce(&build);
+        }
+        fit(&mut build, &work).map_err(failure)?;
+        let built = build.finish().map_err(failure)?;
+        self.report(&built, &work, start.elapsed().as_secs_f64())
+    }
+
+    /// Prints what would be fitted.
+    fn announce(&self, build: &Recipe) -> Result<Exit, Failure> {
+        let names: Vec<&str> = build.pending().map(|(_, job)| &job.texture[..]).collect();
+        if self.json {
+            print_json(
+                &serde_json::json!({ "to_fit": names, "textures": build.plan().textures.len() }),
+            )?;
+        } else {
+            let lines: String = names.iter().map(|name| format!("{name}\n")).collect();
+            print(&lines)?;
+        }
+        Ok(Exit::SUCCESS)
+    }
+
+    fn report(&self, built: &Built, work: &Work, seconds: f64) -> Result<Exit, Failure> {
+        let report = &built.report;
+        let file = self.output.join(&report.library.file);
+        let left_out: Vec<&TextureReport> = report
+            .textures
+            .iter()
+            .filter(|texture| texture.status == Status::LeftOut)
+            .collect();
+        let exit = match left_out.len() {
+            0 => Exit::SUCCESS,
+            _ => Exit::FAILURE,
+        };
+        let summary = Summary {
+            library: shown(&file),
+            library_bytes: report.library.bytes,
+            textures: report.library.textures,
+            fitted: work.textures,
+            unchanged: report.textures.len() - work.textures,
+            recordings: work.recordings,
+            recording_bytes: work.bytes,
+            seconds,
+            left_out,
+        };
+        if self.json {
+            print_json(&summary)?;
+        } else {
+            print(&summary.to_text(&self.output))?;
+        }
+        Ok(exit)
+    }
+}
+
+impl Work {
+    fn of(build: &Recipe) -> Self {
+        let jobs = || build.pending().map(|(_, job)| job);
+        Self {
+            textures: build.pending().len(),
+            recordings: jobs().map(|job| job.recordings.len()).sum(),
+            bytes: jobs().map(Job::recording_bytes).sum(),
+        }
+    }
+}
+
+/// Does the pending jobs, under a bar.
+fn fit(build: &mut Recipe, work: &Work) -> Result<(), htex_build::BuildError> {
+    let bar = progress::bytes(work.bytes);
+    let (count, all) = (AtomicUsize::new(0), work.textures);
+    let done = |job: &Job| {
+        let count = count.fetch_add(1, Ordering::Relaxed) + 1;
+        bar.set_message(format!("{count}/{all} textures"));
+        bar.inc(job.recording_bytes());
+    };
+    let ended = build.run(&done);
+    bar.finish_and_clear();
+    ended
+}
+
+impl Summary<'_> {
+    fn to_text(&self, output: &Path) -> String {
+        let mut text = format!(
+            "{}: {} textures, {} bytes; {} fitted, {} as they were\n",
+            self.library, self.textures, self.library_bytes, self.fitted, self.unchanged
+        );
+        if self.fitted > 0 {
+            let megabytes = self.recording_bytes as f64 / 1e6;
+            text += &format!(
+                "{} recordings, {megabytes:.1} MB in {:.1} s: {:.1} recordings/s, {:.1} MB/s\n",
+                self.recordings,
+                self.seconds,
+                self.recordings as f64 / self.seconds,
+                megabytes / self.seconds
+            );
+        }
+        text += &format!("catalogue: {}\n", shown(&output.join("index.html")));
+        for texture in &self.left_out {
+            for missed in &texture.missed {
+                text += &format!(
+                    "left out: {}: {}: {}\n",
+                    texture.name, missed.gate, missed.reason
+                );
+            }
+        }
+        text
+    }
+}

@@ -1,0 +1,72 @@
+use std::path::PathBuf;
+
+use clap::Args;
+use htex_library::{Library, Query};
+
+use super::listing::Listing;
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::output::note;
+
+/// Search a library; all that is asked for must hold.
+#[derive(Args)]
+pub(crate) struct Find {
+    /// The library
+    library: PathBuf,
+
+    /// Parts of names or tags, without case
+    words: Vec<String>,
+
+    /// A tag, whole, without case; may be given several times
+    #[arg(long)]
+    tag: Vec<String>,
+
+    /// A speed that the texture was recorded at, or between two of its, mm/s
+    #[arg(long, value_name = "MM_S", value_parser = not_negative)]
+    speed: Option<f64>,
+
+    /// A force that the texture was recorded at, or between two of its, newtons
+    #[arg(long, value_name = "N", value_parser = not_negative)]
+    force: Option<f64>,
+
+    /// A model that describes the texture: its id, or the id's last part
+    #[arg(long, value_name = "ID")]
+    model: Option<String>,
+
+    /// Print JSON: an array of objects
+    #[arg(long)]
+    json: bool,
+}
+
+impl Find {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
+        let failed = |error| Failure::library(&self.library, error);
+        let library = Library::open(&self.library).map_err(failed)?;
+        let query = Query {
+            words: self.words,
+            tags: self.tag,
+            speed_mm_s: self.speed,
+            force_n: self.force,
+            model: self.model,
+        };
+        let mut listing = Listing::new(self.json);
+        for entry in library.entries() {
+            let entry = entry.map_err(failed)?;
+            if query.matches(&entry) {
+                listing.add(&entry)?;
+            }
+        }
+        if listing.finish()? == 0 {
+            note(&["no texture of the library has all of this".to_owned()]);
+        }
+        Ok(Exit::SUCCESS)
+    }
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    let number = text
+        .parse()
+        .ok()
+        .filter(|x: &f64| x.is_finite() && *x >= 0.0);
+    number.ok_or_else(|| "it must be a number that is finite and not negative".to_owned())
+}

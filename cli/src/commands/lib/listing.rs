@@ -1,0 +1,90 @@
+//! Lists of entries: lines of a table, or a JSON array, written while the index is read.
+
+use htex_format::plain;
+use htex_library::{Entry, Interval};
+
+use crate::assets::short_name;
+use crate::failure::Failure;
+use crate::output::{print, write};
+
+/// Bytes that are gathered before they are written.
+const BUFFER_BYTES: usize = 64 << 10;
+
+/// A list that is being printed.
+pub(super) struct Listing {
+    is_json: bool,
+    text: String,
+    count: u64,
+}
+
+impl Listing {
+    pub(super) fn new(is_json: bool) -> Self {
+        Self {
+            is_json,
+            text: String::new(),
+            count: 0,
+        }
+    }
+
+    /// Adds an entry.
+    pub(super) fn add(&mut self, entry: &Entry) -> Result<(), Failure> {
+        if self.is_json {
+            let json = serde_json::to_string(entry);
+            let json = json.map_err(|e| Failure::Other(format!("cannot write JSON: {e}")))?;
+            self.text += if self.count == 0 { "[" } else { ",\n " };
+            self.text += &json;
+        } else {
+            self.text += &row(entry);
+        }
+        self.count += 1;
+        if self.text.len() >= BUFFER_BYTES {
+            self.flush()?;
+        }
+        Ok(())
+    }
+
+    /// Ends the list. Returns the number of entries.
+    pub(super) fn finish(mut self) -> Result<u64, Failure> {
+        if self.is_json {
+            self.text += if self.count == 0 { "[]\n" } else { "]\n" };
+        }
+        self.flush()?;
+        Ok(self.count)
+    }
+
+    fn flush(&mut self) -> Result<(), Failure> {
+        let text = std::mem::take(&mut self.text);
+        if self.is_json {
+            write(&text)
+        } else {
+            print(&text)
+        }
+    }
+}
+
+fn row(entry: &Entry) -> String {
+    let models: Vec<&str> = entry.models.iter().map(|id| short_name(id)).collect();
+    let (speed, force) = (entry.conditions.speed_mm_s, entry.conditions.force_n);
+    format!(
+        "{:32} {:>7} B  {:>12}  {:>10}  {}  {}\n",
+        plain(&entry.name),
+        entry.bytes,
+        range(speed, "mm/s"),
+        range(force, "N"),
+        plain(&models.join(" ")),
+        plain(&entry.tags.join(", "))
+    )
+}
+
+fn range(interval: Option<Interval>, unit: &str) -> String {
+    match interval {
+        None => format!("? {unit}"),
+        Some(Interval { min, max }) if min == max => format!("{} {unit}", number(min)),
+        Some(Interval { min, max }) => format!("{}-{} {unit}", number(min), number(max)),
+    }
+}
+
+fn number(x: f64) -> String {
+    let text = format!("{x:.3}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}

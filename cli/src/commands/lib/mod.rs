@@ -1,0 +1,52 @@
+//! `htex lib`: libraries of textures.
+
+mod cat;
+mod diff;
+mod find;
+mod listing;
+mod ls;
+mod pack;
+mod sources;
+mod unpack;
+mod verify;
+
+use clap::{Args, Subcommand};
+
+pub(super) use verify::check;
+
+use crate::exit::Exit;
+use crate::failure::Failure;
+
+/// Pack textures into a library, one .htexlib file, and look into libraries.
+///
+/// A library is opened one texture at a time, also over a network; what textures embed in common is in it once.
+#[derive(Args)]
+pub(crate) struct Lib {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Pack(pack::Pack),
+    Unpack(unpack::Unpack),
+    Ls(ls::Ls),
+    Find(find::Find),
+    Cat(cat::Cat),
+    Diff(diff::Diff),
+    Verify(verify::Verify),
+}
+
+impl Lib {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
+        match self.command {
+            Command::Pack(args) => args.run(),
+            Command::Unpack(args) => args.run(),
+            Command::Ls(args) => args.run(),
+            Command::Find(args) => args.run(),
+            Command::Cat(args) => args.run(),
+            Command::Diff(args) => args.run(),
+            Command::Verify(args) => args.run(),
+        }
+    }
+}

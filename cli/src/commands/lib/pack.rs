@@ -1,0 +1,121 @@
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use htex_library::{EXTENSION, LibraryError, Packed, Writer};
+use serde_json::{Value, json};
+
+use super::sources::sources;
+use crate::bounded::read_asset;
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::output::{print, print_json};
+use crate::outputs::check_outputs;
+use crate::progress::bar;
+use crate::shown::shown;
+
+/// Pack textures into a library.
+///
+/// A texture is called as its file without `.htex`; one of a folder as its path in that folder, such as wood/oak. The same
+/// textures give the same file, in any order, on any machine.
+#[derive(Args)]
+pub(crate) struct Pack {
+    /// The library to write
+    #[arg(value_name = "OUT.htexlib")]
+    output: PathBuf,
+
+    /// Textures, and folders with textures
+    #[arg(required = true, value_name = "FILE|DIR")]
+    inputs: Vec<PathBuf>,
+
+    /// Name of the library [default: the file's]
+    #[arg(long)]
+    name: Option<String>,
+
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+impl Pack {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
+        let is_library = self
+            .output
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case(EXTENSION));
+        if !is_library && (self.output.extension().is_some() || self.output.is_dir()) {
+            let output = shown(&self.output);
+            return Err(Failure::Usage(format!(
+                "{output}: the library to write comes first, such as cloth.{EXTENSION}"
+            )));
+        }
+        let sources = sources(&self.inputs)?;
+        check_outputs(
+            [self.output.as_path()],
+            sources.values().map(PathBuf::as_path),
+        )?;
+        let stem = self.output.file_stem().map(|stem| stem.to_string_lossy());
+        let name = self
+            .name
+            .clone()
+            .unwrap_or(stem.unwrap_or_default().into_owned());
+        let failed = |error| Failure::library(&self.output, error);
+        let mut writer = Writer::create(&self.output, &name).map_err(failed)?;
+        let bar = bar(sources.len() as u64);
+        for (name, path) in &sources {
+            let bytes = read_asset(path)?;
+            let added = writer.add(name, &bytes);
+            added.map_err(|error| of_texture(path, &self.output, error))?;
+            bar.inc(1);
+        }
+        let packed = writer.finish().map_err(failed)?;
+        bar.finish_and_clear();
+        if self.json {
+            print_json(&summary(&self.output, &name, &packed))?;
+        } else {
+            print(&text(&self.output, &packed))?;
+        }
+        Ok(Exit::SUCCESS)
+    }
+}
+
+/// The error of adding a texture, with its file.
+fn of_texture(path: &Path, output: &Path, error: LibraryError) -> Failure {
+    match error {
+        LibraryError::Write { .. } => Failure::library(output, error),
+        LibraryError::Asset { error, .. } => Failure::asset(path, *error),
+        other => Failure::library(path, other),
+    }
+}
+
+fn summary(path: &Path, name: &str, packed: &Packed) -> Value {
+    json!({
+        "file": path.display().to_string(),
+        "name": name,
+        "textures": packed.entries,
+        "bytes": packed.bytes,
+        "index_bytes": packed.index_bytes,
+        "shared_objects": packed.shared_objects,
+        "saved_bytes": packed.saved_bytes,
+        "blake3": packed.blake3.iter().map(|byte| format!("{byte:02x}")).collect::<String>(),
+    })
+}
+
+fn text(path: &Path, packed: &Packed) -> String {
+    let Packed {
+        entries,
+        bytes,
+        index_bytes,
+        saved_bytes,
+        ..
+    } = packed;
+    let textures = if *entries == 1 { "texture" } else { "textures" };
+    let mut text = format!(
+        "{}: {entries} {textures} in {bytes} bytes, {index_bytes} of them the index\n",
+        shown(path)
+    );
+    if packed.shared_objects > 0 {
+        let objects = packed.shared_objects;
+        text += &format!("  {objects} shared objects save {saved_bytes} bytes\n");
+    }
+    text
+}

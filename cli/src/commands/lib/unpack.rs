@@ -1,0 +1,75 @@
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use htex_library::{Entry, Library, LibraryError};
+
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::output::{print, write_file};
+use crate::progress::bar;
+use crate::shown::shown;
+
+/// Write the textures of a library as files: NAME.htex in a folder.
+///
+/// Files that are there are kept, and are an error, unless --force is given.
+#[derive(Args)]
+pub(crate) struct Unpack {
+    /// The library
+    library: PathBuf,
+
+    /// Names of textures [default: all]
+    names: Vec<String>,
+
+    /// The folder; it is made if it does not exist
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+
+    /// Write over files that are there
+    #[arg(long)]
+    force: bool,
+}
+
+impl Unpack {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
+        let failed = |error| Failure::library(&self.library, error);
+        let library = Library::open(&self.library).map_err(failed)?;
+        let count = if self.names.is_empty() {
+            library.len()
+        } else {
+            self.names.len() as u64
+        };
+        let bar = bar(count);
+        let write = |entry: Entry| {
+            let bytes = library.read(&entry).map_err(failed)?;
+            bar.inc(1);
+            self.write(&entry.name, &bytes)
+        };
+        if self.names.is_empty() {
+            library
+                .entries()
+                .try_for_each(|entry| write(entry.map_err(failed)?))?;
+        }
+        for name in &self.names {
+            let entry = library.entry(name).map_err(failed)?;
+            let absent = || failed(LibraryError::Absent { name: name.clone() });
+            write(entry.ok_or_else(absent)?)?;
+        }
+        bar.finish_and_clear();
+        print(&format!("{}: {count} files\n", shown(&self.output)))?;
+        Ok(Exit::SUCCESS)
+    }
+
+    /// Writes a texture. Its name was checked by the reader: it leads to a file inside the folder.
+    fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
+        let path = self.output.join(format!("{name}.htex"));
+        if !self.force && path.symlink_metadata().is_ok() {
+            let path = shown(&path);
+            return Err(Failure::Other(format!(
+                "{path}: it is there already; unpack into another folder, or write over it with --force"
+            )));
+        }
+        let folder = path.parent().unwrap_or(Path::new("."));
+        std::fs::create_dir_all(folder).map_err(|error| Failure::write(folder, error))?;
+        write_file(&path, bytes)
+    }
+}

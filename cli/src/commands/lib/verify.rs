@@ -1,0 +1,37 @@
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use htex_format::Report;
+
+use crate::commands::validate;
+use crate::exit::Exit;
+use crate::failure::Failure;
+
+/// Check every page and every texture of libraries; exit status 1 if one is not valid.
+///
+/// Each finding has a stable code (`htex explain CODE`).
+#[derive(Args)]
+pub(crate) struct Verify {
+    /// The libraries
+    #[arg(required = true)]
+    libraries: Vec<PathBuf>,
+
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+impl Verify {
+    pub(crate) fn run(self) -> Result<Exit, Failure> {
+        let reports = self
+            .libraries
+            .iter()
+            .map(|path| Ok((path.as_path(), check(path)?)));
+        validate::report(reports, self.json)
+    }
+}
+
+/// Validates a library.
+pub(crate) fn check(path: &Path) -> Result<Report, Failure> {
+    htex_library::validate(path).map_err(|error| Failure::library(path, error))
+}

@@ -1,0 +1,242 @@
+//! Arguments that are URIs: downloaded before the command runs, written when it is done. The command itself sees local files.
+//!
+//! A parser of arguments ([`ASSET`], [`RECORDING`], [`OUTPUT`]) puts a path in a temporary folder in place of a URI; what is
+//! printed names the URI again ([`named`]).
+
+use std::ffi::{OsStr, OsString};
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use clap::builder::{PathBufValueParser, TypedValueParser};
+use clap::error::ErrorKind;
+use htex_format::{Limits, plain};
+use htex_storage::{Location, Storage, StorageError};
+use tempfile::TempDir;
+
+use crate::failure::Failure;
+
+/// Most bytes of a recording that is downloaded. Those of its numbers that are kept are bounded by `--most-numbers`.
+const MOST_RECORDING_BYTES: u64 = 16 << 30;
+
+/// An argument that is an asset, at most as large as one may be.
+pub(crate) const ASSET: Argument = Argument(Role::Asset);
+/// An argument that is a recording, or any other file that is read.
+pub(crate) const RECORDING: Argument = Argument(Role::Recording);
+/// An argument that is a file to write.
+pub(crate) const OUTPUT: Argument = Argument(Role::Output);
+
+/// The files elsewhere of the current run.
+static ELSEWHERE: Mutex<Elsewhere> = Mutex::new(Elsewhere {
+    folder: None,
+    files: Vec::new(),
+});
+/// The temporary folder, for a signal handler, which may run while the other lock is held.
+static FOLDER: Mutex<Option<PathBuf>> = Mutex::new(None);
+
+struct Elsewhere {
+    folder: Option<TempDir>,
+    files: Vec<Copied>,
+}
+
+/// A file elsewhere and its local copy.
+struct Copied {
+    location: Location,
+    local: PathBuf,
+    role: Role,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Role {
+    Asset,
+    Recording,
+    Output,
+}
+
+/// A parser of an argument that is a path or a URI.
+#[derive(Clone, Copy)]
+pub(crate) struct Argument(Role);
+
+impl TypedValueParser for Argument {
+    type Value = PathBuf;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        argument: Option<&clap::Arg>,
+        value: &OsStr,
+    ) -> Result<PathBuf, clap::Error> {
+        let wrong = |words: String| {
+            let text = format!("{}\n", plain(&words));
+            clap::Error::raw(ErrorKind::ValueValidation, text).with_cmd(command)
+        };
+        let location = Location::parse(value).map_err(|error| wrong(error.to_string()))?;
+        match location.local() {
+            Some(path) => PathBufValueParser::new().parse_ref(command, argument, path.as_os_str()),
+            None => local().copy_of(location, self.0).map_err(wrong),
+        }
+    }
+}
+
+impl Elsewhere {
+    /// The local path in place of a URI; its name stays, since texts and formats depend on it.
+    fn copy_of(&mut self, location: Location, role: Role) -> Result<PathBuf, String> {
+        let known = self.files.iter().find(|file| file.location == location);
+        match known {
+            Some(file) if role == Role::Output && file.role == Role::Output => {
+                return Err(format!(
+                    "{location}: two outputs would be written to it; name another file for one of them"
+                ));
+            }
+            Some(file) if (role == Role::Output) != (file.role == Role::Output) => {
+                return Err(format!(
+                    "{location}: it is read here, and would be lost; name another file to write"
+                ));
+            }
+            Some(file) => return Ok(file.local.clone()),
+            None => {}
+        }
+        let Some(name) = location.file_name() else {
+            return Err(format!(
+                "{location}: it has no file name at its end; name a file"
+            ));
+        };
+        let failed = |error| format!("no temporary folder for {location}: {error}");
+        let folder = self
+            .folder()
+            .map_err(failed)?
+            .join(self.files.len().to_string());
+        std::fs::create_dir(&folder).map_err(failed)?;
+        let local = folder.join(name);
+        self.files.push(Copied {
+            location,
+            local: local.clone(),
+            role,
+        });
+        Ok(local)
+    }
+
+    fn folder(&mut self) -> std::io::Result<PathBuf> {
+        if let Some(folder) = &self.folder {
+            return Ok(folder.path().to_owned());
+        }
+        let folder = tempfile::Builder::new().prefix("htex-").tempdir()?;
+        let path = folder.path().to_owned();
+        *FOLDER.lock().unwrap_or_else(PoisonError::into_inner) = Some(path.clone());
+        self.folder = Some(folder);
+        Ok(path)
+    }
+}
+
+fn local() -> MutexGuard<'static, Elsewhere> {
+    ELSEWHERE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Forgets the files of the last run and removes their copies.
+pub(crate) fn clear() {
+    let mut elsewhere = local();
+    elsewhere.files.clear();
+    elsewhere.folder = None;
+    FOLDER.lock().unwrap_or_else(PoisonError::into_inner).take();
+}
+
+/// Removes the copies; a signal handler calls it before the process ends.
+pub(crate) fn remove_copies() {
+    if let Some(folder) = FOLDER.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        let _ = std::fs::remove_dir_all(folder);
+    }
+}
+
+/// Downloads what is read, and checks that what will be written can be, as far as that is known without a request.
+pub(crate) fn fetch() -> Result<(), Failure> {
+    let files = taken(|_| true);
+    if files.is_empty() {
+        return Ok(());
+    }
+    let storage = Storage::from_environment()?;
+    for (location, _, _) in files.iter().filter(|(_, _, role)| *role == Role::Output) {
+        storage.check_writable(location)?;
+    }
+    for (location, local, role) in files {
+        let most_bytes = match role {
+            Role::Output => continue,
+            Role::Asset => Limits::default().file_bytes,
+            Role::Recording => MOST_RECORDING_BYTES,
+        };
+        let file = File::create(&local).map_err(|error| Failure::write(&local, error))?;
+        storage.download(&location, file, most_bytes)?;
+    }
+    Ok(())
+}
+
+/// Writes the outputs of a command that has succeeded. What cannot be written stays in its local copy.
+pub(crate) fn put() -> Result<(), Failure> {
+    let outputs = taken(|role| role == Role::Output);
+    if outputs.is_empty() {
+        return Ok(());
+    }
+    let storage = Storage::from_environment()?;
+    for (location, local, _) in outputs {
+        let written = storage.write_file(&location, &local);
+        written.map_err(|error| keep(&local, error))?;
+    }
+    Ok(())
+}
+
+fn taken(is_wanted: impl Fn(Role) -> bool) -> Vec<(Location, PathBuf, Role)> {
+    let elsewhere = local();
+    let wanted = elsewhere.files.iter().filter(|file| is_wanted(file.role));
+    wanted
+        .map(|file| (file.location.clone(), file.local.clone(), file.role))
+        .collect()
+}
+
+/// The error of an output, whose local copy outlives the command.
+fn keep(copy: &Path, error: StorageError) -> Failure {
+    let mut elsewhere = local();
+    // From now on the copy is named as such.
+    elsewhere.files.clear();
+    FOLDER.lock().unwrap_or_else(PoisonError::into_inner).take();
+    if let Some(folder) = elsewhere.folder.take() {
+        let _ = folder.keep();
+    }
+    Failure::Other(format!("{error}; the result is kept in {}", copy.display()))
+}
+
+/// Whether a path is a copy of a file elsewhere.
+pub(crate) fn is_copy(path: &Path) -> bool {
+    local().files.iter().any(|file| file.local == path)
+}
+
+/// A text with the URIs in place of their local copies, as text and as a part of JSON.
+pub(crate) fn named(text: &str) -> String {
+    let mut text = text.to_owned();
+    for file in &local().files {
+        let (copy, uri) = (file.local.display().to_string(), file.location.to_string());
+        let escaped = |text: &str| serde_json::Value::from(text).to_string();
+        let in_json = |text: &str| escaped(text).trim_matches('"').to_owned();
+        if text.contains(&copy) || text.contains(&in_json(&copy)) {
+            text = text.replace(&escaped(&copy), &escaped(&uri));
+            text = text.replace(&copy, &uri);
+        }
+    }
+    text
+}
+
+/// An argument as it may be shown and stored: a URL without its query, which may hold a signature.
+pub(crate) fn without_secrets(argument: OsString) -> OsString {
+    let Some(text) = argument.to_str() else {
+        return argument;
+    };
+    let (flag, value) = match text.split_once('=') {
+        Some((flag, value)) if flag.starts_with('-') => (Some(flag), value),
+        _ => (None, text),
+    };
+    match Location::parse(value.as_ref()) {
+        Ok(location) if location.local().is_none() => match flag {
+            Some(flag) => format!("{flag}={location}").into(),
+            None => location.to_string().into(),
+        },
+        _ => argument,
+    }
+}

@@ -1,0 +1,360 @@
+//! Libraries from recipes, as a user builds them.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+
+mod common;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::Stdio;
+use std::time::{Duration, SystemTime};
+
+use common::Place;
+use htex_library::{Entry, Library};
+use serde_json::Value;
+
+const RECIPE: &str = r#"
+[library]
+name = "surfaces"
+
+[[textures]]
+recordings = "rec/*.csv"
+pattern = '(?<surface>[a-z-]+)_(?<take>\d)'
+name = "{surface}/{take}"
+models = ["bands", "sbeta"]
+license = "CC0-1.0"
+tags = ["{surface}"]
+at = { speed_mm_s = 80, force_n = 0.4 }
+
+[textures.gates]
+license = true
+min_segments = 1
+"#;
+
+/// A folder with a recipe and recordings of 2 s, two of each of three surfaces.
+fn place() -> Place {
+    let place = Place::new();
+    fs::create_dir(place.path("rec")).unwrap();
+    for surface in ["vinyl", "sandpaper", "fine-fabric"] {
+        for take in ["1", "2"] {
+            let file = format!("rec/{surface}_{take}.csv");
+            let simulate = ["simulate", "--surface", surface, "--seed", take];
+            let run = place.run(&[&simulate[..], &["--seconds", "2", "-o", &file]].concat());
+            assert_eq!(run.code(), 0, "{}", run.error());
+            // Files that have just changed are hashed again the next time.
+            age(&place.path(&file), 60);
+        }
+    }
+    place.write("library.toml", RECIPE);
+    place
+}
+
+fn age(file: &Path, seconds: u64) {
+    let file = fs::File::options().write(true).open(file).unwrap();
+    let then = SystemTime::now() - Duration::from_secs(seconds);
+    file.set_modified(then).unwrap();
+}
+
+/// All files of a folder but what is kept for the next build, by path.
+fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(inside) = folders.pop() {
+        for entry in fs::read_dir(inside).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path
+                .strip_prefix(folder)
+                .unwrap()
+                .to_str()
+                .unwrap()
+                .to_owned();
+            match path.is_dir() {
+                true if name == ".htex-build" => {}
+                true => folders.push(path),
+                false => drop(files.insert(name, fs::read(&path).unwrap())),
+            }
+        }
+    }
+    files
+}
+
+/// The same files with the same bytes, without printing these.
+fn assert_same(left: &BTreeMap<String, Vec<u8>>, right: &BTreeMap<String, Vec<u8>>) {
+    assert!(
+        left.keys().eq(right.keys()),
+        "{:?}, {:?}",
+        left.keys(),
+        right.keys()
+    );
+    for (name, bytes) in left {
+        assert!(right[name] == *bytes, "{name}");
+    }
+}
+
+fn entries(library: &Path) -> Vec<Entry> {
+    let library = Library::open(library).unwrap();
+    library.entries().map(Result::unwrap).collect()
+}
+
+fn build(place: &Place, output: &str, more: &[&str]) -> Value {
+    place.json(&[&["build", "library.toml", "-o", output, "--json"], more].concat())
+}
+
+/// One change after another: what it concerns is fitted again, and nothing else.
+#[test]
+fn what_changed_is_built_and_nothing_else() {
+    let place = place();
+    let first = build(&place, "dist", &[]);
+    assert_eq!(
+        (&first["fitted"], &first["textures"]),
+        (&6.into(), &6.into())
+    );
+    let built = results(&place.path("dist"));
+    for file in [
+        "surfaces.htexlib",
+        "textures/vinyl/1.htex",
+        "sounds/vinyl/1.wav",
+        "build-report.json",
+        "index.html",
+    ] {
+        assert!(built.contains_key(file), "{file}: {:?}", built.keys());
+    }
+    let fitted_alone = place.run(&[
+        "fit",
+        "rec/vinyl_1.csv",
+        "--model",
+        "bands,sbeta",
+        "--speed",
+        "80",
+        "--force",
+        "0.4",
+        "-o",
+        "1.htex",
+        "--license",
+        "CC0-1.0",
+        "--tag",
+        "vinyl",
+    ]);
+    assert_eq!(fitted_alone.code(), 0, "{}", fitted_alone.error());
+    let alone = place.json(&["info", "1.htex", "--json"]);
+    let ours = place.json(&["info", "dist/textures/vinyl/1.htex", "--json"]);
+    assert_eq!(alone["representations"], ours["representations"]);
+
+    // Nothing changed; then only times did.
+    assert_eq!(build(&place, "dist", &[])["fitted"], 0);
+    age(&place.path("rec/vinyl_1.csv"), 30);
+    assert_eq!(build(&place, "dist", &[])["fitted"], 0);
+    assert_same(&results(&place.path("dist")), &built);
+
+    // A setting of two textures, a recording of one.
+    place.write(
+        "library.toml",
+        RECIPE.to_owned() + "\n[[overrides]]\ntextures = \"vinyl/*\"\nlevel = \"fitted\"\n",
+    );
+    assert_eq!(build(&place, "dist", &[])["fitted"], 2);
+    fs::copy(
+        place.path("rec/sandpaper_2.csv"),
+        place.path("rec/sandpaper_1.csv"),
+    )
+    .unwrap();
+    assert_eq!(build(&place, "dist", &[])["fitted"], 1);
+
+    // A gate concerns no fit; a texture that is gone takes its files along.
+    fs::remove_file(place.path("rec/fine-fabric_1.csv")).unwrap();
+    place.write(
+        "library.toml",
+        RECIPE.replace("min_segments = 1", "min_segments = 1\nmax_bytes = 5000"),
+    );
+    let last = build(&place, "dist", &[]);
+    assert_eq!((&last["fitted"], &last["textures"]), (&2.into(), &5.into()));
+    let files = results(&place.path("dist"));
+    assert!(
+        !files.contains_key("textures/fine-fabric/1.htex")
+            && !files.contains_key("sounds/fine-fabric/1.wav")
+    );
+}
+
+/// The same bytes with one job and with three, in another folder, and after a result was damaged.
+#[test]
+fn the_bytes_do_not_depend_on_jobs_folder_or_order() {
+    let place = place();
+    build(&place, "one", &["--jobs", "1"]);
+    build(&place, "three", &["--jobs", "3"]);
+    let expected = results(&place.path("one"));
+    assert_same(&results(&place.path("three")), &expected);
+    let kept = fs::read_dir(place.path("one/.htex-build/made")).unwrap();
+    let kept = kept.map(|entry| entry.unwrap().path()).next().unwrap();
+    let mut bytes = fs::read(&kept).unwrap();
+    *bytes.last_mut().unwrap() ^= 1;
+    fs::write(&kept, bytes).unwrap();
+    fs::write(place.path("one/textures/vinyl/1.htex"), b"edited").unwrap();
+    fs::write(place.path("one/surfaces.htexlib"), b"edited").unwrap();
+    assert_eq!(build(&place, "one", &[])["fitted"], 1);
+    assert_same(&results(&place.path("one")), &expected);
+    let entries = entries(&place.path("one/surfaces.htexlib"));
+    let names: Vec<&str> = entries.iter().map(|entry| &entry.name[..]).collect();
+    let sorted = [
+        "fine-fabric/1",
+        "fine-fabric/2",
+        "sandpaper/1",
+        "sandpaper/2",
+        "vinyl/1",
+        "vinyl/2",
+    ];
+    assert_eq!(names, sorted);
+}
+
+/// Killed at moments over the length of a build, then run again: as if nothing had happened.
+#[cfg(unix)]
+#[test]
+fn a_killed_build_goes_on_to_the_same_bytes() {
+    let place = place();
+    let start = std::time::Instant::now();
+    build(&place, "whole", &["--jobs", "2"]);
+    let whole = start.elapsed();
+    for kill in 1..=20 {
+        let build = ["build", "library.toml", "-o", "killed", "--jobs", "2"];
+        let mut child = place
+            .command(&build)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        // Moments that are spread over the build by a number that has no period with it.
+        let part = (f64::from(kill) * 0.618).fract();
+        std::thread::sleep(whole.mul_f64(part));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        if kill % 4 == 0 {
+            fs::remove_dir_all(place.path("killed/.htex-build/made")).unwrap();
+        }
+    }
+    build(&place, "killed", &[]);
+    assert_same(
+        &results(&place.path("killed")),
+        &results(&place.path("whole")),
+    );
+}
+
+/// What misses a gate is left out with a reason, what cannot be fitted stops the build or is left out; the others stand.
+#[test]
+fn what_fails_is_reported_and_the_others_stand() {
+    let place = place();
+    place.write(
+        "library.toml",
+        RECIPE.replace("min_segments = 1", "max_band_error_db = { sbeta = 0.01 }"),
+    );
+    let run = place.run(&["build", "library.toml", "-o", "dist", "--json"]);
+    assert_eq!(run.code(), 1, "{}", run.error());
+    let summary: Value = serde_json::from_str(&run.text()).unwrap();
+    assert_eq!(
+        (
+            &summary["textures"],
+            summary["left_out"].as_array().unwrap().len()
+        ),
+        (&0.into(), 6)
+    );
+    assert_eq!(
+        summary["left_out"][0]["missed"][0]["gate"],
+        "max_band_error_db"
+    );
+
+    place.write("library.toml", RECIPE);
+    place.write("rec/broken_1.csv", "t_s,lateral_n\n0,1\n0.1,zero\n");
+    let run = place.run(&["build", "library.toml", "-o", "dist"]);
+    assert_eq!(run.code(), 1);
+    assert!(
+        run.error().contains("broken/1") && run.error().contains("zero"),
+        "{}",
+        run.error()
+    );
+    let run = place.run(&["build", "library.toml", "-o", "dist", "--keep-going"]);
+    assert_eq!(run.code(), 1, "{}", run.error());
+    assert!(
+        run.text().contains("left out: broken/1: fit: broken_1.csv"),
+        "{}",
+        run.text()
+    );
+    assert_eq!(entries(&place.path("dist/surfaces.htexlib")).len(), 6);
+    let report: Value =
+        serde_json::from_slice(&fs::read(place.path("dist/build-report.json")).unwrap()).unwrap();
+    let left_out: Vec<&Value> = report["textures"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|t| t["status"] == "left_out")
+        .collect();
+    assert_eq!(
+        (left_out.len(), &left_out[0]["name"]),
+        (1, &"broken/1".into())
+    );
+}
+
+/// Wrong recipes say where and what, and write nothing.
+#[test]
+fn wrong_recipes_say_where() {
+    let place = place();
+    let cases = [
+        ("models = [\"bands\"", "modles = [\"bands\"", "modles"),
+        ("rec/*.csv", "rec/*.tdms", "no file matches rec/*.tdms"),
+        (
+            "{surface}/{take}",
+            "{surfce}",
+            "nothing is called `surfce`; there are file, folder, stem, surface, take",
+        ),
+        (
+            "{surface}/{take}",
+            "../{stem}",
+            "textures[0].name: a part of it is empty, `.` or `..`",
+        ),
+        ("(?<take>", "(?<take", "textures[0].pattern"),
+        ("(?<surface>[a-z-]+)", "(?<surface>x)", "does not match"),
+        ("CC0-1.0", "free for all", "license"),
+        (
+            "speed_mm_s = 80",
+            "speed_mm_s = \"{surface}\"",
+            "speed_mm_s is `fine-fabric`; it is a number",
+        ),
+        (
+            "[textures.gates]",
+            "[[overrides]]\ntextures = \"vynil/*\"\n[overrides.gates]",
+            "no texture has such a name",
+        ),
+        ("\"sbeta\"", "\"spline\"", "spline"),
+    ];
+    for (from, to, expected) in cases {
+        place.write("library.toml", RECIPE.replace(from, to));
+        let run = place.run(&["build", "library.toml", "-o", "dist"]);
+        assert!(matches!(run.code(), 1 | 2), "{to}");
+        assert!(run.error().contains(expected), "{to}: {}", run.error());
+        assert!(!place.path("dist/surfaces.htexlib").exists(), "{to}");
+    }
+}
+
+/// A table names recordings, conditions and fields.
+#[test]
+fn a_table_says_what_files_do_not() {
+    let place = place();
+    let table = "recording,name,speed_mm_s,force_n,price\nrec/vinyl_1.csv,A,80,0.4,cheap\nrec/vinyl_2.csv,A,160,0.4,cheap\n\
+                 rec/sandpaper_1.csv,B,80,0.4,dear\n";
+    place.write("recordings.csv", table);
+    let recipe = "[library]\nname = \"t\"\n[[textures]]\ntable = \"recordings.csv\"\nmodels = [\"bands\"]\ntags = [\"{price}\"]\n";
+    place.write("library.toml", recipe);
+    let run = place.run(&["build", "library.toml", "-o", "dist"]);
+    // The simulated finger moves at 80 mm/s: a recording that is said to be at 160 has no segment there.
+    assert_eq!(run.code(), 1);
+    assert!(
+        run.error().contains("vinyl_2.csv") && run.error().contains("160"),
+        "{}",
+        run.error()
+    );
+    place.write("recordings.csv", table.replace("160", "80"));
+    build(&place, "dist", &[]);
+    let entries = entries(&place.path("dist/t.htexlib"));
+    assert_eq!(
+        (&entries[0].name[..], &entries[1].tags[0][..]),
+        ("A", "dear")
+    );
+    let recordings = place.json(&["info", "dist/textures/A.htex", "--json"]);
+    assert_eq!(recordings["conditions"].as_array().unwrap().len(), 1);
+}

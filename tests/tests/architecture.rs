@@ -13,7 +13,21 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("htex-schema", &[]),
     ("htex-files", &[]),
     ("htex-native", &[]),
+    ("htex-storage", &["htex-files"]),
+    ("htex-object-server", &[]),
     ("htex-format", &["htex-files", "htex-model", "htex-schema"]),
+    ("htex-library", &["htex-files", "htex-format"]),
+    (
+        "htex-build",
+        &[
+            "htex-author",
+            "htex-format",
+            "htex-host",
+            "htex-library",
+            "htex-play",
+            "htex-schema",
+        ],
+    ),
     ("htex-report", &[]),
     ("htex-device", &["htex-native", "htex-schema"]),
     ("adapter", &["htex-device", "htex-files", "htex-native"]),
@@ -25,12 +39,18 @@ const ARROWS: &[(&str, &[&str])] = &[
         "htex-host",
         &["htex-dsp", "htex-native", "htex-model", "plugin"],
     ),
-    ("htex-author", &["htex-dsp", "htex-format", "htex-host"]),
+    (
+        "htex-author",
+        &["htex-dsp", "htex-format", "htex-host", "htex-play"],
+    ),
     (
         "htex-check",
         &["htex-check-runner", "htex-dsp", "htex-host", "htex-model"],
     ),
-    ("htex-play", &["htex-dsp", "htex-format", "htex-host"]),
+    (
+        "htex-play",
+        &["htex-dsp", "htex-format", "htex-host", "htex-library"],
+    ),
     ("htex-player", &[]),
     (
         "htex-bake",
@@ -43,6 +63,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-device",
             "htex-format",
             "htex-host",
+            "htex-library",
             "htex-play",
             "htex-scene",
         ],
@@ -75,11 +96,13 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex",
             "htex-author",
             "htex-bake",
+            "htex-build",
             "htex-check",
             "htex-check-runner",
             "adapter",
             "htex-device",
             "htex-device-check",
+            "htex-library",
             "htex-scene",
             "htex-tradeoff",
             "htex-dsp",
@@ -88,6 +111,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-model",
             "htex-report",
             "htex-schema",
+            "htex-storage",
         ],
     ),
     (
@@ -114,6 +138,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-device",
             "htex-format",
             "htex-host",
+            "htex-library",
             "htex-model",
             "htex-player",
             "htex-scene",
@@ -188,4 +213,35 @@ fn only_the_command_and_tests_hold_documents_to_schemas() {
         }
     }
     assert_eq!(holders, BTreeSet::from(["htex-cli", "htex-tests"]));
+}
+
+/// An application that only opens and plays assets links no network library, and a short build of the command neither.
+#[test]
+fn only_the_default_command_reaches_the_network() {
+    let metadata = MetadataCommand::new()
+        .manifest_path(workspace().join("Cargo.toml"))
+        .no_deps()
+        .exec()
+        .unwrap();
+    let network = ["object_store", "reqwest", "rustls", "tokio", "hyper"];
+    let mut always = BTreeSet::new();
+    for package in &metadata.packages {
+        for used in &package.dependencies {
+            let turned_on =
+                used.name == "htex-storage" && used.features.iter().any(|f| f == "cloud");
+            let linked = network.contains(&&used.name[..]) && !used.optional;
+            if turned_on || linked {
+                always.insert(package.name.as_str());
+            }
+        }
+        let turns_on = |feature: &str| {
+            package
+                .features
+                .get(feature)
+                .is_some_and(|all| all.iter().any(|f| f == "htex-storage/cloud"))
+        };
+        assert!(!turns_on("default"), "{}", package.name);
+        assert_eq!(turns_on("cloud"), package.name.as_str() == "htex-cli");
+    }
+    assert_eq!(always, BTreeSet::from(["htex-object-server"]));
 }

@@ -59,6 +59,14 @@ edges! {
     every_cell_of_a_response: "response_csv", edges::table;
     every_byte_of_a_wav: "wav", edges::bytes;
     every_byte_of_an_npy: "npy", edges::bytes;
+    every_byte_of_a_flac: "flac", edges::bytes;
+    every_byte_of_a_mat: "mat", edges::bytes;
+    every_byte_of_a_tdms: "tdms", edges::bytes;
+    every_byte_of_a_parquet: "parquet", edges::bytes;
+    every_byte_of_an_arrow: "arrow", edges::bytes;
+    every_byte_of_an_hdf5: "hdf5", edges::bytes;
+    every_byte_of_a_column_map: "column_map", edges::bytes;
     every_byte_of_a_parameter_block: "parameter_block", edges::bytes;
     every_byte_of_an_asset: "open_asset", edges::bytes;
+    every_byte_of_a_library: "library", edges::bytes;
 }

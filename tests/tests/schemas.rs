@@ -45,6 +45,7 @@ const REFUSED: &[&str] = &[
     "plugin_duplicate",
     "plugin_invalid",
     "quality_invalid",
+    "quality_invalid_left_out",
     "quantity_unknown",
     "representations_empty",
     "source_invalid",

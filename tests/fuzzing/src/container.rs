@@ -72,7 +72,7 @@ fn u16_at(bytes: &[u8], at: usize) -> usize {
 }
 
 /// CRC-32 as ZIP has it, four bits at a time.
-fn crc32(bytes: &[u8]) -> u32 {
+pub(crate) fn crc32(bytes: &[u8]) -> u32 {
     const TABLE: [u32; 16] = table();
     let step = |crc: u32| (crc >> 4) ^ TABLE[(crc & 15) as usize];
     !bytes

@@ -17,6 +17,8 @@ mod container;
 mod descriptor;
 pub mod edges;
 mod heavy;
+mod lab;
+mod library;
 mod manifest;
 mod module;
 mod output;
@@ -34,6 +36,8 @@ pub use block::parameter_block;
 pub use capi::c_calls;
 pub use compile::compile_limits;
 pub use descriptor::descriptor;
+pub use lab::{arrow, column_map, flac, hdf5, mat, parquet, tdms};
+pub use library::library;
 pub use manifest::manifest;
 pub use module::wasm_module;
 pub use output::output_name;
@@ -65,6 +69,13 @@ pub const TARGETS: &[Target] = &[
     target("csv", csv),
     target("wav", wav),
     target("npy", npy),
+    target("flac", flac),
+    target("mat", mat),
+    target("tdms", tdms),
+    target("parquet", parquet),
+    target("arrow", arrow),
+    target("hdf5", hdf5),
+    target("column_map", column_map),
     target("response_csv", response_csv),
     target("scene", scene),
     target("descriptor", descriptor),
@@ -75,6 +86,7 @@ pub const TARGETS: &[Target] = &[
     target("compile_limits", compile_limits),
     target("c_calls", c_calls),
     target("baked_block", baked_block),
+    target("library", library),
 ];
 
 const fn target(name: &'static str, run: fn(&[u8]) -> bool) -> Target {

@@ -38,10 +38,20 @@ pub fn npy(input: &[u8]) -> bool {
 
 /// Reads a recording as it is and, when it has no rate, at this one; takes its spectrum.
 fn recording(name: &str, input: &[u8], rate_hz: f64) -> bool {
+    recording_with(name, input, &ReadOptions::default(), rate_hz)
+}
+
+/// The same with options.
+pub(crate) fn recording_with(
+    name: &str,
+    input: &[u8],
+    options: &ReadOptions,
+    rate_hz: f64,
+) -> bool {
     let read = |options: &ReadOptions| recording_from_bytes(Path::new(name), input, options);
-    let mut result = read(&ReadOptions::default());
+    let mut result = read(options);
     if matches!(result, Err(ReadError::NoRate { .. })) {
-        result = read(&ReadOptions::default().with_rate_hz(rate_hz));
+        result = read(&options.clone().with_rate_hz(rate_hz));
     }
     match result {
         Ok(recording) => {
@@ -52,7 +62,7 @@ fn recording(name: &str, input: &[u8], rate_hz: f64) -> bool {
     }
 }
 
-fn refused(error: &ReadError) -> bool {
+pub(crate) fn refused(error: &ReadError) -> bool {
     sentence(error);
     false
 }

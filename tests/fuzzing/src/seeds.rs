@@ -8,6 +8,7 @@ use htex_model::Kind;
 
 use crate::block;
 use crate::container::container;
+use crate::library::{self, Around};
 use crate::module::model;
 
 /// A target, a file name, and the file's content.
@@ -40,11 +41,91 @@ pub fn seeds() -> Vec<Seed> {
     seeds.extend(manifests());
     seeds.extend(texts());
     seeds.extend(samples());
+    seeds.extend(lab_files());
     seeds.extend(modules());
     seeds.extend(words());
     seeds.extend(calls());
     seeds.extend(blocks());
+    seeds.extend(libraries());
     seeds
+}
+
+/// A library as a file and in parts: a leaf page of two textures that share an object, and a root page.
+fn libraries() -> Vec<Seed> {
+    let vinyl = include_bytes!("../../../examples/scenes/vinyl.htex");
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("seed.htexlib");
+    let mut writer = htex_library::Writer::create(&path, "Seed").expect("it can be written");
+    for name in ["vinyl", "vinyl/again"] {
+        writer.add(name, vinyl).expect("an example");
+    }
+    writer.finish().expect("it can be written");
+    let file = std::fs::read(path).expect("it was written");
+    let pages = library::leaves().map(|leaf| leaf.len() as u8);
+    let root = [&b"\x04Seed\x02\x00\x00\x00\x01b"[..], &pages].concat();
+    [
+        ("file", Around::File.input(&file)),
+        ("header", Around::Header.input(&file)),
+        ("leaf", Around::Leaf.input(&leaf(vinyl))),
+        ("root", Around::Root.input(&root)),
+    ]
+    .map(|(name, input)| ("library", name.to_owned(), input))
+    .to_vec()
+}
+
+/// Contents of a leaf page, shared objects and payload: an asset, and the same with a part of it shared.
+fn leaf(asset: &[u8]) -> Vec<u8> {
+    let read = htex_format::Asset::from_bytes(asset).expect("an example");
+    let models = read
+        .manifest
+        .representations
+        .iter()
+        .map(|r| r.model.as_str());
+    let models: Vec<&str> = models.collect();
+    let mut words: Vec<&str> = read
+        .manifest
+        .tags
+        .iter()
+        .map(String::as_str)
+        .chain(models.clone())
+        .collect();
+    words.sort_unstable();
+    words.dedup();
+    let index = |word: &str| words.iter().position(|w| *w == word).unwrap_or(0) as u8;
+    let list = |chosen: &mut dyn Iterator<Item = &str>| {
+        let chosen: Vec<u8> = chosen.map(index).collect();
+        [&[chosen.len() as u8], &chosen[..]].concat()
+    };
+    let varint = |x: usize| vec![x as u8 | 0x80, (x >> 7) as u8];
+    let texts = words
+        .iter()
+        .flat_map(|w| [&[w.len() as u8], w.as_bytes()].concat());
+    let tags = list(&mut read.manifest.tags.iter().map(String::as_str));
+    let models = list(&mut models.into_iter());
+    let condition = read.manifest.conditions[0];
+    let known = [condition.speed_mm_s, condition.force_n].map(|x| x.unwrap_or(0.0).to_le_bytes());
+    let condition = [&[15], &known.concat()[..]].concat();
+    let (shared, own) = (
+        asset[100..200].to_vec(),
+        [&asset[..100], &asset[200..]].concat(),
+    );
+    let leaf = [
+        vec![2, words.len() as u8],
+        texts.collect(),
+        b"\x00\x01a\x00\x01b".to_vec(),
+        tags.repeat(2),
+        models.repeat(2),
+        condition.repeat(2),
+        vec![0],
+        varint(asset.len()),
+        varint(own.len()),
+        // No object; one of 100 bytes from 0 on, after 100 own bytes.
+        vec![0, 1, 100, 0, 100],
+        blake3::hash(asset).as_bytes().repeat(2),
+    ]
+    .concat();
+    let lengths = [leaf.len(), shared.len()].map(|length| (length as u16).to_le_bytes());
+    [lengths.concat(), leaf, shared, asset.to_vec(), own].concat()
 }
 
 /// Baked blocks of noise and of sinusoids, with two motions of the grid before each.
@@ -279,6 +360,48 @@ fn samples() -> Vec<Seed> {
         let short: Vec<i16> = numbers.iter().map(|x| (x * 32_768.0) as i16).collect();
         seeds.push(("npy", format!("i2-{name}"), npy(shape, &short)));
     }
+    seeds
+}
+
+/// Files that SciPy, h5py, npTDMS, pyarrow and soundfile wrote, and maps.
+fn lab_files() -> Vec<Seed> {
+    macro_rules! files {
+        ($($target:literal: $name:literal;)*) => {
+            vec![$((
+                $target,
+                $name.to_owned(),
+                include_bytes!(concat!("../../../sdk/author/tests/lab/", $name)).to_vec(),
+            )),*]
+        };
+    }
+    let mut seeds = files! {
+        "flac": "pcm16.flac";
+        "flac": "pcm24.flac";
+        "mat": "plain.mat";
+        "mat": "compressed.mat";
+        "tdms": "segments.tdms";
+        "tdms": "interleaved.tdms";
+        "parquet": "snappy.parquet";
+        "parquet": "gzip.parquet";
+        "parquet": "lz4.parquet";
+        "arrow": "lz4.feather";
+        "arrow": "stream.arrows";
+        "hdf5": "earliest.h5";
+        "hdf5": "latest.h5";
+        "hdf5": "version73.mat";
+    };
+    let rows = "\na,b,x-y\n1,2,3\n4,5,6\n";
+    let maps = [
+        ("sum", "lateral_x=a+b,lateral_y=-(a-b)/2*9.81e-3"),
+        ("quoted", "lateral=\"x-y\":0.5,normal=#2,speed=80"),
+    ];
+    seeds.extend(maps.map(|(name, map)| {
+        (
+            "column_map",
+            name.to_owned(),
+            format!("{map}{rows}").into_bytes(),
+        )
+    }));
     seeds
 }
 

@@ -20,6 +20,7 @@ const TESTS: &[&str] = &[
     "playing",
     "recording_conformance",
     "regressions",
+    "schemas",
     "table",
 ];
 

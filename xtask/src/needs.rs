@@ -105,6 +105,13 @@ pub const SCIPY: Need = Need {
     for_wasm: false,
 };
 
+/// A browser without a window.
+pub const CHROMIUM: Need = Need {
+    what: "Chromium",
+    how: "apt-get install chromium",
+    for_wasm: false,
+};
+
 /// Another validator of JSON Schemas.
 pub const AJV: Need = Need {
     what: "Ajv",

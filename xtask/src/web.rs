@@ -10,10 +10,11 @@ use crate::places::{cargo, target, workspace};
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// Files that are copied as they are.
-const COPIED: [&str; 11] = [
+const COPIED: [&str; 12] = [
     "core.js",
     "guarded.js",
     "guests.js",
+    "htexlib.js",
     "index.d.ts",
     "index.js",
     "library.js",
@@ -69,6 +70,7 @@ fn library() -> Result<PathBuf, String> {
     let status = Command::new(cargo())
         .args(["build", "--locked", "--package", "htex-capi", "--lib"])
         .args(["--profile", "small", "--no-default-features"])
+        .args(["--features", "library"])
         .args(["--target", TARGET])
         .env(
             "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS",

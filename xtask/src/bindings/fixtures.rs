@@ -24,8 +24,12 @@ pub(super) fn command() -> Result<PathBuf, String> {
     Ok(target().join("debug").join(name))
 }
 
+/// Textures of the library beside those of the fixtures: more than a page of its index holds.
+const COPIES: usize = 999;
+
 /// Writes an asset of six models (`vinyl.htex`), one that brings its model along (`bursts.htex`), their samples at 48 kHz, the
-/// spectrum of Bands, what the command tells of the asset, the models as modules, and a module that does not return.
+/// spectrum of Bands, what the command tells of the asset, a library (`many.htexlib`) and its list, the models as modules, and a
+/// module that does not return.
 pub(super) fn write(folder: &Path) -> Result<(), String> {
     std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let command = command()?;
@@ -85,5 +89,31 @@ pub(super) fn write(folder: &Path) -> Result<(), String> {
     };
     let spectrum = ["spectrum", "vinyl.htex", "--model", "bands", "--json"];
     printed(&spectrum, "spectrum.json")?;
-    printed(&["info", "vinyl.htex", "--json"], "info.json")
+    printed(&["info", "vinyl.htex", "--json"], "info.json")?;
+    copy_many(folder)?;
+    let textures = ["many", "vinyl.htex", "bursts.htex"];
+    htex(
+        &[
+            &["lib", "pack", "many.htexlib", "--name", "Many"][..],
+            &textures,
+        ]
+        .concat(),
+    )?;
+    printed(&["lib", "ls", "many.htexlib", "--json"], "many.json")
+}
+
+/// Copies the assets to the folder `many`; the module of `bursts.htex` is then in the library twice.
+fn copy_many(folder: &Path) -> Result<(), String> {
+    let floor = folder.join("many/floor");
+    std::fs::create_dir_all(&floor).map_err(|error| format!("{}: {error}", floor.display()))?;
+    for i in 0..COPIES {
+        copy(
+            &folder.join("vinyl.htex"),
+            &floor.join(format!("{i:04}.htex")),
+        )?;
+    }
+    copy(
+        &folder.join("bursts.htex"),
+        &folder.join("many/bursts again.htex"),
+    )
 }

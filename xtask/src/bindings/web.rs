@@ -39,6 +39,7 @@ pub(super) fn test(folder: &Path) -> Result<(), String> {
             "--test",
             "--test-concurrency=1",
             "node.test.mjs",
+            "library.test.mjs",
             "browser.test.mjs",
         ])
         .env("HTEX_PACKAGE", &package)

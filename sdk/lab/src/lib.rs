@@ -1,0 +1,2 @@
+//! Experiments with textures: guided recordings, responses of a setup, studies and their analysis.
+#![forbid(unsafe_code)]

@@ -125,6 +125,7 @@ impl Failure {
         match error {
             BuildError::Read { file, error } => Self::read(&file, error),
             BuildError::Write { file, error } => Self::write(&file, error),
+            BuildError::Storage(error) => error.into(),
             error => Self::Build {
                 recipe: shown(recipe),
                 error,

@@ -16,7 +16,10 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("htex-storage", &["htex-files"]),
     ("htex-object-server", &[]),
     ("htex-format", &["htex-files", "htex-model", "htex-schema"]),
-    ("htex-library", &["htex-files", "htex-format"]),
+    (
+        "htex-library",
+        &["htex-files", "htex-format", "htex-storage"],
+    ),
     (
         "htex-build",
         &[
@@ -26,6 +29,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-library",
             "htex-play",
             "htex-schema",
+            "htex-storage",
         ],
     ),
     ("htex-report", &[]),
@@ -81,6 +85,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-library",
             "htex-play",
             "htex-scene",
+            "htex-storage",
         ],
     ),
     (

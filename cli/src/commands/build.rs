@@ -1,9 +1,12 @@
-use std::path::{Path, PathBuf};
+use std::ffi::OsString;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use clap::Args;
-use htex_build::{Build as Recipe, BuildOptions, Built, Job, Status, TextureReport};
+use htex_build::{Build as Recipe, BuildOptions, Built, Destination, Job, Status, TextureReport};
+use htex_format::plain;
+use htex_storage::Location;
 use serde::Serialize;
 
 use crate::exit::Exit;
@@ -11,22 +14,25 @@ use crate::failure::Failure;
 use crate::models::tool;
 use crate::output::{print, print_json};
 use crate::progress;
-use crate::shown::shown;
 use crate::wasm_limits::WasmLimit;
 
 /// Build a library of textures from a recipe.
 ///
 /// Fits the recordings that the recipe names and writes DIR/NAME.htexlib, DIR/textures, DIR/build-report.json and the
 /// catalogue DIR/index.html. What has been fitted stays in DIR/.htex-build: a build that was killed goes on where it was, and one
-/// that is run again fits what changed. A texture that misses a gate of the recipe is left out, and the exit status is 1.
+/// that is run again fits what changed. Recordings and other files of a recipe may be URIs, too. A texture that misses a gate of the recipe is left out, and the exit status is 1.
 #[derive(Args)]
 pub(crate) struct Build {
-    /// The recipe: library.toml (its JSON Schema: `htex schema recipe`)
+    /// The recipe: library.toml, a path or URI (its JSON Schema: `htex schema recipe`)
     recipe: PathBuf,
 
-    /// The folder of the results
-    #[arg(short, long, value_name = "DIR")]
-    output: PathBuf,
+    /// The folder of the results, or the URI of one (s3://, gs://, az://), to which they are copied when they are complete
+    #[arg(short, long, value_name = "DIR|URI")]
+    output: OsString,
+
+    /// The folder in which results for a URI are made; it keeps what the next build needs [default: one of the user's cache]
+    #[arg(long, value_name = "DIR")]
+    work: Option<PathBuf>,
 
     /// Textures to fit at the same time [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -83,14 +89,21 @@ impl Build {
             .with_limits(WasmLimit::all(&self.wasm_limit))
             .with_browser_package(self.browser_package.clone());
         let failure = |error| Failure::build(&self.recipe, error);
-        let mut build = Recipe::open(&self.recipe, &self.output, options).map_err(failure)?;
+        let to = Destination::parse(&self.output, self.work.as_deref()).map_err(failure)?;
+        if to.remote().is_none() && self.work.is_some() {
+            let sentence =
+                "--work goes with a URI after -o; a build of this machine works in its own folder";
+            return Err(Failure::Usage(sentence.to_owned()));
+        }
+        let mut build = Recipe::open(&self.recipe, to.folder(), options).map_err(failure)?;
         let work = Work::of(&build);
         if self.dry_run {
             return self.announce(&build);
         }
         fit(&mut build, &work).map_err(failure)?;
         let built = build.finish().map_err(failure)?;
-        self.report(&built, &work, start.elapsed().as_secs_f64())
+        to.publish().map_err(failure)?;
+        self.report(&built, &to, &work, start.elapsed().as_secs_f64())
     }
 
     /// Prints what would be fitted.
@@ -107,9 +120,15 @@ impl Build {
         Ok(Exit::SUCCESS)
     }
 
-    fn report(&self, built: &Built, work: &Work, seconds: f64) -> Result<Exit, Failure> {
+    fn report(
+        &self,
+        built: &Built,
+        to: &Destination,
+        work: &Work,
+        seconds: f64,
+    ) -> Result<Exit, Failure> {
         let report = &built.report;
-        let file = self.output.join(&report.library.file);
+        let results = to.results();
         let left_out: Vec<&TextureReport> = report
             .textures
             .iter()
@@ -120,7 +139,7 @@ impl Build {
             _ => Exit::FAILURE,
         };
         let summary = Summary {
-            library: shown(&file),
+            library: results.inside(&report.library.file).to_string(),
             library_bytes: report.library.bytes,
             textures: report.library.textures,
             fitted: work.textures,
@@ -133,7 +152,7 @@ impl Build {
         if self.json {
             print_json(&summary)?;
         } else {
-            print(&summary.to_text(&self.output))?;
+            print(&summary.to_text(&results))?;
         }
         Ok(exit)
     }
@@ -165,10 +184,14 @@ fn fit(build: &mut Recipe, work: &Work) -> Result<(), htex_build::BuildError> {
 }
 
 impl Summary<'_> {
-    fn to_text(&self, output: &Path) -> String {
+    fn to_text(&self, results: &Location) -> String {
         let mut text = format!(
             "{}: {} textures, {} bytes; {} fitted, {} as they were\n",
-            self.library, self.textures, self.library_bytes, self.fitted, self.unchanged
+            plain(&self.library),
+            self.textures,
+            self.library_bytes,
+            self.fitted,
+            self.unchanged
         );
         if self.fitted > 0 {
             let megabytes = self.recording_bytes as f64 / 1e6;
@@ -180,7 +203,10 @@ impl Summary<'_> {
                 megabytes / self.seconds
             );
         }
-        text += &format!("catalogue: {}\n", shown(&output.join("index.html")));
+        text += &format!(
+            "catalogue: {}\n",
+            plain(&results.inside("index.html").to_string())
+        );
         for texture in &self.left_out {
             for missed in &texture.missed {
                 text += &format!(

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use htex_host::WasmLimits;
 use rayon::prelude::*;
@@ -14,6 +14,7 @@ use crate::BuildError;
 use crate::assemble::{Built, assemble};
 use crate::cache::Cache;
 use crate::dist::Dist;
+use crate::elsewhere::{Elsewhere, folder_of, joined};
 use crate::hashes::{Hashed, Hashes, hash};
 use crate::job::{Job, Workbench};
 use crate::made::{Made, Outcome};
@@ -22,6 +23,9 @@ use crate::recipe::Recipe;
 
 /// Folder of what a build keeps for the next one, in the folder of the results.
 const KEPT: &str = ".htex-build";
+
+/// The folder of copies of files elsewhere, in that folder.
+const COPIES: &str = "elsewhere";
 
 /// The file of hashes, in that folder.
 const HASHES: &str = "files.json";
@@ -96,6 +100,7 @@ pub struct Build {
     pending: Vec<usize>,
     /// What was made and is not kept for the next build.
     unkept: BTreeMap<String, Made>,
+    elsewhere: Arc<Elsewhere>,
     pool: ThreadPool,
     /// Held as long as the build.
     _lock: File,
@@ -113,6 +118,7 @@ impl Build {
             folder,
             plan,
             hashes,
+            elsewhere,
             kept,
             lock,
         } = Prepared::new(recipe, output)?;
@@ -139,6 +145,7 @@ impl Build {
             dist,
             pending,
             unkept: BTreeMap::new(),
+            elsewhere,
             pool,
             _lock: lock,
         })
@@ -184,6 +191,7 @@ impl Build {
         let ended = Mutex::new((BTreeMap::new(), None));
         let work = |_: rayon::BroadcastContext<'_>| {
             let mut workbench = Workbench::new(self.options.limits.clone());
+            workbench.elsewhere = self.elsewhere.clone();
             while !stopped.load(Ordering::Relaxed) {
                 let Some(i) = self.pending.get(next.fetch_add(1, Ordering::Relaxed)) else {
                     return;
@@ -262,6 +270,7 @@ impl Build {
         let built = self.pool.install(assemble)?;
         let keys: BTreeSet<&str> = self.jobs.iter().map(|(key, _)| &key[..]).collect();
         self.cache.keep(&keys)?;
+        self.elsewhere.forget()?;
         Ok(built)
     }
 }
@@ -279,19 +288,19 @@ pub fn unhashed(recipe: &Path, output: &Path) -> Result<Vec<PathBuf>, BuildError
         .iter()
         .flat_map(PlannedTexture::files);
     let files = textures.chain(&prepared.recipe.library.plugins);
-    let files: BTreeSet<PathBuf> = files.map(|file| prepared.folder.join(file)).collect();
+    let files: BTreeSet<PathBuf> = files.map(|file| joined(&prepared.folder, file)).collect();
     let unknown = files
         .into_iter()
         .filter(|file| !prepared.hashes.is_known(file));
     Ok(unknown.collect())
 }
 
-/// Hashes a file.
+/// Hashes a file, of this machine or by URI.
 ///
 /// # Errors
 /// When it cannot be read, or changes meanwhile.
 pub fn hash_file(file: &Path) -> Result<Hashed, BuildError> {
-    hash(file).map_err(|error| BuildError::read(file, error))
+    hash(file, &Elsewhere::temporary())
 }
 
 /// Keeps hashes of files for the next build. A file whose size or times are others there is read again.
@@ -303,7 +312,7 @@ pub fn remember(
     hashed: impl IntoIterator<Item = (PathBuf, Hashed)>,
 ) -> Result<(), BuildError> {
     let (kept, _lock) = claim(output)?;
-    let hashes = Hashes::open(&kept.join(HASHES));
+    let hashes = Hashes::open(&kept.join(HASHES), Arc::new(Elsewhere::temporary()));
     hashes.add(hashed);
     Dist::new(output).put(&kept.join(HASHES), &hashes.to_keep())
 }
@@ -314,6 +323,7 @@ struct Prepared {
     folder: PathBuf,
     plan: Plan,
     hashes: Hashes,
+    elsewhere: Arc<Elsewhere>,
     /// Folder of what is kept, and its lock.
     kept: PathBuf,
     lock: File,
@@ -323,14 +333,13 @@ impl Prepared {
     fn new(recipe: &Path, output: &Path) -> Result<Self, BuildError> {
         let parsed = Recipe::open(recipe)?;
         let (kept, lock) = claim(output)?;
-        let folder = match recipe.parent() {
-            Some(folder) if folder != Path::new("") => folder.to_owned(),
-            _ => PathBuf::from("."),
-        };
+        let folder = folder_of(recipe);
+        let elsewhere = Arc::new(Elsewhere::with_copies(kept.join(COPIES)));
         Ok(Self {
-            plan: Plan::new(&parsed, &folder, output)?,
+            plan: Plan::new(&parsed, &folder, output, &elsewhere)?,
             recipe: parsed,
-            hashes: Hashes::open(&kept.join(HASHES)),
+            hashes: Hashes::open(&kept.join(HASHES), elsewhere.clone()),
+            elsewhere,
             folder,
             kept,
             lock,

@@ -36,6 +36,9 @@ pub enum BuildError {
         /// The system's error.
         error: std::io::Error,
     },
+    /// A file elsewhere cannot be read or written.
+    #[error(transparent)]
+    Storage(#[from] htex_storage::StorageError),
     /// Another build uses the folder.
     #[error("{folder}: another build is writing to it; wait for it to end, or give another folder")]
     Locked {

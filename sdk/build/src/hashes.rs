@@ -4,10 +4,13 @@ use std::collections::BTreeMap;
 use std::fs::{File, Metadata};
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
+
+use crate::BuildError;
+use crate::elsewhere::{Elsewhere, elsewhere, is_elsewhere};
 
 /// A file that changed this shortly before it was hashed may change again without a change of its time, since file systems keep
 /// times in steps of up to 2 s (FAT).
@@ -18,14 +21,28 @@ const RACY: Duration = Duration::from_secs(2);
 pub struct Stamp {
     /// Size, bytes.
     pub bytes: u64,
-    /// Time of the last change of the contents, nanoseconds since 1970.
+    /// Time of the last change of the contents, nanoseconds since 1970; 0 of a file elsewhere.
     modified_ns: u64,
-    /// Number of the file on its file system; 0 where there is none.
+    /// Number of the file on its file system; 0 where there is none. The version of a file elsewhere.
     number: u64,
 }
 
 impl Stamp {
-    /// Returns the stamp of a file.
+    /// Returns the stamp of a file elsewhere, whose version is its entity tag. Without one, any other time is another version.
+    pub(crate) fn elsewhere(bytes: u64, etag: Option<&str>) -> Self {
+        let version = |etag: &str| {
+            let hash = blake3::hash(etag.as_bytes());
+            let first = hash.as_bytes().first_chunk().copied();
+            u64::from_le_bytes(first.unwrap_or_default())
+        };
+        Self {
+            bytes,
+            modified_ns: if etag.is_some() { 0 } else { u64::MAX },
+            number: etag.map_or(0, version),
+        }
+    }
+
+    /// Returns the stamp of a file of this machine.
     ///
     /// # Errors
     /// Those of the system; a file without a time of change.
@@ -68,20 +85,22 @@ pub struct Hashed {
 }
 
 /// Known hashes by path.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Hashes {
     known: BTreeMap<PathBuf, Hashed>,
+    elsewhere: Arc<Elsewhere>,
     /// Hashes of this build's files.
     used: Mutex<BTreeMap<PathBuf, Hashed>>,
 }
 
 impl Hashes {
     /// Reads the hashes that an earlier build kept; a file that is absent or damaged holds none.
-    pub(crate) fn open(file: &Path) -> Self {
+    pub(crate) fn open(file: &Path, elsewhere: Arc<Elsewhere>) -> Self {
         let known = std::fs::read(file).ok();
         let known = known.and_then(|bytes| serde_json::from_slice(&bytes).ok());
         Self {
             known: known.unwrap_or_default(),
+            elsewhere,
             used: Mutex::default(),
         }
     }
@@ -89,7 +108,7 @@ impl Hashes {
     /// Whether the hash of a file is known without reading it.
     pub(crate) fn is_known(&self, path: &Path) -> bool {
         let known = self.known.get(path).map(|hashed| hashed.stamp);
-        known.is_some() && known == Stamp::of(path).ok()
+        known.is_some() && known == self.stamp(path).ok()
     }
 
     /// Adds hashes of files, which hold as long as their stamps do.
@@ -100,7 +119,7 @@ impl Hashes {
     }
 
     /// Returns the hash of a file; reads it only if it changed since it was hashed last.
-    pub(crate) fn of(&self, path: &Path) -> io::Result<Hashed> {
+    pub(crate) fn of(&self, path: &Path) -> Result<Hashed, BuildError> {
         let used = |hashes: &Mutex<BTreeMap<PathBuf, Hashed>>| {
             let used = hashes.lock().unwrap_or_else(PoisonError::into_inner);
             used.get(path).cloned()
@@ -108,31 +127,50 @@ impl Hashes {
         if let Some(hashed) = used(&self.used) {
             return Ok(hashed);
         }
-        let stamp = Stamp::of(path)?;
+        let stamp = self.stamp(path)?;
         let hashed = match self.known.get(path) {
             Some(hashed) if hashed.stamp == stamp => hashed.clone(),
-            _ => hash(path)?,
+            _ => hash(path, &self.elsewhere)?,
         };
         let mut used = self.used.lock().unwrap_or_else(PoisonError::into_inner);
         used.insert(path.to_owned(), hashed.clone());
         Ok(hashed)
     }
 
-    /// Returns the hashes to keep for the next build as JSON: those of files that have not just changed.
+    fn stamp(&self, path: &Path) -> Result<Stamp, BuildError> {
+        match elsewhere(path)? {
+            Some(location) => Ok(self.elsewhere.stamp(path, &location)?),
+            None => Stamp::of(path).map_err(|error| BuildError::read(path, error)),
+        }
+    }
+
+    /// Returns the hashes to keep for the next build as JSON: those of files that have not just changed. A URL with a query, which may
+    /// hold a signature, is not kept.
     pub(crate) fn to_keep(&self) -> Vec<u8> {
         let used = self.used.lock().unwrap_or_else(PoisonError::into_inner);
         let now = SystemTime::now()
             .duration_since(UNIX_EPOCH)
             .unwrap_or_default();
-        let settled =
-            |hashed: &Hashed| hashed.stamp.modified_ns + nanoseconds(RACY) < nanoseconds(now);
-        let kept: BTreeMap<&PathBuf, &Hashed> = used.iter().filter(|(_, h)| settled(h)).collect();
+        let settled = |(path, hashed): &(&PathBuf, &Hashed)| {
+            let racy_until = hashed.stamp.modified_ns.saturating_add(nanoseconds(RACY));
+            let has_query = is_elsewhere(path) && path.to_string_lossy().contains('?');
+            racy_until < nanoseconds(now) && !has_query
+        };
+        let kept: BTreeMap<&PathBuf, &Hashed> = used.iter().filter(settled).collect();
         serde_json::to_vec(&kept).unwrap_or_default()
     }
 }
 
+/// Hashes a file of this machine or elsewhere.
+pub(crate) fn hash(path: &Path, copies: &Elsewhere) -> Result<Hashed, BuildError> {
+    match elsewhere(path)? {
+        Some(location) => copies.hash(path, &location),
+        None => hash_local(path).map_err(|error| BuildError::read(path, error)),
+    }
+}
+
 /// Hashes a file that does not change meanwhile.
-pub(crate) fn hash(path: &Path) -> io::Result<Hashed> {
+pub(crate) fn hash_local(path: &Path) -> io::Result<Hashed> {
     let mut file = File::open(path)?;
     let before = Stamp::of_metadata(&file.metadata()?)?;
     let mut hasher = blake3::Hasher::new();

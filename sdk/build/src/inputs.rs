@@ -1,20 +1,25 @@
 //! The recordings of a rule, each with the fields that templates may name.
 
+use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
 use globset::{GlobBuilder, GlobSet, GlobSetBuilder};
+use htex_storage::Location;
 use regex::Regex;
 use walkdir::WalkDir;
 
 use crate::BuildError;
+use crate::elsewhere::{Elsewhere, folder_of, is_elsewhere, joined};
 use crate::recipe::{OneOrMore, Textures};
 use crate::template::Fields;
 
 /// A recording, as a rule finds it.
 #[derive(Debug)]
 pub(crate) struct Input {
-    /// The file, relative to the recipe's folder where it lies inside it.
+    /// The file, relative to the recipe's folder where it lies inside it, or its URI.
     pub(crate) file: PathBuf,
+    /// The path that fields and patterns see, with `/` between its parts: of a URI, the part in the listed folder.
+    path: String,
     /// Fields of templates.
     pub(crate) fields: Fields,
 }
@@ -25,12 +30,13 @@ pub(crate) fn inputs(
     place: &str,
     folder: &Path,
     output: &Path,
+    elsewhere: &Elsewhere,
 ) -> Result<Vec<Input>, BuildError> {
     let pattern = rule.pattern.as_deref().map(Regex::new).transpose();
     let pattern =
         pattern.map_err(|e| BuildError::plan(format!("{place}.pattern"), e.to_string()))?;
     let found = match (rule.recordings.as_slice(), &rule.table) {
-        ([], Some(table)) => tabulated(&folder.join(table), place, folder)?,
+        ([], Some(table)) => tabulated(&joined(folder, table), place, folder, elsewhere)?,
         ([], None) => {
             let problem = "it names no recordings; give `recordings` (a glob) or `table` (a CSV)";
             return Err(BuildError::plan(place, problem));
@@ -40,7 +46,7 @@ pub(crate) fn inputs(
                 "`recordings` and `table` both say where recordings are; give one of them";
             return Err(BuildError::plan(place, problem));
         }
-        (_, None) => globbed(&rule.recordings, place, folder, output)?,
+        (_, None) => recordings(&rule.recordings, place, (folder, output), elsewhere)?,
     };
     let inputs = found.into_iter();
     inputs
@@ -48,7 +54,66 @@ pub(crate) fn inputs(
         .collect()
 }
 
-/// Returns the files that match globs.
+/// Returns the files that match globs, here and elsewhere, sorted by path.
+fn recordings(
+    globs: &OneOrMore,
+    place: &str,
+    (folder, output): (&Path, &Path),
+    elsewhere: &Elsewhere,
+) -> Result<Vec<Input>, BuildError> {
+    let globs = globs.as_slice().iter().cloned();
+    let (away, here): (Vec<_>, Vec<_>) =
+        globs.partition(|glob| is_elsewhere(&joined(folder, Path::new(glob))));
+    let mut found = Vec::new();
+    if !here.is_empty() {
+        found = globbed(&OneOrMore::Several(here), place, folder, output)?;
+    }
+    let mut listed = BTreeMap::new();
+    for glob in &away {
+        let inputs = globbed_elsewhere(glob, place, folder, elsewhere)?;
+        listed.extend(inputs.into_iter().map(|input| (input.file.clone(), input)));
+    }
+    found.extend(listed.into_values());
+    Ok(found)
+}
+
+/// Returns the files elsewhere that match a glob: a URI, or a path relative to the folder of a recipe that lies elsewhere.
+fn globbed_elsewhere(
+    glob: &str,
+    place: &str,
+    folder: &Path,
+    elsewhere: &Elsewhere,
+) -> Result<Vec<Input>, BuildError> {
+    let (folder, pattern) = match is_elsewhere(Path::new(glob)) {
+        true => glob_folder(glob),
+        false => (folder.to_string_lossy().into_owned(), glob.to_owned()),
+    };
+    if !pattern.contains(GLOB) {
+        let uri = joined(Path::new(&folder), Path::new(&pattern));
+        return Ok(vec![input_elsewhere(uri, Path::new(&pattern))]);
+    }
+    let found = elsewhere.list(&Location::parse(folder.as_ref())?, &pattern)?;
+    if found.is_empty() {
+        let problem = format!("no file matches {pattern} in {folder}");
+        return Err(BuildError::plan(format!("{place}.recordings"), problem));
+    }
+    let inputs = found
+        .into_iter()
+        .map(|(uri, inside)| input_elsewhere(uri, &inside));
+    Ok(inputs.collect())
+}
+
+/// Characters of globs.
+const GLOB: [char; 3] = ['*', '?', '['];
+
+/// Splits a URI before the first part that is a glob, else before the file's name.
+fn glob_folder(uri: &str) -> (String, String) {
+    let first = uri.find(GLOB).unwrap_or(uri.len());
+    let slash = uri[..first].rfind('/').unwrap_or(0);
+    (uri[..slash].to_owned(), uri[slash + 1..].to_owned())
+}
+
+/// Returns the files of this machine that match globs.
 fn globbed(
     globs: &OneOrMore,
     place: &str,
@@ -98,13 +163,21 @@ pub(crate) fn glob_set(globs: &OneOrMore, place: &str) -> Result<GlobSet, BuildE
 }
 
 /// Returns the rows of a table.
-fn tabulated(table: &Path, place: &str, folder: &Path) -> Result<Vec<Input>, BuildError> {
+fn tabulated(
+    table: &Path,
+    place: &str,
+    folder: &Path,
+    elsewhere: &Elsewhere,
+) -> Result<Vec<Input>, BuildError> {
     let place = format!("{place}.table");
     let shown = table.display();
-    let file = std::fs::File::open(table).map_err(|error| BuildError::read(table, error))?;
+    let text = match crate::elsewhere::elsewhere(table)? {
+        Some(location) => elsewhere.text(&location)?.into_bytes(),
+        None => std::fs::read(table).map_err(|error| BuildError::read(table, error))?,
+    };
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
-        .from_reader(file);
+        .from_reader(&text[..]);
     let broken = |error: csv::Error| BuildError::plan(&place, format!("{shown}: {error}"));
     let headers = reader.headers().map_err(broken)?.clone();
     let column = headers.iter().position(|name| name == "recording");
@@ -112,17 +185,22 @@ fn tabulated(table: &Path, place: &str, folder: &Path) -> Result<Vec<Input>, Bui
         let problem = format!("{shown}: it has no column `recording` with the files");
         BuildError::plan(&place, problem)
     })?;
-    let beside = table.parent().unwrap_or(Path::new(""));
+    let beside = folder_of(table);
     let mut inputs = Vec::new();
     for row in reader.records() {
         let row = row.map_err(broken)?;
-        let file = beside.join(row.get(column).unwrap_or_default());
-        if !file.is_file() {
+        let cell = row.get(column).unwrap_or_default();
+        let file = joined(&beside, Path::new(cell));
+        let is_away = is_elsewhere(&file);
+        if !is_away && !file.is_file() {
             let line = row.position().map_or(0, csv::Position::line);
             let problem = format!("{shown}, line {line}: there is no file {}", file.display());
             return Err(BuildError::plan(&place, problem));
         }
-        let mut input = input(file.strip_prefix(folder).unwrap_or(&file).to_owned());
+        let mut input = match is_away {
+            true => input_elsewhere(file, Path::new(cell)),
+            false => input(file.strip_prefix(folder).unwrap_or(&file).to_owned()),
+        };
         let cells = headers.iter().zip(&row);
         let own = cells.map(|(name, cell)| (name.to_owned(), cell.to_owned()));
         input.fields.extend(own);
@@ -136,6 +214,29 @@ fn tabulated(table: &Path, place: &str, folder: &Path) -> Result<Vec<Input>, Bui
 
 /// A recording with the fields of its path.
 fn input(file: PathBuf) -> Input {
+    Input {
+        fields: fields(&file),
+        path: slashed(&file),
+        file,
+    }
+}
+
+/// A recording elsewhere, with the fields of its path in the listed folder.
+fn input_elsewhere(uri: PathBuf, inside: &Path) -> Input {
+    let inside = match Location::parse(inside.as_os_str()) {
+        Ok(location) if location.local().is_none() => location.file_name().map(PathBuf::from),
+        _ => None,
+    }
+    .unwrap_or_else(|| inside.to_owned());
+    Input {
+        fields: fields(&inside),
+        path: slashed(&inside),
+        file: uri,
+    }
+}
+
+/// The fields of a path.
+fn fields(file: &Path) -> Fields {
     let text = |part: Option<&std::ffi::OsStr>| {
         part.map(|p| p.to_string_lossy().into_owned())
             .unwrap_or_default()
@@ -146,11 +247,7 @@ fn input(file: PathBuf) -> Input {
         ("file", text(file.file_name())),
         ("folder", slashed(folder)),
     ];
-    let fields = fields.map(|(name, value)| (name.to_owned(), value));
-    Input {
-        fields: fields.into(),
-        file,
-    }
+    fields.map(|(name, value)| (name.to_owned(), value)).into()
 }
 
 /// Adds the named groups of a pattern.
@@ -162,8 +259,8 @@ fn named_groups(
     let Some(pattern) = pattern else {
         return Ok(input);
     };
-    let path = slashed(&input.file);
-    let groups = pattern.captures(&path).ok_or_else(|| {
+    let path = &input.path;
+    let groups = pattern.captures(path).ok_or_else(|| {
         let problem = format!("`{path}` does not match `{pattern}`; change it, or the globs");
         BuildError::plan(format!("{place}.pattern"), problem)
     })?;

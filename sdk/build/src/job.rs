@@ -1,6 +1,7 @@
 //! A job: the fit of one texture, as data. Equal jobs give equal bytes, on any machine.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use htex_author::read::{ReadError, read_recording};
 use htex_author::settings::{FitSettings, Metadata, ReadingSettings};
@@ -9,7 +10,8 @@ use htex_host::{Registry, Search, WasmLimits};
 use serde::{Deserialize, Serialize};
 
 use crate::BuildError;
-use crate::hashes::{Hashed, Hashes, Stamp, changed, hash};
+use crate::elsewhere::{Elsewhere, elsewhere, is_elsewhere, joined};
+use crate::hashes::{Hashed, Hashes, Stamp, changed, hash_local};
 use crate::made::{Made, Outcome, Record};
 use crate::plan::PlannedTexture;
 use crate::sound::sound;
@@ -57,7 +59,7 @@ pub struct JobRecording {
 /// A file that a job reads.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JobFile {
-    /// Where it is.
+    /// Where it is: a path, or a URI.
     pub path: PathBuf,
     /// Its contents.
     #[serde(flatten)]
@@ -67,8 +69,36 @@ pub struct JobFile {
 impl JobFile {
     /// Returns the file's name without its folder.
     pub fn name(&self) -> String {
-        let name = self.path.file_name().unwrap_or_default();
-        name.to_string_lossy().into_owned()
+        let own = || {
+            self.path
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned()
+        };
+        match elsewhere(&self.path) {
+            Ok(Some(location)) => location.file_name().unwrap_or_else(own),
+            _ => own(),
+        }
+    }
+
+    /// Returns the path or URI as texts name it.
+    fn shown(&self) -> String {
+        match elsewhere(&self.path) {
+            Ok(Some(location)) => location.to_string(),
+            _ => self.path.display().to_string(),
+        }
+    }
+
+    /// Puts a copy in place of a file elsewhere.
+    fn copy_here(&mut self, copies: &Elsewhere) -> Result<(), BuildError> {
+        let Some(location) = elsewhere(&self.path)? else {
+            return Ok(());
+        };
+        self.path = copies.copy(&location, &self.hashed.blake3)?;
+        let stamp = Stamp::of(&self.path).map_err(|error| BuildError::read(&self.path, error))?;
+        self.hashed.stamp = stamp;
+        Ok(())
     }
 }
 
@@ -82,18 +112,16 @@ impl Job {
         hashes: &Hashes,
     ) -> Result<Self, BuildError> {
         let file = |path: PathBuf| {
-            let hashed = hashes
-                .of(&path)
-                .map_err(|error| BuildError::read(&path, error))?;
-            Ok(JobFile { path, hashed })
+            let hashed = hashes.of(&path)?;
+            Ok::<_, BuildError>(JobFile { path, hashed })
         };
         let recordings = texture.recordings.iter().map(|recording| {
-            Ok(JobRecording {
-                file: file(folder.join(&recording.file))?,
+            Ok::<_, BuildError>(JobRecording {
+                file: file(joined(folder, &recording.file))?,
                 tracker: recording
                     .tracker
                     .as_ref()
-                    .map(|path| file(folder.join(path)))
+                    .map(|path| file(joined(folder, path)))
                     .transpose()?,
                 speed_mm_s: recording.speed_mm_s,
                 force_n: recording.force_n,
@@ -115,7 +143,7 @@ impl Job {
             fit: texture.settings.fit(),
             metadata: texture.metadata.clone(),
             plugins: all
-                .map(|path| file(folder.join(path)))
+                .map(|path| file(joined(folder, path)))
                 .collect::<Result<_, _>>()?,
             embedded: embedded.len(),
         })
@@ -168,6 +196,33 @@ impl Job {
     /// # Errors
     /// When a file cannot be read, or is not the one that was hashed.
     pub fn run(&self, workbench: &mut Workbench) -> Result<Made, BuildError> {
+        let Some(copied) = self.copied(&workbench.elsewhere)? else {
+            return self.run_here(workbench);
+        };
+        let mut made = copied.run_here(workbench)?;
+        let names = || copied.files().zip(self.files());
+        if let Outcome::Refused(text) | Outcome::NotStrict(text) = &mut made.record.outcome {
+            for (copy, file) in names().filter(|(copy, file)| copy.path != file.path) {
+                *text = text.replace(&copy.path.display().to_string(), &file.shown());
+            }
+        }
+        Ok(made)
+    }
+
+    /// Returns this job with copies in place of files elsewhere; `None` if it has none of them.
+    fn copied(&self, elsewhere: &Elsewhere) -> Result<Option<Self>, BuildError> {
+        if !self.files().any(|file| is_elsewhere(&file.path)) {
+            return Ok(None);
+        }
+        let mut copied = self.clone();
+        copied
+            .files_mut()
+            .try_for_each(|file| file.copy_here(elsewhere))?;
+        copied.reading.response = copied.response.as_ref().map(|file| file.path.clone());
+        Ok(Some(copied))
+    }
+
+    fn run_here(&self, workbench: &mut Workbench) -> Result<Made, BuildError> {
         self.check_files()?;
         let registry = workbench.registry(self);
         let fitted = registry.and_then(|registry| self.fitted(registry));
@@ -249,9 +304,18 @@ impl Job {
     }
 
     fn files(&self) -> impl Iterator<Item = &JobFile> {
-        let recordings = self.recordings.iter().map(|recording| &recording.file);
-        let rest = self.response.iter().chain(&self.plugins);
-        recordings.chain(self.trackers()).chain(rest)
+        let recordings = self.recordings.iter();
+        let recordings = recordings.flat_map(|r| std::iter::once(&r.file).chain(&r.tracker));
+        recordings.chain(&self.response).chain(&self.plugins)
+    }
+
+    fn files_mut(&mut self) -> impl Iterator<Item = &mut JobFile> {
+        let recordings = self.recordings.iter_mut();
+        let recordings =
+            recordings.flat_map(|r| std::iter::once(&mut r.file).chain(&mut r.tracker));
+        recordings
+            .chain(&mut self.response)
+            .chain(&mut self.plugins)
     }
 
     /// Refuses a file that is not the one that was hashed: by size and time, or where these differ, by its contents.
@@ -261,7 +325,7 @@ impl Job {
             if Stamp::of(&file.path).map_err(read)? == file.hashed.stamp {
                 continue;
             }
-            if hash(&file.path).map_err(read)?.blake3 != file.hashed.blake3 {
+            if hash_local(&file.path).map_err(read)?.blake3 != file.hashed.blake3 {
                 return Err(read(changed()));
             }
         }
@@ -285,6 +349,8 @@ fn refused(error: impl std::fmt::Display) -> Stopped {
 #[derive(Debug)]
 pub struct Workbench {
     limits: WasmLimits,
+    /// Files by URI, and their copies.
+    pub(crate) elsewhere: Arc<Elsewhere>,
     loaded: Option<(Vec<PathBuf>, Registry)>,
 }
 
@@ -293,6 +359,7 @@ impl Workbench {
     pub fn new(limits: WasmLimits) -> Self {
         Self {
             limits,
+            elsewhere: Arc::new(Elsewhere::temporary()),
             loaded: None,
         }
     }

@@ -23,6 +23,7 @@ mod build;
 mod cache;
 mod catalogue;
 mod dist;
+mod elsewhere;
 mod error;
 mod gates;
 mod hashes;
@@ -30,6 +31,7 @@ mod inputs;
 mod job;
 mod made;
 mod plan;
+mod publish;
 mod recipe;
 mod report;
 mod sound;
@@ -43,6 +45,7 @@ pub use hashes::{Hashed, Stamp};
 pub use job::{Job, JobFile, JobRecording, Workbench};
 pub use made::{Made, Outcome, Record};
 pub use plan::{Plan, PlannedRecording, PlannedTexture};
+pub use publish::Destination;
 pub use recipe::{
     At, BandErrorGate, Gates, LibraryPart, ModelOptions, NumberOrTemplate, OneOrMore, Override,
     Recipe, Settings, Textures,

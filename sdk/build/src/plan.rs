@@ -7,6 +7,7 @@ use globset::GlobSet;
 use htex_author::settings::Metadata;
 
 use crate::BuildError;
+use crate::elsewhere::Elsewhere;
 use crate::inputs::{Input, glob_set, inputs, slashed};
 use crate::recipe::{Gates, NumberOrTemplate, Recipe, Settings, Textures};
 use crate::template::{Fields, fill};
@@ -68,7 +69,12 @@ impl Plan {
     /// # Errors
     /// When a glob matches nothing, a template or a pattern fails, a name cannot be one, or two recordings of a texture have
     /// different settings.
-    pub fn new(recipe: &Recipe, folder: &Path, output: &Path) -> Result<Self, BuildError> {
+    pub(crate) fn new(
+        recipe: &Recipe,
+        folder: &Path,
+        output: &Path,
+        elsewhere: &Elsewhere,
+    ) -> Result<Self, BuildError> {
         check_name("library.name", &recipe.library.name)?;
         if recipe.library.name.contains('/') {
             let problem = "`/` is not possible in the name of a file; leave it out";
@@ -83,7 +89,7 @@ impl Plan {
         for (i, rule) in recipe.textures.iter().enumerate() {
             let place = format!("textures[{i}]");
             let settings = rule.settings.clone().over(recipe.defaults.clone());
-            for input in inputs(rule, &place, folder, output)? {
+            for input in inputs(rule, &place, folder, output, elsewhere)? {
                 let planned = planned(rule, &settings, &overrides, input, &place)?;
                 gather(&mut textures, planned, &place)?;
             }
@@ -142,7 +148,9 @@ fn planned(
     input: Input,
     place: &str,
 ) -> Result<PlannedTexture, BuildError> {
-    let Input { file, mut fields } = input;
+    let Input {
+        file, mut fields, ..
+    } = input;
     let shown = slashed(&file);
     let wrong = |key: &str, problem: String| {
         BuildError::plan(format!("{place}.{key}"), format!("{shown}: {problem}"))

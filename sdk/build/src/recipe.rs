@@ -9,6 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::BuildError;
+use crate::elsewhere::{Elsewhere, elsewhere, joined};
 
 /// A recipe: recordings, and how a library is made of them.
 ///
@@ -231,12 +232,15 @@ impl Recipe {
         })
     }
 
-    /// Reads a recipe's file.
+    /// Reads a recipe's file, a path or URI.
     ///
     /// # Errors
     /// As [`Self::parse`], and when the file cannot be read.
     pub fn open(file: &Path) -> Result<Self, BuildError> {
-        let text = std::fs::read_to_string(file).map_err(|error| BuildError::read(file, error))?;
+        let text = match elsewhere(file)? {
+            Some(location) => Elsewhere::temporary().text(&location)?,
+            None => std::fs::read_to_string(file).map_err(|error| BuildError::read(file, error))?,
+        };
         Self::parse(&text)
     }
 }
@@ -292,7 +296,10 @@ impl Settings {
             tracker_map: self.tracker_map.clone(),
             quantity: self.quantity,
             scale: self.scale,
-            response: self.response.as_ref().map(|file| recipe_folder.join(file)),
+            response: self
+                .response
+                .as_ref()
+                .map(|file| joined(recipe_folder, file)),
             from_s: self.from_s,
             to_s: self.to_s,
             segments: self.segments,

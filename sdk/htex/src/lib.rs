@@ -18,6 +18,7 @@
 //! - `write` (default): `format::Asset::write` and `to_bytes`.
 //! - `author`: `htex::author`, which reads recordings and makes assets.
 //! - `library`: `htex::Library`, a file with thousands of textures, of which `Asset::from_library` opens one; `htex::library` has all of it.
+//! - `storage`: `htex::storage`, files by path or URI, and `Library::open_located`; `cloud` has the web servers and object stores.
 //! - `scene`: `htex::scene`, which plans and renders scenes, and `htex::device`, the devices they are played on.
 #![forbid(unsafe_code)]
 
@@ -37,3 +38,5 @@ pub use htex_library::Library;
 pub use htex_play::*;
 #[cfg(feature = "scene")]
 pub use htex_scene as scene;
+#[cfg(feature = "storage")]
+pub use htex_storage as storage;

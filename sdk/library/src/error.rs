@@ -82,6 +82,10 @@ pub enum LibraryError {
         #[source]
         error: Box<ReadError>,
     },
+    /// A file elsewhere could not be opened.
+    #[cfg(feature = "storage")]
+    #[error(transparent)]
+    Storage(#[from] htex_storage::StorageError),
     /// The index has limits that a texture or the library exceeds.
     #[error("{}: {problem}", plain(.name))]
     Limit {

@@ -30,7 +30,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`Index`] and [`Opening`] do no input or output: they state which bytes of the file they need. [`Library`] reads them from a
+//! With the feature `storage`, `Library::open_located` opens libraries by URI. [`Index`] and [`Opening`] do no input or output: they state which bytes of the file they need. [`Library`] reads them from a
 //! [`Source`]; a browser fetches them.
 #![forbid(unsafe_code)]
 
@@ -45,6 +45,8 @@ mod index;
 mod leaf;
 mod library;
 mod limits;
+#[cfg(feature = "storage")]
+mod located;
 mod name;
 mod opening;
 mod page;
@@ -67,6 +69,8 @@ pub use header::{EXTENSION, MAGIC};
 pub use index::Index;
 pub use library::{Entries, Library};
 pub use limits::Limits;
+#[cfg(feature = "storage")]
+pub use located::Located;
 pub use name::{InvalidName, check_name};
 pub use opening::{FIRST_READ, Opening, Progress};
 pub use query::Query;

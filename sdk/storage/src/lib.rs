@@ -183,7 +183,7 @@ impl Storage {
         }
     }
 
-    /// Lists the files below a folder whose names relative to it match a pattern, by name: `*.csv`, `**/*.htex`. At most 100,000.
+    /// Lists the files below a folder whose names relative to it match a pattern, by name: `*.csv`, `**/*.htex`. At most 1,000,000.
     ///
     /// # Errors
     /// As [`Self::read`]; when the pattern is malformed; of a web server.
@@ -224,6 +224,17 @@ impl Storage {
         match location.place() {
             Place::Local(path) => local::write_copy(path, file),
             Place::Remote(uri) => self.writable(location, uri)?.upload(file),
+        }
+    }
+
+    /// Removes a file; it is no error when there is none.
+    ///
+    /// # Errors
+    /// When it cannot be removed; of a web server.
+    pub fn remove(&self, location: &Location) -> Result<(), StorageError> {
+        match location.place() {
+            Place::Local(path) => local::remove(path),
+            Place::Remote(uri) => self.writable(location, uri)?.remove(),
         }
     }
 

@@ -7,7 +7,7 @@ use glob::{MatchOptions, Pattern};
 use crate::{Location, StorageError};
 
 /// Most files of a list.
-pub(crate) const MOST_ENTRIES: usize = 100_000;
+pub(crate) const MOST_ENTRIES: usize = 1_000_000;
 /// Most folders within each other.
 const MOST_DEPTH: usize = 64;
 
@@ -18,6 +18,8 @@ pub struct Entry {
     pub location: Location,
     /// Its size.
     pub bytes: u64,
+    /// Its entity tag, where the store has one.
+    pub etag: Option<String>,
 }
 
 /// Parses a pattern: `*` and `?` stay within one folder, `**` goes through all.
@@ -72,6 +74,7 @@ pub(crate) fn of_folder(folder: &Path, pattern: &Pattern) -> Result<Vec<Entry>, 
             found.push(Entry {
                 location: path.into(),
                 bytes: is.len(),
+                etag: None,
             });
         }
     }

@@ -39,6 +39,15 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), StorageError> {
     htex_files::write_file(path, bytes).map_err(|error| StorageError::io(path.display(), error))
 }
 
+pub(crate) fn remove(path: &Path) -> Result<(), StorageError> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => {
+            Err(StorageError::io(path.display(), error))
+        }
+        _ => Ok(()),
+    }
+}
+
 pub(crate) fn write_copy(path: &Path, of: &Path) -> Result<(), StorageError> {
     let mut from = opened(of)?;
     htex_files::replace_file(path, |into| io::copy(&mut from, into).map(drop))

@@ -112,6 +112,18 @@ impl Location {
         }
     }
 
+    /// A file in this folder, by its path there with `/` between the parts.
+    #[must_use]
+    pub fn inside(&self, path: &str) -> Self {
+        match &self.0 {
+            Place::Local(folder) => Self(Place::Local(folder.join(path))),
+            Place::Remote(uri) if uri.path.is_empty() => self.with_key(path),
+            Place::Remote(uri) => {
+                self.with_key(&format!("{}/{path}", uri.path.trim_end_matches('/')))
+            }
+        }
+    }
+
     /// The same store with another key.
     pub(crate) fn with_key(&self, key: &str) -> Self {
         match &self.0 {

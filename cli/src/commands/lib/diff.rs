@@ -1,10 +1,10 @@
 use std::cmp::Ordering;
-use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_library::{Entry, Library};
+use htex_library::{Entry, Library, Located};
 use serde::Serialize;
 
+use super::given::Given;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{print, print_json};
@@ -12,11 +12,13 @@ use crate::output::{print, print_json};
 /// Compare the textures of two libraries by name and hash; exit status 1 if they differ.
 #[derive(Args)]
 pub(crate) struct Diff {
-    /// A library
-    a: PathBuf,
+    /// A library, a path or URI
+    #[arg(value_parser = Given::parser())]
+    a: Given,
 
     /// Another library
-    b: PathBuf,
+    #[arg(value_parser = Given::parser())]
+    b: Given,
 
     /// Print JSON
     #[arg(long)]
@@ -33,15 +35,14 @@ struct Differences {
 
 /// The entries of a library, the next of which is known.
 struct Walk<'a> {
-    path: &'a Path,
-    entries: htex_library::Entries<'a>,
+    given: &'a Given,
+    entries: htex_library::Entries<'a, Located>,
     next: Option<Entry>,
 }
 
 impl Diff {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let open = |path: &Path| Library::open(path).map_err(|e| Failure::library(path, e));
-        let (a, b) = (open(&self.a)?, open(&self.b)?);
+        let (a, b) = (self.a.open()?, self.b.open()?);
         let differences = compare(Walk::new(&self.a, &a)?, Walk::new(&self.b, &b)?)?;
         if self.json {
             print_json(&differences)?;
@@ -57,10 +58,10 @@ impl Diff {
 }
 
 impl<'a> Walk<'a> {
-    fn new(path: &'a Path, library: &'a Library) -> Result<Self, Failure> {
+    fn new(given: &'a Given, library: &'a Library<Located>) -> Result<Self, Failure> {
         let entries = library.entries();
         let mut walk = Self {
-            path,
+            given,
             entries,
             next: None,
         };
@@ -71,7 +72,7 @@ impl<'a> Walk<'a> {
     /// Takes the next entry.
     fn step(&mut self) -> Result<Option<Entry>, Failure> {
         let next = self.entries.next().transpose();
-        let next = next.map_err(|error| Failure::library(self.path, error))?;
+        let next = next.map_err(|error| self.given.failure(error))?;
         Ok(std::mem::replace(&mut self.next, next))
     }
 }

@@ -1,8 +1,7 @@
-use std::path::PathBuf;
-
 use clap::Args;
-use htex_library::{Library, Query};
+use htex_library::Query;
 
+use super::given::Given;
 use super::listing::Listing;
 use crate::exit::Exit;
 use crate::failure::Failure;
@@ -11,8 +10,9 @@ use crate::output::note;
 /// Search a library; all that is asked for must hold.
 #[derive(Args)]
 pub(crate) struct Find {
-    /// The library
-    library: PathBuf,
+    /// The library, a path or URI
+    #[arg(value_parser = Given::parser())]
+    library: Given,
 
     /// Parts of names or tags, without case
     words: Vec<String>,
@@ -40,14 +40,14 @@ pub(crate) struct Find {
 
 impl Find {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let failed = |error| Failure::library(&self.library, error);
-        let library = Library::open(&self.library).map_err(failed)?;
+        let failed = |error| self.library.failure(error);
+        let library = self.library.open()?;
         let query = Query {
-            words: self.words,
-            tags: self.tag,
+            words: self.words.clone(),
+            tags: self.tag.clone(),
             speed_mm_s: self.speed,
             force_n: self.force,
-            model: self.model,
+            model: self.model.clone(),
         };
         let mut listing = Listing::new(self.json);
         for entry in library.entries() {

@@ -1,8 +1,6 @@
-use std::path::PathBuf;
-
 use clap::Args;
-use htex_library::Library;
 
+use super::given::Given;
 use super::listing::Listing;
 use crate::exit::Exit;
 use crate::failure::Failure;
@@ -13,8 +11,9 @@ use crate::output::note;
 /// Only the index is read.
 #[derive(Args)]
 pub(crate) struct Ls {
-    /// The library
-    library: PathBuf,
+    /// The library, a path or URI
+    #[arg(value_parser = Given::parser())]
+    library: Given,
 
     /// Print JSON: an array of objects
     #[arg(long)]
@@ -23,8 +22,8 @@ pub(crate) struct Ls {
 
 impl Ls {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let failed = |error| Failure::library(&self.library, error);
-        let library = Library::open(&self.library).map_err(failed)?;
+        let failed = |error| self.library.failure(error);
+        let library = self.library.open()?;
         note(
             &library
                 .notes()

@@ -8,6 +8,7 @@ use super::sources::sources;
 use crate::bounded::read_asset;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::located;
 use crate::output::{print, print_json};
 use crate::outputs::check_outputs;
 use crate::progress::bar;
@@ -20,11 +21,11 @@ use crate::shown::shown;
 #[derive(Args)]
 pub(crate) struct Pack {
     /// The library to write
-    #[arg(value_name = "OUT.htexlib")]
+    #[arg(value_name = "OUT.htexlib", value_parser = located::OUTPUT)]
     output: PathBuf,
 
     /// Textures, and folders with textures
-    #[arg(required = true, value_name = "FILE|DIR")]
+    #[arg(required = true, value_name = "FILE|DIR", value_parser = located::ASSET)]
     inputs: Vec<PathBuf>,
 
     /// Name of the library [default: the file's]

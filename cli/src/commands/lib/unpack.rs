@@ -1,8 +1,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_library::{Entry, Library, LibraryError};
+use htex_library::{Entry, LibraryError};
 
+use super::given::Given;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{print, write_file};
@@ -14,8 +15,9 @@ use crate::shown::shown;
 /// Files that are there are kept, and are an error, unless --force is given.
 #[derive(Args)]
 pub(crate) struct Unpack {
-    /// The library
-    library: PathBuf,
+    /// The library, a path or URI
+    #[arg(value_parser = Given::parser())]
+    library: Given,
 
     /// Names of textures [default: all]
     names: Vec<String>,
@@ -31,8 +33,8 @@ pub(crate) struct Unpack {
 
 impl Unpack {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let failed = |error| Failure::library(&self.library, error);
-        let library = Library::open(&self.library).map_err(failed)?;
+        let failed = |error| self.library.failure(error);
+        let library = self.library.open()?;
         let count = if self.names.is_empty() {
             library.len()
         } else {

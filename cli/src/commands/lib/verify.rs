@@ -6,6 +6,7 @@ use htex_format::Report;
 use crate::commands::validate;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::located;
 
 /// Check every page and every texture of libraries; exit status 1 if one is not valid.
 ///
@@ -13,7 +14,7 @@ use crate::failure::Failure;
 #[derive(Args)]
 pub(crate) struct Verify {
     /// The libraries
-    #[arg(required = true)]
+    #[arg(required = true, value_parser = located::RECORDING)]
     libraries: Vec<PathBuf>,
 
     /// Print JSON

@@ -96,6 +96,17 @@ impl Store {
         }
     }
 
+    /// Removes the file, if there is one.
+    pub(crate) fn remove(&self) -> Result<(), StorageError> {
+        use object_store::ObjectStoreExt;
+        let here = self.clone();
+        let removed = self.run(async move { Ok(here.store.delete(&here.key).await?) });
+        match removed {
+            Err(StorageError::Missing { .. }) => Ok(()),
+            other => other,
+        }
+    }
+
     /// The files below a key whose names relative to it match a pattern.
     pub(crate) fn list(&self, pattern: glob::Pattern) -> Result<Vec<Entry>, StorageError> {
         let here = self.clone();
@@ -119,6 +130,7 @@ impl Store {
                 found.push(Entry {
                     location: here.location.with_key(name),
                     bytes: meta.size,
+                    etag: meta.e_tag,
                 });
             }
             Ok(found)

@@ -1,0 +1,224 @@
+//! Files by URI: paths of a recipe that name a file of a web server or an object store. They are listed, hashed, and copied for the
+//! job that reads them.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
+
+use htex_storage::{Location, Storage, StorageError};
+use tempfile::TempDir;
+
+use crate::BuildError;
+use crate::hashes::{Hashed, Stamp};
+
+/// Most bytes of a file that is copied.
+const MOST_BYTES: u64 = 16 << 30;
+/// Most bytes of a recipe or a table.
+const MOST_TEXT_BYTES: u64 = 64 << 20;
+
+/// Files elsewhere, and their copies by content.
+#[derive(Debug)]
+pub(crate) struct Elsewhere {
+    storage: OnceLock<Storage>,
+    /// Stamps of files that were listed.
+    listed: Mutex<BTreeMap<PathBuf, Stamp>>,
+    copies: Copies,
+}
+
+/// Where copies are kept.
+#[derive(Debug)]
+enum Copies {
+    Folder(PathBuf),
+    Temporary(OnceLock<TempDir>),
+}
+
+/// Returns the location of a path that is a URI.
+pub(crate) fn elsewhere(path: &Path) -> Result<Option<Location>, StorageError> {
+    let location = Location::parse(path.as_os_str())?;
+    Ok(location.local().is_none().then_some(location))
+}
+
+/// Whether a path is a URI.
+pub(crate) fn is_elsewhere(path: &Path) -> bool {
+    !matches!(elsewhere(path), Ok(None))
+}
+
+/// Returns a path as a recipe in `folder` means it: a URI stays, another path is relative to the folder, which may be a URI.
+pub(crate) fn joined(folder: &Path, path: &Path) -> PathBuf {
+    match (is_elsewhere(path), is_elsewhere(folder), folder.to_str()) {
+        (true, ..) => path.to_owned(),
+        (false, true, Some(folder)) if path.is_relative() => {
+            let slash = if folder.ends_with('/') { "" } else { "/" };
+            format!("{folder}{slash}{}", path.to_string_lossy()).into()
+        }
+        _ => folder.join(path),
+    }
+}
+
+/// Returns the folder of a path or of a URI, without its query.
+pub(crate) fn folder_of(path: &Path) -> PathBuf {
+    if let (Ok(Some(_)), Some(text)) = (elsewhere(path), path.to_str()) {
+        let text = text.split('?').next().unwrap_or(text);
+        return text
+            .rsplit_once('/')
+            .map_or(text, |(folder, _)| folder)
+            .into();
+    }
+    match path.parent() {
+        Some(folder) if folder != Path::new("") => folder.to_owned(),
+        _ => PathBuf::from("."),
+    }
+}
+
+impl Elsewhere {
+    /// With copies in a folder, which [`Self::forget`] removes.
+    pub(crate) fn with_copies(folder: PathBuf) -> Self {
+        Self::new(Copies::Folder(folder))
+    }
+
+    /// With copies that go with this value.
+    pub(crate) fn temporary() -> Self {
+        Self::new(Copies::Temporary(OnceLock::new()))
+    }
+
+    fn new(copies: Copies) -> Self {
+        Self {
+            storage: OnceLock::new(),
+            listed: Mutex::default(),
+            copies,
+        }
+    }
+
+    /// Lists the files of a folder elsewhere by glob: their URIs, and their paths in the folder.
+    pub(crate) fn list(
+        &self,
+        folder: &Location,
+        pattern: &str,
+    ) -> Result<Vec<(PathBuf, PathBuf)>, StorageError> {
+        let entries = self.storage()?.list(folder, pattern)?;
+        let prefix = format!("{}/", folder.to_string().trim_end_matches('/'));
+        let mut listed = self.listed();
+        let found = entries.into_iter().map(|entry| {
+            let uri = entry.location.to_string();
+            let inside = uri.strip_prefix(&prefix).unwrap_or(&uri).to_owned();
+            let stamp = Stamp::elsewhere(entry.bytes, entry.etag.as_deref());
+            listed.insert(PathBuf::from(&uri), stamp);
+            (uri.into(), inside.into())
+        });
+        Ok(found.collect())
+    }
+
+    /// Returns the stamp of a file: as it was listed, else by a request.
+    pub(crate) fn stamp(&self, path: &Path, location: &Location) -> Result<Stamp, StorageError> {
+        if let Some(stamp) = self.listed().get(path) {
+            return Ok(*stamp);
+        }
+        let stat = self.storage()?.stat(location)?;
+        let stat = stat.ok_or_else(|| StorageError::Missing {
+            uri: location.to_string(),
+        })?;
+        let stamp = Stamp::elsewhere(stat.bytes, stat.etag.as_deref());
+        self.listed().insert(path.to_owned(), stamp);
+        Ok(stamp)
+    }
+
+    /// Copies and hashes a file.
+    pub(crate) fn hash(&self, path: &Path, location: &Location) -> Result<Hashed, BuildError> {
+        let stamp = self.stamp(path, location)?;
+        let (blake3, _) = self.fetch(location)?;
+        Ok(Hashed { blake3, stamp })
+    }
+
+    /// Returns a copy of the contents with a hash, under the file's own name.
+    pub(crate) fn copy(&self, location: &Location, blake3: &str) -> Result<PathBuf, BuildError> {
+        let name = named(location)?;
+        let there = self.copies()?.join(blake3).join(&name);
+        if there.is_file() {
+            return Ok(there);
+        }
+        let (found, copy) = self.fetch(location)?;
+        if found != blake3 {
+            let problem = "it changed while it was used; start again when it is complete";
+            return Err(BuildError::plan(location.to_string(), problem));
+        }
+        Ok(copy)
+    }
+
+    /// Reads a text.
+    pub(crate) fn text(&self, location: &Location) -> Result<String, BuildError> {
+        let bytes = self.storage()?.read(location, MOST_TEXT_BYTES)?;
+        String::from_utf8(bytes)
+            .map_err(|_| BuildError::plan(location.to_string(), "it is not UTF-8 text"))
+    }
+
+    /// Removes the copies.
+    pub(crate) fn forget(&self) -> Result<(), BuildError> {
+        match &self.copies {
+            Copies::Folder(folder) if folder.exists() => {
+                fs::remove_dir_all(folder).map_err(|error| BuildError::write(folder, error))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Downloads a file. Returns its hash and its copy.
+    fn fetch(&self, location: &Location) -> Result<(String, PathBuf), BuildError> {
+        let (copies, name) = (self.copies()?, named(location)?);
+        let failed = |error| BuildError::write(copies, error);
+        let part = tempfile::Builder::new().suffix(".part").tempfile_in(copies);
+        let part = part.map_err(failed)?;
+        let file = part.reopen().map_err(failed)?;
+        self.storage()?.download(location, file, MOST_BYTES)?;
+        let mut hasher = blake3::Hasher::new();
+        let written = File::open(part.path()).map_err(failed)?;
+        hasher.update_reader(written).map_err(failed)?;
+        let blake3 = hasher.finalize().to_hex().to_string();
+        let folder = copies.join(&blake3);
+        fs::create_dir_all(&folder).map_err(failed)?;
+        let copy = folder.join(name);
+        part.persist(&copy)
+            .map_err(|error| BuildError::write(&copy, error.error))?;
+        Ok((blake3, copy))
+    }
+
+    fn storage(&self) -> Result<&Storage, StorageError> {
+        if let Some(storage) = self.storage.get() {
+            return Ok(storage);
+        }
+        let storage = Storage::from_environment()?;
+        Ok(self.storage.get_or_init(|| storage))
+    }
+
+    fn copies(&self) -> Result<&Path, BuildError> {
+        match &self.copies {
+            Copies::Folder(folder) => {
+                fs::create_dir_all(folder).map_err(|error| BuildError::write(folder, error))?;
+                Ok(folder)
+            }
+            Copies::Temporary(held) => {
+                if let Some(folder) = held.get() {
+                    return Ok(folder.path());
+                }
+                let folder = tempfile::Builder::new().prefix("htex-build-").tempdir();
+                let folder =
+                    folder.map_err(|error| BuildError::write(&std::env::temp_dir(), error))?;
+                Ok(held.get_or_init(|| folder).path())
+            }
+        }
+    }
+
+    fn listed(&self) -> MutexGuard<'_, BTreeMap<PathBuf, Stamp>> {
+        self.listed.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// The file's name, which its copy has too: readers and provenance depend on it.
+fn named(location: &Location) -> Result<String, BuildError> {
+    location.file_name().ok_or_else(|| {
+        BuildError::plan(
+            location.to_string(),
+            "it has no file name at its end; name a file",
+        )
+    })
+}

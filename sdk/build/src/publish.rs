@@ -1,0 +1,243 @@
+//! Results by URI: a build writes them in a folder of this machine, from which they are copied.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use htex_storage::{Location, Storage, StorageError};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use walkdir::WalkDir;
+
+use crate::BuildError;
+use crate::dist::Dist;
+use crate::elsewhere::elsewhere;
+use crate::hashes::hash_local;
+
+/// The file of what was copied, in the folder of the results.
+const PUBLISHED: &str = ".htex-build/published.json";
+/// What is copied last, in this order, so that it names only what is there.
+const LAST: [&str; 2] = ["build-report.json", "index.html"];
+/// Copies at the same time; they wait for the network.
+const AT_ONCE: usize = 8;
+
+/// Where the results of a build go.
+///
+/// ```
+/// use htex_build::Destination;
+///
+/// let here = Destination::parse("dist".as_ref(), None)?;
+/// assert_eq!(here.folder(), "dist");
+/// let elsewhere = Destination::parse("s3://textures/vinyls".as_ref(), Some("work".as_ref()))?;
+/// assert_eq!(elsewhere.folder(), "work");
+/// # Ok::<(), htex_build::BuildError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Destination {
+    folder: PathBuf,
+    remote: Option<Location>,
+}
+
+/// What was copied, by path in the folder of the results.
+#[derive(Debug, Default, Serialize, Deserialize)]
+struct Published {
+    /// The URI of the folder.
+    to: String,
+    files: BTreeMap<String, Copied>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Copied {
+    blake3: String,
+    etag: Option<String>,
+}
+
+impl Destination {
+    /// Reads an argument: a folder, or the URI of one (`s3://`, `gs://`, `az://`). Results for a URI are made in the folder `work`,
+    /// [by default](default_folder) one of the user's cache, which also keeps what the next build needs.
+    ///
+    /// # Errors
+    /// A URI that is malformed or read-only; a URI without `work` where the environment names no cache.
+    pub fn parse(argument: &OsStr, work: Option<&Path>) -> Result<Self, BuildError> {
+        let Some(location) = elsewhere(Path::new(argument))? else {
+            let location = Location::parse(argument)?;
+            let folder = location.local().unwrap_or(Path::new(argument)).to_owned();
+            return Ok(Self {
+                folder,
+                remote: None,
+            });
+        };
+        Storage::from_environment()?.check_writable(&location)?;
+        let folder = match work {
+            Some(folder) => folder.to_owned(),
+            None => default_folder(&location)?,
+        };
+        Ok(Self {
+            folder,
+            remote: Some(location),
+        })
+    }
+
+    /// Returns the folder of this machine in which the results are made.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Returns where the results are in the end: the folder, or the URI.
+    pub fn results(&self) -> Location {
+        let folder = || Location::from(self.folder.clone());
+        self.remote.clone().unwrap_or_else(folder)
+    }
+
+    /// Returns the URI that the results are copied to.
+    pub fn remote(&self) -> Option<&Location> {
+        self.remote.as_ref()
+    }
+
+    /// Copies the results to the URI, if there is one: files that are not there as they are here, textures first, report and catalogue last. Files
+    /// that an earlier build copied and this one has not made are removed. Returns the number of files that were copied.
+    ///
+    /// # Errors
+    /// When a file cannot be read or written. The next call copies again what is not known to be there.
+    pub fn publish(&self) -> Result<usize, BuildError> {
+        match &self.remote {
+            Some(to) => Publishing::new(&self.folder, to)?.run(),
+            None => Ok(0),
+        }
+    }
+}
+
+/// Returns the folder in which results for a URI are made: `htex/builds/HASH` in the user's cache, by the URI's hash.
+fn default_folder(location: &Location) -> Result<PathBuf, BuildError> {
+    let variable = |name| std::env::var_os(name).filter(|value| !value.is_empty());
+    let home = || variable("HOME").map(|home| PathBuf::from(home).join(".cache"));
+    let cache = variable("XDG_CACHE_HOME").or_else(|| variable("LOCALAPPDATA"));
+    let cache = cache.map(PathBuf::from).or_else(home).ok_or_else(|| {
+        let problem = "there is no folder for the work: HOME is not set; name one (`--work DIR`)";
+        BuildError::plan(location.to_string(), problem)
+    })?;
+    let hash = blake3::hash(location.to_string().as_bytes()).to_hex();
+    Ok(cache.join("htex").join("builds").join(&hash[..16]))
+}
+
+/// A copy of results that is being made.
+struct Publishing<'a> {
+    folder: &'a Path,
+    to: &'a Location,
+    storage: Storage,
+    before: Published,
+}
+
+impl<'a> Publishing<'a> {
+    fn new(folder: &'a Path, to: &'a Location) -> Result<Self, BuildError> {
+        let kept = fs::read(folder.join(PUBLISHED)).ok();
+        let kept = kept.and_then(|bytes| serde_json::from_slice::<Published>(&bytes).ok());
+        Ok(Self {
+            folder,
+            to,
+            storage: Storage::from_environment()?,
+            before: kept
+                .filter(|kept| kept.to == to.to_string())
+                .unwrap_or_default(),
+        })
+    }
+
+    fn run(self) -> Result<usize, BuildError> {
+        let there = self.there()?;
+        let here = self.here()?;
+        let is_there = |name: &str, blake3: &str| {
+            let copied = self.before.files.get(name);
+            copied.is_some_and(|copied| {
+                copied.blake3 == blake3
+                    && copied.etag.is_some()
+                    && there.get(name) == Some(&copied.etag)
+            })
+        };
+        let wanted: Vec<&String> = here
+            .iter()
+            .filter(|(name, blake3)| !is_there(name, blake3))
+            .map(|(name, _)| name)
+            .collect();
+        let (last, first): (Vec<_>, Vec<_>) = wanted
+            .iter()
+            .copied()
+            .partition(|name| LAST.contains(&name.as_str()));
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(AT_ONCE).build();
+        let pool = pool.map_err(|error| BuildError::plan("publish", error.to_string()))?;
+        pool.install(|| first.par_iter().try_for_each(|name| self.copy(name)))?;
+        last.iter().try_for_each(|name| self.copy(name))?;
+        let copied = wanted.len();
+        self.remove_stale(&here, &there)?;
+        self.keep(here)?;
+        Ok(copied)
+    }
+
+    /// The files that are there, with their versions.
+    fn there(&self) -> Result<BTreeMap<String, Option<String>>, StorageError> {
+        let prefix = format!("{}/", self.to.to_string().trim_end_matches('/'));
+        let entries = self.storage.list(self.to, "**/*")?;
+        let named = entries.into_iter().filter_map(|entry| {
+            let uri = entry.location.to_string();
+            Some((uri.strip_prefix(&prefix)?.to_owned(), entry.etag))
+        });
+        Ok(named.collect())
+    }
+
+    /// The results here, with their hashes.
+    fn here(&self) -> Result<BTreeMap<String, String>, BuildError> {
+        let kept =
+            |entry: &walkdir::DirEntry| entry.depth() == 1 && entry.file_name() == ".htex-build";
+        let mut files = Vec::new();
+        for entry in WalkDir::new(self.folder)
+            .into_iter()
+            .filter_entry(|e| !kept(e))
+        {
+            let entry = entry.map_err(|error| BuildError::read(self.folder, error.into()))?;
+            if entry.file_type().is_file() {
+                files.push(entry.into_path());
+            }
+        }
+        let hashed = files.par_iter().map(|file| {
+            let hashed = hash_local(file).map_err(|error| BuildError::read(file, error))?;
+            let inside = file.strip_prefix(self.folder).unwrap_or(file);
+            Ok((crate::inputs::slashed(inside), hashed.blake3))
+        });
+        hashed.collect()
+    }
+
+    fn copy(&self, name: &str) -> Result<(), BuildError> {
+        Ok(self
+            .storage
+            .write_file(&self.to.inside(name), &self.folder.join(name))?)
+    }
+
+    /// Removes what an earlier build copied and this one has not made.
+    fn remove_stale(
+        &self,
+        here: &BTreeMap<String, String>,
+        there: &BTreeMap<String, Option<String>>,
+    ) -> Result<(), BuildError> {
+        let before: BTreeSet<&String> = self.before.files.keys().collect();
+        let stale = before.into_iter().filter(|name| !here.contains_key(*name));
+        for name in stale.filter(|name| there.contains_key(*name)) {
+            self.storage.remove(&self.to.inside(name))?;
+        }
+        Ok(())
+    }
+
+    /// Keeps what is there now for the next build.
+    fn keep(&self, here: BTreeMap<String, String>) -> Result<(), BuildError> {
+        let there = self.there()?;
+        let files = here.into_iter().map(|(name, blake3)| {
+            let etag = there.get(&name).cloned().flatten();
+            (name, Copied { blake3, etag })
+        });
+        let published = Published {
+            to: self.to.to_string(),
+            files: files.collect(),
+        };
+        let json = serde_json::to_vec(&published).unwrap_or_default();
+        Dist::new(self.folder).put(&self.folder.join(PUBLISHED), &json)
+    }
+}

@@ -1,0 +1,87 @@
+//! Libraries by path or URI.
+
+use std::io;
+
+use htex_storage::{Location, Remote, Storage};
+
+use crate::error::LibraryError;
+use crate::library::Library;
+use crate::opening::FIRST_READ;
+use crate::source::{LocalFile, Source};
+
+/// A file of this machine, or one elsewhere, of which only the ranges are read that are asked for.
+#[derive(Debug)]
+pub enum Located {
+    /// A file of this machine.
+    File(LocalFile),
+    /// A file of a web server or an object store.
+    Elsewhere(Box<Remote>),
+}
+
+impl Library<Located> {
+    /// Opens a library by path or URI, within the default [`Limits`](crate::Limits). Opening one texture of a file elsewhere takes three requests:
+    /// the start of the file, a page of the index, the texture; a library whose index fits into the start takes two.
+    ///
+    /// # Errors
+    /// As [`Library::open`]; [`LibraryError::Storage`].
+    ///
+    /// ```
+    /// use htex_library::Library;
+    /// use htex_storage::{Location, Storage};
+    ///
+    /// let storage = Storage::from_environment()?;
+    /// let location = Location::parse("s3://textures/cloth.htexlib".as_ref())?; // or "cloth.htexlib"
+    /// # return Ok::<(), Box<dyn std::error::Error>>(());
+    /// let cotton = Library::open_located(&storage, &location)?.get("woven/cotton")?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn open_located(storage: &Storage, location: &Location) -> Result<Self, LibraryError> {
+        Self::open_source(Located::open(storage, location)?)
+    }
+}
+
+impl Located {
+    /// Opens a file by path or URI.
+    ///
+    /// # Errors
+    /// [`LibraryError::Open`], [`LibraryError::Storage`].
+    pub fn open(storage: &Storage, location: &Location) -> Result<Self, LibraryError> {
+        if let Some(path) = location.local() {
+            return LocalFile::open(path).map(Self::File);
+        }
+        let first = u32::try_from(FIRST_READ).unwrap_or(u32::MAX);
+        let remote = storage.open(location, first)?;
+        Ok(Self::Elsewhere(Box::new(remote)))
+    }
+
+    /// Returns the requests to a server so far, and the bytes that they brought; `None` of a file of this machine.
+    pub fn usage(&self) -> Option<htex_storage::Usage> {
+        match self {
+            Self::File(_) => None,
+            Self::Elsewhere(remote) => Some(remote.usage()),
+        }
+    }
+}
+
+impl Source for Located {
+    fn len(&self) -> io::Result<u64> {
+        match self {
+            Self::File(file) => Source::len(file),
+            Self::Elsewhere(remote) => Ok(remote.len()),
+        }
+    }
+
+    fn read_at(&self, offset: u64, buffer: &mut [u8]) -> io::Result<usize> {
+        match self {
+            Self::File(file) => file.read_at(offset, buffer),
+            Self::Elsewhere(remote) => {
+                let there = remote.len().saturating_sub(offset);
+                let count = usize::try_from(there).map_or(buffer.len(), |n| n.min(buffer.len()));
+                remote
+                    .read_at(offset, &mut buffer[..count])
+                    .map_err(io::Error::other)?;
+                Ok(count)
+            }
+        }
+    }
+}

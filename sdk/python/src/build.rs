@@ -1,10 +1,11 @@
 //! Builds of libraries, and their jobs, which run anywhere.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use htex::host::WasmLimits;
-use htex_build::{BuildError, BuildOptions, Job, Workbench};
+use htex_build::{BuildError, BuildOptions, Destination, Job, Workbench};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::PyBytes;
@@ -15,16 +16,23 @@ use crate::python::from_json;
 
 /// A build of a library that is planned.
 #[pyclass(frozen, module = "htex._htex")]
-pub(crate) struct Build(Mutex<Option<htex_build::Build>>);
+pub(crate) struct Build(Mutex<Option<htex_build::Build>>, Destination);
 
 #[pymethods]
 impl Build {
     /// Reads a recipe and hashes its recordings.
     #[new]
-    fn new(py: Python<'_>, recipe: PathBuf, output: PathBuf, keep_going: bool) -> PyResult<Self> {
+    fn new(
+        py: Python<'_>,
+        recipe: PathBuf,
+        output: OsString,
+        keep_going: bool,
+        work: Option<PathBuf>,
+    ) -> PyResult<Self> {
         let options = BuildOptions::new(TOOL).with_keep_going(keep_going);
-        let build = py.detach(|| htex_build::Build::open(&recipe, &output, options));
-        Ok(Self(Mutex::new(Some(build.map_err(raised)?))))
+        let to = Destination::parse(&output, work.as_deref()).map_err(raised)?;
+        let build = py.detach(|| htex_build::Build::open(&recipe, to.folder(), options));
+        Ok(Self(Mutex::new(Some(build.map_err(raised)?)), to))
     }
 
     /// The jobs to do: key, job as JSON, bytes of its recordings.
@@ -62,7 +70,11 @@ impl Build {
     /// Writes the results and returns the report.
     fn finish<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let build = self.lock().take().ok_or_else(finished)?;
-        let built = py.detach(|| build.finish()).map_err(raised)?;
+        let built = py.detach(|| {
+            let built = build.finish()?;
+            self.1.publish().map(|_| built)
+        });
+        let built = built.map_err(raised)?;
         let report = serde_json::to_value(&built.report);
         from_json(py, &report.map_err(|error| option(error.to_string()))?)
     }
@@ -84,11 +96,22 @@ fn finished() -> PyErr {
     option("the build is finished; make another one")
 }
 
-/// The files of a recipe whose hashes are not known.
+/// The folder of this machine in which results are made.
 #[pyfunction]
-pub(crate) fn unhashed(py: Python<'_>, recipe: PathBuf, output: PathBuf) -> PyResult<Vec<PathBuf>> {
-    py.detach(|| htex_build::unhashed(&recipe, &output))
-        .map_err(raised)
+pub(crate) fn work_folder(output: OsString, work: Option<PathBuf>) -> PyResult<OsString> {
+    let to = Destination::parse(&output, work.as_deref()).map_err(raised)?;
+    Ok(to.folder().into())
+}
+
+/// The files of a recipe whose hashes are not known: paths and URIs.
+#[pyfunction]
+pub(crate) fn unhashed(
+    py: Python<'_>,
+    recipe: PathBuf,
+    output: PathBuf,
+) -> PyResult<Vec<OsString>> {
+    let files = py.detach(|| htex_build::unhashed(&recipe, &output));
+    Ok(files.map_err(raised)?.into_iter().map(OsString::from).collect())
 }
 
 /// Hashes a file; returns the hash as JSON.

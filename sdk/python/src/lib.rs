@@ -29,7 +29,7 @@ mod _htex {
     #[pymodule_export]
     use crate::author::{agreement, fit, process};
     #[pymodule_export]
-    use crate::build::{Build, hash_file, remember, run_job, unhashed};
+    use crate::build::{Build, hash_file, remember, run_job, unhashed, work_folder};
     #[pymodule_export]
     use crate::command::run;
     #[pymodule_export]

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use htex::AssetData;
-use htex::library::{Entry, Interval, LibraryError, LocalFile, Query, Source as Bytes, Writer};
+use htex::library::{Entry, Interval, LibraryError, Located, Query, Source as Bytes, Writer};
+use htex::storage::{Location, Storage};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
@@ -21,9 +22,9 @@ pub(crate) struct Library {
     installed: bool,
 }
 
-/// The bytes of a library: a file, or memory.
+/// The bytes of a library: a file of this machine or elsewhere, or memory.
 enum Origin {
-    File(LocalFile),
+    File(Located),
     Memory(Vec<u8>),
 }
 
@@ -71,7 +72,10 @@ impl Library {
         let source = Source::of(source)?;
         let opened = py.detach(|| {
             let origin = match source {
-                Source::File(path) => Origin::File(LocalFile::open(&path)?),
+                Source::File(path) => {
+                    let location = Location::parse(path.as_os_str())?;
+                    Origin::File(Located::open(&Storage::from_environment()?, &location)?)
+                }
                 Source::Bytes(bytes) => Origin::Memory(bytes),
             };
             htex::Library::open_source(origin)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import hashlib
+import http.server
 import os
 import pathlib
+import re
 import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 
@@ -160,3 +164,78 @@ def test_what_cannot_be_made_is_named(recipe: pathlib.Path, cluster: Cluster, tm
     with pytest.raises(htex.BuildError, match="no file matches"):
         (tmp_path / "broken.csv").unlink()
         htex.build(tmp_path / "library.toml", tmp_path / "dist")
+
+
+class Files(http.server.BaseHTTPRequestHandler):
+    """Files of a folder by HTTP, with ranges and entity tags."""
+
+    folder: pathlib.Path
+    seen: list[str]
+
+    def do_GET(self) -> None:
+        file = self.folder / self.path.lstrip("/")
+        if not file.is_file():
+            self.send_error(404)
+            return
+        data = file.read_bytes()
+        asked = self.headers.get("Range")
+        self.seen.append(f"{self.command} {self.path} {asked or 'whole'}")
+        first, last = 0, len(data) - 1
+        if asked and (found := re.fullmatch(r"bytes=(\d+)-(\d*)", asked)):
+            first, last = int(found[1]), min(int(found[2] or last), last)
+        self.send_response(206 if asked else 200)
+        self.send_header("ETag", f'"{hashlib.sha256(data).hexdigest()}"')
+        self.send_header("Last-Modified", "Mon, 02 Nov 2026 10:00:00 GMT")
+        if asked:
+            self.send_header("Content-Range", f"bytes {first}-{last}/{len(data)}")
+        self.send_header("Content-Length", str(last + 1 - first))
+        self.end_headers()
+        if self.command == "GET":
+            self.wfile.write(data[first : last + 1])
+
+    do_HEAD = do_GET
+
+    def log_message(self, format: str, *args: object) -> None:
+        pass
+
+
+@pytest.fixture
+def served(recipe: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[str, list[str]]]:
+    """The recipe's folder by HTTP: its URL, and the requests."""
+    monkeypatch.setenv("NO_PROXY", "127.0.0.1")
+    seen: list[str] = []
+    handler = type("Handler", (Files,), {"folder": recipe.parent, "seen": seen})
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_address[1]}", seen
+        server.shutdown()
+
+
+def test_workers_read_recordings_by_uri(
+    recipe: pathlib.Path, local: dict[str, bytes], cluster: Cluster, served: tuple[str, list[str]], tmp_path: pathlib.Path
+) -> None:
+    url, seen = served
+    names = sorted(file.name for file in recipe.parent.glob("*.csv"))
+    table = "recording\n" + "".join(f"{url}/{name}\n" for name in names)
+    (tmp_path / "all.csv").write_text(table)
+    away = tmp_path / "library.toml"
+    away.write_text(RECIPE.replace('recordings = "*.csv"', 'table = "all.csv"'))
+    cluster.start_worker()
+    with Client(cluster.address, timeout=60) as client:
+        client.wait_for_workers(1, timeout=60)
+        htex.dask.build(away, client, tmp_path / "dist")
+        again = len(seen)
+        htex.dask.build(away, client, tmp_path / "dist")
+    assert results(tmp_path / "dist") == local
+    assert not any(line.startswith("GET") for line in seen[again:]), seen[again:]
+
+
+def test_a_texture_of_a_library_is_read_by_uri(
+    recipe: pathlib.Path, local: dict[str, bytes], served: tuple[str, list[str]]
+) -> None:
+    url, seen = served
+    library = htex.Library(f"{url}/local/surfaces.htexlib")
+    assert library.to_bytes("vinyl-0") == local["textures/vinyl-0.htex"]
+    assert len(seen) <= 3 and all("bytes=" in line for line in seen), seen
+    with pytest.raises(htex.LibraryError, match="missing"):
+        htex.Library(f"{url}/missing.htexlib")

@@ -10,16 +10,17 @@ from . import _htex
 Path = str | os.PathLike[str]
 
 
-def build(recipe: Path, output: Path, *, keep_going: bool = False) -> dict[str, Any]:
+def build(recipe: Path, output: Path, *, keep_going: bool = False, work: Path | None = None) -> dict[str, Any]:
     """Build a library of textures from a recipe, as ``htex build`` does.
 
     What has been fitted stays in ``output``: a build that was ended goes on where it was, and one that is run again fits what
     changed.
 
     Args:
-        recipe: The recipe, ``library.toml``.
-        output: The folder of the results.
+        recipe: The recipe, ``library.toml``, a path or URI; its recordings may be URIs, too.
+        output: The folder of the results, or the URI of one (``s3://``, ``gs://``, ``az://``).
         keep_going: Leave out a texture that cannot be made instead of raising.
+        work: The folder in which results for a URI are made; one of the user's cache when absent.
 
     Returns:
         The report, as in ``build-report.json``: ``report["library"]`` and ``report["textures"]``.
@@ -28,6 +29,6 @@ def build(recipe: Path, output: Path, *, keep_going: bool = False) -> dict[str, 
         BuildError: The recipe is wrong, or a texture cannot be made.
         OSError: A file cannot be read or written.
     """
-    planned = _htex.Build(os.fspath(recipe), os.fspath(output), keep_going)
+    planned = _htex.Build(os.fspath(recipe), os.fspath(output), keep_going, work)
     planned.run()
     return planned.finish()

@@ -1,7 +1,8 @@
 """Libraries from recipes, built by a Dask cluster.
 
 The recipe and the results are those of :func:`htex.build`; only the fits are done by the workers of the cluster. Every worker needs
-this package, in the same version, and the recordings under the same paths.
+this package, in the same version, and the recordings under the same paths, or URIs of recordings and the variables with which they are
+read.
 
 >>> from distributed import Client
 >>> import htex.dask
@@ -40,6 +41,7 @@ def build(
     output: Path = "dist",
     *,
     keep_going: bool = False,
+    work: Path | None = None,
     shard_bytes: int = 64_000_000,
     patience_s: float = 300.0,
     done: Callable[[str], None] | None = None,
@@ -51,10 +53,11 @@ def build(
     ended, what has been fitted stays in ``output``.
 
     Args:
-        recipe: The recipe, ``library.toml``.
+        recipe: The recipe, ``library.toml``, a path or URI; its recordings may be URIs, too, which the workers read.
         client: The cluster.
-        output: The folder of the results.
+        output: The folder of the results, or the URI of one.
         keep_going: Leave out a texture that cannot be made instead of raising.
+        work: The folder in which results for a URI are made; one of the user's cache when absent.
         shard_bytes: Bytes of recordings that a worker gets at a time; a texture with more is given alone.
         patience_s: Longest time without scheduler or workers, seconds.
         done: Called with the key of each job that is done.
@@ -66,11 +69,14 @@ def build(
         BuildError: The recipe is wrong, a texture cannot be made, or the cluster was away for too long.
         OSError: A file cannot be read or written.
     """
-    source, target = str(pathlib.Path(recipe).resolve()), os.fspath(output)
+    source = os.fspath(recipe)
+    if "://" not in source:
+        source = str(pathlib.Path(source).resolve())
+    target = _htex.work_folder(os.fspath(output), work)
     patience = _Patience(patience_s)
     # Contents are hashed where they are read fastest: on the workers.
     while files := _htex.unhashed(source, target):
-        hashed: list[tuple[pathlib.Path, str]] = []
+        hashed: list[tuple[str, str]] = []
         with patience:
             try:
                 batches = [files[i : i + _FILES] for i in range(0, len(files), _FILES)]
@@ -80,7 +86,7 @@ def build(
             finally:
                 _htex.remember(target, hashed)
             break  # What is still not known has just changed; it is read here.
-    planned = _htex.Build(source, target, keep_going)
+    planned = _htex.Build(source, os.fspath(output), keep_going, work)
     while pending := planned.pending():
         with patience:
             for results in _results(client, _run, list(_shards(pending, shard_bytes))):
@@ -152,7 +158,7 @@ def _name(work: Callable[[Any], Any], part: Any) -> str:
     return f"htex{work.__name__}-{digest}"
 
 
-def _hash(files: Sequence[pathlib.Path]) -> list[tuple[pathlib.Path, str]]:
+def _hash(files: Sequence[str]) -> list[tuple[str, str]]:
     """Hash files on a worker."""
     return [(file, _htex.hash_file(file)) for file in files]
 

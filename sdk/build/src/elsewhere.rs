@@ -102,7 +102,7 @@ impl Elsewhere {
         let found = entries.into_iter().map(|entry| {
             let uri = entry.location.to_string();
             let inside = uri.strip_prefix(&prefix).unwrap_or(&uri).to_owned();
-            let stamp = Stamp::elsewhere(entry.bytes, entry.etag.as_deref());
+            let stamp = Stamp::elsewhere(entry.bytes, entry.etag.as_deref(), entry.modified);
             listed.insert(PathBuf::from(&uri), stamp);
             (uri.into(), inside.into())
         });
@@ -118,7 +118,7 @@ impl Elsewhere {
         let stat = stat.ok_or_else(|| StorageError::Missing {
             uri: location.to_string(),
         })?;
-        let stamp = Stamp::elsewhere(stat.bytes, stat.etag.as_deref());
+        let stamp = Stamp::elsewhere(stat.bytes, stat.etag.as_deref(), stat.modified);
         self.listed().insert(path.to_owned(), stamp);
         Ok(stamp)
     }

@@ -21,15 +21,16 @@ const RACY: Duration = Duration::from_secs(2);
 pub struct Stamp {
     /// Size, bytes.
     pub bytes: u64,
-    /// Time of the last change of the contents, nanoseconds since 1970; 0 of a file elsewhere.
+    /// Time of the last change of the contents, nanoseconds since 1970; 0 of a file elsewhere that has a version.
     modified_ns: u64,
     /// Number of the file on its file system; 0 where there is none. The version of a file elsewhere.
     number: u64,
 }
 
 impl Stamp {
-    /// Returns the stamp of a file elsewhere, whose version is its entity tag. Without one, any other time is another version.
-    pub(crate) fn elsewhere(bytes: u64, etag: Option<&str>) -> Self {
+    /// Returns the stamp of a file elsewhere, whose version is its entity tag, else the time of its last change. Without both, any other time
+    /// is another version.
+    pub(crate) fn elsewhere(bytes: u64, etag: Option<&str>, modified: Option<SystemTime>) -> Self {
         let version = |etag: &str| {
             let hash = blake3::hash(etag.as_bytes());
             let first = hash.as_bytes().first_chunk().copied();
@@ -37,7 +38,13 @@ impl Stamp {
         };
         Self {
             bytes,
-            modified_ns: if etag.is_some() { 0 } else { u64::MAX },
+            modified_ns: match (etag, modified) {
+                (Some(_), _) => 0,
+                (None, Some(time)) => {
+                    nanoseconds(time.duration_since(UNIX_EPOCH).unwrap_or_default())
+                }
+                (None, None) => u64::MAX,
+            },
             number: etag.map_or(0, version),
         }
     }

@@ -13,7 +13,7 @@ use walkdir::WalkDir;
 use crate::BuildError;
 use crate::dist::Dist;
 use crate::elsewhere::elsewhere;
-use crate::hashes::hash_local;
+use crate::hashes::{Stamp, hash_local};
 
 /// The file of what was copied, in the folder of the results.
 const PUBLISHED: &str = ".htex-build/published.json";
@@ -50,7 +50,7 @@ struct Published {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Copied {
     blake3: String,
-    etag: Option<String>,
+    there: Stamp,
 }
 
 impl Destination {
@@ -149,9 +149,7 @@ impl<'a> Publishing<'a> {
         let is_there = |name: &str, blake3: &str| {
             let copied = self.before.files.get(name);
             copied.is_some_and(|copied| {
-                copied.blake3 == blake3
-                    && copied.etag.is_some()
-                    && there.get(name) == Some(&copied.etag)
+                copied.blake3 == blake3 && there.get(name) == Some(&copied.there)
             })
         };
         let wanted: Vec<&String> = here
@@ -174,12 +172,13 @@ impl<'a> Publishing<'a> {
     }
 
     /// The files that are there, with their versions.
-    fn there(&self) -> Result<BTreeMap<String, Option<String>>, StorageError> {
+    fn there(&self) -> Result<BTreeMap<String, Stamp>, StorageError> {
         let prefix = format!("{}/", self.to.to_string().trim_end_matches('/'));
         let entries = self.storage.list(self.to, "**/*")?;
         let named = entries.into_iter().filter_map(|entry| {
             let uri = entry.location.to_string();
-            Some((uri.strip_prefix(&prefix)?.to_owned(), entry.etag))
+            let stamp = Stamp::elsewhere(entry.bytes, entry.etag.as_deref(), entry.modified);
+            Some((uri.strip_prefix(&prefix)?.to_owned(), stamp))
         });
         Ok(named.collect())
     }
@@ -216,7 +215,7 @@ impl<'a> Publishing<'a> {
     fn remove_stale(
         &self,
         here: &BTreeMap<String, String>,
-        there: &BTreeMap<String, Option<String>>,
+        there: &BTreeMap<String, Stamp>,
     ) -> Result<(), BuildError> {
         let before: BTreeSet<&String> = self.before.files.keys().collect();
         let stale = before.into_iter().filter(|name| !here.contains_key(*name));
@@ -229,9 +228,9 @@ impl<'a> Publishing<'a> {
     /// Keeps what is there now for the next build.
     fn keep(&self, here: BTreeMap<String, String>) -> Result<(), BuildError> {
         let there = self.there()?;
-        let files = here.into_iter().map(|(name, blake3)| {
-            let etag = there.get(&name).cloned().flatten();
-            (name, Copied { blake3, etag })
+        let files = here.into_iter().filter_map(|(name, blake3)| {
+            let there = *there.get(&name)?;
+            Some((name, Copied { blake3, there }))
         });
         let published = Published {
             to: self.to.to_string(),

@@ -89,7 +89,7 @@ fn a_replaced_library_and_a_failing_server_are_errors() {
     assert_eq!(library.get(&name(7)).unwrap(), bytes);
     server.put(NAME, &vec![7; 1_000_000]);
     let error = library.get(&name(999)).unwrap_err().to_string();
-    assert!(error.contains("changed"), "{error}");
+    assert!(error.contains("replaced"), "{error}");
     assert!(matches!(open(&server), Err(LibraryError::Invalid { .. })));
     server.fail(|_, _| Fault::Status(403, "AccessDenied"));
     let error = open(&server).map(drop).unwrap_err();

@@ -40,6 +40,7 @@ use std::fs::File;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::SystemTime;
 
 pub use error::StorageError;
 pub use listing::Entry;
@@ -57,6 +58,8 @@ pub struct Stat {
     pub bytes: u64,
     /// Its entity tag, where the store has one. It changes with the content.
     pub etag: Option<String>,
+    /// When its content changed last, where the store says so.
+    pub modified: Option<SystemTime>,
 }
 
 /// Access to files by [`Location`]. A clone shares its connections.

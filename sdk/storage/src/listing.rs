@@ -1,6 +1,7 @@
 //! Lists of files by a pattern.
 
 use std::path::Path;
+use std::time::SystemTime;
 
 use glob::{MatchOptions, Pattern};
 
@@ -20,6 +21,8 @@ pub struct Entry {
     pub bytes: u64,
     /// Its entity tag, where the store has one.
     pub etag: Option<String>,
+    /// When its content changed last, where the store says so.
+    pub modified: Option<SystemTime>,
 }
 
 /// Parses a pattern: `*` and `?` stay within one folder, `**` goes through all.
@@ -75,6 +78,7 @@ pub(crate) fn of_folder(folder: &Path, pattern: &Pattern) -> Result<Vec<Entry>, 
                 location: path.into(),
                 bytes: is.len(),
                 etag: None,
+                modified: is.modified().ok(),
             });
         }
     }

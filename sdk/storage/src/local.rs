@@ -29,6 +29,7 @@ pub(crate) fn stat(path: &Path) -> Result<Option<Stat>, StorageError> {
         Ok(is) => Ok(is.is_file().then_some(Stat {
             bytes: is.len(),
             etag: None,
+            modified: is.modified().ok(),
         })),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
         Err(error) => Err(StorageError::io(path.display(), error)),

@@ -89,6 +89,7 @@ impl Store {
         match found {
             Ok(meta) => Ok(Some(Stat {
                 bytes: meta.size,
+                modified: modified(&meta),
                 etag: meta.e_tag,
             })),
             Err(StorageError::Missing { .. }) => Ok(None),
@@ -130,6 +131,7 @@ impl Store {
                 found.push(Entry {
                     location: here.location.with_key(name),
                     bytes: meta.size,
+                    modified: modified(&meta),
                     etag: meta.e_tag,
                 });
             }
@@ -177,4 +179,11 @@ fn runtime(location: &Location) -> Result<&'static Runtime, StorageError> {
         uri: location.to_string(),
         problem: format!("no threads for the network: {error}"),
     })
+}
+
+/// When a file changed; a store that does not say so gives 1970.
+fn modified(meta: &object_store::ObjectMeta) -> Option<std::time::SystemTime> {
+    let milliseconds = u64::try_from(meta.last_modified.timestamp_millis()).ok();
+    let since = Duration::from_millis(milliseconds.filter(|ms| *ms > 0)?);
+    std::time::UNIX_EPOCH.checked_add(since)
 }

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use htex_author::GridReport;
 use htex_format::{
-    AtCondition, Condition, LeftOut, Quality, Quantity, Representation, StoredField, plain,
+    AtCondition, Condition, How, Ingredient, LeftOut, Made, Quality, Quantity, Representation,
+    StoredField, plain,
 };
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -33,6 +34,8 @@ pub(crate) struct AssetSummary {
     #[serde(skip_serializing_if = "Option::is_none")]
     finger: Option<String>,
     simulated: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    made: Option<Made>,
     quantity: Quantity,
     unit: &'static str,
     band_hz: [f64; 2],
@@ -113,6 +116,7 @@ impl AssetSummary {
             sensor: manifest.sensor.clone(),
             finger: manifest.finger.clone(),
             simulated: manifest.provenance.simulated,
+            made: manifest.provenance.made.clone(),
             quantity: manifest.quantity,
             unit: manifest.quantity.unit(),
             band_hz: [manifest.band.low_hz, manifest.band.high_hz],
@@ -159,6 +163,7 @@ impl AssetSummary {
                 .map(|l| format!(", licence {}", plain(l)))
                 .unwrap_or_default(),
         );
+        text += &self.made.as_ref().map(made_text).unwrap_or_default();
         text += &self.metadata_text();
         for (i, condition) in self.conditions.iter().enumerate() {
             let _ = writeln!(text, "condition {i}: {}", condition_text(condition));
@@ -330,6 +335,16 @@ fn condition_text(condition: &Condition) -> String {
         let _ = write!(text, ", the recording itself repeats within {db:.2} dB");
     }
     text
+}
+
+/// How an asset was made without a recording.
+fn made_text(made: &Made) -> String {
+    let part = |of: &Ingredient| format!("{} of {}", of.weight, plain(&of.name));
+    let parts: Vec<String> = made.from.iter().map(part).collect();
+    match made.how {
+        How::Parameters => "made by hand of its parameters, of no recording\n".to_owned(),
+        How::Mixed => format!("mixed: {}\n", parts.join(", ")),
+    }
 }
 
 /// Speed and force of a condition, as far as they are known.

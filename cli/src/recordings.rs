@@ -229,7 +229,10 @@ impl RecordingArgs {
 }
 
 /// Reads `speed=80,force=0.4`; a quantity that is left out stays as it was.
-fn parse_condition(text: &str, mut condition: Exploration) -> Result<Exploration, Failure> {
+pub(crate) fn parse_condition(
+    text: &str,
+    mut condition: Exploration,
+) -> Result<Exploration, Failure> {
     let wrong = |what: &str| {
         Failure::Usage(format!(
             "--at {text}: {what}; it looks like speed=80,force=0.4 (mm/s, N)"

@@ -15,6 +15,8 @@ mod gain;
 mod guard;
 mod info;
 mod lib;
+mod make;
+mod mix;
 mod plan;
 mod play;
 mod plugin;
@@ -46,6 +48,8 @@ pub(crate) enum Command {
     Bake(bake::Bake),
     #[cfg(feature = "build")]
     Build(build::Build),
+    Make(make::Make),
+    Mix(mix::Mix),
     Compare(compare::Compare),
     Tradeoff(tradeoff::Tradeoff),
     Plan(plan::Plan),
@@ -77,6 +81,8 @@ impl Command {
             Self::Bake(args) => args.run(),
             #[cfg(feature = "build")]
             Self::Build(args) => args.run(),
+            Self::Make(args) => args.run(),
+            Self::Mix(args) => args.run(),
             Self::Compare(args) => args.run(),
             Self::Tradeoff(args) => args.run(),
             Self::Plan(args) => args.run(),

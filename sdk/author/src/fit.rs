@@ -88,6 +88,7 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
         tool: request.tool.clone(),
         simulated: takes.iter().any(|take| take.recording.simulated),
         recordings: grouped.sources,
+        made: None,
         options: request.recorded_options.clone(),
         warnings,
     };

@@ -20,6 +20,7 @@
 #![forbid(unsafe_code)]
 
 mod alternatives;
+pub mod by_hand;
 mod conditions;
 mod embed;
 mod error;

@@ -39,6 +39,7 @@ pub(crate) fn check_manifest(manifest: &Manifest, findings: &mut Findings) {
         },
     );
     check_sources(manifest, findings);
+    check_made(manifest, findings);
     check_conditions(&manifest.conditions, findings);
     check_representations(manifest, findings);
     check_plugins(manifest, findings);
@@ -89,6 +90,32 @@ fn check_sources(manifest: &Manifest, findings: &mut Findings) {
                 source.file
             )
         });
+    }
+}
+
+fn check_made(manifest: &Manifest, findings: &mut Findings) {
+    let made = manifest.provenance.made.iter();
+    for (i, part) in made.flat_map(|made| &made.from).enumerate() {
+        let at = format_args!("/provenance/made/from/{i}");
+        let weight = part.weight;
+        findings.require(
+            (0.0..=1.0).contains(&weight),
+            rule::MADE_INVALID,
+            format_args!("{at}/weight"),
+            || format!("{weight} is not a part of a mixture; write a number from 0 to 1"),
+        );
+        let is_hash = part.blake3.len() == 64 && part.blake3.bytes().all(|b| b.is_ascii_hexdigit());
+        findings.require(
+            is_hash,
+            rule::MADE_INVALID,
+            format_args!("{at}/blake3"),
+            || {
+                format!(
+                    "{:?} is not a hash; write the 64 hexadecimal digits of BLAKE3",
+                    part.blake3
+                )
+            },
+        );
     }
 }
 

@@ -66,9 +66,9 @@ pub use json_text::{JsonError, parse_json};
 pub use license::{LicenseError, check_license};
 pub use limits::Limits;
 pub use manifest::{
-    AtCondition, Condition, FIRST_VERSION, LeftOut, Manifest, Plugin, Provenance, Quality,
-    Reference, Representation, SAME_CONDITION, Signature, Source, Steps, StoredAs, StoredField,
-    VERSION,
+    AtCondition, Condition, FIRST_VERSION, How, Ingredient, LeftOut, Made, Manifest, Plugin,
+    Provenance, Quality, Reference, Representation, SAME_CONDITION, Signature, Source, Steps,
+    StoredAs, StoredField, VERSION,
 };
 pub use measure::ErrorMeasure;
 pub use page::{manifest_schema, report_schema, rules_page, validation_page};

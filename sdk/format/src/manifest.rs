@@ -112,9 +112,10 @@ impl Manifest {
         ];
         let has_words = words.iter().any(|word| word.is_some());
         let mut fits = self.representations.iter().flat_map(|r| &r.at);
-        let has_grid = self.conditions.iter().any(|c| c.segments.is_some())
-            || fits.any(|at| at.left_out.is_some());
-        let lowest = match (has_grid, has_words) {
+        let is_newer = self.conditions.iter().any(|c| c.segments.is_some())
+            || fits.any(|at| at.left_out.is_some())
+            || self.provenance.made.is_some();
+        let lowest = match (is_newer, has_words) {
             (true, _) => VERSION,
             (false, true) => "1.1",
             (false, false) => FIRST_VERSION,
@@ -151,6 +152,9 @@ pub struct Provenance {
     /// The recordings that the asset was fitted to.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub recordings: Vec<Source>,
+    /// How it was made, if not by a fit to recordings (1.2).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub made: Option<Made>,
     /// Options that differ from their defaults.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub options: BTreeMap<String, String>,
@@ -163,6 +167,38 @@ impl Provenance {
     fn is_empty(&self) -> bool {
         *self == Self::default()
     }
+}
+
+/// How an asset was made that was not fitted to recordings.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Made {
+    /// The way.
+    pub how: How,
+    /// The assets that were mixed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub from: Vec<Ingredient>,
+}
+
+/// A way of making an asset without recordings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum How {
+    /// Its parameters were written by hand.
+    Parameters,
+    /// Its parameters are between those of other assets.
+    Mixed,
+}
+
+/// An asset that was mixed with others.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Ingredient {
+    /// Name of the asset's texture.
+    pub name: String,
+    /// Its part of the mixture, from 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
+    pub weight: f64,
+    /// BLAKE3 of the asset's file, hexadecimal.
+    pub blake3: String,
 }
 
 /// A recording.

@@ -214,6 +214,10 @@ rule_table! {
         "A recording's sampling rate is not a positive number.",
         "Without it the asset cannot be reproduced.",
         "Write the rate in hertz.";
+    MADE_INVALID Error:
+        "An ingredient of a mixture has a wrong weight or hash.",
+        "`weight` is from 0 to 1, and `blake3` the hash of the mixed asset's file.",
+        "Correct it, or mix the assets again.";
     SOURCE_PATH Warning:
         "A recording's file name contains a folder.",
         "Folders have no meaning on other machines, and may reveal who made the asset.",

@@ -43,6 +43,7 @@ pub fn asset(conditions: usize, fitted: Vec<Fitted>) -> Asset {
                 high_hz: 1000.0,
             },
             provenance: Provenance {
+                made: None,
                 tool: "htex 0.1.0".to_owned(),
                 recordings: vec![Source {
                     file: "cotton_take_1.csv".to_owned(),

@@ -63,6 +63,19 @@ pub(super) fn valid() -> Vec<Named> {
             }),
         ),
         (
+            "valid_mixed",
+            with_manifest(|m| {
+                m["htex"] = json!("1.2");
+                m["provenance"]["made"] = json!({
+                    "how": "mixed",
+                    "from": [
+                        { "name": "Vinyl", "weight": 0.7, "blake3": "0123456789abcdef".repeat(4) },
+                        { "name": "Denim", "weight": 0.3, "blake3": "fedcba9876543210".repeat(4) },
+                    ],
+                });
+            }),
+        ),
+        (
             "valid_field_order",
             with_manifest(|m| {
                 let fields = m["representations"][0]["fields"].as_array_mut();

@@ -1,0 +1,137 @@
+use std::path::PathBuf;
+
+use clap::Args;
+use htex_author::Exploration;
+use htex_author::by_hand::{ByHand, make};
+use htex_format::{Condition, Quantity};
+
+use crate::assets::AssetSummary;
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::located;
+use crate::metadata::{MetadataArgs, checked};
+use crate::models::tool;
+use crate::output::{print, print_json, write_file};
+use crate::outputs::check_outputs;
+use crate::plugins::PluginArgs;
+use crate::recordings::parse_condition;
+
+/// Make a texture of parameters, without a recording.
+///
+/// The asset states that it was made by hand. `htex plugin info MODEL` lists a model's parameters with their units and ranges.
+#[derive(Args)]
+pub(crate) struct Make {
+    /// The model: short name or id
+    #[arg(long, value_name = "ID")]
+    model: String,
+
+    /// Parameters; a list has commas, such as cepstrum=-12,3.1,0.4
+    #[arg(long, value_name = "NAME=NUMBER", num_args = 1.., required = true)]
+    set: Vec<String>,
+
+    /// RMS of the texture, in the quantity's unit (newtons)
+    #[arg(long, value_name = "RMS")]
+    level: f64,
+
+    /// Speed and force at which it is this texture: speed=80,force=0.4 [default: unknown]
+    #[arg(long, value_name = "speed=MM_S,force=N")]
+    at: Option<String>,
+
+    /// Quantity of its samples
+    #[arg(long, default_value = "lateral_force", value_parser = quantity)]
+    quantity: Quantity,
+
+    /// The asset to write
+    #[arg(short, long, value_name = "HTEX", value_parser = located::OUTPUT)]
+    output: PathBuf,
+
+    #[command(flatten)]
+    metadata: MetadataArgs,
+
+    #[command(flatten)]
+    plugins: PluginArgs,
+
+    /// Print JSON instead of a table
+    #[arg(long)]
+    json: bool,
+}
+
+impl Make {
+    pub(crate) fn run(mut self) -> Result<Exit, Failure> {
+        let files = self.plugins.files().iter().map(PathBuf::as_path);
+        check_outputs([self.output.as_path()], files)?;
+        let metadata = std::mem::take(&mut self.metadata).given();
+        checked(&metadata)?;
+        let registry = self.plugins.registry()?;
+        let model = registry.find(&self.model)?;
+        let at = self.at.as_deref();
+        let at = at.map(|text| parse_condition(text, Exploration::default()));
+        let at = at.transpose()?.unwrap_or_default();
+        let stem = self.output.file_stem().unwrap_or_default();
+        let mut texture = ByHand::new(stem.to_string_lossy(), self.level, tool())
+            .at(Condition {
+                speed_mm_s: at.speed_mm_s,
+                force_n: at.force_n,
+                ..Condition::default()
+            })
+            .with_quantity(self.quantity);
+        for text in &self.set {
+            let (name, values) = parameter(text)?;
+            if texture.values.insert(name.clone(), values).is_some() {
+                let sentence = format!("--set {text}: {name} is given twice; leave one out");
+                return Err(Failure::Usage(sentence));
+            }
+        }
+        let made = make(model, &texture);
+        let mut asset = made.map_err(|error| Failure::Usage(error.to_string()))?;
+        metadata.apply(&mut asset.manifest);
+        write(&self.output, &asset, self.json)
+    }
+}
+
+/// Writes a made asset, and prints its summary.
+pub(super) fn write(
+    output: &std::path::Path,
+    asset: &htex_format::Asset,
+    is_json: bool,
+) -> Result<Exit, Failure> {
+    let bytes = asset.to_bytes().map_err(htex_author::AuthorError::from)?;
+    write_file(output, &bytes)?;
+    let summary = AssetSummary::new(output, bytes.len() as u64, asset);
+    if is_json {
+        print_json(&summary)?;
+    } else {
+        print(&summary.to_text())?;
+    }
+    Ok(Exit::SUCCESS)
+}
+
+/// Reads `NAME=NUMBER,…`.
+fn parameter(text: &str) -> Result<(String, Vec<f64>), Failure> {
+    let wrong = |what: &str| {
+        Failure::Usage(format!(
+            "--set {text}: {what}; it looks like alpha=2 or cepstrum=-12,3.1"
+        ))
+    };
+    let (name, numbers) = text
+        .split_once('=')
+        .ok_or_else(|| wrong("there is no `=`"))?;
+    let numbers = numbers.split(',').map(|number| number.trim().parse().ok());
+    let numbers: Option<Vec<f64>> = numbers.collect();
+    let numbers = numbers.filter(|all| all.iter().all(|x| x.is_finite()));
+    let numbers = numbers.ok_or_else(|| wrong("what follows is not a number"))?;
+    Ok((name.trim().to_owned(), numbers))
+}
+
+fn quantity(text: &str) -> Result<Quantity, String> {
+    let found = Quantity::ALL
+        .iter()
+        .find(|quantity| quantity.name() == text);
+    found.copied().ok_or_else(|| {
+        let names: Vec<&str> = Quantity::ALL
+            .iter()
+            .map(|quantity| quantity.name())
+            .collect();
+        format!("it is one of {}", names.join(", "))
+    })
+}

@@ -1,0 +1,78 @@
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use htex_author::by_hand::{Part, mix};
+
+use super::make::write;
+use crate::bounded::read_asset;
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::located;
+use crate::metadata::{MetadataArgs, checked};
+use crate::models::tool;
+use crate::outputs::check_outputs;
+use crate::plugins::PlayerArgs;
+
+/// Make a texture between two others.
+///
+/// Each model that describes both interpolates between their parameters, as between the conditions of one texture. The asset states
+/// what it was mixed of.
+#[derive(Args)]
+pub(crate) struct Mix {
+    /// A texture
+    #[arg(value_parser = located::ASSET)]
+    a: PathBuf,
+
+    /// Another texture
+    #[arg(value_parser = located::ASSET)]
+    b: PathBuf,
+
+    /// Part of the second texture, from 0 to 1
+    #[arg(long, value_name = "PART")]
+    weight: f64,
+
+    /// The asset to write
+    #[arg(short, long, value_name = "HTEX", value_parser = located::OUTPUT)]
+    output: PathBuf,
+
+    #[command(flatten)]
+    metadata: MetadataArgs,
+
+    #[command(flatten)]
+    player: PlayerArgs,
+
+    /// Print JSON instead of a table
+    #[arg(long)]
+    json: bool,
+}
+
+impl Mix {
+    pub(crate) fn run(mut self) -> Result<Exit, Failure> {
+        check_outputs(
+            [self.output.as_path()],
+            [self.a.as_path(), self.b.as_path()],
+        )?;
+        let metadata = std::mem::take(&mut self.metadata).given();
+        checked(&metadata)?;
+        let (a, b) = (self.open(&self.a)?, self.open(&self.b)?);
+        let part = |(asset, blake3)| Part { asset, blake3 };
+        let stem = self.output.file_stem().unwrap_or_default();
+        let mixed = mix(
+            part((&a.0, &a.1[..])),
+            part((&b.0, &b.1[..])),
+            self.weight,
+            &stem.to_string_lossy(),
+            &tool(),
+        );
+        let mut asset = mixed.map_err(|error| Failure::Other(error.to_string()))?;
+        metadata.apply(&mut asset.manifest);
+        write(&self.output, &asset, self.json)
+    }
+
+    /// Opens a texture, and hashes its file.
+    fn open(&self, path: &Path) -> Result<(htex::Asset, String), Failure> {
+        let asset = self.player.open(path)?;
+        let bytes = read_asset(path)?;
+        Ok((asset, blake3::hash(&bytes).to_hex().to_string()))
+    }
+}

@@ -1,0 +1,74 @@
+//! Errors of making textures without recordings.
+
+use htex_host::HostError;
+
+/// Why a texture cannot be made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ByHandError {
+    /// The model has no such field.
+    #[error("{model} has no parameter {name:?}; it has {there}")]
+    Unknown {
+        /// The model.
+        model: String,
+        /// The name.
+        name: String,
+        /// Its fields, with units and ranges.
+        there: String,
+    },
+    /// A field has no value.
+    #[error("{model} needs a value for {missing}")]
+    Missing {
+        /// The model.
+        model: String,
+        /// The fields, with units and ranges.
+        missing: String,
+    },
+    /// A value is out of its field's range, or there are too many.
+    #[error("{name} = {value}: {problem}")]
+    Value {
+        /// The field.
+        name: String,
+        /// The values.
+        value: String,
+        /// What is allowed.
+        problem: String,
+    },
+    /// The level is not one.
+    #[error("a level of {level_rms} {unit}: it is from 0 to {most}")]
+    Level {
+        /// The level, in the quantity's unit.
+        level_rms: f64,
+        /// The unit.
+        unit: &'static str,
+        /// The largest level of the quantity.
+        most: f64,
+    },
+    /// The textures cannot be mixed.
+    #[error("{a} and {b} cannot be mixed: {problem}")]
+    Different {
+        /// A texture.
+        a: String,
+        /// The other one.
+        b: String,
+        /// What differs.
+        problem: String,
+    },
+    /// The weight is not one.
+    #[error(
+        "a weight of {weight}: it is from 0, all of the first texture, to 1, all of the second"
+    )]
+    Weight {
+        /// The weight.
+        weight: f64,
+    },
+    /// A representation cannot be read.
+    #[error(transparent)]
+    Play(#[from] htex_play::Error),
+    /// A model refuses the parameters.
+    #[error(transparent)]
+    Model(#[from] HostError),
+    /// The parameters cannot be stored.
+    #[error(transparent)]
+    Write(#[from] htex_format::WriteError),
+}

@@ -1,0 +1,179 @@
+//! A texture between two others.
+
+use htex_format::{
+    Asset, AtCondition, Condition, How, Ingredient, Made, Representation, round_parameters,
+};
+use htex_host::LoadedModel;
+use htex_play::Motion;
+
+use super::{ByHandError, Frame};
+use crate::stored::stored_fields;
+
+/// A texture that is mixed, and the hash of its file.
+#[derive(Debug, Clone, Copy)]
+pub struct Part<'a> {
+    /// The texture, with the models that play it.
+    pub asset: &'a htex_play::Asset,
+    /// BLAKE3 of its file, hexadecimal.
+    pub blake3: &'a str,
+}
+
+impl Part<'_> {
+    fn name(&self) -> &str {
+        &self.asset.manifest().name
+    }
+}
+
+/// Mixes two textures: each model that describes both interpolates between their parameters, as it does between the conditions of one
+/// texture, and their levels are interpolated linearly. The conditions are those of both; at a condition of one alone, the other is what a
+/// player plays there. `weight` is the part of `b`, from 0 to 1.
+///
+/// # Errors
+/// When no model describes both, their quantity or band differs, or a model cannot mix its parameters.
+pub fn mix(
+    a: Part<'_>,
+    b: Part<'_>,
+    weight: f64,
+    name: &str,
+    tool: &str,
+) -> Result<Asset, ByHandError> {
+    if !(0.0..=1.0).contains(&weight) {
+        return Err(ByHandError::Weight { weight });
+    }
+    let different = |problem: String| ByHandError::Different {
+        a: a.name().to_owned(),
+        b: b.name().to_owned(),
+        problem,
+    };
+    check(a, b).map_err(different)?;
+    let conditions = conditions(a, b).map_err(different)?;
+    let ids = |part: Part<'_>| -> Vec<String> {
+        let all = &part.asset.manifest().representations;
+        all.iter().map(|r| r.model.clone()).collect()
+    };
+    let theirs = ids(b);
+    let mixed = ids(a)
+        .into_iter()
+        .filter(|id| theirs.contains(id))
+        .map(|id| {
+            let model = a.asset.loaded_model(Some(&id))?;
+            mixed(&model, (a, b), weight, &conditions)
+        });
+    let mixed = mixed.collect::<Result<Vec<_>, ByHandError>>()?;
+    if mixed.is_empty() {
+        let problem = format!(
+            "no model describes both ({} and {}); fit them with the same model",
+            ids(a).join(", "),
+            theirs.join(", ")
+        );
+        return Err(different(problem));
+    }
+    let ingredient = |part: Part<'_>, weight| Ingredient {
+        name: part.name().to_owned(),
+        weight,
+        blake3: part.blake3.to_owned(),
+    };
+    let manifest = a.asset.manifest();
+    let frame = Frame {
+        name: name.to_owned(),
+        quantity: manifest.quantity,
+        band: manifest.band,
+        tool: tool.to_owned(),
+        made: Made {
+            how: How::Mixed,
+            from: vec![ingredient(a, 1.0 - weight), ingredient(b, weight)],
+        },
+        conditions,
+    };
+    let mut asset = frame.asset(mixed);
+    let simulated = [a, b].map(|part| part.asset.manifest().provenance.simulated);
+    asset.manifest.provenance.simulated = simulated.contains(&true);
+    Ok(asset)
+}
+
+fn check(a: Part<'_>, b: Part<'_>) -> Result<(), String> {
+    let (a, b) = (a.asset.manifest(), b.asset.manifest());
+    if a.quantity != b.quantity {
+        return Err(format!("they are a {} and a {}", a.quantity, b.quantity));
+    }
+    if a.band != b.band {
+        let (a, b) = (a.band, b.band);
+        return Err(format!(
+            "their bands are {}-{} Hz and {}-{} Hz",
+            a.low_hz, a.high_hz, b.low_hz, b.high_hz
+        ));
+    }
+    Ok(())
+}
+
+/// The conditions of both, without measurements of the recordings; those that are the same once.
+fn conditions(a: Part<'_>, b: Part<'_>) -> Result<Vec<Condition>, String> {
+    let mut all: Vec<Condition> = Vec::new();
+    for condition in [a, b]
+        .iter()
+        .flat_map(|part| &part.asset.manifest().conditions)
+    {
+        let known = |c: &Condition| (c.speed_mm_s.is_some(), c.force_n.is_some());
+        if all
+            .first()
+            .is_some_and(|first| known(first) != known(condition))
+        {
+            return Err("the speed or the force of one alone is known; edit or fit it".to_owned());
+        }
+        if !all.iter().any(|other| is_same(other, condition)) {
+            all.push(Condition {
+                repeatability_rms_db: None,
+                segments: None,
+                ..*condition
+            });
+        }
+    }
+    Ok(all)
+}
+
+fn is_same(a: &Condition, b: &Condition) -> bool {
+    let same = |a: Option<f64>, b: Option<f64>| match (a, b) {
+        (Some(a), Some(b)) => Condition::is_same(a, b),
+        _ => a == b,
+    };
+    same(a.speed_mm_s, b.speed_mm_s) && same(a.force_n, b.force_n)
+}
+
+/// Mixes one model's parameters at all conditions.
+fn mixed(
+    model: &LoadedModel,
+    (a, b): (Part<'_>, Part<'_>),
+    weight: f64,
+    conditions: &[Condition],
+) -> Result<(Representation, Vec<Vec<f64>>), ByHandError> {
+    let fields = stored_fields(model.descriptor());
+    let (mut at, mut parameters) = (Vec::new(), Vec::new());
+    for (condition, place) in conditions.iter().enumerate() {
+        let motion = Motion::new(
+            place.speed_mm_s.unwrap_or_default(),
+            place.force_n.unwrap_or_default(),
+        );
+        let (first, first_level) = a.asset.parameters(Some(model.id()), Some(motion))?;
+        let (second, second_level) = b.asset.parameters(Some(model.id()), Some(motion))?;
+        let flat = match weight {
+            0.0 => first,
+            1.0 => second,
+            _ => model.interpolate(&[&first, &second], &[1.0 - weight, weight])?,
+        };
+        parameters.push(round_parameters(&fields, &flat)?);
+        at.push(AtCondition {
+            condition,
+            level_rms: (1.0 - weight) * first_level + weight * second_level,
+            quality: None,
+            left_out: None,
+        });
+    }
+    let representation = Representation {
+        model: model.id().to_owned(),
+        model_version: model.descriptor().version.clone(),
+        fields,
+        at,
+        parameters: format!("parameters/{}.bin", model.short_name()),
+    };
+    Ok((representation, parameters))
+}

@@ -1,0 +1,69 @@
+//! Textures from no recording: of parameters that a person writes, and between other textures. The paper names both as what a
+//! representation by few numbers makes possible (Balasubramanian & Vardar 2026, Discussion).
+//!
+//! Such an asset says how it was made ([`htex_format::Made`]); it has no quality, since there is nothing to compare it with.
+
+mod error;
+mod mix;
+mod parameters;
+
+pub use error::ByHandError;
+pub use mix::{Part, mix};
+pub use parameters::{ByHand, make};
+
+use htex_format::{
+    Asset, Condition, Made, Manifest, Provenance, Quantity, Representation, VERSION,
+};
+use htex_host::Band;
+
+/// What does not depend on the models of a made asset.
+struct Frame {
+    name: String,
+    quantity: Quantity,
+    band: Band,
+    tool: String,
+    made: Made,
+    conditions: Vec<Condition>,
+}
+
+impl Frame {
+    /// Puts an asset together.
+    fn asset(self, made: Vec<(Representation, Vec<Vec<f64>>)>) -> Asset {
+        let (representations, parameters) = made.into_iter().unzip();
+        let mut manifest = Manifest {
+            htex: VERSION.to_owned(),
+            name: self.name,
+            license: None,
+            author: None,
+            tags: Vec::new(),
+            description: None,
+            source: None,
+            doi: None,
+            sensor: None,
+            finger: None,
+            quantity: self.quantity,
+            unit: self.quantity.unit().to_owned(),
+            band: self.band,
+            provenance: Provenance {
+                tool: self.tool,
+                made: Some(self.made),
+                ..Provenance::default()
+            },
+            conditions: self.conditions,
+            representations,
+            reference: None,
+            plugins: Vec::new(),
+            extensions: Default::default(),
+            extensions_required: Vec::new(),
+            other: Default::default(),
+        };
+        manifest.declare_version();
+        Asset {
+            manifest,
+            parameters,
+            reference: None,
+            plugins: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! A texture of parameters.
+
+use std::collections::BTreeMap;
+
+use htex_format::{
+    Asset, AtCondition, Condition, How, Made, Quantity, Representation, round_parameters,
+};
+use htex_host::{Band, Field, Kind, LoadedModel};
+
+use super::{ByHandError, Frame};
+use crate::stored::stored_fields;
+
+/// A texture to be made of one model's parameters.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct ByHand {
+    /// Name of the texture.
+    pub name: String,
+    /// Values by name of the field; of a list, all of them.
+    pub values: BTreeMap<String, Vec<f64>>,
+    /// RMS of the texture in the band, in the quantity's unit.
+    pub level_rms: f64,
+    /// Speed and force at which it is this one.
+    pub condition: Condition,
+    /// The quantity of its samples.
+    pub quantity: Quantity,
+    /// The band of its spectrum.
+    pub band: Band,
+    /// Program and version, for the provenance.
+    pub tool: String,
+}
+
+impl ByHand {
+    /// A lateral force in the band of textures, at an unknown speed and force.
+    pub fn new(name: impl Into<String>, level_rms: f64, tool: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            values: BTreeMap::new(),
+            level_rms,
+            condition: Condition::default(),
+            quantity: Quantity::LateralForce,
+            band: Band::TACTILE,
+            tool: tool.into(),
+        }
+    }
+
+    /// Sets a parameter; of a list, all values.
+    #[must_use]
+    pub fn with(mut self, name: impl Into<String>, values: impl Into<Vec<f64>>) -> Self {
+        self.values.insert(name.into(), values.into());
+        self
+    }
+
+    /// Sets speed and force.
+    #[must_use]
+    pub fn at(mut self, condition: Condition) -> Self {
+        self.condition = condition;
+        self
+    }
+
+    /// Sets the quantity of the samples.
+    #[must_use]
+    pub fn with_quantity(mut self, quantity: Quantity) -> Self {
+        self.quantity = quantity;
+        self
+    }
+}
+
+/// Makes an asset of parameters. The model computes its spectrum once, so that parameters that it cannot play are an error here.
+///
+/// ```
+/// use htex_author::by_hand::{ByHand, make};
+/// use htex_host::Registry;
+///
+/// let registry = Registry::builtin();
+/// let texture = ByHand::new("Hum", 0.02, "my-editor 1.0").with("alpha", [2.0]).with("beta", [5.0]);
+/// let asset = make(registry.find("sbeta")?, &texture)?;
+/// assert_eq!(asset.parameters, [[[2.0, 5.0]]]);
+/// assert!(asset.manifest.provenance.made.is_some());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// A parameter that is unknown, absent or out of its range, a level out of its quantity's, or what the model refuses.
+pub fn make(model: &LoadedModel, texture: &ByHand) -> Result<Asset, ByHandError> {
+    check_level(texture.level_rms, texture.quantity)?;
+    let flat = flat(model, &texture.values)?;
+    let fields = stored_fields(model.descriptor());
+    let stored = round_parameters(&fields, &flat)?;
+    model.magnitude(&stored, texture.band, &texture.band.grid_hz())?;
+    let representation = Representation {
+        model: model.id().to_owned(),
+        model_version: model.descriptor().version.clone(),
+        fields,
+        at: vec![AtCondition {
+            condition: 0,
+            level_rms: texture.level_rms,
+            quality: None,
+            left_out: None,
+        }],
+        parameters: format!("parameters/{}.bin", model.short_name()),
+    };
+    let frame = Frame {
+        name: texture.name.clone(),
+        quantity: texture.quantity,
+        band: texture.band,
+        tool: texture.tool.clone(),
+        made: Made {
+            how: How::Parameters,
+            from: Vec::new(),
+        },
+        conditions: vec![texture.condition],
+    };
+    Ok(frame.asset(vec![(representation, vec![stored])]))
+}
+
+fn check_level(level_rms: f64, quantity: Quantity) -> Result<(), ByHandError> {
+    let most = quantity.largest_level();
+    if (0.0..=most).contains(&level_rms) {
+        return Ok(());
+    }
+    Err(ByHandError::Level {
+        level_rms,
+        unit: quantity.unit(),
+        most,
+    })
+}
+
+/// Returns the model's flat array of named values.
+fn flat(model: &LoadedModel, values: &BTreeMap<String, Vec<f64>>) -> Result<Vec<f64>, ByHandError> {
+    let fields = &model.descriptor().fields;
+    let named = || model.short_name().to_owned();
+    if let Some(name) = values
+        .keys()
+        .find(|name| !fields.iter().any(|f| f.name == **name))
+    {
+        let (model, name) = (named(), name.clone());
+        let there = words(fields.iter());
+        return Err(ByHandError::Unknown { model, name, there });
+    }
+    let missing = fields
+        .iter()
+        .filter(|f| f.default.is_none() && !values.contains_key(&f.name));
+    let missing = words(missing);
+    if !missing.is_empty() {
+        let model = named();
+        return Err(ByHandError::Missing { model, missing });
+    }
+    let mut flat = Vec::new();
+    for field in fields {
+        match (values.get(&field.name), field.default) {
+            (Some(given), _) => push(field, given, &mut flat)?,
+            (None, default) => flat.extend(default),
+        }
+    }
+    Ok(flat)
+}
+
+/// Adds the values of a field that are within its range.
+fn push(field: &Field, given: &[f64], flat: &mut Vec<f64>) -> Result<(), ByHandError> {
+    let wrong = |problem: String| ByHandError::Value {
+        name: field.name.clone(),
+        value: given
+            .iter()
+            .map(f64::to_string)
+            .collect::<Vec<_>>()
+            .join(","),
+        problem,
+    };
+    match field.kind {
+        Kind::Scalar if given.len() != 1 => return Err(wrong("it is one number".to_owned())),
+        Kind::List { max_len } if given.len() > max_len as usize => {
+            return Err(wrong(format!("it is at most {max_len} numbers")));
+        }
+        Kind::List { .. } => flat.push(given.len() as f64),
+        Kind::Scalar => {}
+    }
+    if given.iter().any(|x| !(field.min..=field.max).contains(x)) {
+        return Err(wrong(format!("it is {}", range(field))));
+    }
+    flat.extend_from_slice(given);
+    Ok(())
+}
+
+/// Fields with units and ranges.
+fn words<'a>(fields: impl Iterator<Item = &'a Field>) -> String {
+    let all = fields.map(|field| match field.kind {
+        Kind::Scalar => format!("{} ({})", field.name, range(field)),
+        Kind::List { max_len } => {
+            format!("{} (up to {max_len} numbers, {})", field.name, range(field))
+        }
+    });
+    all.collect::<Vec<_>>().join(", ")
+}
+
+fn range(field: &Field) -> String {
+    let unit = match field.unit.as_str() {
+        "1" => String::new(),
+        unit => format!(" {unit}"),
+    };
+    format!("{} to {}{unit}", field.min, field.max)
+}

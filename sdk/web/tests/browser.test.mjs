@@ -297,3 +297,22 @@ test("a bundle of Vite plays", async () => {
   assert.deepEqual(made.errors, []);
   await made.close();
 });
+
+test("the catalogue of a library plays a texture that is rendered in the page", async () => {
+  const made = await page();
+  await made.addInitScript(() => {
+    const { start } = AudioBufferSourceNode.prototype;
+    AudioBufferSourceNode.prototype.start = function (...when) {
+      const samples = this.buffer.getChannelData(0);
+      window.heard = Math.sqrt(samples.reduce((sum, x) => sum + x * x, 0) / samples.length);
+      start.apply(this, when);
+    };
+  });
+  await made.goto(`${address}/fixtures/catalogue/index.html`);
+  await made.click("button.play");
+  await made.waitForFunction(() => window.heard !== undefined || document.querySelector("button.play").textContent === "!");
+  assert.equal(await made.textContent("button.play"), "▶", await made.getAttribute("button.play", "title"));
+  assert.ok(Math.abs((await made.evaluate(() => window.heard)) - 0.1) < 1e-3);
+  assert.deepEqual(made.errors, []);
+  await made.close();
+});

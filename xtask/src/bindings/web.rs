@@ -10,6 +10,7 @@ pub(super) fn test(folder: &Path) -> Result<(), String> {
     let (package, fixtures) = (folder.join("htex"), folder.join("fixtures"));
     crate::web::web(&package)?;
     fixtures::write(&fixtures)?;
+    catalogue(&fixtures, &package)?;
     let tests = folder.join("tests");
     std::fs::create_dir_all(&tests).map_err(|error| error.to_string())?;
     for file in files(&workspace().join("sdk/web/tests"))? {
@@ -49,6 +50,24 @@ pub(super) fn test(folder: &Path) -> Result<(), String> {
             std::fs::canonicalize(example).map_err(|error| error.to_string())?,
         )
         .env("HTEX_CHROMIUM", which(chromium)))
+}
+
+/// Builds a library whose catalogue plays textures by the package.
+fn catalogue(fixtures: &Path, package: &Path) -> Result<(), String> {
+    let recipe = "[library]\nname = \"surfaces\"\n[[textures]]\nrecordings = \"vinyl.csv\"\nmodels = [\"bands\"]\n\
+                  license = \"CC0-1.0\"\nat = { speed_mm_s = 80, force_n = 0.5 }\n";
+    let file = fixtures.join("library.toml");
+    std::fs::write(&file, recipe).map_err(|error| format!("{}: {error}", file.display()))?;
+    run(program(&fixtures::command()?, fixtures)
+        .args([
+            "build",
+            "library.toml",
+            "-o",
+            "catalogue",
+            "--browser-package",
+        ])
+        .arg(package)
+        .stdout(std::process::Stdio::null()))
 }
 
 /// The path of a program.

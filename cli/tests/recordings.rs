@@ -194,6 +194,39 @@ fn wav_at_44_100_hz() {
     );
 }
 
+/// Two strokes of one surface agree within their repeatability; another surface is felt to differ.
+#[test]
+fn recordings_are_compared_with_each_other() {
+    let place = Place::new();
+    for (file, surface, seed) in [
+        ("a.csv", "vinyl", "1"),
+        ("b.csv", "vinyl", "2"),
+        ("c.csv", "sandpaper", "1"),
+    ] {
+        let simulate = ["simulate", "--surface", surface, "--seed", seed, "-o", file];
+        assert_eq!(place.run(&simulate).code(), 0);
+    }
+    let compared = |other: &str| place.json(&["compare", "a.csv", other, "--json"]);
+    let (same, other) = (compared("b.csv"), compared("c.csv"));
+    let number = |value: &Value| value.as_f64().unwrap();
+    assert!(number(&same["other"]["band_error_rms_db"]) < 1.0, "{same}");
+    assert!(
+        number(&other["other"]["band_error_rms_db"]) > 3.0,
+        "{other}"
+    );
+    assert!(
+        number(&same["other"]["felt"]["error_rms_db"]) < 1.5,
+        "{same}"
+    );
+    assert_eq!(other["other"]["felt"]["below_difference_threshold"], false);
+    assert!(number(&same["other"]["repeatability_rms_db"]) > 0.0);
+    let itself = compared("a.csv");
+    assert_eq!(itself["other"]["felt"]["error_rms_db"], 0.0);
+    assert_eq!(itself["other"]["felt"]["below_difference_threshold"], true);
+    let text = place.run(&["compare", "a.csv", "c.csv"]).text();
+    assert!(text.contains("above the difference threshold"), "{text}");
+}
+
 #[test]
 fn what_is_no_recording_is_refused_with_file_and_line() {
     let place = Place::new();

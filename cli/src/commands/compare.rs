@@ -1,9 +1,12 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_author::{Exploration, TextureSpectrum, measure, read_take};
+use htex_author::{Exploration, TextureSpectrum, agreement, felt, measure, read_take};
+use htex_dsp::vibrotactile::Skin;
+use htex_format::plain;
 use serde::Serialize;
 
+use super::validate::{Kind, kind};
 use crate::assets::short_name;
 use crate::exit::Exit;
 use crate::failure::Failure;
@@ -11,20 +14,21 @@ use crate::located;
 use crate::output::{note, print, print_json, warn};
 use crate::plugins::PlayerArgs;
 use crate::recordings::RecordingArgs;
+use crate::shown::shown;
 
-/// Measure each representation of an asset against a recording.
+/// Measure each representation of an asset, or another recording, against a recording.
 ///
 /// The asset plays at the recording's speed and force where both are known, else at its first
-/// condition.
+/// condition. `felt` is the part of the difference that is above the detection threshold of a fingertip, in third octaves.
 #[derive(Args)]
 pub(crate) struct Compare {
     /// The recording: CSV, WAV, FLAC, NPY, MATLAB, TDMS, Parquet, Arrow, HDF5
     #[arg(value_parser = located::RECORDING)]
     recording: PathBuf,
 
-    /// The asset
-    #[arg(value_parser = located::ASSET)]
-    asset: PathBuf,
+    /// The asset, or another recording
+    #[arg(value_parser = located::RECORDING, value_name = "ASSET|RECORDING")]
+    other: PathBuf,
 
     #[command(flatten)]
     reading: RecordingArgs,
@@ -40,7 +44,10 @@ pub(crate) struct Compare {
 #[derive(Serialize)]
 struct Comparison {
     recording: String,
-    asset: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    asset: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    other: Option<OtherRecording>,
     speed_mm_s: Option<f64>,
     force_n: Option<f64>,
     representations: Vec<Compared>,
@@ -54,28 +61,61 @@ struct Compared {
     level_rms: f64,
     #[serde(flatten)]
     quality: htex_format::Quality,
+    felt: FeltDifference,
+}
+
+/// A recording that is compared with the first.
+#[derive(Serialize)]
+struct OtherRecording {
+    recording: String,
+    speed_mm_s: Option<f64>,
+    force_n: Option<f64>,
+    level_rms: f64,
+    spectral_correlation: f64,
+    band_error_db: Vec<f64>,
+    band_error_rms_db: f64,
+    band_error_matched_rms_db: f64,
+    third_octave_error_rms_db: Option<f64>,
+    log_spectral_distance_db: Option<f64>,
+    felt: FeltDifference,
+    repeatability_rms_db: Option<f64>,
+}
+
+/// What is felt of a difference.
+#[derive(Serialize)]
+struct FeltDifference {
+    centre_hz: Vec<f64>,
+    error_db: Vec<f64>,
+    error_rms_db: f64,
+    largest_error_db: f64,
+    total_error_db: f64,
+    below_difference_threshold: bool,
 }
 
 impl Compare {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let (spectrum, found, warnings) = self.spectrum()?;
-        let asset = self.player.open(&self.asset)?;
-        let (held, recorded) = (asset.quantity(), spectrum.quantity);
-        if held != recorded {
-            return Err(Failure::Usage(format!(
-                "the asset holds {held}, the recording is read as {recorded}; give --quantity {held}"
-            )));
-        }
-        let representations = self.compare(&asset, &spectrum, found)?;
-        let comparison = Comparison {
+        let (spectrum, found, warnings) = self.spectrum(&self.recording)?;
+        let mut comparison = Comparison {
             recording: self.recording.display().to_string(),
-            asset: self.asset.display().to_string(),
+            asset: None,
+            other: None,
             speed_mm_s: found.speed_mm_s,
             force_n: found.force_n,
-            representations,
+            representations: Vec::new(),
             repeatability_rms_db: spectrum.repeatability_rms_db,
             warnings,
         };
+        match kind(&self.other) {
+            Kind::Recording => {
+                let (other, warnings) = self.other_recording(&spectrum)?;
+                comparison.warnings.extend(warnings);
+                comparison.other = Some(other);
+            }
+            _ => {
+                comparison.asset = Some(self.other.display().to_string());
+                comparison.representations = self.representations(&spectrum, found)?;
+            }
+        }
         if self.json {
             print_json(&comparison)?;
         } else {
@@ -85,8 +125,63 @@ impl Compare {
         Ok(Exit::SUCCESS)
     }
 
-    fn spectrum(&self) -> Result<(TextureSpectrum, Exploration, Vec<String>), Failure> {
-        let take = self.reading.read_one(&self.recording)?;
+    fn representations(
+        &self,
+        spectrum: &TextureSpectrum,
+        found: Exploration,
+    ) -> Result<Vec<Compared>, Failure> {
+        let asset = self.player.open(&self.other)?;
+        let (held, recorded) = (asset.quantity(), spectrum.quantity);
+        if held != recorded {
+            return Err(Failure::Usage(format!(
+                "the asset holds {held}, the recording is read as {recorded}; give --quantity {held}"
+            )));
+        }
+        self.compare(&asset, spectrum, found)
+    }
+
+    /// Compares another recording, which is read as the first.
+    fn other_recording(
+        &self,
+        spectrum: &TextureSpectrum,
+    ) -> Result<(OtherRecording, Vec<String>), Failure> {
+        let (other, found, warnings) = self.spectrum(&self.other)?;
+        if (other.quantity, other.band) != (spectrum.quantity, spectrum.band) {
+            return Err(Failure::Other(format!(
+                "{}: {} at {} to {} Hz, and {} is {} at {} to {} Hz; compare recordings of one quantity and rate",
+                shown(&self.other),
+                other.quantity,
+                other.band.low_hz,
+                other.band.high_hz,
+                shown(&self.recording),
+                spectrum.quantity,
+                spectrum.band.low_hz,
+                spectrum.band.high_hz,
+            )));
+        }
+        let agreement = agreement(spectrum.as_ref(), &other.magnitude);
+        let compared = OtherRecording {
+            recording: self.other.display().to_string(),
+            speed_mm_s: found.speed_mm_s,
+            force_n: found.force_n,
+            level_rms: htex_dsp::grid::level_rms(&other.magnitude),
+            spectral_correlation: agreement.spectral_correlation,
+            band_error_db: agreement.band_error_db,
+            band_error_rms_db: agreement.band_error_rms_db,
+            band_error_matched_rms_db: agreement.band_error_matched_rms_db,
+            third_octave_error_rms_db: agreement.third_octave_error_rms_db,
+            log_spectral_distance_db: agreement.log_spectral_distance_db,
+            felt: FeltDifference::new(spectrum, &other.magnitude),
+            repeatability_rms_db: other.repeatability_rms_db,
+        };
+        Ok((compared, warnings))
+    }
+
+    fn spectrum(
+        &self,
+        recording: &Path,
+    ) -> Result<(TextureSpectrum, Exploration, Vec<String>), Failure> {
+        let take = self.reading.read_one(recording)?;
         let options = self.reading.spectrum_options()?;
         let reading = read_take(&take, &options, self.reading.strict())?;
         note(&reading.notes);
@@ -109,40 +204,102 @@ impl Compare {
         for representation in &asset.manifest().representations {
             let (parameters, level_rms) = asset
                 .parameters(Some(&representation.model), motion)
-                .map_err(|error| Failure::asset(&self.asset, error))?;
+                .map_err(|error| Failure::asset(&self.other, error))?;
             let model = asset
                 .loaded_model(Some(&representation.model))
-                .map_err(|error| Failure::asset(&self.asset, error))?;
+                .map_err(|error| Failure::asset(&self.other, error))?;
+            let shape = model.magnitude(&parameters, spectrum.band, &spectrum.frequency_hz)?;
+            let magnitude: Vec<f64> = shape.iter().map(|m| m * level_rms).collect();
             compared.push(Compared {
                 model: representation.model.clone(),
                 level_rms,
                 quality: measure(&model, &parameters, level_rms, spectrum.as_ref())?,
+                felt: FeltDifference::new(spectrum, &magnitude),
             });
         }
         Ok(compared)
     }
 }
 
+impl FeltDifference {
+    fn new(reference: &TextureSpectrum, magnitude: &[f64]) -> Self {
+        let felt = felt(
+            reference.as_ref(),
+            magnitude,
+            reference.quantity,
+            &Skin::default(),
+        );
+        Self {
+            below_difference_threshold: felt.is_below_difference_threshold(),
+            centre_hz: felt.centre_hz,
+            error_db: felt.error_db,
+            error_rms_db: felt.error_rms_db,
+            largest_error_db: felt.largest_error_db,
+            total_error_db: felt.total_error_db,
+        }
+    }
+}
+
 impl Comparison {
     fn to_text(&self) -> String {
+        let mut text = match &self.other {
+            Some(other) => other.to_text(),
+            None => self.table(),
+        };
+        if let Some(db) = self.repeatability_rms_db {
+            text += &format!("the recording itself repeats within {db:.2} dB\n");
+        }
+        text
+    }
+
+    fn table(&self) -> String {
         let mut text = String::from(
-            "  model      corr.  bands/dB  gain-matched/dB  third-oct/dB  log-sp/dB  played/dB\n",
+            "  model      corr.  bands/dB  gain-matched/dB  third-oct/dB  log-sp/dB  played/dB  felt/dB\n",
         );
         for r in &self.representations {
             let q = &r.quality;
             text += &format!(
-                "  {:8}  {:>6.3}  {:>8.2}  {:>15.2}  {:>12.2}  {:>9.2}  {:>9.2}\n",
+                "  {:8}  {:>6.3}  {:>8.2}  {:>15.2}  {:>12.2}  {:>9.2}  {:>9.2}  {:>7.2}\n",
                 short_name(&r.model),
                 q.spectral_correlation,
                 q.band_error_rms_db,
                 q.band_error_matched_rms_db.unwrap_or(f64::NAN),
                 q.third_octave_error_rms_db.unwrap_or(f64::NAN),
                 q.log_spectral_distance_db.unwrap_or(f64::NAN),
-                q.samples_band_error_rms_db.unwrap_or(f64::NAN)
+                q.samples_band_error_rms_db.unwrap_or(f64::NAN),
+                r.felt.error_rms_db,
             );
         }
+        text
+    }
+}
+
+impl OtherRecording {
+    fn to_text(&self) -> String {
+        let optional = |db: Option<f64>| db.map_or("-".to_owned(), |db| format!("{db:.2}"));
+        let mut text = format!(
+            "{}: correlation {:.3}, bands {:.2} dB (gain-matched {:.2} dB), third octaves {} dB, log-spectral distance {} dB\n",
+            plain(&self.recording),
+            self.spectral_correlation,
+            self.band_error_rms_db,
+            self.band_error_matched_rms_db,
+            optional(self.third_octave_error_rms_db),
+            optional(self.log_spectral_distance_db),
+        );
+        let felt = &self.felt;
+        text += &format!(
+            "felt: {:.2} dB RMS, {:.2} dB at most, {:.2} dB together: {} the difference threshold\n",
+            felt.error_rms_db,
+            felt.largest_error_db,
+            felt.total_error_db,
+            if felt.below_difference_threshold {
+                "below"
+            } else {
+                "above"
+            }
+        );
         if let Some(db) = self.repeatability_rms_db {
-            text += &format!("the recording itself repeats within {db:.2} dB\n");
+            text += &format!("{} repeats within {db:.2} dB\n", plain(&self.recording));
         }
         text
     }

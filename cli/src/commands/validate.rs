@@ -126,7 +126,7 @@ pub(super) fn report<'a>(
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+pub(super) enum Kind {
     Asset,
     Library,
     /// A scene or a descriptor.
@@ -135,7 +135,7 @@ enum Kind {
 }
 
 /// The kind of a file, by its name, else by its first bytes.
-fn kind(path: &Path) -> Kind {
+pub(super) fn kind(path: &Path) -> Kind {
     let called = |name: &str| {
         path.extension()
             .is_some_and(|e| e.eq_ignore_ascii_case(name))

@@ -63,8 +63,8 @@ fn floor(reference: &[f64]) -> f64 {
     RELATIVE_FLOOR * reference.iter().copied().fold(0.0, f64::max)
 }
 
-/// Index of the band that contains a frequency; the lower edge belongs to the band, the upper one does not.
-fn third_octave(frequency_hz: f64) -> Option<usize> {
+/// Returns the index of the third-octave band that contains a frequency; the lower edge belongs to the band, the upper one does not.
+pub fn third_octave(frequency_hz: f64) -> Option<usize> {
     let edge_hz = |k: usize| LOWEST_HZ * libm::exp2(k as f64 / 3.0) * (1.0 - ON_EDGE);
     (0..THIRD_OCTAVES).find(|&k| edge_hz(k) <= frequency_hz && frequency_hz < edge_hz(k + 1))
 }

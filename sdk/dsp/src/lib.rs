@@ -57,6 +57,7 @@ pub mod triangles;
 pub mod trig;
 pub mod uniform;
 mod upsample;
+pub mod vibrotactile;
 pub mod warp;
 mod wide;
 pub mod window;

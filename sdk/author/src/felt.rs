@@ -1,0 +1,208 @@
+//! How much of a difference between two spectra is above what a fingertip detects: a listener that shares nothing with the measures that
+//! models are fitted and compared by.
+
+use htex_dsp::fidelity::{THIRD_OCTAVES, third_octave};
+use htex_dsp::vibrotactile::{Skin, detection_threshold_m};
+use htex_format::Quantity;
+
+use crate::spectrum::SpectrumRef;
+
+/// Smallest difference of a level that people notice, decibels: 20 % (the smallest median of Forta, Griffin & Morioka 2012, *Experimental Brain
+/// Research* 220, whose conditions have 20 % to 58 %).
+pub const DIFFERENCE_THRESHOLD_DB: f64 = 1.584;
+
+/// Levels above the detection threshold (sensation levels) of two spectra in third-octave bands, and their difference. Below the threshold
+/// there is nothing to feel, so that a difference counts from 0 dB on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Felt {
+    /// Centre frequencies of the bands, hertz.
+    pub centre_hz: Vec<f64>,
+    /// Sensation level of the reference in each band, decibels; negative below the threshold.
+    pub reference_db: Vec<f64>,
+    /// Sensation level of the other spectrum in each band, decibels.
+    pub level_db: Vec<f64>,
+    /// Difference of what is above the threshold in each band, decibels.
+    pub error_db: Vec<f64>,
+    /// RMS of these differences over the bands in which one of both is above the threshold, decibels; 0 if there is none.
+    pub error_rms_db: f64,
+    /// The largest of them without its sign, decibels.
+    pub largest_error_db: f64,
+    /// Difference of the sensation levels of all bands together, decibels.
+    pub total_error_db: f64,
+}
+
+impl Felt {
+    /// Whether every difference is below the difference threshold ([`DIFFERENCE_THRESHOLD_DB`]).
+    pub fn is_below_difference_threshold(&self) -> bool {
+        self.largest_error_db < DIFFERENCE_THRESHOLD_DB
+            && self.total_error_db.abs() < DIFFERENCE_THRESHOLD_DB
+    }
+}
+
+/// Compares what is felt of a spectrum with what is felt of a reference on the same grid. Forces become displacements of the skin by its
+/// impedance; accelerations and velocities by integration.
+///
+/// ```
+/// use htex_author::{SpectrumRef, felt};
+/// use htex_dsp::vibrotactile::Skin;
+/// use htex_format::Quantity;
+/// use htex_host::Band;
+///
+/// let band = Band::TACTILE;
+/// let (hertz, quiet) = (band.grid_hz(), vec![1e-9; band.bins()]);
+/// let reference = SpectrumRef { band, frequency_hz: &hertz, magnitude: &quiet };
+/// let felt = felt(reference, &vec![2e-9; band.bins()], Quantity::LateralForce, &Skin::default());
+/// // A difference of 6 dB that nobody feels: 1 nN is far below the threshold.
+/// assert_eq!(felt.largest_error_db, 0.0);
+/// ```
+pub fn felt(
+    reference: SpectrumRef<'_>,
+    magnitude: &[f64],
+    quantity: Quantity,
+    skin: &Skin,
+) -> Felt {
+    let energies = |magnitude: &[f64]| energies(reference.frequency_hz, magnitude, quantity, skin);
+    let (ours, theirs) = (energies(reference.magnitude), energies(magnitude));
+    let bands: Vec<usize> = (0..THIRD_OCTAVES).filter(|k| ours[*k].is_some()).collect();
+    let levels = |all: &[Option<f64>]| -> Vec<f64> {
+        bands
+            .iter()
+            .map(|k| level_db(all[*k].unwrap_or_default()))
+            .collect()
+    };
+    let (reference_db, level_db) = (levels(&ours), levels(&theirs));
+    let pairs = reference_db.iter().zip(&level_db);
+    let error_db: Vec<f64> = pairs
+        .clone()
+        .map(|(r, m)| m.max(0.0) - r.max(0.0))
+        .collect();
+    let felt: Vec<f64> = pairs
+        .zip(&error_db)
+        .filter(|((r, m), _)| **r > 0.0 || **m > 0.0)
+        .map(|(_, error)| *error)
+        .collect();
+    let total = |all: &[Option<f64>]| self::level_db(all.iter().flatten().sum()).max(0.0);
+    Felt {
+        centre_hz: bands.iter().map(|k| centre_hz(*k)).collect(),
+        error_rms_db: if felt.is_empty() {
+            0.0
+        } else {
+            htex_dsp::bands::rms(&felt)
+        },
+        largest_error_db: error_db.iter().fold(0.0, |most, e| f64::max(most, e.abs())),
+        total_error_db: total(&theirs) - total(&ours),
+        reference_db,
+        level_db,
+        error_db,
+    }
+}
+
+/// Energies relative to the threshold, by third-octave band; `None` of a band without a bin.
+fn energies(
+    frequency_hz: &[f64],
+    magnitude: &[f64],
+    quantity: Quantity,
+    skin: &Skin,
+) -> [Option<f64>; THIRD_OCTAVES] {
+    let mut energies = [None; THIRD_OCTAVES];
+    for (&hertz, &magnitude) in frequency_hz.iter().zip(magnitude) {
+        let Some(band) = third_octave(hertz) else {
+            continue;
+        };
+        let peak_m = magnitude * displacement_m(hertz, quantity, skin);
+        let ratio = peak_m / detection_threshold_m(hertz);
+        // Magnitudes are peaks of sinusoids as a Hann window shows them, in 1.5 bins of energy.
+        *energies[band].get_or_insert(0.0) += ratio * ratio / 1.5;
+    }
+    energies
+}
+
+/// Displacement of the skin by a sample of 1, metres.
+fn displacement_m(hertz: f64, quantity: Quantity, skin: &Skin) -> f64 {
+    let omega = 2.0 * std::f64::consts::PI * hertz;
+    match quantity {
+        Quantity::LateralForce | Quantity::NormalForce => skin.displacement_m(hertz),
+        Quantity::Acceleration => 1.0 / (omega * omega),
+        Quantity::Velocity => 1.0 / omega,
+        Quantity::Displacement => 1.0,
+    }
+}
+
+/// Level of an energy relative to the threshold; of none, one that is far below.
+fn level_db(energy: f64) -> f64 {
+    10.0 * libm::log10(energy.max(1e-30))
+}
+
+/// Geometric mean of a band's edges, 20 · 2^(k/3) Hz.
+fn centre_hz(band: usize) -> f64 {
+    20.0 * libm::exp2((band as f64 + 0.5) / 3.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use htex_host::Band;
+
+    fn spectra(of: impl Fn(f64) -> f64) -> (Vec<f64>, Vec<f64>) {
+        let hertz = Band::TACTILE.grid_hz();
+        let magnitude = hertz.iter().map(|f| of(*f)).collect();
+        (hertz, magnitude)
+    }
+
+    fn compared(a: impl Fn(f64) -> f64, b: impl Fn(f64) -> f64, quantity: Quantity) -> Felt {
+        let (hertz, reference) = spectra(a);
+        let reference = SpectrumRef {
+            band: Band::TACTILE,
+            frequency_hz: &hertz,
+            magnitude: &reference,
+        };
+        felt(reference, &spectra(b).1, quantity, &Skin::default())
+    }
+
+    /// A sinusoid at the threshold has a level of 0 dB, in each quantity.
+    #[test]
+    fn the_threshold_is_at_0_db() {
+        let line = |peak: f64| {
+            move |f: f64| match (f - 250.0).abs() {
+                d if d < 1.0 => peak,
+                d if d < 6.0 => 0.5 * peak,
+                _ => 0.0,
+            }
+        };
+        let omega = 2.0 * std::f64::consts::PI * 250.0;
+        let force = 1e-7 / Skin::default().displacement_m(250.0);
+        for (quantity, peak) in [
+            (Quantity::Displacement, 1e-7),
+            (Quantity::Velocity, 1e-7 * omega),
+            (Quantity::Acceleration, 1e-7 * omega * omega),
+            (Quantity::LateralForce, force),
+        ] {
+            let felt = compared(line(peak), line(10.0 * peak), quantity);
+            // The line is seen in three bins of two bands. The neighbours' thresholds differ by less than 0.4 dB.
+            let energy: f64 = felt
+                .reference_db
+                .iter()
+                .map(|db| 10f64.powf(db / 10.0))
+                .sum();
+            assert!(level_db(energy).abs() < 0.15, "{quantity}: {felt:?}");
+            assert!(
+                (felt.total_error_db - 20.0).abs() < 0.15,
+                "{quantity}: {felt:?}"
+            );
+        }
+    }
+
+    /// What differs below the threshold alone is not felt; a difference of 6 dB far above it is, in every band.
+    #[test]
+    fn only_what_is_felt_counts() {
+        let below = compared(|_| 1e-9, |_| 1e-8, Quantity::LateralForce);
+        assert_eq!((below.error_rms_db, below.total_error_db), (0.0, 0.0));
+        assert!(below.is_below_difference_threshold());
+        let above = compared(|_| 0.1, |_| 0.2, Quantity::LateralForce);
+        assert!(
+            above.error_db.iter().all(|e| (e - 6.0206).abs() < 1e-3),
+            "{above:?}"
+        );
+        assert!(!above.is_below_difference_threshold());
+    }
+}

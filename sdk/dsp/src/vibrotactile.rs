@@ -1,0 +1,73 @@
+//! What a fingertip feels of a vibration: the detection threshold of displacements, and the skin that turns a force into one.
+//!
+//! The threshold is that of a vibrating contact of 2.9 cm² on the hand's glabrous skin: constant up to 40 Hz, then falling by 12 dB an
+//! octave to its smallest value at 250 Hz, where the Pacinian channel is most sensitive (Verrillo 1963, *J. Acoust. Soc. Am.* 35, 1962–1966, as
+//! summarised by Gescheider & Verrillo 1979), and rising by 9 dB an octave above (Verrillo 1966, *Psychonomic Science* 4, 135–136). Its smallest
+//! value is −20 dB re 1 µm, 0.1 µm peak (Bolanowski, Gescheider, Verrillo & Checkosky 1988, *J. Acoust. Soc. Am.* 84, 1680–1694).
+//! People differ by some 10 dB, and a small contact raises the Pacinian part by 3 dB for each halving of its area.
+
+/// Frequency up to which the threshold is constant, hertz.
+pub const FLAT_HZ: f64 = 40.0;
+/// Frequency of the smallest threshold, hertz.
+pub const MOST_SENSITIVE_HZ: f64 = 250.0;
+/// The smallest threshold, metres, peak.
+pub const SMALLEST_THRESHOLD_M: f64 = 1e-7;
+/// Slopes of the threshold, powers of the frequency: −12 dB and +9 dB an octave.
+const FALL: f64 = -2.0;
+const RISE: f64 = 1.5;
+
+/// Returns the detection threshold of a sinusoidal displacement, metres, peak, at a frequency in hertz above 0.
+///
+/// ```
+/// use htex_dsp::vibrotactile::detection_threshold_m;
+/// assert_eq!(detection_threshold_m(250.0), 1e-7);
+/// assert!((detection_threshold_m(125.0) / 4e-7 - 1.0).abs() < 1e-12); // 12 dB an octave
+/// assert_eq!(detection_threshold_m(20.0), detection_threshold_m(40.0));
+/// ```
+pub fn detection_threshold_m(frequency_hz: f64) -> f64 {
+    let slope = match frequency_hz <= MOST_SENSITIVE_HZ {
+        true => FALL,
+        false => RISE,
+    };
+    let ratio = frequency_hz.max(FLAT_HZ) / MOST_SENSITIVE_HZ;
+    SMALLEST_THRESHOLD_M * libm::pow(ratio, slope)
+}
+
+/// The mechanical impedance of a fingertip: spring, damper and mass in parallel, which a force along the surface moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Skin {
+    /// Stiffness, N/m.
+    pub stiffness_n_m: f64,
+    /// Damping, N s/m.
+    pub damping_n_s_m: f64,
+    /// Moving mass, kg.
+    pub mass_kg: f64,
+}
+
+impl Default for Skin {
+    /// A fingertip that is pressed with about 0.5 N: elastic up to about 100 Hz and viscous above (Wiertlewski & Hayward 2012, *J. Biomech.* 45,
+    /// 1869–1874, seven people, 20 to 500 Hz). The values are rounded; people and forces differ by a factor of about two, 6 dB.
+    fn default() -> Self {
+        Self {
+            stiffness_n_m: 1_000.0,
+            damping_n_s_m: 1.5,
+            mass_kg: 1.5e-4,
+        }
+    }
+}
+
+impl Skin {
+    /// Returns the displacement by a sinusoidal force of 1 N, metres, at a frequency in hertz.
+    ///
+    /// ```
+    /// use htex_dsp::vibrotactile::Skin;
+    /// let skin = Skin::default();
+    /// assert!((skin.displacement_m(1.0) / 1e-3 - 1.0).abs() < 1e-3); // 1 mm a newton
+    /// assert!(skin.displacement_m(500.0) < 0.3e-3);
+    /// ```
+    pub fn displacement_m(&self, frequency_hz: f64) -> f64 {
+        let omega = 2.0 * core::f64::consts::PI * frequency_hz;
+        let elastic = self.stiffness_n_m - self.mass_kg * omega * omega;
+        1.0 / libm::hypot(elastic, self.damping_n_s_m * omega)
+    }
+}

@@ -111,7 +111,8 @@ impl Build {
     /// is not there.
     ///
     /// # Errors
-    /// See [`Recipe::open`] and [`Plan::new`]; when a file cannot be read, the folder cannot be written, or another build uses it.
+    /// See [`Recipe::open`]; when a glob matches nothing, a template or a pattern fails, a name cannot be one, two recordings of a texture have
+    /// different settings; when a file cannot be read, the folder cannot be written, or another build uses it.
     pub fn open(recipe: &Path, output: &Path, options: BuildOptions) -> Result<Self, BuildError> {
         let Prepared {
             recipe,

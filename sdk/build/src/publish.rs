@@ -55,7 +55,7 @@ struct Copied {
 
 impl Destination {
     /// Reads an argument: a folder, or the URI of one (`s3://`, `gs://`, `az://`). Results for a URI are made in the folder `work`,
-    /// [by default](default_folder) one of the user's cache, which also keeps what the next build needs.
+    /// by default one of the user's cache, which also keeps what the next build needs.
     ///
     /// # Errors
     /// A URI that is malformed or read-only; a URI without `work` where the environment names no cache.

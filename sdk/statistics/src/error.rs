@@ -135,3 +135,27 @@ pub enum StatisticsError {
         participants: usize,
     },
 }
+
+impl StatisticsError {
+    /// Returns the name of the error, stable between versions: `TOO_FEW_PARTICIPANTS`.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Shape { .. } => "SHAPE",
+            Self::NotFinite { .. } => "NOT_FINITE",
+            Self::TooFewParticipants { .. } => "TOO_FEW_PARTICIPANTS",
+            Self::TooFewLevels { .. } => "TOO_FEW_LEVELS",
+            Self::TooFewValues { .. } => "TOO_FEW_VALUES",
+            Self::TooManyValues { .. } => "TOO_MANY_VALUES",
+            Self::Constant { .. } => "CONSTANT",
+            Self::NoErrorVariance { .. } => "NO_ERROR_VARIANCE",
+            Self::AllTied => "ALL_TIED",
+            Self::SphericityUndefined { .. } => "SPHERICITY_UNDEFINED",
+            Self::SphericityTrivial => "SPHERICITY_TRIVIAL",
+            Self::TooFewRows { .. } => "TOO_FEW_ROWS",
+            Self::NoPredictor => "NO_PREDICTOR",
+            Self::PerfectFit => "PERFECT_FIT",
+            Self::Setting { .. } => "SETTING",
+            Self::PowerNotReached { .. } => "POWER_NOT_REACHED",
+        }
+    }
+}

@@ -23,18 +23,25 @@ fn agree(expected: &Value, got: &Value, at: &str, tolerance: (f64, f64)) -> usiz
     match expected {
         Value::Object(map) => {
             let pairs = map.iter();
-            pairs.map(|(key, value)| agree(value, &got[key], &format!("{at}.{key}"), tolerance)).sum()
+            pairs
+                .map(|(key, value)| agree(value, &got[key], &format!("{at}.{key}"), tolerance))
+                .sum()
         }
         Value::Array(list) => {
             assert_eq!(got.as_array().map(Vec::len), Some(list.len()), "{at}");
             let pairs = list.iter().enumerate();
-            pairs.map(|(i, value)| agree(value, &got[i], &format!("{at}.{i}"), tolerance)).sum()
+            pairs
+                .map(|(i, value)| agree(value, &got[i], &format!("{at}.{i}"), tolerance))
+                .sum()
         }
         Value::Number(number) => {
             let expected = number.as_f64().unwrap();
             let got = got.as_f64().unwrap_or_else(|| panic!("{at} is missing"));
             let allowed = tolerance.1 + tolerance.0 * expected.abs();
-            assert!((got - expected).abs() <= allowed, "{at}: {got} is not {expected}");
+            assert!(
+                (got - expected).abs() <= allowed,
+                "{at}: {got} is not {expected}"
+            );
             1
         }
         other => {
@@ -48,7 +55,10 @@ fn agree(expected: &Value, got: &Value, at: &str, tolerance: (f64, f64)) -> usiz
 fn every_number_agrees_with_the_reference_programs() {
     let golden: Value = serde_json::from_slice(&golden("study.json")).unwrap();
     let got = serde_json::to_value(study()).unwrap();
-    let tolerance = (golden["rtol"].as_f64().unwrap(), golden["atol"].as_f64().unwrap());
+    let tolerance = (
+        golden["rtol"].as_f64().unwrap(),
+        golden["atol"].as_f64().unwrap(),
+    );
     let numbers = agree(&golden["expected"], &got, "", tolerance);
     assert!(numbers > 1000, "{numbers} numbers were compared");
 }

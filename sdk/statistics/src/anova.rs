@@ -43,10 +43,8 @@ pub struct TwoWayAnova {
     pub first: Anova,
     /// The effect of the second factor.
     pub second: Anova,
-    /// Their interaction. Its epsilons are of the interaction's own contrasts, as in R, SPSS and JASP.
+    /// Their interaction. Its epsilons are of the interaction's own contrasts.
     pub interaction: Anova,
-    /// Greenhouse and Geisser's epsilon of all combinations as if they were levels of one factor: pingouin's for the interaction.
-    pub interaction_eps_gg_all_cells: f64,
 }
 
 /// Tests whether the conditions of `table` have the same mean.
@@ -78,20 +76,11 @@ impl TwoFactors {
             effect(&contrasts[factor].apply(&self.marginal(factor)?), other)
         };
         let interaction = contrasts[0].interaction(&contrasts[1]).apply(&self.table);
-        let all = Contrasts::helmert(a * b).apply(&self.table);
         Ok(TwoWayAnova {
             first: of(0, b)?,
             second: of(1, a)?,
             interaction: effect(&interaction, 1)?,
-            interaction_eps_gg_all_cells: greenhouse_geisser(&all.products()),
         })
-    }
-}
-
-impl Anova {
-    /// Returns the p-value with both degrees of freedom times `epsilon`.
-    pub fn corrected_p(&self, epsilon: f64) -> f64 {
-        f_sf(self.f, self.df.map(|df| df * epsilon))
     }
 }
 

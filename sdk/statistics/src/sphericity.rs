@@ -13,8 +13,10 @@ pub struct Sphericity {
     pub chi2: f64,
     /// Degrees of freedom.
     pub df: f64,
-    /// p-value.
+    /// p-value with the second term of Box's expansion, as in R.
     pub p: f64,
+    /// The same as pingouin 0.7 computes it: with the number of conditions in place of the contrasts in one term.
+    pub p_pingouin: f64,
 }
 
 /// Greenhouse and Geisser's epsilon: (tr S)^2 / (df tr S^2) of the contrasts' covariance S, 1 / df to 1.
@@ -36,7 +38,7 @@ pub(crate) fn huynh_feldt(eps_gg: f64, df: f64, participants: f64) -> f64 {
     ((participants * df * eps_gg - 2.0) / below).clamp(eps_gg, 1.0)
 }
 
-/// Mauchly's test (1940), with the second term of Box's expansion for the p-value (Anderson 2003, section 10.7.4), as in R and pingouin.
+/// Mauchly's test (1940), with two terms of Box's expansion for the p-value (Anderson 2003, section 10.7.4).
 pub(crate) fn mauchly(
     products: &[Vec<f64>],
     participants: usize,
@@ -57,21 +59,24 @@ pub(crate) fn mauchly(
     let log_w = (log_determinant - d * libm::log(trace(products) / d)).min(0.0);
     let n = participants as f64 - 1.0;
     let factor = 1.0 - (2.0 * d * d + d + 2.0) / (6.0 * d * n);
-    let second =
-        (d + 2.0) * (d - 1.0) * (d - 2.0) * (2.0 * d * d * d + 6.0 * d * d + 3.0 * d + 2.0)
-            / (288.0 * (d * n * factor) * (d * n * factor));
     let chi2 = -n * factor * log_w;
     let df = d * (d + 1.0) / 2.0 - 1.0;
-    let p = chi_squared_sf(chi2, df);
-    let p = p + second * (chi_squared_sf(chi2, df + 4.0) - p);
-    if factor <= 0.0 || !p.is_finite() {
+    let tails = [chi_squared_sf(chi2, df), chi_squared_sf(chi2, df + 4.0)];
+    let p = |last: f64| {
+        let scale = 288.0 * (d * n * factor) * (d * n * factor);
+        let cubic = 2.0 * d * d * d + 6.0 * d * d + 3.0 * last + 2.0;
+        let second = (d + 2.0) * (d - 1.0) * (d - 2.0) * cubic / scale;
+        tails[0] + second * (tails[1] - tails[0])
+    };
+    if factor <= 0.0 || !chi2.is_finite() {
         return Err(undefined);
     }
     Ok(Sphericity {
         w: libm::exp(log_w),
         chi2,
         df,
-        p: p.clamp(0.0, 1.0),
+        p: p(d).clamp(0.0, 1.0),
+        p_pingouin: p(d + 1.0).clamp(0.0, 1.0),
     })
 }
 

@@ -159,12 +159,6 @@ pub struct AnovaResult {
     pub eps_gg: f64,
     /// Huynh and Feldt's epsilon.
     pub eps_hf: f64,
-    /// Epsilon of the interaction's own contrasts (R, SPSS, JASP), where `eps_gg` is pingouin's.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub eps_gg_contrasts: Option<f64>,
-    /// p-value by `eps_gg_contrasts`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub p_gg_contrasts: Option<f64>,
     /// Partial eta squared.
     pub partial_eta_squared: f64,
     /// Mauchly's W, where it is defined.
@@ -176,6 +170,9 @@ pub struct AnovaResult {
     /// Its p-value.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mauchly_p: Option<f64>,
+    /// The p-value as R computes it; `mauchly_p` is pingouin's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mauchly_p_r: Option<f64>,
     /// Test, correction and source.
     pub method: String,
 }

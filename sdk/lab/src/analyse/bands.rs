@@ -85,7 +85,9 @@ impl Rows {
         }
         self.differences.extend(rows);
         self.groups.extend(models.clone().map(|_| participant));
-        let means: Vec<f64> = models.map(|model| ratings.mean(participant, texture, model)).collect();
+        let means: Vec<f64> = models
+            .map(|model| ratings.mean(participant, texture, model))
+            .collect();
         self.ratings.extend(standardised(&means));
     }
 
@@ -95,7 +97,10 @@ impl Rows {
         let mut sums = vec![0.0; filters];
         for row in &self.differences {
             bank.filters().apply(row, &mut sums);
-            columns.iter_mut().zip(&sums).for_each(|(column, sum)| column.push(*sum));
+            columns
+                .iter_mut()
+                .zip(&sums)
+                .for_each(|(column, sum)| column.push(*sum));
         }
         let predictors = Matrix::new(self.differences.len(), columns)?;
         let fit = regression(&predictors, &self.ratings)?;
@@ -128,15 +133,22 @@ fn result(fit: Regression, filters: usize, edges_hz: &[f64]) -> BandResult {
 
 fn best(results: &[BandResult], ratings: &[f64]) -> Option<BestBanks> {
     let lowest = |of: fn(&BandResult) -> f64| {
-        results.iter().min_by(|a, b| of(a).total_cmp(&of(b))).map(|best| best.filters)
+        results
+            .iter()
+            .min_by(|a, b| of(a).total_cmp(&of(b)))
+            .map(|best| best.filters)
     };
-    let checked = results.iter().filter_map(|r| Some((r.cross_validated_r2?, r.filters)));
+    let checked = results
+        .iter()
+        .filter_map(|r| Some((r.cross_validated_r2?, r.filters)));
     let bic_of_none = bic_of_none(ratings);
     let bic = lowest(|r| r.bic)?;
     Some(BestBanks {
         bic,
         aic: lowest(|r| r.aic)?,
-        cross_validated_r2: checked.max_by(|a, b| a.0.total_cmp(&b.0)).map(|best| best.1),
+        cross_validated_r2: checked
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|best| best.1),
         bic_of_none,
         better_than_none: results.iter().any(|r| r.bic < bic_of_none),
     })

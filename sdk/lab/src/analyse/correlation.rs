@@ -31,7 +31,10 @@ pub(super) fn correlate(
     for participant in 0..people {
         for texture in 0..textures {
             for model in 0..models {
-                values.push(((participant, texture, model), of(participant, texture, model)));
+                values.push((
+                    (participant, texture, model),
+                    of(participant, texture, model),
+                ));
             }
         }
     }

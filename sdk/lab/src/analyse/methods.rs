@@ -2,11 +2,9 @@
 
 use std::collections::BTreeMap;
 
-pub(super) const ANOVA: &str = "Repeated-measures ANOVA on each participant's mean ratings. p_gg and p_hf multiply both degrees of freedom by the \
-epsilon of Greenhouse and Geisser (1959) or of Huynh and Feldt (1976). Sphericity by Mauchly (1940), p-value with the second term of Box's \
-expansion. Effect size: partial eta squared. Agrees with pingouin 0.7.";
-pub(super) const INTERACTION: &str = "Repeated-measures ANOVA with two factors. eps_gg is that of all combinations as levels of one factor, as in pingouin 0.7; \
-eps_gg_contrasts is that of the interaction's own contrasts, as in R, SPSS and JASP.";
+pub(super) const ANOVA: &str = "Repeated-measures ANOVA on each participant's mean ratings, for one factor or two. p_gg and p_hf multiply both degrees of freedom by the \
+epsilon of Greenhouse and Geisser (1959) or of Huynh and Feldt (1976). Sphericity by Mauchly (1940), p-value by two terms of Box's \
+expansion: mauchly_p as pingouin 0.7 computes it, mauchly_p_r as R does. Effect size: partial eta squared. Agrees with pingouin 0.7.";
 pub(super) const FRIEDMAN: &str = "Friedman's test (1937) on the ranks of mean ratings within participants, corrected for ties, p-value by chi-squared. Effect \
 size: Kendall's W. Agrees with SciPy.";
 pub(super) const NORMALITY: &str = "On z-scores (n - 1) of the mean ratings. Kolmogorov-Smirnov against the standard normal with the exact distribution of D, as the \
@@ -30,9 +28,12 @@ pub(super) fn all() -> BTreeMap<String, String> {
     let table = [
         ("anova_by_texture", ANOVA),
         ("anova_model", ANOVA),
-        ("anova_two_way", INTERACTION),
+        ("anova_two_way", ANOVA),
         ("bands", BANDS),
-        ("best_bands", "The number of bands with the lowest BIC or AIC, or the highest cross-validated r2; bic_of_none is the BIC of the mean alone."),
+        (
+            "best_bands",
+            "The number of bands with the lowest BIC or AIC, or the highest cross-validated r2; bic_of_none is the BIC of the mean alone.",
+        ),
         ("cell_means", MEANS),
         ("friedman", FRIEDMAN),
         ("friedman_by_texture", FRIEDMAN),

@@ -66,7 +66,13 @@ impl Ratings {
         for (index, name) in sheet.names().iter().enumerate() {
             if !COLUMNS.contains(&&name[..]) && name != SIMULATED {
                 let message = "it is not used";
-                at(&mut findings, TABLE_COLUMN_UNKNOWN, 1, (index, name), message);
+                at(
+                    &mut findings,
+                    TABLE_COLUMN_UNKNOWN,
+                    1,
+                    (index, name),
+                    message,
+                );
             }
         }
         let mut answers = Answers::new();
@@ -133,7 +139,10 @@ impl Ratings {
         }
         Some(Self {
             repetitions: cells.iter().map(|cell| cell.1).max().unwrap_or(0),
-            simulated: simulated.into_iter().filter(|s| participants.contains(s)).collect(),
+            simulated: simulated
+                .into_iter()
+                .filter(|s| participants.contains(s))
+                .collect(),
             participants,
             textures,
             models,
@@ -145,13 +154,19 @@ impl Ratings {
     fn judge(&self, findings: &mut Findings) {
         let fewest = self.cells.iter().map(|cell| cell.1).min().unwrap_or(0);
         findings.require(fewest == self.repetitions, RATINGS_UNBALANCED, "", || {
-            format!("conditions have {fewest} to {} repetitions", self.repetitions)
+            format!(
+                "conditions have {fewest} to {} repetitions",
+                self.repetitions
+            )
         });
         for (index, participant) in self.participants.iter().enumerate() {
             let row = self.row(index);
             let same = row.len() < 2 || row.iter().any(|value| *value != row[0]);
             findings.require(same, RATINGS_PARTICIPANT_CONSTANT, "", || {
-                format!("participant {participant} gave every condition the rating {}", row[0])
+                format!(
+                    "participant {participant} gave every condition the rating {}",
+                    row[0]
+                )
             });
         }
         findings.require(self.simulated.is_empty(), RATINGS_SIMULATED, "", || {
@@ -212,13 +227,21 @@ fn read_row(
     );
     let number = name(row, repetition, findings);
     let text = row.field(rating.0);
-    let value = text.parse().ok().filter(|v: &f64| v.abs() <= LARGEST_RATING);
+    let value = text
+        .parse()
+        .ok()
+        .filter(|v: &f64| v.abs() <= LARGEST_RATING);
     let Some(value) = value else {
         let message = format!("`{}` is not a number", plain(text));
         at(findings, RATING_INVALID, row.line, rating, &message);
         return;
     };
-    if answers.entry(cell).or_default().insert(number, value).is_some() {
+    if answers
+        .entry(cell)
+        .or_default()
+        .insert(number, value)
+        .is_some()
+    {
         let message = "an earlier line rates the same participant, texture, model and repetition";
         at(findings, RATING_DUPLICATE, row.line, repetition, message);
     }
@@ -243,8 +266,9 @@ fn is_complete(
         1 => String::new(),
         count => format!(" and {} others", count - 1),
     };
-    let message =
-        format!("participant {participant} has no rating of model {model} in texture {texture}{more}");
+    let message = format!(
+        "participant {participant} has no rating of model {model} in texture {texture}{more}"
+    );
     let rule = match incomplete {
         Incomplete::Refuse => RATINGS_CELL_MISSING,
         Incomplete::LeaveOut => RATINGS_LEFT_OUT,
@@ -256,7 +280,9 @@ fn is_complete(
 fn pairs(textures: &[String], models: &[String]) -> Vec<(String, String)> {
     let of = |texture: &String| {
         let texture = texture.clone();
-        models.iter().map(move |model| (texture.clone(), model.clone()))
+        models
+            .iter()
+            .map(move |model| (texture.clone(), model.clone()))
     };
     textures.iter().flat_map(of).collect()
 }

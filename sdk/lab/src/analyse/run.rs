@@ -57,14 +57,22 @@ fn in_texture(ratings: &Ratings, texture: usize, analysis: &mut Analysis, notes:
     let group = |kind: &str| format!("{kind}.{name}");
     let own = |value| (name.clone(), value);
     let anova = anova_of(&table, &group("anova_by_texture"), notes);
-    analysis.anova_by_texture.extend(anova.map(|test| (name.clone(), test)));
+    analysis
+        .anova_by_texture
+        .extend(anova.map(|test| (name.clone(), test)));
     let friedman = friedman_of(&table, &group("friedman_by_texture"), notes);
-    analysis.friedman_by_texture.extend(friedman.map(|test| (name.clone(), test)));
+    analysis
+        .friedman_by_texture
+        .extend(friedman.map(|test| (name.clone(), test)));
     let pairs = pairs_of(&table, &ratings.models, &group("pairs_by_texture"), notes);
     analysis.pairs_by_texture.extend([own(pairs)]);
     let normality = normality_of(table.values(), &group("normality_by_texture"), notes);
-    analysis.normality_by_texture.insert(name.clone(), normality);
-    analysis.means.extend(means(&table, Some(name), &ratings.models));
+    analysis
+        .normality_by_texture
+        .insert(name.clone(), normality);
+    analysis
+        .means
+        .extend(means(&table, Some(name), &ratings.models));
 }
 
 /// Participants by textures and models.

@@ -30,7 +30,10 @@ pub struct Invalid {
 }
 
 fn lines(findings: &[Finding]) -> String {
-    findings.iter().map(|f| format!("\n  {} {f}", f.severity)).collect()
+    findings
+        .iter()
+        .map(|f| format!("\n  {} {f}", f.severity))
+        .collect()
 }
 
 /// A table as text, with the findings so far.
@@ -69,7 +72,11 @@ impl Sheet {
             return Err(invalid(findings));
         }
         let header = rows.remove(0);
-        let names: Vec<String> = header.fields.iter().map(|name| name.to_lowercase()).collect();
+        let names: Vec<String> = header
+            .fields
+            .iter()
+            .map(|name| name.to_lowercase())
+            .collect();
         let columns = index(&header, &names, needed, &mut findings);
         for row in &rows {
             check_length(row, names.len(), &mut findings);
@@ -125,14 +132,16 @@ pub(super) fn at(
 }
 
 /// Returns a name out of a table; an empty one is a finding.
-pub(super) fn name(
-    row: &Row,
-    (index, column): (usize, &str),
-    findings: &mut Findings,
-) -> String {
+pub(super) fn name(row: &Row, (index, column): (usize, &str), findings: &mut Findings) -> String {
     let name = row.field(index);
     if name.is_empty() {
-        at(findings, TABLE_NAME_EMPTY, row.line, (index, column), "it is empty");
+        at(
+            findings,
+            TABLE_NAME_EMPTY,
+            row.line,
+            (index, column),
+            "it is empty",
+        );
     }
     name.to_owned()
 }
@@ -189,7 +198,13 @@ fn index(
         if let Some(earlier) = earlier.filter(|_| !name.is_empty()) {
             let message = format!("column {} has this name, too", earlier + 1);
             let place = (index, &name[..]);
-            at(findings, TABLE_COLUMN_DUPLICATE, header.line, place, &message);
+            at(
+                findings,
+                TABLE_COLUMN_DUPLICATE,
+                header.line,
+                place,
+                &message,
+            );
         }
     }
     for name in needed.iter().filter(|name| !columns.contains_key(**name)) {
@@ -200,7 +215,11 @@ fn index(
             header.line,
             needed.join(", ")
         );
-        findings.add(TABLE_COLUMN_MISSING, format!("/{}/{name}", header.line), message);
+        findings.add(
+            TABLE_COLUMN_MISSING,
+            format!("/{}/{name}", header.line),
+            message,
+        );
     }
     columns
 }

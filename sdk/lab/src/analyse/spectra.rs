@@ -75,8 +75,14 @@ fn grid_columns<'s>(sheet: &'s Sheet, findings: &mut Findings) -> Vec<(usize, &'
     let others = columns.filter(|(_, name)| !is_name(name));
     let mut found = BTreeMap::new();
     for (index, name) in others {
-        let frequency = name.strip_suffix("hz").unwrap_or(name).trim().parse::<f64>();
-        let frequency = frequency.ok().filter(|f| f.fract() == 0.0 && (0.0..1e6).contains(f));
+        let frequency = name
+            .strip_suffix("hz")
+            .unwrap_or(name)
+            .trim()
+            .parse::<f64>();
+        let frequency = frequency
+            .ok()
+            .filter(|f| f.fract() == 0.0 && (0.0..1e6).contains(f));
         match frequency {
             Some(frequency) => drop(found.insert(frequency as u32, (index, &name[..]))),
             None => {
@@ -86,7 +92,10 @@ fn grid_columns<'s>(sheet: &'s Sheet, findings: &mut Findings) -> Vec<(usize, &'
         }
     }
     let grid = Band::TACTILE.grid_hz();
-    let columns: Vec<_> = grid.iter().filter_map(|f| found.get(&(*f as u32)).copied()).collect();
+    let columns: Vec<_> = grid
+        .iter()
+        .filter_map(|f| found.get(&(*f as u32)).copied())
+        .collect();
     if columns.len() != grid.len() || found.len() != grid.len() {
         let message = format!(
             "line 1: {} of {} frequencies are on the grid of {} from 20 to 1000 Hz in steps of 5",
@@ -114,12 +123,22 @@ fn read_row(
             Ok(value) if (0.0..=LARGEST).contains(&value) => magnitudes.push(value),
             _ => {
                 let message = format!("`{}` is not a number of at least 0", plain(text));
-                at(findings, SPECTRA_MAGNITUDE_INVALID, row.line, *column, &message);
+                at(
+                    findings,
+                    SPECTRA_MAGNITUDE_INVALID,
+                    row.line,
+                    *column,
+                    &message,
+                );
                 return;
             }
         }
     }
-    let participant = if model == RECORDED { RECORDED.to_owned() } else { participant };
+    let participant = if model == RECORDED {
+        RECORDED.to_owned()
+    } else {
+        participant
+    };
     let cell = all.entry((participant, texture, model)).or_default();
     if cell.insert(repetition, magnitudes).is_some() {
         let message = "an earlier line has the same spectrum";
@@ -163,7 +182,9 @@ fn select(all: &Read, ratings: &Ratings, findings: &mut Findings) -> Spectra {
         }
     }
     for (participant, texture, model) in all.keys().filter(|cell| !used.contains(*cell)) {
-        let message = format!("the spectrum of participant {participant}, texture {texture}, model {model} has no rating");
+        let message = format!(
+            "the spectrum of participant {participant}, texture {texture}, model {model} has no rating"
+        );
         findings.add(SPECTRA_UNRATED, "", message);
     }
     Spectra {

@@ -24,11 +24,7 @@ impl Notes {
     }
 
     /// Returns the result, or notes the error.
-    pub(super) fn take<T>(
-        &mut self,
-        group: &str,
-        result: Result<T, StatisticsError>,
-    ) -> Option<T> {
+    pub(super) fn take<T>(&mut self, group: &str, result: Result<T, StatisticsError>) -> Option<T> {
         result
             .map_err(|error| self.add(group, error.code(), error.to_string()))
             .ok()
@@ -50,12 +46,11 @@ fn anova_result(test: &Anova, group: &str, notes: &mut Notes) -> AnovaResult {
         p_hf: test.p_hf,
         eps_gg: test.eps_gg,
         eps_hf: test.eps_hf,
-        eps_gg_contrasts: None,
-        p_gg_contrasts: None,
         partial_eta_squared: test.partial_eta_squared,
         mauchly_w: mauchly.map(|m| m.w),
         mauchly_chi2: mauchly.map(|m| m.chi2),
-        mauchly_p: mauchly.map(|m| m.p),
+        mauchly_p: mauchly.map(|m| m.p_pingouin),
+        mauchly_p_r: mauchly.map(|m| m.p),
         method: methods::ANOVA.to_owned(),
     }
 }
@@ -74,17 +69,10 @@ pub(super) fn two_way(
         let group = format!("{GROUP}.{name}");
         (name.to_owned(), anova_result(test, &group, notes))
     };
-    let mut interaction = result("texture * model", &tests.interaction);
-    let pingouin = tests.interaction_eps_gg_all_cells;
-    interaction.1.eps_gg_contrasts = Some(tests.interaction.eps_gg);
-    interaction.1.p_gg_contrasts = Some(tests.interaction.p_gg);
-    interaction.1.eps_gg = pingouin;
-    interaction.1.p_gg = tests.interaction.corrected_p(pingouin);
-    interaction.1.method = methods::INTERACTION.to_owned();
     [
         result("texture", &tests.first),
         result("model", &tests.second),
-        interaction,
+        result("texture * model", &tests.interaction),
     ]
     .into()
 }
@@ -139,7 +127,10 @@ pub(super) fn pairs_of(
         }
     }
     // A pair without a test counts as a comparison all the same.
-    let p: Vec<f64> = tests.iter().map(|(_, _, test)| test.map_or(1.0, |test| test.p)).collect();
+    let p: Vec<f64> = tests
+        .iter()
+        .map(|(_, _, test)| test.map_or(1.0, |test| test.p))
+        .collect();
     let (bonferroni, holm) = (bonferroni(&p), holm(&p));
     let result = |(index, (a, b, test)): (usize, &(usize, usize, Option<_>))| PairResult {
         a: names[*a].clone(),

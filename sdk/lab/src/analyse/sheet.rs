@@ -36,12 +36,11 @@ fn lines(findings: &[Finding]) -> String {
         .collect()
 }
 
-/// A table as text, with the findings so far.
+/// A table as text.
 pub(super) struct Sheet {
     columns: BTreeMap<String, usize>,
     names: Vec<String>,
     pub(super) rows: Vec<Row>,
-    pub(super) findings: Findings,
 }
 
 /// A line of a table.
@@ -88,7 +87,6 @@ impl Sheet {
             columns,
             names,
             rows,
-            findings,
         })
     }
 

@@ -239,12 +239,10 @@ impl<'a> Layout<'a> {
     }
 
     fn brackets(&self) -> Vec<Element> {
-        let known = |b: &&Bracket| b.from.max(b.to) < self.groups.categories.len();
-        let brackets = self.groups.brackets.iter().filter(known);
-        brackets
-            .zip(&self.levels)
-            .map(|(b, level)| self.bracket(b, *level))
-            .collect()
+        let count = self.groups.categories.len();
+        let placed = self.groups.brackets.iter().zip(&self.levels);
+        let known = placed.filter(|(b, _)| b.from.max(b.to) < count);
+        known.map(|(b, level)| self.bracket(b, *level)).collect()
     }
 
     fn bracket(&self, bracket: &Bracket, level: usize) -> Element {

@@ -20,13 +20,18 @@
 mod analysis;
 mod bands;
 mod correlation;
+mod figures;
 mod methods;
+mod page;
 mod ratings;
 mod rules;
 mod run;
 mod sheet;
 mod spectra;
+mod tables;
 mod tests_of;
+mod text;
+mod words;
 
 pub use analysis::{
     Analysis, AnovaResult, BandResult, BestBanks, CellMean, Correlation, FriedmanResult, Mean,

@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use htex_format::{Findings, plain};
-use htex_statistics::Summary;
 
 use super::rules::{
     RATING_DUPLICATE, RATING_INVALID, RATINGS_CELL_MISSING, RATINGS_LEFT_OUT,
@@ -198,13 +197,6 @@ impl Ratings {
     /// All means, by participant, then texture, then model.
     pub fn means(&self) -> Vec<f64> {
         self.cells.iter().map(|cell| cell.0).collect()
-    }
-
-    /// Mean and deviation over participants of a model in a texture.
-    pub(super) fn summary(&self, texture: usize, model: usize) -> Option<Summary> {
-        let people = 0..self.participants.len();
-        let values: Vec<f64> = people.map(|p| self.mean(p, texture, model)).collect();
-        htex_statistics::summary(&values).ok()
     }
 
     fn cell(&self, participant: usize, texture: usize, model: usize) -> (f64, usize) {

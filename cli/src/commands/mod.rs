@@ -23,6 +23,8 @@ mod render;
 mod schema;
 mod simulate;
 mod spectrum;
+#[cfg(feature = "lab")]
+mod study;
 mod synth;
 mod tradeoff;
 mod validate;
@@ -56,6 +58,8 @@ pub(crate) enum Command {
     #[cfg(feature = "wasm")]
     CompileModule(compile_module::CompileModule),
     Lib(lib::Lib),
+    #[cfg(feature = "lab")]
+    Study(study::Study),
     Schema(schema::Schema),
     Plugin(plugin::Plugin),
     Device(device::Device),
@@ -87,6 +91,8 @@ impl Command {
             #[cfg(feature = "wasm")]
             Self::CompileModule(args) => args.run(),
             Self::Lib(args) => args.run(),
+            #[cfg(feature = "lab")]
+            Self::Study(args) => args.run(),
             Self::Schema(args) => args.run(),
             Self::Plugin(args) => args.run(),
             Self::Device(args) => args.run(),

@@ -8,7 +8,7 @@ use crate::projection::Projection;
 use crate::svg::{self, TEXT_PX, fit_text, text_width};
 use crate::violin::{offsets, outline};
 
-const BRACKET_PX: f64 = 15.0;
+const BRACKET_PX: f64 = 17.0;
 
 /// A plot of values by category.
 ///

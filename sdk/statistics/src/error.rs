@@ -85,13 +85,13 @@ pub enum StatisticsError {
     AllTied,
     /// Mauchly's test needs a regular covariance matrix.
     #[error(
-        "{participants} participants are too few for Mauchly's test of {levels} conditions: it needs at least as many as conditions, and differences that do not depend on one another; use the corrected p-values"
+        "Mauchly's test is not defined for {participants} participants and {differences} differences between conditions: it needs more participants than differences, and none that depends on the others; use the corrected p-values"
     )]
     SphericityUndefined {
         /// Number of participants.
         participants: usize,
-        /// Number of conditions.
-        levels: usize,
+        /// Degrees of freedom of the effect.
+        differences: usize,
     },
     /// Two conditions are always spherical.
     #[error("there is one difference between the conditions, so that sphericity always holds")]

@@ -49,7 +49,7 @@ pub(crate) fn mauchly(
     }
     let undefined = StatisticsError::SphericityUndefined {
         participants,
-        levels: size + 1,
+        differences: size,
     };
     let determinant = (participants > size).then(|| log_determinant(products));
     let Some(log_determinant) = determinant.flatten() else {

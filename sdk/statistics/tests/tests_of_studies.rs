@@ -122,7 +122,7 @@ fn degenerate_data_are_errors_with_names() {
         few.sphericity,
         Err(SphericityUndefined {
             participants: 3,
-            levels: 4
+            differences: 3
         })
     ));
     assert!(matches!(

@@ -22,7 +22,7 @@ impl Analysis {
     fn cells_csv(&self) -> String {
         let mut csv = Csv::new(&["participant", "texture", "model", "repetitions", "mean"]);
         for cell in &self.cell_means {
-            let numbers = [cell.repetitions.to_string(), cell.mean.to_string()];
+            let numbers = [cell.repetitions.to_string(), number(cell.mean)];
             let names = [&cell.participant, &cell.texture, &cell.model].map(String::clone);
             csv.row(names.into_iter().chain(numbers));
         }
@@ -71,10 +71,10 @@ impl Analysis {
                 texture.to_owned(),
                 "model".to_owned(),
             ];
-            row.extend([test.chi2, test.df].map(|v| v.to_string()));
-            row.extend([String::new(), test.p.to_string()]);
+            row.extend([test.chi2, test.df].map(number));
+            row.extend([String::new(), number(test.p)]);
             row.extend(vec![String::new(); 5]);
-            row.extend([test.kendall_w.to_string(), String::new(), String::new()]);
+            row.extend([number(test.kendall_w), String::new(), String::new()]);
             csv.row(row);
         }
         csv.text
@@ -125,13 +125,13 @@ impl Analysis {
             let checked = maybe(band.cross_validated_r2);
             let start = [
                 band.filters.to_string(),
-                band.r2.to_string(),
-                band.adjusted_r2.to_string(),
+                number(band.r2),
+                number(band.adjusted_r2),
                 checked,
             ];
             let [df1, df2] = band.df;
             let rest = [band.f, df1, df2, band.p, band.rmse, band.aic, band.bic];
-            csv.row(start.into_iter().chain(rest.map(|v| v.to_string())));
+            csv.row(start.into_iter().chain(rest.map(number)));
         }
         csv.text
     }
@@ -151,7 +151,7 @@ fn anova_row(texture: &str, effect: &str, test: &AnovaResult) -> Vec<String> {
         test.eps_hf,
         test.partial_eta_squared,
     ];
-    row.extend(numbers.map(|v| v.to_string()));
+    row.extend(numbers.map(number));
     row.extend([String::new(), maybe(test.mauchly_w), maybe(test.mauchly_p)]);
     row
 }
@@ -160,11 +160,11 @@ fn pair_row(texture: &str, pair: &PairResult) -> Vec<String> {
     let names = [texture, &pair.a, &pair.b].map(str::to_owned);
     let mut row: Vec<String> = names
         .into_iter()
-        .chain([pair.mean_difference.to_string()])
+        .chain([number(pair.mean_difference)])
         .collect();
     match &pair.test {
         Some(test) => {
-            row.extend([test.t.to_string(), test.df.to_string()]);
+            row.extend([number(test.t), test.df.to_string()]);
             let numbers = [
                 test.p,
                 test.p_bonferroni,
@@ -173,7 +173,7 @@ fn pair_row(texture: &str, pair: &PairResult) -> Vec<String> {
                 test.ci95[1],
                 test.cohen_dz,
             ];
-            row.extend(numbers.map(|v| v.to_string()));
+            row.extend(numbers.map(number));
             row.extend([maybe(test.cohen_d_av), maybe(test.hedges_g)]);
         }
         None => row.extend(vec![String::new(); 10]),
@@ -185,18 +185,20 @@ fn means_csv(by_texture: &[Mean], overall: &[Mean]) -> String {
     let mut csv = Csv::new(&["texture", "model", "count", "mean", "sd"]);
     for mean in by_texture.iter().chain(overall) {
         let texture = mean.texture.clone().unwrap_or_default();
-        let numbers = [
-            mean.count.to_string(),
-            mean.mean.to_string(),
-            mean.sd.to_string(),
-        ];
+        let numbers = [mean.count.to_string(), number(mean.mean), number(mean.sd)];
         csv.row([texture, mean.model.clone()].into_iter().chain(numbers));
     }
     csv.text
 }
 
 fn maybe(value: Option<f64>) -> String {
-    value.map_or(String::new(), |value| value.to_string())
+    value.map_or(String::new(), number)
+}
+
+/// A number with all its digits; small ones with an exponent.
+fn number(value: f64) -> String {
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").unwrap_or(&text).to_owned()
 }
 
 /// A table that is being written.

@@ -50,6 +50,8 @@ pub(crate) enum Command {
     Build(build::Build),
     Compare(compare::Compare),
     Tradeoff(tradeoff::Tradeoff),
+    #[cfg(feature = "lab")]
+    Study(study::Study),
     Plan(plan::Plan),
     Render(render::Render),
     Play(play::Play),
@@ -58,8 +60,6 @@ pub(crate) enum Command {
     #[cfg(feature = "wasm")]
     CompileModule(compile_module::CompileModule),
     Lib(lib::Lib),
-    #[cfg(feature = "lab")]
-    Study(study::Study),
     Schema(schema::Schema),
     Plugin(plugin::Plugin),
     Device(device::Device),
@@ -83,6 +83,8 @@ impl Command {
             Self::Build(args) => args.run(),
             Self::Compare(args) => args.run(),
             Self::Tradeoff(args) => args.run(),
+            #[cfg(feature = "lab")]
+            Self::Study(args) => args.run(),
             Self::Plan(args) => args.run(),
             Self::Render(args) => args.run(),
             Self::Play(args) => args.run(),
@@ -91,8 +93,6 @@ impl Command {
             #[cfg(feature = "wasm")]
             Self::CompileModule(args) => args.run(),
             Self::Lib(args) => args.run(),
-            #[cfg(feature = "lab")]
-            Self::Study(args) => args.run(),
             Self::Schema(args) => args.run(),
             Self::Plugin(args) => args.run(),
             Self::Device(args) => args.run(),

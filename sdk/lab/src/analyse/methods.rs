@@ -21,7 +21,8 @@ const POWER: &str = "Power of an F-test of repeated measures within factors, one
 const BANDS: &str = "Least squares with an intercept. Predictors: the absolute difference of squared magnitudes, felt and recorded, at each 5 Hz bin, z-scored \
 (n - 1) over the models within a participant and texture, then summed by triangles over log frequency from 20 to 1000 Hz that overlap by half (paper, \
 Supplementary, Linear regression). Values: mean ratings, z-scored alike. rmse by residual degrees of freedom; AIC and BIC by the normal likelihood, \
-with the intercept. Agrees with statsmodels. cross_validated_r2 predicts each participant from the others, against their mean; r2 alone grows with every band.";
+with the intercept. Agrees with statsmodels. F and p take all values as independent, \
+although z-scores within a participant and texture sum to 0: p is somewhat too small. cross_validated_r2 predicts each participant from the others, against their mean; r2 alone grows with every band.";
 
 /// The method of every group, by its key in the analysis.
 pub(super) fn all() -> BTreeMap<String, String> {

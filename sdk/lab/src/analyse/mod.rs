@@ -18,6 +18,7 @@
 //! ```
 
 mod analysis;
+mod answers;
 mod bands;
 mod correlation;
 mod figures;

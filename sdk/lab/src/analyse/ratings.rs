@@ -1,23 +1,17 @@
 //! The table of ratings: participant, texture, model, repetition, rating.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use htex_format::{Findings, plain};
+use htex_format::Findings;
 
+use super::answers::{Answers, Cell, Rated, read_answers};
 use super::rules::{
-    RATING_DUPLICATE, RATING_INVALID, RATINGS_CELL_MISSING, RATINGS_LEFT_OUT,
-    RATINGS_NONE_COMPLETE, RATINGS_PARTICIPANT_CONSTANT, RATINGS_SIMULATED,
-    RATINGS_TOO_MANY_CONDITIONS, RATINGS_UNBALANCED, TABLE_COLUMN_UNKNOWN,
+    RATINGS_CELL_MISSING, RATINGS_LEFT_OUT, RATINGS_NONE_COMPLETE, RATINGS_PARTICIPANT_CONSTANT,
+    RATINGS_SIMULATED, RATINGS_TOO_MANY_CONDITIONS, RATINGS_UNBALANCED,
 };
-use super::sheet::{Checked, Invalid, Row, Sheet, at, invalid, name};
+use super::sheet::{Checked, Invalid, Sheet, invalid};
 
-const COLUMNS: [&str; 5] = ["participant", "texture", "model", "repetition", "rating"];
-/// Marks answers of simulated participants.
-const SIMULATED: &str = "simulated";
 const MOST_CONDITIONS: usize = 1000;
-/// Largest size of a rating; sums of squares of larger ones lose their digits.
-const LARGEST_RATING: f64 = 1e9;
-
 /// What to do with participants that have not rated every condition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Incomplete {
@@ -45,48 +39,18 @@ pub struct Ratings {
     cells: Vec<(f64, usize)>,
 }
 
-/// Participant, texture, model.
-pub(super) type Cell = (String, String, String);
-type Answers = BTreeMap<Cell, BTreeMap<String, f64>>;
-
 impl Ratings {
     /// Reads and checks a table of ratings.
     ///
-    /// Columns are found by name; others than `participant`, `texture`, `model`, `repetition` and `rating` are not used, except
-    /// `simulated` (`true` or `1`), which marks answers that no person gave.
+    /// Columns are found by name: `participant`, `texture`, `model`, `repetition` and `rating`. Of those that `htex study export` writes
+    /// beside them, `simulated` marks answers that no person gave, lines of a `hidden_reference` are not analysed, and `attribute` must be the
+    /// same in all lines. Others are not used.
     ///
     /// # Errors
     /// Every finding of the table, if one of them is an error.
     pub fn read(bytes: &[u8], incomplete: Incomplete) -> Result<Checked<Self>, Invalid> {
-        let sheet = Sheet::read(bytes, &COLUMNS)?;
-        let columns = COLUMNS.map(|name| (sheet.column(name).unwrap_or_default(), name));
-        let marks = sheet.column(SIMULATED);
         let mut findings = Findings::default();
-        for (index, name) in sheet.names().iter().enumerate() {
-            if !COLUMNS.contains(&&name[..]) && name != SIMULATED {
-                let message = "it is not used";
-                at(
-                    &mut findings,
-                    TABLE_COLUMN_UNKNOWN,
-                    1,
-                    (index, name),
-                    message,
-                );
-            }
-        }
-        let mut answers = Answers::new();
-        let mut simulated = BTreeSet::new();
-        for row in &sheet.rows {
-            let mark = marks.map_or("", |column| row.field(column));
-            if ["true", "1"].contains(&&mark.to_lowercase()[..]) {
-                simulated.insert(row.field(columns[0].0).to_owned());
-            }
-            read_row(row, &columns, &mut answers, &mut findings);
-        }
-        if findings.has_errors() {
-            return Err(invalid(findings));
-        }
-        let simulated = simulated.into_iter().collect();
+        let Rated { answers, simulated } = read_answers(bytes, &mut findings)?;
         let ratings = Self::of_answers(answers, simulated, incomplete, &mut findings);
         let Some(ratings) = ratings else {
             return Err(invalid(findings));
@@ -97,7 +61,7 @@ impl Ratings {
 
     fn of_answers(
         answers: Answers,
-        simulated: Vec<String>,
+        simulated: BTreeSet<String>,
         incomplete: Incomplete,
         findings: &mut Findings,
     ) -> Option<Self> {
@@ -107,6 +71,11 @@ impl Ratings {
         };
         let (mut participants, textures, models) =
             (names(|c| &c.0), names(|c| &c.1), names(|c| &c.2));
+        if answers.is_empty() {
+            let message = "every line is a hidden reference".to_owned();
+            findings.add(RATINGS_NONE_COMPLETE, "", message);
+            return None;
+        }
         let conditions = textures.len() * models.len();
         if conditions > MOST_CONDITIONS {
             let message = format!(
@@ -202,40 +171,6 @@ impl Ratings {
     fn cell(&self, participant: usize, texture: usize, model: usize) -> (f64, usize) {
         let row = participant * self.textures.len() + texture;
         self.cells[row * self.models.len() + model]
-    }
-}
-
-fn read_row(
-    row: &Row,
-    columns: &[(usize, &str); 5],
-    answers: &mut Answers,
-    findings: &mut Findings,
-) {
-    let [participant, texture, model, repetition, rating] = *columns;
-    let cell = (
-        name(row, participant, findings),
-        name(row, texture, findings),
-        name(row, model, findings),
-    );
-    let number = name(row, repetition, findings);
-    let text = row.field(rating.0);
-    let value = text
-        .parse()
-        .ok()
-        .filter(|v: &f64| v.abs() <= LARGEST_RATING);
-    let Some(value) = value else {
-        let message = format!("`{}` is not a number", plain(text));
-        at(findings, RATING_INVALID, row.line, rating, &message);
-        return;
-    };
-    if answers
-        .entry(cell)
-        .or_default()
-        .insert(number, value)
-        .is_some()
-    {
-        let message = "an earlier line rates the same participant, texture, model and repetition";
-        at(findings, RATING_DUPLICATE, row.line, repetition, message);
     }
 }
 

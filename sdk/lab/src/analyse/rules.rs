@@ -88,6 +88,14 @@ htex_format::rule_table! {
         "A participant gave all conditions the same rating.",
         "Such answers tell no condition from another; their z-scores are taken as 0.",
         "Check whether the participant understood the scale.";
+    RATINGS_ATTRIBUTES Error:
+        "The table has ratings of several attributes.",
+        "Ratings of roughness and of similarity cannot be averaged.",
+        "Export one attribute (`htex study export --attribute`), or keep the lines of one.";
+    RATINGS_HIDDEN_REFERENCE Info:
+        "Lines of hidden references are not analysed.",
+        "A hidden reference is the real texture compared with itself; it shows who can rate, and is no model.",
+        "Nothing.";
     RATINGS_SIMULATED Warning:
         "Ratings are of simulated participants.",
         "They show that a study works, and nothing about people.",

@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use htex_dsp::Band;
 use htex_format::{Findings, plain};
 
-use super::ratings::{Cell, Ratings};
+use super::answers::Cell;
+use super::ratings::Ratings;
 use super::rules::{
     SPECTRA_CELL_MISSING, SPECTRA_DUPLICATE, SPECTRA_GRID_INVALID, SPECTRA_MAGNITUDE_INVALID,
     SPECTRA_RECORDED_MISSING, SPECTRA_UNRATED,

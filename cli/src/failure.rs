@@ -37,6 +37,13 @@ pub(crate) enum Failure {
         file: String,
         findings: Vec<htex_format::Finding>,
     },
+    /// A table of a study that cannot be analysed.
+    #[cfg(feature = "lab")]
+    #[error("{file}: {}", table_text(.findings))]
+    Table {
+        file: String,
+        findings: Vec<htex_format::Finding>,
+    },
     #[error("{file}: {error}")]
     Scene {
         file: String,
@@ -158,6 +165,8 @@ impl Failure {
             Self::Findings { .. } | Self::Author(AuthorError::Strict { .. }) => {
                 text.split_once('\n').unwrap_or((&text, ""))
             }
+            #[cfg(feature = "lab")]
+            Self::Table { .. } => text.split_once('\n').unwrap_or((&text, "")),
             _ => (&text[..], ""),
         };
         let first = with(first, self.flags());
@@ -183,6 +192,14 @@ fn flag_of(error: &htex::Error) -> &'static str {
         htex::Error::EmbeddedOff { .. } => " (by --no-embedded-plugins)",
         _ => "",
     }
+}
+
+/// Findings of a table, one on each line.
+#[cfg(feature = "lab")]
+fn table_text(findings: &[htex_format::Finding]) -> String {
+    let line = |f: &htex_format::Finding| format!("\n  {} {}", f.severity, plain(&f.to_string()));
+    let lines: String = findings.iter().map(line).collect();
+    format!("this table cannot be analysed (`htex explain CODE` says more){lines}")
 }
 
 /// Findings, one on each line.

@@ -1,5 +1,5 @@
 use clap::Args;
-use htex_format::{RULES, explain};
+use htex_format::{RULES, Rule, explain};
 
 use crate::exit::Exit;
 use crate::failure::Failure;
@@ -13,6 +13,14 @@ pub(crate) struct Explain {
     code: Option<String>,
 }
 
+/// The rules for experiments, where this program has them.
+fn lab_rules() -> &'static [Rule] {
+    #[cfg(feature = "lab")]
+    return htex_lab::analyse::RULES;
+    #[cfg(not(feature = "lab"))]
+    &[]
+}
+
 impl Explain {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let Some(code) = self.code else {
@@ -21,6 +29,7 @@ impl Explain {
                 .chain(htex_library::RULES)
                 .chain(htex_scene::RULES)
                 .chain(htex_author::findings::RULES)
+                .chain(lab_rules())
                 .map(|rule| format!("{:36} {}\n", rule.code, rule.summary));
             print(&lines.collect::<String>())?;
             return Ok(Exit::SUCCESS);
@@ -29,7 +38,8 @@ impl Explain {
         let rule = explain(&code)
             .or_else(|| htex_library::explain(&code))
             .or_else(|| htex_scene::explain(&code))
-            .or_else(|| htex_author::findings::explain(&code));
+            .or_else(|| htex_author::findings::explain(&code))
+            .or_else(|| lab_rules().iter().find(|rule| rule.code == code));
         let rule = rule.ok_or_else(|| {
             Failure::Usage(format!("no code `{code}`; `htex explain` lists them all"))
         })?;

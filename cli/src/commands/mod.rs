@@ -25,6 +25,8 @@ mod render;
 mod schema;
 mod simulate;
 mod spectrum;
+#[cfg(feature = "lab")]
+mod study;
 mod synth;
 mod tradeoff;
 mod validate;
@@ -52,6 +54,8 @@ pub(crate) enum Command {
     Mix(mix::Mix),
     Compare(compare::Compare),
     Tradeoff(tradeoff::Tradeoff),
+    #[cfg(feature = "lab")]
+    Study(study::Study),
     Plan(plan::Plan),
     Render(render::Render),
     Play(play::Play),
@@ -85,6 +89,8 @@ impl Command {
             Self::Mix(args) => args.run(),
             Self::Compare(args) => args.run(),
             Self::Tradeoff(args) => args.run(),
+            #[cfg(feature = "lab")]
+            Self::Study(args) => args.run(),
             Self::Plan(args) => args.run(),
             Self::Render(args) => args.run(),
             Self::Play(args) => args.run(),

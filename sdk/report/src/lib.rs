@@ -1,4 +1,4 @@
-//! SVG plots, heat tables and self-contained HTML reports.
+//! SVG plots, values by category, heat tables and self-contained HTML reports.
 //!
 //! The crate converts data to text. It reads no files and no clock and does no signal processing: equal data
 //! gives equal bytes. Pages contain their style, use no script and load nothing.
@@ -15,6 +15,7 @@ mod axis;
 mod chain;
 mod color;
 mod curves;
+mod groups;
 mod legend;
 mod markup;
 mod number;
@@ -26,10 +27,12 @@ mod svg;
 mod table;
 mod textures;
 mod ticks;
+mod violin;
 
 pub use axis::{Axis, Scale};
 pub use chain::{Chain, ChainStage};
 pub use color::{RECORDING_COLOR, model_color, series_color};
+pub use groups::{Bracket, Category, Groups};
 pub use page::{Page, code_block, details, figures, list, paragraph};
 pub use plot::Plot;
 pub use series::{Line, Series};

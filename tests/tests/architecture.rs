@@ -37,6 +37,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-device",
             "htex-dsp",
             "htex-files",
+            "htex-format",
             "htex-play",
             "htex-report",
             "htex-scene",

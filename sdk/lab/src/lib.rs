@@ -1,2 +1,5 @@
 //! Experiments with textures: guided recordings, responses of a setup, studies and their analysis.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
+
+pub mod study;

@@ -1,10 +1,15 @@
 use clap::Args;
-use htex_format::{RULES, explain};
+use htex_format::{RULES, Rule, explain};
 
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::flags::{of_check, of_code, with};
 use crate::output::print;
+
+#[cfg(feature = "lab")]
+const STUDIES: &[Rule] = htex_lab::study::RULES;
+#[cfg(not(feature = "lab"))]
+const STUDIES: &[Rule] = &[];
 
 /// Explain a finding's code: what it means and what to do.
 #[derive(Args)]
@@ -21,6 +26,7 @@ impl Explain {
                 .chain(htex_library::RULES)
                 .chain(htex_scene::RULES)
                 .chain(htex_author::findings::RULES)
+                .chain(STUDIES)
                 .map(|rule| format!("{:36} {}\n", rule.code, rule.summary));
             print(&lines.collect::<String>())?;
             return Ok(Exit::SUCCESS);
@@ -29,7 +35,8 @@ impl Explain {
         let rule = explain(&code)
             .or_else(|| htex_library::explain(&code))
             .or_else(|| htex_scene::explain(&code))
-            .or_else(|| htex_author::findings::explain(&code));
+            .or_else(|| htex_author::findings::explain(&code))
+            .or_else(|| STUDIES.iter().find(|rule| rule.code == code));
         let rule = rule.ok_or_else(|| {
             Failure::Usage(format!("no code `{code}`; `htex explain` lists them all"))
         })?;

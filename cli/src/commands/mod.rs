@@ -23,6 +23,8 @@ mod render;
 mod schema;
 mod simulate;
 mod spectrum;
+#[cfg(feature = "lab")]
+mod study;
 mod synth;
 mod tradeoff;
 mod validate;
@@ -48,6 +50,8 @@ pub(crate) enum Command {
     Build(build::Build),
     Compare(compare::Compare),
     Tradeoff(tradeoff::Tradeoff),
+    #[cfg(feature = "lab")]
+    Study(study::Study),
     Plan(plan::Plan),
     Render(render::Render),
     Play(play::Play),
@@ -79,6 +83,8 @@ impl Command {
             Self::Build(args) => args.run(),
             Self::Compare(args) => args.run(),
             Self::Tradeoff(args) => args.run(),
+            #[cfg(feature = "lab")]
+            Self::Study(args) => args.run(),
             Self::Plan(args) => args.run(),
             Self::Render(args) => args.run(),
             Self::Play(args) => args.run(),

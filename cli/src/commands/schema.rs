@@ -27,6 +27,9 @@ enum What {
     /// JSON Schema of `build-report.json`
     #[cfg(feature = "build")]
     BuildReport,
+    /// JSON Schema of studies (`htex study`)
+    #[cfg(feature = "lab")]
+    Study,
     /// Each model's parameters and fit options, with units and ranges
     Models,
 }
@@ -41,6 +44,8 @@ impl Schema {
             What::Recipe => Ok(htex_build::recipe_schema()),
             #[cfg(feature = "build")]
             What::BuildReport => Ok(htex_build::report_schema()),
+            #[cfg(feature = "lab")]
+            What::Study => Ok(htex_lab::study::study_schema()),
             What::Models => {
                 let registry = Registry::builtin();
                 let all: Vec<_> = registry.models().iter().map(|m| m.descriptor()).collect();

@@ -43,9 +43,12 @@ fn check_participants(participants: &Participants, findings: &mut Findings) {
         Participants::Names(names) => names.len(),
     };
     let fits = (1..=MOST_PARTICIPANTS).contains(&count);
-    findings.require(fits, rule::STUDY_PARTICIPANTS_INVALID, "/participants", || {
-        format!("there are {count} participants; write 1 to {MOST_PARTICIPANTS}")
-    });
+    findings.require(
+        fits,
+        rule::STUDY_PARTICIPANTS_INVALID,
+        "/participants",
+        || format!("there are {count} participants; write 1 to {MOST_PARTICIPANTS}"),
+    );
     let Participants::Names(names) = participants else {
         return;
     };
@@ -57,7 +60,9 @@ fn check_participants(participants: &Participants, findings: &mut Findings) {
         let pointer = format!("/participants/{i}");
         let rule = rule::STUDY_PARTICIPANTS_INVALID;
         findings.require(sound, rule, &pointer, || {
-            format!("{name:?} is no name of a participant; use letters, digits, - and _, at most 64")
+            format!(
+                "{name:?} is no name of a participant; use letters, digits, - and _, at most 64"
+            )
         });
         findings.require(is_new, rule, &pointer, || {
             format!("{name:?} occurs twice, perhaps in another case; name each participant once")

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use htex_scene::file::{DeviceChoice, Motion};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 /// Version of the format that this crate reads.
 pub const VERSION: &str = "1.0";

@@ -46,7 +46,10 @@ impl Log {
         let mut bytes = Vec::new();
         let read = file.read_to_end(&mut bytes);
         read.map_err(|error| read_error(path, error))?;
-        let whole = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |end| end + 1);
+        let whole = bytes
+            .iter()
+            .rposition(|b| *b == b'\n')
+            .map_or(0, |end| end + 1);
         if whole < bytes.len() {
             let cut = file.set_len(whole as u64).and_then(|()| file.sync_all());
             let at_end = cut.and_then(|()| file.seek(SeekFrom::End(0)).map(|_| ()));
@@ -78,7 +81,10 @@ impl Log {
 /// Reads a file of answers: its header and its lines. An incomplete last line, of a session that is running or was killed, is left out.
 pub(crate) fn read(path: &Path) -> Result<(Header, Vec<Line>), StudyError> {
     let bytes = std::fs::read(path).map_err(|error| read_error(path, error))?;
-    let whole = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |end| end + 1);
+    let whole = bytes
+        .iter()
+        .rposition(|b| *b == b'\n')
+        .map_or(0, |end| end + 1);
     parse(path, &bytes[..whole])
 }
 

@@ -12,6 +12,7 @@ mod error;
 mod export;
 mod file;
 mod gain;
+mod header;
 mod lines;
 mod log;
 mod order;

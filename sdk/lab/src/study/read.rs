@@ -123,6 +123,7 @@ pub fn check_files(
             for mut finding in found {
                 finding.pointer = match &finding.pointer[..] {
                     "/surfaces/0/representation" => pointer.clone(),
+                    "/duration_s" => "/trial_s".to_owned(),
                     other => other.replacen("/surfaces/0", &format!("/textures/{texture}"), 1),
                 };
                 if !findings.contains(&finding) {

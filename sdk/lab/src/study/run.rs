@@ -83,6 +83,9 @@ pub trait Clock {
     /// Lets time pass; a simulated clock does not wait.
     fn pass(&mut self, time: Duration);
 
+    /// Something of this length was played, which a simulated clock has not noticed.
+    fn played(&mut self, time: Duration);
+
     /// A simulated clock goes on at this time; others do not.
     fn go_on_at(&mut self, ms: u64);
 }
@@ -235,10 +238,8 @@ impl<R: Rig> Run<'_, '_, R> {
             left
         };
         self.rig.play(stimulus, &mut ends)?;
-        if self.simulated.is_some() {
-            let seconds = stimulus.seconds.unwrap_or(0.0);
-            self.clock.pass(Duration::from_secs_f64(seconds));
-        }
+        let seconds = stimulus.seconds.unwrap_or(0.0);
+        self.clock.played(Duration::from_secs_f64(seconds));
         Ok(!left && !self.rig.is_interrupted())
     }
 
@@ -247,12 +248,13 @@ impl<R: Rig> Run<'_, '_, R> {
         let scale = self.session.study().scale.clone();
         if let Some(simulated) = self.simulated {
             let (texture, model) = (&trial.texture, &trial.model);
-            let error_db = self.rig.band_error_db(texture, model).ok_or_else(|| {
-                StudyError::NoBandError {
-                    texture: texture.clone(),
-                    model: model.clone(),
-                }
-            })?;
+            let error_db =
+                self.rig
+                    .band_error_db(texture, model)
+                    .ok_or_else(|| StudyError::NoBandError {
+                        texture: texture.clone(),
+                        model: model.clone(),
+                    })?;
             let response_ms = simulated.response_ms(trial, &asked.name);
             self.clock.pass(Duration::from_millis(response_ms));
             let rating = simulated.rating(trial, &asked.name, error_db, &scale);
@@ -288,7 +290,7 @@ impl<R: Rig> Run<'_, '_, R> {
                 };
                 let played = self.rig.play(&stimulus, &mut || false)?;
                 let seconds = self.session.study().trial_s;
-                self.clock.pass(Duration::from_secs_f64(seconds));
+                self.clock.played(Duration::from_secs_f64(seconds));
                 let left = self.rig.is_interrupted();
                 let key = simulated.gain_key(texture, matching);
                 ((!left).then_some(key), played)
@@ -329,7 +331,13 @@ impl<R: Rig> Run<'_, '_, R> {
             }
             left || pressed.is_some()
         };
-        let played = self.rig.play(stimulus, &mut ends)?;
+        // A motion that is a trace ends before a person has decided, and begins anew.
+        let played = loop {
+            let played = self.rig.play(stimulus, &mut ends)?;
+            if ends() || self.rig.is_interrupted() {
+                break played;
+            }
+        };
         let left = left || self.rig.is_interrupted();
         Ok((pressed.filter(|_| !left), played))
     }

@@ -41,7 +41,7 @@ pub fn scene_of(study: &Study, asset: &Path, model: &str) -> Vec<u8> {
         surfaces: vec![surface],
         motion: study.motion.clone(),
         device: study.device.clone(),
-        duration_s: None,
+        duration_s: Some(study.trial_s),
         seed: study.seed,
         budget: Default::default(),
         effects: Default::default(),

@@ -1,5 +1,6 @@
 //! `htex study`: people rate textures.
 
+mod asker;
 mod clock;
 mod export;
 mod plan;

@@ -2,20 +2,18 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use htex_lab::study::{
-    Asker, Clock, Ended, Header, Key, Plan, Session, SimulatedParticipant, Study, StudyError, View,
-    run,
+    Clock, Ended, Header, Plan, Session, SimulatedParticipant, Study, StudyError, run,
 };
 use htex_scene::file::Motion;
 use serde_json::{Value, json};
 
+use super::asker::AskingArgs;
 use super::clock::{FastClock, WallClock};
 use super::open;
 use super::rig::StudyRig;
-use super::terminal::Terminal;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::models::tool;
-use crate::motions::Motions;
 use crate::output::{print, print_json, tell};
 use crate::scenes::{ChoiceArgs, SceneArgs};
 use crate::shown::shown;
@@ -39,9 +37,8 @@ pub(super) struct Run {
     #[arg(short, long, value_name = "DIR", default_value = "answers")]
     output: PathBuf,
 
-    /// Read the motion of the finger from standard input, for a study whose motion is live: lines `speed_mm_s force_n [x_mm y_mm]`
-    #[arg(long, value_name = "-", value_parser = ["-"])]
-    motion: Option<String>,
+    #[command(flatten)]
+    asking: AskingArgs,
 
     /// A simulated participant of this seed answers; every file says so
     #[arg(long, value_name = "SEED")]
@@ -65,7 +62,7 @@ pub(super) struct Run {
 impl Run {
     pub(super) fn run(self) -> Result<Exit, Failure> {
         let study = open(&self.study)?;
-        self.check_motion(&study)?;
+        self.asking.check(&study, self.simulated.is_some())?;
         let plan = Plan::new(&study);
         let participants = self.participants(&plan)?;
         signals::ask();
@@ -81,19 +78,6 @@ impl Run {
             print_json(&sessions)?;
         }
         Ok(Exit::SUCCESS)
-    }
-
-    fn check_motion(&self, study: &Study) -> Result<(), Failure> {
-        let is_live = study.motion == Motion::Live;
-        let problem = match (is_live, &self.motion, self.simulated) {
-            (true, None, _) => "the study's motion is live; give it with --motion -",
-            (false, Some(_), _) => "--motion: the study's motion is not live",
-            (_, Some(_), None) => {
-                "--motion -: standard input cannot be both the motion and the answers"
-            }
-            _ => return Ok(()),
-        };
-        Err(Failure::Usage(problem.to_owned()))
     }
 
     fn participants(&self, plan: &Plan) -> Result<Vec<String>, Failure> {
@@ -120,6 +104,11 @@ impl Run {
         participant: &str,
     ) -> Result<(Ended, Value), Failure> {
         let mut rig = self.rig(study, participant)?;
+        let mut asking = match self.simulated {
+            Some(_) => self.asking.of_nobody(),
+            None => self.asking.open(study, participant)?,
+        };
+        rig.motions = asking.motions.take();
         let simulated = self
             .simulated
             .map(|seed| SimulatedParticipant::new(seed, participant));
@@ -130,10 +119,6 @@ impl Run {
         let header = Header::new(study, &self.study, own, device, tool())?
             .with_simulated(simulated.as_ref().map(SimulatedParticipant::header));
         let mut session = Session::open(study, own, &self.output, &header)?;
-        let mut asker: Box<dyn Asker> = match simulated {
-            Some(_) => Box::new(Nobody),
-            None => Box::new(Terminal::new()),
-        };
         let mut clock: Box<dyn Clock> = match self.fast {
             true => Box::new(FastClock::default()),
             false => Box::new(WallClock),
@@ -141,7 +126,7 @@ impl Run {
         let ended = run(
             &mut session,
             &mut rig,
-            &mut *asker,
+            &mut *asking.asker,
             &mut *clock,
             simulated.as_ref(),
         )?;
@@ -162,7 +147,7 @@ impl Run {
             loader: self.with.loader()?,
             device,
             format,
-            motions: self.motion.is_some().then(Motions::from_stdin),
+            motions: None,
             is_fast: self.fast,
             folder,
             told: Default::default(),
@@ -197,16 +182,5 @@ impl Run {
             "done": ended == Ended::Done,
             "file": shown(Path::new(&file)),
         }))
-    }
-}
-
-/// A simulated participant is asked nothing.
-struct Nobody;
-
-impl Asker for Nobody {
-    fn show(&mut self, _: &View, _: usize, _: usize) {}
-
-    fn key(&mut self) -> Option<Key> {
-        None
     }
 }

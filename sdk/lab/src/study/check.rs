@@ -141,6 +141,10 @@ fn check_numbers(study: &Study, findings: &mut Findings) {
     require_in(study.trial_s, "/trial_s", 0.01, 3600.0, findings);
     let trials = f64::from(study.training.trials);
     require_in(trials, "/training/trials", 1.0, 1000.0, findings);
+    if let Some(noise) = &study.masking_noise {
+        let level = noise.level_dbfs;
+        require_in(level, "/masking_noise/level_dbfs", -80.0, -10.0, findings);
+    }
     if let Some(rests) = &study.rests {
         let every = f64::from(rests.every);
         require_in(every, "/rests/every", 1.0, 1e5, findings);

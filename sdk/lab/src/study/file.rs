@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use htex_scene::file::{DeviceChoice, Motion};
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// Version of the format that this crate reads.
 pub const VERSION: &str = "1.0";
@@ -82,6 +82,9 @@ pub struct Study {
     /// Rests during the testing; none when absent.
     #[serde(default)]
     pub rests: Option<Rests>,
+    /// White noise in headphones while a texture is felt, against its sound; none when absent. The page plays it.
+    #[serde(default)]
+    pub masking_noise: Option<MaskingNoise>,
     /// The motion of the finger, as in a scene: constant, a trace, or `live`.
     pub motion: Motion,
     /// The device, as in a scene.
@@ -128,7 +131,7 @@ pub enum Order {
 }
 
 /// A phase of a session.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Phase {
     /// Trials for practice, whose ratings are not results.
@@ -180,7 +183,7 @@ pub struct Matching {
 }
 
 /// Method of matching a gain. All of them start at the maximum.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GainMethod {
     /// Only down, until the texture is accepted.
@@ -194,7 +197,7 @@ pub enum GainMethod {
 }
 
 /// A scale of whole numbers.
-#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Scale {
     /// Lowest rating.
@@ -214,7 +217,7 @@ pub struct Scale {
 }
 
 /// What is rated.
-#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Attribute {
     /// Name in the results.
@@ -234,6 +237,15 @@ pub struct Rests {
     #[serde(default)]
     #[schemars(range(min = 0, max = 3600))]
     pub seconds: f64,
+}
+
+/// White noise that masks the sound of a texture and of its display.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct MaskingNoise {
+    /// RMS level, decibels relative to full scale.
+    #[schemars(range(min = -80, max = -10))]
+    pub level_dbfs: f64,
 }
 
 impl Participants {

@@ -16,6 +16,7 @@ mod header;
 mod lines;
 mod log;
 mod order;
+mod page;
 mod plan;
 mod progress;
 mod random;
@@ -29,12 +30,13 @@ mod stimulus;
 pub use error::StudyError;
 pub use export::{Export, export};
 pub use file::{
-    Attribute, GainMethod, Matching, Order, Participants, Phase, Rests, Scale, Study, Texture,
-    Training, VERSION,
+    Attribute, GainMethod, MaskingNoise, Matching, Order, Participants, Phase, Rests, Scale, Study,
+    Texture, Training, VERSION,
 };
 pub use gain::{GainKey, Match};
 pub use lines::{Answer, DeviceUsed, Header, Line, Matched, Simulated};
 pub use log::{Log, participant_file};
+pub use page::{Page, PageOptions, Touched};
 pub use plan::{ParticipantPlan, Plan, Trial};
 pub use read::{check_files, files_of, read_study, study_schema};
 pub use rules::{RULES, explain, findings_page};

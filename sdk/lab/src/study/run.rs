@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use serde::Serialize;
+
 use crate::study::error::StudyError;
 use crate::study::file::{Attribute, GainMethod, Phase, Scale};
 use crate::study::gain::{GainKey, Match};
@@ -14,7 +16,8 @@ use crate::study::stimulus::Stimulus;
 const LOOK: Duration = Duration::from_millis(5);
 
 /// What a participant sees.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
 pub enum View {
     /// The next trial, or the matching of the next texture, begins with a key.
     Ready {
@@ -219,7 +222,7 @@ impl<R: Rig> Run<'_, '_, R> {
             }
             self.felt = Some(this);
         }
-        let Some((rating, response_ms)) = self.ask(trial, asked)? else {
+        let Some((rating, response_ms)) = self.ask(phase, trial, asked)? else {
             return Ok(false);
         };
         let at_ms = self.clock.now_ms();
@@ -244,7 +247,12 @@ impl<R: Rig> Run<'_, '_, R> {
     }
 
     /// The rating and the time that it took, milliseconds.
-    fn ask(&mut self, trial: &Trial, asked: &Attribute) -> Result<Option<(u8, u64)>, R::Error> {
+    fn ask(
+        &mut self,
+        phase: Phase,
+        trial: &Trial,
+        asked: &Attribute,
+    ) -> Result<Option<(u8, u64)>, R::Error> {
         let scale = self.session.study().scale.clone();
         if let Some(simulated) = self.simulated {
             let (texture, model) = (&trial.texture, &trial.model);
@@ -255,9 +263,9 @@ impl<R: Rig> Run<'_, '_, R> {
                         texture: texture.clone(),
                         model: model.clone(),
                     })?;
-            let response_ms = simulated.response_ms(trial, &asked.name);
+            let response_ms = simulated.response_ms(phase, trial, &asked.name);
             self.clock.pass(Duration::from_millis(response_ms));
-            let rating = simulated.rating(trial, &asked.name, error_db, &scale);
+            let rating = simulated.rating(phase, trial, &asked.name, error_db, &scale);
             return Ok(Some((rating, response_ms)));
         }
         let attribute = asked.clone();

@@ -1,6 +1,6 @@
 //! Simulated participants, to try a study and to test it. Every file that they write says so.
 
-use crate::study::file::Scale;
+use crate::study::file::{Phase, Scale};
 use crate::study::gain::{GainKey, Match};
 use crate::study::lines::Simulated;
 use crate::study::plan::Trial;
@@ -40,12 +40,19 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Its rating of a trial whose representation has this nine-band error, dB.
-    pub fn rating(&self, trial: &Trial, attribute: &str, error_db: f64, scale: &Scale) -> u8 {
+    /// Its rating of a trial of a phase whose representation has this nine-band error, dB.
+    pub fn rating(
+        &self,
+        phase: Phase,
+        trial: &Trial,
+        attribute: &str,
+        error_db: f64,
+        scale: &Scale,
+    ) -> u8 {
         let (low, top) = (f64::from(scale.min), f64::from(scale.max));
         let span = top - low;
         let bias = Dice::new(self.seed, &["bias", &self.name]).normal();
-        let noise = self.dice("noise", trial, attribute).normal();
+        let noise = self.dice("noise", phase, trial, attribute).normal();
         let error_db = error_db.max(0.0);
         let mean = top - span * error_db / (error_db + MIDDLE_DB);
         let felt = mean + span * (BIAS * bias + NOISE * noise);
@@ -53,8 +60,8 @@ impl SimulatedParticipant {
     }
 
     /// Time that it takes to rate, milliseconds.
-    pub fn response_ms(&self, trial: &Trial, attribute: &str) -> u64 {
-        800 + self.dice("response", trial, attribute).bits() % 1200
+    pub fn response_ms(&self, phase: Phase, trial: &Trial, attribute: &str) -> u64 {
+        800 + self.dice("response", phase, trial, attribute).bits() % 1200
     }
 
     /// Its next key while a texture's gain is matched: it wants a gain of its own for each texture.
@@ -76,8 +83,8 @@ impl SimulatedParticipant {
         }
     }
 
-    fn dice(&self, what: &str, trial: &Trial, attribute: &str) -> Dice {
-        let number = trial.number.to_string();
+    fn dice(&self, what: &str, phase: Phase, trial: &Trial, attribute: &str) -> Dice {
+        let number = format!("{phase:?} {}", trial.number);
         Dice::new(self.seed, &[what, &self.name, &number, attribute])
     }
 }

@@ -55,6 +55,16 @@ pub(crate) enum Failure {
         recipe: String,
         error: htex_build::BuildError,
     },
+    #[cfg(feature = "lab")]
+    #[error(transparent)]
+    Study(#[from] htex_lab::study::StudyError),
+    /// A study is invalid.
+    #[cfg(feature = "lab")]
+    #[error("{file}: this study cannot be run (`htex explain CODE` says more){}", listed(.findings))]
+    StudyFindings {
+        file: String,
+        findings: Vec<htex_format::Finding>,
+    },
     #[error("cannot read {file}: {error}")]
     Read { file: String, error: std::io::Error },
     #[error("cannot write {file}: {error}")]
@@ -72,6 +82,14 @@ impl Failure {
         use htex_device::DeviceError::{Rate, Setting, Unknown};
         use htex_host::HostError::{Option, UnknownModel};
         use htex_storage::StorageError::{NoCloud, ReadOnly};
+        #[cfg(feature = "lab")]
+        if let Self::Study(error) = self {
+            use htex_lab::study::StudyError::{Attribute, NoParticipant};
+            return match error {
+                Attribute { .. } | NoParticipant { .. } => Exit::USAGE,
+                _ => Exit::FAILURE,
+            };
+        }
         match self {
             Self::Usage(_)
             | Self::Model(Option { .. } | UnknownModel { .. })
@@ -161,6 +179,8 @@ impl Failure {
     pub(crate) fn to_lines(&self) -> Vec<String> {
         let text = named(&self.to_string());
         let (first, findings) = match self {
+            #[cfg(feature = "lab")]
+            Self::StudyFindings { .. } => text.split_once('\n').unwrap_or((&text, "")),
             // One line for each finding, with control characters escaped.
             Self::Findings { .. } | Self::Author(AuthorError::Strict { .. }) => {
                 text.split_once('\n').unwrap_or((&text, ""))
@@ -204,7 +224,12 @@ fn table_text(findings: &[htex_format::Finding]) -> String {
 
 /// Findings, one on each line.
 fn findings_text(findings: &[htex_format::Finding]) -> String {
-    let line = |f: &htex_format::Finding| format!("\n  {} {}", f.severity, plain(&f.to_string()));
-    let lines: String = findings.iter().map(line).collect();
+    let lines = listed(findings);
     format!("this scene cannot be played (`htex explain CODE` says more){lines}")
+}
+
+/// Findings, each after a line end.
+fn listed(findings: &[htex_format::Finding]) -> String {
+    let line = |f: &htex_format::Finding| format!("\n  {} {}", f.severity, plain(&f.to_string()));
+    findings.iter().map(line).collect()
 }

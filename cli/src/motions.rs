@@ -26,6 +26,13 @@ pub(crate) enum Moved {
 }
 
 impl Motions {
+    /// A queue, and its other end.
+    #[cfg(feature = "lab")]
+    pub(crate) fn queue() -> (Producer<Finger>, Self) {
+        let (sender, receiver) = RingBuffer::new(ROOM);
+        (sender, Self(receiver))
+    }
+
     /// Reads lines `speed_mm_s force_n [x_mm y_mm]` from standard input in a thread of its own. An
     /// invalid line is reported with its number and skipped.
     pub(crate) fn from_stdin() -> Self {

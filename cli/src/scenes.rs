@@ -1,6 +1,6 @@
 //! Arguments for models and devices of scenes, shared by the commands that play scenes.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -140,23 +140,15 @@ impl SceneArgs {
         file: &Path,
         load: impl FnOnce(&Surroundings<'_>) -> Result<LoadedScene, htex_scene::LoadError>,
     ) -> Result<Ready, Failure> {
-        let (models, devices) = (self.models()?, self.devices.devices()?);
-        let around = Surroundings {
-            models: &models,
+        self.loader()?.load(file, &mut BTreeSet::new(), load)
+    }
+
+    /// Models and devices, found once for several scenes.
+    pub(crate) fn loader(&self) -> Result<Loader, Failure> {
+        Ok(Loader {
+            models: self.models()?,
+            devices: self.devices.devices()?,
             embedded: self.player.embedded(),
-            devices: &devices,
-        };
-        let scene = load(&around).map_err(|error| Failure::load(file, error))?;
-        let notes: Vec<String> = scene.notes.iter().map(ToString::to_string).collect();
-        warn(&notes);
-        let device = devices.find(&scene.scene.device.adapter)?.clone();
-        let capabilities = capabilities(&device, &scene.settings, &devices)?;
-        Ok(Ready {
-            file: file.to_owned(),
-            scene,
-            device,
-            capabilities,
-            devices,
         })
     }
 
@@ -178,6 +170,45 @@ impl SceneArgs {
         let device = devices.find(name.unwrap_or("file")).ok();
         let settings = |known: &KnownDevice| crate::schemas::settings(known.descriptor());
         device.map(settings).transpose()
+    }
+}
+
+/// Models and devices with which scenes are loaded.
+pub(crate) struct Loader {
+    models: Registry,
+    devices: Devices,
+    embedded: bool,
+}
+
+impl Loader {
+    pub(crate) fn around(&self) -> Surroundings<'_> {
+        Surroundings {
+            models: &self.models,
+            embedded: self.embedded,
+            devices: &self.devices,
+        }
+    }
+
+    /// Loads a scene, and prints those of its warnings that are not in `told`, to which they are added.
+    pub(crate) fn load(
+        &self,
+        file: &Path,
+        told: &mut BTreeSet<String>,
+        load: impl FnOnce(&Surroundings<'_>) -> Result<LoadedScene, htex_scene::LoadError>,
+    ) -> Result<Ready, Failure> {
+        let scene = load(&self.around()).map_err(|error| Failure::load(file, error))?;
+        let notes = scene.notes.iter().map(ToString::to_string);
+        let new: Vec<String> = notes.filter(|note| told.insert(note.clone())).collect();
+        warn(&new);
+        let device = self.devices.find(&scene.scene.device.adapter)?.clone();
+        let capabilities = capabilities(&device, &scene.settings, &self.devices)?;
+        Ok(Ready {
+            file: file.to_owned(),
+            scene,
+            device,
+            capabilities,
+            devices: self.devices.clone(),
+        })
     }
 }
 

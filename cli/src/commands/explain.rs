@@ -14,11 +14,12 @@ pub(crate) struct Explain {
 }
 
 /// The rules for experiments, where this program has them.
-fn lab_rules() -> &'static [Rule] {
+fn lab_rules() -> impl Iterator<Item = &'static Rule> {
     #[cfg(feature = "lab")]
-    return htex_lab::analyse::RULES;
+    let all: [&[Rule]; 2] = [htex_lab::study::RULES, htex_lab::analyse::RULES];
     #[cfg(not(feature = "lab"))]
-    &[]
+    let all: [&[Rule]; 0] = [];
+    all.into_iter().flatten()
 }
 
 impl Explain {
@@ -39,7 +40,7 @@ impl Explain {
             .or_else(|| htex_library::explain(&code))
             .or_else(|| htex_scene::explain(&code))
             .or_else(|| htex_author::findings::explain(&code))
-            .or_else(|| lab_rules().iter().find(|rule| rule.code == code));
+            .or_else(|| lab_rules().find(|rule| rule.code == code));
         let rule = rule.ok_or_else(|| {
             Failure::Usage(format!("no code `{code}`; `htex explain` lists them all"))
         })?;

@@ -30,6 +30,9 @@ enum What {
     /// JSON Schema of the analysis of a study (`htex study analyse --json`)
     #[cfg(feature = "lab")]
     StudyAnalysis,
+    /// JSON Schema of studies (`htex study`)
+    #[cfg(feature = "lab")]
+    Study,
     /// Each model's parameters and fit options, with units and ranges
     Models,
 }
@@ -44,6 +47,8 @@ impl Schema {
             What::Recipe => Ok(htex_build::recipe_schema()),
             #[cfg(feature = "build")]
             What::BuildReport => Ok(htex_build::report_schema()),
+            #[cfg(feature = "lab")]
+            What::Study => Ok(htex_lab::study::study_schema()),
             #[cfg(feature = "lab")]
             What::StudyAnalysis => Ok(htex_lab::analyse::analysis_schema()),
             What::Models => {

@@ -101,7 +101,7 @@ impl Validate {
 }
 
 /// Prints reports as they come, or all of them as JSON; exit status 1 if one is not valid.
-pub(super) fn report<'a>(
+pub(crate) fn report<'a>(
     reports: impl Iterator<Item = Result<(&'a Path, Report), Failure>>,
     is_json: bool,
 ) -> Result<Exit, Failure> {

@@ -3,3 +3,4 @@
 #![forbid(unsafe_code)]
 
 pub mod analyse;
+pub mod study;

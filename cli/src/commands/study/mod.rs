@@ -1,14 +1,29 @@
 //! `htex study`: people rate textures.
 
 mod analyse;
+mod asker;
+mod clock;
+mod export;
+mod plan;
 mod power;
+mod rig;
+mod run;
+mod terminal;
+mod validate;
+
+use std::path::Path;
 
 use clap::{Args, Subcommand};
+use htex_format::Findings;
+use htex_lab::study::{Study as File, read_study};
 
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::shown::shown;
 
-/// Rating studies: get their results, and find out how many people they need.
+/// Rating studies: plan them, run them, and get their results.
+///
+/// A study is described by study.toml (its JSON Schema: `htex schema study`); its defaults are those of the paper's study.
 #[derive(Args)]
 pub(crate) struct Study {
     #[command(subcommand)]
@@ -17,6 +32,10 @@ pub(crate) struct Study {
 
 #[derive(Subcommand)]
 enum Command {
+    Validate(validate::Validate),
+    Plan(plan::Plan),
+    Run(Box<run::Run>),
+    Export(export::Export),
     Analyse(analyse::Analyse),
     Power(power::Power),
 }
@@ -24,8 +43,22 @@ enum Command {
 impl Study {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         match self.command {
+            Command::Validate(args) => args.run(),
+            Command::Plan(args) => args.run(),
+            Command::Run(args) => args.run(),
+            Command::Export(args) => args.run(),
             Command::Analyse(args) => args.run(),
             Command::Power(args) => args.run(),
         }
     }
+}
+
+/// Reads a study that must be valid, without the files that it names.
+fn open(file: &Path) -> Result<File, Failure> {
+    let bytes = std::fs::read(file).map_err(|error| Failure::read(file, error))?;
+    let mut findings = Findings::default();
+    read_study(&bytes, &mut findings).ok_or_else(|| Failure::StudyFindings {
+        file: shown(file),
+        findings: findings.into_list(),
+    })
 }

@@ -1,0 +1,156 @@
+//! Where participants are asked, and where their finger's motion comes from.
+
+use std::time::Duration;
+
+use clap::Args;
+use htex_lab::study::{Asker, Key, Page, PageOptions, Study, View};
+use htex_scene::Finger;
+use htex_scene::file::Motion;
+
+use super::terminal::Terminal;
+use crate::failure::Failure;
+use crate::motions::Motions;
+use crate::output::tell;
+
+/// Millimetres of a pixel of a page, by the definition of CSS; screens differ.
+const CSS_PIXEL_MM: &str = "0.2646";
+
+/// How a session asks, and where the motion of a study comes from whose motion is live.
+#[derive(Args)]
+#[command(next_help_heading = "Asking")]
+pub(super) struct AskingArgs {
+    /// Ask on a page in a browser of this machine, whose address is printed, not in the terminal
+    #[arg(long)]
+    page: bool,
+
+    /// Port of the page [default: any that is free]
+    #[arg(
+        long,
+        value_name = "PORT",
+        requires = "page",
+        default_value_t = 0,
+        hide_default_value = true
+    )]
+    port: u16,
+
+    /// The motion of the finger, for a study whose motion is live: `-` reads lines `speed_mm_s force_n [x_mm y_mm]` from standard
+    /// input, `page` takes it from a finger on the page
+    #[arg(long, value_name = "SOURCE", value_parser = ["-", "page"])]
+    motion: Option<String>,
+
+    /// Width of a pixel of the page, mm, for --motion page: measure 1000 pixels on your screen
+    #[arg(long, value_name = "MM", default_value = CSS_PIXEL_MM, value_parser = positive)]
+    touch_mm_per_px: f64,
+
+    /// Normal force of a finger on the page, N, for --motion page: a page does not measure it
+    #[arg(long, value_name = "N", default_value = "0.4", value_parser = positive)]
+    touch_force: f64,
+}
+
+/// What asks, and the queue of live motions.
+pub(super) struct Asking {
+    pub(super) asker: Box<dyn Asker>,
+    pub(super) motions: Option<Motions>,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok();
+    let sound = number.filter(|x| *x > 0.0 && *x <= 1000.0);
+    sound.ok_or_else(|| "a number above 0, at most 1000".to_owned())
+}
+
+impl AskingArgs {
+    /// Refuses a combination that cannot work.
+    pub(super) fn check(&self, study: &Study, is_simulated: bool) -> Result<(), Failure> {
+        let is_live = study.motion == Motion::Live;
+        let source = self.motion.as_deref();
+        let problem = match source {
+            None if is_live => {
+                "the study's motion is live; give it with --motion - or --motion page"
+            }
+            Some(_) if !is_live => "--motion: the study's motion is not live",
+            Some("page") if is_simulated => {
+                "--motion page: a simulated participant has no page; give lines with --motion -"
+            }
+            Some("page") if !self.page => "--motion page needs --page",
+            Some("-") if !self.page && !is_simulated => {
+                "--motion -: standard input cannot be both the motion and the answers; ask on a page (--page)"
+            }
+            _ if self.page && is_simulated => "--page: a simulated participant has no page",
+            _ if study.masking_noise.is_some() && !self.page && !is_simulated => {
+                "the study has masking noise, which the page plays; give --page"
+            }
+            _ => return Ok(()),
+        };
+        Err(Failure::Usage(problem.to_owned()))
+    }
+
+    /// Asks nobody: for a simulated participant.
+    pub(super) fn of_nobody(&self) -> Asking {
+        Asking {
+            asker: Box::new(Nobody),
+            motions: self.motion.is_some().then(Motions::from_stdin),
+        }
+    }
+
+    /// Asks a person.
+    pub(super) fn open(&self, study: &Study, participant: &str) -> Result<Asking, Failure> {
+        if !self.page {
+            return Ok(Asking {
+                asker: Box::new(Terminal::new()),
+                motions: None,
+            });
+        }
+        let is_touched = self.motion.as_deref() == Some("page");
+        let title = match &study.name[..] {
+            "" => participant.to_owned(),
+            name => format!("{name} – {participant}"),
+        };
+        let mut page = Page::open(PageOptions {
+            port: self.port,
+            title,
+            noise_dbfs: study.masking_noise.as_ref().map(|noise| noise.level_dbfs),
+            touch_mm_per_px: is_touched.then_some(self.touch_mm_per_px),
+        })?;
+        tell!("open {} in a browser of this machine", page.url());
+        let motions = match self.motion.as_deref() {
+            Some("page") => self.touched(&mut page),
+            Some(_) => Some(Motions::from_stdin()),
+            None => None,
+        };
+        let asker = Box::new(page);
+        Ok(Asking { asker, motions })
+    }
+
+    /// The motions of the finger on the page.
+    fn touched(&self, page: &mut Page) -> Option<Motions> {
+        let touched = page.touched()?;
+        let (mut sender, motions) = Motions::queue();
+        let force_n = self.touch_force;
+        std::thread::spawn(move || {
+            for touch in touched {
+                while sender.is_full() && !sender.is_abandoned() {
+                    std::thread::sleep(Duration::from_millis(1));
+                }
+                // There is space, and only this thread fills it.
+                let _ = sender.push(Finger {
+                    speed_mm_s: touch.speed_mm_s,
+                    force_n: if touch.is_down { force_n } else { 0.0 },
+                    at_mm: None,
+                });
+            }
+        });
+        Some(motions)
+    }
+}
+
+/// A simulated participant is asked nothing.
+struct Nobody;
+
+impl Asker for Nobody {
+    fn show(&mut self, _: &View, _: usize, _: usize) {}
+
+    fn key(&mut self) -> Option<Key> {
+        None
+    }
+}

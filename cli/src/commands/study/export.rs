@@ -1,0 +1,61 @@
+use std::path::PathBuf;
+
+use clap::Args;
+use htex_lab::study::export;
+use serde_json::json;
+
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::located;
+use crate::output::{print, print_json, warn, write_file};
+use crate::shown::shown;
+
+/// Write the ratings of all participants as a table.
+///
+/// The columns are participant, texture, model, repetition, rating, attribute, hidden_reference, response_ms, gain_db and simulated.
+#[derive(Args)]
+pub(super) struct Export {
+    /// The folder of answers that `htex study run` wrote
+    folder: PathBuf,
+
+    /// The table to write, CSV
+    #[arg(short, long, value_name = "FILE", value_parser = located::OUTPUT)]
+    output: PathBuf,
+
+    /// The attribute whose ratings are written, where there are several
+    #[arg(long, value_name = "NAME")]
+    attribute: Option<String>,
+
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+impl Export {
+    pub(super) fn run(self) -> Result<Exit, Failure> {
+        if self.output.extension().is_some_and(|e| e == "jsonl") {
+            let sentence = format!(
+                "{}: .jsonl is the extension of answers; write a .csv",
+                shown(&self.output)
+            );
+            return Err(Failure::Usage(sentence));
+        }
+        let table = export(&self.folder, self.attribute.as_deref())?;
+        warn(&table.warnings);
+        write_file(&self.output, table.csv.as_bytes())?;
+        let (participants, ratings) = (table.participants, table.ratings);
+        if self.json {
+            print_json(&json!({
+                "participants": participants,
+                "ratings": ratings,
+                "incomplete": table.warnings,
+            }))?;
+        } else {
+            print(&format!(
+                "{}: {ratings} ratings of {participants} participants\n",
+                shown(&self.output)
+            ))?;
+        }
+        Ok(Exit::SUCCESS)
+    }
+}

@@ -1,0 +1,161 @@
+//! A renderer and a device that play the trials of a study.
+
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+
+use htex_device::SettingKind;
+use htex_lab::study::{DeviceUsed, Played, Rig, Stimulus, Study, scene_of, set_gain};
+use htex_scene::file::Motion;
+use htex_scene::{DeviceOverride, Finger, LoadedScene, Renderer, output_name};
+
+use crate::failure::Failure;
+use crate::motions::{Motions, Moved};
+use crate::playing::Output;
+use crate::scenes::{Loader, Ready, costs};
+use crate::signals::interrupted;
+
+/// What plays a study.
+pub(super) struct StudyRig<'a> {
+    pub(super) study: &'a Study,
+    pub(super) path: PathBuf,
+    pub(super) loader: Loader,
+    pub(super) device: DeviceOverride,
+    /// Format of files that are played to.
+    pub(super) format: String,
+    /// Folder of files that are played to.
+    pub(super) folder: PathBuf,
+    /// The finger, if its motion is live.
+    pub(super) motions: Option<Motions>,
+    /// Whether trials are played as fast as the device takes them.
+    pub(super) is_fast: bool,
+    pub(super) told: RefCell<BTreeSet<String>>,
+    pub(super) errors_db: RefCell<BTreeMap<(String, String), Option<f64>>>,
+    pub(super) ended: bool,
+}
+
+impl StudyRig<'_> {
+    /// Loads a texture in a model with the device.
+    fn load(&self, texture: &str, model: &str, file: &str) -> Result<Ready, Failure> {
+        let listed = self.study.textures.iter().find(|t| t.name() == texture);
+        let Some(listed) = listed else {
+            let sentence = format!("the study has no texture {texture}");
+            return Err(Failure::Other(sentence));
+        };
+        let name = output_name(file.as_ref(), &self.format);
+        let device = DeviceOverride {
+            output: Some(self.folder.join(name).display().to_string()),
+            ..self.device.clone()
+        };
+        let scene = scene_of(self.study, &listed.asset, model);
+        let told = &mut self.told.borrow_mut();
+        self.loader.load(&self.path, told, |around| {
+            LoadedScene::from_bytes(&self.path, &scene, around, &device)
+        })
+    }
+
+    /// The device that will be used.
+    pub(super) fn device_used(&self) -> Result<DeviceUsed, Failure> {
+        let (first, model) = (&self.study.textures[0], &self.study.models[0]);
+        let ready = self.load(&first.name(), model, "device")?;
+        Ok(DeviceUsed {
+            adapter: ready.device.descriptor().id.clone(),
+            profile: self.device.profile.clone().unwrap_or_default(),
+        })
+    }
+
+    /// Whether the device writes a file for each trial.
+    pub(super) fn plays_to_files(&self) -> Result<bool, Failure> {
+        let (first, model) = (&self.study.textures[0], &self.study.models[0]);
+        let ready = self.load(&first.name(), model, "device")?;
+        let settings = &ready.device.descriptor().settings;
+        Ok(settings.iter().any(|s| s.kind == SettingKind::Path))
+    }
+
+    fn begin(&self, stimulus: &Stimulus) -> Result<(Ready, Option<f64>), Failure> {
+        let mut ready = self.load(&stimulus.texture, &stimulus.model, &stimulus.file)?;
+        let scene = &mut ready.scene.scene;
+        scene.duration_s = stimulus.seconds;
+        scene.seed = stimulus.seed;
+        let drive_v = stimulus.gain_db.and_then(|gain_db| {
+            let rms = stimulus.reference_rms;
+            set_gain(&mut scene.device, &ready.capabilities, gain_db, rms)
+        });
+        Ok((ready, drive_v))
+    }
+
+    /// Applies the newest motion; false when the input has ended.
+    fn follow(&mut self, renderer: &mut Renderer) -> bool {
+        let Some(motions) = &mut self.motions else {
+            return true;
+        };
+        match motions.look() {
+            // The reader passes on valid motions only.
+            Moved::To(finger) => renderer.set_motion(finger).is_ok(),
+            Moved::Not => true,
+            Moved::Ended => false,
+        }
+    }
+}
+
+impl Rig for StudyRig<'_> {
+    type Error = Failure;
+
+    fn play(
+        &mut self,
+        stimulus: &Stimulus,
+        ends: &mut dyn FnMut() -> bool,
+    ) -> Result<Played, Failure> {
+        let (ready, drive_v) = self.begin(stimulus)?;
+        let plan = ready.plan(&costs())?;
+        let mut renderer =
+            Renderer::new(&ready.scene, &plan).map_err(|e| Failure::scene(&self.path, e))?;
+        if ready.scene.scene.motion == Motion::Live {
+            renderer
+                .set_motion(Finger::AWAY)
+                .map_err(|e| Failure::scene(&self.path, e))?;
+        }
+        let mut output = Output::open(&ready, &plan)?;
+        if !self.is_fast && !ready.capabilities.paced {
+            output = output.paced();
+        }
+        let mut stopped = false;
+        while output.step(&mut renderer)? {
+            if !stopped {
+                self.ended |= !self.follow(&mut renderer);
+                stopped = self.ended || interrupted() || ends();
+                if stopped {
+                    renderer.stop();
+                }
+            }
+        }
+        output.finish()?;
+        Ok(Played {
+            drive_v,
+            reference_rms: plan.reference_rms,
+        })
+    }
+
+    fn band_error_db(&self, texture: &str, model: &str) -> Option<f64> {
+        let key = (texture.to_owned(), model.to_owned());
+        if let Some(known) = self.errors_db.borrow().get(&key) {
+            return *known;
+        }
+        let error_db = self.load(texture, model, "error").ok().and_then(|ready| {
+            let asset = ready.scene.assets.first()?;
+            let id = asset.representation_id(Some(model)).ok()?;
+            let mut all = asset.manifest().representations.iter();
+            let first = all.find(|r| r.model == id)?.at.first()?;
+            first
+                .quality
+                .as_ref()
+                .map(|quality| quality.band_error_rms_db)
+        });
+        self.errors_db.borrow_mut().insert(key, error_db);
+        error_db
+    }
+
+    fn is_interrupted(&self) -> bool {
+        self.ended || interrupted()
+    }
+}

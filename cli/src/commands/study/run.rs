@@ -1,0 +1,186 @@
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use htex_lab::study::{
+    Clock, Ended, Header, Plan, Session, SimulatedParticipant, Study, StudyError, run,
+};
+use htex_scene::file::Motion;
+use serde_json::{Value, json};
+
+use super::asker::AskingArgs;
+use super::clock::{FastClock, WallClock};
+use super::open;
+use super::rig::StudyRig;
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::models::tool;
+use crate::output::{print, print_json, tell};
+use crate::scenes::{ChoiceArgs, SceneArgs};
+use crate::shown::shown;
+use crate::signals;
+
+/// Run the session of a participant: play each trial on the device, ask, and keep each answer.
+///
+/// Answers are lines of DIR/PARTICIPANT.jsonl, each of which is on disk before the next trial. A session that was left (q, Ctrl-C) or
+/// killed goes on where it was when the same command is run again. Answers of two versions of a study, of its assets or of its device
+/// are not mixed.
+#[derive(Args)]
+pub(super) struct Run {
+    /// The study: study.toml
+    study: PathBuf,
+
+    /// The participant; with --simulated, all of them when absent
+    #[arg(long, value_name = "NAME", required_unless_present = "simulated")]
+    participant: Option<String>,
+
+    /// The folder of answers
+    #[arg(short, long, value_name = "DIR", default_value = "answers")]
+    output: PathBuf,
+
+    #[command(flatten)]
+    asking: AskingArgs,
+
+    /// A simulated participant of this seed answers; every file says so
+    #[arg(long, value_name = "SEED")]
+    simulated: Option<u64>,
+
+    /// Do not wait: rests end at once, and devices without a clock get trials as fast as they take them
+    #[arg(long, requires = "simulated")]
+    fast: bool,
+
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    choice: ChoiceArgs,
+
+    #[command(flatten)]
+    with: SceneArgs,
+}
+
+impl Run {
+    pub(super) fn run(self) -> Result<Exit, Failure> {
+        let study = open(&self.study)?;
+        self.asking.check(&study, self.simulated.is_some())?;
+        let plan = Plan::new(&study);
+        let participants = self.participants(&plan)?;
+        signals::ask();
+        let mut sessions = Vec::new();
+        for participant in &participants {
+            let (ended, summary) = self.session(&study, &plan, participant)?;
+            sessions.push(summary);
+            if ended == Ended::Left {
+                break;
+            }
+        }
+        if self.json {
+            print_json(&sessions)?;
+        }
+        Ok(Exit::SUCCESS)
+    }
+
+    fn participants(&self, plan: &Plan) -> Result<Vec<String>, Failure> {
+        let names = plan.participants.iter().map(|p| p.participant.clone());
+        let names: Vec<String> = names.collect();
+        match &self.participant {
+            None => Ok(names),
+            Some(name) if names.contains(name) => Ok(vec![name.clone()]),
+            Some(name) => Err(StudyError::NoParticipant {
+                name: name.clone(),
+                known: match &names[..] {
+                    [first, .., last] if names.len() > 20 => format!("{first} to {last}"),
+                    _ => names.join(", "),
+                },
+            }
+            .into()),
+        }
+    }
+
+    fn session(
+        &self,
+        study: &Study,
+        plan: &Plan,
+        participant: &str,
+    ) -> Result<(Ended, Value), Failure> {
+        let mut rig = self.rig(study, participant)?;
+        let mut asking = match self.simulated {
+            Some(_) => self.asking.of_nobody(),
+            None => self.asking.open(study, participant)?,
+        };
+        rig.motions = asking.motions.take();
+        let simulated = self
+            .simulated
+            .map(|seed| SimulatedParticipant::new(seed, participant));
+        let Some(own) = plan.of(participant) else {
+            return Err(Failure::Other(format!("{participant} has no plan")));
+        };
+        let device = rig.device_used()?;
+        let header = Header::new(study, &self.study, own, device, tool())?
+            .with_simulated(simulated.as_ref().map(SimulatedParticipant::header));
+        let mut session = Session::open(study, own, &self.output, &header)?;
+        let mut clock: Box<dyn Clock> = match self.fast {
+            true => Box::new(FastClock::default()),
+            false => Box::new(WallClock),
+        };
+        let ended = run(
+            &mut session,
+            &mut rig,
+            &mut *asking.asker,
+            &mut *clock,
+            simulated.as_ref(),
+        )?;
+        let summary = self.told(&session, ended)?;
+        Ok((ended, summary))
+    }
+
+    fn rig<'a>(&self, study: &'a Study, participant: &str) -> Result<StudyRig<'a>, Failure> {
+        let mut device = self.choice.to_override(None, false)?;
+        device.live = study.motion == Motion::Live;
+        let asked = study.device.settings.get("format").and_then(Value::as_str);
+        let format = device.settings.get("format").map(String::as_str).or(asked);
+        let format = format.unwrap_or("wav").to_owned();
+        let folder = self.output.join(participant);
+        let rig = StudyRig {
+            study,
+            path: self.study.clone(),
+            loader: self.with.loader()?,
+            device,
+            format,
+            motions: None,
+            is_fast: self.fast,
+            folder,
+            told: Default::default(),
+            errors_db: Default::default(),
+            ended: false,
+        };
+        if rig.plays_to_files()? {
+            std::fs::create_dir_all(&rig.folder)
+                .map_err(|error| Failure::write(&rig.folder, error))?;
+        }
+        Ok(rig)
+    }
+
+    /// Prints how a session ended.
+    fn told(&self, session: &Session<'_>, ended: Ended) -> Result<Value, Failure> {
+        let (done, all) = session.trials();
+        let name = session.participant();
+        let file = shown(session.file());
+        let simulated = session.is_simulated();
+        if !self.json {
+            let who = if simulated { " (simulated)" } else { "" };
+            print(&format!("{name}{who}: {done} of {all} trials, {file}\n"))?;
+        }
+        if ended == Ended::Left {
+            tell!("note: {name} is not done; run the same command to go on");
+        }
+        Ok(json!({
+            "participant": name,
+            "simulated": simulated,
+            "trials": done,
+            "of": all,
+            "done": ended == Ended::Done,
+            "file": shown(Path::new(&file)),
+        }))
+    }
+}

@@ -1,0 +1,48 @@
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use htex_format::{Findings, Report, Severity};
+use htex_lab::study::{check_files, read_study};
+
+use crate::commands::validate::report;
+use crate::exit::Exit;
+use crate::failure::Failure;
+use crate::scenes::SceneArgs;
+
+/// Check a study, the assets that it names, and its device; exit status 1 if it cannot be run.
+///
+/// Each finding has a stable code (`htex explain CODE`), a severity and a JSON pointer into the study.
+#[derive(Args)]
+pub(super) struct Validate {
+    /// The study: study.toml
+    study: PathBuf,
+
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    with: SceneArgs,
+}
+
+impl Validate {
+    pub(super) fn run(self) -> Result<Exit, Failure> {
+        let checked = self.check(&self.study);
+        report(
+            std::iter::once(checked.map(|report| (self.study.as_path(), report))),
+            self.json,
+        )
+    }
+
+    fn check(&self, path: &Path) -> Result<Report, Failure> {
+        let bytes = std::fs::read(path).map_err(|error| Failure::read(path, error))?;
+        let mut findings = Findings::default();
+        let study = read_study(&bytes, &mut findings);
+        let mut findings = findings.into_list();
+        if let Some(study) = study {
+            check_files(&study, path, &self.with.loader()?.around(), &mut findings);
+        }
+        let valid = findings.iter().all(|f| f.severity != Severity::Error);
+        Ok(Report { valid, findings })
+    }
+}

@@ -1,0 +1,92 @@
+//! Errors of running a study.
+
+use std::path::PathBuf;
+
+/// An error of a study's answers. No answer that was recorded is lost by one.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StudyError {
+    /// The study has no such participant.
+    #[error("the study has no participant {name:?}; it has {known}")]
+    NoParticipant {
+        /// The name.
+        name: String,
+        /// The study's participants.
+        known: String,
+    },
+    /// A file cannot be read.
+    #[error("cannot read {}: {error}", .file.display())]
+    Read {
+        /// The file.
+        file: PathBuf,
+        /// The system's error.
+        #[source]
+        error: std::io::Error,
+    },
+    /// A file cannot be written.
+    #[error("cannot write {}: {error}", .file.display())]
+    Write {
+        /// The file.
+        file: PathBuf,
+        /// The system's error.
+        #[source]
+        error: std::io::Error,
+    },
+    /// Another program records answers of the same participant.
+    #[error("{}: another htex is running this participant; wait for it to end", .file.display())]
+    Busy {
+        /// The file of answers.
+        file: PathBuf,
+    },
+    /// A line of a file of answers cannot be understood.
+    #[error("{}, line {line}: {problem}; restore the file from a copy, or give another folder", .file.display())]
+    Line {
+        /// The file of answers.
+        file: PathBuf,
+        /// Number of the line, from 1.
+        line: usize,
+        /// What is wrong.
+        problem: String,
+    },
+    /// The file was begun under other conditions, and results of two versions must not be mixed.
+    #[error(
+        "{}: the answers there were begun with another version: {changed}. Restore what was there, or start anew in another folder (-o)",
+        .file.display()
+    )]
+    OtherVersion {
+        /// The file of answers.
+        file: PathBuf,
+        /// What has changed.
+        changed: String,
+    },
+    /// A folder has no answers.
+    #[error("{}: there are no answers (*.jsonl); name the folder that `htex study run -o` wrote to", .folder.display())]
+    NoAnswers {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// A simulated participant needs the measured error of each representation.
+    #[error(
+        "{texture}: the asset has no measured nine-band error for {model}, by which simulated participants rate; fit it again with `htex fit`"
+    )]
+    NoBandError {
+        /// Name of the texture.
+        texture: String,
+        /// The model.
+        model: String,
+    },
+    /// The page cannot be served.
+    #[error("cannot serve the page at 127.0.0.1:{port}: {problem}")]
+    Page {
+        /// The port.
+        port: u16,
+        /// What is wrong.
+        problem: String,
+    },
+    /// The attribute that was asked for is not in the answers.
+    #[error("the answers have the attributes {known}; name one of them")]
+    Attribute {
+        /// The attributes.
+        known: String,
+    },
+}

@@ -1,0 +1,168 @@
+//! Ratings as a table.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use crate::study::error::StudyError;
+use crate::study::lines::{Answer, Header, Line};
+use crate::study::log;
+
+/// Columns of the table; the first five are those that analyses read.
+const COLUMNS: [&str; 10] = [
+    "participant",
+    "texture",
+    "model",
+    "repetition",
+    "rating",
+    "attribute",
+    "hidden_reference",
+    "response_ms",
+    "gain_db",
+    "simulated",
+];
+
+/// Ratings of all participants in a folder.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Export {
+    /// The table as CSV, participant by participant, each in the order of the trials.
+    pub csv: String,
+    /// Participants.
+    pub participants: usize,
+    /// Ratings.
+    pub ratings: usize,
+    /// What an analysis must know: sessions that are not complete.
+    pub warnings: Vec<String>,
+}
+
+/// Reads all answers in a folder. Training is left out. With several attributes, `attribute` names the one whose ratings are wanted.
+///
+/// # Errors
+/// [`StudyError::NoAnswers`] if the folder has none; [`StudyError::OtherVersion`] if they are of several versions of a study, or of
+/// simulated and of real participants; [`StudyError::Attribute`]; errors of reading.
+pub fn export(folder: &Path, attribute: Option<&str>) -> Result<Export, StudyError> {
+    let files = files(folder)?;
+    let mut sessions = Vec::new();
+    for file in files {
+        let (header, lines) = log::read(&file)?;
+        let answers = lines.into_iter().filter_map(|line| match line {
+            Line::Answer(answer) => Some(answer),
+            _ => None,
+        });
+        let answers: Vec<Answer> = answers.collect();
+        sessions.push((file, header, answers));
+    }
+    same_study(&sessions)?;
+    let answers = sessions.iter().flat_map(|(_, _, answers)| answers);
+    let all: BTreeSet<String> = answers.map(|answer| answer.attribute.clone()).collect();
+    let attribute = chosen(&all, attribute)?;
+    table(&sessions, &attribute, folder)
+}
+
+fn files(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
+    let error = |error| StudyError::Read {
+        file: folder.to_owned(),
+        error,
+    };
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(error)? {
+        let path = entry.map_err(error)?.path();
+        if path.extension().is_some_and(|e| e == "jsonl") {
+            files.push(path);
+        }
+    }
+    files.sort();
+    match files.is_empty() {
+        true => Err(StudyError::NoAnswers {
+            folder: folder.to_owned(),
+        }),
+        false => Ok(files),
+    }
+}
+
+fn same_study(sessions: &[(PathBuf, Header, Vec<Answer>)]) -> Result<(), StudyError> {
+    let Some((first, of_first, _)) = sessions.first() else {
+        return Ok(());
+    };
+    for (file, header, _) in sessions {
+        let first = first.display();
+        let changed = if let Some(name) = log::other_file(of_first, header) {
+            format!("{name} is another one than for {first}")
+        } else if header.simulated.is_some() != of_first.simulated.is_some() {
+            format!("one of this and {first} is of a simulated participant")
+        } else if header.device != of_first.device {
+            format!("the device is another one than for {first}")
+        } else {
+            continue;
+        };
+        let file = file.clone();
+        return Err(StudyError::OtherVersion { file, changed });
+    }
+    Ok(())
+}
+
+fn chosen(all: &BTreeSet<String>, wanted: Option<&str>) -> Result<String, StudyError> {
+    let only = all.first().filter(|_| all.len() == 1);
+    let found = match wanted {
+        Some(wanted) => all.get(wanted),
+        None => only,
+    };
+    match found {
+        Some(found) => Ok(found.clone()),
+        // There is nothing to export yet.
+        None if all.is_empty() => Ok(String::new()),
+        None => Err(StudyError::Attribute {
+            known: Vec::from_iter(all.iter().cloned()).join(", "),
+        }),
+    }
+}
+
+fn table(
+    sessions: &[(PathBuf, Header, Vec<Answer>)],
+    attribute: &str,
+    folder: &Path,
+) -> Result<Export, StudyError> {
+    let mut csv = csv::WriterBuilder::new().from_writer(Vec::new());
+    let write_error = |error: csv::Error| StudyError::Write {
+        file: folder.to_owned(),
+        error: std::io::Error::other(error),
+    };
+    csv.write_record(COLUMNS).map_err(write_error)?;
+    let (mut ratings, mut warnings) = (0, Vec::new());
+    for (_, header, answers) in sessions {
+        if answers.len() < header.ratings {
+            warnings.push(format!(
+                "{} is not complete: {} of {} ratings",
+                header.participant,
+                answers.len(),
+                header.ratings
+            ));
+        }
+        for answer in answers.iter().filter(|a| a.attribute == attribute) {
+            csv.write_record(row(header, answer)).map_err(write_error)?;
+            ratings += 1;
+        }
+    }
+    let bytes = csv.into_inner().unwrap_or_default();
+    Ok(Export {
+        csv: String::from_utf8_lossy(&bytes).into_owned(),
+        participants: sessions.len(),
+        ratings,
+        warnings,
+    })
+}
+
+fn row(header: &Header, answer: &Answer) -> [String; COLUMNS.len()] {
+    let yes = |is: bool| if is { "yes" } else { "no" }.to_owned();
+    [
+        header.participant.clone(),
+        answer.texture.clone(),
+        answer.model.clone(),
+        answer.repetition.to_string(),
+        answer.rating.to_string(),
+        answer.attribute.clone(),
+        yes(answer.hidden_reference),
+        answer.response_ms.to_string(),
+        answer.gain_db.map_or(String::new(), |db| format!("{db}")),
+        yes(answer.simulated || header.simulated.is_some()),
+    ]
+}

@@ -1,0 +1,377 @@
+//! `study.toml`: the format of studies.
+
+use std::path::PathBuf;
+
+use htex_scene::file::{DeviceChoice, Motion};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Version of the format that this crate reads.
+pub const VERSION: &str = "1.0";
+
+/// A study: who feels which textures in which order, and what they are asked.
+///
+/// ```
+/// use htex_format::Findings;
+/// use htex_lab::study::{Plan, read_study};
+/// let text = r#"
+///     htex_study = "1.0"
+///     motion = { constant = { speed_mm_s = 80, force_n = 0.4 } }
+///     device = { adapter = "daq" }
+///     [[textures]]
+///     asset = "vinyl.htex"
+/// "#;
+/// let study = read_study(text.as_bytes(), &mut Findings::default()).expect("the study is valid");
+/// let plan = Plan::new(&study);
+/// assert_eq!(plan.participants.len(), 14);
+/// assert_eq!(plan.participants[0].trials.len(), 5 * 5); // models, repetitions
+/// ```
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Study {
+    /// Version of the format, `MAJOR.MINOR`.
+    #[schemars(extend("const" = VERSION))]
+    pub htex_study: String,
+    /// Name of the study.
+    #[serde(default)]
+    pub name: String,
+    /// Seed of the orders and of the samples that are played: the same seed gives the same study on every machine.
+    #[serde(default)]
+    pub seed: u64,
+    /// The participants: a number, which stands for P01, P02, …, or names.
+    #[serde(default)]
+    pub participants: Participants,
+    /// The textures.
+    #[schemars(length(min = 1, max = 256))]
+    pub textures: Vec<Texture>,
+    /// Models that play each texture, by short name or id.
+    #[serde(default = "paper_models")]
+    #[schemars(length(min = 1, max = 64))]
+    pub models: Vec<String>,
+    /// A further model, the best there is (`bands`), which is played and rated like the others and marked in the results: participants who
+    /// rate it low are unreliable.
+    #[serde(default)]
+    pub hidden_reference: Option<String>,
+    /// Trials of each texture with each model.
+    #[serde(default = "five")]
+    #[schemars(range(min = 1, max = 1000))]
+    pub repetitions: u32,
+    /// Length of a trial, seconds.
+    #[serde(default = "ten")]
+    #[schemars(range(max = 3600), extend("exclusiveMinimum" = 0))]
+    pub trial_s: f64,
+    /// Order of the trials.
+    #[serde(default)]
+    pub order: Order,
+    /// The phases that take place; their order is fixed.
+    #[serde(default = "all_phases")]
+    pub phases: Vec<Phase>,
+    /// The phase `training`.
+    #[serde(default)]
+    pub training: Training,
+    /// The phase `gain`.
+    #[serde(default)]
+    pub gain: Matching,
+    /// The scale of all ratings.
+    #[serde(default)]
+    pub scale: Scale,
+    /// What is rated after each trial, in this order.
+    #[serde(default = "similarity")]
+    #[schemars(length(min = 1, max = 32))]
+    pub attributes: Vec<Attribute>,
+    /// Rests during the testing; none when absent.
+    #[serde(default)]
+    pub rests: Option<Rests>,
+    /// White noise in headphones while a texture is felt, against its sound; none when absent. The page plays it.
+    #[serde(default)]
+    pub masking_noise: Option<MaskingNoise>,
+    /// The motion of the finger, as in a scene: constant, a trace, or `live`.
+    pub motion: Motion,
+    /// The device, as in a scene.
+    pub device: DeviceChoice,
+}
+
+/// Participants: a number, or names.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Participants {
+    /// So many participants, named P01, P02, ….
+    Count(u32),
+    /// Names of letters, digits, `-` and `_`.
+    Names(Vec<String>),
+}
+
+/// A texture.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Texture {
+    /// Name in the results; default: the asset's file name without its extension.
+    #[serde(default)]
+    pub name: Option<String>,
+    /// Path of the asset; relative paths start at the study's folder.
+    pub asset: PathBuf,
+}
+
+/// Order of the trials of one participant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Order {
+    /// All trials shuffled.
+    #[default]
+    Random,
+    /// Each repetition is a block in which every texture with every model occurs once, shuffled.
+    BlockedByRepetition,
+    /// All trials of one texture follow each other; textures and the trials of each are shuffled. The real texture is exchanged least often.
+    BlockedByTexture,
+    /// Each repetition is a row of a Latin square: over as many rows as there are conditions, each condition is once at each place.
+    LatinSquare,
+    /// Each repetition is a row of a Williams square: a Latin square in which, over all rows, each condition also follows each other one
+    /// equally often (Williams 1949).
+    WilliamsSquare,
+}
+
+/// A phase of a session.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Phase {
+    /// Trials for practice, whose ratings are not results.
+    Training,
+    /// Each texture is matched in strength to the real one.
+    Gain,
+    /// The trials that are rated.
+    Testing,
+}
+
+/// The phase `training`.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Training {
+    /// Trials, drawn from those of the testing.
+    #[serde(default = "five")]
+    #[schemars(range(min = 1, max = 1000))]
+    pub trials: u32,
+}
+
+/// The phase `gain`: each texture is matched in one model, and the gain is adopted for the others (paper, "Gain matching task").
+///
+/// A gain is in decibels relative to the maximum: `device.drive_v`, `gain_db` or `level_dbfs`, else a display's limit, 0 dB or -18 dBFS.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Matching {
+    /// The model in which the textures are matched.
+    #[serde(default = "ar")]
+    pub model: String,
+    /// How the gain is found.
+    #[serde(default)]
+    pub method: GainMethod,
+    /// Step of a key, decibels.
+    #[serde(default = "one_db")]
+    #[schemars(range(min = 0.01, max = 20))]
+    pub step_db: f64,
+    /// Large step, decibels: of the large keys, and of a staircase before its first reversal.
+    #[serde(default = "four_db")]
+    #[schemars(range(min = 0.01, max = 40))]
+    pub large_step_db: f64,
+    /// Lowest gain, decibels relative to the maximum.
+    #[serde(default = "lowest")]
+    #[schemars(range(min = -120, max = -1))]
+    pub lowest_db: f64,
+    /// Reversals after which a staircase ends; the gain is the mean of all but the first two.
+    #[serde(default = "six")]
+    #[schemars(range(min = 3, max = 50))]
+    pub reversals: u32,
+}
+
+/// Method of matching a gain. All of them start at the maximum.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GainMethod {
+    /// Only down, until the texture is accepted.
+    #[default]
+    Descending,
+    /// Up and down, until the texture is accepted.
+    Adjustment,
+    /// The participant says whether the texture should be stronger or weaker; large steps until the first reversal, then small ones
+    /// (one up, one down).
+    Staircase,
+}
+
+/// A scale of whole numbers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Scale {
+    /// Lowest rating.
+    #[serde(default)]
+    #[schemars(range(min = 0, max = 9))]
+    pub min: u8,
+    /// Highest rating.
+    #[serde(default = "highest")]
+    #[schemars(range(min = 0, max = 9))]
+    pub max: u8,
+    /// Meaning of the lowest rating.
+    #[serde(default = "different")]
+    pub low: String,
+    /// Meaning of the highest rating.
+    #[serde(default = "same")]
+    pub high: String,
+}
+
+/// What is rated.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Attribute {
+    /// Name in the results.
+    pub name: String,
+    /// The question.
+    pub question: String,
+}
+
+/// Rests during the testing.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Rests {
+    /// Trials between two rests.
+    #[schemars(range(min = 1, max = 100_000))]
+    pub every: u32,
+    /// Shortest rest, seconds.
+    #[serde(default)]
+    #[schemars(range(min = 0, max = 3600))]
+    pub seconds: f64,
+}
+
+/// White noise that masks the sound of a texture and of its display.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct MaskingNoise {
+    /// RMS level, decibels relative to full scale.
+    #[schemars(range(min = -80, max = -10))]
+    pub level_dbfs: f64,
+}
+
+impl Participants {
+    /// Names of all participants.
+    pub fn names(&self) -> Vec<String> {
+        match self {
+            Self::Names(names) => names.clone(),
+            Self::Count(count) => {
+                let width = count.to_string().len().max(2);
+                (1..=*count).map(|i| format!("P{i:0width$}")).collect()
+            }
+        }
+    }
+}
+
+impl Texture {
+    /// Name in the results.
+    pub fn name(&self) -> String {
+        let stem = || self.asset.file_stem().unwrap_or_default();
+        let of_file = || stem().to_string_lossy().into_owned();
+        self.name.clone().unwrap_or_else(of_file)
+    }
+}
+
+impl Study {
+    /// All models, the hidden reference last.
+    pub fn all_models(&self) -> Vec<&str> {
+        let models = self.models.iter().chain(&self.hidden_reference);
+        models.map(String::as_str).collect()
+    }
+
+    /// Whether a phase takes place.
+    pub fn has(&self, phase: Phase) -> bool {
+        self.phases.contains(&phase)
+    }
+}
+
+impl Default for Participants {
+    fn default() -> Self {
+        Self::Count(14)
+    }
+}
+
+impl Default for Training {
+    fn default() -> Self {
+        Self { trials: five() }
+    }
+}
+
+impl Default for Matching {
+    fn default() -> Self {
+        Self {
+            model: ar(),
+            method: GainMethod::default(),
+            step_db: one_db(),
+            large_step_db: four_db(),
+            lowest_db: lowest(),
+            reversals: six(),
+        }
+    }
+}
+
+impl Default for Scale {
+    fn default() -> Self {
+        Self {
+            min: 0,
+            max: highest(),
+            low: different(),
+            high: same(),
+        }
+    }
+}
+
+fn paper_models() -> Vec<String> {
+    ["ar", "mfcc", "speak", "sbeta", "sslope"]
+        .map(str::to_owned)
+        .to_vec()
+}
+
+fn all_phases() -> Vec<Phase> {
+    vec![Phase::Training, Phase::Gain, Phase::Testing]
+}
+
+fn similarity() -> Vec<Attribute> {
+    vec![Attribute {
+        name: "similarity".to_owned(),
+        question: "How similar is the rendered texture to the real one?".to_owned(),
+    }]
+}
+
+fn five() -> u32 {
+    5
+}
+
+fn six() -> u32 {
+    6
+}
+
+fn ten() -> f64 {
+    10.0
+}
+
+fn ar() -> String {
+    "ar".to_owned()
+}
+
+fn one_db() -> f64 {
+    1.0
+}
+
+fn four_db() -> f64 {
+    4.0
+}
+
+fn lowest() -> f64 {
+    -40.0
+}
+
+fn highest() -> u8 {
+    6
+}
+
+fn different() -> String {
+    "Different".to_owned()
+}
+
+fn same() -> String {
+    "Same".to_owned()
+}

@@ -1,0 +1,56 @@
+//! The header of a session: what its answers belong to.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use crate::study::Study;
+use crate::study::error::StudyError;
+use crate::study::lines::{DeviceUsed, Header, Simulated, VERSION};
+use crate::study::plan::ParticipantPlan;
+use crate::study::read::files_of;
+
+impl Header {
+    /// The header of a participant's session; `path` is the study's file, whose contents and whose files' contents are hashed.
+    ///
+    /// # Errors
+    /// [`StudyError::Read`] if one of the files cannot be read.
+    pub fn new(
+        study: &Study,
+        path: &Path,
+        plan: &ParticipantPlan,
+        device: DeviceUsed,
+        tool: String,
+    ) -> Result<Self, StudyError> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut files = BTreeMap::from([("study".to_owned(), hash(path)?)]);
+        for file in files_of(study) {
+            let name = format!("file {}", file.display());
+            files.insert(name, hash(&folder.join(&file))?);
+        }
+        Ok(Self {
+            htex_answers: VERSION.to_owned(),
+            study: study.name.clone(),
+            participant: plan.participant.clone(),
+            files,
+            device,
+            ratings: plan.trials.len() * study.attributes.len(),
+            tool,
+            simulated: None,
+        })
+    }
+
+    /// The same for a simulated participant.
+    #[must_use]
+    pub fn with_simulated(mut self, simulated: Option<Simulated>) -> Self {
+        self.simulated = simulated;
+        self
+    }
+}
+
+fn hash(file: &Path) -> Result<String, StudyError> {
+    let bytes = std::fs::read(file).map_err(|error| StudyError::Read {
+        file: file.to_owned(),
+        error,
+    })?;
+    Ok(blake3::hash(&bytes).to_hex().to_string())
+}

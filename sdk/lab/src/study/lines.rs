@@ -1,0 +1,140 @@
+//! Lines of a file of answers: JSON Lines, one line an answer.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::study::gain::GainKey;
+
+/// Version of the files of answers.
+pub(crate) const VERSION: &str = "1.0";
+
+/// A line.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Line {
+    /// The first line.
+    Header(Header),
+    /// A rating in the training, which is not a result.
+    Training(Answer),
+    /// A key press of the gain matching.
+    Gain(Matched),
+    /// A rest that is over.
+    Rest {
+        /// Trials before it.
+        after: u32,
+        /// Time, milliseconds.
+        at_ms: u64,
+        /// Whether the participant is simulated.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        simulated: bool,
+    },
+    /// A rating.
+    Answer(Answer),
+}
+
+/// The first line: what the answers belong to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Header {
+    /// Version of this format.
+    pub htex_answers: String,
+    /// Name of the study.
+    pub study: String,
+    /// The participant.
+    pub participant: String,
+    /// BLAKE3 hashes, hexadecimal, of the study's file and of all files that it names.
+    pub files: BTreeMap<String, String>,
+    /// The device.
+    pub device: DeviceUsed,
+    /// Ratings of a complete session.
+    pub ratings: usize,
+    /// The program that began the file.
+    pub tool: String,
+    /// The seed of a simulated participant; absent for people.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub simulated: Option<Simulated>,
+}
+
+/// A simulated participant.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Simulated {
+    /// Seed of its ratings.
+    pub seed: u64,
+    /// The rule of its ratings.
+    pub rule: String,
+}
+
+/// The device of a session.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct DeviceUsed {
+    /// Id of the adapter.
+    pub adapter: String,
+    /// Its profile; empty if there is none.
+    pub profile: String,
+}
+
+/// A rating.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Answer {
+    /// Number of the trial within its phase, from 1.
+    pub number: u32,
+    /// Name of the texture.
+    pub texture: String,
+    /// The model.
+    pub model: String,
+    /// Repetition, from 1.
+    pub repetition: u32,
+    /// Whether the model is the hidden reference.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub hidden_reference: bool,
+    /// What was rated.
+    pub attribute: String,
+    /// The rating.
+    pub rating: u8,
+    /// Time from the question to the answer, milliseconds.
+    pub response_ms: u64,
+    /// Time of the answer, milliseconds since 1970 in UTC; of a simulated clock since the start of the session.
+    pub at_ms: u64,
+    /// Gain that it was played with, decibels relative to the maximum; absent without gain matching.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain_db: Option<f64>,
+    /// Whether the participant is simulated.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub simulated: bool,
+}
+
+/// A key press of the gain matching.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Matched {
+    /// Name of the texture.
+    pub texture: String,
+    /// The key.
+    pub key: GainKey,
+    /// The gain after it, decibels relative to the maximum.
+    pub gain_db: f64,
+    /// Whether this is the texture's gain from now on.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub found: bool,
+    /// Drive of a display at which the texture was felt before the key, volts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drive_v: Option<f64>,
+    /// RMS that had this drive, in the assets' unit.
+    pub reference_rms: f64,
+    /// Time, milliseconds, as in ratings.
+    pub at_ms: u64,
+    /// Whether the participant is simulated.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub simulated: bool,
+}
+
+impl Line {
+    /// Time of the line, milliseconds; 0 for the header.
+    pub fn at_ms(&self) -> u64 {
+        match self {
+            Self::Header(_) => 0,
+            Self::Training(answer) | Self::Answer(answer) => answer.at_ms,
+            Self::Gain(matched) => matched.at_ms,
+            Self::Rest { at_ms, .. } => *at_ms,
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! The file of one participant's answers: append-only, and on disk before the next trial.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use crate::study::error::StudyError;
+use crate::study::lines::{Header, Line};
+
+/// The path of a participant's answers in a folder: `P07.jsonl`.
+pub fn participant_file(folder: &Path, participant: &str) -> PathBuf {
+    folder.join(format!("{participant}.jsonl"))
+}
+
+/// An open file of answers. It is locked until it is dropped.
+#[derive(Debug)]
+pub struct Log {
+    path: PathBuf,
+    file: File,
+}
+
+impl Log {
+    /// Opens the answers of a session, or begins them, and returns them without the header. A last line that a crash left incomplete
+    /// is removed.
+    ///
+    /// # Errors
+    /// [`StudyError::OtherVersion`] if they were begun with another header; [`StudyError::Busy`] while another program has them open;
+    /// [`StudyError::Line`] if a line is damaged; errors of the file system.
+    pub fn open(path: &Path, header: &Header) -> Result<(Self, Vec<Line>), StudyError> {
+        if !path.exists() {
+            begin(path, header)?;
+        }
+        let mut file = OpenOptions::new()
+            .read(true)
+            .append(true)
+            .open(path)
+            .map_err(|error| read_error(path, error))?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => {
+                let file = path.to_owned();
+                return Err(StudyError::Busy { file });
+            }
+            Err(TryLockError::Error(error)) => return Err(read_error(path, error)),
+        }
+        let mut bytes = Vec::new();
+        let read = file.read_to_end(&mut bytes);
+        read.map_err(|error| read_error(path, error))?;
+        let whole = bytes
+            .iter()
+            .rposition(|b| *b == b'\n')
+            .map_or(0, |end| end + 1);
+        if whole < bytes.len() {
+            let cut = file.set_len(whole as u64).and_then(|()| file.sync_all());
+            let at_end = cut.and_then(|()| file.seek(SeekFrom::End(0)).map(|_| ()));
+            at_end.map_err(|error| write_error(path, error))?;
+        }
+        let (begun, lines) = parse(path, &bytes[..whole])?;
+        same_version(path, &begun, header)?;
+        let path = path.to_owned();
+        Ok((Self { path, file }, lines))
+    }
+
+    /// Appends a line, and returns when it is on disk.
+    ///
+    /// # Errors
+    /// [`StudyError::Write`]; the line may then be incomplete, and is removed when the file is opened again.
+    pub fn append(&mut self, line: &Line) -> Result<(), StudyError> {
+        let text = text(line).map_err(|error| write_error(&self.path, error))?;
+        let written = self.file.write_all(text.as_bytes());
+        let synced = written.and_then(|()| self.file.sync_data());
+        synced.map_err(|error| write_error(&self.path, error))
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+/// Reads a file of answers: its header and its lines. An incomplete last line, of a session that is running or was killed, is left out.
+pub(crate) fn read(path: &Path) -> Result<(Header, Vec<Line>), StudyError> {
+    let bytes = std::fs::read(path).map_err(|error| read_error(path, error))?;
+    let whole = bytes
+        .iter()
+        .rposition(|b| *b == b'\n')
+        .map_or(0, |end| end + 1);
+    parse(path, &bytes[..whole])
+}
+
+fn text(line: &Line) -> std::io::Result<String> {
+    Ok(serde_json::to_string(line)? + "\n")
+}
+
+/// Writes the header under a temporary name and renames it, so that no file is without.
+fn begin(path: &Path, header: &Header) -> Result<(), StudyError> {
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let begun = std::fs::create_dir_all(folder)
+        .and_then(|()| text(&Line::Header(header.clone())))
+        .and_then(|text| htex_files::write_file(path, text.as_bytes()))
+        .and_then(|()| File::open(path)?.sync_all());
+    begun.map_err(|error| write_error(path, error))?;
+    // The name is on disk, too, where folders can be synced.
+    if let Ok(folder) = File::open(folder) {
+        let _ = folder.sync_all();
+    }
+    Ok(())
+}
+
+fn parse(path: &Path, bytes: &[u8]) -> Result<(Header, Vec<Line>), StudyError> {
+    let damaged = |line: usize, problem: String| StudyError::Line {
+        file: path.to_owned(),
+        line,
+        problem,
+    };
+    let mut lines = bytes.split(|b| *b == b'\n').enumerate().map(|(i, line)| {
+        serde_json::from_slice::<Line>(line).map_err(|error| damaged(i + 1, error.to_string()))
+    });
+    // After the last line end there is nothing.
+    let count = bytes.iter().filter(|b| **b == b'\n').count();
+    let Some(Line::Header(header)) = lines.next().transpose()?.filter(|_| count > 0) else {
+        return Err(damaged(1, "this is not the header of answers".to_owned()));
+    };
+    let rest = lines.take(count - 1).collect::<Result<Vec<Line>, _>>()?;
+    match rest.iter().position(|line| matches!(line, Line::Header(_))) {
+        Some(i) => Err(damaged(i + 2, "there is a second header".to_owned())),
+        None => Ok((header, rest)),
+    }
+}
+
+/// Compares all of two headers but the program.
+fn same_version(path: &Path, begun: &Header, now: &Header) -> Result<(), StudyError> {
+    let changed = if begun.htex_answers != now.htex_answers {
+        format!("the file has version {}", begun.htex_answers)
+    } else if begun.participant != now.participant {
+        format!("they are those of {}", begun.participant)
+    } else if begun.simulated != now.simulated {
+        let who = |header: &Header| match &header.simulated {
+            Some(simulated) => format!("a simulated participant (seed {})", simulated.seed),
+            None => "a person".to_owned(),
+        };
+        format!("they are those of {}, not of {}", who(begun), who(now))
+    } else if let Some(name) = other_file(begun, now) {
+        format!("{name} has changed since")
+    } else if begun.device != now.device {
+        let (was, is) = (&begun.device, &now.device);
+        format!(
+            "the device was {} {}, and is {} {}",
+            was.adapter, was.profile, is.adapter, is.profile
+        )
+    } else {
+        return Ok(());
+    };
+    Err(StudyError::OtherVersion {
+        file: path.to_owned(),
+        changed,
+    })
+}
+
+/// A file whose hash differs, or that only one of the two has.
+pub(crate) fn other_file<'a>(begun: &'a Header, now: &'a Header) -> Option<&'a str> {
+    let mut names = begun.files.keys().chain(now.files.keys());
+    let differs = |name: &&String| begun.files.get(*name) != now.files.get(*name);
+    names.find(differs).map(String::as_str)
+}
+
+fn read_error(path: &Path, error: std::io::Error) -> StudyError {
+    StudyError::Read {
+        file: path.to_owned(),
+        error,
+    }
+}
+
+fn write_error(path: &Path, error: std::io::Error) -> StudyError {
+    StudyError::Write {
+        file: path.to_owned(),
+        error,
+    }
+}

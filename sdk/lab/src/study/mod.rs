@@ -1,0 +1,46 @@
+//! Rating studies: people feel textures through a device and rate each trial.
+//!
+//! A study is described by a file, `study.toml` ([`Study`]). Its [`Plan`] is a function of that file: the order of every participant.
+//! A [`Session`] takes one participant through the plan and appends each answer to a file before the next trial begins. Everything else
+//! is computed again from these files, such as the table of ratings ([`export`]).
+//!
+//! The defaults are those of the study in the paper (Methods, "Experiment"): 14 participants, five models, five repetitions, trials of
+//! 10 s, training, gain matching with AR from the maximum down, and similarity from 0 "Different" to 6 "Same".
+
+mod check;
+mod error;
+mod export;
+mod file;
+mod gain;
+mod header;
+mod lines;
+mod log;
+mod order;
+mod page;
+mod plan;
+mod progress;
+mod random;
+mod read;
+mod rules;
+mod run;
+mod session;
+mod simulated;
+mod stimulus;
+
+pub use error::StudyError;
+pub use export::{Export, export};
+pub use file::{
+    Attribute, GainMethod, MaskingNoise, Matching, Order, Participants, Phase, Rests, Scale, Study,
+    Texture, Training, VERSION,
+};
+pub use gain::{GainKey, Match};
+pub use lines::{Answer, DeviceUsed, Header, Line, Matched, Simulated};
+pub use log::{Log, participant_file};
+pub use page::{Page, PageOptions, Touched};
+pub use plan::{ParticipantPlan, Plan, Trial};
+pub use read::{check_files, files_of, read_study, study_schema};
+pub use rules::{RULES, explain, findings_page};
+pub use run::{Asker, Clock, Ended, Key, Played, Rig, View, run};
+pub use session::{Session, Step};
+pub use simulated::SimulatedParticipant;
+pub use stimulus::{Stimulus, scene_of, set_gain};

@@ -1,0 +1,165 @@
+//! Reading and validation of `study.toml`.
+
+use std::path::{Path, PathBuf};
+
+use htex_format::{Document, DocumentRules, Finding, Findings};
+use htex_scene::file::Motion;
+use htex_scene::{DeviceOverride, LoadError, LoadedScene, Surroundings};
+use serde_json::Value;
+
+use crate::study::check::check;
+use crate::study::file::{Phase, Study};
+use crate::study::rules as rule;
+use crate::study::stimulus::scene_of;
+
+/// Largest study file, bytes.
+const MOST_BYTES: usize = 1 << 20;
+/// Deepest nesting.
+const MOST_DEPTH: usize = 16;
+
+const DOCUMENT: Document = Document {
+    text: "study",
+    file: "the study",
+    thing: "study",
+    version_key: "htex_study",
+    major: 1,
+    minor: 0,
+    rules: DocumentRules {
+        too_deep: rule::STUDY_TOO_DEEP,
+        syntax: rule::STUDY_SYNTAX,
+        wrong_type: rule::STUDY_TYPE,
+        version_missing: rule::STUDY_VERSION_MISSING,
+        version_invalid: rule::STUDY_VERSION_INVALID,
+        version_unsupported: rule::STUDY_VERSION_UNSUPPORTED,
+        version_newer: rule::STUDY_VERSION_UNSUPPORTED,
+    },
+};
+
+/// Reads a study and checks it without the files it names. Returns `None`, with a finding that states the reason, if it cannot be
+/// used. Never panics.
+pub fn read_study(bytes: &[u8], findings: &mut Findings) -> Option<Study> {
+    if bytes.len() > MOST_BYTES {
+        let message = format!("the study has more than {MOST_BYTES} bytes");
+        findings.add(rule::STUDY_FILE_TOO_LARGE, "", message);
+        return None;
+    }
+    let value = parse(bytes, findings)?;
+    if value.get("htex_study").is_none() {
+        let message = "there is no key htex_study; add htex_study = \"1.0\" as the first line";
+        findings.add(rule::STUDY_VERSION_MISSING, "", message.to_owned());
+        return None;
+    }
+    let json = serde_json::to_vec(&value).ok()?;
+    let opened = DOCUMENT.open(&json, MOST_DEPTH, findings)?;
+    if opened.newer {
+        return None;
+    }
+    let (study, unknown) = DOCUMENT.typed::<Study>(&opened, findings)?;
+    for pointer in unknown {
+        let message = "version 1.0 has no such key; correct it or remove it".to_owned();
+        findings.add(rule::STUDY_UNKNOWN_KEY, pointer, message);
+    }
+    check_phase_tables(&study, &value, findings);
+    check(&study, findings);
+    (!findings.has_errors()).then_some(study)
+}
+
+fn parse(bytes: &[u8], findings: &mut Findings) -> Option<Value> {
+    let problem = match std::str::from_utf8(bytes) {
+        Err(error) => format!("the study is not UTF-8 after byte {}", error.valid_up_to()),
+        Ok(text) => match toml::from_str::<toml::Table>(text) {
+            Ok(table) => return serde_json::to_value(table).ok(),
+            Err(error) => {
+                let at = error.span().map_or(0, |span| span.start);
+                format!("{}: {}", place(text, at), error.message())
+            }
+        },
+    };
+    findings.add(rule::STUDY_SYNTAX, "", format!("{problem}; correct it"));
+    None
+}
+
+/// Line and column of a byte.
+fn place(text: &str, byte: usize) -> String {
+    let before = text.get(..byte).unwrap_or(text);
+    let line = before.matches('\n').count() + 1;
+    let start = before.rfind('\n').map_or(0, |end| end + 1);
+    let column = before[start..].chars().count() + 1;
+    format!("line {line}, column {column}")
+}
+
+/// Reports settings of phases that do not take place.
+fn check_phase_tables(study: &Study, value: &Value, findings: &mut Findings) {
+    for (key, phase) in [("training", Phase::Training), ("gain", Phase::Gain)] {
+        let unused = value.get(key).is_some() && !study.has(phase);
+        let pointer = format!("/{key}");
+        findings.require(!unused, rule::STUDY_PHASE_UNUSED, pointer, || {
+            format!("{key} has settings and is not in phases; add it there, or remove them")
+        });
+    }
+}
+
+/// Checks the files of a study, and its motion and device, by the rules of scenes: each texture is opened with each model as it will be
+/// played. `path` is the study's file.
+pub fn check_files(
+    study: &Study,
+    path: &Path,
+    around: &Surroundings<'_>,
+    findings: &mut Vec<Finding>,
+) {
+    let rehearsal = DeviceOverride {
+        rehearsal: true,
+        ..DeviceOverride::default()
+    };
+    for (texture, asset) in study.textures.iter().enumerate() {
+        for (pointer, model) in models(study) {
+            let scene = scene_of(study, &asset.asset, model);
+            let found = match LoadedScene::from_bytes(path, &scene, around, &rehearsal) {
+                Ok(loaded) => loaded.notes,
+                Err(LoadError::Invalid { findings }) => findings,
+                // A scene in memory is not read from a file.
+                Err(_) => Vec::new(),
+            };
+            for mut finding in found {
+                finding.pointer = match &finding.pointer[..] {
+                    "/surfaces/0/representation" => pointer.clone(),
+                    "/duration_s" => "/trial_s".to_owned(),
+                    other => other.replacen("/surfaces/0", &format!("/textures/{texture}"), 1),
+                };
+                if !findings.contains(&finding) {
+                    findings.push(finding);
+                }
+            }
+        }
+    }
+}
+
+/// All models of a study with their pointers, that of the gain matching among them.
+fn models(study: &Study) -> Vec<(String, &str)> {
+    let listed = study.models.iter().enumerate();
+    let listed = listed.map(|(i, model)| (format!("/models/{i}"), &model[..]));
+    let reference = study.hidden_reference.iter();
+    let reference = reference.map(|model| ("/hidden_reference".to_owned(), &model[..]));
+    let gain = study.has(Phase::Gain);
+    let gain = gain.then(|| ("/gain/model".to_owned(), &study.gain.model[..]));
+    listed.chain(reference).chain(gain).collect()
+}
+
+/// The files that determine what a study plays, as they are named there: assets, the trace, and the response of the device.
+pub fn files_of(study: &Study) -> Vec<PathBuf> {
+    let assets = study.textures.iter().map(|texture| texture.asset.clone());
+    let trace = match &study.motion {
+        Motion::Trace(path) => Some(path.clone()),
+        _ => None,
+    };
+    let response = study.device.response.clone();
+    let mut all: Vec<PathBuf> = assets.chain(trace).chain(response).collect();
+    all.sort();
+    all.dedup();
+    all
+}
+
+/// The JSON Schema of studies of version 1.0: `spec/schemas/study-1.json`.
+pub fn study_schema() -> Value {
+    htex_schema::document::<Study>("study-1.json", "Study of htex 1")
+}

@@ -1,0 +1,386 @@
+//! Running a session: what is played, shown and asked.
+
+use std::time::Duration;
+
+use serde::Serialize;
+
+use crate::study::error::StudyError;
+use crate::study::file::{Attribute, GainMethod, Phase, Scale};
+use crate::study::gain::{GainKey, Match};
+use crate::study::plan::Trial;
+use crate::study::session::{Session, Step};
+use crate::study::simulated::SimulatedParticipant;
+use crate::study::stimulus::Stimulus;
+
+/// Time between two looks at the keys while nothing plays.
+const LOOK: Duration = Duration::from_millis(5);
+
+/// What a participant sees.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum View {
+    /// The next trial, or the matching of the next texture, begins with a key.
+    Ready {
+        /// What begins.
+        phase: Phase,
+        /// Name of the texture.
+        texture: String,
+    },
+    /// A trial plays.
+    Playing {
+        /// Name of the texture.
+        texture: String,
+    },
+    /// A question.
+    Question {
+        /// What is asked.
+        attribute: Attribute,
+        /// The scale of the answer.
+        scale: Scale,
+    },
+    /// The texture plays, and its gain is matched.
+    Matching {
+        /// Name of the texture.
+        texture: String,
+        /// The method, which says which keys there are.
+        method: GainMethod,
+        /// The present gain, decibels relative to the maximum.
+        gain_db: f64,
+    },
+    /// A rest.
+    Rest {
+        /// Seconds until it may end.
+        seconds: u64,
+    },
+    /// The session is over.
+    Done,
+}
+
+/// A key.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Key {
+    /// A digit.
+    Digit(u8),
+    /// A key of the gain matching.
+    Gain(GainKey),
+    /// The next thing may begin.
+    Go,
+    /// The session ends here and goes on at another time.
+    Quit,
+}
+
+/// The one who is asked.
+pub trait Asker {
+    /// Shows what there is now. Keys that were pressed before are forgotten. `done` of `all` trials are rated.
+    fn show(&mut self, view: &View, done: usize, all: usize);
+
+    /// The next key since the last [`Self::show`], if there is one.
+    fn key(&mut self) -> Option<Key>;
+}
+
+/// A clock.
+pub trait Clock {
+    /// Milliseconds since 1970, or since the start of a simulated session.
+    fn now_ms(&self) -> u64;
+
+    /// Lets time pass; a simulated clock does not wait.
+    fn pass(&mut self, time: Duration);
+
+    /// Something of this length was played, which a simulated clock has not noticed.
+    fn played(&mut self, time: Duration);
+
+    /// A simulated clock goes on at this time; others do not.
+    fn go_on_at(&mut self, ms: u64);
+}
+
+/// How something was played.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Played {
+    /// Drive of a display, volts.
+    pub drive_v: Option<f64>,
+    /// RMS that had this drive, in the assets' unit.
+    pub reference_rms: f64,
+}
+
+/// What plays: a renderer and a device.
+pub trait Rig {
+    /// Its error.
+    type Error: From<StudyError>;
+
+    /// Plays, and calls `ends` for each block; when that returns true, playing ends as soon as it can.
+    ///
+    /// # Errors
+    /// Of the renderer and of the device.
+    fn play(
+        &mut self,
+        stimulus: &Stimulus,
+        ends: &mut dyn FnMut() -> bool,
+    ) -> Result<Played, Self::Error>;
+
+    /// The nine-band error of a representation, decibels, if its asset says it.
+    fn band_error_db(&self, texture: &str, model: &str) -> Option<f64>;
+
+    /// Whether the program was asked to end.
+    fn is_interrupted(&self) -> bool;
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ended {
+    /// The session is over.
+    Done,
+    /// It was left before its end, and goes on when it is run again.
+    Left,
+}
+
+/// Runs a session to its end, or until it is left. Each answer is on disk before the next trial.
+///
+/// # Errors
+/// [`StudyError`], and errors of the rig.
+pub fn run<R: Rig>(
+    session: &mut Session<'_>,
+    rig: &mut R,
+    asker: &mut dyn Asker,
+    clock: &mut dyn Clock,
+    simulated: Option<&SimulatedParticipant>,
+) -> Result<Ended, R::Error> {
+    clock.go_on_at(session.last_ms());
+    let mut run = Run {
+        session,
+        rig,
+        asker,
+        clock,
+        simulated,
+        felt: None,
+    };
+    loop {
+        let goes_on = match run.session.step() {
+            Step::Rate(phase, trial, attribute) => run.rate(phase, &trial, &attribute)?,
+            Step::Match { texture, matching } => run.matching(&texture, &matching)?,
+            Step::Rest { seconds, .. } => run.rest(seconds)?,
+            Step::Done => {
+                run.show(&View::Done);
+                return Ok(Ended::Done);
+            }
+        };
+        if !goes_on {
+            return Ok(Ended::Left);
+        }
+    }
+}
+
+struct Run<'r, 's, R: Rig> {
+    session: &'r mut Session<'s>,
+    rig: &'r mut R,
+    asker: &'r mut dyn Asker,
+    clock: &'r mut dyn Clock,
+    simulated: Option<&'r SimulatedParticipant>,
+    /// What was felt last: a trial before its questions, or a texture that is being matched.
+    felt: Option<(Phase, String)>,
+}
+
+impl<R: Rig> Run<'_, '_, R> {
+    fn show(&mut self, view: &View) {
+        let (done, all) = self.session.trials();
+        self.asker.show(view, done, all);
+    }
+
+    /// Waits for a key that means something here; `None` when the session is left.
+    fn wait<T>(&mut self, mut meaning: impl FnMut(Key) -> Option<T>) -> Option<T> {
+        loop {
+            if self.rig.is_interrupted() {
+                return None;
+            }
+            match self.asker.key() {
+                Some(Key::Quit) => return None,
+                Some(key) => {
+                    if let Some(meant) = meaning(key) {
+                        return Some(meant);
+                    }
+                }
+                None => self.clock.pass(LOOK),
+            }
+        }
+    }
+
+    /// Waits for the key that begins something; false when the session is left.
+    fn ready(&mut self, phase: Phase, texture: &str) -> bool {
+        if self.simulated.is_some() {
+            return true;
+        }
+        let texture = texture.to_owned();
+        self.show(&View::Ready { phase, texture });
+        self.wait(|key| (key == Key::Go).then_some(())).is_some()
+    }
+
+    fn rate(&mut self, phase: Phase, trial: &Trial, asked: &Attribute) -> Result<bool, R::Error> {
+        let stimulus = self.session.stimulus(phase, trial);
+        let this = (phase, stimulus.file.clone());
+        if self.felt.as_ref() != Some(&this) {
+            if !self.ready(phase, &trial.texture) || !self.play(&stimulus)? {
+                return Ok(false);
+            }
+            self.felt = Some(this);
+        }
+        let Some((rating, response_ms)) = self.ask(phase, trial, asked)? else {
+            return Ok(false);
+        };
+        let at_ms = self.clock.now_ms();
+        self.session.rate(rating, response_ms, at_ms)?;
+        Ok(true)
+    }
+
+    /// Plays a trial to its end; false when the session is left.
+    fn play(&mut self, stimulus: &Stimulus) -> Result<bool, R::Error> {
+        let texture = stimulus.texture.clone();
+        self.show(&View::Playing { texture });
+        let mut left = false;
+        let asker = &mut self.asker;
+        let mut ends = || {
+            left |= asker.key() == Some(Key::Quit);
+            left
+        };
+        self.rig.play(stimulus, &mut ends)?;
+        let seconds = stimulus.seconds.unwrap_or(0.0);
+        self.clock.played(Duration::from_secs_f64(seconds));
+        Ok(!left && !self.rig.is_interrupted())
+    }
+
+    /// The rating and the time that it took, milliseconds.
+    fn ask(
+        &mut self,
+        phase: Phase,
+        trial: &Trial,
+        asked: &Attribute,
+    ) -> Result<Option<(u8, u64)>, R::Error> {
+        let scale = self.session.study().scale.clone();
+        if let Some(simulated) = self.simulated {
+            let (texture, model) = (&trial.texture, &trial.model);
+            let error_db =
+                self.rig
+                    .band_error_db(texture, model)
+                    .ok_or_else(|| StudyError::NoBandError {
+                        texture: texture.clone(),
+                        model: model.clone(),
+                    })?;
+            let response_ms = simulated.response_ms(phase, trial, &asked.name);
+            self.clock.pass(Duration::from_millis(response_ms));
+            let rating = simulated.rating(phase, trial, &asked.name, error_db, &scale);
+            return Ok(Some((rating, response_ms)));
+        }
+        let attribute = asked.clone();
+        let range = scale.min..=scale.max;
+        self.show(&View::Question { attribute, scale });
+        let start_ms = self.clock.now_ms();
+        let rating = self.wait(|key| match key {
+            Key::Digit(digit) if range.contains(&digit) => Some(digit),
+            _ => None,
+        });
+        let took_ms = self.clock.now_ms().saturating_sub(start_ms);
+        Ok(rating.map(|rating| (rating, took_ms)))
+    }
+
+    /// Plays a texture until a key of the matching, and records it.
+    fn matching(&mut self, texture: &str, matching: &Match) -> Result<bool, R::Error> {
+        let this = (Phase::Gain, texture.to_owned());
+        if self.felt.as_ref() != Some(&this) {
+            if !self.ready(Phase::Gain, texture) {
+                return Ok(false);
+            }
+            self.felt = Some(this);
+        }
+        let stimulus = self.session.matching_stimulus(texture, matching);
+        let (key, played) = match self.simulated {
+            Some(simulated) => {
+                let stimulus = Stimulus {
+                    seconds: Some(self.session.study().trial_s),
+                    ..stimulus
+                };
+                let played = self.rig.play(&stimulus, &mut || false)?;
+                let seconds = self.session.study().trial_s;
+                self.clock.played(Duration::from_secs_f64(seconds));
+                let left = self.rig.is_interrupted();
+                let key = simulated.gain_key(texture, matching);
+                ((!left).then_some(key), played)
+            }
+            None => self.felt_until_key(&stimulus, matching)?,
+        };
+        let Some(key) = key else {
+            return Ok(false);
+        };
+        let at_ms = self.clock.now_ms();
+        let Played {
+            drive_v,
+            reference_rms,
+        } = played;
+        self.session.press(key, drive_v, reference_rms, at_ms)?;
+        Ok(true)
+    }
+
+    fn felt_until_key(
+        &mut self,
+        stimulus: &Stimulus,
+        matching: &Match,
+    ) -> Result<(Option<GainKey>, Played), R::Error> {
+        self.show(&View::Matching {
+            texture: stimulus.texture.clone(),
+            method: matching.method(),
+            gain_db: matching.gain_db(),
+        });
+        let (mut pressed, mut left) = (None, false);
+        let asker = &mut self.asker;
+        let mut ends = || {
+            match asker.key() {
+                Some(Key::Quit) => left = true,
+                Some(Key::Gain(key)) if matching.takes(key) => {
+                    pressed.get_or_insert(key);
+                }
+                _ => {}
+            }
+            left || pressed.is_some()
+        };
+        // A motion that is a trace ends before a person has decided, and begins anew.
+        let played = loop {
+            let played = self.rig.play(stimulus, &mut ends)?;
+            if ends() || self.rig.is_interrupted() {
+                break played;
+            }
+        };
+        let left = left || self.rig.is_interrupted();
+        Ok((pressed.filter(|_| !left), played))
+    }
+
+    fn rest(&mut self, seconds: f64) -> Result<bool, R::Error> {
+        let end_ms = self.clock.now_ms() + (1e3 * seconds) as u64;
+        if self.simulated.is_some() {
+            self.clock.pass(Duration::from_secs_f64(seconds));
+        } else if !self.rested(end_ms) {
+            return Ok(false);
+        }
+        let at_ms = self.clock.now_ms();
+        self.session.rested(at_ms)?;
+        Ok(!self.rig.is_interrupted())
+    }
+
+    /// Counts down, then waits for the key that goes on; false when the session is left.
+    fn rested(&mut self, end_ms: u64) -> bool {
+        let mut shown = None;
+        loop {
+            let left_ms = end_ms.saturating_sub(self.clock.now_ms());
+            let seconds = left_ms.div_ceil(1000);
+            if shown != Some(seconds) {
+                self.show(&View::Rest { seconds });
+                shown = Some(seconds);
+            }
+            if self.rig.is_interrupted() {
+                return false;
+            }
+            match self.asker.key() {
+                Some(Key::Quit) => return false,
+                Some(Key::Go) if left_ms == 0 => return true,
+                Some(_) => {}
+                None => self.clock.pass(LOOK),
+            }
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! A session: one participant on the way through a plan.
+
+use std::path::Path;
+
+use crate::study::Study;
+use crate::study::error::StudyError;
+use crate::study::file::{Attribute, Phase};
+use crate::study::gain::{GainKey, Match};
+use crate::study::lines::{Answer, Header, Line, Matched};
+use crate::study::log::{Log, participant_file};
+use crate::study::plan::{ParticipantPlan, Trial};
+use crate::study::progress::Progress;
+use crate::study::stimulus::Stimulus;
+
+/// What comes next in a session.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Step {
+    /// A trial is played, unless it just was, and rated by an attribute.
+    Rate(Phase, Trial, Attribute),
+    /// The gain of a texture is matched.
+    Match {
+        /// Name of the texture.
+        texture: String,
+        /// The matching so far.
+        matching: Match,
+    },
+    /// A rest.
+    Rest {
+        /// Trials before it.
+        after: u32,
+        /// Shortest length, seconds.
+        seconds: f64,
+    },
+    /// All is done.
+    Done,
+}
+
+/// A participant's session, and the open file of its answers. What it records is on disk when a method returns.
+#[derive(Debug)]
+pub struct Session<'a> {
+    study: &'a Study,
+    plan: &'a ParticipantPlan,
+    log: Log,
+    progress: Progress,
+    is_simulated: bool,
+}
+
+impl<'a> Session<'a> {
+    /// Opens a session in a folder: a new one, or one that goes on where it was.
+    ///
+    /// # Errors
+    /// As [`Log::open`], and [`StudyError::Line`] if a line does not belong to the plan.
+    pub fn open(
+        study: &'a Study,
+        plan: &'a ParticipantPlan,
+        folder: &Path,
+        header: &Header,
+    ) -> Result<Self, StudyError> {
+        let path = participant_file(folder, &plan.participant);
+        let (log, lines) = Log::open(&path, header)?;
+        let mut progress = Progress::new(study, plan);
+        for (i, line) in lines.iter().enumerate() {
+            let applied = progress.apply(study, plan, line);
+            applied.map_err(|problem| StudyError::Line {
+                file: path.clone(),
+                line: i + 2,
+                problem,
+            })?;
+        }
+        Ok(Self {
+            study,
+            plan,
+            log,
+            progress,
+            is_simulated: header.simulated.is_some(),
+        })
+    }
+
+    /// What comes next.
+    pub fn step(&self) -> Step {
+        self.progress.step(self.study, self.plan)
+    }
+
+    /// The study.
+    pub fn study(&self) -> &'a Study {
+        self.study
+    }
+
+    /// The participant.
+    pub fn participant(&self) -> &str {
+        &self.plan.participant
+    }
+
+    /// The file of answers.
+    pub fn file(&self) -> &Path {
+        self.log.path()
+    }
+
+    /// Whether the participant is simulated.
+    pub fn is_simulated(&self) -> bool {
+        self.is_simulated
+    }
+
+    /// Trials that are rated, and all trials.
+    pub fn trials(&self) -> (usize, usize) {
+        let each = self.study.attributes.len().max(1);
+        (self.progress.answers() / each, self.plan.trials.len())
+    }
+
+    /// Time of the last line, milliseconds; 0 before the first.
+    pub fn last_ms(&self) -> u64 {
+        self.progress.last_ms()
+    }
+
+    /// What a trial plays.
+    pub fn stimulus(&self, phase: Phase, trial: &Trial) -> Stimulus {
+        let found = self.progress.found(self.plan, &trial.texture);
+        let name = match phase {
+            Phase::Training => "training",
+            _ => "trial",
+        };
+        Stimulus {
+            texture: trial.texture.clone(),
+            model: trial.model.clone(),
+            seconds: Some(self.study.trial_s),
+            seed: self.seed(name, trial.number),
+            gain_db: found.map(|found| found.gain_db),
+            reference_rms: found.map(|found| found.reference_rms),
+            file: format!("{name}-{:04}", trial.number),
+        }
+    }
+
+    /// What plays while the gain of a texture is matched.
+    pub fn matching_stimulus(&self, texture: &str, matching: &Match) -> Stimulus {
+        Stimulus {
+            texture: texture.to_owned(),
+            model: self.study.gain.model.clone(),
+            seconds: None,
+            seed: self.seed(&format!("gain {texture}"), 0),
+            gain_db: Some(matching.gain_db()),
+            reference_rms: None,
+            file: format!("gain-{texture}"),
+        }
+    }
+
+    /// A seed for the samples of one trial of one participant.
+    fn seed(&self, what: &str, number: u32) -> u64 {
+        let purpose = ["samples", self.participant(), what, &number.to_string()];
+        crate::study::random::Dice::new(self.study.seed, &purpose).bits()
+    }
+
+    /// Records a rating of the present step.
+    ///
+    /// # Errors
+    /// [`StudyError::Write`], and [`StudyError::Line`] if the present step takes no such rating.
+    pub fn rate(&mut self, rating: u8, response_ms: u64, at_ms: u64) -> Result<(), StudyError> {
+        let Step::Rate(phase, trial, attribute) = self.step() else {
+            return Err(self.misplaced("no trial is rated now"));
+        };
+        let answer = Answer {
+            number: trial.number,
+            gain_db: self.stimulus(phase, &trial).gain_db,
+            texture: trial.texture,
+            model: trial.model,
+            repetition: trial.repetition,
+            hidden_reference: trial.hidden_reference,
+            attribute: attribute.name,
+            rating,
+            response_ms,
+            at_ms,
+            simulated: self.is_simulated,
+        };
+        self.record(match phase {
+            Phase::Training => Line::Training(answer),
+            _ => Line::Answer(answer),
+        })
+    }
+
+    /// Records a key of the gain matching, with the drive at which the texture was felt.
+    ///
+    /// # Errors
+    /// As [`Self::rate`].
+    pub fn press(
+        &mut self,
+        key: GainKey,
+        drive_v: Option<f64>,
+        reference_rms: f64,
+        at_ms: u64,
+    ) -> Result<(), StudyError> {
+        let Step::Match {
+            texture,
+            mut matching,
+        } = self.step()
+        else {
+            return Err(self.misplaced("no gain is matched now"));
+        };
+        matching.press(key);
+        self.record(Line::Gain(Matched {
+            texture,
+            key,
+            gain_db: matching.gain_db(),
+            found: matching.is_found(),
+            drive_v,
+            reference_rms,
+            at_ms,
+            simulated: self.is_simulated,
+        }))
+    }
+
+    /// Records the end of a rest.
+    ///
+    /// # Errors
+    /// As [`Self::rate`].
+    pub fn rested(&mut self, at_ms: u64) -> Result<(), StudyError> {
+        let Step::Rest { after, .. } = self.step() else {
+            return Err(self.misplaced("there is no rest now"));
+        };
+        let simulated = self.is_simulated;
+        self.record(Line::Rest {
+            after,
+            at_ms,
+            simulated,
+        })
+    }
+
+    /// Applies the line first, so that only valid ones are written.
+    fn record(&mut self, line: Line) -> Result<(), StudyError> {
+        let applied = self.progress.apply(self.study, self.plan, &line);
+        applied.map_err(|problem| self.misplaced(&problem))?;
+        self.log.append(&line)
+    }
+
+    fn misplaced(&self, problem: &str) -> StudyError {
+        StudyError::Line {
+            file: self.log.path().to_owned(),
+            line: 0,
+            problem: problem.to_owned(),
+        }
+    }
+}

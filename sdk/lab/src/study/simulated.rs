@@ -1,0 +1,90 @@
+//! Simulated participants, to try a study and to test it. Every file that they write says so.
+
+use crate::study::file::{Phase, Scale};
+use crate::study::gain::{GainKey, Match};
+use crate::study::lines::Simulated;
+use crate::study::plan::Trial;
+use crate::study::random::Dice;
+
+/// The rule, as the header of answers states it.
+const RULE: &str = "rating = top - span * e / (e + 6) + b + n, rounded and held to the scale; e: nine-band error of the representation, \
+    dB; b: bias of the participant, standard deviation 0.07 of the span; n: noise of the trial, 0.1 of the span";
+/// Nine-band error at which the rating is in the middle of the scale, dB.
+const MIDDLE_DB: f64 = 6.0;
+/// Standard deviations, parts of the scale's span.
+const BIAS: f64 = 0.07;
+const NOISE: f64 = 0.1;
+/// Range of the gains that they accept, dB below the maximum.
+const GAIN_DB: (f64, f64) = (-18.0, -2.0);
+
+/// A simulated participant: ratings fall with the nine-band error of the representation, the paper's best predictor of similarity. Each
+/// rating depends on the seed, the participant and the trial alone, not on what was rated before.
+#[derive(Debug, Clone)]
+pub struct SimulatedParticipant {
+    seed: u64,
+    name: String,
+}
+
+impl SimulatedParticipant {
+    /// The participant of a name.
+    pub fn new(seed: u64, name: &str) -> Self {
+        let name = name.to_owned();
+        Self { seed, name }
+    }
+
+    /// Its entry in the header of answers.
+    pub fn header(&self) -> Simulated {
+        Simulated {
+            seed: self.seed,
+            rule: RULE.split_whitespace().collect::<Vec<_>>().join(" "),
+        }
+    }
+
+    /// Its rating of a trial of a phase whose representation has this nine-band error, dB.
+    pub fn rating(
+        &self,
+        phase: Phase,
+        trial: &Trial,
+        attribute: &str,
+        error_db: f64,
+        scale: &Scale,
+    ) -> u8 {
+        let (low, top) = (f64::from(scale.min), f64::from(scale.max));
+        let span = top - low;
+        let bias = Dice::new(self.seed, &["bias", &self.name]).normal();
+        let noise = self.dice("noise", phase, trial, attribute).normal();
+        let error_db = error_db.max(0.0);
+        let mean = top - span * error_db / (error_db + MIDDLE_DB);
+        let felt = mean + span * (BIAS * bias + NOISE * noise);
+        felt.round().clamp(low, top) as u8
+    }
+
+    /// Time that it takes to rate, milliseconds.
+    pub fn response_ms(&self, phase: Phase, trial: &Trial, attribute: &str) -> u64 {
+        800 + self.dice("response", phase, trial, attribute).bits() % 1200
+    }
+
+    /// Its next key while a texture's gain is matched: it wants a gain of its own for each texture.
+    pub fn gain_key(&self, texture: &str, matching: &Match) -> GainKey {
+        let mut dice = Dice::new(self.seed, &["gain", &self.name, texture]);
+        let share = (dice.bits() >> 11) as f64 / (1u64 << 53) as f64;
+        let wanted_db = GAIN_DB.0 + share * (GAIN_DB.1 - GAIN_DB.0);
+        let off_db = matching.gain_db() - wanted_db;
+        let key = match off_db {
+            off if off > 5.0 => GainKey::MuchWeaker,
+            off if off > 0.5 => GainKey::Weaker,
+            _ => GainKey::Accept,
+        };
+        match (matching.takes(key), off_db > 0.0) {
+            (true, _) => key,
+            // A staircase asks for a direction alone.
+            (false, true) => GainKey::Weaker,
+            (false, false) => GainKey::Stronger,
+        }
+    }
+
+    fn dice(&self, what: &str, phase: Phase, trial: &Trial, attribute: &str) -> Dice {
+        let number = format!("{phase:?} {}", trial.number);
+        Dice::new(self.seed, &[what, &self.name, &number, attribute])
+    }
+}

@@ -1,0 +1,80 @@
+//! What a trial plays: a scene of one surface, and its gain.
+
+use std::path::Path;
+
+use htex_device::{Capabilities, Quantity};
+use htex_scene::Scene;
+use htex_scene::file::{DeviceChoice, Levels, Surface};
+
+use crate::study::file::Study;
+
+/// Level of a sound that stands for the maximum where the study names none, decibels relative to full scale.
+const SOUND_DBFS: f64 = -18.0;
+
+/// A texture in a model, and how it is played.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stimulus {
+    /// Name of the texture.
+    pub texture: String,
+    /// The model.
+    pub model: String,
+    /// Length, seconds; `None`: until it is stopped.
+    pub seconds: Option<f64>,
+    /// Seed of its random numbers.
+    pub seed: u64,
+    /// Gain relative to the maximum, decibels; `None`: as the study's device plays.
+    pub gain_db: Option<f64>,
+    /// The RMS at which the gain was found, in the assets' unit, for devices whose levels are `own`.
+    pub reference_rms: Option<f64>,
+    /// Name for a file that it is played to: `training-003`, `trial-017`, `gain-vinyl-02`.
+    pub file: String,
+}
+
+/// The scene of a texture in a model, as the bytes of a scene file beside the study.
+pub fn scene_of(study: &Study, asset: &Path, model: &str) -> Vec<u8> {
+    let surface = Surface {
+        representation: model.to_owned(),
+        ..Surface::everywhere(asset)
+    };
+    let scene = Scene {
+        htex_scene: htex_scene::file::VERSION.to_owned(),
+        surfaces: vec![surface],
+        motion: study.motion.clone(),
+        device: study.device.clone(),
+        duration_s: Some(study.trial_s),
+        seed: study.seed,
+        budget: Default::default(),
+        effects: Default::default(),
+    };
+    // A scene has no value that JSON lacks.
+    serde_json::to_vec(&scene).unwrap_or_default()
+}
+
+/// Sets a gain on a scene's device, relative to the maximum: a display's `drive_v` or its limit, the `gain_db` of other forces, or the
+/// level of a sound. Returns the drive of a display, volts.
+pub fn set_gain(
+    device: &mut DeviceChoice,
+    able: &Capabilities,
+    gain_db: f64,
+    reference_rms: Option<f64>,
+) -> Option<f64> {
+    if device.levels == Levels::Own && device.reference_rms.is_none() {
+        device.reference_rms = reference_rms;
+    }
+    match able.quantity {
+        Quantity::DisplayVoltage => {
+            let most_v = device.drive_v.or(able.limit)?;
+            let drive_v = most_v * libm::pow(10.0, gain_db / 20.0);
+            device.drive_v = Some(drive_v);
+            Some(drive_v)
+        }
+        Quantity::Sound => {
+            device.level_dbfs = Some(device.level_dbfs.unwrap_or(SOUND_DBFS) + gain_db);
+            None
+        }
+        _ => {
+            device.gain_db = Some(device.gain_db.unwrap_or(0.0) + gain_db);
+            None
+        }
+    }
+}

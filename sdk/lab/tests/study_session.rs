@@ -1,0 +1,252 @@
+//! Sessions: answers that are kept, files that are damaged, versions that are not mixed.
+#![allow(clippy::unwrap_used, clippy::expect_used)] // A failed unwrap is a failed test.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use htex_format::Findings;
+use htex_lab::study::{
+    DeviceUsed, GainKey, Header, Phase, Plan, Session, SimulatedParticipant, Step, Study,
+    StudyError, export, read_study,
+};
+use tempfile::TempDir;
+
+const STUDY: &str = "
+htex_study = '1.0'
+participants = 2
+repetitions = 2
+models = ['ar', 'sbeta']
+training = { trials = 1 }
+rests = { every = 2, seconds = 5 }
+motion = 'live'
+device = { adapter = 'file' }
+attributes = [{ name = 'similarity', question = '?' }, { name = 'roughness', question = '?' }]
+[[textures]]
+asset = 'cloth.htex'
+";
+
+struct Place {
+    folder: TempDir,
+    study: Study,
+    plan: Plan,
+}
+
+impl Place {
+    fn new() -> Self {
+        let folder = TempDir::new().unwrap();
+        fs::write(folder.path().join("study.toml"), STUDY).unwrap();
+        fs::write(
+            folder.path().join("cloth.htex"),
+            "its bytes are hashed alone",
+        )
+        .unwrap();
+        let study = read_study(STUDY.as_bytes(), &mut Findings::default()).unwrap();
+        let plan = Plan::new(&study);
+        Self {
+            folder,
+            study,
+            plan,
+        }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn header(&self, simulated: Option<u64>) -> Header {
+        let device = DeviceUsed {
+            adapter: "file".to_owned(),
+            profile: String::new(),
+        };
+        let own = &self.plan.participants[0];
+        let header = Header::new(
+            &self.study,
+            &self.path("study.toml"),
+            own,
+            device,
+            "test".to_owned(),
+        );
+        let simulated = simulated.map(|seed| SimulatedParticipant::new(seed, "P01").header());
+        header.unwrap().with_simulated(simulated)
+    }
+
+    fn open(&self) -> Result<Session<'_>, StudyError> {
+        let own = &self.plan.participants[0];
+        Session::open(&self.study, own, self.folder.path(), &self.header(None))
+    }
+
+    fn answers(&self) -> PathBuf {
+        self.path("P01.jsonl")
+    }
+}
+
+/// Does one step.
+fn act(session: &mut Session<'_>) -> bool {
+    match session.step() {
+        Step::Rate(_, trial, _) => session.rate((trial.number % 7) as u8, 1, 2).unwrap(),
+        Step::Match { matching, .. } => {
+            let key = match matching.gain_db() < -2.0 {
+                true => GainKey::Accept,
+                false => GainKey::Weaker,
+            };
+            session.press(key, None, 0.5, 3).unwrap();
+        }
+        Step::Rest { .. } => session.rested(4).unwrap(),
+        Step::Done => return false,
+    }
+    true
+}
+
+/// However a session is cut off, at every byte of its file, it goes on to the same file.
+#[test]
+fn a_session_goes_on_from_every_byte() {
+    let place = Place::new();
+    let mut session = place.open().unwrap();
+    while act(&mut session) {}
+    assert_eq!(session.trials(), (4, 4));
+    drop(session);
+    let whole = fs::read(place.answers()).unwrap();
+    let header = whole.iter().position(|b| *b == b'\n').unwrap() + 1;
+    let lines = whole.iter().filter(|b| **b == b'\n').count();
+    // 2 training, 4 gain, 8 ratings, 1 rest.
+    assert_eq!(lines, 1 + 2 + 4 + 8 + 1);
+    for cut in (header..whole.len())
+        .step_by(17)
+        .chain([header, whole.len() - 1])
+    {
+        fs::write(place.answers(), &whole[..cut]).unwrap();
+        let mut session = place.open().unwrap();
+        while act(&mut session) {}
+        drop(session);
+        assert_eq!(fs::read(place.answers()).unwrap(), whole, "cut at {cut}");
+    }
+}
+
+#[test]
+fn gains_are_adopted_by_the_other_models() {
+    let place = Place::new();
+    let mut session = place.open().unwrap();
+    let mut seen = 0;
+    loop {
+        if let Step::Rate(phase, trial, _) = session.step() {
+            let stimulus = session.stimulus(phase, &trial);
+            let gain = (phase == Phase::Testing).then_some(-3.0);
+            assert_eq!(stimulus.gain_db, gain, "{}", trial.model);
+            assert_eq!(stimulus.reference_rms, gain.map(|_| 0.5));
+            seen += 1;
+        }
+        if !act(&mut session) {
+            break;
+        }
+    }
+    assert_eq!(seen, 2 + 8);
+}
+
+fn refused(place: &Place, words: &[&str]) {
+    let error = place.open().err().expect("it is refused").to_string();
+    for word in words {
+        assert!(error.contains(word), "{word}: {error}");
+    }
+}
+
+#[test]
+fn versions_are_not_mixed() {
+    let place = Place::new();
+    let mut session = place.open().unwrap();
+    act(&mut session);
+    refused(&place, &["P01.jsonl", "another htex is running"]);
+    drop(session);
+    let before = fs::read(place.answers()).unwrap();
+    fs::write(place.path("study.toml"), format!("{STUDY}\n# changed")).unwrap();
+    refused(&place, &["study has changed", "-o"]);
+    fs::write(place.path("study.toml"), STUDY).unwrap();
+    fs::write(place.path("cloth.htex"), "others").unwrap();
+    refused(&place, &["file cloth.htex has changed"]);
+    fs::write(place.path("cloth.htex"), "its bytes are hashed alone").unwrap();
+    let own = &place.plan.participants[0];
+    let simulated = place.header(Some(1));
+    let error = Session::open(&place.study, own, place.folder.path(), &simulated).unwrap_err();
+    assert!(error.to_string().contains("those of a person"), "{error}");
+    assert_eq!(fs::read(place.answers()).unwrap(), before);
+    place.open().unwrap();
+}
+
+#[test]
+fn damaged_lines_are_named_and_kept() {
+    let place = Place::new();
+    let mut session = place.open().unwrap();
+    while act(&mut session) {}
+    drop(session);
+    let text = fs::read_to_string(place.answers()).unwrap();
+    let damaged = |from: &str, to: &str, words: &[&str]| {
+        assert!(text.contains(from), "{from}");
+        let changed = text.replacen(from, to, 1);
+        fs::write(place.answers(), &changed).unwrap();
+        refused(&place, words);
+        assert_eq!(fs::read_to_string(place.answers()).unwrap(), changed);
+    };
+    damaged(
+        "\"number\":1,",
+        "\"number\":9,",
+        &["line 2", "trial 1 of the plan"],
+    );
+    damaged(
+        "\"rating\":1,",
+        "\"rating\":9,",
+        &["line 2", "not on the scale"],
+    );
+    damaged("\"kind\":\"rest\"", "\"kind\":\"nap\"", &["line 12"]);
+    damaged("{\"kind\":\"header\"", "{\"kind\":\"leader\"", &["line 1"]);
+    let header = text.lines().next().unwrap();
+    damaged(
+        "{\"kind\":\"rest\"",
+        &format!("{header}\n{{\"kind\":\"rest\""),
+        &["line 12", "second header"],
+    );
+    fs::write(place.answers(), "").unwrap();
+    refused(&place, &["line 1"]);
+}
+
+fn rows(folder: &Path, attribute: Option<&str>) -> Result<String, StudyError> {
+    Ok(export(folder, attribute)?.csv)
+}
+
+#[test]
+fn ratings_are_exported_by_attribute() {
+    let place = Place::new();
+    let folder = place.folder.path();
+    let error = rows(folder, None).unwrap_err().to_string();
+    assert!(error.contains("no answers"), "{error}");
+    let mut session = place.open().unwrap();
+    while session.trials().0 < 3 {
+        act(&mut session);
+    }
+    drop(session);
+    // A line that is being written is left out.
+    let mut file = fs::OpenOptions::new()
+        .append(true)
+        .open(place.answers())
+        .unwrap();
+    file.write_all(b"{\"kind\":\"answ").unwrap();
+    let error = rows(folder, None).unwrap_err().to_string();
+    assert!(error.contains("roughness, similarity"), "{error}");
+    let table = export(folder, Some("roughness")).unwrap();
+    assert_eq!((table.participants, table.ratings), (1, 3));
+    assert_eq!(table.warnings, ["P01 is not complete: 6 of 8 ratings"]);
+    let mut lines = table.csv.lines();
+    let head = "participant,texture,model,repetition,rating,attribute,hidden_reference,response_ms,gain_db,simulated";
+    assert_eq!(lines.next(), Some(head));
+    assert!(
+        lines.next().unwrap().ends_with(",1,roughness,no,1,-3,no"),
+        "{}",
+        table.csv
+    );
+    fs::write(place.path("P02.jsonl"), "{}\n").unwrap();
+    assert!(
+        rows(folder, None)
+            .unwrap_err()
+            .to_string()
+            .contains("P02.jsonl, line 1")
+    );
+}

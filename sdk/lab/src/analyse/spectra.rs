@@ -109,9 +109,12 @@ fn grid_columns<'s>(sheet: &'s Sheet, findings: &mut Findings) -> Vec<(usize, &'
     columns
 }
 
+/// A column: its index and its name.
+type Column<'a> = (usize, &'a str);
+
 fn read_row(
     row: &Row,
-    (names, grid): (&[(usize, &str); 3], &[(usize, &str)]),
+    (names, grid): (&[Column<'_>; 3], &[Column<'_>]),
     repetition: String,
     all: &mut Read,
     findings: &mut Findings,
@@ -152,7 +155,7 @@ fn select(all: &Read, ratings: &Ratings, findings: &mut Findings) -> Spectra {
     let mut used = BTreeSet::new();
     let mut take = |participant: &str, texture: &str, model: &str| {
         let cell = (participant.to_owned(), texture.to_owned(), model.to_owned());
-        let found = all.get(&cell).map(|lines| average(lines));
+        let found = all.get(&cell).map(average);
         used.insert(cell);
         found
     };

@@ -1,0 +1,167 @@
+//! Chromium without a window, driven over pipes by the Chrome DevTools Protocol.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+
+/// Longest wait for what a page shows.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// The name of an installed browser.
+pub fn installed() -> Option<&'static str> {
+    ["chromium", "chromium-browser"].into_iter().find(|name| {
+        let version = Command::new(name).arg("--version").output();
+        version.is_ok_and(|run| run.status.success())
+    })
+}
+
+/// A running browser.
+pub struct Browser {
+    child: Child,
+    to: File,
+    from: BufReader<File>,
+    calls: u64,
+}
+
+/// An open tab.
+#[derive(Clone)]
+pub struct Tab {
+    target: String,
+    session: String,
+}
+
+impl Browser {
+    /// Starts a browser; `folder` holds its profile and its pipes.
+    pub fn start(name: &str, folder: &Path) -> Self {
+        std::fs::create_dir_all(folder).unwrap();
+        let (to, from) = (folder.join("to"), folder.join("from"));
+        let made = Command::new("mkfifo").arg(&to).arg(&from).status();
+        assert!(made.unwrap().success());
+        let flags = [
+            "--headless",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--disable-background-networking",
+            "--disable-background-timer-throttling",
+            "--disable-renderer-backgrounding",
+            "--mute-audio",
+            "--remote-debugging-pipe",
+        ];
+        // The browser reads from descriptor 3 and writes to 4.
+        let script = "exec \"$0\" \"$@\" 3<\"$HTEX_TO\" 4>\"$HTEX_FROM\"";
+        let child = Command::new("sh")
+            .args(["-c", script, name])
+            .args(flags)
+            .arg(format!(
+                "--user-data-dir={}",
+                folder.join("profile").display()
+            ))
+            .env("HTEX_TO", &to)
+            .env("HTEX_FROM", &from)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let to = File::options().write(true).open(to).unwrap();
+        let from = BufReader::new(File::open(from).unwrap());
+        let calls = 0;
+        Self {
+            child,
+            to,
+            from,
+            calls,
+        }
+    }
+
+    /// Calls a method, in a tab or in the browser.
+    pub fn call(&mut self, tab: Option<&Tab>, method: &str, params: Value) -> Value {
+        self.calls += 1;
+        let mut message = json!({ "id": self.calls, "method": method, "params": params });
+        if let Some(tab) = tab {
+            message["sessionId"] = json!(tab.session);
+        }
+        self.to.write_all(message.to_string().as_bytes()).unwrap();
+        self.to.write_all(&[0]).unwrap();
+        loop {
+            let mut reply = Vec::new();
+            self.from.read_until(0, &mut reply).unwrap();
+            assert_eq!(reply.pop(), Some(0), "{method}: the browser has ended");
+            let reply: Value = serde_json::from_slice(&reply).unwrap();
+            if reply["id"] == self.calls {
+                assert_eq!(reply.get("error"), None, "{method}");
+                return reply["result"].clone();
+            }
+        }
+    }
+
+    /// Opens a tab of the size of a tablet.
+    pub fn open(&mut self, url: &str) -> Tab {
+        let made = self.call(None, "Target.createTarget", json!({ "url": url }));
+        let target = made["targetId"].as_str().unwrap().to_owned();
+        let attach = json!({ "targetId": target, "flatten": true });
+        let attached = self.call(None, "Target.attachToTarget", attach);
+        let session = attached["sessionId"].as_str().unwrap().to_owned();
+        let tab = Tab { target, session };
+        let size = json!({ "width": 1024, "height": 768, "deviceScaleFactor": 1, "mobile": false });
+        self.call(Some(&tab), "Emulation.setDeviceMetricsOverride", size);
+        let focus = json!({ "enabled": true });
+        self.call(Some(&tab), "Emulation.setFocusEmulationEnabled", focus);
+        tab
+    }
+
+    pub fn close(&mut self, tab: &Tab) {
+        let target = json!({ "targetId": tab.target });
+        self.call(None, "Target.closeTarget", target);
+    }
+
+    pub fn reload(&mut self, tab: &Tab) {
+        self.call(Some(tab), "Page.reload", json!({}));
+    }
+
+    /// The value of an expression in a tab.
+    pub fn value(&mut self, tab: &Tab, expression: &str) -> Value {
+        let params = json!({ "expression": expression, "returnByValue": true });
+        self.call(Some(tab), "Runtime.evaluate", params)["result"]["value"].clone()
+    }
+
+    /// Waits until a tab shows a text.
+    pub fn shows(&mut self, tab: &Tab, text: &str) {
+        let start = Instant::now();
+        let mut body = Value::Null;
+        while start.elapsed() < PATIENCE {
+            body = self.value(tab, "document.body && document.body.innerText");
+            if body.as_str().is_some_and(|body| body.contains(text)) {
+                return;
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        unreachable!("{text:?} is not shown: {body}");
+    }
+
+    /// Presses and releases a key; `repeats` are presses of a key that is held.
+    pub fn press(&mut self, tab: &Tab, key: &str, repeats: usize) {
+        for i in 0..=repeats {
+            let down = json!({ "type": "keyDown", "key": key, "text": key, "autoRepeat": i > 0 });
+            self.call(Some(tab), "Input.dispatchKeyEvent", down);
+        }
+        let up = json!({ "type": "keyUp", "key": key });
+        self.call(Some(tab), "Input.dispatchKeyEvent", up);
+    }
+
+    /// A picture of a tab as PNG, base64.
+    pub fn picture(&mut self, tab: &Tab) -> String {
+        let taken = self.call(Some(tab), "Page.captureScreenshot", json!({}));
+        taken["data"].as_str().unwrap().to_owned()
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

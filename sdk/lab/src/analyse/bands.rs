@@ -7,9 +7,9 @@ use htex_statistics::{
 };
 
 use super::analysis::{BandResult, BestBanks};
+use super::inference::Notes;
 use super::ratings::Ratings;
 use super::spectra::Spectra;
-use super::tests_of::Notes;
 
 /// Largest number of bands: that of the paper.
 const MOST: usize = 20;

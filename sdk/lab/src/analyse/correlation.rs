@@ -3,10 +3,10 @@
 use htex_statistics::{pearson, summary};
 
 use super::analysis::{Correlation, Mean, SpectralCorrelation};
+use super::inference::Notes;
 use super::methods;
 use super::ratings::Ratings;
 use super::spectra::Spectra;
-use super::tests_of::Notes;
 
 const GROUP: &str = "spectral_correlation";
 

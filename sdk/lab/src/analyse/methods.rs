@@ -9,7 +9,7 @@ pub(super) const FRIEDMAN: &str = "Friedman's test (1937) on the ranks of mean r
 size: Kendall's W. Agrees with SciPy.";
 pub(super) const NORMALITY: &str = "On z-scores (n - 1) of the mean ratings. Kolmogorov-Smirnov against the standard normal with the exact distribution of D, as the \
 paper tested; its p-value is too large, because the normal is fitted to the same values. Lilliefors (1967) corrects for that, p-value by Dallal and \
-Wilkinson (1986) and Stephens (1974). Shapiro-Wilk by Royston (1995, AS R94). Agrees with SciPy.";
+Wilkinson (1986) and Stephens (1974). Shapiro-Wilk by Royston (1995, AS R94). The first and the last agree with SciPy.";
 pub(super) const CORRELATION: &str = "Pearson's correlation of the linear magnitudes of felt and recorded spectrum over 197 bins, 20 to 1000 Hz, for each \
 participant, then averaged (paper, Figure 3A).";
 const MEANS: &str = "Means over participants of each participant's mean over repetitions; standard deviation between participants with n - 1.";

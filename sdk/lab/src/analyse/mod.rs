@@ -22,6 +22,7 @@ mod answers;
 mod bands;
 mod correlation;
 mod figures;
+mod inference;
 mod methods;
 mod page;
 mod ratings;
@@ -30,7 +31,6 @@ mod run;
 mod sheet;
 mod spectra;
 mod tables;
-mod tests_of;
 mod text;
 mod words;
 

@@ -7,9 +7,9 @@ use serde_json::Value;
 
 use super::analysis::{ANALYSIS, Analysis, CellMean, Mean, PowerRow};
 use super::correlation::{correlate, mean};
+use super::inference::{Notes, anova_of, friedman_of, normality_of, pairs_of, two_way};
 use super::ratings::Ratings;
 use super::spectra::Spectra;
-use super::tests_of::{Notes, anova_of, friedman_of, normality_of, pairs_of, two_way};
 use super::{bands, methods};
 
 /// A medium effect (Cohen 1988), which the paper plans for.

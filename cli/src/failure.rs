@@ -23,6 +23,9 @@ pub(crate) enum Failure {
     Device(#[from] htex_device::DeviceError),
     #[error(transparent)]
     Tradeoff(#[from] htex_tradeoff::TradeoffError),
+    #[cfg(feature = "lab")]
+    #[error(transparent)]
+    Response(#[from] htex_lab::response::ResponseError),
     #[error(transparent)]
     Storage(#[from] htex_storage::StorageError),
     #[error("{file}: {error}{}", flag_of(.error))]
@@ -65,6 +68,14 @@ impl Failure {
         use htex_device::DeviceError::{Rate, Setting, Unknown};
         use htex_host::HostError::{Option, UnknownModel};
         use htex_storage::StorageError::{NoCloud, ReadOnly};
+        #[cfg(feature = "lab")]
+        if let Self::Response(
+            htex_lab::response::ResponseError::Option { .. }
+            | htex_lab::response::ResponseError::Column { .. },
+        ) = self
+        {
+            return Exit::USAGE;
+        }
         match self {
             Self::Usage(_)
             | Self::Model(Option { .. } | UnknownModel { .. })
@@ -172,6 +183,8 @@ impl Failure {
                 of_author_error(error)
             }
             Self::Recording(error) => of_read_error(error),
+            #[cfg(feature = "lab")]
+            Self::Response(error) => crate::flags::of_response_error(error),
             _ => None,
         }
     }

@@ -85,9 +85,7 @@ pub(crate) fn of_read_error(error: &ReadError) -> Option<&'static str> {
 
 /// The flags that help against an error of measuring a response.
 #[cfg(feature = "lab")]
-pub(crate) fn of_response_error(
-    error: &htex_lab::response::ResponseError,
-) -> Option<&'static str> {
+pub(crate) fn of_response_error(error: &htex_lab::response::ResponseError) -> Option<&'static str> {
     use htex_lab::response::ResponseError;
     match error {
         ResponseError::Columns { .. } | ResponseError::Constant { .. } => Some("--input, --output"),

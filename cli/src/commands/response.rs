@@ -155,7 +155,11 @@ impl Response {
 
     /// The records, and what was noticed while reading them, each once.
     fn read(&self) -> Result<(Vec<Record>, Vec<String>), Failure> {
-        let others = self.map.as_deref().map(str::parse::<ColumnMap>).transpose()?;
+        let others = self
+            .map
+            .as_deref()
+            .map(str::parse::<ColumnMap>)
+            .transpose()?;
         let map = column_map(&self.input, &self.output, others.as_ref())?;
         let options = ReadOptions::default()
             .with_rate_hz(self.rate)
@@ -199,7 +203,10 @@ impl Response {
         let pre_trigger_s = self.pre_trigger.unwrap_or(usual.pre_trigger_s);
         usual
             .with_pre_trigger_s(pre_trigger_s)
-            .with_levels(self.trigger.unwrap_or(trigger), self.double.unwrap_or(double))
+            .with_levels(
+                self.trigger.unwrap_or(trigger),
+                self.double.unwrap_or(double),
+            )
             .with_force_window_s(self.force_window)
             .with_exponential_s(self.exponential)
     }
@@ -233,7 +240,8 @@ const MOST_LISTED: usize = 40;
 
 /// What was used and thrown out, and the result in a few lines.
 fn text(measured: &MeasuredResponse) -> String {
-    let is_listed = |piece: &&Piece| measured.pieces.len() <= MOST_LISTED || piece.thrown_out.is_some();
+    let is_listed =
+        |piece: &&Piece| measured.pieces.len() <= MOST_LISTED || piece.thrown_out.is_some();
     let listed = measured.pieces.iter().filter(is_listed).take(MOST_LISTED);
     let lines: String = listed.map(line).collect();
     let thrown_out = measured.pieces.len() - measured.averages;
@@ -256,7 +264,10 @@ fn line(piece: &Piece) -> String {
         None => "used".to_owned(),
         Some(reason) => format!("thrown out: {reason}"),
     };
-    format!("{:>10.4} s  peak {:>10.4}  {}  {result}\n", piece.time_s, piece.peak, piece.file)
+    format!(
+        "{:>10.4} s  peak {:>10.4}  {}  {result}\n",
+        piece.time_s, piece.peak, piece.file
+    )
 }
 
 fn largest(measured: &MeasuredResponse) -> String {
@@ -272,6 +283,7 @@ fn largest(measured: &MeasuredResponse) -> String {
 fn least_coherence(measured: &MeasuredResponse) -> String {
     let both = measured.coherence.iter().zip(&measured.frequency_hz);
     let least = both.min_by(|(a, _), (b, _)| a.total_cmp(b));
-    let least = least.map(|(coherence, hz)| format!("lowest coherence {coherence:.4}, at {hz} Hz\n"));
+    let least =
+        least.map(|(coherence, hz)| format!("lowest coherence {coherence:.4}, at {hz} Hz\n"));
     least.unwrap_or_default()
 }

@@ -22,7 +22,11 @@ impl Baseline {
         let deviations: Vec<f64> = values.iter().map(|value| (value - level).abs()).collect();
         let largest = deviations.iter().copied().fold(0.0, f64::max);
         let noise = NORMAL * median(deviations);
-        Self { level, noise, largest }
+        Self {
+            level,
+            noise,
+            largest,
+        }
     }
 }
 

@@ -111,7 +111,13 @@ mod tests {
 
     #[test]
     fn bins_without_power_have_no_response() {
-        let bin = Bin { gxx: 0.0, gyy: 0.0, gxy: Complex::ZERO, input_power: 1.0, output_power: 1.0 };
+        let bin = Bin {
+            gxx: 0.0,
+            gyy: 0.0,
+            gxy: Complex::ZERO,
+            input_power: 1.0,
+            output_power: 1.0,
+        };
         for estimator in [Estimator::H1, Estimator::H2, Estimator::Hv] {
             assert_eq!(bin.magnitude(estimator), 0.0);
         }

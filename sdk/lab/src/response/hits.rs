@@ -17,7 +17,12 @@ pub(crate) const ABOVE_NOISE: f64 = 8.0;
 /// Finds the hits of a record, with windows of `len` samples; none where the largest input is within the noise.
 ///
 /// A hit begins where the input first reaches the trigger level, and the next one is searched behind its window.
-pub(crate) fn hits(record: &Record, len: usize, hit: &HitOptions, options: &ResponseOptions) -> Vec<Cut> {
+pub(crate) fn hits(
+    record: &Record,
+    len: usize,
+    hit: &HitOptions,
+    options: &ResponseOptions,
+) -> Vec<Cut> {
     let input = record.channel(Channel::Input);
     let rest = Baseline::of(input);
     let least = ABOVE_NOISE * rest.noise;
@@ -36,7 +41,13 @@ pub(crate) fn hits(record: &Record, len: usize, hit: &HitOptions, options: &Resp
         let samples = start..start + len;
         let inside = start..samples.end.min(input.len());
         let peak = peak(&input[inside.clone()], rest.level);
-        let window = Window { record, trigger, before, samples: &samples, inside: &inside };
+        let window = Window {
+            record,
+            trigger,
+            before,
+            samples: &samples,
+            inside: &inside,
+        };
         let rise = (hit.double * peak.abs()).max(least);
         let thrown_out = window
             .cut_off()
@@ -44,15 +55,26 @@ pub(crate) fn hits(record: &Record, len: usize, hit: &HitOptions, options: &Resp
             .or_else(|| window.double(rest.level, peak, rise));
         from = inside.end.max(trigger + 1);
         let (file, time_s) = (record.file().to_owned(), record.second(trigger));
-        let piece = Piece { file, time_s, peak, thrown_out };
-        found.push(Cut { samples, trigger, piece });
+        let piece = Piece {
+            file,
+            time_s,
+            peak,
+            thrown_out,
+        };
+        found.push(Cut {
+            samples,
+            trigger,
+            piece,
+        });
     }
     found
 }
 
 /// The first sample that is at least `level` from rest.
 fn trigger(input: &[f64], rest: f64, level: f64) -> Option<usize> {
-    input.iter().position(|value| (value - rest).abs() >= level && *value != rest)
+    input
+        .iter()
+        .position(|value| (value - rest).abs() >= level && *value != rest)
 }
 
 /// The value farthest from rest, from there.

@@ -57,7 +57,10 @@ pub struct MeasuredResponse {
 /// # Errors
 /// Options out of range; no records, or records of different rates; a record shorter than a window; no hits, or fewer
 /// than two that can be used; a magnitude that no response file may hold.
-pub fn measure(records: &[Record], options: &ResponseOptions) -> Result<MeasuredResponse, ResponseError> {
+pub fn measure(
+    records: &[Record],
+    options: &ResponseOptions,
+) -> Result<MeasuredResponse, ResponseError> {
     let rate_hz = common_rate(records)?;
     let len = options.check(rate_hz)?;
     let cuts: Vec<Vec<Cut>> = records
@@ -78,7 +81,10 @@ pub fn measure(records: &[Record], options: &ResponseOptions) -> Result<Measured
         averages: used,
         pieces: cuts.into_iter().flatten().map(|cut| cut.piece).collect(),
         frequency_hz: bins.clone().map(|bin| bin as f64 * resolution_hz).collect(),
-        magnitude: in_band.iter().map(|bin| scale * bin.magnitude(options.estimator)).collect(),
+        magnitude: in_band
+            .iter()
+            .map(|bin| scale * bin.magnitude(options.estimator))
+            .collect(),
         phase_rad: unwrapped(in_band.iter().map(Bin::phase_rad)),
         coherence: in_band.iter().map(Bin::coherence).collect(),
         relative_error: Vec::new(),
@@ -101,14 +107,30 @@ impl MeasuredResponse {
         }
     }
 
-    fn finish(&mut self, options: &ResponseOptions, outlasting: usize) -> Result<(), ResponseError> {
-        let is_valid = |magnitude: f64| magnitude == 0.0 || (SMALLEST..=LARGEST).contains(&magnitude);
-        if let Some(at) = self.magnitude.iter().position(|magnitude| !is_valid(*magnitude)) {
+    fn finish(
+        &mut self,
+        options: &ResponseOptions,
+        outlasting: usize,
+    ) -> Result<(), ResponseError> {
+        let is_valid =
+            |magnitude: f64| magnitude == 0.0 || (SMALLEST..=LARGEST).contains(&magnitude);
+        if let Some(at) = self
+            .magnitude
+            .iter()
+            .position(|magnitude| !is_valid(*magnitude))
+        {
             let (frequency_hz, magnitude) = (self.frequency_hz[at], self.magnitude[at]);
-            return Err(ResponseError::Magnitude { frequency_hz, magnitude });
+            return Err(ResponseError::Magnitude {
+                frequency_hz,
+                magnitude,
+            });
         }
         let averages = independent(options, self.averages);
-        let error = |coherence: &f64| ((1.0 - coherence) / (2.0 * coherence * averages)).sqrt().min(1.0);
+        let error = |coherence: &f64| {
+            ((1.0 - coherence) / (2.0 * coherence * averages))
+                .sqrt()
+                .min(1.0)
+        };
         self.relative_error = self.coherence.iter().map(error).collect();
         self.peak = Peak::of(&self.frequency_hz, &self.magnitude);
         self.warnings = notices(self, options, outlasting);
@@ -118,7 +140,10 @@ impl MeasuredResponse {
 
 fn common_rate(records: &[Record]) -> Result<f64, ResponseError> {
     let first = records.first().ok_or(ResponseError::Nothing)?;
-    match records.iter().find(|record| record.rate_hz() != first.rate_hz()) {
+    match records
+        .iter()
+        .find(|record| record.rate_hz() != first.rate_hz())
+    {
         None => Ok(first.rate_hz()),
         Some(other) => Err(ResponseError::Rates {
             first: first.file().to_owned(),
@@ -144,13 +169,24 @@ fn cut(record: &Record, len: usize, options: &ResponseOptions) -> Result<Vec<Cut
 }
 
 /// Counts what can be used; refuses fewer than two.
-fn count_used(records: &[Record], cuts: &[Vec<Cut>], options: &ResponseOptions) -> Result<usize, ResponseError> {
+fn count_used(
+    records: &[Record],
+    cuts: &[Vec<Cut>],
+    options: &ResponseOptions,
+) -> Result<usize, ResponseError> {
     let pieces = || cuts.iter().flatten().map(|cut| &cut.piece);
-    let (found, is_hits) = (pieces().count(), matches!(options.excitation, Excitation::Hits(_)));
+    let (found, is_hits) = (
+        pieces().count(),
+        matches!(options.excitation, Excitation::Hits(_)),
+    );
     if let (0, Some(first)) = (found, records.first()) {
         let rest = Baseline::of(first.channel(Channel::Input));
         let (file, largest, noise) = (first.file().to_owned(), rest.largest, rest.noise);
-        return Err(ResponseError::NoHits { file, largest, noise });
+        return Err(ResponseError::NoHits {
+            file,
+            largest,
+            noise,
+        });
     }
     match pieces().filter(|piece| piece.thrown_out.is_none()).count() {
         used if used >= 2 => Ok(used),
@@ -164,7 +200,12 @@ fn count_used(records: &[Record], cuts: &[Vec<Cut>], options: &ResponseOptions) 
 }
 
 /// Averages what is used; returns the number of hits whose response outlasts the window, too.
-fn average(records: &[Record], cuts: &[Vec<Cut>], len: usize, options: &ResponseOptions) -> (Spectra, usize) {
+fn average(
+    records: &[Record],
+    cuts: &[Vec<Cut>],
+    len: usize,
+    options: &ResponseOptions,
+) -> (Spectra, usize) {
     let [x, y] = [Channel::Input, Channel::Output].map(|channel| scale_of(records, channel));
     let mut spectra = Spectra::new(len);
     let mut outlasting = 0;
@@ -186,12 +227,18 @@ fn average(records: &[Record], cuts: &[Vec<Cut>], len: usize, options: &Response
 
 /// The largest distance from rest, by which a channel is divided so that no power over- or underflows.
 fn scale_of(records: &[Record], channel: Channel) -> f64 {
-    let largest = records.iter().map(|record| Baseline::of(record.channel(channel)).largest);
+    let largest = records
+        .iter()
+        .map(|record| Baseline::of(record.channel(channel)).largest);
     largest.fold(0.0, f64::max)
 }
 
 /// The bins of the band.
-fn band(options: &ResponseOptions, resolution_hz: f64, bins: usize) -> Result<std::ops::Range<usize>, ResponseError> {
+fn band(
+    options: &ResponseOptions,
+    resolution_hz: f64,
+    bins: usize,
+) -> Result<std::ops::Range<usize>, ResponseError> {
     // A bin at an edge of the band belongs to it, whatever the rounding of the quotient.
     let low = (options.low_hz / resolution_hz * (1.0 - 1e-12)).ceil() as usize;
     let high = (options.high_hz / resolution_hz * (1.0 + 1e-12)).floor() as usize;

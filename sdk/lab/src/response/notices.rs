@@ -26,7 +26,11 @@ pub(crate) fn outlasts(output: &[f64], before: usize) -> bool {
 }
 
 /// Returns the warnings about a measured response. `outlasting` is the number of hits whose response has not died out.
-pub(crate) fn notices(measured: &MeasuredResponse, options: &ResponseOptions, outlasting: usize) -> Vec<String> {
+pub(crate) fn notices(
+    measured: &MeasuredResponse,
+    options: &ResponseOptions,
+    outlasting: usize,
+) -> Vec<String> {
     let mut found = Vec::new();
     if measured.averages < FEW {
         found.push(format!(
@@ -35,7 +39,9 @@ pub(crate) fn notices(measured: &MeasuredResponse, options: &ResponseOptions, ou
         ));
     }
     if let Some(stretches) = incoherent(measured) {
-        found.push(format!("The coherence is below {COHERENT} {stretches}; the response is uncertain there."));
+        found.push(format!(
+            "The coherence is below {COHERENT} {stretches}; the response is uncertain there."
+        ));
     }
     if let Excitation::Hits(hit) = &options.excitation {
         if outlasting > 0 {

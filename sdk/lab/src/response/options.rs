@@ -161,11 +161,26 @@ impl ResponseOptions {
     pub(crate) fn check(&self, rate_hz: f64) -> Result<usize, ResponseError> {
         let samples = (self.window_s * rate_hz).round();
         let enough = format!("a window needs {FEWEST_SAMPLES} samples or more, at {rate_hz} Hz");
-        require("the window (s)", self.window_s, samples >= FEWEST_SAMPLES && samples < 1e15, &enough)?;
+        require(
+            "the window (s)",
+            self.window_s,
+            samples >= FEWEST_SAMPLES && samples < 1e15,
+            &enough,
+        )?;
         let low = self.low_hz >= 0.0 && self.low_hz < rate_hz / 2.0;
-        require("the lowest frequency (Hz)", self.low_hz, low, "it must be 0 or more, and below half of the sample rate")?;
+        require(
+            "the lowest frequency (Hz)",
+            self.low_hz,
+            low,
+            "it must be 0 or more, and below half of the sample rate",
+        )?;
         let high = self.high_hz > self.low_hz && self.high_hz.is_finite();
-        require("the highest frequency (Hz)", self.high_hz, high, "it must be finite and above the lowest")?;
+        require(
+            "the highest frequency (Hz)",
+            self.high_hz,
+            high,
+            "it must be finite and above the lowest",
+        )?;
         positive("the limit of the input", self.input_limit)?;
         positive("the limit of the output", self.output_limit)?;
         if let Excitation::Hits(hits) = &self.excitation {
@@ -179,9 +194,22 @@ impl HitOptions {
     fn check(&self, window_s: f64) -> Result<(), ResponseError> {
         let inside = (0.0..0.5 * window_s).contains(&self.pre_trigger_s);
         let half = "it must be 0 or more, and below half of the window";
-        require("the time before the trigger (s)", self.pre_trigger_s, inside, half)?;
-        for (option, level) in [("the trigger", self.trigger), ("the level of a double hit", self.double)] {
-            require(option, level, level > 0.0 && level < 1.0, "it is relative and must be between 0 and 1")?;
+        require(
+            "the time before the trigger (s)",
+            self.pre_trigger_s,
+            inside,
+            half,
+        )?;
+        for (option, level) in [
+            ("the trigger", self.trigger),
+            ("the level of a double hit", self.double),
+        ] {
+            require(
+                option,
+                level,
+                level > 0.0 && level < 1.0,
+                "it is relative and must be between 0 and 1",
+            )?;
         }
         positive("the force window (s)", self.force_window_s)?;
         positive("the exponential window (s)", self.exponential_s)
@@ -190,13 +218,27 @@ impl HitOptions {
 
 fn positive(option: &'static str, value: Option<f64>) -> Result<(), ResponseError> {
     let value = value.unwrap_or(1.0);
-    require(option, value, value.is_finite() && value > 0.0, "it must be finite and above 0")
+    require(
+        option,
+        value,
+        value.is_finite() && value > 0.0,
+        "it must be finite and above 0",
+    )
 }
 
-fn require(option: &'static str, value: f64, holds: bool, problem: &str) -> Result<(), ResponseError> {
+fn require(
+    option: &'static str,
+    value: f64,
+    holds: bool,
+    problem: &str,
+) -> Result<(), ResponseError> {
     if holds {
         return Ok(());
     }
     let problem = problem.to_owned();
-    Err(ResponseError::Option { option, value, problem })
+    Err(ResponseError::Option {
+        option,
+        value,
+        problem,
+    })
 }

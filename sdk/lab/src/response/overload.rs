@@ -38,14 +38,22 @@ impl Overloads {
     pub(crate) fn find_given(record: &Record, channel: Channel, limit: Option<f64>) -> Self {
         match limit {
             Some(_) => Self::find(record, channel, limit),
-            None => Self { channel, stretches: Vec::new() },
+            None => Self {
+                channel,
+                stretches: Vec::new(),
+            },
         }
     }
 
     /// Returns the first overload within a part of the record.
     pub(crate) fn within(&self, record: &Record, part: &Range<usize>) -> Option<Reason> {
-        let next = self.stretches.partition_point(|stretch| stretch.end <= part.start);
-        let stretch = self.stretches.get(next).filter(|stretch| stretch.start < part.end)?;
+        let next = self
+            .stretches
+            .partition_point(|stretch| stretch.end <= part.start);
+        let stretch = self
+            .stretches
+            .get(next)
+            .filter(|stretch| stretch.start < part.end)?;
         let at = stretch.start.max(part.start);
         Some(Reason::Overload {
             channel: self.channel,
@@ -74,7 +82,12 @@ fn repeated(values: &[f64]) -> Vec<Range<usize>> {
 fn runs(values: &[f64], fewest: usize, is_so: impl Fn(f64) -> bool) -> Vec<Range<usize>> {
     let mut found = Vec::new();
     let mut start = None;
-    for (at, value) in values.iter().map(|value| Some(*value)).chain([None]).enumerate() {
+    for (at, value) in values
+        .iter()
+        .map(|value| Some(*value))
+        .chain([None])
+        .enumerate()
+    {
         match (start, value.is_some_and(&is_so)) {
             (None, true) => start = Some(at),
             (Some(from), false) => {

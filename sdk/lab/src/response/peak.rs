@@ -19,7 +19,13 @@ pub struct Peak {
 impl Peak {
     /// Finds the peak; none if the magnitude is largest at the first or last frequency, or zero beside the largest.
     pub(crate) fn of(frequency_hz: &[f64], magnitude: &[f64]) -> Option<Self> {
-        let larger = |best: usize, at: usize| if magnitude[at] > magnitude[best] { at } else { best };
+        let larger = |best: usize, at: usize| {
+            if magnitude[at] > magnitude[best] {
+                at
+            } else {
+                best
+            }
+        };
         let top = (0..magnitude.len()).reduce(larger)?;
         let (before, after) = (top.checked_sub(1)?, top + 1);
         let step_hz = frequency_hz.get(after)? - frequency_hz[top];
@@ -28,9 +34,17 @@ impl Peak {
             return None;
         }
         let bend = y0 - 2.0 * y1 + y2;
-        let shift = if bend > 0.0 { 0.5 * (y0 - y2) / bend } else { 0.0 };
+        let shift = if bend > 0.0 {
+            0.5 * (y0 - y2) / bend
+        } else {
+            0.0
+        };
         let least = y1 - 0.25 * (y0 - y2) * shift;
-        let magnitude = if least > 0.0 { 1.0 / least.sqrt() } else { magnitude[top] };
+        let magnitude = if least > 0.0 {
+            1.0 / least.sqrt()
+        } else {
+            magnitude[top]
+        };
         Some(Self {
             frequency_hz: frequency_hz[top] + shift * step_hz,
             magnitude,

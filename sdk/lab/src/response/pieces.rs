@@ -54,16 +54,33 @@ impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::DoubleHit { second_s } => {
-                write!(f, "double hit: second contact at {second_s:.4} s, within the window")
+                write!(
+                    f,
+                    "double hit: second contact at {second_s:.4} s, within the window"
+                )
             }
-            Self::Overload { channel, at_s, value } => {
-                write!(f, "overload: the {channel} is at its limit of {value} at {at_s:.4} s")
+            Self::Overload {
+                channel,
+                at_s,
+                value,
+            } => {
+                write!(
+                    f,
+                    "overload: the {channel} is at its limit of {value} at {at_s:.4} s"
+                )
             }
-            Self::StartsLate => f.write_str("cut off: the recording starts within the time before the trigger"),
+            Self::StartsLate => {
+                f.write_str("cut off: the recording starts within the time before the trigger")
+            }
             Self::EndsEarly { missing_s } => {
-                write!(f, "cut off: the recording ends {missing_s:.3} s before the window does")
+                write!(
+                    f,
+                    "cut off: the recording ends {missing_s:.3} s before the window does"
+                )
             }
-            Self::Silent => f.write_str("silent: the drive is below a tenth of its strongest window"),
+            Self::Silent => {
+                f.write_str("silent: the drive is below a tenth of its strongest window")
+            }
         }
     }
 }

@@ -40,12 +40,22 @@ impl Record {
         }
         if input.len() != output.len() {
             let (input, output) = (input.len(), output.len());
-            return Err(ResponseError::Lengths { file, input, output });
+            return Err(ResponseError::Lengths {
+                file,
+                input,
+                output,
+            });
         }
         check(&file, Channel::Input, &input)?;
         check(&file, Channel::Output, &output)?;
         let start_s = 0.0;
-        Ok(Self { file, rate_hz, start_s, input, output })
+        Ok(Self {
+            file,
+            rate_hz,
+            start_s,
+            input,
+            output,
+        })
     }
 
     /// Creates a record of a recording that was read with [`column_map`]: its first axis is the input, its second the
@@ -106,11 +116,20 @@ fn check(file: &str, channel: Channel, values: &[f64]) -> Result<(), ResponseErr
     let is_sound = |value: &f64| value.abs() <= LARGEST;
     if let Some(sample) = values.iter().position(|value| !is_sound(value)) {
         let value = values[sample];
-        return Err(ResponseError::Sample { file, channel, sample, value });
+        return Err(ResponseError::Sample {
+            file,
+            channel,
+            sample,
+            value,
+        });
     }
     let value = values.first().copied().unwrap_or(0.0);
     if values.iter().all(|other| *other == value) {
-        return Err(ResponseError::Constant { file, channel, value });
+        return Err(ResponseError::Constant {
+            file,
+            channel,
+            value,
+        });
     }
     Ok(())
 }
@@ -142,7 +161,9 @@ pub fn column_map(
             "the map's {} is not used here: input and output are given by themselves, with their scales",
             axis.role
         );
-        return Err(ResponseError::Columns { source: ReadError::Map { problem } });
+        return Err(ResponseError::Columns {
+            source: ReadError::Map { problem },
+        });
     }
     entries.extend(others.iter().cloned());
     ColumnMap::new(entries).map_err(|source| ResponseError::Columns { source })
@@ -150,7 +171,8 @@ pub fn column_map(
 
 /// A scale of 1 in place of none: a column's unit does not matter.
 fn entry(channel: Channel, role: Role, text: &str) -> Result<MapEntry, ResponseError> {
-    let mut entry = MapEntry::parse(role, text).map_err(|source| ResponseError::Column { channel, source })?;
+    let mut entry =
+        MapEntry::parse(role, text).map_err(|source| ResponseError::Column { channel, source })?;
     entry.scale = entry.scale.or(Some(1.0));
     Ok(entry)
 }

@@ -23,6 +23,9 @@ pub(crate) enum Failure {
     Device(#[from] htex_device::DeviceError),
     #[error(transparent)]
     Tradeoff(#[from] htex_tradeoff::TradeoffError),
+    #[cfg(feature = "lab")]
+    #[error(transparent)]
+    Response(#[from] htex_lab::response::ResponseError),
     #[error(transparent)]
     Storage(#[from] htex_storage::StorageError),
     #[error("{file}: {error}{}", flag_of(.error))]
@@ -76,6 +79,18 @@ pub(crate) enum Failure {
     Other(String),
 }
 
+    /// Whether an argument of an experiment is wrong.
+    #[cfg(feature = "lab")]
+    fn is_wrong_use_of_lab(&self) -> bool {
+        use htex_lab::response::ResponseError::{Column, Option};
+        use htex_lab::study::StudyError::{Attribute, NoParticipant};
+        matches!(
+            self,
+            Self::Study(Attribute { .. } | NoParticipant { .. })
+                | Self::Response(Option { .. } | Column { .. })
+        )
+    }
+
 impl Failure {
     /// 2 for wrong usage, else 1.
     pub(crate) fn exit_code(&self) -> Exit {
@@ -83,12 +98,8 @@ impl Failure {
         use htex_host::HostError::{Option, UnknownModel};
         use htex_storage::StorageError::{NoCloud, ReadOnly};
         #[cfg(feature = "lab")]
-        if let Self::Study(error) = self {
-            use htex_lab::study::StudyError::{Attribute, NoParticipant};
-            return match error {
-                Attribute { .. } | NoParticipant { .. } => Exit::USAGE,
-                _ => Exit::FAILURE,
-            };
+        if self.is_wrong_use_of_lab() {
+            return Exit::USAGE;
         }
         match self {
             Self::Usage(_)
@@ -201,6 +212,8 @@ impl Failure {
                 of_author_error(error)
             }
             Self::Recording(error) => of_read_error(error),
+            #[cfg(feature = "lab")]
+            Self::Response(error) => crate::flags::of_response_error(error),
             _ => None,
         }
     }

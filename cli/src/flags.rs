@@ -83,6 +83,34 @@ pub(crate) fn of_read_error(error: &ReadError) -> Option<&'static str> {
     }
 }
 
+/// The flags that help against an error of measuring a response.
+#[cfg(feature = "lab")]
+pub(crate) fn of_response_error(error: &htex_lab::response::ResponseError) -> Option<&'static str> {
+    use htex_lab::response::ResponseError;
+    match error {
+        ResponseError::Columns { .. } | ResponseError::Constant { .. } => Some("--input, --output"),
+        ResponseError::NoHits { .. } => Some("--input, --continuous"),
+        ResponseError::Short { .. } => Some("--window"),
+        ResponseError::Option { option, .. } => listed(BY_OPTION, option),
+        _ => None,
+    }
+}
+
+/// Flags by the words for an option of measuring a response.
+#[cfg(feature = "lab")]
+const BY_OPTION: &[(&str, &str)] = &[
+    ("the window (s)", "--window"),
+    ("the lowest frequency (Hz)", "--low"),
+    ("the highest frequency (Hz)", "--high"),
+    ("the limit of the input", "--input-limit"),
+    ("the limit of the output", "--output-limit"),
+    ("the time before the trigger (s)", "--pre-trigger"),
+    ("the trigger", "--trigger"),
+    ("the level of a double hit", "--double"),
+    ("the force window (s)", "--force-window"),
+    ("the exponential window (s)", "--exponential"),
+];
+
 /// The flags that help against an error of fitting.
 pub(crate) fn of_author_error(error: &AuthorError) -> Option<&'static str> {
     match error {

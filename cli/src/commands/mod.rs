@@ -22,6 +22,8 @@ mod play;
 mod plugin;
 mod process;
 mod render;
+#[cfg(feature = "lab")]
+mod response;
 mod schema;
 mod simulate;
 mod spectrum;
@@ -40,6 +42,8 @@ pub(crate) enum Command {
     Demo(demo::Demo),
     Simulate(simulate::Simulate),
     Process(process::Process),
+    #[cfg(feature = "lab")]
+    Response(Box<response::Response>),
     Fit(Box<fit::Fit>),
     Info(info::Info),
     Edit(edit::Edit),
@@ -75,6 +79,8 @@ impl Command {
             Self::Demo(args) => args.run(),
             Self::Simulate(args) => args.run(),
             Self::Process(args) => args.run(),
+            #[cfg(feature = "lab")]
+            Self::Response(args) => args.run(),
             Self::Fit(args) => args.run(),
             Self::Info(args) => args.run(),
             Self::Edit(args) => args.run(),

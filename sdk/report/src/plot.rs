@@ -48,6 +48,16 @@ impl Plot {
         }
     }
 
+    /// Returns the width that the plot is drawn with, pixels.
+    pub(crate) fn drawn_width(&self) -> f64 {
+        size(self.width, 480.0)
+    }
+
+    /// Returns the height that the plot is drawn with, pixels.
+    pub(crate) fn drawn_height(&self) -> f64 {
+        size(self.height, 300.0)
+    }
+
     /// Draws the plot as an `<svg>` element, usable alone or in a page.
     pub fn to_svg(&self) -> String {
         let drawing = Drawing::new(self);
@@ -96,7 +106,7 @@ pub(crate) struct Area {
 
 impl<'a> Drawing<'a> {
     fn new(plot: &'a Plot) -> Self {
-        let (width, height) = (size(plot.width, 480.0), size(plot.height, 300.0));
+        let (width, height) = (plot.drawn_width(), plot.drawn_height());
         let points = || plot.series.iter().flat_map(|series| &series.points);
         let x = Projection::new(&plot.x, points().map(|p| p.0));
         let y = Projection::new(&plot.y, points().map(|p| p.1));

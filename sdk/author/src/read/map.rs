@@ -112,6 +112,44 @@ pub struct MapEntry {
     pub scale: Option<f64>,
 }
 
+impl MapEntry {
+    /// Parses the values of a role, `EXPRESSION[:SCALE]`.
+    ///
+    /// # Errors
+    /// [`ReadError::Map`] if the text is no expression, with the place in it.
+    ///
+    /// ```
+    /// # use htex_author::read::{MapEntry, Role};
+    /// let entry = MapEntry::parse(Role::Lateral, "hammer_V:22.5")?;
+    /// assert_eq!(entry.scale, Some(22.5));
+    /// # Ok::<(), htex_author::read::ReadError>(())
+    /// ```
+    pub fn parse(role: Role, text: &str) -> Result<Self, ReadError> {
+        check_length(text)?;
+        let refuse = |problem: Problem| ReadError::Map {
+            problem: problem.in_text(text),
+        };
+        let tokens = tokens(text).map_err(refuse)?;
+        let among = |token: &&Token| matches!(token.kind, Kind::Comma | Kind::Equals);
+        if let Some(token) = tokens.iter().find(among) {
+            let what = "one column or expression is expected here; quote a name with ',' or '='";
+            return Err(refuse(Problem::at(token, what)));
+        }
+        let (values, scale) = split_scale(&tokens).map_err(refuse)?;
+        if values.is_empty() {
+            return Err(refuse(Problem {
+                at: None,
+                what: "a column name is missing".into(),
+            }));
+        }
+        Ok(Self {
+            role,
+            values: Expression::parse(text, values).map_err(refuse)?,
+            scale,
+        })
+    }
+}
+
 /// The user's assignment of columns to roles.
 ///
 /// A role's values are a column or an expression: sums, differences, products and quotients of numbers and columns, with
@@ -132,6 +170,20 @@ pub struct ColumnMap {
 }
 
 impl ColumnMap {
+    /// Creates a map of entries.
+    ///
+    /// # Errors
+    /// [`ReadError::Map`] if a role or a column is given twice, or a single axis together with several.
+    pub fn new(entries: impl IntoIterator<Item = MapEntry>) -> Result<Self, ReadError> {
+        let refuse = |problem| ReadError::Map { problem };
+        let mut map = Self::default();
+        for entry in entries {
+            map.add(entry).map_err(refuse)?;
+        }
+        map.check_axes().map_err(refuse)?;
+        Ok(map)
+    }
+
     /// Returns the entries in the given order.
     #[must_use]
     pub fn entries(&self) -> &[MapEntry] {
@@ -176,25 +228,24 @@ impl FromStr for ColumnMap {
     type Err = ReadError;
 
     fn from_str(text: &str) -> Result<Self, ReadError> {
-        if text.len() > MOST_BYTES {
-            return Err(ReadError::Map {
-                problem: format!("{} bytes, more than the limit of {MOST_BYTES}", text.len()),
-            });
-        }
+        check_length(text)?;
         let refuse = |problem: Problem| ReadError::Map {
             problem: problem.in_text(text),
         };
-        let mut map = Self::default();
         let tokens = tokens(text).map_err(refuse)?;
-        for tokens in tokens.split(|token| token.kind == Kind::Comma) {
-            let entry = parse_entry(text, tokens).map_err(refuse)?;
-            map.add(entry)
-                .map_err(|problem| ReadError::Map { problem })?;
-        }
-        map.check_axes()
-            .map_err(|problem| ReadError::Map { problem })?;
-        Ok(map)
+        let entries = tokens.split(|token| token.kind == Kind::Comma);
+        let entries = entries.map(|tokens| parse_entry(text, tokens).map_err(refuse));
+        Self::new(entries.collect::<Result<Vec<_>, _>>()?)
     }
+}
+
+fn check_length(text: &str) -> Result<(), ReadError> {
+    if text.len() > MOST_BYTES {
+        return Err(ReadError::Map {
+            problem: format!("{} bytes, more than the limit of {MOST_BYTES}", text.len()),
+        });
+    }
+    Ok(())
 }
 
 impl Problem {

@@ -1,0 +1,192 @@
+//! Errors of measuring a response.
+
+use std::fmt;
+
+use htex_author::read::ReadError;
+use serde::Serialize;
+use thiserror::Error;
+
+/// One of the two signals of a measurement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Channel {
+    /// The force of the hammer, or the drive of the display.
+    Input,
+    /// What the rig or the display makes of it.
+    Output,
+}
+
+impl fmt::Display for Channel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Input => "input",
+            Self::Output => "output",
+        })
+    }
+}
+
+/// Errors of measuring a response.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ResponseError {
+    /// The text that names a channel's column cannot be parsed.
+    #[error("the {channel}: {source}")]
+    Column {
+        /// The channel.
+        channel: Channel,
+        /// What is wrong.
+        source: ReadError,
+    },
+    /// The columns of both channels cannot be combined.
+    #[error("input and output: {source}")]
+    Columns {
+        /// What is wrong.
+        source: ReadError,
+    },
+    /// The recording does not hold one signal for each channel.
+    #[error(
+        "{file}: {signals} signals were read and 2 are needed; name one column as the input and one as the output"
+    )]
+    Signals {
+        /// The recording.
+        file: String,
+        /// Number of signals that were read.
+        signals: usize,
+    },
+    /// There is no recording.
+    #[error("no recording is given; give at least one with input and output")]
+    Nothing,
+    /// The channels have different numbers of samples.
+    #[error(
+        "{file}: the input has {input} samples and the output {output}; both must be recorded together, sample by sample"
+    )]
+    Lengths {
+        /// The recording.
+        file: String,
+        /// Samples of the input.
+        input: usize,
+        /// Samples of the output.
+        output: usize,
+    },
+    /// The sample rate is zero, negative, not finite or too high.
+    #[error("{file}: the sample rate is {rate_hz} Hz; it must be above 0 and at most 1e9 Hz")]
+    Rate {
+        /// The recording.
+        file: String,
+        /// The rate, hertz.
+        rate_hz: f64,
+    },
+    /// Recordings have different sample rates.
+    #[error(
+        "{file} was recorded at {rate_hz} Hz and {first} at {first_hz} Hz; measure recordings of one rate together"
+    )]
+    Rates {
+        /// The first recording.
+        first: String,
+        /// Its rate, hertz.
+        first_hz: f64,
+        /// The recording that differs.
+        file: String,
+        /// Its rate, hertz.
+        rate_hz: f64,
+    },
+    /// A sample is not finite, or beyond 1e12.
+    #[error(
+        "{file}: the {channel} is {value} at sample {sample} (counted from 0); cut the recording there, or correct its unit"
+    )]
+    Sample {
+        /// The recording.
+        file: String,
+        /// The channel.
+        channel: Channel,
+        /// Index from 0.
+        sample: usize,
+        /// The value.
+        value: f64,
+    },
+    /// A channel does not change.
+    #[error(
+        "{file}: the {channel} is {value} at every sample; check that this is its column and that the sensor was on"
+    )]
+    Constant {
+        /// The recording.
+        file: String,
+        /// The channel.
+        channel: Channel,
+        /// The value.
+        value: f64,
+    },
+    /// A recording is shorter than one window.
+    #[error(
+        "{file} lasts {duration_s:.3} s, less than one window of {window_s} s; record longer or choose a shorter window"
+    )]
+    Short {
+        /// The recording.
+        file: String,
+        /// Its duration, seconds.
+        duration_s: f64,
+        /// Length of the window, seconds.
+        window_s: f64,
+    },
+    /// An option has an impossible value.
+    #[error("{option} is {value}; {problem}")]
+    Option {
+        /// The option.
+        option: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is required.
+        problem: String,
+    },
+    /// No hit stands out of the input.
+    #[error(
+        "{file}: no hit found: the largest input is {largest:.4} and its noise {noise:.4} (RMS), and a hit must be 8 times above the noise; check that this is the hammer's column, or measure a continuous drive"
+    )]
+    NoHits {
+        /// The first recording.
+        file: String,
+        /// Largest distance of the input from its median.
+        largest: f64,
+        /// Noise of the input.
+        noise: f64,
+    },
+    /// Fewer than two hits or windows can be averaged.
+    #[error(
+        "{used} of {found} {what} can be used, and coherence needs at least 2; {}", thrown_out(.reasons)
+    )]
+    TooFew {
+        /// `hits` or `windows`.
+        what: &'static str,
+        /// Number found.
+        found: usize,
+        /// Number that can be used.
+        used: usize,
+        /// Those that were thrown out: place and reason.
+        reasons: Vec<String>,
+    },
+    /// The response cannot be written as one that `htex` reads.
+    #[error(
+        "the magnitude {magnitude} at {frequency_hz} Hz is beyond 1e-9 to 1e9, which responses are limited to; scale the input or the output to another unit"
+    )]
+    Magnitude {
+        /// Frequency, hertz.
+        frequency_hz: f64,
+        /// The magnitude, output over input.
+        magnitude: f64,
+    },
+}
+
+/// Most reasons in a message.
+const MOST_REASONS: usize = 10;
+
+fn thrown_out(reasons: &[String]) -> String {
+    if reasons.is_empty() {
+        return "record more".to_owned();
+    }
+    let shown = &reasons[..reasons.len().min(MOST_REASONS)];
+    let more = match reasons.len() - shown.len() {
+        0 => String::new(),
+        more => format!("; and {more} more"),
+    };
+    format!("thrown out: {}{more}", shown.join("; "))
+}

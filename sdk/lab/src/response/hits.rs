@@ -1,0 +1,117 @@
+//! Hits of an impact hammer in the input of a record.
+
+use std::ops::Range;
+
+use super::baseline::Baseline;
+use super::double::contacts;
+use super::error::Channel;
+use super::options::{HitOptions, ResponseOptions};
+use super::overload::Overloads;
+use super::pieces::{Cut, Piece, Reason};
+use super::record::Record;
+
+/// Least ratio of a hit's level, and of a second contact's, to the noise: normal noise at a gigahertz exceeds it less
+/// than once a day.
+pub(crate) const ABOVE_NOISE: f64 = 8.0;
+
+/// Finds the hits of a record, with windows of `len` samples; none where the largest input is within the noise.
+///
+/// A hit begins where the input first reaches the trigger level, and the next one is searched behind its window.
+pub(crate) fn hits(
+    record: &Record,
+    len: usize,
+    hit: &HitOptions,
+    options: &ResponseOptions,
+) -> Vec<Cut> {
+    let input = record.channel(Channel::Input);
+    let rest = Baseline::of(input);
+    let least = ABOVE_NOISE * rest.noise;
+    let level = (hit.trigger * rest.largest).max(least);
+    let before = (hit.pre_trigger_s * record.rate_hz()).round() as usize;
+    let overloads = [
+        Overloads::find(record, Channel::Input, options.input_limit),
+        Overloads::find(record, Channel::Output, options.output_limit),
+    ];
+    let mut found = Vec::new();
+    let mut from = 0;
+    while let Some(after) = trigger(&input[from..], rest.level, level) {
+        let trigger = from + after;
+        // A hit at the very start has no part before its trigger, but a window like all others.
+        let start = trigger.saturating_sub(before);
+        let samples = start..start + len;
+        let inside = start..samples.end.min(input.len());
+        let peak = peak(&input[inside.clone()], rest.level);
+        let window = Window {
+            record,
+            trigger,
+            before,
+            samples: &samples,
+            inside: &inside,
+        };
+        let rise = (hit.double * peak.abs()).max(least);
+        let thrown_out = window
+            .cut_off()
+            .or_else(|| overloads.iter().find_map(|all| all.within(record, &inside)))
+            .or_else(|| window.double(rest.level, peak, rise));
+        from = inside.end.max(trigger + 1);
+        let (file, time_s) = (record.file().to_owned(), record.second(trigger));
+        let piece = Piece {
+            file,
+            time_s,
+            peak,
+            thrown_out,
+        };
+        found.push(Cut {
+            samples,
+            trigger,
+            piece,
+        });
+    }
+    found
+}
+
+/// The first sample that is at least `level` from rest.
+fn trigger(input: &[f64], rest: f64, level: f64) -> Option<usize> {
+    input
+        .iter()
+        .position(|value| (value - rest).abs() >= level && *value != rest)
+}
+
+/// The value farthest from rest, from there.
+fn peak(input: &[f64], rest: f64) -> f64 {
+    let farther = |peak: f64, value: &f64| match (value - rest).abs() > peak.abs() {
+        true => value - rest,
+        false => peak,
+    };
+    input.iter().fold(0.0, farther)
+}
+
+/// The window of a hit.
+struct Window<'a> {
+    record: &'a Record,
+    trigger: usize,
+    /// Samples before the trigger that are wanted.
+    before: usize,
+    samples: &'a Range<usize>,
+    /// The samples that the record holds.
+    inside: &'a Range<usize>,
+}
+
+impl Window<'_> {
+    fn cut_off(&self) -> Option<Reason> {
+        if self.trigger < self.before {
+            return Some(Reason::StartsLate);
+        }
+        let missing = self.samples.end - self.inside.end;
+        let missing_s = missing as f64 / self.record.rate_hz();
+        (missing > 0).then_some(Reason::EndsEarly { missing_s })
+    }
+
+    fn double(&self, rest: f64, peak: f64, rise: f64) -> Option<Reason> {
+        let input = &self.record.channel(Channel::Input)[self.inside.clone()];
+        let pulse = input.iter().map(|value| peak.signum() * (value - rest));
+        let second = *contacts(pulse, rise).get(1)?;
+        let second_s = self.record.second(self.inside.start + second);
+        Some(Reason::DoubleHit { second_s })
+    }
+}

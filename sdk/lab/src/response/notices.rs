@@ -1,0 +1,91 @@
+//! What limits a measured response, in sentences.
+
+use super::frames::{farthest, spread};
+use super::measured::MeasuredResponse;
+use super::options::{Excitation, ResponseOptions};
+
+/// Number of averages below which the coherence says little.
+const FEW: usize = 5;
+/// Coherence below which the response is uncertain.
+const COHERENT: f64 = 0.9;
+/// Most stretches in a sentence.
+const MOST_STRETCHES: usize = 5;
+/// The end of a window, as a part of it, that must be quiet.
+const END: f64 = 0.05;
+/// RMS of a quiet end relative to the largest output, and to the noise before the trigger.
+const QUIET: f64 = 0.01;
+const OVER_NOISE: f64 = 3.0;
+
+/// Whether a hit's output, after its windows, still sounds at the end: more than 1 % of its largest value (RMS), and
+/// more than three times the noise of the `before` samples before the trigger.
+pub(crate) fn outlasts(output: &[f64], before: usize) -> bool {
+    let end = ((END * output.len() as f64) as usize).max(1);
+    let tail = spread(&output[output.len() - end.min(output.len())..]);
+    let noise = spread(&output[..before.min(output.len())]);
+    tail > QUIET * farthest(output).abs() && tail > OVER_NOISE * noise
+}
+
+/// Returns the warnings about a measured response. `outlasting` is the number of hits whose response has not died out.
+pub(crate) fn notices(
+    measured: &MeasuredResponse,
+    options: &ResponseOptions,
+    outlasting: usize,
+) -> Vec<String> {
+    let mut found = Vec::new();
+    if measured.averages < FEW {
+        found.push(format!(
+            "Only {} are averaged; the coherence of fewer than {FEW} is high by chance.",
+            measured.averages
+        ));
+    }
+    if let Some(stretches) = incoherent(measured) {
+        found.push(format!(
+            "The coherence is below {COHERENT} {stretches}; the response is uncertain there."
+        ));
+    }
+    if let Excitation::Hits(hit) = &options.excitation {
+        if outlasting > 0 {
+            found.push(format!(
+                "The response of {outlasting} of {} hits has not died out at the end of its window of {} s; lengthen the \
+                 window, or give an exponential one.",
+                measured.averages, measured.window_s
+            ));
+        }
+        if let Some(tau_s) = hit.exponential_s {
+            found.push(format!(
+                "The exponential window raises the damping of every resonance by {:.4} 1/s: peaks are lower and wider.",
+                1.0 / tau_s
+            ));
+        }
+    }
+    found
+}
+
+/// The stretches of low coherence.
+fn incoherent(measured: &MeasuredResponse) -> Option<String> {
+    let mut stretches: Vec<(f64, f64)> = Vec::new();
+    let mut goes_on = false;
+    for (hz, coherence) in measured.frequency_hz.iter().zip(&measured.coherence) {
+        let is_low = *coherence < COHERENT;
+        match stretches.last_mut().filter(|_| goes_on) {
+            Some(last) if is_low => last.1 = *hz,
+            None if is_low => stretches.push((*hz, *hz)),
+            _ => {}
+        }
+        goes_on = is_low;
+    }
+    let shown = stretches.iter().take(MOST_STRETCHES);
+    let shown: Vec<String> = shown.map(|stretch| words(*stretch)).collect();
+    let more = match stretches.len() - shown.len() {
+        0 => String::new(),
+        more => format!(" and in {more} more stretches"),
+    };
+    (!shown.is_empty()).then(|| shown.join(", ") + &more)
+}
+
+fn words((low_hz, high_hz): (f64, f64)) -> String {
+    match low_hz == high_hz {
+        true => format!("at {low_hz:.1} Hz"),
+        false => format!("from {low_hz:.1} to {high_hz:.1} Hz"),
+    }
+}

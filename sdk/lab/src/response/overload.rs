@@ -1,0 +1,103 @@
+//! Samples at the limit of a sensor, amplifier or converter.
+
+use std::ops::Range;
+
+use super::baseline::Baseline;
+use super::error::Channel;
+use super::pieces::Reason;
+use super::record::Record;
+
+/// Equal samples in a row at a channel's highest or lowest value from which it counts as clipped. The top of a pulse
+/// repeats a converter's code two or three times.
+const IN_A_ROW: usize = 4;
+/// Part of the largest excursion that a clipped value must reach: a signal at rest repeats its lowest value too.
+const AWAY: f64 = 0.5;
+/// Part of a given limit from which a sample is at it.
+const AT_LIMIT: f64 = 0.999;
+
+/// The stretches of a channel that are at its limit, in order.
+#[derive(Debug)]
+pub(crate) struct Overloads {
+    channel: Channel,
+    stretches: Vec<Range<usize>>,
+}
+
+impl Overloads {
+    /// Finds samples at or beyond a given limit, or else four or more equal ones in a row at the highest or the lowest
+    /// value.
+    pub(crate) fn find(record: &Record, channel: Channel, limit: Option<f64>) -> Self {
+        let values = record.channel(channel);
+        let stretches = match limit {
+            Some(limit) => runs(values, 1, |value| value.abs() >= AT_LIMIT * limit),
+            None => repeated(values),
+        };
+        Self { channel, stretches }
+    }
+
+    /// Finds samples at or beyond a given limit only.
+    pub(crate) fn find_given(record: &Record, channel: Channel, limit: Option<f64>) -> Self {
+        match limit {
+            Some(_) => Self::find(record, channel, limit),
+            None => Self {
+                channel,
+                stretches: Vec::new(),
+            },
+        }
+    }
+
+    /// Returns the first overload within a part of the record.
+    pub(crate) fn within(&self, record: &Record, part: &Range<usize>) -> Option<Reason> {
+        let next = self
+            .stretches
+            .partition_point(|stretch| stretch.end <= part.start);
+        let stretch = self
+            .stretches
+            .get(next)
+            .filter(|stretch| stretch.start < part.end)?;
+        let at = stretch.start.max(part.start);
+        Some(Reason::Overload {
+            channel: self.channel,
+            at_s: record.second(at),
+            value: record.channel(self.channel)[at],
+        })
+    }
+}
+
+fn repeated(values: &[f64]) -> Vec<Range<usize>> {
+    let baseline = Baseline::of(values);
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let is_away = |value: f64| (value - baseline.level).abs() >= AWAY * baseline.largest;
+    let of = |extreme: f64| match is_away(extreme) {
+        true => runs(values, IN_A_ROW, |value| value == extreme),
+        false => Vec::new(),
+    };
+    let mut stretches = of(high);
+    stretches.extend(of(low));
+    stretches.sort_unstable_by_key(|stretch| stretch.start);
+    stretches
+}
+
+/// Stretches of at least `fewest` samples that are so.
+fn runs(values: &[f64], fewest: usize, is_so: impl Fn(f64) -> bool) -> Vec<Range<usize>> {
+    let mut found = Vec::new();
+    let mut start = None;
+    for (at, value) in values
+        .iter()
+        .map(|value| Some(*value))
+        .chain([None])
+        .enumerate()
+    {
+        match (start, value.is_some_and(&is_so)) {
+            (None, true) => start = Some(at),
+            (Some(from), false) => {
+                if at - from >= fewest {
+                    found.push(from..at);
+                }
+                start = None;
+            }
+            _ => {}
+        }
+    }
+    found
+}

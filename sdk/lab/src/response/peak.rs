@@ -1,0 +1,54 @@
+//! The largest magnitude, between the points of the grid.
+
+use serde::Serialize;
+
+/// The largest magnitude of a response.
+///
+/// It is interpolated by a parabola through `1 / magnitude²` at the largest point and its two neighbours, which is the
+/// form of a lightly damped resonance.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Peak {
+    /// Frequency, hertz.
+    pub frequency_hz: f64,
+    /// Magnitude, output over input.
+    pub magnitude: f64,
+    /// The same in decibels.
+    pub magnitude_db: f64,
+}
+
+impl Peak {
+    /// Finds the peak; none if the magnitude is largest at the first or last frequency, or zero beside the largest.
+    pub(crate) fn of(frequency_hz: &[f64], magnitude: &[f64]) -> Option<Self> {
+        let larger = |best: usize, at: usize| {
+            if magnitude[at] > magnitude[best] {
+                at
+            } else {
+                best
+            }
+        };
+        let top = (0..magnitude.len()).reduce(larger)?;
+        let (before, after) = (top.checked_sub(1)?, top + 1);
+        let step_hz = frequency_hz.get(after)? - frequency_hz[top];
+        let [y0, y1, y2] = [before, top, after].map(|at| 1.0 / (magnitude[at] * magnitude[at]));
+        if ![y0, y1, y2].iter().all(|y| y.is_finite()) {
+            return None;
+        }
+        let bend = y0 - 2.0 * y1 + y2;
+        let shift = if bend > 0.0 {
+            0.5 * (y0 - y2) / bend
+        } else {
+            0.0
+        };
+        let least = y1 - 0.25 * (y0 - y2) * shift;
+        let magnitude = if least > 0.0 {
+            1.0 / least.sqrt()
+        } else {
+            magnitude[top]
+        };
+        Some(Self {
+            frequency_hz: frequency_hz[top] + shift * step_hz,
+            magnitude,
+            magnitude_db: 20.0 * libm::log10(magnitude),
+        })
+    }
+}

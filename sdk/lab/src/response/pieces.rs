@@ -1,0 +1,104 @@
+//! The parts of recordings that are averaged, or thrown out.
+
+use std::fmt;
+use std::ops::Range;
+
+use serde::Serialize;
+
+use super::error::Channel;
+
+/// A hit, or a window of a continuous drive: the part of a recording that one transform is taken of.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Piece {
+    /// The recording.
+    pub file: String,
+    /// Time of the hit's trigger, or of the window's start, in the file, seconds.
+    pub time_s: f64,
+    /// Largest input in the window, from its level at rest, in the input's unit, with its sign.
+    pub peak: f64,
+    /// Why it is thrown out; absent if it is used.
+    pub thrown_out: Option<Reason>,
+}
+
+/// Why a hit or a window is thrown out.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case", tag = "reason")]
+#[non_exhaustive]
+pub enum Reason {
+    /// The hammer touched again before the window ended.
+    DoubleHit {
+        /// Time of the second contact in the file, seconds.
+        second_s: f64,
+    },
+    /// A channel reached the limit of its sensor or amplifier.
+    Overload {
+        /// The channel.
+        channel: Channel,
+        /// Time of the first sample at the limit in the file, seconds.
+        at_s: f64,
+        /// The value there, in the channel's unit.
+        value: f64,
+    },
+    /// The recording starts too late for the part before the trigger.
+    StartsLate,
+    /// The recording ends before the window does.
+    EndsEarly {
+        /// Missing time, seconds.
+        missing_s: f64,
+    },
+    /// The drive is below a tenth of its strongest window (RMS).
+    Silent,
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::DoubleHit { second_s } => {
+                write!(
+                    f,
+                    "double hit: second contact at {second_s:.4} s, within the window"
+                )
+            }
+            Self::Overload {
+                channel,
+                at_s,
+                value,
+            } => {
+                write!(
+                    f,
+                    "overload: the {channel} is at its limit of {value} at {at_s:.4} s"
+                )
+            }
+            Self::StartsLate => {
+                f.write_str("cut off: the recording starts within the time before the trigger")
+            }
+            Self::EndsEarly { missing_s } => {
+                write!(
+                    f,
+                    "cut off: the recording ends {missing_s:.3} s before the window does"
+                )
+            }
+            Self::Silent => {
+                f.write_str("silent: the drive is below a tenth of its strongest window")
+            }
+        }
+    }
+}
+
+impl Piece {
+    /// Returns the place and the reason for which it was thrown out.
+    pub(crate) fn place_and_reason(&self) -> Option<String> {
+        let reason = self.thrown_out.as_ref()?;
+        Some(format!("{} at {:.4} s, {reason}", self.file, self.time_s))
+    }
+}
+
+/// A piece with its samples.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Cut {
+    /// Samples of the window; beyond the recording if it is cut off.
+    pub(crate) samples: Range<usize>,
+    /// The trigger; the start of a window of a continuous drive.
+    pub(crate) trigger: usize,
+    pub(crate) piece: Piece,
+}

@@ -1,0 +1,178 @@
+//! Input and output of a setup, recorded together.
+
+use htex_author::Recording;
+use htex_author::read::{ColumnMap, MapEntry, ReadError, Role};
+
+use super::error::{Channel, ResponseError};
+
+/// Highest sample rate, hertz, and largest magnitude of a sample, as of recordings.
+const MOST_HZ: f64 = 1e9;
+const LARGEST: f64 = 1e12;
+
+/// Input and output of a setup, recorded together.
+///
+/// Both channels have the same length, finite samples of at most 1e12, and are not constant. Their units are free: the
+/// response is in the output's unit over the input's.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    file: String,
+    rate_hz: f64,
+    start_s: f64,
+    input: Vec<f64>,
+    output: Vec<f64>,
+}
+
+impl Record {
+    /// Creates a record of a file's channels, which start at 0 s.
+    ///
+    /// # Errors
+    /// A rate that is not above 0 and at most 1e9 Hz, channels of different lengths, samples that are not finite or
+    /// beyond 1e12, and a constant or empty channel.
+    pub fn new(
+        file: impl Into<String>,
+        rate_hz: f64,
+        input: Vec<f64>,
+        output: Vec<f64>,
+    ) -> Result<Self, ResponseError> {
+        let file = file.into();
+        if !(rate_hz > 0.0 && rate_hz <= MOST_HZ) {
+            return Err(ResponseError::Rate { file, rate_hz });
+        }
+        if input.len() != output.len() {
+            let (input, output) = (input.len(), output.len());
+            return Err(ResponseError::Lengths {
+                file,
+                input,
+                output,
+            });
+        }
+        check(&file, Channel::Input, &input)?;
+        check(&file, Channel::Output, &output)?;
+        let start_s = 0.0;
+        Ok(Self {
+            file,
+            rate_hz,
+            start_s,
+            input,
+            output,
+        })
+    }
+
+    /// Creates a record of a recording that was read with [`column_map`]: its first axis is the input, its second the
+    /// output.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; and if the recording has not two axes.
+    pub fn from_recording(recording: Recording) -> Result<Self, ResponseError> {
+        let start_s = recording.second(0);
+        let signals = recording.axes.len();
+        let file = recording.source;
+        let mut axes = recording.axes.into_iter();
+        match (axes.next(), axes.next(), axes.next()) {
+            (Some(input), Some(output), None) => {
+                let record = Self::new(file, recording.rate_hz, input, output)?;
+                Ok(Self { start_s, ..record })
+            }
+            _ => Err(ResponseError::Signals { file, signals }),
+        }
+    }
+
+    /// Returns the name of the file.
+    #[must_use]
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Returns the sample rate, hertz.
+    #[must_use]
+    pub fn rate_hz(&self) -> f64 {
+        self.rate_hz
+    }
+
+    /// Returns the number of samples of a channel.
+    #[must_use]
+    pub fn samples(&self) -> usize {
+        self.input.len()
+    }
+
+    /// Returns the time of a sample in its file, seconds.
+    #[must_use]
+    pub fn second(&self, sample: usize) -> f64 {
+        self.start_s + sample as f64 / self.rate_hz
+    }
+
+    /// Returns the samples of a channel.
+    #[must_use]
+    pub fn channel(&self, channel: Channel) -> &[f64] {
+        match channel {
+            Channel::Input => &self.input,
+            Channel::Output => &self.output,
+        }
+    }
+}
+
+fn check(file: &str, channel: Channel, values: &[f64]) -> Result<(), ResponseError> {
+    let file = file.to_owned();
+    let is_sound = |value: &f64| value.abs() <= LARGEST;
+    if let Some(sample) = values.iter().position(|value| !is_sound(value)) {
+        let value = values[sample];
+        return Err(ResponseError::Sample {
+            file,
+            channel,
+            sample,
+            value,
+        });
+    }
+    let value = values.first().copied().unwrap_or(0.0);
+    if values.iter().all(|other| *other == value) {
+        return Err(ResponseError::Constant {
+            file,
+            channel,
+            value,
+        });
+    }
+    Ok(())
+}
+
+/// Returns the map by which a recording's input and output are read: `COLUMN`, `COLUMN:SCALE` or an expression each, and
+/// `others`, a map of further roles such as `time=stamp_ms:0.001`. Without a scale, values are as they are in the file.
+///
+/// ```
+/// let map = htex_lab::response::column_map("hammer_V:22.5", "fx1+fx2", None)?;
+/// assert_eq!(map.entries().len(), 2);
+/// # Ok::<(), htex_lab::response::ResponseError>(())
+/// ```
+///
+/// # Errors
+/// A text that is no column or expression, one column as both, or axes among the further roles.
+pub fn column_map(
+    input: &str,
+    output: &str,
+    others: Option<&ColumnMap>,
+) -> Result<ColumnMap, ResponseError> {
+    let mut entries = vec![
+        entry(Channel::Input, Role::LateralX, input)?,
+        entry(Channel::Output, Role::LateralY, output)?,
+    ];
+    let others = others.map_or(&[][..], ColumnMap::entries);
+    let is_other = |role| [Role::Time, Role::Normal, Role::Speed, Role::X, Role::Y].contains(&role);
+    if let Some(axis) = others.iter().find(|entry| !is_other(entry.role)) {
+        let problem = format!(
+            "the map's {} is not used here: input and output are given by themselves, with their scales",
+            axis.role
+        );
+        return Err(ResponseError::Columns {
+            source: ReadError::Map { problem },
+        });
+    }
+    entries.extend(others.iter().cloned());
+    ColumnMap::new(entries).map_err(|source| ResponseError::Columns { source })
+}
+
+/// A scale of 1 in place of none: a column's unit does not matter.
+fn entry(channel: Channel, role: Role, text: &str) -> Result<MapEntry, ResponseError> {
+    let mut entry =
+        MapEntry::parse(role, text).map_err(|source| ResponseError::Column { channel, source })?;
+    entry.scale = entry.scale.or(Some(1.0));
+    Ok(entry)
+}

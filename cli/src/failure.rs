@@ -79,17 +79,17 @@ pub(crate) enum Failure {
     Other(String),
 }
 
-    /// Whether an argument of an experiment is wrong.
-    #[cfg(feature = "lab")]
-    fn is_wrong_use_of_lab(&self) -> bool {
-        use htex_lab::response::ResponseError::{Column, Option};
-        use htex_lab::study::StudyError::{Attribute, NoParticipant};
-        matches!(
-            self,
-            Self::Study(Attribute { .. } | NoParticipant { .. })
-                | Self::Response(Option { .. } | Column { .. })
-        )
-    }
+/// Whether an argument of an experiment is wrong.
+#[cfg(feature = "lab")]
+fn is_wrong_use_of_lab(&self) -> bool {
+    use htex_lab::response::ResponseError::{Column, Option};
+    use htex_lab::study::StudyError::{Attribute, NoParticipant};
+    matches!(
+        self,
+        Self::Study(Attribute { .. } | NoParticipant { .. })
+            | Self::Response(Option { .. } | Column { .. })
+    )
+}
 
 impl Failure {
     /// 2 for wrong usage, else 1.

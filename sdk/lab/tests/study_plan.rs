@@ -39,7 +39,7 @@ fn condition(trial: &Trial) -> (String, String) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn every_condition_is_rated_as_often_as_asked(
@@ -100,7 +100,13 @@ fn participants_together_make_a_whole_square() {
 /// These hashes are of a plan made on x86-64 Linux; other machines have the same.
 #[test]
 fn a_seed_has_the_same_plan_on_every_machine() {
-    let golden = ["GOLDEN0", "GOLDEN1", "GOLDEN2", "GOLDEN3", "GOLDEN4"];
+    let golden = [
+        "980c2874569a3f56",
+        "0688a32888e4a8d2",
+        "6f4dbef4f62ce6f6",
+        "f5db5c191f56be1e",
+        "b210002cd7f12619",
+    ];
     for (order, golden) in ORDERS.into_iter().zip(golden) {
         let study = of(order, 5, 5, 5, 42);
         let json = serde_json::to_vec(&Plan::new(&study)).unwrap();

@@ -13,6 +13,11 @@ const TEXTURE: &str = "[[textures]]\nasset = 'vinyl.htex'\n";
 const CASES: &[(&str, &str, &str)] = &[
     ("a = [", "STUDY_SYNTAX", ""),
     ("repetitions = 'five'", "STUDY_TYPE", "/repetitions"),
+    (
+        "participants = 9000000000",
+        "STUDY_PARTICIPANTS_INVALID",
+        "/participants",
+    ),
     ("participants = -3", "STUDY_TYPE", "/participants"),
     ("trial_s = nan", "STUDY_TYPE", "/trial_s"),
     ("order = 'shuffled'", "STUDY_TYPE", "/order"),

@@ -46,6 +46,10 @@ impl Asker for Terminal {
     }
 
     fn key(&mut self) -> Option<Key> {
+        // The lines of a pipe wait for the question.
+        if !self.is_typed && matches!(self.view, View::Playing { .. }) {
+            return None;
+        }
         let line = match self.lines.try_recv() {
             Ok(line) => line,
             Err(TryRecvError::Empty) => return None,

@@ -38,10 +38,7 @@ pub(crate) fn check(study: &Study, findings: &mut Findings) {
 }
 
 fn check_participants(participants: &Participants, findings: &mut Findings) {
-    let count = match participants {
-        Participants::Count(count) => *count as usize,
-        Participants::Names(names) => names.len(),
-    };
+    let count = participants.count();
     let fits = (1..=MOST_PARTICIPANTS).contains(&count);
     findings.require(
         fits,
@@ -173,7 +170,7 @@ fn check_phases(study: &Study, findings: &mut Findings) {
 fn check_size(study: &Study, findings: &mut Findings) {
     let conditions = study.textures.len() * study.all_models().len();
     let trials = conditions.saturating_mul(study.repetitions as usize);
-    let all = trials.saturating_mul(study.participants.names().len().max(1));
+    let all = trials.saturating_mul(study.participants.count().max(1));
     let fits = trials <= MOST_TRIALS && all <= MOST_IN_ALL;
     findings.require(fits, rule::STUDY_TOO_LARGE, "", || {
         format!(

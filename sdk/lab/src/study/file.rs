@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use htex_scene::file::{DeviceChoice, Motion};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::de::{SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// Version of the format that this crate reads.
 pub const VERSION: &str = "1.0";
@@ -92,8 +93,8 @@ pub struct Study {
 }
 
 /// Participants: a number, or names.
-#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
-#[serde(untagged)]
+#[derive(Debug, Clone, PartialEq, JsonSchema)]
+#[schemars(untagged)]
 pub enum Participants {
     /// So many participants, named P01, P02, ….
     Count(u32),
@@ -248,7 +249,47 @@ pub struct MaskingNoise {
     pub level_dbfs: f64,
 }
 
+/// An untagged enum of serde's would lose the place of an error.
+impl<'de> Deserialize<'de> for Participants {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(CountOrNames)
+    }
+}
+
+struct CountOrNames;
+
+impl<'de> Visitor<'de> for CountOrNames {
+    type Value = Participants;
+
+    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("a number of participants or a list of names")
+    }
+
+    fn visit_u64<E: serde::de::Error>(self, count: u64) -> Result<Participants, E> {
+        // More than there may be stay more than there may be.
+        Ok(Participants::Count(
+            u32::try_from(count).unwrap_or(u32::MAX),
+        ))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Participants, A::Error> {
+        let mut names = Vec::new();
+        while let Some(name) = list.next_element()? {
+            names.push(name);
+        }
+        Ok(Participants::Names(names))
+    }
+}
+
 impl Participants {
+    /// Number of participants.
+    pub fn count(&self) -> usize {
+        match self {
+            Self::Count(count) => *count as usize,
+            Self::Names(names) => names.len(),
+        }
+    }
+
     /// Names of all participants.
     pub fn names(&self) -> Vec<String> {
         match self {

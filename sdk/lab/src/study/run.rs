@@ -330,6 +330,9 @@ impl<R: Rig> Run<'_, '_, R> {
         let (mut pressed, mut left) = (None, false);
         let asker = &mut self.asker;
         let mut ends = || {
+            if left || pressed.is_some() {
+                return true;
+            }
             match asker.key() {
                 Some(Key::Quit) => left = true,
                 Some(Key::Gain(key)) if matching.takes(key) => {

@@ -144,8 +144,9 @@ impl Browser {
 
     /// Presses and releases a key; `repeats` are presses of a key that is held.
     pub fn press(&mut self, tab: &Tab, key: &str, repeats: usize) {
+        let text = if key == "Enter" { "\r" } else { key };
         for i in 0..=repeats {
-            let down = json!({ "type": "keyDown", "key": key, "text": key, "autoRepeat": i > 0 });
+            let down = json!({ "type": "keyDown", "key": key, "text": text, "autoRepeat": i > 0 });
             self.call(Some(tab), "Input.dispatchKeyEvent", down);
         }
         let up = json!({ "type": "keyUp", "key": key });

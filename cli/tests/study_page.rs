@@ -154,6 +154,7 @@ fn one_press_is_one_answer_in_one_tab() {
     browser.shows(&tab, "it matches");
     fits(&mut browser, &tab);
     pictured(&mut browser, &tab, "matching");
+    browser.slide(&tab);
     for (key, lines) in [("-", 1), ("-", 2), ("Enter", 3)] {
         browser.press(&tab, key, 0);
         let start = Instant::now();
@@ -167,6 +168,12 @@ fn one_press_is_one_answer_in_one_tab() {
             std::thread::sleep(Duration::from_millis(10));
         }
         assert_eq!(gains(), lines);
+        if lines == 1 {
+            // The finger on the pad was felt.
+            let file = place.path("answers/Ann/gain-vinyl.wav");
+            let mut wav = hound::WavReader::open(file).unwrap();
+            assert!(wav.samples::<f32>().any(|x| x.unwrap() != 0.0));
+        }
         std::thread::sleep(Duration::from_millis(500));
     }
     let found = kept(&place)

@@ -144,12 +144,30 @@ impl Browser {
 
     /// Presses and releases a key; `repeats` are presses of a key that is held.
     pub fn press(&mut self, tab: &Tab, key: &str, repeats: usize) {
+        let text = if key == "Enter" { "\r" } else { key };
         for i in 0..=repeats {
-            let down = json!({ "type": "keyDown", "key": key, "text": key, "autoRepeat": i > 0 });
+            let down = json!({ "type": "keyDown", "key": key, "text": text, "autoRepeat": i > 0 });
             self.call(Some(tab), "Input.dispatchKeyEvent", down);
         }
         let up = json!({ "type": "keyUp", "key": key });
         self.call(Some(tab), "Input.dispatchKeyEvent", up);
+    }
+
+    /// Slides to and fro over the middle of a tab for half a second.
+    pub fn slide(&mut self, tab: &Tab) {
+        let mut mouse = |kind: &str, x: f64| {
+            let at = json!({ "type": kind, "x": x, "y": 300, "button": "left", "buttons": 1, "clickCount": 1 });
+            self.call(Some(tab), "Input.dispatchMouseEvent", at);
+        };
+        mouse("mousePressed", 300.0);
+        for i in 0..50 {
+            mouse(
+                "mouseMoved",
+                300.0 + 8.0 * f64::from(if i < 25 { i } else { 50 - i }),
+            );
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        mouse("mouseReleased", 300.0);
     }
 
     /// A picture of a tab as PNG, base64.

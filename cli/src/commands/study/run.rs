@@ -1,8 +1,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use htex_format::Severity;
 use htex_lab::study::{
-    Clock, Ended, Header, Plan, Session, SimulatedParticipant, Study, StudyError, run,
+    Clock, Ended, Header, Plan, Session, SimulatedParticipant, Study, StudyError, check_files, run,
 };
 use htex_scene::file::Motion;
 use serde_json::{Value, json};
@@ -65,6 +66,7 @@ impl Run {
         self.asking.check(&study, self.simulated.is_some())?;
         let plan = Plan::new(&study);
         let participants = self.participants(&plan)?;
+        self.check_files(&study)?;
         signals::ask();
         let mut sessions = Vec::new();
         for participant in &participants {
@@ -78,6 +80,24 @@ impl Run {
             print_json(&sessions)?;
         }
         Ok(Exit::SUCCESS)
+    }
+
+    /// Refuses a study that would fail in the middle of a session.
+    fn check_files(&self, study: &Study) -> Result<(), Failure> {
+        let mut findings = Vec::new();
+        let device = self
+            .choice
+            .to_override(Some(&self.output.join("trial.wav")), false)?;
+        let loader = self.with.loader()?;
+        check_files(study, &self.study, &loader.around(), &device, &mut findings);
+        findings.retain(|finding| finding.severity == Severity::Error);
+        match findings.is_empty() {
+            true => Ok(()),
+            false => Err(Failure::StudyFindings {
+                file: shown(&self.study),
+                findings,
+            }),
+        }
     }
 
     fn participants(&self, plan: &Plan) -> Result<Vec<String>, Failure> {
@@ -104,11 +124,6 @@ impl Run {
         participant: &str,
     ) -> Result<(Ended, Value), Failure> {
         let mut rig = self.rig(study, participant)?;
-        let mut asking = match self.simulated {
-            Some(_) => self.asking.of_nobody(),
-            None => self.asking.open(study, participant)?,
-        };
-        rig.motions = asking.motions.take();
         let simulated = self
             .simulated
             .map(|seed| SimulatedParticipant::new(seed, participant));
@@ -119,6 +134,12 @@ impl Run {
         let header = Header::new(study, &self.study, own, device, tool())?
             .with_simulated(simulated.as_ref().map(SimulatedParticipant::header));
         let mut session = Session::open(study, own, &self.output, &header)?;
+        // A page is opened when the session is known to be the right one.
+        let mut asking = match self.simulated {
+            Some(_) => self.asking.of_nobody(),
+            None => self.asking.open(study, participant)?,
+        };
+        rig.motions = asking.motions.take();
         let mut clock: Box<dyn Clock> = match self.fast {
             true => Box::new(FastClock::default()),
             false => Box::new(WallClock),

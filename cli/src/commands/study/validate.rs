@@ -3,6 +3,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use htex_format::{Findings, Report, Severity};
 use htex_lab::study::{check_files, read_study};
+use htex_scene::DeviceOverride;
 
 use crate::commands::validate::report;
 use crate::exit::Exit;
@@ -40,7 +41,12 @@ impl Validate {
         let study = read_study(&bytes, &mut findings);
         let mut findings = findings.into_list();
         if let Some(study) = study {
-            check_files(&study, path, &self.with.loader()?.around(), &mut findings);
+            let rehearsal = DeviceOverride {
+                rehearsal: true,
+                ..DeviceOverride::default()
+            };
+            let loader = self.with.loader()?;
+            check_files(&study, path, &loader.around(), &rehearsal, &mut findings);
         }
         let valid = findings.iter().all(|f| f.severity != Severity::Error);
         Ok(Report { valid, findings })

@@ -100,21 +100,18 @@ fn check_phase_tables(study: &Study, value: &Value, findings: &mut Findings) {
 }
 
 /// Checks the files of a study, and its motion and device, by the rules of scenes: each texture is opened with each model as it will be
-/// played. `path` is the study's file.
+/// played. `path` is the study's file, and `device` the one that it is run with; a rehearsal checks the study's own.
 pub fn check_files(
     study: &Study,
     path: &Path,
     around: &Surroundings<'_>,
+    device: &DeviceOverride,
     findings: &mut Vec<Finding>,
 ) {
-    let rehearsal = DeviceOverride {
-        rehearsal: true,
-        ..DeviceOverride::default()
-    };
     for (texture, asset) in study.textures.iter().enumerate() {
         for (pointer, model) in models(study) {
             let scene = scene_of(study, &asset.asset, model);
-            let found = match LoadedScene::from_bytes(path, &scene, around, &rehearsal) {
+            let found = match LoadedScene::from_bytes(path, &scene, around, device) {
                 Ok(loaded) => loaded.notes,
                 Err(LoadError::Invalid { findings }) => findings,
                 // A scene in memory is not read from a file.

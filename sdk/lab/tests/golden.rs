@@ -1,5 +1,5 @@
 //! The analysis against pingouin, statsmodels and SciPy: `tests/golden/study`.
-#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
+#![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
 use std::path::Path;
 

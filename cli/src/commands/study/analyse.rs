@@ -1,7 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_format::{FileReport, Report, Severity};
+use htex_format::{Report, Severity};
 use htex_lab::analyse::{Analysis, Checked, Incomplete, Invalid, Ratings, Spectra, analyse};
 
 use crate::exit::Exit;
@@ -80,7 +80,7 @@ impl Analyse {
         }
         let valid = false;
         let report = Report { valid, findings };
-        print_json::<FileReport>(&report.of_file(&shown(file)))?;
+        print_json(&report.of_file(&shown(file)))?;
         Ok(Exit::FAILURE)
     }
 

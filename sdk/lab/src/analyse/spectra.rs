@@ -29,6 +29,8 @@ pub struct Spectra {
     sizes: [usize; 2],
 }
 
+/// Index and name of a column.
+type Column<'s> = (usize, &'s str);
 type Read = BTreeMap<Cell, BTreeMap<String, Vec<f64>>>;
 
 impl Spectra {
@@ -70,7 +72,7 @@ impl Spectra {
 }
 
 /// Finds the columns of the grid, in its order.
-fn grid_columns<'s>(sheet: &'s Sheet, findings: &mut Findings) -> Vec<(usize, &'s str)> {
+fn grid_columns<'s>(sheet: &'s Sheet, findings: &mut Findings) -> Vec<Column<'s>> {
     let is_name = |name: &str| NAMES.contains(&name) || name == REPETITION;
     let columns = sheet.names().iter().enumerate();
     let others = columns.filter(|(_, name)| !is_name(name));
@@ -111,7 +113,7 @@ fn grid_columns<'s>(sheet: &'s Sheet, findings: &mut Findings) -> Vec<(usize, &'
 
 fn read_row(
     row: &Row,
-    (names, grid): (&[(usize, &str); 3], &[(usize, &str)]),
+    (names, grid): (&[Column<'_>; 3], &[Column<'_>]),
     repetition: String,
     all: &mut Read,
     findings: &mut Findings,
@@ -152,7 +154,7 @@ fn select(all: &Read, ratings: &Ratings, findings: &mut Findings) -> Spectra {
     let mut used = BTreeSet::new();
     let mut take = |participant: &str, texture: &str, model: &str| {
         let cell = (participant.to_owned(), texture.to_owned(), model.to_owned());
-        let found = all.get(&cell).map(|lines| average(lines));
+        let found = all.get(&cell).map(average);
         used.insert(cell);
         found
     };

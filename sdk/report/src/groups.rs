@@ -1,6 +1,7 @@
 //! Values by category: a dot for each value, a violin, the mean, and brackets between categories that differ.
 
 use crate::axis::Axis;
+use crate::brackets::{Bracket, levels};
 use crate::markup::Element;
 use crate::number::{brief, px};
 use crate::plot::{FONT, INK};
@@ -47,19 +48,6 @@ pub struct Category {
     pub values: Vec<f64>,
     /// Hover texts, one per value; missing ones show the value.
     pub notes: Vec<String>,
-}
-
-/// A bracket over two categories.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Bracket {
-    /// Index of the left category.
-    pub from: usize,
-    /// Index of the right category.
-    pub to: usize,
-    /// Mark on the bracket, such as `"*"`.
-    pub label: String,
-    /// Hover text.
-    pub note: String,
 }
 
 impl Category {
@@ -269,29 +257,6 @@ impl<'a> Layout<'a> {
         let fraction = self.y.fraction(value).unwrap_or(0.0).clamp(0.0, 1.0);
         self.top + (1.0 - fraction) * self.area_height
     }
-}
-
-/// Assigns brackets to levels from below, so that none on a level overlap; shorter ones are lower where they come first.
-fn levels(brackets: &[Bracket]) -> Vec<usize> {
-    let mut taken: Vec<Vec<(usize, usize)>> = Vec::new();
-    let ends = |b: &Bracket| (b.from.min(b.to), b.from.max(b.to));
-    let free = |level: &[(usize, usize)], (from, to): (usize, usize)| {
-        level.iter().all(|(a, b)| to <= *a || *b <= from)
-    };
-    let mut levels = Vec::new();
-    for bracket in brackets {
-        let own = ends(bracket);
-        let level = taken
-            .iter()
-            .position(|level| free(level, own))
-            .unwrap_or(taken.len());
-        if level == taken.len() {
-            taken.push(Vec::new());
-        }
-        taken[level].push(own);
-        levels.push(level);
-    }
-    levels
 }
 
 fn polygon(points: &[(f64, f64)]) -> Element {

@@ -12,6 +12,7 @@
 #![forbid(unsafe_code)]
 
 mod axis;
+mod brackets;
 mod chain;
 mod color;
 mod curves;
@@ -31,9 +32,10 @@ mod ticks;
 mod violin;
 
 pub use axis::{Axis, Scale};
+pub use brackets::Bracket;
 pub use chain::{Chain, ChainStage};
 pub use color::{RECORDING_COLOR, model_color, series_color};
-pub use groups::{Bracket, Category, Groups};
+pub use groups::{Category, Groups};
 pub use page::{Page, code_block, details, figures, list, paragraph};
 pub use plot::Plot;
 pub use series::{Line, Series};

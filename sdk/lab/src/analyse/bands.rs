@@ -6,9 +6,9 @@ use htex_statistics::{
     Matrix, Regression, StatisticsError, cross_validated_r2, regression, z_scores,
 };
 
-use super::analysis::{BandResult, BestBanks};
 use super::inference::Notes;
 use super::ratings::Ratings;
+use super::results::{BandResult, BestBanks};
 use super::spectra::Spectra;
 
 /// Largest number of bands: that of the paper.

@@ -2,10 +2,11 @@
 
 use htex_statistics::{pearson, summary};
 
-use super::analysis::{Correlation, Mean, SpectralCorrelation};
+use super::analysis::Mean;
 use super::inference::Notes;
 use super::methods;
 use super::ratings::Ratings;
+use super::results::{Correlation, SpectralCorrelation};
 use super::spectra::Spectra;
 
 const GROUP: &str = "spectral_correlation";

@@ -2,7 +2,8 @@
 
 use htex_report::{Axis, Bracket, Category, Groups, Line, Plot, Series, model_color, series_color};
 
-use super::analysis::{Analysis, BandResult, Mean, PairResult};
+use super::analysis::{Analysis, Mean};
+use super::results::{BandResult, PairResult};
 use super::text::significant;
 use super::words::{p, stars};
 

@@ -6,8 +6,9 @@ use htex_statistics::{
 };
 use std::collections::BTreeMap;
 
-use super::analysis::{AnovaResult, FriedmanResult, Normality, Note, PairResult, PairTest};
+use super::analysis::Note;
 use super::methods;
+use super::results::{AnovaResult, FriedmanResult, Normality, PairResult, PairTest};
 
 /// Collects why groups are missing.
 #[derive(Default)]

@@ -26,6 +26,7 @@ mod inference;
 mod methods;
 mod page;
 mod ratings;
+mod results;
 mod rules;
 mod run;
 mod sheet;
@@ -34,11 +35,12 @@ mod tables;
 mod text;
 mod words;
 
-pub use analysis::{
-    Analysis, AnovaResult, BandResult, BestBanks, CellMean, Correlation, FriedmanResult, Mean,
-    Normality, Note, PairResult, PowerRow, SpectralCorrelation,
-};
+pub use analysis::{Analysis, CellMean, Mean, Note};
 pub use ratings::{Incomplete, Ratings};
+pub use results::{
+    AnovaResult, BandResult, BestBanks, Correlation, FriedmanResult, Normality, PairResult,
+    PairTest, PowerRow, SpectralCorrelation,
+};
 pub use rules::{RULES, explain, findings_page};
 pub use run::{analyse, analysis_schema};
 pub use sheet::{Checked, Invalid};

@@ -4,8 +4,9 @@ use htex_report::{
     Cell, HeatScale, Page, Row, Table, code_block, details, figures, list, paragraph,
 };
 
-use super::analysis::{Analysis, Mean, PairResult};
+use super::analysis::{Analysis, Mean};
 use super::figures::{bands, correlations, ratings};
+use super::results::PairResult;
 use super::words::{self, PAIR_HEADS, number_p};
 
 impl Analysis {

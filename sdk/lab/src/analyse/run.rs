@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use htex_statistics::{Power, StatisticsError, Table, TwoFactors};
 use serde_json::Value;
 
-use super::analysis::{ANALYSIS, Analysis, CellMean, Mean, PowerRow};
+use super::analysis::{ANALYSIS, Analysis, CellMean, Mean};
 use super::correlation::{correlate, mean};
 use super::inference::{Notes, anova_of, friedman_of, normality_of, pairs_of, two_way};
 use super::ratings::Ratings;
+use super::results::PowerRow;
 use super::spectra::Spectra;
 use super::{bands, methods};
 

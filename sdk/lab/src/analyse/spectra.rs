@@ -29,6 +29,8 @@ pub struct Spectra {
     sizes: [usize; 2],
 }
 
+/// Index and name of a column.
+type Column<'s> = (usize, &'s str);
 type Read = BTreeMap<Cell, BTreeMap<String, Vec<f64>>>;
 
 impl Spectra {
@@ -70,7 +72,7 @@ impl Spectra {
 }
 
 /// Finds the columns of the grid, in its order.
-fn grid_columns<'s>(sheet: &'s Sheet, findings: &mut Findings) -> Vec<(usize, &'s str)> {
+fn grid_columns<'s>(sheet: &'s Sheet, findings: &mut Findings) -> Vec<Column<'s>> {
     let is_name = |name: &str| NAMES.contains(&name) || name == REPETITION;
     let columns = sheet.names().iter().enumerate();
     let others = columns.filter(|(_, name)| !is_name(name));

@@ -1,6 +1,7 @@
 //! An analysis as CSV tables.
 
-use super::analysis::{Analysis, AnovaResult, Mean, PairResult};
+use super::analysis::{Analysis, Mean};
+use super::results::{AnovaResult, PairResult};
 
 impl Analysis {
     /// Returns the tables as CSV files: name and text. What is not defined is an empty field.

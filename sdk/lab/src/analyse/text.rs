@@ -1,6 +1,7 @@
 //! An analysis as text tables.
 
-use super::analysis::{Analysis, Mean, PairResult};
+use super::analysis::{Analysis, Mean};
+use super::results::PairResult;
 use super::words::{self, PAIR_HEADS, number_p};
 
 impl Analysis {

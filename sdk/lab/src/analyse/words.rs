@@ -1,6 +1,6 @@
 //! Numbers of statistics as people read them.
 
-use super::analysis::{AnovaResult, FriedmanResult, Normality, PairTest};
+use super::results::{AnovaResult, FriedmanResult, Normality, PairTest};
 
 /// A p-value: three decimals, or `< 0.001`.
 pub(super) fn p(value: f64) -> String {

@@ -31,7 +31,7 @@ const SURFACES: [&str; 5] = [
 /// The paper's study on the paper's rig, with short trials.
 fn whole_study() -> String {
     let mut text = "htex_study = '1.0'\nname = 'Similarity'\nseed = 5\ntrial_s = 0.05\nrests = { every = 25, seconds = 60 }\n\
-        motion = { constant = { speed_mm_s = 80, force_n = 0.4 } }\ndevice = { adapter = 'daq' }\n"
+        motion = { constant = { speed_mm_s = 80, force_n = 0.4 } }\ndevice = { adapter = 'daq', profile = 'pcie-6321_tabor-9200a_sct3250' }\n"
         .to_owned();
     for surface in SURFACES {
         text += &format!("[[textures]]\nasset = '{surface}.htex'\n");

@@ -3,12 +3,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use htex_format::{Findings, Report, Severity};
 use htex_lab::study::{check_files, read_study};
-use htex_scene::DeviceOverride;
 
 use crate::commands::validate::report;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::scenes::SceneArgs;
+use crate::scenes::{ChoiceArgs, SceneArgs};
 
 /// Check a study, the assets that it names, and its device; exit status 1 if it cannot be run.
 ///
@@ -21,6 +20,9 @@ pub(super) struct Validate {
     /// Print JSON
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    choice: ChoiceArgs,
 
     #[command(flatten)]
     with: SceneArgs,
@@ -41,10 +43,7 @@ impl Validate {
         let study = read_study(&bytes, &mut findings);
         let mut findings = findings.into_list();
         if let Some(study) = study {
-            let rehearsal = DeviceOverride {
-                rehearsal: true,
-                ..DeviceOverride::default()
-            };
+            let rehearsal = self.choice.to_override(None, true)?;
             let loader = self.with.loader()?;
             check_files(&study, path, &loader.around(), &rehearsal, &mut findings);
         }

@@ -41,6 +41,11 @@ const FLAGS: &[(&str, &str)] = &[
         "--speed=@ --force=@ --rate=@ --seed=@ --quality=loop:@ --quality=filter:@",
     ),
     ("synth cloth.htex -o cloth.wav", "--seconds=@"),
+    #[cfg(feature = "lab")]
+    (
+        "response rec.csv --input fx_n --output fy_n --continuous",
+        "--rate=@ --from=@ --to=@ --window=@ --low=@ --high=@ --input-limit=@ --output-limit=@ --map=time=t_s:@",
+    ),
     ("lib find cloth.htexlib", "--speed=@ --force=@"),
     (
         "bake cloth.htex -o cloth.bin",

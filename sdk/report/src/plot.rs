@@ -60,7 +60,17 @@ impl Plot {
 
     /// Draws the plot as an `<svg>` element, usable alone or in a page.
     pub fn to_svg(&self) -> String {
-        let drawing = Drawing::new(self);
+        self.to_svg_from(0.0)
+    }
+
+    /// Returns where the data area begins, pixels from the left.
+    pub(crate) fn data_left(&self) -> f64 {
+        Drawing::new(self, 0.0).area.left
+    }
+
+    /// Draws the plot with its data area at least this far from the left, pixels.
+    pub(crate) fn to_svg_from(&self, least_left: f64) -> String {
+        let drawing = Drawing::new(self, least_left);
         let (width, height) = (drawing.width, drawing.height);
         Element::new("svg")
             .set("xmlns", "http://www.w3.org/2000/svg")
@@ -105,7 +115,7 @@ pub(crate) struct Area {
 }
 
 impl<'a> Drawing<'a> {
-    fn new(plot: &'a Plot) -> Self {
+    fn new(plot: &'a Plot, least_left: f64) -> Self {
         let (width, height) = (plot.drawn_width(), plot.drawn_height());
         let points = || plot.series.iter().flat_map(|series| &series.points);
         let x = Projection::new(&plot.x, points().map(|p| p.0));
@@ -123,7 +133,7 @@ impl<'a> Drawing<'a> {
             .iter()
             .map(|(_, t)| text_width(&t.label, TEXT_PX))
             .fold(0.0, f64::max);
-        let left = 24.0 + widest;
+        let left = (24.0 + widest).max(least_left);
         let area_width = (width - left - 14.0).max(30.0);
         let x_ticks = x.ticks((area_width / 45.0) as usize);
         let area = Area {

@@ -4,8 +4,8 @@ use crate::markup::Element;
 use crate::number::px;
 use crate::plot::Plot;
 
-/// Draws plots below each other, in their order, as one self-contained `<svg>` element; `title` is its name for screen
-/// readers.
+/// Draws plots below each other, in their order and with their data areas aligned at the left, as one self-contained `<svg>`
+/// element; `title` is its name for screen readers.
 ///
 /// ```
 /// use htex_report::{Axis, Plot, stacked};
@@ -15,12 +15,13 @@ use crate::plot::Plot;
 /// ```
 pub fn stacked(title: &str, plots: &[Plot]) -> String {
     let width = plots.iter().map(Plot::drawn_width).fold(0.0, f64::max);
+    let left = plots.iter().map(Plot::data_left).fold(0.0, f64::max);
     let mut top = 0.0;
     let mut panels = Vec::with_capacity(plots.len());
     for plot in plots {
         let place = format!("translate(0 {})", px(top));
         let panel = Element::new("g").set("transform", &place);
-        panels.push(panel.raw(&plot.to_svg()));
+        panels.push(panel.raw(&plot.to_svg_from(left)));
         top += plot.drawn_height();
     }
     let drawn = Element::new("svg")

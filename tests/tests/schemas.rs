@@ -35,6 +35,7 @@ const REFUSED: &[&str] = &[
     "json_type_word_as_object",
     "level_invalid",
     "level_invalid_displacement",
+    "made_invalid",
     "mimetype_wrong_and_others",
     "model_duplicate",
     "model_id_invalid",

@@ -94,7 +94,7 @@ pub const STAGES: &[Stage] = &[
     },
     Stage {
         of: "recordings, in their order",
-        codes: &["SOURCE_INVALID", "SOURCE_PATH"],
+        codes: &["SOURCE_INVALID", "SOURCE_PATH", "MADE_INVALID"],
         ends: false,
     },
     Stage {

@@ -111,9 +111,6 @@ fn grid_columns<'s>(sheet: &'s Sheet, findings: &mut Findings) -> Vec<Column<'s>
     columns
 }
 
-/// A column: its index and its name.
-type Column<'a> = (usize, &'a str);
-
 fn read_row(
     row: &Row,
     (names, grid): (&[Column<'_>; 3], &[Column<'_>]),

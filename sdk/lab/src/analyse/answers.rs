@@ -84,7 +84,7 @@ fn one_attribute(sheet: &Sheet, findings: &mut Findings) {
     let other = sheet.rows.iter().find(|row| row.field(column) != first);
     if let Some(row) = other {
         let message = format!(
-            "it is `{}`, and `{}` in the lines before",
+            "it is `{}`, and `{}` in the first line; keep the lines of one attribute",
             plain(row.field(column)),
             plain(first)
         );
@@ -117,7 +117,10 @@ fn read_row(
         .ok()
         .filter(|v: &f64| v.abs() <= LARGEST_RATING);
     let Some(value) = value else {
-        let message = format!("`{}` is not a number", plain(text));
+        let message = format!(
+            "`{}` is not a number; correct it, or remove the line",
+            plain(text)
+        );
         at(findings, RATING_INVALID, row.line, rating, &message);
         return;
     };
@@ -127,7 +130,8 @@ fn read_row(
         .insert(number, value)
         .is_some()
     {
-        let message = "an earlier line rates the same participant, texture, model and repetition";
+        let message =
+            "an earlier line rates the same participant, texture, model and repetition; remove one";
         at(findings, RATING_DUPLICATE, row.line, repetition, message);
     }
 }

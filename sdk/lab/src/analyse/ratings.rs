@@ -189,17 +189,20 @@ fn is_complete(
     let Some((texture, model)) = missing.first() else {
         return true;
     };
+    let (rule, consequence) = match incomplete {
+        Incomplete::Refuse => (
+            RATINGS_CELL_MISSING,
+            "complete it, or leave the participant out",
+        ),
+        Incomplete::LeaveOut => (RATINGS_LEFT_OUT, "the participant is left out"),
+    };
     let more = match missing.len() {
         1 => String::new(),
         count => format!(" and {} others", count - 1),
     };
     let message = format!(
-        "participant {participant} has no rating of model {model} in texture {texture}{more}"
+        "participant {participant} has no rating of model {model} in texture {texture}{more}; {consequence}"
     );
-    let rule = match incomplete {
-        Incomplete::Refuse => RATINGS_CELL_MISSING,
-        Incomplete::LeaveOut => RATINGS_LEFT_OUT,
-    };
     findings.add(rule, "", message);
     false
 }

@@ -138,7 +138,7 @@ pub(super) fn name(row: &Row, (index, column): (usize, &str), findings: &mut Fin
             TABLE_NAME_EMPTY,
             row.line,
             (index, column),
-            "it is empty",
+            "it is empty; fill it in, or remove the line",
         );
     }
     name.to_owned()

@@ -125,7 +125,10 @@ fn read_row(
         match text.parse::<f64>() {
             Ok(value) if (0.0..=LARGEST).contains(&value) => magnitudes.push(value),
             _ => {
-                let message = format!("`{}` is not a number of at least 0", plain(text));
+                let message = format!(
+                    "`{}` is not a number of at least 0; correct it, or remove the line",
+                    plain(text)
+                );
                 at(
                     findings,
                     SPECTRA_MAGNITUDE_INVALID,
@@ -144,7 +147,7 @@ fn read_row(
     };
     let cell = all.entry((participant, texture, model)).or_default();
     if cell.insert(repetition, magnitudes).is_some() {
-        let message = "an earlier line has the same spectrum";
+        let message = "an earlier line has the same spectrum; remove one, or number them in a column `repetition`";
         at(findings, SPECTRA_DUPLICATE, row.line, names[0], message);
     }
 }
@@ -163,7 +166,9 @@ fn select(all: &Read, ratings: &Ratings, findings: &mut Findings) -> Spectra {
         match take(RECORDED, texture, RECORDED) {
             Some(spectrum) => recorded.push(spectrum),
             None => {
-                let message = format!("there is no recorded spectrum of texture {texture}");
+                let message = format!(
+                    "there is no recorded spectrum of texture {texture}; add a line with `recorded` as participant and as model"
+                );
                 findings.add(SPECTRA_RECORDED_MISSING, "", message);
             }
         }

@@ -15,9 +15,6 @@ use std::time::{Duration, Instant};
 
 use common::Place;
 
-/// A text of a study, and what is put in its place.
-type Change = (&'static str, &'static str);
-
 const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/scenes");
 const PAPER: &str = "pcie-6321_tabor-9200a_sct3250";
 const SURFACES: [&str; 5] = [
@@ -196,8 +193,11 @@ device = { adapter = 'file' }
 asset = 'vinyl.htex'
 ";
 
+/// Texts, and what replaces them.
+type Edits<'a> = &'a [(&'a str, &'a str)];
+
 /// A study of one texture; `more` replaces texts of it.
-fn short(more: &[(&str, &str)]) -> Place {
+fn short(more: Edits<'_>) -> Place {
     let place = Place::new();
     place.write(
         "vinyl.htex",
@@ -298,7 +298,7 @@ fn a_person_answers_in_a_terminal_and_goes_on_another_day() {
 
 #[test]
 fn bad_studies_are_refused_with_code_and_place() {
-    let cases: [(&[Change], &str, &str, bool); 6] = [
+    let cases: [(Edits<'_>, &str, &str, bool); 6] = [
         (
             &[("repetitions = 1", "repetition = 1")],
             "STUDY_UNKNOWN_KEY",
@@ -362,7 +362,7 @@ fn combinations_that_cannot_work_are_refused() {
     );
     let noise = ("phases", "masking_noise = { level_dbfs = -30 }\nphases");
     let ann = ["--participant", "Ann"];
-    let cases: [(&[Change], &[&str], &str); 8] = [
+    let cases: [(Edits<'_>, &[&str], &str); 8] = [
         (
             &[],
             &["--participant", "Eve"],

@@ -144,7 +144,7 @@ fn gains_are_adopted_by_the_other_models() {
 }
 
 fn refused(place: &Place, words: &[&str]) {
-    let error = place.open().map(drop).unwrap_err().to_string();
+    let error = place.open().expect_err("it is refused").to_string();
     for word in words {
         assert!(error.contains(word), "{word}: {error}");
     }

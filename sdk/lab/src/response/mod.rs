@@ -24,6 +24,7 @@
 //! # Ok::<(), htex_lab::response::ResponseError>(())
 //! ```
 
+mod average;
 mod baseline;
 mod double;
 mod error;

@@ -3,6 +3,8 @@
 use super::frames::{farthest, spread};
 use super::measured::MeasuredResponse;
 use super::options::{Excitation, ResponseOptions};
+use super::pieces::Cut;
+use super::record::Record;
 
 /// Number of averages below which the coherence says little.
 const FEW: usize = 5;
@@ -59,6 +61,15 @@ pub(crate) fn notices(
         }
     }
     found
+}
+
+/// Returns a warning for each record that nothing was cut out of.
+pub(crate) fn without_hits(records: &[Record], cuts: &[Vec<Cut>]) -> Vec<String> {
+    let both = records.iter().zip(cuts);
+    let empty = both.filter(|(_, cuts)| cuts.is_empty());
+    empty
+        .map(|(record, _)| format!("{}: no hit found.", record.file()))
+        .collect()
 }
 
 /// The stretches of low coherence.

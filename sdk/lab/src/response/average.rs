@@ -1,0 +1,95 @@
+//! What is cut out of records, counted and averaged.
+
+use super::baseline::Baseline;
+use super::error::{Channel, ResponseError};
+use super::frames::{Weights, windows};
+use super::hits::hits;
+use super::notices::outlasts;
+use super::options::{Excitation, ResponseOptions};
+use super::pieces::{Cut, Piece};
+use super::record::Record;
+use super::spectra::Spectra;
+
+/// Cuts a record into hits or windows of `len` samples.
+pub(crate) fn cut(
+    record: &Record,
+    len: usize,
+    options: &ResponseOptions,
+) -> Result<Vec<Cut>, ResponseError> {
+    if record.samples() < len {
+        return Err(ResponseError::Short {
+            file: record.file().to_owned(),
+            duration_s: record.samples() as f64 / record.rate_hz(),
+            window_s: options.window_s,
+        });
+    }
+    Ok(match &options.excitation {
+        Excitation::Hits(hit) => hits(record, len, hit, options),
+        Excitation::Continuous => windows(record, len, options),
+    })
+}
+
+/// Counts what can be used; refuses fewer than two.
+pub(crate) fn count_used(
+    records: &[Record],
+    cuts: &[Vec<Cut>],
+    options: &ResponseOptions,
+) -> Result<usize, ResponseError> {
+    let pieces = || cuts.iter().flatten().map(|cut| &cut.piece);
+    let (found, is_hits) = (
+        pieces().count(),
+        matches!(options.excitation, Excitation::Hits(_)),
+    );
+    if let (0, Some(first)) = (found, records.first()) {
+        let rest = Baseline::of(first.channel(Channel::Input));
+        let (file, largest, noise) = (first.file().to_owned(), rest.largest, rest.noise);
+        return Err(ResponseError::NoHits {
+            file,
+            largest,
+            noise,
+        });
+    }
+    match pieces().filter(|piece| piece.thrown_out.is_none()).count() {
+        used if used >= 2 => Ok(used),
+        used => Err(ResponseError::TooFew {
+            what: if is_hits { "hits" } else { "windows" },
+            found,
+            used,
+            reasons: pieces().filter_map(Piece::place_and_reason).collect(),
+        }),
+    }
+}
+
+/// Averages what is used; returns the number of hits whose response outlasts the window, too.
+pub(crate) fn average(
+    records: &[Record],
+    cuts: &[Vec<Cut>],
+    len: usize,
+    options: &ResponseOptions,
+) -> (Spectra, usize) {
+    let [x, y] = [Channel::Input, Channel::Output].map(|channel| scale_of(records, channel));
+    let mut spectra = Spectra::new(len);
+    let mut outlasting = 0;
+    for (record, cuts) in records.iter().zip(cuts) {
+        let weights = match &options.excitation {
+            Excitation::Hits(hit) => Weights::of_hits(len, record.rate_hz(), hit),
+            Excitation::Continuous => Weights::hann(len),
+        };
+        for cut in cuts.iter().filter(|cut| cut.piece.thrown_out.is_none()) {
+            let input = weights.apply(record, Channel::Input, cut, x);
+            let output = weights.apply(record, Channel::Output, cut, y);
+            spectra.add(&input, &output);
+            let before = cut.trigger - cut.samples.start;
+            outlasting += usize::from(outlasts(&output, before));
+        }
+    }
+    (spectra, outlasting)
+}
+
+/// The largest distance from rest, by which a channel is divided so that no power over- or underflows.
+pub(crate) fn scale_of(records: &[Record], channel: Channel) -> f64 {
+    let largest = records
+        .iter()
+        .map(|record| Baseline::of(record.channel(channel)).largest);
+    largest.fold(0.0, f64::max)
+}

@@ -79,19 +79,19 @@ pub(crate) enum Failure {
     Other(String),
 }
 
-/// Whether an argument of an experiment is wrong.
-#[cfg(feature = "lab")]
-fn is_wrong_use_of_lab(&self) -> bool {
-    use htex_lab::response::ResponseError::{Column, Option};
-    use htex_lab::study::StudyError::{Attribute, NoParticipant};
-    matches!(
-        self,
-        Self::Study(Attribute { .. } | NoParticipant { .. })
-            | Self::Response(Option { .. } | Column { .. })
-    )
-}
-
 impl Failure {
+    /// Whether an argument of an experiment is wrong.
+    #[cfg(feature = "lab")]
+    fn is_wrong_use_of_lab(&self) -> bool {
+        use htex_lab::response::ResponseError::{Column, Option};
+        use htex_lab::study::StudyError::{Attribute, NoParticipant};
+        matches!(
+            self,
+            Self::Study(Attribute { .. } | NoParticipant { .. })
+                | Self::Response(Option { .. } | Column { .. })
+        )
+    }
+
     /// 2 for wrong usage, else 1.
     pub(crate) fn exit_code(&self) -> Exit {
         use htex_device::DeviceError::{Rate, Setting, Unknown};

@@ -7,6 +7,7 @@
 //! The defaults are those of the study in the paper (Methods, "Experiment"): 14 participants, five models, five repetitions, trials of
 //! 10 s, training, gain matching with AR from the maximum down, and similarity from 0 "Different" to 6 "Same".
 
+mod asking;
 mod check;
 mod error;
 mod export;
@@ -27,6 +28,7 @@ mod session;
 mod simulated;
 mod stimulus;
 
+pub use asking::{Asker, Clock, Key, Played, Rig, View};
 pub use error::StudyError;
 pub use export::{Export, export};
 pub use file::{
@@ -40,7 +42,7 @@ pub use page::{Page, PageOptions, Touched};
 pub use plan::{ParticipantPlan, Plan, Trial};
 pub use read::{check_files, files_of, read_study, study_schema};
 pub use rules::{RULES, explain, findings_page};
-pub use run::{Asker, Clock, Ended, Key, Played, Rig, View, run};
+pub use run::{Ended, run};
 pub use session::{Session, Step};
 pub use simulated::SimulatedParticipant;
 pub use stimulus::{Stimulus, scene_of, set_gain};

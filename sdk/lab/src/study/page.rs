@@ -14,10 +14,10 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use tiny_http::{Header, Method, Request, Response, Server};
 
+use crate::study::asking::{Asker, Key, View};
 use crate::study::error::StudyError;
 use crate::study::file::GainMethod;
 use crate::study::gain::GainKey;
-use crate::study::run::{Asker, Key, View};
 
 /// The page itself.
 const HTML: &str = include_str!("page.html");

@@ -30,7 +30,7 @@ fn rig(input: &[f64]) -> Vec<f64> {
     input.iter().map(step).collect()
 }
 
-/// Half sines of 1 ms at these times, with these forces; at most 20 N.
+/// Half sines of 1 ms at these times, with these forces.
 fn hammer(seconds: f64, hits: &[(f64, f64)]) -> Vec<f64> {
     let mut force = vec![0.0_f64; (seconds * RATE_HZ) as usize];
     for (time_s, peak) in hits {
@@ -39,7 +39,7 @@ fn hammer(seconds: f64, hits: &[(f64, f64)]) -> Vec<f64> {
             force[start + i] += peak * (PI * i as f64 / 10.0).sin();
         }
     }
-    force.iter().map(|force| force.min(20.0)).collect()
+    force
 }
 
 /// A recording of both channels with noise 30 dB below each; the hammer in volts of 22.5 N.
@@ -51,7 +51,7 @@ fn recording(place: &Place, name: &str, force: &[f64], seed: u64) {
     let mut csv = String::from("t_s,hammer_V,fx_n\n");
     for (i, (force, answer)) in force.iter().zip(&answer).enumerate() {
         let [a, b] = levels.map(|level| level * f64::from(noise.next_sample()));
-        // Beyond 20 N the amplifier is at its end, whatever the noise.
+        // The converter ends at 20 N.
         let volts = (force + a).min(20.0) / 22.5;
         writeln!(
             csv,

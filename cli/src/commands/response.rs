@@ -230,7 +230,10 @@ impl Response {
 /// An error of the columns names the flags for them, which differ from those of other commands.
 fn read_failure(error: ReadError) -> Failure {
     match error {
-        ReadError::Columns { .. } => ResponseError::Columns { source: error }.into(),
+        ReadError::Columns { .. } => {
+            let problem = error.to_string();
+            ResponseError::Columns { problem }.into()
+        }
         error => error.into(),
     }
 }

@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-use htex_author::read::ReadError;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -30,18 +29,20 @@ impl fmt::Display for Channel {
 #[non_exhaustive]
 pub enum ResponseError {
     /// The text that names a channel's column cannot be parsed.
-    #[error("the {channel}: {source}")]
+    #[error(
+        "the {channel}: {problem}; write COLUMN, COLUMN:SCALE or an expression, as in hammer_V:22.5"
+    )]
     Column {
         /// The channel.
         channel: Channel,
         /// What is wrong.
-        source: ReadError,
+        problem: String,
     },
-    /// The columns of both channels cannot be combined.
-    #[error("input and output: {source}")]
+    /// The columns of both channels cannot be read, or not together.
+    #[error("input and output: {problem}")]
     Columns {
         /// What is wrong.
-        source: ReadError,
+        problem: String,
     },
     /// The recording does not hold one signal for each channel.
     #[error(

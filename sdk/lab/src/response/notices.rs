@@ -10,8 +10,8 @@ use super::record::Record;
 const FEW: usize = 5;
 /// Coherence below which the response is uncertain.
 const COHERENT: f64 = 0.9;
-/// Most stretches in a sentence.
-const MOST_STRETCHES: usize = 5;
+/// Distance of stretches of low coherence, relative to their frequency, up to which they are one.
+const NEAR: f64 = 0.1;
 /// The end of a window, as a part of it, that must be quiet.
 const END: f64 = 0.05;
 /// RMS of a quiet end relative to the largest output, and to the noise before the trigger.
@@ -42,7 +42,7 @@ pub(crate) fn notices(
     }
     if let Some(stretches) = incoherent(measured) {
         found.push(format!(
-            "The coherence is below {COHERENT} {stretches}; the response is uncertain there."
+            "The coherence falls below {COHERENT} {stretches}; the response is uncertain there."
         ));
     }
     if let Excitation::Hits(hit) = &options.excitation {
@@ -72,31 +72,23 @@ pub(crate) fn without_hits(records: &[Record], cuts: &[Vec<Cut>]) -> Vec<String>
         .collect()
 }
 
-/// The stretches of low coherence.
+/// The stretches of low coherence. Those nearer to each other than a tenth of their frequency are one.
 fn incoherent(measured: &MeasuredResponse) -> Option<String> {
     let mut stretches: Vec<(f64, f64)> = Vec::new();
-    let mut goes_on = false;
-    for (hz, coherence) in measured.frequency_hz.iter().zip(&measured.coherence) {
-        let is_low = *coherence < COHERENT;
-        match stretches.last_mut().filter(|_| goes_on) {
-            Some(last) if is_low => last.1 = *hz,
-            None if is_low => stretches.push((*hz, *hz)),
-            _ => {}
+    let both = measured.frequency_hz.iter().zip(&measured.coherence);
+    for (hz, _) in both.filter(|(_, coherence)| **coherence < COHERENT) {
+        match stretches.last_mut() {
+            Some(last) if hz - last.1 <= NEAR * hz => last.1 = *hz,
+            _ => stretches.push((*hz, *hz)),
         }
-        goes_on = is_low;
     }
-    let shown = stretches.iter().take(MOST_STRETCHES);
-    let shown: Vec<String> = shown.map(|stretch| words(*stretch)).collect();
-    let more = match stretches.len() - shown.len() {
-        0 => String::new(),
-        more => format!(" and in {more} more stretches"),
-    };
-    (!shown.is_empty()).then(|| shown.join(", ") + &more)
+    let words: Vec<String> = stretches.into_iter().map(words).collect();
+    (!words.is_empty()).then(|| words.join(", "))
 }
 
 fn words((low_hz, high_hz): (f64, f64)) -> String {
     match low_hz == high_hz {
         true => format!("at {low_hz:.1} Hz"),
-        false => format!("from {low_hz:.1} to {high_hz:.1} Hz"),
+        false => format!("between {low_hz:.1} and {high_hz:.1} Hz"),
     }
 }

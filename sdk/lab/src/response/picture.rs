@@ -8,6 +8,8 @@ use super::measured::MeasuredResponse;
 const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 280.0;
 const LOW_HEIGHT: f64 = 170.0;
+/// Colour of the standard deviation.
+const DEVIATION: &str = "#a0a0a0";
 
 /// Draws magnitude in decibels with its standard deviation, phase in degrees, and coherence, as one SVG.
 #[must_use]
@@ -28,11 +30,10 @@ fn magnitude(measured: &MeasuredResponse, title: &str) -> Plot {
     };
     let mut plot = plot(measured, title, Axis::linear("magnitude / dB"), HEIGHT);
     plot.legend = true;
-    let deviation = series_color(4);
     let above = Series::line("one standard deviation", curve(&|error| 1.0 + error));
     let below = Series::line("", curve(&|error| 1.0 - error));
-    plot.series.push(above.behind().colored(deviation));
-    plot.series.push(below.behind().colored(deviation));
+    plot.series.push(above.behind().colored(DEVIATION));
+    plot.series.push(below.behind().colored(DEVIATION));
     let name = format!("{} of {} averages", measured.estimator, measured.averages);
     plot.series
         .push(Series::line(&name, curve(&|_| 1.0)).colored(series_color(0)));

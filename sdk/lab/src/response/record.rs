@@ -161,18 +161,28 @@ pub fn column_map(
             "the map's {} is not used here: input and output are given by themselves, with their scales",
             axis.role
         );
-        return Err(ResponseError::Columns {
-            source: ReadError::Map { problem },
-        });
+        return Err(ResponseError::Columns { problem });
     }
     entries.extend(others.iter().cloned());
-    ColumnMap::new(entries).map_err(|source| ResponseError::Columns { source })
+    ColumnMap::new(entries).map_err(|error| ResponseError::Columns {
+        problem: problem_of(error),
+    })
 }
 
 /// A scale of 1 in place of none: a column's unit does not matter.
 fn entry(channel: Channel, role: Role, text: &str) -> Result<MapEntry, ResponseError> {
-    let mut entry =
-        MapEntry::parse(role, text).map_err(|source| ResponseError::Column { channel, source })?;
+    let mut entry = MapEntry::parse(role, text).map_err(|error| ResponseError::Column {
+        channel,
+        problem: problem_of(error),
+    })?;
     entry.scale = entry.scale.or(Some(1.0));
     Ok(entry)
+}
+
+/// What is wrong with a map, without advice on maps.
+fn problem_of(error: ReadError) -> String {
+    match error {
+        ReadError::Map { problem } => problem,
+        error => error.to_string(),
+    }
 }

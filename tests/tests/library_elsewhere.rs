@@ -1,10 +1,6 @@
 //! Libraries on an S3-compatible server, which counts the requests.
-#![cfg(feature = "storage")]
 #![allow(clippy::unwrap_used, clippy::panic)] // A failed unwrap is a failed test.
 
-mod common;
-
-use common::texture;
 use htex_library::{Library, LibraryError, Located, Writer};
 use htex_object_server::{Fault, Server};
 use htex_storage::{Location, Settings, Storage};
@@ -16,7 +12,7 @@ const MOST_BYTES: u64 = 64 << 10;
 
 /// A server with a library of `count` textures of the same bytes.
 fn server(count: u32) -> (Server, Vec<u8>) {
-    let (folder, bytes) = (tempfile::tempdir().unwrap(), texture("one").bytes());
+    let (folder, bytes) = (tempfile::tempdir().unwrap(), texture());
     let path = folder.path().join("many.htexlib");
     let mut writer = Writer::create(&path, "Many").unwrap();
     for i in 0..count {
@@ -26,6 +22,10 @@ fn server(count: u32) -> (Server, Vec<u8>) {
     let server = Server::start();
     server.put(NAME, std::fs::read(&path).unwrap());
     (server, bytes)
+}
+
+fn texture() -> Vec<u8> {
+    std::fs::read(htex_tests::workspace().join("examples/scenes/vinyl.htex")).unwrap()
 }
 
 fn name(i: u32) -> String {

@@ -109,7 +109,7 @@ fn hits_become_the_response_that_recordings_are_divided_by() {
         "{text}"
     );
     assert!(
-        lines[1].contains("overload: the input is at its limit of 20 at 3.80"),
+        lines[1].contains("overload: the input is at its limit of 20.0000"),
         "{text}"
     );
     assert!(

@@ -12,7 +12,7 @@ use htex_dsp::noise::GaussianNoise;
 
 const RATE_HZ: f64 = 10_000.0;
 
-/// The rig: 1 plus half of a resonance at 180 Hz with a damping of 2 %, by the bilinear transform.
+/// The rig: 1 plus a fifth of a resonance at 180 Hz with a damping of 2 %, by the bilinear transform.
 fn rig(input: &[f64]) -> Vec<f64> {
     let (k, z) = ((PI * 180.0 / RATE_HZ).tan(), 0.02);
     let d = 1.0 + 2.0 * z * k + k * k;
@@ -25,7 +25,7 @@ fn rig(input: &[f64]) -> Vec<f64> {
     let step = |&new: &f64| {
         let out = b * (new + 2.0 * x[0] + x[1]) - a1 * y[0] - a2 * y[1];
         (x, y) = ([new, x[0]], [out, y[0]]);
-        new + 0.5 * out
+        new + 0.2 * out
     };
     input.iter().map(step).collect()
 }
@@ -109,7 +109,7 @@ fn hits_become_the_response_that_recordings_are_divided_by() {
         "{text}"
     );
     assert!(
-        lines[1].contains("overload: the input is at its limit of 20 at 3.80"),
+        lines[1].contains("overload: the input is at its limit of 20.0000"),
         "{text}"
     );
     assert!(
@@ -153,17 +153,22 @@ fn hits_become_the_response_that_recordings_are_divided_by() {
     let (truth, seen) = (spectrum("finger.csv", &[]), spectrum("rig.csv", &[]));
     let divided = spectrum("rig.csv", &["--frf", "response.csv"]);
     let [truth, seen, divided] = [truth, seen, divided].map(|json| numbers(&json["magnitude"]));
-    let error_db = |of: &[f64]| -> Vec<f64> {
+    let worst = |of: &[f64]| {
         let at = tones.iter().map(|hz| ((hz - 20.0) / 5.0) as usize);
         at.map(|at| (20.0 * (of[at] / truth[at]).log10()).abs())
-            .collect()
+            .fold(0.0, f64::max)
     };
-    let worst = |of: &[f64]| of.iter().copied().fold(0.0, f64::max);
-    let (raw, mut corrected) = (error_db(&seen), error_db(&divided));
-    println!("divided: {corrected:.2?} dB");
-    // The rig has a zero at 218 Hz, next to which its answer is all but noise.
-    let at_zero = corrected.remove(9);
-    assert!(worst(&raw) > 20.0 && worst(&corrected) < 0.5 && at_zero < 3.0);
+    println!(
+        "largest difference {:.3} dB, divided {:.3} dB",
+        worst(&seen),
+        worst(&divided)
+    );
+    assert!(
+        worst(&seen) > 10.0 && worst(&divided) < 0.5,
+        "{} {}",
+        worst(&seen),
+        worst(&divided)
+    );
 }
 
 #[test]

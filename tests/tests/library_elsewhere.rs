@@ -87,7 +87,7 @@ fn a_replaced_library_and_a_failing_server_are_errors() {
     let (server, bytes) = server(1_000);
     let library = open(&server).unwrap();
     assert_eq!(library.get(&name(7)).unwrap(), bytes);
-    server.put(NAME, vec![7; 1_000_000]);
+    server.put(NAME, vec![7; 3_000_000]);
     let error = library.get(&name(999)).unwrap_err().to_string();
     assert!(error.contains("replaced"), "{error}");
     assert!(matches!(open(&server), Err(LibraryError::Invalid { .. })));

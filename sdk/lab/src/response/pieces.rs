@@ -68,7 +68,7 @@ impl fmt::Display for Reason {
                 let value = *value as f32;
                 write!(
                     f,
-                    "overload: the {channel} is at its limit of {value} at {at_s:.4} s"
+                    "overload: the {channel} is at its limit of {value:.4} at {at_s:.4} s"
                 )
             }
             Self::StartsLate => {

@@ -164,7 +164,7 @@ impl ResponseOptions {
         require(
             "the window (s)",
             self.window_s,
-            samples >= FEWEST_SAMPLES && samples < 1e15,
+            (FEWEST_SAMPLES..1e15).contains(&samples),
             &enough,
         )?;
         let low = self.low_hz >= 0.0 && self.low_hz < rate_hz / 2.0;

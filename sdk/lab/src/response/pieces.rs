@@ -64,8 +64,6 @@ impl fmt::Display for Reason {
                 at_s,
                 value,
             } => {
-                // A scaled number has digits that the recording does not: seven are shown.
-                let value = *value as f32;
                 write!(
                     f,
                     "overload: the {channel} is at its limit of {value:.4} at {at_s:.4} s"

@@ -3,4 +3,5 @@
 #![forbid(unsafe_code)]
 
 pub mod analyse;
+pub mod record;
 pub mod study;

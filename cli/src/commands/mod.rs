@@ -21,6 +21,8 @@ mod plan;
 mod play;
 mod plugin;
 mod process;
+#[cfg(feature = "lab")]
+mod record;
 mod render;
 mod schema;
 mod simulate;
@@ -40,6 +42,8 @@ pub(crate) enum Command {
     Demo(demo::Demo),
     Simulate(simulate::Simulate),
     Process(process::Process),
+    #[cfg(feature = "lab")]
+    Record(Box<record::Record>),
     Fit(Box<fit::Fit>),
     Info(info::Info),
     Edit(edit::Edit),
@@ -75,6 +79,8 @@ impl Command {
             Self::Demo(args) => args.run(),
             Self::Simulate(args) => args.run(),
             Self::Process(args) => args.run(),
+            #[cfg(feature = "lab")]
+            Self::Record(args) => args.run(),
             Self::Fit(args) => args.run(),
             Self::Info(args) => args.run(),
             Self::Edit(args) => args.run(),

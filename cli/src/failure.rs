@@ -4,6 +4,8 @@ use std::path::Path;
 
 use htex_author::AuthorError;
 use htex_format::plain;
+#[cfg(feature = "lab")]
+use htex_lab::record::RecordError;
 
 use crate::exit::Exit;
 use crate::flags::{of_author_error, of_read_error, with, with_flags};
@@ -61,6 +63,9 @@ pub(crate) enum Failure {
     #[cfg(feature = "lab")]
     #[error(transparent)]
     Study(#[from] htex_lab::study::StudyError),
+    #[cfg(feature = "lab")]
+    #[error(transparent)]
+    Record(#[from] htex_lab::record::RecordError),
     /// A study is invalid.
     #[cfg(feature = "lab")]
     #[error("{file}: this study cannot be run (`htex explain CODE` says more){}", listed(.findings))]
@@ -94,17 +99,21 @@ impl Failure {
 
     /// 2 for wrong usage, else 1.
     pub(crate) fn exit_code(&self) -> Exit {
-        use htex_device::DeviceError::{Rate, Setting, Unknown};
+        use htex_device::DeviceError::{Rate, Setting, Unknown, UnknownSource};
         use htex_host::HostError::{Option, UnknownModel};
         use htex_storage::StorageError::{NoCloud, ReadOnly};
         #[cfg(feature = "lab")]
         if self.is_wrong_use_of_lab() {
             return Exit::USAGE;
         }
+        #[cfg(feature = "lab")]
+        if let Self::Record(RecordError::Setup { .. } | RecordError::NotMeasured { .. }) = self {
+            return Exit::USAGE;
+        }
         match self {
             Self::Usage(_)
             | Self::Model(Option { .. } | UnknownModel { .. })
-            | Self::Device(Setting { .. } | Rate { .. } | Unknown { .. })
+            | Self::Device(Setting { .. } | Rate { .. } | Unknown { .. } | UnknownSource { .. })
             | Self::Storage(NoCloud { .. } | ReadOnly { .. })
             | Self::Asset {
                 error: htex::Error::Model(UnknownModel { .. }) | htex::Error::EmbeddedOff { .. },

@@ -32,6 +32,8 @@ mod scenes;
 mod schemas;
 mod shown;
 mod signals;
+#[cfg(feature = "lab")]
+mod sources;
 mod wasm_limits;
 mod wav;
 

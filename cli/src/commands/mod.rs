@@ -21,6 +21,8 @@ mod plan;
 mod play;
 mod plugin;
 mod process;
+#[cfg(feature = "lab")]
+mod record;
 mod render;
 #[cfg(feature = "lab")]
 mod response;
@@ -42,6 +44,8 @@ pub(crate) enum Command {
     Demo(demo::Demo),
     Simulate(simulate::Simulate),
     Process(process::Process),
+    #[cfg(feature = "lab")]
+    Record(Box<record::Record>),
     #[cfg(feature = "lab")]
     Response(Box<response::Response>),
     Fit(Box<fit::Fit>),
@@ -79,6 +83,8 @@ impl Command {
             Self::Demo(args) => args.run(),
             Self::Simulate(args) => args.run(),
             Self::Process(args) => args.run(),
+            #[cfg(feature = "lab")]
+            Self::Record(args) => args.run(),
             #[cfg(feature = "lab")]
             Self::Response(args) => args.run(),
             Self::Fit(args) => args.run(),

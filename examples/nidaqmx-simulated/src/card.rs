@@ -1,5 +1,7 @@
 //! The card: two outputs, their tasks, and the clock that takes samples.
 
+pub mod input;
+
 use std::collections::{BTreeMap, VecDeque};
 use std::fs::File;
 use std::io::Write;
@@ -23,7 +25,11 @@ pub struct Card {
     pub record: Option<PathBuf>,
     /// Whether the clock advances by calls that read the state, not in real time.
     pub by_calls: bool,
-    /// Samples after which the card is removed.
+    /// Voltages at the inputs: a row for each frame.
+    pub input: Option<Vec<Vec<f64>>>,
+    /// Seconds by which the next call to an input is late, when the clock advances by calls.
+    pub late_s: f64,
+    /// Samples after which the card is removed, output or frames of input.
     pub unplug_after: Option<u64>,
     tasks: BTreeMap<usize, Task>,
     made: usize,
@@ -41,6 +47,11 @@ struct Task {
     running: Option<Instant>,
     taken: u64,
     fault: Option<i32>,
+    inputs: Vec<usize>,
+    range_v: f64,
+    /// Frames that the inputs have sampled, and those that were read.
+    sampled: u64,
+    read: u64,
 }
 
 type Answer<T> = Result<T, i32>;
@@ -95,20 +106,23 @@ impl Card {
     pub fn start(&mut self, id: usize) -> Answer<()> {
         self.plugged()?;
         let channel = self.task(id)?.channel;
+        let own = self.tasks.get(&id).ok_or(codes::INVALID_TASK)?;
         let taken = |(other, task): (&usize, &Task)| {
-            *other != id && task.running.is_some() && task.channel == channel
+            let output = channel.is_some() && task.running.is_some() && task.channel == channel;
+            *other != id && (output || input::taken(own, task))
         };
         if self.tasks.iter().any(taken) {
             return Err(codes::RESERVED);
         }
-        let task = self.task(id)?;
-        task.running = Some(Instant::now());
+        input::begin(self.task(id)?);
         Ok(())
     }
 
     /// The output keeps its last value.
     pub fn stop(&mut self, id: usize) -> Answer<()> {
-        self.advance(id, 0.0)?;
+        if self.task(id)?.inputs.is_empty() {
+            self.advance(id, 0.0)?;
+        }
         let task = self.task(id)?;
         task.running = None;
         task.buffer.clear();

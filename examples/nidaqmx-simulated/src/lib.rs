@@ -1,4 +1,4 @@
-//! The C functions of NI-DAQmx that an analog output needs, over a simulated PCIe-6321.
+//! The C functions of NI-DAQmx that analog output and input need, over a simulated PCIe-6321.
 //!
 //! Each function has the arguments and results that National Instruments' `NIDAQmx.h` states. The card's
 //! output is recorded; see README.md.
@@ -7,6 +7,7 @@
 mod card;
 mod codes;
 mod fault;
+mod input;
 
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -26,7 +27,7 @@ fn with<T>(run: impl FnOnce(&mut Card) -> T) -> T {
 
 fn from_environment() -> Card {
     let mut card = Card::default();
-    for name in ["record", "clock", "unplug_after", "fault"] {
+    for name in ["record", "clock", "input", "unplug_after", "fault"] {
         if let Ok(value) = std::env::var(format!("NIDAQMX_SIM_{}", name.to_uppercase())) {
             set(&mut card, name, &value);
         }
@@ -38,6 +39,8 @@ fn set(card: &mut Card, name: &str, value: &str) {
     match name {
         "record" => card.record = Some(value.into()),
         "clock" => card.by_calls = value == "calls",
+        "input" => card.input = Some(rows(value)),
+        "late_s" => card.late_s = value.parse().unwrap_or(0.0),
         "unplug_after" => card.unplug_after = value.parse().ok(),
         "fault" => fault::plan(value),
         _ => eprintln!("nidaqmx-simulated: unknown setting `{name}`"),
@@ -84,7 +87,21 @@ fn device(name: &str) -> Result<(), i32> {
     }
 }
 
-/// Changes a setting of the simulation: `record`, `clock`, `unplug_after`, `fault`. Not part of NI-DAQmx.
+/// Reads a file of voltages: a line for each frame, a number for each input, separated by commas.
+fn rows(path: &str) -> Vec<Vec<f64>> {
+    let text = std::fs::read_to_string(path).unwrap_or_else(|error| {
+        eprintln!("nidaqmx-simulated: {path}: {error}");
+        String::new()
+    });
+    let row = |line: &str| {
+        line.split(',')
+            .map(|cell| cell.trim().parse().unwrap_or(0.0))
+            .collect()
+    };
+    text.lines().map(row).collect()
+}
+
+/// Changes a setting of the simulation: `record`, `input`, `late_s`, `clock`, `unplug_after`, `fault`. Not part of NI-DAQmx.
 #[unsafe(no_mangle)]
 pub unsafe extern "system" fn nidaqmx_simulated_set(name: *const c_char, value: *const c_char) {
     let (name, value) = unsafe { (text(name), text(value)) };

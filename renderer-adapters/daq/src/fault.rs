@@ -11,6 +11,9 @@ const RESERVED: i32 = -50103;
 /// Samples came too late: the buffer, or the memory on the card, became empty.
 const DRY: [i32; 5] = [-200290, -200291, -200016, -200018, -200621];
 
+/// Samples were read too late: the buffer was overwritten (-200279), or the memory on the card was full (-200361).
+const OVERRUN: [i32; 2] = [-200279, -200361];
+
 /// The warning about a voltage that may remain at the display.
 const NOT_ZERO: &str = "the output could not be set to zero: switch the amplifier off";
 
@@ -24,6 +27,10 @@ pub(crate) struct Fault {
 impl Fault {
     pub(crate) fn is_dry(&self) -> bool {
         DRY.contains(&self.code)
+    }
+
+    pub(crate) fn is_overrun(&self) -> bool {
+        OVERRUN.contains(&self.code)
     }
 
     /// The error of a device that was running.

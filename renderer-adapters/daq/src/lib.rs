@@ -1,4 +1,4 @@
-//! The analog output of a National Instruments card, and the amplifier behind it: electrovibration.
+//! The analog output of a National Instruments card, and the amplifier behind it: electrovibration; and its analog inputs.
 //!
 //! Samples are volts *at the display*, the carrier included; this adapter divides by the amplifier's
 //! gain and streams through NI-DAQmx, which is loaded at run time and not linked.
@@ -10,12 +10,16 @@
 //!   written;
 //! - a stream that does not begin or end at zero gets a ramp of `ramp_ms` *before its
 //!   first and after its last* sample. Samples themselves are never changed.
+//!
+//! [`DaqInput`] is the reverse: the analog inputs of a card as a source, in volts.
 #![deny(unsafe_code)]
 
 mod claim;
 mod descriptor;
 mod driver;
 mod fault;
+mod input;
+mod input_stream;
 mod rig;
 mod session;
 mod stream;
@@ -24,6 +28,8 @@ mod watchdog;
 use htex_device::{
     Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, Settings, StreamFormat,
 };
+
+pub use input::DaqInput;
 
 use driver::Driver;
 use rig::Rig;

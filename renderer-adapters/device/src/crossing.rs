@@ -22,7 +22,12 @@ pub(crate) fn outgoing(error: &DeviceError) -> (Code, String) {
         E::Underflow { .. } => Code::Underflow,
         E::Closed(_) => Code::Closed,
         E::File { .. } => Code::File,
-        E::Failed { .. } | E::Told(_) | E::Unknown { .. } | E::Abi { .. } => Code::Failed,
+        E::Failed { .. }
+        | E::Told(_)
+        | E::Overrun { .. }
+        | E::Unknown { .. }
+        | E::UnknownSource { .. }
+        | E::Abi { .. } => Code::Failed,
     };
     (code, text)
 }

@@ -54,6 +54,16 @@ pub enum DeviceError {
         /// Advice.
         advice: String,
     },
+    /// Frames of a source were lost: they were read too late. It delivers nothing more.
+    #[error("{source_name} lost samples after {frames} frames, which were read too late; {advice}")]
+    Overrun {
+        /// The source.
+        source_name: String,
+        /// Frames that were delivered before.
+        frames: u64,
+        /// Advice.
+        advice: String,
+    },
     /// The message of another process, which holds the device.
     #[error("{0}")]
     Told(String),
@@ -79,6 +89,14 @@ pub enum DeviceError {
     /// No device of this name is known.
     #[error("no device `{wanted}`; there are {known}")]
     Unknown {
+        /// The requested name.
+        wanted: String,
+        /// The known names.
+        known: String,
+    },
+    /// No source of this name is known.
+    #[error("no source `{wanted}`; there are {known}")]
+    UnknownSource {
         /// The requested name.
         wanted: String,
         /// The known names.

@@ -1,8 +1,11 @@
-//! Output devices: a device takes samples of one quantity at one rate.
+//! Output devices and input sources: a device takes samples of one quantity at one rate, a source delivers samples of channels.
 //!
 //! An [`Adapter`] is a family of devices; [`Adapter::open`] makes a [`Device`]. A device reports
 //! its [`Capabilities`] and enforces its limits on every sample.
 //! This crate does not depend on textures.
+//!
+//! A [`Source`] is the reverse, an input: it delivers samples of several channels. [`Sources`] knows the families of sources that
+//! are linked into a program.
 //!
 //! An adapter is built in, or a native library behind the flat C functions of [`abi`]
 //! ([`NativeAdapter`]); [`Devices`] finds both. A Rust author implements the traits and calls
@@ -23,6 +26,8 @@ mod native;
 mod schemas;
 mod settings;
 pub mod shim;
+mod source;
+mod sources;
 
 pub use adapter::{Adapter, Device, Status, StreamFormat};
 pub use capabilities::{Capabilities, CapabilitiesError, Quantity, Rates};
@@ -35,3 +40,5 @@ pub use native::{NativeAdapter, NativeDevice};
 #[cfg(feature = "schemars")]
 pub use schemas::schemas;
 pub use settings::{Ignored, Settings, Stated};
+pub use source::{Channel, Delivered, Source, SourceAdapter};
+pub use sources::Sources;

@@ -3,5 +3,6 @@
 #![forbid(unsafe_code)]
 
 pub mod analyse;
+pub mod record;
 pub mod response;
 pub mod study;

@@ -1,6 +1,7 @@
 //! NI-DAQmx, loaded at the first use.
 
 mod found;
+mod input_task;
 mod table;
 mod task;
 
@@ -12,6 +13,7 @@ use htex_device::DeviceError;
 use crate::fault::Fault;
 use table::Table;
 
+pub(crate) use input_task::{InputTask, Terminals};
 pub(crate) use task::Task;
 
 /// Loaded libraries by the setting that named them. A driver has threads of its own, so none is
@@ -47,6 +49,25 @@ impl Driver {
             outputs.extend(list(&channels).map(|c| (c.to_owned(), product.clone())));
         }
         Ok(outputs)
+    }
+
+    /// Every analog input, and the product it is part of.
+    pub(crate) fn inputs(&self) -> Result<Vec<(String, String)>, Fault> {
+        let mut inputs = Vec::new();
+        for card in list(&self.table.device_names()?) {
+            let product = self.table.product(card)?;
+            let channels = self.table.inputs(card)?;
+            inputs.extend(list(&channels).map(|c| (c.to_owned(), product.clone())));
+        }
+        Ok(inputs)
+    }
+
+    /// Lowest (1 Hz and above) rate of a card's analog input, and the highest of all channels together, hertz.
+    pub(crate) fn input_rates(&self, card: &str) -> Result<(f64, f64), Fault> {
+        Ok((
+            self.table.min_input_rate(card)?.max(1.0),
+            self.table.max_input_rate(card)?,
+        ))
     }
 
     /// Lowest (1 Hz and above) and highest rate of a card's analog output, hertz.

@@ -52,6 +52,13 @@ table! {
     get_outputs = "DAQmxGetDevAOPhysicalChans": (*const c_char, *mut c_char, u32),
     get_max_rate = "DAQmxGetDevAOMaxRate": (*const c_char, *mut f64),
     get_min_rate = "DAQmxGetDevAOMinRate": (*const c_char, *mut f64),
+    get_inputs = "DAQmxGetDevAIPhysicalChans": (*const c_char, *mut c_char, u32),
+    get_max_input_rate = "DAQmxGetDevAIMaxMultiChanRate": (*const c_char, *mut f64),
+    get_min_input_rate = "DAQmxGetDevAIMinRate": (*const c_char, *mut f64),
+    create_input = "DAQmxCreateAIVoltageChan": (Handle, *const c_char, *const c_char, i32, f64, f64, i32, *const c_char),
+    set_input_buffer = "DAQmxCfgInputBuffer": (Handle, u32),
+    get_available = "DAQmxGetReadAvailSampPerChan": (Handle, *mut u32),
+    read_samples = "DAQmxReadAnalogF64": (Handle, i32, f64, u32, *mut f64, u32, *mut i32, *mut u32),
     create_task = "DAQmxCreateTask": (*const c_char, *mut Handle),
     create_voltage = "DAQmxCreateAOVoltageChan": (Handle, *const c_char, *const c_char, f64, f64, i32, *const c_char),
     set_clock = "DAQmxCfgSampClkTiming": (Handle, *const c_char, f64, i32, i32, u64),
@@ -102,6 +109,27 @@ impl Table {
         let card = c_text(card);
         // SAFETY: as above.
         self.text(|to, space| unsafe { (self.get_outputs)(card.as_ptr(), to, space) })
+    }
+
+    pub(super) fn inputs(&self, card: &str) -> Result<String, Fault> {
+        let card = c_text(card);
+        // SAFETY: as above.
+        self.text(|to, space| unsafe { (self.get_inputs)(card.as_ptr(), to, space) })
+    }
+
+    /// Highest rate of all channels together, hertz.
+    pub(super) fn max_input_rate(&self, card: &str) -> Result<f64, Fault> {
+        let (card, mut rate_hz) = (c_text(card), 0.0);
+        // SAFETY: a string that ends in zero, and a place for one number.
+        self.check(unsafe { (self.get_max_input_rate)(card.as_ptr(), &mut rate_hz) })?;
+        Ok(rate_hz)
+    }
+
+    pub(super) fn min_input_rate(&self, card: &str) -> Result<f64, Fault> {
+        let (card, mut rate_hz) = (c_text(card), 0.0);
+        // SAFETY: as above.
+        self.check(unsafe { (self.get_min_input_rate)(card.as_ptr(), &mut rate_hz) })?;
+        Ok(rate_hz)
     }
 
     pub(super) fn max_rate(&self, card: &str) -> Result<f64, Fault> {

@@ -8,8 +8,8 @@ use std::ffi::{CString, c_char};
 use std::fs;
 use std::path::PathBuf;
 
-use htex_device::{Adapter, Device, DeviceError, Settings, StreamFormat};
-use htex_device_daq::Daq;
+use htex_device::{Adapter, Device, DeviceError, Settings, Source, SourceAdapter, StreamFormat};
+use htex_device_daq::{Daq, DaqInput};
 use library::built;
 use tempfile::TempDir;
 
@@ -102,6 +102,26 @@ impl Card {
             block_frames,
         };
         Daq::new().open(&self.settings(given), &format)
+    }
+
+    /// Opens analog inputs.
+    pub fn open_input(&self, given: &[(&str, &str)]) -> Result<Box<dyn Source>, DeviceError> {
+        let driver = ("driver", self.library.to_str().unwrap());
+        let given = [&[driver], given].concat();
+        let given = given
+            .iter()
+            .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
+            .collect();
+        let adapter = DaqInput::new();
+        adapter.open(&Settings::resolve(adapter.descriptor(), None, &given)?)
+    }
+
+    /// Puts voltages on the inputs: a row for each frame, a number for each input.
+    pub fn put_in(&self, rows: &[Vec<f64>]) {
+        let file = self.folder.path().join("input.csv");
+        let row = |row: &Vec<f64>| row.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+        fs::write(&file, rows.iter().map(row).collect::<Vec<_>>().join("\n")).unwrap();
+        self.set("input", file.to_str().unwrap());
     }
 
     /// All that came out of `Dev1/ao0` so far, volts of the card; nothing may have.

@@ -195,7 +195,8 @@ fn split_unit(name: &str) -> Option<(&str, &str)> {
     })
 }
 
-fn unit_of(role: Role, unit: &str, quantity: Quantity) -> Unit {
+/// Returns the unit of this symbol, in lower case, for a role.
+pub(crate) fn unit_of(role: Role, unit: &str, quantity: Quantity) -> Unit {
     let scale = match (base_unit(role, quantity), unit) {
         ("N", "n" | "newton" | "newtons") => 1.0,
         ("N", "mn") => 1e-3,

@@ -19,6 +19,7 @@ mod arrow_schema;
 mod assemble;
 pub(crate) mod blocks;
 mod bytes;
+mod channel_table;
 mod channels;
 mod clock;
 mod columns;
@@ -41,6 +42,7 @@ mod number;
 mod options;
 #[cfg(feature = "lab-files")]
 mod parquet;
+mod row_map;
 mod select;
 #[cfg(feature = "lab-files")]
 mod shared;
@@ -60,10 +62,12 @@ mod wav;
 
 use std::path::Path;
 
+pub use channel_table::{ChannelTable, read_channels};
 pub use error::ReadError;
 pub use expression::Expression;
 pub use map::{ColumnMap, ColumnRef, MapEntry, Role};
 pub use options::ReadOptions;
+pub use row_map::RowMap;
 pub use sheet::Place;
 pub use trace::{TraceColumns, read_trace, trace_from_bytes};
 pub use tracker::Tracker;

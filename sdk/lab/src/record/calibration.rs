@@ -1,0 +1,186 @@
+//! Calibration of six-axis force sensors.
+
+use std::path::Path;
+
+use serde::Deserialize;
+
+use crate::record::error::RecordError;
+
+/// Axes of a six-axis sensor.
+pub const AXES: usize = 6;
+/// Names and units of the axes.
+const NAMES: [(&str, &str); AXES] = [
+    ("fx", "N"),
+    ("fy", "N"),
+    ("fz", "N"),
+    ("tx", "N m"),
+    ("ty", "N m"),
+    ("tz", "N m"),
+];
+/// Longest file, bytes.
+const MOST_BYTES: u64 = 1 << 16;
+
+/// The matrix of a six-axis sensor: forces (N) and torques (N m) are the matrix times the volts of its six channels.
+///
+/// ```
+/// # use htex_lab::record::Calibration;
+/// # use std::path::Path;
+/// let text = "2,0,0,0,0,0\n0,2,0,0,0,0\n0,0,-3,0,0,0\n0,0,0,1,0,0\n0,0,0,0,1,0\n0,0,0,0,0,1\n";
+/// let calibration = Calibration::parse(Path::new("nano17.csv"), text)?;
+/// assert_eq!(calibration.forces([1.0, 0.5, -0.1, 0.0, 0.0, 0.0])[..3], [2.0, 1.0, 0.30000000000000004]);
+/// # Ok::<(), htex_lab::record::RecordError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Calibration {
+    rows: [[f64; AXES]; AXES],
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    matrix: Vec<Vec<f64>>,
+}
+
+impl Calibration {
+    /// Reads a file: CSV with six lines of six numbers (`#` begins a comment), or TOML with `matrix = [[…], …]`.
+    ///
+    /// # Errors
+    /// [`RecordError::Calibration`] if it cannot be read, or is not a matrix of full rank.
+    pub fn read(path: &Path) -> Result<Self, RecordError> {
+        let length = std::fs::metadata(path)
+            .map_err(|e| refuse(path, e.to_string()))?
+            .len();
+        if length > MOST_BYTES {
+            return Err(refuse(
+                path,
+                format!("{length} bytes are no matrix of six by six numbers"),
+            ));
+        }
+        let text = std::fs::read_to_string(path).map_err(|e| refuse(path, e.to_string()))?;
+        Self::parse(path, &text)
+    }
+
+    /// Reads a text; `path` tells TOML by its extension, and is the name in messages.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn parse(path: &Path, text: &str) -> Result<Self, RecordError> {
+        let is_toml = path
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("toml"));
+        let matrix = match is_toml {
+            true => {
+                toml::from_str::<File>(text)
+                    .map_err(|e| refuse(path, e.to_string()))?
+                    .matrix
+            }
+            false => lines(path, text)?,
+        };
+        let width = matrix.iter().position(|row| row.len() != AXES);
+        if let (true, Some(row)) = (matrix.len() == AXES, width) {
+            let problem = format!(
+                "row {} has {} numbers, not {AXES}",
+                row + 1,
+                matrix[row].len()
+            );
+            return Err(refuse(path, problem));
+        }
+        let mut rows = [[0.0; AXES]; AXES];
+        if matrix.len() != AXES {
+            return Err(refuse(
+                path,
+                format!("{} rows of numbers, not {AXES}", matrix.len()),
+            ));
+        }
+        for (to, from) in rows.iter_mut().flatten().zip(matrix.iter().flatten()) {
+            *to = *from;
+        }
+        if let Some(at) = rows.iter().flatten().position(|v| !v.is_finite()) {
+            return Err(refuse(
+                path,
+                format!(
+                    "row {}, number {} is not finite",
+                    at / AXES + 1,
+                    at % AXES + 1
+                ),
+            ));
+        }
+        if rank(rows) < AXES {
+            let problem = "the matrix is singular: an axis is missing, or two are the same; copy it again from the sensor's file";
+            return Err(refuse(path, problem.to_owned()));
+        }
+        Ok(Self { rows })
+    }
+
+    /// Returns forces and torques of the volts of the six channels.
+    #[must_use]
+    pub fn forces(&self, volts: [f64; AXES]) -> [f64; AXES] {
+        self.rows
+            .map(|row| row.iter().zip(volts).map(|(m, v)| m * v).sum())
+    }
+
+    /// Names and units of the axes; with several sensors the names have the sensor's number, from 1: `fx1`.
+    pub(crate) fn names(sensor: Option<usize>) -> [(String, String); AXES] {
+        let number = sensor.map(|n| n.to_string()).unwrap_or_default();
+        NAMES.map(|(name, unit)| (format!("{name}{number}"), unit.to_owned()))
+    }
+
+    /// The numbers, row by row.
+    pub(crate) fn numbers(&self) -> Vec<f64> {
+        self.rows.iter().flatten().copied().collect()
+    }
+}
+
+fn lines(path: &Path, text: &str) -> Result<Vec<Vec<f64>>, RecordError> {
+    let mut rows = Vec::new();
+    for (index, line) in text.lines().enumerate() {
+        let line = line.split('#').next().unwrap_or_default().trim();
+        if line.is_empty() {
+            continue;
+        }
+        let cells = line
+            .split([',', ';', '\t', ' '])
+            .filter(|cell| !cell.is_empty());
+        let row = cells.map(|cell| {
+            cell.trim().parse::<f64>().map_err(|_| {
+                refuse(
+                    path,
+                    format!("line {}: {cell:?} is not a number", index + 1),
+                )
+            })
+        });
+        rows.push(row.collect::<Result<_, _>>()?);
+    }
+    Ok(rows)
+}
+
+/// Rank by elimination with pivots; a pivot below 1e-12 of the largest number is zero.
+fn rank(mut rows: [[f64; AXES]; AXES]) -> usize {
+    let largest = rows.iter().flatten().fold(0.0_f64, |a, v| a.max(v.abs()));
+    for column in 0..AXES {
+        let pivot =
+            (column..AXES).max_by(|a, b| rows[*a][column].abs().total_cmp(&rows[*b][column].abs()));
+        let pivot = pivot.unwrap_or(column);
+        if rows[pivot][column].abs() <= 1e-12 * largest {
+            return column;
+        }
+        rows.swap(column, pivot);
+        let top = rows[column];
+        for row in &mut rows[column + 1..] {
+            let factor = row[column] / top[column];
+            for (value, above) in row.iter_mut().zip(top) {
+                *value -= factor * above;
+            }
+        }
+    }
+    AXES
+}
+
+fn refuse(file: &Path, problem: String) -> RecordError {
+    RecordError::Calibration {
+        file: file.to_owned(),
+        problem: format!(
+            "{problem}; a calibration is six rows of six numbers, N and N m for a volt of each channel"
+        ),
+    }
+}

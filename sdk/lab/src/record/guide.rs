@@ -1,0 +1,137 @@
+//! What the person who records is shown: the target's motion, a metronome, their own finger, and whether the force is right.
+
+/// The target of a recording, for showing it.
+///
+/// The target moves back and forth at its speed over a stroke, as a square on a screen; the metronome beats at each turn.
+///
+/// ```
+/// use htex_lab::record::{Force, Guidance};
+///
+/// let guidance = Guidance { speed_mm_s: Some(80.0), force_n: Some(0.4), tolerance: 0.1, stroke_mm: 80.0 };
+/// // There in a second, and half of the way back.
+/// assert_eq!([0.0, 0.5, 1.0, 1.5].map(|t| guidance.target_mm(t).unwrap_or(0.0)), [0.0, 40.0, 80.0, 40.0]);
+/// assert_eq!((guidance.beats(0.9), guidance.beats(2.5)), (0, 2));
+/// assert_eq!([0.3, 0.37, 0.5].map(|n| guidance.force(Some(n))), [Force::Below, Force::Within, Force::Above]);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Guidance {
+    /// Target speed, mm/s.
+    pub speed_mm_s: Option<f64>,
+    /// Target normal force, newtons.
+    pub force_n: Option<f64>,
+    /// Allowed relative difference of the force.
+    pub tolerance: f64,
+    /// Length of a stroke, millimetres.
+    pub stroke_mm: f64,
+}
+
+/// The normal force compared with its target.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Force {
+    /// There is no target, or the force is not measured.
+    Unknown,
+    /// Below the target's range; the paper shows yellow.
+    Below,
+    /// In the target's range; green.
+    Within,
+    /// Above the target's range; red.
+    Above,
+}
+
+/// What a session does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// The forces without a finger are measured.
+    Tare,
+    /// A take will begin.
+    Countdown,
+    /// A take is recorded.
+    Take,
+}
+
+/// The state of a session, some 50 times a second.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moment {
+    /// The phase.
+    pub phase: Phase,
+    /// Number of the take.
+    pub number: u32,
+    /// Seconds since the phase began.
+    pub elapsed_s: f64,
+    /// Length of the phase, seconds.
+    pub of_s: f64,
+    /// Normal force, newtons: the mean of the last samples.
+    pub force_n: Option<f64>,
+    /// The finger's place on the axis along which it moves most, mm from its outermost place so far.
+    pub position_mm: Option<f64>,
+}
+
+impl Guidance {
+    /// The target's position at a time, mm; `None` without a target speed.
+    #[must_use]
+    pub fn target_mm(&self, at_s: f64) -> Option<f64> {
+        let way_mm = self.speed_mm_s? * at_s.max(0.0);
+        let into_mm = libm::fmod(way_mm, 2.0 * self.stroke_mm);
+        Some(into_mm.min(2.0 * self.stroke_mm - into_mm))
+    }
+
+    /// Beats of the metronome until a time; 0 without a target speed.
+    #[must_use]
+    pub fn beats(&self, at_s: f64) -> u64 {
+        let speed_mm_s = self.speed_mm_s.unwrap_or(0.0);
+        (speed_mm_s * at_s.max(0.0) / self.stroke_mm) as u64
+    }
+
+    /// A normal force compared with its target.
+    #[must_use]
+    pub fn force(&self, force_n: Option<f64>) -> Force {
+        let (Some(force_n), Some(target_n)) = (force_n, self.force_n) else {
+            return Force::Unknown;
+        };
+        let range_n = self.tolerance * target_n;
+        match force_n {
+            n if n < target_n - range_n => Force::Below,
+            n if n > target_n + range_n => Force::Above,
+            _ => Force::Within,
+        }
+    }
+}
+
+/// The way of a finger so far.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct FingerPath {
+    /// Lowest, highest and newest position along each axis, mm.
+    axes: [Option<[f64; 3]>; 2],
+}
+
+impl FingerPath {
+    /// Takes a position along an axis, mm.
+    pub(crate) fn see(&mut self, axis: usize, at_mm: f64) {
+        let [low, high, _] = self.axes[axis].unwrap_or([at_mm; 3]);
+        self.axes[axis] = Some([low.min(at_mm), high.max(at_mm), at_mm]);
+    }
+
+    /// The newest place on the axis of the longer way, from its lowest position, mm.
+    pub(crate) fn place_mm(&self) -> Option<f64> {
+        let way = |axis: &&[f64; 3]| axis[1] - axis[0];
+        let seen = self.axes.iter().flatten();
+        let longest = seen.max_by(|a, b| way(a).total_cmp(&way(b)))?;
+        Some(longest[2] - longest[0])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_place_is_on_the_axis_that_moves() {
+        let mut path = FingerPath::default();
+        assert_eq!(path.place_mm(), None);
+        for (x, y) in [(1.0, -40.0), (1.5, -10.0), (1.2, 20.0), (1.0, 5.0)] {
+            path.see(0, x);
+            path.see(1, y);
+        }
+        assert_eq!(path.place_mm(), Some(45.0));
+    }
+}

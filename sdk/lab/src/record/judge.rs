@@ -1,0 +1,251 @@
+//! Whether a take kept to its target.
+
+use htex_author::recording::RecordingError;
+use htex_author::{Exploration, Reading, Recording, SpectrumOptions, Take, read_take, velocity};
+use serde::{Deserialize, Serialize};
+
+use crate::record::data::TakeData;
+
+/// Part of a take at its ends that a tracker may leave out, seconds.
+const UNTRACKED_S: f64 = 0.25;
+/// Longest time between two rows of a tracker, seconds, over which a position is interpolated.
+const GAP_S: f64 = 0.2;
+/// Rounding that is no difference, relative.
+const ROUNDING: f64 = 1e-9;
+
+/// A quantity over the sweeps of a take.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    /// Mean over all segments.
+    pub mean: f64,
+    /// Lowest mean of 50 ms.
+    pub min: f64,
+    /// Highest mean of 50 ms.
+    pub max: f64,
+}
+
+/// The judgement of a take.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Verdict {
+    /// Whether it kept to its target; true without a target.
+    pub kept: bool,
+    /// What it did wrong, each a phrase.
+    pub reasons: Vec<String>,
+    /// Scanning speed, mm/s.
+    pub speed_mm_s: Option<Measured>,
+    /// Normal force, newtons.
+    pub force_n: Option<Measured>,
+    /// Segments of 0.2 s that a texture would be read from.
+    pub segments: usize,
+    /// Problems of the signals, such as clipping, each a sentence with its code.
+    pub findings: Vec<String>,
+}
+
+/// Judges a take: mean, minimum and maximum of speed and normal force over the middles of its sweeps (as `htex fit` chooses
+/// them) must be within the tolerance of their targets. Minimum and maximum are those of means of 50 ms, as in
+/// [`htex_author::Spread`]: faster changes are the texture's, and between sweeps the finger turns.
+#[must_use]
+pub fn judge(data: &TakeData) -> Verdict {
+    let header = &data.header;
+    let mut verdict = Verdict::default();
+    match reading(data) {
+        Ok((reading, recording)) => {
+            measure(&mut verdict, &reading, &recording);
+            let targets = [
+                (
+                    "speed",
+                    "mm/s",
+                    header.target_speed_mm_s,
+                    verdict.speed_mm_s,
+                ),
+                ("force", "N", header.target_force_n, verdict.force_n),
+            ];
+            for (what, unit, target, measured) in targets {
+                let Some(target) = target else { continue };
+                let reason = match measured {
+                    None => Some(format!(
+                        "the {what} is not known: the tracker has sent no position"
+                    )),
+                    Some(measured) => differs(what, unit, target, header.tolerance, measured),
+                };
+                verdict.reasons.extend(reason);
+            }
+            if header.target_speed_mm_s.is_some() {
+                verdict.reasons.extend(untracked(data));
+            }
+        }
+        Err(problem) => {
+            verdict.findings.push(problem.clone());
+            if header.target_speed_mm_s.is_some() || header.target_force_n.is_some() {
+                verdict.reasons.push(problem);
+            }
+        }
+    }
+    verdict.kept = verdict.reasons.is_empty();
+    verdict
+}
+
+fn reading(data: &TakeData) -> Result<(Reading, Recording), String> {
+    let recording = recording(data).map_err(|error| error.to_string())?;
+    let take = Take {
+        recording,
+        given: Exploration::default(),
+    };
+    let reading = read_take(&take, &SpectrumOptions::default(), false);
+    let reading = reading.map_err(|error| error.to_string())?;
+    Ok((reading, take.recording))
+}
+
+/// The take as a recording, with the speed of the tracker if there is one.
+fn recording(data: &TakeData) -> Result<Recording, RecordingError> {
+    let of = |role: &str| data.header.signal(role).map(|at| data.signals[at].clone());
+    let axes = [
+        "lateral",
+        "lateral_x",
+        "lateral_y",
+        "signal",
+        "signal_x",
+        "signal_y",
+        "signal_z",
+    ];
+    let axes: Vec<Vec<f64>> = axes.iter().filter_map(|role| of(role)).collect();
+    let (name, rate_hz) = (data.header.name.as_str(), data.header.rate_hz);
+    let axes = match axes.is_empty() {
+        true => of("normal").into_iter().collect(),
+        false => axes,
+    };
+    let mut recording = Recording::of(data.header.quantity, name, rate_hz, axes)?;
+    if let Some(normal) = of("normal") {
+        recording = recording.with_normal(normal)?;
+    }
+    match speed(data) {
+        Some(speed) => recording.with_speed(speed),
+        None => Ok(recording),
+    }
+}
+
+/// The finger's speed at each sample, mm/s: the tracker's, else the source's.
+fn speed(data: &TakeData) -> Option<Vec<f64>> {
+    let at_s: Vec<f64> = (0..data.frames())
+        .map(|i| i as f64 / data.header.rate_hz)
+        .collect();
+    let tracked = |role: &str| {
+        let at = data
+            .header
+            .tracker
+            .iter()
+            .position(|(own, _)| own == role)?;
+        Some(&data.tracker[at + 1][..])
+    };
+    let of = |role: &str| data.header.signal(role).map(|at| &data.signals[at][..]);
+    let (time_s, speed, position) = match data.tracker.first() {
+        Some(time_s) if time_s.len() < 2 => return None,
+        Some(time_s) => (time_s, tracked("speed"), [tracked("x"), tracked("y")]),
+        None => (&at_s, of("speed"), [of("x"), of("y")]),
+    };
+    if let Some(speed) = speed {
+        return Some(
+            at_s.iter()
+                .map(|t| interpolated(time_s, speed, *t).abs())
+                .collect(),
+        );
+    }
+    let first_s = *time_s.first()?;
+    let from_first: Vec<f64> = time_s.iter().map(|t| t - first_s).collect();
+    let axes = position.iter().flatten();
+    let velocities: Vec<Vec<f64>> = axes
+        .map(|axis| velocity(&from_first, axis, at_s.iter().map(|t| t - first_s)))
+        .collect();
+    let first = velocities.first()?;
+    Some(match velocities.get(1) {
+        None => first.iter().map(|v| v.abs()).collect(),
+        Some(second) => first
+            .iter()
+            .zip(second)
+            .map(|(a, b)| libm::hypot(*a, *b))
+            .collect(),
+    })
+}
+
+/// The value at a time between rows of ascending times, on a straight line; beyond them the first or the last.
+fn interpolated(time_s: &[f64], values: &[f64], at_s: f64) -> f64 {
+    let after = time_s.partition_point(|t| *t <= at_s);
+    match (after.checked_sub(1), after < values.len()) {
+        (None, _) => values[0],
+        (Some(before), false) => values[before],
+        (Some(before), true) => {
+            let part = (at_s - time_s[before]) / (time_s[after] - time_s[before]);
+            values[before] + part * (values[after] - values[before])
+        }
+    }
+}
+
+fn measure(verdict: &mut Verdict, reading: &Reading, recording: &Recording) {
+    let stretches = reading.part.segments.stretches();
+    let mean = |values: &[f64]| {
+        let (mut sum, mut count) = (0.0, 0);
+        for stretch in &stretches {
+            sum += values[stretch.clone()].iter().sum::<f64>();
+            count += stretch.len();
+        }
+        sum / count.max(1) as f64
+    };
+    let measured = |range: Option<[f64; 2]>, values: Option<&Vec<f64>>| {
+        let ([min, max], values) = (range?, values?);
+        let mean = mean(values);
+        Some(Measured { mean, min, max })
+    };
+    verdict.speed_mm_s = measured(reading.spread.speed_mm_s, recording.speed_mm_s.as_ref());
+    verdict.force_n = measured(reading.spread.force_n, recording.normal_n.as_ref());
+    verdict.segments = reading.part.segments.starts.len();
+    let findings = reading.findings.iter();
+    verdict.findings = findings
+        .map(|f| format!("{}: {}", f.code, f.message))
+        .collect();
+}
+
+/// What differs from a target by more than the tolerance, if anything does.
+fn differs(
+    what: &str,
+    unit: &str,
+    target: f64,
+    tolerance: f64,
+    measured: Measured,
+) -> Option<String> {
+    let allowed = tolerance * target.abs() * (1.0 + ROUNDING);
+    let Measured { mean, min, max } = measured;
+    let values = [("mean", mean), ("minimum", min), ("maximum", max)];
+    let wrong = values
+        .iter()
+        .filter(|(_, value)| !((value - target).abs() <= allowed));
+    let wrong: Vec<String> = wrong
+        .map(|(name, value)| format!("{name} {value:.4}"))
+        .collect();
+    (!wrong.is_empty()).then(|| {
+        let (low, high) = (
+            target - tolerance * target.abs(),
+            target + tolerance * target.abs(),
+        );
+        format!(
+            "{what}: {} {unit}, allowed is {low:.4} to {high:.4} {unit}",
+            wrong.join(", ")
+        )
+    })
+}
+
+/// A part of the take that the tracker does not cover.
+fn untracked(data: &TakeData) -> Option<String> {
+    let time_s = data.tracker.first()?;
+    let end_s = data.recorded_s();
+    let (first_s, last_s) = (*time_s.first()?, *time_s.last()?);
+    if first_s > UNTRACKED_S || last_s < end_s - UNTRACKED_S {
+        return Some(format!(
+            "the tracker covers {first_s:.2} to {last_s:.2} s of {end_s:.2} s"
+        ));
+    }
+    let gap = time_s.windows(2).find(|pair| pair[1] - pair[0] > GAP_S)?;
+    Some(format!(
+        "the tracker has sent nothing from {:.2} to {:.2} s",
+        gap[0], gap[1]
+    ))
+}

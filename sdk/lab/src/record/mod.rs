@@ -1,0 +1,31 @@
+//! Recordings under guidance: a source is sampled, converted to newtons, kept on disk while it grows, and judged against its target.
+//!
+//! A take is recorded into a part file, to which each second is appended and flushed to disk: a program that is killed loses the
+//! current second at most, and [`recover`] makes a recording of the rest. A complete take is judged ([`judge`]): if the mean,
+//! minimum or maximum of speed or force differs from its target by more than the tolerance (10 % in the paper, Supplementary,
+//! "Texture recording"), it is set aside and recorded again. Results are files that `htex fit` reads, and JSON beside them.
+
+mod calibration;
+mod data;
+mod error;
+mod guide;
+mod judge;
+mod names;
+mod part;
+mod replay;
+mod session;
+mod signals;
+mod tracker;
+mod write;
+
+pub use calibration::{AXES, Calibration};
+pub use data::{TakeData, TakeHeader};
+pub use error::RecordError;
+pub use guide::{Force, Guidance, Moment, Phase};
+pub use judge::{Measured, Verdict, judge};
+pub use part::{Part, read_part};
+pub use replay::Replay;
+pub use session::{Next, Recorded, Session, Setup, recover};
+pub use signals::Signals;
+pub use tracker::{LineTracker, TableTracker, TrackerRows};
+pub use write::{Format, Outcome};

@@ -1,0 +1,173 @@
+//! The part file of a take that is being recorded: append-only, and on disk every second.
+//!
+//! The first line is the header as JSON. After it come chunks: a byte of their kind, the number of bytes (u32), that many bytes of
+//! f64, and the first eight bytes of the BLAKE3 hash of all these; all little-endian. A chunk that a crash left incomplete or damaged
+//! ends the file for a reader.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use crate::record::data::{TakeData, TakeHeader};
+use crate::record::error::RecordError;
+
+/// Kind of a chunk of frames.
+const FRAMES: u8 = b'F';
+/// Kind of a chunk of the tracker's rows.
+const TRACKER: u8 = b'T';
+/// Bytes of the hash of a chunk.
+const HASH: usize = 8;
+/// Longest header, bytes.
+const MOST_HEADER: usize = 1 << 20;
+
+/// An open part file. It is locked until it is dropped.
+#[derive(Debug)]
+pub struct Part {
+    path: PathBuf,
+    file: File,
+    frames: Vec<f64>,
+    rows: Vec<f64>,
+    waiting: usize,
+    /// Samples of a second.
+    second: usize,
+}
+
+impl Part {
+    /// Begins a part file, which must not exist.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`].
+    pub fn create(path: &Path, header: &TakeHeader) -> Result<Self, RecordError> {
+        let begun = || -> std::io::Result<File> {
+            let mut file = OpenOptions::new().create_new(true).write(true).open(path)?;
+            file.try_lock().map_err(std::io::Error::other)?;
+            file.write_all((serde_json::to_string(header)? + "\n").as_bytes())?;
+            file.sync_all()?;
+            Ok(file)
+        };
+        let file = begun().map_err(|error| RecordError::write(path, error))?;
+        Ok(Self {
+            path: path.to_owned(),
+            file,
+            frames: Vec::new(),
+            rows: Vec::new(),
+            waiting: 0,
+            second: (header.rate_hz.ceil() as usize).max(1) * header.signals.len(),
+        })
+    }
+
+    /// Its path.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Takes interleaved frames; writes and flushes to disk each time that a second of them is there.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`].
+    pub fn push(&mut self, frames: &[f64]) -> Result<(), RecordError> {
+        self.frames.extend_from_slice(frames);
+        self.waiting += frames.len();
+        match self.waiting >= self.second {
+            true => self.flush(),
+            false => Ok(()),
+        }
+    }
+
+    /// Takes interleaved rows of the tracker, which are written with the frames.
+    pub fn push_tracker(&mut self, rows: &[f64]) {
+        self.rows.extend_from_slice(rows);
+    }
+
+    /// Writes what is waiting and flushes it to disk.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`].
+    pub fn flush(&mut self) -> Result<(), RecordError> {
+        let mut bytes = Vec::new();
+        append(&mut bytes, FRAMES, &self.frames);
+        append(&mut bytes, TRACKER, &self.rows);
+        let written = self.file.write_all(&bytes);
+        let synced = written.and_then(|()| self.file.sync_data());
+        synced.map_err(|error| RecordError::write(&self.path, error))?;
+        self.frames.clear();
+        self.rows.clear();
+        self.waiting = 0;
+        Ok(())
+    }
+}
+
+fn append(bytes: &mut Vec<u8>, kind: u8, values: &[f64]) {
+    if values.is_empty() {
+        return;
+    }
+    let start = bytes.len();
+    bytes.push(kind);
+    bytes.extend(((values.len() * size_of::<f64>()) as u32).to_le_bytes());
+    values
+        .iter()
+        .for_each(|value| bytes.extend(value.to_le_bytes()));
+    let hash = blake3::hash(&bytes[start..]);
+    bytes.extend(&hash.as_bytes()[..HASH]);
+}
+
+/// Reads a part file: all whole chunks. `None` if its header is incomplete, so that nothing was recorded.
+///
+/// # Errors
+/// [`RecordError::Part`] if it cannot be read or is no part file; [`RecordError::Busy`] while another program writes it.
+pub fn read_part(path: &Path) -> Result<Option<TakeData>, RecordError> {
+    let refuse = |problem: String| RecordError::Part {
+        file: path.to_owned(),
+        problem,
+    };
+    let file = File::open(path).map_err(|error| refuse(error.to_string()))?;
+    if let Err(TryLockError::WouldBlock) = file.try_lock_shared() {
+        let file = path.to_owned();
+        return Err(RecordError::Busy { file });
+    }
+    let bytes = std::fs::read(path).map_err(|error| refuse(error.to_string()))?;
+    let Some(end) = bytes.iter().take(MOST_HEADER).position(|b| *b == b'\n') else {
+        return Ok(None);
+    };
+    let header: TakeHeader = serde_json::from_slice(&bytes[..end]).map_err(|error| {
+        refuse(format!(
+            "it is not the part of a take that this htex records ({error}); move it elsewhere"
+        ))
+    })?;
+    if header.htex_take != 1 || header.signals.is_empty() {
+        let problem = format!(
+            "version {} is not known; move it elsewhere",
+            header.htex_take
+        );
+        return Err(refuse(problem));
+    }
+    Ok(Some(chunks(header, &bytes[end + 1..])))
+}
+
+/// The values of all whole chunks.
+fn chunks(header: TakeHeader, mut bytes: &[u8]) -> TakeData {
+    let mut data = TakeData::empty(header);
+    while let Some((kind, values, rest)) = chunk(bytes) {
+        match kind {
+            FRAMES => data.extend(&values),
+            TRACKER => data.extend_tracker(&values),
+            _ => break,
+        }
+        bytes = rest;
+    }
+    data
+}
+
+/// The kind and values of the first chunk, and what follows it.
+fn chunk(bytes: &[u8]) -> Option<(u8, Vec<f64>, &[u8])> {
+    let length = bytes.get(1..5)?.try_into().ok().map(u32::from_le_bytes)? as usize;
+    let end = length.checked_add(5)?;
+    let hash = bytes.get(end..end.checked_add(HASH)?)?;
+    if length % size_of::<f64>() != 0 || blake3::hash(&bytes[..end]).as_bytes()[..HASH] != *hash {
+        return None;
+    }
+    let number = |bytes: &[u8]| bytes.try_into().ok().map(f64::from_le_bytes);
+    let values = bytes[5..end].chunks_exact(8).filter_map(number).collect();
+    Some((bytes[0], values, &bytes[end + HASH..]))
+}

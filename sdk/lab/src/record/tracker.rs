@@ -1,0 +1,148 @@
+//! The finger's position beside the forces, from a tracker at its own rate.
+
+use std::io::BufRead;
+use std::path::Path;
+use std::sync::mpsc::{Receiver, channel};
+use std::time::Instant;
+
+use htex_author::read::{ColumnMap, ReadOptions, Role, RowMap, read_channels};
+
+use crate::record::error::RecordError;
+
+/// Shortest time between two rows, seconds.
+const SHORTEST_S: f64 = 1e-6;
+
+/// A tracker.
+pub trait TrackerRows: Send {
+    /// Role and unit of each signal, without the time.
+    fn signals(&self) -> Vec<(String, String)>;
+
+    /// Appends the rows that have come: the time on the source's clock (s), which ascends, then each signal. `now_s` is the time of the
+    /// last sample of the source.
+    ///
+    /// # Errors
+    /// When the tracker delivers what is no position.
+    fn poll(&mut self, now_s: f64, rows: &mut Vec<f64>) -> Result<(), RecordError>;
+}
+
+/// A tracker's file, replayed on the clock of the source, which begins at 0 s.
+#[derive(Debug)]
+pub struct TableTracker {
+    signals: Vec<(String, String)>,
+    /// Time, then the signals.
+    columns: Vec<Vec<f64>>,
+    next: usize,
+}
+
+impl TableTracker {
+    /// Reads a file with positions or speeds. Its first row is at 0 s.
+    ///
+    /// # Errors
+    /// When it cannot be read, or has neither.
+    pub fn open(path: &Path, map: Option<&ColumnMap>) -> Result<Self, RecordError> {
+        let table = read_channels(path, &ReadOptions::default())?;
+        let names: Vec<(String, String)> = table
+            .names
+            .iter()
+            .map(|name| (name.clone(), String::new()))
+            .collect();
+        let file = path.file_name().unwrap_or_default().to_string_lossy();
+        let map = RowMap::of_motion(&file, &names, map)?;
+        let roles = map.roles();
+        let moves: Vec<usize> = (0..roles.len())
+            .filter(|i| roles[*i] != Role::Time)
+            .collect();
+        let signal = |i: &usize| (roles[*i].name().to_owned(), map.unit(roles[*i]).to_owned());
+        let rows = table.channels.first().map_or(0, Vec::len);
+        let time_s = match table.time_s {
+            Some(time_s) => time_s.iter().map(|t| t - time_s[0]).collect(),
+            None => (0..rows).map(|row| row as f64 / table.rate_hz).collect(),
+        };
+        let mut columns = vec![time_s];
+        let mut values = map.values(&table.channels);
+        columns.extend(moves.iter().map(|i| std::mem::take(&mut values[*i])));
+        Ok(Self {
+            signals: moves.iter().map(signal).collect(),
+            columns,
+            next: 0,
+        })
+    }
+}
+
+impl TrackerRows for TableTracker {
+    fn signals(&self) -> Vec<(String, String)> {
+        self.signals.clone()
+    }
+
+    fn poll(&mut self, now_s: f64, rows: &mut Vec<f64>) -> Result<(), RecordError> {
+        while self.columns[0].get(self.next).is_some_and(|t| *t <= now_s) {
+            rows.extend(self.columns.iter().map(|column| column[self.next]));
+            self.next += 1;
+        }
+        Ok(())
+    }
+}
+
+/// A tracker that sends lines `x_mm y_mm`: a pipe, a serial port. Rows get the time of their arrival.
+#[derive(Debug)]
+pub struct LineTracker {
+    name: String,
+    lines: Receiver<(Instant, usize, String)>,
+    last_s: f64,
+}
+
+impl LineTracker {
+    /// Reads lines in a thread of its own, which ends with the input.
+    pub fn new(name: &str, input: impl BufRead + Send + 'static) -> Self {
+        let (sender, lines) = channel();
+        std::thread::spawn(move || {
+            for (index, line) in input.lines().map_while(Result::ok).enumerate() {
+                if sender.send((Instant::now(), index + 1, line)).is_err() {
+                    return;
+                }
+            }
+        });
+        Self {
+            name: name.to_owned(),
+            lines,
+            last_s: f64::NEG_INFINITY,
+        }
+    }
+}
+
+impl TrackerRows for LineTracker {
+    fn signals(&self) -> Vec<(String, String)> {
+        let pair = |role: Role| (role.name().to_owned(), "mm".to_owned());
+        [Role::X, Role::Y].map(pair).to_vec()
+    }
+
+    fn poll(&mut self, now_s: f64, rows: &mut Vec<f64>) -> Result<(), RecordError> {
+        let now = Instant::now();
+        while let Ok((arrived, line, text)) = self.lines.try_recv() {
+            if text.trim().is_empty() {
+                continue;
+            }
+            let Some([x, y]) = position(&text) else {
+                return Err(RecordError::TrackerLine {
+                    name: self.name.clone(),
+                    line,
+                    text: htex_format::plain(&text).into_owned(),
+                });
+            };
+            let at_s = now_s - now.saturating_duration_since(arrived).as_secs_f64();
+            self.last_s = at_s.max(self.last_s + SHORTEST_S);
+            rows.extend([self.last_s, x, y]);
+        }
+        Ok(())
+    }
+}
+
+fn position(line: &str) -> Option<[f64; 2]> {
+    let words = line
+        .split([' ', '\t', ',', ';'])
+        .map(str::trim)
+        .filter(|w| !w.is_empty());
+    let numbers: Vec<f64> = words.map(|w| w.parse().ok()).collect::<Option<_>>()?;
+    let numbers: [f64; 2] = numbers.try_into().ok()?;
+    numbers.iter().all(|n| n.is_finite()).then_some(numbers)
+}

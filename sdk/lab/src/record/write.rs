@@ -1,0 +1,223 @@
+//! The files of a take: the recording, the tracker's rows, and JSON beside them.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use htex_format::Quantity;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+
+use crate::record::data::{TakeData, TakeHeader};
+use crate::record::error::RecordError;
+use crate::record::judge::Verdict;
+use crate::record::names;
+
+/// Format of a recording.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Format {
+    /// Text with names and units, of all digits; read without further settings.
+    #[default]
+    Csv,
+    /// A NumPy array (frames, signals) of f8.
+    Npy,
+    /// 32-bit floats: a value of 1 is one newton, or the signal's unit.
+    Wav,
+}
+
+/// What became of a take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// It kept to its target.
+    Kept,
+    /// It left its target; it is in the folder `rejected`.
+    Rejected,
+    /// It was cut short; it is in the folder `incomplete`.
+    Incomplete,
+}
+
+impl Format {
+    fn extension(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Npy => "npy",
+            Self::Wav => "wav",
+        }
+    }
+}
+
+impl Outcome {
+    /// The folder of such takes.
+    pub(crate) fn folder(self, folder: &Path) -> PathBuf {
+        match self {
+            Self::Kept => folder.to_owned(),
+            Self::Rejected => folder.join(names::REJECTED),
+            Self::Incomplete => folder.join(names::INCOMPLETE),
+        }
+    }
+}
+
+/// The files of a take that was written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Written {
+    pub(crate) recording: PathBuf,
+    /// Arguments of `htex fit` that read it.
+    pub(crate) fit: Vec<String>,
+}
+
+/// Writes a take, each file beside its name and then renamed.
+///
+/// # Errors
+/// [`RecordError::Write`].
+pub(crate) fn write_take(
+    folder: &Path,
+    data: &TakeData,
+    outcome: Outcome,
+    verdict: &Verdict,
+) -> Result<Written, RecordError> {
+    let header = &data.header;
+    let folder = outcome.folder(folder);
+    let stem = names::stem(&header.name, header.number);
+    let recording = folder.join(format!("{stem}.{}", header.format.extension()));
+    let make = |folder: &Path| {
+        std::fs::create_dir_all(folder).map_err(|error| RecordError::write(folder, error))
+    };
+    let put = |path: &Path, write: &dyn Fn(&mut File) -> io::Result<()>| {
+        htex_files::replace_file(path, write).map_err(|error| RecordError::write(path, error))
+    };
+    make(&folder)?;
+    let mut fit = vec![recording.display().to_string()];
+    fit.extend(flags(header));
+    if !data.tracker.is_empty() && data.tracker[0].len() > 1 {
+        let tracker = folder.join("tracker");
+        make(&tracker)?;
+        let tracker = tracker.join(format!("{stem}.csv"));
+        put(&tracker, &|file| tracker_csv(data, file))?;
+        fit.extend(["--tracker".to_owned(), tracker.display().to_string()]);
+    }
+    let beside = json!({
+        "outcome": outcome,
+        "take": header,
+        "frames": data.frames(),
+        "recorded_s": data.recorded_s(),
+        "verdict": verdict,
+        "fit": fit,
+    });
+    let beside = serde_json::to_string_pretty(&beside).unwrap_or_default() + "\n";
+    put(&recording, &|file| match header.format {
+        Format::Csv => csv(data, file),
+        Format::Npy => npy(data, file),
+        Format::Wav => wav(data, file),
+    })?;
+    put(&folder.join(format!("{stem}.json")), &|file| {
+        file.write_all(beside.as_bytes())
+    })?;
+    Ok(Written { recording, fit })
+}
+
+/// Flags that say what the format does not.
+fn flags(header: &TakeHeader) -> Vec<String> {
+    let mut flags = Vec::new();
+    if header.quantity != Quantity::LateralForce {
+        let name = header.quantity.name().replace('_', "-");
+        flags.extend(["--quantity".to_owned(), name]);
+    }
+    if header.format == Format::Csv {
+        return flags;
+    }
+    let signals = header.signals.iter().enumerate();
+    let map: Vec<String> = signals
+        .map(|(at, (role, _))| format!("{role}=#{}:1", at + 1))
+        .collect();
+    flags.extend(["--map".to_owned(), map.join(",")]);
+    if header.format == Format::Npy {
+        flags.extend(["--rate".to_owned(), header.rate_hz.to_string()]);
+    }
+    flags
+}
+
+/// The name of a column, which `htex fit` knows with its unit.
+fn column(role: &str, unit: &str, quantity: Quantity) -> String {
+    let base = match quantity {
+        Quantity::Acceleration => "accel",
+        Quantity::Velocity => "vel",
+        Quantity::Displacement => "disp",
+        Quantity::LateralForce | Quantity::NormalForce => "signal",
+    };
+    format!(
+        "{}_{}",
+        role.replace("signal", base),
+        unit.replace('/', "_")
+    )
+}
+
+fn csv(data: &TakeData, file: &mut File) -> io::Result<()> {
+    let mut out = BufWriter::new(file);
+    write!(out, "time_s")?;
+    for (role, unit) in &data.header.signals {
+        write!(out, ",{}", column(role, unit, data.header.quantity))?;
+    }
+    writeln!(out)?;
+    for row in 0..data.frames() {
+        write!(out, "{}", row as f64 / data.header.rate_hz)?;
+        for values in &data.signals {
+            write!(out, ",{}", values[row])?;
+        }
+        writeln!(out)?;
+    }
+    out.flush()
+}
+
+fn tracker_csv(data: &TakeData, file: &mut File) -> io::Result<()> {
+    let mut out = BufWriter::new(file);
+    write!(out, "time_s")?;
+    for (role, unit) in &data.header.tracker {
+        write!(out, ",{role}_{}", unit.replace('/', "_"))?;
+    }
+    writeln!(out)?;
+    for row in 0..data.tracker[0].len() {
+        let cells: Vec<String> = data.tracker.iter().map(|c| c[row].to_string()).collect();
+        writeln!(out, "{}", cells.join(","))?;
+    }
+    out.flush()
+}
+
+/// Version 1.0 of the format: the length of the first 10 bytes and the header is a multiple of 64.
+fn npy(data: &TakeData, file: &mut File) -> io::Result<()> {
+    let shape = (data.frames(), data.signals.len());
+    let header = format!(
+        "{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}",
+        shape.0, shape.1
+    );
+    let length = (10 + header.len() + 1).next_multiple_of(64) - 10;
+    let mut out = BufWriter::new(file);
+    out.write_all(b"\x93NUMPY\x01\x00")?;
+    out.write_all(&(length as u16).to_le_bytes())?;
+    writeln!(out, "{header:<width$}", width = length - 1)?;
+    for row in 0..shape.0 {
+        for values in &data.signals {
+            out.write_all(&values[row].to_le_bytes())?;
+        }
+    }
+    out.flush()
+}
+
+fn wav(data: &TakeData, file: &mut File) -> io::Result<()> {
+    let spec = hound::WavSpec {
+        channels: data.signals.len() as u16,
+        sample_rate: data.header.rate_hz as u32,
+        bits_per_sample: 32,
+        sample_format: hound::SampleFormat::Float,
+    };
+    let mut writer = hound::WavWriter::new(BufWriter::new(file), spec).map_err(io::Error::other)?;
+    for row in 0..data.frames() {
+        for values in &data.signals {
+            writer
+                .write_sample(values[row] as f32)
+                .map_err(io::Error::other)?;
+        }
+    }
+    writer.finalize().map_err(io::Error::other)
+}

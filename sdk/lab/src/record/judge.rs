@@ -204,6 +204,11 @@ fn measure(verdict: &mut Verdict, reading: &Reading, recording: &Recording) {
         .collect();
 }
 
+/// Whether a number is within a distance of a target; one that is not a number is not.
+fn is_within(value: f64, target: f64, allowed: f64) -> bool {
+    (value - target).abs() <= allowed
+}
+
 /// What differs from a target by more than the tolerance, if anything does.
 fn differs(
     what: &str,
@@ -217,7 +222,7 @@ fn differs(
     let values = [("mean", mean), ("minimum", min), ("maximum", max)];
     let wrong = values
         .iter()
-        .filter(|(_, value)| !((value - target).abs() <= allowed));
+        .filter(|(_, value)| !is_within(*value, target, allowed));
     let wrong: Vec<String> = wrong
         .map(|(name, value)| format!("{name} {value:.4}"))
         .collect();

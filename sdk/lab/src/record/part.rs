@@ -104,7 +104,7 @@ fn append(bytes: &mut Vec<u8>, kind: u8, values: &[f64]) {
     }
     let start = bytes.len();
     bytes.push(kind);
-    bytes.extend(((values.len() * size_of::<f64>()) as u32).to_le_bytes());
+    bytes.extend((size_of_val(values) as u32).to_le_bytes());
     values
         .iter()
         .for_each(|value| bytes.extend(value.to_le_bytes()));
@@ -164,7 +164,9 @@ fn chunk(bytes: &[u8]) -> Option<(u8, Vec<f64>, &[u8])> {
     let length = bytes.get(1..5)?.try_into().ok().map(u32::from_le_bytes)? as usize;
     let end = length.checked_add(5)?;
     let hash = bytes.get(end..end.checked_add(HASH)?)?;
-    if length % size_of::<f64>() != 0 || blake3::hash(&bytes[..end]).as_bytes()[..HASH] != *hash {
+    if !length.is_multiple_of(size_of::<f64>())
+        || blake3::hash(&bytes[..end]).as_bytes()[..HASH] != *hash
+    {
         return None;
     }
     let number = |bytes: &[u8]| bytes.try_into().ok().map(f64::from_le_bytes);

@@ -19,6 +19,9 @@ use crate::record::signals::Signals;
 use crate::record::tracker::TrackerRows;
 use crate::record::write::{Format, Outcome, write_take};
 
+/// Takes a block: its time, the values of each signal, and the rows of the tracker.
+type Take<'a> = dyn FnMut(f64, &[Vec<f64>], &[f64]) -> Result<(), RecordError> + 'a;
+
 /// Length of a block that is read, seconds.
 const BLOCK_S: f64 = 0.02;
 /// Length of the tare, seconds.
@@ -270,7 +273,7 @@ impl Session {
         number: u32,
         of_s: f64,
         watch: &mut dyn FnMut(&Moment) -> Next,
-        take: &mut dyn FnMut(f64, &[Vec<f64>], &[f64]) -> Result<(), RecordError>,
+        take: &mut Take<'_>,
     ) -> Result<(), RecordError> {
         let rate_hz = self.source.rate_hz();
         let frames = (of_s * rate_hz).round() as u64;

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use htex_author::GridReport;
+use htex_author::{FeltError, GridReport, LosslessShare};
 use htex_format::{
     AtCondition, Condition, How, Ingredient, LeftOut, Made, Quality, Quantity, Representation,
     StoredField, plain,
@@ -85,6 +85,9 @@ pub(crate) struct AtSummary {
     level_rms: f64,
     #[serde(flatten)]
     pub(crate) quality: Option<Quality>,
+    /// What is felt of the difference, after a fit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) felt: Option<FeltError>,
     #[serde(skip_serializing_if = "Option::is_none")]
     left_out: Option<LeftOut>,
 }
@@ -137,6 +140,17 @@ impl AssetSummary {
         }
     }
 
+    /// Adds what is felt of the differences, by representation and condition.
+    pub(crate) fn with_felt(mut self, felt: &[Vec<FeltError>]) -> Self {
+        for (representation, felt) in self.representations.iter_mut().zip(felt) {
+            representation.first.felt = felt.first().copied();
+            for (at, felt) in representation.at.iter_mut().zip(felt) {
+                at.felt = Some(*felt);
+            }
+        }
+        self
+    }
+
     /// Adds warnings for the reader.
     pub(crate) fn note(&mut self, note: String) {
         self.notes.push(note);
@@ -179,14 +193,9 @@ impl AssetSummary {
                 signer.map_or("not signed".to_owned(), |key| format!("signed by {key}"))
             );
         }
-        text += "\n  model    cond.       level   corr.  bands/dB  third-oct/dB  log-sp/dB  played/dB  bytes  parameters\n";
+        text += "\n  model    cond.       level   corr.  bands/dB  third-oct/dB  log-sp/dB  played/dB  felt/dB  bytes  parameters\n";
         for r in &self.representations {
-            let all = if r.at.is_empty() {
-                std::slice::from_ref(&r.first)
-            } else {
-                &r.at[..]
-            };
-            for at in all {
+            for at in r.all() {
                 text += &row(r, at, self.quantity);
             }
         }
@@ -267,6 +276,20 @@ impl Spread {
 }
 
 impl RepresentationSummary {
+    /// The representation at all its conditions.
+    fn all(&self) -> &[AtSummary] {
+        match self.at.is_empty() {
+            true => std::slice::from_ref(&self.first),
+            false => &self.at,
+        }
+    }
+
+    /// Counts the conditions at which no difference is to be expected to be felt.
+    pub(crate) fn count(&self, share: &mut LosslessShare) {
+        let felt = self.all().iter().filter_map(|at| at.felt.as_ref());
+        felt.for_each(|felt| share.count(felt));
+    }
+
     /// The summary at one condition.
     pub(crate) fn at(&self, condition: usize) -> Option<&AtSummary> {
         let all = self.at.iter().chain([&self.first]);
@@ -296,7 +319,7 @@ fn row(r: &RepresentationSummary, at: &AtSummary, quantity: Quantity) -> String 
         .map(|(k, v)| parameter_text(&plain(k), v))
         .collect();
     format!(
-        "  {:8} {:>5}  {:>10}  {:>6}  {:>8}  {:>12}  {:>9}  {:>9}  {:>5}  {}\n",
+        "  {:8} {:>5}  {:>10}  {:>6}  {:>8}  {:>12}  {:>9}  {:>9}  {:>7}  {:>5}  {}\n",
         short_name(&r.model),
         at.condition,
         quantity.text(at.level_rms),
@@ -305,6 +328,7 @@ fn row(r: &RepresentationSummary, at: &AtSummary, quantity: Quantity) -> String 
         number(quality.and_then(|q| q.third_octave_error_rms_db), 2),
         number(quality.and_then(|q| q.log_spectral_distance_db), 2),
         number(quality.and_then(|q| q.samples_band_error_rms_db), 2),
+        number(at.felt.map(|felt| felt.error_rms_db), 2),
         r.payload_bytes,
         parameters.join(" ")
     )
@@ -389,6 +413,7 @@ impl AtSummary {
             parameters: named_parameters(fields, flat),
             level_rms: at.level_rms,
             quality: at.quality.clone(),
+            felt: None,
             left_out: at.left_out,
         }
     }

@@ -1,7 +1,7 @@
 //! The parts of a report about a fitted asset.
 
-use htex_author::FittedAsset;
-use htex_report::{ModelResult, Texture};
+use htex_author::{FittedAsset, LosslessShare};
+use htex_report::{ModelResult, Share, Texture};
 
 use crate::assets::{AssetSummary, RepresentationSummary, motion_text, short_name};
 
@@ -80,6 +80,7 @@ impl Reported<'_> {
             band_error_rms_db: quality.map_or(f64::NAN, |q| q.band_error_rms_db),
             third_octave_error_rms_db: quality.and_then(|q| q.third_octave_error_rms_db),
             log_spectral_distance_db: quality.and_then(|q| q.log_spectral_distance_db),
+            felt_error_rms_db: at.felt.map(|felt| felt.error_rms_db),
             samples_band_error_rms_db: quality.and_then(|q| q.samples_band_error_rms_db),
             band_error_db: quality.map_or(Vec::new(), |q| q.band_error_db.to_vec()),
             payload_bytes: representation.payload_bytes,
@@ -87,4 +88,31 @@ impl Reported<'_> {
             short_name,
         }))
     }
+}
+
+/// Of the textures at all their conditions, how many each model keeps so that no difference is to be expected to be felt.
+pub(crate) fn shares<'a>(summaries: impl IntoIterator<Item = &'a AssetSummary>) -> Vec<Share> {
+    let mut shares: Vec<(String, LosslessShare)> = Vec::new();
+    for summary in summaries {
+        for representation in &summary.representations {
+            let model = short_name(&representation.model);
+            let at = match shares.iter().position(|(known, _)| known == model) {
+                Some(at) => at,
+                None => {
+                    shares.push((model.to_owned(), LosslessShare::default()));
+                    shares.len() - 1
+                }
+            };
+            representation.count(&mut shares[at].1);
+        }
+    }
+    let share = |(model, share): (String, LosslessShare)| Share {
+        model,
+        textures: share.textures,
+        below_difference_threshold: share.below_difference_threshold,
+        below_if_sensitive: share.below_if_sensitive,
+        within_repeatability: share.within_repeatability,
+        either: share.either,
+    };
+    shares.into_iter().map(share).collect()
 }

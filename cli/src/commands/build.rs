@@ -1,14 +1,17 @@
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use clap::Args;
+use htex_author::LosslessShare;
 use htex_build::{Build as Recipe, BuildOptions, Built, Destination, Job, Status, TextureReport};
 use htex_format::plain;
 use htex_storage::Location;
 use serde::Serialize;
 
+use crate::assets::short_name;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::models::tool;
@@ -70,6 +73,7 @@ struct Summary<'a> {
     recordings: usize,
     recording_bytes: u64,
     seconds: f64,
+    lossless: &'a BTreeMap<String, LosslessShare>,
     left_out: Vec<&'a TextureReport>,
 }
 
@@ -147,6 +151,7 @@ impl Build {
             recordings: work.recordings,
             recording_bytes: work.bytes,
             seconds,
+            lossless: &report.lossless,
             left_out,
         };
         if self.json {
@@ -201,6 +206,17 @@ impl Summary<'_> {
                 self.seconds,
                 self.recordings as f64 / self.seconds,
                 megabytes / self.seconds
+            );
+        }
+        for (model, share) in self.lossless {
+            text += &format!(
+                "{}: {} of {} textures without a difference that is to be expected to be felt ({} below the difference threshold, {} \
+                 within the recording's repeatability)\n",
+                short_name(model),
+                share.either,
+                share.textures,
+                share.below_difference_threshold,
+                share.within_repeatability
             );
         }
         text += &format!(

@@ -1,8 +1,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_author::{Exploration, TextureSpectrum, agreement, felt, measure, read_take};
-use htex_dsp::vibrotactile::Skin;
+use htex_author::{Exploration, FeltError, TextureSpectrum, agreement, felt, measure, read_take};
+use htex_dsp::vibrotactile::Listener;
 use htex_format::plain;
 use serde::Serialize;
 
@@ -86,10 +86,8 @@ struct OtherRecording {
 struct FeltDifference {
     centre_hz: Vec<f64>,
     error_db: Vec<f64>,
-    error_rms_db: f64,
-    largest_error_db: f64,
-    total_error_db: f64,
-    below_difference_threshold: bool,
+    #[serde(flatten)]
+    error: FeltError,
 }
 
 impl Compare {
@@ -171,7 +169,7 @@ impl Compare {
             band_error_matched_rms_db: agreement.band_error_matched_rms_db,
             third_octave_error_rms_db: agreement.third_octave_error_rms_db,
             log_spectral_distance_db: agreement.log_spectral_distance_db,
-            felt: FeltDifference::new(spectrum, &other.magnitude),
+            felt: FeltDifference::new(spectrum, &other.magnitude, agreement.band_error_rms_db),
             repeatability_rms_db: other.repeatability_rms_db,
         };
         Ok((compared, warnings))
@@ -210,11 +208,12 @@ impl Compare {
                 .map_err(|error| Failure::asset(&self.other, error))?;
             let shape = model.magnitude(&parameters, spectrum.band, &spectrum.frequency_hz)?;
             let magnitude: Vec<f64> = shape.iter().map(|m| m * level_rms).collect();
+            let quality = measure(&model, &parameters, level_rms, spectrum.as_ref())?;
             compared.push(Compared {
                 model: representation.model.clone(),
                 level_rms,
-                quality: measure(&model, &parameters, level_rms, spectrum.as_ref())?,
-                felt: FeltDifference::new(spectrum, &magnitude),
+                felt: FeltDifference::new(spectrum, &magnitude, quality.band_error_rms_db),
+                quality,
             });
         }
         Ok(compared)
@@ -222,20 +221,17 @@ impl Compare {
 }
 
 impl FeltDifference {
-    fn new(reference: &TextureSpectrum, magnitude: &[f64]) -> Self {
+    fn new(reference: &TextureSpectrum, magnitude: &[f64], band_error_rms_db: f64) -> Self {
         let felt = felt(
             reference.as_ref(),
             magnitude,
             reference.quantity,
-            &Skin::default(),
+            &Listener::default(),
         );
         Self {
-            below_difference_threshold: felt.is_below_difference_threshold(),
             centre_hz: felt.centre_hz,
             error_db: felt.error_db,
-            error_rms_db: felt.error_rms_db,
-            largest_error_db: felt.largest_error_db,
-            total_error_db: felt.total_error_db,
+            error: FeltError::new(reference, magnitude, band_error_rms_db),
         }
     }
 }
@@ -267,7 +263,7 @@ impl Comparison {
                 q.third_octave_error_rms_db.unwrap_or(f64::NAN),
                 q.log_spectral_distance_db.unwrap_or(f64::NAN),
                 q.samples_band_error_rms_db.unwrap_or(f64::NAN),
-                r.felt.error_rms_db,
+                r.felt.error.error_rms_db,
             );
         }
         text
@@ -286,7 +282,7 @@ impl OtherRecording {
             optional(self.third_octave_error_rms_db),
             optional(self.log_spectral_distance_db),
         );
-        let felt = &self.felt;
+        let felt = &self.felt.error;
         text += &format!(
             "felt: {:.2} dB RMS, {:.2} dB at most, {:.2} dB together: {} the difference threshold\n",
             felt.error_rms_db,

@@ -7,10 +7,11 @@ use htex_author::read::{ReadOptions, read_recording};
 use htex_author::settings::FitSettings;
 use htex_author::simulate::{SimulationError, SimulationOptions, Surface, simulate};
 use htex_author::{
-    AssetRequest, AuthorError, Exploration, SetupResponse, SpectrumOptions, Take, fit_asset,
+    AssetRequest, AuthorError, Exploration, FeltError, SetupResponse, SpectrumOptions, Take,
+    fit_asset,
 };
 use htex_host::Registry;
-use htex_report::{Texture, TextureReport, spectra_picture, texture_report};
+use htex_report::{Share, Texture, TextureReport, spectra_picture, texture_report};
 use serde::Serialize;
 
 use super::simulate::write_response;
@@ -20,7 +21,7 @@ use crate::failure::Failure;
 use crate::models::tool;
 use crate::output::{print, print_json, write_file};
 use crate::progress::bar;
-use crate::report::Reported;
+use crate::report::{Reported, shares};
 use crate::wav::write_wav;
 
 const WAV_RATE_HZ: u32 = 20_000;
@@ -71,10 +72,14 @@ impl Demo {
         bar.finish_and_clear();
         let report = self.dir.join("report.html");
         let rows: Vec<Row> = done.iter().flat_map(DemoTexture::rows).collect();
+        let shares = shares(done.iter().map(|d| &d.summary));
         let textures: Vec<Texture> = done.into_iter().map(|d| d.texture).collect();
         let picture = spectra_picture(&textures, &PICTURED);
         write_file(&self.dir.join("spectra.svg"), picture.as_bytes())?;
-        write_file(&report, texture_report(&self.page(textures)).as_bytes())?;
+        write_file(
+            &report,
+            texture_report(&self.page(textures, shares)).as_bytes(),
+        )?;
         if self.json {
             print_json(&rows)?;
         } else {
@@ -108,7 +113,8 @@ impl Demo {
                 .join(format!("{name}-{}.wav", short_name(&representation.model)));
             play(&asset, &representation.model, &path, &wav)?;
         }
-        let summary = AssetSummary::new(&path, bytes.len() as u64, &fitted.asset);
+        let summary =
+            AssetSummary::new(&path, bytes.len() as u64, &fitted.asset).with_felt(&fitted.felt);
         let recording_bytes = std::fs::metadata(&csv).map_or(0, |m| m.len());
         let reported = Reported {
             fitted: &fitted,
@@ -130,7 +136,7 @@ impl Demo {
         htex_format::replace_file(csv, write).map_err(|error| Failure::write(csv, error))
     }
 
-    fn page(&self, textures: Vec<Texture>) -> TextureReport {
+    fn page(&self, textures: Vec<Texture>, shares: Vec<Share>) -> TextureReport {
         TextureReport {
             title: "Five simulated surfaces, six models".to_owned(),
             intro: vec![
@@ -140,6 +146,7 @@ impl Demo {
                     .to_owned(),
             ],
             textures,
+            shares,
             pictures: Vec::new(),
             command: format!("htex demo {} --seed {}", self.dir.display(), self.seed),
         }
@@ -159,6 +166,7 @@ struct Row {
     band_error_rms_db: f64,
     third_octave_error_rms_db: Option<f64>,
     log_spectral_distance_db: Option<f64>,
+    felt: Option<FeltError>,
     samples_band_error_rms_db: Option<f64>,
     repeatability_rms_db: Option<f64>,
     payload_bytes: usize,
@@ -177,6 +185,7 @@ impl DemoTexture {
                 band_error_rms_db: quality.map_or(f64::NAN, |q| q.band_error_rms_db),
                 third_octave_error_rms_db: quality.and_then(|q| q.third_octave_error_rms_db),
                 log_spectral_distance_db: quality.and_then(|q| q.log_spectral_distance_db),
+                felt: r.first.felt,
                 samples_band_error_rms_db: quality.and_then(|q| q.samples_band_error_rms_db),
                 repeatability_rms_db: self.summary.repeatability_rms_db,
                 payload_bytes: r.payload_bytes,

@@ -18,7 +18,7 @@ use crate::output::{note, print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
 use crate::recordings::RecordingArgs;
-use crate::report::Reported;
+use crate::report::{Reported, shares};
 
 /// Fit models to recordings of one texture and write the asset.
 ///
@@ -126,7 +126,8 @@ impl Fit {
             .to_bytes()
             .map_err(htex_author::AuthorError::from)?;
         write_file(&self.output, &bytes)?;
-        let mut summary = AssetSummary::new(&self.output, bytes.len() as u64, &fitted.asset);
+        let mut summary = AssetSummary::new(&self.output, bytes.len() as u64, &fitted.asset)
+            .with_felt(&fitted.felt);
         for (r, ms) in summary.representations.iter_mut().zip(&fitted.fit_ms) {
             r.fit_ms = Some(*ms);
         }
@@ -178,6 +179,7 @@ impl Fit {
                 .map(|grid| grid_plot(&name, grid).to_svg())
                 .into_iter()
                 .collect(),
+            shares: shares([summary]),
             ..TextureReport::default()
         };
         write_file(file, texture_report(&page).as_bytes())

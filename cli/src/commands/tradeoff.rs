@@ -229,7 +229,7 @@ fn to_text(tradeoff: &htex_tradeoff::Tradeoff, output: &Path) -> String {
     let points = tradeoff.summary();
     let name = points.first().map_or("", |p| &p.recording);
     let mut text = format!(
-        "{name}: the front against bytes, by {}\n  bytes  bands/dB  third-oct/dB  log-sp/dB   corr.  \
+        "{name}: the front against bytes, by {}\n  bytes  bands/dB  third-oct/dB  log-sp/dB  felt/dB  lossless   corr.  \
          ns/sample  setting\n",
         tradeoff.error
     );
@@ -237,11 +237,13 @@ fn to_text(tradeoff: &htex_tradeoff::Tradeoff, output: &Path) -> String {
     front.sort_by_key(|p| p.bytes);
     for p in front {
         text += &format!(
-            "  {:>5}  {:>8.2}  {:>12.2}  {:>9.2}  {:>6.3}  {:>9.1}  {}\n",
+            "  {:>5}  {:>8.2}  {:>12.2}  {:>9.2}  {:>7.2}  {:>6.0} %  {:>6.3}  {:>9.1}  {}\n",
             p.bytes,
             p.band_error_rms_db,
             p.third_octave_error_rms_db,
             p.log_spectral_distance_db,
+            p.felt_error_rms_db,
+            100.0 * p.share_lossless,
             p.spectral_correlation,
             p.ns_per_sample,
             p.name()

@@ -2,10 +2,13 @@
 //! models are fitted and compared by.
 
 use htex_dsp::fidelity::{THIRD_OCTAVES, third_octave};
-use htex_dsp::vibrotactile::{Skin, detection_threshold_m};
+use htex_dsp::vibrotactile::{Listener, Skin};
 use htex_format::Quantity;
 
-use crate::spectrum::SpectrumRef;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::spectrum::{SpectrumRef, TextureSpectrum};
 
 /// Smallest difference of a level that people notice, decibels: 20 % (the smallest median of Forta, Griffin & Morioka 2012, *Experimental Brain
 /// Research* 220, whose conditions have 20 % to 58 %).
@@ -39,19 +42,97 @@ impl Felt {
     }
 }
 
+/// What is felt of a difference, in a few numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FeltError {
+    /// RMS difference of what is above the detection threshold, over third-octave bands, decibels.
+    pub error_rms_db: f64,
+    /// The largest difference of a band without its sign, decibels.
+    pub largest_error_db: f64,
+    /// Difference of the sensation levels of all bands together, decibels.
+    pub total_error_db: f64,
+    /// Whether every band's difference and that of all together are below the difference threshold.
+    pub below_difference_threshold: bool,
+    /// The same for a person with a sensitive finger and a soft skin ([`Listener::sensitive`]).
+    pub below_if_sensitive: bool,
+    /// Whether the nine-band error is at or below the recording's own repeatability; false if that is not known.
+    pub within_repeatability: bool,
+}
+
+impl FeltError {
+    /// Measures the difference of magnitudes from a recorded spectrum; their nine-band RMS error, decibels, is given.
+    pub fn new(recorded: &TextureSpectrum, magnitude: &[f64], band_error_rms_db: f64) -> Self {
+        let by =
+            |listener: &Listener| felt(recorded.as_ref(), magnitude, recorded.quantity, listener);
+        let felt = by(&Listener::default());
+        Self {
+            error_rms_db: felt.error_rms_db,
+            largest_error_db: felt.largest_error_db,
+            total_error_db: felt.total_error_db,
+            below_difference_threshold: felt.is_below_difference_threshold(),
+            below_if_sensitive: by(&Listener::sensitive()).is_below_difference_threshold(),
+            within_repeatability: recorded
+                .repeatability_rms_db
+                .is_some_and(|own| band_error_rms_db <= own),
+        }
+    }
+
+    /// The worse of two: of each number the one that is further from 0.
+    #[must_use]
+    pub fn worse(self, other: Self) -> Self {
+        let further = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
+        Self {
+            error_rms_db: further(self.error_rms_db, other.error_rms_db),
+            largest_error_db: further(self.largest_error_db, other.largest_error_db),
+            total_error_db: further(self.total_error_db, other.total_error_db),
+            below_difference_threshold: self.below_difference_threshold
+                && other.below_difference_threshold,
+            below_if_sensitive: self.below_if_sensitive && other.below_if_sensitive,
+            within_repeatability: self.within_repeatability && other.within_repeatability,
+        }
+    }
+}
+
+/// Of some textures, how many a model keeps so that no difference is to be expected to be felt.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct LosslessShare {
+    /// Number of textures.
+    pub textures: usize,
+    /// Those whose difference is below the difference threshold.
+    pub below_difference_threshold: usize,
+    /// Those of them for which that holds for a person with a sensitive finger and a soft skin, too.
+    pub below_if_sensitive: usize,
+    /// Those whose nine-band error is at or below the recording's own repeatability.
+    pub within_repeatability: usize,
+    /// Those for which one of both holds.
+    pub either: usize,
+}
+
+impl LosslessShare {
+    /// Counts a texture.
+    pub fn count(&mut self, felt: &FeltError) {
+        let within = felt.within_repeatability;
+        self.textures += 1;
+        self.below_difference_threshold += usize::from(felt.below_difference_threshold);
+        self.below_if_sensitive += usize::from(felt.below_if_sensitive);
+        self.within_repeatability += usize::from(within);
+        self.either += usize::from(within || felt.below_difference_threshold);
+    }
+}
+
 /// Compares what is felt of a spectrum with what is felt of a reference on the same grid. Forces become displacements of the skin by its
 /// impedance; accelerations and velocities by integration.
 ///
 /// ```
 /// use htex_author::{SpectrumRef, felt};
-/// use htex_dsp::vibrotactile::Skin;
+/// use htex_dsp::vibrotactile::Listener;
 /// use htex_format::Quantity;
 /// use htex_host::Band;
 ///
 /// let band = Band::TACTILE;
 /// let (hertz, quiet) = (band.grid_hz(), vec![1e-9; band.bins()]);
 /// let reference = SpectrumRef { band, frequency_hz: &hertz, magnitude: &quiet };
-/// let felt = felt(reference, &vec![2e-9; band.bins()], Quantity::LateralForce, &Skin::default());
+/// let felt = felt(reference, &vec![2e-9; band.bins()], Quantity::LateralForce, &Listener::default());
 /// // A difference of 6 dB that nobody feels: 1 nN is far below the threshold.
 /// assert_eq!(felt.largest_error_db, 0.0);
 /// ```
@@ -59,9 +140,10 @@ pub fn felt(
     reference: SpectrumRef<'_>,
     magnitude: &[f64],
     quantity: Quantity,
-    skin: &Skin,
+    listener: &Listener,
 ) -> Felt {
-    let energies = |magnitude: &[f64]| energies(reference.frequency_hz, magnitude, quantity, skin);
+    let energies =
+        |magnitude: &[f64]| energies(reference.frequency_hz, magnitude, quantity, listener);
     let (ours, theirs) = (energies(reference.magnitude), energies(magnitude));
     let bands: Vec<usize> = (0..THIRD_OCTAVES).filter(|k| ours[*k].is_some()).collect();
     let levels = |all: &[Option<f64>]| -> Vec<f64> {
@@ -102,15 +184,15 @@ fn energies(
     frequency_hz: &[f64],
     magnitude: &[f64],
     quantity: Quantity,
-    skin: &Skin,
+    listener: &Listener,
 ) -> [Option<f64>; THIRD_OCTAVES] {
     let mut energies = [None; THIRD_OCTAVES];
     for (&hertz, &magnitude) in frequency_hz.iter().zip(magnitude) {
         let Some(band) = third_octave(hertz) else {
             continue;
         };
-        let peak_m = magnitude * displacement_m(hertz, quantity, skin);
-        let ratio = peak_m / detection_threshold_m(hertz);
+        let peak_m = magnitude * displacement_m(hertz, quantity, &listener.skin);
+        let ratio = peak_m / listener.threshold_m(hertz);
         // Magnitudes are peaks of sinusoids as a Hann window shows them, in 1.5 bins of energy.
         *energies[band].get_or_insert(0.0) += ratio * ratio / 1.5;
     }
@@ -156,7 +238,7 @@ mod tests {
             frequency_hz: &hertz,
             magnitude: &reference,
         };
-        felt(reference, &spectra(b).1, quantity, &Skin::default())
+        felt(reference, &spectra(b).1, quantity, &Listener::default())
     }
 
     /// A sinusoid at the threshold has a level of 0 dB, in each quantity.
@@ -189,6 +271,34 @@ mod tests {
                 (felt.total_error_db - 20.0).abs() < 0.15,
                 "{quantity}: {felt:?}"
             );
+        }
+    }
+
+    /// A person who is more sensitive feels no smaller difference in any band.
+    #[test]
+    fn a_sensitive_person_feels_no_less() {
+        let (hertz, recorded) = spectra(|f| 2e-3 / (1.0 + f / 100.0));
+        for gain_db in [-12.0, -3.0, -1.0, 0.5, 2.0, 9.0] {
+            for tilt in [-1.0, 0.0, 1.0] {
+                let gain = |f: f64| 10f64.powf(gain_db / 20.0) * (f / 200.0).powf(tilt);
+                let other: Vec<f64> = hertz
+                    .iter()
+                    .zip(&recorded)
+                    .map(|(f, m)| m * gain(*f))
+                    .collect();
+                let reference = SpectrumRef {
+                    band: Band::TACTILE,
+                    frequency_hz: &hertz,
+                    magnitude: &recorded,
+                };
+                let by = |listener| felt(reference, &other, Quantity::LateralForce, &listener);
+                let (typical, sensitive) = (by(Listener::default()), by(Listener::sensitive()));
+                let pairs = typical.error_db.iter().zip(&sensitive.error_db);
+                assert!(
+                    pairs.into_iter().all(|(t, s)| s.abs() >= t.abs() - 1e-9),
+                    "{gain_db} {tilt}"
+                );
+            }
         }
     }
 

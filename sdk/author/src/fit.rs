@@ -13,6 +13,7 @@ use htex_host::{HostError, LoadedModel, Origin};
 
 use crate::alternatives::warning;
 use crate::conditions::{Group, Grouped, group_takes};
+use crate::felt::FeltError;
 use crate::grid::{GridReport, group_grid, left_out};
 use crate::level::{Level, stored_level};
 use crate::request::{AssetRequest, ModelRequest};
@@ -32,6 +33,8 @@ pub struct FittedAsset {
     pub skipped: Vec<(String, String)>,
     /// The texture spectrum of each condition.
     pub spectra: Vec<TextureSpectrum>,
+    /// What is felt of the difference from them, of each representation at each of its conditions.
+    pub felt: Vec<Vec<FeltError>>,
     /// Findings of the recordings below a warning: what was left out, and why.
     pub notes: Vec<String>,
     /// The grid of the conditions, if one was requested.
@@ -93,12 +96,15 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
         warnings,
     };
     let fit_ms = fitted.iter().map(|f| f.fit_ms).collect();
+    let felt = fitted.iter_mut().map(|f| std::mem::take(&mut f.felt));
+    let felt = felt.collect();
     let asset = assemble(request, provenance, grouped.conditions, &spectra, fitted);
     Ok(FittedAsset {
         asset,
         fit_ms,
         skipped,
         spectra,
+        felt,
         notes,
         grid,
     })
@@ -107,6 +113,7 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
 struct FittedModel {
     representation: Representation,
     parameters: Vec<Vec<f64>>,
+    felt: Vec<FeltError>,
     fit_ms: f64,
 }
 
@@ -134,7 +141,7 @@ fn fit_model(
 ) -> Result<FittedModel, AuthorError> {
     let model = &choice.model;
     let fields = stored_fields(model.descriptor());
-    let (mut at, mut parameters, mut fit_ms) = (Vec::new(), Vec::new(), 0.0);
+    let (mut at, mut parameters, mut felt, mut fit_ms) = (Vec::new(), Vec::new(), Vec::new(), 0.0);
     for (condition, group) in groups.iter().enumerate() {
         let reference = group.spectrum.as_ref();
         let start = Instant::now();
@@ -148,6 +155,12 @@ fn fit_model(
         let mut quality = measure(model, &stored, level_rms, reference)?;
         let rounding = rounding_error_db(model, &fit.parameters, &stored, reference)?;
         quality.rounding_error_db = Some(rounding);
+        let magnitude = scaled_magnitude(model, &stored, level_rms, reference)?;
+        felt.push(FeltError::new(
+            &group.spectrum,
+            &magnitude,
+            quality.band_error_rms_db,
+        ));
         at.push(AtCondition {
             condition,
             level_rms,
@@ -166,6 +179,7 @@ fn fit_model(
     Ok(FittedModel {
         representation,
         parameters,
+        felt,
         fit_ms,
     })
 }
@@ -210,8 +224,7 @@ pub fn measure(
     level_rms: f64,
     reference: SpectrumRef<'_>,
 ) -> Result<Quality, AuthorError> {
-    let shape = model.magnitude(parameters, reference.band, reference.frequency_hz)?;
-    let magnitude: Vec<f64> = shape.iter().map(|m| m * level_rms).collect();
+    let magnitude = scaled_magnitude(model, parameters, level_rms, reference)?;
     let by_magnitude = agreement(reference, &magnitude);
     let rendered = rendered_spectrum(model, parameters, level_rms, reference)?;
     let by_samples = agreement(reference, &rendered);
@@ -228,6 +241,17 @@ pub fn measure(
         samples_log_spectral_distance_db: by_samples.log_spectral_distance_db,
         rounding_error_db: None,
     })
+}
+
+/// Returns the magnitudes of parameters at a level, on the reference's grid.
+fn scaled_magnitude(
+    model: &LoadedModel,
+    parameters: &[f64],
+    level_rms: f64,
+    reference: SpectrumRef<'_>,
+) -> Result<Vec<f64>, HostError> {
+    let shape = model.magnitude(parameters, reference.band, reference.frequency_hz)?;
+    Ok(shape.iter().map(|m| m * level_rms).collect())
 }
 
 /// Returns the nine-band RMS difference between the shapes of the fitted and the stored parameters, decibels.

@@ -51,7 +51,7 @@ mod warnings;
 pub use embed::{EmbedError, embed_plugins};
 pub use error::AuthorError;
 pub use exploration::{Exploration, Spread};
-pub use felt::{DIFFERENCE_THRESHOLD_DB, Felt, felt};
+pub use felt::{DIFFERENCE_THRESHOLD_DB, Felt, FeltError, LosslessShare, felt};
 pub use findings::recording_findings;
 pub use fit::{FittedAsset, fit_asset, measure};
 pub use grid::{CellStatus, Grid, GridCell, GridReport};

@@ -19,7 +19,7 @@ use crate::hashes::Stamp;
 use crate::job::Job;
 use crate::made::Made;
 use crate::plan::{Plan, PlannedTexture};
-use crate::report::{LibraryReport, REPORT, Report, Status, TextureReport};
+use crate::report::{LibraryReport, REPORT, Report, Status, TextureReport, lossless};
 
 /// The report's file.
 const REPORT_FILE: &str = "build-report.json";
@@ -94,6 +94,7 @@ pub(crate) fn assemble(
         report: REPORT.to_owned(),
         program: options.program.clone(),
         library: library_report(plan, file, &packed, &textures),
+        lossless: lossless(&textures),
         textures,
     };
     let page = catalogue(&report, options.browser_package.is_some());

@@ -1,11 +1,14 @@
 //! A job: the fit of one texture, as data. Equal jobs give equal bytes, on any machine.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use htex_author::read::{ReadError, read_recording};
 use htex_author::settings::{FitSettings, Metadata, ReadingSettings};
-use htex_author::{AuthorError, Exploration, FittedAsset, Take, embed_plugins, fit_asset};
+use htex_author::{
+    AuthorError, Exploration, FeltError, FittedAsset, Take, embed_plugins, fit_asset,
+};
 use htex_host::{Registry, Search, WasmLimits};
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +21,19 @@ use crate::sound::sound;
 use crate::thumbnail::thumbnail;
 
 /// The meaning of jobs and of what is made of them. Another one makes everything again.
-const JOB: &str = "htex-job/1";
+const JOB: &str = "htex-job/2";
+
+/// What is felt of the difference from the recordings, of each model at its worst condition.
+fn felt(fitted: &FittedAsset) -> BTreeMap<String, FeltError> {
+    let models = fitted.asset.manifest.representations.iter();
+    let worst = models
+        .zip(&fitted.felt)
+        .filter_map(|(representation, felt)| {
+            let worst = felt.iter().copied().reduce(FeltError::worse)?;
+            Some((representation.model.clone(), worst))
+        });
+    worst.collect()
+}
 
 /// The fit of one texture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -235,6 +250,7 @@ impl Job {
                 record: Record {
                     outcome: Outcome::Fitted,
                     segments: fitted.spectra.iter().map(|s| s.segments).collect(),
+                    felt: felt(&fitted),
                     thumbnail: fitted.spectra.first().map(thumbnail).unwrap_or_default(),
                 },
                 asset,

@@ -1,5 +1,8 @@
 //! What a job makes, and its bytes: a line of JSON with lengths and a hash, then the parts.
 
+use std::collections::BTreeMap;
+
+use htex_author::FeltError;
 use serde::{Deserialize, Serialize};
 
 use crate::BuildError;
@@ -26,6 +29,8 @@ pub struct Record {
     pub outcome: Outcome,
     /// Segments of each condition.
     pub segments: Vec<usize>,
+    /// What is felt of the difference from the recordings, at its worst condition, by model.
+    pub felt: BTreeMap<String, FeltError>,
     /// The recorded spectrum of the first condition.
     pub thumbnail: Thumbnail,
 }
@@ -68,6 +73,7 @@ impl Made {
             record: Record {
                 outcome,
                 segments: Vec::new(),
+                felt: BTreeMap::new(),
                 thumbnail: Thumbnail::default(),
             },
             asset: Vec::new(),

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use htex_author::{FeltError, LosslessShare};
 use htex_format::Asset;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -23,6 +24,9 @@ pub struct Report {
     pub program: String,
     /// The library.
     pub library: LibraryReport,
+    /// Of the textures of the library, by the id of a model, how many it keeps at all their conditions so that no difference is to be expected
+    /// to be felt.
+    pub lossless: BTreeMap<String, LosslessShare>,
     /// All textures of the recipe, by name.
     pub textures: Vec<TextureReport>,
 }
@@ -127,6 +131,9 @@ pub struct AssetReport {
     pub repeatability_rms_db: Option<f64>,
     /// Largest nine-band RMS error over the conditions of each model, decibels, by id.
     pub band_error_rms_db: BTreeMap<String, f64>,
+    /// What is felt of the difference from the recordings, of each model at its worst condition, by id.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub felt: BTreeMap<String, FeltError>,
     /// Warnings of the fit.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
@@ -195,10 +202,23 @@ impl AssetReport {
                 .filter_map(|c| c.repeatability_rms_db)
                 .reduce(f64::max),
             band_error_rms_db: errors.collect(),
+            felt: made.record.felt.clone(),
             warnings: manifest.provenance.warnings.clone(),
             spectrum: made.record.thumbnail.clone(),
         }
     }
+}
+
+/// Counts, by model, the textures of which no difference is to be expected to be felt.
+pub(crate) fn lossless(textures: &[TextureReport]) -> BTreeMap<String, LosslessShare> {
+    let mut shares: BTreeMap<String, LosslessShare> = BTreeMap::new();
+    let built = textures.iter().filter(|t| t.status == Status::Built);
+    for asset in built.filter_map(|texture| texture.asset.as_ref()) {
+        for (model, felt) in &asset.felt {
+            shares.entry(model.clone()).or_default().count(felt);
+        }
+    }
+    shares
 }
 
 fn range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {

@@ -5,6 +5,9 @@
 //! summarised by Gescheider & Verrillo 1979), and rising by 9 dB an octave above (Verrillo 1966, *Psychonomic Science* 4, 135–136). Its smallest
 //! value is −20 dB re 1 µm, 0.1 µm peak (Bolanowski, Gescheider, Verrillo & Checkosky 1988, *J. Acoust. Soc. Am.* 84, 1680–1694).
 //! People differ by some 10 dB, and a small contact raises the Pacinian part by 3 dB for each halving of its area.
+//!
+//! The two papers on slopes were read in their abstracts; the smallest value and the values of [`Skin`] are those that are commonly quoted of the papers named, to one
+//! or two digits. A laboratory that has measured its participants gives its own [`Listener`].
 
 /// Frequency up to which the threshold is constant, hertz.
 pub const FLAT_HZ: f64 = 40.0;
@@ -69,5 +72,47 @@ impl Skin {
         let omega = 2.0 * core::f64::consts::PI * frequency_hz;
         let elastic = self.stiffness_n_m - self.mass_kg * omega * omega;
         1.0 / libm::hypot(elastic, self.damping_n_s_m * omega)
+    }
+}
+
+/// A person who feels: a skin, and a detection threshold relative to [`detection_threshold_m`].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Listener {
+    /// Impedance of the fingertip.
+    pub skin: Skin,
+    /// Threshold relative to [`detection_threshold_m`], decibels; negative for a person who feels weaker vibrations.
+    pub threshold_shift_db: f64,
+}
+
+impl Listener {
+    /// A person at the sensitive end of both ranges: a threshold 10 dB lower, and a skin that yields twice as far.
+    ///
+    /// ```
+    /// use htex_dsp::vibrotactile::Listener;
+    /// let [typical, sensitive] = [Listener::default(), Listener::sensitive()];
+    /// let gain = sensitive.sensation(250.0) / typical.sensation(250.0);
+    /// assert!((20.0 * gain.log10() - 16.02).abs() < 0.01);
+    /// ```
+    #[must_use]
+    pub fn sensitive() -> Self {
+        let skin = Skin::default();
+        Self {
+            skin: Skin {
+                stiffness_n_m: 0.5 * skin.stiffness_n_m,
+                damping_n_s_m: 0.5 * skin.damping_n_s_m,
+                mass_kg: 0.5 * skin.mass_kg,
+            },
+            threshold_shift_db: -10.0,
+        }
+    }
+
+    /// Returns the displacement by a sinusoidal force of 1 N, relative to the threshold, at a frequency in hertz above 0.
+    pub fn sensation(&self, frequency_hz: f64) -> f64 {
+        self.skin.displacement_m(frequency_hz) / self.threshold_m(frequency_hz)
+    }
+
+    /// Returns this person's detection threshold, metres, peak, at a frequency in hertz above 0.
+    pub fn threshold_m(&self, frequency_hz: f64) -> f64 {
+        detection_threshold_m(frequency_hz) * libm::pow(10.0, self.threshold_shift_db / 20.0)
     }
 }

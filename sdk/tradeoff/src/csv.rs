@@ -29,6 +29,11 @@ const COLUMNS: &[Column] = &[
         p.log_spectral_distance_db.to_string()
     }),
     ("level_error_db", |p| p.level_error_db.to_string()),
+    ("felt_error_rms_db", |p| p.felt_error_rms_db.to_string()),
+    ("share_below_difference_threshold", |p| {
+        p.share_below_difference_threshold.to_string()
+    }),
+    ("share_lossless", |p| p.share_lossless.to_string()),
     ("samples_spectral_correlation", |p| {
         p.samples_spectral_correlation.to_string()
     }),
@@ -46,6 +51,9 @@ const COLUMNS: &[Column] = &[
     }),
     ("samples_level_error_db", |p| {
         p.samples_level_error_db.to_string()
+    }),
+    ("samples_felt_error_rms_db", |p| {
+        p.samples_felt_error_rms_db.to_string()
     }),
     ("on_front", |p| p.on_front.to_string()),
     ("on_time_front", |p| p.on_time_front.to_string()),

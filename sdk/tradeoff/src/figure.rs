@@ -99,7 +99,7 @@ fn steps(front: &[&Point], against: Against) -> Vec<(f64, f64)> {
 fn note(p: &Point) -> String {
     format!(
         "{}: {} bytes, {:.1} ns a sample (±{:.0} %), first sample {:.0} µs, fit {:.2} ms; nine bands {:.2} dB, \
-         played {:.2} dB, third octaves {:.2} dB, log-spectral {:.2} dB, correlation {:.3}",
+         played {:.2} dB, third octaves {:.2} dB, log-spectral {:.2} dB, felt {:.2} dB, correlation {:.3}",
         p.name(),
         p.bytes,
         p.ns_per_sample,
@@ -110,6 +110,7 @@ fn note(p: &Point) -> String {
         p.samples_band_error_rms_db,
         p.third_octave_error_rms_db,
         p.log_spectral_distance_db,
+        p.felt_error_rms_db,
         p.spectral_correlation
     )
 }

@@ -44,7 +44,7 @@ impl Contender {
                 samples_spread_db: 0.0,
             }));
         }
-        let reference = subject.spectrum.as_ref();
+        let reference = &subject.spectrum;
         let rendered = self.rendered(subject, &stored, quick)?;
         let errors = rendered.spectra.iter();
         let errors = errors.map(|m| accuracy(reference, m).band_error_rms_db);

@@ -1,4 +1,4 @@
-//! Medians of each setting over several recordings.
+//! Medians of each setting over several recordings, and shares of the recordings.
 
 use std::collections::BTreeMap;
 
@@ -29,6 +29,8 @@ fn median_of(same: &[&Point], name: &str) -> Point {
         let half = values.len() / 2;
         0.5 * (values[half] + values[(values.len() - 1) / 2])
     };
+    let mean =
+        |value: fn(&Point) -> f64| same.iter().map(|p| value(p)).sum::<f64>() / same.len() as f64;
     Point {
         recording: name.to_owned(),
         fit_ms: of(|p| p.fit_ms),
@@ -44,12 +46,16 @@ fn median_of(same: &[&Point], name: &str) -> Point {
         third_octave_error_rms_db: of(|p| p.third_octave_error_rms_db),
         log_spectral_distance_db: of(|p| p.log_spectral_distance_db),
         level_error_db: of(|p| p.level_error_db),
+        felt_error_rms_db: of(|p| p.felt_error_rms_db),
+        share_below_difference_threshold: mean(|p| p.share_below_difference_threshold),
+        share_lossless: mean(|p| p.share_lossless),
         samples_spectral_correlation: of(|p| p.samples_spectral_correlation),
         samples_band_error_rms_db: of(|p| p.samples_band_error_rms_db),
         samples_band_error_spread_db: of(|p| p.samples_band_error_spread_db),
         samples_third_octave_error_rms_db: of(|p| p.samples_third_octave_error_rms_db),
         samples_log_spectral_distance_db: of(|p| p.samples_log_spectral_distance_db),
         samples_level_error_db: of(|p| p.samples_level_error_db),
+        samples_felt_error_rms_db: of(|p| p.samples_felt_error_rms_db),
         ..same[0].clone()
     }
 }

@@ -65,7 +65,10 @@ fn reading(tradeoff: &Tradeoff) -> String {
          settings has less error at the same or a lower cost. The grey line is the front of all models. Point at a large dot \
          to see all its numbers. In the pictures and knees the error is the {}, in decibels ({own}): against \
          bytes by the model's own magnitudes, against time by rendered samples. The tables have the \
-         nine-band error, third-octave error and log-spectral distance side by side. Two baselines are \
+         nine-band error, third-octave error and log-spectral distance side by side, and what is felt of the difference: forces become \
+         displacements of the skin, of which what is above the detection threshold counts, in third octaves. Lossless is the share of the \
+         recordings whose difference is below the difference threshold in every band, or whose nine-band error is at or below \
+         the recording's own repeatability. Two baselines are \
          in every picture: the spectrum at one byte per bin, and the recording, whose error is the difference \
          between its odd and even strokes. Errors below that do not distinguish models.",
         tradeoff.error
@@ -140,11 +143,13 @@ fn section(page: &mut Page, tradeoff: &Tradeoff, name: &str, points: &[&Point]) 
     ));
 }
 
-const COLUMNS: [&str; 10] = [
+const COLUMNS: [&str; 12] = [
     "bytes",
     "nine bands / dB",
     "third octaves / dB",
     "log-spectral / dB",
+    "felt / dB",
+    "lossless / %",
     "played / dB",
     "correlation",
     "level / dB",
@@ -161,6 +166,8 @@ fn table(caption: &str, points: &[&Point]) -> Table {
             Cell::Plain(p.band_error_rms_db),
             Cell::Plain(p.third_octave_error_rms_db),
             Cell::Plain(p.log_spectral_distance_db),
+            Cell::Plain(p.felt_error_rms_db),
+            Cell::Text(format!("{:.0}", 100.0 * p.share_lossless), String::new()),
             Cell::Text(
                 format!("{:.2}", p.samples_band_error_rms_db),
                 format!("± {:.2}", p.samples_band_error_spread_db),

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use htex_author::LosslessShare;
 use htex_format::ErrorMeasure;
 use serde::Serialize;
 use serde_json::Value;
@@ -56,6 +57,12 @@ pub struct Point {
     pub log_spectral_distance_db: f64,
     /// Level of the model's magnitudes relative to the recording's, dB.
     pub level_error_db: f64,
+    /// RMS over third-octave bands of the difference of what is above a fingertip's detection threshold, of the model's magnitudes, dB.
+    pub felt_error_rms_db: f64,
+    /// Share of the recordings whose difference from the model's magnitudes is below the difference threshold in every band; 0 or 1 for one recording.
+    pub share_below_difference_threshold: f64,
+    /// Share of the recordings for which that holds, or whose nine-band error is at or below the recording's own repeatability.
+    pub share_lossless: f64,
     /// Spectral correlation of rendered samples.
     pub samples_spectral_correlation: f64,
     /// RMS error over the nine bands of rendered samples, dB.
@@ -68,6 +75,8 @@ pub struct Point {
     pub samples_log_spectral_distance_db: f64,
     /// Level of rendered samples relative to the recording's, dB.
     pub samples_level_error_db: f64,
+    /// RMS over third-octave bands of the difference of what is above a fingertip's detection threshold, of rendered samples, dB.
+    pub samples_felt_error_rms_db: f64,
     /// Whether it is on the front of bytes and magnitude error, among settings that play
     /// at their defaults.
     pub on_front: bool,
@@ -88,6 +97,8 @@ impl Point {
             _ => None,
         };
         let (magnitude, samples) = (measured.by_magnitude, measured.by_samples);
+        let mut lossless = LosslessShare::default();
+        lossless.count(&magnitude.felt);
         Self {
             recording: recording.to_owned(),
             model: one.model.clone(),
@@ -107,12 +118,16 @@ impl Point {
             third_octave_error_rms_db: magnitude.third_octave_error_rms_db,
             log_spectral_distance_db: magnitude.log_spectral_distance_db,
             level_error_db: magnitude.level_error_db,
+            felt_error_rms_db: magnitude.felt.error_rms_db,
+            share_below_difference_threshold: lossless.below_difference_threshold as f64,
+            share_lossless: lossless.either as f64,
             samples_spectral_correlation: samples.spectral_correlation,
             samples_band_error_rms_db: samples.band_error_rms_db,
             samples_band_error_spread_db: measured.samples_spread_db,
             samples_third_octave_error_rms_db: samples.third_octave_error_rms_db,
             samples_log_spectral_distance_db: samples.log_spectral_distance_db,
             samples_level_error_db: samples.level_error_db,
+            samples_felt_error_rms_db: samples.felt.error_rms_db,
             on_front: false,
             on_time_front: false,
         }

@@ -14,11 +14,12 @@ use crate::sweep::{LeftOut, Swept};
 /// Description of the numbers, for readers of the JSON.
 const METHOD: &str = "times are medians of interleaved runs on one core, with warm caches; every spread is half \
     the interquartile range over the median. Errors are RMS over nine bands, over \
-    third-octave bands, and over the bins (log-spectral distance), by the model's own magnitudes, \
+    third-octave bands, and over the bins (log-spectral distance), and over third-octave bands of what is above a fingertip's detection threshold (felt), by the model's own magnitudes, \
     and of three renderings; `error` is the one used for fronts and knees. on_front: bytes \
     against the error by magnitudes, settings that play at their defaults; on_time_front: \
     ns_per_sample against the error by samples, settings with blocks and output rate at their defaults. The \
-    recording's error is the difference between its odd and even strokes.";
+    recording's error is the difference between its odd and even strokes. share_lossless: recordings whose difference by magnitudes is \
+    below the difference threshold, or whose nine-band error is at or below the recording's repeatability.";
 
 /// Most steps in a warning.
 const SHOWN_STEPS: usize = 3;

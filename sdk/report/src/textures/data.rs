@@ -9,10 +9,29 @@ pub struct TextureReport {
     pub intro: Vec<String>,
     /// The textures, in the order of the page.
     pub textures: Vec<Texture>,
+    /// Of the textures, how many each model keeps so that no difference is to be expected to be felt; may be empty.
+    pub shares: Vec<Share>,
     /// Further pictures, as SVG, before the spectra.
     pub pictures: Vec<String>,
     /// The command that generates this page.
     pub command: String,
+}
+
+/// Of some textures, how many a model keeps so that no difference is to be expected to be felt.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Share {
+    /// The model's display name.
+    pub model: String,
+    /// Number of textures.
+    pub textures: usize,
+    /// Those whose difference is below the difference threshold in every third octave.
+    pub below_difference_threshold: usize,
+    /// Those of them for which that holds for a person with a sensitive finger, too.
+    pub below_if_sensitive: usize,
+    /// Those whose nine-band error is at or below the recording's repeatability.
+    pub within_repeatability: usize,
+    /// Those for which one of both holds.
+    pub either: usize,
 }
 
 /// One texture at one exploration condition.
@@ -61,6 +80,8 @@ pub struct ModelResult {
     pub third_octave_error_rms_db: Option<f64>,
     /// RMS over the bins of the difference of the magnitudes in decibels.
     pub log_spectral_distance_db: Option<f64>,
+    /// RMS over third-octave bands of the difference of what is above a fingertip's detection threshold, decibels.
+    pub felt_error_rms_db: Option<f64>,
     /// The nine-band error of rendered samples, decibels.
     pub samples_band_error_rms_db: Option<f64>,
     /// Size of the parameters, bytes.

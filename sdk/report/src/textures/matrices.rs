@@ -25,7 +25,7 @@ pub(super) fn summary(report: &TextureReport) -> String {
     if measured(report, rendered) {
         out = out.raw(&error(report, "rendered samples", rendered));
     }
-    let beside: [(&str, Value); 2] = [
+    let beside: [(&str, Value); 3] = [
         (
             "Third-octave error of the fitted magnitude, RMS in dB",
             |m| m.third_octave_error_rms_db,
@@ -33,6 +33,10 @@ pub(super) fn summary(report: &TextureReport) -> String {
         (
             "Log-spectral distance of the fitted magnitude, RMS in dB",
             |m| m.log_spectral_distance_db,
+        ),
+        (
+            "Felt difference of the fitted magnitude: above the detection threshold, in third octaves, RMS in dB",
+            |m| m.felt_error_rms_db,
         ),
     ];
     for (caption, value) in beside {

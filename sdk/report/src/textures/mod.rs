@@ -3,10 +3,11 @@
 mod data;
 mod matrices;
 mod picture;
+mod shares;
 mod sizes;
 mod spectra;
 
-pub use data::{ModelResult, Texture, TextureReport};
+pub use data::{ModelResult, Share, Texture, TextureReport};
 pub use picture::spectra_picture;
 
 use crate::markup::Element;
@@ -28,6 +29,7 @@ pub fn texture_report(report: &TextureReport) -> String {
     page.html(&spectra::section(report));
     page.heading("How close the models come");
     page.html(&matrices::summary(report));
+    page.html(&shares::table(report));
     page.heading("Error in each band");
     page.html(&matrices::bands(report));
     page.heading("Sizes");
@@ -73,7 +75,8 @@ fn how_to_read(page: &mut Page) {
          nine-band error compares the energy in nine overlapping bands, evenly spaced in log \
          frequency, in decibels: it measures whether the right amount of vibration is in the right \
          region, and 0 is the best. Third-octave bands do not overlap and are about twice as fine, \
-         and the log-spectral distance compares every bin in decibels; no model is fitted to either. \
+         and the log-spectral distance compares every bin in decibels; no model is fitted to either. What is felt of a difference is what is above a fingertip's detection \
+         threshold, in third octaves, after forces have become displacements of the skin. \
          The measures can differ; none is a rating by a person.",
     ));
 }

@@ -1,0 +1,47 @@
+//! Table of the textures that a model keeps so that no difference is to be expected to be felt.
+
+use super::data::{Share, TextureReport};
+use crate::page::paragraph;
+use crate::table::{Cell, HeatScale, Row, Table};
+
+const CAPTION: &str = "Textures whose difference is not to be expected to be felt";
+const NOTE: &str = "Below the difference threshold: what is above a fingertip's detection threshold differs by less than \
+    1.6 dB (20 %) in every third octave, and in all together. Sensitive finger: the same for a threshold 10 dB lower and a skin that yields \
+    twice as far. Within repeatability: the nine-band error is at or below the difference between parts of the recording. None of them \
+    is a rating by a person.";
+
+/// Returns the table with its explanation; nothing without shares.
+pub(super) fn table(report: &TextureReport) -> String {
+    if report.shares.is_empty() {
+        return String::new();
+    }
+    let columns = [
+        "below the difference threshold",
+        "the same, sensitive finger",
+        "within repeatability",
+        "one of both",
+    ];
+    let table = Table {
+        caption: CAPTION.to_owned(),
+        corner: "model".to_owned(),
+        columns: columns.map(str::to_owned).to_vec(),
+        rows: report.shares.iter().map(row).collect(),
+        scale: HeatScale::None,
+        decimals: 0,
+    };
+    table.to_html() + "\n" + &paragraph(NOTE)
+}
+
+fn row(share: &Share) -> Row {
+    let counts = [
+        share.below_difference_threshold,
+        share.below_if_sensitive,
+        share.within_repeatability,
+        share.either,
+    ];
+    let cell = |count: usize| Cell::Text(format!("{count} of {}", share.textures), String::new());
+    Row {
+        header: share.model.clone(),
+        cells: counts.map(cell).to_vec(),
+    }
+}

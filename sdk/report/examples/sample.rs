@@ -26,6 +26,7 @@ fn report() -> TextureReport {
             "Every number on this page is invented, to show what a report looks like.".to_owned(),
         ],
         textures: (0..TEXTURES.len()).map(texture).collect(),
+        shares: Vec::new(),
         pictures: Vec::new(),
         command: "cargo run -p htex-report --example sample -- report.html".to_owned(),
     }
@@ -92,6 +93,7 @@ fn model(
         band_error_rms_db: error_db,
         third_octave_error_rms_db: Some(1.4 * error_db),
         log_spectral_distance_db: Some(1.9 * error_db),
+        felt_error_rms_db: Some(0.8 * error_db),
         samples_band_error_rms_db: Some(error_db + 0.2),
         payload_bytes: bytes,
         lines: (name == "sPeak").then(|| strongest(frequency_hz, recorded)),

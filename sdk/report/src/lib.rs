@@ -41,5 +41,5 @@ pub use plot::Plot;
 pub use series::{Line, Series};
 pub use stack::stacked;
 pub use table::{Cell, HeatScale, Row, Table};
-pub use textures::{ModelResult, Texture, TextureReport, spectra_picture, texture_report};
+pub use textures::{ModelResult, Share, Texture, TextureReport, spectra_picture, texture_report};
 pub use ticks::{Tick, ticks};

@@ -2,8 +2,8 @@
 //! Properties of all pictures and pages, for any data.
 
 use htex_report::{
-    Axis, Cell, HeatScale, Line, ModelResult, Plot, Row, Series, Table, Texture, TextureReport,
-    texture_report,
+    Axis, Cell, HeatScale, Line, ModelResult, Plot, Row, Series, Share, Table, Texture,
+    TextureReport, texture_report,
 };
 use proptest::prelude::*;
 
@@ -53,6 +53,7 @@ fn hostile_model(values: &[f64], lines: bool) -> ModelResult {
         band_error_rms_db: first,
         third_octave_error_rms_db: values.last().copied(),
         log_spectral_distance_db: values.first().copied(),
+        felt_error_rms_db: values.first().copied(),
         samples_band_error_rms_db: values.last().copied(),
         payload_bytes: values.len(),
         lines: lines.then(|| values.iter().map(|v| (*v, *v)).collect()),
@@ -76,6 +77,10 @@ fn hostile_report(values: &[f64]) -> TextureReport {
         title: HOSTILE.to_owned(),
         intro: vec![HOSTILE.to_owned()],
         textures: vec![texture, Texture::default()],
+        shares: vec![Share {
+            model: HOSTILE.to_owned(),
+            ..Share::default()
+        }],
         pictures: vec![Plot::new(HOSTILE, Axis::log(HOSTILE), Axis::log(HOSTILE)).to_svg()],
         command: HOSTILE.to_owned(),
     }

@@ -106,8 +106,8 @@ pub(crate) fn shares<'a>(summaries: impl IntoIterator<Item = &'a AssetSummary>) 
             representation.count(&mut shares[at].1);
         }
     }
-    let share = |(model, share): (String, LosslessShare)| Share {
-        model,
+    let share = |(short_name, share): (String, LosslessShare)| Share {
+        short_name,
         textures: share.textures,
         below_difference_threshold: share.below_difference_threshold,
         below_if_sensitive: share.below_if_sensitive,

@@ -109,6 +109,9 @@ fn what_changed_is_built_and_nothing_else() {
         (&first["fitted"], &first["textures"]),
         (&6.into(), &6.into())
     );
+    // `bands` keeps what is felt of the simulated surfaces, two numbers do not.
+    let kept = |model: &str| first["lossless"][format!("org.htex.{model}")]["either"].as_u64();
+    assert!(kept("bands") > kept("sbeta"), "{}", first["lossless"]);
     let built = results(&place.path("dist"));
     for file in [
         "surfaces.htexlib",

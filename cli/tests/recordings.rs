@@ -187,6 +187,16 @@ fn wav_at_44_100_hz() {
             (a.as_f64().unwrap() - b.as_f64().unwrap()).abs() < 1e-6,
             "{i}: {a} {b}"
         );
+        let felt = |of: &serde_json::Value| of["representations"][i]["felt"].clone();
+        for key in [
+            "below_difference_threshold",
+            "below_if_sensitive",
+            "within_repeatability",
+        ] {
+            assert!(felt(&fit)[key].is_boolean() && felt(&fit)[key] == felt(&compared)[key]);
+        }
+        let error_db = |of: &serde_json::Value| felt(of)["error_rms_db"].as_f64().unwrap();
+        assert!((error_db(&fit) - error_db(&compared)).abs() < 1e-6, "{i}");
     }
     assert_eq!(
         strongest_hz(&place.json(&["process", "stroke.wav", "--json"])),

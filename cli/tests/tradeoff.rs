@@ -53,6 +53,9 @@ fn a_sweep_writes_a_page_and_its_points() {
             assert!(number(point, key) > 0.0, "{key} of {point}");
         }
         for key in [
+            "felt_error_rms_db",
+            "share_lossless",
+            "samples_felt_error_rms_db",
             "fit_ms",
             "spread",
             "spectral_correlation",

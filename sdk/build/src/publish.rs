@@ -29,8 +29,6 @@ const AT_ONCE: usize = 8;
 ///
 /// let here = Destination::parse("dist".as_ref(), None)?;
 /// assert_eq!(here.folder(), "dist");
-/// let elsewhere = Destination::parse("s3://textures/vinyls".as_ref(), Some("work".as_ref()))?;
-/// assert_eq!(elsewhere.folder(), "work");
 /// # Ok::<(), htex_build::BuildError>(())
 /// ```
 #[derive(Debug, Clone)]

@@ -78,7 +78,7 @@ fn hostile_report(values: &[f64]) -> TextureReport {
         intro: vec![HOSTILE.to_owned()],
         textures: vec![texture, Texture::default()],
         shares: vec![Share {
-            model: HOSTILE.to_owned(),
+            short_name: HOSTILE.to_owned(),
             ..Share::default()
         }],
         pictures: vec![Plot::new(HOSTILE, Axis::log(HOSTILE), Axis::log(HOSTILE)).to_svg()],

@@ -20,8 +20,8 @@ pub struct TextureReport {
 /// Of some textures, how many a model keeps so that no difference is to be expected to be felt.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Share {
-    /// The model's display name.
-    pub model: String,
+    /// The model's short name.
+    pub short_name: String,
     /// Number of textures.
     pub textures: usize,
     /// Those whose difference is below the difference threshold in every third octave.

@@ -25,14 +25,22 @@ pub(super) fn table(report: &TextureReport) -> String {
         caption: CAPTION.to_owned(),
         corner: "model".to_owned(),
         columns: columns.map(str::to_owned).to_vec(),
-        rows: report.shares.iter().map(row).collect(),
+        rows: report
+            .shares
+            .iter()
+            .map(|share| row(report, share))
+            .collect(),
         scale: HeatScale::None,
         decimals: 0,
     };
     table.to_html() + "\n" + &paragraph(NOTE)
 }
 
-fn row(share: &Share) -> Row {
+fn row(report: &TextureReport, share: &Share) -> Row {
+    let models = report.models();
+    let known = models
+        .iter()
+        .find(|(short_name, _)| *short_name == share.short_name);
     let counts = [
         share.below_difference_threshold,
         share.below_if_sensitive,
@@ -41,7 +49,9 @@ fn row(share: &Share) -> Row {
     ];
     let cell = |count: usize| Cell::Text(format!("{count} of {}", share.textures), String::new());
     Row {
-        header: share.model.clone(),
+        header: known
+            .map_or(&share.short_name[..], |(_, name)| name)
+            .to_owned(),
         cells: counts.map(cell).to_vec(),
     }
 }

@@ -37,16 +37,11 @@ pub(crate) enum Failure {
         file: String,
         error: htex_library::LibraryError,
     },
-    #[error("{file}: {}", findings_text(.findings))]
+    #[error("{file}: {cannot} (`htex explain CODE` says more){}", listed(.findings))]
     Findings {
         file: String,
-        findings: Vec<htex_format::Finding>,
-    },
-    /// A table of a study that cannot be analysed.
-    #[cfg(feature = "lab")]
-    #[error("{file}: {}", table_text(.findings))]
-    Table {
-        file: String,
+        /// What cannot be done for them.
+        cannot: &'static str,
         findings: Vec<htex_format::Finding>,
     },
     #[error("{file}: {error}")]
@@ -66,13 +61,6 @@ pub(crate) enum Failure {
     #[cfg(feature = "lab")]
     #[error(transparent)]
     Record(#[from] htex_lab::record::RecordError),
-    /// A study is invalid.
-    #[cfg(feature = "lab")]
-    #[error("{file}: this study cannot be run (`htex explain CODE` says more){}", listed(.findings))]
-    StudyFindings {
-        file: String,
-        findings: Vec<htex_format::Finding>,
-    },
     #[error("cannot read {file}: {error}")]
     Read { file: String, error: std::io::Error },
     #[error("cannot write {file}: {error}")]
@@ -149,6 +137,7 @@ impl Failure {
             htex_scene::LoadError::Io { path, error } => Self::read(&path, error),
             htex_scene::LoadError::Invalid { findings } => Self::Findings {
                 file: shown(file),
+                cannot: "this scene cannot be played",
                 findings,
             },
             other => Self::Other(format!("{}: {other}", shown(file))),
@@ -199,14 +188,10 @@ impl Failure {
     pub(crate) fn to_lines(&self) -> Vec<String> {
         let text = named(&self.to_string());
         let (first, findings) = match self {
-            #[cfg(feature = "lab")]
-            Self::StudyFindings { .. } => text.split_once('\n').unwrap_or((&text, "")),
             // One line for each finding, with control characters escaped.
             Self::Findings { .. } | Self::Author(AuthorError::Strict { .. }) => {
                 text.split_once('\n').unwrap_or((&text, ""))
             }
-            #[cfg(feature = "lab")]
-            Self::Table { .. } => text.split_once('\n').unwrap_or((&text, "")),
             _ => (&text[..], ""),
         };
         let first = with(first, self.flags());
@@ -234,20 +219,6 @@ fn flag_of(error: &htex::Error) -> &'static str {
         htex::Error::EmbeddedOff { .. } => " (by --no-embedded-plugins)",
         _ => "",
     }
-}
-
-/// Findings of a table, one on each line.
-#[cfg(feature = "lab")]
-fn table_text(findings: &[htex_format::Finding]) -> String {
-    let line = |f: &htex_format::Finding| format!("\n  {} {}", f.severity, plain(&f.to_string()));
-    let lines: String = findings.iter().map(line).collect();
-    format!("this table cannot be analysed (`htex explain CODE` says more){lines}")
-}
-
-/// Findings, one on each line.
-fn findings_text(findings: &[htex_format::Finding]) -> String {
-    let lines = listed(findings);
-    format!("this scene cannot be played (`htex explain CODE` says more){lines}")
 }
 
 /// Findings, each after a line end.

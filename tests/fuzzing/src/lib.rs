@@ -24,11 +24,13 @@ mod module;
 mod output;
 mod printed;
 mod promise;
+mod recipe;
 mod recordings;
 mod response;
 mod scene;
 pub mod seeds;
 mod signed;
+mod studies;
 
 pub use asset::open_asset;
 pub use baked::baked_block;
@@ -42,10 +44,12 @@ pub use manifest::manifest;
 pub use module::wasm_module;
 pub use output::output_name;
 pub use printed::printed_text;
+pub use recipe::recipe;
 pub use recordings::{csv, npy, wav};
 pub use response::response_csv;
 pub use scene::scene;
 pub use signed::signed_plugin;
+pub use studies::{answers, ratings, spectra_table, study};
 
 /// A fuzz target.
 #[derive(Debug, Clone, Copy)]
@@ -87,6 +91,11 @@ pub const TARGETS: &[Target] = &[
     target("c_calls", c_calls),
     target("baked_block", baked_block),
     target("library", library),
+    target("study", study),
+    target("answers", answers),
+    target("ratings", ratings),
+    target("spectra_table", spectra_table),
+    target("recipe", recipe),
 ];
 
 const fn target(name: &'static str, run: fn(&[u8]) -> bool) -> Target {

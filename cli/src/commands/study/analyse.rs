@@ -76,7 +76,11 @@ impl Analyse {
         let Invalid { findings } = invalid;
         if !self.json {
             let file = shown(file);
-            return Err(Failure::Table { file, findings });
+            return Err(Failure::Findings {
+                file,
+                cannot: "this table cannot be analysed",
+                findings,
+            });
         }
         let valid = false;
         let report = Report { valid, findings };

@@ -53,11 +53,15 @@ impl Study {
     }
 }
 
+/// What findings of a study mean.
+const CANNOT_RUN: &str = "this study cannot be run";
+
 /// Reads a study that must be valid, without the files that it names.
 fn open(file: &Path) -> Result<File, Failure> {
     let bytes = std::fs::read(file).map_err(|error| Failure::read(file, error))?;
     let mut findings = Findings::default();
-    read_study(&bytes, &mut findings).ok_or_else(|| Failure::StudyFindings {
+    read_study(&bytes, &mut findings).ok_or_else(|| Failure::Findings {
+        cannot: CANNOT_RUN,
         file: shown(file),
         findings: findings.into_list(),
     })

@@ -10,8 +10,8 @@ use serde_json::{Value, json};
 
 use super::asker::AskingArgs;
 use super::clock::{FastClock, WallClock};
-use super::open;
 use super::rig::StudyRig;
+use super::{CANNOT_RUN, open};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::models::tool;
@@ -93,7 +93,8 @@ impl Run {
         findings.retain(|finding| finding.severity == Severity::Error);
         match findings.is_empty() {
             true => Ok(()),
-            false => Err(Failure::StudyFindings {
+            false => Err(Failure::Findings {
+                cannot: CANNOT_RUN,
                 file: shown(&self.study),
                 findings,
             }),

@@ -1,0 +1,168 @@
+//! Studies, files of answers, and the tables of an analysis.
+
+use std::sync::OnceLock;
+
+use htex_format::{Findings, plain};
+use htex_lab::analyse::{Checked, Incomplete, Invalid, Ratings, Spectra, analyse};
+use htex_lab::study::{
+    Line, ParticipantPlan, Participants, Plan, Session, Study, export, read_study,
+};
+
+use crate::promise::sentence;
+
+/// Most ratings of which an analysis is made.
+const MOST_CELLS: usize = 60;
+/// Most trials of a plan that is made.
+const MOST_TRIALS: usize = 100_000;
+
+/// A study of two participants.
+pub(crate) const STUDY: &str = "htex_study = '1.0'\nname = 'S'\nseed = 5\ntrial_s = 0.05\nparticipants = 2\nrepetitions = 1\n\
+    models = ['ar', 'sbeta']\nphases = ['testing']\nmotion = { constant = { speed_mm_s = 80, force_n = 0.4 } }\n\
+    device = { adapter = 'file' }\n[[textures]]\nasset = 'vinyl.htex'\n";
+
+/// Ratings of three participants.
+pub(crate) const RATINGS: &str = "participant,texture,model,repetition,rating\n\
+    p1,vinyl,ar,1,3\np1,vinyl,sbeta,1,5\np2,vinyl,ar,1,2\np2,vinyl,sbeta,1,3\np3,vinyl,ar,1,0\np3,vinyl,sbeta,1,6\n";
+
+/// A file `study.toml`, and the order of its participants.
+pub fn study(input: &[u8]) -> bool {
+    let mut findings = Findings::default();
+    let study = read_study(input, &mut findings);
+    let errors = findings.has_errors();
+    assert_ne!(study.is_some(), errors, "a study, or a reason");
+    for finding in findings.into_list() {
+        assert!(
+            htex_lab::study::explain(&finding.code).is_some(),
+            "{}",
+            finding.code
+        );
+        sentence(&finding);
+    }
+    let Some(study) = study else {
+        return false;
+    };
+    if trials(&study) <= MOST_TRIALS {
+        let plan = Plan::new(&study);
+        assert_eq!(plan, Plan::new(&study), "the same study, another order");
+    }
+    true
+}
+
+fn trials(study: &Study) -> usize {
+    let each = study.textures.len() * (study.models.len() + 1);
+    let repeated = each.saturating_mul(study.repetitions as usize);
+    let participants = match &study.participants {
+        Participants::Count(count) => *count as usize,
+        Participants::Names(names) => names.len(),
+    };
+    repeated.saturating_mul(participants)
+}
+
+/// A file of a participant's answers: exported, and continued by the session that it says it is of.
+pub fn answers(input: &[u8]) -> bool {
+    static PLANNED: OnceLock<(Study, Plan)> = OnceLock::new();
+    let (study, plan) = PLANNED.get_or_init(|| {
+        let study = read_study(STUDY.as_bytes(), &mut Findings::default());
+        let study = study.expect("a study");
+        let plan = Plan::new(&study);
+        (study, plan)
+    });
+    let folder = tempfile::tempdir().expect("a folder");
+    let own: &ParticipantPlan = plan.participants.first().expect("a participant");
+    let file = htex_lab::study::participant_file(folder.path(), &own.participant);
+    std::fs::write(&file, input).expect("it can be written");
+    let exported = match export(folder.path(), None) {
+        Ok(export) => {
+            export
+                .warnings
+                .iter()
+                .for_each(|warning| sentence(&plain(warning)));
+            true
+        }
+        Err(error) => {
+            sentence(&plain(&error.to_string()));
+            false
+        }
+    };
+    let first = input.split(|b| *b == b'\n').next().unwrap_or_default();
+    let Ok(Line::Header(header)) = serde_json::from_slice(first) else {
+        return exported;
+    };
+    match Session::open(study, own, folder.path(), &header) {
+        Ok(session) => {
+            let (done, all) = session.trials();
+            assert!(done <= all, "{done} of {all} trials");
+            session.step();
+        }
+        Err(error) => sentence(&plain(&error.to_string())),
+    }
+    exported
+}
+
+/// A table of ratings, and its analysis.
+pub fn ratings(input: &[u8]) -> bool {
+    let checked = Ratings::read(input, Incomplete::Refuse)
+        .or_else(|_| Ratings::read(input, Incomplete::LeaveOut));
+    match checked {
+        Ok(checked) => {
+            analysed(&checked, None);
+            true
+        }
+        Err(invalid) => refused(&invalid),
+    }
+}
+
+/// A table of felt spectra beside sound ratings.
+pub fn spectra_table(input: &[u8]) -> bool {
+    let ratings = Ratings::read(RATINGS.as_bytes(), Incomplete::Refuse).expect("a sound table");
+    match Spectra::read(input, &ratings.table) {
+        Ok(spectra) => {
+            analysed(&ratings, Some(&spectra.table));
+            true
+        }
+        Err(invalid) => refused(&invalid),
+    }
+}
+
+fn analysed(ratings: &Checked<Ratings>, spectra: Option<&Spectra>) {
+    let table = &ratings.table;
+    if table.participants.len() * table.textures.len() * table.models.len() > MOST_CELLS {
+        return;
+    }
+    let analysis = analyse(table, spectra, "fuzzed");
+    let json = serde_json::to_string(&analysis).expect("an analysis is JSON");
+    assert!(!json.contains("NaN"), "{json}");
+    analysis
+        .notes
+        .iter()
+        .for_each(|note| sentence(&plain(&note.message)));
+}
+
+fn refused(invalid: &Invalid) -> bool {
+    assert!(!invalid.findings.is_empty(), "refused without a reason");
+    for finding in &invalid.findings {
+        assert!(
+            htex_lab::analyse::explain(&finding.code).is_some(),
+            "{}",
+            finding.code
+        );
+        sentence(finding);
+    }
+    false
+}
+
+/// Answers of a session that was left after its first rating.
+pub(crate) fn answered() -> String {
+    let study = read_study(STUDY.as_bytes(), &mut Findings::default()).expect("a study");
+    let plan = Plan::new(&study);
+    let own = plan.participants.first().expect("a participant");
+    let header = serde_json::json!({
+        "htex_answers": "1.0", "study": "S", "participant": own.participant, "files": {}, "ratings": 2, "tool": "htex",
+        "device": { "adapter": "org.htex.file", "profile": "" },
+    });
+    let header = serde_json::from_value(header).expect("a header");
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut session = Session::open(&study, own, folder.path(), &header).expect("a new session");
+    session.rate(3, 900, 1000).expect("the first trial");
+    std::fs::read_to_string(session.file()).expect("it was written")
+}

@@ -267,7 +267,7 @@ fn check_marker<T: Table>(marker: u32) -> Result<(), AbiFault> {
         false => Err(AbiFault::Marker {
             marker,
             kind: T::KIND,
-            major: T::MARKER >> 8 & 0xff,
+            major: (T::MARKER >> 8) & 0xff,
         }),
     }
 }

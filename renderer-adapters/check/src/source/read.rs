@@ -24,6 +24,7 @@ pub(crate) fn starts(case: &Case) -> Found {
     let mut samples = vec![0.0; source.channels().len()];
     let early = source.read(&mut samples, Duration::ZERO);
     closed("a read before the start", early)?;
+    drop(source);
     // What was refused may have ended it.
     let mut source = case.open()?;
     source.start()?;

@@ -28,7 +28,7 @@ htex_check_runner::checks! { Case;
         "Nothing can be read or started after the stop; a second stop changes nothing.";
     "handles" needs ["start"] read::handles:
         "A handle that was closed is refused, also when another source was opened.";
-    "two" needs ["start"] read::two:
+    "two" needs ["read"] read::two:
         "Two are open at the same time, or the second is refused as busy.";
     "memory" needs ["read"] read::memory:
         "Memory does not grow over 5 s of reads (10,000 at most), nor over 100 sources opened and closed: at most 2 MiB. On Linux.";

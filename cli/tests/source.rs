@@ -151,7 +151,7 @@ fn the_ridges_are_recorded_and_fitted() {
     let mut lines = csv.lines();
     let columns: Vec<&str> = lines.next().unwrap().split(',').collect();
     let column = |name: &str| columns.iter().position(|c| c.starts_with(name)).unwrap();
-    let (force, normal, x) = (column("lateral_x"), column("normal"), column("x"));
+    let (force, normal, speed) = (column("lateral_x"), column("normal"), column("speed"));
     let mut rows = 0;
     for (frame, line) in lines.enumerate() {
         let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
@@ -168,7 +168,7 @@ fn the_ridges_are_recorded_and_fitted() {
             (cells[force] - expected).abs() < 1e-9,
             "frame {frame}: {line}"
         );
-        assert!((cells[normal] - 0.4).abs() < 1e-12 && (cells[x] - x_mm).abs() < 1e-9);
+        assert!((cells[normal] - 0.4).abs() < 1e-12 && cells[speed] == 80.0);
         rows += 1;
     }
     assert_eq!(rows, 20_000);
@@ -212,7 +212,7 @@ fn what_is_no_source_is_refused_with_its_reason() {
             2,
             "no source `rigdes`; there are ridges, file, daq",
         ),
-        (&nan, "ridges:1", 1, "of channel `x` is NaN"),
+        (&nan, "ridges:1", 1, "of channel `speed` is NaN"),
         (&many, "ridges:1", 1, "it delivered"),
         (&rate, "ridges:1", 1, "stream: "),
     ];
@@ -285,7 +285,7 @@ fn sources_are_listed_and_shown() {
     assert_eq!(info["stream"]["channels"][1]["name"], "normal");
     let text = place.run(&["source", "info", named]).text();
     assert!(
-        text.contains("rate: 5000 Hz\n  channels: lateral_x in N, normal in N, x in mm"),
+        text.contains("rate: 5000 Hz\n  channels: lateral_x in N, normal in N, speed in mm/s"),
         "{text}"
     );
     assert!(text.contains("pace: real or fast [real]"), "{text}");

@@ -165,7 +165,7 @@ int64_t htex_source_stream(int64_t source, uint8_t *out, size_t capacity) {
     char text[256];
     snprintf(text, sizeof text,
              "{\"rate_hz\":%.17g,\"channels\":[{\"name\":\"lateral_x\",\"unit\":\"N\"},"
-             "{\"name\":\"normal\",\"unit\":\"N\"},{\"name\":\"x\",\"unit\":\"mm\"}]}",
+             "{\"name\":\"normal\",\"unit\":\"N\"},{\"name\":\"speed\",\"unit\":\"mm/s\"}]}",
              s->settings.rate_hz);
     return give(text, out, capacity);
 }
@@ -199,14 +199,14 @@ static uint64_t waiting(const struct source *s, uint32_t timeout_ms) {
     return sampled > s->frames ? sampled - s->frames : 0;
 }
 
-/* Forces and position of a frame: the finger moves to and fro at its speed. */
+/* Forces and speed of a frame: the finger moves to and fro at its speed. */
 static void sample(const struct settings *all, uint64_t frame, double *out) {
     double way_mm = fmod(all->speed_mm_s * (double)frame / all->rate_hz, 2 * STROKE_MM);
     double is_back = way_mm >= STROKE_MM, x_mm = is_back ? 2 * STROKE_MM - way_mm : way_mm;
     double ripple = RIPPLE * sin(2 * PI * x_mm / all->spacing_mm);
     out[0] = FRICTION * all->force_n * (ripple - (is_back ? -1 : 1));
     out[1] = all->force_n;
-    out[2] = x_mm;
+    out[2] = all->speed_mm_s;
 }
 
 int64_t htex_source_read(int64_t source, double *samples, size_t len, uint32_t timeout_ms) {

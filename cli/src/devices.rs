@@ -7,11 +7,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
-use htex_device::{
-    Adapter, DeviceError, DeviceOrigin, DeviceSearch, Devices, KnownDevice, NativeAdapter, Settings,
-};
+use htex_device::{Adapter, DeviceError, Devices, KnownDevice, Origin, Settings};
 use htex_device_check::Subject;
 
+use crate::adapters;
 use crate::failure::Failure;
 use crate::output::warn;
 
@@ -36,13 +35,15 @@ pub(crate) use with_sound;
 
 /// The reason why sound is absent from this build; `None` for other devices.
 fn no_sound(name: &str) -> Option<DeviceError> {
+    let instead = "`--device` names another device, and `htex synth` and `htex render` write files";
+    without_sound(name, instead)
+}
+
+/// The reason why a device or source of this name is absent, if it is sound and not in this build; `instead` is a sentence.
+pub(crate) fn without_sound(name: &str, instead: &str) -> Option<DeviceError> {
     let sound = cfg!(not(feature = "audio")) && matches!(name, "audio" | "org.htex.audio");
-    let why = concat!(
-        "this htex is built without sound; ",
-        with_sound!(),
-        ". `--device` names another device, and `htex synth` and `htex render` write files"
-    );
-    sound.then(|| DeviceError::Missing(why.to_owned()))
+    let why = concat!("this htex is built without sound; ", with_sound!());
+    sound.then(|| DeviceError::Missing(format!("{why}. {instead}")))
 }
 
 /// Where devices come from.
@@ -70,11 +71,7 @@ impl DeviceArgs {
 
     /// As [`Self::devices`], without reports.
     pub(crate) fn devices_quietly(&self) -> Result<Devices, Failure> {
-        let search = DeviceSearch {
-            files: self.device_file.clone(),
-            dirs: self.device_dir.clone(),
-            ..DeviceSearch::default()
-        };
+        let search = adapters::search(&self.device_file, &self.device_dir);
         Ok(Devices::search(builtin(), &search)?)
     }
 
@@ -85,15 +82,10 @@ impl DeviceArgs {
 
     /// The device in the file of this name if there is one, else that of this short name or id.
     pub(crate) fn named(&self, name: &str) -> Result<KnownDevice, Failure> {
-        let file = Path::new(name);
-        if !file.is_file() {
-            let devices = self.devices()?;
-            let found = devices.find(name).cloned();
-            return found.map_err(|error| no_sound(name).unwrap_or(error).into());
-        }
-        Ok(KnownDevice {
-            adapter: Arc::new(NativeAdapter::load(file)?),
-            origin: DeviceOrigin::Library(file.to_owned()),
+        let found = adapters::named(name, || self.devices());
+        found.map_err(|error| match no_sound(name) {
+            Some(why) if error.is_unknown_name() => why.into(),
+            _ => error,
         })
     }
 
@@ -104,8 +96,8 @@ impl DeviceArgs {
         }
         let known = self.devices_quietly()?.find(name)?.clone();
         Ok(match known.origin {
-            DeviceOrigin::Library(path) => Subject::Library(path),
-            DeviceOrigin::Builtin => Subject::Builtin(known.adapter),
+            Origin::Library(path) => Subject::Library(path),
+            Origin::Builtin => Subject::Builtin(known.adapter),
         })
     }
 
@@ -113,20 +105,19 @@ impl DeviceArgs {
     pub(crate) fn again(&self) -> Vec<OsString> {
         let files = self.device_file.iter().map(|path| ("--device-file", path));
         let dirs = self.device_dir.iter().map(|path| ("--device-dir", path));
-        let pair = |(flag, path): (&str, &PathBuf)| [flag.into(), path.into()];
-        files.chain(dirs).flat_map(pair).collect()
+        adapters::again(files.chain(dirs))
     }
 }
 
-/// The settings of a device.
+/// The settings of a device or source.
 #[derive(Args)]
-#[command(next_help_heading = "Devices")]
+#[command(next_help_heading = "Settings")]
 pub(crate) struct SettingArgs {
     /// Settings that belong together, by their profile's name
     #[arg(long, value_name = "NAME")]
     profile: Option<String>,
 
-    /// A setting of the device, over its profile; may be given several times
+    /// A setting of the device or source, such as rate_hz=20000, over its profile; may be given several times
     #[arg(long = "set", value_name = "NAME=VALUE")]
     settings: Vec<String>,
 }

@@ -85,6 +85,12 @@ impl Failure {
         )
     }
 
+    /// Whether there is no device or source of a name.
+    pub(crate) fn is_unknown_name(&self) -> bool {
+        use htex_device::DeviceError::{Unknown, UnknownSource};
+        matches!(self, Self::Device(Unknown { .. } | UnknownSource { .. }))
+    }
+
     /// 2 for wrong usage, else 1.
     pub(crate) fn exit_code(&self) -> Exit {
         use htex_device::DeviceError::{Rate, Setting, Unknown, UnknownSource};

@@ -11,7 +11,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use htex_device::{
-    Capabilities, Device, DeviceError, DeviceOrigin, KnownDevice, Quantity, Settings, Status,
+    Capabilities, Device, DeviceError, KnownDevice, Origin, Quantity, Settings, Status,
     StreamFormat,
 };
 use serde::{Deserialize, Serialize};
@@ -166,7 +166,7 @@ fn start(known: &KnownDevice) -> std::io::Result<Child> {
     let program = invocation::program().map_err(std::io::Error::other)?;
     let mut command = program.command();
     command.arg("guard");
-    if let DeviceOrigin::Library(path) = &known.origin {
+    if let Origin::Library(path) = &known.origin {
         command.arg("--device-file").arg(path);
     }
     #[cfg(unix)]

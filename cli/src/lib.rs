@@ -2,6 +2,7 @@
 //! Python package call it.
 #![forbid(unsafe_code)]
 
+mod adapters;
 mod assets;
 mod bounded;
 mod checking;
@@ -32,7 +33,6 @@ mod scenes;
 mod schemas;
 mod shown;
 mod signals;
-#[cfg(feature = "lab")]
 mod sources;
 mod wasm_limits;
 mod wav;

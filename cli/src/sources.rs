@@ -1,25 +1,114 @@
-//! The sources that are linked into this program.
+//! Arguments that say where sources come from, shared by the commands that use them.
 
-use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use htex_device::{Source, Sources};
-use htex_lab::record::Replay;
+use clap::Args;
+use htex_device::{DeviceError, KnownSource, Origin, Source, SourceAdapter, Sources};
+use htex_device_check::source::Subject;
+use serde_json::Value;
 
+use crate::adapters;
+use crate::devices::{SettingArgs, without_sound};
 use crate::failure::Failure;
+use crate::output::warn;
 
-/// Source adapters, in the order in which they are listed.
-fn sources() -> Sources {
-    Sources::new(vec![
-        Arc::new(Replay),
+/// The adapters linked into this program, in the order in which they are shown.
+fn builtin() -> Vec<Arc<dyn SourceAdapter>> {
+    vec![
+        #[cfg(feature = "lab")]
+        Arc::new(htex_lab::record::Replay),
         Arc::new(htex_device_daq::DaqInput::new()),
-    ])
+        #[cfg(feature = "audio")]
+        Arc::new(htex_device_audio::AudioInput::new()),
+    ]
 }
 
-/// Opens the source that `NAME:TARGET` names.
-pub(crate) fn open(
-    text: &str,
-    given: &BTreeMap<String, String>,
-) -> Result<Box<dyn Source>, Failure> {
-    Ok(sources().open(text, given)?)
+/// The reason why sound is absent from this build; `None` for other sources.
+fn no_sound(name: &str) -> Option<DeviceError> {
+    without_sound(name, "`htex device list` shows the sources that it has")
+}
+
+/// Where sources come from.
+#[derive(Args, Default)]
+#[command(next_help_heading = "Sources")]
+pub(crate) struct SourceArgs {
+    /// A source's native library (it runs with all your rights: load only what you trust); may be
+    /// given several times
+    #[arg(long, value_name = "FILE")]
+    source_file: Vec<PathBuf>,
+
+    /// A folder of such libraries, searched before HTEX_SOURCE_PATH and the user's own folder
+    #[arg(long, value_name = "DIR")]
+    source_dir: Vec<PathBuf>,
+}
+
+impl SourceArgs {
+    /// The sources that are found; those that shadow others are reported on standard error.
+    pub(crate) fn sources(&self) -> Result<Sources, Failure> {
+        let sources = self.sources_quietly()?;
+        let notes: Vec<String> = sources.notes().iter().map(ToString::to_string).collect();
+        warn(&notes);
+        Ok(sources)
+    }
+
+    /// As [`Self::sources`], without reports.
+    pub(crate) fn sources_quietly(&self) -> Result<Sources, Failure> {
+        let search = adapters::search(&self.source_file, &self.source_dir);
+        Ok(Sources::search(builtin(), &search)?)
+    }
+
+    /// Opens the source that `NAME:TARGET` names.
+    pub(crate) fn open(
+        &self,
+        text: &str,
+        settings: &SettingArgs,
+        given: &std::collections::BTreeMap<String, String>,
+    ) -> Result<Box<dyn Source>, Failure> {
+        let opened = self.sources()?.open(text, settings.profile(), given);
+        let name = text.split(':').next().unwrap_or_default();
+        opened.map_err(|error| sounding(name, error.into()))
+    }
+
+    /// The source in the file of this name if there is one, else that of this short name or id.
+    pub(crate) fn named(&self, name: &str) -> Result<KnownSource, Failure> {
+        adapters::named(name, || self.sources()).map_err(|error| sounding(name, error))
+    }
+
+    /// As [`Self::named`], for a checker, which loads a library itself.
+    pub(crate) fn subject(&self, name: &str) -> Result<Subject, Failure> {
+        if Path::new(name).is_file() {
+            return Ok(Subject::Library(name.into()));
+        }
+        let known = self.sources_quietly()?.find(name)?.clone();
+        Ok(match known.origin {
+            Origin::Library(path) => Subject::Library(path),
+            Origin::Builtin => Subject::Builtin(known.adapter),
+        })
+    }
+
+    /// These arguments, for another run of this program.
+    pub(crate) fn again(&self) -> Vec<OsString> {
+        let files = self.source_file.iter().map(|path| ("--source-file", path));
+        let dirs = self.source_dir.iter().map(|path| ("--source-dir", path));
+        adapters::again(files.chain(dirs))
+    }
+}
+
+/// The error, or the reason why a source of this name is not in this build.
+fn sounding(name: &str, error: Failure) -> Failure {
+    match no_sound(name) {
+        Some(why) if error.is_unknown_name() => why.into(),
+        _ => error,
+    }
+}
+
+/// A source in a list, with its target.
+pub(crate) fn source_json(known: &KnownSource) -> Value {
+    let mut listed = adapters::listed_json(known);
+    if let Some(listed) = listed.as_object_mut() {
+        listed.insert("target".to_owned(), known.adapter.target().into());
+    }
+    listed
 }

@@ -6,10 +6,10 @@
 mod common;
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::time::Duration;
 
 use common::Place;
+use common::native::{self, complaints, count};
 use htex_device::{Adapter, DeviceError, NativeAdapter, Settings, StreamFormat};
 use htex_device_check::CHECKS;
 use serde_json::Value;
@@ -45,58 +45,19 @@ const FAULTS: &[(&str, &str, &str)] = &[
     ("OPENINGS_LEAK", "memory", "failed"),
 ];
 
-fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
-/// The strip chart of `examples`, built in a folder of its own.
+/// The strip chart of `examples`.
 fn strip(place: &Place) -> PathBuf {
-    for file in ["strip.c", "build.sh"] {
-        let from = workspace().join("examples/device-c-strip").join(file);
-        let text = std::fs::read_to_string(from).unwrap();
-        let include = workspace().join("spec/include").canonicalize().unwrap();
-        place.write(
-            file,
-            text.replace("../../spec/include", include.to_str().unwrap()),
-        );
-    }
-    let built = Command::new("sh")
-        .arg(place.path("build.sh"))
-        .output()
-        .unwrap();
-    let errors = String::from_utf8_lossy(&built.stderr);
-    assert!(built.status.success() && errors.is_empty(), "{errors}");
-    place.path(String::from_utf8(built.stdout).unwrap().trim())
+    native::example(place, "device-c-strip", "strip.c")
 }
 
-/// Compiles the faulty device with a fault, or without, around the valid one.
+/// The faulty device with a fault, or without.
 fn bad(place: &Place, good: &Path, fault: &str) -> String {
-    let out = place.path(&format!("bad-{fault}{}", std::env::consts::DLL_SUFFIX));
-    let status = Command::new("cc")
-        .args([
-            "-std=gnu11",
-            "-O1",
-            "-Wall",
-            "-Wextra",
-            "-Werror",
-            "-shared",
-            "-fPIC",
-        ])
-        .args([
-            "-Wno-unused-parameter",
-            "-Wno-unused-variable",
-            "-Wno-unused-function",
-        ])
-        .arg(format!("-DFAULT_{fault}"))
-        .arg(format!("-DGOOD_LIBRARY=\"{}\"", good.display()))
-        .arg("-I")
-        .arg(workspace().join("spec/include"))
-        .arg(workspace().join("tests/bad-devices/bad.c"))
-        .args(["-o".as_ref(), out.as_os_str()])
-        .args(["-ldl", "-lm"])
-        .status();
-    assert!(status.unwrap().success(), "{fault} does not compile");
-    out.to_str().unwrap().to_owned()
+    native::bad(place, "bad-devices/bad.c", good, fault)
+}
+
+/// The report on a device.
+fn checked(place: &Place, arguments: &[&str]) -> Value {
+    native::checked(place, "device", arguments)
 }
 
 /// A bare name is a file of the current folder; the system's loader does not search for it.
@@ -122,35 +83,6 @@ fn a_device_is_found_by_its_bare_name() {
         "{}",
         wrong.error()
     );
-}
-
-/// The report on a device.
-fn checked(place: &Place, arguments: &[&str]) -> Value {
-    let all = [&["device", "check", "--json"], arguments].concat();
-    let run = place.run(&all);
-    let report: Value = serde_json::from_str(&run.text()).unwrap_or_else(|_| {
-        unreachable!("{}", run.error());
-    });
-    assert_eq!(
-        run.code() == 0,
-        report["ok"].as_bool().unwrap(),
-        "{report:#}"
-    );
-    report
-}
-
-/// Names and outcomes of the checks that are neither passed nor skipped.
-fn complaints(report: &Value) -> Vec<(String, String)> {
-    let checks = report["checks"].as_array().unwrap().iter();
-    let text = |check: &Value, key: &str| check[key].as_str().unwrap().to_owned();
-    let all = checks.map(|check| (text(check, "check"), text(check, "outcome")));
-    all.filter(|(_, outcome)| outcome != "passed" && outcome != "skipped")
-        .collect()
-}
-
-fn count(report: &Value, outcome: &str) -> usize {
-    let checks = report["checks"].as_array().unwrap().iter();
-    checks.filter(|check| check["outcome"] == outcome).count()
 }
 
 #[test]

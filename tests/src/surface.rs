@@ -1,4 +1,4 @@
-//! The frozen surfaces of the two ABIs, and of two extensions, as canonical text: a line for each constant, status and
+//! The frozen surfaces of the ABIs, and of two extensions, as canonical text: a line for each constant, status and
 //! function, read from the Rust side and from the C header.
 
 use std::collections::BTreeMap;
@@ -25,6 +25,8 @@ pub struct Surface {
     pub export: &'static str,
     /// The source with constants, function types and the table.
     pub code: &'static str,
+    /// A source with further function types, which another surface shares.
+    pub shared: Option<&'static str>,
     /// The table of functions.
     pub table: &'static str,
     /// Functions beside those of the table, and their types.
@@ -40,6 +42,7 @@ pub const MODEL: Surface = Surface {
     constant: "HTEX_",
     export: "HTEX_EXPORT(",
     code: "sdk/model/src/abi.rs",
+    shared: None,
     table: "ModelTable",
     more: &[("alloc", "AllocFn"), ("free", "FreeFn")],
     statuses: Some(("sdk/model/src/error.rs", "Status")),
@@ -52,6 +55,7 @@ pub const VOICES: Surface = Surface {
     constant: "HTEX_VOICES_1_",
     export: "HTEX_EXPORT(",
     code: "sdk/model/src/voices_1.rs",
+    shared: None,
     table: "VoicesTable",
     more: &[],
     statuses: None,
@@ -64,6 +68,7 @@ pub const MOTION: Surface = Surface {
     constant: "HTEX_MOTION_1_",
     export: "HTEX_EXPORT(",
     code: "sdk/model/src/motion_1.rs",
+    shared: None,
     table: "MotionTable",
     more: &[],
     statuses: None,
@@ -76,9 +81,23 @@ pub const DEVICE: Surface = Surface {
     constant: "HTEX_DEVICE_",
     export: "HTEX_DEVICE_EXPORT(",
     code: "renderer-adapters/device/src/abi.rs",
+    shared: None,
     table: "DeviceTable",
     more: &[],
     statuses: Some(("renderer-adapters/device/src/abi.rs", "Code")),
+};
+
+/// The source ABI.
+pub const SOURCE: Surface = Surface {
+    header: "htex_source.h",
+    function: "htex_source_",
+    constant: "HTEX_SOURCE_",
+    export: "HTEX_SOURCE_EXPORT(",
+    code: "renderer-adapters/device/src/source/abi.rs",
+    shared: Some("renderer-adapters/device/src/abi.rs"),
+    table: "SourceTable",
+    more: &[],
+    statuses: Some(("renderer-adapters/device/src/source/abi.rs", "Code")),
 };
 
 impl Surface {
@@ -134,9 +153,11 @@ impl Surface {
         });
         let more = self.more.iter();
         let more = more.map(|(name, kind)| (name.to_string(), kind.to_string()));
+        let shared = self.shared.map(rust_code).unwrap_or_default();
+        let types = code.clone() + &shared;
         let prototype = |(name, kind): (String, String)| {
             let name = format!("{}{name}", self.function);
-            let text = c_prototype(&name, function_type(&code, &kind));
+            let text = c_prototype(&name, function_type(&types, &kind));
             (name, text)
         };
         fields.chain(more).map(prototype).collect()

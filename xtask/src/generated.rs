@@ -21,6 +21,7 @@ const TESTS: &[&str] = &[
     "recording_conformance",
     "regressions",
     "schemas",
+    "source_abi",
     "study_rules",
     "table",
 ];

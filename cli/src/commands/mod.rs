@@ -28,6 +28,7 @@ mod render;
 mod response;
 mod schema;
 mod simulate;
+mod source;
 mod spectrum;
 #[cfg(feature = "lab")]
 mod study;
@@ -75,6 +76,7 @@ pub(crate) enum Command {
     Schema(schema::Schema),
     Plugin(plugin::Plugin),
     Device(device::Device),
+    Source(source::Source),
 }
 
 impl Command {
@@ -114,6 +116,7 @@ impl Command {
             Self::Schema(args) => args.run(),
             Self::Plugin(args) => args.run(),
             Self::Device(args) => args.run(),
+            Self::Source(args) => args.run(),
         }
     }
 }

@@ -3,6 +3,8 @@
 
 #[cfg(target_os = "linux")]
 pub mod measured;
+#[cfg(unix)]
+pub mod native;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -1,12 +1,11 @@
-//! The adapter: its descriptor, and opening a card.
+//! The adapter of outputs: its descriptor, and opening a card.
 
-use cpal::traits::DeviceTrait;
 use htex_device::{
     Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, FromScene, Setting,
     SettingKind, Settings, StreamFormat,
 };
 
-use crate::card::{self, Card, DEFAULT};
+use crate::card::{self, Card, DEFAULT, Side};
 use crate::sound::Sound;
 
 /// The adapter; see the crate's documentation.
@@ -35,26 +34,11 @@ impl Adapter for Audio {
     }
 
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
-        let endpoint = |name: String, summary: String| Endpoint {
-            name,
-            setting: "device".to_owned(),
-            summary,
-        };
-        let default = Card::find(DEFAULT).ok();
-        let default =
-            default.map(|_| endpoint(DEFAULT.to_owned(), "what the system prefers".into()));
-        let named = card::outputs()?.into_iter().map(|device| {
-            let description = device.description().map(|d| d.to_string());
-            endpoint(
-                card::id(&device),
-                description.unwrap_or_default().replace('\n', ", "),
-            )
-        });
-        Ok(default.into_iter().chain(named).collect())
+        card::endpoints(Side::Output)
     }
 
     fn capabilities(&self, settings: &Settings) -> Result<Capabilities, DeviceError> {
-        Card::find(settings.text("device"))?.capabilities()
+        Card::find(settings.text("device"), Side::Output)?.capabilities()
     }
 
     fn open(
@@ -62,7 +46,7 @@ impl Adapter for Audio {
         settings: &Settings,
         format: &StreamFormat,
     ) -> Result<Box<dyn Device>, DeviceError> {
-        let card = Card::find(settings.text("device"))?;
+        let card = Card::find(settings.text("device"), Side::Output)?;
         let buffer_s = settings.number("buffer_ms") / 1e3;
         Ok(Box::new(Sound::open(&card, buffer_s, format)?))
     }

@@ -1,8 +1,8 @@
-//! Sound cards, what they can do, and the configuration that is chosen for a stream.
+//! Sound cards, their outputs and inputs, and the configuration that is chosen for a stream.
 
 use cpal::traits::{DeviceTrait, HostTrait};
 use cpal::{SampleFormat, StreamConfig, SupportedStreamConfigRange};
-use htex_device::{Capabilities, DeviceError, Quantity, Rates};
+use htex_device::{Capabilities, DeviceError, Endpoint, Quantity, Rates};
 
 /// Formats a stream may have, the best first.
 const FORMATS: [SampleFormat; 4] = [
@@ -18,43 +18,59 @@ const MAX_RATE_HZ: f64 = 768_000.0;
 /// The name of the card that the system prefers.
 pub(crate) const DEFAULT: &str = "default";
 
+/// Which side of a card is meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Side {
+    Output,
+    Input,
+}
+
 pub(crate) struct Card {
     pub(crate) name: String,
     pub(crate) device: cpal::Device,
+    side: Side,
     configs: Vec<SupportedStreamConfigRange>,
 }
 
 impl Card {
-    /// The card of this name, which must be connected and have an output.
-    pub(crate) fn find(name: &str) -> Result<Self, DeviceError> {
+    /// The card of this name, which must be connected and have this side.
+    pub(crate) fn find(name: &str, side: Side) -> Result<Self, DeviceError> {
         let host = cpal::default_host();
-        let device = match name {
-            DEFAULT => host.default_output_device(),
-            _ => outputs()?.into_iter().find(|d| id(d) == name),
+        let device = match (name, side) {
+            (DEFAULT, Side::Output) => host.default_output_device(),
+            (DEFAULT, Side::Input) => host.default_input_device(),
+            _ => cards(side)?.into_iter().find(|d| id(d) == name),
         };
-        let device = device.ok_or_else(|| missing(name, "there is no card of this name"))?;
-        let configs = device.supported_output_configs();
-        let configs: Vec<_> = configs
-            .map_err(|error| missing(name, &error.to_string()))?
-            .filter(|config| FORMATS.contains(&config.sample_format()))
-            .collect();
+        let missing = |what: &str| missing(side, name, what);
+        let device = device.ok_or_else(|| missing("there is no card of this name"))?;
+        let configs = configs(&device, side).map_err(|error| missing(&error.to_string()))?;
         match configs.is_empty() {
-            true => Err(missing(name, "it has no supported sample format")),
+            true => Err(missing("it has no supported sample format")),
             false => Ok(Self {
                 name: name.to_owned(),
                 device,
+                side,
                 configs,
             }),
         }
     }
 
+    /// What the card prefers: rate, hertz, and number of channels.
+    pub(crate) fn preferred(&self) -> Result<(f64, u16), DeviceError> {
+        let preferred = match self.side {
+            Side::Output => self.device.default_output_config(),
+            Side::Input => self.device.default_input_config(),
+        };
+        let preferred =
+            preferred.map_err(|error| missing(self.side, &self.name, &error.to_string()))?;
+        Ok((f64::from(preferred.sample_rate()), preferred.channels()))
+    }
+
     pub(crate) fn capabilities(&self) -> Result<Capabilities, DeviceError> {
-        let preferred = self.device.default_output_config();
-        let preferred = preferred.map_err(|error| missing(&self.name, &error.to_string()))?;
         Ok(Capabilities {
             quantity: Quantity::Sound,
             rates: self.rates(),
-            default_rate_hz: f64::from(preferred.sample_rate()),
+            default_rate_hz: self.preferred()?.0,
             limit: Some(1.0),
             step: None,
             carrier_hz: None,
@@ -81,15 +97,19 @@ impl Card {
         Rates::List(all.into_iter().map(|r| r.0).collect())
     }
 
-    /// The best format at this rate, with two channels or the number closest to two.
-    pub(crate) fn config(&self, rate_hz: f64) -> Result<(StreamConfig, SampleFormat), DeviceError> {
+    /// The best format at this rate, with so many channels or the number closest to it.
+    pub(crate) fn config(
+        &self,
+        rate_hz: f64,
+        channels: u16,
+    ) -> Result<(StreamConfig, SampleFormat), DeviceError> {
         let fits = |c: &&SupportedStreamConfigRange| {
             let rates = c.min_sample_rate()..=c.max_sample_rate();
             rate_hz.fract() == 0.0 && rates.contains(&(rate_hz as u32))
         };
         let rank = |c: &&SupportedStreamConfigRange| {
             let format = FORMATS.iter().position(|f| *f == c.sample_format());
-            (format, c.channels().abs_diff(2))
+            (format, c.channels().abs_diff(channels))
         };
         let best = self.configs.iter().filter(fits).min_by_key(rank);
         let best = best.ok_or_else(|| DeviceError::Rate {
@@ -102,23 +122,63 @@ impl Card {
     }
 }
 
-/// All connected cards with an output.
-pub(crate) fn outputs() -> Result<Vec<cpal::Device>, DeviceError> {
-    let outputs = cpal::default_host().output_devices();
-    Ok(outputs
-        .map_err(|error| missing("sound", &error.to_string()))?
-        .collect())
+/// The configurations of a card that this crate can use.
+fn configs(
+    device: &cpal::Device,
+    side: Side,
+) -> Result<Vec<SupportedStreamConfigRange>, cpal::Error> {
+    let mut configs: Vec<_> = match side {
+        Side::Output => device.supported_output_configs()?.collect(),
+        Side::Input => device.supported_input_configs()?.collect(),
+    };
+    configs.retain(|config| FORMATS.contains(&config.sample_format()));
+    Ok(configs)
+}
+
+/// All connected cards with this side.
+fn cards(side: Side) -> Result<Vec<cpal::Device>, DeviceError> {
+    let host = cpal::default_host();
+    let cards: Result<Vec<_>, _> = match side {
+        Side::Output => host.output_devices().map(Iterator::collect),
+        Side::Input => host.input_devices().map(Iterator::collect),
+    };
+    cards.map_err(|error| missing(side, "sound", &error.to_string()))
+}
+
+/// All connected cards with this side, and the one that the system prefers.
+pub(crate) fn endpoints(side: Side) -> Result<Vec<Endpoint>, DeviceError> {
+    let endpoint = |name: String, summary: String| Endpoint {
+        name,
+        setting: "device".to_owned(),
+        summary,
+    };
+    let default = Card::find(DEFAULT, side).ok();
+    let default = default.map(|_| endpoint(DEFAULT.to_owned(), "what the system prefers".into()));
+    let named = cards(side)?.into_iter().map(|device| {
+        let description = device.description().map(|d| d.to_string());
+        endpoint(
+            id(&device),
+            description.unwrap_or_default().replace('\n', ", "),
+        )
+    });
+    Ok(default.into_iter().chain(named).collect())
 }
 
 /// The name of a card; empty when the system gives none.
-pub(crate) fn id(device: &cpal::Device) -> String {
+fn id(device: &cpal::Device) -> String {
     device.id().map(|id| id.to_string()).unwrap_or_default()
 }
 
-fn missing(name: &str, what: &str) -> DeviceError {
-    let check = match cfg!(target_os = "linux") {
-        true => "`aplay -l` lists the cards; a machine without one, or a container, has none",
-        false => "see the sound settings of the system",
+fn missing(side: Side, name: &str, what: &str) -> DeviceError {
+    let (side, list) = match side {
+        Side::Output => ("output", "aplay"),
+        Side::Input => ("input", "arecord"),
     };
-    DeviceError::Missing(format!("no sound output `{name}`: {what}; {check}"))
+    let check = match cfg!(target_os = "linux") {
+        true => {
+            format!("`{list} -l` lists the cards; a machine without one, or a container, has none")
+        }
+        false => "see the sound settings of the system".to_owned(),
+    };
+    DeviceError::Missing(format!("no sound {side} `{name}`: {what}; {check}"))
 }

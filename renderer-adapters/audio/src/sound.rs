@@ -1,18 +1,21 @@
 //! An open sound card: the writer's side.
 
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use cpal::traits::{DeviceTrait, StreamTrait};
-use cpal::{ErrorKind, FromSample, OutputCallbackInfo, SampleFormat, SizedSample, StreamConfig};
+use cpal::{FromSample, OutputCallbackInfo, SampleFormat, SizedSample, StreamConfig};
 use htex_device::{Capabilities, Device, DeviceError, Status, StreamFormat};
 use rtrb::{Producer, RingBuffer};
 
 use crate::card::Card;
+use crate::failure::{Failure, failed, reporter};
 use crate::player::{Player, Shared, Wish};
 
+/// Number of channels that is preferred.
+const CHANNELS: u16 = 2;
 /// Time between two checks for space.
 const LOOK: Duration = Duration::from_millis(2);
 /// Time without a call from the card after which it is regarded as stopped.
@@ -28,7 +31,7 @@ pub(crate) struct Sound {
     stream: Option<cpal::Stream>,
     playing: bool,
     /// The error of the card's thread.
-    failure: Arc<Mutex<Option<String>>>,
+    failure: Failure,
     written: u64,
     peak: f64,
 }
@@ -39,14 +42,17 @@ impl Sound {
         buffer_s: f64,
         format: &StreamFormat,
     ) -> Result<Self, DeviceError> {
-        let (config, sample_format) = card.config(format.rate_hz)?;
+        let (config, sample_format) = card.config(format.rate_hz, CHANNELS)?;
         let buffered = (buffer_s * format.rate_hz) as usize;
         let (ring, samples) =
             RingBuffer::new(buffered.max(2 * format.block_frames as usize).max(2));
         let shared = Arc::new(Shared::default());
         let player = Player::new(samples, Arc::clone(&shared), format.rate_hz);
-        let failure = Arc::new(Mutex::new(None));
-        let report = reporter(Arc::clone(&shared), Arc::clone(&failure));
+        let failure = Failure::default();
+        let counted = Arc::clone(&shared);
+        let report = reporter(failure.clone(), move || {
+            counted.underruns.fetch_add(1, Ordering::Relaxed);
+        });
         let build = match sample_format {
             SampleFormat::I32 => build::<i32>,
             SampleFormat::I16 => build::<i16>,
@@ -79,8 +85,7 @@ impl Sound {
     }
 
     fn usable(&self) -> Result<(), DeviceError> {
-        let mut failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
-        match failure.take() {
+        match self.failure.take() {
             Some(what) => Err(failed(&self.name, what)),
             None if self.stream.is_none() => Err(DeviceError::Closed(self.name.clone())),
             None => Ok(()),
@@ -178,24 +183,6 @@ impl Drop for Sound {
     }
 }
 
-/// Handles errors of the card's thread: underruns are counted, errors after which playback continues are ignored, and
-/// others are stored for the writer.
-fn reporter(
-    shared: Arc<Shared>,
-    failure: Arc<Mutex<Option<String>>>,
-) -> impl FnMut(cpal::Error) + Send + 'static {
-    move |error| match error.kind() {
-        ErrorKind::Xrun => {
-            shared.underruns.fetch_add(1, Ordering::Relaxed);
-        }
-        ErrorKind::DeviceChanged | ErrorKind::RealtimeDenied => {}
-        _ => {
-            let mut failure = failure.lock().unwrap_or_else(PoisonError::into_inner);
-            *failure = Some(error.to_string());
-        }
-    }
-}
-
 fn build<T: SizedSample + FromSample<f32>>(
     device: &cpal::Device,
     config: StreamConfig,
@@ -209,11 +196,4 @@ fn build<T: SizedSample + FromSample<f32>>(
         player.fill(out, channels, delay as u64, T::from_sample);
     };
     device.build_output_stream(config, fill, report, None)
-}
-
-fn failed(name: &str, what: String) -> DeviceError {
-    DeviceError::Failed {
-        device: name.to_owned(),
-        what,
-    }
 }

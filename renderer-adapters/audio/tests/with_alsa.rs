@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::Command;
 
 #[test]
-fn playback_through_alsa() {
+fn playback_and_recording_through_alsa() {
     let alsa = Command::new("pkg-config")
         .args(["--exists", "alsa"])
         .status();
@@ -24,6 +24,8 @@ fn playback_through_alsa() {
             "cpal",
             "--test",
             "alsa",
+            "--test",
+            "alsa_input",
             "--manifest-path",
         ])
         .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"))
@@ -34,7 +36,7 @@ fn playback_through_alsa() {
     let said = String::from_utf8_lossy(&tests.stdout);
     let errors = String::from_utf8_lossy(&tests.stderr);
     assert!(
-        tests.status.success() && said.contains("6 passed"),
+        tests.status.success() && said.contains("6 passed") && said.contains("4 passed"),
         "{said}{errors}"
     );
 }

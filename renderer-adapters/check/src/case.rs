@@ -8,8 +8,8 @@ use std::time::Duration;
 
 use htex_check_runner::Finding;
 use htex_device::{
-    Adapter, Capabilities, Device, DeviceError, NativeAdapter, Rates, SettingKind, Settings,
-    StreamFormat,
+    Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, NativeAdapter, Rates,
+    Setting, SettingKind, Settings, StreamFormat,
 };
 use tempfile::TempDir;
 
@@ -21,13 +21,13 @@ const TONE_HZ: f64 = 100.0;
 const EMPTY_WRITES: u32 = 5;
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// The device under test.
+/// The device under test, or the source.
 #[derive(Clone)]
-pub enum Subject {
+pub enum Subject<A: ?Sized = dyn Adapter> {
     /// A library.
     Library(PathBuf),
     /// An adapter of this program.
-    Builtin(Arc<dyn Adapter>),
+    Builtin(Arc<A>),
 }
 
 /// A loaded device, and its settings.
@@ -74,25 +74,11 @@ impl Case {
     }
 
     pub(crate) fn settings_of(&self, profile: Option<&str>) -> Result<Settings, Finding> {
-        let descriptor = self.adapter.descriptor();
-        let mut given = self.given.clone();
-        let fixed = descriptor
-            .profiles
-            .iter()
-            .find(|p| Some(&p.name[..]) == profile);
-        for setting in descriptor.settings.iter().filter(|s| s.default.is_none()) {
-            let name = &setting.name;
-            if given.contains_key(name) || fixed.is_some_and(|p| p.settings.contains_key(name)) {
-                continue;
-            }
-            let value = match setting.kind {
-                SettingKind::Path => Some(self.new_file()),
-                _ => self.endpoint(name),
-            };
-            let missing = || Finding::skipped(format!("give `setting {name}=…`"));
-            given.insert(name.clone(), value.ok_or_else(missing)?);
-        }
-        Ok(Settings::resolve(descriptor, profile, &given)?)
+        let value = |setting: &Setting| match setting.kind {
+            SettingKind::Path => Some(self.new_file()),
+            _ => first(self.adapter.endpoints(), &setting.name),
+        };
+        filled(self.adapter.descriptor(), profile, &self.given, value)
     }
 
     /// The path of a new WAV file.
@@ -100,12 +86,6 @@ impl Case {
         let count = self.files.fetch_add(1, Ordering::Relaxed);
         let path = self.folder.path().join(format!("check-{count}.wav"));
         path.display().to_string()
-    }
-
-    fn endpoint(&self, setting: &str) -> Option<String> {
-        let all = self.adapter.endpoints().unwrap_or_default();
-        let first = all.into_iter().find(|endpoint| endpoint.setting == setting);
-        first.map(|endpoint| endpoint.name)
     }
 
     /// The device's capabilities; the check is skipped where the driver or the device is missing.
@@ -146,6 +126,39 @@ impl Case {
         let sample = |i| (amplitude * (turn * i as f64).sin()) as f32;
         Ok((0..frames).map(sample).collect())
     }
+}
+
+/// The given settings; `value` fills required ones that are missing.
+pub(crate) fn filled(
+    descriptor: &Descriptor,
+    profile: Option<&str>,
+    given: &BTreeMap<String, String>,
+    value: impl Fn(&Setting) -> Option<String>,
+) -> Result<Settings, Finding> {
+    let mut given = given.clone();
+    let fixed = descriptor
+        .profiles
+        .iter()
+        .find(|p| Some(&p.name[..]) == profile);
+    for setting in descriptor.settings.iter().filter(|s| s.default.is_none()) {
+        let name = &setting.name;
+        if given.contains_key(name) || fixed.is_some_and(|p| p.settings.contains_key(name)) {
+            continue;
+        }
+        let missing = || Finding::skipped(format!("give `setting {name}=…`"));
+        given.insert(name.clone(), value(setting).ok_or_else(missing)?);
+    }
+    Ok(Settings::resolve(descriptor, profile, &given)?)
+}
+
+/// The first endpoint that this setting takes.
+pub(crate) fn first(
+    endpoints: Result<Vec<Endpoint>, DeviceError>,
+    setting: &str,
+) -> Option<String> {
+    let all = endpoints.unwrap_or_default();
+    let first = all.into_iter().find(|endpoint| endpoint.setting == setting);
+    first.map(|endpoint| endpoint.name)
 }
 
 /// Writes all samples, waiting for a device that has a clock.

@@ -1,4 +1,4 @@
-//! The checker of devices: one check for each promise of the device ABI, run by [`htex_check_runner`] in a process of its own,
+//! The checker of devices, and in [`source`] that of sources: one check for each promise of the ABI, run by [`htex_check_runner`] in a process of its own,
 //! so that a crash or an endless loop becomes a finding.
 //!
 //! [`CHECKS`] is the table; [`check`] runs it over a device; [`run_one`] runs one check in this process. A device is called
@@ -10,6 +10,7 @@ mod case;
 mod checks;
 mod report;
 mod runner;
+pub mod source;
 mod table;
 
 pub use case::Subject;

@@ -1,7 +1,12 @@
 //! Errors across the ABI: from an error to a code and a text, and back.
 
+use std::time::Duration;
+
 use crate::abi::Code;
 use crate::{AbiFault, DeviceError};
+
+/// Longest wait of one call, ms: a day.
+const MAX_WAIT_MS: u32 = 86_400_000;
 
 /// The code and the last-error text of an error.
 pub(crate) fn outgoing(error: &DeviceError) -> (Code, String) {
@@ -56,6 +61,12 @@ pub(crate) fn incoming(code: Code, text: String, device: &str, library: &str) ->
             what: text,
         },
     }
+}
+
+/// A timeout as it crosses: whole milliseconds, a day at most. A wait shorter than a millisecond is still a wait.
+pub(crate) fn wait_ms(timeout: Duration) -> u32 {
+    let wait_ms = timeout.as_micros().div_ceil(1000);
+    wait_ms.min(u128::from(MAX_WAIT_MS)) as u32
 }
 
 /// The parts before and behind the first `: `.

@@ -1,4 +1,4 @@
-//! Descriptors of adapters.
+//! Descriptors of adapters of devices and sources.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ pub struct Descriptor {
     pub name: String,
     /// Semantic version.
     pub version: String,
-    /// One sentence: what it drives.
+    /// One sentence: what it drives or delivers.
     pub summary: String,
     /// Settings, each with its default.
     pub settings: Vec<Setting>,
@@ -117,7 +117,7 @@ pub struct Endpoint {
     pub summary: String,
 }
 
-/// Error: the descriptor of a device is invalid.
+/// Error: the descriptor of a device or source is invalid.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DescriptorError {
@@ -158,6 +158,12 @@ pub enum DescriptorError {
     /// A default is not a value of its setting.
     #[error("the default: {0}")]
     Default(DeviceError),
+    /// The target of a source is not one of its settings.
+    #[error("the target `{target}` is not one of the settings")]
+    Target {
+        /// The target.
+        target: String,
+    },
     /// A profile has a setting that is unknown, or a value that is not allowed.
     #[error("profile `{profile}`: {error}")]
     Profile {

@@ -1,6 +1,4 @@
-//! Errors of devices.
-
-use crate::abi::ABI_MAJOR;
+//! Errors of devices and sources.
 
 /// An error of an adapter or an open device.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -64,7 +62,7 @@ pub enum DeviceError {
         /// Advice.
         advice: String,
     },
-    /// The message of another process, which holds the device.
+    /// The whole message of another process, which holds the device, or of a library.
     #[error("{0}")]
     Told(String),
     /// The device was removed, or its driver failed.
@@ -78,7 +76,7 @@ pub enum DeviceError {
     /// A call came after the end or after an error.
     #[error("{0} is closed")]
     Closed(String),
-    /// A file could not be written.
+    /// A file could not be written or read.
     #[error("{path}: {what}")]
     File {
         /// The file.
@@ -102,7 +100,7 @@ pub enum DeviceError {
         /// The known names.
         known: String,
     },
-    /// A library is not a device of this ABI, or breaks it.
+    /// A library is not a device or source of this ABI, or breaks it.
     #[error("{library}: {fault}")]
     Abi {
         /// The library.
@@ -112,7 +110,7 @@ pub enum DeviceError {
     },
 }
 
-/// Fault of a library that is not a device of this ABI, or does not follow it.
+/// Fault of a library that is not a device or source of this ABI, or does not follow it.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AbiFault {
@@ -120,11 +118,23 @@ pub enum AbiFault {
     #[error("{0}")]
     NotLoaded(String),
     /// The marker is of another major version of the ABI, or of another ABI.
-    #[error("the marker {0:#x} is not of device ABI {ABI_MAJOR}.x, which this host loads")]
-    Marker(u32),
+    #[error("the marker {marker:#x} is not of {kind} ABI {major}.x, which this host loads")]
+    Marker {
+        /// The marker.
+        marker: u32,
+        /// `device` or `source`.
+        kind: &'static str,
+        /// The major version that this host loads.
+        major: u32,
+    },
     /// A function of the ABI is missing.
-    #[error("the library has no `{0}`; it is not an htex device")]
-    Symbol(&'static str),
+    #[error("the library has no `{symbol}`; it is not an htex {kind}")]
+    Symbol {
+        /// The function.
+        symbol: &'static str,
+        /// `device` or `source`.
+        kind: &'static str,
+    },
     /// The descriptor cannot be read, or is invalid.
     #[error("descriptor: {0}")]
     Descriptor(String),

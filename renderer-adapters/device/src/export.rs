@@ -1,4 +1,4 @@
-//! The macro that makes a device's C functions.
+//! The macros that make the C functions of devices and sources.
 
 /// Makes the table of C functions of an [`Adapter`](crate::Adapter) that has a `Default`, as
 /// `pub static TABLE`.
@@ -59,38 +59,12 @@ macro_rules! export_device {
         #[allow(missing_docs, clippy::missing_safety_doc)]
         mod htex_device_exports {
             use super::HTEX_DEVICE_STATE as STATE;
-            use $crate::shim::{self, Input, Output};
+            use $crate::shim::{Input, Output};
 
-            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
-            pub(super) extern "C" fn htex_device_abi_version() -> u32 {
-                $crate::abi::ABI_MARKER
-            }
-
-            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
-            pub(super) unsafe extern "C" fn htex_device_descriptor(
-                out: *mut u8,
-                capacity: usize,
-            ) -> i64 {
-                // SAFETY: the caller's buffer, by the ABI.
-                STATE.descriptor(unsafe { Output::new(out, capacity) })
-            }
-
-            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
-            pub(super) unsafe extern "C" fn htex_device_last_error(
-                out: *mut u8,
-                capacity: usize,
-            ) -> i64 {
-                // SAFETY: the caller's buffer, by the ABI.
-                shim::last_error(unsafe { Output::new(out, capacity) })
-            }
-
-            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
-            pub(super) unsafe extern "C" fn htex_device_endpoints(
-                out: *mut u8,
-                capacity: usize,
-            ) -> i64 {
-                // SAFETY: the caller's buffer, by the ABI.
-                STATE.endpoints(unsafe { Output::new(out, capacity) })
+            $crate::__common_exports! {
+                $feature, STATE, $crate::abi::ABI_MARKER, htex_device_abi_version,
+                htex_device_descriptor, htex_device_last_error, htex_device_endpoints,
+                htex_device_extension
             }
 
             #[cfg_attr(feature = $feature, unsafe(no_mangle))]
@@ -151,15 +125,45 @@ macro_rules! export_device {
             pub(super) extern "C" fn htex_device_close(device: i64) -> i64 {
                 STATE.close(device)
             }
+        }
+    };
+}
 
-            #[cfg_attr(feature = $feature, unsafe(no_mangle))]
-            pub(super) unsafe extern "C" fn htex_device_extension(
-                id: *const u8,
-                id_len: usize,
-            ) -> i64 {
-                // SAFETY: the caller's text, by the ABI.
-                shim::extension(unsafe { Input::new(id, id_len) })
-            }
+/// The C functions that devices and sources have in common.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __common_exports {
+    (
+        $feature:literal, $state:ident, $marker:expr, $abi_version:ident, $descriptor:ident,
+        $last_error:ident, $endpoints:ident, $extension:ident
+    ) => {
+        #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+        pub(super) extern "C" fn $abi_version() -> u32 {
+            $marker
+        }
+
+        #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+        pub(super) unsafe extern "C" fn $descriptor(out: *mut u8, capacity: usize) -> i64 {
+            // SAFETY: the caller's buffer, by the ABI.
+            $state.descriptor(unsafe { $crate::shim::Output::new(out, capacity) })
+        }
+
+        #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+        pub(super) unsafe extern "C" fn $last_error(out: *mut u8, capacity: usize) -> i64 {
+            // SAFETY: the caller's buffer, by the ABI.
+            $crate::shim::last_error(unsafe { $crate::shim::Output::new(out, capacity) })
+        }
+
+        #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+        pub(super) unsafe extern "C" fn $endpoints(out: *mut u8, capacity: usize) -> i64 {
+            // SAFETY: the caller's buffer, by the ABI.
+            $state.endpoints(unsafe { $crate::shim::Output::new(out, capacity) })
+        }
+
+        #[cfg_attr(feature = $feature, unsafe(no_mangle))]
+        pub(super) unsafe extern "C" fn $extension(id: *const u8, id_len: usize) -> i64 {
+            // SAFETY: the caller's text, by the ABI.
+            $crate::shim::extension(unsafe { $crate::shim::Input::new(id, id_len) })
         }
     };
 }

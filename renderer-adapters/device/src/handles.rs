@@ -1,55 +1,49 @@
-//! Open devices behind handles, which are never used twice.
+//! Open devices or sources behind handles, which are never used twice.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::Device;
+type Shared<T> = Arc<Mutex<Box<T>>>;
 
-type Shared = Arc<Mutex<Box<dyn Device>>>;
+/// The open devices or sources of one adapter.
+pub(crate) struct Handles<T: ?Sized>(Mutex<Open<T>>);
 
-/// The open devices of one adapter.
-pub(crate) struct Handles(Mutex<Open>);
-
-struct Open {
+struct Open<T: ?Sized> {
     last: i64,
-    devices: BTreeMap<i64, Shared>,
+    shared: BTreeMap<i64, Shared<T>>,
 }
 
-impl Handles {
-    /// Without open devices.
+impl<T: ?Sized> Handles<T> {
+    /// With nothing open.
     pub(crate) const fn new() -> Self {
         Self(Mutex::new(Open {
             last: 0,
-            devices: BTreeMap::new(),
+            shared: BTreeMap::new(),
         }))
     }
 
-    /// Adds a device; returns its handle.
-    pub(crate) fn insert(&self, device: Box<dyn Device>) -> i64 {
+    /// Adds one; returns its handle.
+    pub(crate) fn insert(&self, one: Box<T>) -> i64 {
         let mut open = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         open.last += 1;
         let handle = open.last;
-        open.devices.insert(handle, Arc::new(Mutex::new(device)));
+        open.shared.insert(handle, Arc::new(Mutex::new(one)));
         handle
     }
 
-    /// Calls the device behind a handle; `None` if it was closed or never was.
-    pub(crate) fn with<R>(
-        &self,
-        handle: i64,
-        call: impl FnOnce(&mut dyn Device) -> R,
-    ) -> Option<R> {
+    /// Calls what is behind a handle; `None` if it was closed or never was.
+    pub(crate) fn with<R>(&self, handle: i64, call: impl FnOnce(&mut T) -> R) -> Option<R> {
         let shared = {
             let open = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-            open.devices.get(&handle).cloned()?
+            open.shared.get(&handle).cloned()?
         };
-        let mut device = shared.lock().unwrap_or_else(PoisonError::into_inner);
-        Some(call(&mut **device))
+        let mut one = shared.lock().unwrap_or_else(PoisonError::into_inner);
+        Some(call(&mut **one))
     }
 
-    /// Removes a device.
-    pub(crate) fn remove(&self, handle: i64) -> Option<Shared> {
+    /// Removes what is behind a handle.
+    pub(crate) fn remove(&self, handle: i64) -> Option<Shared<T>> {
         let mut open = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        open.devices.remove(&handle)
+        open.shared.remove(&handle)
     }
 }

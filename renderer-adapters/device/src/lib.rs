@@ -4,12 +4,11 @@
 //! its [`Capabilities`] and enforces its limits on every sample.
 //! This crate does not depend on textures.
 //!
-//! A [`Source`] is the reverse, an input: it delivers samples of several channels. [`Sources`] knows the families of sources that
-//! are linked into a program.
+//! A [`Source`] is the reverse, an input: it delivers samples of several channels. Its family is a [`SourceAdapter`].
 //!
-//! An adapter is built in, or a native library behind the flat C functions of [`abi`]
-//! ([`NativeAdapter`]); [`Devices`] finds both. A Rust author implements the traits and calls
-//! [`export_device!`].
+//! An adapter is built in, or a native library behind the flat C functions of [`abi`] or [`source::abi`]
+//! ([`NativeAdapter`], [`NativeSourceAdapter`]); [`Devices`] and [`Sources`] find both. A Rust author implements the traits and
+//! calls [`export_device!`] or [`export_source!`].
 
 pub mod abi;
 mod adapter;
@@ -19,26 +18,30 @@ mod descriptor;
 mod devices;
 mod error;
 mod export;
+mod exported;
 mod handles;
 mod library;
 mod native;
+mod registry;
 #[cfg(feature = "schemars")]
 mod schemas;
 mod settings;
 pub mod shim;
-mod source;
-mod sources;
+pub mod source;
 
 pub use adapter::{Adapter, Device, Status, StreamFormat};
 pub use capabilities::{Capabilities, CapabilitiesError, Quantity, Rates};
 pub use descriptor::{
     Descriptor, DescriptorError, Endpoint, FromScene, Profile, Setting, SettingFault, SettingKind,
 };
-pub use devices::{DeviceNote, DeviceOrigin, DeviceSearch, Devices, KnownDevice};
+pub use devices::{Devices, KnownDevice};
 pub use error::{AbiFault, DeviceError};
 pub use native::{NativeAdapter, NativeDevice};
+pub use registry::{Kind, Known, Note, Origin, Registry, Search};
 #[cfg(feature = "schemars")]
-pub use schemas::schemas;
+pub use schemas::{schemas, source_schemas};
 pub use settings::{Ignored, Settings, Stated};
-pub use source::{Channel, Delivered, Source, SourceAdapter};
-pub use sources::Sources;
+pub use source::{
+    Channel, Delivered, KnownSource, NativeSource, NativeSourceAdapter, Source, SourceAdapter,
+    SourceDescriptor, SourceStream, SourceStreamError, Sources,
+};

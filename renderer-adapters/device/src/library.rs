@@ -1,37 +1,108 @@
 //! Native libraries: loaded once, never unloaded, called through their table.
 //!
 //! A native library runs with all the rights of this program: which ones to load is the user's
-//! decision. None is ever unloaded, since open devices point into them.
+//! decision. None is ever unloaded, since open devices and sources point into it.
 
 use std::path::Path;
 
+use serde::de::DeserializeOwned;
+
 use crate::abi::{
-    ABI_MARKER, AbiVersion, CapabilitiesJson, CloseFn, Code, DescriptorJson, DeviceTable,
-    EndpointsJson, ExtensionFn, FinishFn, LastError, MAX_TEXT_BYTES, OpenFn, StatusFn, WriteFn,
+    AbiVersion, DescriptorJson, EndpointsJson, ExtensionFn, LastError, MAX_TEXT_BYTES,
 };
-use crate::{AbiFault, DeviceError};
+use crate::{AbiFault, DescriptorError, DeviceError, Endpoint};
 
 /// Size of the buffer for a text at the first call, bytes.
 const USUAL_TEXT: usize = 16_384;
 /// Most calls for a text whose length changes in between.
 const TRIES: usize = 8;
 
+/// The functions of an ABI, of devices or of sources.
+pub(crate) trait Table: Sized + 'static {
+    /// Negative results.
+    type Code;
+    /// `device` or `source`.
+    const KIND: &'static str;
+    /// The marker of this host's version.
+    const MARKER: u32;
+    /// Name of the function that returns the marker.
+    const ABI_VERSION: &'static str;
+
+    /// The functions of the library, whose marker has been checked.
+    ///
+    /// # Safety
+    /// The library's functions have the types of the ABI.
+    unsafe fn of_symbols(symbols: &Symbols<'_>) -> Result<Self, DeviceError>;
+
+    /// The functions that both ABIs have.
+    fn common(&self) -> Common;
+
+    /// The code of a number that crossed the ABI.
+    fn code(answer: i64) -> Self::Code;
+
+    /// The error of a code and its text.
+    fn incoming(code: Self::Code, text: String, name: &str, library: &str) -> DeviceError;
+}
+
+/// The functions that both ABIs have.
+#[derive(Clone, Copy)]
+pub(crate) struct Common {
+    pub(crate) abi_version: AbiVersion,
+    pub(crate) descriptor: DescriptorJson,
+    pub(crate) last_error: LastError,
+    pub(crate) endpoints: EndpointsJson,
+    pub(crate) extension: ExtensionFn,
+}
+
+/// The symbols of a library.
+pub(crate) struct Symbols<'a> {
+    library: htex_native::Library,
+    name: &'a str,
+    kind: &'static str,
+}
+
+impl Symbols<'_> {
+    /// The address of a symbol.
+    ///
+    /// # Safety
+    /// The symbol has the type `T`.
+    pub(crate) unsafe fn get<T: Copy>(&self, symbol: &'static str) -> Result<T, DeviceError> {
+        // SAFETY: the caller's promise.
+        let found = unsafe { self.library.symbol(symbol) };
+        found.ok_or_else(|| DeviceError::Abi {
+            library: self.name.to_owned(),
+            fault: AbiFault::Symbol {
+                symbol,
+                kind: self.kind,
+            },
+        })
+    }
+}
+
 /// A library's name and its functions.
-#[derive(Clone)]
-pub(crate) struct Library {
+pub(crate) struct Library<T: 'static> {
     pub(crate) name: String,
-    pub(crate) table: &'static DeviceTable,
+    pub(crate) table: &'static T,
+}
+
+impl<T> Clone for Library<T> {
+    fn clone(&self) -> Self {
+        Self {
+            name: self.name.clone(),
+            table: self.table,
+        }
+    }
 }
 
 /// The failure of a call.
-pub(crate) enum Trouble {
+pub(crate) enum Trouble<Code> {
     /// A code and its text.
     Told(Code, String),
     /// A result that the ABI does not allow.
     Broken(String),
 }
 
-impl Library {
+impl<T: Table> Library<T> {
     /// Loads a library and fills a table from its symbols.
     pub(crate) fn load(path: &Path) -> Result<Self, DeviceError> {
         let name = path.display().to_string();
@@ -42,49 +113,91 @@ impl Library {
         // SAFETY: running a library's initialisers is what the user asked for by naming it.
         let library = unsafe { htex_native::Library::from_file(path) };
         let library = library.map_err(|e| error(AbiFault::NotLoaded(e.to_string())))?;
-        // SAFETY: the marker comes first, and says that the other symbols have these types.
-        let abi_version: AbiVersion =
-            unsafe { symbol(library, "htex_device_abi_version", &error)? };
-        check_marker(abi_version()).map_err(&error)?;
-        // SAFETY: a library with this marker exports these names with these types.
-        let table = unsafe {
-            DeviceTable {
-                abi_version,
-                descriptor: symbol::<DescriptorJson>(library, "htex_device_descriptor", &error)?,
-                last_error: symbol::<LastError>(library, "htex_device_last_error", &error)?,
-                endpoints: symbol::<EndpointsJson>(library, "htex_device_endpoints", &error)?,
-                capabilities: symbol::<CapabilitiesJson>(
-                    library,
-                    "htex_device_capabilities",
-                    &error,
-                )?,
-                open: symbol::<OpenFn>(library, "htex_device_open", &error)?,
-                write: symbol::<WriteFn>(library, "htex_device_write", &error)?,
-                status: symbol::<StatusFn>(library, "htex_device_status", &error)?,
-                finish: symbol::<FinishFn>(library, "htex_device_finish", &error)?,
-                close: symbol::<CloseFn>(library, "htex_device_close", &error)?,
-                extension: symbol::<ExtensionFn>(library, "htex_device_extension", &error)?,
-            }
+        let symbols = Symbols {
+            library,
+            name: &name,
+            kind: T::KIND,
         };
-        let table: &'static DeviceTable = Box::leak(Box::new(table));
+        // SAFETY: the marker comes first, and says that the other symbols have the types of the ABI.
+        let abi_version: AbiVersion = unsafe { symbols.get(T::ABI_VERSION)? };
+        check_marker::<T>(abi_version()).map_err(&error)?;
+        // SAFETY: a library with this marker exports these names with these types.
+        let table = unsafe { T::of_symbols(&symbols)? };
+        let table: &'static T = Box::leak(Box::new(table));
         Ok(Self { name, table })
     }
 
     /// Uses a table of this program.
-    pub(crate) fn of_table(name: &str, table: &'static DeviceTable) -> Result<Self, DeviceError> {
+    pub(crate) fn of_table(name: &str, table: &'static T) -> Result<Self, DeviceError> {
         let library = Self {
             name: name.to_owned(),
             table,
         };
-        check_marker((table.abi_version)()).map_err(|fault| library.error(fault))?;
+        let marker = (table.common().abi_version)();
+        check_marker::<T>(marker).map_err(|fault| library.error(fault))?;
         Ok(library)
+    }
+
+    /// The descriptor, checked.
+    pub(crate) fn descriptor<D: DeserializeOwned>(
+        &self,
+        check: impl FnOnce(&D) -> Result<(), DescriptorError>,
+    ) -> Result<D, DeviceError> {
+        let wrong = |what: String| self.error(AbiFault::Descriptor(what));
+        // SAFETY: the buffer is live and of this length, by `Self::text`.
+        let json = self.text(|out, len| unsafe { (self.table.common().descriptor)(out, len) });
+        let json = json.map_err(|trouble| match trouble {
+            Trouble::Told(_, text) | Trouble::Broken(text) => wrong(text),
+        })?;
+        let descriptor: D = serde_json::from_str(&json).map_err(|e| wrong(e.to_string()))?;
+        check(&descriptor).map_err(|error| wrong(error.to_string()))?;
+        Ok(descriptor)
+    }
+
+    /// What is connected.
+    pub(crate) fn endpoints(&self, adapter: &str) -> Result<Vec<Endpoint>, DeviceError> {
+        // SAFETY: the buffer is live and of this length, by `Self::text`.
+        self.json(adapter, "endpoints", |out, len| unsafe {
+            (self.table.common().endpoints)(out, len)
+        })
+    }
+
+    /// Whether the library has the extension `id`.
+    pub(crate) fn has_extension(&self, id: &str) -> Result<bool, DeviceError> {
+        // SAFETY: a live text.
+        match unsafe { (self.table.common().extension)(id.as_ptr(), id.len()) } {
+            0 => Ok(false),
+            1 => Ok(true),
+            other => Err(self.broken(format!("extension `{id}`: it returns {other}"))),
+        }
+    }
+
+    /// The JSON that a call returns. `adapter` is the adapter's name, `name` that of the call.
+    pub(crate) fn json<V: DeserializeOwned>(
+        &self,
+        adapter: &str,
+        name: &str,
+        call: impl FnMut(*mut u8, usize) -> i64,
+    ) -> Result<V, DeviceError> {
+        let json = self.text(call);
+        let json = json.map_err(|trouble| self.trouble(adapter, name, trouble))?;
+        serde_json::from_str(&json).map_err(|e| self.broken(format!("{name}: {e}")))
+    }
+
+    /// A status that must be 0.
+    pub(crate) fn done(&self, adapter: &str, call: &str, answer: i64) -> Result<(), DeviceError> {
+        match self.count(answer) {
+            Ok(0) => Ok(()),
+            Ok(other) => Err(self.broken(format!("{call}: it returned {other}"))),
+            Err(trouble) => Err(self.trouble(adapter, call, trouble)),
+        }
     }
 
     /// Reads a text of unknown length, which may change between two calls.
     pub(crate) fn text(
         &self,
         mut call: impl FnMut(*mut u8, usize) -> i64,
-    ) -> Result<String, Trouble> {
+    ) -> Result<String, Trouble<T::Code>> {
         let mut bytes = vec![0; USUAL_TEXT];
         for _ in 0..TRIES {
             let len = self.count(call(bytes.as_mut_ptr(), bytes.len()))?;
@@ -102,9 +215,9 @@ impl Library {
     }
 
     /// A count, or the failure of a negative result.
-    pub(crate) fn count(&self, answer: i64) -> Result<usize, Trouble> {
+    pub(crate) fn count(&self, answer: i64) -> Result<usize, Trouble<T::Code>> {
         if answer < 0 {
-            return Err(Trouble::Told(Code::from_answer(answer), self.last_error()));
+            return Err(Trouble::Told(T::code(answer), self.last_error()));
         }
         usize::try_from(answer).map_err(|_| Trouble::Broken(format!("it returned {answer}")))
     }
@@ -113,11 +226,24 @@ impl Library {
     fn last_error(&self) -> String {
         let mut bytes = vec![0; USUAL_TEXT];
         // SAFETY: a live buffer of this length.
-        let len = unsafe { (self.table.last_error)(bytes.as_mut_ptr(), bytes.len()) };
+        let len = unsafe { (self.table.common().last_error)(bytes.as_mut_ptr(), bytes.len()) };
         bytes.truncate(usize::try_from(len).unwrap_or(0));
         match String::from_utf8_lossy(&bytes) {
             text if text.is_empty() => "no reason given".to_owned(),
             text => text.into_owned(),
+        }
+    }
+
+    /// The error of a call that failed. `adapter` is the adapter's name.
+    pub(crate) fn trouble(
+        &self,
+        adapter: &str,
+        call: &str,
+        trouble: Trouble<T::Code>,
+    ) -> DeviceError {
+        match trouble {
+            Trouble::Told(code, text) => T::incoming(code, text, adapter, &self.name),
+            Trouble::Broken(what) => self.broken(format!("{call}: {what}")),
         }
     }
 
@@ -127,7 +253,7 @@ impl Library {
     }
 
     /// The error of a fault of this library.
-    pub(crate) fn error(&self, fault: AbiFault) -> DeviceError {
+    fn error(&self, fault: AbiFault) -> DeviceError {
         DeviceError::Abi {
             library: self.name.clone(),
             fault,
@@ -135,23 +261,13 @@ impl Library {
     }
 }
 
-fn check_marker(marker: u32) -> Result<(), AbiFault> {
-    match marker >> 8 == ABI_MARKER >> 8 {
+fn check_marker<T: Table>(marker: u32) -> Result<(), AbiFault> {
+    match marker >> 8 == T::MARKER >> 8 {
         true => Ok(()),
-        false => Err(AbiFault::Marker(marker)),
+        false => Err(AbiFault::Marker {
+            marker,
+            kind: T::KIND,
+            major: (T::MARKER >> 8) & 0xff,
+        }),
     }
-}
-
-/// The address of a symbol.
-///
-/// # Safety
-/// The symbol has the type `T`.
-unsafe fn symbol<T: Copy>(
-    library: htex_native::Library,
-    name: &'static str,
-    error: &impl Fn(AbiFault) -> DeviceError,
-) -> Result<T, DeviceError> {
-    // SAFETY: the caller's promise.
-    let found = unsafe { library.symbol(name) };
-    found.ok_or_else(|| error(AbiFault::Symbol(name)))
 }

@@ -4,24 +4,63 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-use serde::de::DeserializeOwned;
-
-use crate::abi::{Code, DeviceTable, STATUS_NUMBERS};
-use crate::crossing::incoming;
-use crate::library::{Library, Trouble};
+use crate::abi::{ABI_MARKER, Code, DeviceTable, STATUS_NUMBERS};
+use crate::crossing::{incoming, wait_ms};
+use crate::library::{Common, Library, Symbols, Table, Trouble};
 use crate::{
-    AbiFault, Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, Settings, Status,
+    Adapter, Capabilities, Descriptor, Device, DeviceError, Endpoint, Settings, Status,
     StreamFormat,
 };
 
-/// Longest wait of one call, ms: a day.
-const MAX_WAIT_MS: u32 = 86_400_000;
+impl Table for DeviceTable {
+    type Code = Code;
+    const KIND: &'static str = "device";
+    const MARKER: u32 = ABI_MARKER;
+    const ABI_VERSION: &'static str = "htex_device_abi_version";
+
+    unsafe fn of_symbols(symbols: &Symbols<'_>) -> Result<Self, DeviceError> {
+        // SAFETY: each field's type is that of the function of its name, by the ABI.
+        unsafe {
+            Ok(Self {
+                abi_version: symbols.get(Self::ABI_VERSION)?,
+                descriptor: symbols.get("htex_device_descriptor")?,
+                last_error: symbols.get("htex_device_last_error")?,
+                endpoints: symbols.get("htex_device_endpoints")?,
+                capabilities: symbols.get("htex_device_capabilities")?,
+                open: symbols.get("htex_device_open")?,
+                write: symbols.get("htex_device_write")?,
+                status: symbols.get("htex_device_status")?,
+                finish: symbols.get("htex_device_finish")?,
+                close: symbols.get("htex_device_close")?,
+                extension: symbols.get("htex_device_extension")?,
+            })
+        }
+    }
+
+    fn common(&self) -> Common {
+        Common {
+            abi_version: self.abi_version,
+            descriptor: self.descriptor,
+            last_error: self.last_error,
+            endpoints: self.endpoints,
+            extension: self.extension,
+        }
+    }
+
+    fn code(answer: i64) -> Code {
+        Code::from_answer(answer)
+    }
+
+    fn incoming(code: Code, text: String, name: &str, library: &str) -> DeviceError {
+        incoming(code, text, name, library)
+    }
+}
 
 /// An adapter of a native library. Cheap to clone.
 #[derive(Clone)]
 pub struct NativeAdapter {
     descriptor: Arc<Descriptor>,
-    library: Library,
+    library: Library<DeviceTable>,
 }
 
 impl std::fmt::Debug for NativeAdapter {
@@ -52,18 +91,8 @@ impl NativeAdapter {
         Self::new(Library::of_table(name, table)?)
     }
 
-    fn new(library: Library) -> Result<Self, DeviceError> {
-        // SAFETY: the buffer is live and of this length, by `Library::text`.
-        let json = library.text(|out, len| unsafe { (library.table.descriptor)(out, len) });
-        let wrong = |what: String| library.error(AbiFault::Descriptor(what));
-        let json = json.map_err(|trouble| match trouble {
-            Trouble::Told(_, text) | Trouble::Broken(text) => wrong(text),
-        })?;
-        let descriptor: Descriptor =
-            serde_json::from_str(&json).map_err(|e| wrong(e.to_string()))?;
-        descriptor
-            .check()
-            .map_err(|error| wrong(error.to_string()))?;
+    fn new(library: Library<DeviceTable>) -> Result<Self, DeviceError> {
+        let descriptor = library.descriptor(Descriptor::check)?;
         Ok(Self {
             descriptor: Arc::new(descriptor),
             library,
@@ -75,14 +104,7 @@ impl NativeAdapter {
     /// # Errors
     /// When the result is neither 0 nor 1.
     pub fn has_extension(&self, id: &str) -> Result<bool, DeviceError> {
-        // SAFETY: a live text.
-        match unsafe { (self.library.table.extension)(id.as_ptr(), id.len()) } {
-            0 => Ok(false),
-            1 => Ok(true),
-            other => Err(self
-                .library
-                .broken(format!("extension `{id}`: it returns {other}"))),
-        }
+        self.library.has_extension(id)
     }
 
     /// As [`Adapter::capabilities`], of lines that need not be settings: for checkers of devices.
@@ -92,9 +114,10 @@ impl NativeAdapter {
     pub fn capabilities_of(&self, lines: &str) -> Result<Capabilities, DeviceError> {
         let name = "capabilities";
         // SAFETY: a live text, and a buffer that is live and of this length, by `Library::text`.
-        let capabilities: Capabilities = self.json(name, |out, len| unsafe {
+        let call = |out, len| unsafe {
             (self.library.table.capabilities)(lines.as_ptr(), lines.len(), out, len)
-        })?;
+        };
+        let capabilities: Capabilities = self.library.json(&self.descriptor.name, name, call)?;
         let checked = capabilities.check();
         checked.map_err(|what| self.library.broken(format!("{name}: {what}")))?;
         Ok(capabilities)
@@ -133,26 +156,8 @@ impl NativeAdapter {
         }
     }
 
-    fn error(&self, call: &str, trouble: Trouble) -> DeviceError {
-        match trouble {
-            Trouble::Told(code, text) => {
-                incoming(code, text, &self.descriptor.name, &self.library.name)
-            }
-            Trouble::Broken(what) => self.library.broken(format!("{call}: {what}")),
-        }
-    }
-
-    /// The JSON that a call returns.
-    fn json<T: DeserializeOwned>(
-        &self,
-        name: &str,
-        call: impl FnMut(*mut u8, usize) -> i64,
-    ) -> Result<T, DeviceError> {
-        let json = self
-            .library
-            .text(call)
-            .map_err(|trouble| self.error(name, trouble))?;
-        serde_json::from_str(&json).map_err(|e| self.library.broken(format!("{name}: {e}")))
+    fn error(&self, call: &str, trouble: Trouble<Code>) -> DeviceError {
+        self.library.trouble(&self.descriptor.name, call, trouble)
     }
 }
 
@@ -162,10 +167,7 @@ impl Adapter for NativeAdapter {
     }
 
     fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
-        // SAFETY: the buffer is live and of this length, by `Library::text`.
-        self.json("endpoints", |out, len| unsafe {
-            (self.library.table.endpoints)(out, len)
-        })
+        self.library.endpoints(&self.descriptor.name)
     }
 
     fn capabilities(&self, settings: &Settings) -> Result<Capabilities, DeviceError> {
@@ -227,18 +229,12 @@ impl NativeDevice {
 
     /// A status that must be 0.
     fn done(&self, call: &str, answer: i64) -> Result<(), DeviceError> {
-        match self.adapter.library.count(answer) {
-            Ok(0) => Ok(()),
-            Ok(other) => Err(self
-                .adapter
-                .library
-                .broken(format!("{call}: it returned {other}"))),
-            Err(trouble) => Err(self.adapter.error(call, trouble)),
-        }
+        let (adapter, library) = (&self.adapter.descriptor.name, &self.adapter.library);
+        library.done(adapter, call, answer)
     }
 
     /// The error of a write, with the details that only this side knows.
-    fn write_error(&self, trouble: Trouble, samples: &[f32]) -> DeviceError {
+    fn write_error(&self, trouble: Trouble<Code>, samples: &[f32]) -> DeviceError {
         match trouble {
             Trouble::Told(Code::OverLimit, text) => {
                 let found = self.capabilities.check_samples(samples, self.written);
@@ -260,14 +256,9 @@ impl NativeDevice {
 
 impl Device for NativeDevice {
     fn write(&mut self, samples: &[f32], timeout: Duration) -> Result<usize, DeviceError> {
-        // A wait shorter than a millisecond is still a wait.
-        let wait_ms = timeout
-            .as_micros()
-            .div_ceil(1000)
-            .min(u128::from(MAX_WAIT_MS)) as u32;
         let (data, len) = (samples.as_ptr(), samples.len());
         // SAFETY: a live slice; `&mut self` keeps the handle to one thread at a time.
-        let taken = unsafe { (self.table().write)(self.handle, data, len, wait_ms) };
+        let taken = unsafe { (self.table().write)(self.handle, data, len, wait_ms(timeout)) };
         match self.adapter.library.count(taken) {
             Ok(taken) if taken <= len => {
                 self.written += taken as u64;

@@ -3,7 +3,7 @@
 use htex_schema::crossing;
 use serde_json::Value;
 
-use crate::{Capabilities, Descriptor, Endpoint};
+use crate::{Capabilities, Descriptor, Endpoint, SourceDescriptor, SourceStream};
 
 /// The files of `spec/schemas` that this crate generates, and their schemas.
 pub fn schemas() -> [(&'static str, Value); 3] {
@@ -23,5 +23,20 @@ pub fn schemas() -> [(&'static str, Value); 3] {
             crossing::<Capabilities>(capabilities, "capabilities of a device, ABI 1"),
         ),
         (endpoints, crossing::<Vec<Endpoint>>(endpoints, connected)),
+    ]
+}
+
+/// As [`schemas`], of sources; their endpoints have the schema of devices.
+pub fn source_schemas() -> [(&'static str, Value); 2] {
+    let [descriptor, stream] = ["source-descriptor-1.json", "source-stream-1.json"];
+    [
+        (
+            descriptor,
+            crossing::<SourceDescriptor>(descriptor, "descriptor of a source, ABI 1"),
+        ),
+        (
+            stream,
+            crossing::<SourceStream>(stream, "rate and channels of an open source, ABI 1"),
+        ),
     ]
 }

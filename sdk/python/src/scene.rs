@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use htex::host::{Registry, folders};
-use htex_device::{Capabilities, DeviceSearch, Devices};
+use htex_device::{Capabilities, Devices, Search};
 use htex_scene::file::Motion;
 use htex_scene::{Costs, DeviceOverride, Finger, LoadedScene, Plan, Renderer, Surroundings, plan};
 use numpy::{IntoPyArray, PyArray1};
@@ -224,10 +224,10 @@ fn failed(renderer: &mut Renderer) -> PyResult<()> {
 
 /// The devices that the command has, and the installed ones if requested.
 fn devices(installed: bool) -> PyResult<Devices> {
-    let search = DeviceSearch {
+    let search = Search {
         env: installed,
         user_dir: installed,
-        ..DeviceSearch::default()
+        ..Search::default()
     };
     let builtin: Vec<Arc<dyn htex_device::Adapter>> = vec![
         Arc::new(htex_device_file::FileAdapter),

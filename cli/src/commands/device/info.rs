@@ -1,7 +1,8 @@
 use clap::Args;
-use htex_device::{Capabilities, Descriptor, Profile, Setting, SettingKind};
+use htex_device::Capabilities;
 use serde_json::json;
 
+use crate::adapters::descriptor_text;
 use crate::devices::{DeviceArgs, SettingArgs};
 use crate::exit::Exit;
 use crate::failure::Failure;
@@ -51,51 +52,6 @@ impl Info {
         }
         Ok(Exit::SUCCESS)
     }
-}
-
-fn descriptor_text(descriptor: &Descriptor) -> String {
-    let Descriptor {
-        id,
-        name,
-        version,
-        summary,
-        ..
-    } = descriptor;
-    let settings: String = descriptor.settings.iter().map(setting).collect();
-    let profiles: String = descriptor.profiles.iter().map(profile).collect();
-    let none = |text: String| match text.is_empty() {
-        true => "  none\n".to_owned(),
-        false => text,
-    };
-    let (settings, profiles) = (none(settings), none(profiles));
-    format!("{name} ({id} {version})\n{summary}\n\nsettings\n{settings}\nprofiles\n{profiles}")
-}
-
-fn setting(setting: &Setting) -> String {
-    let values = match &setting.kind {
-        SettingKind::Number { min, max } => format!("{min} to {max}"),
-        SettingKind::Choice { values } => values.join(" or "),
-        SettingKind::Path => "a file".to_owned(),
-        SettingKind::Text => "text".to_owned(),
-    };
-    let default = match &setting.default {
-        Some(default) => match &setting.live_default {
-            Some(live) => format!("[{default}; {live} with --motion]"),
-            None => format!("[{default}]"),
-        },
-        None => "(must be given)".to_owned(),
-    };
-    let (name, description) = (&setting.name, &setting.description);
-    format!("  {name}: {values} {default}\n      {description}\n")
-}
-
-fn profile(profile: &Profile) -> String {
-    let fixed = profile.settings.iter();
-    let fixed: Vec<String> = fixed
-        .map(|(name, value)| format!("{name}={value}"))
-        .collect();
-    let (name, summary) = (&profile.name, &profile.summary);
-    format!("  {name}: {summary}\n      {}\n", fixed.join(" "))
 }
 
 fn can_text(can: &Capabilities) -> String {

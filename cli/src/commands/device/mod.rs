@@ -9,7 +9,7 @@ use clap::{Args, Subcommand};
 use crate::exit::Exit;
 use crate::failure::Failure;
 
-/// List, inspect and check devices.
+/// List, inspect and check devices; `htex source` inspects and checks sources.
 #[derive(Args)]
 pub(crate) struct Device {
     #[command(subcommand)]

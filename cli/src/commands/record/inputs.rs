@@ -1,6 +1,5 @@
 //! Arguments about the source, its channels and the tracker.
 
-use std::collections::BTreeMap;
 use std::io::{BufReader, IsTerminal};
 use std::path::PathBuf;
 
@@ -10,21 +9,24 @@ use htex_device::Source;
 use htex_format::Quantity;
 use htex_lab::record::{Calibration, LineTracker, Signals, TableTracker, TrackerRows};
 
+use crate::devices::SettingArgs;
 use crate::failure::Failure;
-use crate::sources;
+use crate::sources::SourceArgs;
 
 /// What is recorded from.
 #[derive(Args)]
 #[command(next_help_heading = "Source")]
 pub(super) struct InputArgs {
-    /// Where the signals come from: a recording that is replayed (file:rec.csv), or analog inputs of a National Instruments card
-    /// (daq:Dev1/ai0:5)
+    /// Where the signals come from: a recording that is replayed (file:rec.csv), analog inputs of a National Instruments card
+    /// (daq:Dev1/ai0:5), or another source of `htex device list`
     #[arg(long, value_name = "NAME:TARGET")]
     pub(super) source: String,
 
-    /// A setting of the source, such as rate_hz=20000; may be given several times
-    #[arg(long = "set", value_name = "NAME=VALUE")]
-    settings: Vec<String>,
+    #[command(flatten)]
+    sources: SourceArgs,
+
+    #[command(flatten)]
+    settings: SettingArgs,
 
     /// Roles and scales of the channels, as in `htex fit`: lateral_x=fx1+fx2,normal=-fz*0.31. Without it channels are
     /// known by their names
@@ -60,13 +62,7 @@ impl InputArgs {
     }
 
     pub(super) fn open(&self) -> Result<Box<dyn Source>, Failure> {
-        let mut given = BTreeMap::new();
-        for text in &self.settings {
-            let (name, value) = text
-                .split_once('=')
-                .ok_or_else(|| Failure::Usage(format!("--set {text}: it looks like NAME=VALUE")))?;
-            given.insert(name.to_owned(), value.to_owned());
-        }
+        let mut given = self.settings.given()?;
         if self.fast {
             if !self.source.starts_with("file:") {
                 let sentence = "--fast replays files; other sources come at their own pace";
@@ -74,7 +70,7 @@ impl InputArgs {
             }
             given.insert("pace".to_owned(), "fast".to_owned());
         }
-        sources::open(&self.source, &given)
+        self.sources.open(&self.source, &self.settings, &given)
     }
 
     pub(super) fn signals(&self, source: &dyn Source) -> Result<Signals, Failure> {

@@ -1,7 +1,9 @@
 //! The marker, the exports, the descriptor, endpoints and capabilities.
 
 use htex_check_runner::{Finding, Found, made_up_extensions};
-use htex_device::{AbiFault, DeviceError, NativeAdapter, SettingKind};
+use htex_device::{
+    AbiFault, Descriptor, DeviceError, Endpoint, NativeAdapter, Setting, SettingKind, Settings,
+};
 
 use crate::case::Case;
 
@@ -9,7 +11,7 @@ use crate::case::Case;
 pub(crate) fn owner(error: &DeviceError) -> &'static str {
     match error {
         DeviceError::Abi { fault, .. } => match fault {
-            AbiFault::Marker(_) => "marker",
+            AbiFault::Marker { .. } => "marker",
             AbiFault::Descriptor(_) => "descriptor",
             _ => "exports",
         },
@@ -19,8 +21,13 @@ pub(crate) fn owner(error: &DeviceError) -> &'static str {
 
 /// The library's functions; a built-in device has none.
 pub(crate) fn library(case: &Case) -> Result<&NativeAdapter, Finding> {
+    native(&case.native)
+}
+
+/// The library of an adapter that is not built in.
+pub(crate) fn native<N>(native: &Option<N>) -> Result<&N, Finding> {
     let built_in = || Finding::skipped("it is built in and has no library");
-    case.native.as_ref().ok_or_else(built_in)
+    native.as_ref().ok_or_else(built_in)
 }
 
 /// A library that was loaded has the marker and the exports.
@@ -32,12 +39,16 @@ pub(crate) fn loaded(case: &Case) -> Found {
 /// Loading checks a library's descriptor; this checks that of a built-in device.
 pub(crate) fn descriptor(case: &Case) -> Found {
     let descriptor = case.adapter.descriptor();
-    let checked = descriptor.check();
-    checked.map_err(|error| Finding::failed(error.to_string()))?;
+    descriptor.check()?;
+    Ok(described(descriptor))
+}
+
+/// A descriptor that is valid.
+pub(crate) fn described(descriptor: &Descriptor) -> Finding {
     let (id, version) = (&descriptor.id, &descriptor.version);
     let (settings, profiles) = (descriptor.settings.len(), descriptor.profiles.len());
     let message = format!("{id} {version}: {settings} settings, {profiles} profiles");
-    Ok(Finding::passed(message).with("settings", settings as f64))
+    Finding::passed(message).with("settings", settings as f64)
 }
 
 /// Made-up extensions are absent.
@@ -48,11 +59,21 @@ pub(crate) fn extensions(case: &Case) -> Found {
 
 /// Endpoints can be listed; none, or a missing driver, is a valid result.
 pub(crate) fn endpoints(case: &Case) -> Found {
+    listed(case.adapter.descriptor(), case.adapter.endpoints())
+}
+
+/// Endpoints choose settings of the descriptor.
+pub(crate) fn listed(
+    descriptor: &Descriptor,
+    endpoints: Result<Vec<Endpoint>, DeviceError>,
+) -> Found {
     let known = |name: &str| {
-        let mut settings = case.adapter.descriptor().settings.iter();
-        settings.any(|setting| setting.name == name)
+        descriptor
+            .settings
+            .iter()
+            .any(|setting| setting.name == name)
     };
-    match case.adapter.endpoints() {
+    match endpoints {
         Ok(all) => match all.iter().find(|endpoint| !known(&endpoint.setting)) {
             Some(lost) => {
                 let (name, setting) = (&lost.name, &lost.setting);
@@ -91,37 +112,33 @@ pub(crate) fn capabilities(case: &Case) -> Found {
 /// Unknown and invalid settings are refused.
 pub(crate) fn bad_settings(case: &Case) -> Found {
     let native = library(case)?;
-    let good = case.settings()?.to_lines(case.adapter.descriptor());
+    let descriptor = case.adapter.descriptor();
+    refused(descriptor, &case.settings()?, |lines| {
+        native.capabilities_of(lines).map(drop)
+    })
+}
+
+/// Unknown settings and values that are not allowed are refused by `take`, each among valid ones.
+pub(crate) fn refused(
+    descriptor: &Descriptor,
+    settings: &Settings,
+    take: impl Fn(&str) -> Result<(), DeviceError>,
+) -> Found {
+    let good = settings.to_lines(descriptor);
     let mut wrong = vec![
         "no_such_setting_=1\n".to_owned(),
         "no line of settings\n".to_owned(),
     ];
-    for setting in &case.adapter.descriptor().settings {
-        let values = match &setting.kind {
-            SettingKind::Number { max, .. } => vec![
-                "".to_owned(),
-                "NaN".to_owned(),
-                "one".to_owned(),
-                format!("{}", max * 2.0 + 1.0),
-            ],
-            SettingKind::Choice { .. } => vec!["".to_owned(), "no such choice".to_owned()],
-            SettingKind::Path | SettingKind::Text => continue,
-        };
-        wrong.extend(
-            values
-                .iter()
-                .map(|value| format!("{}={value}\n", setting.name)),
-        );
-    }
+    wrong.extend(descriptor.settings.iter().flat_map(wrong_lines));
     for line in &wrong {
         let name = line.split('=').next().unwrap_or_default();
         let others = good.lines().filter(|l| !l.starts_with(&format!("{name}=")));
         let lines: String = others.flat_map(|l| [l, "\n"]).collect();
         let line = line.trim_end();
-        match native.capabilities_of(&format!("{lines}{line}\n")) {
+        match take(&format!("{lines}{line}\n")) {
             Err(DeviceError::Setting { .. }) => {}
             Err(error) => return Err(Finding::failed(format!("`{line}`: {error}"))),
-            Ok(_) => return Err(Finding::failed(format!("it takes the setting `{line}`"))),
+            Ok(()) => return Err(Finding::failed(format!("it takes the setting `{line}`"))),
         }
     }
     let count = wrong.len();
@@ -129,4 +146,20 @@ pub(crate) fn bad_settings(case: &Case) -> Found {
         Finding::passed(format!("{count} wrong settings are refused"))
             .with("settings", count as f64),
     )
+}
+
+/// Lines of a setting with values that it does not have.
+fn wrong_lines(setting: &Setting) -> Vec<String> {
+    let values = match &setting.kind {
+        SettingKind::Number { max, .. } => vec![
+            "".to_owned(),
+            "NaN".to_owned(),
+            "one".to_owned(),
+            format!("{}", max * 2.0 + 1.0),
+        ],
+        SettingKind::Choice { .. } => vec!["".to_owned(), "no such choice".to_owned()],
+        SettingKind::Path | SettingKind::Text => Vec::new(),
+    };
+    let line = |value: &String| format!("{}={value}\n", setting.name);
+    values.iter().map(line).collect()
 }

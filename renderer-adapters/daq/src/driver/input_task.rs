@@ -1,16 +1,15 @@
 //! A task of the driver on analog inputs.
 #![allow(unsafe_code)] // The driver's functions are C.
 
+use std::ops::Deref;
 use std::ptr::{null, null_mut};
 
 use super::Driver;
-use super::table::{Handle, c_text};
+use super::clocked::{Clocked, VOLTS};
+use super::table::c_text;
 use crate::fault::Fault;
 
 // Constants of `NIDAQmx.h`.
-const VOLTS: i32 = 10348;
-const RISING: i32 = 10280;
-const CONTINUOUS: i32 = 10123;
 const GROUP_BY_SCAN_NUMBER: u32 = 1;
 
 /// How inputs are wired; the numbers are those of `NIDAQmx.h`.
@@ -25,13 +24,9 @@ pub(crate) enum Terminals {
 
 /// Stopped and cleared when dropped.
 pub(crate) struct InputTask {
-    driver: &'static Driver,
-    handle: Handle,
+    task: Clocked,
     width: usize,
 }
-
-// SAFETY: NI-DAQmx may be called from any thread, and one handle is used by one thread at a time.
-unsafe impl Send for InputTask {}
 
 impl InputTask {
     /// A task on `width` inputs of a range of ±`range_v`.
@@ -42,19 +37,14 @@ impl InputTask {
         terminals: Terminals,
         range_v: f64,
     ) -> Result<Self, Fault> {
-        let handle = driver.table.new_task()?;
-        let task = Self {
-            driver,
-            handle,
-            width,
-        };
+        let task = Clocked::new(driver)?;
         let (channels, names) = (c_text(channels), c_text(""));
         // SAFETY: strings that end in zero; no custom scale.
         task.check(unsafe {
             let (channels, names, terminals) =
                 (channels.as_ptr(), names.as_ptr(), terminals as i32);
-            (driver.table.create_input)(
-                handle,
+            (task.table().create_input)(
+                task.handle,
                 channels,
                 names,
                 terminals,
@@ -64,37 +54,21 @@ impl InputTask {
                 null(),
             )
         })?;
-        Ok(task)
+        Ok(Self { task, width })
     }
 
     /// Lets the card's own clock sample into a buffer of `frames`.
     pub(crate) fn set_clock(&self, rate_hz: f64, frames: u32) -> Result<(), Fault> {
-        let (table, source) = (&self.driver.table, c_text(""));
-        // SAFETY: a string that ends in zero: the card's own clock.
-        self.check(unsafe {
-            let (source, count) = (source.as_ptr(), u64::from(frames));
-            (table.set_clock)(self.handle, source, rate_hz, RISING, CONTINUOUS, count)
-        })?;
+        self.set_card_clock(rate_hz, frames)?;
         // SAFETY: numbers only.
-        self.check(unsafe { (table.set_input_buffer)(self.handle, frames) })
-    }
-
-    pub(crate) fn start(&self) -> Result<(), Fault> {
-        // SAFETY: the handle is this task's.
-        self.check(unsafe { (self.driver.table.start_task)(self.handle) })
-    }
-
-    /// Stops the task; returns the error that it had.
-    pub(crate) fn stop(&self) -> Result<(), Fault> {
-        // SAFETY: the handle is this task's.
-        self.check(unsafe { (self.driver.table.stop_task)(self.handle) })
+        self.check(unsafe { (self.table().set_input_buffer)(self.handle, frames) })
     }
 
     /// Frames that can be read now.
     pub(crate) fn available(&self) -> Result<usize, Fault> {
         let mut frames = 0u32;
         // SAFETY: a place for one number.
-        self.check(unsafe { (self.driver.table.get_available)(self.handle, &mut frames) })?;
+        self.check(unsafe { (self.table().get_available)(self.handle, &mut frames) })?;
         Ok(frames as usize)
     }
 
@@ -106,7 +80,7 @@ impl InputTask {
         let (now_s, mut read) = (0.0, 0i32);
         // SAFETY: space for that many samples, a place for the count, and the reserved argument.
         self.check(unsafe {
-            (self.driver.table.read_samples)(
+            (self.table().read_samples)(
                 self.handle,
                 count,
                 now_s,
@@ -119,18 +93,12 @@ impl InputTask {
         })?;
         Ok(usize::try_from(read).unwrap_or(0).min(frames))
     }
-
-    fn check(&self, code: i32) -> Result<(), Fault> {
-        self.driver.table.check(code)
-    }
 }
 
-impl Drop for InputTask {
-    fn drop(&mut self) {
-        // SAFETY: the handle is this task's, and used nowhere after this.
-        unsafe {
-            (self.driver.table.stop_task)(self.handle);
-            (self.driver.table.clear_task)(self.handle);
-        }
+impl Deref for InputTask {
+    type Target = Clocked;
+
+    fn deref(&self) -> &Clocked {
+        &self.task
     }
 }

@@ -1,5 +1,6 @@
 //! NI-DAQmx, loaded at the first use.
 
+mod clocked;
 mod found;
 mod input_task;
 mod table;

@@ -1,6 +1,8 @@
-//! Sources: inputs that deliver samples of several channels at one rate.
+//! The two traits of sources.
 
 use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
 
 use crate::{Descriptor, DeviceError, Endpoint, Settings};
 
@@ -85,11 +87,13 @@ pub trait Source: Send {
 }
 
 /// A channel of a source.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Channel {
     /// Name, the same at each opening with the same settings.
     pub name: String,
     /// Symbol of the unit, such as `V`; empty if the source does not know it.
+    #[serde(default)]
     pub unit: String,
 }
 

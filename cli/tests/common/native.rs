@@ -1,0 +1,91 @@
+//! Libraries in C: the examples, and faulty ones around them.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::Place;
+
+pub fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// An example of `examples`, of one source file, built by its `build.sh` in a folder of its own.
+pub fn example(place: &Place, folder: &str, source: &str) -> PathBuf {
+    for file in [source, "build.sh"] {
+        let from = workspace().join("examples").join(folder).join(file);
+        let text = std::fs::read_to_string(from).unwrap();
+        let include = workspace().join("spec/include").canonicalize().unwrap();
+        place.write(
+            file,
+            text.replace("../../spec/include", include.to_str().unwrap()),
+        );
+    }
+    let built = Command::new("sh")
+        .arg(place.path("build.sh"))
+        .output()
+        .unwrap();
+    let errors = String::from_utf8_lossy(&built.stderr);
+    assert!(built.status.success() && errors.is_empty(), "{errors}");
+    place.path(String::from_utf8(built.stdout).unwrap().trim())
+}
+
+/// Compiles a faulty library of `tests` with a fault, or without, around a valid one.
+pub fn bad(place: &Place, source: &str, good: &Path, fault: &str) -> String {
+    let out = place.path(&format!("bad-{fault}{}", std::env::consts::DLL_SUFFIX));
+    let status = Command::new("cc")
+        .args([
+            "-std=gnu11",
+            "-O1",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            "-shared",
+            "-fPIC",
+        ])
+        .args([
+            "-Wno-unused-parameter",
+            "-Wno-unused-variable",
+            "-Wno-unused-but-set-variable",
+            "-Wno-unused-function",
+        ])
+        .arg(format!("-DFAULT_{fault}"))
+        .arg(format!("-DGOOD_LIBRARY=\"{}\"", good.display()))
+        .arg("-I")
+        .arg(workspace().join("spec/include"))
+        .arg(workspace().join("tests").join(source))
+        .args(["-o".as_ref(), out.as_os_str()])
+        .args(["-ldl", "-lm"])
+        .status();
+    assert!(status.unwrap().success(), "{fault} does not compile");
+    out.to_str().unwrap().to_owned()
+}
+
+/// Names and outcomes of the checks of a report that are neither passed nor skipped.
+pub fn complaints(report: &serde_json::Value) -> Vec<(String, String)> {
+    let checks = report["checks"].as_array().unwrap().iter();
+    let text = |check: &serde_json::Value, key: &str| check[key].as_str().unwrap().to_owned();
+    let all = checks.map(|check| (text(check, "check"), text(check, "outcome")));
+    all.filter(|(_, outcome)| outcome != "passed" && outcome != "skipped")
+        .collect()
+}
+
+/// The report of `htex device check` or `htex source check`, whose exit status says the same.
+pub fn checked(place: &Place, kind: &str, arguments: &[&str]) -> serde_json::Value {
+    let all = [&[kind, "check", "--json"], arguments].concat();
+    let run = place.run(&all);
+    let report: serde_json::Value = serde_json::from_str(&run.text()).unwrap_or_else(|_| {
+        unreachable!("{}", run.error());
+    });
+    assert_eq!(
+        run.code() == 0,
+        report["ok"].as_bool().unwrap(),
+        "{report:#}"
+    );
+    report
+}
+
+/// How many checks of a report had this outcome.
+pub fn count(report: &serde_json::Value, outcome: &str) -> usize {
+    let checks = report["checks"].as_array().unwrap().iter();
+    checks.filter(|check| check["outcome"] == outcome).count()
+}

@@ -1,0 +1,252 @@
+/* Ridges: a simulated finger that slides to and fro over parallel ridges.
+ *
+ * The force across the ridges follows the finger's position, so that ridges of 0.8 mm at 80 mm/s are
+ * felt at 100 Hz. With pace=real frames come at their rate, and those that nobody reads for ten
+ * seconds are lost: the next read fails. With pace=fast they come as fast as they are read.
+ */
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "htex_source.h"
+
+enum { CHANNELS = 3, SOURCES = 16, KEPT_S = 10 };
+
+static const double PI = 3.14159265358979323846;
+static const double STROKE_MM = 60, FRICTION = 0.5, RIPPLE = 0.2;
+
+#define NUMBER(name, min, max, value, text)                                                      \
+    "{\"name\":\"" name "\",\"kind\":{\"type\":\"number\",\"min\":" min ",\"max\":" max "},"     \
+    "\"default\":\"" value "\",\"description\":\"" text "\"}"
+
+static const char descriptor[] =
+    "{\"id\":\"org.example.ridges\",\"name\":\"Ridges\",\"version\":\"1.0.0\","
+    "\"summary\":\"Simulates a finger on parallel ridges.\",\"target\":\"spacing_mm\",\"settings\":["
+    NUMBER("spacing_mm", "0.01", "10", "1", "From ridge to ridge.") ","
+    NUMBER("speed_mm_s", "1", "1000", "80", "Speed of the finger.") ","
+    NUMBER("force_n", "0.01", "10", "0.4", "Force of the finger.") ","
+    NUMBER("rate_hz", "100", "100000", "5000", "Frames a second.") ","
+    NUMBER("seconds", "0", "86400", "0", "Time after which the source ends; 0: never.") ","
+    "{\"name\":\"pace\",\"kind\":{\"type\":\"choice\",\"values\":[\"real\",\"fast\"]},"
+    "\"default\":\"real\",\"description\":\"Whether frames come at their rate.\"}]}";
+
+/* ---- errors and texts ---- */
+
+static _Thread_local char last_error[512];
+
+static int64_t fail(int64_t status, const char *before, const char *text) {
+    snprintf(last_error, sizeof last_error, "%s%s", before, text);
+    return status;
+}
+
+static int64_t give(const char *text, uint8_t *out, size_t capacity) {
+    size_t len = strlen(text);
+    if (capacity && !out) return fail(HTEX_SOURCE_INVALID_ARGUMENT, "", "`out` is null");
+    if (capacity) memcpy(out, text, len < capacity ? len : capacity);
+    return (int64_t)len;
+}
+
+uint32_t htex_source_abi_version(void) { return HTEX_SOURCE_ABI_MARKER; }
+
+int64_t htex_source_descriptor(uint8_t *out, size_t capacity) {
+    return give(descriptor, out, capacity);
+}
+
+int64_t htex_source_last_error(uint8_t *out, size_t capacity) {
+    return give(last_error, out, capacity);
+}
+
+int64_t htex_source_endpoints(uint8_t *out, size_t capacity) {
+    return give("[{\"name\":\"1\",\"setting\":\"spacing_mm\",\"summary\":\"coarse ridges\"}]", out,
+                capacity);
+}
+
+int64_t htex_source_extension(const uint8_t *id, size_t id_len) {
+    (void)id, (void)id_len;
+    return 0;
+}
+
+/* ---- settings ---- */
+
+struct settings {
+    double spacing_mm, speed_mm_s, force_n, rate_hz, seconds;
+    int is_fast;
+};
+
+static int number(const char *text, double min, double max, double *out) {
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text || *end || !(value >= min && value <= max)) return 0;
+    *out = value;
+    return 1;
+}
+
+static int64_t set(struct settings *all, const char *name, const char *value) {
+    int is_fast = !strcmp(value, "fast");
+    if (!strcmp(name, "pace") && (is_fast || !strcmp(value, "real"))) {
+        all->is_fast = is_fast;
+        return 0;
+    }
+    if ((!strcmp(name, "spacing_mm") && number(value, 0.01, 10, &all->spacing_mm)) ||
+        (!strcmp(name, "speed_mm_s") && number(value, 1, 1000, &all->speed_mm_s)) ||
+        (!strcmp(name, "force_n") && number(value, 0.01, 10, &all->force_n)) ||
+        (!strcmp(name, "rate_hz") && number(value, 100, 100000, &all->rate_hz)) ||
+        (!strcmp(name, "seconds") && number(value, 0, 86400, &all->seconds)))
+        return 0;
+    return fail(HTEX_SOURCE_INVALID_SETTING, name, ": not known, or not usable");
+}
+
+static int64_t read_settings(struct settings *all, const uint8_t *text, size_t len) {
+    *all = (struct settings){1, 80, 0.4, 5000, 0, 0};
+    if (len && !text) return fail(HTEX_SOURCE_INVALID_ARGUMENT, "", "`settings` is null");
+    for (size_t at = 0; at < len;) {
+        char line[128];
+        size_t n = 0;
+        while (at + n < len && text[at + n] != '\n') n++;
+        if (n >= sizeof line) return fail(HTEX_SOURCE_INVALID_SETTING, "", "settings: too long");
+        memcpy(line, text + at, n);
+        line[n] = 0;
+        char *value = strchr(line, '=');
+        if (!value) return fail(HTEX_SOURCE_INVALID_SETTING, line, ": a line is NAME=VALUE");
+        *value++ = 0;
+        int64_t status = set(all, line, value);
+        if (status) return status;
+        at += n + 1;
+    }
+    return 0;
+}
+
+/* ---- open sources ---- */
+
+struct source {
+    int64_t handle; /* 0: free */
+    struct settings settings;
+    enum { OPENED, SAMPLING, STOPPED } state;
+    struct timespec begun;
+    uint64_t frames; /* that were read */
+};
+
+static struct source sources[SOURCES];
+static int64_t handles;
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+
+static struct source *find(int64_t handle) {
+    struct source *found = NULL;
+    pthread_mutex_lock(&lock);
+    for (int i = 0; i < SOURCES && handle > 0; i++)
+        if (sources[i].handle == handle) found = &sources[i];
+    pthread_mutex_unlock(&lock);
+    if (!found) fail(HTEX_SOURCE_BAD_HANDLE, "", "no such source is open; it may have been closed");
+    return found;
+}
+
+int64_t htex_source_open(const uint8_t *settings, size_t settings_len) {
+    struct source s = {0};
+    int64_t status = read_settings(&s.settings, settings, settings_len);
+    if (status) return status;
+    pthread_mutex_lock(&lock);
+    struct source *slot = NULL;
+    for (int i = 0; i < SOURCES; i++)
+        if (!sources[i].handle) slot = &sources[i];
+    if (slot) {
+        s.handle = ++handles;
+        *slot = s;
+    }
+    pthread_mutex_unlock(&lock);
+    return slot ? s.handle : fail(HTEX_SOURCE_BUSY, "", "sixteen are open; close one");
+}
+
+int64_t htex_source_stream(int64_t source, uint8_t *out, size_t capacity) {
+    struct source *s = find(source);
+    if (!s) return HTEX_SOURCE_BAD_HANDLE;
+    char text[256];
+    snprintf(text, sizeof text,
+             "{\"rate_hz\":%.17g,\"channels\":[{\"name\":\"lateral_x\",\"unit\":\"N\"},"
+             "{\"name\":\"normal\",\"unit\":\"N\"},{\"name\":\"speed\",\"unit\":\"mm/s\"}]}",
+             s->settings.rate_hz);
+    return give(text, out, capacity);
+}
+
+int64_t htex_source_start(int64_t source) {
+    struct source *s = find(source);
+    if (!s) return HTEX_SOURCE_BAD_HANDLE;
+    if (s->state == STOPPED) return fail(HTEX_SOURCE_CLOSED, "", "the finger has stopped");
+    if (s->state == OPENED) clock_gettime(CLOCK_MONOTONIC, &s->begun);
+    s->state = SAMPLING;
+    return HTEX_SOURCE_OK;
+}
+
+static double since_s(const struct timespec *then) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)(now.tv_sec - then->tv_sec) + 1e-9 * (double)(now.tv_nsec - then->tv_nsec);
+}
+
+static void sleep_s(double seconds) {
+    struct timespec time = {(time_t)seconds, (long)(1e9 * (seconds - floor(seconds)))};
+    nanosleep(&time, NULL);
+}
+
+/* Frames that were sampled and not read; waits for the first. */
+static uint64_t waiting(const struct source *s, uint32_t timeout_ms) {
+    double rate_hz = s->settings.rate_hz, now_s = since_s(&s->begun);
+    double wait_s = (double)(s->frames + 1) / rate_hz - now_s;
+    if (wait_s > 0) sleep_s(fmin(wait_s, timeout_ms / 1000.0));
+    uint64_t sampled = (uint64_t)(since_s(&s->begun) * rate_hz);
+    return sampled > s->frames ? sampled - s->frames : 0;
+}
+
+/* Forces and speed of a frame: the finger moves to and fro at its speed. */
+static void sample(const struct settings *all, uint64_t frame, double *out) {
+    double way_mm = fmod(all->speed_mm_s * (double)frame / all->rate_hz, 2 * STROKE_MM);
+    double is_back = way_mm >= STROKE_MM, x_mm = is_back ? 2 * STROKE_MM - way_mm : way_mm;
+    double ripple = RIPPLE * sin(2 * PI * x_mm / all->spacing_mm);
+    out[0] = FRICTION * all->force_n * (ripple - (is_back ? -1 : 1));
+    out[1] = all->force_n;
+    out[2] = all->speed_mm_s;
+}
+
+int64_t htex_source_read(int64_t source, double *samples, size_t len, uint32_t timeout_ms) {
+    struct source *s = find(source);
+    if (!s) return HTEX_SOURCE_BAD_HANDLE;
+    if (len % CHANNELS) return fail(HTEX_SOURCE_INVALID_ARGUMENT, "", "a frame has three samples");
+    if (len && !samples) return fail(HTEX_SOURCE_INVALID_ARGUMENT, "", "`samples` is null");
+    if (s->state != SAMPLING) return fail(HTEX_SOURCE_CLOSED, "", "the finger does not move");
+    uint64_t frames = len / CHANNELS;
+    if (s->settings.seconds > 0) {
+        uint64_t all = (uint64_t)(s->settings.seconds * s->settings.rate_hz);
+        if (s->frames >= all) return fail(HTEX_SOURCE_END, "", "the time has passed");
+        if (frames > all - s->frames) frames = all - s->frames;
+    }
+    if (!s->settings.is_fast && frames) {
+        uint64_t there = waiting(s, timeout_ms);
+        if ((double)there > KEPT_S * s->settings.rate_hz) {
+            s->state = STOPPED;
+            return fail(HTEX_SOURCE_OVERRUN, "", "read more often than every 10 s");
+        }
+        if (frames > there) frames = there;
+    }
+    for (uint64_t i = 0; i < frames; i++)
+        sample(&s->settings, s->frames + i, samples + CHANNELS * i);
+    s->frames += frames;
+    return (int64_t)frames;
+}
+
+int64_t htex_source_stop(int64_t source) {
+    struct source *s = find(source);
+    if (!s) return HTEX_SOURCE_BAD_HANDLE;
+    s->state = STOPPED;
+    return HTEX_SOURCE_OK;
+}
+
+int64_t htex_source_close(int64_t source) {
+    struct source *s = find(source);
+    if (!s) return HTEX_SOURCE_BAD_HANDLE;
+    pthread_mutex_lock(&lock);
+    s->handle = 0;
+    pthread_mutex_unlock(&lock);
+    return HTEX_SOURCE_OK;
+}

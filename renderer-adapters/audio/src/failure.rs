@@ -1,0 +1,48 @@
+//! Errors of a card's thread, for the thread that plays or records.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use cpal::ErrorKind;
+use htex_device::DeviceError;
+
+/// The error of a card's thread.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Failure(Arc<Mutex<Option<String>>>);
+
+impl Failure {
+    /// The error.
+    pub(crate) fn peek(&self) -> Option<String> {
+        self.0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone()
+    }
+
+    /// The error, once.
+    pub(crate) fn take(&self) -> Option<String> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+}
+
+/// Handles errors of the card's thread: buffers that ran dry or over go to `xrun`, errors after which the card continues are
+/// ignored, and others are stored.
+pub(crate) fn reporter(
+    failure: Failure,
+    mut xrun: impl FnMut() + Send + 'static,
+) -> impl FnMut(cpal::Error) + Send + 'static {
+    move |error| match error.kind() {
+        ErrorKind::Xrun => xrun(),
+        ErrorKind::DeviceChanged | ErrorKind::RealtimeDenied => {}
+        _ => {
+            let mut failure = failure.0.lock().unwrap_or_else(PoisonError::into_inner);
+            *failure = Some(error.to_string());
+        }
+    }
+}
+
+pub(crate) fn failed(name: &str, what: String) -> DeviceError {
+    DeviceError::Failed {
+        device: name.to_owned(),
+        what,
+    }
+}

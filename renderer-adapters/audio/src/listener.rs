@@ -1,0 +1,64 @@
+//! The part of an input that runs in the sound card's thread.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use rtrb::Producer;
+
+/// State shared by the sound card's thread and the reader.
+#[derive(Debug, Default)]
+pub(crate) struct Heard {
+    /// Frames were lost; none comes after them.
+    pub(crate) lost: AtomicBool,
+    /// Times the card gave samples.
+    pub(crate) calls: AtomicU64,
+}
+
+/// Puts samples into the ring. Does not allocate or wait.
+pub(crate) struct Listener {
+    ring: Producer<f64>,
+    heard: Arc<Heard>,
+}
+
+impl Listener {
+    pub(crate) fn new(ring: Producer<f64>, heard: Arc<Heard>) -> Self {
+        Self { ring, heard }
+    }
+
+    /// Takes interleaved frames: all of them, or none from the first time on that they do not fit.
+    pub(crate) fn take<T: Copy>(&mut self, samples: &[T], convert: impl Fn(T) -> f64) {
+        if self.ring.slots() < samples.len() {
+            self.heard.lost.store(true, Ordering::Release);
+        }
+        if !self.heard.lost.load(Ordering::Acquire) {
+            for sample in samples {
+                // There is space for all.
+                let _ = self.ring.push(convert(*sample));
+            }
+        }
+        self.heard.calls.fetch_add(1, Ordering::Release);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rtrb::RingBuffer;
+
+    #[test]
+    fn nothing_comes_after_a_gap() {
+        let (writer, mut ring) = RingBuffer::new(6);
+        let heard = Arc::new(Heard::default());
+        let mut listener = Listener::new(writer, Arc::clone(&heard));
+        listener.take(&[1i16, 2, 3, 4], f64::from);
+        assert!(!heard.lost.load(Ordering::Relaxed));
+        // Two are free: these four are lost, and all others.
+        listener.take(&[5i16, 6, 7, 8], f64::from);
+        assert!(heard.lost.load(Ordering::Relaxed));
+        let mut read: Vec<f64> = (0..4).map(|_| ring.pop().unwrap()).collect();
+        listener.take(&[9i16, 10], f64::from);
+        read.extend(ring.pop().ok());
+        assert_eq!(read, [1.0, 2.0, 3.0, 4.0]);
+        assert_eq!(heard.calls.load(Ordering::Relaxed), 3);
+    }
+}

@@ -1,0 +1,69 @@
+//! The marker, the exports, the descriptor, endpoints, opening, settings.
+
+use htex_check_runner::{Finding, Found, made_up_extensions};
+use htex_device::{SourceDescriptor, SourceStream};
+
+use crate::checks::describe::{described, listed, native, refused};
+use crate::source::case::{Case, skip_missing};
+
+/// A library that was loaded has the marker and the exports.
+pub(crate) fn loaded(case: &Case) -> Found {
+    native(&case.native)?;
+    Ok(Finding::passed("the library was loaded"))
+}
+
+/// Loading checks a library's descriptor; this checks that of a built-in source.
+pub(crate) fn descriptor(case: &Case) -> Found {
+    let about = SourceDescriptor {
+        descriptor: case.adapter.descriptor().clone(),
+        target: case.adapter.target().to_owned(),
+    };
+    about.check()?;
+    Ok(described(&about.descriptor))
+}
+
+/// Made-up extensions are absent.
+pub(crate) fn extensions(case: &Case) -> Found {
+    let native = native(&case.native)?;
+    made_up_extensions(|id| native.has_extension(id))
+}
+
+/// Endpoints can be listed; none, or a missing driver, is a valid result.
+pub(crate) fn endpoints(case: &Case) -> Found {
+    listed(case.adapter.descriptor(), case.adapter.endpoints())
+}
+
+/// Rate and channels are valid, the same at each opening and, of a library, at each call.
+pub(crate) fn opens(case: &Case) -> Found {
+    let stream = || -> Result<SourceStream, Finding> {
+        let source = case.open()?;
+        Ok(SourceStream {
+            rate_hz: source.rate_hz(),
+            channels: source.channels().to_vec(),
+        })
+    };
+    let first = stream()?;
+    first.check()?;
+    let mut others = vec![stream()?];
+    if let Some(native) = &case.native {
+        let source = native.open_native(&case.settings()?)?;
+        others.push(source.stream_again()?);
+        others.push(source.stream_again()?);
+    }
+    if let Some(other) = others.iter().find(|other| **other != first) {
+        let message = format!("rate and channels change: {first:?}, then {other:?}");
+        return Err(Finding::failed(message));
+    }
+    let (count, rate_hz) = (first.channels.len(), first.rate_hz);
+    Ok(Finding::passed(format!("{count} channels at {rate_hz} Hz")).with("rate_hz", rate_hz))
+}
+
+/// Unknown and invalid settings are refused.
+pub(crate) fn bad_settings(case: &Case) -> Found {
+    let native = native(&case.native)?;
+    let settings = case.settings()?;
+    native.open_native(&settings).map_err(skip_missing)?;
+    refused(case.adapter.descriptor(), &settings, |lines| {
+        native.open_lines(lines).map(drop)
+    })
+}

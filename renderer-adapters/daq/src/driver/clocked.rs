@@ -1,0 +1,66 @@
+//! What tasks on outputs and on inputs share: the handle, the clock, start and end.
+#![allow(unsafe_code)] // The driver's functions are C.
+
+use super::Driver;
+use super::table::{Handle, Table, c_text};
+use crate::fault::Fault;
+
+// Constants of `NIDAQmx.h`.
+pub(super) const VOLTS: i32 = 10348;
+const RISING: i32 = 10280;
+const CONTINUOUS: i32 = 10123;
+
+/// A task without channels at first. Stopped and cleared when dropped.
+pub(crate) struct Clocked {
+    driver: &'static Driver,
+    pub(super) handle: Handle,
+}
+
+// SAFETY: NI-DAQmx may be called from any thread, and one handle is used by one thread at a time.
+unsafe impl Send for Clocked {}
+
+impl Clocked {
+    pub(super) fn new(driver: &'static Driver) -> Result<Self, Fault> {
+        let handle = driver.table.new_task()?;
+        Ok(Self { driver, handle })
+    }
+
+    pub(super) fn table(&self) -> &'static Table {
+        &self.driver.table
+    }
+
+    /// Lets the card's own clock take or deliver samples without end, by way of a buffer of `frames`.
+    pub(super) fn set_card_clock(&self, rate_hz: f64, frames: u32) -> Result<(), Fault> {
+        let source = c_text("");
+        // SAFETY: a string that ends in zero: the card's own clock.
+        self.check(unsafe {
+            let (source, count) = (source.as_ptr(), u64::from(frames));
+            (self.table().set_clock)(self.handle, source, rate_hz, RISING, CONTINUOUS, count)
+        })
+    }
+
+    pub(crate) fn start(&self) -> Result<(), Fault> {
+        // SAFETY: the handle is this task's.
+        self.check(unsafe { (self.table().start_task)(self.handle) })
+    }
+
+    /// Stops the task; returns the error that it had.
+    pub(crate) fn stop(&self) -> Result<(), Fault> {
+        // SAFETY: the handle is this task's.
+        self.check(unsafe { (self.table().stop_task)(self.handle) })
+    }
+
+    pub(super) fn check(&self, code: i32) -> Result<(), Fault> {
+        self.table().check(code)
+    }
+}
+
+impl Drop for Clocked {
+    fn drop(&mut self) {
+        // SAFETY: the handle is this task's, and used nowhere after this.
+        unsafe {
+            (self.table().stop_task)(self.handle);
+            (self.table().clear_task)(self.handle);
+        }
+    }
+}

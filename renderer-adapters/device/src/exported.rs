@@ -1,0 +1,145 @@
+//! What the shims of devices and of sources share: arrays of the other side, answers, texts.
+
+use std::cell::RefCell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use crate::abi::{Code, MAX_TEXT_BYTES};
+use crate::crossing::outgoing;
+use crate::{Descriptor, DeviceError, Settings};
+
+std::thread_local! {
+    static LAST_ERROR: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// A pointer and a length from the other side.
+pub struct Input<'a, T>(Option<&'a [T]>);
+
+impl<'a, T> Input<'a, T> {
+    /// Refuses null and misaligned pointers when there is something to read.
+    ///
+    /// # Safety
+    /// `pointer` is null, or `len` values can be read there for `'a`.
+    pub unsafe fn new(pointer: *const T, len: usize) -> Self {
+        if len == 0 {
+            return Self(Some(&[]));
+        }
+        let usable = !pointer.is_null() && pointer.is_aligned() && fits::<T>(len);
+        // SAFETY: not null, aligned, not longer than memory; readable by the caller's promise.
+        Self(usable.then(|| unsafe { std::slice::from_raw_parts(pointer, len) }))
+    }
+
+    pub(crate) fn get(self, name: &str) -> Result<&'a [T], Refusal> {
+        self.0
+            .ok_or_else(|| argument(format!("`{name}` is not a usable array")))
+    }
+}
+
+/// A buffer to write to, from the other side.
+pub struct Output<'a, T>(Option<&'a mut [T]>);
+
+impl<'a, T> Output<'a, T> {
+    /// Refuses null and misaligned pointers when there is space to write.
+    ///
+    /// # Safety
+    /// `pointer` is null, or `len` initialised values can be written there for `'a`, by us alone.
+    pub unsafe fn new(pointer: *mut T, len: usize) -> Self {
+        if len == 0 {
+            return Self(Some(&mut []));
+        }
+        let usable = !pointer.is_null() && pointer.is_aligned() && fits::<T>(len);
+        // SAFETY: not null, aligned, not longer than memory; ours by the caller's promise.
+        Self(usable.then(|| unsafe { std::slice::from_raw_parts_mut(pointer, len) }))
+    }
+
+    pub(crate) fn get(self, name: &str) -> Result<&'a mut [T], Refusal> {
+        self.0
+            .ok_or_else(|| argument(format!("`{name}` is not a usable buffer")))
+    }
+}
+
+/// Whether so many values are not longer than memory.
+fn fits<T>(len: usize) -> bool {
+    len <= isize::MAX as usize / size_of::<T>().max(1)
+}
+
+/// A code of the ABI and its text.
+pub(crate) struct Refusal(pub(crate) i64, pub(crate) String);
+
+impl From<DeviceError> for Refusal {
+    fn from(error: DeviceError) -> Self {
+        let (code, text) = outgoing(&error);
+        Self(code as i64, text)
+    }
+}
+
+pub(crate) fn argument(text: String) -> Refusal {
+    Refusal(Code::InvalidArgument as i64, text)
+}
+
+/// The settings of lines from the other side.
+pub(crate) fn settings(descriptor: &Descriptor, lines: Input<'_, u8>) -> Result<Settings, Refusal> {
+    let lines = lines.get("settings")?;
+    if lines.len() > MAX_TEXT_BYTES {
+        return Err(argument(format!(
+            "settings have at most {MAX_TEXT_BYTES} bytes"
+        )));
+    }
+    let lines = std::str::from_utf8(lines).map_err(|e| argument(format!("settings: {e}")))?;
+    Ok(Settings::from_lines(descriptor, lines)?)
+}
+
+/// See [`crate::abi::LastError`].
+pub fn last_error(out: Output<'_, u8>) -> i64 {
+    let text = LAST_ERROR.with(|last| last.try_borrow().map(|t| t.clone()).unwrap_or_default());
+    out.0
+        .map_or(Code::InvalidArgument as i64, |out| copy_text(&text, out))
+}
+
+/// See [`crate::abi::ExtensionFn`]. No extension is defined yet.
+pub fn extension(_id: Input<'_, u8>) -> i64 {
+    0
+}
+
+/// Runs a call of a device or source, the `kind`; an error or a panic becomes a code and the last-error text.
+pub(crate) fn answer(kind: &str, call: impl FnOnce() -> Result<i64, Refusal>) -> i64 {
+    let result = catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| {
+        let text = panic
+            .downcast_ref::<&str>()
+            .map(ToString::to_string)
+            .or_else(|| panic.downcast_ref::<String>().cloned())
+            .unwrap_or_default();
+        Err(Refusal(
+            Code::Panicked as i64,
+            format!("the {kind} panicked: {text}"),
+        ))
+    });
+    result.unwrap_or_else(|Refusal(code, text)| {
+        LAST_ERROR.with(|last| {
+            if let Ok(mut last) = last.try_borrow_mut() {
+                *last = text;
+            }
+        });
+        code
+    })
+}
+
+/// The refusal of a handle of a device or source, the `kind`.
+pub(crate) fn bad_handle(kind: &str) -> Refusal {
+    let text = format!("no such {kind} is open; it may have been closed");
+    Refusal(Code::BadHandle as i64, text)
+}
+
+pub(crate) fn copy_json(
+    value: &impl serde::Serialize,
+    out: Output<'_, u8>,
+) -> Result<i64, Refusal> {
+    let json = serde_json::to_string(value)
+        .map_err(|e| Refusal(Code::Failed as i64, format!("cannot write JSON: {e}")))?;
+    Ok(copy_text(&json, out.get("out")?))
+}
+
+fn copy_text(text: &str, out: &mut [u8]) -> i64 {
+    let n = text.len().min(out.len());
+    out[..n].copy_from_slice(&text.as_bytes()[..n]);
+    text.len() as i64
+}

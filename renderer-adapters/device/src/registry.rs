@@ -1,0 +1,364 @@
+//! The adapters that a program finds: devices, or sources.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::{Descriptor, DeviceError, Endpoint};
+
+/// Where native libraries of devices or of sources are searched. Earlier places take precedence over later ones:
+/// `files`, `dirs`, the environment variable (`HTEX_DEVICE_PATH`, `HTEX_SOURCE_PATH`), the user's folder, built in.
+#[derive(Debug, Clone)]
+pub struct Search {
+    /// Libraries by their files; one that cannot be loaded is an error.
+    pub files: Vec<PathBuf>,
+    /// Folders of libraries; one that cannot be read is an error, a library in it that cannot be
+    /// loaded a [`Note`].
+    pub dirs: Vec<PathBuf>,
+    /// Whether to look into the folders that the environment variable names.
+    pub env: bool,
+    /// Whether to look into `htex/devices` or `htex/sources` in the user's data folder (`$XDG_DATA_HOME`, else
+    /// `~/.local/share`).
+    pub user_dir: bool,
+}
+
+impl Default for Search {
+    /// All places except `files` and `dirs`.
+    fn default() -> Self {
+        Self {
+            files: Vec::new(),
+            dirs: Vec::new(),
+            env: true,
+            user_dir: true,
+        }
+    }
+}
+
+/// Where an adapter's code comes from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Origin {
+    /// Linked into this program.
+    Builtin,
+    /// A native library, which runs with all rights of this program.
+    Library(PathBuf),
+}
+
+impl std::fmt::Display for Origin {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Builtin => f.write_str("built in"),
+            Self::Library(path) => path.display().fmt(f),
+        }
+    }
+}
+
+/// A kind of adapter: of devices or of sources.
+pub trait Kind: Send + Sync + 'static {
+    /// `device` or `source`.
+    const WORD: &'static str;
+    /// The environment variable with folders of libraries, separated as in `PATH`.
+    const VARIABLE: &'static str;
+    /// The user's folder of libraries, in the data folder.
+    const FOLDER: &'static str;
+
+    /// The adapter's descriptor.
+    fn about(&self) -> &Descriptor;
+
+    /// What is connected now.
+    ///
+    /// # Errors
+    /// When a driver is missing: the message says what to install.
+    fn connected(&self) -> Result<Vec<Endpoint>, DeviceError>;
+
+    /// The adapter of a native library.
+    ///
+    /// # Errors
+    /// When the file is not a library of this kind.
+    fn load(path: &Path) -> Result<Arc<Self>, DeviceError>;
+
+    /// The error that there is no adapter of the name `wanted`.
+    fn unknown(wanted: String, known: String) -> DeviceError;
+}
+
+/// An adapter that was found.
+pub struct Known<A: ?Sized> {
+    /// The adapter.
+    pub adapter: Arc<A>,
+    /// Where it comes from.
+    pub origin: Origin,
+}
+
+impl<A: Kind + ?Sized> Known<A> {
+    /// The adapter's descriptor.
+    pub fn descriptor(&self) -> &Descriptor {
+        self.adapter.about()
+    }
+
+    /// What is connected now.
+    ///
+    /// # Errors
+    /// When a driver is missing: the message says what to install.
+    pub fn endpoints(&self) -> Result<Vec<Endpoint>, DeviceError> {
+        self.adapter.connected()
+    }
+
+    fn id(&self) -> &str {
+        &self.descriptor().id
+    }
+
+    fn is_named(&self, name: &str) -> bool {
+        self.descriptor().short_name().eq_ignore_ascii_case(name)
+    }
+}
+
+impl<A: ?Sized> Clone for Known<A> {
+    fn clone(&self) -> Self {
+        Self {
+            adapter: Arc::clone(&self.adapter),
+            origin: self.origin.clone(),
+        }
+    }
+}
+
+impl<A: Kind + ?Sized> std::fmt::Debug for Known<A> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut tuple = f.debug_tuple("Known");
+        tuple.field(&self.id()).field(&self.origin).finish()
+    }
+}
+
+/// Something found during the search that is not an error. `kind` is `device` or `source`.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Note {
+    /// Two adapters have the same id; the one found first is used.
+    Shadowed {
+        /// The kind of adapter.
+        kind: &'static str,
+        /// The id.
+        id: String,
+        /// The one that is used.
+        used: Origin,
+        /// The one that is not.
+        shadowed: Origin,
+    },
+    /// Two adapters of different ids have the same short name, which means the one found first.
+    SameName {
+        /// The kind of adapter.
+        kind: &'static str,
+        /// The short name.
+        name: String,
+        /// The id it means.
+        means: String,
+        /// The id that must be written out.
+        other: String,
+    },
+    /// A file or folder that was not named could not be loaded or read.
+    LeftOut {
+        /// The kind of adapter.
+        kind: &'static str,
+        /// The reason.
+        error: DeviceError,
+    },
+}
+
+impl std::fmt::Display for Note {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Shadowed {
+                kind,
+                id,
+                used,
+                shadowed,
+            } => {
+                write!(f, "{kind} {id} ({used}) is used in place of ({shadowed})")
+            }
+            Self::SameName {
+                kind,
+                name,
+                means,
+                other,
+            } => write!(
+                f,
+                "{kind} `{name}` means {means}; write `{other}` in full for the other one"
+            ),
+            Self::LeftOut { kind, error } => write!(f, "a {kind} is left out: {error}"),
+        }
+    }
+}
+
+/// Adapters of one kind, by id and by short name.
+pub struct Registry<A: ?Sized> {
+    known: Vec<Known<A>>,
+    notes: Vec<Note>,
+}
+
+impl<A: ?Sized> Default for Registry<A> {
+    fn default() -> Self {
+        Self {
+            known: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+}
+
+impl<A: ?Sized> Clone for Registry<A> {
+    fn clone(&self) -> Self {
+        Self {
+            known: self.known.clone(),
+            notes: self.notes.clone(),
+        }
+    }
+}
+
+impl<A: Kind + ?Sized> std::fmt::Debug for Registry<A> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_list().entries(&self.known).finish()
+    }
+}
+
+impl<A: Kind + ?Sized> Registry<A> {
+    /// Only those linked into a program.
+    pub fn new(builtin: Vec<Arc<A>>) -> Self {
+        let mut found = Self::default();
+        found.add_builtin(builtin);
+        found
+    }
+
+    /// Those that a search finds, then those linked into a program.
+    ///
+    /// # Errors
+    /// When one of the search's `files` cannot be loaded, or one of its `dirs` cannot be read.
+    pub fn search(builtin: Vec<Arc<A>>, search: &Search) -> Result<Self, DeviceError> {
+        let mut found = Self::default();
+        for path in &search.files {
+            found.add_file(path)?;
+        }
+        for dir in &search.dirs {
+            found.add_folder(dir)?;
+        }
+        for dir in unnamed_folders::<A>(search) {
+            if let Err(error) = found.add_folder(&dir) {
+                found.notes.push(Note::LeftOut {
+                    kind: A::WORD,
+                    error,
+                });
+            }
+        }
+        found.add_builtin(builtin);
+        Ok(found)
+    }
+
+    /// All adapters in use, each id once.
+    pub fn all(&self) -> &[Known<A>] {
+        &self.known
+    }
+
+    /// Notes for the user: adapters that shadow others, and those that could not be loaded.
+    pub fn notes(&self) -> &[Note] {
+        &self.notes
+    }
+
+    /// An adapter by its id or by its short name (`org.htex.file` or `file`, in any case).
+    ///
+    /// # Errors
+    /// [`DeviceError::Unknown`] or [`DeviceError::UnknownSource`] with the known names.
+    pub fn find(&self, name: &str) -> Result<&Known<A>, DeviceError> {
+        let by_id = self.known.iter().find(|known| known.id() == name);
+        let by_name = || self.known.iter().find(|known| known.is_named(name));
+        by_id.or_else(by_name).ok_or_else(|| {
+            let names = self.known.iter().map(|k| k.descriptor().short_name());
+            A::unknown(name.to_owned(), names.collect::<Vec<_>>().join(", "))
+        })
+    }
+
+    fn add_builtin(&mut self, builtin: Vec<Arc<A>>) {
+        for adapter in builtin {
+            let origin = Origin::Builtin;
+            self.add(Known { adapter, origin });
+        }
+    }
+
+    fn add_file(&mut self, path: &Path) -> Result<(), DeviceError> {
+        let adapter = A::load(path)?;
+        let origin = Origin::Library(path.to_owned());
+        self.add(Known { adapter, origin });
+        Ok(())
+    }
+
+    fn add_folder(&mut self, dir: &Path) -> Result<(), DeviceError> {
+        let files = libraries_in(dir).map_err(|error| DeviceError::File {
+            path: dir.display().to_string(),
+            what: error.to_string(),
+        })?;
+        for file in files {
+            if let Err(error) = self.add_file(&file) {
+                self.notes.push(Note::LeftOut {
+                    kind: A::WORD,
+                    error,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds an adapter behind all others, unless its id is taken.
+    fn add(&mut self, one: Known<A>) {
+        if let Some(used) = self.known.iter().find(|known| known.id() == one.id()) {
+            self.notes.push(Note::Shadowed {
+                kind: A::WORD,
+                id: one.id().to_owned(),
+                used: used.origin.clone(),
+                shadowed: one.origin,
+            });
+            return;
+        }
+        let name = one.descriptor().short_name();
+        if let Some(first) = self.known.iter().find(|known| known.is_named(name)) {
+            self.notes.push(Note::SameName {
+                kind: A::WORD,
+                name: name.to_owned(),
+                means: first.id().to_owned(),
+                other: one.id().to_owned(),
+            });
+        }
+        self.known.push(one);
+    }
+}
+
+/// The folders of the environment variable and of the user.
+fn unnamed_folders<A: Kind + ?Sized>(search: &Search) -> Vec<PathBuf> {
+    let mut folders = Vec::new();
+    if search.env {
+        let value = std::env::var_os(A::VARIABLE).unwrap_or_default();
+        folders.extend(std::env::split_paths(&value).filter(|dir| !dir.as_os_str().is_empty()));
+    }
+    folders.extend(user_folder(A::FOLDER).filter(|dir| search.user_dir && dir.exists()));
+    folders
+}
+
+/// A folder in the user's data folder, by the XDG base directory specification, which has
+/// relative paths ignored; on Windows in the local application data.
+fn user_folder(folder: &str) -> Option<PathBuf> {
+    let absolute = |variable: &str| {
+        let path = PathBuf::from(std::env::var_os(variable)?);
+        path.is_absolute().then_some(path)
+    };
+    let windows = || absolute("LOCALAPPDATA").filter(|_| cfg!(windows));
+    let home = || absolute("HOME").map(|home| home.join(".local/share"));
+    let base = absolute("XDG_DATA_HOME").or_else(windows).or_else(home)?;
+    Some(base.join(folder))
+}
+
+/// The libraries in a folder, by name.
+fn libraries_in(dir: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(dir)? {
+        let path = entry?.path();
+        if path.extension().and_then(|e| e.to_str()) == Some(std::env::consts::DLL_EXTENSION) {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}

@@ -1,0 +1,62 @@
+//! The sources that a program finds.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use crate::registry::{Kind, Known, Registry};
+use crate::source::{NativeSourceAdapter, Source, SourceAdapter};
+use crate::{Descriptor, DeviceError, Endpoint, Settings};
+
+/// Adapters of sources, by id and by short name.
+pub type Sources = Registry<dyn SourceAdapter>;
+/// An adapter of sources that was found.
+pub type KnownSource = Known<dyn SourceAdapter>;
+
+impl Kind for dyn SourceAdapter {
+    const WORD: &'static str = "source";
+    const VARIABLE: &'static str = "HTEX_SOURCE_PATH";
+    const FOLDER: &'static str = "htex/sources";
+
+    fn about(&self) -> &Descriptor {
+        self.descriptor()
+    }
+
+    fn connected(&self) -> Result<Vec<Endpoint>, DeviceError> {
+        self.endpoints()
+    }
+
+    fn load(path: &Path) -> Result<Arc<Self>, DeviceError> {
+        Ok(Arc::new(NativeSourceAdapter::load(path)?))
+    }
+
+    fn unknown(wanted: String, known: String) -> DeviceError {
+        DeviceError::UnknownSource { wanted, known }
+    }
+}
+
+impl Sources {
+    /// Opens the source that a text names, `NAME:TARGET` such as `file:rec.csv` or `daq:Dev1/ai0:5`, with a profile and
+    /// further settings.
+    /// What follows the first colon is the value of the adapter's [`SourceAdapter::target`].
+    ///
+    /// # Errors
+    /// When the name is not known, a setting is not usable, or the source cannot be opened.
+    pub fn open(
+        &self,
+        text: &str,
+        profile: Option<&str>,
+        given: &BTreeMap<String, String>,
+    ) -> Result<Box<dyn Source>, DeviceError> {
+        let (name, target) = match text.split_once(':') {
+            Some((name, target)) => (name, Some(target)),
+            None => (text, None),
+        };
+        let adapter = &self.find(name)?.adapter;
+        let mut given = given.clone();
+        if let Some(target) = target {
+            given.insert(adapter.target().to_owned(), target.to_owned());
+        }
+        adapter.open(&Settings::resolve(adapter.descriptor(), profile, &given)?)
+    }
+}

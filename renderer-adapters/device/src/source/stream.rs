@@ -1,0 +1,107 @@
+//! What crosses the ABI of sources as JSON: the descriptor of an adapter, the rate and the channels of an open source.
+
+use serde::{Deserialize, Serialize};
+
+use crate::source::Channel;
+use crate::source::abi::{MAX_CHANNELS, MAX_NAME_BYTES, MAX_RATE_HZ, MIN_RATE_HZ};
+use crate::{Descriptor, DescriptorError};
+
+/// The description of an adapter of sources.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+pub struct SourceDescriptor {
+    /// What it shares with a device.
+    #[serde(flatten)]
+    pub descriptor: Descriptor,
+    /// Name of the setting that says which source of the family is meant.
+    pub target: String,
+}
+
+impl SourceDescriptor {
+    /// As [`Descriptor::check`]; and the target is one of the settings.
+    ///
+    /// # Errors
+    /// The first fault.
+    pub fn check(&self) -> Result<(), DescriptorError> {
+        self.descriptor.check()?;
+        let mut settings = self.descriptor.settings.iter();
+        match settings.any(|setting| setting.name == self.target) {
+            true => Ok(()),
+            false => Err(DescriptorError::Target {
+                target: self.target.clone(),
+            }),
+        }
+    }
+}
+
+/// Rate and channels of an open source.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+pub struct SourceStream {
+    /// Frames a second.
+    pub rate_hz: f64,
+    /// The channels, in the order of the samples of a frame.
+    pub channels: Vec<Channel>,
+}
+
+/// Error: a source's rate or channels are invalid.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SourceStreamError {
+    /// The rate is not a number within the limits.
+    #[error("a rate of {rate_hz} Hz; {MIN_RATE_HZ} to {MAX_RATE_HZ} Hz are allowed")]
+    Rate {
+        /// The rate.
+        rate_hz: f64,
+    },
+    /// There are too few or too many channels.
+    #[error("{count} channels; 1 to {MAX_CHANNELS} are allowed")]
+    Count {
+        /// Their number.
+        count: usize,
+    },
+    /// The name or unit of a channel is too long or has control characters, or the name is empty.
+    #[error(
+        "channel {index}: a name has 1 to {MAX_NAME_BYTES} bytes, a unit as many or none, without control characters"
+    )]
+    Name {
+        /// Its index.
+        index: usize,
+    },
+    /// Two channels have the same name.
+    #[error("two channels are named `{name}`")]
+    Twice {
+        /// The name.
+        name: String,
+    },
+}
+
+impl SourceStream {
+    /// Checks the rate, and number, names and units of the channels.
+    ///
+    /// # Errors
+    /// The first fault.
+    pub fn check(&self) -> Result<(), SourceStreamError> {
+        let Self { rate_hz, channels } = self;
+        if !(MIN_RATE_HZ..=MAX_RATE_HZ).contains(rate_hz) {
+            return Err(SourceStreamError::Rate { rate_hz: *rate_hz });
+        }
+        if !(1..=MAX_CHANNELS).contains(&channels.len()) {
+            let count = channels.len();
+            return Err(SourceStreamError::Count { count });
+        }
+        let plain = |text: &str| text.len() <= MAX_NAME_BYTES && !text.contains(char::is_control);
+        let sound = |c: &Channel| !c.name.trim().is_empty() && plain(&c.name) && plain(&c.unit);
+        if let Some(index) = channels.iter().position(|channel| !sound(channel)) {
+            return Err(SourceStreamError::Name { index });
+        }
+        let mut names: Vec<&str> = channels.iter().map(|c| c.name.as_str()).collect();
+        names.sort_unstable();
+        match names.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(pair) => Err(SourceStreamError::Twice {
+                name: pair[0].to_owned(),
+            }),
+            None => Ok(()),
+        }
+    }
+}

@@ -119,7 +119,7 @@ fn named(device: &str, given: &[(&str, &str)]) -> Result<Box<dyn Source>, Device
 
 /// A sample of the file: frames of two channels.
 fn sample(index: usize) -> f32 {
-    let channel = if index % 2 == 0 { 0.5 } else { -0.25 };
+    let channel = if index.is_multiple_of(2) { 0.5 } else { -0.25 };
     channel * ((index / 2) as f32 * 0.01).sin()
 }
 

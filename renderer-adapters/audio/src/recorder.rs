@@ -6,7 +6,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use cpal::traits::{DeviceTrait, StreamTrait};
-use cpal::{FromSample, InputCallbackInfo, SampleFormat, SizedSample, StreamConfig};
+use cpal::{FromSample, InputCallbackInfo, Sample, SampleFormat, SizedSample, StreamConfig};
 use htex_device::{Channel, Delivered, DeviceError, Source};
 use rtrb::{Consumer, RingBuffer};
 

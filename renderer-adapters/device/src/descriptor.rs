@@ -17,7 +17,7 @@ pub struct Descriptor {
     pub name: String,
     /// Semantic version.
     pub version: String,
-    /// One sentence: what it drives or delivers.
+    /// One sentence: what it drives.
     pub summary: String,
     /// Settings, each with its default.
     pub settings: Vec<Setting>,

@@ -5,6 +5,17 @@ use serde::{Deserialize, Serialize};
 
 use crate::record::write::Format;
 
+/// Roles of the axes of the texture's signal.
+const AXES: [&str; 7] = [
+    "lateral",
+    "lateral_x",
+    "lateral_y",
+    "signal",
+    "signal_x",
+    "signal_y",
+    "signal_z",
+];
+
 /// What a take was recorded with; the first line of a part file, and a part of the JSON beside a recording.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TakeHeader {
@@ -111,6 +122,16 @@ impl TakeHeader {
     #[must_use]
     pub fn signal(&self, role: &str) -> Option<usize> {
         self.signals.iter().position(|(own, _)| own == role)
+    }
+}
+
+/// Indices of the signals that are the axes of the texture's signal, in the order of [`AXES`]; without any, that of the normal force.
+pub(crate) fn texture_axes(signals: &[(String, String)]) -> Vec<usize> {
+    let position = |role: &&str| signals.iter().position(|(own, _)| own == role);
+    let axes: Vec<usize> = AXES.iter().filter_map(position).collect();
+    match axes.is_empty() {
+        true => position(&"normal").into_iter().collect(),
+        false => axes,
     }
 }
 

@@ -48,6 +48,52 @@ fn tare_subtracts_the_mean_of_the_first_second_from_forces_alone() {
 }
 
 #[test]
+fn a_sensor_that_drifts_is_tared_before_each_take() {
+    let folder = tempfile::tempdir().unwrap();
+    let source = folder.path().join("source.csv");
+    // A second without a finger, a take that presses too much; after a drift both again, with the right force.
+    let parts = [
+        (2_000, 0.25),
+        (8_000, 0.25 + 0.8),
+        (2_000, -0.5),
+        (8_000, -0.5 + 0.4),
+    ];
+    let lines: String = parts
+        .map(|(rows, force_n)| format!("0,{force_n}\n").repeat(rows))
+        .concat();
+    fs::write(&source, format!("fx_n,fz_n\n{lines}")).unwrap();
+    let settings = |tare| Settings {
+        tare,
+        target: Exploration {
+            speed_mm_s: None,
+            force_n: Some(0.4),
+        },
+        attempts: 2,
+        ..Settings::default()
+    };
+    let taken = record(folder.path(), &source, &settings(Tare::Each)).unwrap();
+    let force = taken.verdict.force_n.unwrap();
+    assert_eq!(taken.number, 2);
+    assert!(
+        (force.min - 0.4).abs() < 1e-9 && (force.max - 0.4).abs() < 1e-9,
+        "{force:?}"
+    );
+    let rejected = folder.path().join("rejected/take-001.json");
+    let rejected: serde_json::Value = serde_json::from_slice(&fs::read(rejected).unwrap()).unwrap();
+    let offsets = [
+        &rejected["take"]["tare"][1],
+        &rejected["verdict"]["force_n"]["mean"],
+    ];
+    let offsets = offsets.map(|value| (value.as_f64().unwrap() * 1e9).round() / 1e9);
+    assert_eq!(offsets, [0.25, 0.8]);
+    let once = record(folder.path(), &source, &settings(Tare::Once));
+    assert!(
+        matches!(once, Err(RecordError::OffTarget { .. })),
+        "{once:?}"
+    );
+}
+
+#[test]
 fn a_tracker_is_recorded_beside_and_gives_the_speed() {
     let folder = tempfile::tempdir().unwrap();
     let source = sweeps(folder.path(), &[0.4]);

@@ -65,13 +65,13 @@ pub fn record(folder: &Path, source: &Path, settings: &Settings) -> Result<Recor
     record_with(folder, source, settings, None)
 }
 
-/// Records from a file, with a tracker.
-pub fn record_with(
+/// A session that records a file.
+pub fn session(
     folder: &Path,
     source: &Path,
     settings: &Settings,
     tracker: Option<Box<dyn TrackerRows>>,
-) -> Result<Recorded, RecordError> {
+) -> Result<Session, RecordError> {
     let source = open(source);
     let signals = Signals::new(
         "source.csv",
@@ -95,7 +95,17 @@ pub fn record_with(
         source: "file:source.csv".to_owned(),
         map: None,
     };
-    let mut session = Session::new(setup, source, signals, tracker)?;
+    Session::new(setup, source, signals, tracker)
+}
+
+/// Records from a file, with a tracker.
+pub fn record_with(
+    folder: &Path,
+    source: &Path,
+    settings: &Settings,
+    tracker: Option<Box<dyn TrackerRows>>,
+) -> Result<Recorded, RecordError> {
+    let mut session = session(folder, source, settings, tracker)?;
     let mut moments = 0;
     let mut watch = |_: &Moment<'_>| {
         moments += 1;

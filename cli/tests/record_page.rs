@@ -23,7 +23,7 @@ fn command(place: &Place, more: &[&str]) -> (Child, String) {
     let base = ["record", "--page", "--source", "file:source.csv", "--set"];
     let rest = ["rate_hz=2000", "--take", "vinyl", "-o", "takes", "--json"];
     let mut child = place
-        .command(&[&base, &rest, more].concat())
+        .command(&[&base[..], &rest, more].concat())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
@@ -54,7 +54,7 @@ fn sweeps(place: &Place, force_n: &str) -> Vec<String> {
     csv.lines().skip(2).map(row).collect()
 }
 
-/// The source of a session: a second without a finger, a second of a light one, a take that presses too much, a second of a
+/// The source of a session: a second without a finger, three of a light one, a take that presses too much, three seconds of a
 /// light finger, and a take that does not. The sensor has an offset of 0.05 N.
 fn session(place: &Place) {
     let with_offset = |row: &String| {
@@ -66,12 +66,12 @@ fn session(place: &Place) {
             .collect::<Vec<_>>()
             .join(",")
     };
-    let still = |force_n: f64| vec![format!("0,0,{force_n},0,0"); RATE];
+    let still = |seconds: usize, force_n: f64| vec![format!("0,0,{force_n},0,0"); seconds * RATE];
     let rows = [
-        still(0.0),
-        still(0.2),
+        still(1, 0.0),
+        still(3, 0.2),
         sweeps(place, "0.6"),
-        still(0.2),
+        still(3, 0.2),
         sweeps(place, "0.4"),
     ];
     let rows: Vec<String> = rows.concat().iter().map(with_offset).collect();
@@ -115,7 +115,7 @@ const TARGETS: [&str; 10] = [
     "--seconds",
     "4",
     "--countdown",
-    "1",
+    "3",
     "--target-speed",
     "80",
     "--target-force",
@@ -135,7 +135,7 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
     let (child, url) = command(&place, &[&TARGETS[..], &["--tare"]].concat());
     let mut browser = Browser::start(installed.unwrap(), &place.path("browser"));
     let tab = browser.open(&url);
-    browser.shows(&tab, "Take the finger off the surface, then start");
+    browser.shows(&tab, "Lift the finger, then start");
     looked_at(&mut browser, &tab, "record-start");
     let second = browser.open(&url);
     browser.shows(&second, "open in another tab");
@@ -145,7 +145,7 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
     std::thread::sleep(Duration::from_millis(500));
     assert_eq!(
         text(&mut browser, &tab, "what"),
-        "Take the finger off the surface, then start"
+        "Lift the finger, then start"
     );
     browser.close(&second);
     browser.press(&tab, " ", 0);
@@ -174,18 +174,17 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
     // The target comes from its beginning, by 80 mm/s; the finger moves, too.
     becomes(&mut browser, &tab, "state.now.motion_s > 1.2");
     let places = "['target', 'finger'].map((id) => Number(document.getElementById(id).dataset.mm)).concat(state.now.motion_s)";
-    let [before, after] = [0, 300].map(|ms| {
-        std::thread::sleep(Duration::from_millis(ms));
-        common::numbers(&browser.value(&tab, places))
-    });
-    for [target_mm, motion_s] in [[before[0], before[2]], [after[0], after[2]]] {
-        let expected_mm = (80.0 * (motion_s + 1.0) % 160.0 - 80.0).abs();
-        assert!(
-            (target_mm - expected_mm).abs() < 10.0,
-            "{target_mm} {expected_mm} at {motion_s}"
-        );
+    let mut finger_mm = Vec::new();
+    for _ in 0..6 {
+        let seen = common::numbers(&browser.value(&tab, places));
+        let expected_mm = (80.0 * (seen[2] + 1.0) % 160.0 - 80.0).abs();
+        assert!((seen[0] - expected_mm).abs() < 12.0, "{seen:?}");
+        finger_mm.push(seen[1]);
+        std::thread::sleep(Duration::from_millis(100));
     }
-    assert!((before[1] - after[1]).abs() > 3.0, "{before:?} {after:?}");
+    let [low, high] =
+        [f64::min, f64::max].map(|end| finger_mm.iter().copied().reduce(end).unwrap());
+    assert!(high - low > 5.0, "{finger_mm:?}");
     browser.shows(&tab, "Take 1 was rejected and is repeated");
     looked_at(&mut browser, &tab, "record-rejected");
     let beside = |file: &str| -> Value {
@@ -204,7 +203,7 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
         &tab,
         "Number(document.getElementById('lamp').dataset.beats)",
     );
-    assert!((4.0..=7.0).contains(&beats.as_f64().unwrap()), "{beats}");
+    assert!((3.0..=9.0).contains(&beats.as_f64().unwrap()), "{beats}");
     browser.shows(&tab, "Take 2 is being recorded");
     becomes(
         &mut browser,
@@ -269,7 +268,7 @@ fn a_sinusoid_appears_at_its_height_and_q_keeps_what_was_recorded() {
     let (child, url) = command(&place, &["--seconds", "20", "--countdown", "0"]);
     let mut browser = Browser::start(installed.unwrap(), &place.path("browser"));
     let tab = browser.open(&url);
-    browser.shows(&tab, "Put the finger on the surface, then start");
+    browser.shows(&tab, "Put the finger down, then start");
     browser.press(&tab, " ", 0);
     // 0.02 N are -33.98 dB relative to 1 N.
     browser.shows(&tab, "peak 250 Hz, −34.0 dB (1 N = 0 dB)");

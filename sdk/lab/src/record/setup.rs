@@ -10,7 +10,7 @@ use crate::record::names;
 use crate::record::write::Format;
 
 /// Longest take, seconds.
-const LONGEST_S: f64 = 3600.0;
+pub(crate) const LONGEST_S: f64 = 3600.0;
 
 /// What a session records.
 #[derive(Debug, Clone, PartialEq)]

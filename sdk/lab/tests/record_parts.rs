@@ -150,3 +150,65 @@ fn a_take_that_another_program_records_is_left_alone() {
     assert_eq!(recover(folder.path()).unwrap().len(), 1);
     assert!(!path.exists());
 }
+
+#[test]
+fn a_part_file_that_is_not_ours_is_refused_or_recovered_in_its_folder_alone() {
+    use serde_json::{Value, json};
+    let outer = tempfile::tempdir().unwrap();
+    let folder = outer.path().join("takes");
+    fs::create_dir(&folder).unwrap();
+    let path = part_file(&folder, &[100]);
+    // Rows and frames that are no numbers, after whole ones.
+    let whole = fs::read(&path).unwrap();
+    let end = whole.iter().position(|b| *b == b'\n').unwrap();
+    fs::remove_file(&path).unwrap();
+    let mut part = Part::create(&path, &header(10.0)).unwrap();
+    part.push_tracker(&[f64::NAN, 1.0, 0.5, f64::INFINITY, 0.1, 2.0, 0.1, 3.0]);
+    part.push(&[f64::NAN, 0.4]).unwrap();
+    part.flush().unwrap();
+    drop(part);
+    let odd = fs::read(&path).unwrap();
+    let odd = &odd[odd.iter().position(|b| *b == b'\n').unwrap()..];
+    let first: Value = serde_json::from_slice(&whole[..end]).unwrap();
+    let values = [
+        json!(null),
+        json!(-1),
+        json!(0),
+        json!(0.3),
+        json!(1e308),
+        json!(5_000_000_000_u64),
+        json!(""),
+        json!("../../vinyl"),
+        json!("a\u{1b}[2J\n"),
+        json!("wav"),
+        json!([]),
+        json!([["lateral", "N"], ["lateral", "N"]]),
+        json!([["time", "s"]]),
+        json!([["speed", "mm/s"], ["x", "mm"]]),
+        json!([["lateral", "N,\n=x"]]),
+        json!(vec![["normal", "N"]; 70_000]),
+    ];
+    let mut recovered = 0;
+    for key in first.as_object().unwrap().keys() {
+        for value in &values {
+            for chunks in [&whole[end..], &[&whole[end..], odd].concat()] {
+                let mut header = first.clone();
+                header[key] = value.clone();
+                fs::write(&path, [header.to_string().as_bytes(), chunks].concat()).unwrap();
+                match recover(&folder) {
+                    Ok(takes) => recovered += takes.len(),
+                    Err(error) => {
+                        let text = error.to_string();
+                        assert!(!text.contains(char::is_control), "{text:?}");
+                        assert!(path.exists(), "{key} {value}: it stays");
+                        fs::remove_file(&path).unwrap();
+                    }
+                }
+                assert!(!path.exists());
+                let beside = fs::read_dir(outer.path()).unwrap().count();
+                assert_eq!(beside, 1, "{key} {value}: a file outside of the folder");
+            }
+        }
+    }
+    assert!(recovered > 50, "{recovered}");
+}

@@ -151,6 +151,8 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
     browser.press(&tab, " ", 0);
     browser.shows(&tab, "Leave the surface alone");
     looked_at(&mut browser, &tab, "record-tare");
+    let is_judged = "state.now.phase === 'tare' && state.now.force !== 'unknown'";
+    assert_eq!(browser.value(&tab, is_judged), false, "no finger");
     browser.shows(&tab, "Take 1 is about to begin");
     becomes(&mut browser, &tab, "state.now.force_n > 0.19");
     assert_eq!(text(&mut browser, &tab, "judged"), "too light");

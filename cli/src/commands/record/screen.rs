@@ -94,7 +94,9 @@ fn drawn(guidance: &Guidance, moment: &Moment<'_>, spectrum: Option<&LiveSpectru
     let left_s = (moment.of_s - moment.elapsed_s).max(0.0);
     let motion_s = moment.phase.motion_s(moment.elapsed_s, moment.of_s);
     let target = motion_s.and_then(|at_s| guidance.target_mm(at_s));
-    let colour = match guidance.force(moment.force_n) {
+    // Without a motion there is no finger.
+    let force_n = moment.force_n.filter(|_| motion_s.is_some());
+    let colour = match guidance.force(force_n) {
         Force::Unknown => "",
         Force::Below => "\x1b[33m",
         Force::Within => "\x1b[32m",

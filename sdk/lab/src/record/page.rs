@@ -22,6 +22,8 @@ use crate::record::write::Outcome;
 const CONTINUED_S: f64 = 0.1;
 /// Steps of the top of the spectrum's scale, decibels.
 const SCALE_STEP_DB: f64 = 10.0;
+/// Lowest top of the scale, decibels: below it is what sensors do not measure.
+const LOWEST_TOP_DB: f64 = -100.0;
 /// Speed at which the scale follows a spectrum that falls, dB/s.
 const SCALE_FALL_DB_S: f64 = 5.0;
 
@@ -256,6 +258,7 @@ impl Shown {
             let since_s = now.at.elapsed().as_secs_f64().min(CONTINUED_S);
             (now.elapsed_s + since_s).min(now.of_s)
         });
+        let motion_s = now.and_then(|now| now.phase.motion_s(elapsed_s, now.of_s));
         let force_n = now.and_then(|now| now.force_n);
         Changing {
             phase: match now {
@@ -266,10 +269,11 @@ impl Shown {
             number: now.map_or(0, |now| now.number),
             elapsed_s,
             of_s: now.map_or(0.0, |now| now.of_s),
-            motion_s: now.and_then(|now| now.phase.motion_s(elapsed_s, now.of_s)),
+            motion_s,
             position_mm: now.and_then(|now| now.position_mm),
             force_n,
-            force: self.guidance.force(force_n),
+            // Without a motion there is no finger.
+            force: self.guidance.force(force_n.filter(|_| motion_s.is_some())),
             frequency_hz,
             level_db: level_db.iter().copied().map(hundredths).collect(),
         }
@@ -326,7 +330,7 @@ impl Scale {
             at: Instant::now(),
         };
         let top_db = SCALE_STEP_DB * (self.top_db / SCALE_STEP_DB).ceil();
-        top_db.is_finite().then_some(top_db)
+        top_db.is_finite().then_some(top_db.max(LOWEST_TOP_DB))
     }
 }
 

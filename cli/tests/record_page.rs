@@ -32,14 +32,14 @@ fn command(place: &Place, more: &[&str]) -> (Child, String) {
     (child, url)
 }
 
-/// Rows of four seconds of a simulated finger at this force (N) and 80 mm/s.
+/// Rows of eight seconds of a simulated finger at this force (N) and 80 mm/s.
 fn sweeps(place: &Place, force_n: &str) -> Vec<String> {
     let simulate = [
         "simulate",
         "--surface",
         "vinyl",
         "--seconds",
-        "4",
+        "8",
         "--rate",
         "2000",
         "--force",
@@ -113,7 +113,7 @@ fn becomes(browser: &mut Browser, tab: &Tab, expression: &str) {
 
 const TARGETS: [&str; 10] = [
     "--seconds",
-    "4",
+    "8",
     "--countdown",
     "3",
     "--target-speed",
@@ -205,7 +205,7 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
         &tab,
         "Number(document.getElementById('lamp').dataset.beats)",
     );
-    assert!((3.0..=9.0).contains(&beats.as_f64().unwrap()), "{beats}");
+    assert!((6.0..=14.0).contains(&beats.as_f64().unwrap()), "{beats}");
     browser.shows(&tab, "Take 2 is being recorded");
     becomes(
         &mut browser,

@@ -7,12 +7,10 @@ mod browser;
 mod common;
 
 use std::fs;
-use std::io::{BufRead, BufReader, Write};
-use std::net::TcpStream;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-use browser::Browser;
+use browser::{Browser, fits, pictured, status};
 use common::Place;
 use serde_json::Value;
 
@@ -60,16 +58,8 @@ fn session(place: &Place) -> (Child, String) {
         .stdout(Stdio::null())
         .spawn()
         .unwrap();
-    let mut errors = BufReader::new(child.stderr.take().unwrap());
-    let mut line = String::new();
-    while !line.contains("http://") {
-        line.clear();
-        assert!(errors.read_line(&mut line).unwrap() > 0, "no address");
-    }
-    // What else it says must not fill the pipe.
-    std::thread::spawn(move || std::io::copy(&mut errors, &mut std::io::sink()));
-    let url = line.split(' ').find(|word| word.starts_with("http://"));
-    (child, url.unwrap().to_owned())
+    let url = browser::address(&mut child);
+    (child, url)
 }
 
 fn kept(place: &Place) -> Vec<Value> {
@@ -95,17 +85,6 @@ fn wait_for(place: &Place, expected: &[u64]) {
         std::thread::sleep(Duration::from_millis(10));
     }
     assert_eq!(ratings(place), expected);
-}
-
-/// Nothing is scrolled on a tablet.
-fn fits(browser: &mut Browser, tab: &browser::Tab) {
-    let all = "[innerWidth >= document.documentElement.scrollWidth, innerHeight >= document.documentElement.scrollHeight, \
-        [...document.querySelectorAll('body *')].every((e) => { const r = e.getBoundingClientRect(); \
-        return r.right <= innerWidth + 1 && r.bottom <= innerHeight + 1 && r.top >= 0; })]";
-    assert_eq!(
-        browser.value(tab, all),
-        serde_json::json!([true, true, true])
-    );
 }
 
 #[test]
@@ -204,25 +183,6 @@ fn one_press_is_one_answer_in_one_tab() {
     browser.shows(&second, "Thank you");
     assert!(child.wait().unwrap().success());
     assert_eq!(ratings(&place), [3, 6, 5, 0, 5, 0]);
-}
-
-/// Keeps a picture where `HTEX_PICTURES` names a folder, to look at.
-fn pictured(browser: &mut Browser, tab: &browser::Tab, name: &str) {
-    if let Some(folder) = std::env::var_os("HTEX_PICTURES") {
-        let picture = browser.picture(tab);
-        let file = std::path::Path::new(&folder).join(format!("{name}.png.base64"));
-        fs::write(file, picture).unwrap();
-    }
-}
-
-/// The status of a request.
-fn status(port: &str, request: &str) -> String {
-    let mut stream = TcpStream::connect(format!("127.0.0.1:{port}")).unwrap();
-    stream.write_all(request.as_bytes()).unwrap();
-    let mut reply = String::new();
-    let mut reader = BufReader::new(&mut stream);
-    reader.read_line(&mut reply).unwrap();
-    reply.split(' ').nth(1).unwrap().to_owned()
 }
 
 #[test]

@@ -1,7 +1,9 @@
 //! Chromium without a window, driven over pipes by the Chrome DevTools Protocol.
+#![allow(dead_code)] // Each suite uses a part of it.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
+use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -106,11 +108,17 @@ impl Browser {
         let attached = self.call(None, "Target.attachToTarget", attach);
         let session = attached["sessionId"].as_str().unwrap().to_owned();
         let tab = Tab { target, session };
-        let size = json!({ "width": 1024, "height": 768, "deviceScaleFactor": 1, "mobile": false });
-        self.call(Some(&tab), "Emulation.setDeviceMetricsOverride", size);
+        self.resize(&tab, 1024, 768);
         let focus = json!({ "enabled": true });
         self.call(Some(&tab), "Emulation.setFocusEmulationEnabled", focus);
         tab
+    }
+
+    /// Gives a tab a size in pixels.
+    pub fn resize(&mut self, tab: &Tab, width: u32, height: u32) {
+        let size =
+            json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        self.call(Some(tab), "Emulation.setDeviceMetricsOverride", size);
     }
 
     pub fn close(&mut self, tab: &Tab) {
@@ -182,4 +190,45 @@ impl Drop for Browser {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
+}
+
+/// The address of the page that a command serves, which it prints.
+pub fn address(child: &mut Child) -> String {
+    let mut errors = BufReader::new(child.stderr.take().unwrap());
+    let mut line = String::new();
+    while !line.contains("http://") {
+        line.clear();
+        assert!(errors.read_line(&mut line).unwrap() > 0, "no address");
+    }
+    // What else it says must not fill the pipe.
+    std::thread::spawn(move || std::io::copy(&mut errors, &mut std::io::sink()));
+    let url = line.split(' ').find(|word| word.starts_with("http://"));
+    url.unwrap().trim().to_owned()
+}
+
+/// Nothing is scrolled on a tablet.
+pub fn fits(browser: &mut Browser, tab: &Tab) {
+    let all = "[innerWidth >= document.documentElement.scrollWidth, innerHeight >= document.documentElement.scrollHeight, \
+        [...document.querySelectorAll('body *')].every((e) => { const r = e.getBoundingClientRect(); \
+        return r.right <= innerWidth + 1 && r.bottom <= innerHeight + 1 && r.top >= 0; })]";
+    assert_eq!(browser.value(tab, all), json!([true, true, true]));
+}
+
+/// Keeps a picture where `HTEX_PICTURES` names a folder, to look at.
+pub fn pictured(browser: &mut Browser, tab: &Tab, name: &str) {
+    if let Some(folder) = std::env::var_os("HTEX_PICTURES") {
+        let picture = browser.picture(tab);
+        let file = Path::new(&folder).join(format!("{name}.png.base64"));
+        std::fs::write(file, picture).unwrap();
+    }
+}
+
+/// The status of a request to a port of this machine.
+pub fn status(port: &str, request: &str) -> String {
+    let mut stream = TcpStream::connect(format!("127.0.0.1:{port}")).unwrap();
+    stream.write_all(request.as_bytes()).unwrap();
+    let mut reply = String::new();
+    let mut reader = BufReader::new(&mut stream);
+    reader.read_line(&mut reply).unwrap();
+    reply.split(' ').nth(1).unwrap().to_owned()
 }

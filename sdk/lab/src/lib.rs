@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 pub mod analyse;
+pub mod page;
 pub mod record;
 pub mod response;
 pub mod study;

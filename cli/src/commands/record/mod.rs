@@ -1,13 +1,15 @@
+mod guide;
 mod inputs;
 mod screen;
 
+use std::cell::RefCell;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use htex_author::Exploration;
 use htex_format::{Quantity, plain};
 use htex_lab::record::{
-    Format, Guidance, Moment, Next, Outcome, Recorded, Session, Setup, recover,
+    Format, Moment, Next, Outcome, RecordError, Recorded, Session, Setup, Tare, recover,
 };
 use serde_json::json;
 
@@ -18,8 +20,8 @@ use crate::output::{print, print_json, tell, warn};
 use crate::shown::shown;
 use crate::signals;
 
+use guide::{Guide, GuideArgs};
 use inputs::InputArgs;
-use screen::Screen;
 
 /// Record a finger on a surface under guidance: takes that leave their target are set aside and repeated.
 ///
@@ -43,9 +45,15 @@ pub(crate) struct Record {
     #[arg(long, value_name = "S")]
     countdown: Option<f64>,
 
-    /// Subtract the means of the forces over the first second, without a finger on the surface
-    #[arg(long)]
-    tare: bool,
+    /// Subtract the means of the forces over a second without a finger on the surface: before the first take, or before each
+    #[arg(
+        long,
+        value_enum,
+        value_name = "WHEN",
+        num_args = 0..=1,
+        default_missing_value = "once"
+    )]
+    tare: Option<TareArg>,
 
     /// Target speed, mm/s; needs the finger's motion
     #[arg(long, value_name = "MM_S")]
@@ -63,9 +71,8 @@ pub(crate) struct Record {
     #[arg(long, value_name = "N", default_value_t = 10)]
     attempts: u32,
 
-    /// Length of the strokes that the guidance shows
-    #[arg(long, value_name = "MM", default_value_t = 80.0)]
-    stroke: f64,
+    #[command(flatten)]
+    guide: GuideArgs,
 
     /// Format of the recordings
     #[arg(long, value_enum, default_value = "csv")]
@@ -87,33 +94,31 @@ enum FormatArg {
     Wav,
 }
 
+#[derive(Clone, Copy, ValueEnum)]
+enum TareArg {
+    Once,
+    Each,
+}
+
 impl Record {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        let guidance = self.guidance()?;
+        let setup = self.setup();
+        let guidance = self.guide.guidance(&setup)?;
         let recovered = recover(&self.output)?;
         for take in &recovered {
             tell!("htex: recovered {}", said(take));
         }
         let source = self.input.open()?;
+        let rate_hz = source.rate_hz();
         let signals = self.input.signals(&*source)?;
         warn(signals.warnings());
         let tracker = self.input.tracker()?;
-        let mut session = Session::new(self.setup(), source, signals, tracker)?;
+        let mut session = Session::new(setup.clone(), source, signals, tracker)?;
         signals::ask();
-        let mut screen = Screen::new(guidance);
+        let mut guide = self.guide.open(&setup, guidance, rate_hz)?;
         let mut takes = Vec::new();
-        let mut watch = |moment: &Moment| {
-            screen.show(moment);
-            match signals::interrupted() {
-                true => Next::Stop,
-                false => Next::Go,
-            }
-        };
-        let recorded = session.record(&mut watch, &mut |take| {
-            tell!("{}", said(take));
-            takes.push(take.clone());
-        });
-        screen.end();
+        let recorded = record(&mut session, &mut guide, &mut takes);
+        guide.end(&recorded);
         if self.json {
             print_json(&json!({
                 "recovered": recovered,
@@ -128,19 +133,6 @@ impl Record {
         Ok(Exit::SUCCESS)
     }
 
-    fn guidance(&self) -> Result<Guidance, Failure> {
-        if !(self.stroke > 0.0 && self.stroke <= 1e4) {
-            let sentence = format!("--stroke {}: above 0 and at most 10,000 mm", self.stroke);
-            return Err(Failure::Usage(sentence));
-        }
-        Ok(Guidance {
-            speed_mm_s: self.target_speed,
-            force_n: self.target_force,
-            tolerance: self.tolerance,
-            stroke_mm: self.stroke,
-        })
-    }
-
     fn setup(&self) -> Setup {
         Setup {
             folder: self.output.clone(),
@@ -151,7 +143,11 @@ impl Record {
                 (None, true) => 0.0,
                 (None, false) => 3.0,
             },
-            tare: self.tare,
+            tare: match self.tare {
+                None => Tare::Never,
+                Some(TareArg::Once) => Tare::Once,
+                Some(TareArg::Each) => Tare::Each,
+            },
             quantity: self.input.quantity(),
             target: Exploration {
                 speed_mm_s: self.target_speed,
@@ -169,6 +165,24 @@ impl Record {
             map: self.input.map.clone(),
         }
     }
+}
+
+/// Records under guidance until a take is kept; `takes` gets all that are complete.
+fn record(
+    session: &mut Session,
+    guide: &mut Guide,
+    takes: &mut Vec<Recorded>,
+) -> Result<Recorded, RecordError> {
+    if guide.wait_for_start() == Next::Stop {
+        return Err(RecordError::Left { kept: None });
+    }
+    let guide = RefCell::new(guide);
+    let mut watch = |moment: &Moment<'_>| guide.borrow_mut().show(moment);
+    session.record(&mut watch, &mut |take| {
+        guide.borrow_mut().told(take);
+        tell!("{}", said(take));
+        takes.push(take.clone());
+    })
 }
 
 /// A take in a line, and its findings in a line each.

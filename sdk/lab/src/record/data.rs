@@ -1,9 +1,24 @@
 //! What a take consists of, on disk and in memory.
 
+use htex_author::read::Role;
+use htex_author::recording::MAX_RATE_HZ;
 use htex_format::Quantity;
 use serde::{Deserialize, Serialize};
 
+use crate::record::names;
+use crate::record::setup::LONGEST_S;
 use crate::record::write::Format;
+
+/// Roles of the axes of the texture's signal.
+const AXES: [&str; 7] = [
+    "lateral",
+    "lateral_x",
+    "lateral_y",
+    "signal",
+    "signal_x",
+    "signal_y",
+    "signal_z",
+];
 
 /// What a take was recorded with; the first line of a part file, and a part of the JSON beside a recording.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -94,9 +109,15 @@ impl TakeData {
         spread(&mut self.signals, frames);
     }
 
-    /// Appends interleaved rows of the tracker.
+    /// Appends interleaved rows of the tracker. Rows that are not finite, or not later than those before, are left out: a position
+    /// cannot be interpolated over them.
     pub(crate) fn extend_tracker(&mut self, rows: &[f64]) {
-        spread(&mut self.tracker, rows);
+        for row in rows.chunks_exact(self.tracker.len().max(1)) {
+            let last_s = self.tracker.first().and_then(|time_s| time_s.last());
+            if row.iter().all(|value| value.is_finite()) && last_s.is_none_or(|t| row[0] > *t) {
+                spread(&mut self.tracker, row);
+            }
+        }
     }
 }
 
@@ -107,10 +128,70 @@ impl TakeHeader {
         (self.seconds * self.rate_hz).round() as usize
     }
 
+    /// What no session would have written, if anything: a part file may be damaged, or not be ours.
+    pub(crate) fn problem(&self) -> Option<&'static str> {
+        let has_known_roles = |signals: &[(String, String)]| {
+            let mut names: Vec<&str> = signals.iter().map(|(role, _)| &role[..]).collect();
+            let all = names.len();
+            names.sort_unstable();
+            names.dedup();
+            let is_known = |name: &&str| Role::ALL.iter().any(|role| role.name() == *name);
+            names.len() == all && names.iter().all(is_known) && !names.contains(&"time")
+        };
+        let has_units = |signals: &[(String, String)]| {
+            let is_unit =
+                |unit: &str| unit.len() <= 16 && unit.bytes().all(|b| b.is_ascii_graphic());
+            signals
+                .iter()
+                .all(|(_, unit)| is_unit(unit) && !unit.contains(','))
+        };
+        let is_whole = self.rate_hz.fract() == 0.0 && self.rate_hz <= f64::from(u32::MAX);
+        let checks = [
+            (self.htex_take == 1, "its version is not known"),
+            (
+                names::check(&self.name).is_ok(),
+                "its name is no name of a take",
+            ),
+            (
+                self.rate_hz > 0.0 && self.rate_hz <= MAX_RATE_HZ,
+                "its sample rate is out of range",
+            ),
+            (
+                self.seconds > 0.0 && self.seconds <= LONGEST_S,
+                "its length is out of range",
+            ),
+            (!self.signals.is_empty(), "it has no signals"),
+            (
+                has_known_roles(&self.signals) && has_known_roles(&self.tracker),
+                "its signals are not those of a take",
+            ),
+            (
+                has_units(&self.signals) && has_units(&self.tracker),
+                "its units are no units",
+            ),
+            (
+                self.format != Format::Wav || is_whole,
+                "its sample rate is not that of a WAV",
+            ),
+        ];
+        let failed = checks.into_iter().find(|(holds, _)| !holds);
+        failed.map(|(_, problem)| problem)
+    }
+
     /// Index of the signal of a role.
     #[must_use]
     pub fn signal(&self, role: &str) -> Option<usize> {
         self.signals.iter().position(|(own, _)| own == role)
+    }
+}
+
+/// Indices of the signals that are the axes of the texture's signal, in the order of [`AXES`]; without any, that of the normal force.
+pub(crate) fn texture_axes(signals: &[(String, String)]) -> Vec<usize> {
+    let position = |role: &&str| signals.iter().position(|(own, _)| own == role);
+    let axes: Vec<usize> = AXES.iter().filter_map(position).collect();
+    match axes.is_empty() {
+        true => position(&"normal").into_iter().collect(),
+        false => axes,
     }
 }
 

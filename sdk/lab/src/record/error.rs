@@ -114,6 +114,9 @@ pub enum RecordError {
         /// The part file.
         file: PathBuf,
     },
+    /// The page cannot be served.
+    #[error(transparent)]
+    Page(#[from] crate::page::PageError),
     /// A file cannot be written.
     #[error("cannot write {}: {error}", .file.display())]
     Write {

@@ -1,8 +1,11 @@
 //! What the person who records is shown: the target's motion, a metronome, their own finger, and whether the force is right.
 
+use serde::Serialize;
+
 /// The target of a recording, for showing it.
 ///
-/// The target moves back and forth at its speed over a stroke, as a square on a screen; the metronome beats at each turn.
+/// The target moves back and forth at its speed over a stroke, as a square on a screen; the metronome beats at each turn. It is in
+/// motion before the take begins, so that the finger can follow it by then.
 ///
 /// ```
 /// use htex_lab::record::{Force, Guidance};
@@ -10,7 +13,9 @@
 /// let guidance = Guidance { speed_mm_s: Some(80.0), force_n: Some(0.4), tolerance: 0.1, stroke_mm: 80.0 };
 /// // There in a second, and half of the way back.
 /// assert_eq!([0.0, 0.5, 1.0, 1.5].map(|t| guidance.target_mm(t).unwrap_or(0.0)), [0.0, 40.0, 80.0, 40.0]);
-/// assert_eq!((guidance.beats(0.9), guidance.beats(2.5)), (0, 2));
+/// // In a countdown times are negative, and the target comes to its beginning.
+/// assert_eq!([-0.5, -0.25].map(|t| guidance.target_mm(t).unwrap_or(0.0)), [40.0, 20.0]);
+/// assert_eq!([-0.1, 0.0, 0.9, 2.5].map(|t| guidance.turns(t)), [Some(-1), Some(0), Some(0), Some(2)]);
 /// assert_eq!([0.3, 0.37, 0.5].map(|n| guidance.force(Some(n))), [Force::Below, Force::Within, Force::Above]);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +31,8 @@ pub struct Guidance {
 }
 
 /// The normal force compared with its target.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Force {
     /// There is no target, or the force is not measured.
     Unknown,
@@ -41,6 +47,8 @@ pub enum Force {
 /// What a session does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
+    /// The finger leaves the surface, for another tare.
+    Lift,
     /// The forces without a finger are measured.
     Tare,
     /// A take will begin.
@@ -51,7 +59,7 @@ pub enum Phase {
 
 /// The state of a session, some 50 times a second.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Moment {
+pub struct Moment<'a> {
     /// The phase.
     pub phase: Phase,
     /// Number of the take.
@@ -60,38 +68,69 @@ pub struct Moment {
     pub elapsed_s: f64,
     /// Length of the phase, seconds.
     pub of_s: f64,
-    /// Normal force, newtons: the mean of the last samples.
+    /// Normal force, newtons: the absolute mean of the last 50 ms, by whose means a take is judged.
     pub force_n: Option<f64>,
     /// The finger's place on the axis along which it moves most, mm from its outermost place so far.
     pub position_mm: Option<f64>,
+    /// The samples since the moment before, of each axis of the texture's signal, in its unit.
+    pub texture: &'a [&'a [f64]],
+}
+
+impl Phase {
+    /// Its name for a page.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Lift => "lift",
+            Self::Tare => "tare",
+            Self::Countdown => "countdown",
+            Self::Take => "take",
+        }
+    }
+
+    /// The time of the target's motion: seconds since the take began, negative in its countdown; `None` where there is no motion.
+    #[must_use]
+    pub fn motion_s(self, elapsed_s: f64, of_s: f64) -> Option<f64> {
+        match self {
+            Self::Lift | Self::Tare => None,
+            Self::Countdown => Some(elapsed_s - of_s),
+            Self::Take => Some(elapsed_s),
+        }
+    }
 }
 
 impl Guidance {
-    /// The target's position at a time, mm; `None` without a target speed.
+    /// The target's position at a time, mm; `None` without a target speed. The motion is at 0 mm at 0 s and the same before
+    /// and after it, so that a countdown leads into its take.
     #[must_use]
     pub fn target_mm(&self, at_s: f64) -> Option<f64> {
-        let way_mm = self.speed_mm_s? * at_s.max(0.0);
+        let way_mm = self.speed_mm_s? * at_s.abs();
         let into_mm = libm::fmod(way_mm, 2.0 * self.stroke_mm);
         Some(into_mm.min(2.0 * self.stroke_mm - into_mm))
     }
 
-    /// Beats of the metronome until a time; 0 without a target speed.
+    /// Turns of the target until a time, at each of which the metronome beats; `None` without a target speed.
     #[must_use]
-    pub fn beats(&self, at_s: f64) -> u64 {
-        let speed_mm_s = self.speed_mm_s.unwrap_or(0.0);
-        (speed_mm_s * at_s.max(0.0) / self.stroke_mm) as u64
+    pub fn turns(&self, at_s: f64) -> Option<i64> {
+        Some((self.speed_mm_s? * at_s / self.stroke_mm).floor() as i64)
+    }
+
+    /// The range of the force that is within the tolerance, newtons.
+    #[must_use]
+    pub fn force_range_n(&self) -> Option<[f64; 2]> {
+        let target_n = self.force_n?;
+        let range_n = self.tolerance * target_n;
+        Some([target_n - range_n, target_n + range_n])
     }
 
     /// A normal force compared with its target.
     #[must_use]
     pub fn force(&self, force_n: Option<f64>) -> Force {
-        let (Some(force_n), Some(target_n)) = (force_n, self.force_n) else {
+        let (Some(force_n), Some([low_n, high_n])) = (force_n, self.force_range_n()) else {
             return Force::Unknown;
         };
-        let range_n = self.tolerance * target_n;
         match force_n {
-            n if n < target_n - range_n => Force::Below,
-            n if n > target_n + range_n => Force::Above,
+            n if n < low_n => Force::Below,
+            n if n > high_n => Force::Above,
             _ => Force::Within,
         }
     }

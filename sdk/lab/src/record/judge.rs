@@ -4,7 +4,7 @@ use htex_author::recording::RecordingError;
 use htex_author::{Exploration, Reading, Recording, SpectrumOptions, Take, read_take, velocity};
 use serde::{Deserialize, Serialize};
 
-use crate::record::data::TakeData;
+use crate::record::data::{TakeData, texture_axes};
 
 /// Part of a take at its ends that a tracker may leave out, seconds.
 const UNTRACKED_S: f64 = 0.25;
@@ -99,21 +99,9 @@ fn reading(data: &TakeData) -> Result<(Reading, Recording), String> {
 /// The take as a recording, with the speed of the tracker if there is one.
 fn recording(data: &TakeData) -> Result<Recording, RecordingError> {
     let of = |role: &str| data.header.signal(role).map(|at| data.signals[at].clone());
-    let axes = [
-        "lateral",
-        "lateral_x",
-        "lateral_y",
-        "signal",
-        "signal_x",
-        "signal_y",
-        "signal_z",
-    ];
-    let axes: Vec<Vec<f64>> = axes.iter().filter_map(|role| of(role)).collect();
+    let axes = texture_axes(&data.header.signals);
+    let axes = axes.iter().map(|at| data.signals[*at].clone()).collect();
     let (name, rate_hz) = (data.header.name.as_str(), data.header.rate_hz);
-    let axes = match axes.is_empty() {
-        true => of("normal").into_iter().collect(),
-        false => axes,
-    };
     let mut recording = Recording::of(data.header.quantity, name, rate_hz, axes)?;
     if let Some(normal) = of("normal") {
         recording = recording.with_normal(normal)?;

@@ -43,15 +43,21 @@ pub(crate) fn next_number(folder: &Path, name: &str) -> std::io::Result<u32> {
         folder.join(REJECTED),
         folder.join(INCOMPLETE),
     ] {
-        for file in files(&folder)? {
-            let file = file
-                .file_stem()
-                .map(|stem| stem.to_string_lossy().into_owned());
-            let own = file.as_deref().and_then(|file| number(file, name));
-            largest = largest.max(own.unwrap_or(0));
-        }
+        largest = largest.max(largest_number(&files(&folder)?, name).unwrap_or(0));
     }
     Ok(largest.saturating_add(1))
+}
+
+/// The largest number of the takes of this name that were kept.
+pub(crate) fn kept_number(folder: &Path, name: &str) -> Option<u32> {
+    largest_number(&files(folder).ok()?, name)
+}
+
+fn largest_number(files: &[PathBuf], name: &str) -> Option<u32> {
+    let stems = files.iter().filter_map(|file| file.file_stem());
+    stems
+        .filter_map(|stem| number(&stem.to_string_lossy(), name))
+        .max()
 }
 
 fn number(stem: &str, name: &str) -> Option<u32> {

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 use crate::record::data::{TakeData, TakeHeader};
 use crate::record::error::RecordError;
+use crate::record::names;
 
 /// Kind of a chunk of frames.
 const FRAMES: u8 = b'F';
@@ -131,16 +132,22 @@ pub fn read_part(path: &Path) -> Result<Option<TakeData>, RecordError> {
         return Ok(None);
     };
     let header: TakeHeader = serde_json::from_slice(&bytes[..end]).map_err(|error| {
+        let error = error.to_string();
         refuse(format!(
-            "it is not the part of a take that this htex records ({error}); move it elsewhere"
+            "it is not the part of a take that this htex records ({}); move it elsewhere",
+            htex_format::plain(&error)
         ))
     })?;
-    if header.htex_take != 1 || header.signals.is_empty() {
-        let problem = format!(
-            "version {} is not known; move it elsewhere",
-            header.htex_take
-        );
-        return Err(refuse(problem));
+    if let Some(problem) = header.problem() {
+        return Err(refuse(format!(
+            "it is not the part of a take that this htex records: {problem}; move it elsewhere"
+        )));
+    }
+    let own = names::stem(&header.name, header.number);
+    if path.file_stem().is_none_or(|stem| stem != &own[..]) {
+        return Err(refuse(format!(
+            "it is the part of {own}; give it that name again, so that no other take is replaced"
+        )));
     }
     Ok(Some(chunks(header, &bytes[end + 1..])))
 }

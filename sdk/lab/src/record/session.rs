@@ -1,107 +1,27 @@
 //! A session: takes of one name, recorded until one keeps to its target.
 
-use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
-
-use htex_author::Exploration;
 use htex_author::read::Role;
-use htex_device::{Delivered, Source};
-use htex_format::Quantity;
-use serde::Serialize;
+use htex_device::Source;
 
 use crate::record::data::TakeHeader;
 use crate::record::error::RecordError;
-use crate::record::guide::{FingerPath, Moment, Phase};
-use crate::record::judge::{Verdict, judge};
+use crate::record::finish::{Recorded, finish, with_kept};
+use crate::record::guide::{Moment, Phase};
 use crate::record::names;
-use crate::record::part::{Part, read_part};
+use crate::record::part::Part;
+use crate::record::reader::{Next, Reader, Span};
+use crate::record::setup::{Setup, Tare, check};
 use crate::record::signals::Signals;
 use crate::record::tracker::TrackerRows;
-use crate::record::write::{Format, Outcome, write_take};
+use crate::record::write::Outcome;
 
-/// Takes a block: its time, the values of each signal, and the rows of the tracker.
-type Take<'a> = dyn FnMut(f64, &[Vec<f64>], &[f64]) -> Result<(), RecordError> + 'a;
-
-/// Length of a block that is read, seconds.
-const BLOCK_S: f64 = 0.02;
 /// Length of the tare, seconds.
 const TARE_S: f64 = 1.0;
-/// Longest wait for samples at a time.
-const WAIT: Duration = Duration::from_millis(100);
-/// Longest time without samples.
-const SILENT: Duration = Duration::from_secs(5);
-/// Longest take, seconds.
-const LONGEST_S: f64 = 3600.0;
-
-/// What a session records.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Setup {
-    /// Folder of the takes; it is created.
-    pub folder: PathBuf,
-    /// Name of the takes, a part of their files' names.
-    pub name: String,
-    /// Length of a take, seconds; at most an hour.
-    pub seconds: f64,
-    /// Seconds before each take in which the finger can find its motion.
-    pub countdown_s: f64,
-    /// Whether the means of the forces over a first second without a finger are subtracted.
-    pub tare: bool,
-    /// Quantity of the texture's signal.
-    pub quantity: Quantity,
-    /// Target of speed and normal force.
-    pub target: Exploration,
-    /// Allowed relative difference of mean, minimum and maximum from the target; 0.1 in the paper.
-    pub tolerance: f64,
-    /// Most takes that are tried.
-    pub attempts: u32,
-    /// Format of the recordings.
-    pub format: Format,
-    /// Program and version, for the JSON beside a recording.
-    pub tool: String,
-    /// The source as it was named, for the JSON.
-    pub source: String,
-    /// The map of channels as it was given, for the JSON.
-    pub map: Option<String>,
-}
-
-/// Whether a session goes on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Next {
-    /// It does.
-    Go,
-    /// It ends; what was recorded is kept.
-    Stop,
-}
-
-/// A take that is complete, or that was recovered.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Recorded {
-    /// The recording.
-    pub file: PathBuf,
-    /// What became of it.
-    pub outcome: Outcome,
-    /// Number of the take.
-    pub number: u32,
-    /// Seconds that were recorded.
-    pub recorded_s: f64,
-    /// The judgement.
-    pub verdict: Verdict,
-    /// Arguments of `htex fit` that read it.
-    pub fit: Vec<String>,
-}
 
 /// A session. The source runs from its first take until it is dropped.
 pub struct Session {
     setup: Setup,
-    source: Box<dyn Source>,
-    signals: Signals,
-    tracker: Option<Box<dyn TrackerRows>>,
-    /// Frames that were read from the source.
-    read: u64,
-    samples: Vec<f64>,
-    /// Rows of the tracker that belong to later samples than those that were read.
-    rows: Vec<f64>,
-    path: FingerPath,
+    reader: Reader,
 }
 
 impl Session {
@@ -138,16 +58,8 @@ impl Session {
         }
         std::fs::create_dir_all(&setup.folder)
             .map_err(|error| RecordError::write(&setup.folder, error))?;
-        Ok(Self {
-            setup,
-            source,
-            signals,
-            tracker,
-            read: 0,
-            samples: Vec::new(),
-            rows: Vec::new(),
-            path: FingerPath::default(),
-        })
+        let reader = Reader::new(source, signals, tracker, setup.seconds);
+        Ok(Self { setup, reader })
     }
 
     /// Records takes until one keeps to its target, and returns that. `watch` is called for each block of samples, `told` for
@@ -158,24 +70,30 @@ impl Session {
     /// `incomplete`; [`RecordError::Left`] when `watch` ends the session.
     pub fn record(
         &mut self,
-        watch: &mut dyn FnMut(&Moment) -> Next,
+        watch: &mut dyn FnMut(&Moment<'_>) -> Next,
         told: &mut dyn FnMut(&Recorded),
     ) -> Result<Recorded, RecordError> {
-        self.source.start()?;
-        if self.setup.tare {
-            self.tare(watch)?;
-        }
+        self.reader.source.start()?;
         let mut reasons = String::new();
-        for _ in 0..self.setup.attempts {
+        for attempt in 0..self.setup.attempts {
+            match (self.setup.tare, attempt) {
+                (Tare::Never, _) | (Tare::Once, 1..) => {}
+                (Tare::Once | Tare::Each, 0) => self.tare(watch)?,
+                (Tare::Each, 1..) => {
+                    let lift = Span::new(Phase::Lift, 0, self.setup.countdown_s);
+                    self.reader.run(lift, watch, &mut |_, _, _| Ok(()))?;
+                    self.tare(watch)?;
+                }
+            }
             let take = self.take(watch)?;
             told(&take);
             if take.outcome == Outcome::Kept {
-                self.source.stop()?;
+                self.reader.source.stop()?;
                 return Ok(take);
             }
             reasons = take.verdict.reasons.join("; ");
         }
-        self.source.stop()?;
+        self.reader.source.stop()?;
         Err(RecordError::OffTarget {
             attempts: self.setup.attempts,
             reasons,
@@ -184,47 +102,45 @@ impl Session {
     }
 
     /// Measures the forces without a finger.
-    fn tare(&mut self, watch: &mut dyn FnMut(&Moment) -> Next) -> Result<(), RecordError> {
-        let (mut sums, mut count) = (vec![0.0; self.signals.list().len()], 0);
-        self.run(Phase::Tare, 0, TARE_S, watch, &mut |_, values, _| {
-            for (sum, values) in sums.iter_mut().zip(values) {
-                *sum += values.iter().sum::<f64>();
-            }
-            count += values.first().map_or(0, Vec::len);
-            Ok(())
-        })?;
+    fn tare(&mut self, watch: &mut dyn FnMut(&Moment<'_>) -> Next) -> Result<(), RecordError> {
+        self.reader.signals.tare(&[]);
+        let (mut sums, mut count) = (vec![0.0; self.reader.signals.list().len()], 0);
+        self.reader.run(
+            Span::new(Phase::Tare, 0, TARE_S),
+            watch,
+            &mut |_, values, _| {
+                for (sum, values) in sums.iter_mut().zip(values) {
+                    *sum += values.iter().sum::<f64>();
+                }
+                count += values.first().map_or(0, Vec::len);
+                Ok(())
+            },
+        )?;
         let means: Vec<f64> = sums.iter().map(|sum| sum / count.max(1) as f64).collect();
-        self.signals.tare(&means);
+        self.reader.signals.tare(&means);
         Ok(())
     }
 
     /// Records one take.
-    fn take(&mut self, watch: &mut dyn FnMut(&Moment) -> Next) -> Result<Recorded, RecordError> {
+    fn take(
+        &mut self,
+        watch: &mut dyn FnMut(&Moment<'_>) -> Next,
+    ) -> Result<Recorded, RecordError> {
         let folder = self.setup.folder.clone();
         let number = names::next_number(&folder, &self.setup.name);
         let number = number.map_err(|error| RecordError::write(&folder, error))?;
-        self.run(
-            Phase::Countdown,
-            number,
-            self.setup.countdown_s,
-            watch,
-            &mut |_, _, _| Ok(()),
-        )?;
+        let countdown = Span::new(Phase::Countdown, number, self.setup.countdown_s);
+        self.reader.run(countdown, watch, &mut |_, _, _| Ok(()))?;
         let header = self.header(number);
         let mut part = Part::create(&names::part(&folder, &header.name, number), &header)?;
-        let begin_s = self.now_s();
-        let ran = self.run(
-            Phase::Take,
-            number,
-            header.seconds,
-            watch,
-            &mut |read_s, values, rows| {
-                let frames = interleaved(values);
-                finite(&header, values, read_s)?;
-                part.push_tracker(&since(rows, header.tracker.len() + 1, begin_s));
-                part.push(&frames)
-            },
-        );
+        let begin_s = self.reader.now_s();
+        let span = Span::new(Phase::Take, number, header.seconds);
+        let ran = self.reader.run(span, watch, &mut |read_s, values, rows| {
+            let frames = interleaved(values);
+            finite(&header, values, read_s)?;
+            part.push_tracker(&since(rows, header.tracker.len() + 1, begin_s));
+            part.push(&frames)
+        });
         let flushed = part.flush();
         let path = part.path().to_owned();
         drop(part);
@@ -239,7 +155,7 @@ impl Session {
 
     fn header(&self, number: u32) -> TakeHeader {
         let setup = &self.setup;
-        let tracker = self.tracker.as_ref();
+        let tracker = self.reader.tracker.as_ref();
         TakeHeader {
             htex_take: 1,
             name: setup.name.clone(),
@@ -247,167 +163,18 @@ impl Session {
             tool: setup.tool.clone(),
             source: setup.source.clone(),
             map: setup.map.clone(),
-            calibrations: self.signals.calibrations(),
+            calibrations: self.reader.signals.calibrations(),
             quantity: setup.quantity,
-            rate_hz: self.source.rate_hz(),
+            rate_hz: self.reader.source.rate_hz(),
             seconds: setup.seconds,
-            signals: self.signals.list(),
-            tare: self.signals.offsets().to_vec(),
+            signals: self.reader.signals.list(),
+            tare: self.reader.signals.offsets().to_vec(),
             tracker: tracker.map(|tracker| tracker.signals()).unwrap_or_default(),
             target_speed_mm_s: setup.target.speed_mm_s,
             target_force_n: setup.target.force_n,
             tolerance: setup.tolerance,
             format: setup.format,
         }
-    }
-
-    /// Time of the next sample since the source was started, seconds.
-    fn now_s(&self) -> f64 {
-        self.read as f64 / self.source.rate_hz()
-    }
-
-    /// Reads a phase, block by block. `take` gets the time of the block, the values of each signal, and the rows of the tracker.
-    fn run(
-        &mut self,
-        phase: Phase,
-        number: u32,
-        of_s: f64,
-        watch: &mut dyn FnMut(&Moment) -> Next,
-        take: &mut Take<'_>,
-    ) -> Result<(), RecordError> {
-        let rate_hz = self.source.rate_hz();
-        let frames = (of_s * rate_hz).round() as u64;
-        let mut done = 0;
-        while done < frames {
-            let begin_s = self.now_s();
-            let values = self.block(frames - done)?;
-            done += values.first().map_or(0, Vec::len) as u64;
-            let rows = std::mem::take(&mut self.rows);
-            take(begin_s, &values, &rows)?;
-            let moment = Moment {
-                phase,
-                number,
-                elapsed_s: done as f64 / rate_hz,
-                of_s,
-                force_n: self
-                    .signals
-                    .position(Role::Normal)
-                    .map(|at| mean(&values[at])),
-                position_mm: self.position(&values, &rows),
-            };
-            if watch(&moment) == Next::Stop {
-                return Err(RecordError::Left { kept: None });
-            }
-        }
-        Ok(())
-    }
-
-    /// The finger's place by the tracker, else by the source.
-    fn position(&mut self, values: &[Vec<f64>], rows: &[f64]) -> Option<f64> {
-        for (axis, role) in [Role::X, Role::Y].into_iter().enumerate() {
-            let own = self.signals.position(role);
-            let own = own.and_then(|at| values[at].last().copied());
-            let at_mm = self.tracked(role, rows).or(own);
-            if let Some(at_mm) = at_mm {
-                self.path.see(axis, at_mm);
-            }
-        }
-        self.path.place_mm()
-    }
-
-    /// The newest position by the tracker along the axis of a role.
-    fn tracked(&self, role: Role, rows: &[f64]) -> Option<f64> {
-        let signals = self.tracker.as_ref()?.signals();
-        let axis = signals.iter().position(|(own, _)| own == role.name())?;
-        let newest = rows.chunks_exact(signals.len() + 1).last()?;
-        newest.get(axis + 1).copied()
-    }
-
-    /// The values of the next samples, at most `most`, and puts aside the tracker's rows until then.
-    fn block(&mut self, most: u64) -> Result<Vec<Vec<f64>>, RecordError> {
-        let (rate_hz, width) = (self.source.rate_hz(), self.source.channels().len());
-        let block = ((BLOCK_S * rate_hz) as u64).clamp(1, most) as usize;
-        self.samples.resize(block * width, 0.0);
-        let since = Instant::now();
-        let frames = loop {
-            match self.source.read(&mut self.samples, WAIT)? {
-                Delivered::Frames(0) if since.elapsed() > SILENT => {
-                    let seconds = SILENT.as_secs();
-                    return Err(RecordError::Silent { seconds });
-                }
-                Delivered::Frames(0) => {}
-                Delivered::Frames(frames) => break frames,
-                Delivered::End => return Err(self.ended()),
-            }
-        };
-        self.read += frames as u64;
-        let now_s = self.now_s();
-        if let Some(tracker) = &mut self.tracker {
-            tracker.poll(now_s, &mut self.rows)?;
-        }
-        Ok(self.signals.values(&self.samples[..frames * width]))
-    }
-
-    fn ended(&self) -> RecordError {
-        RecordError::Ended {
-            after_s: 0.0,
-            seconds: self.setup.seconds,
-            kept: None,
-        }
-    }
-}
-
-fn check(setup: &Setup, rate_hz: f64) -> Result<(), RecordError> {
-    names::check(&setup.name)?;
-    let refuse = |what, value: f64, allowed| {
-        let value = value.to_string();
-        Err(RecordError::Setup {
-            what,
-            value,
-            allowed,
-        })
-    };
-    let frames = setup.seconds * rate_hz;
-    if !(setup.seconds <= LONGEST_S && frames.round() >= 2.0) {
-        return refuse(
-            "the length of a take",
-            setup.seconds,
-            "it is at least two samples and at most 3600 s",
-        );
-    }
-    if !(0.0..=LONGEST_S).contains(&setup.countdown_s) {
-        return refuse(
-            "the countdown",
-            setup.countdown_s,
-            "0 to 3600 s are allowed",
-        );
-    }
-    if !(setup.tolerance > 0.0 && setup.tolerance < 1.0) {
-        return refuse(
-            "the tolerance",
-            setup.tolerance,
-            "it is above 0 and below 1, as in 0.1 for 10 %",
-        );
-    }
-    let targets = [
-        ("the target speed", setup.target.speed_mm_s),
-        ("the target force", setup.target.force_n),
-    ];
-    for (what, target) in targets {
-        if let Some(target) = target.filter(|target| !(*target > 0.0 && *target <= 1e4)) {
-            return refuse(what, target, "it is above 0 and at most 10,000");
-        }
-    }
-    if setup.format == Format::Wav && (rate_hz.fract() != 0.0 || rate_hz > f64::from(u32::MAX)) {
-        return refuse(
-            "the sample rate",
-            rate_hz,
-            "a WAV has a whole number of hertz; record CSV or NPY",
-        );
-    }
-    match setup.attempts {
-        0 => refuse("the number of takes", 0.0, "at least one is needed"),
-        _ => Ok(()),
     }
 }
 
@@ -439,73 +206,4 @@ fn interleaved(values: &[Vec<f64>]) -> Vec<f64> {
     (0..rows)
         .flat_map(|row| values.iter().map(move |values| values[row]))
         .collect()
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len().max(1) as f64
-}
-
-/// The error of a take that was cut short, with the file that has its beginning.
-fn with_kept(error: RecordError, kept: Option<Recorded>) -> RecordError {
-    let after_s = kept.as_ref().map_or(0.0, |kept| kept.recorded_s);
-    let kept = kept.map(|kept| kept.file);
-    match error {
-        RecordError::Ended { seconds, .. } => RecordError::Ended {
-            after_s,
-            seconds,
-            kept,
-        },
-        RecordError::Left { .. } => RecordError::Left { kept },
-        error => RecordError::Interrupted {
-            error: Box::new(error),
-            kept,
-        },
-    }
-}
-
-/// Writes the files of a part file and removes it; `None` if nothing was recorded.
-fn finish(folder: &Path, path: &Path) -> Result<Option<Recorded>, RecordError> {
-    let data = read_part(path)?.filter(|data| data.frames() > 0);
-    let recorded = match data {
-        None => None,
-        Some(data) => {
-            let verdict = judge(&data);
-            let outcome = match (data.is_complete(), verdict.kept) {
-                (false, _) => Outcome::Incomplete,
-                (true, false) => Outcome::Rejected,
-                (true, true) => Outcome::Kept,
-            };
-            let written = write_take(folder, &data, outcome, &verdict)?;
-            Some(Recorded {
-                file: written.recording,
-                outcome,
-                number: data.header.number,
-                recorded_s: data.recorded_s(),
-                verdict,
-                fit: written.fit,
-            })
-        }
-    };
-    std::fs::remove_file(path).map_err(|error| RecordError::write(path, error))?;
-    Ok(recorded)
-}
-
-/// Makes recordings of the takes that a killed program left in a folder, and returns them. A take that lacked only its renaming is
-/// judged as it would have been. Takes that another program is recording are left alone.
-///
-/// # Errors
-/// When a part file is damaged in its header, or a recording cannot be written.
-pub fn recover(folder: &Path) -> Result<Vec<Recorded>, RecordError> {
-    let parts = names::parts(folder).map_err(|error| RecordError::Part {
-        file: folder.to_owned(),
-        problem: error.to_string(),
-    })?;
-    let mut recovered = Vec::new();
-    for path in &parts {
-        match finish(folder, path) {
-            Err(RecordError::Busy { .. }) => {}
-            take => recovered.extend(take?),
-        }
-    }
-    Ok(recovered)
 }

@@ -86,7 +86,7 @@ impl Signals {
         &self.offsets
     }
 
-    /// Subtracts these means from now on; positions and speeds are left as they are.
+    /// Subtracts these means from now on, instead of those before, and none if there are none; positions and speeds are left as they are.
     pub fn tare(&mut self, means: &[f64]) {
         let moves = |role: &Role| matches!(role, Role::Speed | Role::X | Role::Y);
         let pairs = self.roles.iter().zip(means);

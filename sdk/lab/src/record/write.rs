@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use htex_author::read::{ColumnMap, ReadOptions};
 use htex_format::Quantity;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -39,7 +40,7 @@ pub enum Outcome {
 }
 
 impl Format {
-    fn extension(self) -> &'static str {
+    pub(crate) fn extension(self) -> &'static str {
         match self {
             Self::Csv => "csv",
             Self::Npy => "npy",
@@ -127,15 +128,32 @@ fn flags(header: &TakeHeader) -> Vec<String> {
     if header.format == Format::Csv {
         return flags;
     }
-    let signals = header.signals.iter().enumerate();
-    let map: Vec<String> = signals
-        .map(|(at, (role, _))| format!("{role}=#{}:1", at + 1))
-        .collect();
-    flags.extend(["--map".to_owned(), map.join(",")]);
+    flags.extend(["--map".to_owned(), column_map(header)]);
     if header.format == Format::Npy {
         flags.extend(["--rate".to_owned(), header.rate_hz.to_string()]);
     }
     flags
+}
+
+/// The roles of the columns of a format without names.
+fn column_map(header: &TakeHeader) -> String {
+    let signals = header.signals.iter().enumerate();
+    let map: Vec<String> = signals
+        .map(|(at, (role, _))| format!("{role}=#{}:1", at + 1))
+        .collect();
+    map.join(",")
+}
+
+/// Options that read a take's recording, as [`flags`] do; `None` if its header has roles that are none.
+pub(crate) fn read_options(header: &TakeHeader) -> Option<ReadOptions> {
+    let options = ReadOptions::default().with_quantity(header.quantity);
+    Some(match header.format {
+        Format::Csv => options,
+        Format::Npy => options
+            .with_map(column_map(header).parse::<ColumnMap>().ok()?)
+            .with_rate_hz(header.rate_hz),
+        Format::Wav => options.with_map(column_map(header).parse::<ColumnMap>().ok()?),
+    })
 }
 
 /// The name of a column, which `htex fit` knows with its unit.

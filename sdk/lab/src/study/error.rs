@@ -76,13 +76,8 @@ pub enum StudyError {
         model: String,
     },
     /// The page cannot be served.
-    #[error("cannot serve the page at 127.0.0.1:{port}: {problem}")]
-    Page {
-        /// The port.
-        port: u16,
-        /// What is wrong.
-        problem: String,
-    },
+    #[error(transparent)]
+    Page(#[from] crate::page::PageError),
     /// The attribute that was asked for is not in the answers.
     #[error("the answers have the attributes {known}; name one of them")]
     Attribute {

@@ -1,0 +1,93 @@
+//! From a part file to a recording: at the end of a take, and after a program was killed.
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use crate::record::error::RecordError;
+use crate::record::judge::{Verdict, judge};
+use crate::record::names;
+use crate::record::part::read_part;
+use crate::record::write::{Outcome, write_take};
+
+/// A take that is complete, or that was recovered.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Recorded {
+    /// The recording.
+    pub file: PathBuf,
+    /// What became of it.
+    pub outcome: Outcome,
+    /// Number of the take.
+    pub number: u32,
+    /// Seconds that were recorded.
+    pub recorded_s: f64,
+    /// The judgement.
+    pub verdict: Verdict,
+    /// Arguments of `htex fit` that read it.
+    pub fit: Vec<String>,
+}
+
+/// The error of a take that was cut short, with the file that has its beginning.
+pub(crate) fn with_kept(error: RecordError, kept: Option<Recorded>) -> RecordError {
+    let after_s = kept.as_ref().map_or(0.0, |kept| kept.recorded_s);
+    let kept = kept.map(|kept| kept.file);
+    match error {
+        RecordError::Ended { seconds, .. } => RecordError::Ended {
+            after_s,
+            seconds,
+            kept,
+        },
+        RecordError::Left { .. } => RecordError::Left { kept },
+        error => RecordError::Interrupted {
+            error: Box::new(error),
+            kept,
+        },
+    }
+}
+
+/// Writes the files of a part file and removes it; `None` if nothing was recorded.
+pub(crate) fn finish(folder: &Path, path: &Path) -> Result<Option<Recorded>, RecordError> {
+    let data = read_part(path)?.filter(|data| data.frames() > 0);
+    let recorded = match data {
+        None => None,
+        Some(data) => {
+            let verdict = judge(&data);
+            let outcome = match (data.is_complete(), verdict.kept) {
+                (false, _) => Outcome::Incomplete,
+                (true, false) => Outcome::Rejected,
+                (true, true) => Outcome::Kept,
+            };
+            let written = write_take(folder, &data, outcome, &verdict)?;
+            Some(Recorded {
+                file: written.recording,
+                outcome,
+                number: data.header.number,
+                recorded_s: data.recorded_s(),
+                verdict,
+                fit: written.fit,
+            })
+        }
+    };
+    std::fs::remove_file(path).map_err(|error| RecordError::write(path, error))?;
+    Ok(recorded)
+}
+
+/// Makes recordings of the takes that a killed program left in a folder, and returns them. A take that lacked only its renaming is
+/// judged as it would have been. Takes that another program is recording are left alone.
+///
+/// # Errors
+/// When a part file is damaged in its header, or a recording cannot be written.
+pub fn recover(folder: &Path) -> Result<Vec<Recorded>, RecordError> {
+    let parts = names::parts(folder).map_err(|error| RecordError::Part {
+        file: folder.to_owned(),
+        problem: error.to_string(),
+    })?;
+    let mut recovered = Vec::new();
+    for path in &parts {
+        match finish(folder, path) {
+            Err(RecordError::Busy { .. }) => {}
+            take => recovered.extend(take?),
+        }
+    }
+    Ok(recovered)
+}

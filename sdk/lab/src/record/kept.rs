@@ -1,0 +1,41 @@
+//! The spectrum of a take that was kept, read from its files.
+
+use std::path::Path;
+
+use htex_author::read::read_recording;
+use htex_author::{Averaging, Exploration, SpectrumOptions, Take, TextureSpectrum, read_take};
+use htex_format::Quantity;
+use serde::Deserialize;
+
+use crate::record::data::TakeHeader;
+use crate::record::live::LiveSpectrum;
+use crate::record::names;
+use crate::record::write::{Outcome, read_options};
+
+/// What is needed of the JSON beside a recording.
+#[derive(Deserialize)]
+struct Beside {
+    outcome: Outcome,
+    take: TakeHeader,
+}
+
+/// Returns the texture spectrum of the newest take of a name that a folder keeps, as `htex fit` would read it; `None` without one of
+/// this quantity, and if its files cannot be read any more.
+#[must_use]
+pub fn kept_spectrum(folder: &Path, name: &str, quantity: Quantity) -> Option<LiveSpectrum> {
+    let number = names::kept_number(folder, name)?;
+    let stem = names::stem(name, number);
+    let beside = std::fs::read(folder.join(format!("{stem}.json"))).ok()?;
+    let Beside { outcome, take } = serde_json::from_slice(&beside).ok()?;
+    if outcome != Outcome::Kept || take.quantity != quantity {
+        return None;
+    }
+    let file = folder.join(format!("{stem}.{}", take.format.extension()));
+    let take = Take {
+        recording: read_recording(&file, &read_options(&take)?).ok()?,
+        given: Exploration::default(),
+    };
+    let reading = read_take(&take, &SpectrumOptions::default(), false).ok()?;
+    let texture = TextureSpectrum::average(&[reading.part], Averaging::Rms).ok()?;
+    Some(LiveSpectrum::of(&texture))
+}

@@ -1,0 +1,339 @@
+//! The guidance on a page ([`crate::page`]): the newest state of a session, which the recording stores and the page asks for.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+use htex_format::Quantity;
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use crate::page::{Content, LocalPage};
+use crate::record::error::RecordError;
+use crate::record::finish::Recorded;
+use crate::record::guide::{Force, Guidance, Moment, Phase};
+use crate::record::judge::Measured;
+use crate::record::kept::kept_spectrum;
+use crate::record::live::{LiveSignal, LiveSpectrum};
+use crate::record::setup::{Setup, Tare};
+use crate::record::write::Outcome;
+
+/// Longest time by which a moment is continued until the next one is there, seconds.
+const CONTINUED_S: f64 = 0.1;
+/// Steps of the top of the spectrum's scale, decibels.
+const SCALE_STEP_DB: f64 = 10.0;
+/// Lowest top of the scale, decibels: below it is what sensors do not measure.
+const LOWEST_TOP_DB: f64 = -100.0;
+/// Speed at which the scale follows a spectrum that falls, dB/s.
+const SCALE_FALL_DB_S: f64 = 5.0;
+
+/// The page of a session, served while this value lives.
+pub struct GuidePage {
+    shown: Arc<Shown>,
+    served: LocalPage,
+}
+
+/// What the page shows, for the server's thread and for the one that records.
+struct Shown {
+    session: About,
+    guidance: Guidance,
+    folder: PathBuf,
+    state: Mutex<State>,
+}
+
+/// What does not change.
+#[derive(Serialize)]
+struct About {
+    title: String,
+    attempts: u32,
+    has_tare: bool,
+    unit: &'static str,
+    speed_mm_s: Option<f64>,
+    stroke_mm: f64,
+    target_force_n: Option<f64>,
+    force_range_n: Option<[f64; 2]>,
+    #[serde(skip)]
+    quantity: Quantity,
+}
+
+struct State {
+    has_started: bool,
+    is_stopped: bool,
+    now: Option<Now>,
+    signal: LiveSignal,
+    /// Level of the last kept take, decibels.
+    kept_db: Option<Vec<f64>>,
+    scale: Scale,
+    takes: Vec<TakeLine>,
+    end: Option<End>,
+    is_end_shown: bool,
+}
+
+/// A moment, and when it was.
+#[derive(Clone, Copy)]
+struct Now {
+    phase: Phase,
+    number: u32,
+    elapsed_s: f64,
+    of_s: f64,
+    force_n: Option<f64>,
+    position_mm: Option<f64>,
+    at: Instant,
+}
+
+/// The top of the spectrum's scale.
+#[derive(Clone, Copy)]
+struct Scale {
+    top_db: f64,
+    at: Instant,
+}
+
+/// A take that is complete.
+#[derive(Clone, Serialize)]
+struct TakeLine {
+    number: u32,
+    outcome: Outcome,
+    reasons: Vec<String>,
+    speed_mm_s: Option<Measured>,
+    force_n: Option<Measured>,
+}
+
+/// The end of a session.
+#[derive(Clone, Serialize)]
+struct End {
+    is_kept: bool,
+    text: String,
+}
+
+/// What changes, as the page gets it.
+#[derive(Serialize)]
+struct Changing {
+    /// `start`, a [`Phase`] or `end`.
+    phase: &'static str,
+    number: u32,
+    elapsed_s: f64,
+    of_s: f64,
+    /// The time of the target's motion.
+    motion_s: Option<f64>,
+    position_mm: Option<f64>,
+    force_n: Option<f64>,
+    force: Force,
+    frequency_hz: Vec<f64>,
+    level_db: Vec<f64>,
+}
+
+impl GuidePage {
+    /// Serves the page of a session on this machine; port 0 is any that is free. `rate_hz` is the source's rate.
+    ///
+    /// # Errors
+    /// [`RecordError::Page`] if the port is taken or there are no random numbers.
+    pub fn open(
+        port: u16,
+        setup: &Setup,
+        guidance: Guidance,
+        rate_hz: f64,
+    ) -> Result<Self, RecordError> {
+        let session = About {
+            title: setup.name.clone(),
+            attempts: setup.attempts,
+            has_tare: setup.tare != Tare::Never,
+            unit: setup.quantity.unit(),
+            speed_mm_s: guidance.speed_mm_s,
+            stroke_mm: guidance.stroke_mm,
+            target_force_n: guidance.force_n,
+            force_range_n: guidance.force_range_n(),
+            quantity: setup.quantity,
+        };
+        let kept = kept_spectrum(&setup.folder, &setup.name, setup.quantity);
+        let shown = Arc::new(Shown {
+            session,
+            guidance,
+            folder: setup.folder.clone(),
+            state: Mutex::new(State {
+                has_started: false,
+                is_stopped: false,
+                now: None,
+                signal: LiveSignal::new(setup.quantity, rate_hz),
+                kept_db: kept.map(|kept| kept.level_db),
+                scale: Scale {
+                    top_db: f64::NEG_INFINITY,
+                    at: Instant::now(),
+                },
+                takes: Vec::new(),
+                end: None,
+                is_end_shown: false,
+            }),
+        });
+        let served = LocalPage::open(port, Arc::clone(&shown))?;
+        Ok(Self { shown, served })
+    }
+
+    /// The address of the page.
+    #[must_use]
+    pub fn url(&self) -> &str {
+        self.served.url()
+    }
+
+    /// Whether the person has started the session.
+    #[must_use]
+    pub fn has_started(&self) -> bool {
+        self.shown.lock().has_started
+    }
+
+    /// Whether the person has ended the session.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        self.shown.lock().is_stopped
+    }
+
+    /// Stores a moment.
+    pub fn show(&self, moment: &Moment<'_>) {
+        let mut state = self.shown.lock();
+        let before = state.now.map(|now| (now.phase, now.number));
+        if before != Some((moment.phase, moment.number)) {
+            state.signal.clear();
+        }
+        state.signal.push(moment.texture);
+        state.now = Some(Now {
+            phase: moment.phase,
+            number: moment.number,
+            elapsed_s: moment.elapsed_s,
+            of_s: moment.of_s,
+            force_n: moment.force_n,
+            position_mm: moment.position_mm,
+            at: Instant::now(),
+        });
+    }
+
+    /// Shows a take that is complete.
+    pub fn told(&self, take: &Recorded) {
+        let about = &self.shown.session;
+        let kept = match take.outcome {
+            Outcome::Kept => kept_spectrum(&self.shown.folder, &about.title, about.quantity),
+            Outcome::Rejected | Outcome::Incomplete => None,
+        };
+        let mut state = self.shown.lock();
+        if let Some(kept) = kept {
+            state.kept_db = Some(kept.level_db);
+        }
+        state.takes.push(TakeLine {
+            number: take.number,
+            outcome: take.outcome,
+            reasons: take.verdict.reasons.clone(),
+            speed_mm_s: take.verdict.speed_mm_s,
+            force_n: take.verdict.force_n,
+        });
+    }
+
+    /// Shows the end of the session, and waits until the page has it, if it is open.
+    pub fn end(&self, recorded: &Result<Recorded, RecordError>) {
+        self.shown.lock().end = Some(match recorded {
+            Ok(take) => End {
+                is_kept: true,
+                text: take.file.display().to_string(),
+            },
+            Err(error) => End {
+                is_kept: false,
+                text: error.to_string(),
+            },
+        });
+        self.served.wait_for_end(|| self.shown.lock().is_end_shown);
+    }
+}
+
+impl Shown {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn changing(
+        &self,
+        now: Option<Now>,
+        has_ended: bool,
+        spectrum: Option<LiveSpectrum>,
+    ) -> Changing {
+        let spectrum = spectrum.map(|spectrum| (spectrum.frequency_hz, spectrum.level_db));
+        let (frequency_hz, level_db) = spectrum.unwrap_or_default();
+        let elapsed_s = now.map_or(0.0, |now| {
+            let since_s = now.at.elapsed().as_secs_f64().min(CONTINUED_S);
+            (now.elapsed_s + since_s).min(now.of_s)
+        });
+        let motion_s = now.and_then(|now| now.phase.motion_s(elapsed_s, now.of_s));
+        let force_n = now.and_then(|now| now.force_n);
+        Changing {
+            phase: match now {
+                _ if has_ended => "end",
+                None => "start",
+                Some(now) => now.phase.name(),
+            },
+            number: now.map_or(0, |now| now.number),
+            elapsed_s,
+            of_s: now.map_or(0.0, |now| now.of_s),
+            motion_s,
+            position_mm: now.and_then(|now| now.position_mm),
+            force_n,
+            // Without a motion there is no finger.
+            force: self.guidance.force(force_n.filter(|_| motion_s.is_some())),
+            frequency_hz,
+            level_db: level_db.iter().copied().map(hundredths).collect(),
+        }
+    }
+}
+
+impl Content for Shown {
+    const HTML: &'static str = include_str!("page.html");
+    const REQUESTS: &'static [&'static str] = &["start", "stop"];
+
+    fn take(&self, request: &str, _: &Value) {
+        let mut state = self.lock();
+        match request {
+            "start" => state.has_started = true,
+            _ => state.is_stopped = true,
+        }
+    }
+
+    fn state(&self) -> Value {
+        let (now, signal, has_ended) = {
+            let mut state = self.lock();
+            state.is_end_shown = state.end.is_some();
+            (state.now, state.signal.clone(), state.end.is_some())
+        };
+        // The recording does not wait for this.
+        let spectrum = signal.spectrum();
+        let changing = self.changing(now, has_ended, spectrum);
+        let mut state = self.lock();
+        let highest = changing
+            .level_db
+            .iter()
+            .chain(state.kept_db.iter().flatten());
+        let highest_db = highest.copied().fold(f64::NEG_INFINITY, f64::max);
+        let top_db = state.scale.follow(highest_db);
+        json!({
+            "session": self.session,
+            "now": changing,
+            "top_db": top_db,
+            "kept_db": state.kept_db.as_ref().map(|kept| kept.iter().copied().map(hundredths).collect::<Vec<_>>()),
+            "has_started": state.has_started,
+            "is_stopped": state.is_stopped,
+            "takes": state.takes,
+            "end": state.end,
+        })
+    }
+}
+
+impl Scale {
+    /// Rises with the spectrum at once and falls slowly; the top is a multiple of 10 dB, and `None` before there is a spectrum.
+    fn follow(&mut self, highest_db: f64) -> Option<f64> {
+        let fallen_db = self.top_db - SCALE_FALL_DB_S * self.at.elapsed().as_secs_f64();
+        *self = Self {
+            top_db: fallen_db.max(highest_db),
+            at: Instant::now(),
+        };
+        let top_db = SCALE_STEP_DB * (self.top_db / SCALE_STEP_DB).ceil();
+        top_db.is_finite().then_some(top_db.max(LOWEST_TOP_DB))
+    }
+}
+
+fn hundredths(value: f64) -> f64 {
+    (100.0 * value).round() / 100.0
+}

@@ -1,0 +1,111 @@
+//! What a session records, and which values are allowed.
+
+use std::path::PathBuf;
+
+use htex_author::Exploration;
+use htex_format::Quantity;
+
+use crate::record::error::RecordError;
+use crate::record::names;
+use crate::record::write::Format;
+
+/// Longest take, seconds.
+pub(crate) const LONGEST_S: f64 = 3600.0;
+
+/// What a session records.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Setup {
+    /// Folder of the takes; it is created.
+    pub folder: PathBuf,
+    /// Name of the takes, a part of their files' names.
+    pub name: String,
+    /// Length of a take, seconds; at most an hour.
+    pub seconds: f64,
+    /// Seconds before each take in which the finger can find its motion.
+    pub countdown_s: f64,
+    /// When the means of the forces over a second without a finger are measured, to be subtracted.
+    pub tare: Tare,
+    /// Quantity of the texture's signal.
+    pub quantity: Quantity,
+    /// Target of speed and normal force.
+    pub target: Exploration,
+    /// Allowed relative difference of mean, minimum and maximum from the target; 0.1 in the paper.
+    pub tolerance: f64,
+    /// Most takes that are tried.
+    pub attempts: u32,
+    /// Format of the recordings.
+    pub format: Format,
+    /// Program and version, for the JSON beside a recording.
+    pub tool: String,
+    /// The source as it was named, for the JSON.
+    pub source: String,
+    /// The map of channels as it was given, for the JSON.
+    pub map: Option<String>,
+}
+
+/// When the forces without a finger are measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Tare {
+    /// Never.
+    #[default]
+    Never,
+    /// Before the first take.
+    Once,
+    /// Before each take. Before the second one and those after it there is the time of a countdown to lift the finger.
+    Each,
+}
+
+/// Refuses values that are out of range; `rate_hz` is the source's rate.
+pub(crate) fn check(setup: &Setup, rate_hz: f64) -> Result<(), RecordError> {
+    names::check(&setup.name)?;
+    let refuse = |what, value: f64, allowed| {
+        let value = value.to_string();
+        Err(RecordError::Setup {
+            what,
+            value,
+            allowed,
+        })
+    };
+    let frames = setup.seconds * rate_hz;
+    if !(setup.seconds <= LONGEST_S && frames.round() >= 2.0) {
+        return refuse(
+            "the length of a take",
+            setup.seconds,
+            "it is at least two samples and at most 3600 s",
+        );
+    }
+    if !(0.0..=LONGEST_S).contains(&setup.countdown_s) {
+        return refuse(
+            "the countdown",
+            setup.countdown_s,
+            "0 to 3600 s are allowed",
+        );
+    }
+    if !(setup.tolerance > 0.0 && setup.tolerance < 1.0) {
+        return refuse(
+            "the tolerance",
+            setup.tolerance,
+            "it is above 0 and below 1, as in 0.1 for 10 %",
+        );
+    }
+    let targets = [
+        ("the target speed", setup.target.speed_mm_s),
+        ("the target force", setup.target.force_n),
+    ];
+    for (what, target) in targets {
+        if let Some(target) = target.filter(|target| !(*target > 0.0 && *target <= 1e4)) {
+            return refuse(what, target, "it is above 0 and at most 10,000");
+        }
+    }
+    if setup.format == Format::Wav && (rate_hz.fract() != 0.0 || rate_hz > f64::from(u32::MAX)) {
+        return refuse(
+            "the sample rate",
+            rate_hz,
+            "a WAV has a whole number of hertz; record CSV or NPY",
+        );
+    }
+    match setup.attempts {
+        0 => refuse("the number of takes", 0.0, "at least one is needed"),
+        _ => Ok(()),
+    }
+}

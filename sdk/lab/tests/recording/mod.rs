@@ -1,0 +1,131 @@
+//! Sessions that record files, as fast as they are read.
+#![allow(dead_code, clippy::unwrap_used)] // Each test uses a part; a failed unwrap is a failed test.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use htex_author::Exploration;
+use htex_author::simulate::{SimulationOptions, Surface, simulate};
+use htex_format::Quantity;
+use htex_lab::record::{
+    Format, Moment, Next, RecordError, Recorded, Replay, Session, Setup, Signals, Tare, TrackerRows,
+};
+
+/// Sample rate of the recordings, hertz.
+pub const RATE_HZ: f64 = 2_000.0;
+
+/// What differs between sessions.
+pub struct Settings {
+    pub name: &'static str,
+    pub seconds: f64,
+    pub tare: Tare,
+    pub target: Exploration,
+    pub attempts: u32,
+    pub format: Format,
+    pub stop_after: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            name: "take",
+            seconds: 4.0,
+            tare: Tare::Never,
+            target: Exploration::default(),
+            attempts: 3,
+            format: Format::Csv,
+            stop_after: usize::MAX,
+        }
+    }
+}
+
+/// A file of simulated takes of 4 s one after the other, each of this force (N) and of 80 mm/s.
+pub fn sweeps(folder: &Path, forces_n: &[f64]) -> PathBuf {
+    let path = folder.join("source.csv");
+    let mut text = "fx_n,fy_n,fz_n,x_mm,y_mm\n".to_owned();
+    for force_n in forces_n {
+        let options = SimulationOptions::new(Surface::Vinyl)
+            .with_rate_hz(RATE_HZ)
+            .with_duration_s(4.0)
+            .with_force_n(*force_n);
+        let mut csv = Vec::new();
+        simulate(&options).unwrap().write_csv(&mut csv).unwrap();
+        let csv = String::from_utf8(csv).unwrap();
+        for line in csv.lines().skip(2) {
+            text += line.split_once(',').unwrap().1;
+            text += "\n";
+        }
+    }
+    fs::write(&path, text).unwrap();
+    path
+}
+
+/// Records from a file.
+pub fn record(folder: &Path, source: &Path, settings: &Settings) -> Result<Recorded, RecordError> {
+    record_with(folder, source, settings, None)
+}
+
+/// A session that records a file.
+pub fn session(
+    folder: &Path,
+    source: &Path,
+    settings: &Settings,
+    tracker: Option<Box<dyn TrackerRows>>,
+) -> Result<Session, RecordError> {
+    let source = open(source);
+    let signals = Signals::new(
+        "source.csv",
+        source.channels(),
+        Vec::new(),
+        None,
+        Quantity::LateralForce,
+    )?;
+    let setup = Setup {
+        folder: folder.to_owned(),
+        name: settings.name.to_owned(),
+        seconds: settings.seconds,
+        countdown_s: 0.0,
+        tare: settings.tare,
+        quantity: Quantity::LateralForce,
+        target: settings.target,
+        tolerance: 0.1,
+        attempts: settings.attempts,
+        format: settings.format,
+        tool: "test".to_owned(),
+        source: "file:source.csv".to_owned(),
+        map: None,
+    };
+    Session::new(setup, source, signals, tracker)
+}
+
+/// Records from a file, with a tracker.
+pub fn record_with(
+    folder: &Path,
+    source: &Path,
+    settings: &Settings,
+    tracker: Option<Box<dyn TrackerRows>>,
+) -> Result<Recorded, RecordError> {
+    let mut session = session(folder, source, settings, tracker)?;
+    let mut moments = 0;
+    let mut watch = |_: &Moment<'_>| {
+        moments += 1;
+        match moments > settings.stop_after {
+            true => Next::Stop,
+            false => Next::Go,
+        }
+    };
+    session.record(&mut watch, &mut |_| ())
+}
+
+/// A CSV without times has the rate of the tests.
+fn open(path: &Path) -> Box<dyn htex_device::Source> {
+    use htex_device::{Settings, SourceAdapter};
+    let given = [
+        ("path", path.to_str().unwrap()),
+        ("pace", "fast"),
+        ("rate_hz", "2000"),
+    ];
+    let given = given.map(|(name, value)| (name.to_owned(), value.to_owned()));
+    let settings = Settings::resolve(Replay.descriptor(), None, &given.into()).unwrap();
+    Replay.open(&settings).unwrap()
+}

@@ -3,10 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use htex_device::{Source, Sources};
+use htex_device::{DeviceError, Source, Sources};
 use htex_lab::record::Replay;
-
-use crate::failure::Failure;
 
 /// Source adapters, in the order in which they are listed.
 fn sources() -> Sources {
@@ -20,6 +18,6 @@ fn sources() -> Sources {
 pub(crate) fn open(
     text: &str,
     given: &BTreeMap<String, String>,
-) -> Result<Box<dyn Source>, Failure> {
-    Ok(sources().open(text, given)?)
+) -> Result<Box<dyn Source>, DeviceError> {
+    sources().open(text, given)
 }

@@ -106,11 +106,17 @@ impl Browser {
         let attached = self.call(None, "Target.attachToTarget", attach);
         let session = attached["sessionId"].as_str().unwrap().to_owned();
         let tab = Tab { target, session };
-        let size = json!({ "width": 1024, "height": 768, "deviceScaleFactor": 1, "mobile": false });
-        self.call(Some(&tab), "Emulation.setDeviceMetricsOverride", size);
+        self.resize(&tab, 1024, 768);
         let focus = json!({ "enabled": true });
         self.call(Some(&tab), "Emulation.setFocusEmulationEnabled", focus);
         tab
+    }
+
+    /// Gives a tab another size, pixels.
+    pub fn resize(&mut self, tab: &Tab, width: u32, height: u32) {
+        let size =
+            json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        self.call(Some(tab), "Emulation.setDeviceMetricsOverride", size);
     }
 
     pub fn close(&mut self, tab: &Tab) {
@@ -126,6 +132,25 @@ impl Browser {
     pub fn value(&mut self, tab: &Tab, expression: &str) -> Value {
         let params = json!({ "expression": expression, "returnByValue": true });
         self.call(Some(tab), "Runtime.evaluate", params)["result"]["value"].clone()
+    }
+
+    /// The value that a promise of a tab is resolved to.
+    pub fn promised(&mut self, tab: &Tab, expression: &str) -> Value {
+        let params =
+            json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
+        self.call(Some(tab), "Runtime.evaluate", params)["result"]["value"].clone()
+    }
+
+    /// Presses the middle of the first element of a selector.
+    pub fn click(&mut self, tab: &Tab, selector: &str) {
+        let place = format!(
+            "(() => {{ const r = document.querySelector('{selector}').getBoundingClientRect(); return [(r.left + r.right) / 2, (r.top + r.bottom) / 2]; }})()"
+        );
+        let place = self.value(tab, &place);
+        for kind in ["mousePressed", "mouseReleased"] {
+            let at = json!({ "type": kind, "x": place[0], "y": place[1], "button": "left", "buttons": 1, "clickCount": 1 });
+            self.call(Some(tab), "Input.dispatchMouseEvent", at);
+        }
     }
 
     /// Waits until a tab shows a text.
@@ -144,7 +169,11 @@ impl Browser {
 
     /// Presses and releases a key; `repeats` are presses of a key that is held.
     pub fn press(&mut self, tab: &Tab, key: &str, repeats: usize) {
-        let text = if key == "Enter" { "\r" } else { key };
+        let text = match key {
+            "Enter" => "\r",
+            named if named.len() > 1 => "",
+            key => key,
+        };
         for i in 0..=repeats {
             let down = json!({ "type": "keyDown", "key": key, "text": text, "autoRepeat": i > 0 });
             self.call(Some(tab), "Input.dispatchKeyEvent", down);

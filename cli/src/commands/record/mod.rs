@@ -1,24 +1,23 @@
-mod inputs;
 mod screen;
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use htex_author::Exploration;
-use htex_format::{Quantity, plain};
-use htex_lab::record::{
-    Format, Guidance, Moment, Next, Outcome, Recorded, Session, Setup, recover,
-};
+use htex_device::Source;
+use htex_format::plain;
+use htex_lab::record::{Guidance, Moment, Next, Outcome, Recorded, Session, Setup, recover};
 use serde_json::json;
 
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::inputs::{self, InputArgs};
 use crate::models::tool;
 use crate::output::{print, print_json, tell, warn};
 use crate::shown::shown;
 use crate::signals;
+use crate::sources;
 
-use inputs::InputArgs;
 use screen::Screen;
 
 /// Record a finger on a surface under guidance: takes that leave their target are set aside and repeated.
@@ -28,6 +27,19 @@ use screen::Screen;
 /// crash cut short is recovered when the command is run again.
 #[derive(Args)]
 pub(crate) struct Record {
+    /// Where the signals come from: a recording that is replayed (file:rec.csv), or analog inputs of a National Instruments card
+    /// (daq:Dev1/ai0:5)
+    #[arg(long, value_name = "NAME:TARGET", help_heading = "Source")]
+    source: String,
+
+    /// A setting of the source, such as rate_hz=20000; may be given several times
+    #[arg(long = "set", value_name = "NAME=VALUE", help_heading = "Source")]
+    settings: Vec<String>,
+
+    /// Replay files without waiting
+    #[arg(long, help_heading = "Source")]
+    fast: bool,
+
     #[command(flatten)]
     input: InputArgs,
 
@@ -67,10 +79,6 @@ pub(crate) struct Record {
     #[arg(long, value_name = "MM", default_value_t = 80.0)]
     stroke: f64,
 
-    /// Format of the recordings
-    #[arg(long, value_enum, default_value = "csv")]
-    format: FormatArg,
-
     /// The folder of the takes
     #[arg(short, long, value_name = "DIR", default_value = "recordings")]
     output: PathBuf,
@@ -80,13 +88,6 @@ pub(crate) struct Record {
     json: bool,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum FormatArg {
-    Csv,
-    Npy,
-    Wav,
-}
-
 impl Record {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         let guidance = self.guidance()?;
@@ -94,8 +95,8 @@ impl Record {
         for take in &recovered {
             tell!("htex: recovered {}", said(take));
         }
-        let source = self.input.open()?;
-        let signals = self.input.signals(&*source)?;
+        let source = self.open()?;
+        let signals = self.input.signals(&self.source, &*source)?;
         warn(signals.warnings());
         let tracker = self.input.tracker()?;
         let mut session = Session::new(self.setup(), source, signals, tracker)?;
@@ -128,6 +129,15 @@ impl Record {
         Ok(Exit::SUCCESS)
     }
 
+    fn open(&self) -> Result<Box<dyn Source>, Failure> {
+        if self.fast && !self.source.starts_with("file:") {
+            let sentence = "--fast replays files; other sources come at their own pace";
+            return Err(Failure::Usage(sentence.to_owned()));
+        }
+        let given = inputs::settings(&self.source, "--set", &self.settings, self.fast)?;
+        Ok(sources::open(&self.source, &given)?)
+    }
+
     fn guidance(&self) -> Result<Guidance, Failure> {
         if !(self.stroke > 0.0 && self.stroke <= 1e4) {
             let sentence = format!("--stroke {}: above 0 and at most 10,000 mm", self.stroke);
@@ -146,7 +156,7 @@ impl Record {
             folder: self.output.clone(),
             name: self.take.clone(),
             seconds: self.seconds,
-            countdown_s: match (self.countdown, self.input.fast) {
+            countdown_s: match (self.countdown, self.fast) {
                 (Some(countdown_s), _) => countdown_s,
                 (None, true) => 0.0,
                 (None, false) => 3.0,
@@ -159,13 +169,9 @@ impl Record {
             },
             tolerance: self.tolerance,
             attempts: self.attempts,
-            format: match self.format {
-                FormatArg::Csv => Format::Csv,
-                FormatArg::Npy => Format::Npy,
-                FormatArg::Wav => Format::Wav,
-            },
+            format: self.input.format().unwrap_or_default(),
             tool: tool(),
-            source: self.input.source.clone(),
+            source: self.source.clone(),
             map: self.input.map.clone(),
         }
     }
@@ -199,15 +205,4 @@ fn said(take: &Recorded) -> String {
             .map(|f| format!("\n  {}", plain(f)))
             .collect::<String>(),
     )
-}
-
-/// The quantities that are recorded, by their names on the command line.
-pub(super) fn quantity(name: &str) -> Result<Quantity, String> {
-    Quantity::from_name(&name.replace('-', "_")).ok_or_else(|| {
-        let names = Quantity::ALL.iter().map(|q| q.name().replace('_', "-"));
-        format!(
-            "the quantities are {}",
-            names.collect::<Vec<_>>().join(", ")
-        )
-    })
 }

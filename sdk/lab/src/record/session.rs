@@ -1,11 +1,10 @@
 //! A session: takes of one name, recorded until one keeps to its target.
 
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 use htex_author::Exploration;
 use htex_author::read::Role;
-use htex_device::{Delivered, Source};
+use htex_device::Source;
 use htex_format::Quantity;
 use serde::Serialize;
 
@@ -15,21 +14,16 @@ use crate::record::guide::{FingerPath, Moment, Phase};
 use crate::record::judge::{Verdict, judge};
 use crate::record::names;
 use crate::record::part::{Part, read_part};
+use crate::record::reader::{Block, Inputs, Reader};
 use crate::record::signals::Signals;
 use crate::record::tracker::TrackerRows;
 use crate::record::write::{Format, Outcome, write_take};
 
-/// Takes a block: its time, the values of each signal, and the rows of the tracker.
-type Take<'a> = dyn FnMut(f64, &[Vec<f64>], &[f64]) -> Result<(), RecordError> + 'a;
+/// Takes a block.
+type Take<'a> = dyn FnMut(&Block) -> Result<(), RecordError> + 'a;
 
-/// Length of a block that is read, seconds.
-const BLOCK_S: f64 = 0.02;
 /// Length of the tare, seconds.
 const TARE_S: f64 = 1.0;
-/// Longest wait for samples at a time.
-const WAIT: Duration = Duration::from_millis(100);
-/// Longest time without samples.
-const SILENT: Duration = Duration::from_secs(5);
 /// Longest take, seconds.
 const LONGEST_S: f64 = 3600.0;
 
@@ -93,14 +87,7 @@ pub struct Recorded {
 /// A session. The source runs from its first take until it is dropped.
 pub struct Session {
     setup: Setup,
-    source: Box<dyn Source>,
-    signals: Signals,
-    tracker: Option<Box<dyn TrackerRows>>,
-    /// Frames that were read from the source.
-    read: u64,
-    samples: Vec<f64>,
-    /// Rows of the tracker that belong to later samples than those that were read.
-    rows: Vec<f64>,
+    reader: Reader,
     path: FingerPath,
 }
 
@@ -138,14 +125,10 @@ impl Session {
         }
         std::fs::create_dir_all(&setup.folder)
             .map_err(|error| RecordError::write(&setup.folder, error))?;
+        let inputs = Inputs { signals, tracker };
         Ok(Self {
+            reader: Reader::new(source, inputs, setup.seconds),
             setup,
-            source,
-            signals,
-            tracker,
-            read: 0,
-            samples: Vec::new(),
-            rows: Vec::new(),
             path: FingerPath::default(),
         })
     }
@@ -161,7 +144,7 @@ impl Session {
         watch: &mut dyn FnMut(&Moment) -> Next,
         told: &mut dyn FnMut(&Recorded),
     ) -> Result<Recorded, RecordError> {
-        self.source.start()?;
+        self.reader.source.start()?;
         if self.setup.tare {
             self.tare(watch)?;
         }
@@ -170,12 +153,12 @@ impl Session {
             let take = self.take(watch)?;
             told(&take);
             if take.outcome == Outcome::Kept {
-                self.source.stop()?;
+                self.reader.source.stop()?;
                 return Ok(take);
             }
             reasons = take.verdict.reasons.join("; ");
         }
-        self.source.stop()?;
+        self.reader.source.stop()?;
         Err(RecordError::OffTarget {
             attempts: self.setup.attempts,
             reasons,
@@ -185,16 +168,16 @@ impl Session {
 
     /// Measures the forces without a finger.
     fn tare(&mut self, watch: &mut dyn FnMut(&Moment) -> Next) -> Result<(), RecordError> {
-        let (mut sums, mut count) = (vec![0.0; self.signals.list().len()], 0);
-        self.run(Phase::Tare, 0, TARE_S, watch, &mut |_, values, _| {
-            for (sum, values) in sums.iter_mut().zip(values) {
+        let (mut sums, mut count) = (vec![0.0; self.reader.inputs.signals.list().len()], 0);
+        self.run(Phase::Tare, 0, TARE_S, watch, &mut |block| {
+            for (sum, values) in sums.iter_mut().zip(&block.values) {
                 *sum += values.iter().sum::<f64>();
             }
-            count += values.first().map_or(0, Vec::len);
+            count += block.values.first().map_or(0, Vec::len);
             Ok(())
         })?;
         let means: Vec<f64> = sums.iter().map(|sum| sum / count.max(1) as f64).collect();
-        self.signals.tare(&means);
+        self.reader.inputs.signals.tare(&means);
         Ok(())
     }
 
@@ -208,23 +191,16 @@ impl Session {
             number,
             self.setup.countdown_s,
             watch,
-            &mut |_, _, _| Ok(()),
+            &mut |_| Ok(()),
         )?;
         let header = self.header(number);
         let mut part = Part::create(&names::part(&folder, &header.name, number), &header)?;
-        let begin_s = self.now_s();
-        let ran = self.run(
-            Phase::Take,
-            number,
-            header.seconds,
-            watch,
-            &mut |read_s, values, rows| {
-                let frames = interleaved(values);
-                finite(&header, values, read_s)?;
-                part.push_tracker(&since(rows, header.tracker.len() + 1, begin_s));
-                part.push(&frames)
-            },
-        );
+        let begin_s = self.reader.now_s();
+        let ran = self.run(Phase::Take, number, header.seconds, watch, &mut |block| {
+            block.check(&header)?;
+            part.push_tracker(&block.rows_since(&header, begin_s));
+            part.push(&block.interleaved())
+        });
         let flushed = part.flush();
         let path = part.path().to_owned();
         drop(part);
@@ -239,7 +215,7 @@ impl Session {
 
     fn header(&self, number: u32) -> TakeHeader {
         let setup = &self.setup;
-        let tracker = self.tracker.as_ref();
+        let inputs = &self.reader.inputs;
         TakeHeader {
             htex_take: 1,
             name: setup.name.clone(),
@@ -247,13 +223,13 @@ impl Session {
             tool: setup.tool.clone(),
             source: setup.source.clone(),
             map: setup.map.clone(),
-            calibrations: self.signals.calibrations(),
+            calibrations: inputs.signals.calibrations(),
             quantity: setup.quantity,
-            rate_hz: self.source.rate_hz(),
+            rate_hz: self.reader.source.rate_hz(),
             seconds: setup.seconds,
-            signals: self.signals.list(),
-            tare: self.signals.offsets().to_vec(),
-            tracker: tracker.map(|tracker| tracker.signals()).unwrap_or_default(),
+            signals: inputs.signals.list(),
+            tare: inputs.signals.offsets().to_vec(),
+            tracker: inputs.tracked(),
             target_speed_mm_s: setup.target.speed_mm_s,
             target_force_n: setup.target.force_n,
             tolerance: setup.tolerance,
@@ -261,12 +237,7 @@ impl Session {
         }
     }
 
-    /// Time of the next sample since the source was started, seconds.
-    fn now_s(&self) -> f64 {
-        self.read as f64 / self.source.rate_hz()
-    }
-
-    /// Reads a phase, block by block. `take` gets the time of the block, the values of each signal, and the rows of the tracker.
+    /// Reads a phase, block by block.
     fn run(
         &mut self,
         phase: Phase,
@@ -275,25 +246,23 @@ impl Session {
         watch: &mut dyn FnMut(&Moment) -> Next,
         take: &mut Take<'_>,
     ) -> Result<(), RecordError> {
-        let rate_hz = self.source.rate_hz();
+        let rate_hz = self.reader.source.rate_hz();
         let frames = (of_s * rate_hz).round() as u64;
         let mut done = 0;
         while done < frames {
-            let begin_s = self.now_s();
-            let values = self.block(frames - done)?;
-            done += values.first().map_or(0, Vec::len) as u64;
-            let rows = std::mem::take(&mut self.rows);
-            take(begin_s, &values, &rows)?;
+            let Some(block) = self.reader.block(frames - done)? else {
+                continue;
+            };
+            done += block.values.first().map_or(0, Vec::len) as u64;
+            take(&block)?;
+            let normal = self.reader.inputs.signals.position(Role::Normal);
             let moment = Moment {
                 phase,
                 number,
                 elapsed_s: done as f64 / rate_hz,
                 of_s,
-                force_n: self
-                    .signals
-                    .position(Role::Normal)
-                    .map(|at| mean(&values[at])),
-                position_mm: self.position(&values, &rows),
+                force_n: normal.map(|at| mean(&block.values[at])),
+                position_mm: self.position(&block),
             };
             if watch(&moment) == Next::Stop {
                 return Err(RecordError::Left { kept: None });
@@ -303,11 +272,11 @@ impl Session {
     }
 
     /// The finger's place by the tracker, else by the source.
-    fn position(&mut self, values: &[Vec<f64>], rows: &[f64]) -> Option<f64> {
+    fn position(&mut self, block: &Block) -> Option<f64> {
         for (axis, role) in [Role::X, Role::Y].into_iter().enumerate() {
-            let own = self.signals.position(role);
-            let own = own.and_then(|at| values[at].last().copied());
-            let at_mm = self.tracked(role, rows).or(own);
+            let own = self.reader.inputs.signals.position(role);
+            let own = own.and_then(|at| block.values[at].last().copied());
+            let at_mm = self.tracked(role, &block.rows).or(own);
             if let Some(at_mm) = at_mm {
                 self.path.see(axis, at_mm);
             }
@@ -317,43 +286,10 @@ impl Session {
 
     /// The newest position by the tracker along the axis of a role.
     fn tracked(&self, role: Role, rows: &[f64]) -> Option<f64> {
-        let signals = self.tracker.as_ref()?.signals();
+        let signals = self.reader.inputs.tracked();
         let axis = signals.iter().position(|(own, _)| own == role.name())?;
         let newest = rows.chunks_exact(signals.len() + 1).last()?;
         newest.get(axis + 1).copied()
-    }
-
-    /// The values of the next samples, at most `most`, and puts aside the tracker's rows until then.
-    fn block(&mut self, most: u64) -> Result<Vec<Vec<f64>>, RecordError> {
-        let (rate_hz, width) = (self.source.rate_hz(), self.source.channels().len());
-        let block = ((BLOCK_S * rate_hz) as u64).clamp(1, most) as usize;
-        self.samples.resize(block * width, 0.0);
-        let since = Instant::now();
-        let frames = loop {
-            match self.source.read(&mut self.samples, WAIT)? {
-                Delivered::Frames(0) if since.elapsed() > SILENT => {
-                    let seconds = SILENT.as_secs();
-                    return Err(RecordError::Silent { seconds });
-                }
-                Delivered::Frames(0) => {}
-                Delivered::Frames(frames) => break frames,
-                Delivered::End => return Err(self.ended()),
-            }
-        };
-        self.read += frames as u64;
-        let now_s = self.now_s();
-        if let Some(tracker) = &mut self.tracker {
-            tracker.poll(now_s, &mut self.rows)?;
-        }
-        Ok(self.signals.values(&self.samples[..frames * width]))
-    }
-
-    fn ended(&self) -> RecordError {
-        RecordError::Ended {
-            after_s: 0.0,
-            seconds: self.setup.seconds,
-            kept: None,
-        }
     }
 }
 
@@ -398,47 +334,11 @@ fn check(setup: &Setup, rate_hz: f64) -> Result<(), RecordError> {
             return refuse(what, target, "it is above 0 and at most 10,000");
         }
     }
-    if setup.format == Format::Wav && (rate_hz.fract() != 0.0 || rate_hz > f64::from(u32::MAX)) {
-        return refuse(
-            "the sample rate",
-            rate_hz,
-            "a WAV has a whole number of hertz; record CSV or NPY",
-        );
-    }
+    setup.format.check(rate_hz)?;
     match setup.attempts {
         0 => refuse("the number of takes", 0.0, "at least one is needed"),
         _ => Ok(()),
     }
-}
-
-fn finite(header: &TakeHeader, values: &[Vec<f64>], begin_s: f64) -> Result<(), RecordError> {
-    for ((role, _), values) in header.signals.iter().zip(values) {
-        if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-            return Err(RecordError::NotFinite {
-                role: role.clone(),
-                value: values[at],
-                at_s: begin_s + at as f64 / header.rate_hz,
-            });
-        }
-    }
-    Ok(())
-}
-
-/// Rows of a tracker with times since `begin_s`; those before are left out.
-fn since(rows: &[f64], width: usize, begin_s: f64) -> Vec<f64> {
-    let mut kept = Vec::new();
-    for row in rows.chunks_exact(width).filter(|row| row[0] >= begin_s) {
-        kept.push(row[0] - begin_s);
-        kept.extend(&row[1..]);
-    }
-    kept
-}
-
-fn interleaved(values: &[Vec<f64>]) -> Vec<f64> {
-    let rows = values.first().map_or(0, Vec::len);
-    (0..rows)
-        .flat_map(|row| values.iter().map(move |values| values[row]))
-        .collect()
 }
 
 fn mean(values: &[f64]) -> f64 {

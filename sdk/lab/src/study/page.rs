@@ -23,7 +23,7 @@ use crate::study::gain::GainKey;
 const HTML: &str = include_str!("page.html");
 /// A tab that has asked for nothing for this long is gone.
 const SILENT: Duration = Duration::from_secs(8);
-/// A question takes no answer for this long: the second press of a key that answered the one before.
+/// A question or a matching takes no answer for this long: the second press of a key that answered the one before.
 const GUARD: Duration = Duration::from_millis(300);
 /// Longest wait, at the end, for the page to show that all is done.
 const FAREWELL: Duration = Duration::from_secs(2);
@@ -287,8 +287,8 @@ impl State {
         if step != Some(self.step) || self.answered == Some(self.step) {
             return;
         }
-        let is_question = matches!(self.view, View::Question { .. });
-        if is_question && self.shown.elapsed() < GUARD {
+        let is_guarded = matches!(self.view, View::Question { .. } | View::Matching { .. });
+        if is_guarded && self.shown.elapsed() < GUARD {
             return;
         }
         if let Some(key) = key(name, &self.view) {

@@ -1,0 +1,157 @@
+//! Arguments about a source's channels and a tracker, and opening of sources, shared by the commands that record.
+
+use std::collections::BTreeMap;
+use std::io::{BufReader, IsTerminal};
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use htex_author::read::ColumnMap;
+use htex_device::Source;
+use htex_format::Quantity;
+use htex_lab::record::{Calibration, Format, LineTracker, Signals, TableTracker, TrackerRows};
+
+use crate::failure::Failure;
+
+/// The signals of a source, and a tracker beside it.
+#[derive(Args)]
+#[command(next_help_heading = "Source")]
+pub(crate) struct InputArgs {
+    /// Roles and scales of the channels, as in `htex fit`: lateral_x=fx1+fx2,normal=-fz*0.31. Without it channels are
+    /// known by their names
+    #[arg(long, value_name = "MAP")]
+    pub(crate) map: Option<String>,
+
+    /// Calibration of a six-axis sensor on the first six channels, whose names become fx, fy, fz, tx, ty, tz: six rows of six
+    /// numbers (N and N m for a volt) as CSV, or `matrix` in TOML. A second one is that of the next six; axes are then fx1, fx2, …
+    #[arg(long, value_name = "FILE")]
+    calibration: Vec<PathBuf>,
+
+    /// What the texture's signal is: lateral-force, normal-force, acceleration, velocity, displacement [default: lateral-force]
+    #[arg(long, value_name = "NAME", value_parser = quantity)]
+    quantity: Option<Quantity>,
+
+    /// The finger's motion: a file to replay (file:track.csv), or lines `x_mm y_mm` from a pipe or port (lines:/dev/ttyACM0) or
+    /// from standard input (lines:-)
+    #[arg(long, value_name = "NAME:TARGET")]
+    tracker: Option<String>,
+
+    /// Roles and scales of the columns of a tracker's file: time=stamp_ms:0.001,x=#2
+    #[arg(long, value_name = "MAP", requires = "tracker")]
+    tracker_map: Option<String>,
+
+    /// Format of the recordings [default: csv; of trials npy, which takes a third of the space]
+    #[arg(long, value_enum)]
+    format: Option<FormatArg>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum FormatArg {
+    Csv,
+    Npy,
+    Wav,
+}
+
+/// Settings of a source that were given as NAME=VALUE; `flag` is their flag. Files are replayed without waiting if `is_fast`.
+pub(crate) fn settings(
+    source: &str,
+    flag: &str,
+    texts: &[String],
+    is_fast: bool,
+) -> Result<BTreeMap<String, String>, Failure> {
+    let mut given = BTreeMap::new();
+    for text in texts {
+        let (name, value) = text
+            .split_once('=')
+            .ok_or_else(|| Failure::Usage(format!("{flag} {text}: it looks like NAME=VALUE")))?;
+        given.insert(name.to_owned(), value.to_owned());
+    }
+    if is_fast && source.starts_with("file:") {
+        given.insert("pace".to_owned(), "fast".to_owned());
+    }
+    Ok(given)
+}
+
+impl InputArgs {
+    pub(crate) fn quantity(&self) -> Quantity {
+        self.quantity.unwrap_or_default()
+    }
+
+    /// Whether any of these was given.
+    pub(crate) fn is_given(&self) -> bool {
+        self.map.is_some()
+            || !self.calibration.is_empty()
+            || self.quantity.is_some()
+            || self.tracker.is_some()
+            || self.format.is_some()
+    }
+
+    /// The format that was given.
+    pub(crate) fn format(&self) -> Option<Format> {
+        self.format.map(|format| match format {
+            FormatArg::Csv => Format::Csv,
+            FormatArg::Npy => Format::Npy,
+            FormatArg::Wav => Format::Wav,
+        })
+    }
+
+    /// Whether a tracker's lines come from standard input.
+    pub(crate) fn tracks_stdin(&self) -> bool {
+        self.tracker.as_deref() == Some("lines:-")
+    }
+
+    pub(crate) fn signals(&self, name: &str, source: &dyn Source) -> Result<Signals, Failure> {
+        let map = parsed(self.map.as_deref())?;
+        let calibrations = self.calibration.iter().map(|path| Calibration::read(path));
+        let calibrations = calibrations.collect::<Result<_, _>>()?;
+        let signals = Signals::new(
+            name,
+            source.channels(),
+            calibrations,
+            map.as_ref(),
+            self.quantity(),
+        )?;
+        Ok(signals)
+    }
+
+    pub(crate) fn tracker(&self) -> Result<Option<Box<dyn TrackerRows>>, Failure> {
+        let Some(text) = &self.tracker else {
+            return Ok(None);
+        };
+        let map = parsed(self.tracker_map.as_deref())?;
+        Ok(Some(match text.split_once(':') {
+            Some(("file", path)) => Box::new(TableTracker::open(path.as_ref(), map.as_ref())?),
+            Some(("lines", "-")) if std::io::stdin().is_terminal() => {
+                let sentence = "--tracker lines:-: standard input is a terminal; pipe the tracker's lines into it";
+                return Err(Failure::Usage(sentence.to_owned()));
+            }
+            Some(("lines", "-")) => {
+                let input = BufReader::new(std::io::stdin());
+                Box::new(LineTracker::new("standard input", input))
+            }
+            Some(("lines", path)) => {
+                let file = std::fs::File::open(path);
+                let file = file.map_err(|error| Failure::read(path.as_ref(), error))?;
+                Box::new(LineTracker::new(path, BufReader::new(file)))
+            }
+            _ => {
+                let sentence = format!("--tracker {text}: it is file:PATH, lines:PATH or lines:-");
+                return Err(Failure::Usage(sentence));
+            }
+        }))
+    }
+}
+
+fn parsed(map: Option<&str>) -> Result<Option<ColumnMap>, Failure> {
+    Ok(map.map(str::parse).transpose()?)
+}
+
+/// The quantities that are recorded, by their names on the command line.
+fn quantity(name: &str) -> Result<Quantity, String> {
+    Quantity::from_name(&name.replace('-', "_")).ok_or_else(|| {
+        let names = Quantity::ALL.iter().map(|q| q.name().replace('_', "-"));
+        format!(
+            "the quantities are {}",
+            names.collect::<Vec<_>>().join(", ")
+        )
+    })
+}

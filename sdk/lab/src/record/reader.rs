@@ -1,0 +1,147 @@
+//! Reading of a source in blocks: the values of its signals, and the tracker's rows until then.
+
+use std::time::{Duration, Instant};
+
+use htex_device::{Delivered, Source};
+
+use crate::record::data::TakeHeader;
+use crate::record::error::RecordError;
+use crate::record::signals::Signals;
+use crate::record::tracker::TrackerRows;
+
+/// Length of a block, seconds.
+const BLOCK_S: f64 = 0.02;
+/// Longest wait for samples at a time.
+const WAIT: Duration = Duration::from_millis(100);
+/// Longest time without samples.
+const SILENT: Duration = Duration::from_secs(5);
+
+/// Signals of a source, and a tracker beside it.
+pub(crate) struct Inputs {
+    pub(crate) signals: Signals,
+    pub(crate) tracker: Option<Box<dyn TrackerRows>>,
+}
+
+/// A source that is being read.
+pub(crate) struct Reader {
+    pub(crate) source: Box<dyn Source>,
+    pub(crate) inputs: Inputs,
+    /// Seconds of a take, for messages.
+    seconds: f64,
+    /// Frames that were read from the source.
+    read: u64,
+    samples: Vec<f64>,
+    since: Option<Instant>,
+}
+
+/// What was read.
+pub(crate) struct Block {
+    /// Time of the first sample since the source was started, seconds.
+    pub(crate) begin_s: f64,
+    /// The values of each signal.
+    pub(crate) values: Vec<Vec<f64>>,
+    /// Interleaved rows of the tracker, with times since the source was started.
+    pub(crate) rows: Vec<f64>,
+}
+
+impl Inputs {
+    /// Role and unit of each signal of the tracker, without the time.
+    pub(crate) fn tracked(&self) -> Vec<(String, String)> {
+        let tracker = self.tracker.as_ref();
+        tracker.map(|tracker| tracker.signals()).unwrap_or_default()
+    }
+}
+
+impl Reader {
+    pub(crate) fn new(source: Box<dyn Source>, inputs: Inputs, seconds: f64) -> Self {
+        Self {
+            source,
+            inputs,
+            seconds,
+            read: 0,
+            samples: Vec::new(),
+            since: None,
+        }
+    }
+
+    /// Time of the next sample since the source was started, seconds.
+    pub(crate) fn now_s(&self) -> f64 {
+        self.read as f64 / self.source.rate_hz()
+    }
+
+    /// Reads what comes next, at most `most` frames; `None` if nothing came for a short time.
+    ///
+    /// # Errors
+    /// Of the source and of the tracker; [`RecordError::Silent`]; [`RecordError::Ended`].
+    pub(crate) fn block(&mut self, most: u64) -> Result<Option<Block>, RecordError> {
+        let (rate_hz, width) = (self.source.rate_hz(), self.source.channels().len());
+        let block = ((BLOCK_S * rate_hz) as u64).clamp(1, most.max(1)) as usize;
+        self.samples.resize(block * width, 0.0);
+        let since = *self.since.get_or_insert_with(Instant::now);
+        let frames = match self.source.read(&mut self.samples, WAIT)? {
+            Delivered::Frames(0) if since.elapsed() > SILENT => {
+                let seconds = SILENT.as_secs();
+                return Err(RecordError::Silent { seconds });
+            }
+            Delivered::Frames(0) => return Ok(None),
+            Delivered::Frames(frames) => frames,
+            Delivered::End => {
+                return Err(RecordError::Ended {
+                    after_s: 0.0,
+                    seconds: self.seconds,
+                    kept: None,
+                });
+            }
+        };
+        self.since = None;
+        let begin_s = self.now_s();
+        self.read += frames as u64;
+        let (now_s, mut rows) = (self.now_s(), Vec::new());
+        if let Some(tracker) = &mut self.inputs.tracker {
+            tracker.poll(now_s, &mut rows)?;
+        }
+        Ok(Some(Block {
+            begin_s,
+            values: self.inputs.signals.values(&self.samples[..frames * width]),
+            rows,
+        }))
+    }
+}
+
+impl Block {
+    /// The values frame by frame.
+    pub(crate) fn interleaved(&self) -> Vec<f64> {
+        let rows = self.values.first().map_or(0, Vec::len);
+        (0..rows)
+            .flat_map(|row| self.values.iter().map(move |values| values[row]))
+            .collect()
+    }
+
+    /// Interleaved rows of the tracker with times since `begin_s`; those before are left out.
+    pub(crate) fn rows_since(&self, header: &TakeHeader, begin_s: f64) -> Vec<f64> {
+        let mut kept = Vec::new();
+        let rows = self.rows.chunks_exact(header.tracker.len() + 1);
+        for row in rows.filter(|row| row[0] >= begin_s) {
+            kept.push(row[0] - begin_s);
+            kept.extend(&row[1..]);
+        }
+        kept
+    }
+
+    /// Refuses values that are not finite.
+    ///
+    /// # Errors
+    /// [`RecordError::NotFinite`].
+    pub(crate) fn check(&self, header: &TakeHeader) -> Result<(), RecordError> {
+        for ((role, _), values) in header.signals.iter().zip(&self.values) {
+            if let Some(at) = values.iter().position(|value| !value.is_finite()) {
+                return Err(RecordError::NotFinite {
+                    role: role.clone(),
+                    value: values[at],
+                    at_s: self.begin_s + at as f64 / header.rate_hz,
+                });
+            }
+        }
+        Ok(())
+    }
+}

@@ -175,18 +175,8 @@ fn a_whole_study_has_the_same_bytes_however_often_it_is_killed() {
     }
     let table = |folder: &str, name: &str| {
         let spectra = format!("{folder}.csv");
-        let run = [
-            "study",
-            "export",
-            folder,
-            "-o",
-            "unused.csv",
-            "--spectra",
-            &spectra,
-            "--study",
-            "study.toml",
-        ];
-        assert_eq!(place.run(&run).code(), 0);
+        let run = place.run(&exported(folder, &spectra, &["-o", "unused.csv"]));
+        assert_eq!(run.code(), 0, "{}", run.error());
         let text = fs::read_to_string(place.path(&spectra)).unwrap();
         let rows = text.lines().filter(|row| row.starts_with(name));
         rows.map(str::to_owned).collect::<Vec<_>>()
@@ -198,20 +188,34 @@ fn a_whole_study_has_the_same_bytes_however_often_it_is_killed() {
     );
 }
 
-/// Felt spectra are compared with those of the assets: of the models, AR is felt most like the recordings.
-fn check_spectra(place: &Place) {
-    let run = [
+/// The arguments of an export with the spectra of the demonstration's recordings.
+fn exported<'a>(folder: &'a str, spectra: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    let recorded = [
+        "coarse-fabric=coarse-fabric.csv",
+        "corrugated-paper=corrugated-paper.csv",
+        "fine-fabric=fine-fabric.csv",
+        "sandpaper=sandpaper.csv",
+        "vinyl=vinyl.csv",
+    ];
+    let mut run = vec![
         "study",
         "export",
-        "answers",
-        "-o",
-        "ratings.csv",
+        folder,
         "--spectra",
-        "spectra.csv",
-        "--study",
-        "study.toml",
-        "--json",
+        spectra,
+        "--frf",
+        "rig.csv",
     ];
+    for text in recorded {
+        run.extend(["--recorded", text]);
+    }
+    run.extend(more);
+    run
+}
+
+/// Felt spectra are compared with those of the recordings: of the models, AR is felt most like the recordings.
+fn check_spectra(place: &Place) {
+    let run = exported("answers", "spectra.csv", &["-o", "ratings.csv", "--json"]);
     assert_eq!(place.json(&run)["recordings"], 14 * 125);
     let spectra = fs::read_to_string(place.path("spectra.csv")).unwrap();
     assert_eq!(spectra.lines().count(), 1 + 14 * 25 + 5);
@@ -562,17 +566,33 @@ fn a_source_that_fails_ends_the_session_and_the_trial_is_repeated() {
         "{}",
         run.error()
     );
-    fs::write(
-        place.path("whole/Ann/felt/trial-0002-vinyl-ar.npy"),
-        b"other",
-    )
-    .ok();
-    fs::write(
-        place.path("whole/Ann/felt/trial-0002-vinyl-sbeta.npy"),
-        b"other",
-    )
-    .ok();
-    let run = place.run(&[&export[..], &["--study", "study.toml"]].concat());
+    // One of the recordings stands for the real texture.
+    let trials = felt(&place.path("whole"), "Ann");
+    let trials: Vec<&String> = trials
+        .keys()
+        .filter(|name| name.ends_with(".npy"))
+        .collect();
+    assert_eq!(trials.len(), 4, "{trials:?}");
+    let recorded = format!("vinyl=whole/Ann/felt/{}", trials[0]);
+    let real = [
+        "--recorded",
+        &recorded,
+        "--map",
+        "lateral=#1:1",
+        "--rate",
+        "20000",
+    ];
+    let run = place.run(&[&export[..], &real].concat());
+    assert_eq!(run.code(), 0, "{}", run.error());
+    assert_eq!(
+        fs::read_to_string(place.path("s.csv"))
+            .unwrap()
+            .lines()
+            .count(),
+        1 + 2 + 1
+    );
+    fs::write(place.path("whole/Ann/felt").join(trials[1]), b"other").unwrap();
+    let run = place.run(&[&export[..], &real].concat());
     assert!(
         run.code() == 1 && run.error().contains("hash"),
         "{}",

@@ -74,7 +74,7 @@ impl Reference {
         let spectra = asset.reference.as_ref();
         let spectrum = nearest.and_then(|(at, _)| spectra?.get(at));
         let spectrum = spectrum.ok_or_else(|| {
-            refuse("the asset has no recorded spectrum; name the recording of the texture (--recorded TEXTURE=FILE)".to_owned())
+            refuse("the asset has no recorded spectrum; make it with `htex fit --keep-reference`, or name the recording of the texture (--recorded TEXTURE=FILE)".to_owned())
         })?;
         let magnitude = spectrum.iter().map(|m| f64::from(*m)).collect();
         Self::whole(asset.manifest.band, asset.manifest.quantity, magnitude).map_err(refuse)

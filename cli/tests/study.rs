@@ -213,7 +213,7 @@ fn exported<'a>(folder: &'a str, spectra: &'a str, more: &[&'a str]) -> Vec<&'a 
     run
 }
 
-/// Felt spectra are compared with those of the recordings: of the models, AR is felt most like the recordings.
+/// Felt spectra are compared with those of the recordings, and every model is felt like its texture.
 fn check_spectra(place: &Place) {
     let run = exported("answers", "spectra.csv", &["-o", "ratings.csv", "--json"]);
     assert_eq!(place.json(&run)["recordings"], 14 * 125);
@@ -233,10 +233,18 @@ fn check_spectra(place: &Place) {
     ];
     let run = place.run(&run);
     assert_eq!(run.code(), 0, "{}", run.error());
-    println!("{}", run.text());
     let json = fs::read(place.path("results/analysis.json")).unwrap();
     let analysis: serde_json::Value = serde_json::from_slice(&json).unwrap();
-    println!("{}", analysis["spectral_correlation"]);
+    let correlations = analysis["spectral_correlation"]["means_model"]
+        .as_array()
+        .unwrap();
+    assert_eq!(correlations.len(), 5);
+    for of_model in correlations {
+        // Five segments of noise have a correlation of about 0.8 with a spectrum that they fit.
+        assert_eq!(of_model["count"], 14);
+        assert!(of_model["mean"].as_f64().unwrap() > 0.7, "{of_model}");
+    }
+    assert!(run.text().contains("Pearson"), "{}", run.text());
 }
 
 /// The table has each rating once, in the columns that analyses read, and the planned best model is rated best.

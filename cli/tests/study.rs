@@ -667,7 +667,7 @@ fn a_person_is_recorded_from_the_beginning_of_each_trial() {
         );
         let beside = fs::read(place.path("answers").join(file).with_extension("json")).unwrap();
         let beside: serde_json::Value = serde_json::from_slice(&beside).unwrap();
-        assert_eq!(beside["take"]["target_speed_mm_s"], 80.0);
+        assert_eq!(beside["trial"]["speed_mm_s"], 80.0);
         assert_eq!(beside["trial"]["texture"], line["texture"]);
     }
     fs::remove_dir_all(place.path("answers")).unwrap();

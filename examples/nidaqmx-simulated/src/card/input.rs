@@ -90,7 +90,9 @@ impl Card {
         let (by_calls, late_s) = (self.by_calls, std::mem::take(&mut self.late_s));
         let left = self.left() as u64;
         let rate_hz = self.task(id)?.rate_hz.unwrap_or(0.0);
-        let felt = self.loopback.as_mut().and_then(|felt| felt.frames(rate_hz));
+        let from_signal = self.by_calls;
+        let felt = self.loopback.as_mut();
+        let felt = felt.and_then(|felt| felt.frames(rate_hz, from_signal));
         let task = self.task(id)?;
         task.fault.map_or(Ok(()), Err)?;
         let (Some(since), Some(rate_hz)) = (task.running, task.rate_hz) else {
@@ -99,9 +101,7 @@ impl Card {
         let due = match felt {
             Some(frames) => frames.saturating_sub(task.sampled),
             None if by_calls => ((step_s + late_s) * rate_hz).round() as u64,
-            None => {
-                ((since.elapsed().as_secs_f64() * rate_hz) as u64).saturating_sub(task.sampled)
-            }
+            None => ((since.elapsed().as_secs_f64() * rate_hz) as u64).saturating_sub(task.sampled),
         };
         let due = due.min(left);
         task.sampled += due;

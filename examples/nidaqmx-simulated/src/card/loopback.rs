@@ -17,7 +17,7 @@ pub struct Loopback {
     place: u64,
     /// Rate of the output, hertz.
     rate_hz: f64,
-    /// What was put out since the first voltage that is not zero.
+    /// What was put out since the beginning.
     volts: Vec<f64>,
     has_ended: bool,
 }
@@ -53,16 +53,14 @@ impl Loopback {
         bytes.extend((volts.len() as u64).to_le_bytes());
         bytes.extend(volts.iter().flat_map(|v| v.to_le_bytes()));
         let file = File::options().create(true).append(true).open(&self.file);
-        said(
-            &self.file,
-            file.and_then(|mut file| file.write_all(&bytes)),
-        );
+        said(&self.file, file.and_then(|mut file| file.write_all(&bytes)));
     }
 
-    /// Frames at a rate that were there by now, counted from the first voltage that is not zero; `None` after the output has ended,
+    /// Frames at a rate that were there by now, counted from the first sample of the output, or with `from_signal` from the first voltage
+    /// that is not zero; `None` after the output has ended,
     /// when the inputs have a clock of their own.
-    pub fn frames(&mut self, rate_hz: f64) -> Option<u64> {
-        let heard = self.hear();
+    pub fn frames(&mut self, rate_hz: f64, from_signal: bool) -> Option<u64> {
+        let heard = self.hear(from_signal);
         said(&self.file, heard);
         let frames = match self.rate_hz > 0.0 {
             true => (self.volts.len() as f64 * rate_hz / self.rate_hz) as u64,
@@ -77,7 +75,7 @@ impl Loopback {
         self.volts.get(at).map_or(0.0, |v| v * v)
     }
 
-    fn hear(&mut self) -> std::io::Result<()> {
+    fn hear(&mut self, from_signal: bool) -> std::io::Result<()> {
         let mut file = match File::open(&self.file) {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
             file => file?,
@@ -87,20 +85,20 @@ impl Loopback {
         file.read_to_end(&mut bytes)?;
         let mut rest = &bytes[..];
         while let Some((rate_hz, volts, after)) = chunk(rest) {
-            self.take(rate_hz, &volts);
+            self.take(rate_hz, &volts, from_signal);
             self.place += (rest.len() - after.len()) as u64;
             rest = after;
         }
         Ok(())
     }
 
-    fn take(&mut self, rate_hz: f64, volts: &[f64]) {
+    fn take(&mut self, rate_hz: f64, volts: &[f64], from_signal: bool) {
         let has_begun = !self.volts.is_empty();
         if rate_hz == 0.0 {
             self.has_ended |= has_begun;
             return;
         }
-        let from = match has_begun {
+        let from = match has_begun || !from_signal {
             true => Some(0),
             false => volts.iter().position(|v| *v != 0.0),
         };

@@ -9,6 +9,7 @@ use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 
 use htex_author::Exploration;
+use htex_author::read::Role;
 use htex_device::{DeviceError, Source};
 use htex_format::Quantity;
 use serde_json::json;
@@ -161,6 +162,11 @@ impl Felt {
 
     fn header(&self, name: &str, seconds: f64, inputs: &Inputs) -> TakeHeader {
         let setup = &self.setup;
+        let signals = inputs.signals.list();
+        // A target of what is not measured cannot be judged.
+        let is_motion = |(role, _): &(String, String)| ["x", "y", "speed"].contains(&&role[..]);
+        let moves = signals.iter().chain(&inputs.tracked()).any(is_motion);
+        let normal = inputs.signals.position(Role::Normal);
         TakeHeader {
             htex_take: 1,
             name: name.to_owned(),
@@ -172,11 +178,11 @@ impl Felt {
             quantity: setup.quantity,
             rate_hz: self.rate_hz,
             seconds,
-            signals: inputs.signals.list(),
+            signals,
             tare: Vec::new(),
             tracker: inputs.tracked(),
-            target_speed_mm_s: setup.target.speed_mm_s,
-            target_force_n: setup.target.force_n,
+            target_speed_mm_s: setup.target.speed_mm_s.filter(|_| moves),
+            target_force_n: setup.target.force_n.filter(|_| normal.is_some()),
             tolerance: TOLERANCE,
             format: setup.format,
         }
@@ -228,6 +234,8 @@ impl Felt {
                     "seed": stimulus.seed,
                     "gain_db": stimulus.gain_db,
                     "drive_v": played.drive_v,
+                    "speed_mm_s": self.setup.target.speed_mm_s,
+                    "force_n": self.setup.target.force_n,
                 },
                 "take": data.header,
                 "frames": data.frames(),

@@ -130,13 +130,7 @@ impl SettingArgs {
 
     /// The settings that were given.
     pub(crate) fn given(&self) -> Result<BTreeMap<String, String>, Failure> {
-        let pair = |text: &String| {
-            let (name, value) = text
-                .split_once('=')
-                .ok_or_else(|| Failure::Usage(format!("--set {text}: it looks like NAME=VALUE")))?;
-            Ok((name.to_owned(), value.to_owned()))
-        };
-        self.settings.iter().map(pair).collect()
+        pairs("--set", &self.settings)
     }
 
     /// These arguments, for another run of this program.
@@ -153,4 +147,15 @@ impl SettingArgs {
         let settings = Settings::resolve(adapter.descriptor(), self.profile(), &given)?;
         Ok(settings)
     }
+}
+
+/// Texts NAME=VALUE of a flag, by name.
+pub(crate) fn pairs(flag: &str, texts: &[String]) -> Result<BTreeMap<String, String>, Failure> {
+    let pair = |text: &String| {
+        let (name, value) = text
+            .split_once('=')
+            .ok_or_else(|| Failure::Usage(format!("{flag} {text}: it looks like NAME=VALUE")))?;
+        Ok((name.to_owned(), value.to_owned()))
+    };
+    texts.iter().map(pair).collect()
 }

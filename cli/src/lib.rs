@@ -14,6 +14,8 @@ mod flags;
 mod gains;
 mod grid;
 mod guardian;
+#[cfg(feature = "lab")]
+mod inputs;
 mod invocation;
 mod located;
 mod metadata;

@@ -114,6 +114,12 @@ impl Output {
         Ok(())
     }
 
+    /// Seconds from now until the first frame that was written is at the display, as far as the device knows.
+    #[cfg(feature = "lab")]
+    pub(crate) fn lead_s(&self) -> f64 {
+        self.device.status().latency_s - self.frames as f64 / self.rate_hz
+    }
+
     /// Frames that were written.
     pub(crate) fn frames(&self) -> u64 {
         self.frames

@@ -1,5 +1,6 @@
 //! Arguments that say where sources come from, shared by the commands that use them.
 
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -10,7 +11,7 @@ use htex_device_check::source::Subject;
 use serde_json::Value;
 
 use crate::adapters;
-use crate::devices::{SettingArgs, without_sound};
+use crate::devices::without_sound;
 use crate::failure::Failure;
 use crate::output::warn;
 
@@ -63,10 +64,10 @@ impl SourceArgs {
     pub(crate) fn open(
         &self,
         text: &str,
-        settings: &SettingArgs,
-        given: &std::collections::BTreeMap<String, String>,
+        profile: Option<&str>,
+        given: &BTreeMap<String, String>,
     ) -> Result<Box<dyn Source>, Failure> {
-        let opened = self.sources()?.open(text, settings.profile(), given);
+        let opened = self.sources()?.open(text, profile, given);
         let name = text.split(':').next().unwrap_or_default();
         opened.map_err(|error| sounding(name, error.into()))
     }

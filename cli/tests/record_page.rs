@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-use browser::{Browser, Tab, fits, pictured, status};
+use browser::{Browser, Tab, fits_tablets, pictured, status};
 use common::{Place, entries};
 use serde_json::Value;
 
@@ -92,16 +92,6 @@ fn number(browser: &mut Browser, tab: &Tab, id: &str) -> f64 {
     text.split(' ').next().unwrap().parse().unwrap()
 }
 
-/// Looks at the page in both directions of a tablet.
-fn looked_at(browser: &mut Browser, tab: &Tab, name: &str) {
-    fits(browser, tab);
-    pictured(browser, tab, name);
-    browser.resize(tab, 768, 1024);
-    fits(browser, tab);
-    pictured(browser, tab, &format!("{name}-portrait"));
-    browser.resize(tab, 1024, 768);
-}
-
 /// Waits until an expression is true in a tab.
 fn becomes(browser: &mut Browser, tab: &Tab, expression: &str) {
     let start = Instant::now();
@@ -136,7 +126,7 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
     let mut browser = Browser::start(installed.unwrap(), &place.path("browser"));
     let tab = browser.open(&url);
     browser.shows(&tab, "Lift the finger, then start");
-    looked_at(&mut browser, &tab, "record-start");
+    fits_tablets(&mut browser, &tab, "record-start");
     let second = browser.open(&url);
     browser.shows(&second, "open in another tab");
     pictured(&mut browser, &second, "record-refused");
@@ -150,7 +140,7 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
     browser.close(&second);
     browser.press(&tab, " ", 0);
     browser.shows(&tab, "Leave the surface alone");
-    looked_at(&mut browser, &tab, "record-tare");
+    fits_tablets(&mut browser, &tab, "record-tare");
     let is_judged = "state.now.phase === 'tare' && state.now.force !== 'unknown'";
     assert_eq!(browser.value(&tab, is_judged), false, "no finger");
     browser.shows(&tab, "Take 1 is about to begin");
@@ -160,7 +150,7 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
         (number(&mut browser, &tab, "newtons") - 0.2).abs() < 0.001,
         "without the offset"
     );
-    looked_at(&mut browser, &tab, "record-countdown");
+    fits_tablets(&mut browser, &tab, "record-countdown");
     browser.shows(&tab, "Take 1 is being recorded");
     becomes(
         &mut browser,
@@ -168,7 +158,7 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
         "document.getElementById('judged').textContent === 'too strong'",
     );
     becomes(&mut browser, &tab, "state.now.level_db.length === 197");
-    looked_at(&mut browser, &tab, "record-above");
+    fits_tablets(&mut browser, &tab, "record-above");
     assert_eq!(
         browser.value(&tab, "document.getElementById('finger').className"),
         "square above"
@@ -188,7 +178,7 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
         [f64::min, f64::max].map(|end| finger_mm.iter().copied().reduce(end).unwrap());
     assert!(high - low > 5.0, "{finger_mm:?}");
     browser.shows(&tab, "Take 1 was rejected and is repeated");
-    looked_at(&mut browser, &tab, "record-rejected");
+    fits_tablets(&mut browser, &tab, "record-rejected");
     let beside = |file: &str| -> Value {
         serde_json::from_slice(&std::fs::read(place.path("takes").join(file)).unwrap()).unwrap()
     };
@@ -212,14 +202,14 @@ fn a_session_is_guided_from_its_start_to_the_take_that_is_kept() {
         &tab,
         "document.getElementById('judged').textContent === 'in range'",
     );
-    looked_at(&mut browser, &tab, "record-take");
+    fits_tablets(&mut browser, &tab, "record-take");
     // A page that is closed ends nothing; one that is opened again goes on.
     browser.close(&tab);
     std::thread::sleep(Duration::from_millis(300));
     let tab = browser.open(&url);
     browser.shows(&tab, "Take 2 is being recorded");
     browser.shows(&tab, "Take 2 is kept");
-    looked_at(&mut browser, &tab, "record-kept");
+    fits_tablets(&mut browser, &tab, "record-kept");
     let output = child.wait_with_output().unwrap();
     assert!(output.status.success());
     let said: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -286,12 +276,12 @@ fn a_sinusoid_appears_at_its_height_and_q_keeps_what_was_recorded() {
         (hz - 250.0).abs() < 2.0 && (db + 33.98).abs() < 0.5,
         "drawn at {hz} Hz, {db} dB"
     );
-    looked_at(&mut browser, &tab, "record-no-target");
+    fits_tablets(&mut browser, &tab, "record-no-target");
     std::thread::sleep(Duration::from_millis(1_200));
     browser.press(&tab, "q", 0);
     browser.shows(&tab, "The session has ended");
     browser.shows(&tab, "incomplete/vinyl-001.csv");
-    looked_at(&mut browser, &tab, "record-ended");
+    fits_tablets(&mut browser, &tab, "record-ended");
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     let kept = std::fs::read_to_string(place.path("takes/incomplete/vinyl-001.csv")).unwrap();

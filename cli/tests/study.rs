@@ -11,6 +11,7 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use common::Place;
@@ -25,9 +26,9 @@ const SURFACES: [&str; 5] = [
     "vinyl",
 ];
 
-/// The paper's study on the paper's rig, with short trials.
+/// The paper's study on the paper's rig, with trials as short as a spectrum allows.
 fn whole_study() -> String {
-    let mut text = "htex_study = '1.0'\nname = 'Similarity'\nseed = 5\ntrial_s = 0.05\nrests = { every = 25, seconds = 60 }\n\
+    let mut text = "htex_study = '1.0'\nname = 'Similarity'\nseed = 5\ntrial_s = 0.25\nrests = { every = 25, seconds = 60 }\n\
         motion = { constant = { speed_mm_s = 80, force_n = 0.4 } }\ndevice = { adapter = 'daq', profile = 'pcie-6321_tabor-9200a_sct3250' }\n"
         .to_owned();
     for surface in SURFACES {
@@ -36,8 +37,11 @@ fn whole_study() -> String {
     text
 }
 
-/// A run of simulated participants on the simulated card.
+/// A run of simulated participants on the simulated card, whose input feels its output.
 fn on_card(place: &Place, folder: &str, more: &[&str]) -> Command {
+    static RUNS: AtomicUsize = AtomicUsize::new(0);
+    let wire = place.path(&format!("wire-{}", RUNS.fetch_add(1, Ordering::Relaxed)));
+    fs::create_dir(&wire).unwrap();
     let driver = format!("driver={}", simulated::built().display());
     let run = [
         "study",
@@ -50,9 +54,18 @@ fn on_card(place: &Place, folder: &str, more: &[&str]) -> Command {
         folder,
     ];
     let card = ["--profile", PAPER, "--set", &driver];
-    let mut command = place.command(&[&run, &card[..], more].concat());
+    let felt = [
+        "--source",
+        "daq:Dev1/ai0",
+        "--source-set",
+        &driver,
+        "--map",
+        "lateral=ai0:0.1",
+    ];
+    let mut command = place.command(&[&run, &card[..], &felt, more].concat());
     command
         .env("NIDAQMX_SIM_CLOCK", "calls")
+        .env("NIDAQMX_SIM_LOOPBACK", wire)
         .stdout(Stdio::null())
         .stderr(Stdio::piped());
     command
@@ -72,6 +85,17 @@ fn answers(folder: &Path) -> BTreeMap<String, String> {
     files.map(read).collect()
 }
 
+/// The recordings of a participant and what is beside them, by file name.
+fn felt(folder: &Path, participant: &str) -> BTreeMap<String, Vec<u8>> {
+    let files = fs::read_dir(folder.join(participant).join("felt")).unwrap();
+    let read = |file: std::io::Result<fs::DirEntry>| {
+        let file = file.unwrap();
+        let name = file.file_name().to_string_lossy().into_owned();
+        (name, fs::read(file.path()).unwrap())
+    };
+    files.map(read).collect()
+}
+
 fn lines(folder: &Path) -> usize {
     answers(folder)
         .values()
@@ -79,8 +103,8 @@ fn lines(folder: &Path) -> usize {
         .sum()
 }
 
-/// 14 participants, 5 textures, 5 models, 5 repetitions: study.toml to ratings.csv. Two of the participants also run elsewhere, killed
-/// five times on the way, with the same bytes.
+/// 14 participants, 5 textures, 5 models, 5 repetitions: study.toml to ratings, felt spectra and their analysis. Two of the participants
+/// also run elsewhere, killed five times on the way, with the same bytes.
 #[test]
 fn a_whole_study_has_the_same_bytes_however_often_it_is_killed() {
     let place = Place::new();
@@ -105,6 +129,7 @@ fn a_whole_study_has_the_same_bytes_however_often_it_is_killed() {
         }
     }
     check_ratings(&place);
+    check_spectra(&place);
     let whole = answers(&place.path("answers"));
     for (name, text) in &whole {
         assert!(
@@ -143,7 +168,83 @@ fn a_whole_study_has_the_same_bytes_however_often_it_is_killed() {
             String::from_utf8_lossy(&done.stderr)
         );
         assert_eq!(answers(&killed)[&file], whole[&file], "{name}");
+        let (found, expected) = (felt(&killed, name), felt(&place.path("answers"), name));
+        // 125 trials and 5 for practice, each with JSON beside it.
+        assert_eq!(expected.len(), 2 * 130);
+        assert!(found == expected, "{name}: what was felt differs");
     }
+    let table = |folder: &str, name: &str| {
+        let spectra = format!("{folder}.csv");
+        let run = place.run(&exported(folder, &spectra, &["-o", "unused.csv"]));
+        assert_eq!(run.code(), 0, "{}", run.error());
+        let text = fs::read_to_string(place.path(&spectra)).unwrap();
+        let rows = text.lines().filter(|row| row.starts_with(name));
+        rows.map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(table("killed", "P01").len(), 25);
+    assert!(
+        table("killed", "P01") == table("answers", "P01"),
+        "the spectra differ"
+    );
+}
+
+/// The arguments of an export with the spectra of the demonstration's recordings.
+fn exported<'a>(folder: &'a str, spectra: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    let recorded = [
+        "coarse-fabric=coarse-fabric.csv",
+        "corrugated-paper=corrugated-paper.csv",
+        "fine-fabric=fine-fabric.csv",
+        "sandpaper=sandpaper.csv",
+        "vinyl=vinyl.csv",
+    ];
+    let mut run = vec![
+        "study",
+        "export",
+        folder,
+        "--spectra",
+        spectra,
+        "--frf",
+        "rig.csv",
+    ];
+    for text in recorded {
+        run.extend(["--recorded", text]);
+    }
+    run.extend(more);
+    run
+}
+
+/// Felt spectra are compared with those of the recordings, and every model is felt like its texture.
+fn check_spectra(place: &Place) {
+    let run = exported("answers", "spectra.csv", &["-o", "ratings.csv", "--json"]);
+    assert_eq!(place.json(&run)["recordings"], 14 * 125);
+    let spectra = fs::read_to_string(place.path("spectra.csv")).unwrap();
+    assert_eq!(spectra.lines().count(), 1 + 14 * 25 + 5);
+    let run = [
+        "study",
+        "analyse",
+        "--ratings",
+        "ratings.csv",
+        "--spectra",
+        "spectra.csv",
+        "--scale",
+        "0-6",
+        "-o",
+        "results",
+    ];
+    let run = place.run(&run);
+    assert_eq!(run.code(), 0, "{}", run.error());
+    let json = fs::read(place.path("results/analysis.json")).unwrap();
+    let analysis: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    let correlations = analysis["spectral_correlation"]["means_model"]
+        .as_array()
+        .unwrap();
+    assert_eq!(correlations.len(), 5);
+    for of_model in correlations {
+        // Five segments of noise have a correlation of about 0.8 with a spectrum that they fit.
+        assert_eq!(of_model["count"], 14);
+        assert!(of_model["mean"].as_f64().unwrap() > 0.7, "{of_model}");
+    }
+    assert!(run.text().contains("Pearson"), "{}", run.text());
 }
 
 /// The table has each rating once, in the columns that analyses read, and the planned best model is rated best.
@@ -391,4 +492,193 @@ fn combinations_that_cannot_work_are_refused() {
         assert!(run.error().contains(words), "{words}: {}", run.error());
         assert!(!place.path("answers").exists());
     }
+}
+
+/// A study of one texture on the simulated card.
+fn on_card_short() -> Place {
+    let card = "device = { adapter = 'daq', profile = 'pcie-6321_tabor-9200a_sct3250' }";
+    short(&[
+        ("device = { adapter = 'file' }", card),
+        ("repetitions = 1", "repetitions = 2"),
+        ("trial_s = 0.05", "trial_s = 0.25"),
+    ])
+}
+
+#[test]
+fn a_source_that_fails_ends_the_session_and_the_trial_is_repeated() {
+    let place = on_card_short();
+    let ann = ["--participant", "Ann"];
+    let whole = on_card(&place, "whole", &ann).output().unwrap();
+    assert!(
+        whole.status.success(),
+        "{}",
+        String::from_utf8_lossy(&whole.stderr)
+    );
+    let expected = answers(&place.path("whole"));
+    let faults = [
+        ("DAQmxReadAnalogF64:20:error=-200279", "-200279"),
+        ("DAQmxReadAnalogF64:30:unplug", "not present"),
+        ("DAQmxCfgInputBuffer:3:error=-50103", "-50103"),
+    ];
+    for (number, (fault, words)) in faults.into_iter().enumerate() {
+        let folder = format!("failed-{number}");
+        let mut command = on_card(&place, &folder, &ann);
+        let failed = command.env("NIDAQMX_SIM_FAULT", fault).output().unwrap();
+        let error = String::from_utf8_lossy(&failed.stderr).into_owned();
+        assert_eq!(failed.status.code(), Some(1), "{fault}: {error}");
+        assert!(
+            error.contains(words) && error.contains("what is felt"),
+            "{error}"
+        );
+        let so_far = &answers(&place.path(&folder))["Ann.jsonl"];
+        assert!(
+            expected["Ann.jsonl"].starts_with(&so_far[..])
+                && so_far.len() < expected["Ann.jsonl"].len()
+        );
+        let again = on_card(&place, &folder, &ann).output().unwrap();
+        assert!(
+            again.status.success(),
+            "{}",
+            String::from_utf8_lossy(&again.stderr)
+        );
+        assert_eq!(answers(&place.path(&folder)), expected, "{fault}");
+        let found = felt(&place.path(&folder), "Ann");
+        assert!(found == felt(&place.path("whole"), "Ann"), "{fault}");
+    }
+    // Answers with another source, and recordings that are not those of their trials.
+    let other = on_card(
+        &place,
+        "whole",
+        &["--participant", "Ann", "--format", "csv"],
+    )
+    .output()
+    .unwrap();
+    assert_eq!(other.status.code(), Some(1));
+    let error = String::from_utf8_lossy(&other.stderr).into_owned();
+    assert!(
+        error.contains("source") && error.contains("format"),
+        "{error}"
+    );
+    let export = [
+        "study",
+        "export",
+        "whole",
+        "-o",
+        "r.csv",
+        "--spectra",
+        "s.csv",
+    ];
+    let run = place.run(&export);
+    assert!(
+        run.code() == 1 && run.error().contains("--recorded vinyl=FILE"),
+        "{}",
+        run.error()
+    );
+    // One of the recordings stands for the real texture.
+    let trials = felt(&place.path("whole"), "Ann");
+    let trials: Vec<&String> = trials
+        .keys()
+        .filter(|name| name.ends_with(".npy"))
+        .collect();
+    assert_eq!(trials.len(), 4, "{trials:?}");
+    let recorded = format!("vinyl=whole/Ann/felt/{}", trials[0]);
+    let real = [
+        "--recorded",
+        &recorded,
+        "--map",
+        "lateral=#1:1",
+        "--rate",
+        "20000",
+    ];
+    let run = place.run(&[&export[..], &real].concat());
+    assert_eq!(run.code(), 0, "{}", run.error());
+    assert_eq!(
+        fs::read_to_string(place.path("s.csv"))
+            .unwrap()
+            .lines()
+            .count(),
+        1 + 2 + 1
+    );
+    fs::write(place.path("whole/Ann/felt").join(trials[1]), b"other").unwrap();
+    let run = place.run(&[&export[..], &real].concat());
+    assert!(
+        run.code() == 1 && run.error().contains("hash"),
+        "{}",
+        run.error()
+    );
+}
+
+/// In real time, the recording begins when the output does and has the length of the trial; a source that ends too early is an error.
+#[test]
+fn a_person_is_recorded_from_the_beginning_of_each_trial() {
+    let place = short(&[
+        ("phases = ['gain', 'testing']", "phases = ['testing']"),
+        ("trial_s = 0.05", "trial_s = 0.5"),
+        ("gain = { method = 'adjustment' }", ""),
+    ]);
+    let rows = |seconds: usize| {
+        let row = |i: usize| format!("{},{}\n", i as f64 / 1000.0, (i % 97) as f64 / 100.0);
+        let rows: String = (0..1000 * seconds).map(row).collect();
+        format!("time_s,lateral_N\n{rows}")
+    };
+    place.write("felt.csv", rows(60));
+    let run = |input: &str, source: &str| {
+        let arguments = [
+            "study",
+            "run",
+            "study.toml",
+            "--participant",
+            "Ann",
+            "--source",
+            source,
+            "--format",
+            "csv",
+        ];
+        let mut command = place.command(&arguments);
+        command
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
+        let done = child.wait_with_output().unwrap();
+        (done.status.code(), String::from_utf8(done.stderr).unwrap())
+    };
+    let (code, error) = run("\n4\n\n5\n", "file:felt.csv");
+    assert_eq!(code, Some(0), "{error}");
+    let text = fs::read_to_string(place.path("answers/Ann.jsonl")).unwrap();
+    let lines: Vec<serde_json::Value> = text
+        .lines()
+        .map(|l| serde_json::from_str(l).unwrap())
+        .collect();
+    assert_eq!(lines[0]["source"]["name"], "file:felt.csv");
+    assert_eq!(lines[0]["source"]["signals"][0][0], "lateral");
+    for line in &lines[1..] {
+        let file = line["felt"]["file"].as_str().unwrap();
+        let bytes = fs::read(place.path("answers").join(file)).unwrap();
+        assert_eq!(
+            line["felt"]["blake3"],
+            blake3::hash(&bytes).to_hex().as_str()
+        );
+        assert_eq!(
+            String::from_utf8(bytes).unwrap().lines().count(),
+            1 + 500,
+            "{file}"
+        );
+        let beside = fs::read(place.path("answers").join(file).with_extension("json")).unwrap();
+        let beside: serde_json::Value = serde_json::from_slice(&beside).unwrap();
+        assert_eq!(beside["trial"]["speed_mm_s"], 80.0);
+        assert_eq!(beside["trial"]["texture"], line["texture"]);
+    }
+    fs::remove_dir_all(place.path("answers")).unwrap();
+    place.write(
+        "short.csv",
+        rows(1).lines().take(200).collect::<Vec<_>>().join("\n"),
+    );
+    let (code, error) = run("\n4\n\n5\n", "file:short.csv");
+    assert_eq!(code, Some(1), "{error}");
+    assert!(
+        error.contains("the source ended") && error.contains("the trial is repeated"),
+        "{error}"
+    );
 }

@@ -429,3 +429,30 @@ fn the_papers_power_analysis_gives_eight_participants() {
         run.error()
     );
 }
+
+#[test]
+fn ratings_off_the_scale_are_named_with_their_lines() {
+    let place = Place::new();
+    let lines = "participant,texture,model,repetition,rating\na,t,m,1,3\na,t,n,1,7\nb,t,m,1,-1\nb,t,n,1,6\n";
+    place.write("ratings.csv", lines);
+    let run = |more: &[&str]| {
+        place.run(&[&["study", "analyse", "--ratings", "ratings.csv"], more].concat())
+    };
+    assert_eq!(run(&[]).code(), 0);
+    assert_eq!(run(&["--scale", "-1-7"]).code(), 0);
+    let refused = run(&["--scale", "0-6"]);
+    assert_eq!(refused.code(), 1);
+    let error = refused.error();
+    assert_eq!(error.matches("RATING_OFF_SCALE").count(), 2, "{error}");
+    assert!(
+        error.contains("/3/rating") || error.contains("line 3"),
+        "{error}"
+    );
+    assert!(
+        error.contains("7 is not on the scale from 0 to 6"),
+        "{error}"
+    );
+    for wrong in ["6", "6-0", "a-b", ""] {
+        assert_eq!(run(&["--scale", wrong]).code(), 2, "{wrong}");
+    }
+}

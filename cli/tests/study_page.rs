@@ -10,7 +10,7 @@ use std::fs;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-use browser::{Browser, fits, pictured, status};
+use browser::{Browser, fits_tablets, status};
 use common::Place;
 use serde_json::Value;
 
@@ -40,8 +40,13 @@ asset = 'vinyl.htex'
 
 /// A session that asks on a page, and the page's address.
 fn session(place: &Place) -> (Child, String) {
+    asked(place, STUDY, &["--motion", "page"])
+}
+
+/// A session of a study.
+fn asked(place: &Place, study: &str, more: &[&str]) -> (Child, String) {
     place.write("vinyl.htex", fs::read(VINYL).unwrap());
-    place.write("study.toml", STUDY);
+    place.write("study.toml", study);
     let run = [
         "study",
         "run",
@@ -49,10 +54,8 @@ fn session(place: &Place) -> (Child, String) {
         "--participant",
         "Ann",
         "--page",
-        "--motion",
-        "page",
     ];
-    let mut command = place.command(&run);
+    let mut command = place.command(&[&run, more].concat());
     let mut child = command
         .stderr(Stdio::piped())
         .stdout(Stdio::null())
@@ -98,12 +101,10 @@ fn one_press_is_one_answer_in_one_tab() {
     let mut browser = Browser::start(installed.unwrap(), &place.path("browser"));
     let tab = browser.open(&url);
     browser.shows(&tab, "A trial for practice");
-    fits(&mut browser, &tab);
-    pictured(&mut browser, &tab, "ready");
+    fits_tablets(&mut browser, &tab, "practice");
     browser.press(&tab, " ", 0);
     browser.shows(&tab, "How similar");
-    fits(&mut browser, &tab);
-    pictured(&mut browser, &tab, "question");
+    fits_tablets(&mut browser, &tab, "question");
     std::thread::sleep(Duration::from_millis(400));
     // A press that is held, and a second one at once: the next question stays open.
     browser.press(&tab, "3", 4);
@@ -121,7 +122,7 @@ fn one_press_is_one_answer_in_one_tab() {
     // A second tab is refused, and its keys are no answers.
     let second = browser.open(&url);
     browser.shows(&second, "open in another tab");
-    pictured(&mut browser, &second, "refused");
+    fits_tablets(&mut browser, &second, "refused");
     browser.press(&second, "1", 0);
     std::thread::sleep(Duration::from_millis(500));
     assert_eq!(ratings(&place), [3]);
@@ -131,8 +132,7 @@ fn one_press_is_one_answer_in_one_tab() {
     browser.shows(&tab, "You will match its strength");
     browser.press(&tab, " ", 0);
     browser.shows(&tab, "it matches");
-    fits(&mut browser, &tab);
-    pictured(&mut browser, &tab, "matching");
+    fits_tablets(&mut browser, &tab, "descending-pad");
     browser.slide(&tab);
     for (key, lines) in [("-", 1), ("-", 2), ("Enter", 3)] {
         browser.press(&tab, key, 0);
@@ -176,13 +176,233 @@ fn one_press_is_one_answer_in_one_tab() {
         browser.press(&second, "0", 0);
         if trial == 0 {
             browser.shows(&second, "Rest");
+            fits_tablets(&mut browser, &second, "rest-over");
             browser.press(&second, " ", 0);
             browser.shows(&second, "Begin");
         }
     }
     browser.shows(&second, "Thank you");
+    fits_tablets(&mut browser, &second, "done");
     assert!(child.wait().unwrap().success());
     assert_eq!(ratings(&place), [3, 6, 5, 0, 5, 0]);
+}
+
+const MATCHED: &str = "
+htex_study = '1.0'
+name = 'Matching'
+participants = ['Ann']
+models = ['ar']
+repetitions = 2
+trial_s = 2
+phases = ['gain', 'testing']
+gain = { method = 'METHOD', reversals = 3 }
+masking_noise = { level_dbfs = -30 }
+rests = { every = 1, seconds = 2 }
+motion = { constant = { speed_mm_s = 80, force_n = 0.4 } }
+device = { adapter = 'file' }
+[[textures]]
+name = 'coarse_fabric'
+asset = 'vinyl.htex'
+";
+
+/// Gains after each key so far, decibels.
+fn gains(place: &Place) -> Vec<f64> {
+    let lines = kept(place).into_iter();
+    let gains = lines.filter(|line| line["kind"] == "gain");
+    gains
+        .map(|line| line["gain_db"].as_f64().unwrap())
+        .collect()
+}
+
+/// Waits until the last gain is this one and the page asks for the next key.
+fn gain_is(place: &Place, expected: &[f64]) {
+    let start = Instant::now();
+    while gains(place) != expected && start.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    // A second answer would be there by then, and the next key is not the second press of this one.
+    std::thread::sleep(Duration::from_millis(600));
+    assert_eq!(gains(place), expected);
+}
+
+/// A matching on the page: each key or button (in angle brackets) and the gain after it, decibels; `None` where it has no meaning.
+fn matched(method: &str, buttons: &[&str], keys: &[(&str, Option<f64>)]) {
+    let installed = browser::installed();
+    if !xtask::needs::CHROMIUM.met(installed.is_some()) {
+        return;
+    }
+    let place = Place::new();
+    let (mut child, url) = asked(&place, &MATCHED.replace("METHOD", method), &[]);
+    let mut browser = Browser::start(installed.unwrap(), &place.path("browser"));
+    let tab = browser.open(&url);
+    browser.shows(&tab, "You will match its strength");
+    fits_tablets(&mut browser, &tab, "ready");
+    browser.press(&tab, " ", 0);
+    browser.shows(&tab, "Compare it");
+    fits_tablets(&mut browser, &tab, method);
+    let shown = "[...document.querySelectorAll('button')].map((b) => b.dataset.key)";
+    assert_eq!(browser.value(&tab, shown), serde_json::json!(buttons));
+    std::thread::sleep(Duration::from_millis(400));
+    let mut expected = Vec::new();
+    for (index, (key, gain_db)) in keys.iter().enumerate() {
+        match key.strip_prefix('<') {
+            Some(button) => browser.click(
+                &tab,
+                &format!("[data-key={}]", button.trim_end_matches('>')),
+            ),
+            None => {
+                // Held, and pressed a second time at once: one step.
+                browser.press(&tab, key, 3);
+                browser.press(&tab, key, 0);
+            }
+        }
+        expected.extend(*gain_db);
+        gain_is(&place, &expected);
+        if index == 1 {
+            browser.reload(&tab);
+            browser.shows(&tab, "Compare it");
+            std::thread::sleep(Duration::from_millis(400));
+            assert_eq!(gains(&place), expected, "a reload goes on");
+        }
+    }
+    browser.shows(&tab, "Begin");
+    let found = kept(&place)
+        .into_iter()
+        .rfind(|line| line["kind"] == "gain");
+    assert_eq!(found.unwrap()["found"], true);
+    browser.press(&tab, " ", 0);
+    browser.shows(&tab, "Feel it");
+    fits_tablets(&mut browser, &tab, "playing");
+    browser.shows(&tab, "How similar");
+    std::thread::sleep(Duration::from_millis(400));
+    browser.press(&tab, "4", 0);
+    browser.shows(&tab, "It goes on in");
+    fits_tablets(&mut browser, &tab, "rest");
+    child.kill().unwrap();
+    child.wait().unwrap();
+}
+
+#[test]
+fn a_gain_is_adjusted_up_and_down() {
+    let buttons = [
+        "much_weaker",
+        "weaker",
+        "stronger",
+        "much_stronger",
+        "accept",
+    ];
+    let keys = [
+        ("PageDown", Some(-4.0)),
+        ("<much_weaker>", Some(-8.0)),
+        ("-", Some(-9.0)),
+        ("ArrowDown", Some(-10.0)),
+        ("5", None),
+        ("+", Some(-9.0)),
+        ("ArrowUp", Some(-8.0)),
+        ("<stronger>", Some(-7.0)),
+        ("PageUp", Some(-3.0)),
+        ("<much_stronger>", Some(0.0)),
+        ("<weaker>", Some(-1.0)),
+        ("Enter", Some(-1.0)),
+    ];
+    matched("adjustment", &buttons, &keys);
+}
+
+#[test]
+fn a_staircase_asks_for_a_direction_alone() {
+    // Steps of 4 dB until the first reversal, then of 1 dB; the gain is the mean of the reversals after the second.
+    let keys = [
+        ("-", Some(-4.0)),
+        ("<weaker>", Some(-8.0)),
+        ("Enter", None),
+        ("PageDown", None),
+        ("ArrowUp", Some(-7.0)),
+        ("<weaker>", Some(-8.0)),
+        ("<stronger>", Some(-8.0)),
+    ];
+    matched("staircase", &["weaker", "stronger"], &keys);
+}
+
+/// White noise of the stated level in both ears while a texture is felt, and silence else.
+#[test]
+fn masking_noise_has_its_level_and_its_times() {
+    let installed = browser::installed();
+    if !xtask::needs::CHROMIUM.met(installed.is_some()) {
+        return;
+    }
+    let place = Place::new();
+    let (mut child, url) = asked(&place, &MATCHED.replace("METHOD", "descending"), &[]);
+    let mut browser = Browser::start(installed.unwrap(), &place.path("browser"));
+    let tab = browser.open(&url);
+    browser.shows(&tab, "You will match its strength");
+    assert_eq!(
+        browser.value(&tab, "audio"),
+        Value::Null,
+        "nothing sounds before"
+    );
+    // A listener at everything that goes to the headphones.
+    let listen = "window.heard = []; const connect = AudioNode.prototype.connect; AudioNode.prototype.connect = function (to, ...rest) { \
+        if (to instanceof AudioDestinationNode) { const split = this.context.createChannelSplitter(2); connect.call(this, split); \
+        heard = [0, 1].map((ear) => { const made = new AnalyserNode(this.context, { fftSize: 32768 }); connect.call(split, made, ear); return made; }); } \
+        return connect.call(this, to, ...rest); }; true";
+    assert_eq!(browser.value(&tab, listen), true);
+    browser.press(&tab, " ", 0);
+    browser.shows(&tab, "Compare it");
+    // Level, decibels relative to full scale, and bands of an octave above the first, decibels relative to the mean power of a bin.
+    let measure = "(async () => { for (let i = 0; i < 100 && audio.state !== 'running'; i++) await new Promise((r) => setTimeout(r, 50)); \
+        await new Promise((r) => setTimeout(r, 1500)); \
+        return heard.map((ear) => { const time = new Float32Array(32768); ear.getFloatTimeDomainData(time); \
+        const rms = Math.sqrt(time.reduce((sum, x) => sum + x * x, 0) / time.length); \
+        ear.smoothingTimeConstant = 0; const bins = new Float32Array(16384); ear.getFloatFrequencyData(bins); \
+        const power = [...bins].map((db) => 10 ** (db / 10)); const hz = audio.sampleRate / 32768; \
+        const mean = (from, to) => { const part = power.slice(Math.round(from / hz), Math.round(to / hz)); return part.reduce((a, b) => a + b, 0) / part.length; }; \
+        const all = mean(200, 20000); \
+        return [20 * Math.log10(rms), ...[200, 400, 800, 1600, 3200, 6400, 12800].map((f) => 10 * Math.log10(mean(f, Math.min(2 * f, 20000)) / all))]; }); })()";
+    let heard = browser.promised(&tab, measure);
+    let heard: Vec<Vec<f64>> = serde_json::from_value(heard).unwrap();
+    assert_eq!(heard.len(), 2);
+    for ear in &heard {
+        assert!((ear[0] + 30.0).abs() < 0.5, "{ear:?}");
+        // An octave from 200 Hz has 137 bins: a standard deviation of 0.4 dB.
+        assert!(ear[1..].iter().all(|db| db.abs() < 1.6), "{ear:?}");
+        assert!(ear[3..].iter().all(|db| db.abs() < 0.8), "{ear:?}");
+    }
+    assert!(heard[0] != heard[1], "the ears have noise of their own");
+    std::thread::sleep(Duration::from_millis(400));
+    browser.press(&tab, "Enter", 0);
+    browser.shows(&tab, "Begin");
+    let stopped = "(async () => { for (let i = 0; i < 100 && audio.state !== 'suspended'; i++) await new Promise((r) => setTimeout(r, 50)); return audio.state; })()";
+    assert_eq!(
+        browser.promised(&tab, stopped),
+        "suspended",
+        "between trials"
+    );
+    browser.press(&tab, " ", 0);
+    browser.shows(&tab, "Feel it");
+    let running = stopped.replace("suspended", "running");
+    assert_eq!(browser.promised(&tab, &running), "running", "in a trial");
+    browser.shows(&tab, "How similar");
+    assert_eq!(
+        browser.promised(&tab, stopped),
+        "suspended",
+        "at a question"
+    );
+    std::thread::sleep(Duration::from_millis(400));
+    browser.press(&tab, "4", 0);
+    browser.shows(&tab, "Go on");
+    browser.press(&tab, " ", 0);
+    browser.shows(&tab, "Begin");
+    browser.press(&tab, " ", 0);
+    browser.shows(&tab, "Feel it");
+    assert_eq!(browser.promised(&tab, &running), "running");
+    child.kill().unwrap();
+    child.wait().unwrap();
+    browser.shows(&tab, "not running");
+    assert_eq!(
+        browser.promised(&tab, stopped),
+        "suspended",
+        "after the end of htex"
+    );
 }
 
 #[test]

@@ -114,7 +114,7 @@ impl Browser {
         tab
     }
 
-    /// Gives a tab a size in pixels.
+    /// Gives a tab another size, pixels.
     pub fn resize(&mut self, tab: &Tab, width: u32, height: u32) {
         let size =
             json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
@@ -136,6 +136,25 @@ impl Browser {
         self.call(Some(tab), "Runtime.evaluate", params)["result"]["value"].clone()
     }
 
+    /// The value that a promise of a tab is resolved to.
+    pub fn promised(&mut self, tab: &Tab, expression: &str) -> Value {
+        let params =
+            json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
+        self.call(Some(tab), "Runtime.evaluate", params)["result"]["value"].clone()
+    }
+
+    /// Presses the middle of the first element of a selector.
+    pub fn click(&mut self, tab: &Tab, selector: &str) {
+        let place = format!(
+            "(() => {{ const r = document.querySelector('{selector}').getBoundingClientRect(); return [(r.left + r.right) / 2, (r.top + r.bottom) / 2]; }})()"
+        );
+        let place = self.value(tab, &place);
+        for kind in ["mousePressed", "mouseReleased"] {
+            let at = json!({ "type": kind, "x": place[0], "y": place[1], "button": "left", "buttons": 1, "clickCount": 1 });
+            self.call(Some(tab), "Input.dispatchMouseEvent", at);
+        }
+    }
+
     /// Waits until a tab shows a text.
     pub fn shows(&mut self, tab: &Tab, text: &str) {
         let start = Instant::now();
@@ -152,7 +171,11 @@ impl Browser {
 
     /// Presses and releases a key; `repeats` are presses of a key that is held.
     pub fn press(&mut self, tab: &Tab, key: &str, repeats: usize) {
-        let text = if key == "Enter" { "\r" } else { key };
+        let text = match key {
+            "Enter" => "\r",
+            named if named.len() > 1 => "",
+            key => key,
+        };
         for i in 0..=repeats {
             let down = json!({ "type": "keyDown", "key": key, "text": text, "autoRepeat": i > 0 });
             self.call(Some(tab), "Input.dispatchKeyEvent", down);
@@ -206,12 +229,21 @@ pub fn address(child: &mut Child) -> String {
     url.unwrap().trim().to_owned()
 }
 
-/// Nothing is scrolled on a tablet.
-pub fn fits(browser: &mut Browser, tab: &Tab) {
+/// Nothing is scrolled or cut on a tablet, upright or on its side, of which it keeps pictures; the tab is left on its side.
+pub fn fits_tablets(browser: &mut Browser, tab: &Tab, name: &str) {
     let all = "[innerWidth >= document.documentElement.scrollWidth, innerHeight >= document.documentElement.scrollHeight, \
         [...document.querySelectorAll('body *')].every((e) => { const r = e.getBoundingClientRect(); \
-        return r.right <= innerWidth + 1 && r.bottom <= innerHeight + 1 && r.top >= 0; })]";
-    assert_eq!(browser.value(tab, all), json!([true, true, true]));
+        return r.right <= innerWidth + 1 && r.bottom <= innerHeight + 1 && r.top >= 0 && r.left >= 0; }), \
+        [...document.querySelectorAll('button')].every((b) => b.scrollWidth <= b.clientWidth && b.scrollHeight <= b.clientHeight)]";
+    for (width, height) in [(768, 1024), (1024, 768)] {
+        browser.resize(tab, width, height);
+        assert_eq!(
+            browser.value(tab, all),
+            json!([true, true, true, true]),
+            "{name}, {width} x {height}"
+        );
+        pictured(browser, tab, &format!("{name}-{width}"));
+    }
 }
 
 /// Keeps a picture where `HTEX_PICTURES` names a folder, to look at.

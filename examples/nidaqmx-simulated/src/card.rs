@@ -1,6 +1,7 @@
 //! The card: two outputs, their tasks, and the clock that takes samples.
 
 pub mod input;
+pub mod loopback;
 
 use std::collections::{BTreeMap, VecDeque};
 use std::fs::File;
@@ -9,6 +10,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use crate::codes;
+use loopback::Loopback;
 
 /// Of one channel of a PCIe-6321.
 pub const FULL_SCALE_V: f64 = 10.0;
@@ -27,6 +29,8 @@ pub struct Card {
     pub by_calls: bool,
     /// Voltages at the inputs: a row for each frame.
     pub input: Option<Vec<Vec<f64>>>,
+    /// The finger that feels the output and moves the inputs; in place of `input`.
+    pub loopback: Option<Loopback>,
     /// Seconds by which the next call to an input is late, when the clock advances by calls.
     pub late_s: f64,
     /// Samples after which the card is removed, output or frames of input.
@@ -114,8 +118,7 @@ impl Card {
         if self.tasks.iter().any(taken) {
             return Err(codes::RESERVED);
         }
-        input::begin(self.task(id)?);
-        Ok(())
+        self.begin(id)
     }
 
     /// The output keeps its last value.
@@ -137,7 +140,7 @@ impl Card {
     /// Ends all tasks and sets the outputs to zero, their power-on state.
     pub fn reset(&mut self) {
         self.tasks.clear();
-        self.put_out(0, &[0.0]);
+        self.put_out(0, &[0.0], None);
     }
 
     /// Takes the samples that fit. A task without a clock outputs its samples at once.
@@ -226,7 +229,8 @@ impl Card {
             (task.fault, task.running) = (Some(codes::RAN_DRY), None);
         }
         let (fault, channel) = (task.fault, task.channel.unwrap_or(0));
-        self.put_out(channel, &out);
+        let rate_hz = task.rate_hz;
+        self.put_out(channel, &out, rate_hz);
         self.plugged()?;
         fault.map_or(Ok(()), Err)
     }
@@ -236,8 +240,11 @@ impl Card {
         self.unplug_after.map_or(usize::MAX, left)
     }
 
-    fn put_out(&mut self, channel: usize, volts: &[f64]) {
+    fn put_out(&mut self, channel: usize, volts: &[f64], rate_hz: Option<f64>) {
         self.came_out += volts.len() as u64;
+        if let Some(loopback) = self.loopback.as_ref().filter(|_| channel == 0) {
+            loopback.put(volts, rate_hz);
+        }
         let Some(folder) = &self.record else { return };
         let lines: String = volts.iter().map(|v| format!("{v}\n")).collect();
         let name = format!("{}.txt", CHANNELS[channel].replace('/', "_"));

@@ -13,6 +13,7 @@ use std::ffi::{CStr, CString, c_char, c_void};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use card::loopback::Loopback;
 use card::{CHANNELS, Card, MAX_RATE_HZ, MIN_RATE_HZ};
 
 static CARD: Mutex<Option<Card>> = Mutex::new(None);
@@ -27,7 +28,7 @@ fn with<T>(run: impl FnOnce(&mut Card) -> T) -> T {
 
 fn from_environment() -> Card {
     let mut card = Card::default();
-    for name in ["record", "clock", "input", "unplug_after", "fault"] {
+    for name in ["record", "clock", "input", "loopback", "unplug_after", "fault"] {
         if let Ok(value) = std::env::var(format!("NIDAQMX_SIM_{}", name.to_uppercase())) {
             set(&mut card, name, &value);
         }
@@ -40,6 +41,7 @@ fn set(card: &mut Card, name: &str, value: &str) {
         "record" => card.record = Some(value.into()),
         "clock" => card.by_calls = value == "calls",
         "input" => card.input = Some(rows(value)),
+        "loopback" => card.loopback = Some(Loopback::new(value.as_ref())),
         "late_s" => card.late_s = value.parse().unwrap_or(0.0),
         "unplug_after" => card.unplug_after = value.parse().ok(),
         "fault" => fault::plan(value),
@@ -101,7 +103,7 @@ fn rows(path: &str) -> Vec<Vec<f64>> {
     text.lines().map(row).collect()
 }
 
-/// Changes a setting of the simulation: `record`, `input`, `late_s`, `clock`, `unplug_after`, `fault`. Not part of NI-DAQmx.
+/// Changes a setting of the simulation: `record`, `input`, `loopback`, `late_s`, `clock`, `unplug_after`, `fault`. Not part of NI-DAQmx.
 #[unsafe(no_mangle)]
 pub unsafe extern "system" fn nidaqmx_simulated_set(name: *const c_char, value: *const c_char) {
     let (name, value) = unsafe { (text(name), text(value)) };

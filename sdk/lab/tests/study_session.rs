@@ -84,7 +84,7 @@ impl Place {
 /// Does one step.
 fn act(session: &mut Session<'_>) -> bool {
     match session.step() {
-        Step::Rate(_, trial, _) => session.rate((trial.number % 7) as u8, 1, 2).unwrap(),
+        Step::Rate(_, trial, _) => session.rate((trial.number % 7) as u8, 1, 2, None).unwrap(),
         Step::Match { matching, .. } => {
             let key = match matching.gain_db() < -2.0 {
                 true => GainKey::Accept,

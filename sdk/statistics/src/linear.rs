@@ -71,6 +71,32 @@ pub(crate) fn least_squares(columns: &[Vec<f64>], target: &[f64]) -> LeastSquare
     }
 }
 
+/// The upper triangle that a matrix of these columns becomes by Householder's QR: least squares on it have the same solution. It has at most
+/// as many rows as columns.
+pub(crate) fn triangle(mut columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let rows = columns.first().map_or(0, Vec::len);
+    let most = rows.min(columns.len());
+    for k in 0..most {
+        let mut reflection = columns[k][k..].to_vec();
+        let size = norm(&reflection);
+        if size == 0.0 {
+            continue;
+        }
+        reflection[0] += if reflection[0] > 0.0 { size } else { -size };
+        let length = norm(&reflection);
+        reflection.iter_mut().for_each(|v| *v /= length);
+        for column in &mut columns[k..] {
+            let twice = 2.0 * dot(&reflection, &column[k..]);
+            let pairs = column[k..].iter_mut().zip(&reflection);
+            pairs.for_each(|(v, r)| *v -= twice * r);
+        }
+        // Zero but for rounding.
+        columns[k][k + 1..].fill(0.0);
+    }
+    columns.iter_mut().for_each(|column| column.truncate(most));
+    columns
+}
+
 fn reflect_all(reflections: &[Vec<f64>], vector: &mut [f64]) {
     for reflection in reflections {
         let twice = 2.0 * dot(reflection, vector);

@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use crate::StatisticsError;
-use crate::describe::{is_constant, mean, sum_of_squares};
+use crate::describe::{is_constant, sum_of_squares};
 use crate::distributions::f_sf;
-use crate::linear::{LeastSquares, least_squares};
+use crate::linear::{LeastSquares, least_squares, triangle};
 use crate::table::check_finite;
 
 /// Predictors of a regression: a column for each, a row for each value.
@@ -181,37 +181,85 @@ pub fn cross_validated_r2(
             needed: 2,
         });
     }
+    let folds = Folds::new(predictors, values, groups, &names);
     let (mut errors, mut baseline) = (0.0, 0.0);
-    for name in names {
-        let (error, base) = leave_out(predictors, values, &|row| groups[row] == name)?;
+    for fold in 0..names.len() {
+        let (error, base) = folds.leave_out(fold)?;
         errors += error;
         baseline += base;
     }
     Ok(1.0 - errors / baseline)
 }
 
-/// Returns the squared errors for the rows that are `left` out: of the regression on the others, and of their mean.
-fn leave_out(
-    predictors: &Matrix,
-    values: &[f64],
-    left: &dyn Fn(usize) -> bool,
-) -> Result<(f64, f64), StatisticsError> {
-    let keep: Vec<bool> = (0..values.len()).map(|row| !left(row)).collect();
-    let out: Vec<bool> = keep.iter().map(|kept| !kept).collect();
-    let known = kept(values, &keep);
-    let design = predictors.design(&keep);
-    if known.len() <= design.len() {
-        return Err(StatisticsError::TooFewRows {
-            rows: known.len(),
-            coefficients: design.len(),
-        });
+/// Columns of a matrix: ones, the predictors, the values.
+type Columns = Vec<Vec<f64>>;
+
+/// The rows of each group, and the triangles of all groups before and after it: the time of all folds together grows with the rows, and not
+/// with the rows times the groups.
+struct Folds {
+    rows: usize,
+    sum: f64,
+    groups: Vec<Columns>,
+    /// Of the groups before the n-th.
+    before: Vec<Columns>,
+    /// Of the groups from the n-th on.
+    from: Vec<Columns>,
+}
+
+impl Folds {
+    fn new(predictors: &Matrix, values: &[f64], groups: &[usize], names: &[usize]) -> Self {
+        let all = vec![true; values.len()];
+        let mut columns = predictors.design(&all);
+        columns.push(values.to_vec());
+        let mut of_groups = vec![vec![Vec::new(); columns.len()]; names.len()];
+        for (row, group) in groups.iter().enumerate() {
+            // Each group is among the names, which are sorted.
+            let at = names.partition_point(|name| name < group);
+            let pairs = of_groups[at].iter_mut().zip(&columns);
+            pairs.for_each(|(to, column)| to.push(column[row]));
+        }
+        let empty = vec![Vec::new(); columns.len()];
+        let mut before = vec![empty.clone()];
+        let mut from = vec![empty];
+        for (first, last) in of_groups.iter().zip(of_groups.iter().rev()) {
+            before.push(triangle(stacked(&before[before.len() - 1], first)));
+            from.push(triangle(stacked(&from[from.len() - 1], last)));
+        }
+        from.reverse();
+        Self {
+            rows: values.len(),
+            sum: values.iter().sum(),
+            groups: of_groups,
+            before,
+            from,
+        }
     }
-    let solution = least_squares(&design, &known);
-    let centre = mean(&known);
-    let unseen = kept(values, &out);
-    let errors = residual_squares(&predictors.design(&out), &unseen, &solution);
-    let baseline = unseen.iter().map(|v| (v - centre) * (v - centre)).sum();
-    Ok((errors, baseline))
+
+    /// Returns the squared errors for a group: of the regression on the others, and of their mean.
+    fn leave_out(&self, group: usize) -> Result<(f64, f64), StatisticsError> {
+        let mut design = stacked(&self.before[group], &self.from[group + 1]);
+        let target = design.pop().unwrap_or_default();
+        let mut unseen = self.groups[group].clone();
+        let values = unseen.pop().unwrap_or_default();
+        let known = self.rows - values.len();
+        if known <= design.len() {
+            return Err(StatisticsError::TooFewRows {
+                rows: known,
+                coefficients: design.len(),
+            });
+        }
+        let solution = least_squares(&design, &target);
+        let centre = (self.sum - values.iter().sum::<f64>()) / known as f64;
+        let errors = residual_squares(&unseen, &values, &solution);
+        let baseline = values.iter().map(|v| (v - centre) * (v - centre)).sum();
+        Ok((errors, baseline))
+    }
+}
+
+/// The rows of one matrix under those of another.
+fn stacked(above: &Columns, below: &Columns) -> Columns {
+    let pairs = above.iter().zip(below);
+    pairs.map(|(a, b)| [&a[..], &b[..]].concat()).collect()
 }
 
 fn kept(values: &[f64], keep: &[bool]) -> Vec<f64> {

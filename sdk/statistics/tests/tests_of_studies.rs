@@ -227,3 +227,51 @@ fn cross_validation_shows_overfitting() {
     assert!(regression(&predictors, &target).unwrap().r2 > 0.15);
     assert!(cross_validated_r2(&predictors, &target, &groups).unwrap() < 0.0);
 }
+
+/// The definition: each group is predicted by the regression on the others. One predictor depends on others, groups are of different sizes,
+/// and their rows are mixed.
+#[test]
+fn cross_validation_predicts_each_group_from_the_others() {
+    let rows = 90;
+    let mut columns: Vec<Vec<f64>> = (0..4).map(|k| sample(30 + k, rows)).collect();
+    columns.push(
+        (0..rows)
+            .map(|row| 2.0 * columns[0][row] - columns[2][row])
+            .collect(),
+    );
+    let noise = sample(40, rows);
+    let target: Vec<f64> = (0..rows)
+        .map(|row| 5.0 + columns[1][row] - 0.5 * columns[4][row] + noise[row])
+        .collect();
+    let groups: Vec<usize> = (0..rows).map(|row| 3 * ((row * row) % 7)).collect();
+    let (mut errors, mut baseline) = (0.0, 0.0);
+    for group in (0..21).filter(|group| groups.contains(group)) {
+        let others: Vec<usize> = (0..rows).filter(|row| groups[*row] != group).collect();
+        let of = |values: &[f64]| others.iter().map(|row| values[*row]).collect::<Vec<_>>();
+        let known = Matrix::new(others.len(), columns.iter().map(|c| of(c)).collect()).unwrap();
+        let fit = regression(&known, &of(&target)).unwrap();
+        let mean = of(&target).iter().sum::<f64>() / others.len() as f64;
+        for row in (0..rows).filter(|row| groups[*row] == group) {
+            let slopes = fit.coefficients[1..].iter().zip(&columns);
+            let predicted = fit.coefficients[0] + slopes.map(|(c, x)| c * x[row]).sum::<f64>();
+            errors += (target[row] - predicted) * (target[row] - predicted);
+            baseline += (target[row] - mean) * (target[row] - mean);
+        }
+    }
+    let checked = cross_validated_r2(&Matrix::new(rows, columns).unwrap(), &target, &groups);
+    let expected = 1.0 - errors / baseline;
+    assert!((checked.unwrap() - expected).abs() < 1e-12, "{expected}");
+}
+
+/// 50,000 rows of 2,000 participants: a regression for each of them would take minutes.
+#[test]
+fn cross_validation_takes_time_by_rows() {
+    let rows = 50_000;
+    let columns: Vec<Vec<f64>> = (0..20).map(|k| sample(50 + k, rows)).collect();
+    let target = sample(49, rows);
+    let groups: Vec<usize> = (0..rows).map(|row| row / 25).collect();
+    let predictors = Matrix::new(rows, columns).unwrap();
+    let start = std::time::Instant::now();
+    cross_validated_r2(&predictors, &target, &groups).unwrap();
+    assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+}

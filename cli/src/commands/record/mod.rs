@@ -1,5 +1,4 @@
 mod guide;
-mod inputs;
 mod screen;
 
 use std::cell::RefCell;
@@ -7,21 +6,23 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use htex_author::Exploration;
-use htex_format::{Quantity, plain};
+use htex_device::Source;
+use htex_format::plain;
 use htex_lab::record::{
-    Format, Moment, Next, Outcome, RecordError, Recorded, Session, Setup, Tare, recover,
+    Moment, Next, Outcome, RecordError, Recorded, Session, Setup, Tare, recover,
 };
 use serde_json::json;
 
+use crate::devices::SettingArgs;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::inputs::{InputArgs, paced};
 use crate::models::tool;
 use crate::output::{print, print_json, tell, warn};
 use crate::shown::shown;
 use crate::signals;
 
 use guide::{Guide, GuideArgs};
-use inputs::InputArgs;
 
 /// Record a finger on a surface under guidance: takes that leave their target are set aside and repeated.
 ///
@@ -30,6 +31,18 @@ use inputs::InputArgs;
 /// crash cut short is recovered when the command is run again.
 #[derive(Args)]
 pub(crate) struct Record {
+    /// Where the signals come from: a recording that is replayed (file:rec.csv), analog inputs of a National Instruments card
+    /// (daq:Dev1/ai0:5), or another source of `htex device list`
+    #[arg(long, value_name = "NAME:TARGET", help_heading = "Source")]
+    source: String,
+
+    #[command(flatten)]
+    settings: SettingArgs,
+
+    /// Replay files without waiting
+    #[arg(long, help_heading = "Source")]
+    fast: bool,
+
     #[command(flatten)]
     input: InputArgs,
 
@@ -74,10 +87,6 @@ pub(crate) struct Record {
     #[command(flatten)]
     guide: GuideArgs,
 
-    /// Format of the recordings
-    #[arg(long, value_enum, default_value = "csv")]
-    format: FormatArg,
-
     /// The folder of the takes
     #[arg(short, long, value_name = "DIR", default_value = "recordings")]
     output: PathBuf,
@@ -85,13 +94,6 @@ pub(crate) struct Record {
     /// Print JSON
     #[arg(long)]
     json: bool,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum FormatArg {
-    Csv,
-    Npy,
-    Wav,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -108,9 +110,9 @@ impl Record {
         for take in &recovered {
             tell!("htex: recovered {}", said(take));
         }
-        let source = self.input.open()?;
+        let source = self.open()?;
         let rate_hz = source.rate_hz();
-        let signals = self.input.signals(&*source)?;
+        let signals = self.input.signals(&self.source, &*source)?;
         warn(signals.warnings());
         let tracker = self.input.tracker()?;
         let mut session = Session::new(setup.clone(), source, signals, tracker)?;
@@ -133,12 +135,23 @@ impl Record {
         Ok(Exit::SUCCESS)
     }
 
+    fn open(&self) -> Result<Box<dyn Source>, Failure> {
+        if self.fast && !self.source.starts_with("file:") {
+            let sentence = "--fast replays files; other sources come at their own pace";
+            return Err(Failure::Usage(sentence.to_owned()));
+        }
+        let given = paced(&self.source, self.settings.given()?, self.fast);
+        self.input
+            .sources
+            .open(&self.source, self.settings.profile(), &given)
+    }
+
     fn setup(&self) -> Setup {
         Setup {
             folder: self.output.clone(),
             name: self.take.clone(),
             seconds: self.seconds,
-            countdown_s: match (self.countdown, self.input.fast) {
+            countdown_s: match (self.countdown, self.fast) {
                 (Some(countdown_s), _) => countdown_s,
                 (None, true) => 0.0,
                 (None, false) => 3.0,
@@ -155,13 +168,9 @@ impl Record {
             },
             tolerance: self.tolerance,
             attempts: self.attempts,
-            format: match self.format {
-                FormatArg::Csv => Format::Csv,
-                FormatArg::Npy => Format::Npy,
-                FormatArg::Wav => Format::Wav,
-            },
+            format: self.input.format().unwrap_or_default(),
             tool: tool(),
-            source: self.input.source.clone(),
+            source: self.source.clone(),
             map: self.input.map.clone(),
         }
     }
@@ -213,15 +222,4 @@ fn said(take: &Recorded) -> String {
             .map(|f| format!("\n  {}", plain(f)))
             .collect::<String>(),
     )
-}
-
-/// The quantities that are recorded, by their names on the command line.
-pub(super) fn quantity(name: &str) -> Result<Quantity, String> {
-    Quantity::from_name(&name.replace('-', "_")).ok_or_else(|| {
-        let names = Quantity::ALL.iter().map(|q| q.name().replace('_', "-"));
-        format!(
-            "the quantities are {}",
-            names.collect::<Vec<_>>().join(", ")
-        )
-    })
 }

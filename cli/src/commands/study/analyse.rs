@@ -1,3 +1,4 @@
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -32,6 +33,10 @@ pub(crate) struct Analyse {
     #[arg(long)]
     leave_out_incomplete: bool,
 
+    /// The scale of the ratings, MIN-MAX such as 0-6: ratings outside are errors
+    #[arg(long, value_name = "MIN-MAX", value_parser = scale, allow_hyphen_values = true)]
+    scale: Option<RangeInclusive<f64>>,
+
     /// Folder of the results: report.html, analysis.json and tables as CSV
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -48,7 +53,7 @@ impl Analyse {
             false => Incomplete::Refuse,
         };
         let bytes = read(&self.ratings)?;
-        let ratings = match Ratings::read(&bytes, incomplete) {
+        let ratings = match Ratings::read_on_scale(&bytes, incomplete, self.scale.as_ref()) {
             Ok(ratings) => told(&self.ratings, ratings),
             Err(invalid) => return self.refuse(&self.ratings, invalid),
         };
@@ -117,8 +122,24 @@ impl Analyse {
         if self.leave_out_incomplete {
             words += " --leave-out-incomplete";
         }
+        if let Some(scale) = &self.scale {
+            words += &format!(" --scale {}-{}", scale.start(), scale.end());
+        }
         words + &format!(" -o {}", shown(folder))
     }
+}
+
+/// Reads `0-6`; the lower end may be negative.
+fn scale(text: &str) -> Result<RangeInclusive<f64>, String> {
+    let dash = text.char_indices().skip(1).find(|(_, c)| *c == '-');
+    let ends = dash.and_then(|(at, _)| {
+        let ends = (text[..at].parse::<f64>(), text[at + 1..].parse::<f64>());
+        Some((ends.0.ok()?, ends.1.ok()?))
+    });
+    let ends = ends.filter(|(low, high)| low < high && low.is_finite() && high.is_finite());
+    let (low, high) =
+        ends.ok_or_else(|| "it looks like 0-6: the lowest and the highest rating".to_owned())?;
+    Ok(low..=high)
 }
 
 fn read(file: &Path) -> Result<Vec<u8>, Failure> {

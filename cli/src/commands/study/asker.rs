@@ -85,6 +85,11 @@ impl AskingArgs {
         Err(Failure::Usage(problem.to_owned()))
     }
 
+    /// Whether answers of a person or the motion come from standard input.
+    pub(super) fn reads_stdin(&self, is_simulated: bool) -> bool {
+        self.motion.as_deref() == Some("-") || !(self.page || is_simulated)
+    }
+
     /// Asks nobody: for a simulated participant.
     pub(super) fn of_nobody(&self) -> Asking {
         Asking {

@@ -10,9 +10,12 @@ use crate::located;
 use crate::output::{print, print_json, warn, write_file};
 use crate::shown::shown;
 
-/// Write the ratings of all participants as a table.
+use super::spectra::SpectraArgs;
+
+/// Write the ratings of all participants as a table, and the spectra of what they felt as another.
 ///
-/// The columns are participant, texture, model, repetition, rating, attribute, hidden_reference, response_ms, gain_db and simulated.
+/// The columns are participant, texture, model, repetition, rating, attribute, hidden_reference, response_ms, gain_db and simulated; of
+/// the spectra participant, texture, model, and a magnitude for 20, 25, …, 1000 Hz.
 #[derive(Args)]
 pub(super) struct Export {
     /// The folder of answers that `htex study run` wrote
@@ -25,6 +28,9 @@ pub(super) struct Export {
     /// The attribute whose ratings are written, where there are several
     #[arg(long, value_name = "NAME")]
     attribute: Option<String>,
+
+    #[command(flatten)]
+    spectra: SpectraArgs,
 
     /// Print JSON
     #[arg(long)]
@@ -42,15 +48,28 @@ impl Export {
         }
         let table = export(&self.folder, self.attribute.as_deref())?;
         warn(&table.warnings);
+        let spectra = self.spectra.table(&self.folder)?;
         write_file(&self.output, table.csv.as_bytes())?;
+        if let Some((file, spectra)) = &spectra {
+            warn(&spectra.warnings);
+            write_file(file, spectra.csv.as_bytes())?;
+        }
         let (participants, ratings) = (table.participants, table.ratings);
         if self.json {
             print_json(&json!({
                 "participants": participants,
                 "ratings": ratings,
                 "incomplete": table.warnings,
+                "recordings": spectra.as_ref().map(|(_, spectra)| spectra.recordings),
             }))?;
         } else {
+            if let Some((file, spectra)) = &spectra {
+                print(&format!(
+                    "{}: spectra of {} recordings\n",
+                    shown(file),
+                    spectra.recordings
+                ))?;
+            }
             print(&format!(
                 "{}: {ratings} ratings of {participants} participants\n",
                 shown(&self.output)

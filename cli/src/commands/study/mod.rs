@@ -4,10 +4,14 @@ mod analyse;
 mod asker;
 mod clock;
 mod export;
+mod felt;
+#[cfg(unix)]
+mod keys;
 mod plan;
 mod power;
 mod rig;
 mod run;
+mod spectra;
 mod terminal;
 mod validate;
 

@@ -5,7 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use htex_device::SettingKind;
-use htex_lab::study::{DeviceUsed, Played, Rig, Stimulus, Study, scene_of, set_gain};
+use htex_lab::study::{
+    DeviceUsed, Felt, Played, Rig, Stimulus, Study, StudyError, scene_of, set_gain,
+};
 use htex_scene::file::Motion;
 use htex_scene::{DeviceOverride, Finger, LoadedScene, Renderer, output_name};
 
@@ -32,6 +34,8 @@ pub(super) struct StudyRig<'a> {
     pub(super) told: RefCell<BTreeSet<String>>,
     pub(super) errors_db: RefCell<BTreeMap<(String, String), Option<f64>>>,
     pub(super) ended: bool,
+    /// Records what is felt.
+    pub(super) felt: Option<Felt>,
 }
 
 impl StudyRig<'_> {
@@ -115,25 +119,48 @@ impl Rig for StudyRig<'_> {
                 .set_motion(Finger::AWAY)
                 .map_err(|e| Failure::scene(&self.path, e))?;
         }
+        let mut felt = self.felt.take();
+        let recorded = felt.as_mut().zip(stimulus.felt.as_ref());
+        if let Some((felt, name)) = recorded {
+            let seconds = stimulus.seconds.unwrap_or(self.study.trial_s);
+            felt.begin(name, seconds).map_err(StudyError::from)?;
+        }
         let mut output = Output::open(&ready, &plan)?;
         if !self.is_fast && !ready.capabilities.paced {
             output = output.paced();
         }
-        let mut stopped = false;
-        while output.step(&mut renderer)? {
+        let (mut stopped, mut left) = (false, false);
+        loop {
+            let goes_on = output.step(&mut renderer)?;
+            if let Some(felt) = felt.as_ref().filter(|felt| felt.waits()) {
+                felt.sounds(output.lead_s());
+            }
+            if !goes_on {
+                break;
+            }
             if !stopped {
                 self.ended |= !self.follow(&mut renderer);
-                stopped = self.ended || interrupted() || ends();
+                left = self.ended || interrupted() || ends();
+                stopped = left || felt.as_ref().is_some_and(Felt::has_failed);
                 if stopped {
                     renderer.stop();
                 }
             }
         }
         output.finish()?;
-        Ok(Played {
+        let mut played = Played {
             drive_v,
             reference_rms: plan.reference_rms,
-        })
+            felt: None,
+        };
+        if let Some(felt) = &mut felt {
+            match left {
+                true => felt.abort(),
+                false => played.felt = felt.finish(stimulus, &played)?,
+            }
+        }
+        self.felt = felt;
+        Ok(played)
     }
 
     fn band_error_db(&self, texture: &str, model: &str) -> Option<f64> {

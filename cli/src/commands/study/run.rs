@@ -3,13 +3,15 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use htex_format::Severity;
 use htex_lab::study::{
-    Clock, Ended, Header, Plan, Session, SimulatedParticipant, Study, StudyError, check_files, run,
+    Clock, Ended, Felt, Header, Plan, Session, SimulatedParticipant, Study, StudyError,
+    check_files, run,
 };
 use htex_scene::file::Motion;
 use serde_json::{Value, json};
 
 use super::asker::AskingArgs;
 use super::clock::{FastClock, WallClock};
+use super::felt::FeltArgs;
 use super::rig::StudyRig;
 use super::{CANNOT_RUN, open};
 use crate::exit::Exit;
@@ -54,6 +56,9 @@ pub(super) struct Run {
     json: bool,
 
     #[command(flatten)]
+    felt: FeltArgs,
+
+    #[command(flatten)]
     choice: ChoiceArgs,
 
     #[command(flatten)]
@@ -64,6 +69,7 @@ impl Run {
     pub(super) fn run(self) -> Result<Exit, Failure> {
         let study = open(&self.study)?;
         self.asking.check(&study, self.simulated.is_some())?;
+        self.felt.check(&self.asking, self.simulated.is_some())?;
         let plan = Plan::new(&study);
         let participants = self.participants(&plan)?;
         self.check_files(&study)?;
@@ -131,8 +137,12 @@ impl Run {
         let Some(own) = plan.of(participant) else {
             return Err(Failure::Other(format!("{participant} has no plan")));
         };
+        rig.felt = self
+            .felt
+            .open(study, &self.output, participant, self.fast)?;
         let device = rig.device_used()?;
         let header = Header::new(study, &self.study, own, device, tool())?
+            .with_source(rig.felt.as_ref().and_then(Felt::used))
             .with_simulated(simulated.as_ref().map(SimulatedParticipant::header));
         let mut session = Session::open(study, own, &self.output, &header)?;
         // A page is opened when the session is known to be the right one.
@@ -175,6 +185,7 @@ impl Run {
             told: Default::default(),
             errors_db: Default::default(),
             ended: false,
+            felt: None,
         };
         if rig.plays_to_files()? {
             std::fs::create_dir_all(&rig.folder)

@@ -1,66 +1,109 @@
-//! Questions and answers in a terminal.
+//! Questions and answers in a terminal: single keys of a keyboard, lines of a pipe.
 
 use std::io::IsTerminal;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use htex_lab::study::{Asker, GainKey, GainMethod, Key, View};
 
+#[cfg(unix)]
+use super::keys::{Keys, meaning};
 use crate::output::tell;
 
-/// Asks on standard error and reads lines of standard input.
+/// Asks on standard error and reads standard input.
 pub(super) struct Terminal {
-    lines: Receiver<String>,
+    input: Input,
     view: View,
-    /// Lines that were typed before a question are forgotten; those of a pipe are not.
-    is_typed: bool,
+}
+
+enum Input {
+    /// Keys of a terminal.
+    #[cfg(unix)]
+    Keys(Keys),
+    /// Lines; those that were typed before a question are forgotten, those of a pipe are not.
+    Lines {
+        lines: Receiver<String>,
+        is_typed: bool,
+    },
 }
 
 impl Terminal {
     pub(super) fn new() -> Self {
-        let (sender, lines) = channel();
-        std::thread::spawn(move || {
-            for line in std::io::stdin().lines().map_while(Result::ok) {
-                if sender.send(line).is_err() {
-                    return;
-                }
-            }
-        });
         Self {
-            lines,
+            input: input(),
             view: View::Done,
-            is_typed: std::io::stdin().is_terminal(),
         }
     }
+
+    fn words(&self, view: &View) -> String {
+        let is_line = matches!(self.input, Input::Lines { .. });
+        htex_format::plain(&text(view, is_line)).into_owned()
+    }
+
+    fn refuse(&self, typed: &str) {
+        tell!("{typed:?} is no answer; {}", self.words(&self.view));
+    }
+}
+
+/// Keys if standard input is a terminal, else its lines.
+fn input() -> Input {
+    let is_typed = std::io::stdin().is_terminal();
+    #[cfg(unix)]
+    if let Some(keys) = is_typed.then(Keys::begin).flatten() {
+        return Input::Keys(keys);
+    }
+    let (sender, lines) = channel();
+    std::thread::spawn(move || {
+        for line in std::io::stdin().lines().map_while(Result::ok) {
+            if sender.send(line).is_err() {
+                return;
+            }
+        }
+    });
+    Input::Lines { lines, is_typed }
 }
 
 impl Asker for Terminal {
     fn show(&mut self, view: &View, done: usize, all: usize) {
-        let is_countdown = matches!((view, &self.view), (View::Rest { seconds }, View::Rest { .. }) if *seconds > 0);
-        if self.is_typed && !matches!((view, &self.view), (View::Rest { .. }, View::Rest { .. })) {
-            while self.lines.try_recv().is_ok() {}
+        let goes_on = matches!((view, &self.view), (View::Rest { .. }, View::Rest { .. }));
+        let is_countdown = goes_on && matches!(view, View::Rest { seconds } if *seconds > 0);
+        match &mut self.input {
+            _ if goes_on => {}
+            #[cfg(unix)]
+            Input::Keys(keys) => keys.forget(),
+            Input::Lines { lines, is_typed } => while *is_typed && lines.try_recv().is_ok() {},
         }
         self.view = view.clone();
         if !is_countdown {
-            tell!("[{done}/{all}] {}", htex_format::plain(&text(view)));
+            tell!("[{done}/{all}] {}", self.words(view));
         }
     }
 
     fn key(&mut self) -> Option<Key> {
-        // The lines of a pipe wait for the question.
-        if !self.is_typed && matches!(self.view, View::Playing { .. }) {
-            return None;
-        }
-        let line = match self.lines.try_recv() {
-            Ok(line) => line,
-            Err(TryRecvError::Empty) => return None,
-            Err(TryRecvError::Disconnected) => return Some(Key::Quit),
+        let line = match &mut self.input {
+            #[cfg(unix)]
+            Input::Keys(keys) => {
+                let press = keys.next(&self.view)?;
+                let key = meaning(press, &self.view);
+                if key.is_none() && !matches!(self.view, View::Playing { .. }) {
+                    self.refuse(&press.name());
+                }
+                return key;
+            }
+            // The lines of a pipe wait for the question.
+            Input::Lines {
+                is_typed: false, ..
+            } if matches!(self.view, View::Playing { .. }) => {
+                return None;
+            }
+            Input::Lines { lines, .. } => match lines.try_recv() {
+                Ok(line) => line,
+                Err(TryRecvError::Empty) => return None,
+                Err(TryRecvError::Disconnected) => return Some(Key::Quit),
+            },
         };
         let key = key(line.trim(), &self.view);
         if key.is_none() {
-            tell!(
-                "{line:?} is no answer; {}",
-                htex_format::plain(&text(&self.view))
-            );
+            self.refuse(&line);
         }
         key
     }
@@ -88,23 +131,33 @@ fn key(line: &str, view: &View) -> Option<Key> {
     })
 }
 
-fn text(view: &View) -> String {
+/// What is asked, and which keys or lines answer.
+fn text(view: &View, is_line: bool) -> String {
     match view {
         View::Ready { texture, .. } => format!("{texture}: Enter to begin, q to leave"),
         View::Playing { texture } => format!("{texture} plays"),
         View::Question { attribute, scale } => format!(
-            "{} {} {} to {} {}, and Enter",
-            attribute.question, scale.min, scale.low, scale.max, scale.high
+            "{} {} {} to {} {}{}",
+            attribute.question,
+            scale.min,
+            scale.low,
+            scale.max,
+            scale.high,
+            if is_line { ", and Enter" } else { "" }
         ),
         View::Matching {
             texture, method, ..
         } => {
-            let keys = match method {
-                GainMethod::Descending => "- or -- weaker, Enter alone: it matches",
-                GainMethod::Adjustment => {
+            let keys = match (method, is_line) {
+                (GainMethod::Descending, true) => "- or -- weaker, Enter alone: it matches",
+                (GainMethod::Adjustment, true) => {
                     "+ or ++ stronger, - or -- weaker, Enter alone: it matches"
                 }
-                GainMethod::Staircase => "+ it should be stronger, - it should be weaker",
+                (GainMethod::Descending, false) => "- or Page Down weaker, Enter: it matches",
+                (GainMethod::Adjustment, false) => {
+                    "+ or Page Up stronger, - or Page Down weaker, Enter: it matches"
+                }
+                (GainMethod::Staircase, _) => "+ it should be stronger, - it should be weaker",
             };
             format!("{texture}, compared with the real one: {keys}")
         }

@@ -55,8 +55,22 @@ impl Card {
         Ok(frames as usize)
     }
 
-    /// The voltage at an input: that of the file, after its end 0; without a file a sine of 10 Hz times the input's number from 1.
+    /// Marks a task as running.
+    pub(super) fn begin(&mut self, id: usize) -> Answer<()> {
+        let task = self.task(id)?;
+        task.running = Some(Instant::now());
+        let is_input = !task.inputs.is_empty();
+        if let Some(loopback) = self.loopback.as_mut().filter(|_| is_input) {
+            loopback.begin();
+        }
+        Ok(())
+    }
+
+    /// The voltage at an input: that of the finger, or of the file, after its end 0; without a file a sine of 10 Hz times the input's number from 1.
     fn volts(&self, input: usize, frame: u64, rate_hz: f64) -> f64 {
+        if let Some(loopback) = &self.loopback {
+            return loopback.volts(frame, rate_hz);
+        }
         match &self.input {
             Some(rows) => rows
                 .get(frame as usize)
@@ -75,16 +89,19 @@ impl Card {
         self.plugged()?;
         let (by_calls, late_s) = (self.by_calls, std::mem::take(&mut self.late_s));
         let left = self.left() as u64;
+        let rate_hz = self.task(id)?.rate_hz.unwrap_or(0.0);
+        let from_signal = self.by_calls;
+        let felt = self.loopback.as_mut();
+        let felt = felt.and_then(|felt| felt.frames(rate_hz, from_signal));
         let task = self.task(id)?;
         task.fault.map_or(Ok(()), Err)?;
         let (Some(since), Some(rate_hz)) = (task.running, task.rate_hz) else {
             return Err(codes::NOT_STARTED);
         };
-        let due = match by_calls {
-            true => ((step_s + late_s) * rate_hz).round() as u64,
-            false => {
-                ((since.elapsed().as_secs_f64() * rate_hz) as u64).saturating_sub(task.sampled)
-            }
+        let due = match felt {
+            Some(frames) => frames.saturating_sub(task.sampled),
+            None if by_calls => ((step_s + late_s) * rate_hz).round() as u64,
+            None => ((since.elapsed().as_secs_f64() * rate_hz) as u64).saturating_sub(task.sampled),
         };
         let due = due.min(left);
         task.sampled += due;
@@ -97,13 +114,9 @@ impl Card {
     }
 }
 
-/// Marks a task as running; one task at a time has the inputs' clock.
+/// Whether another task has the inputs' clock.
 pub(super) fn taken(own: &Task, other: &Task) -> bool {
     !own.inputs.is_empty() && !other.inputs.is_empty() && other.running.is_some()
-}
-
-pub(super) fn begin(task: &mut Task) {
-    task.running = Some(Instant::now());
 }
 
 /// The inputs of `Dev1/ai0:2, Dev1/ai5`.

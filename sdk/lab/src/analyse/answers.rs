@@ -1,12 +1,13 @@
 //! The lines of a table of ratings.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::RangeInclusive;
 
 use htex_format::{Findings, plain};
 
 use super::rules::{
-    RATING_DUPLICATE, RATING_INVALID, RATINGS_ATTRIBUTES, RATINGS_HIDDEN_REFERENCE,
-    TABLE_COLUMN_UNKNOWN,
+    RATING_DUPLICATE, RATING_INVALID, RATING_OFF_SCALE, RATINGS_ATTRIBUTES,
+    RATINGS_HIDDEN_REFERENCE, TABLE_COLUMN_UNKNOWN,
 };
 use super::sheet::{Invalid, Row, Sheet, at, invalid, name};
 
@@ -35,7 +36,11 @@ pub(super) struct Rated {
 }
 
 /// Reads the lines of a table of ratings.
-pub(super) fn read_answers(bytes: &[u8], findings: &mut Findings) -> Result<Rated, Invalid> {
+pub(super) fn read_answers(
+    bytes: &[u8],
+    scale: Option<&RangeInclusive<f64>>,
+    findings: &mut Findings,
+) -> Result<Rated, Invalid> {
     let sheet = Sheet::read(bytes, &COLUMNS)?;
     let columns = COLUMNS.map(|name| (sheet.column(name).unwrap_or_default(), name));
     let is_yes = |row: &Row, name: &str| {
@@ -54,7 +59,7 @@ pub(super) fn read_answers(bytes: &[u8], findings: &mut Findings) -> Result<Rate
         if is_yes(row, SIMULATED) {
             simulated.insert(row.field(columns[0].0).to_owned());
         }
-        read_row(row, &columns, &mut answers, findings);
+        read_row(row, &columns, scale, &mut answers, findings);
     }
     findings.require(hidden == 0, RATINGS_HIDDEN_REFERENCE, "", || {
         format!("{hidden} lines are hidden references and are not analysed")
@@ -101,6 +106,7 @@ fn one_attribute(sheet: &Sheet, findings: &mut Findings) {
 fn read_row(
     row: &Row,
     columns: &[(usize, &str); 5],
+    scale: Option<&RangeInclusive<f64>>,
     answers: &mut Answers,
     findings: &mut Findings,
 ) {
@@ -124,6 +130,14 @@ fn read_row(
         at(findings, RATING_INVALID, row.line, rating, &message);
         return;
     };
+    if let Some(scale) = scale.filter(|scale| !scale.contains(&value)) {
+        let message = format!(
+            "{value} is not on the scale from {} to {}; correct it, or remove the line",
+            scale.start(),
+            scale.end()
+        );
+        at(findings, RATING_OFF_SCALE, row.line, rating, &message);
+    }
     if answers
         .entry(cell)
         .or_default()

@@ -1,6 +1,7 @@
 //! The table of ratings: participant, texture, model, repetition, rating.
 
 use std::collections::BTreeSet;
+use std::ops::RangeInclusive;
 
 use htex_format::Findings;
 
@@ -49,8 +50,20 @@ impl Ratings {
     /// # Errors
     /// Every finding of the table, if one of them is an error.
     pub fn read(bytes: &[u8], incomplete: Incomplete) -> Result<Checked<Self>, Invalid> {
+        Self::read_on_scale(bytes, incomplete, None)
+    }
+
+    /// As [`Self::read`]; ratings that are not on the scale are errors, each with its line.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_on_scale(
+        bytes: &[u8],
+        incomplete: Incomplete,
+        scale: Option<&RangeInclusive<f64>>,
+    ) -> Result<Checked<Self>, Invalid> {
         let mut findings = Findings::default();
-        let Rated { answers, simulated } = read_answers(bytes, &mut findings)?;
+        let Rated { answers, simulated } = read_answers(bytes, scale, &mut findings)?;
         let ratings = Self::of_answers(answers, simulated, incomplete, &mut findings);
         let Some(ratings) = ratings else {
             return Err(invalid(findings));

@@ -60,6 +60,10 @@ htex_format::rule_table! {
         "A rating is not a number.",
         "A missing answer cannot be guessed.",
         "Write a number with a decimal point; remove the line of an answer that was not given.";
+    RATING_OFF_SCALE Error:
+        "A rating is not on the scale that was given (--scale).",
+        "It is a slip of typing, or the rating of another study.",
+        "Correct it, or remove the line; give the study's scale as in `--scale 0-6`.";
     RATING_DUPLICATE Error:
         "The same trial is rated twice.",
         "Participant, texture, model and repetition name one trial; it is undefined which of its ratings counts.",

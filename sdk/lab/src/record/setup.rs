@@ -97,13 +97,7 @@ pub(crate) fn check(setup: &Setup, rate_hz: f64) -> Result<(), RecordError> {
             return refuse(what, target, "it is above 0 and at most 10,000");
         }
     }
-    if setup.format == Format::Wav && (rate_hz.fract() != 0.0 || rate_hz > f64::from(u32::MAX)) {
-        return refuse(
-            "the sample rate",
-            rate_hz,
-            "a WAV has a whole number of hertz; record CSV or NPY",
-        );
-    }
+    setup.format.check(rate_hz)?;
     match setup.attempts {
         0 => refuse("the number of takes", 0.0, "at least one is needed"),
         _ => Ok(()),

@@ -23,6 +23,9 @@ pub trait TrackerRows: Send {
     /// # Errors
     /// When the tracker delivers what is no position.
     fn poll(&mut self, now_s: f64, rows: &mut Vec<f64>) -> Result<(), RecordError>;
+
+    /// The clock of the source begins at 0 s again: another source is read, or the same one anew. Rows that have come are forgotten.
+    fn restart(&mut self);
 }
 
 /// A tracker's file, replayed on the clock of the source, which begins at 0 s.
@@ -81,6 +84,10 @@ impl TrackerRows for TableTracker {
         }
         Ok(())
     }
+
+    fn restart(&mut self) {
+        self.next = 0;
+    }
 }
 
 /// A tracker that sends lines `x_mm y_mm`: a pipe, a serial port. Rows get the time of their arrival.
@@ -134,6 +141,11 @@ impl TrackerRows for LineTracker {
             rows.extend([self.last_s, x, y]);
         }
         Ok(())
+    }
+
+    fn restart(&mut self) {
+        while self.lines.try_recv().is_ok() {}
+        self.last_s = f64::NEG_INFINITY;
     }
 }
 

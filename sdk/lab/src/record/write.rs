@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use htex_author::read::{ColumnMap, ReadOptions};
 use htex_format::Quantity;
 use serde::{Deserialize, Serialize};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::record::data::{TakeData, TakeHeader};
 use crate::record::error::RecordError;
@@ -40,6 +40,22 @@ pub enum Outcome {
 }
 
 impl Format {
+    /// Refuses a rate that files of this format cannot have.
+    ///
+    /// # Errors
+    /// [`RecordError::Setup`].
+    pub(crate) fn check(self, rate_hz: f64) -> Result<(), RecordError> {
+        let is_whole = rate_hz.fract() == 0.0 && rate_hz <= f64::from(u32::MAX);
+        match self == Self::Wav && !is_whole {
+            true => Err(RecordError::Setup {
+                what: "the sample rate",
+                value: rate_hz.to_string(),
+                allowed: "a WAV has a whole number of hertz; record CSV or NPY",
+            }),
+            false => Ok(()),
+        }
+    }
+
     pub(crate) fn extension(self) -> &'static str {
         match self {
             Self::Csv => "csv",
@@ -78,9 +94,31 @@ pub(crate) fn write_take(
     outcome: Outcome,
     verdict: &Verdict,
 ) -> Result<Written, RecordError> {
+    let stem = names::stem(&data.header.name, data.header.number);
+    write_signals(&outcome.folder(folder), &stem, data, &|fit| {
+        json!({
+            "outcome": outcome,
+            "take": data.header,
+            "frames": data.frames(),
+            "recorded_s": data.recorded_s(),
+            "verdict": verdict,
+            "fit": fit,
+        })
+    })
+}
+
+/// Writes a recording, the tracker's rows, and JSON beside it, each file beside its name and then renamed. `beside` gets the arguments of
+/// `htex fit` that read the recording.
+///
+/// # Errors
+/// [`RecordError::Write`].
+pub(crate) fn write_signals(
+    folder: &Path,
+    stem: &str,
+    data: &TakeData,
+    beside: &dyn Fn(&[String]) -> Value,
+) -> Result<Written, RecordError> {
     let header = &data.header;
-    let folder = outcome.folder(folder);
-    let stem = names::stem(&header.name, header.number);
     let recording = folder.join(format!("{stem}.{}", header.format.extension()));
     let make = |folder: &Path| {
         std::fs::create_dir_all(folder).map_err(|error| RecordError::write(folder, error))
@@ -88,7 +126,7 @@ pub(crate) fn write_take(
     let put = |path: &Path, write: &dyn Fn(&mut File) -> io::Result<()>| {
         htex_files::replace_file(path, write).map_err(|error| RecordError::write(path, error))
     };
-    make(&folder)?;
+    make(folder)?;
     let mut fit = vec![recording.display().to_string()];
     fit.extend(flags(header));
     if !data.tracker.is_empty() && data.tracker[0].len() > 1 {
@@ -98,15 +136,7 @@ pub(crate) fn write_take(
         put(&tracker, &|file| tracker_csv(data, file))?;
         fit.extend(["--tracker".to_owned(), tracker.display().to_string()]);
     }
-    let beside = json!({
-        "outcome": outcome,
-        "take": header,
-        "frames": data.frames(),
-        "recorded_s": data.recorded_s(),
-        "verdict": verdict,
-        "fit": fit,
-    });
-    let beside = serde_json::to_string_pretty(&beside).unwrap_or_default() + "\n";
+    let beside = serde_json::to_string_pretty(&beside(&fit)).unwrap_or_default() + "\n";
     put(&recording, &|file| match header.format {
         Format::Csv => csv(data, file),
         Format::Npy => npy(data, file),
@@ -121,18 +151,27 @@ pub(crate) fn write_take(
 /// Flags that say what the format does not.
 fn flags(header: &TakeHeader) -> Vec<String> {
     let mut flags = Vec::new();
+    let (map, rate_hz) = reading(header);
     if header.quantity != Quantity::LateralForce {
         let name = header.quantity.name().replace('_', "-");
         flags.extend(["--quantity".to_owned(), name]);
     }
-    if header.format == Format::Csv {
-        return flags;
-    }
-    flags.extend(["--map".to_owned(), column_map(header)]);
-    if header.format == Format::Npy {
-        flags.extend(["--rate".to_owned(), header.rate_hz.to_string()]);
-    }
+    flags.extend(map.into_iter().flat_map(|map| ["--map".to_owned(), map]));
+    flags.extend(
+        rate_hz
+            .into_iter()
+            .flat_map(|hz| ["--rate".to_owned(), hz.to_string()]),
+    );
     flags
+}
+
+/// The map and the rate that a reader of the recording needs because its format does not have them.
+pub(crate) fn reading(header: &TakeHeader) -> (Option<String>, Option<f64>) {
+    if header.format == Format::Csv {
+        return (None, None);
+    }
+    let rate_hz = (header.format == Format::Npy).then_some(header.rate_hz);
+    (Some(column_map(header)), rate_hz)
 }
 
 /// The roles of the columns of a format without names.

@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::study::error::StudyError;
 use crate::study::file::{Attribute, GainMethod, Phase, Scale};
 use crate::study::gain::GainKey;
+use crate::study::lines::FeltFile;
 use crate::study::stimulus::Stimulus;
 
 /// What a participant sees.
@@ -88,12 +89,14 @@ pub trait Clock {
 }
 
 /// How something was played.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Played {
     /// Drive of a display, volts.
     pub drive_v: Option<f64>,
     /// RMS that had this drive, in the assets' unit.
     pub reference_rms: f64,
+    /// The recording of what was felt, which is on disk.
+    pub felt: Option<FeltFile>,
 }
 
 /// What plays: a renderer and a device.

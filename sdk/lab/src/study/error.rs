@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::record::RecordError;
+
 /// An error of a study's answers. No answer that was recorded is lost by one.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -74,6 +76,33 @@ pub enum StudyError {
         texture: String,
         /// The model.
         model: String,
+    },
+    /// What was felt could not be recorded.
+    #[error(
+        "recording what is felt: {0}; the trial is repeated when the same command is run again"
+    )]
+    Felt(#[from] RecordError),
+    /// A recording of what was felt is not the one that was rated.
+    #[error("{}: it is not the recording that was made in the trial ({problem}); restore it from a copy", .file.display())]
+    FeltFile {
+        /// The recording.
+        file: PathBuf,
+        /// What is wrong.
+        problem: String,
+    },
+    /// A recording has no spectrum that an analysis can use.
+    #[error("{}: {problem}", .file.display())]
+    Spectrum {
+        /// The recording, or the asset.
+        file: PathBuf,
+        /// What is wrong, and what to do.
+        problem: String,
+    },
+    /// There are no recordings of what was felt.
+    #[error("{}: the felt force was not recorded; give `htex study run` a source (--source)", .folder.display())]
+    NotRecorded {
+        /// The folder of answers.
+        folder: PathBuf,
     },
     /// The page cannot be served.
     #[error(transparent)]

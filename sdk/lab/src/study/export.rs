@@ -40,22 +40,38 @@ pub struct Export {
 /// [`StudyError::NoAnswers`] if the folder has none; [`StudyError::OtherVersion`] if they are of several versions of a study, or of
 /// simulated and of real participants; [`StudyError::Attribute`]; errors of reading.
 pub fn export(folder: &Path, attribute: Option<&str>) -> Result<Export, StudyError> {
-    let files = files(folder)?;
+    let sessions = sessions_of(folder)?;
+    let answers = sessions.iter().flat_map(|session| &session.answers);
+    let all: BTreeSet<String> = answers.map(|answer| answer.attribute.clone()).collect();
+    let attribute = chosen(&all, attribute)?;
+    table(&sessions, &attribute, folder)
+}
+
+/// A participant's answers, without training.
+pub(crate) struct Answers {
+    file: PathBuf,
+    pub(crate) header: Header,
+    pub(crate) answers: Vec<Answer>,
+}
+
+/// The answers of all participants in a folder, all of one version of a study.
+pub(crate) fn sessions_of(folder: &Path) -> Result<Vec<Answers>, StudyError> {
     let mut sessions = Vec::new();
-    for file in files {
+    for file in files(folder)? {
         let (header, lines) = log::read(&file)?;
         let answers = lines.into_iter().filter_map(|line| match line {
             Line::Answer(answer) => Some(answer),
             _ => None,
         });
-        let answers: Vec<Answer> = answers.collect();
-        sessions.push((file, header, answers));
+        let answers = answers.collect();
+        sessions.push(Answers {
+            file,
+            header,
+            answers,
+        });
     }
     same_study(&sessions)?;
-    let answers = sessions.iter().flat_map(|(_, _, answers)| answers);
-    let all: BTreeSet<String> = answers.map(|answer| answer.attribute.clone()).collect();
-    let attribute = chosen(&all, attribute)?;
-    table(&sessions, &attribute, folder)
+    Ok(sessions)
 }
 
 fn files(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
@@ -79,12 +95,13 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
     }
 }
 
-fn same_study(sessions: &[(PathBuf, Header, Vec<Answer>)]) -> Result<(), StudyError> {
-    let Some((first, of_first, _)) = sessions.first() else {
+fn same_study(sessions: &[Answers]) -> Result<(), StudyError> {
+    let Some(first) = sessions.first() else {
         return Ok(());
     };
-    for (file, header, _) in sessions {
-        let first = first.display();
+    let of_first = &first.header;
+    for Answers { file, header, .. } in sessions {
+        let first = first.file.display();
         let changed = if let Some(name) = log::other_file(of_first, header) {
             format!("{name} is another one than for {first}")
         } else if header.simulated.is_some() != of_first.simulated.is_some() {
@@ -116,11 +133,7 @@ fn chosen(all: &BTreeSet<String>, wanted: Option<&str>) -> Result<String, StudyE
     }
 }
 
-fn table(
-    sessions: &[(PathBuf, Header, Vec<Answer>)],
-    attribute: &str,
-    folder: &Path,
-) -> Result<Export, StudyError> {
+fn table(sessions: &[Answers], attribute: &str, folder: &Path) -> Result<Export, StudyError> {
     let mut csv = csv::WriterBuilder::new().from_writer(Vec::new());
     let write_error = |error: csv::Error| StudyError::Write {
         file: folder.to_owned(),
@@ -128,7 +141,10 @@ fn table(
     };
     csv.write_record(COLUMNS).map_err(write_error)?;
     let (mut ratings, mut warnings) = (0, Vec::new());
-    for (_, header, answers) in sessions {
+    for Answers {
+        header, answers, ..
+    } in sessions
+    {
         if answers.len() < header.ratings {
             warnings.push(format!(
                 "{} is not complete: {} of {} ratings",

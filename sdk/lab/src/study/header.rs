@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::study::Study;
 use crate::study::error::StudyError;
-use crate::study::lines::{DeviceUsed, Header, Simulated, VERSION};
+use crate::study::lines::{DeviceUsed, Header, Simulated, SourceUsed, VERSION};
 use crate::study::plan::ParticipantPlan;
 use crate::study::read::files_of;
 
@@ -34,9 +34,17 @@ impl Header {
             files,
             device,
             ratings: plan.trials.len() * study.attributes.len(),
+            source: None,
             tool,
             simulated: None,
         })
+    }
+
+    /// The same with a source of felt forces.
+    #[must_use]
+    pub fn with_source(mut self, source: Option<SourceUsed>) -> Self {
+        self.source = source;
+        self
     }
 
     /// The same for a simulated participant.

@@ -2,8 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use htex_format::Quantity;
 use serde::{Deserialize, Serialize};
 
+use crate::record::Format;
 use crate::study::gain::GainKey;
 
 /// Version of the files of answers.
@@ -48,6 +50,9 @@ pub struct Header {
     pub device: DeviceUsed,
     /// Ratings of a complete session.
     pub ratings: usize,
+    /// The source from which the felt force is recorded; absent if it is not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<SourceUsed>,
     /// The program that began the file.
     pub tool: String,
     /// The seed of a simulated participant; absent for people.
@@ -71,6 +76,42 @@ pub struct DeviceUsed {
     pub adapter: String,
     /// Its profile; empty if there is none.
     pub profile: String,
+}
+
+/// The source of a session's felt forces, and how they are recorded.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SourceUsed {
+    /// The source, as it was named: `daq:Dev1/ai0:5`.
+    pub name: String,
+    /// Its settings, as they were given.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub settings: BTreeMap<String, String>,
+    /// The map of channels, if one was given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub map: Option<String>,
+    /// Calibration matrices, row by row.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub calibrations: Vec<Vec<f64>>,
+    /// Quantity of the texture's signal.
+    pub quantity: Quantity,
+    /// Sample rate, hertz.
+    pub rate_hz: f64,
+    /// Recorded signals: role and unit.
+    pub signals: Vec<(String, String)>,
+    /// Signals of the tracker, without the time: role and unit.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tracker: Vec<(String, String)>,
+    /// Format of the recordings.
+    pub format: Format,
+}
+
+/// A recording of what was felt in a trial.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FeltFile {
+    /// The recording in the folder of answers, with `/` between folders: `P07/felt/trial-0017-vinyl-ar.npy`.
+    pub file: String,
+    /// BLAKE3 hash of the recording, hexadecimal.
+    pub blake3: String,
 }
 
 /// A rating.
@@ -98,6 +139,9 @@ pub struct Answer {
     /// Gain that it was played with, decibels relative to the maximum; absent without gain matching.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain_db: Option<f64>,
+    /// The recording of what was felt; absent without a source.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub felt: Option<FeltFile>,
     /// Whether the participant is simulated.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub simulated: bool,

@@ -5,7 +5,7 @@ use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use crate::study::error::StudyError;
-use crate::study::lines::{Header, Line};
+use crate::study::lines::{Header, Line, SourceUsed};
 
 /// The path of a participant's answers in a folder: `P07.jsonl`.
 pub fn participant_file(folder: &Path, participant: &str) -> PathBuf {
@@ -148,6 +148,8 @@ fn same_version(path: &Path, begun: &Header, now: &Header) -> Result<(), StudyEr
             "the device was {} {}, and is {} {}",
             was.adapter, was.profile, is.adapter, is.profile
         )
+    } else if begun.source != now.source {
+        other_source(begun.source.as_ref(), now.source.as_ref())
     } else {
         return Ok(());
     };
@@ -155,6 +157,21 @@ fn same_version(path: &Path, begun: &Header, now: &Header) -> Result<(), StudyEr
         file: path.to_owned(),
         changed,
     })
+}
+
+/// What differs between two sources.
+fn other_source(begun: Option<&SourceUsed>, now: Option<&SourceUsed>) -> String {
+    let name = |source: Option<&SourceUsed>| match source {
+        Some(source) => format!("{} at {} Hz", source.name, source.rate_hz),
+        None => "not recorded".to_owned(),
+    };
+    let (was, is) = (name(begun), name(now));
+    match was == is {
+        true => format!(
+            "a setting of the felt force's source ({was}) has changed since: the settings, map, calibration, quantity, tracker or format"
+        ),
+        false => format!("the felt force was {was}, and is {is}"),
+    }
 }
 
 /// A file whose hash differs, or that only one of the two has.

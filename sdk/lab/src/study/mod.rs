@@ -11,6 +11,8 @@ mod asking;
 mod check;
 mod error;
 mod export;
+mod felt;
+mod felt_spectra;
 mod file;
 mod gain;
 mod header;
@@ -31,12 +33,14 @@ mod stimulus;
 pub use asking::{Asker, Clock, Key, Played, Rig, View};
 pub use error::StudyError;
 pub use export::{Export, export};
+pub use felt::{Felt, FeltSetup, OpenSource};
+pub use felt_spectra::{FeltSpectra, Reference, felt_spectra};
 pub use file::{
     Attribute, GainMethod, MaskingNoise, Matching, Order, Participants, Phase, Rests, Scale, Study,
     Texture, Training, VERSION,
 };
 pub use gain::{GainKey, Match};
-pub use lines::{Answer, DeviceUsed, Header, Line, Matched, Simulated};
+pub use lines::{Answer, DeviceUsed, FeltFile, Header, Line, Matched, Simulated, SourceUsed};
 pub use log::{Log, participant_file};
 pub use page::{Page, PageOptions, Touched};
 pub use plan::{ParticipantPlan, Plan, Trial};

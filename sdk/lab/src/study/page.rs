@@ -15,7 +15,7 @@ use crate::study::error::StudyError;
 use crate::study::file::GainMethod;
 use crate::study::gain::GainKey;
 
-/// A question takes no answer for this long: the second press of a key that answered the one before.
+/// A question or a matching takes no answer for this long: the second press of a key that answered the one before.
 const GUARD: Duration = Duration::from_millis(300);
 
 /// What a page is for.
@@ -184,8 +184,8 @@ impl State {
         if step != Some(self.step) || self.answered == Some(self.step) {
             return;
         }
-        let is_question = matches!(self.view, View::Question { .. });
-        if is_question && self.shown.elapsed() < GUARD {
+        let is_guarded = matches!(self.view, View::Question { .. } | View::Matching { .. });
+        if is_guarded && self.shown.elapsed() < GUARD {
             return;
         }
         if let Some(key) = key(name, &self.view) {

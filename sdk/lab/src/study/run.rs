@@ -6,6 +6,7 @@ use crate::study::asking::{Asker, Clock, Key, Played, Rig, View};
 use crate::study::error::StudyError;
 use crate::study::file::{Attribute, Phase};
 use crate::study::gain::{GainKey, Match};
+use crate::study::lines::FeltFile;
 use crate::study::plan::Trial;
 use crate::study::session::{Session, Step};
 use crate::study::simulated::SimulatedParticipant;
@@ -42,6 +43,7 @@ pub fn run<R: Rig>(
         clock,
         simulated,
         felt: None,
+        recorded: None,
     };
     loop {
         let goes_on = match run.session.step() {
@@ -67,6 +69,8 @@ struct Run<'r, 's, R: Rig> {
     simulated: Option<&'r SimulatedParticipant>,
     /// What was felt last: a trial before its questions, or a texture that is being matched.
     felt: Option<(Phase, String)>,
+    /// The recording of the trial that was felt last.
+    recorded: Option<FeltFile>,
 }
 
 impl<R: Rig> Run<'_, '_, R> {
@@ -116,7 +120,8 @@ impl<R: Rig> Run<'_, '_, R> {
             return Ok(false);
         };
         let at_ms = self.clock.now_ms();
-        self.session.rate(rating, response_ms, at_ms)?;
+        let felt = self.recorded.clone();
+        self.session.rate(rating, response_ms, at_ms, felt)?;
         Ok(true)
     }
 
@@ -130,7 +135,7 @@ impl<R: Rig> Run<'_, '_, R> {
             left |= asker.key() == Some(Key::Quit);
             left
         };
-        self.rig.play(stimulus, &mut ends)?;
+        self.recorded = self.rig.play(stimulus, &mut ends)?.felt;
         let seconds = stimulus.seconds.unwrap_or(0.0);
         self.clock.played(Duration::from_secs_f64(seconds));
         Ok(!left && !self.rig.is_interrupted())
@@ -202,6 +207,7 @@ impl<R: Rig> Run<'_, '_, R> {
         let Played {
             drive_v,
             reference_rms,
+            ..
         } = played;
         self.session.press(key, drive_v, reference_rms, at_ms)?;
         Ok(true)

@@ -6,7 +6,7 @@ use crate::study::Study;
 use crate::study::error::StudyError;
 use crate::study::file::{Attribute, Phase};
 use crate::study::gain::{GainKey, Match};
-use crate::study::lines::{Answer, Header, Line, Matched};
+use crate::study::lines::{Answer, FeltFile, Header, Line, Matched};
 use crate::study::log::{Log, participant_file};
 use crate::study::plan::{ParticipantPlan, Trial};
 use crate::study::progress::Progress;
@@ -43,6 +43,7 @@ pub struct Session<'a> {
     log: Log,
     progress: Progress,
     is_simulated: bool,
+    is_recorded: bool,
 }
 
 impl<'a> Session<'a> {
@@ -73,6 +74,7 @@ impl<'a> Session<'a> {
             log,
             progress,
             is_simulated: header.simulated.is_some(),
+            is_recorded: header.source.is_some(),
         })
     }
 
@@ -126,6 +128,7 @@ impl<'a> Session<'a> {
             seed: self.seed(name, trial.number),
             gain_db: found.map(|found| found.gain_db),
             reference_rms: found.map(|found| found.reference_rms),
+            felt: self.is_recorded.then(|| felt_name(name, trial)),
             file: format!("{name}-{:04}", trial.number),
         }
     }
@@ -139,6 +142,7 @@ impl<'a> Session<'a> {
             seed: self.seed(&format!("gain {texture}"), 0),
             gain_db: Some(matching.gain_db()),
             reference_rms: None,
+            felt: None,
             file: format!("gain-{texture}"),
         }
     }
@@ -149,11 +153,17 @@ impl<'a> Session<'a> {
         crate::study::random::Dice::new(self.study.seed, &purpose).bits()
     }
 
-    /// Records a rating of the present step.
+    /// Records a rating of the present step, and the recording of what was felt before it.
     ///
     /// # Errors
     /// [`StudyError::Write`], and [`StudyError::Line`] if the present step takes no such rating.
-    pub fn rate(&mut self, rating: u8, response_ms: u64, at_ms: u64) -> Result<(), StudyError> {
+    pub fn rate(
+        &mut self,
+        rating: u8,
+        response_ms: u64,
+        at_ms: u64,
+        felt: Option<FeltFile>,
+    ) -> Result<(), StudyError> {
         let Step::Rate(phase, trial, attribute) = self.step() else {
             return Err(self.misplaced("no trial is rated now"));
         };
@@ -168,6 +178,7 @@ impl<'a> Session<'a> {
             rating,
             response_ms,
             at_ms,
+            felt,
             simulated: self.is_simulated,
         };
         self.record(match phase {
@@ -237,4 +248,17 @@ impl<'a> Session<'a> {
             problem: problem.to_owned(),
         }
     }
+}
+
+/// The name of a trial's recording: its phase, number, texture and model, in characters that every file system takes.
+fn felt_name(phase: &str, trial: &Trial) -> String {
+    let name = format!(
+        "{phase}-{:04}-{}-{}",
+        trial.number, trial.texture, trial.model
+    );
+    let plain = |c: char| match c.is_ascii_alphanumeric() || "-_.".contains(c) {
+        true => c,
+        false => '_',
+    };
+    name.chars().map(plain).take(120).collect()
 }

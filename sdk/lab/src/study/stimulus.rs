@@ -26,6 +26,8 @@ pub struct Stimulus {
     pub gain_db: Option<f64>,
     /// The RMS at which the gain was found, in the assets' unit, for devices whose levels are `own`.
     pub reference_rms: Option<f64>,
+    /// Name of the recording of what is felt, without extension; `None` if it is not recorded.
+    pub felt: Option<String>,
     /// Name for a file that it is played to: `training-003`, `trial-017`, `gain-vinyl-02`.
     pub file: String,
 }

@@ -1,46 +1,38 @@
-//! Arguments about the source, its channels and the tracker.
+//! Arguments about a source's channels and a tracker, and opening of sources, shared by the commands that record.
 
+use std::collections::BTreeMap;
 use std::io::{BufReader, IsTerminal};
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use htex_author::read::ColumnMap;
 use htex_device::Source;
 use htex_format::Quantity;
-use htex_lab::record::{Calibration, LineTracker, Signals, TableTracker, TrackerRows};
+use htex_lab::record::{Calibration, Format, LineTracker, Signals, TableTracker, TrackerRows};
 
-use crate::devices::SettingArgs;
 use crate::failure::Failure;
 use crate::sources::SourceArgs;
 
-/// What is recorded from.
+/// The signals of a source, and a tracker beside it.
 #[derive(Args)]
 #[command(next_help_heading = "Source")]
-pub(super) struct InputArgs {
-    /// Where the signals come from: a recording that is replayed (file:rec.csv), analog inputs of a National Instruments card
-    /// (daq:Dev1/ai0:5), or another source of `htex device list`
-    #[arg(long, value_name = "NAME:TARGET")]
-    pub(super) source: String,
-
+pub(crate) struct InputArgs {
     #[command(flatten)]
-    sources: SourceArgs,
-
-    #[command(flatten)]
-    settings: SettingArgs,
+    pub(crate) sources: SourceArgs,
 
     /// Roles and scales of the channels, as in `htex fit`: lateral_x=fx1+fx2,normal=-fz*0.31. Without it channels are
     /// known by their names
     #[arg(long, value_name = "MAP")]
-    pub(super) map: Option<String>,
+    pub(crate) map: Option<String>,
 
     /// Calibration of a six-axis sensor on the first six channels, whose names become fx, fy, fz, tx, ty, tz: six rows of six
     /// numbers (N and N m for a volt) as CSV, or `matrix` in TOML. A second one is that of the next six; axes are then fx1, fx2, …
     #[arg(long, value_name = "FILE")]
     calibration: Vec<PathBuf>,
 
-    /// What the texture's signal is: lateral-force, normal-force, acceleration, velocity, displacement
-    #[arg(long, value_name = "NAME", default_value = "lateral-force", value_parser = super::quantity)]
-    quantity: Quantity,
+    /// What the texture's signal is: lateral-force, normal-force, acceleration, velocity, displacement [default: lateral-force]
+    #[arg(long, value_name = "NAME", value_parser = quantity)]
+    quantity: Option<Quantity>,
 
     /// The finger's motion: a file to replay (file:track.csv), or lines `x_mm y_mm` from a pipe or port (lines:/dev/ttyACM0) or
     /// from standard input (lines:-)
@@ -51,43 +43,73 @@ pub(super) struct InputArgs {
     #[arg(long, value_name = "MAP", requires = "tracker")]
     tracker_map: Option<String>,
 
-    /// Replay files without waiting
-    #[arg(long)]
-    pub(super) fast: bool,
+    /// Format of the recordings [default: csv; of trials npy, which takes a third of the space]
+    #[arg(long, value_enum)]
+    format: Option<FormatArg>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum FormatArg {
+    Csv,
+    Npy,
+    Wav,
+}
+
+/// Settings of a source; files are replayed without waiting if `is_fast`.
+pub(crate) fn paced(
+    source: &str,
+    mut given: BTreeMap<String, String>,
+    is_fast: bool,
+) -> BTreeMap<String, String> {
+    if is_fast && source.starts_with("file:") {
+        given.insert("pace".to_owned(), "fast".to_owned());
+    }
+    given
 }
 
 impl InputArgs {
-    pub(super) fn quantity(&self) -> Quantity {
-        self.quantity
+    pub(crate) fn quantity(&self) -> Quantity {
+        self.quantity.unwrap_or_default()
     }
 
-    pub(super) fn open(&self) -> Result<Box<dyn Source>, Failure> {
-        let mut given = self.settings.given()?;
-        if self.fast {
-            if !self.source.starts_with("file:") {
-                let sentence = "--fast replays files; other sources come at their own pace";
-                return Err(Failure::Usage(sentence.to_owned()));
-            }
-            given.insert("pace".to_owned(), "fast".to_owned());
-        }
-        self.sources.open(&self.source, &self.settings, &given)
+    /// Whether any of these was given.
+    pub(crate) fn is_given(&self) -> bool {
+        self.map.is_some()
+            || !self.calibration.is_empty()
+            || self.quantity.is_some()
+            || self.tracker.is_some()
+            || self.format.is_some()
     }
 
-    pub(super) fn signals(&self, source: &dyn Source) -> Result<Signals, Failure> {
+    /// The format that was given.
+    pub(crate) fn format(&self) -> Option<Format> {
+        self.format.map(|format| match format {
+            FormatArg::Csv => Format::Csv,
+            FormatArg::Npy => Format::Npy,
+            FormatArg::Wav => Format::Wav,
+        })
+    }
+
+    /// Whether a tracker's lines come from standard input.
+    pub(crate) fn tracks_stdin(&self) -> bool {
+        self.tracker.as_deref() == Some("lines:-")
+    }
+
+    pub(crate) fn signals(&self, name: &str, source: &dyn Source) -> Result<Signals, Failure> {
         let map = parsed(self.map.as_deref())?;
         let calibrations = self.calibration.iter().map(|path| Calibration::read(path));
         let calibrations = calibrations.collect::<Result<_, _>>()?;
         let signals = Signals::new(
-            &self.source,
+            name,
             source.channels(),
             calibrations,
             map.as_ref(),
-            self.quantity,
+            self.quantity(),
         )?;
         Ok(signals)
     }
 
-    pub(super) fn tracker(&self) -> Result<Option<Box<dyn TrackerRows>>, Failure> {
+    pub(crate) fn tracker(&self) -> Result<Option<Box<dyn TrackerRows>>, Failure> {
         let Some(text) = &self.tracker else {
             return Ok(None);
         };
@@ -117,4 +139,15 @@ impl InputArgs {
 
 fn parsed(map: Option<&str>) -> Result<Option<ColumnMap>, Failure> {
     Ok(map.map(str::parse).transpose()?)
+}
+
+/// The quantities that are recorded, by their names on the command line.
+fn quantity(name: &str) -> Result<Quantity, String> {
+    Quantity::from_name(&name.replace('-', "_")).ok_or_else(|| {
+        let names = Quantity::ALL.iter().map(|q| q.name().replace('_', "-"));
+        format!(
+            "the quantities are {}",
+            names.collect::<Vec<_>>().join(", ")
+        )
+    })
 }

@@ -1,0 +1,98 @@
+//! Recording of what is felt during the trials of a study.
+
+use std::path::Path;
+
+use clap::Args;
+use htex_author::Exploration;
+use htex_lab::record::Format;
+use htex_lab::study::{Felt, FeltSetup, Study};
+use htex_scene::file::Motion;
+
+use super::asker::AskingArgs;
+use crate::devices::pairs;
+use crate::failure::Failure;
+use crate::inputs::{InputArgs, paced};
+use crate::models::tool;
+use crate::output::warn;
+
+/// Where what is felt comes from.
+#[derive(Args)]
+pub(super) struct FeltArgs {
+    /// Record what is felt during each trial: from analog inputs of a National Instruments card (daq:Dev1/ai0:5), from a recording
+    /// that is replayed for each trial (file:rec.csv), or from another source of `htex device list`
+    #[arg(long, value_name = "NAME:TARGET", help_heading = "Source")]
+    source: Option<String>,
+
+    /// A setting of the source, such as rate_hz=20000; may be given several times
+    #[arg(
+        long = "source-set",
+        value_name = "NAME=VALUE",
+        help_heading = "Source",
+        requires = "source"
+    )]
+    source_settings: Vec<String>,
+
+    #[command(flatten)]
+    input: InputArgs,
+}
+
+impl FeltArgs {
+    /// Refuses a combination that cannot work.
+    pub(super) fn check(&self, asking: &AskingArgs, is_simulated: bool) -> Result<(), Failure> {
+        let problem = if self.source.is_none() && self.input.is_given() {
+            "--map, --calibration, --quantity, --tracker and --format are about what is felt; give --source, too"
+        } else if self.input.tracks_stdin() && asking.reads_stdin(is_simulated) {
+            "--tracker lines:-: standard input cannot be both the tracker and the answers or the motion; give the tracker's port"
+        } else {
+            return Ok(());
+        };
+        Err(Failure::Usage(problem.to_owned()))
+    }
+
+    /// A recorder for a participant, if there is a source.
+    pub(super) fn open(
+        &self,
+        study: &Study,
+        folder: &Path,
+        participant: &str,
+        is_fast: bool,
+    ) -> Result<Option<Felt>, Failure> {
+        let Some(name) = self.source.clone() else {
+            return Ok(None);
+        };
+        let asked = pairs("--source-set", &self.source_settings)?;
+        let given = paced(&name, asked.clone(), is_fast);
+        let sources = self.input.sources.sources()?;
+        let source = sources.open(&name, None, &given)?;
+        let signals = self.input.signals(&name, &*source)?;
+        warn(signals.warnings());
+        let rate_hz = source.rate_hz();
+        drop(source);
+        let setup = FeltSetup {
+            folder: folder.to_owned(),
+            participant: participant.to_owned(),
+            source: name.clone(),
+            settings: asked,
+            map: self.input.map.clone(),
+            quantity: self.input.quantity(),
+            target: target(study),
+            format: self.input.format().unwrap_or(Format::Npy),
+            tool: tool(),
+            is_fast,
+        };
+        let open = Box::new(move || sources.open(&name, None, &given));
+        let tracker = self.input.tracker()?;
+        Ok(Some(Felt::new(setup, open, rate_hz, signals, tracker)?))
+    }
+}
+
+/// Speed and force of a motion that has only one of each.
+pub(super) fn target(study: &Study) -> Exploration {
+    match &study.motion {
+        Motion::Constant(motion) => Exploration {
+            speed_mm_s: Some(motion.speed_mm_s.abs()),
+            force_n: Some(motion.force_n),
+        },
+        _ => Exploration::default(),
+    }
+}

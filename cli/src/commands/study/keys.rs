@@ -1,0 +1,208 @@
+//! Single keys of a terminal, without Enter.
+
+use std::io::Read;
+use std::sync::mpsc::{Receiver, channel};
+use std::time::{Duration, Instant};
+
+use htex_lab::study::{GainKey, Key, View};
+use rustix::stdio::stdin;
+use rustix::termios::{
+    LocalModes, OptionalActions, SpecialCodeIndex, Termios, tcgetattr, tcsetattr,
+};
+
+/// A key that comes again within this time is held.
+const HELD: Duration = Duration::from_millis(700);
+/// A question takes no answer for this long: the press may have been meant for what was shown before.
+const GUARD: Duration = Duration::from_millis(300);
+
+/// A key of a keyboard.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Press {
+    Char(char),
+    Up,
+    Down,
+    PageUp,
+    PageDown,
+    /// The end of the input.
+    End,
+    /// Any other key.
+    Other,
+}
+
+impl Press {
+    /// Its name in messages.
+    pub(super) fn name(self) -> String {
+        match self {
+            Self::Char(key) => key.to_string(),
+            Self::Up => "Up".to_owned(),
+            Self::Down => "Down".to_owned(),
+            Self::PageUp => "Page Up".to_owned(),
+            Self::PageDown => "Page Down".to_owned(),
+            Self::End | Self::Other => "this key".to_owned(),
+        }
+    }
+}
+
+/// Keys of the terminal at standard input, whose settings are restored when this is dropped. Ctrl-C stays a signal.
+pub(super) struct Keys {
+    before: Termios,
+    presses: Receiver<Press>,
+    /// The key that came last, and when.
+    last: Option<(Press, Instant)>,
+    shown: Instant,
+}
+
+impl Keys {
+    /// Takes single keys from now on; `None` if standard input does not have such settings.
+    pub(super) fn begin() -> Option<Self> {
+        let before = tcgetattr(stdin()).ok()?;
+        let mut single = before.clone();
+        single.local_modes -= LocalModes::ICANON | LocalModes::ECHO;
+        single.special_codes[SpecialCodeIndex::VMIN] = 1;
+        single.special_codes[SpecialCodeIndex::VTIME] = 0;
+        tcsetattr(stdin(), OptionalActions::Now, &single).ok()?;
+        let (sender, presses) = channel();
+        std::thread::spawn(move || {
+            let mut bytes = [0; 64];
+            loop {
+                let count = std::io::stdin().lock().read(&mut bytes).unwrap_or(0);
+                let read = match count {
+                    0 => vec![Press::End],
+                    _ => presses_of(&bytes[..count]),
+                };
+                if read.into_iter().any(|press| sender.send(press).is_err()) || count == 0 {
+                    return;
+                }
+            }
+        });
+        Some(Self {
+            before,
+            presses,
+            last: None,
+            shown: Instant::now(),
+        })
+    }
+
+    /// Forgets the keys before something is shown.
+    pub(super) fn forget(&mut self) {
+        while let Some(press) = self.pressed() {
+            if press == Press::End {
+                self.last = Some((Press::End, Instant::now()));
+                break;
+            }
+        }
+        self.shown = Instant::now();
+    }
+
+    /// The next key that is not held.
+    pub(super) fn next(&mut self, view: &View) -> Option<Press> {
+        if matches!(self.last, Some((Press::End, _))) {
+            return Some(Press::End);
+        }
+        loop {
+            let before = self.last;
+            let press = self.pressed()?;
+            let is_held = before.is_some_and(|(own, at)| own == press && at.elapsed() < HELD);
+            let is_early = matches!(view, View::Question { .. }) && self.shown.elapsed() < GUARD;
+            if press == Press::End || !(is_held || is_early) {
+                return Some(press);
+            }
+        }
+    }
+
+    fn pressed(&mut self) -> Option<Press> {
+        let press = self.presses.try_recv().ok()?;
+        self.last = Some((press, Instant::now()));
+        Some(press)
+    }
+}
+
+impl Drop for Keys {
+    fn drop(&mut self) {
+        // Nothing can be done about a terminal that is gone.
+        let _ = tcsetattr(stdin(), OptionalActions::Flush, &self.before);
+    }
+}
+
+/// The keys of the bytes that a terminal sent at once.
+fn presses_of(bytes: &[u8]) -> Vec<Press> {
+    let mut presses = Vec::new();
+    let mut rest = bytes;
+    while let Some(first) = rest.first() {
+        let special = [
+            (&b"\x1b[A"[..], Press::Up),
+            (b"\x1bOA", Press::Up),
+            (b"\x1b[B", Press::Down),
+            (b"\x1bOB", Press::Down),
+            (b"\x1b[5~", Press::PageUp),
+            (b"\x1b[6~", Press::PageDown),
+        ];
+        if let Some((code, press)) = special.iter().find(|(code, _)| rest.starts_with(code)) {
+            presses.push(*press);
+            rest = &rest[code.len()..];
+            continue;
+        }
+        presses.push(match first {
+            // Ctrl-D
+            4 => Press::End,
+            b' '..=b'~' | b'\r' | b'\n' => Press::Char(char::from(*first)),
+            _ => Press::Other,
+        });
+        // What follows an escape that is not known belongs to it.
+        rest = match first {
+            0x1b => &[],
+            _ => &rest[1..],
+        };
+    }
+    presses
+}
+
+/// The meaning of a key.
+pub(super) fn meaning(press: Press, view: &View) -> Option<Key> {
+    let is_matching = matches!(view, View::Matching { .. });
+    Some(match press {
+        Press::End | Press::Char('q') => Key::Quit,
+        Press::Char('\r' | '\n') if is_matching => Key::Gain(GainKey::Accept),
+        Press::Char('\r' | '\n' | ' ') if !is_matching => Key::Go,
+        Press::Up | Press::Char('+' | '=') => Key::Gain(GainKey::Stronger),
+        Press::Down | Press::Char('-') => Key::Gain(GainKey::Weaker),
+        Press::PageUp => Key::Gain(GainKey::MuchStronger),
+        Press::PageDown => Key::Gain(GainKey::MuchWeaker),
+        Press::Char(digit) => match (view, digit.to_digit(10)) {
+            (View::Question { scale, .. }, Some(digit))
+                if (u32::from(scale.min)..=u32::from(scale.max)).contains(&digit) =>
+            {
+                Key::Digit(digit as u8)
+            }
+            _ => return None,
+        },
+        Press::Other => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_are_told_from_their_bytes() {
+        let bytes = b"3\x1b[A\x1bOB\x1b[5~\x1b[6~-\r\x04";
+        let expected = [
+            Press::Char('3'),
+            Press::Up,
+            Press::Down,
+            Press::PageUp,
+            Press::PageDown,
+            Press::Char('-'),
+            Press::Char('\r'),
+            Press::End,
+        ];
+        assert_eq!(presses_of(bytes), expected);
+        assert_eq!(
+            presses_of(b"\x1b[15~"),
+            [Press::Other],
+            "no digits of a function key"
+        );
+        assert_eq!(presses_of("ä".as_bytes()), [Press::Other; 2]);
+    }
+}

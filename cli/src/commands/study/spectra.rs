@@ -1,0 +1,94 @@
+//! The table of spectra of what was felt.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use htex_author::settings::ReadingSettings;
+use htex_lab::study::{FeltSpectra, Reference, felt_spectra};
+
+use super::felt::target;
+use super::open;
+use crate::failure::Failure;
+use crate::located;
+use crate::recordings::RecordingArgs;
+
+/// What was felt, and the real textures.
+#[derive(Args)]
+#[command(next_help_heading = "Spectra")]
+pub(super) struct SpectraArgs {
+    /// The table of spectra to write, CSV: what each participant felt of each texture and model, averaged over its trials, and the
+    /// spectrum of each real texture; `htex study analyse --spectra` reads it
+    #[arg(long, value_name = "FILE", value_parser = located::OUTPUT)]
+    spectra: Option<PathBuf>,
+
+    /// The study, whose assets have the spectra of the real textures
+    #[arg(long, value_name = "FILE", requires = "spectra")]
+    study: Option<PathBuf>,
+
+    /// Response of the sensor during the study to divide out of what was felt: CSV as that of --frf
+    #[arg(long, value_name = "CSV", requires = "spectra", value_parser = located::RECORDING)]
+    felt_frf: Option<PathBuf>,
+
+    /// The recording of a real texture, in place of the asset's spectrum; may be given several times. The options of reading recordings
+    /// are about these
+    #[arg(long, value_name = "TEXTURE=FILE", requires = "spectra")]
+    recorded: Vec<String>,
+
+    #[command(flatten)]
+    reading: RecordingArgs,
+}
+
+impl SpectraArgs {
+    /// The table and its file, if one is asked for.
+    pub(super) fn table(&self, folder: &Path) -> Result<Option<(&Path, FeltSpectra)>, Failure> {
+        if self.recorded.is_empty() && self.reading.is_given() {
+            let sentence =
+                "the options of reading recordings are about those of --recorded; give one, too";
+            return Err(Failure::Usage(sentence.to_owned()));
+        }
+        let Some(file) = &self.spectra else {
+            return Ok(None);
+        };
+        let options = self.reading.spectrum_options()?;
+        let felt = ReadingSettings {
+            response: self.felt_frf.clone(),
+            ..ReadingSettings::default()
+        };
+        let felt = felt.spectrum_options()?;
+        let mut recorded = self.of_assets()?;
+        for text in &self.recorded {
+            let (texture, file) = text.split_once('=').ok_or_else(|| {
+                Failure::Usage(format!("--recorded {text}: it looks like TEXTURE=FILE"))
+            })?;
+            let file = Path::new(file);
+            let take = self.reading.read_one(file)?;
+            let reference = Reference::of_recording(&take, file, &options, self.reading.strict())?;
+            recorded.insert(texture.to_owned(), reference);
+        }
+        let spectra = felt_spectra(folder, &recorded, &felt)?;
+        Ok(Some((file, spectra)))
+    }
+
+    /// The spectra that the study's assets have, of the textures whose recording was not given.
+    fn of_assets(&self) -> Result<BTreeMap<String, Reference>, Failure> {
+        let Some(path) = &self.study else {
+            return Ok(BTreeMap::new());
+        };
+        let study = open(path)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let is_given = |name: &str| {
+            let named = |text: &String| text.split_once('=').is_some_and(|(own, _)| own == name);
+            self.recorded.iter().any(named)
+        };
+        let mut recorded = BTreeMap::new();
+        for texture in &study.textures {
+            let name = texture.name();
+            if !is_given(&name) {
+                let reference = Reference::of_asset(&folder.join(&texture.asset), target(&study))?;
+                recorded.insert(name, reference);
+            }
+        }
+        Ok(recorded)
+    }
+}

@@ -1,0 +1,363 @@
+//! Recording of what is felt while a trial plays: a source is read in a thread of its own.
+//!
+//! The source is opened anew for each trial, so that a trial's recording does not depend on the ones before it.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
+use std::thread::JoinHandle;
+
+use htex_author::Exploration;
+use htex_author::read::Role;
+use htex_device::{DeviceError, Source};
+use htex_format::Quantity;
+use serde_json::json;
+
+use crate::record::{
+    Format, Inputs, Reader, RecordError, Signals, TakeData, TakeHeader, TrackerRows, judge,
+    write_signals,
+};
+use crate::study::asking::Played;
+use crate::study::error::StudyError;
+use crate::study::lines::{FeltFile, SourceUsed};
+use crate::study::stimulus::Stimulus;
+
+/// Folder of the recordings of a participant.
+const FOLDER: &str = "felt";
+/// How far the motion may be from that of the study, for the judgement beside a recording.
+const TOLERANCE: f64 = 0.1;
+
+/// Opens the source.
+pub type OpenSource = Box<dyn Fn() -> Result<Box<dyn Source>, DeviceError>>;
+
+/// What is recorded, and where.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FeltSetup {
+    /// Folder of the answers.
+    pub folder: PathBuf,
+    /// The participant.
+    pub participant: String,
+    /// The source, as it was named.
+    pub source: String,
+    /// Its settings, as they were given.
+    pub settings: BTreeMap<String, String>,
+    /// The map of channels, as it was given.
+    pub map: Option<String>,
+    /// Quantity of the texture's signal.
+    pub quantity: Quantity,
+    /// Speed and normal force of the study's motion, where it has only one.
+    pub target: Exploration,
+    /// Format of the recordings.
+    pub format: Format,
+    /// Program and version.
+    pub tool: String,
+    /// Whether a recording begins with the first sample of the source instead of the first that is played: trials without waiting have
+    /// no clock in common with the source.
+    pub is_fast: bool,
+}
+
+/// Recorder of felt forces.
+pub struct Felt {
+    setup: FeltSetup,
+    open: OpenSource,
+    rate_hz: f64,
+    /// `None` while a thread has them.
+    inputs: Option<Inputs>,
+    running: Option<Running>,
+}
+
+/// A recording in progress.
+struct Running {
+    shared: Arc<Shared>,
+    thread: JoinHandle<(Inputs, Result<TakeData, RecordError>)>,
+}
+
+#[derive(Default)]
+struct Shared {
+    stop: AtomicBool,
+    failed: AtomicBool,
+    /// Seconds until the first sample that is played is at the display.
+    lead_s: OnceLock<f64>,
+}
+
+impl Felt {
+    /// Makes a recorder, and the folder of its recordings, in which nothing of a program that was killed is left. `signals` are those of
+    /// the source, whose rate is `rate_hz`.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`], and [`RecordError::Setup`] if the format cannot have this rate.
+    pub fn new(
+        setup: FeltSetup,
+        open: OpenSource,
+        rate_hz: f64,
+        signals: Signals,
+        tracker: Option<Box<dyn TrackerRows>>,
+    ) -> Result<Self, RecordError> {
+        setup.format.check(rate_hz)?;
+        let folder = setup.folder.join(&setup.participant).join(FOLDER);
+        remove_unfinished(&folder).map_err(|error| RecordError::write(&folder, error))?;
+        let inputs = Some(Inputs { signals, tracker });
+        Ok(Self {
+            setup,
+            open,
+            rate_hz,
+            inputs,
+            running: None,
+        })
+    }
+
+    /// The source, for the header of answers.
+    pub fn used(&self) -> Option<SourceUsed> {
+        let inputs = self.inputs.as_ref()?;
+        let setup = &self.setup;
+        Some(SourceUsed {
+            name: setup.source.clone(),
+            settings: setup.settings.clone(),
+            map: setup.map.clone(),
+            calibrations: inputs.signals.calibrations(),
+            quantity: setup.quantity,
+            rate_hz: self.rate_hz,
+            signals: inputs.signals.list(),
+            tracker: inputs.tracked(),
+            format: setup.format,
+        })
+    }
+
+    /// Starts the source for a trial. What comes before [`Self::sounds`] is left out.
+    ///
+    /// # Errors
+    /// When the source cannot be opened or started, or has another rate than before.
+    pub fn begin(&mut self, name: &str, seconds: f64) -> Result<(), RecordError> {
+        self.abort();
+        let mut source = (self.open)()?;
+        if source.rate_hz() != self.rate_hz {
+            return Err(RecordError::Setup {
+                what: "the sample rate of the source",
+                value: source.rate_hz().to_string(),
+                allowed: "it is the one that it had at the beginning of the session",
+            });
+        }
+        let Some(mut inputs) = self.inputs.take() else {
+            return Err(DeviceError::Closed(self.setup.source.clone()).into());
+        };
+        if let Some(tracker) = &mut inputs.tracker {
+            tracker.restart();
+        }
+        let header = self.header(name, seconds, &inputs);
+        if let Err(error) = source.start() {
+            self.inputs = Some(inputs);
+            return Err(error.into());
+        }
+        let shared = Arc::new(Shared::default());
+        if self.setup.is_fast {
+            let _ = shared.lead_s.set(0.0);
+        }
+        let reader = Reader::new(source, inputs, seconds);
+        let of_thread = Arc::clone(&shared);
+        let thread = std::thread::spawn(move || read(reader, header, &of_thread));
+        self.running = Some(Running { shared, thread });
+        Ok(())
+    }
+
+    fn header(&self, name: &str, seconds: f64, inputs: &Inputs) -> TakeHeader {
+        let setup = &self.setup;
+        let signals = inputs.signals.list();
+        // A target of what is not measured cannot be judged.
+        let is_motion = |(role, _): &(String, String)| ["x", "y", "speed"].contains(&&role[..]);
+        let moves = signals.iter().chain(&inputs.tracked()).any(is_motion);
+        let normal = inputs.signals.position(Role::Normal);
+        TakeHeader {
+            htex_take: 1,
+            name: name.to_owned(),
+            number: 1,
+            tool: setup.tool.clone(),
+            source: setup.source.clone(),
+            map: setup.map.clone(),
+            calibrations: inputs.signals.calibrations(),
+            quantity: setup.quantity,
+            rate_hz: self.rate_hz,
+            seconds,
+            signals,
+            tare: Vec::new(),
+            tracker: inputs.tracked(),
+            target_speed_mm_s: setup.target.speed_mm_s.filter(|_| moves),
+            target_force_n: setup.target.force_n.filter(|_| normal.is_some()),
+            tolerance: TOLERANCE,
+            format: setup.format,
+        }
+    }
+
+    /// The first sample that is played is at the display in so many seconds: the recording begins there.
+    pub fn sounds(&self, lead_s: f64) {
+        if let Some(running) = &self.running {
+            // Only the first time counts.
+            let _ = running.shared.lead_s.set(lead_s.max(0.0));
+        }
+    }
+
+    /// Whether a recording waits for [`Self::sounds`].
+    pub fn waits(&self) -> bool {
+        let running = self.running.as_ref();
+        running.is_some_and(|running| running.shared.lead_s.get().is_none())
+    }
+
+    /// Whether the recording has ended with an error, which [`Self::finish`] returns.
+    pub fn has_failed(&self) -> bool {
+        let running = self.running.as_ref();
+        running.is_some_and(|running| running.shared.failed.load(Ordering::Acquire))
+    }
+
+    /// Waits for the end of the recording, writes it and JSON beside it, and returns it when both are on disk; `None` if nothing was
+    /// recorded.
+    ///
+    /// # Errors
+    /// Those of the source, and [`RecordError::Write`].
+    pub fn finish(
+        &mut self,
+        stimulus: &Stimulus,
+        played: &Played,
+    ) -> Result<Option<FeltFile>, StudyError> {
+        let (Some(name), Some(data)) = (&stimulus.felt, self.end()) else {
+            return Ok(None);
+        };
+        let data = data?;
+        let verdict = judge(&data);
+        let participant = &self.setup.participant;
+        let folder = self.setup.folder.join(participant).join(FOLDER);
+        let written = write_signals(&folder, name, &data, &|fit| {
+            json!({
+                "trial": {
+                    "participant": participant,
+                    "texture": stimulus.texture,
+                    "model": stimulus.model,
+                    "seed": stimulus.seed,
+                    "gain_db": stimulus.gain_db,
+                    "drive_v": played.drive_v,
+                    "speed_mm_s": self.setup.target.speed_mm_s,
+                    "force_n": self.setup.target.force_n,
+                },
+                "take": data.header,
+                "frames": data.frames(),
+                "verdict": verdict,
+                "fit": fit.iter().map(|text| within(&self.setup.folder, text)).collect::<Vec<_>>(),
+            })
+        })?;
+        let file = written.recording.file_name().unwrap_or_default();
+        Ok(Some(FeltFile {
+            file: format!("{participant}/{FOLDER}/{}", file.to_string_lossy()),
+            blake3: hash(&written.recording)?,
+        }))
+    }
+
+    /// Ends a recording of which nothing is kept.
+    pub fn abort(&mut self) {
+        if let Some(running) = &self.running {
+            running.shared.stop.store(true, Ordering::Release);
+        }
+        let _ = self.end();
+    }
+
+    fn end(&mut self) -> Option<Result<TakeData, RecordError>> {
+        let running = self.running.take()?;
+        let (inputs, data) = running.thread.join().ok()?;
+        self.inputs = Some(inputs);
+        Some(data)
+    }
+}
+
+impl Drop for Felt {
+    fn drop(&mut self) {
+        self.abort();
+    }
+}
+
+/// A path relative to the folder of answers; any other text unchanged.
+fn within(folder: &Path, text: &str) -> String {
+    let inner = Path::new(text).strip_prefix(folder);
+    inner.map_or_else(|_| text.to_owned(), |path| path.display().to_string())
+}
+
+/// The BLAKE3 hash of a recording, hexadecimal.
+pub(crate) fn hash(file: &Path) -> Result<String, StudyError> {
+    let bytes = std::fs::read(file).map_err(|error| StudyError::Read {
+        file: file.to_owned(),
+        error,
+    })?;
+    Ok(blake3::hash(&bytes).to_hex().to_string())
+}
+
+fn read(
+    mut reader: Reader,
+    header: TakeHeader,
+    shared: &Shared,
+) -> (Inputs, Result<TakeData, RecordError>) {
+    let mut data = TakeData::empty(header);
+    let taken = take(&mut reader, &mut data, shared);
+    let stopped = reader.source.stop();
+    let result = taken.and(stopped.map_err(RecordError::from));
+    shared.failed.store(result.is_err(), Ordering::Release);
+    (reader.inputs, result.map(|()| data))
+}
+
+/// Reads until the recording is complete, or is not wanted any more.
+fn take(reader: &mut Reader, data: &mut TakeData, shared: &Shared) -> Result<(), RecordError> {
+    let frames = data.header.frames();
+    let mut begin = None;
+    while data.frames() < frames && !shared.stop.load(Ordering::Acquire) {
+        // Known before the block is read, which is then the first of the recording.
+        if let (None, Some(lead_s)) = (begin, shared.lead_s.get()) {
+            begin = Some(reader.now_s() + lead_s);
+        }
+        let left = match begin {
+            Some(begin_s) => frames - data.frames() + lead(reader, begin_s, data),
+            None => frames,
+        };
+        let Some(block) = reader.block(left as u64).map_err(|e| after(e, data))? else {
+            continue;
+        };
+        let Some(begin_s) = begin else { continue };
+        block.check(&data.header)?;
+        let before = ((begin_s - block.begin_s) * data.header.rate_hz)
+            .round()
+            .max(0.0) as usize;
+        let width = data.header.signals.len();
+        let values = block.interleaved();
+        data.extend(&values[(before * width).min(values.len())..]);
+        let rows = block.rows_since(&data.header, begin_s);
+        data.extend_tracker(&rows);
+    }
+    Ok(())
+}
+
+/// Frames that come before the recording begins.
+fn lead(reader: &Reader, begin_s: f64, data: &TakeData) -> usize {
+    ((begin_s - reader.now_s()) * data.header.rate_hz)
+        .round()
+        .max(0.0) as usize
+}
+
+/// The error of a source that has ended, with what was recorded until then.
+fn after(error: RecordError, data: &TakeData) -> RecordError {
+    match error {
+        RecordError::Ended { seconds, kept, .. } => RecordError::Ended {
+            after_s: data.recorded_s(),
+            seconds,
+            kept,
+        },
+        error => error,
+    }
+}
+
+/// Makes a folder, and removes files in it that a program that was killed had not finished.
+fn remove_unfinished(folder: &Path) -> std::io::Result<()> {
+    std::fs::create_dir_all(folder)?;
+    for entry in std::fs::read_dir(folder)? {
+        let path = entry?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        if name.starts_with(".htex-") && name.ends_with(".part") {
+            std::fs::remove_file(&path)?;
+        }
+    }
+    Ok(())
+}

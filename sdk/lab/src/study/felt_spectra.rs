@@ -1,0 +1,273 @@
+//! Spectra of what was felt, as a table for [`crate::analyse`].
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use htex_author::read::read_recording;
+use htex_author::settings::ReadingSettings;
+use htex_author::{Exploration, SegmentSpectra, SpectrumOptions, Take, TextureSpectrum, read_take};
+use htex_dsp::Band;
+use htex_format::{Asset, Condition, Quantity};
+use serde_json::Value;
+
+use crate::record::{TakeHeader, reading_of};
+use crate::study::error::StudyError;
+use crate::study::export::sessions_of;
+use crate::study::felt::hash;
+use crate::study::lines::FeltFile;
+
+/// Participant and model of the lines of the real textures.
+const RECORDED: &str = "recorded";
+
+/// The spectrum of a real texture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reference {
+    /// Its quantity.
+    pub quantity: Quantity,
+    /// Magnitudes at 20, 25, …, 1000 Hz.
+    pub magnitude: Vec<f64>,
+}
+
+/// A table of spectra.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FeltSpectra {
+    /// The table as CSV: participant, texture, model, then a magnitude at 20, 25, …, 1000 Hz; at its end a line for each real texture.
+    pub csv: String,
+    /// Recordings that were read.
+    pub recordings: usize,
+    /// What an analysis must know, each a sentence.
+    pub warnings: Vec<String>,
+}
+
+impl Reference {
+    /// The spectrum of a recording; with `strict` no problem of its signals is accepted.
+    ///
+    /// # Errors
+    /// [`StudyError::Spectrum`] if they cannot be read as textures from 20 to 1000 Hz.
+    pub fn of_recording(
+        take: &Take,
+        file: &Path,
+        options: &SpectrumOptions,
+        strict: bool,
+    ) -> Result<Self, StudyError> {
+        let refuse = |problem: String| refused(file, problem);
+        let reading = read_take(take, options, strict).map_err(|e| refuse(e.to_string()))?;
+        Self::average(&[reading.part], options).map_err(refuse)
+    }
+
+    /// The spectrum that was recorded for an asset, at its condition nearest to a motion, or at its first one.
+    ///
+    /// # Errors
+    /// [`StudyError::Spectrum`] if the asset cannot be read or does not have it.
+    pub fn of_asset(file: &Path, motion: Exploration) -> Result<Self, StudyError> {
+        let refuse = |problem: String| refused(file, problem);
+        let asset = Asset::open(file).map_err(|error| refuse(error.to_string()))?;
+        let conditions = asset.manifest.conditions.iter().enumerate();
+        let off = |condition: &Condition| {
+            let off = |own: Option<f64>, wanted: Option<f64>| match own.zip(wanted) {
+                Some((own, wanted)) if wanted != 0.0 => ((own - wanted) / wanted).abs(),
+                _ => 0.0,
+            };
+            off(condition.speed_mm_s, motion.speed_mm_s) + off(condition.force_n, motion.force_n)
+        };
+        let nearest = conditions.min_by(|(_, a), (_, b)| off(a).total_cmp(&off(b)));
+        let spectra = asset.reference.as_ref();
+        let spectrum = nearest.and_then(|(at, _)| spectra?.get(at));
+        let spectrum = spectrum.ok_or_else(|| {
+            refuse("the asset has no recorded spectrum; make it with `htex fit --keep-reference`, or name the recording of the texture (--recorded TEXTURE=FILE)".to_owned())
+        })?;
+        let magnitude = spectrum.iter().map(|m| f64::from(*m)).collect();
+        Self::whole(asset.manifest.band, asset.manifest.quantity, magnitude).map_err(refuse)
+    }
+
+    fn average(parts: &[SegmentSpectra], options: &SpectrumOptions) -> Result<Self, String> {
+        let spectrum = TextureSpectrum::average(parts, options.averaging);
+        let spectrum = spectrum.map_err(|error| error.to_string())?;
+        Self::whole(spectrum.band, spectrum.quantity, spectrum.magnitude)
+    }
+
+    fn whole(band: Band, quantity: Quantity, magnitude: Vec<f64>) -> Result<Self, String> {
+        match band == Band::TACTILE {
+            true => Ok(Self {
+                quantity,
+                magnitude,
+            }),
+            false => Err(format!(
+                "its spectrum is one of {} to {} Hz, and the table has 20 to 1000 Hz; record at 2000 Hz or more",
+                band.low_hz, band.high_hz
+            )),
+        }
+    }
+}
+
+/// The spectra of a folder of answers: for each participant, texture and model, the recordings of all its trials are read and averaged as
+/// `htex fit` reads recordings of one condition. `recorded` has the real textures by name.
+///
+/// # Errors
+/// Those of [`crate::study::export()`]; [`StudyError::NotRecorded`]; [`StudyError::FeltFile`] if a recording is not the one of its trial;
+/// [`StudyError::Spectrum`] if one has no spectrum, or the spectrum of a real texture is missing.
+pub fn felt_spectra(
+    folder: &Path,
+    recorded: &BTreeMap<String, Reference>,
+    options: &SpectrumOptions,
+) -> Result<FeltSpectra, StudyError> {
+    let mut rows = Vec::new();
+    let (mut textures, mut quantities) = (BTreeSet::new(), BTreeSet::new());
+    let (mut recordings, mut warnings) = (0, Vec::new());
+    for session in sessions_of(folder)? {
+        let participant = &session.header.participant;
+        // A trial with several questions has one recording, and the last answer names it.
+        let mut conditions: BTreeMap<(String, String), BTreeMap<u32, FeltFile>> = BTreeMap::new();
+        for answer in session.answers {
+            let Some(felt) = answer.felt else { continue };
+            let condition = conditions.entry((answer.texture, answer.model));
+            condition.or_default().insert(answer.number, felt);
+        }
+        if conditions.is_empty() {
+            warnings.push(format!("{participant} has no recordings of what was felt"));
+        }
+        for ((texture, model), trials) in conditions {
+            let mut parts = Vec::new();
+            for felt in trials.values() {
+                parts.push(part(folder, felt, options)?);
+                recordings += 1;
+            }
+            let felt = Reference::average(&parts, options)
+                .map_err(|problem| refused(&folder.join(participant), problem))?;
+            quantities.insert(felt.quantity);
+            rows.push(row(participant, &texture, &model, &felt));
+            textures.insert(texture);
+        }
+    }
+    if recordings == 0 {
+        return Err(StudyError::NotRecorded {
+            folder: folder.to_owned(),
+        });
+    }
+    for texture in &textures {
+        let Some(reference) = recorded.get(texture) else {
+            let problem = format!(
+                "the spectrum of the real texture {texture} is missing; name its recording (--recorded {texture}=FILE) or the study \
+                 whose asset has it (--study)"
+            );
+            return Err(refused(folder, problem));
+        };
+        quantities.insert(reference.quantity);
+        rows.push(row(RECORDED, texture, RECORDED, reference));
+    }
+    if quantities.len() > 1 {
+        let names: Vec<&str> = quantities.iter().map(|quantity| quantity.name()).collect();
+        warnings.push(format!(
+            "the spectra are of several quantities: {}",
+            names.join(", ")
+        ));
+    }
+    Ok(FeltSpectra {
+        csv: table(folder, &rows)?,
+        recordings,
+        warnings,
+    })
+}
+
+/// The spectra of a recording, which must be the one of its trial.
+fn part(
+    folder: &Path,
+    felt: &FeltFile,
+    options: &SpectrumOptions,
+) -> Result<SegmentSpectra, StudyError> {
+    let file: PathBuf = felt
+        .file
+        .split('/')
+        .fold(folder.to_owned(), |path, part| path.join(part));
+    let other = |problem: &str| StudyError::FeltFile {
+        file: file.clone(),
+        problem: problem.to_owned(),
+    };
+    if felt
+        .file
+        .split('/')
+        .any(|part| matches!(part, "" | "." | ".."))
+    {
+        return Err(other("its name leaves the folder of answers"));
+    }
+    if hash(&file)? != felt.blake3 {
+        return Err(other("its hash is another one"));
+    }
+    let beside = file.with_extension("json");
+    let bytes = std::fs::read(&beside).map_err(|error| StudyError::Read {
+        file: beside.clone(),
+        error,
+    })?;
+    let header: Option<TakeHeader> = serde_json::from_slice::<Value>(&bytes)
+        .ok()
+        .and_then(|mut beside| serde_json::from_value(beside["take"].take()).ok());
+    let header =
+        header.ok_or_else(|| refused(&beside, "it does not describe a recording".to_owned()))?;
+    let take = take(&file, &header).map_err(|problem| refused(&file, problem))?;
+    let reading = read_take(&take, options, false);
+    Ok(reading
+        .map_err(|error| refused(&file, error.to_string()))?
+        .part)
+}
+
+fn take(file: &Path, header: &TakeHeader) -> Result<Take, String> {
+    let (map, rate_hz) = reading_of(header);
+    let tracker = tracker_of(file);
+    let settings = ReadingSettings {
+        map,
+        rate_hz,
+        quantity: Some(header.quantity),
+        trackers: tracker.into_iter().collect(),
+        ..ReadingSettings::default()
+    };
+    let options = settings
+        .read_options(1)
+        .map_err(|error| error.to_string())?;
+    let options = options.into_iter().next().unwrap_or_default();
+    let recording = read_recording(file, &options).map_err(|error| error.to_string())?;
+    let given = Exploration {
+        speed_mm_s: header
+            .target_speed_mm_s
+            .filter(|_| recording.speed_mm_s.is_some()),
+        force_n: header
+            .target_force_n
+            .filter(|_| recording.normal_n.is_some()),
+    };
+    Ok(Take { recording, given })
+}
+
+/// The tracker's rows of a recording, if there are any.
+fn tracker_of(file: &Path) -> Option<PathBuf> {
+    let name = Path::new(file.file_name()?).with_extension("csv");
+    let tracker = file.parent()?.join("tracker").join(name);
+    tracker.is_file().then_some(tracker)
+}
+
+fn row(participant: &str, texture: &str, model: &str, spectrum: &Reference) -> Vec<String> {
+    let names = [participant, texture, model].map(str::to_owned);
+    let magnitudes = spectrum.magnitude.iter().map(|m| format!("{m}"));
+    names.into_iter().chain(magnitudes).collect()
+}
+
+fn table(folder: &Path, rows: &[Vec<String>]) -> Result<String, StudyError> {
+    let mut csv = csv::WriterBuilder::new().from_writer(Vec::new());
+    let names = ["participant", "texture", "model"].map(str::to_owned);
+    let grid = Band::TACTILE.grid_hz();
+    let head = names.into_iter().chain(grid.iter().map(|f| format!("{f}")));
+    let head: Vec<String> = head.collect();
+    for row in std::iter::once(&head).chain(rows) {
+        csv.write_record(row).map_err(|error| StudyError::Write {
+            file: folder.to_owned(),
+            error: std::io::Error::other(error),
+        })?;
+    }
+    let bytes = csv.into_inner().unwrap_or_default();
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+fn refused(file: &Path, problem: String) -> StudyError {
+    StudyError::Spectrum {
+        file: file.to_owned(),
+        problem,
+    }
+}

@@ -163,6 +163,6 @@ pub(crate) fn answered() -> String {
     let header = serde_json::from_value(header).expect("a header");
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = Session::open(&study, own, folder.path(), &header).expect("a new session");
-    session.rate(3, 900, 1000).expect("the first trial");
+    session.rate(3, 900, 1000, None).expect("the first trial");
     std::fs::read_to_string(session.file()).expect("it was written")
 }

@@ -69,4 +69,5 @@ edges! {
     every_byte_of_a_parameter_block: "parameter_block", edges::bytes;
     every_byte_of_an_asset: "open_asset", edges::bytes;
     every_byte_of_a_library: "library", edges::bytes;
+    every_byte_of_a_part_of_a_take: "take_part", edges::bytes;
 }

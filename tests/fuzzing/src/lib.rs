@@ -31,6 +31,7 @@ mod scene;
 pub mod seeds;
 mod signed;
 mod studies;
+mod take;
 
 pub use asset::open_asset;
 pub use baked::baked_block;
@@ -50,6 +51,7 @@ pub use response::response_csv;
 pub use scene::scene;
 pub use signed::signed_plugin;
 pub use studies::{answers, ratings, spectra_table, study};
+pub use take::take_part;
 
 /// A fuzz target.
 #[derive(Debug, Clone, Copy)]
@@ -96,6 +98,7 @@ pub const TARGETS: &[Target] = &[
     target("ratings", ratings),
     target("spectra_table", spectra_table),
     target("recipe", recipe),
+    target("take_part", take_part),
 ];
 
 const fn target(name: &'static str, run: fn(&[u8]) -> bool) -> Target {

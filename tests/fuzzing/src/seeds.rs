@@ -49,6 +49,37 @@ pub fn seeds() -> Vec<Seed> {
     seeds.extend(blocks());
     seeds.extend(libraries());
     seeds.extend(studies());
+    seeds.extend(parts());
+    seeds
+}
+
+/// Part files of takes, as they are and as what the target builds them from: a second of a finger, with a tracker's rows.
+fn parts() -> Vec<Seed> {
+    let header = |format: &str| {
+        format!(
+            r#"{{"htex_take":1,"name":"seed","number":1,"tool":"htex","source":"file:a","map":null,"calibrations":[],"quantity":"lateral_force","rate_hz":200.0,"seconds":0.5,"signals":[["lateral","N"],["normal","N"]],"tare":[],"tracker":[["x","mm"]],"target_speed_mm_s":80.0,"target_force_n":0.4,"tolerance":0.1,"format":"{format}"}}"#
+        )
+    };
+    let row = |i: i32| [0.1 + 0.05 * (0.3 * f64::from(i)).sin(), 0.4];
+    let frames: Vec<f64> = (0..120).flat_map(row).collect();
+    let rows: Vec<f64> = (0..30)
+        .flat_map(|i| [0.02 * f64::from(i), 1.6 * f64::from(i)])
+        .collect();
+    let chunks = [(b'F', &frames), (b'T', &rows)];
+    let pieces = chunks.map(|(kind, values)| {
+        let values = values.iter().flat_map(|value| value.to_le_bytes());
+        [
+            &[kind, values.clone().count() as u8 / 8][..],
+            &values.collect::<Vec<u8>>(),
+        ]
+        .concat()
+    });
+    let built = |format: &str| [b"B", header(format).as_bytes(), b"\n", &pieces.concat()].concat();
+    let mut seeds: Vec<Seed> = ["csv", "npy", "wav"]
+        .map(|format| ("take_part", format!("built-{format}"), built(format)))
+        .to_vec();
+    let whole = crate::take::built(&built("csv")[1..]);
+    seeds.push(("take_part", "whole".to_owned(), whole));
     seeds
 }
 

@@ -232,7 +232,7 @@ pub fn address(child: &mut Child) -> String {
 /// Nothing is scrolled or cut on a tablet, upright or on its side, of which it keeps pictures; the tab is left on its side.
 pub fn fits_tablets(browser: &mut Browser, tab: &Tab, name: &str) {
     let all = "[innerWidth >= document.documentElement.scrollWidth, innerHeight >= document.documentElement.scrollHeight, \
-        [...document.querySelectorAll('body *')].every((e) => { const r = e.getBoundingClientRect(); \
+        [...document.querySelectorAll('body *:not(svg *)')].every((e) => { const r = e.getBoundingClientRect(); \
         return r.right <= innerWidth + 1 && r.bottom <= innerHeight + 1 && r.top >= 0 && r.left >= 0; }), \
         [...document.querySelectorAll('button')].every((b) => b.scrollWidth <= b.clientWidth && b.scrollHeight <= b.clientHeight)]";
     for (width, height) in [(768, 1024), (1024, 768)] {

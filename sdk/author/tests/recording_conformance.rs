@@ -7,7 +7,7 @@ mod recordings;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use htex_author::findings::{RULES, explain, findings_page};
+use htex_author::findings::{RULES, findings_page};
 use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_author::{Exploration, SpectrumOptions, Take, read_take};
 use htex_format::Severity;
@@ -73,9 +73,9 @@ fn recordings_raise_the_code_they_are_named_after_and_every_code_has_one() {
         .filter(|rule| !raised.contains(rule.code))
         .collect();
     assert!(silent.is_empty(), "{silent:?}");
-    for rule in htex_format::RULES {
+    for rule in RULES {
         assert!(
-            explain(rule.code).is_none(),
+            htex_format::explain(rule.code).is_none(),
             "{} is a code of assets too",
             rule.code
         );

@@ -116,13 +116,17 @@ from 0, and empty for the file as a whole. A library is valid when no finding is
 [htexlib-1.md](htexlib-1.md) is the format.
 ";
 
-/// Returns the rule with a code such as `LIBRARY_TRUNCATED`; `None` when there is none.
+/// Returns the rule with a code such as `LIBRARY_TRUNCATED`, or with one of the format (`FINDINGS_TRUNCATED`); `None` when
+/// there is none.
 ///
 /// ```
 /// assert!(htex_library::explain("LIBRARY_TRUNCATED").is_some());
 /// ```
 pub fn explain(code: &str) -> Option<&'static Rule> {
-    RULES.iter().find(|rule| rule.code == code)
+    RULES
+        .iter()
+        .find(|rule| rule.code == code)
+        .or_else(|| htex_format::explain(code))
 }
 
 /// Generates the page of all rules: `spec/library-findings.md`.

@@ -2,9 +2,13 @@
 
 use htex_format::Rule;
 
-/// The rule of a code, such as `REGION_OVERLAP`; `None` if no rule has this code.
+/// The rule of a code, such as `REGION_OVERLAP`, or of a code of the format (`FINDINGS_TRUNCATED`); `None` if no rule has
+/// this code.
 pub fn explain(code: &str) -> Option<&'static Rule> {
-    RULES.iter().find(|rule| rule.code == code)
+    RULES
+        .iter()
+        .find(|rule| rule.code == code)
+        .or_else(|| htex_format::explain(code))
 }
 
 htex_format::rule_table! {

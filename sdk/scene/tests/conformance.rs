@@ -10,7 +10,7 @@ use std::path::Path;
 
 use cases::{cases, files, plain};
 use htex_format::Findings;
-use htex_scene::{Limits, RULES, explain, findings_page, read_scene, scene_schema};
+use htex_scene::{Limits, RULES, findings_page, read_scene, scene_schema};
 use serde_json::Value;
 use xtask::generated::{file, file_with, folder};
 
@@ -81,9 +81,9 @@ fn generated_page_and_schema_are_fresh() {
 
 #[test]
 fn codes_of_scenes_are_not_codes_of_assets() {
-    for rule in htex_format::RULES {
+    for rule in RULES {
         assert!(
-            explain(rule.code).is_none(),
+            htex_format::explain(rule.code).is_none(),
             "{} is a code of assets too",
             rule.code
         );

@@ -93,10 +93,7 @@ pub fn library(input: &[u8]) -> bool {
         return false;
     };
     let report = validate_source(file.as_slice(), &LIMITS).expect("memory can be read");
-    for finding in &report.findings {
-        assert!(explain(&finding.code).is_some(), "{}", finding.code);
-        promise::sentence(finding);
-    }
+    promise::findings(&report.findings, explain);
     match Library::open_source_with(file.as_slice(), LIMITS) {
         Ok(library) => read(&library, &report),
         Err(error) => {

@@ -3,7 +3,7 @@
 use std::fmt::Display;
 
 use htex::Asset;
-use htex_format::{Finding, explain};
+use htex_format::{Finding, Rule};
 use htex_host::{HostError, Status};
 
 /// Longest error text; what it quotes of the input is bounded.
@@ -20,8 +20,8 @@ pub(crate) fn sentence(error: &impl Display) {
     assert!(control.is_none(), "{control:?} in the error {text:?}");
 }
 
-/// Findings have a code that can be explained, and a sentence.
-pub(crate) fn findings(findings: &[Finding]) {
+/// Findings have a code that their crate explains, and a sentence.
+pub(crate) fn findings(findings: &[Finding], explain: fn(&str) -> Option<&'static Rule>) {
     for finding in findings {
         assert!(explain(&finding.code).is_some(), "{}", finding.code);
         sentence(finding);

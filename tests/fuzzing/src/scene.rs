@@ -12,7 +12,7 @@ use htex_scene::{
     Surroundings, explain, plan, read_scene,
 };
 
-use crate::promise::{finite, refusal, sentence};
+use crate::promise::{findings, finite, refusal, sentence};
 
 /// Blocks that are rendered.
 const BLOCKS: usize = 4;
@@ -23,14 +23,14 @@ pub fn scene(input: &[u8]) -> bool {
     let place = folder().join("fuzzed.scene.json");
     match LoadedScene::from_bytes(&place, input, &around(), &DeviceOverride::default()) {
         Ok(scene) => {
-            explained(&scene.notes);
+            findings(&scene.notes, explain);
             devices_of(&scene)
                 .iter()
                 .for_each(|device| play(&scene, device));
             true
         }
-        Err(LoadError::Invalid { findings }) => {
-            explained(&findings);
+        Err(LoadError::Invalid { findings: found }) => {
+            findings(&found, explain);
             false
         }
         Err(error) => panic!("nothing was to be read here: {error}"),
@@ -56,13 +56,6 @@ pub(crate) fn around() -> Surroundings<'static> {
 /// The folder of the assets that scenes name.
 pub(crate) fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes")
-}
-
-fn explained(findings: &[htex_format::Finding]) {
-    for finding in findings {
-        assert!(explain(&finding.code).is_some(), "{}", finding.code);
-        sentence(finding);
-    }
 }
 
 /// A valid scene is the same after it is written and read again.

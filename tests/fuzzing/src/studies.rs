@@ -8,7 +8,7 @@ use htex_lab::study::{
     Line, ParticipantPlan, Participants, Plan, Session, Study, export, read_study,
 };
 
-use crate::promise::sentence;
+use crate::promise::{self, sentence};
 
 /// Most ratings of which an analysis is made.
 const MOST_CELLS: usize = 60;
@@ -30,14 +30,7 @@ pub fn study(input: &[u8]) -> bool {
     let study = read_study(input, &mut findings);
     let errors = findings.has_errors();
     assert_ne!(study.is_some(), errors, "a study, or a reason");
-    for finding in findings.into_list() {
-        assert!(
-            htex_lab::study::explain(&finding.code).is_some(),
-            "{}",
-            finding.code
-        );
-        sentence(&finding);
-    }
+    promise::findings(&findings.into_list(), htex_lab::study::explain);
     let Some(study) = study else {
         return false;
     };
@@ -140,14 +133,7 @@ fn analysed(ratings: &Checked<Ratings>, spectra: Option<&Spectra>) {
 
 fn refused(invalid: &Invalid) -> bool {
     assert!(!invalid.findings.is_empty(), "refused without a reason");
-    for finding in &invalid.findings {
-        assert!(
-            htex_lab::analyse::explain(&finding.code).is_some(),
-            "{}",
-            finding.code
-        );
-        sentence(finding);
-    }
+    promise::findings(&invalid.findings, htex_lab::analyse::explain);
     false
 }
 

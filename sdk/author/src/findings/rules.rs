@@ -2,9 +2,13 @@
 
 use htex_format::Rule;
 
-/// Returns the rule with a code such as `RECORDING_CLIPPED`; `None` when there is none.
+/// Returns the rule with a code such as `RECORDING_CLIPPED`, or with one of the format (`FINDINGS_TRUNCATED`); `None` when
+/// there is none.
 pub fn explain(code: &str) -> Option<&'static Rule> {
-    RULES.iter().find(|rule| rule.code == code)
+    RULES
+        .iter()
+        .find(|rule| rule.code == code)
+        .or_else(|| htex_format::explain(code))
 }
 
 htex_format::rule_table! {

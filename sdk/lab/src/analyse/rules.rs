@@ -13,9 +13,13 @@ of the file, counted from 1 with the header, and the column by name: `/12/rating
 with an error is not analysed. Codes never change their meaning.
 ";
 
-/// The rule of a code, such as `RATING_INVALID`; `None` if no rule has this code.
+/// The rule of a code, such as `RATING_INVALID`, or of a code of the format (`FINDINGS_TRUNCATED`); `None` if no rule has
+/// this code.
 pub fn explain(code: &str) -> Option<&'static Rule> {
-    RULES.iter().find(|rule| rule.code == code)
+    RULES
+        .iter()
+        .find(|rule| rule.code == code)
+        .or_else(|| htex_format::explain(code))
 }
 
 /// The page with all rules: `spec/analysis-findings.md`.

@@ -13,9 +13,13 @@ message. A study can be run when no finding is an error. Motions, devices and as
 their codes. Codes never change their meaning.
 ";
 
-/// The rule of a code, such as `STUDY_SCALE_INVALID`; `None` if no rule has this code.
+/// The rule of a code, such as `STUDY_SCALE_INVALID`, or of a code of scenes or the format (`FINDINGS_TRUNCATED`); `None` if
+/// no rule has this code.
 pub fn explain(code: &str) -> Option<&'static Rule> {
-    RULES.iter().find(|rule| rule.code == code)
+    RULES
+        .iter()
+        .find(|rule| rule.code == code)
+        .or_else(|| htex_scene::explain(code))
 }
 
 /// The page with all rules: `spec/study-findings.md`.

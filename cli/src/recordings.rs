@@ -9,9 +9,13 @@ use htex_author::{
     Averaging, Exploration, SegmentChoice, SpectrumOptions, Take, validate_recording,
 };
 use htex_format::{Quantity, Report};
+#[cfg(feature = "lab")]
+use htex_lab::record::take_settings;
 
 use crate::failure::Failure;
 use crate::located;
+use crate::output::note;
+use crate::shown::shown;
 
 /// Options of reading recordings.
 #[derive(Args)]
@@ -162,7 +166,15 @@ impl RecordingArgs {
 
     /// Reads recordings, each with the condition that was given for it.
     pub(crate) fn read(&self, files: &[PathBuf]) -> Result<Vec<Take>, Failure> {
-        let options = self.settings().read_options(files.len())?;
+        self.read_with(files, &self.settings())
+    }
+
+    fn read_with(
+        &self,
+        files: &[PathBuf],
+        settings: &ReadingSettings,
+    ) -> Result<Vec<Take>, Failure> {
+        let options = settings.read_options(files.len())?;
         let given = self.conditions(files.len())?;
         let given = options.iter().zip(given);
         files
@@ -175,9 +187,26 @@ impl RecordingArgs {
             .collect()
     }
 
-    /// Reads one recording, with its condition.
+    /// Reads one recording, with its condition. For a recording of `htex record` or of a study, what the JSON beside it says of its
+    /// columns holds instead of flags, which are then for another recording.
     pub(crate) fn read_one(&self, file: &Path) -> Result<Take, Failure> {
-        self.read(&[file.to_owned()])?
+        let given = self.settings();
+        let settings = match take_settings(file) {
+            Some(own) => {
+                if self.rate.or(self.scale).is_some()
+                    || self.map.is_some()
+                    || !self.tracker.is_empty()
+                {
+                    note(&[format!(
+                        "{}: its columns, rate and motion are those that the JSON beside it says",
+                        shown(file)
+                    )]);
+                }
+                of_take(own, given)
+            }
+            None => given,
+        };
+        self.read_with(&[file.to_owned()], &settings)?
             .pop()
             .ok_or_else(|| Failure::Usage("a recording is missing".to_owned()))
     }
@@ -226,6 +255,24 @@ impl RecordingArgs {
             ))),
         }
     }
+}
+
+/// The settings of a take, and of those that were given what is not about its columns.
+fn of_take(own: ReadingSettings, given: ReadingSettings) -> ReadingSettings {
+    ReadingSettings {
+        response: given.response,
+        from_s: given.from_s,
+        to_s: given.to_s,
+        most_values: given.most_values,
+        segments: given.segments,
+        averaging: given.averaging,
+        ..own
+    }
+}
+
+#[cfg(not(feature = "lab"))]
+fn take_settings(_: &Path) -> Option<ReadingSettings> {
+    None
 }
 
 /// Reads `speed=80,force=0.4`; a quantity that is left out stays as it was.

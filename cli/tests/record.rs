@@ -116,6 +116,45 @@ fn a_take_through_the_card_is_repeated_until_it_keeps_to_its_target_and_is_fitte
     assert!(info.to_string().contains("sbeta"), "{info}");
 }
 
+/// A format without names and rates is read by the JSON beside it, and a recording of another kind by the flags.
+#[test]
+fn takes_in_any_format_are_compared_without_flags() {
+    let place = Place::new();
+    place.write("volts.csv", volts(&place, 1.0).join("\n"));
+    for format in ["csv", "npy", "wav"] {
+        let output = command(&place, &["--format", format]).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", error(&output));
+    }
+    let compare = |files: [&str; 2], more: &[&str]| {
+        let run = [&["compare"], &files[..], &["--json"], more].concat();
+        place.json(&run)
+    };
+    for other in ["takes/vinyl-002.npy", "takes/vinyl-003.wav"] {
+        for files in [
+            ["takes/vinyl-001.csv", other],
+            [other, "takes/vinyl-001.csv"],
+        ] {
+            let found = compare(files, &[]);
+            let off_db = found["other"]["band_error_rms_db"].as_f64().unwrap();
+            assert!(off_db.abs() < 1e-4, "{files:?}: {off_db} dB");
+            let speeds = [&found, &found["other"]].map(|of| of["speed_mm_s"].as_f64().unwrap());
+            assert!((speeds[0] / speeds[1] - 1.0).abs() < 1e-6, "{speeds:?}");
+            assert!(found["force_n"].as_f64().unwrap() > 0.3, "{found}");
+        }
+    }
+    let take = "takes/vinyl-002.npy";
+    std::fs::copy(place.path(take), place.path("bare.npy")).unwrap();
+    let bare = ["compare", take, "bare.npy"];
+    let refused = place.run(&bare);
+    assert_eq!(refused.code(), 1);
+    assert!(refused.error().contains("bare.npy: it has no sample rate"));
+    let flags = ["--rate", "2000", "--map", "lateral_x=#1:1,lateral_y=#2:1"];
+    let found = compare([take, "bare.npy"], &flags);
+    assert_eq!(found["other"]["band_error_rms_db"], 0.0);
+    let said = place.run(&[&bare, &flags[..]].concat()).error();
+    assert!(said.contains("vinyl-002.npy: its columns"), "{said}");
+}
+
 #[test]
 fn an_overrun_and_an_unplugged_card_are_named_and_what_was_recorded_stays() {
     let place = Place::new();

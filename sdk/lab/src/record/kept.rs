@@ -7,10 +7,11 @@ use htex_author::{Averaging, Exploration, SpectrumOptions, Take, TextureSpectrum
 use htex_format::Quantity;
 use serde::Deserialize;
 
+use crate::record::beside::settings as settings_of;
 use crate::record::data::TakeHeader;
 use crate::record::live::LiveSpectrum;
 use crate::record::names;
-use crate::record::write::{Outcome, read_options};
+use crate::record::write::Outcome;
 
 /// What is needed of the JSON beside a recording.
 #[derive(Deserialize)]
@@ -31,8 +32,9 @@ pub fn kept_spectrum(folder: &Path, name: &str, quantity: Quantity) -> Option<Li
         return None;
     }
     let file = folder.join(format!("{stem}.{}", take.format.extension()));
+    let options = settings_of(&file, &take).read_options(1).ok()?.pop()?;
     let take = Take {
-        recording: read_recording(&file, &read_options(&take)?).ok()?,
+        recording: read_recording(&file, &options).ok()?,
         given: Exploration::default(),
     };
     let reading = read_take(&take, &SpectrumOptions::default(), false).ok()?;

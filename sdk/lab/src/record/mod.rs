@@ -5,6 +5,7 @@
 //! minimum or maximum of speed or force differs from its target by more than the tolerance (10 % in the paper, Supplementary,
 //! "Texture recording"), it is set aside and recorded again. Results are files that `htex fit` reads, and JSON beside them.
 
+mod beside;
 mod calibration;
 mod data;
 mod error;
@@ -25,6 +26,8 @@ mod signals;
 mod tracker;
 mod write;
 
+pub use beside::take_settings;
+pub(crate) use beside::{header as header_beside, settings as settings_of};
 pub use calibration::{AXES, Calibration};
 pub use data::{TakeData, TakeHeader};
 pub use error::RecordError;
@@ -42,5 +45,5 @@ pub use session::Session;
 pub use setup::{Setup, Tare};
 pub use signals::Signals;
 pub use tracker::{LineTracker, TableTracker, TrackerRows};
+pub(crate) use write::write_signals;
 pub use write::{Format, Outcome};
-pub(crate) use write::{reading as reading_of, write_signals};

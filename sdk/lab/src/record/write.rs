@@ -4,7 +4,6 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use htex_author::read::{ColumnMap, ReadOptions};
 use htex_format::Quantity;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -181,18 +180,6 @@ fn column_map(header: &TakeHeader) -> String {
         .map(|(at, (role, _))| format!("{role}=#{}:1", at + 1))
         .collect();
     map.join(",")
-}
-
-/// Options that read a take's recording, as [`flags`] do; `None` if its header has roles that are none.
-pub(crate) fn read_options(header: &TakeHeader) -> Option<ReadOptions> {
-    let options = ReadOptions::default().with_quantity(header.quantity);
-    Some(match header.format {
-        Format::Csv => options,
-        Format::Npy => options
-            .with_map(column_map(header).parse::<ColumnMap>().ok()?)
-            .with_rate_hz(header.rate_hz),
-        Format::Wav => options.with_map(column_map(header).parse::<ColumnMap>().ok()?),
-    })
 }
 
 /// The name of a column, which `htex fit` knows with its unit.

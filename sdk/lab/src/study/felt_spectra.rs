@@ -4,13 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use htex_author::read::read_recording;
-use htex_author::settings::ReadingSettings;
 use htex_author::{Exploration, SegmentSpectra, SpectrumOptions, Take, TextureSpectrum, read_take};
 use htex_dsp::Band;
 use htex_format::{Asset, Condition, Quantity};
-use serde_json::Value;
 
-use crate::record::{TakeHeader, reading_of};
+use crate::record::{TakeHeader, header_beside, settings_of};
 use crate::study::error::StudyError;
 use crate::study::export::sessions_of;
 use crate::study::felt::hash;
@@ -194,13 +192,10 @@ fn part(
         return Err(other("its hash is another one"));
     }
     let beside = file.with_extension("json");
-    let bytes = std::fs::read(&beside).map_err(|error| StudyError::Read {
+    let header = header_beside(&beside).map_err(|error| StudyError::Read {
         file: beside.clone(),
         error,
     })?;
-    let header: Option<TakeHeader> = serde_json::from_slice::<Value>(&bytes)
-        .ok()
-        .and_then(|mut beside| serde_json::from_value(beside["take"].take()).ok());
     let header =
         header.ok_or_else(|| refused(&beside, "it does not describe a recording".to_owned()))?;
     let take = take(&file, &header).map_err(|problem| refused(&file, problem))?;
@@ -211,15 +206,7 @@ fn part(
 }
 
 fn take(file: &Path, header: &TakeHeader) -> Result<Take, String> {
-    let (map, rate_hz) = reading_of(header);
-    let tracker = tracker_of(file);
-    let settings = ReadingSettings {
-        map,
-        rate_hz,
-        quantity: Some(header.quantity),
-        trackers: tracker.into_iter().collect(),
-        ..ReadingSettings::default()
-    };
+    let settings = settings_of(file, header);
     let options = settings
         .read_options(1)
         .map_err(|error| error.to_string())?;
@@ -234,13 +221,6 @@ fn take(file: &Path, header: &TakeHeader) -> Result<Take, String> {
             .filter(|_| recording.normal_n.is_some()),
     };
     Ok(Take { recording, given })
-}
-
-/// The tracker's rows of a recording, if there are any.
-fn tracker_of(file: &Path) -> Option<PathBuf> {
-    let name = Path::new(file.file_name()?).with_extension("csv");
-    let tracker = file.parent()?.join("tracker").join(name);
-    tracker.is_file().then_some(tracker)
 }
 
 fn row(participant: &str, texture: &str, model: &str, spectrum: &Reference) -> Vec<String> {

@@ -147,8 +147,13 @@ fn takes_in_any_format_are_compared_without_flags() {
     let bare = ["compare", take, "bare.npy"];
     let refused = place.run(&bare);
     assert_eq!(refused.code(), 1);
-    assert!(refused.error().contains("bare.npy: it has no sample rate"));
-    let flags = ["--rate", "2000", "--map", "lateral_x=#1:1,lateral_y=#2:1"];
+    assert!(
+        refused.error().contains("bare.npy: "),
+        "{}",
+        refused.error()
+    );
+    let map = "lateral_x=#1:1,lateral_y=#2:1,normal=#3:1,y=#4:1";
+    let flags = ["--rate", "2000", "--map", map];
     let found = compare([take, "bare.npy"], &flags);
     assert_eq!(found["other"]["band_error_rms_db"], 0.0);
     let said = place.run(&[&bare, &flags[..]].concat()).error();

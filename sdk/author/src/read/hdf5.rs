@@ -25,12 +25,17 @@ const AT_ONCE: u64 = 64 << 10;
 /// Largest chunk, and largest object header, bytes.
 const MOST_CHUNK: usize = 256 << 20;
 const MOST_HEADER: usize = 4 << 20;
+/// Most bytes of numbers for each byte of the file. Deflate, the filter of HDF5 and MATLAB, reaches 1032; parts of a data set that
+/// were never written take no bytes at all.
+const MOST_EXPANSION: u64 = 2048;
 
 /// An opened file.
 pub(crate) struct Hdf5 {
     columns: Columns,
     arrays: Arrays<Dataset>,
     limit: ValueLimit,
+    /// Length of the file.
+    bytes: u64,
 }
 
 struct Source(Shared);
@@ -54,6 +59,7 @@ impl Hdf5 {
             file: file.clone(),
             source,
         })?;
+        let bytes = shared.length();
         let options = OpenOptions::default()
             .with_max_chunk_bytes(MOST_CHUNK)
             .with_max_read_bytes(MOST_CHUNK)
@@ -72,6 +78,7 @@ impl Hdf5 {
             columns: scan.arrays.columns(&file),
             arrays: scan.arrays,
             limit,
+            bytes,
         })
     }
 }
@@ -90,6 +97,7 @@ impl Sheet for Hdf5 {
         let columns = self
             .arrays
             .numbers(file, self.limit, wanted, |dataset, shape, keep| {
+                fits(file, self.bytes, dataset, shape)?;
                 read(dataset, shape, keep).map_err(|error| damaged(file, dataset.name(), &error))
             })?;
         Ok(Numbers {
@@ -190,6 +198,26 @@ fn is_number(kind: &Datatype) -> bool {
             ..
         } | Datatype::FloatingPoint { size: 4 | 8, .. }
     )
+}
+
+/// Refuses a data set of more numbers than a file of this length can have.
+fn fits(file: &str, bytes: u64, dataset: &Dataset, shape: Shape) -> Result<(), ReadError> {
+    let size = match dataset.dtype() {
+        Datatype::FixedPoint { size, .. } | Datatype::FloatingPoint { size, .. } => *size,
+        _ => 1,
+    };
+    let numbers = shape.samples.saturating_mul(shape.channels);
+    if numbers.saturating_mul(size.into()) <= bytes.saturating_mul(MOST_EXPANSION) {
+        return Ok(());
+    }
+    Err(ReadError::Damaged {
+        file: file.to_owned(),
+        place: htex_format::plain(dataset.name()).into_owned(),
+        problem: format!(
+            "it states {} samples of {} channels in a file of {bytes} bytes; write the file again without space that has no data",
+            shape.samples, shape.channels
+        ),
+    })
 }
 
 /// Reads a data set, some samples of all its channels at once.

@@ -187,28 +187,42 @@ impl RecordingArgs {
             .collect()
     }
 
-    /// Reads one recording, with its condition. For a recording of `htex record` or of a study, what the JSON beside it says of its
-    /// columns holds instead of flags, which are then for another recording.
+    /// Reads one recording, with its condition. A recording of `htex record` or of a study is read as the JSON beside it says, unless
+    /// flags say what its columns are.
     pub(crate) fn read_one(&self, file: &Path) -> Result<Take, Failure> {
+        let own = take_settings(file).filter(|_| !self.says_columns());
+        self.read_as(file, own)
+    }
+
+    /// Reads one of several recordings, with its condition. One of `htex record` or of a study is read as the JSON beside it says, also
+    /// if flags say what the columns of the others are.
+    pub(crate) fn read_among(&self, file: &Path) -> Result<Take, Failure> {
+        let own = take_settings(file);
+        if own.is_some() && self.says_columns() {
+            note(&[format!(
+                "{}: its columns, rate, quantity and motion are those that the JSON beside it says",
+                shown(file)
+            )]);
+        }
+        self.read_as(file, own)
+    }
+
+    fn read_as(&self, file: &Path, own: Option<ReadingSettings>) -> Result<Take, Failure> {
         let given = self.settings();
-        let settings = match take_settings(file) {
-            Some(own) => {
-                if self.rate.or(self.scale).is_some()
-                    || self.map.is_some()
-                    || !self.tracker.is_empty()
-                {
-                    note(&[format!(
-                        "{}: its columns, rate and motion are those that the JSON beside it says",
-                        shown(file)
-                    )]);
-                }
-                of_take(own, given)
-            }
+        let settings = match own {
+            Some(own) => of_take(own, given),
             None => given,
         };
         self.read_with(&[file.to_owned()], &settings)?
             .pop()
             .ok_or_else(|| Failure::Usage("a recording is missing".to_owned()))
+    }
+
+    /// Whether a flag says what the columns of recordings are.
+    fn says_columns(&self) -> bool {
+        let is_other = !matches!(self.quantity, QuantityArg::LateralForce);
+        let scaled = self.rate.or(self.scale).is_some();
+        scaled || self.map.is_some() || !self.tracker.is_empty() || is_other
     }
 
     /// The findings in one recording.

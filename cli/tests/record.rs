@@ -157,6 +157,20 @@ fn takes_in_any_format_are_compared_without_flags() {
     let flags = ["--rate", "2000", "--map", map];
     let found = compare([take, "bare.npy"], &flags);
     assert_eq!(found["other"]["band_error_rms_db"], 0.0);
+    // Of one recording, flags say what is read.
+    let energy = |more: &[&str]| {
+        let spectrum = place.json(&[&["process", take, "--json"], more].concat());
+        let magnitude = spectrum["magnitude"].as_array().unwrap();
+        magnitude
+            .iter()
+            .map(|m| m.as_f64().unwrap().powi(2))
+            .sum::<f64>()
+    };
+    let [both, one] = [
+        energy(&[]),
+        energy(&["--rate", "2000", "--map", "lateral=#1:1"]),
+    ];
+    assert!(one < both, "{one} {both}");
     let said = place.run(&[&bare, &flags[..]].concat()).error();
     assert!(said.contains("vinyl-002.npy: its columns"), "{said}");
 }

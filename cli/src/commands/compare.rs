@@ -179,7 +179,7 @@ impl Compare {
         &self,
         recording: &Path,
     ) -> Result<(TextureSpectrum, Exploration, Vec<String>), Failure> {
-        let take = self.reading.read_one(recording)?;
+        let take = self.reading.read_among(recording)?;
         let options = self.reading.spectrum_options()?;
         let reading = read_take(&take, &options, self.reading.strict())?;
         note(&reading.notes);

@@ -62,7 +62,7 @@ impl SpectraArgs {
                 Failure::Usage(format!("--recorded {text}: it looks like TEXTURE=FILE"))
             })?;
             let file = Path::new(file);
-            let take = self.reading.read_one(file)?;
+            let take = self.reading.read_among(file)?;
             let reference = Reference::of_recording(&take, file, &options, self.reading.strict())?;
             recorded.insert(texture.to_owned(), reference);
         }

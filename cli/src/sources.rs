@@ -1,12 +1,15 @@
 //! Arguments that say where sources come from, shared by the commands that use them.
 
+#[cfg(feature = "lab")]
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
-use htex_device::{DeviceError, KnownSource, Origin, Source, SourceAdapter, Sources};
+#[cfg(feature = "lab")]
+use htex_device::Source;
+use htex_device::{DeviceError, KnownSource, Origin, SourceAdapter, Sources};
 use htex_device_check::source::Subject;
 use serde_json::Value;
 
@@ -61,6 +64,7 @@ impl SourceArgs {
     }
 
     /// Opens the source that `NAME:TARGET` names.
+    #[cfg(feature = "lab")]
     pub(crate) fn open(
         &self,
         text: &str,

@@ -1,4 +1,7 @@
 //! How the command was started: its arguments, and the program that starts it again.
+//!
+//! The program that starts the command again is passed to the library, since the own file is the Python interpreter in
+//! the command of the Python package.
 
 use std::ffi::OsString;
 use std::process::Command;

@@ -1,4 +1,6 @@
 //! Protects a command's inputs from being overwritten by its outputs.
+//!
+//! Files are compared by device and inode before the command starts, so that another name of an input is recognised.
 
 use std::fs::Metadata;
 use std::path::Path;

@@ -1,4 +1,7 @@
 //! Handling of Ctrl-C, of a closed terminal, and of a request to end.
+//!
+//! A signal has one meaning at a time: it ends the program and removes unfinished files, or makes a player ramp to
+//! zero, or is ignored by a guardian.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU8, AtomicUsize, Ordering};

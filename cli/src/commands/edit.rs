@@ -1,3 +1,6 @@
+//! Metadata are edited by writing the asset again. An asset with parts that this version would not write again, such as
+//! entries that nothing refers to, is refused.
+
 use std::path::PathBuf;
 
 use clap::Args;

@@ -1,4 +1,6 @@
 //! Rendering of four voices side by side.
+//!
+//! The operations and their order are those of one voice, so the samples are bit-identical.
 
 use htex_dsp::all_pole::{AllPoles, GROUP};
 use htex_dsp::noise::GaussianNoise;

@@ -5,6 +5,11 @@
 //! Energies of noise are met to a hundredth of a decibel. The second term determines the solution where no
 //! spectrum has the wanted energies, or only one whose knots differ by hundreds of decibels, as next to a
 //! line.
+//!
+//! The solution is the spectrum of largest entropy with the recording's energies, found by Levenberg and Marquardt's
+//! method. Stored is the curve and not the energies: a player solves no equations, and energies that no spectrum has
+//! (rounding causes them where bands share bins) are the fit's problem. The voice's spectrum is sharpened against the
+//! window's blur, so that it measures as stated.
 
 use alloc::vec::Vec;
 

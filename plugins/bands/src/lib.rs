@@ -5,6 +5,12 @@
 //! regression); thirty bands keep a spectrum within about 0.3 dB of the recording in third-octave bands.
 //! Stored is the piecewise linear curve with these energies: in decibels, with knots at the bands' apexes,
 //! over the axis on which the bands are equally spaced.
+//!
+//! The default is thirty knots from edge to edge in steps of 1 dB, packed. Medians of the third-octave error over 15
+//! simulated recordings: 9 bands in 11 bytes 3.7 dB, 19 in 21 bytes 1.4 dB, 22 from edge to edge 0.8 dB, and on the
+//! axis ln(f + 20 Hz), which spaces low knots at least one bin apart, 0.5 dB, all with one byte per band. Differences
+//! in a Rice code take two thirds of a byte, and 30 bands have 0.3 dB in 21 bytes. Entropy codes with longer tails take
+//! a byte more, steps of 0.5 dB two or three more.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![no_std]
 

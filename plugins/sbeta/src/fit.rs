@@ -1,5 +1,8 @@
 //! Least-squares fit of the density to the spectrum's peaks (paper: fminsearch on ten peaks, cost function
 //! not stated).
+//!
+//! A fit is limited to twice the largest bin: with all peaks on one side the density fits best with a spike where there
+//! is no peak, many decibels too high.
 
 use alloc::vec::Vec;
 

@@ -4,6 +4,8 @@
 //! [`CHECKS`] is the table; [`check`] runs it over a device; [`run_one`] runs one check in this process. A device is called
 //! as a scene calls it, through [`htex_device::Adapter`]; checks of a library's exports are skipped for a built-in device.
 //! Devices are driven at a hundredth of their limit, and offered samples beyond it: nobody may touch one while it is checked.
+//!
+//! The faults in `tests/bad-devices` and `tests/bad-sources` test these checkers.
 #![forbid(unsafe_code)]
 
 mod case;

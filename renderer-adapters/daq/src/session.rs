@@ -1,4 +1,8 @@
 //! The state that writer and watchdog of an open device share: the running task, and the return to zero.
+//!
+//! The adapter refuses a sample over the limit, the driver's own channel limits repeat the check, and the watchdog
+//! detects an underflow: a writer that hangs would leave the last voltage at the output. Every exit ends with an
+//! unclocked write of zero, which is repeated if it fails, and finally after a reset of the card.
 
 use std::thread::sleep;
 use std::time::Duration;

@@ -1,4 +1,8 @@
 //! An open device: waits for space in the buffer, and at the end until all samples are output.
+//!
+//! Samples in the buffer are counted from those that were played, since the driver reports space as soon as samples
+//! have moved to the card's memory. The ramp before a stream is not counted. A live motion has 20 ms in the buffer
+//! (`live_default` of `buffer_ms`).
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;

@@ -1,4 +1,7 @@
 //! Open devices or sources behind handles, which are never used twice.
+//!
+//! A lock protects each, since opening and writing may block. The voices of a model, which may not block, have slots
+//! and generations (`sdk/model/src/voices.rs`).
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};

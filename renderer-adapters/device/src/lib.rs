@@ -9,6 +9,12 @@
 //! An adapter is built in, or a native library behind the flat C functions of [`abi`] or [`source::abi`]
 //! ([`NativeAdapter`], [`NativeSourceAdapter`]); [`Devices`] and [`Sources`] find both. A Rust author implements the traits and
 //! calls [`export_device!`] or [`export_source!`].
+//!
+//! Built-in adapters are called directly, unlike models: a device need not give the same bits in a sandbox, and its
+//! errors keep their kind either way. There is no device in WASM, since a sandbox without imports reaches no hardware.
+//!
+//! A device enforces its limits on every sample before it outputs any sample of a call, and a voltage without a limit
+//! is not loaded. After an error its output is at zero, and stays there.
 
 pub mod abi;
 mod adapter;

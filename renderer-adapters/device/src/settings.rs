@@ -1,4 +1,6 @@
 //! Settings of a device: given values over those of a profile over the defaults.
+//!
+//! They cross the ABI as lines of text, all of them, with defaults applied: an author in C needs no parser of JSON.
 
 use std::collections::BTreeMap;
 

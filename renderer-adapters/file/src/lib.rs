@@ -4,6 +4,8 @@
 //! Samples are written as fast as they are made, through a buffer of fixed size, into a temporary file beside the
 //! named one, which is renamed when the device is finished. A device that is dropped before
 //! leaves no file.
+//!
+//! A WAV file is limited to 4 GiB, with an error: few programs read RF64.
 
 mod describe;
 mod device;

@@ -7,6 +7,12 @@
 //! println!("{} bytes, within {:.2} dB", baked.bytes.len(), baked.between_db);
 //! # Ok::<(), htex_bake::BakeError>(())
 //! ```
+//!
+//! A block has filters for noise, not models: white noise through a symmetrical filter at a low rate can have the
+//! spectrum of every noise model, is always stable, and a weighted sum of two filters has the weighted sum of their
+//! magnitudes, so that the player needs no formula of a model. A lattice would be cheaper for AR, but between
+//! conditions it has other spectra than the model, which interpolates line spectral frequencies. Conditions are
+//! inserted where the sum differs from the model by more than `--within`.
 #![forbid(unsafe_code)]
 
 mod bake;

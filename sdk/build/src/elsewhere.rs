@@ -1,5 +1,8 @@
 //! Files by URI: paths of a recipe that name a file of a web server or an object store. They are listed, hashed, and copied for the
 //! job that reads them.
+//!
+//! A list request tells versions; the key is the hash of the contents, as for local files, and the copy is read by the
+//! job on whichever machine it runs.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};

@@ -1,4 +1,6 @@
 //! Gates: what an asset must hold to be in the library.
+//!
+//! They are judged when the results are put together, so that changing one fits nothing again.
 
 use crate::recipe::{BandErrorGate, Gates};
 use crate::report::{AssetReport, Missed};

@@ -1,4 +1,6 @@
 //! A job: the fit of one texture, as data. Equal jobs give equal bytes, on any machine.
+//!
+//! Models that are installed on a machine are not used, and no path or time is part of a key.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,6 @@
 //! Results by URI: a build writes them in a folder of this machine, from which they are copied.
+//!
+//! They are copied when all are complete, so that a half-built library is never visible.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;

@@ -8,6 +8,10 @@
 //!
 //! Not detected: an allocator that a library links statically and that maps pages itself; calls through an
 //! address that was taken with `dlsym`; libraries loaded after the call; threads that a library starts.
+//!
+//! Other ways were not taken: the state of the heap before and after does not show memory that is allocated and freed,
+//! an own `malloc` would be in every command, and a preloaded library would be a second file to install. Of a module
+//! only the growth of its memory is visible.
 #![allow(unsafe_code)] // The dynamic linker's tables are C.
 
 use std::cell::Cell;

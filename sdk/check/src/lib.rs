@@ -9,6 +9,9 @@
 //! assert!(CHECKS.iter().any(|check| check.name == "level"));
 //! assert!(model_checks_page().contains("| level |"));
 //! ```
+//!
+//! A model is checked from outside, by the calls that a host makes. The faults in `tests/bad-plugins` test that the
+//! checker blames exactly the guarantee that is broken.
 #![deny(unsafe_code)] // Allowed in `allocator` only.
 
 #[cfg(all(target_os = "linux", target_pointer_width = "64"))]

@@ -1,5 +1,9 @@
 //! All-pole filter: a fast direct form while its coefficients are constant, a lattice, which stays stable,
 //! while they change.
+//!
+//! The direct form can be unrolled for four samples. After constant coefficients for as many samples as it has stages a
+//! lattice equals it, to rounding. Mixed filters are computed from line spectral frequencies, between which every
+//! filter is stable.
 
 pub use crate::direct_form::GROUP;
 use crate::direct_form::{Direct, MAX_ORDER as MAX_DIRECT_ORDER};

@@ -3,6 +3,8 @@
 //!
 //! Both measures take slices of equal length (a longer one is cut) and raise a model's magnitude to at least
 //! 1e-9 of the reference's largest, so that an empty band gives a large but finite error.
+//!
+//! The nine-band error is no such measure: it is computed from the energies that `bands` of nine stores.
 
 use alloc::vec::Vec;
 

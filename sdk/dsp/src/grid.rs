@@ -1,4 +1,8 @@
 //! The frequency grid of texture spectra.
+//!
+//! Unit RMS is that of the band's bins. The window spreads a component at 20 Hz partly into bins outside the band: with
+//! unit RMS over all bins each copy of a texture with much energy there would lose up to 0.1 dB, with this definition
+//! 300 s of three copies stay within 0.1 dB.
 
 use alloc::vec::Vec;
 

@@ -2,6 +2,8 @@
 //!
 //! Library FFTs choose instructions, and thereby rounding, by the processor. This one (Stockham, radices 2 to
 //! 5) is plain arithmetic on arrays, which compilers vectorise in native libraries and WASM modules alike.
+//!
+//! Lengths of frames have no prime factor above 5. Library FFTs are slow as WASM, too.
 
 use alloc::vec::Vec;
 use core::f64::consts::TAU;

@@ -1,5 +1,9 @@
 //! All-pole lattice filter: unlike a direct form, stable while its coefficients change, as long as each
 //! reflection coefficient is inside (-1, 1).
+//!
+//! A module checks its time limit at the head of every loop, and values that one round passes to the next go through
+//! memory there. The lattice therefore has a few fixed lengths with all state in registers; [`crate::biquad`] and
+//! [`crate::sine_bank`] are unrolled for the same reason.
 
 use alloc::vec::Vec;
 

@@ -1,5 +1,8 @@
 //! Nelder–Mead simplex minimisation with the standard coefficients, as in SciPy's `fmin` and MATLAB's
 //! `fminsearch` (Lagarias et al. 1998).
+//!
+//! It is the project's own, since the maintained library in Rust reads a clock, which a sandboxed model must not
+//! import.
 
 /// Stopping criteria, and the size of the initial simplex.
 #[derive(Debug, Clone, Copy, PartialEq)]

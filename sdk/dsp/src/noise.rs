@@ -1,4 +1,8 @@
 //! Seeded Gaussian noise.
+//!
+//! Box and Muller's transform, eight pairs at a time, with series of its own for the logarithm, sine and cosine:
+//! without branches compilers use all lanes, and the results are bit-identical on every machine. Two streams share a
+//! register of 512 bits where there is one.
 
 use crate::root::sqrt_f32;
 

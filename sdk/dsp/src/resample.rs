@@ -3,6 +3,10 @@
 //! A texture voice renders at a low rate of its own; the converter brings it to the device's rate. The
 //! converter pulls exactly the samples it needs from its source, never allocates while it runs, and gives the
 //! same samples for any block size.
+//!
+//! A voice states the rate at which it renders. Textures end at 1 kHz, so noise is generated at 2 to 4 kHz: five to
+//! eight times fewer samples, and the steep filter at the top of the band is the converter's. It is not a library's,
+//! since those work in chunks of their own size.
 
 use alloc::vec::Vec;
 

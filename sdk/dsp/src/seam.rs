@@ -1,4 +1,7 @@
 //! Seamless loops of samples.
+//!
+//! A loop is closed at constant power: the gains of its cross-fade depend on the correlation of the two pieces, so that
+//! noise and tones alike keep their power.
 
 use alloc::vec::Vec;
 

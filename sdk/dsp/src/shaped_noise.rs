@@ -4,6 +4,10 @@
 //! in. Frames are independent and the squares of the two weights add up to 1, so the power is the same at
 //! every sample. A frame is one period of its components, so nothing repeats (numeric definitions: random
 //! phase).
+//!
+//! A retune computes the current frames again with the same phases and cross-fades over 10 ms. Of the parameters that
+//! arrive during a cross-fade only the last are converted to a spectrum, at its end, so that a retune computes one
+//! frame and not two. Frames have single precision, as the output does.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;

@@ -3,6 +3,8 @@
 //! A few source samples are converted to all their outputs at a time. The outputs of one phase are side by
 //! side in vector registers, so no sum runs across the lanes of a register, and the output does not depend on
 //! the block sizes.
+//!
+//! Samples are pulled in multiples of eight, so that chains with different stages retune at the same samples.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;

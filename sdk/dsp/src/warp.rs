@@ -1,4 +1,9 @@
 //! Variable-rate playback of a stream: reads it faster or slower at a ratio that may change at any sample.
+//!
+//! A texture is read faster after its resampler, at a cost only once the motion leaves the one for which the voice was
+//! created, whose ratio is part of the resampler's: until then samples pass through bit by bit ([`Warp::when_needed`]).
+//! The source is pulled, so reading ahead causes no delay. The reader has as many taps as the gap between the source's
+//! top frequency and its image requires, 8 to 32.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;

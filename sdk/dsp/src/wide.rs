@@ -1,4 +1,7 @@
 //! Run-time selection of AVX2 and AVX-512 code on x86-64.
+//!
+//! Inner loops are compiled for 128 and 256 bits, and noise for 512 as well. The operations and their order are the
+//! same, so the results are bit-identical. The calls into these versions are the only unsafe code of this crate.
 
 /// A computation that is compiled for several register widths; `run` is always inlined.
 pub(crate) trait Work {

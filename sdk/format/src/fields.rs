@@ -1,4 +1,7 @@
 //! Matching of stored fields to a model's fields, by name.
+//!
+//! Playing, scenes, `info` and `validate` match fields here. An asset may store fields in any order; the model gets
+//! them in its own.
 
 use htex_model::{Descriptor, Kind};
 use semver::Version;

@@ -2,6 +2,8 @@
 //!
 //! Steps with small differences take two to five bits each. Each list has exactly one code, so a
 //! block that is read and written again has the same bytes.
+//!
+//! Its parameter is the one with the fewest bits, and a reader refuses the others.
 
 /// Bits of the Rice parameter `k`.
 const PARAMETER_BITS: u32 = 3;

@@ -1,5 +1,8 @@
 //! Deserializer from JSON values to types, stricter than serde's: an array is not accepted for an
 //! object, an object not for a string variant, and `null` not for a key of a type.
+//!
+//! JSON is parsed once: a text becomes a value without duplicate keys, and the value becomes a type. JSON pointers come
+//! from the same traversal.
 
 use std::cell::RefCell;
 use std::fmt;

@@ -1,4 +1,7 @@
 //! Unpacking of an entry, with checks of its checksum and the end of its stream.
+//!
+//! Every entry is unpacked and checked before the manifest is read, by the inflater itself: the crate `zip` does not
+//! report whether bytes follow the end of a stream.
 
 use std::borrow::Cow;
 

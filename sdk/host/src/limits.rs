@@ -1,4 +1,7 @@
 //! Limits of WASM models.
+//!
+//! Limited are memory, tables, stack, voices, time, the cost of compilation, the total of all modules, and on request
+//! instructions. Each limit has a test in `sdk/host/tests/limits.rs` in which it bites.
 
 use std::path::PathBuf;
 use std::time::Duration;

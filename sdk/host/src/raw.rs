@@ -1,4 +1,7 @@
 //! The flat calls of the model ABI with slices, which each loader implements.
+//!
+//! Every model is called through one table of C functions, the built-in ones too, so that the code above does not
+//! depend on the loader: [`crate::table`] serves built-in models and native libraries, `wasm` serves modules.
 
 use htex_model::abi::ModelTable;
 use htex_model::voices_1::VoicesRenderFn;

@@ -1,4 +1,7 @@
 //! The sandbox of modules: the limits of each, and the budget that several share.
+//!
+//! A registry has one budget, and within it each asset has one ([`crate::Registry::of_asset`]). Voices are not counted
+//! there, so that rendering takes no lock: each has an allowance that grows with what it renders.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -1,4 +1,6 @@
 //! Alternatives to streaming a model's voice, with less computation per sample.
+//!
+//! Models do not depend on them.
 
 use std::fmt;
 use std::str::FromStr;

@@ -1,4 +1,6 @@
 //! Rendering of several voices in as few calls as their models allow.
+//!
+//! Neighbours with the same model are grouped; a model without an own version for several voices is called in a loop.
 
 use htex_model::voices_1::{MAX_VOICES, VoicesTable};
 

@@ -1,4 +1,10 @@
 //! A voice of a model.
+//!
+//! Samples are checked for NaN and infinity here, once for every loader, in place of a WASM compiler that canonicalises
+//! NaNs in every operation.
+//!
+//! A voice mixes the parameters of its conditions itself: in its own instance if it is WASM, in buffers that were
+//! allocated with the voice. Following a finger neither allocates nor locks.
 
 use htex_model::{Motion, Status};
 

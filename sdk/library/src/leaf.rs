@@ -1,4 +1,7 @@
 //! A leaf page: the entries of a run of names, column by column.
+//!
+//! A page has columns: hashes take most of it and cannot be compressed, the rest can. Pages are cut before compression,
+//! so that their size is bounded without trying.
 
 use crate::entry::{Conditions, Cut, Entry, Interval, Place};
 use crate::facts::MOST_WORDS;

@@ -1,4 +1,6 @@
 //! The root page: the library's name, and for every leaf page its first name and its length.
+//!
+//! The root page of a million textures is within the first 16 KiB of a file, so that the first read has it.
 
 use std::ops::Range;
 

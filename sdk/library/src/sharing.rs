@@ -1,4 +1,6 @@
 //! Which embedded modules textures share, and where their bytes are then.
+//!
+//! What several textures embed is found by its hash while a library is written, and stored once.
 
 use std::ops::Range;
 

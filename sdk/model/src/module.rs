@@ -1,4 +1,7 @@
 //! Replacements for parts of the standard library: a panic handler and an allocator.
+//!
+//! A module links no standard library, no serializer and no formatting; `docs/modules.md` has the reasons,
+//! `tests/tests/modules.rs` the bounds of the sizes.
 
 use core::alloc::{GlobalAlloc, Layout};
 use core::arch::wasm32::{memory_grow, unreachable};

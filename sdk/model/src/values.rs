@@ -1,4 +1,7 @@
 //! The flat array of parameters, by field.
+//!
+//! With the descriptor an array describes itself (a scalar is one number, a list its length and its numbers), so
+//! several sets are concatenated without further lengths.
 
 use alloc::vec::Vec;
 

@@ -1,6 +1,9 @@
 //! Native libraries (`.so`, `.dylib`, `.dll`), loaded from a file or by a name that the system's loader searches.
 //!
 //! No library is ever unloaded: function pointers, open devices and voices point into it.
+//!
+//! This is the only place that loads one, but for tests. A bare name is a file of the current folder, as every other
+//! argument is; only NI-DAQmx's own names, or a `driver` that is not a file, are given to the system's loader.
 
 #[cfg(any(unix, windows))]
 use std::error::Error;

@@ -1,4 +1,7 @@
 //! An asset and the models that can play it.
+//!
+//! A model is loaded when one of its representations is first used: validating, listing or inspecting an asset runs no
+//! module.
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};

@@ -11,6 +11,8 @@
 //! ```
 //!
 //! [`Voice::render`] does not allocate, lock or access files: it may run in an audio thread.
+//!
+//! The two cannot be one: scenes build on the player, so a crate with the player cannot re-export scenes.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

@@ -8,6 +8,9 @@
 //! use htex_player::{Block, OpenError};
 //! assert!(matches!(Block::open(b"not a block"), Err(OpenError::TooShort)));
 //! ```
+//!
+//! No operations are fused, cosines are a polynomial, the square root is `libm`'s. `sdk/bake/tests/board.rs` compares
+//! the bits of an emulated Cortex-M4F with the host's; the linked C library has no panic.
 #![no_std]
 #![cfg_attr(not(feature = "c"), forbid(unsafe_code))]
 

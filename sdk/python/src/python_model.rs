@@ -1,4 +1,7 @@
 //! Models that are written in Python. They run under the interpreter's lock, in this process only.
+//!
+//! They are objects ([`RuntimeModel`]), whose arguments and results the host checks as for other models. Exceptions
+//! pass the host as texts; the exception that is raised for one gets the original as its cause.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 

@@ -1,4 +1,7 @@
 //! Rules for a scene's device, and the settings a user states in place of the scene's.
+//!
+//! Quantities are never confused ([`quantity_misfit`]): an asset of accelerations is played on a device of newtons, or
+//! on an electrovibration display, only with a `quantity_gain` that a person states.
 
 use std::collections::BTreeMap;
 

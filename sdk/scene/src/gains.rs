@@ -1,5 +1,9 @@
 //! Drive voltages by person, texture and device: V_g of the paper, found by adjustment and stored in a file
 //! of the user's own.
+//!
+//! A gain belongs to a texture, not to a file: its key is name and author, which remain after a new fit, while a hash
+//! of the recordings would change with one more recording. It stores the RMS at which it was found, so that other
+//! representations keep their energies.
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -1,5 +1,7 @@
 //! Position of the finger along its path, for models that follow the motion themselves. It increases in the direction
 //! of the first stroke and decreases against it, so that a place has the same position on forward and back strokes.
+//!
+//! Of a trace the smoothed velocity is integrated, since the positions of trackers are stepped.
 
 use crate::motion::{Course, Finger};
 use crate::trace::Trace;

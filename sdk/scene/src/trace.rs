@@ -1,4 +1,7 @@
 //! A recorded motion, interpolated at any time.
+//!
+//! Its speed is the second difference of the position's integral: exact for a steady motion with any spacing of the
+//! rows, and insensitive to the steps of a 60 Hz tracker.
 
 use std::path::Path;
 

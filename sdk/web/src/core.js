@@ -1,4 +1,7 @@
 // The library of `sdk/capi`, compiled to WASM, with its C functions as methods. Structs have the layout of 32-bit WASM.
+//
+// The C interface is called, not generated bindings: one interface, one set of errors, and no decoder of text, which audio worklets
+// lack.
 
 import { Guests, decode, encode } from "./guests.js";
 

@@ -1,4 +1,6 @@
 //! Containers around fuzzed parts, with valid checksums, which a fuzzer would not find.
+//!
+//! Modules are built out of well-typed bodies, so that a mutation reaches the code after the checks.
 
 use std::io::{Cursor, Write};
 

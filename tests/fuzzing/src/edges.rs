@@ -1,5 +1,7 @@
 //! Inputs that differ from a valid one in one value, or in two adjacent ones, which take the
 //! extreme values that can be written: all of them, in the same order each time.
+//!
+//! `tests/tests/edges.rs` sets values, cells and bytes of the seeds to every boundary; the fuzzer covers the rest.
 
 use serde_json::Value;
 

@@ -2,6 +2,8 @@
 //!
 //! The programs are built as `cargo fuzz build --sanitizer none` builds them, and with the toolchain
 //! that is installed: nothing here needs a nightly one or cargo-fuzz. The address sanitizer does.
+//!
+//! It is an option: unsafe code is in the shims of the ABIs alone. Coverage counters are a pass of the stable compiler.
 
 mod build;
 mod options;

@@ -11,6 +11,8 @@
 //! A name begins with neither a digit nor an operator; spaces and units in brackets belong to it, as in `Fx [mN]` and
 //! `Lateral Force (m/s)`. A path begins with `/` and ends at a space or another operator, as in `/run1/fx`. Products and
 //! quotients of columns are allowed, so an expression need not be linear.
+//!
+//! It is evaluated row by row, and a result that is not finite is an error with its row.
 
 use std::fmt;
 

@@ -1,4 +1,6 @@
 //! FLAC: integer samples of up to eight channels, compressed without loss.
+//!
+//! `claxon` reads it; `symphonia` is under the MPL.
 
 use std::io::Read;
 

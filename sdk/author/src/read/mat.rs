@@ -3,6 +3,8 @@
 //! Layout: "MAT-File Format", MathWorks; a header of 128 bytes, then elements, each a tag of type and size with its data. Compressed
 //! elements are zlib streams with one element. Nothing is decompressed into memory: the file is read once for the names, and the
 //! variables that are used once more.
+//!
+//! The reader is the project's own: `matfile` has no structs and reads a whole file.
 
 use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom};
 

@@ -11,6 +11,9 @@
 //! println!("{} s at {} Hz", recording.duration_s(), recording.rate_hz);
 //! # Ok::<(), htex_author::read::ReadError>(())
 //! ```
+//!
+//! A format is read by a library where that checks what it reads. All readers read only the columns that are used, and
+//! take no memory for a size that the file does not hold.
 
 #[cfg(feature = "lab-files")]
 mod arrow;

@@ -2,6 +2,8 @@
 //!
 //! Layout: "TDMS File Format Internal Structure", National Instruments; segments, each with the objects that it changes, and raw data in
 //! chunks. The directory of all segments is read first, then the channels that are used.
+//!
+//! The reader is the project's own: `tdms` unwraps what a damaged file may lack, and reads files alone.
 
 use std::io::{Seek, SeekFrom};
 

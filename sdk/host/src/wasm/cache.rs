@@ -2,6 +2,9 @@
 //!
 //! A file is named by the module's hash and the engine's, and begins with a keyed hash of its name and its content, which
 //! detects damaged files and files of other users. [`WasmCache`] documents who is trusted.
+//!
+//! The files are run as machine code. A folder that belongs to another user, or that others may write to, is not used,
+//! and a file without a tag by this user's key ([`super::key`]) is compiled again.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io;

@@ -1,4 +1,9 @@
 //! The engine that compiles and runs modules, and the clock that interrupts modules.
+//!
+//! Time limits are wasmtime's epochs, counted by a thread with at most 20 ticks a second under the default limits, so
+//! an endless loop is stopped on every machine. Instructions (`fuel`) are deterministic and can be counted as well. A
+//! limit of memory costs no time while a module runs: the engine reserves addresses, and no access is compared with a
+//! bound.
 
 use std::time::Duration;
 

@@ -3,6 +3,9 @@
 //! The compiler's time and memory grow faster than a module: with the operators of one function, with values that are
 //! live across branches or merge where blocks end, and with nested blocks. Each of these is a term of the sum. For the
 //! modules that it was compared with, the sum is a bound within a factor of three.
+//!
+//! Above the bound a module is compiled without optimisation and with a single-pass register allocator
+//! ([`super::engine::Effort::Quick`]), which is nearly linear; above that one it is refused.
 
 use wasmparser::{
     BinaryReaderError, FuncValidator, FunctionBody, Operator, OperatorsReader, Parser, Payload,

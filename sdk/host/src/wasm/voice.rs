@@ -1,4 +1,7 @@
-//! A voice in a separate instance.
+//! A voice in a separate instance, which is not called again after a trap.
+//!
+//! Arguments are copied into a buffer in the module's memory, which is allocated once per voice, and samples are copied
+//! out once per call.
 
 use std::sync::Arc;
 

@@ -1,4 +1,6 @@
 //! The server of a page.
+//!
+//! `tiny_http` blocks and has no runtime; it listens on 127.0.0.1 alone.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;

@@ -1,4 +1,6 @@
 //! Estimators of a response from averaged spectra.
+//!
+//! Total least squares (`Hv`) depends on units, so each channel is divided by the root of its power in the band.
 
 use std::fmt;
 

@@ -1,4 +1,7 @@
 //! The largest magnitude, between the points of the grid.
+//!
+//! It is found in 1/magnitude², which is a parabola for a resonance. The file holds the grid alone, since its readers
+//! interpolate.
 
 use serde::Serialize;
 

@@ -1,4 +1,7 @@
 //! The parts of recordings that are averaged, or thrown out.
+//!
+//! A response is an average of pieces with a time and, where one is thrown out, a reason, so that a measurement can be
+//! judged without its samples.
 
 use std::fmt;
 use std::ops::Range;

@@ -1,6 +1,8 @@
 //! Recording of what is felt while a trial plays: a source is read in a thread of its own.
 //!
 //! The source is opened anew for each trial, so that a trial's recording does not depend on the ones before it.
+//!
+//! A session that was killed has the same bytes as one that was not, if device and source have.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,6 @@
 //! How far a session is: computed from its plan and its lines.
+//!
+//! Neither the plan nor the progress is stored: a session that was killed cannot disagree with its file.
 
 use crate::study::Study;
 use crate::study::file::Phase;

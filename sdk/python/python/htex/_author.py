@@ -1,4 +1,8 @@
-"""From recordings to spectra, textures and tables."""
+"""From recordings to spectra, textures and tables.
+
+An array is taken as the NPY file that it would be: channels, scale and limits are those of the readers. A texture that was fitted is
+read back from its bytes, so that it is what its file holds.
+"""
 
 from __future__ import annotations
 

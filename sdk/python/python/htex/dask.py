@@ -4,6 +4,8 @@ The recipe and the results are those of :func:`htex.build`; only the fits are do
 this package, in the same version, and the recordings under the same paths, or URIs of recordings and the variables with which they are
 read.
 
+There is no engine for clusters beside Dask. The process that called :func:`build` writes the results, so that each is written once.
+
 >>> from distributed import Client
 >>> import htex.dask
 >>> htex.dask.build("library.toml", Client("tcp://scheduler:8786"))  # doctest: +SKIP

@@ -1,4 +1,7 @@
 //! A chain of stages, with counts and times of each.
+//!
+//! Stages pull: a stage requests the samples that it needs from its source, so that a rate converter is a stage like
+//! any other and the samples are the same for all block sizes.
 
 use std::time::Instant;
 

@@ -1,4 +1,9 @@
 //! The stages of a chain: one file per effect, with the condition under which it is needed.
+//!
+//! An effect that is constant needs no stage: a constant speed is part of the resampler's ratio, a constant force of
+//! the level. Linear effects of a texture run at the model's rate, before the one resampling; speed scaling alone reads
+//! at a changing ratio there. An effect that a scene forces on without need is neutral, bit by bit or to 1e-6 of full
+//! scale (`sdk/scene/tests/equivalence.rs`): leaving it out is only an optimisation.
 
 mod carrier;
 mod chain;

@@ -4,6 +4,8 @@
 //!
 //! The minimum of a stream is not known in advance. The shift is [`HEADROOM`] times the RMS of the scene's
 //! loudest surface instead; radicands that are still negative are set to zero and counted.
+//!
+//! A shift that followed the minimum would be felt.
 
 use htex_device::Quantity;
 

@@ -1,4 +1,6 @@
 //! From a failed request to one error that says what to do.
+//!
+//! Messages are made from a status and a code alone: responses and the library's own errors quote signatures and keys.
 
 use std::io;
 use std::time::Instant;

@@ -1,4 +1,7 @@
 //! The requests of one file, counted and remembered for its errors.
+//!
+//! This is the layer below the library, which remembers how the last request ended: the library retries, and its errors
+//! do not say so.
 
 use std::error::Error;
 use std::pin::Pin;

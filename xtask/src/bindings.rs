@@ -167,14 +167,14 @@ fn prepare(folder: &Path) -> Result<(), String> {
 }
 
 /// A program, its folder and its environment; arguments are added.
-fn program(name: impl AsRef<OsStr>, folder: &Path) -> Command {
+pub(crate) fn program(name: impl AsRef<OsStr>, folder: &Path) -> Command {
     let mut command = Command::new(name);
     command.current_dir(folder);
     command
 }
 
 /// Runs a program to its end.
-fn run(command: &mut Command) -> Result<(), String> {
+pub(crate) fn run(command: &mut Command) -> Result<(), String> {
     let name = command.get_program().to_string_lossy().into_owned();
     let status = command
         .status()
@@ -193,7 +193,7 @@ fn copy(from: &Path, to: &Path) -> Result<(), String> {
 }
 
 /// The files in a folder.
-fn files(folder: &Path) -> Result<Vec<PathBuf>, String> {
+pub(crate) fn files(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let wrong = |error: std::io::Error| format!("{}: {error}", folder.display());
     let entries = std::fs::read_dir(folder).map_err(wrong)?;
     let paths: Result<Vec<_>, _> = entries.map(|entry| entry.map(|e| e.path())).collect();

@@ -9,5 +9,6 @@ pub mod generated;
 pub mod needs;
 mod places;
 pub mod plugins;
+pub mod prove;
 mod wasm;
 pub mod web;

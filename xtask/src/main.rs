@@ -20,6 +20,7 @@ cargo xtask dist --prefix DIR [--small]  builds and installs libhtex for C, C++ 
 cargo xtask bindings  tests the bindings to other languages and on other processors, all or those named: c, web,
                       processors, costs (times against Rust); says what is missing
 cargo xtask web --out DIR  builds the npm package `htex` for browsers and Node.js
+cargo xtask prove [NAME]  runs a proof that takes long; lists them without a name
 cargo xtask generate  writes the generated files of spec/: schemas, pages, conformance files; and
                       the seeds of the fuzz targets";
 
@@ -31,6 +32,7 @@ fn main() -> ExitCode {
         ["fuzz", ref options @ ..] => fuzz_targets(options),
         ["dist", ref options @ ..] => dist(options),
         ["bindings", ref names @ ..] => done(xtask::bindings::test(names)),
+        ["prove", ref arguments @ ..] => done(xtask::prove::prove(arguments)),
         ["web", "--out", out] => done(xtask::web::web(out.as_ref())),
         ["ci"] => run("bash", &[".ci/run"]),
         ["generate"] => xtask::generated::generate(),

@@ -1,0 +1,196 @@
+//! Hashes of what the command writes and prints, one a line, of the same inputs every time.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use crate::bindings::{program, run};
+use crate::places::{cargo, target, workspace};
+use crate::plugins::MODELS;
+
+/// Command lines, in their order. `{WORD}` stands for each of several words.
+const LINES: &str = include_str!("outputs.txt");
+
+/// Folders and files of the workspace that the commands read.
+const INPUTS: [&str; 8] = [
+    "examples/scenes",
+    "spec/conformance",
+    "spec/library-conformance",
+    "spec/recording-conformance",
+    "spec/scene-conformance",
+    "tests/golden/study",
+    "xtask/src/prove/library.toml",
+    "xtask/src/prove/study.toml",
+];
+
+/// The ends of the keys of measured times: no two runs agree on them.
+const TIMED: [&str; 6] = [
+    "_ms\":",
+    "_us\":",
+    "ns_per_sample\":",
+    "seconds\":",
+    "spread\":",
+    "on_time_front\":",
+];
+
+pub(super) fn prove(options: &[&str]) -> Result<(), String> {
+    let htex = match *options {
+        ["--htex", path] => {
+            std::path::absolute(path).map_err(|error| format!("{path}: {error}"))?
+        }
+        [] => built()?,
+        _ => return Err("prove outputs [--htex PATH]".to_owned()),
+    };
+    let folder = target().join("outputs");
+    prepare(&folder)?;
+    let texts = Texts::of(&htex, &folder)?;
+    for line in LINES.lines().filter(|line| !line.starts_with('#')) {
+        for line in texts.expand(line) {
+            print(&htex, &folder, &line)?;
+        }
+    }
+    hash(&folder)
+}
+
+/// The command as it is installed.
+fn built() -> Result<PathBuf, String> {
+    let mut build = Command::new(cargo());
+    build.args(["build", "--release", "--locked", "--package", "htex-cli"]);
+    run(build.current_dir(workspace()))?;
+    std::path::absolute(target().join("release/htex")).map_err(|error| error.to_string())
+}
+
+/// An empty folder with the inputs and a folder for what is printed.
+fn prepare(folder: &Path) -> Result<(), String> {
+    let wrong = |error: std::io::Error| format!("{}: {error}", folder.display());
+    if folder.exists() {
+        fs::remove_dir_all(folder).map_err(wrong)?;
+    }
+    fs::create_dir_all(folder.join("printed")).map_err(wrong)?;
+    let inputs = INPUTS.map(|input| workspace().join(input));
+    run(Command::new("cp").arg("-R").args(inputs).arg(folder))
+}
+
+/// The command in the folder, which knows of no model, device or setting of the user.
+fn htex(htex: &Path, folder: &Path, line: &str) -> Result<Output, String> {
+    let mut command = program(htex, folder);
+    command.args(line.split_whitespace()).env_clear();
+    let output = command.env("HOME", folder.join("home")).output();
+    output.map_err(|error| format!("{}: {error}", htex.display()))
+}
+
+/// Runs a command and keeps what it prints, with its status, in a file of its name.
+fn print(command: &Path, folder: &Path, line: &str) -> Result<(), String> {
+    let output = htex(command, folder, line)?;
+    let text = [output.stdout, output.stderr].concat();
+    let mut text = without_times(&String::from_utf8_lossy(&text));
+    text += &format!("{}\n", output.status);
+    let file = folder.join("printed").join(line.replace('/', "+"));
+    fs::write(&file, text).map_err(|error| format!("{}: {error}", file.display()))
+}
+
+/// A text but for measured times, and for what they decide in a sweep.
+fn without_times(text: &str) -> String {
+    let decided = text.split("\"knees\"").next().unwrap_or(text);
+    let timed = |value: &&str| TIMED.iter().any(|key| value.contains(key));
+    let kept = decided.split(',').filter(|value| !timed(value));
+    kept.collect::<Vec<_>>().join(",")
+}
+
+/// Prints the hash of each file that is no input, in the order of names.
+fn hash(folder: &Path) -> Result<(), String> {
+    let skipped = INPUTS.map(|input| input.rsplit('/').next().unwrap_or(input));
+    let mut find = program("find", folder);
+    find.args(["-type", "f"]);
+    for name in skipped {
+        find.args(["-not", "-path", &format!("./{name}*")]);
+    }
+    // The cache of builds holds times of files, and a sweep's page its measured times.
+    find.args([
+        "-not",
+        "-path",
+        "*/.htex-build/*",
+        "-not",
+        "-path",
+        "./home/*",
+    ]);
+    find.args(["-not", "-name", "tradeoff.*", "-print"]);
+    let found = find.output().map_err(|error| format!("find: {error}"))?;
+    let found = String::from_utf8_lossy(&found.stdout).into_owned();
+    let mut files: Vec<&str> = found.lines().collect();
+    files.sort_unstable();
+    for some in files.chunks(500) {
+        run(program("sha256sum", folder).args(some))?;
+    }
+    Ok(())
+}
+
+/// What the words in braces stand for.
+struct Texts(Vec<(&'static str, Vec<String>)>);
+
+impl Texts {
+    fn of(command: &Path, folder: &Path) -> Result<Self, String> {
+        let owned = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect();
+        let mut conformance = Vec::new();
+        for place in INPUTS
+            .iter()
+            .filter_map(|input| input.strip_prefix("spec/"))
+        {
+            for file in crate::bindings::files(&folder.join(place))? {
+                let name = file
+                    .file_name()
+                    .unwrap_or_default()
+                    .to_string_lossy()
+                    .into_owned();
+                if !name.ends_with(".report.json") {
+                    conformance.push(format!("{place}/{name}"));
+                }
+            }
+        }
+        Ok(Self(vec![
+            ("{MODEL}", owned(&MODELS)),
+            ("{SURFACE}", owned(&SURFACES)),
+            ("{RATE}", owned(&["8000", "20000", "48000"])),
+            ("{CODE}", firsts(command, folder, "explain")?),
+            ("{COMMAND}", firsts(command, folder, "--help")?),
+            ("{CONFORMANCE}", conformance),
+        ]))
+    }
+
+    /// The line with every combination of words.
+    fn expand(&self, line: &str) -> Vec<String> {
+        let mut lines = vec![line.to_owned()];
+        for (place, words) in &self.0 {
+            if line.contains(place) {
+                let with = |line: &String| {
+                    words
+                        .iter()
+                        .map(|word| line.replace(place, word))
+                        .collect::<Vec<_>>()
+                };
+                lines = lines.iter().flat_map(with).collect();
+            }
+        }
+        lines
+    }
+}
+
+/// The first words of the lines that the command prints, of its help those of the list of commands.
+fn firsts(command: &Path, folder: &Path, line: &str) -> Result<Vec<String>, String> {
+    let printed = htex(command, folder, line)?.stdout;
+    let printed = String::from_utf8_lossy(&printed);
+    let list = printed.rsplit("Commands:\n").next().unwrap_or_default();
+    let lines = list.lines().take_while(|line| !line.is_empty());
+    // A third space begins the rest of a description.
+    let lines = lines.filter(|line| !line.starts_with("   "));
+    let first = |line: &str| line.split_whitespace().next().map(str::to_owned);
+    Ok(lines.filter_map(first).collect())
+}
+
+const SURFACES: [&str; 5] = [
+    "sandpaper",
+    "fine-fabric",
+    "coarse-fabric",
+    "corrugated-paper",
+    "vinyl",
+];

@@ -11,6 +11,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::jobs::at_a_time;
 use crate::places::target;
 
 /// A binding: its name, the programs that its tests need, and the tests.
@@ -78,7 +79,7 @@ const QEMU_USER: [Program; 2] = [
     },
 ];
 
-const BINDINGS: [Binding; 5] = [
+const BINDINGS: [Binding; 4] = [
     Binding {
         name: "c",
         needs: &[CC, PKG_CONFIG, CMAKE, SDL2],
@@ -97,7 +98,16 @@ const BINDINGS: [Binding; 5] = [
     Binding {
         name: "processors",
         needs: &QEMU_USER,
-        test: processors::test,
+        test: processors::sample,
+    },
+];
+
+/// What takes longer than the tests of continuous integration may.
+const PROOFS: [Binding; 2] = [
+    Binding {
+        name: "processors",
+        needs: &QEMU_USER,
+        test: processors::all,
     },
     Binding {
         name: "costs",
@@ -118,25 +128,36 @@ pub fn test(names: &[&str]) -> Result<(), String> {
             known.join(", ")
         ));
     }
-    let chosen = BINDINGS
-        .iter()
-        .filter(|binding| names.is_empty() || names.contains(&binding.name));
-    let mut failed = Vec::new();
-    for binding in chosen {
-        let missing: Vec<String> = binding.needs.iter().filter_map(Program::missing).collect();
-        if !missing.is_empty() {
-            failed.push(format!("{}: {}", binding.name, missing.join("; ")));
-            continue;
-        }
-        eprintln!("bindings: {}", binding.name);
-        let folder = target().join("bindings").join(binding.name);
-        let tested = prepare(&folder).and_then(|()| (binding.test)(&folder));
-        failed.extend(tested.err().map(|what| format!("{}: {what}", binding.name)));
+    let named = |binding: &&Binding| names.is_empty() || names.contains(&binding.name);
+    // Most of them wait for browsers and emulated processors, and each for its turn to compile.
+    let tested = at_a_time(2, BINDINGS.iter().filter(named).collect(), Binding::test);
+    let failed: Vec<String> = tested.into_iter().filter_map(Result::err).collect();
+    match failed.is_empty() {
+        true => Ok(()),
+        false => Err(failed.join("\n")),
     }
-    if failed.is_empty() {
-        Ok(())
-    } else {
-        Err(failed.join("\n"))
+}
+
+/// Proves what tests only sample.
+///
+/// # Errors
+/// As [`test`].
+pub(crate) fn prove(name: &str) -> Result<(), String> {
+    let proof = PROOFS.iter().find(|proof| proof.name == name);
+    proof.map_or(Ok(()), Binding::test)
+}
+
+impl Binding {
+    fn test(&self) -> Result<(), String> {
+        let name = self.name;
+        let missing: Vec<String> = self.needs.iter().filter_map(Program::missing).collect();
+        if !missing.is_empty() {
+            return Err(format!("{name}: {}", missing.join("; ")));
+        }
+        eprintln!("bindings: {name}");
+        let folder = target().join("bindings").join(name);
+        let tested = prepare(&folder).and_then(|()| (self.test)(&folder));
+        tested.map_err(|what| format!("{name}: {what}"))
     }
 }
 

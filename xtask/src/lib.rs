@@ -6,6 +6,7 @@ pub mod c_module;
 pub mod dist;
 pub mod fuzz;
 pub mod generated;
+mod jobs;
 pub mod needs;
 mod places;
 pub mod plugins;

@@ -18,7 +18,7 @@ cargo xtask fuzz      fuzzes the TARGETS named, or all of fuzz/fuzz_targets, eac
                       sanitizer, which needs a nightly toolchain; see fuzz/README.md
 cargo xtask dist --prefix DIR [--small]  builds and installs libhtex for C, C++ and C#
 cargo xtask bindings  tests the bindings to other languages and on other processors, all or those named: c, web,
-                      processors, costs (times against Rust); says what is missing
+                      python, processors; says what is missing
 cargo xtask web --out DIR  builds the npm package `htex` for browsers and Node.js
 cargo xtask prove [NAME]  runs a proof that takes long; lists them without a name
 cargo xtask generate  writes the generated files of spec/: schemas, pages, conformance files; and

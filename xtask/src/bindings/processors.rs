@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use super::{files, fixtures, program, run};
+use crate::jobs::at_a_time;
 use crate::places::{cargo, target, workspace};
 use crate::plugins::MODELS;
 
@@ -16,11 +17,24 @@ const X86: [&str; 3] = ["Haswell-noTSX", "SandyBridge", "Nehalem"];
 
 const SURFACES: [&str; 3] = ["vinyl", "corrugated-paper", "coarse-fabric"];
 
-pub(super) fn test(folder: &Path) -> Result<(), String> {
+/// With one surface.
+pub(super) fn sample(folder: &Path) -> Result<(), String> {
+    same(folder, &SURFACES[..1])
+}
+
+pub(super) fn all(folder: &Path) -> Result<(), String> {
+    same(folder, &SURFACES)
+}
+
+fn same(folder: &Path, surfaces: &[&str]) -> Result<(), String> {
     let folder = std::fs::canonicalize(folder).map_err(|error| error.to_string())?;
     let native = fixtures::command()?;
     let native = std::fs::canonicalize(&native).map_err(|error| error.to_string())?;
-    let expected = written(&folder.join("native"), std::slice::from_ref(&native))?;
+    let expected = written(
+        &folder.join("native"),
+        std::slice::from_ref(&native),
+        surfaces,
+    )?;
     let mut all: Vec<(String, Vec<PathBuf>)> = Vec::new();
     if cfg!(target_arch = "x86_64") {
         all.extend(X86.map(|cpu| {
@@ -35,9 +49,8 @@ pub(super) fn test(folder: &Path) -> Result<(), String> {
         "aarch64".to_owned(),
         vec!["qemu-aarch64".into(), aarch64(&folder)?],
     ));
-    let mut differ = Vec::new();
-    for (name, command) in all {
-        let found = written(&folder.join(&name), &command)?;
+    let compared = at_a_time(2, all, |(name, command)| {
+        let found = written(&folder.join(&name), &command, surfaces)?;
         let other = expected
             .iter()
             .filter(|(file, bytes)| found.get(*file) != Some(bytes));
@@ -47,14 +60,15 @@ pub(super) fn test(folder: &Path) -> Result<(), String> {
             expected.len(),
             other.len()
         );
-        if !other.is_empty() {
-            differ.push(format!("{name}: {} differ", other.join(", ")));
+        match other.is_empty() {
+            true => Ok(()),
+            false => Err(format!("{name}: {} differ", other.join(", "))),
         }
-    }
-    if differ.is_empty() {
-        Ok(())
-    } else {
-        Err(differ.join("; "))
+    });
+    let differ: Vec<String> = compared.into_iter().filter_map(Result::err).collect();
+    match differ.is_empty() {
+        true => Ok(()),
+        false => Err(differ.join("; ")),
     }
 }
 
@@ -87,7 +101,11 @@ fn aarch64(folder: &Path) -> Result<PathBuf, String> {
 }
 
 /// All files that a command writes: recordings, spectra, assets, samples of all models at several motions, and of a scene.
-fn written(folder: &Path, command: &[PathBuf]) -> Result<BTreeMap<String, Vec<u8>>, String> {
+fn written(
+    folder: &Path,
+    command: &[PathBuf],
+    surfaces: &[&str],
+) -> Result<BTreeMap<String, Vec<u8>>, String> {
     std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let htex = |arguments: &[&str], out: Option<&str>| {
         let mut htex = program(&command[0], folder);
@@ -97,7 +115,7 @@ fn written(folder: &Path, command: &[PathBuf]) -> Result<BTreeMap<String, Vec<u8
         let file = file.map_err(|error| format!("{}: {error}", folder.display()))?;
         run(htex.stdout(file.map_or_else(Stdio::null, Stdio::from)))
     };
-    for surface in SURFACES {
+    for surface in surfaces {
         let [csv, asset] = ["csv", "htex"].map(|kind| format!("{surface}.{kind}"));
         htex(&["simulate", "--surface", surface, "-o", &csv], None)?;
         htex(

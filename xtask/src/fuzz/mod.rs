@@ -10,12 +10,11 @@ mod options;
 mod report;
 mod run;
 
-use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 
 pub use options::Options;
 
+use crate::jobs::at_a_time;
 use report::Outcome;
 
 /// Builds and runs the chosen targets; true when nothing was found.
@@ -26,31 +25,12 @@ pub fn fuzz(options: &Options) -> Result<bool, String> {
     let targets = chosen(&options.targets)?;
     let programs = build::build(options)?;
     println!("{}", report::HEAD);
-    let waiting = Mutex::new(targets.into_iter().collect::<VecDeque<_>>());
-    let next = || {
-        waiting
-            .lock()
-            .ok()
-            .and_then(|mut targets| targets.pop_front())
-    };
-    let work = || -> Result<Vec<Outcome>, String> {
-        let mut outcomes = Vec::new();
-        while let Some(target) = next() {
-            let outcome = run::run(&programs, &target, options)?;
-            println!("{}", outcome.line());
-            outcomes.push(outcome);
-        }
-        Ok(outcomes)
-    };
-    let results: Vec<Result<Vec<Outcome>, String>> = std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..options.jobs).map(|_| scope.spawn(work)).collect();
-        let joined = workers.into_iter().map(std::thread::ScopedJoinHandle::join);
-        joined
-            .map(|result| result.unwrap_or_else(|_| Err("a run panicked".to_owned())))
-            .collect()
+    let outcomes = at_a_time(options.jobs, targets, |target| {
+        let outcome = run::run(&programs, &target, options)?;
+        println!("{}", outcome.line());
+        Ok(outcome)
     });
-    let outcomes: Vec<Vec<Outcome>> = results.into_iter().collect::<Result<_, _>>()?;
-    let outcomes = outcomes.concat();
+    let outcomes: Vec<Outcome> = outcomes.into_iter().collect::<Result<_, String>>()?;
     print!("{}", report::end(&outcomes));
     Ok(outcomes.iter().all(|outcome| outcome.finding.is_none()))
 }

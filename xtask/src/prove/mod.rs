@@ -2,6 +2,11 @@
 
 mod outputs;
 
+use std::process::Command;
+
+use crate::places::workspace;
+use crate::{bindings, fuzz, places};
+
 /// A proof: its name, what it takes, what it proves, and how.
 struct Proof {
     name: &'static str,
@@ -10,12 +15,69 @@ struct Proof {
     prove: fn(&[&str]) -> Result<(), String>,
 }
 
-const PROOFS: &[Proof] = &[Proof {
-    name: "outputs",
-    takes: "[--htex PATH]",
-    proves: "prints hashes of what the command writes and prints; `diff` compares them with those of another build",
-    prove: outputs::prove,
-}];
+const PROOFS: &[Proof] = &[
+    Proof {
+        name: "outputs",
+        takes: "[--htex PATH]",
+        proves: "prints hashes of what the command writes and prints; `diff` compares them with those of another build",
+        prove: outputs::prove,
+    },
+    Proof {
+        name: "fuzz",
+        takes: "[options of cargo xtask fuzz]",
+        proves: "no target of fuzz/fuzz_targets finds anything, each in ten minutes",
+        prove: fuzz,
+    },
+    Proof {
+        name: "edges",
+        takes: "",
+        proves: "no reader fails for any extreme value, cell or byte of the seeds; tests take one of eleven",
+        prove: |options| whole_test(options, &["-p", "htex-tests", "--test", "edges"]),
+    },
+    Proof {
+        name: "models",
+        takes: "",
+        proves: "every model passes the checker, native and as a module, with four seeds more, and each fault of a model fails one check of all",
+        prove: |options| whole_test(options, &["-p", "htex-cli", "--test", "checker"]),
+    },
+    Proof {
+        name: "days",
+        takes: "[--hours N]",
+        proves: "voices of a day keep their power and phase, and do not repeat; tests take an hour",
+        prove: |options| cargo(&[&DAYS, options].concat(), &[]),
+    },
+    Proof {
+        name: "processors",
+        takes: "",
+        proves: "the command writes the same bytes on four emulated processors; tests take one surface of three",
+        prove: |options| none(options).and_then(|()| bindings::prove("processors")),
+    },
+    Proof {
+        name: "costs",
+        takes: "",
+        proves: "prints what a sample costs in each language, against Rust",
+        prove: |options| none(options).and_then(|()| bindings::prove("costs")),
+    },
+];
+
+const DAYS: [&str; 8] = [
+    "run",
+    "--release",
+    "-p",
+    "htex-hard-cases",
+    "--no-default-features",
+    "--example",
+    "long_runs",
+    "--",
+];
+
+/// Tests that take a sample take all with this variable.
+const WHOLE: &str = "HTEX_WHOLE";
+
+/// Whether tests take all of what they else take a sample of.
+pub fn whole() -> bool {
+    std::env::var_os(WHOLE).is_some()
+}
 
 /// Runs the proof of a name; without one, lists all.
 ///
@@ -34,4 +96,34 @@ pub fn prove(arguments: &[&str]) -> Result<(), String> {
 fn list() -> String {
     let line = |proof: &Proof| format!("{} {}\n    {}\n", proof.name, proof.takes, proof.proves);
     PROOFS.iter().map(line).collect()
+}
+
+fn none(options: &[&str]) -> Result<(), String> {
+    match options {
+        [] => Ok(()),
+        _ => Err(format!("{} is unknown", options.join(" "))),
+    }
+}
+
+fn fuzz(options: &[&str]) -> Result<(), String> {
+    let options = match options {
+        [] => &["--seconds", "600"],
+        _ => options,
+    };
+    match fuzz::fuzz(&fuzz::Options::parse(options)?)? {
+        true => Ok(()),
+        false => Err("fuzzing found something".to_owned()),
+    }
+}
+
+/// A test with all of what it takes a sample of.
+fn whole_test(options: &[&str], test: &[&str]) -> Result<(), String> {
+    let test = [&["test", "--locked"], test, &["--", "--nocapture"]].concat();
+    none(options).and_then(|()| cargo(&test, &[(WHOLE, "1"), ("HTEX_REQUIRE_WASM", "1")]))
+}
+
+fn cargo(arguments: &[&str], variables: &[(&str, &str)]) -> Result<(), String> {
+    let mut cargo = Command::new(places::cargo());
+    cargo.args(arguments).envs(variables.iter().copied());
+    bindings::run(cargo.current_dir(workspace()))
 }

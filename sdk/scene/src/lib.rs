@@ -5,14 +5,12 @@
 
 mod ahead;
 mod beyond;
-mod call;
 mod check;
 mod cost;
 mod device;
 mod error;
 pub mod file;
 mod gains;
-mod lane;
 mod limits;
 mod load;
 mod measure;
@@ -21,12 +19,15 @@ mod output;
 mod page;
 mod path;
 mod plan;
+mod played;
 mod render;
 mod representation;
+mod requirements;
 mod response;
 mod rules;
 mod stages;
 mod trace;
+mod track;
 mod validate;
 
 pub use cost::Costs;

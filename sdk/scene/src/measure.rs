@@ -10,10 +10,11 @@ use htex_dsp::resample::UnusableRates;
 use htex_host::{Band, FitRequest, HostError, LoadedModel, Registry};
 use htex_play::{Explored, Recorded};
 
-use crate::call::{Call, Part, Span};
 use crate::cost::Costs;
 use crate::motion::Finger;
-use crate::stages::{EFFECTS, Level, Now, Place, Stage, resampling_macs};
+use crate::played::PlayedSurface;
+use crate::requirements::{Requirements, Span};
+use crate::stages::{Context, EFFECTS, Level, Stage, StagePlace, resampling_macs};
 
 const BLOCK: usize = 64;
 /// Samples per timed run: short enough that some runs are not interrupted.
@@ -102,24 +103,24 @@ fn mac_ns() -> f64 {
 
 /// Time per sample of each stage at its own rate, nanoseconds, without the multiplications of filters.
 fn stages(mac_ns: f64) -> Result<BTreeMap<String, f64>, UnusableRates> {
-    let (call, part) = (example_call(), example_part());
+    let (required, played) = (example_required(), example_surface());
     let mut costs = BTreeMap::new();
     let mut note = |name: &str, mut stage: Box<dyn Stage>, macs: f64| {
         let ns = measure_stage(&mut *stage) - macs * mac_ns;
         costs.insert(name.to_owned(), ns.max(0.0));
     };
-    note("level", Box::new(Level::new(&part, 0.1)), 0.0);
+    note("level", Box::new(Level::new(&played, 0.1)), 0.0);
     for entry in EFFECTS {
         match &entry.place {
-            Place::Surface { build: None, .. } => {}
-            Place::Surface {
+            StagePlace::Surface { build: None, .. } => {}
+            StagePlace::Surface {
                 build: Some(build), ..
-            } => note(entry.name, build(&call, &part, false), 0.0),
-            Place::Mix { build, .. } => {
-                let macs = resampling_macs(&call, &part)?.unwrap_or(0.0);
-                note(entry.name, build(&call, &part, false)?, macs);
+            } => note(entry.name, build(&required, &played, false), 0.0),
+            StagePlace::Mix { build, .. } => {
+                let macs = resampling_macs(&required, &played)?.unwrap_or(0.0);
+                note(entry.name, build(&required, &played, false)?, macs);
             }
-            Place::Device { build, .. } => note(entry.name, build(&call, false), 0.0),
+            StagePlace::Device { build, .. } => note(entry.name, build(&required, false), 0.0),
         }
     }
     Ok(costs)
@@ -136,7 +137,7 @@ fn measure_stage(stage: &mut dyn Stage) -> f64 {
             piece.copy_from_slice(&input[at..at + piece.len()]);
         }
     };
-    stage.follow(&Now {
+    stage.follow(&Context {
         finger: Finger {
             speed_mm_s: 100.0,
             force_n: 0.5,
@@ -150,8 +151,8 @@ fn measure_stage(stage: &mut dyn Stage) -> f64 {
 }
 
 /// A scene on an electrovibration display, in which every stage is active.
-fn example_call() -> Call {
-    Call {
+fn example_required() -> Requirements {
+    Requirements {
         device: Capabilities {
             quantity: Quantity::DisplayVoltage,
             rates: Rates::List(vec![20_000.0]),
@@ -181,8 +182,8 @@ fn example_call() -> Call {
     }
 }
 
-fn example_part() -> Part {
-    Part {
+fn example_surface() -> PlayedSurface {
+    PlayedSurface {
         surface: 0,
         model: String::new(),
         error_db: 0.0,

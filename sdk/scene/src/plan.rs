@@ -6,12 +6,13 @@ use htex_device::{Capabilities, Quantity};
 use serde::Serialize;
 
 use crate::SceneError;
-use crate::call::{Call, Part};
 use crate::cost::Costs;
 use crate::file::{Effect, Levels, Switch};
 use crate::load::LoadedScene;
+use crate::played::PlayedSurface;
 use crate::representation::{self, Choice};
-use crate::stages::{EFFECTS, Entry, HEADROOM, Need, Place, resampling_macs};
+use crate::requirements::Requirements;
+use crate::stages::{EFFECTS, Entry, HEADROOM, Need, StagePlace, resampling_macs};
 
 /// A plan: the stages that run, the effects left out, and the reason for each.
 #[derive(Debug, Serialize)]
@@ -40,9 +41,9 @@ pub struct Plan {
     /// Notes for the user.
     pub notes: Vec<String>,
     #[serde(skip)]
-    pub(crate) call: Call,
+    pub(crate) required: Requirements,
     #[serde(skip)]
-    pub(crate) parts: Vec<PlannedPart>,
+    pub(crate) surfaces: Vec<PlannedSurface>,
     #[serde(skip)]
     pub(crate) mixes: Vec<Mix>,
     #[serde(skip)]
@@ -90,16 +91,16 @@ pub struct Chosen {
 
 /// A surface with its own effects; the flag says whether an effect is neutral.
 #[derive(Debug)]
-pub(crate) struct PlannedPart {
-    pub(crate) part: Part,
+pub(crate) struct PlannedSurface {
+    pub(crate) played: PlayedSurface,
     pub(crate) effects: BTreeMap<Effect, bool>,
 }
 
 /// Surfaces mixed at one rate, and the effects of the mix.
 #[derive(Debug)]
 pub(crate) struct Mix {
-    /// Indices of the parts.
-    pub(crate) parts: Vec<usize>,
+    /// Indices of the surfaces.
+    pub(crate) surfaces: Vec<usize>,
     pub(crate) entries: Vec<(&'static Entry, bool)>,
 }
 
@@ -108,46 +109,51 @@ pub(crate) struct Mix {
 /// # Errors
 /// See [`SceneError`].
 pub fn plan(scene: &LoadedScene, device: &Capabilities, costs: &Costs) -> Result<Plan, SceneError> {
-    let mut call = Call::gather(scene, device)?;
+    let mut required = Requirements::gather(scene, device)?;
     let choices = {
-        let cost = |parts: &[Part]| {
-            let mut draft = Draft::new(scene, &call, costs);
-            draft.all(parts).map_or(f64::INFINITY, |()| draft.total())
+        let cost = |surfaces: &[PlayedSurface]| {
+            let mut draft = Draft::new(scene, &required, costs);
+            draft
+                .all(surfaces)
+                .map_or(f64::INFINITY, |()| draft.total())
         };
-        representation::choose(scene, &call, &cost)?
+        representation::choose(scene, &required, &cost)?
     };
-    let loudest_rms = choices.iter().map(|c| c.part.level_rms).fold(0.0, f64::max);
-    call.level_rms = match scene.scene.device.levels {
+    let loudest_rms = choices
+        .iter()
+        .map(|c| c.played.level_rms)
+        .fold(0.0, f64::max);
+    required.level_rms = match scene.scene.device.levels {
         Levels::Normalised => loudest_rms,
-        Levels::Own => representation::reference_rms(scene, &call),
+        Levels::Own => representation::reference_rms(scene, &required),
     };
-    check_drive(&call, loudest_rms)?;
-    let parts: Vec<Part> = choices.iter().map(|c| c.part.clone()).collect();
-    let mut draft = Draft::new(scene, &call, costs);
-    draft.all(&parts)?;
+    check_drive(&required, loudest_rms)?;
+    let surfaces: Vec<PlayedSurface> = choices.iter().map(|c| c.played.clone()).collect();
+    let mut draft = Draft::new(scene, &required, costs);
+    draft.all(&surfaces)?;
     let Draft {
         stages,
         left_out,
-        parts,
+        surfaces,
         mixes,
         device,
         ..
     } = draft;
-    let constant = is_constant(&call, &parts);
+    let constant = is_constant(&required, &surfaces);
     Ok(Plan {
         ns_per_sample_total: stages.iter().map(|s| s.ns_per_sample).sum(),
         stages,
         left_out,
         representation: choices.iter().map(chosen).collect(),
         constant,
-        rate_hz: call.rate_hz,
-        block_frames: call.control,
-        frames: call.frames,
+        rate_hz: required.rate_hz,
+        block_frames: required.control,
+        frames: required.frames,
         costs: costs.machine.clone(),
-        notes: notes(&call, constant, loudest_rms),
-        reference_rms: call.level_rms,
-        call,
-        parts,
+        notes: notes(&required, constant, loudest_rms),
+        reference_rms: required.level_rms,
+        required,
+        surfaces,
         mixes,
         device,
     })
@@ -158,9 +164,9 @@ const MOST_CLAMPED_PERCENT: f64 = 5.0;
 
 /// Rejects a texture that is far too strong for the drive. Noise at the reference level is clipped once in
 /// 75,000 samples.
-fn check_drive(call: &Call, loudest_rms: f64) -> Result<(), SceneError> {
-    let over = loudest_rms / call.level_rms;
-    if call.device.quantity != Quantity::DisplayVoltage || !over.is_finite() {
+fn check_drive(required: &Requirements, loudest_rms: f64) -> Result<(), SceneError> {
+    let over = loudest_rms / required.level_rms;
+    if required.device.quantity != Quantity::DisplayVoltage || !over.is_finite() {
         return Ok(());
     }
     // For normally distributed noise, both tails.
@@ -177,35 +183,38 @@ fn check_drive(call: &Call, loudest_rms: f64) -> Result<(), SceneError> {
 
 fn chosen(choice: &Choice) -> Chosen {
     Chosen {
-        surface: choice.part.surface,
-        model: choice.part.model.clone(),
+        surface: choice.played.surface,
+        model: choice.played.model.clone(),
         why: choice.why.clone(),
     }
 }
 
 /// Whether the motion is constant from the first sample to the last.
-fn is_constant(call: &Call, parts: &[PlannedPart]) -> bool {
-    let steady = |p: &PlannedPart| {
-        p.part.always_touched && p.part.speed_mm_s.is_point() && p.part.force_n.is_point()
+fn is_constant(required: &Requirements, surfaces: &[PlannedSurface]) -> bool {
+    let steady = |p: &PlannedSurface| {
+        p.played.always_touched && p.played.speed_mm_s.is_point() && p.played.force_n.is_point()
     };
-    !call.live && !call.breaks_contact && !call.turns_round && parts.iter().all(steady)
+    !required.live
+        && !required.breaks_contact
+        && !required.turns_round
+        && surfaces.iter().all(steady)
 }
 
-fn notes(call: &Call, constant: bool, loudest_rms: f64) -> Vec<String> {
+fn notes(required: &Requirements, constant: bool, loudest_rms: f64) -> Vec<String> {
     let mut notes = Vec::new();
     if constant {
         notes.push("nothing changes over the scene: the constant path is used".to_owned());
     }
     // With the levels `own` the two differ.
-    if call.level_rms > 0.0 && loudest_rms > 0.0 && loudest_rms != call.level_rms {
-        let db = 20.0 * libm::log10(loudest_rms / call.level_rms);
+    if required.level_rms > 0.0 && loudest_rms > 0.0 && loudest_rms != required.level_rms {
+        let db = 20.0 * libm::log10(loudest_rms / required.level_rms);
         notes.push(format!(
             "levels are not normalised: the loudest texture, {} RMS, is {db:+.1} dB relative to the reference of {}",
-            call.quantity.text(loudest_rms),
-            call.quantity.text(call.level_rms)
+            required.quantity.text(loudest_rms),
+            required.quantity.text(required.level_rms)
         ));
     }
-    match call.device.quantity {
+    match required.device.quantity {
         Quantity::DisplayVoltage => notes.push(format!(
             "the drive's shift is {HEADROOM} times the RMS, since a stream's minimum is not known: \
              against a shift by the minimum of ten seconds of noise (about 4 times the RMS) the texture \
@@ -214,10 +223,10 @@ fn notes(call: &Call, constant: bool, loudest_rms: f64) -> Vec<String> {
         )),
         Quantity::Sound => notes.push(format!(
             "a preview by ear: the level is {} dB relative to full scale, independent of the texture's level{}",
-            call.level_dbfs,
-            match call.pitch == 1.0 {
+            required.level_dbfs,
+            match required.pitch == 1.0 {
                 true => String::new(),
-                false => format!(", and frequencies are multiplied by {}", call.pitch),
+                false => format!(", and frequencies are multiplied by {}", required.pitch),
             }
         )),
         _ => {}
@@ -228,24 +237,24 @@ fn notes(call: &Call, constant: bool, loudest_rms: f64) -> Vec<String> {
 /// A plan under construction.
 struct Draft<'a> {
     scene: &'a LoadedScene,
-    call: &'a Call,
+    required: &'a Requirements,
     costs: &'a Costs,
     stages: Vec<PlannedStage>,
     left_out: Vec<LeftOut>,
-    parts: Vec<PlannedPart>,
+    surfaces: Vec<PlannedSurface>,
     mixes: Vec<Mix>,
     device: Vec<(&'static Entry, bool)>,
 }
 
 impl<'a> Draft<'a> {
-    fn new(scene: &'a LoadedScene, call: &'a Call, costs: &'a Costs) -> Self {
+    fn new(scene: &'a LoadedScene, required: &'a Requirements, costs: &'a Costs) -> Self {
         Self {
             scene,
-            call,
+            required,
             costs,
             stages: Vec::new(),
             left_out: Vec::new(),
-            parts: Vec::new(),
+            surfaces: Vec::new(),
             mixes: Vec::new(),
             device: Vec::new(),
         }
@@ -255,19 +264,21 @@ impl<'a> Draft<'a> {
         self.stages.iter().map(|s| s.ns_per_sample).sum()
     }
 
-    fn all(&mut self, parts: &[Part]) -> Result<(), SceneError> {
-        for part in parts {
-            self.surface(part)?;
+    fn all(&mut self, surfaces: &[PlayedSurface]) -> Result<(), SceneError> {
+        for played in surfaces {
+            self.surface(played)?;
         }
-        self.untouched(parts);
-        for group in groups(parts) {
-            self.mix(parts, group)?;
+        self.untouched(surfaces);
+        for group in groups(surfaces) {
+            self.mix(surfaces, group)?;
         }
-        let call = self.call;
+        let required = self.required;
         for entry in EFFECTS {
-            if let Place::Device { need, .. } = &entry.place {
+            if let StagePlace::Device { need, .. } = &entry.place {
                 let ns = self.costs.stage(entry.name);
-                if let Some(neutral) = self.decide(entry, None, need(call), call.rate_hz, ns)? {
+                if let Some(neutral) =
+                    self.decide(entry, None, need(required), required.rate_hz, ns)?
+                {
                     self.device.push((entry, neutral));
                 }
             }
@@ -276,43 +287,55 @@ impl<'a> Draft<'a> {
     }
 
     /// Adds the stages of one surface, at its model's rate.
-    fn surface(&mut self, part: &Part) -> Result<(), SceneError> {
-        let surface = Some(part.surface);
-        let per_frame = part.share * part.rate_hz * part.fixed_ratio / self.call.rate_hz;
-        let model_ns = self.costs.model(&part.model) * per_frame;
-        self.push("synthesis", surface, always(part), part.rate_hz, model_ns);
+    fn surface(&mut self, played: &PlayedSurface) -> Result<(), SceneError> {
+        let surface = Some(played.surface);
+        let per_frame = played.share * played.rate_hz * played.fixed_ratio / self.required.rate_hz;
+        let model_ns = self.costs.model(&played.model) * per_frame;
+        self.push(
+            "synthesis",
+            surface,
+            always(played),
+            played.rate_hz,
+            model_ns,
+        );
         let mut effects = BTreeMap::new();
         for entry in EFFECTS {
-            let Place::Surface { need, .. } = &entry.place else {
+            let StagePlace::Surface { need, .. } = &entry.place else {
                 continue;
             };
             let ns = match entry.effect {
                 Effect::Interpolation => {
-                    self.costs.retune(&part.model) * part.share / self.call.control as f64
+                    self.costs.retune(&played.model) * played.share / self.required.control as f64
                 }
-                _ => self.costs.stage(entry.name) * per_frame * part.oversampling,
+                _ => self.costs.stage(entry.name) * per_frame * played.oversampling,
             };
-            let need = need(self.call, part);
-            let decided = self.decide(entry, surface, need, part.mix_rate_hz, ns)?;
+            let need = need(self.required, played);
+            let decided = self.decide(entry, surface, need, played.mix_rate_hz, ns)?;
             effects.extend(decided.map(|neutral| (entry.effect, neutral)));
             if entry.effect == Effect::SpeedScaling {
-                let level_ns = self.costs.stage("level") * per_frame * part.oversampling;
+                let level_ns = self.costs.stage("level") * per_frame * played.oversampling;
                 let reason = "the model's samples have unit RMS; the asset gives the level";
-                self.push("level", surface, reason.into(), part.mix_rate_hz, level_ns);
+                self.push(
+                    "level",
+                    surface,
+                    reason.into(),
+                    played.mix_rate_hz,
+                    level_ns,
+                );
             }
         }
-        self.parts.push(PlannedPart {
-            part: part.clone(),
+        self.surfaces.push(PlannedSurface {
+            played: played.clone(),
             effects,
         });
         Ok(())
     }
 
     /// Leaves out surfaces that are never touched.
-    fn untouched(&mut self, parts: &[Part]) {
-        let touched = |i: &usize| parts.iter().any(|p| p.surface == *i);
-        let all = 0..self.call.touches.len();
-        let out = all.filter(|i| self.call.touches[*i].share == 0.0 && !touched(i));
+    fn untouched(&mut self, surfaces: &[PlayedSurface]) {
+        let touched = |i: &usize| surfaces.iter().any(|p| p.surface == *i);
+        let all = 0..self.required.touches.len();
+        let out = all.filter(|i| self.required.touches[*i].share == 0.0 && !touched(i));
         self.left_out.extend(out.map(|surface| LeftOut {
             name: "synthesis",
             surface: Some(surface),
@@ -321,41 +344,41 @@ impl<'a> Draft<'a> {
     }
 
     /// Adds the stages of a mix of surfaces of one rate.
-    fn mix(&mut self, parts: &[Part], group: Vec<usize>) -> Result<(), SceneError> {
-        let first = &parts[group[0]];
-        let surface = (group.len() == 1 && parts.len() > 1).then_some(first.surface);
+    fn mix(&mut self, surfaces: &[PlayedSurface], group: Vec<usize>) -> Result<(), SceneError> {
+        let first = &surfaces[group[0]];
+        let surface = (group.len() == 1 && surfaces.len() > 1).then_some(first.surface);
         let mut entries = Vec::new();
         for entry in EFFECTS {
-            let Place::Mix { need, .. } = &entry.place else {
+            let StagePlace::Mix { need, .. } = &entry.place else {
                 continue;
             };
             let (rate_hz, ns) = self.mix_cost(entry, first)?;
             if let Some(neutral) =
-                self.decide(entry, surface, need(self.call, first), rate_hz, ns)?
+                self.decide(entry, surface, need(self.required, first), rate_hz, ns)?
             {
                 entries.push((entry, neutral));
             }
         }
         self.mixes.push(Mix {
-            parts: group,
+            surfaces: group,
             entries,
         });
         Ok(())
     }
 
     /// Output rate of a mix's stage, and its cost per frame of the device.
-    fn mix_cost(&self, entry: &Entry, part: &Part) -> Result<(f64, f64), SceneError> {
+    fn mix_cost(&self, entry: &Entry, played: &PlayedSurface) -> Result<(f64, f64), SceneError> {
         let own = self.costs.stage(entry.name);
         Ok(match entry.effect {
             Effect::Resampling => {
-                let macs = resampling_macs(self.call, part)?.unwrap_or(0.0);
-                (self.call.rate_hz, own + macs * self.costs.mac_ns)
+                let macs = resampling_macs(self.required, played)?.unwrap_or(0.0);
+                (self.required.rate_hz, own + macs * self.costs.mac_ns)
             }
             _ => {
-                let taps = crate::stages::compensation_taps(part) as f64;
-                let per_frame = part.mix_rate_hz * part.fixed_ratio / self.call.rate_hz;
+                let taps = crate::stages::compensation_taps(played) as f64;
+                let per_frame = played.mix_rate_hz * played.fixed_ratio / self.required.rate_hz;
                 (
-                    part.mix_rate_hz,
+                    played.mix_rate_hz,
                     (own + taps * self.costs.mac_ns) * per_frame,
                 )
             }
@@ -403,12 +426,12 @@ impl<'a> Draft<'a> {
         match entry.effect {
             Effect::Resampling => true,
             Effect::Gain => {
-                !self.call.device.quantity.is_physical() || self.call.quantity_gain != 1.0
+                !self.required.device.quantity.is_physical() || self.required.quantity_gain != 1.0
             }
-            Effect::SquareRoot => !self.call.device.quantity.is_physical(),
+            Effect::SquareRoot => !self.required.device.quantity.is_physical(),
             // A voltage starts and ends at zero and stays within the drive.
             Effect::Contact | Effect::Limiter => {
-                self.call.device.quantity == Quantity::DisplayVoltage
+                self.required.device.quantity == Quantity::DisplayVoltage
             }
             _ => false,
         }
@@ -440,19 +463,22 @@ impl<'a> Draft<'a> {
     }
 }
 
-fn always(part: &Part) -> String {
-    match part.share < 1.0 {
-        true => format!("touched {:.0} % of the time", 100.0 * part.share),
+fn always(played: &PlayedSurface) -> String {
+    match played.share < 1.0 {
+        true => format!("touched {:.0} % of the time", 100.0 * played.share),
         false => "the texture itself".to_owned(),
     }
 }
 
-/// Indices of parts that can share one resampler, in groups.
-fn groups(parts: &[Part]) -> Vec<Vec<usize>> {
-    let key = |p: &Part| [p.mix_rate_hz, p.fixed_ratio, p.top_hz];
+/// Indices of surfaces that can share one resampler, in groups.
+fn groups(surfaces: &[PlayedSurface]) -> Vec<Vec<usize>> {
+    let key = |p: &PlayedSurface| [p.mix_rate_hz, p.fixed_ratio, p.top_hz];
     let mut groups: Vec<Vec<usize>> = Vec::new();
-    for (i, part) in parts.iter().enumerate() {
-        match groups.iter_mut().find(|g| key(&parts[g[0]]) == key(part)) {
+    for (i, played) in surfaces.iter().enumerate() {
+        match groups
+            .iter_mut()
+            .find(|g| key(&surfaces[g[0]]) == key(played))
+        {
             Some(group) => group.push(i),
             None => groups.push(vec![i]),
         }

@@ -2,14 +2,14 @@
 
 use crate::SceneError;
 use crate::ahead::Ahead;
-use crate::call::Call;
 use crate::file::{Effect, Surface};
-use crate::lane::{FingerOnPath, Lane};
 use crate::load::LoadedScene;
 use crate::motion::{Course, Finger, topmost};
 use crate::path::Path;
-use crate::plan::{Mix, Plan, PlannedPart};
-use crate::stages::{Chain, Now, Place, Slot, StageRun, Told};
+use crate::plan::{Mix, Plan, PlannedSurface};
+use crate::requirements::Requirements;
+use crate::stages::{Chain, Context, Slot, StagePlace, StageRun, Statistics};
+use crate::track::{FingerOnPath, Track};
 
 /// Maximum number of samples mixed at a time.
 const PIECE: usize = 256;
@@ -19,7 +19,7 @@ pub struct Renderer {
     surfaces: Vec<Surface>,
     course: Course,
     path: Path,
-    call: Timing,
+    timing: Timing,
     mixes: Vec<MixChain>,
     device: Chain,
     sum: Vec<f32>,
@@ -34,7 +34,7 @@ pub struct Renderer {
     peak: f32,
 }
 
-/// The part of the call that the renderer needs.
+/// The requirements that the renderer needs while it plays.
 struct Timing {
     rate_hz: f64,
     control: usize,
@@ -44,7 +44,7 @@ struct Timing {
 
 /// Surfaces of one rate, and the stages after their sum.
 struct MixChain {
-    lanes: Vec<Lane>,
+    tracks: Vec<Track>,
     chain: Chain,
     piece: Vec<f32>,
 }
@@ -55,16 +55,16 @@ impl Renderer {
     /// # Errors
     /// If a model cannot make a voice.
     pub fn new(scene: &LoadedScene, plan: &Plan) -> Result<Self, SceneError> {
-        let call = &plan.call;
+        let required = &plan.required;
         let mixes = plan
             .mixes
             .iter()
-            .map(|mix| MixChain::new(scene, call, &plan.parts, mix))
+            .map(|mix| MixChain::new(scene, required, &plan.surfaces, mix))
             .collect::<Result<_, _>>()?;
         let mut device = Chain::default();
         for (entry, neutral) in &plan.device {
-            if let Place::Device { build, .. } = &entry.place {
-                let stage = build(call, *neutral);
+            if let StagePlace::Device { build, .. } = &entry.place {
+                let stage = build(required, *neutral);
                 device.slots.push(Slot::new(entry.name, None, stage));
             }
         }
@@ -77,11 +77,11 @@ impl Renderer {
             surfaces: scene.scene.surfaces.clone(),
             path: Path::of(&course),
             course,
-            call: Timing {
-                rate_hz: call.rate_hz,
-                control: call.control,
-                frames: call.frames,
-                ramp: call.ramp_frames(),
+            timing: Timing {
+                rate_hz: required.rate_hz,
+                control: required.control,
+                frames: required.frames,
+                ramp: required.ramp_frames(),
             },
             mixes,
             device,
@@ -105,7 +105,7 @@ impl Renderer {
 
     /// Rate of the samples, hertz.
     pub fn rate_hz(&self) -> f64 {
-        self.call.rate_hz
+        self.timing.rate_hz
     }
 
     /// Sets the position and motion of the finger of a live scene.
@@ -127,18 +127,18 @@ impl Renderer {
     }
 
     fn seconds(&self) -> f64 {
-        self.frame as f64 / self.call.rate_hz
+        self.frame as f64 / self.timing.rate_hz
     }
 
     /// Ends the scene with a ramp to silence, as early as possible.
     pub fn stop(&mut self) {
-        let end = self.frame + self.call.ramp + self.call.control as u64;
-        self.call.frames = Some(self.call.frames.map_or(end, |frames| frames.min(end)));
+        let end = self.frame + self.timing.ramp + self.timing.control as u64;
+        self.timing.frames = Some(self.timing.frames.map_or(end, |frames| frames.min(end)));
     }
 
     /// Frames until the end; `None` if endless.
     pub fn frames_left(&self) -> Option<u64> {
-        self.call
+        self.timing
             .frames
             .map(|frames| frames.saturating_sub(self.frame))
     }
@@ -179,9 +179,9 @@ impl Renderer {
     fn fill_ahead(&mut self, left: u64) {
         // The motion is constant: one update at the start suffices.
         if self.frame == 0 {
-            let (_, told) = self.finger();
-            let lanes = self.mixes.iter_mut().flat_map(|mix| &mut mix.lanes);
-            lanes.for_each(|lane| lane.tell(&told));
+            let (_, on_path) = self.finger();
+            let tracks = self.mixes.iter_mut().flat_map(|mix| &mut mix.tracks);
+            tracks.for_each(|track| track.set_finger(&on_path));
         }
         let mut samples = self.ahead.begin(left);
         for piece in samples.chunks_mut(PIECE) {
@@ -232,43 +232,43 @@ impl Renderer {
             Course::Live => self.live,
             ref course => course.at(t_s),
         };
-        let told = FingerOnPath {
+        let on_path = FingerOnPath {
             t_s,
             force_n: finger.force_n,
             point: self.path.at(t_s),
         };
-        (finger, told)
+        (finger, on_path)
     }
 
     /// Starts a control block: passes the finger's motion to all stages.
     fn update(&mut self) {
-        self.left = self.call.control;
-        let (finger, told) = self.finger();
-        let now = Now {
+        self.left = self.timing.control;
+        let (finger, on_path) = self.finger();
+        let context = Context {
             finger,
             level_rms: 0.0,
             ends_in: self.frames_left(),
         };
         let touched = topmost(&self.surfaces, &finger);
         for mix in &mut self.mixes {
-            mix.chain.follow(&now);
-            for lane in &mut mix.lanes {
-                lane.follow(&now, touched == Some(lane.surface), self.timed);
-                lane.tell(&told);
+            mix.chain.follow(&context);
+            for track in &mut mix.tracks {
+                track.follow(&context, touched == Some(track.surface), self.timed);
+                track.set_finger(&on_path);
             }
         }
-        self.device.follow(&now);
+        self.device.follow(&context);
     }
 
     /// Statistics of each stage so far, in the order of the plan.
     pub fn stages_run(&self) -> Vec<StageRun> {
         let frames = self.timed.then_some(self.frame);
-        let mut lanes: Vec<&Lane> = self.mixes.iter().flat_map(|mix| &mix.lanes).collect();
-        lanes.sort_by_key(|lane| lane.surface);
-        let lanes = lanes.into_iter().flat_map(|lane| lane.runs(frames));
+        let mut tracks: Vec<&Track> = self.mixes.iter().flat_map(|mix| &mix.tracks).collect();
+        tracks.sort_by_key(|track| track.surface);
+        let tracks = tracks.into_iter().flat_map(|track| track.runs(frames));
         let mixes = self.mixes.iter().flat_map(|mix| &mix.chain.slots);
         let behind = mixes.chain(&self.device.slots).map(|slot| slot.run(frames));
-        lanes.chain(behind).collect()
+        tracks.chain(behind).collect()
     }
 
     /// Largest magnitude so far, in the unit of the device. In constant motion up to 1,024 samples are rendered ahead;
@@ -279,31 +279,31 @@ impl Renderer {
 
     /// Number of samples clipped at the device's limit.
     pub fn limited_samples(&self) -> u64 {
-        self.told().limited
+        self.statistics().limited
     }
 
     /// Number of samples whose radicand was negative and set to zero.
     pub fn rooted_samples(&self) -> u64 {
-        self.told().rooted
+        self.statistics().rooted
     }
 
-    fn told(&self) -> Told {
-        let mut told = Told::default();
+    fn statistics(&self) -> Statistics {
+        let mut statistics = Statistics::default();
         self.device
             .slots
             .iter()
-            .for_each(|slot| slot.tell(&mut told));
-        told
+            .for_each(|slot| slot.count(&mut statistics));
+        statistics
     }
 
     /// Returns and clears the first failure of a model.
     pub fn take_failure(&mut self) -> Option<SceneError> {
-        let mut lanes = self.mixes.iter_mut().flat_map(|mix| &mut mix.lanes);
-        lanes.find_map(|lane| {
-            let source = lane.synthesis.take_failure()?;
+        let mut tracks = self.mixes.iter_mut().flat_map(|mix| &mut mix.tracks);
+        tracks.find_map(|track| {
+            let source = track.synthesis.take_failure()?;
             Some(SceneError::Surface {
-                surface: lane.surface,
-                asset: lane.asset.clone(),
+                surface: track.surface,
+                asset: track.asset.clone(),
                 source,
             })
         })
@@ -330,52 +330,55 @@ fn mix(mixes: &mut [MixChain], sum: &mut [f32], timed: bool, out: &mut [f32]) {
 impl MixChain {
     fn new(
         scene: &LoadedScene,
-        call: &Call,
-        parts: &[PlannedPart],
+        required: &Requirements,
+        surfaces: &[PlannedSurface],
         mix: &Mix,
     ) -> Result<Self, SceneError> {
-        let lanes = mix.parts.iter().map(|&i| Lane::new(scene, call, &parts[i]));
+        let tracks = mix
+            .surfaces
+            .iter()
+            .map(|&i| Track::new(scene, required, &surfaces[i]));
         let mut chain = Chain::default();
-        let first = &parts[mix.parts[0]].part;
-        let surface = (mix.parts.len() == 1 && parts.len() > 1).then_some(first.surface);
+        let first = &surfaces[mix.surfaces[0]].played;
+        let surface = (mix.surfaces.len() == 1 && surfaces.len() > 1).then_some(first.surface);
         for (entry, neutral) in &mix.entries {
-            if let Place::Mix { build, .. } = &entry.place {
-                let stage = build(call, first, *neutral)?;
+            if let StagePlace::Mix { build, .. } = &entry.place {
+                let stage = build(required, first, *neutral)?;
                 chain.slots.push(Slot::new(entry.name, surface, stage));
             }
         }
         Ok(Self {
-            lanes: lanes.collect::<Result<_, _>>()?,
+            tracks: tracks.collect::<Result<_, _>>()?,
             chain,
             piece: vec![0.0; PIECE],
         })
     }
 
     fn render(&mut self, timed: bool, out: &mut [f32]) {
-        let (lanes, piece) = (&mut self.lanes, &mut self.piece);
+        let (tracks, piece) = (&mut self.tracks, &mut self.piece);
         self.chain.render(timed, out, &mut |block| {
             for block in block.chunks_mut(PIECE) {
-                sum_of(lanes, piece, timed, block);
+                sum_of(tracks, piece, timed, block);
             }
         });
     }
 }
 
 /// The sum of the audible surfaces.
-fn sum_of(lanes: &mut [Lane], piece: &mut [f32], timed: bool, out: &mut [f32]) {
+fn sum_of(tracks: &mut [Track], piece: &mut [f32], timed: bool, out: &mut [f32]) {
     let mut first = true;
-    for lane in lanes {
-        if !lane.sounds {
-            lane.skip(out.len());
+    for track in tracks {
+        if !track.sounds {
+            track.skip(out.len());
             continue;
         }
         if first {
-            lane.render(timed, out);
+            track.render(timed, out);
             first = false;
             continue;
         }
         let more = &mut piece[..out.len()];
-        lane.render(timed, more);
+        track.render(timed, more);
         out.iter_mut().zip(more).for_each(|(x, more)| *x += *more);
     }
     if first {

@@ -1,8 +1,8 @@
 //! Amplitude modulation of a carrier, which prevents charge leakage (7 kHz in the paper).
 
-use super::{Entry, Need, Place, Stage};
-use crate::call::Call;
+use super::{Entry, Need, Stage, StagePlace};
 use crate::file::Effect;
+use crate::requirements::Requirements;
 
 /// Samples after which the oscillator restarts from its exact phase.
 const RENEW: u32 = 1024;
@@ -10,19 +10,23 @@ const RENEW: u32 = 1024;
 pub(crate) const ENTRY: Entry = Entry {
     effect: Effect::Carrier,
     name: "carrier",
-    place: Place::Device { need, build },
+    place: StagePlace::Device { need, build },
 };
 
-fn need(call: &Call) -> Need {
-    match call.device.carrier_hz {
+fn need(required: &Requirements) -> Need {
+    match required.device.carrier_hz {
         Some(carrier_hz) => Need::yes(format!("the device requires a carrier of {carrier_hz} Hz")),
         None => Need::no("the device requires no carrier"),
     }
 }
 
-fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
-    let carrier_hz = call.device.carrier_hz.filter(|_| !neutral).unwrap_or(0.0);
-    let cycles = carrier_hz / call.rate_hz;
+fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
+    let carrier_hz = required
+        .device
+        .carrier_hz
+        .filter(|_| !neutral)
+        .unwrap_or(0.0);
+    let cycles = carrier_hz / required.rate_hz;
     // A phase in 64-bit fixed point does not drift.
     let step = (cycles.fract() * 2f64.powi(64)) as u64;
     let (sin, cos) = libm::sincos(std::f64::consts::TAU * cycles);

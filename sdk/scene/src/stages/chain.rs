@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::{Now, Stage, Told};
+use super::{Context, Stage, Statistics};
 
 /// A stage of a chain with its statistics.
 pub(crate) struct Slot {
@@ -43,8 +43,8 @@ impl Slot {
         }
     }
 
-    pub(crate) fn follow(&mut self, now: &Now) {
-        self.stage.follow(now);
+    pub(crate) fn follow(&mut self, context: &Context) {
+        self.stage.follow(context);
     }
 
     /// Runs the stage; its time excludes that of its source.
@@ -67,8 +67,8 @@ impl Slot {
         self.ns += (start.elapsed().as_nanos() as u64).saturating_sub(before);
     }
 
-    pub(crate) fn tell(&self, told: &mut Told) {
-        self.stage.tell(told);
+    pub(crate) fn count(&self, statistics: &mut Statistics) {
+        self.stage.count(statistics);
     }
 
     /// Statistics after a rendering of `timed_frames` frames, with times if that is not `None`.
@@ -89,8 +89,8 @@ pub(crate) struct Chain {
 }
 
 impl Chain {
-    pub(crate) fn follow(&mut self, now: &Now) {
-        self.slots.iter_mut().for_each(|slot| slot.follow(now));
+    pub(crate) fn follow(&mut self, context: &Context) {
+        self.slots.iter_mut().for_each(|slot| slot.follow(context));
     }
 
     pub(crate) fn render(

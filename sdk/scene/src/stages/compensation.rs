@@ -4,9 +4,10 @@
 use htex_dsp::fir::Fir;
 use htex_dsp::resample::UnusableRates;
 
-use super::{Entry, Need, Place, Stage};
-use crate::call::{Call, Part};
+use super::{Entry, Need, Stage, StagePlace};
 use crate::file::Effect;
+use crate::played::PlayedSurface;
+use crate::requirements::Requirements;
 
 /// Frequency resolution of the filter, hertz: its length is four periods of this frequency.
 const RESOLUTION_HZ: f64 = 20.0;
@@ -14,11 +15,11 @@ const RESOLUTION_HZ: f64 = 20.0;
 pub(crate) const ENTRY: Entry = Entry {
     effect: Effect::Compensation,
     name: "compensation",
-    place: Place::Mix { need, build },
+    place: StagePlace::Mix { need, build },
 };
 
-fn need(call: &Call, _: &Part) -> Need {
-    match &call.compensation {
+fn need(required: &Requirements, _: &PlayedSurface) -> Need {
+    match &required.compensation {
         Some(inverse) => Need::yes(match inverse.raised() {
             None => "a response of the device is given, and is compensated".to_owned(),
             Some(raised) => {
@@ -30,16 +31,20 @@ fn need(call: &Call, _: &Part) -> Need {
 }
 
 /// Length of the filter, samples at the rate of the mix.
-pub(crate) fn taps(part: &Part) -> usize {
-    (4.0 * part.mix_rate_hz * part.fixed_ratio / RESOLUTION_HZ).clamp(1.0, 16_384.0) as usize
+pub(crate) fn taps(played: &PlayedSurface) -> usize {
+    (4.0 * played.mix_rate_hz * played.fixed_ratio / RESOLUTION_HZ).clamp(1.0, 16_384.0) as usize
 }
 
-fn build(call: &Call, part: &Part, neutral: bool) -> Result<Box<dyn Stage>, UnusableRates> {
-    let fir = match &call.compensation {
+fn build(
+    required: &Requirements,
+    played: &PlayedSurface,
+    neutral: bool,
+) -> Result<Box<dyn Stage>, UnusableRates> {
+    let fir = match &required.compensation {
         Some(inverse) if !neutral => {
             // The filter runs before the resampler, which reads `fixed_ratio` times as fast.
-            let rate_hz = part.mix_rate_hz * part.fixed_ratio;
-            Fir::with_magnitude(taps(part), rate_hz, |hz| inverse.at(hz))
+            let rate_hz = played.mix_rate_hz * played.fixed_ratio;
+            Fir::with_magnitude(taps(played), rate_hz, |hz| inverse.at(hz))
         }
         _ => Fir::through(),
     };

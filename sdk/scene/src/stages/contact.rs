@@ -5,32 +5,32 @@ use htex_device::Quantity;
 use htex_dsp::glide::Glide;
 use htex_play::exploration::CONTACT_RAMP_S;
 
-use super::{Entry, Need, Now, Place, Stage};
-use crate::call::Call;
+use super::{Context, Entry, Need, Stage, StagePlace};
 use crate::file::Effect;
+use crate::requirements::Requirements;
 
 pub(crate) const ENTRY: Entry = Entry {
     effect: Effect::Contact,
     name: "contact",
-    place: Place::Device { need, build },
+    place: StagePlace::Device { need, build },
 };
 
-fn need(call: &Call) -> Need {
-    if call.live {
+fn need(required: &Requirements) -> Need {
+    if required.live {
         return Need::yes("a live finger may start and end contact");
     }
-    if call.breaks_contact {
+    if required.breaks_contact {
         return Need::yes("the finger rests or is lifted");
     }
-    match call.device.quantity {
+    match required.device.quantity {
         Quantity::DisplayVoltage => Need::yes("a voltage starts at zero and ends at zero"),
         Quantity::Sound => Need::yes("a sound starts and ends without a click"),
         _ => Need::no("the finger slides all the time"),
     }
 }
 
-fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
-    let ramp = (CONTACT_RAMP_S * call.rate_hz).ceil() as u32;
+fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
+    let ramp = (CONTACT_RAMP_S * required.rate_hz).ceil() as u32;
     Box::new(Contact {
         neutral,
         ramp,
@@ -45,16 +45,18 @@ struct Contact {
 }
 
 impl Stage for Contact {
-    fn follow(&mut self, now: &Now) {
+    fn follow(&mut self, context: &Context) {
         if self.neutral {
             return;
         }
-        match now.ends_in {
+        match context.ends_in {
             Some(left) if left <= u64::from(self.ramp) => {
                 // The last of them is zero, like the first one of a scene.
                 self.gain.set_within(0.0, (left as u32).saturating_sub(1));
             }
-            _ => self.gain.set(if now.finger.slides() { 1.0 } else { 0.0 }),
+            _ => self
+                .gain
+                .set(if context.finger.slides() { 1.0 } else { 0.0 }),
         }
     }
 

@@ -3,9 +3,10 @@
 
 use htex_dsp::glide::Glide;
 
-use super::{Entry, Need, Place};
-use crate::call::{Call, Part};
+use super::{Entry, Need, StagePlace};
 use crate::file::Effect;
+use crate::played::PlayedSurface;
+use crate::requirements::Requirements;
 
 /// Duration of a cross-fade, seconds: a fingertip of 10 mm at 1 m/s.
 const FADE_S: f64 = 0.010;
@@ -13,11 +14,11 @@ const FADE_S: f64 = 0.010;
 pub(crate) const ENTRY: Entry = Entry {
     effect: Effect::Crossfade,
     name: "crossfade",
-    place: Place::Surface { need, build: None },
+    place: StagePlace::Surface { need, build: None },
 };
 
-fn need(_: &Call, part: &Part) -> Need {
-    if part.always_touched {
+fn need(_: &Requirements, played: &PlayedSurface) -> Need {
+    if played.always_touched {
         return Need::no("the finger never leaves the surface");
     }
     Need::yes("the finger enters or leaves the surface")

@@ -3,9 +3,9 @@
 use htex_device::Quantity;
 use htex_dsp::glide::Glide;
 
-use super::{Entry, Need, Now, Place, Stage};
-use crate::call::Call;
+use super::{Context, Entry, Need, Stage, StagePlace};
 use crate::file::Effect;
+use crate::requirements::Requirements;
 
 /// Duration of a change of sign, seconds.
 const RAMP_S: f64 = 0.010;
@@ -13,17 +13,17 @@ const RAMP_S: f64 = 0.010;
 pub(crate) const ENTRY: Entry = Entry {
     effect: Effect::Direction,
     name: "direction",
-    place: Place::Device { need, build },
+    place: StagePlace::Device { need, build },
 };
 
-fn need(call: &Call) -> Need {
-    match call.device.quantity {
+fn need(required: &Requirements) -> Need {
+    match required.device.quantity {
         Quantity::DisplayVoltage => {
             Need::no("friction on an electrovibration display opposes the motion by itself")
         }
         Quantity::Sound => Need::no("the sign of a sound is inaudible"),
-        Quantity::LateralForce if call.live => Need::yes("a live motion may reverse"),
-        Quantity::LateralForce if call.turns_round => {
+        Quantity::LateralForce if required.live => Need::yes("a live motion may reverse"),
+        Quantity::LateralForce if required.turns_round => {
             Need::yes("the finger reverses its direction")
         }
         Quantity::LateralForce => Need::no("the finger never reverses its direction"),
@@ -31,10 +31,10 @@ fn need(call: &Call) -> Need {
     }
 }
 
-fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
+fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
     Box::new(Direction {
         neutral,
-        sign: Glide::new(1.0, (RAMP_S * call.rate_hz).ceil() as u32),
+        sign: Glide::new(1.0, (RAMP_S * required.rate_hz).ceil() as u32),
     })
 }
 
@@ -44,9 +44,9 @@ struct Direction {
 }
 
 impl Stage for Direction {
-    fn follow(&mut self, now: &Now) {
-        if !self.neutral && now.finger.slides() {
-            self.sign.set(if now.finger.speed_mm_s < 0.0 {
+    fn follow(&mut self, context: &Context) {
+        if !self.neutral && context.finger.slides() {
+            self.sign.set(if context.finger.speed_mm_s < 0.0 {
                 -1.0
             } else {
                 1.0

@@ -5,23 +5,23 @@ use htex_device::Quantity;
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::{Entry, Need, Place, Stage};
-use crate::call::Call;
+use super::{Entry, Need, Stage, StagePlace};
 use crate::file::Effect;
+use crate::requirements::Requirements;
 
 pub(crate) const ENTRY: Entry = Entry {
     effect: Effect::Dither,
     name: "dither",
-    place: Place::Device { need, build },
+    place: StagePlace::Device { need, build },
 };
 
-fn need(call: &Call) -> Need {
-    match (call.device.step, call.device.quantity) {
+fn need(required: &Requirements) -> Need {
+    match (required.device.step, required.device.quantity) {
         (None, _) => Need::no("the device takes floats"),
         (Some(_), Quantity::DisplayVoltage) => {
             Need::no("the steps of a converter before an amplifier are imperceptible")
         }
-        (Some(_), _) if call.device.paced => {
+        (Some(_), _) if required.device.paced => {
             Need::no("the device is not a file that may be processed further")
         }
         (Some(_), _) => {
@@ -30,13 +30,13 @@ fn need(call: &Call) -> Need {
     }
 }
 
-fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
-    let step = call.device.step.filter(|_| !neutral).unwrap_or(0.0);
-    let limit = call.device.limit.filter(|_| !neutral);
+fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
+    let step = required.device.step.filter(|_| !neutral).unwrap_or(0.0);
+    let limit = required.device.limit.filter(|_| !neutral);
     Box::new(Dither {
         step: step as f32,
         limit: limit.map_or(f32::INFINITY, |limit| limit as f32),
-        random: Xoshiro256PlusPlus::seed_from_u64(call.seed ^ 0x6469_7468_6572),
+        random: Xoshiro256PlusPlus::seed_from_u64(required.seed ^ 0x6469_7468_6572),
     })
 }
 

@@ -3,9 +3,9 @@
 
 use htex_device::Quantity;
 
-use super::{Entry, Need, Place, Stage};
-use crate::call::Call;
+use super::{Entry, Need, Stage, StagePlace};
 use crate::file::Effect;
+use crate::requirements::Requirements;
 
 /// Assumed peak of a stream, in units of its RMS. Normally distributed noise exceeds it once in 150,000
 /// samples on either side, ten equal sinusoids never.
@@ -17,7 +17,7 @@ const LEAST_RMS: f64 = 1e-20;
 pub(crate) const ENTRY: Entry = Entry {
     effect: Effect::Gain,
     name: "gain",
-    place: Place::Device { need, build },
+    place: StagePlace::Device { need, build },
 };
 
 /// Mapping of a force to an electrovibration drive: V = sqrt(gain · force + shift), from V = V_g sqrt(y + 1),
@@ -31,54 +31,54 @@ pub(crate) struct Drive {
 }
 
 impl Drive {
-    pub(crate) fn of(call: &Call) -> Self {
-        let half = call.drive_v * call.drive_v / 2.0;
+    pub(crate) fn of(required: &Requirements) -> Self {
+        let half = required.drive_v * required.drive_v / 2.0;
         Self {
-            gain: brings_level_to(half / HEADROOM, call),
+            gain: brings_level_to(half / HEADROOM, required),
             shift: half,
         }
     }
 }
 
 /// Gain that maps the scene's reference level to `level`; 0 if there is no reference level.
-fn brings_level_to(level: f64, call: &Call) -> f64 {
-    match call.level_rms > LEAST_RMS {
-        true => level / call.level_rms,
+fn brings_level_to(level: f64, required: &Requirements) -> f64 {
+    match required.level_rms > LEAST_RMS {
+        true => level / required.level_rms,
         false => 0.0,
     }
 }
 
-fn need(call: &Call) -> Need {
-    match call.device.quantity {
+fn need(required: &Requirements) -> Need {
+    match required.device.quantity {
         Quantity::Sound => Need::yes(format!(
             "the level is set to {} dB relative to full scale for listening",
-            call.level_dbfs
+            required.level_dbfs
         )),
         Quantity::DisplayVoltage => Need::yes(format!(
             "{HEADROOM} times the RMS reaches the drive's largest voltage, {} V",
-            call.drive_v
+            required.drive_v
         )),
-        _ if call.quantity_gain != 1.0 => Need::yes(format!(
+        _ if required.quantity_gain != 1.0 => Need::yes(format!(
             "one {} is played as {} {}",
-            call.quantity.unit(),
-            call.quantity_gain,
-            call.device.quantity.unit()
+            required.quantity.unit(),
+            required.quantity_gain,
+            required.device.quantity.unit()
         )),
-        _ if call.gain_db == 0.0 => {
-            let unit = call.device.quantity.unit();
+        _ if required.gain_db == 0.0 => {
+            let unit = required.device.quantity.unit();
             Need::no(format!("the device takes {unit}, and no gain is given"))
         }
-        _ => Need::yes(format!("a gain of {} dB is given", call.gain_db)),
+        _ => Need::yes(format!("a gain of {} dB is given", required.gain_db)),
     }
 }
 
-fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
+fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
     let db = |db: f64| libm::pow(10.0, db / 20.0);
-    let gain = match call.device.quantity {
+    let gain = match required.device.quantity {
         _ if neutral => 1.0,
-        Quantity::Sound => brings_level_to(db(call.level_dbfs), call),
-        Quantity::DisplayVoltage => Drive::of(call).gain,
-        _ => call.quantity_gain * db(call.gain_db),
+        Quantity::Sound => brings_level_to(db(required.level_dbfs), required),
+        Quantity::DisplayVoltage => Drive::of(required).gain,
+        _ => required.quantity_gain * db(required.gain_db),
     };
     Box::new(Gain(gain as f32))
 }

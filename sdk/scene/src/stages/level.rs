@@ -2,8 +2,8 @@
 
 use htex_dsp::glide::Glide;
 
-use super::{Now, Stage};
-use crate::call::Part;
+use super::{Context, Stage};
+use crate::played::PlayedSurface;
 
 /// Duration of a change of level, seconds.
 const RAMP_S: f64 = 0.010;
@@ -14,18 +14,18 @@ pub(crate) struct Level {
 }
 
 impl Level {
-    pub(crate) fn new(part: &Part, level_rms: f64) -> Self {
-        let ramp = (RAMP_S * part.rate_hz).ceil() as u32;
+    pub(crate) fn new(played: &PlayedSurface, level_rms: f64) -> Self {
+        let ramp = (RAMP_S * played.rate_hz).ceil() as u32;
         Self {
-            gain: part.gain,
-            level: Glide::new((part.gain * level_rms) as f32, ramp),
+            gain: played.gain,
+            level: Glide::new((played.gain * level_rms) as f32, ramp),
         }
     }
 }
 
 impl Stage for Level {
-    fn follow(&mut self, now: &Now) {
-        self.level.set((self.gain * now.level_rms) as f32);
+    fn follow(&mut self, context: &Context) {
+        self.level.set((self.gain * context.level_rms) as f32);
     }
 
     fn render(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32])) {

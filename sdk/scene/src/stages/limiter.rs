@@ -3,19 +3,19 @@
 
 use htex_device::Quantity;
 
-use super::{Entry, Need, Place, Stage, Told};
-use crate::call::Call;
+use super::{Entry, Need, Stage, StagePlace, Statistics};
 use crate::file::Effect;
+use crate::requirements::Requirements;
 
 pub(crate) const ENTRY: Entry = Entry {
     effect: Effect::Limiter,
     name: "limiter",
-    place: Place::Device { need, build },
+    place: StagePlace::Device { need, build },
 };
 
-fn need(call: &Call) -> Need {
-    let unit = call.device.quantity.unit();
-    match (limit(call), call.device.limit) {
+fn need(required: &Requirements) -> Need {
+    let unit = required.device.quantity.unit();
+    match (limit(required), required.device.limit) {
         (Some(drive), Some(most)) if drive < most => {
             Need::yes(format!("the drive is {drive} {unit} at most"))
         }
@@ -25,12 +25,12 @@ fn need(call: &Call) -> Need {
 }
 
 /// The largest magnitude of a sample.
-fn limit(call: &Call) -> Option<f64> {
-    match (call.device.quantity, call.device.limit) {
+fn limit(required: &Requirements) -> Option<f64> {
+    match (required.device.quantity, required.device.limit) {
         // The highest step of the device within the limit, so that rounding never exceeds it.
         (Quantity::DisplayVoltage, Some(limit)) => {
-            let most = limit.min(call.drive_v);
-            let step = call.device.step.unwrap_or(0.0);
+            let most = limit.min(required.drive_v);
+            let step = required.device.step.unwrap_or(0.0);
             let steps = (most / step).floor();
             Some(if step > 0.0 && steps > 0.0 {
                 steps * step
@@ -42,8 +42,8 @@ fn limit(call: &Call) -> Option<f64> {
     }
 }
 
-fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
-    let limit = limit(call).filter(|_| !neutral);
+fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
+    let limit = limit(required).filter(|_| !neutral);
     Box::new(Limiter {
         limit: limit.map_or(f32::INFINITY, at_most),
         held: 0,
@@ -79,8 +79,8 @@ impl Stage for Limiter {
         self.held += held;
     }
 
-    fn tell(&self, told: &mut Told) {
-        told.limited += self.held;
+    fn count(&self, statistics: &mut Statistics) {
+        statistics.limited += self.held;
     }
 }
 
@@ -90,13 +90,13 @@ mod tests {
 
     #[test]
     fn samples_beyond_the_limit_are_clipped_and_counted() {
-        let (limit, mut told) = (at_most(0.1), Told::default());
+        let (limit, mut statistics) = (at_most(0.1), Statistics::default());
         let mut limiter = Limiter { limit, held: 0 };
         let given = [0.05, -0.2, f32::INFINITY, f32::NEG_INFINITY, f32::NAN, -0.0];
         let mut out = given;
         limiter.render(&mut out, &mut |out| out.copy_from_slice(&given));
         assert_eq!(out, [0.05, -limit, limit, -limit, 0.0, 0.0]);
-        limiter.tell(&mut told);
-        assert_eq!(told.limited, 4);
+        limiter.count(&mut statistics);
+        assert_eq!(statistics.limited, 4);
     }
 }

@@ -34,25 +34,26 @@ pub(crate) use synthesis::Synthesis;
 
 use htex_dsp::resample::UnusableRates;
 
-use crate::call::{Call, Part};
 use crate::file::Effect;
 use crate::motion::Finger;
+use crate::played::PlayedSurface;
+use crate::requirements::Requirements;
 
 /// A stage of a chain, pull-based: it requests the input it needs from its source.
 pub(crate) trait Stage: Send {
-    /// Is told the motion before each control block.
-    fn follow(&mut self, _now: &Now) {}
+    /// Takes the motion before each control block.
+    fn follow(&mut self, _now: &Context) {}
 
     /// Fills `out`. Does not allocate, lock or do I/O.
     fn render(&mut self, out: &mut [f32], source: &mut dyn FnMut(&mut [f32]));
 
-    /// Adds what the stage did to the samples to `_told`.
-    fn tell(&self, _told: &mut Told) {}
+    /// Adds what the stage did to the samples.
+    fn count(&self, _statistics: &mut Statistics) {}
 }
 
 /// State of a control block.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Now {
+pub(crate) struct Context {
     pub(crate) finger: Finger,
     /// RMS of the current surface, newtons.
     pub(crate) level_rms: f64,
@@ -65,7 +66,7 @@ pub(crate) const FOLLOWS: &str = "the model follows the motion itself";
 
 /// Counts of corrected samples.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(crate) struct Told {
+pub(crate) struct Statistics {
     /// Samples clipped at the device's limit.
     pub(crate) limited: u64,
     /// Negative radicands set to zero.
@@ -92,37 +93,38 @@ impl Need {
 /// Stage of the chain where an effect is applied, with the functions that decide whether it is needed and
 /// that build it. `neutral`: the effect is not needed and must not change any sample.
 #[derive(Debug)]
-pub(crate) enum Place {
+pub(crate) enum StagePlace {
     /// Per surface, at the model's rate, before surfaces are mixed.
     Surface {
-        need: fn(&Call, &Part) -> Need,
+        need: fn(&Requirements, &PlayedSurface) -> Need,
         /// `None`: the effect has no stage of its own in the chain.
         build: Option<BuildFor>,
     },
     /// Per mix of surfaces of one rate; the need is that of one of them.
     Mix {
-        need: fn(&Call, &Part) -> Need,
+        need: fn(&Requirements, &PlayedSurface) -> Need,
         build: BuildMix,
     },
     /// Once, after mixing, at the device's rate.
     Device {
-        need: fn(&Call) -> Need,
-        build: fn(&Call, neutral: bool) -> Box<dyn Stage>,
+        need: fn(&Requirements) -> Need,
+        build: fn(&Requirements, neutral: bool) -> Box<dyn Stage>,
     },
 }
 
 /// Builds the stage of an effect for a surface.
-type BuildFor = fn(&Call, &Part, neutral: bool) -> Box<dyn Stage>;
+type BuildFor = fn(&Requirements, &PlayedSurface, neutral: bool) -> Box<dyn Stage>;
 
 /// Builds the stage of an effect for a mix of surfaces of one rate.
-type BuildMix = fn(&Call, &Part, neutral: bool) -> Result<Box<dyn Stage>, UnusableRates>;
+type BuildMix =
+    fn(&Requirements, &PlayedSurface, neutral: bool) -> Result<Box<dyn Stage>, UnusableRates>;
 
 /// An entry of the table of effects.
 #[derive(Debug)]
 pub(crate) struct Entry {
     pub(crate) effect: Effect,
     pub(crate) name: &'static str,
-    pub(crate) place: Place,
+    pub(crate) place: StagePlace,
 }
 
 /// All effects, in processing order.

@@ -1,30 +1,30 @@
 //! Rounding to the resolution of the device.
 
-use super::{Entry, Need, Place, Stage};
-use crate::call::Call;
+use super::{Entry, Need, Stage, StagePlace};
 use crate::file::Effect;
+use crate::requirements::Requirements;
 
 pub(crate) const ENTRY: Entry = Entry {
     effect: Effect::Quantisation,
     name: "quantisation",
-    place: Place::Device { need, build },
+    place: StagePlace::Device { need, build },
 };
 
-fn need(call: &Call) -> Need {
-    match call.device.step {
+fn need(required: &Requirements) -> Need {
+    match required.device.step {
         Some(step) => {
-            let unit = call.device.quantity.unit();
+            let unit = required.device.quantity.unit();
             Need::yes(format!("the device has steps of {step:.3e} {unit}"))
         }
         None => Need::no("the device takes floats"),
     }
 }
 
-fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
-    let step = call.device.step.filter(|step| !neutral && *step > 0.0);
+fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
+    let step = required.device.step.filter(|step| !neutral && *step > 0.0);
     Box::new(Quantisation {
         step,
-        limit: call.device.limit.unwrap_or(f64::INFINITY),
+        limit: required.device.limit.unwrap_or(f64::INFINITY),
     })
 }
 

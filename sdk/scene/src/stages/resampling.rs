@@ -2,43 +2,58 @@
 
 use htex_dsp::resample::{Resampler, UnusableRates};
 
-use super::{Entry, Need, Place, Stage};
-use crate::call::{Call, Part};
+use super::{Entry, Need, Stage, StagePlace};
 use crate::file::Effect;
+use crate::played::PlayedSurface;
+use crate::requirements::Requirements;
 
 pub(crate) const ENTRY: Entry = Entry {
     effect: Effect::Resampling,
     name: "resampling",
-    place: Place::Mix { need, build },
+    place: StagePlace::Mix { need, build },
 };
 
-fn need(call: &Call, part: &Part) -> Need {
-    match macs(call, part) {
+fn need(required: &Requirements, played: &PlayedSurface) -> Need {
+    match macs(required, played) {
         // Rates that cannot be converted are refused when the stage is planned.
         Ok(Some(_)) | Err(_) => Need::yes(format!(
             "the model renders at {:.0} Hz, the device runs at {:.0} Hz",
-            part.mix_rate_hz * part.fixed_ratio,
-            call.rate_hz
+            played.mix_rate_hz * played.fixed_ratio,
+            required.rate_hz
         )),
-        Ok(None) => Need::no(format!("model and device run at {:.0} Hz", call.rate_hz)),
+        Ok(None) => Need::no(format!(
+            "model and device run at {:.0} Hz",
+            required.rate_hz
+        )),
     }
 }
 
 /// Input rate, output rate and highest frequency of a surface's converter, hertz; a constant speed is
 /// included in the ratio.
-fn rates(call: &Call, part: &Part) -> (f64, f64, f64) {
-    let ratio = part.fixed_ratio;
-    (part.mix_rate_hz * ratio, call.rate_hz, part.top_hz * ratio)
+fn rates(required: &Requirements, played: &PlayedSurface) -> (f64, f64, f64) {
+    let ratio = played.fixed_ratio;
+    (
+        played.mix_rate_hz * ratio,
+        required.rate_hz,
+        played.top_hz * ratio,
+    )
 }
 
 /// Multiplications per sample of the device; `None` if no conversion is needed.
-pub(crate) fn macs(call: &Call, part: &Part) -> Result<Option<f64>, UnusableRates> {
-    let (from, to, top) = rates(call, part);
+pub(crate) fn macs(
+    required: &Requirements,
+    played: &PlayedSurface,
+) -> Result<Option<f64>, UnusableRates> {
+    let (from, to, top) = rates(required, played);
     Resampler::macs_per_output(from, to, top)
 }
 
-fn build(call: &Call, part: &Part, neutral: bool) -> Result<Box<dyn Stage>, UnusableRates> {
-    let (from, to, top) = rates(call, part);
+fn build(
+    required: &Requirements,
+    played: &PlayedSurface,
+    neutral: bool,
+) -> Result<Box<dyn Stage>, UnusableRates> {
+    let (from, to, top) = rates(required, played);
     Ok(Box::new(match neutral {
         true => Resampling(None),
         false => Resampling(Resampler::new(from, to, top)?),

@@ -4,52 +4,53 @@
 use htex_dsp::warp::Warp;
 use htex_play::{Explored, Recorded};
 
-use super::{Entry, FOLLOWS, Need, Now, Place, Stage};
-use crate::call::{Call, Part};
+use super::{Context, Entry, FOLLOWS, Need, Stage, StagePlace};
 use crate::file::Effect;
+use crate::played::PlayedSurface;
+use crate::requirements::Requirements;
 
 pub(crate) const ENTRY: Entry = Entry {
     effect: Effect::SpeedScaling,
     name: "speed_scaling",
-    place: Place::Surface {
+    place: StagePlace::Surface {
         need,
         build: Some(build),
     },
 };
 
-fn need(_: &Call, part: &Part) -> Need {
-    let known = part.explored.speed;
+fn need(_: &Requirements, played: &PlayedSurface) -> Need {
+    let known = played.explored.speed;
     match known {
-        _ if part.follows_motion => Need::no(FOLLOWS),
+        _ if played.follows_motion => Need::no(FOLLOWS),
         Recorded::Unknown => Need::no("the asset does not state the speed of its recording"),
         Recorded::Several { .. } => {
             Need::no("the asset has several speeds, and is interpolated between them")
         }
-        Recorded::One { .. } if part.speed_mm_s.changes(&known) => Need::yes(format!(
+        Recorded::One { .. } if played.speed_mm_s.changes(&known) => Need::yes(format!(
             "the asset has the speed {known} mm/s only, and the speed is {}",
-            part.speed_mm_s.text("mm/s")
+            played.speed_mm_s.text("mm/s")
         )),
-        Recorded::One { .. } if part.speed_mm_s.is_as(&known) => Need::no(format!(
+        Recorded::One { .. } if played.speed_mm_s.is_as(&known) => Need::no(format!(
             "the speed is always the recorded one, {known} mm/s"
         )),
         Recorded::One { .. } => Need::no(format!(
             "the speed never changes: the resampler reads {:.3} times as fast",
-            part.fixed_ratio
+            played.fixed_ratio
         )),
     }
 }
 
-fn build(_: &Call, part: &Part, neutral: bool) -> Box<dyn Stage> {
-    let scales = part.explored.speed.is_one() && !neutral;
+fn build(_: &Requirements, played: &PlayedSurface, neutral: bool) -> Box<dyn Stage> {
+    let scales = played.explored.speed.is_one() && !neutral;
     Box::new(SpeedScaling {
-        known: part.explored,
+        known: played.explored,
         warp: match scales {
-            true => Warp::new(part.voice_top_hz / part.rate_hz),
+            true => Warp::new(played.voice_top_hz / played.rate_hz),
             false => Warp::through(),
         },
         scales,
         ratio: 1.0,
-        oversampling: part.oversampling,
+        oversampling: played.oversampling,
     })
 }
 
@@ -64,9 +65,9 @@ struct SpeedScaling {
 }
 
 impl Stage for SpeedScaling {
-    fn follow(&mut self, now: &Now) {
-        if self.scales && now.finger.slides() {
-            self.ratio = self.known.speed_ratio(now.finger.speed_mm_s.abs());
+    fn follow(&mut self, context: &Context) {
+        if self.scales && context.finger.slides() {
+            self.ratio = self.known.speed_ratio(context.finger.speed_mm_s.abs());
         }
     }
 

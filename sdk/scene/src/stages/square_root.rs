@@ -9,18 +9,18 @@
 
 use htex_device::Quantity;
 
-use super::{Drive, Entry, HEADROOM, Need, Place, Stage, Told};
-use crate::call::Call;
+use super::{Drive, Entry, HEADROOM, Need, Stage, StagePlace, Statistics};
 use crate::file::Effect;
+use crate::requirements::Requirements;
 
 pub(crate) const ENTRY: Entry = Entry {
     effect: Effect::SquareRoot,
     name: "square_root",
-    place: Place::Device { need, build },
+    place: StagePlace::Device { need, build },
 };
 
-fn need(call: &Call) -> Need {
-    match call.device.quantity {
+fn need(required: &Requirements) -> Need {
+    match required.device.quantity {
         Quantity::DisplayVoltage => Need::yes(format!(
             "friction is proportional to the square of the voltage; the shift is {HEADROOM} times the RMS"
         )),
@@ -28,11 +28,11 @@ fn need(call: &Call) -> Need {
     }
 }
 
-fn build(call: &Call, neutral: bool) -> Box<dyn Stage> {
+fn build(required: &Requirements, neutral: bool) -> Box<dyn Stage> {
     match neutral {
         true => Box::new(Unchanged),
         false => Box::new(SquareRoot {
-            shift: Drive::of(call).shift as f32,
+            shift: Drive::of(required).shift as f32,
             held: 0,
         }),
     }
@@ -64,7 +64,7 @@ impl Stage for SquareRoot {
         self.held += held;
     }
 
-    fn tell(&self, told: &mut Told) {
-        told.rooted += self.held;
+    fn count(&self, statistics: &mut Statistics) {
+        statistics.rooted += self.held;
     }
 }

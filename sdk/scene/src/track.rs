@@ -1,17 +1,17 @@
 //! One surface of a running scene: its voice, and the stages before surfaces are mixed.
 
 use crate::SceneError;
-use crate::call::Call;
 use crate::file::Effect;
 use crate::load::LoadedScene;
 use crate::path::PathPoint;
-use crate::plan::PlannedPart;
+use crate::plan::PlannedSurface;
+use crate::requirements::Requirements;
 use crate::stages::{
-    Chain, Crossfade, EFFECTS, Level, Now, Place, Slot, Stage, StageRun, Synthesis,
+    Chain, Context, Crossfade, EFFECTS, Level, Slot, Stage, StagePlace, StageRun, Synthesis,
 };
 
 /// One surface.
-pub(crate) struct Lane {
+pub(crate) struct Track {
     pub(crate) surface: usize,
     pub(crate) asset: std::path::PathBuf,
     pub(crate) synthesis: Synthesis,
@@ -50,17 +50,17 @@ struct Count {
     ns: u64,
 }
 
-impl Lane {
+impl Track {
     pub(crate) fn new(
         scene: &LoadedScene,
-        call: &Call,
-        planned: &PlannedPart,
+        required: &Requirements,
+        planned: &PlannedSurface,
     ) -> Result<Self, SceneError> {
-        let part = &planned.part;
-        let asset = &scene.scene.surfaces[part.surface].asset;
-        let source = part.source(scene, call);
+        let played = &planned.played;
+        let asset = &scene.scene.surfaces[played.surface].asset;
+        let source = played.source(scene, required);
         let source = source.map_err(|source| SceneError::Surface {
-            surface: part.surface,
+            surface: played.surface,
             asset: asset.clone(),
             source,
         })?;
@@ -70,27 +70,27 @@ impl Lane {
             let Some(&neutral) = planned.effects.get(&entry.effect) else {
                 continue;
             };
-            if let Place::Surface {
+            if let StagePlace::Surface {
                 build: Some(build), ..
             } = &entry.place
             {
-                let stage = build(call, part, neutral);
+                let stage = build(required, played, neutral);
                 chain
                     .slots
-                    .push(Slot::new(entry.name, Some(part.surface), stage));
+                    .push(Slot::new(entry.name, Some(played.surface), stage));
             }
         }
         // The level stage follows stages that change the rate and precedes stages that change the level.
         let scaled = planned.effects.contains_key(&Effect::SpeedScaling);
-        let level = Level::new(part, synthesis.level_rms());
-        let level = Slot::new("level", Some(part.surface), Box::new(level));
+        let level = Level::new(played, synthesis.level_rms());
+        let level = Slot::new("level", Some(played.surface), Box::new(level));
         chain.slots.insert(usize::from(scaled), level);
         let crossfade = planned.effects.get(&Effect::Crossfade).map(|neutral| {
-            let fade = Crossfade::new(part.mix_rate_hz, *neutral);
+            let fade = Crossfade::new(played.mix_rate_hz, *neutral);
             (fade, Count::default())
         });
         Ok(Self {
-            surface: part.surface,
+            surface: played.surface,
             asset: asset.clone(),
             synthesis,
             synthesis_run: Count::default(),
@@ -101,38 +101,38 @@ impl Lane {
             chain,
             crossfade,
             sounds: true,
-            follower: part.follows_motion.then_some(Follower {
-                pitch: part.fixed_ratio,
-                rate_hz: part.mix_rate_hz,
+            follower: played.follows_motion.then_some(Follower {
+                pitch: played.fixed_ratio,
+                rate_hz: played.mix_rate_hz,
                 skipped: 0,
             }),
         })
     }
 
     /// Updates the stages at the start of a control block.
-    pub(crate) fn follow(&mut self, now: &Now, touched: bool, timed: bool) {
+    pub(crate) fn follow(&mut self, context: &Context, touched: bool, timed: bool) {
         if let Some((crossfade, _)) = &mut self.crossfade {
             crossfade.set(touched);
             // Changes only at control blocks, so that samples do not depend on the block sizes of the caller.
             self.sounds = touched || !crossfade.is_silent();
         }
         if let (Some((count, neutral)), true) = (&mut self.interpolation, touched) {
-            let moves = !*neutral && now.finger.slides();
+            let moves = !*neutral && context.finger.slides();
             count.run(timed, || {
                 if moves {
-                    self.synthesis.set_motion(now.finger.motion());
+                    self.synthesis.set_motion(context.finger.motion());
                 }
             });
         }
-        self.chain.follow(&Now {
+        self.chain.follow(&Context {
             level_rms: self.synthesis.level_rms(),
-            ..*now
+            ..*context
         });
     }
 
     /// Passes motion and position to a model that follows the motion itself, while its surface is audible. Position and
     /// time are in the voice's time, so both are multiplied by the pitch.
-    pub(crate) fn tell(&mut self, finger: &FingerOnPath) {
+    pub(crate) fn set_finger(&mut self, finger: &FingerOnPath) {
         let Some(follower) = self.follower.as_ref().filter(|_| self.sounds) else {
             return;
         };

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{Place, numbers};
-use htex_player::{Block, Kind, Player};
+use htex_player::{Block, BlockKind, Player};
 
 /// A place with the asset `t.htex`, and the level of sBeta.
 fn fitted() -> (Place, f64) {
@@ -57,7 +57,7 @@ fn a_condition_is_written_as_bytes_and_as_source() {
     assert_eq!(bake("again.bin"), block);
 
     let block = Block::open(&block).unwrap();
-    assert!(matches!(block.kind(), Kind::Noise { .. }));
+    assert!(matches!(block.kind(), BlockKind::Noise { .. }));
     let mut samples = vec![0.0; 80_000];
     Player::new(block, 1).render(&mut samples);
     let power: f64 = samples.iter().map(|x| f64::from(*x).powi(2)).sum();

@@ -127,7 +127,7 @@ fn rendering_together_does_not_allocate() {
                 sources[i % 18]
                     .set_motion(htex::Motion::new(60.0 + i as f64, 0.4))
                     .unwrap();
-                htex::Source::render_together(&mut sources, 128, &mut out).unwrap();
+                htex::SampleSource::render_together(&mut sources, 128, &mut out).unwrap();
             });
             assert_eq!(calls, 0, "{model}, block {i}");
         }

@@ -8,7 +8,7 @@ use crate::{codes, status, with};
 
 /// The fault of a call.
 #[derive(Clone, Copy)]
-enum Kind {
+enum FaultKind {
     /// The call does nothing and returns a code.
     Error(i32),
     /// Of a write: half of the samples are taken, and the call returns a code (0: success).
@@ -25,7 +25,7 @@ struct Plan {
     call: u64,
     /// Also the calls after it.
     lasts: bool,
-    kind: Kind,
+    kind: FaultKind,
 }
 
 #[derive(Default)]
@@ -55,10 +55,10 @@ fn parse(text: &str) -> Option<Plan> {
     let mut parts = text.split(':');
     let (function, call, kind) = (parts.next()?, parts.next()?, parts.next()?);
     let kind = match kind.split_once('=') {
-        Some(("error", code)) => Kind::Error(code.parse().ok()?),
-        Some(("short", code)) => Kind::Short(code.parse().ok()?),
-        Some(("hang", ms)) => Kind::Hang(ms.parse().ok()?),
-        None if kind == "unplug" => Kind::Unplug,
+        Some(("error", code)) => FaultKind::Error(code.parse().ok()?),
+        Some(("short", code)) => FaultKind::Short(code.parse().ok()?),
+        Some(("hang", ms)) => FaultKind::Hang(ms.parse().ok()?),
+        None if kind == "unplug" => FaultKind::Unplug,
         _ => return None,
     };
     Some(Plan {
@@ -72,20 +72,20 @@ fn parse(text: &str) -> Option<Plan> {
 /// Counts a call; returns the code of one that fails.
 pub fn injected(function: &'static str) -> Option<i32> {
     match due(function)? {
-        Kind::Error(code) => {
+        FaultKind::Error(code) => {
             status::<()>(Err(code));
             Some(code)
         }
-        Kind::Hang(ms) => {
+        FaultKind::Hang(ms) => {
             std::thread::sleep(Duration::from_millis(ms));
             None
         }
-        Kind::Unplug => {
+        FaultKind::Unplug => {
             with(|card| card.unplug_after = Some(0));
             Some(status::<()>(Err(codes::NOT_PRESENT)))
         }
         // Handled where samples are written.
-        Kind::Short(_) => None,
+        FaultKind::Short(_) => None,
     }
 }
 
@@ -96,13 +96,13 @@ pub fn short_write() -> Option<i32> {
         let count = *s.calls.get("DAQmxWriteAnalogF64")?;
         let is_due = count == plan.call || (plan.lasts && count > plan.call);
         match plan.kind {
-            Kind::Short(code) if plan.function == "DAQmxWriteAnalogF64" && is_due => Some(code),
+            FaultKind::Short(code) if plan.function == "DAQmxWriteAnalogF64" && is_due => Some(code),
             _ => None,
         }
     })
 }
 
-fn due(function: &'static str) -> Option<Kind> {
+fn due(function: &'static str) -> Option<FaultKind> {
     state(|s| {
         let count = s.calls.entry(function).or_insert(0);
         *count += 1;

@@ -5,7 +5,7 @@ use htex_play::{Asset, Motion};
 use htex_player::Block;
 use htex_player::layout::{MOST_HALF, MOST_LEVEL};
 
-use crate::encode::{Condition, Kind, encode};
+use crate::encode::{Condition, SpectraKind, encode};
 use crate::filter::{Bins, Design, Wanted};
 use crate::interpolator::Interpolator;
 use crate::reading::{distance_db, of_tones};
@@ -100,8 +100,8 @@ fn bake_grid(
     let bytes = encode(kind, size, grid, &interpolator, &conditions);
     Block::open(&bytes)?;
     let (taps, tones) = match kind {
-        Kind::Noise => (2 * size + 1, 0),
-        Kind::Tones { .. } => (0, size),
+        SpectraKind::Noise => (2 * size + 1, 0),
+        SpectraKind::Tones { .. } => (0, size),
     };
     let baked = Baked {
         bytes,
@@ -282,12 +282,12 @@ impl Shape {
         Ok(distance_db(&model, &read, band))
     }
 
-    fn kind(&self) -> (Kind, usize) {
+    fn kind(&self) -> (SpectraKind, usize) {
         match &self.spectra {
-            Spectra::Noise(_, filters) => (Kind::Noise, filters[0].len() - 1),
+            Spectra::Noise(_, filters) => (SpectraKind::Noise, filters[0].len() - 1),
             Spectra::Tones(tones, random_phase) => {
                 let random_phase = *random_phase;
-                (Kind::Tones { random_phase }, tones[0].len())
+                (SpectraKind::Tones { random_phase }, tones[0].len())
             }
         }
     }

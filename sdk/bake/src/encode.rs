@@ -11,7 +11,7 @@ const GLIDE_S: f64 = 0.020;
 
 /// What conditions store.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum SpectraKind {
     Noise,
     Tones { random_phase: bool },
 }
@@ -24,7 +24,7 @@ pub(crate) struct Condition {
 
 /// Encodes a block. All conditions have `size` coefficients on a side, or sinusoids.
 pub(crate) fn encode(
-    kind: Kind,
+    kind: SpectraKind,
     size: usize,
     grid: &Grid,
     interpolator: &Interpolator,
@@ -39,8 +39,10 @@ pub(crate) fn encode(
     };
     let length = HEADER + 4 * numbers().count() + CHECKSUM;
     let (kind, flags) = match kind {
-        Kind::Noise => (KIND_NOISE, 0),
-        Kind::Tones { random_phase } => (KIND_TONES, if random_phase { RANDOM_PHASE } else { 0 }),
+        SpectraKind::Noise => (KIND_NOISE, 0),
+        SpectraKind::Tones { random_phase } => {
+            (KIND_TONES, if random_phase { RANDOM_PHASE } else { 0 })
+        }
     };
     let mut bytes = Vec::with_capacity(length);
     bytes.extend(MAGIC);

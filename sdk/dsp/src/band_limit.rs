@@ -7,7 +7,7 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use crate::biquad::Biquad;
-use crate::butterworth::Kind;
+use crate::butterworth::PassKind;
 use crate::chebyshev::chebyshev;
 use crate::grid::{Band, GRID_HZ, read_part};
 use crate::pipeline::Pipeline;
@@ -36,7 +36,7 @@ fn sections(band: Band, rate_hz: f64) -> Vec<Biquad> {
     let half_bin = 0.5 * GRID_HZ;
     let low_hz = (band.low_hz - half_bin).max(0.5 * band.low_hz);
     let high_hz = band.high_hz + half_bin;
-    [(Kind::HighPass, low_hz), (Kind::LowPass, high_hz)]
+    [(PassKind::HighPass, low_hz), (PassKind::LowPass, high_hz)]
         .into_iter()
         .filter_map(|(kind, edge_hz)| chebyshev(kind, ORDER, RIPPLE_DB, edge_hz, rate_hz))
         .flatten()

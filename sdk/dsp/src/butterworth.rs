@@ -29,7 +29,7 @@ impl Deref for Sections {
 
 /// Pass band of a filter.
 #[derive(Clone, Copy)]
-pub(crate) enum Kind {
+pub(crate) enum PassKind {
     LowPass,
     HighPass,
 }
@@ -39,12 +39,12 @@ pub(crate) enum Kind {
 /// `None` if the order is not 1 to [`MAX_ORDER`], or the cut-off is not strictly between 0 and
 /// the Nyquist frequency `rate_hz / 2`.
 pub fn low_pass(order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {
-    design(Kind::LowPass, order, fc_hz, rate_hz)
+    design(PassKind::LowPass, order, fc_hz, rate_hz)
 }
 
 /// High-pass sections; arguments and `None` as for [`low_pass`].
 pub fn high_pass(order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {
-    design(Kind::HighPass, order, fc_hz, rate_hz)
+    design(PassKind::HighPass, order, fc_hz, rate_hz)
 }
 
 /// Magnitude `|H|` of the analogue low-pass of any positive order at `ratio` times its cut-off:
@@ -58,7 +58,7 @@ pub fn analog_low_pass_magnitude(ratio: f64, order: f64) -> f64 {
     1.0 / crate::root::sqrt(1.0 + libm::pow(ratio, 2.0 * order))
 }
 
-fn design(kind: Kind, order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {
+fn design(kind: PassKind, order: usize, fc_hz: f64, rate_hz: f64) -> Option<Sections> {
     if !(1..=MAX_ORDER).contains(&order) || !in_range(fc_hz, rate_hz) {
         return None;
     }
@@ -87,12 +87,12 @@ pub(crate) fn in_range(edge_hz: f64, rate_hz: f64) -> bool {
 
 /// Bilinear transform of `1 / (s + 1)` or `s / (s + 1)`, written with the sine and cosine of half the cut-off
 /// angle, which stay finite near Nyquist, where the usual tangent overflows.
-fn first_order(kind: Kind, omega: f64) -> Biquad {
+fn first_order(kind: PassKind, omega: f64) -> Biquad {
     let (sine, cosine) = crate::trig::sincos(omega / 2.0);
     let scale = 1.0 / (sine + cosine);
     let (b0, b1) = match kind {
-        Kind::LowPass => (sine * scale, sine * scale),
-        Kind::HighPass => (cosine * scale, -cosine * scale),
+        PassKind::LowPass => (sine * scale, sine * scale),
+        PassKind::HighPass => (cosine * scale, -cosine * scale),
     };
     Biquad {
         b0,
@@ -104,13 +104,13 @@ fn first_order(kind: Kind, omega: f64) -> Biquad {
 }
 
 /// Bilinear transform of `1 / (s² + s/Q + 1)` or `s² / (s² + s/Q + 1)`.
-pub(crate) fn second_order(kind: Kind, omega: f64, half_inverse_q: f64) -> Biquad {
+pub(crate) fn second_order(kind: PassKind, omega: f64, half_inverse_q: f64) -> Biquad {
     let alpha = crate::trig::sin(omega) * half_inverse_q;
     let scale = 1.0 / (1.0 + alpha);
     let (sine, cosine) = crate::trig::sincos(omega / 2.0);
     let (b0, sign) = match kind {
-        Kind::LowPass => (sine * sine * scale, 1.0),
-        Kind::HighPass => (cosine * cosine * scale, -1.0),
+        PassKind::LowPass => (sine * sine * scale, 1.0),
+        PassKind::HighPass => (cosine * cosine * scale, -1.0),
     };
     Biquad {
         b0,

@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use crate::biquad::Biquad;
-use crate::butterworth::{Kind, in_range, second_order};
+use crate::butterworth::{PassKind, in_range, second_order};
 
 /// Returns the sections of a filter whose magnitude is within half of `ripple_db` of 1 in the pass band and 3
 /// dB down at `edge_hz`, at the sampling rate `rate_hz` (bilinear transform, prewarped edge). `order` must be
@@ -11,7 +11,7 @@ use crate::butterworth::{Kind, in_range, second_order};
 ///
 /// `None` if the edge is not strictly between 0 and the Nyquist frequency `rate_hz / 2`.
 pub(crate) fn chebyshev(
-    kind: Kind,
+    kind: PassKind,
     order: usize,
     ripple_db: f64,
     edge_hz: f64,
@@ -33,8 +33,8 @@ pub(crate) fn chebyshev(
             let (real, imaginary) = (libm::sinh(spread) * sine, libm::cosh(spread) * cosine);
             let radius = libm::hypot(real, imaginary);
             let cut = match kind {
-                Kind::LowPass => tangent * radius / down,
-                Kind::HighPass => tangent * down / radius,
+                PassKind::LowPass => tangent * radius / down,
+                PassKind::HighPass => tangent * down / radius,
             };
             second_order(kind, 2.0 * libm::atan(cut), real / radius)
         })
@@ -59,7 +59,7 @@ mod tests {
     #[test]
     fn the_magnitude_follows_the_chebyshev_polynomial() {
         let (order, ripple_db, rate_hz) = (4, 0.2, 4_000.0);
-        for (kind, edge_hz) in [(Kind::HighPass, 17.5), (Kind::LowPass, 1_002.5)] {
+        for (kind, edge_hz) in [(PassKind::HighPass, 17.5), (PassKind::LowPass, 1_002.5)] {
             let sections = chebyshev(kind, order, ripple_db, edge_hz, rate_hz).unwrap();
             let filter = Cascade::new(&sections);
             let square = libm::pow(10.0, 0.1 * ripple_db) - 1.0;
@@ -67,8 +67,8 @@ mod tests {
             let bent = |hz: f64| libm::tan(core::f64::consts::PI * hz / rate_hz);
             for hz in [2.0, 10.0, 17.5, 19.0, 25.0, 300.0, 900.0, 1_002.5, 1_500.0] {
                 let x = match kind {
-                    Kind::LowPass => down * bent(hz) / bent(edge_hz),
-                    Kind::HighPass => down * bent(edge_hz) / bent(hz),
+                    PassKind::LowPass => down * bent(hz) / bent(edge_hz),
+                    PassKind::HighPass => down * bent(edge_hz) / bent(hz),
                 };
                 // T4.
                 let polynomial = 8.0 * x * x * x * x - 8.0 * x * x + 1.0;

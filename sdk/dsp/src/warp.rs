@@ -122,14 +122,14 @@ impl Warp {
         source: &mut dyn FnMut(&mut [f32]),
     ) -> usize {
         self.skip(source);
-        let mut places = [Place::default(); CHUNK];
+        let mut places = [ReadPosition::default(); CHUNK];
         let (mut count, mut last) = (0, 0);
         for place in places.iter_mut().take(out.len()) {
             if self.start + self.taps > self.history.len() {
                 break;
             }
             last = self.start;
-            *place = Place {
+            *place = ReadPosition {
                 start: last,
                 between: self.place,
             };
@@ -183,7 +183,7 @@ fn taps(top: f64) -> usize {
 
 /// Position of a sample: start of its window in the history, and the fraction of the way to the next sample.
 #[derive(Debug, Clone, Copy, Default)]
-struct Place {
+struct ReadPosition {
     start: usize,
     between: u64,
 }
@@ -191,7 +191,7 @@ struct Place {
 /// Samples to be read, with their windows.
 struct Windows<'a> {
     warp: &'a Warp,
-    places: &'a [Place],
+    places: &'a [ReadPosition],
     out: &'a mut [f32],
 }
 

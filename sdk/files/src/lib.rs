@@ -42,10 +42,10 @@ fn unfinished<T>(run: impl FnOnce(&mut BTreeSet<PathBuf>) -> T) -> T {
 /// A file that is being written. Dropping it before [`Self::keep`] removes it; data written to a pipe or
 /// device cannot be removed.
 #[derive(Debug)]
-pub struct Unfinished(Kind);
+pub struct Unfinished(Target);
 
 #[derive(Debug)]
-enum Kind {
+enum Target {
     /// A temporary file beside the target, and the target.
     Beside(NamedTempFile, PathBuf),
     /// An open pipe or device.
@@ -65,7 +65,7 @@ impl Unfinished {
         }
         if there.as_ref().is_some_and(|is| !is.is_file()) {
             let direct = OpenOptions::new().write(true).open(&path)?;
-            return Ok(Self(Kind::Direct(direct)));
+            return Ok(Self(Target::Direct(direct)));
         }
         let folder = folder(&path);
         if !folder.is_dir() {
@@ -79,14 +79,14 @@ impl Unfinished {
             beside.as_file().set_permissions(there.permissions())?;
         }
         unfinished(|all| all.insert(beside.path().to_owned()));
-        Ok(Self(Kind::Beside(beside, path)))
+        Ok(Self(Target::Beside(beside, path)))
     }
 
     /// Returns the file to write to.
     pub fn file(&mut self) -> &mut File {
         match &mut self.0 {
-            Kind::Beside(beside, _) => beside.as_file_mut(),
-            Kind::Direct(file) => file,
+            Target::Beside(beside, _) => beside.as_file_mut(),
+            Target::Direct(file) => file,
         }
     }
 
@@ -97,7 +97,7 @@ impl Unfinished {
     /// Those of the system; the target is then unchanged.
     pub fn keep(mut self) -> io::Result<()> {
         self.file().flush()?;
-        let Kind::Beside(beside, path) = &mut self.0 else {
+        let Target::Beside(beside, path) = &mut self.0 else {
             return Ok(());
         };
         beside.as_file().sync_all()?;
@@ -114,7 +114,7 @@ impl Unfinished {
 
 impl Drop for Unfinished {
     fn drop(&mut self) {
-        if let Kind::Beside(beside, _) = &self.0 {
+        if let Target::Beside(beside, _) = &self.0 {
             unfinished(|all| all.remove(beside.path()));
         }
     }

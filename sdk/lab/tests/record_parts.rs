@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use htex_author::read::{ReadOptions, read_recording};
 use htex_format::Quantity;
-use htex_lab::record::{Format, Outcome, Part, TakeHeader, read_part, recover};
+use htex_lab::record::{Format, Outcome, PartFile, TakeHeader, read_part, recover};
 use proptest::prelude::*;
 use recording::{RATE_HZ, Settings, record, sweeps};
 
@@ -43,7 +43,7 @@ fn frames(range: std::ops::Range<usize>) -> Vec<f64> {
 /// A part file of 3.5 s in pieces of these lengths, with a tracker's row for each.
 fn part_file(folder: &Path, pieces: &[usize]) -> PathBuf {
     let path = folder.join("vinyl-001.part");
-    let mut part = Part::create(&path, &header(10.0)).unwrap();
+    let mut part = PartFile::create(&path, &header(10.0)).unwrap();
     let mut at = 0;
     for piece in pieces.iter().cycle() {
         let end = (at + piece).min(7_000);
@@ -142,7 +142,7 @@ fn a_killed_take_is_recovered_once_and_the_next_has_another_number() {
 fn a_take_that_another_program_records_is_left_alone() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("vinyl-001.part");
-    let mut part = Part::create(&path, &header(10.0)).unwrap();
+    let mut part = PartFile::create(&path, &header(10.0)).unwrap();
     part.push(&frames(0..2_000)).unwrap();
     assert!(recover(folder.path()).unwrap().is_empty());
     assert!(path.exists());
@@ -162,7 +162,7 @@ fn a_part_file_that_is_not_ours_is_refused_or_recovered_in_its_folder_alone() {
     let whole = fs::read(&path).unwrap();
     let end = whole.iter().position(|b| *b == b'\n').unwrap();
     fs::remove_file(&path).unwrap();
-    let mut part = Part::create(&path, &header(10.0)).unwrap();
+    let mut part = PartFile::create(&path, &header(10.0)).unwrap();
     part.push_tracker(&[f64::NAN, 1.0, 0.5, f64::INFINITY, 0.1, 2.0, 0.1, 3.0]);
     part.push(&[f64::NAN, 0.4]).unwrap();
     part.flush().unwrap();

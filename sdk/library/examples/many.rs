@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use htex_format::{Asset, Manifest};
-use htex_library::{Library, LocalFile, Source, Writer};
+use htex_library::{Library, LibrarySource, LocalFile, Writer};
 
 const COUNTS: [u64; 3] = [1_000, 100_000, 1_000_000];
 /// Textures that are opened, spread over the library, each by a library that is opened anew.
@@ -141,7 +141,7 @@ impl Counted {
     }
 }
 
-impl Source for Counted {
+impl LibrarySource for Counted {
     fn len(&self) -> io::Result<u64> {
         self.file.len()
     }

@@ -30,7 +30,7 @@ pub struct Entry {
     #[serde(serialize_with = "hexadecimal")]
     pub blake3: [u8; 32],
     #[serde(skip)]
-    pub(crate) place: Place,
+    pub(crate) place: TexturePlace,
 }
 
 /// Range of recorded conditions: the least and the greatest known speed and force.
@@ -55,7 +55,7 @@ pub struct Interval {
 
 /// Where the bytes of a texture are.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub(crate) struct Place {
+pub(crate) struct TexturePlace {
     /// The texture's own bytes, from the start of the payload.
     pub own: Range<u64>,
     /// Shared objects among its own bytes, in order.

@@ -18,7 +18,7 @@ use crate::rules as rule;
 ///
 /// A texture is opened in three steps: [`Self::leaf_of`] its name and [`Self::leaf_range`] say which page of the index to read,
 /// [`Self::read_leaf`] finds its entry there, and [`Self::asset_ranges`] says which bytes [`Self::assemble`] makes the texture of.
-/// [`crate::Library`] does so from a [`crate::Source`].
+/// [`crate::Library`] does so from a [`crate::LibrarySource`].
 #[derive(Debug, Clone)]
 pub struct Index {
     header: Header,

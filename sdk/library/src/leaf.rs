@@ -3,7 +3,7 @@
 //! A page has columns: hashes take most of it and cannot be compressed, the rest can. Pages are cut before compression,
 //! so that their size is bounded without trying.
 
-use crate::entry::{Conditions, Cut, Entry, Interval, Place};
+use crate::entry::{Conditions, Cut, Entry, Interval, TexturePlace};
 use crate::facts::MOST_WORDS;
 use crate::fault::{Fault, entry_place, leaf_place};
 use crate::header::{Header, MINOR};
@@ -38,7 +38,7 @@ struct Columns {
     tags: Vec<Vec<String>>,
     models: Vec<Vec<String>>,
     conditions: Vec<Conditions>,
-    places: Vec<Place>,
+    places: Vec<TexturePlace>,
     hashes: Vec<[u8; 32]>,
 }
 
@@ -114,7 +114,7 @@ impl LeafReader<'_> {
     }
 
     /// Checks that the bytes of a texture are in the file. Returns their number.
-    fn check_place(&self, entry: usize, name: &str, place: &Place) -> Result<u64, Fault> {
+    fn check_place(&self, entry: usize, name: &str, place: &TexturePlace) -> Result<u64, Fault> {
         let (payload, shared) = (length(&self.header.payload), length(&self.header.shared));
         let own = length(&place.own);
         let outside = |what: &str| {
@@ -227,7 +227,7 @@ fn interval(
 }
 
 /// Reads where the textures are: own bytes follow each other, and shared objects are among them.
-fn places(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<Place>, Malformed> {
+fn places(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<TexturePlace>, Malformed> {
     let mut at = cursor.varint()?;
     let owns = column(cursor, count, |cursor| {
         let start = at;
@@ -236,7 +236,9 @@ fn places(cursor: &mut Cursor<'_>, count: usize) -> Result<Vec<Place>, Malformed
     })?;
     let cuts = column(cursor, count, cuts)?;
     let places = owns.into_iter().zip(cuts);
-    Ok(places.map(|(own, cuts)| Place { own, cuts }).collect())
+    Ok(places
+        .map(|(own, cuts)| TexturePlace { own, cuts })
+        .collect())
 }
 
 fn cuts(cursor: &mut Cursor<'_>) -> Result<Vec<Cut>, Malformed> {

@@ -31,7 +31,7 @@
 //! ```
 //!
 //! With the feature `storage`, `Library::open_located` opens libraries by URI. [`Index`] and [`Opening`] do no input or output: they state which bytes of the file they need. [`Library`] reads them from a
-//! [`Source`]; a browser fetches them.
+//! [`LibrarySource`]; a browser fetches them.
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "write")]
@@ -75,7 +75,7 @@ pub use name::{InvalidName, check_name};
 pub use opening::{FIRST_READ, Opening, Progress};
 pub use query::Query;
 pub use rules::{RULES, explain, findings_page};
-pub use source::{LocalFile, Source};
+pub use source::{LibrarySource, LocalFile};
 pub use validate::{validate, validate_source};
 #[cfg(feature = "write")]
 pub use writer::{Packed, Writer};

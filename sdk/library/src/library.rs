@@ -11,7 +11,7 @@ use crate::error::LibraryError;
 use crate::index::Index;
 use crate::limits::Limits;
 use crate::opening::{Opening, Progress};
-use crate::source::{LocalFile, Source};
+use crate::source::{LibrarySource, LocalFile};
 
 /// A library of textures, each of which is read when it is asked for.
 ///
@@ -48,7 +48,7 @@ impl Library<LocalFile> {
     }
 }
 
-impl<S: Source> Library<S> {
+impl<S: LibrarySource> Library<S> {
     /// Opens a library from any source, within the default [`Limits`].
     ///
     /// # Errors
@@ -191,7 +191,7 @@ impl<S: Source> Library<S> {
 }
 
 /// Reads a range, or less at the end of the file. Ranges of an opened library are within its limits.
-fn read_up_to(source: &impl Source, range: Range<u64>) -> Result<Vec<u8>, LibraryError> {
+fn read_up_to(source: &impl LibrarySource, range: Range<u64>) -> Result<Vec<u8>, LibraryError> {
     let length = usize::try_from(range.end - range.start)
         .map_err(|error| failed(&range, std::io::Error::other(error)))?;
     let mut bytes = vec![0; length];
@@ -220,7 +220,7 @@ pub struct Entries<'a, S = LocalFile> {
     next: usize,
 }
 
-impl<S: Source> Iterator for Entries<'_, S> {
+impl<S: LibrarySource> Iterator for Entries<'_, S> {
     type Item = Result<Entry, LibraryError>;
 
     fn next(&mut self) -> Option<Self::Item> {

@@ -7,7 +7,7 @@ use htex_storage::{Location, Remote, Storage};
 use crate::error::LibraryError;
 use crate::library::Library;
 use crate::opening::FIRST_READ;
-use crate::source::{LocalFile, Source};
+use crate::source::{LibrarySource, LocalFile};
 
 /// A file of this machine, or one elsewhere, of which only the ranges are read that are asked for.
 #[derive(Debug)]
@@ -63,10 +63,10 @@ impl Located {
     }
 }
 
-impl Source for Located {
+impl LibrarySource for Located {
     fn len(&self) -> io::Result<u64> {
         match self {
-            Self::File(file) => Source::len(file),
+            Self::File(file) => LibrarySource::len(file),
             Self::Elsewhere(remote) => Ok(remote.len()),
         }
     }

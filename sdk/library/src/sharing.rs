@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use crate::entry::{Cut, Place};
+use crate::entry::{Cut, TexturePlace};
 use crate::leaf::{MOST_CUTS, length};
 use crate::spool::{Module, Spooled};
 
@@ -56,7 +56,7 @@ impl Sharing {
     }
 
     /// Returns where the bytes of a texture will be; its own begin at `start` of the payload.
-    pub(crate) fn place(&self, spooled: &Spooled, start: u64) -> Place {
+    pub(crate) fn place(&self, spooled: &Spooled, start: u64) -> TexturePlace {
         let (mut inlined, mut cuts) = (0, Vec::new());
         for (at, module) in &spooled.modules {
             let module = *module as usize;
@@ -71,7 +71,7 @@ impl Sharing {
         // An archive has at most as many entries, of which modules are some.
         debug_assert!(cuts.len() <= MOST_CUTS);
         let own = length(&spooled.own) + inlined;
-        Place {
+        TexturePlace {
             own: start..start + own,
             cuts,
         }

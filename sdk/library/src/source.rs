@@ -9,7 +9,7 @@ use crate::error::LibraryError;
 /// Bytes that a library is read from: a file, a buffer, ranges of a file on a server.
 ///
 /// A library asks for few and large ranges, each once: 16 KiB when it is opened, a page of the index, the texture.
-pub trait Source {
+pub trait LibrarySource {
     /// Returns the length of the file, bytes. It is asked for after the first read, so that a network source knows it from
     /// its first response.
     ///
@@ -50,7 +50,7 @@ impl LocalFile {
     }
 }
 
-impl Source for LocalFile {
+impl LibrarySource for LocalFile {
     fn len(&self) -> io::Result<u64> {
         self.0.metadata().map(|metadata| metadata.len())
     }
@@ -86,7 +86,7 @@ fn read_some(mut file: &File, offset: u64, buffer: &mut [u8]) -> io::Result<usiz
     file.read(buffer)
 }
 
-impl Source for [u8] {
+impl LibrarySource for [u8] {
     fn len(&self) -> io::Result<u64> {
         Ok(<[u8]>::len(self) as u64)
     }
@@ -100,9 +100,9 @@ impl Source for [u8] {
     }
 }
 
-impl Source for Vec<u8> {
+impl LibrarySource for Vec<u8> {
     fn len(&self) -> io::Result<u64> {
-        Source::len(self.as_slice())
+        LibrarySource::len(self.as_slice())
     }
 
     fn read_at(&self, offset: u64, buffer: &mut [u8]) -> io::Result<usize> {
@@ -110,7 +110,7 @@ impl Source for Vec<u8> {
     }
 }
 
-impl<S: Source + ?Sized> Source for &S {
+impl<S: LibrarySource + ?Sized> LibrarySource for &S {
     fn len(&self) -> io::Result<u64> {
         (**self).len()
     }

@@ -14,7 +14,7 @@ use crate::leaf::length;
 use crate::library::Library;
 use crate::limits::Limits;
 use crate::rules as rule;
-use crate::source::{LocalFile, Source};
+use crate::source::{LibrarySource, LocalFile};
 
 /// Validates a library within the default limits: every page of the index, and every texture as [`htex_format::validate`] does.
 ///
@@ -28,7 +28,10 @@ pub fn validate(path: &Path) -> Result<Report, LibraryError> {
 ///
 /// # Errors
 /// As [`validate`].
-pub fn validate_source(source: impl Source, limits: &Limits) -> Result<Report, LibraryError> {
+pub fn validate_source(
+    source: impl LibrarySource,
+    limits: &Limits,
+) -> Result<Report, LibraryError> {
     let library = match Library::open_source_with(source, *limits) {
         Ok(library) => library,
         Err(LibraryError::Invalid { findings }) => {
@@ -65,7 +68,7 @@ struct Validation<'a, S> {
     is_whole: bool,
 }
 
-impl<'a, S: Source> Validation<'a, S> {
+impl<'a, S: LibrarySource> Validation<'a, S> {
     fn new(library: &'a Library<S>, limits: &'a Limits) -> Self {
         Self {
             library,

@@ -8,14 +8,14 @@ use std::cell::RefCell;
 use common::cases::{four, sharing};
 use common::{Texture, all, module, pack, texture};
 use htex_library::{
-    FIRST_READ, Library, LibraryError, LocalFile, Query, Source, Writer, validate_source,
+    FIRST_READ, Library, LibraryError, LibrarySource, LocalFile, Query, Writer, validate_source,
 };
 use proptest::prelude::*;
 
 /// A source that notes what is read.
 struct Counted<S>(S, RefCell<Vec<u64>>);
 
-impl<S: Source> Source for Counted<S> {
+impl<S: LibrarySource> LibrarySource for Counted<S> {
     fn len(&self) -> std::io::Result<u64> {
         self.0.len()
     }

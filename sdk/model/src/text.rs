@@ -6,7 +6,7 @@ use crate::decimal::{rounded, whole};
 
 /// A piece of a text.
 #[derive(Debug, Clone, Copy)]
-pub enum Part<'a> {
+pub enum TextPart<'a> {
     /// Words.
     Words(&'a str),
     /// A whole number.
@@ -15,25 +15,25 @@ pub enum Part<'a> {
     Number(f64),
 }
 
-impl<'a> From<&'a str> for Part<'a> {
+impl<'a> From<&'a str> for TextPart<'a> {
     fn from(words: &'a str) -> Self {
         Self::Words(words)
     }
 }
 
-impl From<usize> for Part<'_> {
+impl From<usize> for TextPart<'_> {
     fn from(number: usize) -> Self {
         Self::Whole(number as u64)
     }
 }
 
-impl From<u32> for Part<'_> {
+impl From<u32> for TextPart<'_> {
     fn from(number: u32) -> Self {
         Self::Whole(u64::from(number))
     }
 }
 
-impl From<f64> for Part<'_> {
+impl From<f64> for TextPart<'_> {
     fn from(number: f64) -> Self {
         Self::Number(number)
     }
@@ -41,13 +41,13 @@ impl From<f64> for Part<'_> {
 
 /// Concatenates the parts. [`text!`](crate::text!) is shorter to write.
 #[cold]
-pub fn concat(parts: &[Part<'_>]) -> String {
+pub fn concat(parts: &[TextPart<'_>]) -> String {
     let mut text = String::new();
     for part in parts {
         match *part {
-            Part::Words(words) => text.push_str(words),
-            Part::Whole(number) => push_ascii(&mut text, whole(number).bytes()),
-            Part::Number(number) => push_number(&mut text, number),
+            TextPart::Words(words) => text.push_str(words),
+            TextPart::Whole(number) => push_ascii(&mut text, whole(number).bytes()),
+            TextPart::Number(number) => push_number(&mut text, number),
         }
     }
     text
@@ -77,6 +77,6 @@ fn push_ascii(text: &mut String, bytes: &[u8]) {
 #[macro_export]
 macro_rules! text {
     ($($part:expr),* $(,)?) => {
-        $crate::text::concat(&[$($crate::text::Part::from($part)),*])
+        $crate::text::concat(&[$($crate::text::TextPart::from($part)),*])
     };
 }

@@ -13,7 +13,7 @@ use crate::exploration::Explored;
 use crate::known::{Known, Motions};
 use crate::mesh::Mesh;
 use crate::playable::{field_order, model_of};
-use crate::{Error, Motion, Source, Voice, VoiceOptions};
+use crate::{Error, Motion, SampleSource, Voice, VoiceOptions};
 
 /// An opened texture. A clone shares the data of the file.
 ///
@@ -60,7 +60,7 @@ impl Asset {
     /// # Errors
     /// When the library has no texture of this name, or it cannot be read or is not a valid asset.
     #[cfg(feature = "library")]
-    pub fn from_library<S: htex_library::Source>(
+    pub fn from_library<S: htex_library::LibrarySource>(
         library: &htex_library::Library<S>,
         name: &str,
     ) -> Result<Self, Error> {
@@ -221,12 +221,12 @@ impl Asset {
     ///
     /// # Errors
     /// As [`Self::voice`].
-    pub fn source(&self, options: &VoiceOptions<'_>) -> Result<Source, Error> {
+    pub fn source(&self, options: &VoiceOptions<'_>) -> Result<SampleSource, Error> {
         let r = self.representation(options.model)?;
         let motion = options.motion.unwrap_or_else(|| self.first_condition(r));
         let model = self.model(r)?;
         let known = self.known(r, &model)?;
-        Source::new(
+        SampleSource::new(
             known,
             model,
             self.band(),

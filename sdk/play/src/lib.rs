@@ -50,5 +50,5 @@ pub use mesh::{Mesh, Weights};
 pub use motion::Motion;
 pub use options::VoiceOptions;
 pub use playable::{field_order, model_of};
-pub use source::Source;
+pub use source::SampleSource;
 pub use voice::Voice;

@@ -22,7 +22,7 @@ const MIXED: usize = 3;
 /// # Ok::<(), htex::Error>(())
 /// ```
 #[derive(Debug)]
-pub struct Source {
+pub struct SampleSource {
     known: Known,
     voice: ModelVoice,
     /// Buffers for the parameter sets to interpolate, and for the result.
@@ -38,7 +38,7 @@ pub struct Source {
     frames: u64,
 }
 
-impl Source {
+impl SampleSource {
     pub(crate) fn new(
         known: Known,
         model: LoadedModel,

@@ -1,6 +1,6 @@
 //! The position of a finger on its path: given, or integrated from its speed.
 //!
-//! The position is that of the next sample that the *voice* renders ([`crate::Source::set_finger`]): a resampler reads
+//! The position is that of the next sample that the *voice* renders ([`crate::SampleSource::set_finger`]): a resampler reads
 //! ahead by parts of a block that differ from call to call, and the jitter would be audible. For a model that does not
 //! follow the motion itself, a motion costs one test of a `bool`.
 

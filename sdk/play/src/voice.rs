@@ -6,13 +6,13 @@ use htex_host::{StillSound, Stream};
 use crate::exploration::{Coverage, Reach};
 use crate::follow::Follow;
 use crate::travel::Travel;
-use crate::{Effects, Error, Motion, Source, VoiceOptions};
+use crate::{Effects, Error, Motion, SampleSource, VoiceOptions};
 
 // A voice may be made in one thread and rendered in another.
 const _: () = {
     const fn assert_send<T: Send>() {}
     assert_send::<Voice>();
-    assert_send::<Source>();
+    assert_send::<SampleSource>();
 };
 
 /// Length of a change of level, seconds.
@@ -32,7 +32,7 @@ const RAMP_S: f64 = 0.010;
 /// ```
 #[derive(Debug)]
 pub struct Voice {
-    stream: Stream<Source>,
+    stream: Stream<SampleSource>,
     /// Pre-rendered audio; the stream's source then supplies only the level.
     still: Option<StillSound>,
     level_rms: Glide,
@@ -48,7 +48,7 @@ impl Voice {
     /// Makes a voice of a source and the resampler it needs, or of a pre-rendered sound. The resampler reads the source
     /// `base` times as fast as recorded.
     pub(crate) fn new(
-        source: Source,
+        source: SampleSource,
         still: Option<StillSound>,
         options: &VoiceOptions<'_>,
         base: f64,
@@ -169,7 +169,7 @@ impl Voice {
         self.follow.read(out, &mut |block| match &mut *still {
             Some(still) => still.render(block),
             None => {
-                if let Err(error) = stream.render_by(block, Source::render) {
+                if let Err(error) = stream.render_by(block, SampleSource::render) {
                     result = Err(error);
                 }
             }

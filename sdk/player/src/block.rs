@@ -51,7 +51,7 @@ impl core::error::Error for OpenError {}
 
 /// What a block stores for each condition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum BlockKind {
     /// A symmetrical filter for white noise, with `half` coefficients on each side of its centre.
     Noise {
         /// Coefficients on one side.
@@ -66,7 +66,7 @@ pub enum Kind {
     },
 }
 
-impl Kind {
+impl BlockKind {
     /// Returns the numbers stored for a condition after its level.
     fn values(self) -> usize {
         match self {
@@ -79,7 +79,7 @@ impl Kind {
 /// A baked texture, validated once and read in place.
 #[derive(Debug, Clone, Copy)]
 pub struct Block<'a> {
-    kind: Kind,
+    kind: BlockKind,
     rate_hz: f32,
     up: usize,
     row: usize,
@@ -139,12 +139,14 @@ impl<'a> Block<'a> {
         let size = usize::from(half_word(header, 20));
         let kind = match (header[6], header[7]) {
             (KIND_NOISE, 0) if size.is_multiple_of(4) && size <= MOST_HALF => {
-                Kind::Noise { half: size }
+                BlockKind::Noise { half: size }
             }
-            (KIND_TONES, flags) if flags <= RANDOM_PHASE && size <= MOST_TONES => Kind::Tones {
-                count: size,
-                random_phase: flags == RANDOM_PHASE,
-            },
+            (KIND_TONES, flags) if flags <= RANDOM_PHASE && size <= MOST_TONES => {
+                BlockKind::Tones {
+                    count: size,
+                    random_phase: flags == RANDOM_PHASE,
+                }
+            }
             _ => return None,
         };
         let rate_hz = f32::from_bits(word(header, 12));
@@ -210,7 +212,7 @@ impl<'a> Block<'a> {
 
     /// Returns whether the numbers of a condition are in range. Frequencies are at most half the internal rate.
     fn are_sound(&self, values: Words<'_>) -> bool {
-        let is_tones = matches!(self.kind, Kind::Tones { .. });
+        let is_tones = matches!(self.kind, BlockKind::Tones { .. });
         values
             .iter()
             .enumerate()
@@ -231,7 +233,7 @@ impl<'a> Block<'a> {
     }
 
     /// Returns what is stored for each condition.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> BlockKind {
         self.kind
     }
 

@@ -27,6 +27,6 @@ mod upsampler;
 mod weights;
 mod words;
 
-pub use block::{Block, Kind, OpenError};
+pub use block::{Block, BlockKind, OpenError};
 pub use crc::crc32;
 pub use player::Player;

@@ -1,6 +1,6 @@
 //! A playing texture.
 
-use crate::block::{Block, Kind};
+use crate::block::{Block, BlockKind};
 use crate::layout::MIN_SLIDING_MM_S;
 use crate::noise::Noise;
 use crate::tones::Tones;
@@ -64,8 +64,8 @@ impl<'a> Player<'a> {
     /// Starts to play; all numbers of the memory are zero before.
     pub(crate) fn start(&mut self, seed: u32) {
         match self.block.kind() {
-            Kind::Noise { half } => self.memory.noise.start(half, seed),
-            Kind::Tones {
+            BlockKind::Noise { half } => self.memory.noise.start(half, seed),
+            BlockKind::Tones {
                 count,
                 random_phase,
             } => self.memory.tones.start(count, random_phase, seed),
@@ -104,8 +104,8 @@ impl<'a> Player<'a> {
         };
         let Memory { noise, tones, .. } = &mut self.memory;
         match self.block.kind() {
-            Kind::Noise { .. } => noise.retune(&self.block, target, samples),
-            Kind::Tones { .. } => tones.retune(&self.block, target, samples),
+            BlockKind::Noise { .. } => noise.retune(&self.block, target, samples),
+            BlockKind::Tones { .. } => tones.retune(&self.block, target, samples),
         }
         (self.memory.gliding, self.memory.is_silent) = (samples, is_silent);
     }
@@ -155,8 +155,8 @@ impl<'a> Player<'a> {
         memory.gliding = memory.gliding.saturating_sub(1);
         let becomes_silent = is_last && memory.is_silent;
         match self.block.kind() {
-            Kind::Noise { .. } => memory.noise.next(is_gliding, becomes_silent),
-            Kind::Tones { .. } => memory.tones.next(is_gliding, becomes_silent),
+            BlockKind::Noise { .. } => memory.noise.next(is_gliding, becomes_silent),
+            BlockKind::Tones { .. } => memory.tones.next(is_gliding, becomes_silent),
         }
     }
 }

@@ -7,7 +7,7 @@ mod blocks;
 mod script;
 
 use blocks::{noise, tones};
-use htex_player::{Block, Kind, Player};
+use htex_player::{Block, BlockKind, Player};
 
 fn rendered(player: &mut Player<'_>, count: usize) -> Vec<f32> {
     let mut samples = vec![0.0; count];
@@ -53,7 +53,7 @@ fn levels_are_those_of_the_block_and_seeds_differ() {
     plan.rows.clear();
     let bytes = plan.bytes();
     let block = Block::open(&bytes).unwrap();
-    assert_eq!(block.kind(), Kind::Noise { half: 8 });
+    assert_eq!(block.kind(), BlockKind::Noise { half: 8 });
     assert_eq!(block.speeds_mm_s().collect::<Vec<_>>(), [40.0, 80.0]);
     for (speed, level) in [
         (10.0, 1.0),

@@ -1,7 +1,7 @@
 //! A surface as it is played by one of its representations: its rates, its constant factors and its level.
 
 use htex_format::ErrorMeasure;
-use htex_play::{Explored, Source, VoiceOptions};
+use htex_play::{Explored, SampleSource, VoiceOptions};
 
 use crate::SceneError;
 use crate::file::{Effect, Switch};
@@ -109,7 +109,7 @@ impl PlayedSurface {
         &self,
         scene: &LoadedScene,
         required: &Requirements,
-    ) -> Result<Source, htex_play::Error> {
+    ) -> Result<SampleSource, htex_play::Error> {
         let mut wanted_hz = required.rate_hz / (self.fixed_ratio * self.oversampling);
         if required.compensation.is_some() {
             wanted_hz = wanted_hz.min(FILTERED_OVERSAMPLING * self.top_hz);

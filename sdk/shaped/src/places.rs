@@ -9,10 +9,10 @@ use htex_dsp::shared::Shared;
 
 /// Positions of a voice's frequencies between the bins of the band's grid. Shared by voices of the same rate
 /// and band.
-pub struct Places(Vec<Place>);
+pub struct Places(Vec<BinPosition>);
 
 /// A position between two neighbouring bins.
-struct Place {
+struct BinPosition {
     below: u32,
     part: f64,
 }
@@ -29,7 +29,7 @@ impl Places {
         let last = band.bins().saturating_sub(1) as f64;
         let place = |hz: &f64| {
             let place = (hz / GRID_HZ - first).clamp(0.0, last);
-            Place {
+            BinPosition {
                 below: place as u32,
                 part: place - f64::from(place as u32),
             }

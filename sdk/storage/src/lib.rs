@@ -49,7 +49,7 @@ pub use remote::{Remote, Usage};
 pub use settings::{Settings, Variables};
 
 use cloud::{Clients, Store};
-use location::Place;
+use location::LocalOrRemote;
 
 /// Size and version of a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -95,8 +95,8 @@ impl Storage {
     /// When there is no such file, it is larger, or it cannot be read.
     pub fn read(&self, location: &Location, most_bytes: u64) -> Result<Vec<u8>, StorageError> {
         match location.place() {
-            Place::Local(path) => local::read(path, most_bytes),
-            Place::Remote(uri) => self.store(location, uri)?.read(most_bytes),
+            LocalOrRemote::Local(path) => local::read(path, most_bytes),
+            LocalOrRemote::Remote(uri) => self.store(location, uri)?.read(most_bytes),
         }
     }
 
@@ -111,8 +111,8 @@ impl Storage {
         most_bytes: u64,
     ) -> Result<(), StorageError> {
         match location.place() {
-            Place::Local(path) => local::copy(path, into, most_bytes),
-            Place::Remote(uri) => self
+            LocalOrRemote::Local(path) => local::copy(path, into, most_bytes),
+            LocalOrRemote::Remote(uri) => self
                 .store(location, uri)?
                 .download(into, most_bytes)
                 .map(drop),
@@ -125,8 +125,8 @@ impl Storage {
     /// When that cannot be found out.
     pub fn stat(&self, location: &Location) -> Result<Option<Stat>, StorageError> {
         match location.place() {
-            Place::Local(path) => local::stat(path),
-            Place::Remote(uri) => self.store(location, uri)?.stat(),
+            LocalOrRemote::Local(path) => local::stat(path),
+            LocalOrRemote::Remote(uri) => self.store(location, uri)?.stat(),
         }
     }
 
@@ -181,8 +181,10 @@ impl Storage {
 
     fn open_at(&self, location: &Location, head: Range<u64>) -> Result<Remote, StorageError> {
         match location.place() {
-            Place::Local(path) => Remote::of_file(location, path, head),
-            Place::Remote(uri) => Remote::of_store(location, self.store(location, uri)?, head),
+            LocalOrRemote::Local(path) => Remote::of_file(location, path, head),
+            LocalOrRemote::Remote(uri) => {
+                Remote::of_store(location, self.store(location, uri)?, head)
+            }
         }
     }
 
@@ -193,12 +195,12 @@ impl Storage {
     pub fn list(&self, folder: &Location, pattern: &str) -> Result<Vec<Entry>, StorageError> {
         let pattern = listing::pattern(folder, pattern)?;
         let mut found = match folder.place() {
-            Place::Local(path) => listing::of_folder(path, &pattern)?,
-            Place::Remote(uri) if uri.scheme.is_read_only() => {
+            LocalOrRemote::Local(path) => listing::of_folder(path, &pattern)?,
+            LocalOrRemote::Remote(uri) if uri.scheme.is_read_only() => {
                 let uri = folder.to_string();
                 return Err(StorageError::NoList { uri });
             }
-            Place::Remote(uri) => {
+            LocalOrRemote::Remote(uri) => {
                 let uri = uri.without_last_slash();
                 self.store(&folder.with_key(&uri.path), &uri)?
                     .list(pattern)?
@@ -214,8 +216,8 @@ impl Storage {
     /// When it cannot be written; what was there before is then unchanged.
     pub fn write(&self, location: &Location, bytes: &[u8]) -> Result<(), StorageError> {
         match location.place() {
-            Place::Local(path) => local::write(path, bytes),
-            Place::Remote(uri) => self.writable(location, uri)?.write(bytes.to_vec()),
+            LocalOrRemote::Local(path) => local::write(path, bytes),
+            LocalOrRemote::Remote(uri) => self.writable(location, uri)?.write(bytes.to_vec()),
         }
     }
 
@@ -225,8 +227,8 @@ impl Storage {
     /// As [`Self::write`], and when the local file cannot be read.
     pub fn write_file(&self, location: &Location, file: &Path) -> Result<(), StorageError> {
         match location.place() {
-            Place::Local(path) => local::write_copy(path, file),
-            Place::Remote(uri) => self.writable(location, uri)?.upload(file),
+            LocalOrRemote::Local(path) => local::write_copy(path, file),
+            LocalOrRemote::Remote(uri) => self.writable(location, uri)?.upload(file),
         }
     }
 
@@ -236,8 +238,8 @@ impl Storage {
     /// When it cannot be removed; of a web server.
     pub fn remove(&self, location: &Location) -> Result<(), StorageError> {
         match location.place() {
-            Place::Local(path) => local::remove(path),
-            Place::Remote(uri) => self.writable(location, uri)?.remove(),
+            LocalOrRemote::Local(path) => local::remove(path),
+            LocalOrRemote::Remote(uri) => self.writable(location, uri)?.remove(),
         }
     }
 
@@ -247,8 +249,8 @@ impl Storage {
     /// When it could not.
     pub fn check_writable(&self, location: &Location) -> Result<(), StorageError> {
         match location.place() {
-            Place::Local(_) => Ok(()),
-            Place::Remote(uri) => self.writable(location, uri).map(drop),
+            LocalOrRemote::Local(_) => Ok(()),
+            LocalOrRemote::Remote(uri) => self.writable(location, uri).map(drop),
         }
     }
 

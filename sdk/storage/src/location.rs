@@ -25,10 +25,10 @@ const KNOWN: &str = "s3://, gs://, az://, https://, http:// and file://";
 /// # Ok::<(), htex_storage::StorageError>(())
 /// ```
 #[derive(Clone, PartialEq, Eq, Hash)]
-pub struct Location(Place);
+pub struct Location(LocalOrRemote);
 
 #[derive(Clone, PartialEq, Eq, Hash)]
-pub(crate) enum Place {
+pub(crate) enum LocalOrRemote {
     Local(PathBuf),
     Remote(Uri),
 }
@@ -67,7 +67,7 @@ impl Location {
     pub fn parse(argument: &OsStr) -> Result<Self, StorageError> {
         let lossy = argument.to_string_lossy();
         let Some((scheme, rest)) = split_scheme(&lossy) else {
-            return Ok(Self(Place::Local(argument.into())));
+            return Ok(Self(LocalOrRemote::Local(argument.into())));
         };
         let wrong = |problem: &str| StorageError::Uri {
             uri: without_secrets(&lossy),
@@ -79,7 +79,7 @@ impl Location {
             ));
         }
         let scheme = match &*scheme.to_ascii_lowercase() {
-            "file" => return Ok(Self(Place::Local(file_path(rest).map_err(&wrong)?))),
+            "file" => return Ok(Self(LocalOrRemote::Local(file_path(rest).map_err(&wrong)?))),
             "s3" => Scheme::S3,
             "gs" => Scheme::Gs,
             "az" => Scheme::Az,
@@ -93,22 +93,22 @@ impl Location {
             }
         };
         let uri = Uri::new(scheme, rest).map_err(wrong)?;
-        Ok(Self(Place::Remote(uri)))
+        Ok(Self(LocalOrRemote::Remote(uri)))
     }
 
     /// The path, for a file of this machine.
     pub fn local(&self) -> Option<&Path> {
         match &self.0 {
-            Place::Local(path) => Some(path),
-            Place::Remote(_) => None,
+            LocalOrRemote::Local(path) => Some(path),
+            LocalOrRemote::Remote(_) => None,
         }
     }
 
     /// The last part of the path, which a local copy is named by: for a URL without its escapes.
     pub fn file_name(&self) -> Option<String> {
         match &self.0 {
-            Place::Local(path) => Some(path.file_name()?.to_string_lossy().into_owned()),
-            Place::Remote(uri) => uri.file_name(),
+            LocalOrRemote::Local(path) => Some(path.file_name()?.to_string_lossy().into_owned()),
+            LocalOrRemote::Remote(uri) => uri.file_name(),
         }
     }
 
@@ -116,9 +116,9 @@ impl Location {
     #[must_use]
     pub fn inside(&self, path: &str) -> Self {
         match &self.0 {
-            Place::Local(folder) => Self(Place::Local(folder.join(path))),
-            Place::Remote(uri) if uri.path.is_empty() => self.with_key(path),
-            Place::Remote(uri) => {
+            LocalOrRemote::Local(folder) => Self(LocalOrRemote::Local(folder.join(path))),
+            LocalOrRemote::Remote(uri) if uri.path.is_empty() => self.with_key(path),
+            LocalOrRemote::Remote(uri) => {
                 self.with_key(&format!("{}/{path}", uri.path.trim_end_matches('/')))
             }
         }
@@ -127,22 +127,22 @@ impl Location {
     /// The same store with another key.
     pub(crate) fn with_key(&self, key: &str) -> Self {
         match &self.0 {
-            Place::Local(path) => Self(Place::Local(path.join(key))),
-            Place::Remote(uri) => Self(Place::Remote(Uri {
+            LocalOrRemote::Local(path) => Self(LocalOrRemote::Local(path.join(key))),
+            LocalOrRemote::Remote(uri) => Self(LocalOrRemote::Remote(Uri {
                 path: key.to_owned(),
                 ..uri.clone()
             })),
         }
     }
 
-    pub(crate) fn place(&self) -> &Place {
+    pub(crate) fn place(&self) -> &LocalOrRemote {
         &self.0
     }
 }
 
 impl From<PathBuf> for Location {
     fn from(path: PathBuf) -> Self {
-        Self(Place::Local(path))
+        Self(LocalOrRemote::Local(path))
     }
 }
 
@@ -224,8 +224,8 @@ impl Scheme {
 impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.0 {
-            Place::Local(path) => path.display().fmt(f),
-            Place::Remote(uri) => uri.fmt(f),
+            LocalOrRemote::Local(path) => path.display().fmt(f),
+            LocalOrRemote::Remote(uri) => uri.fmt(f),
         }
     }
 }
@@ -359,7 +359,7 @@ mod tests {
     #[test]
     fn keys_are_literal_and_queries_are_not_shown() {
         let key = parsed("s3://bucket/a b/%20?c#d.csv");
-        let Place::Remote(uri) = key.place() else {
+        let LocalOrRemote::Remote(uri) = key.place() else {
             panic!()
         };
         assert_eq!((&*uri.authority, &*uri.path), ("bucket", "a b/%20?c#d.csv"));

@@ -20,7 +20,7 @@ pub(crate) struct Version {
     pub(crate) etag: Option<String>,
 }
 
-pub(crate) struct Part {
+pub(crate) struct ReadPart {
     pub(crate) bytes: Vec<u8>,
     pub(crate) version: Version,
 }
@@ -56,7 +56,7 @@ impl Store {
         match self.0 {}
     }
 
-    pub(crate) fn part(&self, _: Range<u64>, _: Option<Version>) -> Result<Part, StorageError> {
+    pub(crate) fn part(&self, _: Range<u64>, _: Option<Version>) -> Result<ReadPart, StorageError> {
         match self.0 {}
     }
 

@@ -14,11 +14,11 @@ use crate::{Setting, Subject, TradeoffError};
 pub(crate) struct Contender {
     pub(crate) model: String,
     pub(crate) setting: Setting,
-    pub(crate) kind: Kind,
+    pub(crate) kind: ContenderKind,
 }
 
 #[derive(Debug, Clone)]
-pub(crate) enum Kind {
+pub(crate) enum ContenderKind {
     /// A model with a value for each of its fit options.
     Model(LoadedModel, Vec<f64>),
     /// The spectrum, one byte per bin.
@@ -44,8 +44,8 @@ impl Contender {
     pub(crate) fn fit(&self, subject: &Subject) -> Result<Fit, HostError> {
         let spectrum = &subject.spectrum;
         match &self.kind {
-            Kind::Model(model, options) => model.fit(&spectrum.fit_request(options)),
-            Kind::Quantised => {
+            ContenderKind::Model(model, options) => model.fit(&spectrum.fit_request(options)),
+            ContenderKind::Quantised => {
                 let parameters = quantise(&spectrum.magnitude).0;
                 let level_rms = level_rms(&parameters);
                 Ok(Fit {
@@ -53,7 +53,7 @@ impl Contender {
                     level_rms,
                 })
             }
-            Kind::Recording => Ok(Fit {
+            ContenderKind::Recording => Ok(Fit {
                 parameters: Vec::new(),
                 level_rms: level_rms(&spectrum.magnitude),
             }),
@@ -64,7 +64,7 @@ impl Contender {
     pub(crate) fn store(&self, subject: &Subject, fit: &Fit) -> Result<Stored, TradeoffError> {
         let spectrum = &subject.spectrum;
         let (parameters, bytes) = match &self.kind {
-            Kind::Model(model, _) => {
+            ContenderKind::Model(model, _) => {
                 let mut fields = stored_fields(model.descriptor());
                 self.keep(&mut fields);
                 let parameters = round_parameters(&fields, &fit.parameters)?;
@@ -75,8 +75,8 @@ impl Contender {
                     parameters,
                 });
             }
-            Kind::Quantised => quantise(&spectrum.magnitude),
-            Kind::Recording => (Vec::new(), subject.bytes),
+            ContenderKind::Quantised => quantise(&spectrum.magnitude),
+            ContenderKind::Recording => (Vec::new(), subject.bytes),
         };
         Ok(Stored {
             parameters,

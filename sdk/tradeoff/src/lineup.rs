@@ -4,7 +4,7 @@ use std::path::Path;
 
 use htex_host::{LoadedModel, Origin, Synthesis};
 
-use crate::contender::{Contender, Kind};
+use crate::contender::{Contender, ContenderKind};
 use crate::point::{QUANTISED, RECORDING};
 use crate::request::{Model, Request};
 use crate::settings::{fit_settings, playing_settings};
@@ -25,7 +25,7 @@ pub(crate) fn lineup(request: &Request) -> Result<Vec<Contender>, TradeoffError>
                 .map(|(n, v)| (&n[..], &v[..]))
                 .collect();
             let options = loaded.options(&given)?;
-            let kind = Kind::Model(loaded.clone(), options);
+            let kind = ContenderKind::Model(loaded.clone(), options);
             all.push(Contender {
                 model: model.clone(),
                 setting,
@@ -47,7 +47,7 @@ pub(crate) fn lineup(request: &Request) -> Result<Vec<Contender>, TradeoffError>
             )?;
         }
     }
-    let baseline = |model: &str, kind: Kind, synthesis| Contender {
+    let baseline = |model: &str, kind: ContenderKind, synthesis| Contender {
         model: model.to_owned(),
         setting: Setting {
             synthesis,
@@ -56,9 +56,17 @@ pub(crate) fn lineup(request: &Request) -> Result<Vec<Contender>, TradeoffError>
         kind,
     };
     let looped = Synthesis::Loop { seconds: 2.0 };
-    all.push(baseline(QUANTISED, Kind::Quantised, Synthesis::Streamed));
-    all.push(baseline(QUANTISED, Kind::Quantised, looped));
-    all.push(baseline(RECORDING, Kind::Recording, Synthesis::Streamed));
+    all.push(baseline(
+        QUANTISED,
+        ContenderKind::Quantised,
+        Synthesis::Streamed,
+    ));
+    all.push(baseline(QUANTISED, ContenderKind::Quantised, looped));
+    all.push(baseline(
+        RECORDING,
+        ContenderKind::Recording,
+        Synthesis::Streamed,
+    ));
     Ok(all)
 }
 
@@ -77,7 +85,7 @@ pub(crate) fn key(subjects: &[Subject], contenders: &[Contender], request: &Requ
     }
     for one in contenders {
         add(&one.id());
-        if let Kind::Model(model, options) = &one.kind {
+        if let ContenderKind::Model(model, options) = &one.kind {
             let descriptor = model.descriptor();
             add(&format!(
                 "{} {} {} {options:?}",

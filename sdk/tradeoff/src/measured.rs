@@ -5,7 +5,7 @@ use htex_host::HostError;
 use serde::{Deserialize, Serialize};
 
 use crate::accuracy::{Accuracy, accuracy};
-use crate::contender::{Contender, Kind, Stored};
+use crate::contender::{Contender, ContenderKind, Stored};
 use crate::{Subject, TradeoffError};
 
 /// Number of renderings that are measured, each with its own seed.
@@ -35,7 +35,7 @@ impl Contender {
         quick: bool,
     ) -> Result<Option<Measured>, TradeoffError> {
         let stored = self.store(subject, &self.fit(subject)?)?;
-        if matches!(self.kind, Kind::Recording) {
+        if matches!(self.kind, ContenderKind::Recording) {
             return Ok(subject.repeats.map(|repeats| Measured {
                 bytes: stored.bytes,
                 kept_bytes: size_of::<f32>() * subject.samples.len(),
@@ -93,13 +93,13 @@ impl Contender {
     fn magnitude(&self, subject: &Subject, stored: &Stored) -> Result<Vec<f64>, HostError> {
         let spectrum = &subject.spectrum;
         match &self.kind {
-            Kind::Model(model, _) => {
+            ContenderKind::Model(model, _) => {
                 let shape =
                     model.magnitude(&stored.parameters, spectrum.band, &spectrum.frequency_hz)?;
                 Ok(shape.iter().map(|m| m * stored.level_rms).collect())
             }
-            Kind::Quantised => Ok(stored.parameters.clone()),
-            Kind::Recording => Ok(spectrum.magnitude.clone()),
+            ContenderKind::Quantised => Ok(stored.parameters.clone()),
+            ContenderKind::Recording => Ok(spectrum.magnitude.clone()),
         }
     }
 }

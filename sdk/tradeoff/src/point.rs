@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::Setting;
-use crate::contender::{Contender, Kind};
+use crate::contender::{Contender, ContenderKind};
 use crate::measured::Measured;
 use crate::timing::Timed;
 
@@ -93,7 +93,7 @@ impl Point {
         timed: &Timed,
     ) -> Self {
         let descriptor = match &one.kind {
-            Kind::Model(model, _) => Some(model.descriptor()),
+            ContenderKind::Model(model, _) => Some(model.descriptor()),
             _ => None,
         };
         let (magnitude, samples) = (measured.by_magnitude, measured.by_samples);

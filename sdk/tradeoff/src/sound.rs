@@ -5,7 +5,7 @@ use htex_dsp::seam::Loop;
 use htex_host::{HostError, LoadedModel, StillSound, Stream, Synthesis};
 
 use crate::baseline::SpectrumNoise;
-use crate::contender::{Contender, Kind, Stored};
+use crate::contender::{Contender, ContenderKind, Stored};
 use crate::{Setting, Subject};
 
 /// Cross-fade of the recording's loop, seconds.
@@ -28,9 +28,9 @@ impl Contender {
         seed: u64,
     ) -> Result<Sound, HostError> {
         match &self.kind {
-            Kind::Model(model, _) => of_model(&self.setting, model, subject, stored, seed),
-            Kind::Quantised => of_spectrum(&self.setting, subject, stored, seed),
-            Kind::Recording => of_recording(&self.setting, subject),
+            ContenderKind::Model(model, _) => of_model(&self.setting, model, subject, stored, seed),
+            ContenderKind::Quantised => of_spectrum(&self.setting, subject, stored, seed),
+            ContenderKind::Recording => of_recording(&self.setting, subject),
         }
     }
 }

@@ -37,7 +37,7 @@ pub use judge::{Measured, Verdict, judge};
 pub use kept::kept_spectrum;
 pub use live::{LiveSignal, LiveSpectrum};
 pub use page::GuidePage;
-pub use part::{Part, read_part};
+pub use part::{PartFile, read_part};
 pub use phases::Next;
 pub(crate) use reader::{Inputs, Reader};
 pub use replay::Replay;

@@ -23,7 +23,7 @@ const MOST_HEADER: usize = 1 << 20;
 
 /// An open part file. It is locked until it is dropped.
 #[derive(Debug)]
-pub struct Part {
+pub struct PartFile {
     path: PathBuf,
     file: File,
     frames: Vec<f64>,
@@ -33,7 +33,7 @@ pub struct Part {
     second: usize,
 }
 
-impl Part {
+impl PartFile {
     /// Begins a part file, which must not exist.
     ///
     /// # Errors

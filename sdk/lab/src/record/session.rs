@@ -8,7 +8,7 @@ use crate::record::error::RecordError;
 use crate::record::finish::{Recorded, finish, with_kept};
 use crate::record::guide::{Moment, Phase};
 use crate::record::names;
-use crate::record::part::Part;
+use crate::record::part::PartFile;
 use crate::record::phases::{Next, Phases, Span};
 use crate::record::reader::{Inputs, Reader};
 use crate::record::setup::{Setup, Tare, check};
@@ -134,7 +134,7 @@ impl Session {
         let countdown = Span::new(Phase::Countdown, number, self.setup.countdown_s);
         self.phases.run(countdown, watch, &mut |_| Ok(()))?;
         let header = self.header(number);
-        let mut part = Part::create(&names::part(&folder, &header.name, number), &header)?;
+        let mut part = PartFile::create(&names::part(&folder, &header.name, number), &header)?;
         let begin_s = self.phases.reader.now_s();
         let span = Span::new(Phase::Take, number, header.seconds);
         let ran = self.phases.run(span, watch, &mut |block| {

@@ -1,17 +1,17 @@
 //! Synthesis: a voice of the surface's model, with unit RMS.
 
-use htex_play::{ModelMotion, Motion, Source};
+use htex_play::{ModelMotion, Motion, SampleSource};
 
 use super::Stage;
 
 /// A voice at its model's own rate.
 pub(crate) struct Synthesis {
-    source: Source,
+    source: SampleSource,
     failed: Option<htex_play::Error>,
 }
 
 impl Synthesis {
-    pub(crate) fn new(source: Source) -> Self {
+    pub(crate) fn new(source: SampleSource) -> Self {
         Self {
             source,
             failed: None,

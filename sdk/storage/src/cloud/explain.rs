@@ -8,7 +8,7 @@ use std::time::Instant;
 use super::Store;
 use super::log::Last;
 use crate::StorageError;
-use crate::location::{Place, Scheme};
+use crate::location::{LocalOrRemote, Scheme};
 
 /// The failure of an operation.
 pub(super) enum Fail {
@@ -115,8 +115,8 @@ impl Store {
 
     fn denied(&self, what: String, code: Option<&str>) -> StorageError {
         let scheme = match self.location.place() {
-            Place::Remote(uri) => uri.scheme,
-            Place::Local(_) => Scheme::Https,
+            LocalOrRemote::Remote(uri) => uri.scheme,
+            LocalOrRemote::Local(_) => Scheme::Https,
         };
         StorageError::Denied {
             uri: self.location.to_string(),

@@ -41,7 +41,7 @@ impl Version {
 }
 
 /// Bytes of a range, and the version that they are of.
-pub(crate) struct Part {
+pub(crate) struct ReadPart {
     pub(crate) bytes: Vec<u8>,
     pub(crate) version: Version,
 }
@@ -94,7 +94,7 @@ impl Store {
         &self,
         range: Range<u64>,
         version: Option<Version>,
-    ) -> Result<Part, StorageError> {
+    ) -> Result<ReadPart, StorageError> {
         let here = self.clone();
         self.run(async move { here.range(range, version).await })
     }
@@ -133,14 +133,14 @@ impl Store {
         }
     }
 
-    async fn range(self, range: Range<u64>, version: Option<Version>) -> Result<Part, Fail> {
+    async fn range(self, range: Range<u64>, version: Option<Version>) -> Result<ReadPart, Fail> {
         let options = GetOptions {
             range: Some(GetRange::Bounded(range.clone())),
             if_match: version.as_ref().and_then(Version::strong_etag),
             ..GetOptions::default()
         };
         let found = match self.store.get_opts(&self.key, options).await {
-            Err(_) if range.start == 0 && self.is_beyond_end() => return Ok(Part::of_empty()),
+            Err(_) if range.start == 0 && self.is_beyond_end() => return Ok(ReadPart::of_empty()),
             found => found?,
         };
         let is = Version::of(&found.meta);
@@ -151,7 +151,7 @@ impl Store {
         let mut bytes = Vec::new();
         let len = found.range.end - found.range.start;
         Self::take_all(found, len, &mut bytes).await?;
-        Ok(Part { bytes, version: is })
+        Ok(ReadPart { bytes, version: is })
     }
 
     /// Whether the last range began after the end of the file: the first byte of an empty file does.
@@ -170,7 +170,7 @@ impl Store {
     }
 }
 
-impl Part {
+impl ReadPart {
     fn of_empty() -> Self {
         let version = Version {
             bytes: 0,

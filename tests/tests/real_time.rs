@@ -203,7 +203,6 @@ fn following_the_finger_does_not_allocate_in_a_sandbox() {
     }
 }
 
-/// Renders a scene.
 #[test]
 fn a_scene_is_rendered_without_allocating() {
     let asset = asset();

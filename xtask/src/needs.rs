@@ -6,7 +6,6 @@ use std::path::PathBuf;
 
 /// Software without which a test is skipped.
 pub struct Need {
-    /// Its name.
     pub what: &'static str,
     /// How to install it.
     pub how: &'static str,

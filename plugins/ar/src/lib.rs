@@ -30,7 +30,6 @@ const MODEL_RATE: usize = 1;
 /// Highest filter order.
 pub(crate) const MAX_ORDER: usize = 64;
 
-/// The model.
 pub struct Autoregression;
 
 htex_model::export_model!(Autoregression, symbols: "plugin");

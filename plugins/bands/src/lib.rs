@@ -70,7 +70,6 @@ const fn steps(scale: f64) -> Store {
     }
 }
 
-/// The model.
 pub struct BandEnergies;
 
 htex_model::export_model!(BandEnergies, symbols: "plugin");

@@ -42,7 +42,6 @@ const WHOLE: Store = Store::U8 {
     log: false,
 };
 
-/// The model.
 pub struct MelCepstrum;
 
 htex_model::export_model!(MelCepstrum, symbols: "plugin");

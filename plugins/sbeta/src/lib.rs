@@ -24,7 +24,6 @@ use htex_shaped::{Curve, ShapedVoice};
 const ALPHA: usize = 0;
 const BETA: usize = 1;
 
-/// The model.
 pub struct SpectralBeta;
 
 htex_model::export_model!(SpectralBeta, symbols: "plugin");

@@ -42,7 +42,6 @@ const RATIO: Store = Store::U16 {
     log: true,
 };
 
-/// The model.
 pub struct SpectralPeak;
 
 htex_model::export_model!(SpectralPeak, symbols: "plugin");

@@ -42,7 +42,6 @@ const fn steps(scale: f64) -> Store {
     }
 }
 
-/// The model.
 pub struct SpectralSlope;
 
 htex_model::export_model!(SpectralSlope, symbols: "plugin");

@@ -15,6 +15,7 @@
 //!
 //! A device enforces its limits on every sample before it outputs any sample of a call, and a voltage without a limit
 //! is not loaded. After an error its output is at zero, and stays there.
+#![warn(missing_docs)]
 
 pub mod abi;
 mod adapter;

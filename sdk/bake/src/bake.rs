@@ -24,7 +24,6 @@ const HALVES: [usize; 7] = [32, 64, 96, 128, 192, 256, MOST_HALF];
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Baked {
-    /// The block.
     pub bytes: Vec<u8>,
     /// The conditions of the block: the wanted ones, and those between them that the accuracy needs.
     pub grid: Grid,

@@ -1,6 +1,5 @@
 //! Errors of baking.
 
-/// An error of baking.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BakeError {
@@ -15,15 +14,10 @@ pub enum BakeError {
         "{axis} of the grid: {values:?}; they are 1 to {most} different numbers, each from {least} to {largest}"
     )]
     Axis {
-        /// The axis.
         axis: &'static str,
-        /// Its values.
         values: Vec<f64>,
-        /// Most values.
         most: usize,
-        /// Least value.
         least: f64,
-        /// Largest value.
         largest: f64,
     },
     /// The conditions are not all combinations of their speeds and forces.
@@ -42,11 +36,8 @@ pub enum BakeError {
         "{rate_hz} Hz: the rate is from {least_hz} to {most_hz} Hz for frequencies up to {top_hz} Hz"
     )]
     Rate {
-        /// The requested rate.
         rate_hz: f64,
-        /// Least rate.
         least_hz: f64,
-        /// Highest rate.
         most_hz: f64,
         /// The highest frequency of the texture.
         top_hz: f64,
@@ -56,7 +47,6 @@ pub enum BakeError {
         "the model {model} follows the position of the finger itself; bake another representation"
     )]
     FollowsMotion {
-        /// The model's id.
         model: String,
     },
     /// There are too many sinusoids.
@@ -64,17 +54,13 @@ pub enum BakeError {
         "the conditions have {count} sinusoids together, and a block at most {most}; bake fewer conditions"
     )]
     Tones {
-        /// Their number.
         count: usize,
-        /// The limit.
         most: usize,
     },
     /// The representation has no energy at a condition.
     #[error("the texture is silent at {speed_mm_s} mm/s and {force_n} N; bake other conditions")]
     Silent {
-        /// The condition's speed.
         speed_mm_s: f64,
-        /// The condition's force.
         force_n: f64,
     },
     /// The level cannot be stored.
@@ -82,13 +68,10 @@ pub enum BakeError {
         "the level at {speed_mm_s} mm/s and {force_n} N is {level}; a block stores at most {most}"
     )]
     Level {
-        /// The condition's speed.
         speed_mm_s: f64,
-        /// The condition's force.
         force_n: f64,
         /// The level, in the asset's unit.
         level: f64,
-        /// The limit.
         most: f64,
     },
     /// The player refused the block.

@@ -124,7 +124,6 @@ pub(crate) struct Wanted {
 pub(crate) struct Bins {
     /// Frequencies, hertz.
     hz: Vec<f64>,
-    /// The spacing, hertz.
     spacing_hz: f64,
 }
 

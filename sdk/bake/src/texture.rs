@@ -29,7 +29,6 @@ pub(crate) struct Moment {
     pub(crate) level_rms: f64,
     /// Factor of all frequencies.
     pub(crate) ratio: f64,
-    /// The motion.
     pub(crate) motion: Motion,
 }
 

@@ -5,6 +5,7 @@
 //! - A call returns a [`htex_status`]; the text of the last error of a thread is [`htex_last_error`]. No call unwinds.
 //! - A struct of options begins with its size in bytes. Zero in the other fields selects the defaults, so programs
 //!   that were compiled against an older header still run.
+#![warn(missing_docs)]
 #![allow(non_camel_case_types)] // The names of the C header.
 #![allow(clippy::missing_safety_doc)] // Stated once: see `pointers`.
 

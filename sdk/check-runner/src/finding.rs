@@ -56,7 +56,6 @@ impl Outcome {
 pub struct Finding {
     /// How the check ended.
     pub outcome: Outcome,
-    /// The message.
     pub message: String,
     /// Measured numbers, by name; names end in the unit.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]

@@ -11,7 +11,6 @@ use crate::{Finding, Outcome};
 pub struct CheckReport {
     /// The check's name.
     pub check: &'static str,
-    /// Its finding.
     #[serde(flatten)]
     pub finding: Finding,
 }

@@ -16,7 +16,6 @@ const LOADING: [&str; 3] = ["marker", "exports", "descriptor"];
 /// A program that runs one check in its process and writes the [`Finding`] as a line of JSON.
 #[derive(Debug, Clone)]
 pub struct Runner {
-    /// The program.
     pub program: PathBuf,
     /// Its first arguments; the checker adds those that name the check.
     pub arguments: Vec<OsString>,

@@ -23,7 +23,6 @@ pub struct Subject {
     pub model: String,
     /// The kind of loading.
     pub way: String,
-    /// The model.
     pub loaded: LoadedModel,
 }
 
@@ -32,7 +31,6 @@ pub struct Subject {
 pub struct Timing {
     /// The fastest round, ns: the time without other load.
     pub min_ns: f64,
-    /// Median, ns.
     pub median_ns: f64,
     /// Half the distance between the quartiles, ns.
     pub spread_ns: f64,
@@ -43,7 +41,6 @@ pub struct Timing {
 pub struct BlockCost {
     /// Samples per block.
     pub block: usize,
-    /// Time per sample.
     pub per_sample: Timing,
     /// Its minimum divided by that of the first subject of the same model.
     pub ratio: f64,
@@ -52,7 +49,6 @@ pub struct BlockCost {
 /// The times of one subject.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Cost {
-    /// The model.
     pub model: String,
     /// The kind of loading.
     pub way: String,
@@ -86,7 +82,6 @@ pub struct BenchError {
     pub model: String,
     /// The kind of loading.
     pub way: String,
-    /// The error.
     pub what: String,
 }
 

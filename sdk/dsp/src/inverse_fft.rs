@@ -134,7 +134,6 @@ impl InverseRealFft {
     }
 }
 
-/// One transform.
 struct Transform<'a> {
     fft: &'a InverseRealFft,
     workspace: &'a mut Workspace,

@@ -10,7 +10,6 @@ pub fn hz_to_mel(f_hz: f64) -> f64 {
     2595.0 * libm::log10(1.0 + f_hz / 700.0)
 }
 
-/// Mel to hertz.
 pub fn mel_to_hz(mel: f64) -> f64 {
     700.0 * (libm::pow(10.0, mel / 2595.0) - 1.0)
 }

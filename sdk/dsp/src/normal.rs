@@ -28,7 +28,6 @@ impl Normal {
         }
     }
 
-    /// The next normal number.
     pub fn next_normal(&mut self) -> f64 {
         if let Some(spare) = self.spare.take() {
             return spare;

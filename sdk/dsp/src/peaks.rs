@@ -10,7 +10,6 @@ pub const FREQUENCY_JND: f64 = 0.12;
 /// One peak of a spectrum.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Peak {
-    /// Frequency, hertz.
     pub frequency_hz: f64,
     /// Magnitude, in the unit of the spectrum.
     pub magnitude: f64,

@@ -39,9 +39,7 @@ pub fn detection_threshold_m(frequency_hz: f64) -> f64 {
 /// The mechanical impedance of a fingertip: spring, damper and mass in parallel, which a force along the surface moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Skin {
-    /// Stiffness, N/m.
     pub stiffness_n_m: f64,
-    /// Damping, N s/m.
     pub damping_n_s_m: f64,
     /// Moving mass, kg.
     pub mass_kg: f64,

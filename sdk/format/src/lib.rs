@@ -10,6 +10,7 @@
 //! assert!(!report.valid);
 //! assert_eq!(report.findings[0].code, "ARCHIVE_INVALID");
 //! ```
+#![warn(missing_docs)]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

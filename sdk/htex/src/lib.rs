@@ -20,6 +20,7 @@
 //! - `library`: `htex::Library`, a file with thousands of textures, of which `Asset::from_library` opens one; `htex::library` has all of it.
 //! - `storage`: `htex::storage`, files by path or URI, and `Library::open_located`; `cloud` has the web servers and object stores.
 //! - `scene`: `htex::scene`, which plans and renders scenes, and `htex::device`, the devices they are played on.
+#![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "author")]

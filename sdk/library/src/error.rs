@@ -20,9 +20,7 @@ pub enum LibraryError {
     /// The file could not be opened.
     #[error("cannot open {}: {error}", .path.display())]
     Open {
-        /// The file.
         path: PathBuf,
-        /// The system's error.
         #[source]
         error: io::Error,
     },
@@ -31,9 +29,7 @@ pub enum LibraryError {
     Read {
         /// Offset in the file.
         at: u64,
-        /// Number of bytes.
         length: u64,
-        /// The source's error.
         #[source]
         error: io::Error,
     },
@@ -46,22 +42,18 @@ pub enum LibraryError {
     /// The library has no texture of this name.
     #[error("there is no texture {} in the library; list its entries to see their names", plain(.name))]
     Absent {
-        /// The name.
         name: String,
     },
     /// The library could not be written; an existing file is unchanged.
     #[error("cannot write {}: {error}; the file is unchanged", .path.display())]
     Write {
-        /// The file.
         path: PathBuf,
-        /// The system's error.
         #[source]
         error: io::Error,
     },
     /// A name is not allowed.
     #[error("{:?} is not a name: {problem}", plain(.name))]
     Name {
-        /// The name.
         name: String,
         /// The rule that it breaks.
         #[source]
@@ -70,7 +62,6 @@ pub enum LibraryError {
     /// Two textures have the same name.
     #[error("two textures have the name {}; rename one", plain(.name))]
     Duplicate {
-        /// The name.
         name: String,
     },
     /// A texture to be added is not a valid asset.
@@ -78,7 +69,6 @@ pub enum LibraryError {
     Asset {
         /// Name of the texture.
         name: String,
-        /// The reader's error.
         #[source]
         error: Box<ReadError>,
     },

@@ -12,7 +12,6 @@ pub const MAGIC: [u8; 8] = *b"\x89HTL\r\n\x1a\n";
 /// Extension of the files of libraries.
 pub const EXTENSION: &str = "htexlib";
 
-/// Bytes of the header.
 pub(crate) const HEADER_BYTES: usize = 128;
 pub(crate) const MAJOR: u16 = 1;
 pub(crate) const MINOR: u16 = 0;

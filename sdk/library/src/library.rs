@@ -100,7 +100,6 @@ impl<S: LibrarySource> Library<S> {
         self.index.notes()
     }
 
-    /// Returns the index.
     pub fn index(&self) -> &Index {
         &self.index
     }

@@ -11,10 +11,8 @@ const NUMBERED_DEVICES: [&str; 2] = ["COM", "LPT"];
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InvalidName {
-    /// It is empty.
     #[error("it is empty; write a name such as `wood/oak`")]
     Empty,
-    /// It is too long.
     #[error("it has {0} bytes and the most is 255; shorten it")]
     TooLong(usize),
     /// It contains a character that file systems or terminals interpret.

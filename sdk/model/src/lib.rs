@@ -9,6 +9,7 @@
 //!
 //! A Rust author implements the traits and calls [`export_model!`]; the macro makes the table of C
 //! functions ([`abi::ModelTable`]) through which every host calls the model, built in or not.
+#![warn(missing_docs)]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![cfg_attr(not(feature = "std"), no_std)]
 extern crate alloc;

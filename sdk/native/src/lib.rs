@@ -15,7 +15,6 @@ use std::path::{Path, absolute};
 #[error("{0}")]
 pub struct LoadError(String);
 
-/// A loaded library.
 #[derive(Debug, Clone, Copy)]
 pub struct Library(&'static Loaded);
 

@@ -13,6 +13,7 @@
 //! [`Voice::render`] does not allocate, lock or access files: it may run in an audio thread.
 //!
 //! The two cannot be one: scenes build on the player, so a crate with the player cannot re-export scenes.
+#![warn(missing_docs)]
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 

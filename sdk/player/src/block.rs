@@ -59,7 +59,6 @@ pub enum BlockKind {
     },
     /// Sinusoids.
     Tones {
-        /// Their number.
         count: usize,
         /// Whether their phases are drawn from the seed; otherwise all start at their crests.
         random_phase: bool,

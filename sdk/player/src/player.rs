@@ -74,7 +74,6 @@ impl<'a> Player<'a> {
         self.retune(speed, force, false);
     }
 
-    /// Returns the block.
     pub fn block(&self) -> &Block<'a> {
         &self.block
     }

@@ -69,7 +69,6 @@ pub struct Table {
     pub rows: Vec<Row>,
     /// Mapping from values to shades.
     pub scale: HeatScale,
-    /// Decimals of each number.
     pub decimals: usize,
 }
 

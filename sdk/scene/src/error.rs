@@ -11,9 +11,7 @@ pub enum SceneError {
     Surface {
         /// Index of the surface.
         surface: usize,
-        /// Its asset.
         asset: PathBuf,
-        /// The error.
         source: htex_play::Error,
     },
     /// No model of a surface's representations is available.
@@ -71,7 +69,6 @@ pub enum SceneError {
     Rate {
         /// The scene's rate, hertz.
         rate_hz: f64,
-        /// The device's rates.
         rates: String,
     },
     /// The loudest texture exceeds the reference level so far that more samples than allowed would be clipped

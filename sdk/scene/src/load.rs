@@ -56,9 +56,7 @@ pub enum LoadError {
     /// The file cannot be read.
     #[error("cannot read {}: {error}", .path.display())]
     Io {
-        /// The file.
         path: PathBuf,
-        /// The system's error.
         #[source]
         error: io::Error,
     },

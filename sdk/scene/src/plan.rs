@@ -83,7 +83,6 @@ pub struct LeftOut {
 pub struct Chosen {
     /// Index of the surface.
     pub surface: usize,
-    /// Id of the model.
     pub model: String,
     /// Reason for the choice.
     pub why: String,

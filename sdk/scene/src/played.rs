@@ -19,7 +19,6 @@ const FILTERED_OVERSAMPLING: f64 = 2.5;
 #[derive(Debug, Clone)]
 pub(crate) struct PlayedSurface {
     pub(crate) surface: usize,
-    /// Id of the model.
     pub(crate) model: String,
     /// Error by the budget's measure, decibels; infinite if not measured.
     pub(crate) error_db: f64,

@@ -33,7 +33,6 @@ pub struct Violation {
     pub pointer: String,
     /// JSON pointer into the schema: the violated keyword, last.
     pub rule: String,
-    /// What is wrong.
     pub message: String,
 }
 

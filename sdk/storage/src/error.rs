@@ -11,7 +11,6 @@ pub enum StorageError {
     Uri {
         /// The URI, without secrets.
         uri: String,
-        /// What is wrong.
         problem: String,
     },
     /// This build reads local files only.
@@ -19,27 +18,22 @@ pub enum StorageError {
         "{uri}: this build reads files of this machine only; build it with the feature `cloud`"
     )]
     NoCloud {
-        /// The URI.
         uri: String,
     },
     /// A local file, or a local copy.
     #[error("{path}: {error}")]
     Io {
-        /// The path.
         path: String,
-        /// The system's error.
         error: io::Error,
     },
     /// There is no such file.
     #[error("{uri}: there is no such file; check the bucket and the key")]
     Missing {
-        /// The URI.
         uri: String,
     },
     /// The server has refused the credentials, or asks for some.
     #[error("{uri}: the server refuses access ({what}); {advice}")]
     Denied {
-        /// The URI.
         uri: String,
         /// The status, and the server's code.
         what: String,
@@ -49,7 +43,6 @@ pub enum StorageError {
     /// The environment's settings do not suffice.
     #[error("{uri}: {problem}")]
     Settings {
-        /// The URI.
         uri: String,
         /// What is missing, by the names of variables.
         problem: String,
@@ -57,23 +50,18 @@ pub enum StorageError {
     /// The file was replaced while it was read.
     #[error("{uri}: the file was replaced while it was read; read it again")]
     Changed {
-        /// The URI.
         uri: String,
     },
     /// The file has more bytes than may be read.
     #[error("{uri}: it has more than {most_bytes} bytes")]
     TooLarge {
-        /// The URI.
         uri: String,
-        /// The limit.
         most_bytes: u64,
     },
     /// A range beyond the end of the file.
     #[error("{uri}: bytes {offset} to {end} were asked for, and it has {len}")]
     Range {
-        /// The URI.
         uri: String,
-        /// The first byte.
         offset: u64,
         /// One after the last byte.
         end: u64,
@@ -83,27 +71,22 @@ pub enum StorageError {
     /// The server sends no parts of files.
     #[error("{uri}: the server sends whole files only; download it and name the copy")]
     NoRanges {
-        /// The URI.
         uri: String,
     },
     /// Files by HTTP are only read.
     #[error("{uri}: files by HTTP are only read; write to s3://, gs://, az:// or a local file")]
     ReadOnly {
-        /// The URI.
         uri: String,
     },
     /// The store has no list of its files.
     #[error("{uri}: a web server has no list of files; name each file")]
     NoList {
-        /// The URI.
         uri: String,
     },
     /// The server failed, or cannot be reached, in spite of retries.
     #[error("{uri}: {what}, after {requests} requests in {seconds:.1} s; try again later")]
     Unavailable {
-        /// The URI.
         uri: String,
-        /// The last failure.
         what: String,
         /// Requests that were sent.
         requests: u64,
@@ -115,9 +98,7 @@ pub enum StorageError {
         "{uri}: not done within {limit_s} s ({what}); set HTEX_STORAGE_TIMEOUT_S to wait longer"
     )]
     TooSlow {
-        /// The URI.
         uri: String,
-        /// The limit.
         limit_s: f64,
         /// How far it came, or the last failure.
         what: String,
@@ -125,7 +106,6 @@ pub enum StorageError {
     /// Any other refusal, of the server or of what it leads to.
     #[error("{uri}: refused: {what}")]
     Refused {
-        /// The URI.
         uri: String,
         /// The status, and the server's code.
         what: String,

@@ -59,7 +59,6 @@ const fn sample(ours: &'static str, what: &'static str, against: &'static [Again
     }
 }
 
-/// All rows.
 pub const fn rows() -> &'static [Row] {
     const ROWS: &[Row] = &[
         sample(

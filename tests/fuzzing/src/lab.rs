@@ -25,7 +25,6 @@ pub fn tdms(input: &[u8]) -> bool {
     any_map("fuzzed.tdms", input)
 }
 
-/// A Parquet.
 pub fn parquet(input: &[u8]) -> bool {
     any_map("fuzzed.parquet", input)
 }

@@ -67,7 +67,6 @@ pub struct Target {
     pub run: fn(&[u8]) -> bool,
 }
 
-/// All targets.
 pub const TARGETS: &[Target] = &[
     target("open_asset", open_asset),
     target("manifest", manifest),

@@ -26,7 +26,6 @@ fn with(call: impl FnOnce(&mut Consts) -> BigFloat) -> Big {
 }
 
 impl Big {
-    /// π.
     pub fn pi() -> Self {
         with(|consts| consts.pi(BITS, ROUND))
     }

@@ -19,13 +19,10 @@ pub use page::page;
 /// One row of the table.
 #[derive(Debug)]
 pub struct Case {
-    /// The input.
     pub input: &'static str,
     /// The model, or the part of the library.
     pub subject: &'static str,
-    /// The operation.
     pub operation: &'static str,
-    /// The promise.
     pub promise: Promise,
 }
 
@@ -122,7 +119,6 @@ pub struct Section {
     pub cases: &'static [Case],
 }
 
-/// The table.
 pub fn sections() -> Vec<Section> {
     cases::sections()
 }

@@ -17,7 +17,6 @@ pub fn asset() -> Asset {
     Asset::new(data())
 }
 
-/// Its data.
 pub fn data() -> AssetData {
     static DATA: OnceLock<AssetData> = OnceLock::new();
     let data = DATA.get_or_init(|| {

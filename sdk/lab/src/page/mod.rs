@@ -15,7 +15,6 @@ pub(crate) use server::LocalPage;
 pub struct PageError {
     /// The port; 0 if any was asked for.
     pub port: u16,
-    /// What is wrong.
     pub problem: String,
 }
 

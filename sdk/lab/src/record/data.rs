@@ -49,7 +49,6 @@ pub struct TakeHeader {
     pub tare: Vec<f64>,
     /// Signals of the tracker, without the time: role and unit; empty without a tracker.
     pub tracker: Vec<(String, String)>,
-    /// Target speed, mm/s.
     pub target_speed_mm_s: Option<f64>,
     /// Target normal force, newtons.
     pub target_force_n: Option<f64>,
@@ -62,7 +61,6 @@ pub struct TakeHeader {
 /// A take: its header and its samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TakeData {
-    /// The header.
     pub header: TakeHeader,
     /// The samples of each signal, of equal lengths.
     pub signals: Vec<Vec<f64>>,
@@ -86,7 +84,6 @@ impl TakeData {
         }
     }
 
-    /// Number of frames.
     #[must_use]
     pub fn frames(&self) -> usize {
         self.signals.first().map_or(0, Vec::len)

@@ -15,7 +15,6 @@ pub enum RecordError {
     /// The source has ended before the take was complete.
     #[error("the source ended {after_s:.3} s into a take of {seconds} s{}", with_place(.kept))]
     Ended {
-        /// Recorded seconds.
         after_s: f64,
         /// Seconds of the take.
         seconds: f64,
@@ -25,7 +24,6 @@ pub enum RecordError {
     /// The source stopped with an error during a take.
     #[error("{error}{}", with_place(.kept))]
     Interrupted {
-        /// The error.
         error: Box<RecordError>,
         /// The file with what was recorded.
         kept: Option<PathBuf>,
@@ -33,7 +31,6 @@ pub enum RecordError {
     /// The source delivers nothing.
     #[error("the source has delivered nothing for {seconds} s; check its cable and its clock")]
     Silent {
-        /// Seconds of waiting.
         seconds: u64,
     },
     /// The person has ended the session.
@@ -45,7 +42,6 @@ pub enum RecordError {
     /// No attempt kept to its target.
     #[error("none of {attempts} takes kept to the target; the last: {reasons}. They are in {}", .folder.display())]
     OffTarget {
-        /// Number of takes.
         attempts: u32,
         /// What the last one did wrong.
         reasons: String,
@@ -57,9 +53,7 @@ pub enum RecordError {
         "{role} is {value} at {at_s:.4} s; check the map for a division by zero, and the sensor"
     )]
     NotFinite {
-        /// The role.
         role: String,
-        /// The value.
         value: f64,
         /// Its time since the source was started, seconds.
         at_s: f64,
@@ -69,23 +63,18 @@ pub enum RecordError {
     NotMeasured {
         /// `speed` or `force`.
         what: &'static str,
-        /// What to give.
         advice: &'static str,
     },
     /// A value of the setup is out of range.
     #[error("{what} is {value}; {allowed}")]
     Setup {
-        /// What it is.
         what: &'static str,
-        /// The value.
         value: String,
-        /// What is allowed.
         allowed: &'static str,
     },
     /// A calibration matrix cannot be used.
     #[error("{}: {problem}", .file.display())]
     Calibration {
-        /// The file.
         file: PathBuf,
         /// What is wrong, and what to do.
         problem: String,
@@ -93,17 +82,14 @@ pub enum RecordError {
     /// A line of a tracker is not two numbers.
     #[error("tracker {name}, line {line}: {text:?} is not `x_mm y_mm` or `x_mm,y_mm`")]
     TrackerLine {
-        /// The tracker.
         name: String,
         /// Number of the line, from 1.
         line: usize,
-        /// The line.
         text: String,
     },
     /// A part file is damaged or is none.
     #[error("{}: {problem}", .file.display())]
     Part {
-        /// The file.
         file: PathBuf,
         /// What is wrong, and what to do.
         problem: String,
@@ -111,7 +97,6 @@ pub enum RecordError {
     /// Another program is recording a take.
     #[error("{}: another htex is recording into it; wait for it to end", .file.display())]
     Busy {
-        /// The part file.
         file: PathBuf,
     },
     /// The page cannot be served.
@@ -120,9 +105,7 @@ pub enum RecordError {
     /// A file cannot be written.
     #[error("cannot write {}: {error}", .file.display())]
     Write {
-        /// The file.
         file: PathBuf,
-        /// The system's error.
         #[source]
         error: std::io::Error,
     },

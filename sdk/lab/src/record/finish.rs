@@ -13,7 +13,6 @@ use crate::record::write::{Outcome, write_take};
 /// A take that is complete, or that was recovered.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Recorded {
-    /// The recording.
     pub file: PathBuf,
     /// What became of it.
     pub outcome: Outcome,

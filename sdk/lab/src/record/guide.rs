@@ -60,7 +60,6 @@ pub enum Phase {
 /// The state of a session, some 50 times a second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moment<'a> {
-    /// The phase.
     pub phase: Phase,
     /// Number of the take.
     pub number: u32,

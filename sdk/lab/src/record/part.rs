@@ -57,7 +57,6 @@ impl PartFile {
         })
     }
 
-    /// Its path.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path

@@ -9,7 +9,6 @@ use crate::record::error::RecordError;
 use crate::record::guide::{FingerPath, Moment, Phase};
 use crate::record::reader::{Block, Reader};
 
-/// Takes a block.
 pub(crate) type Take<'a> = dyn FnMut(&Block) -> Result<(), RecordError> + 'a;
 
 /// Time over which the force is shown as a mean, seconds: that of the means by which a take is judged.

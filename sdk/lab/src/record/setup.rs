@@ -46,7 +46,6 @@ pub struct Setup {
 /// When the forces without a finger are measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Tare {
-    /// Never.
     #[default]
     Never,
     /// Before the first take.

@@ -12,7 +12,6 @@ use crate::record::error::RecordError;
 /// Shortest time between two rows, seconds.
 const SHORTEST_S: f64 = 1e-6;
 
-/// A tracker.
 pub trait TrackerRows: Send {
     /// Role and unit of each signal, without the time.
     fn signals(&self) -> Vec<(String, String)>;

@@ -33,15 +33,12 @@ pub enum ResponseError {
         "the {channel}: {problem}; write COLUMN, COLUMN:SCALE or an expression, as in hammer_V:22.5"
     )]
     Column {
-        /// The channel.
         channel: Channel,
-        /// What is wrong.
         problem: String,
     },
     /// The columns of both channels cannot be read, or not together.
     #[error("input and output: {problem}")]
     Columns {
-        /// What is wrong.
         problem: String,
     },
     /// The recording does not hold one signal for each channel.
@@ -49,7 +46,6 @@ pub enum ResponseError {
         "{file}: {signals} signals were read and 2 are needed; name one column as the input and one as the output"
     )]
     Signals {
-        /// The recording.
         file: String,
         /// Number of signals that were read.
         signals: usize,
@@ -62,7 +58,6 @@ pub enum ResponseError {
         "{file}: the input has {input} samples and the output {output}; both must be recorded together, sample by sample"
     )]
     Lengths {
-        /// The recording.
         file: String,
         /// Samples of the input.
         input: usize,
@@ -72,9 +67,7 @@ pub enum ResponseError {
     /// The sample rate is zero, negative, not finite or too high.
     #[error("{file}: the sample rate is {rate_hz} Hz; it must be above 0 and at most 1e9 Hz")]
     Rate {
-        /// The recording.
         file: String,
-        /// The rate, hertz.
         rate_hz: f64,
     },
     /// Recordings have different sample rates.
@@ -82,13 +75,11 @@ pub enum ResponseError {
         "{file} was recorded at {rate_hz} Hz and {first} at {first_hz} Hz; measure recordings of one rate together"
     )]
     Rates {
-        /// The first recording.
         first: String,
         /// Its rate, hertz.
         first_hz: f64,
         /// The recording that differs.
         file: String,
-        /// Its rate, hertz.
         rate_hz: f64,
     },
     /// A sample is not finite, or beyond 1e12.
@@ -96,13 +87,10 @@ pub enum ResponseError {
         "{file}: the {channel} is {value} at sample {sample} (counted from 0); cut the recording there, or correct its unit"
     )]
     Sample {
-        /// The recording.
         file: String,
-        /// The channel.
         channel: Channel,
         /// Index from 0.
         sample: usize,
-        /// The value.
         value: f64,
     },
     /// A channel does not change.
@@ -110,11 +98,8 @@ pub enum ResponseError {
         "{file}: the {channel} is {value} at every sample; check that this is its column and that the sensor was on"
     )]
     Constant {
-        /// The recording.
         file: String,
-        /// The channel.
         channel: Channel,
-        /// The value.
         value: f64,
     },
     /// A recording is shorter than one window.
@@ -122,9 +107,7 @@ pub enum ResponseError {
         "{file} lasts {duration_s:.3} s, less than one window of {window_s} s; record longer or choose a shorter window"
     )]
     Short {
-        /// The recording.
         file: String,
-        /// Its duration, seconds.
         duration_s: f64,
         /// Length of the window, seconds.
         window_s: f64,
@@ -132,11 +115,8 @@ pub enum ResponseError {
     /// An option has an impossible value.
     #[error("{option} is {value}; {problem}")]
     Option {
-        /// The option.
         option: &'static str,
-        /// Its value.
         value: f64,
-        /// What is required.
         problem: String,
     },
     /// No hit stands out of the input.
@@ -144,7 +124,6 @@ pub enum ResponseError {
         "{file}: no hit found: the largest input is {largest:.4} and its noise {noise:.4} (RMS), and a hit must be 8 times above the noise; check that this is the hammer's column, or measure a continuous drive"
     )]
     NoHits {
-        /// The first recording.
         file: String,
         /// Largest distance of the input from its median.
         largest: f64,
@@ -158,7 +137,6 @@ pub enum ResponseError {
     TooFew {
         /// `hits` or `windows`.
         what: &'static str,
-        /// Number found.
         found: usize,
         /// Number that can be used.
         used: usize,
@@ -170,7 +148,6 @@ pub enum ResponseError {
         "the magnitude {magnitude} at {frequency_hz} Hz is beyond 1e-9 to 1e9, which responses are limited to; scale the input or the output to another unit"
     )]
     Magnitude {
-        /// Frequency, hertz.
         frequency_hz: f64,
         /// The magnitude, output over input.
         magnitude: f64,

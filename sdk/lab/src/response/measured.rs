@@ -21,7 +21,6 @@ const LARGEST: f64 = 1e9;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct MeasuredResponse {
-    /// The estimator.
     pub estimator: Estimator,
     /// Sample rate of the recordings, hertz.
     pub rate_hz: f64,

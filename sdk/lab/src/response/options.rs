@@ -14,7 +14,6 @@ const FEWEST_SAMPLES: f64 = 16.0;
 pub struct ResponseOptions {
     /// How the setup was excited.
     pub excitation: Excitation,
-    /// The estimator.
     pub estimator: Estimator,
     /// Length of a window, seconds; the response is on a grid of the inverse, hertz. A multiple of 0.2 s puts all
     /// multiples of 5 Hz, the grid of texture spectra, on it.

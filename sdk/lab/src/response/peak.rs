@@ -11,7 +11,6 @@ use serde::Serialize;
 /// form of a lightly damped resonance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Peak {
-    /// Frequency, hertz.
     pub frequency_hz: f64,
     /// Magnitude, output over input.
     pub magnitude: f64,

@@ -13,7 +13,6 @@ use super::error::Channel;
 /// A hit, or a window of a continuous drive: the part of a recording that one transform is taken of.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Piece {
-    /// The recording.
     pub file: String,
     /// Time of the hit's trigger, or of the window's start, in the file, seconds.
     pub time_s: f64,
@@ -35,7 +34,6 @@ pub enum Reason {
     },
     /// A channel reached the limit of its sensor or amplifier.
     Overload {
-        /// The channel.
         channel: Channel,
         /// Time of the first sample at the limit in the file, seconds.
         at_s: f64,

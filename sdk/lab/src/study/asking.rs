@@ -26,7 +26,6 @@ pub enum View {
         /// Name of the texture.
         texture: String,
     },
-    /// A question.
     Question {
         /// What is asked.
         attribute: Attribute,
@@ -42,7 +41,6 @@ pub enum View {
         /// The present gain, decibels relative to the maximum.
         gain_db: f64,
     },
-    /// A rest.
     Rest {
         /// Seconds until it may end.
         seconds: u64,
@@ -51,10 +49,8 @@ pub enum View {
     Done,
 }
 
-/// A key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Key {
-    /// A digit.
     Digit(u8),
     /// A key of the gain matching.
     Gain(GainKey),
@@ -73,7 +69,6 @@ pub trait Asker {
     fn key(&mut self) -> Option<Key>;
 }
 
-/// A clock.
 pub trait Clock {
     /// Milliseconds since 1970, or since the start of a simulated session.
     fn now_ms(&self) -> u64;
@@ -101,7 +96,6 @@ pub struct Played {
 
 /// What plays: a renderer and a device.
 pub trait Rig {
-    /// Its error.
     type Error: From<StudyError>;
 
     /// Plays, and calls `ends` for each block; when that returns true, playing ends as soon as it can.

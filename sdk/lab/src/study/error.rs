@@ -11,26 +11,20 @@ pub enum StudyError {
     /// The study has no such participant.
     #[error("the study has no participant {name:?}; it has {known}")]
     NoParticipant {
-        /// The name.
         name: String,
-        /// The study's participants.
         known: String,
     },
     /// A file cannot be read.
     #[error("cannot read {}: {error}", .file.display())]
     Read {
-        /// The file.
         file: PathBuf,
-        /// The system's error.
         #[source]
         error: std::io::Error,
     },
     /// A file cannot be written.
     #[error("cannot write {}: {error}", .file.display())]
     Write {
-        /// The file.
         file: PathBuf,
-        /// The system's error.
         #[source]
         error: std::io::Error,
     },
@@ -47,7 +41,6 @@ pub enum StudyError {
         file: PathBuf,
         /// Number of the line, from 1.
         line: usize,
-        /// What is wrong.
         problem: String,
     },
     /// The file was begun under other conditions, and results of two versions must not be mixed.
@@ -58,13 +51,11 @@ pub enum StudyError {
     OtherVersion {
         /// The file of answers.
         file: PathBuf,
-        /// What has changed.
         changed: String,
     },
     /// A folder has no answers.
     #[error("{}: there are no answers (*.jsonl); name the folder that `htex study run -o` wrote to", .folder.display())]
     NoAnswers {
-        /// The folder.
         folder: PathBuf,
     },
     /// A simulated participant needs the measured error of each representation.
@@ -74,7 +65,6 @@ pub enum StudyError {
     NoBandError {
         /// Name of the texture.
         texture: String,
-        /// The model.
         model: String,
     },
     /// What was felt could not be recorded.
@@ -85,9 +75,7 @@ pub enum StudyError {
     /// A recording of what was felt is not the one that was rated.
     #[error("{}: it is not the recording that was made in the trial ({problem}); restore it from a copy", .file.display())]
     FeltFile {
-        /// The recording.
         file: PathBuf,
-        /// What is wrong.
         problem: String,
     },
     /// A recording has no spectrum that an analysis can use.
@@ -110,7 +98,6 @@ pub enum StudyError {
     /// The attribute that was asked for is not in the answers.
     #[error("the answers have the attributes {known}; name one of them")]
     Attribute {
-        /// The attributes.
         known: String,
     },
 }

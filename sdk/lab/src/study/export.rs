@@ -26,9 +26,7 @@ const COLUMNS: [&str; 10] = [
 pub struct Export {
     /// The table as CSV, participant by participant, each in the order of the trials.
     pub csv: String,
-    /// Participants.
     pub participants: usize,
-    /// Ratings.
     pub ratings: usize,
     /// What an analysis must know: sessions that are not complete.
     pub warnings: Vec<String>,

@@ -30,7 +30,6 @@ const FOLDER: &str = "felt";
 /// How far the motion may be from that of the study, for the judgement beside a recording.
 const TOLERANCE: f64 = 0.1;
 
-/// Opens the source.
 pub type OpenSource = Box<dyn Fn() -> Result<Box<dyn Source>, DeviceError>>;
 
 /// What is recorded, and where.
@@ -38,7 +37,6 @@ pub type OpenSource = Box<dyn Fn() -> Result<Box<dyn Source>, DeviceError>>;
 pub struct FeltSetup {
     /// Folder of the answers.
     pub folder: PathBuf,
-    /// The participant.
     pub participant: String,
     /// The source, as it was named.
     pub source: String,

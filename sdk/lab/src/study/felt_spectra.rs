@@ -20,7 +20,6 @@ const RECORDED: &str = "recorded";
 /// The spectrum of a real texture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reference {
-    /// Its quantity.
     pub quantity: Quantity,
     /// Magnitudes at 20, 25, …, 1000 Hz.
     pub magnitude: Vec<f64>,

@@ -63,7 +63,6 @@ impl Match {
         self.is_found
     }
 
-    /// The method.
     pub fn method(&self) -> GainMethod {
         self.settings.method
     }

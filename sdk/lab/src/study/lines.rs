@@ -11,7 +11,6 @@ use crate::study::gain::GainKey;
 /// Version of the files of answers.
 pub(crate) const VERSION: &str = "1.0";
 
-/// A line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Line {
@@ -42,11 +41,9 @@ pub struct Header {
     pub htex_answers: String,
     /// Name of the study.
     pub study: String,
-    /// The participant.
     pub participant: String,
     /// BLAKE3 hashes, hexadecimal, of the study's file and of all files that it names.
     pub files: BTreeMap<String, String>,
-    /// The device.
     pub device: DeviceUsed,
     /// Ratings of a complete session.
     pub ratings: usize,
@@ -72,7 +69,6 @@ pub struct Simulated {
 /// The device of a session.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DeviceUsed {
-    /// Id of the adapter.
     pub adapter: String,
     /// Its profile; empty if there is none.
     pub profile: String,
@@ -121,7 +117,6 @@ pub struct Answer {
     pub number: u32,
     /// Name of the texture.
     pub texture: String,
-    /// The model.
     pub model: String,
     /// Repetition, from 1.
     pub repetition: u32,
@@ -130,7 +125,6 @@ pub struct Answer {
     pub hidden_reference: bool,
     /// What was rated.
     pub attribute: String,
-    /// The rating.
     pub rating: u8,
     /// Time from the question to the answer, milliseconds.
     pub response_ms: u64,
@@ -152,7 +146,6 @@ pub struct Answer {
 pub struct Matched {
     /// Name of the texture.
     pub texture: String,
-    /// The key.
     pub key: GainKey,
     /// The gain after it, decibels relative to the maximum.
     pub gain_db: f64,

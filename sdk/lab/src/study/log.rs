@@ -72,7 +72,6 @@ impl Log {
         synced.map_err(|error| write_error(&self.path, error))
     }
 
-    /// The file.
     pub fn path(&self) -> &Path {
         &self.path
     }

@@ -23,7 +23,6 @@ const GUARD: Duration = Duration::from_millis(300);
 pub struct PageOptions {
     /// Port; 0 is any that is free.
     pub port: u16,
-    /// Title.
     pub title: String,
     /// RMS level of the masking noise, decibels relative to full scale.
     pub noise_dbfs: Option<f64>,

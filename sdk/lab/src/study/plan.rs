@@ -14,9 +14,7 @@ pub struct Plan {
     pub htex_study: String,
     /// Name of the study.
     pub name: String,
-    /// Seed.
     pub seed: u64,
-    /// The participants.
     pub participants: Vec<ParticipantPlan>,
 }
 
@@ -33,14 +31,12 @@ pub struct ParticipantPlan {
     pub trials: Vec<Trial>,
 }
 
-/// A trial.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Trial {
     /// Number within its phase, from 1.
     pub number: u32,
     /// Name of the texture.
     pub texture: String,
-    /// The model.
     pub model: String,
     /// Repetition of this texture with this model, from 1.
     pub repetition: u32,

@@ -24,14 +24,12 @@ pub enum Step {
         /// The matching so far.
         matching: Match,
     },
-    /// A rest.
     Rest {
         /// Trials before it.
         after: u32,
         /// Shortest length, seconds.
         seconds: f64,
     },
-    /// All is done.
     Done,
 }
 
@@ -83,12 +81,10 @@ impl<'a> Session<'a> {
         self.progress.step(self.study, self.plan)
     }
 
-    /// The study.
     pub fn study(&self) -> &'a Study {
         self.study
     }
 
-    /// The participant.
     pub fn participant(&self) -> &str {
         &self.plan.participant
     }

@@ -16,7 +16,6 @@ const SOUND_DBFS: f64 = -18.0;
 pub struct Stimulus {
     /// Name of the texture.
     pub texture: String,
-    /// The model.
     pub model: String,
     /// Length, seconds; `None`: until it is stopped.
     pub seconds: Option<f64>,

@@ -78,7 +78,6 @@ impl Raw {
         self
     }
 
-    /// The file.
     pub fn bytes(&self) -> Vec<u8> {
         let leaves: Vec<Vec<u8>> = (1..=self.leaves.len())
             .map(|number| self.frame(number, self.leaf(number - 1)))

@@ -22,7 +22,6 @@ pub struct TextureReport {
 pub struct Share {
     /// The model's short name.
     pub short_name: String,
-    /// Number of textures.
     pub textures: usize,
     /// Those whose difference is below the difference threshold in every third octave.
     pub below_difference_threshold: usize,

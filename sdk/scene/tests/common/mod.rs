@@ -166,7 +166,6 @@ pub fn display() -> Capabilities {
     }
 }
 
-/// A loudspeaker.
 pub fn loudspeaker() -> Capabilities {
     Capabilities {
         quantity: Quantity::Sound,

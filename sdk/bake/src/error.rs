@@ -46,23 +46,15 @@ pub enum BakeError {
     #[error(
         "the model {model} follows the position of the finger itself; bake another representation"
     )]
-    FollowsMotion {
-        model: String,
-    },
+    FollowsMotion { model: String },
     /// There are too many sinusoids.
     #[error(
         "the conditions have {count} sinusoids together, and a block at most {most}; bake fewer conditions"
     )]
-    Tones {
-        count: usize,
-        most: usize,
-    },
+    Tones { count: usize, most: usize },
     /// The representation has no energy at a condition.
     #[error("the texture is silent at {speed_mm_s} mm/s and {force_n} N; bake other conditions")]
-    Silent {
-        speed_mm_s: f64,
-        force_n: f64,
-    },
+    Silent { speed_mm_s: f64, force_n: f64 },
     /// The level cannot be stored.
     #[error(
         "the level at {speed_mm_s} mm/s and {force_n} N is {level}; a block stores at most {most}"

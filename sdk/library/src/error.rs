@@ -41,9 +41,7 @@ pub enum LibraryError {
     },
     /// The library has no texture of this name.
     #[error("there is no texture {} in the library; list its entries to see their names", plain(.name))]
-    Absent {
-        name: String,
-    },
+    Absent { name: String },
     /// The library could not be written; an existing file is unchanged.
     #[error("cannot write {}: {error}; the file is unchanged", .path.display())]
     Write {
@@ -61,9 +59,7 @@ pub enum LibraryError {
     },
     /// Two textures have the same name.
     #[error("two textures have the name {}; rename one", plain(.name))]
-    Duplicate {
-        name: String,
-    },
+    Duplicate { name: String },
     /// A texture to be added is not a valid asset.
     #[error("{}: {error}", plain(.name))]
     Asset {

@@ -21,7 +21,7 @@ impl<'a> Numbers<'a> {
         Self { buffer, count: 0 }
     }
 
-    /// Writes a number.
+    /// Writes a number, and counts it where the buffer is full.
     pub fn push(&mut self, number: f64) {
         if let Some(place) = self.buffer.get_mut(self.count) {
             *place = number;

@@ -9,7 +9,7 @@ use crate::{Error, FitCondition, Numbers, StaticDescriptor, Values};
 /// Input of a fit.
 #[derive(Debug, Clone, Copy)]
 pub struct FitInput<'a> {
-    /// The band.
+    /// Band of the texture, hertz; the fitted shape has unit RMS in it.
     pub band: Band,
     /// Frequencies of the texture spectrum, ascending, hertz (the 5 Hz grid in the band).
     pub frequency_hz: &'a [f64],
@@ -46,10 +46,10 @@ pub struct Fit {
 /// The macro's functions check every argument before they call these methods: parameters fit the
 /// descriptor, options are in range, bands are valid, rates are finite and positive.
 pub trait Model: 'static {
-    /// The voice type.
+    /// Renders the samples of one texture.
     type Voice: Voice;
 
-    /// The model's descriptor.
+    /// Id, version, fields and options, as hosts see them.
     const DESCRIPTOR: StaticDescriptor;
 
     /// Finds the parameters of a spectrum.

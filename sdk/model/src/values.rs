@@ -165,7 +165,7 @@ impl<'a> Values<'a> {
         self.list(i).first().copied().unwrap_or(f64::NAN)
     }
 
-    /// Returns the array.
+    /// Returns the flat array as it crosses the ABI.
     pub fn flat(&self) -> &'a [f64] {
         self.flat
     }

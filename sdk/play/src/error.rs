@@ -7,6 +7,7 @@
 /// let error = Asset::from_bytes(b"not an asset").unwrap_err();
 /// assert!(matches!(error, Error::Read(_)));
 /// ```
+#[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -23,7 +24,6 @@ pub enum Error {
     /// The asset has no representation of this model.
     #[error("the asset has no representation `{wanted}`; it has {there}")]
     NoRepresentation {
-        /// The requested model.
         wanted: String,
         /// The models of the asset's representations.
         there: String,
@@ -33,7 +33,6 @@ pub enum Error {
         "the asset embeds no model `{id}`; its manifest lists the embedded models under `plugins`"
     )]
     NoEmbeddedModel {
-        /// The requested id.
         id: String,
     },
     /// The only model that can play a representation is embedded in the asset, and embedded models are not allowed to run
@@ -43,7 +42,6 @@ pub enum Error {
          install the model"
     )]
     EmbeddedOff {
-        /// The model's id.
         id: String,
     },
     /// The asset was fitted by another major version of the model.
@@ -52,7 +50,6 @@ pub enum Error {
          not compatible; install a {model} of the same major version"
     )]
     ModelVersion {
-        /// The model's id.
         model: String,
         /// The version in the asset.
         asset: String,
@@ -64,7 +61,6 @@ pub enum Error {
         "the parameters do not match the fields of {model}: {problem}; fit the recording again"
     )]
     Fields {
-        /// The model's id.
         model: String,
         /// Each field that differs, and its difference.
         problem: String,

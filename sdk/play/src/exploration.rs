@@ -98,16 +98,16 @@ pub enum Recorded {
     Unknown,
     /// One value, whose measurements lie within the tolerance of [`htex_format::SAME_CONDITION`].
     One {
-        /// The lowest.
+        /// The lowest recorded value, in mm/s or newtons.
         low: f64,
-        /// The highest.
+        /// The highest recorded value, in mm/s or newtons.
         high: f64,
     },
     /// Several values, between which the texture is interpolated.
     Several {
-        /// The lowest.
+        /// The lowest recorded value, in mm/s or newtons.
         low: f64,
-        /// The highest.
+        /// The highest recorded value, in mm/s or newtons.
         high: f64,
     },
 }
@@ -169,9 +169,9 @@ impl fmt::Display for Recorded {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Explored {
-    /// Speeds, mm/s.
+    /// Recorded speeds, mm/s.
     pub speed: Recorded,
-    /// Normal forces, newtons.
+    /// Recorded normal forces, newtons.
     pub force: Recorded,
 }
 
@@ -251,9 +251,9 @@ fn reach(recorded: Recorded, asked: f64, nearest: f64, factor: Option<f64>) -> R
 pub struct Coverage {
     /// Whether the voice is audible: the finger slides, or the effect `contact` is off.
     pub slides: bool,
-    /// Speed, mm/s.
+    /// How the requested speed relates to the recorded ones, in mm/s.
     pub speed: Reach,
-    /// Normal force, newtons.
+    /// How the requested normal force relates to the recorded ones, in newtons.
     pub force: Reach,
 }
 
@@ -273,9 +273,9 @@ pub enum Reach {
     Unknown,
     /// One value was recorded, and the texture is scaled from it.
     Scaled {
-        /// The requested value.
+        /// The value of the requested motion, in mm/s or newtons.
         asked: f64,
-        /// The recorded value.
+        /// The value of the recording, or the nearest of its interval.
         recorded: f64,
         /// Factor of all frequencies for a speed, of the level for a force.
         factor: f64,
@@ -284,7 +284,7 @@ pub enum Reach {
     Followed,
     /// The texture is played at the nearest recorded value.
     Clamped {
-        /// The requested value.
+        /// The value of the requested motion, in mm/s or newtons.
         asked: f64,
         /// The value that is played.
         played: f64,

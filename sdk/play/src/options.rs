@@ -62,7 +62,7 @@ impl<'a> VoiceOptions<'a> {
         self
     }
 
-    /// Sets the seed.
+    /// Sets the seed of the noise and phases: voices with equal seeds have equal samples.
     #[must_use]
     pub fn with_seed(mut self, seed: u64) -> Self {
         self.seed = seed;

@@ -17,20 +17,13 @@ pub enum StorageError {
     #[error(
         "{uri}: this build reads files of this machine only; build it with the feature `cloud`"
     )]
-    NoCloud {
-        uri: String,
-    },
+    NoCloud { uri: String },
     /// A local file, or a local copy.
     #[error("{path}: {error}")]
-    Io {
-        path: String,
-        error: io::Error,
-    },
+    Io { path: String, error: io::Error },
     /// There is no such file.
     #[error("{uri}: there is no such file; check the bucket and the key")]
-    Missing {
-        uri: String,
-    },
+    Missing { uri: String },
     /// The server has refused the credentials, or asks for some.
     #[error("{uri}: the server refuses access ({what}); {advice}")]
     Denied {
@@ -49,15 +42,10 @@ pub enum StorageError {
     },
     /// The file was replaced while it was read.
     #[error("{uri}: the file was replaced while it was read; read it again")]
-    Changed {
-        uri: String,
-    },
+    Changed { uri: String },
     /// The file has more bytes than may be read.
     #[error("{uri}: it has more than {most_bytes} bytes")]
-    TooLarge {
-        uri: String,
-        most_bytes: u64,
-    },
+    TooLarge { uri: String, most_bytes: u64 },
     /// A range beyond the end of the file.
     #[error("{uri}: bytes {offset} to {end} were asked for, and it has {len}")]
     Range {
@@ -70,19 +58,13 @@ pub enum StorageError {
     },
     /// The server sends no parts of files.
     #[error("{uri}: the server sends whole files only; download it and name the copy")]
-    NoRanges {
-        uri: String,
-    },
+    NoRanges { uri: String },
     /// Files by HTTP are only read.
     #[error("{uri}: files by HTTP are only read; write to s3://, gs://, az:// or a local file")]
-    ReadOnly {
-        uri: String,
-    },
+    ReadOnly { uri: String },
     /// The store has no list of its files.
     #[error("{uri}: a web server has no list of files; name each file")]
-    NoList {
-        uri: String,
-    },
+    NoList { uri: String },
     /// The server failed, or cannot be reached, in spite of retries.
     #[error("{uri}: {what}, after {requests} requests in {seconds:.1} s; try again later")]
     Unavailable {

@@ -30,9 +30,7 @@ pub enum RecordError {
     },
     /// The source delivers nothing.
     #[error("the source has delivered nothing for {seconds} s; check its cable and its clock")]
-    Silent {
-        seconds: u64,
-    },
+    Silent { seconds: u64 },
     /// The person has ended the session.
     #[error("the session was ended{}", with_place(.kept))]
     Left {
@@ -96,9 +94,7 @@ pub enum RecordError {
     },
     /// Another program is recording a take.
     #[error("{}: another htex is recording into it; wait for it to end", .file.display())]
-    Busy {
-        file: PathBuf,
-    },
+    Busy { file: PathBuf },
     /// The page cannot be served.
     #[error(transparent)]
     Page(#[from] crate::page::PageError),

@@ -32,15 +32,10 @@ pub enum ResponseError {
     #[error(
         "the {channel}: {problem}; write COLUMN, COLUMN:SCALE or an expression, as in hammer_V:22.5"
     )]
-    Column {
-        channel: Channel,
-        problem: String,
-    },
+    Column { channel: Channel, problem: String },
     /// The columns of both channels cannot be read, or not together.
     #[error("input and output: {problem}")]
-    Columns {
-        problem: String,
-    },
+    Columns { problem: String },
     /// The recording does not hold one signal for each channel.
     #[error(
         "{file}: {signals} signals were read and 2 are needed; name one column as the input and one as the output"
@@ -66,10 +61,7 @@ pub enum ResponseError {
     },
     /// The sample rate is zero, negative, not finite or too high.
     #[error("{file}: the sample rate is {rate_hz} Hz; it must be above 0 and at most 1e9 Hz")]
-    Rate {
-        file: String,
-        rate_hz: f64,
-    },
+    Rate { file: String, rate_hz: f64 },
     /// Recordings have different sample rates.
     #[error(
         "{file} was recorded at {rate_hz} Hz and {first} at {first_hz} Hz; measure recordings of one rate together"

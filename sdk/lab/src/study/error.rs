@@ -10,10 +10,7 @@ use crate::record::RecordError;
 pub enum StudyError {
     /// The study has no such participant.
     #[error("the study has no participant {name:?}; it has {known}")]
-    NoParticipant {
-        name: String,
-        known: String,
-    },
+    NoParticipant { name: String, known: String },
     /// A file cannot be read.
     #[error("cannot read {}: {error}", .file.display())]
     Read {
@@ -55,9 +52,7 @@ pub enum StudyError {
     },
     /// A folder has no answers.
     #[error("{}: there are no answers (*.jsonl); name the folder that `htex study run -o` wrote to", .folder.display())]
-    NoAnswers {
-        folder: PathBuf,
-    },
+    NoAnswers { folder: PathBuf },
     /// A simulated participant needs the measured error of each representation.
     #[error(
         "{texture}: the asset has no measured nine-band error for {model}, by which simulated participants rate; fit it again with `htex fit`"
@@ -74,10 +69,7 @@ pub enum StudyError {
     Felt(#[from] RecordError),
     /// A recording of what was felt is not the one that was rated.
     #[error("{}: it is not the recording that was made in the trial ({problem}); restore it from a copy", .file.display())]
-    FeltFile {
-        file: PathBuf,
-        problem: String,
-    },
+    FeltFile { file: PathBuf, problem: String },
     /// A recording has no spectrum that an analysis can use.
     #[error("{}: {problem}", .file.display())]
     Spectrum {
@@ -97,7 +89,5 @@ pub enum StudyError {
     Page(#[from] crate::page::PageError),
     /// The attribute that was asked for is not in the answers.
     #[error("the answers have the attributes {known}; name one of them")]
-    Attribute {
-        known: String,
-    },
+    Attribute { known: String },
 }

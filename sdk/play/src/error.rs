@@ -32,18 +32,14 @@ pub enum Error {
     #[error(
         "the asset embeds no model `{id}`; its manifest lists the embedded models under `plugins`"
     )]
-    NoEmbeddedModel {
-        id: String,
-    },
+    NoEmbeddedModel { id: String },
     /// The only model that can play a representation is embedded in the asset, and embedded models are not allowed to run
     /// ([`crate::Asset::with_embedded`] allows it).
     #[error(
         "no model `{id}` is installed; the asset embeds it, but embedded models are not allowed to run: allow them, or \
          install the model"
     )]
-    EmbeddedOff {
-        id: String,
-    },
+    EmbeddedOff { id: String },
     /// The asset was fitted by another major version of the model.
     #[error(
         "the asset was fitted by {model} {asset}, and version {installed} is installed, which is \

@@ -4,6 +4,20 @@
 //! Definitions follow the paper's section Texture processing; where it is silent, the option's documentation
 //! states what is done.
 //!
+//! From a recording to an asset:
+//!
+//! 1. `segments`: complete sweeps by mean threshold, or half-overlapping windows, of 0.2 s. `findings`: problems of the
+//!    signals, with stable codes (`spec/recording-findings.md`). `reading` combines both.
+//! 2. `spectrum`: mean removed, Hann window, FFT, two axes folded into one, divided by the response of the setup,
+//!    averaged.
+//! 3. `conditions`: recordings with the same speed and force are averaged, others become further conditions. `grid`, on
+//!    request, takes many conditions from a free motion: windows of `steady` motion, `lines` of speed and force,
+//!    `cells` around their crossings, spectra over equal `paths`, corrected by `slopes`.
+//! 4. `fit`: each model at each condition. Parameters are rounded as the file stores them; the *rounded* ones get a
+//!    `level` and are measured, by magnitude (`metrics`) and by samples (`rendered`). Where the errors of bands are
+//!    large, other options and models are tried and listed (`alternatives`). In a grid each condition is also predicted
+//!    from its neighbours, by the mesh of the player.
+//!
 //! ```
 //! use htex_author::simulate::{SimulationOptions, Surface, simulate};
 //! use htex_author::{Averaging, SpectrumOptions, TextureSpectrum, segment_spectra};

@@ -4,6 +4,15 @@
 //! of its recordings, its settings, the program and the plugins. What has been made for a key is kept, so that going on after a kill,
 //! building only what changed and building on many machines ([`Build::pending`], [`Job::run`], [`Build::store`]) are one mechanism.
 //!
+//! From recordings to a library:
+//!
+//! 1. `recipe`, `plan`: a recipe becomes textures, each with its recordings and settings, which are those of the
+//!    command and of Python.
+//! 2. `hashes`, `job`: a texture becomes a job, data with a key.
+//! 3. `cache`: what was made for a key is there, or the job is pending. Threads, or a cluster (`htex.dask`), do the
+//!    pending jobs.
+//! 4. `assemble`: gates, textures, the library, report and catalogue, from what was made alone.
+//!
 //! ```no_run
 //! use htex_build::{Build, BuildOptions};
 //!

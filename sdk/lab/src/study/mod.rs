@@ -6,6 +6,17 @@
 //!
 //! The defaults are those of the study in the paper (Methods, "Experiment"): 14 participants, five models, five repetitions, trials of
 //! 10 s, training, gain matching with AR from the maximum down, and similarity from 0 "Different" to 6 "Same".
+//!
+//! From a study to ratings:
+//!
+//! 1. `read`, `check`: `study.toml`, and what it names. Problems are findings, those of motion, device and assets by
+//!    the rules of scenes.
+//! 2. `plan`: the order of every participant, a function of the file alone.
+//! 3. `session`: one participant on the way through the plan. `progress` is computed by the same function whether lines
+//!    are read or recorded; `log` appends a line and syncs it.
+//! 4. `run`: what is played, shown and asked, over three traits: a rig (renderer and device), an asker (terminal, or a
+//!    page), a clock. `felt` records a source while a trial plays, with the reader and the writer of guided recordings.
+//! 5. `export`: the table of all participants; `felt_spectra`: that of what they felt.
 
 mod asking;
 mod check;

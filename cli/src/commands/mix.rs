@@ -1,7 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_author::by_hand::{Part, mix};
+use htex_author::by_hand::{MixedAsset, mix};
 
 use super::make::write;
 use crate::bounded::read_asset;
@@ -55,7 +55,7 @@ impl Mix {
         let metadata = std::mem::take(&mut self.metadata).given();
         checked(&metadata)?;
         let (a, b) = (self.open(&self.a)?, self.open(&self.b)?);
-        let part = |(asset, blake3)| Part { asset, blake3 };
+        let part = |(asset, blake3)| MixedAsset { asset, blake3 };
         let stem = self.output.file_stem().unwrap_or_default();
         let mixed = mix(
             part((&a.0, &a.1[..])),

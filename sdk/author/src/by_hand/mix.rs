@@ -11,14 +11,14 @@ use crate::stored::stored_fields;
 
 /// A texture that is mixed, and the hash of its file.
 #[derive(Debug, Clone, Copy)]
-pub struct Part<'a> {
+pub struct MixedAsset<'a> {
     /// The texture, with the models that play it.
     pub asset: &'a htex_play::Asset,
     /// BLAKE3 of its file, hexadecimal.
     pub blake3: &'a str,
 }
 
-impl Part<'_> {
+impl MixedAsset<'_> {
     fn name(&self) -> &str {
         &self.asset.manifest().name
     }
@@ -31,8 +31,8 @@ impl Part<'_> {
 /// # Errors
 /// When no model describes both, their quantity or band differs, or a model cannot mix its parameters.
 pub fn mix(
-    a: Part<'_>,
-    b: Part<'_>,
+    a: MixedAsset<'_>,
+    b: MixedAsset<'_>,
     weight: f64,
     name: &str,
     tool: &str,
@@ -47,7 +47,7 @@ pub fn mix(
     };
     check(a, b).map_err(different)?;
     let conditions = conditions(a, b).map_err(different)?;
-    let ids = |part: Part<'_>| -> Vec<String> {
+    let ids = |part: MixedAsset<'_>| -> Vec<String> {
         let all = &part.asset.manifest().representations;
         all.iter().map(|r| r.model.clone()).collect()
     };
@@ -68,7 +68,7 @@ pub fn mix(
         );
         return Err(different(problem));
     }
-    let ingredient = |part: Part<'_>, weight| Ingredient {
+    let ingredient = |part: MixedAsset<'_>, weight| Ingredient {
         name: part.name().to_owned(),
         weight,
         blake3: part.blake3.to_owned(),
@@ -91,7 +91,7 @@ pub fn mix(
     Ok(asset)
 }
 
-fn check(a: Part<'_>, b: Part<'_>) -> Result<(), String> {
+fn check(a: MixedAsset<'_>, b: MixedAsset<'_>) -> Result<(), String> {
     let (a, b) = (a.asset.manifest(), b.asset.manifest());
     if a.quantity != b.quantity {
         return Err(format!("they are a {} and a {}", a.quantity, b.quantity));
@@ -107,7 +107,7 @@ fn check(a: Part<'_>, b: Part<'_>) -> Result<(), String> {
 }
 
 /// The conditions of both, without measurements of the recordings; those that are the same once.
-fn conditions(a: Part<'_>, b: Part<'_>) -> Result<Vec<Condition>, String> {
+fn conditions(a: MixedAsset<'_>, b: MixedAsset<'_>) -> Result<Vec<Condition>, String> {
     let mut all: Vec<Condition> = Vec::new();
     for condition in [a, b]
         .iter()
@@ -142,7 +142,7 @@ fn is_same(a: &Condition, b: &Condition) -> bool {
 /// Mixes one model's parameters at all conditions.
 fn mixed(
     model: &LoadedModel,
-    (a, b): (Part<'_>, Part<'_>),
+    (a, b): (MixedAsset<'_>, MixedAsset<'_>),
     weight: f64,
     conditions: &[Condition],
 ) -> Result<(Representation, Vec<Vec<f64>>), ByHandError> {

@@ -8,7 +8,7 @@ mod mix;
 mod parameters;
 
 pub use error::ByHandError;
-pub use mix::{Part, mix};
+pub use mix::{MixedAsset, mix};
 pub use parameters::{ByHand, make};
 
 use htex_format::{

@@ -79,20 +79,22 @@ pub(super) fn read_steady(
 }
 
 /// The source of a speed or a force.
-enum Source<'a> {
+enum MotionAxis<'a> {
     Measured(Known<'a>),
     Given(f64),
 }
 
-impl<'a> Source<'a> {
+impl<'a> MotionAxis<'a> {
     /// Returns the given value, else the measured signal.
     fn of(given: Option<f64>, measured: Option<Known<'a>>) -> Option<Self> {
-        given.map(Source::Given).or(measured.map(Source::Measured))
+        given
+            .map(MotionAxis::Given)
+            .or(measured.map(MotionAxis::Measured))
     }
 }
 
 /// Returns the sources of speed and force.
-fn motion_axes(take: &Take) -> Result<[Source<'_>; 2], AuthorError> {
+fn motion_axes(take: &Take) -> Result<[MotionAxis<'_>; 2], AuthorError> {
     let [speed, force] = known(&take.recording, Exploration::default());
     let missing = |what, columns| AuthorError::NoMotion {
         source_name: take.recording.source.clone(),
@@ -100,18 +102,18 @@ fn motion_axes(take: &Take) -> Result<[Source<'_>; 2], AuthorError> {
         columns,
     };
     Ok([
-        Source::of(take.given.speed_mm_s, speed)
+        MotionAxis::of(take.given.speed_mm_s, speed)
             .ok_or_else(|| missing("speed", "a speed, or a position x and y"))?,
-        Source::of(take.given.force_n, force)
+        MotionAxis::of(take.given.force_n, force)
             .ok_or_else(|| missing("normal force", "a normal force"))?,
     ])
 }
 
 /// Returns the logarithms of mean speed and force over a window, if both are steady.
-fn steady_motion(axes: &[Source<'_>; 2], start: usize, len: usize) -> Option<[f64; 2]> {
+fn steady_motion(axes: &[MotionAxis<'_>; 2], start: usize, len: usize) -> Option<[f64; 2]> {
     let [speed, force] = axes.each_ref().map(|axis| match axis {
-        Source::Given(value) => Some(*value),
-        Source::Measured(known) => known.steady_mean(start, len, STEADY),
+        MotionAxis::Given(value) => Some(*value),
+        MotionAxis::Measured(known) => known.steady_mean(start, len, STEADY),
     });
     let (speed, force) = (speed?, force?);
     (speed >= SLOWEST_MM_S && force > 0.0).then(|| [libm::log(speed), libm::log(force)])

@@ -18,7 +18,7 @@ pub(crate) enum Failure {
     #[error(transparent)]
     Author(#[from] htex_author::AuthorError),
     #[error(transparent)]
-    Recording(#[from] htex_author::read::ReadError),
+    Recording(#[from] htex_author::recording::ReadError),
     #[error(transparent)]
     Model(#[from] htex_host::HostError),
     #[error(transparent)]

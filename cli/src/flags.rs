@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use htex_author::AuthorError;
-use htex_author::read::ReadError;
+use htex_author::recording::ReadError;
 
 /// Flags by the code of a finding in a recording.
 const BY_CODE: &[(&str, &str)] = &[

@@ -5,7 +5,7 @@ use std::io::{BufReader, IsTerminal};
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use htex_author::read::ColumnMap;
+use htex_author::recording::ColumnMap;
 use htex_device::Source;
 use htex_format::Quantity;
 use htex_lab::record::{Calibration, Format, LineTracker, Signals, TableTracker, TrackerRows};

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use htex_author::read::{MOST_VALUES, read_recording};
+use htex_author::recording::{MOST_VALUES, read_recording};
 use htex_author::settings::ReadingSettings;
 use htex_author::{
     Averaging, Exploration, SegmentChoice, SpectrumOptions, Take, validate_recording,

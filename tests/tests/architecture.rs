@@ -61,7 +61,18 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
     (
         "htex-author",
-        &["htex-dsp", "htex-format", "htex-host", "htex-play"],
+        &[
+            "htex-dsp",
+            "htex-format",
+            "htex-host",
+            "htex-play",
+            "htex-recording",
+        ],
+    ),
+    ("htex-recording", &["htex-dsp", "htex-format"]),
+    (
+        "htex-simulate",
+        &["htex-dsp", "htex-format", "htex-recording"],
     ),
     (
         "htex-check",
@@ -86,18 +97,19 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-library",
             "htex-play",
             "htex-scene",
+            "htex-simulate",
             "htex-storage",
         ],
     ),
     (
         "htex-scene",
         &[
-            "htex-author",
             "htex-device",
             "htex-dsp",
             "htex-format",
             "htex-host",
             "htex-play",
+            "htex-recording",
             "htex-schema",
         ],
     ),
@@ -126,6 +138,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-lab",
             "htex-library",
             "htex-scene",
+            "htex-simulate",
             "htex-statistics",
             "htex-tradeoff",
             "htex-dsp",
@@ -149,7 +162,10 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-scene",
         ],
     ),
-    ("htex-bench", &["htex", "htex-author", "htex-host"]),
+    (
+        "htex-bench",
+        &["htex", "htex-author", "htex-host", "htex-simulate"],
+    ),
     (
         "htex-fuzzing",
         &[

@@ -2,12 +2,12 @@
 //! the file; nine energies to half a step; and more bands for more bytes.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
-use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_author::{
     AssetRequest, Averaging, Exploration, ModelRequest, SpectrumOptions, Take, fit_asset,
 };
 use htex_format::{Asset, Quality};
 use htex_host::Registry;
+use htex_simulate::{SimulationOptions, Surface, simulate};
 
 /// The model's block at one condition, written to a file and read back.
 struct Kept {

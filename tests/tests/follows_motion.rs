@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use builds::*;
 use htex::{Asset, Reach, Registry, Search, Voice, VoiceOptions};
-use htex_author::read::TraceColumns;
+use htex_author::recording::TraceColumns;
 use htex_author::{AssetRequest, Exploration, ModelRequest, Recording, Take, fit_asset};
 use htex_device::{Capabilities, Quantity, Rates, Settings};
 use htex_host::{Band, Stream};

@@ -3,7 +3,7 @@ use std::io::BufWriter;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use htex_author::read::{ColumnMap, MOST_VALUES, ReadError, ReadOptions, read_recording};
+use htex_author::recording::{ColumnMap, MOST_VALUES, ReadError, ReadOptions, read_recording};
 use htex_lab::response::{
     Estimator, Excitation, HitOptions, MeasuredResponse, Piece, Record, ResponseError,
     ResponseOptions, column_map, measure, response_picture,

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 use htex_author::SetupResponse;
-use htex_author::simulate::{FreeMotion, SimulationError, SimulationOptions, Surface, simulate};
+use htex_simulate::{FreeMotion, SimulationError, SimulationOptions, Surface, simulate};
 
 use crate::exit::Exit;
 use crate::failure::Failure;

@@ -1,10 +1,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_author::{AuthorError, Exploration, Take};
 use htex_format::ErrorMeasure;
 use htex_host::{LoadedModel, Origin, Registry};
+use htex_simulate::{SimulationOptions, Surface, simulate};
 use htex_tradeoff::{Journal, Model, Point, Request, Subject, csv, page, sweep};
 
 use crate::exit::Exit;

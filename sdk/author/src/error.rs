@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use htex_host::HostError;
 
-use crate::hertz::hertz;
+use htex_recording::hertz;
 
 /// An error of the authoring pipeline. Each message says what is wrong, where, and what to do.
 #[derive(Debug, thiserror::Error)]
@@ -170,7 +170,7 @@ pub enum AuthorError {
     Model(#[from] HostError),
     /// The samples are not a valid recording.
     #[error(transparent)]
-    Recording(#[from] crate::recording::RecordingError),
+    Recording(#[from] htex_recording::RecordingError),
     /// Some recordings have a condition and others do not.
     #[error(
         "scanning speed and normal force are both known for only {known} of {all} conditions; \
@@ -190,7 +190,7 @@ pub enum AuthorError {
     },
     /// A recording could not be read.
     #[error(transparent)]
-    Read(#[from] crate::read::ReadError),
+    Read(#[from] htex_recording::ReadError),
     /// The asset could not be encoded.
     #[error(transparent)]
     Asset(#[from] htex_format::WriteError),

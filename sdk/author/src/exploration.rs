@@ -4,8 +4,8 @@ use htex_format::Findings;
 
 use crate::findings::{RECORDING_OFF_TARGET, RECORDING_UNSTEADY, quantile};
 use crate::segments::Segments;
-use crate::sums::Sums;
 use crate::{AuthorError, Recording};
+use htex_recording::Sums;
 
 /// Allowed relative deviation of speed and force from their target (paper: recordings beyond it were discarded
 /// and repeated).

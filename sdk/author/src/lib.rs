@@ -1,6 +1,6 @@
 //! Authoring: from recordings to fitted and measured texture assets.
 //!
-//! The pipeline is [`read::read_recording`], [`segment_spectra`], [`TextureSpectrum::average`], [`fit_asset`].
+//! The pipeline is [`recording::read_recording`], [`segment_spectra`], [`TextureSpectrum::average`], [`fit_asset`].
 //! Definitions follow the paper's section Texture processing; where it is silent, the option's documentation
 //! states what is done.
 //!
@@ -19,7 +19,7 @@
 //!    from its neighbours, by the mesh of the player.
 //!
 //! ```
-//! use htex_author::simulate::{SimulationOptions, Surface, simulate};
+//! use htex_simulate::{SimulationOptions, Surface, simulate};
 //! use htex_author::{Averaging, SpectrumOptions, TextureSpectrum, segment_spectra};
 //!
 //! let simulation = simulate(&SimulationOptions::new(Surface::Vinyl))?;
@@ -43,23 +43,16 @@ mod felt;
 pub mod findings;
 mod fit;
 pub mod grid;
-mod hertz;
 mod level;
 mod metrics;
-pub mod read;
 mod reading;
-pub mod recording;
 mod rendered;
 mod request;
-pub mod response;
 mod segments;
 pub mod settings;
-pub mod simulate;
 mod spectrum;
 mod stored;
-mod sums;
 mod take;
-mod velocity;
 mod warnings;
 
 pub use embed::{EmbedError, embed_plugins};
@@ -69,17 +62,16 @@ pub use felt::{DIFFERENCE_THRESHOLD_DB, Felt, FeltError, LosslessShare, felt};
 pub use findings::recording_findings;
 pub use fit::{FittedAsset, fit_asset, measure};
 pub use grid::{CellStatus, Grid, GridCell, GridReport};
+pub use htex_recording as recording;
+pub use htex_recording::{Recording, SetupResponse, velocity};
 pub use level::{Level, stored_level};
 pub use metrics::{Agreement, agreement};
 pub use reading::{Reading, read_take, validate_recording};
-pub use recording::Recording;
 pub use rendered::{rendered_spectrum, spectrum_of_samples};
 pub use request::{AssetRequest, ModelRequest};
-pub use response::SetupResponse;
 pub use segments::{SegmentChoice, Segments, Sweep, Unread, choose_segments, segment_len};
 pub use spectrum::{
     Averaging, SegmentSpectra, SpectrumOptions, SpectrumRef, TextureSpectrum, segment_spectra,
 };
 pub use stored::stored_fields;
 pub use take::Take;
-pub use velocity::velocity;

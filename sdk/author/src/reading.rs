@@ -8,10 +8,10 @@ use crate::exploration::{exploration, keep_on_target};
 use crate::findings::{
     RECORDING_NOTED, RECORDING_UNREADABLE, RECORDING_UNUSABLE, judge_segments, recording_findings,
 };
-use crate::read::{ReadError, ReadOptions, read_recording};
 use crate::spectrum::{Trend, spectra_of};
 use crate::take::Take;
 use crate::{AuthorError, Exploration, Recording, SegmentSpectra, SpectrumOptions, Spread};
+use htex_recording::{ReadError, ReadOptions, read_recording};
 
 /// The result of reading a recording.
 #[derive(Debug, Clone)]

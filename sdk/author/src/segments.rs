@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::Recording;
-use crate::sums::Sums;
+use htex_recording::Sums;
 
 /// Segments per second: texture spectra have a resolution of 5 Hz.
 const SEGMENTS_PER_S: f64 = 5.0;

@@ -11,10 +11,10 @@ use htex_host::FitRequest;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::hertz::hertz;
-use crate::response::raised;
 use crate::segments::{SegmentChoice, Segments, choose_segments};
 use crate::{AuthorError, Recording, SetupResponse};
+use htex_recording::hertz;
+use htex_recording::raised;
 
 /// Floor of the setup's response, relative to its largest value in the band: -40 dB.
 const RESPONSE_FLOOR: f64 = 0.01;

@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use htex_author::simulate::{FreeMotion, SimulationOptions, Surface, simulate};
 use htex_author::{
     AssetRequest, CellStatus, Exploration, FittedAsset, Grid, ModelRequest, Recording,
     SpectrumOptions, Take, fit_asset,
@@ -11,6 +10,7 @@ use htex_dsp::fidelity::third_octave_error_rms_db;
 use htex_dsp::normal::Normal;
 use htex_host::Registry;
 use htex_play::{Asset, Mesh, Motion};
+use htex_simulate::{FreeMotion, SimulationOptions, Surface, simulate};
 
 fn free(surface: Surface, seconds: f64) -> SimulationOptions {
     SimulationOptions::new(surface)

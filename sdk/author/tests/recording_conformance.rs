@@ -8,9 +8,9 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use htex_author::findings::{RULES, findings_page};
-use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_author::{Exploration, SpectrumOptions, Take, read_take};
 use htex_format::Severity;
+use htex_simulate::{SimulationOptions, Surface, simulate};
 use recordings::cases;
 use serde_json::Value;
 use xtask::generated::{file, folder};

@@ -2,11 +2,11 @@
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use htex_author::recording::Recording;
-use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_author::{
     AuthorError, Exploration, Reading, SegmentChoice, SpectrumOptions, Take, choose_segments,
     read_take,
 };
+use htex_simulate::{SimulationOptions, Surface, simulate};
 
 const RATE_HZ: f64 = 1000.0;
 

@@ -1,11 +1,11 @@
 //! Loops and filters, compared with the magnitudes they are made from.
 #![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
-use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_author::{
     SpectrumOptions, TextureSpectrum, agreement, segment_spectra, spectrum_of_samples,
 };
 use htex_host::{FitRequest, LoadedModel, Registry, StillSound, Synthesis};
+use htex_simulate::{SimulationOptions, Surface, simulate};
 
 const RATE_HZ: f64 = 20_000.0;
 

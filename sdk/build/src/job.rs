@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use htex_author::read::{ReadError, read_recording};
+use htex_author::recording::{ReadError, read_recording};
 use htex_author::settings::{FitSettings, Metadata, ReadingSettings};
 use htex_author::{
     AuthorError, Exploration, FeltError, FittedAsset, Take, embed_plugins, fit_asset,

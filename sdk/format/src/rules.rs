@@ -39,7 +39,8 @@ pub fn explain(code: &str) -> Option<&'static Rule> {
 #[macro_export]
 macro_rules! rule_table {
     ($($name:ident $severity:ident: $summary:literal, $explanation:literal, $fix:literal;)*) => {
-        $(pub(crate) const $name: &$crate::Rule = &$crate::Rule {
+        $(#[doc = $summary]
+        pub const $name: &$crate::Rule = &$crate::Rule {
             code: stringify!($name),
             severity: $crate::Severity::$severity,
             summary: $summary,

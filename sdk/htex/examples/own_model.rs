@@ -3,8 +3,8 @@
 //!
 //! `cargo run --release -p htex --features author --example own_model`
 
-use htex::author::simulate::{SimulationOptions, Surface, simulate};
 use htex::author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
+use htex::simulate::{SimulationOptions, Surface, simulate};
 use htex::{Asset, Motion, Registry, VoiceOptions};
 use htex_model::{
     Band, Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, Values, mix,

@@ -1,9 +1,9 @@
 //! A player without the sandbox plays the representations of built-in models of an asset with an embedded module.
 #![cfg(all(feature = "author", not(feature = "wasm")))]
 
-use htex::author::simulate::{SimulationOptions, Surface, simulate};
 use htex::author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
 use htex::format::Plugin;
+use htex::simulate::{SimulationOptions, Surface, simulate};
 use htex::{Asset, Error, Registry, VoiceOptions};
 
 /// An id that no built-in model has.

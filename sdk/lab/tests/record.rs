@@ -6,7 +6,7 @@ mod recording;
 use std::fs;
 
 use htex_author::Exploration;
-use htex_author::read::{ReadOptions, read_recording};
+use htex_author::recording::{ReadOptions, read_recording};
 use htex_lab::record::{Format, Outcome, RecordError};
 use recording::{RATE_HZ, Settings, record, sweeps};
 

@@ -6,7 +6,7 @@ mod recording;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use htex_author::read::{ReadOptions, read_recording};
+use htex_author::recording::{ReadOptions, read_recording};
 use htex_format::Quantity;
 use htex_lab::record::{Format, Outcome, PartFile, TakeHeader, read_part, recover};
 use proptest::prelude::*;

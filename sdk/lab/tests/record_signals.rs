@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 
 use htex_author::Exploration;
-use htex_author::read::{ReadOptions, read_recording};
+use htex_author::recording::{ReadOptions, read_recording};
 use htex_format::Quantity;
 use htex_lab::record::{Calibration, RecordError, Signals, TableTracker, Tare};
 use recording::{RATE_HZ, Settings, record, record_with, sweeps};
@@ -139,7 +139,7 @@ fn a_tracker_is_recorded_beside_and_gives_the_speed() {
             .starts_with("time_s,x_mm,y_mm\n0,")
     );
     assert_eq!(taken.fit.last(), Some(&beside.display().to_string()));
-    let options = ReadOptions::default().with_tracker(htex_author::read::Tracker::new(beside));
+    let options = ReadOptions::default().with_tracker(htex_author::recording::Tracker::new(beside));
     assert!(
         read_recording(&taken.file, &options)
             .unwrap()

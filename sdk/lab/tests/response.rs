@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use htex_author::response::response_from_bytes;
+use htex_author::recording::response_from_bytes;
 use htex_dsp::noise::GaussianNoise;
 use htex_lab::response::{
     Channel, Estimator, Excitation, HitOptions, MeasuredResponse, Reason, Record, ResponseError,

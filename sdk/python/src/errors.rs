@@ -6,7 +6,7 @@ use std::path::Path;
 use htex::format::{ReadError, WriteError};
 use htex::host::HostError;
 use htex_author::AuthorError;
-use htex_author::read::ReadError as RecordingReadError;
+use htex_author::recording::ReadError as RecordingReadError;
 use htex_scene::{LoadError, SceneError as PlayError};
 use htex_tradeoff::TradeoffError;
 use pyo3::exceptions::PyOSError;

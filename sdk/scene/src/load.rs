@@ -5,10 +5,10 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use htex_author::read::ReadError;
 use htex_device::{Devices, Settings};
 use htex_format::{Finding, Findings, Quantity, Report, Rule};
 use htex_play::{Asset, Registry, VoiceOptions};
+use htex_recording::ReadError;
 
 use crate::check::check;
 use crate::device::{DeviceOverride, check_device, stem};

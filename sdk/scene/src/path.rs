@@ -138,7 +138,7 @@ impl LivePath {
 
 #[cfg(test)]
 mod tests {
-    use htex_author::read::TraceColumns;
+    use htex_recording::TraceColumns;
 
     use super::*;
 

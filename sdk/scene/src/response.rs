@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use htex_author::read::ReadError;
-use htex_author::response::{Raised, raised, read_response};
 use htex_dsp::grid::Band;
 use htex_play::Asset;
+use htex_recording::ReadError;
+use htex_recording::{Raised, raised, read_response};
 
-pub use htex_author::SetupResponse as Response;
+pub use htex_recording::SetupResponse as Response;
 
 /// Reads a response from a CSV with the columns `frequency_hz` and `magnitude` (output over input). Any unit
 /// is valid, since only the shape is compensated.

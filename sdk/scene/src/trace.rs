@@ -5,8 +5,8 @@
 
 use std::path::Path;
 
-use htex_author::read::{ReadError, TraceColumns, read_trace};
-use htex_author::velocity;
+use htex_recording::velocity;
+use htex_recording::{ReadError, TraceColumns, read_trace};
 
 /// A motion over time. The vectors have equal lengths of at least 2; time 0 is the first row.
 #[derive(Debug, Clone, PartialEq)]

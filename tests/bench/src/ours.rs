@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use htex::{Asset, VoiceOptions};
-use htex_author::read::{ReadOptions, read_recording};
+use htex_author::recording::{ReadOptions, read_recording};
 use htex_author::{SpectrumOptions, TextureSpectrum, segment_spectra};
 use htex_host::{LoadedModel, ModelVoice, Stream, render_together};
 

@@ -1,6 +1,6 @@
 //! Recordings as laboratories keep them, and column maps.
 
-use htex_author::read::{ColumnMap, ReadOptions};
+use htex_author::recording::{ColumnMap, ReadOptions};
 
 use crate::recordings::{recording_with, refused};
 

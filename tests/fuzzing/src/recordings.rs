@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use htex_author::read::{ReadError, ReadOptions, recording_from_bytes, trace_from_bytes};
+use htex_author::recording::{ReadError, ReadOptions, recording_from_bytes, trace_from_bytes};
 use htex_author::{
     Averaging, Exploration, Recording, SegmentChoice, SpectrumOptions, Take, TextureSpectrum,
     read_take, recording_findings,

@@ -1,6 +1,6 @@
 //! Responses of a setup.
 
-use htex_author::response::response_from_bytes;
+use htex_author::recording::response_from_bytes;
 use htex_author::{Recording, SpectrumOptions, segment_spectra};
 
 use crate::promise::{finite, sentence};

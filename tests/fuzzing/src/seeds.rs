@@ -433,7 +433,7 @@ fn lab_files() -> Vec<Seed> {
             vec![$((
                 $target,
                 $name.to_owned(),
-                include_bytes!(concat!("../../../sdk/author/tests/lab/", $name)).to_vec(),
+                include_bytes!(concat!("../../../sdk/recording/tests/lab/", $name)).to_vec(),
             )),*]
         };
     }

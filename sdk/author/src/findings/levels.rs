@@ -2,9 +2,9 @@
 
 use htex_format::Findings;
 
-use super::rules::{RECORDING_CLIPPED, RECORDING_COARSE};
 use super::{axis_words, pointer};
 use crate::{Recording, segment_len};
+use htex_recording::rules::{RECORDING_CLIPPED, RECORDING_COARSE};
 
 /// Number of different values below which a signal counts as coarsely quantised: at 4 bits the quantisation
 /// noise is 26 dB below full scale (6.02 · 4 + 1.76), close to the scatter of the spectrum itself.

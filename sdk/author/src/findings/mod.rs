@@ -4,7 +4,6 @@ mod levels;
 mod page;
 mod plausible;
 mod quantile;
-mod rules;
 mod segments;
 mod spikes;
 mod stuck;
@@ -14,13 +13,13 @@ use htex_format::{Finding, Findings, Quantity};
 use crate::Recording;
 use levels::Levels;
 
-pub use page::findings_page;
-pub(crate) use quantile::quantile;
-pub(crate) use rules::{
+pub(crate) use htex_recording::rules::{
     RECORDING_CLOCK_GAP, RECORDING_CLOCK_JITTER, RECORDING_NOTED, RECORDING_OFF_TARGET,
     RECORDING_UNREADABLE, RECORDING_UNSTEADY, RECORDING_UNUSABLE,
 };
-pub use rules::{RULES, explain};
+pub use htex_recording::rules::{RULES, explain};
+pub use page::findings_page;
+pub(crate) use quantile::quantile;
 pub(crate) use segments::judge_segments;
 
 /// Checks a recording's signals before any spectrum is taken: clipping, stuck sensors, spikes, and forces and

@@ -7,7 +7,7 @@ use super::RULES;
 const HEAD: &str = "\
 # Findings in recordings
 
-Generated from the table of rules in `sdk/author/src/findings/rules.rs` by
+Generated from the table of rules in `sdk/recording/src/rules.rs` by
 `cargo xtask generate`.
 
 `htex validate rec.csv` checks a recording (any file that is neither an asset nor a scene); `htex fit`, `process`,

@@ -3,10 +3,10 @@
 use htex_format::Findings;
 
 use super::quantile::{median, quantile};
-use super::rules::{
+use crate::Recording;
+use htex_recording::rules::{
     RECORDING_FRICTION_IMPLAUSIBLE, RECORDING_SPEED_IMPLAUSIBLE, RECORDING_SPEED_ZERO,
 };
-use crate::Recording;
 
 /// Largest ratio of lateral to normal force. Fingers on smooth, wet glass reach 3 to 5 at light touch, where
 /// adhesion dominates; twice that allows for offsets of the sensors.

@@ -3,8 +3,10 @@
 use htex_format::Findings;
 
 use super::quantile::median;
-use super::rules::{RECORDING_READ_IN_WINDOWS, RECORDING_SWEEPS_CUT_OFF, RECORDING_UNEVEN};
 use crate::{Recording, SegmentSpectra};
+use htex_recording::rules::{
+    RECORDING_READ_IN_WINDOWS, RECORDING_SWEEPS_CUT_OFF, RECORDING_UNEVEN,
+};
 
 /// Ratio to the median level of all segments above which a segment is too loud: 12 dB. Force and speed within
 /// 10 % cause about 1 dB, seams and knots of a material a few.

@@ -3,9 +3,9 @@
 use htex_format::{Findings, Quantity};
 
 use super::quantile::{median, quantile};
-use super::rules::{RECORDING_FORCE_OUTLIER, RECORDING_SPIKE};
 use super::{axis_words, pointer};
 use crate::Recording;
+use htex_recording::rules::{RECORDING_FORCE_OUTLIER, RECORDING_SPIKE};
 
 /// Length of the blocks in which the largest second difference is searched, seconds.
 const BLOCK_S: f64 = 0.1;

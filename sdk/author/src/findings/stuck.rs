@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use htex_format::{Findings, Quantity};
 
-use super::rules::{RECORDING_SILENT, RECORDING_STUCK};
 use super::{axis_words, pointer};
 use crate::Recording;
+use htex_recording::rules::{RECORDING_SILENT, RECORDING_STUCK};
 
 /// Shortest stretch of one value that counts as a stuck sensor, seconds: longer than a turn of the hand (0.1
 /// to 0.3 s), and two and a half segments.

@@ -3,7 +3,7 @@
 use htex_host::HostError;
 
 use crate::AuthorError;
-use crate::read::ReadError;
+use htex_recording::ReadError;
 
 /// A setting that cannot be used.
 #[derive(Debug, thiserror::Error)]

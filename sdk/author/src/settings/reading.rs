@@ -8,9 +8,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::SettingsError;
-use crate::read::{ColumnMap, ReadOptions, Tracker};
-use crate::response::read_response;
 use crate::{Averaging, SegmentChoice, SpectrumOptions};
+use htex_recording::read_response;
+use htex_recording::{ColumnMap, ReadOptions, Tracker};
 
 /// Settings of reading recordings; an absent one has its default.
 ///

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use htex_author::read::ReadOptions;
-use htex_author::simulate::{Simulation, SimulationOptions, Surface, simulate};
+use htex_author::recording::ReadOptions;
 use htex_author::{Exploration, SpectrumOptions, validate_recording};
+use htex_simulate::{Simulation, SimulationOptions, Surface, simulate};
 use serde_json::json;
 
 const RATE_HZ: f64 = 500.0;

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::sync::OnceLock;
 
-use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
 use htex_play::{Asset, AssetData, Registry};
+use htex_simulate::{SimulationOptions, Surface, simulate};
 
 /// The built-in models.
 pub const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];

@@ -1,7 +1,7 @@
 //! What a take consists of, on disk and in memory.
 
-use htex_author::read::Role;
 use htex_author::recording::MAX_RATE_HZ;
+use htex_author::recording::Role;
 use htex_format::Quantity;
 use serde::{Deserialize, Serialize};
 

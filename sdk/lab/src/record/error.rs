@@ -11,7 +11,7 @@ pub enum RecordError {
     Source(#[from] htex_device::DeviceError),
     /// The channels do not fit the map, or a file cannot be read.
     #[error(transparent)]
-    Read(#[from] htex_author::read::ReadError),
+    Read(#[from] htex_author::recording::ReadError),
     /// The source has ended before the take was complete.
     #[error("the source ended {after_s:.3} s into a take of {seconds} s{}", with_place(.kept))]
     Ended {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use htex_author::read::read_recording;
+use htex_author::recording::read_recording;
 use htex_author::{Averaging, Exploration, SpectrumOptions, Take, TextureSpectrum, read_take};
 use htex_format::Quantity;
 use serde::Deserialize;

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use htex_author::read::Role;
+use htex_author::recording::Role;
 
 use crate::record::data::texture_axes;
 use crate::record::error::RecordError;

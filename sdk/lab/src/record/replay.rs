@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
-use htex_author::read::{ReadOptions, read_channels};
+use htex_author::recording::{ReadOptions, read_channels};
 use htex_device::{
     Channel, Delivered, Descriptor, DeviceError, Endpoint, FromScene, Setting, SettingKind,
     Settings, Source, SourceAdapter,

@@ -1,6 +1,6 @@
 //! A session: takes of one name, recorded until one keeps to its target.
 
-use htex_author::read::Role;
+use htex_author::recording::Role;
 use htex_device::Source;
 
 use crate::record::data::TakeHeader;

@@ -1,6 +1,6 @@
 //! From the channels of a source to forces and positions.
 
-use htex_author::read::{ColumnMap, Role, RowMap};
+use htex_author::recording::{ColumnMap, Role, RowMap};
 use htex_device::Channel;
 use htex_format::Quantity;
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Instant;
 
-use htex_author::read::{ColumnMap, ReadOptions, Role, RowMap, read_channels};
+use htex_author::recording::{ColumnMap, ReadOptions, Role, RowMap, read_channels};
 
 use crate::record::error::RecordError;
 

@@ -1,6 +1,6 @@
 //! A measured response.
 
-use htex_author::response::SetupResponse;
+use htex_author::recording::SetupResponse;
 use serde::Serialize;
 
 use super::average::{average, count_used, cut, scale_of};

@@ -1,7 +1,7 @@
 //! Input and output of a setup, recorded together.
 
 use htex_author::Recording;
-use htex_author::read::{ColumnMap, MapEntry, ReadError, Role};
+use htex_author::recording::{ColumnMap, MapEntry, ReadError, Role};
 
 use super::error::{Channel, ResponseError};
 

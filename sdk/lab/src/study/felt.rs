@@ -11,7 +11,7 @@ use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 
 use htex_author::Exploration;
-use htex_author::read::Role;
+use htex_author::recording::Role;
 use htex_device::{DeviceError, Source};
 use htex_format::Quantity;
 use serde_json::json;

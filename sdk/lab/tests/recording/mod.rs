@@ -5,11 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use htex_author::Exploration;
-use htex_author::simulate::{SimulationOptions, Surface, simulate};
 use htex_format::Quantity;
 use htex_lab::record::{
     Format, Moment, Next, RecordError, Recorded, Replay, Session, Setup, Signals, Tare, TrackerRows,
 };
+use htex_simulate::{SimulationOptions, Surface, simulate};
 
 /// Sample rate of the recordings, hertz.
 pub const RATE_HZ: f64 = 2_000.0;

@@ -4,13 +4,13 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use htex_author::read::TraceColumns;
-use htex_author::simulate::{SimulationOptions, Surface as Simulated, simulate};
+use htex_author::recording::TraceColumns;
 use htex_author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
 use htex_device::{Capabilities, Quantity, Rates, Settings};
 use htex_play::{Asset, Registry};
 use htex_scene::file::{Budget, Constant, DeviceChoice, Motion, Scene, Surface};
 use htex_scene::{Costs, LoadedScene, Plan, Renderer, Trace, plan};
+use htex_simulate::{SimulationOptions, Surface as Simulated, simulate};
 
 /// An asset of one condition, 80 mm/s and 0.4 N.
 pub fn single() -> &'static Asset {

@@ -1,0 +1,173 @@
+//! Recordings from the columns of a file.
+
+use htex_format::Quantity;
+
+use crate::columns::clock::{self, Noticed};
+use crate::columns::map::Role;
+use crate::columns::motion;
+use crate::columns::select::{Chosen, Selection, Values, all_axis_roles, select};
+use crate::recording::{Recording, RecordingError};
+use crate::sheet::{Sheet, even_numbers};
+use crate::{ReadError, ReadOptions};
+
+/// A recording, and the time of each sample if the file has times.
+pub(crate) struct Assembled {
+    pub(crate) recording: Recording,
+    pub(crate) time_s: Option<Vec<f64>>,
+}
+
+/// Reads the columns that the map and their names select.
+pub(crate) fn assemble(
+    sheet: &mut dyn Sheet,
+    options: &ReadOptions,
+) -> Result<Assembled, ReadError> {
+    let mut selection = select(sheet.columns(), options.map.as_ref(), options.quantity)?;
+    let mut signals = Signals::read(sheet, &selection)?;
+    let mut noticed = Noticed {
+        warnings: std::mem::take(&mut selection.warnings),
+        ..Noticed::default()
+    };
+    noticed.warnings.append(&mut signals.warnings());
+    let time_s = signals.take(Role::Time);
+    let own_hz = match &time_s {
+        Some(_) => None,
+        None => sheet.rate_hz(signals.wanted())?,
+    };
+    let given_hz = clock::given(own_hz, options.rate_hz, &mut noticed);
+    let rate_hz = clock::rate(sheet, time_s.as_deref(), given_hz, &mut noticed)?;
+    let file = sheet.columns().file.clone();
+    let simulated = signals.simulated;
+    let mut recording = signals
+        .into_recording(options.quantity, &file, rate_hz)
+        .map_err(|source| ReadError::Recording { file, source })?;
+    recording.simulated = simulated;
+    recording.clock_findings = noticed.findings.into_list();
+    recording.warnings = noticed.warnings;
+    Ok(Assembled { recording, time_s })
+}
+
+/// The values of each role.
+pub(crate) struct Signals {
+    /// The columns that were read.
+    wanted: Vec<usize>,
+    /// Each is removed once.
+    roles: Vec<(Role, Vec<f64>)>,
+    simulated: bool,
+    warnings: Vec<String>,
+}
+
+impl Signals {
+    /// Reads the selected columns, each once, and computes the values of the roles.
+    pub(crate) fn read(sheet: &mut dyn Sheet, selection: &Selection) -> Result<Self, ReadError> {
+        let mut wanted: Vec<usize> = selection.chosen.iter().flat_map(Chosen::columns).collect();
+        wanted.sort_unstable();
+        wanted.dedup();
+        let mut numbers = even_numbers(sheet, &wanted)?;
+        let rows = numbers.columns.first().map_or(0, Vec::len);
+        let mut roles = Vec::with_capacity(selection.chosen.len());
+        for (at, chosen) in selection.chosen.iter().enumerate() {
+            let later = &selection.chosen[at + 1..];
+            let values = values(chosen, later, &wanted, &mut numbers.columns, rows);
+            check_computed(sheet, chosen, &values)?;
+            roles.push((chosen.role, values));
+        }
+        Ok(Self {
+            wanted,
+            roles,
+            simulated: numbers.simulated,
+            warnings: numbers.warnings,
+        })
+    }
+
+    /// Returns the columns that were read.
+    pub(crate) fn wanted(&self) -> &[usize] {
+        &self.wanted
+    }
+
+    /// Takes the observations made while reading.
+    pub(crate) fn warnings(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.warnings)
+    }
+
+    pub(crate) fn take(&mut self, role: Role) -> Option<Vec<f64>> {
+        let mut roles = self.roles.iter_mut();
+        let (_, values) = roles.find(|(own, values)| *own == role && !values.is_empty())?;
+        Some(std::mem::take(values))
+    }
+
+    pub(crate) fn take_all(&mut self, roles: &[Role]) -> Vec<Vec<f64>> {
+        roles.iter().filter_map(|role| self.take(*role)).collect()
+    }
+
+    fn into_recording(
+        mut self,
+        quantity: Quantity,
+        file: &str,
+        rate_hz: f64,
+    ) -> Result<Recording, RecordingError> {
+        let roles: Vec<Role> = all_axis_roles(quantity).collect();
+        let axes = self.take_all(&roles);
+        let normal = match quantity {
+            Quantity::NormalForce => axes.first().cloned(),
+            _ => self.take(Role::Normal),
+        };
+        let mut recording = Recording::of(quantity, file, rate_hz, axes)?;
+        if let Some(normal) = normal {
+            recording = recording.with_normal(normal)?;
+        }
+        if let Some(speed) = self.take(Role::Speed) {
+            return recording.with_speed(speed);
+        }
+        let position = self.take_all(&[Role::X, Role::Y]);
+        if position.is_empty() {
+            return Ok(recording);
+        }
+        let coordinates: Vec<&[f64]> = position.iter().map(Vec::as_slice).collect();
+        recording.with_speed(motion::speed_mm_s(&coordinates, rate_hz))
+    }
+}
+
+/// Computes a role's values. A column that no later role needs is moved out of `columns`.
+fn values(
+    chosen: &Chosen,
+    later: &[Chosen],
+    wanted: &[usize],
+    columns: &mut [Vec<f64>],
+    rows: usize,
+) -> Vec<f64> {
+    // Every column of the selection is among the wanted ones.
+    let place = |column: usize| wanted.binary_search(&column).unwrap_or(0);
+    match &chosen.values {
+        Values::Formula { formula, .. } => {
+            formula.values(rows, chosen.scale, |column| &columns[place(column)][..])
+        }
+        Values::Column(column) => {
+            let is_needed = later.iter().any(|other| other.columns().contains(column));
+            let own = &mut columns[place(*column)];
+            let mut values = match is_needed {
+                true => own.clone(),
+                false => std::mem::take(own),
+            };
+            if chosen.scale != 1.0 {
+                values.iter_mut().for_each(|value| *value *= chosen.scale);
+            }
+            values
+        }
+    }
+}
+
+/// Refuses an expression whose values are not finite, such as a quotient by zero.
+fn check_computed(sheet: &dyn Sheet, chosen: &Chosen, values: &[f64]) -> Result<(), ReadError> {
+    let Values::Formula { text, .. } = &chosen.values else {
+        return Ok(());
+    };
+    match values.iter().position(|value| !value.is_finite()) {
+        None => Ok(()),
+        Some(row) => Err(ReadError::Cell {
+            file: sheet.columns().file.clone(),
+            place: sheet.place(row),
+            column: htex_format::plain(text).into_owned(),
+            problem: format!("the expression is {} there", values[row]),
+        }),
+    }
+}

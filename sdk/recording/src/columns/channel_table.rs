@@ -1,0 +1,80 @@
+//! All channels of a file, with their names and without roles.
+
+use std::path::Path;
+
+use crate::columns::clock::{self, Noticed};
+use crate::columns::map::Role;
+use crate::columns::names::recognise;
+use crate::formats::with_sheet;
+use crate::input::Opened;
+use crate::sheet::{Sheet, even_numbers};
+use crate::{ReadError, ReadOptions};
+use htex_format::Quantity;
+
+/// The channels of a recording as they are in its file, without roles and scales.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct ChannelTable {
+    /// Sample rate, hertz.
+    pub rate_hz: f64,
+    /// Times of the samples, seconds, ascending, if the file has a column of times.
+    pub time_s: Option<Vec<f64>>,
+    /// Names of the channels; `#` and its number for one without a name.
+    pub names: Vec<String>,
+    /// The samples of each channel, at least two, of equal lengths and finite.
+    pub channels: Vec<Vec<f64>>,
+}
+
+/// Reads all channels of a file. The rate is the given one, the file's, or that of its column of times, which is no channel.
+///
+/// # Errors
+/// As [`read_recording`](crate::read_recording).
+pub fn read_channels(path: &Path, options: &ReadOptions) -> Result<ChannelTable, ReadError> {
+    options.check(&crate::formats::text::file_name(path))?;
+    with_sheet(Opened::file(path)?, options, |sheet| table(sheet, options))
+}
+
+fn table(sheet: &mut dyn Sheet, options: &ReadOptions) -> Result<ChannelTable, ReadError> {
+    let width = sheet.columns().width();
+    let time = time_column(sheet);
+    let all: Vec<usize> = (0..width).collect();
+    let mut columns = even_numbers(sheet, &all)?.columns;
+    let mut names: Vec<String> = all.iter().map(|c| sheet.columns().name(*c)).collect();
+    let time_s = time.map(|(column, scale)| {
+        names.remove(column);
+        let times = columns.remove(column);
+        times.iter().map(|t| t * scale).collect::<Vec<f64>>()
+    });
+    let own_hz = match &time_s {
+        Some(_) => None,
+        None => sheet.rate_hz(&all)?,
+    };
+    let mut noticed = Noticed::default();
+    let given_hz = clock::given(own_hz, options.rate_hz, &mut noticed);
+    let rate_hz = clock::rate(sheet, time_s.as_deref(), given_hz, &mut noticed)?;
+    if names.is_empty() {
+        return Err(ReadError::Columns {
+            file: sheet.columns().file.clone(),
+            problem: "there is no channel beside the time".to_owned(),
+            columns: sheet.columns().list(),
+        });
+    }
+    Ok(ChannelTable {
+        rate_hz,
+        time_s,
+        names,
+        channels: columns,
+    })
+}
+
+/// Returns the first column whose name is that of a time, and its factor to seconds.
+fn time_column(sheet: &dyn Sheet) -> Option<(usize, f64)> {
+    let columns = sheet.columns();
+    (0..columns.width()).find_map(|column| {
+        match recognise(columns.last_part(column), Quantity::LateralForce)? {
+            (Role::Time, crate::columns::names::Unit::Scale(scale)) => Some((column, scale)),
+            (Role::Time, _) => Some((column, 1.0)),
+            _ => None,
+        }
+    })
+}

@@ -1,0 +1,162 @@
+//! The sample rate of a table, from its time column or from the options.
+
+use htex_format::Findings;
+
+use crate::ReadError;
+use crate::hertz::hertz;
+use crate::recording::check_rate;
+use crate::rules::{RECORDING_CLOCK_GAP, RECORDING_CLOCK_JITTER};
+use crate::sheet::Sheet;
+
+/// Ratio to the median step above which a step is a gap, if the clock is otherwise even.
+const GAP: f64 = 1.5;
+/// The same for an uneven clock, where short steps make up for a long one. Of the steps of a Poisson process, one in
+/// a thousand is longer.
+const GAP_UNEVEN: f64 = 10.0;
+/// Interquartile range of the steps, relative to the median, above which a clock is uneven: normal scatter of
+/// this width puts one step in 200,000 beyond [`GAP`].
+const UNEVEN: f64 = 0.15;
+/// Jitter of the steps (rms over mean) above which a warning is given.
+const JITTER: f64 = 0.01;
+/// Relative difference between column and option above which a warning is given.
+const DISAGREE: f64 = 1e-3;
+/// Relative distance from an integer rate within which the integer is used: printed times are rounded.
+const WHOLE: f64 = 1e-5;
+
+/// Warnings of a reader, and findings of the time column.
+#[derive(Default)]
+pub(crate) struct Noticed {
+    pub(crate) warnings: Vec<String>,
+    pub(crate) findings: Findings,
+}
+
+/// Returns the rate to read at without a time column: the given one, or else the file's own.
+pub(crate) fn given(own: Option<f64>, given: Option<f64>, noticed: &mut Noticed) -> Option<f64> {
+    if let (Some(own), Some(given)) = (own, given)
+        && (own / given - 1.0).abs() > DISAGREE
+    {
+        noticed.warnings.push(format!(
+            "The file has a rate of {}, the given rate is {}; the given rate is used.",
+            hertz(own),
+            hertz(given)
+        ));
+    }
+    given.or(own)
+}
+
+/// Returns the rate in hertz; `given` takes precedence over the time column `time_s`.
+pub(crate) fn rate(
+    sheet: &dyn Sheet,
+    time_s: Option<&[f64]>,
+    given: Option<f64>,
+    noticed: &mut Noticed,
+) -> Result<f64, ReadError> {
+    let measured = match (time_s, given) {
+        (None, None) => {
+            return Err(ReadError::NoRate {
+                file: sheet.columns().file.clone(),
+            });
+        }
+        (None, Some(given)) => return Ok(given),
+        (Some(time_s), _) => measure(sheet, time_s, given, noticed),
+    };
+    match (measured, given) {
+        (measured, None) => measured,
+        (Ok(measured), Some(given)) => {
+            if (measured / given - 1.0).abs() > DISAGREE {
+                noticed.warnings.push(format!(
+                    "The time column has a rate of {}, the given rate is {}; the given rate is used.",
+                    hertz(measured),
+                    hertz(given)
+                ));
+            }
+            Ok(given)
+        }
+        (Err(error), Some(given)) => {
+            let sentence = format!("The given rate is used instead of the time column: {error}.");
+            noticed.warnings.push(sentence);
+            Ok(given)
+        }
+    }
+}
+
+/// Returns the number of steps over the time they take, without gaps.
+fn measure(
+    sheet: &dyn Sheet,
+    time_s: &[f64],
+    given: Option<f64>,
+    noticed: &mut Noticed,
+) -> Result<f64, ReadError> {
+    let steps = || time_s.windows(2).map(|pair| pair[1] - pair[0]);
+    if let Some(row) = steps().position(|step| step <= 0.0) {
+        return Err(ReadError::Time {
+            file: sheet.columns().file.clone(),
+            place: sheet.place(row + 1),
+            before: time_s[row],
+            after: time_s[row + 1],
+        });
+    }
+    let longest = longest_step(steps().collect());
+    let (mut sum, mut squares, mut count, mut gaps) = (0.0, 0.0, 0.0, 0_usize);
+    for step in steps() {
+        if step <= longest {
+            sum += step;
+            squares += step * step;
+            count += 1.0;
+        } else {
+            gaps += 1;
+        }
+    }
+    let mean: f64 = sum / count;
+    let rate_hz = snap(1.0 / mean);
+    check_rate(rate_hz).map_err(|source| ReadError::Recording {
+        file: sheet.columns().file.clone(),
+        source,
+    })?;
+    let findings = &mut noticed.findings;
+    if let Some((row, gap)) = steps().enumerate().find(|(_, step)| *step > longest) {
+        findings.add(RECORDING_CLOCK_GAP, format!("/time/{}", row + 1), format!(
+            "{gaps} gap{} in the time column; the first, of {gap:.6} s, ends on {}. Samples are taken as evenly \
+             spaced; cut the recording there",
+            if gaps == 1 { "" } else { "s" },
+            sheet.place(row + 1)
+        ));
+    }
+    let jitter = (squares / count / (mean * mean) - 1.0).max(0.0).sqrt();
+    if jitter > JITTER {
+        let used = match given {
+            None => format!("read at {}, the mean rate", hertz(rate_hz)),
+            Some(_) => "the given rate is used".to_owned(),
+        };
+        findings.add(
+            RECORDING_CLOCK_JITTER,
+            "/time",
+            format!(
+                "the steps of the time column are uneven by {:.1} % (rms); {used}",
+                100.0 * jitter
+            ),
+        );
+    }
+    Ok(rate_hz)
+}
+
+/// Returns the longest step that is not a gap.
+fn longest_step(mut steps: Vec<f64>) -> f64 {
+    let last = steps.len() - 1;
+    let mut rank = |at: usize| *steps.select_nth_unstable_by(at, f64::total_cmp).1;
+    let [low, median, high] = [last / 4, last / 2, last - last / 4].map(&mut rank);
+    let is_even = high - low <= UNEVEN * median;
+    // A step that is too long only by rounding is not a gap.
+    let factor = if is_even { GAP } else { GAP_UNEVEN };
+    factor * median * (1.0 + 1e-6)
+}
+
+/// Returns the integer that a rate is nearly equal to, or the rate.
+pub(crate) fn snap(rate_hz: f64) -> f64 {
+    let whole = rate_hz.round();
+    if (rate_hz - whole).abs() <= WHOLE * whole {
+        whole
+    } else {
+        rate_hz
+    }
+}

@@ -1,0 +1,80 @@
+//! The columns that a map names, and the errors of selecting columns.
+
+use htex_format::Quantity;
+
+use crate::ReadError;
+use crate::columns::expression::Expression;
+use crate::columns::map::{ColumnRef, Role};
+use crate::columns::names::{Unit, base_unit};
+use crate::sheet::Columns;
+
+/// Returns the column that an expression is: the one with its text as name, or the only one in it.
+pub(crate) fn whole_column(
+    columns: &Columns,
+    values: &Expression,
+) -> Result<Option<usize>, ReadError> {
+    if let Some(column) = values.column() {
+        return find(columns, column).map(Some);
+    }
+    match &columns.by_name(values.text())[..] {
+        [column] => Ok(Some(*column)),
+        _ => Ok(None),
+    }
+}
+
+pub(crate) fn find(columns: &Columns, column: &ColumnRef) -> Result<usize, ReadError> {
+    let found: Vec<usize> = match column {
+        ColumnRef::Number(number) => (0..columns.width())
+            .filter(|column| column + 1 == *number)
+            .collect(),
+        ColumnRef::Name(name) => columns.by_name(name),
+    };
+    match found.as_slice() {
+        [column] => Ok(*column),
+        [] => Err(columns_error(
+            columns,
+            format!("the map's column {column} does not exist"),
+        )),
+        [one, other, ..] => {
+            let (one, other) = (columns.name(*one), columns.name(*other));
+            let advice = match one == other {
+                true => "give the number, as in #2",
+                false => "give the whole name",
+            };
+            Err(columns_error(
+                columns,
+                format!(
+                    "several columns have the name {column}, such as {one} and {other}; {advice}"
+                ),
+            ))
+        }
+    }
+}
+
+pub(crate) fn no_scale(name: &str, role: Role, unit: &Unit, quantity: Quantity) -> String {
+    let target = base_unit(role, quantity);
+    let unit = match unit {
+        Unit::Volts => "volts".into(),
+        Unit::Unknown(unit) => htex_format::plain(unit),
+        Unit::Scale(_) | Unit::Unsaid => "no unit".into(),
+    };
+    format!(
+        "Column {name:?} is in {unit}, not {target}; map it with its scale to {target}: {role}={name}:SCALE"
+    )
+}
+
+pub(crate) fn two_columns(columns: &Columns, role: Role, a: usize, b: usize) -> ReadError {
+    let (a, b) = (columns.name(a), columns.name(b));
+    columns_error(
+        columns,
+        format!("{a:?} and {b:?} both match {role}; map one of them, as in {role}=COLUMN"),
+    )
+}
+
+pub(crate) fn columns_error(columns: &Columns, problem: String) -> ReadError {
+    ReadError::Columns {
+        file: columns.file.clone(),
+        problem,
+        columns: columns.list(),
+    }
+}

@@ -1,0 +1,329 @@
+//! The column map, in which the user assigns roles: `lateral=lateral_V:0.4444,normal=-#3*0.31`.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::ReadError;
+use crate::columns::expression::{Expression, Problem};
+use crate::columns::token::{Kind, Token, tokens};
+
+/// Longest map, bytes.
+const MOST_BYTES: usize = 16 << 10;
+
+/// The role of a column: the signal that it holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Role {
+    /// Lateral force along a single axis, newtons.
+    Lateral,
+    /// First lateral axis, newtons.
+    LateralX,
+    /// Second lateral axis, newtons.
+    LateralY,
+    /// Single axis of an acceleration, velocity or displacement, in its unit.
+    Signal,
+    /// First axis of the quantity.
+    SignalX,
+    /// Second axis of the quantity.
+    SignalY,
+    /// Third axis of the quantity.
+    SignalZ,
+    /// Normal force, newtons.
+    Normal,
+    /// Sliding speed, mm/s.
+    Speed,
+    /// Time, seconds.
+    Time,
+    /// Finger position along the first axis, mm.
+    X,
+    /// Finger position along the second axis, mm.
+    Y,
+}
+
+impl Role {
+    /// Every role, in the order in which columns are assigned.
+    pub const ALL: [Self; 12] = [
+        Self::Lateral,
+        Self::LateralX,
+        Self::LateralY,
+        Self::Signal,
+        Self::SignalX,
+        Self::SignalY,
+        Self::SignalZ,
+        Self::Normal,
+        Self::Speed,
+        Self::Time,
+        Self::X,
+        Self::Y,
+    ];
+
+    /// Returns the role's name in a column map.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Lateral => "lateral",
+            Self::LateralX => "lateral_x",
+            Self::LateralY => "lateral_y",
+            Self::Signal => "signal",
+            Self::SignalX => "signal_x",
+            Self::SignalY => "signal_y",
+            Self::SignalZ => "signal_z",
+            Self::Normal => "normal",
+            Self::Speed => "speed",
+            Self::Time => "time",
+            Self::X => "x",
+            Self::Y => "y",
+        }
+    }
+}
+
+impl fmt::Display for Role {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A column, by name or by number.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ColumnRef {
+    /// The name in the header, compared without case.
+    Name(String),
+    /// The number counted from 1, written `#3`.
+    Number(usize),
+}
+
+impl fmt::Display for ColumnRef {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Name(name) => write!(f, "{name:?}"),
+            Self::Number(number) => write!(f, "#{number}"),
+        }
+    }
+}
+
+/// An entry `ROLE=EXPRESSION[:SCALE]` of a column map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapEntry {
+    /// The role of the values.
+    pub role: Role,
+    /// The column, or what is computed from columns.
+    pub values: Expression,
+    /// Factor to the role's unit (N, the quantity's, mm/s, s, mm). Without it a column has the unit in its name, and the values of an
+    /// expression are in the role's unit.
+    pub scale: Option<f64>,
+}
+
+impl MapEntry {
+    /// Parses the values of a role, `EXPRESSION[:SCALE]`.
+    ///
+    /// # Errors
+    /// [`ReadError::Map`] if the text is no expression, with the place in it.
+    ///
+    /// ```
+    /// # use htex_recording::{MapEntry, Role};
+    /// let entry = MapEntry::parse(Role::Lateral, "hammer_V:22.5")?;
+    /// assert_eq!(entry.scale, Some(22.5));
+    /// # Ok::<(), htex_recording::ReadError>(())
+    /// ```
+    pub fn parse(role: Role, text: &str) -> Result<Self, ReadError> {
+        check_length(text)?;
+        let refuse = |problem: Problem| ReadError::Map {
+            problem: problem.in_text(text),
+        };
+        let tokens = tokens(text).map_err(refuse)?;
+        let among = |token: &&Token| matches!(token.kind, Kind::Comma | Kind::Equals);
+        if let Some(token) = tokens.iter().find(among) {
+            let what = "one column or expression is expected here; quote a name with ',' or '='";
+            return Err(refuse(Problem::at(token, what)));
+        }
+        let (values, scale) = split_scale(&tokens).map_err(refuse)?;
+        if values.is_empty() {
+            return Err(refuse(Problem {
+                at: None,
+                what: "a column name is missing".into(),
+            }));
+        }
+        Ok(Self {
+            role,
+            values: Expression::parse(text, values).map_err(refuse)?,
+            scale,
+        })
+    }
+}
+
+/// The user's assignment of columns to roles.
+///
+/// A role's values are a column or an expression: sums, differences, products and quotients of numbers and columns, with
+/// parentheses. Columns are given by name, by number (`#3`), by path (`/run1/fx`), or in quotes if the name contains an
+/// operator. A text that is the name of a column as a whole is that column.
+///
+/// ```
+/// # use htex_recording::ColumnMap;
+/// let map: ColumnMap = "lateral=lateral_V:0.4444,normal=-#3*0.31".parse()?;
+/// assert_eq!(map.entries().len(), 2);
+/// let error = "lateral=(fx1+fx2".parse::<ColumnMap>().unwrap_err();
+/// assert!(error.to_string().contains("character 9: '(' is not closed"));
+/// # Ok::<(), htex_recording::ReadError>(())
+/// ```
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ColumnMap {
+    entries: Vec<MapEntry>,
+}
+
+impl ColumnMap {
+    /// Creates a map of entries.
+    ///
+    /// # Errors
+    /// [`ReadError::Map`] if a role or a column is given twice, or a single axis together with several.
+    pub fn new(entries: impl IntoIterator<Item = MapEntry>) -> Result<Self, ReadError> {
+        let refuse = |problem| ReadError::Map { problem };
+        let mut map = Self::default();
+        for entry in entries {
+            map.add(entry).map_err(refuse)?;
+        }
+        map.check_axes().map_err(refuse)?;
+        Ok(map)
+    }
+
+    /// Returns the entries in the given order.
+    #[must_use]
+    pub fn entries(&self) -> &[MapEntry] {
+        &self.entries
+    }
+
+    fn add(&mut self, entry: MapEntry) -> Result<(), String> {
+        for other in &self.entries {
+            if other.role == entry.role {
+                return Err(format!("role {} is given twice", entry.role));
+            }
+            if let (Some(column), true) = (
+                entry.values.column(),
+                other.values.column() == entry.values.column(),
+            ) {
+                return Err(format!("column {column} is given twice"));
+            }
+        }
+        self.entries.push(entry);
+        Ok(())
+    }
+
+    fn check_axes(&self) -> Result<(), String> {
+        let has = |role| self.entries.iter().any(|entry| entry.role == role);
+        let lateral = (Role::Lateral, &[Role::LateralX, Role::LateralY][..]);
+        let signal = (
+            Role::Signal,
+            &[Role::SignalX, Role::SignalY, Role::SignalZ][..],
+        );
+        for (one, several) in [lateral, signal] {
+            if has(one) && several.iter().any(|role| has(*role)) {
+                return Err(format!(
+                    "{one} is a single axis, {one}_x and {one}_y are two axes; give one or the other"
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl FromStr for ColumnMap {
+    type Err = ReadError;
+
+    fn from_str(text: &str) -> Result<Self, ReadError> {
+        check_length(text)?;
+        let refuse = |problem: Problem| ReadError::Map {
+            problem: problem.in_text(text),
+        };
+        let tokens = tokens(text).map_err(refuse)?;
+        let entries = tokens.split(|token| token.kind == Kind::Comma);
+        let entries = entries.map(|tokens| parse_entry(text, tokens).map_err(refuse));
+        Self::new(entries.collect::<Result<Vec<_>, _>>()?)
+    }
+}
+
+fn check_length(text: &str) -> Result<(), ReadError> {
+    if text.len() > MOST_BYTES {
+        return Err(ReadError::Map {
+            problem: format!("{} bytes, more than the limit of {MOST_BYTES}", text.len()),
+        });
+    }
+    Ok(())
+}
+
+impl Problem {
+    /// Returns the sentence with the place in the text, in characters from 1.
+    fn in_text(self, text: &str) -> String {
+        match self.at.and_then(|at| text.get(..at)) {
+            Some(before) => format!("character {}: {}", before.chars().count() + 1, self.what),
+            None => self.what,
+        }
+    }
+}
+
+/// Parses the tokens of `ROLE=EXPRESSION[:SCALE]`.
+fn parse_entry(text: &str, tokens: &[Token]) -> Result<MapEntry, Problem> {
+    let nowhere = |what: String| Problem { at: None, what };
+    let Some(equals) = tokens.iter().position(|token| token.kind == Kind::Equals) else {
+        return Err(match tokens {
+            [] => nowhere("an entry between commas is empty".into()),
+            [first, ..] => Problem::at(first, "this entry has no '='"),
+        });
+    };
+    let (before, values) = (&tokens[..equals], &tokens[equals + 1..]);
+    let role = match before {
+        [] => "",
+        [first, ..] => text[first.start..tokens[equals].start].trim(),
+    };
+    let role = parse_role(role).map_err(|what| Problem::at(&tokens[0], what))?;
+    let (values, scale) = split_scale(values)?;
+    if values.is_empty() {
+        let what = "a column name is missing after '='";
+        return Err(Problem::at(&tokens[equals], what));
+    }
+    Ok(MapEntry {
+        role,
+        values: Expression::parse(text, values)?,
+        scale,
+    })
+}
+
+fn parse_role(text: &str) -> Result<Role, String> {
+    let found = Role::ALL.into_iter().find(|role| role.name() == text);
+    found.ok_or_else(|| {
+        let names: Vec<_> = Role::ALL.iter().map(|role| role.name()).collect();
+        format!("unknown role {text:?}; the roles are {}", names.join(", "))
+    })
+}
+
+/// Splits at the last colon. A name that contains a colon is quoted, or has a scale after it.
+fn split_scale(tokens: &[Token]) -> Result<(&[Token], Option<f64>), Problem> {
+    let is_colon = |token: &Token| token.kind == Kind::Colon;
+    let Some(colon) = tokens.iter().rposition(is_colon) else {
+        return Ok((tokens, None));
+    };
+    let (sign, number) = match &tokens[colon + 1..] {
+        [
+            Token {
+                kind: Kind::Minus, ..
+            },
+            number,
+        ] => (-1.0, number),
+        [
+            Token {
+                kind: Kind::Plus, ..
+            },
+            number,
+        ]
+        | [number] => (1.0, number),
+        _ => return Err(not_a_scale(&tokens[colon])),
+    };
+    match number.kind {
+        Kind::Number(scale) if scale != 0.0 => Ok((&tokens[..colon], Some(sign * scale))),
+        _ => Err(not_a_scale(&tokens[colon])),
+    }
+}
+
+fn not_a_scale(colon: &Token) -> Problem {
+    Problem::at(
+        colon,
+        "what follows is not a scale; write a finite number other than 0, or quote a name that contains ':'",
+    )
+}

@@ -1,0 +1,45 @@
+//! Sliding speed, from the finger's position.
+
+use crate::sums::Sums;
+
+/// Length of the moving average of the position and of the difference for the speed, seconds. Trackers are slow
+/// (60 Hz is common): in a shorter window the speed shows their steps.
+const WINDOW_S: f64 = 0.05;
+
+/// Returns the speed in mm/s of each sample, from one or two coordinates in mm of equal length.
+///
+/// The position is averaged over 50 ms, and its difference is taken over 50 ms around each sample; both
+/// windows are shorter at the ends.
+pub fn speed_mm_s(coordinates_mm: &[&[f64]], rate_hz: f64) -> Vec<f64> {
+    let [first, others @ ..] = coordinates_mm else {
+        return Vec::new();
+    };
+    let half = ((WINDOW_S * rate_hz / 2.0).round() as usize).max(1);
+    let mut speed: Vec<f64> = velocity(first, half, rate_hz).map(f64::abs).collect();
+    for other in others {
+        for (speed, velocity) in speed.iter_mut().zip(velocity(other, half, rate_hz)) {
+            *speed = libm::hypot(*speed, velocity);
+        }
+    }
+    speed
+}
+
+/// Returns the difference of the averaged position over `2 half` samples around each sample, fewer at the ends.
+fn velocity(position: &[f64], half: usize, rate_hz: f64) -> impl Iterator<Item = f64> {
+    let position = moving_average(position, half);
+    let last = position.len().saturating_sub(1);
+    (0..position.len()).map(move |at| {
+        let (from, to) = (at.saturating_sub(half), (at + half).min(last));
+        (position[to] - position[from]) * rate_hz / (to - from).max(1) as f64
+    })
+}
+
+/// Returns the mean over `2 half + 1` samples, fewer at the ends but symmetric around the sample.
+fn moving_average(values: &[f64], half: usize) -> Vec<f64> {
+    let sums = Sums::of(values.iter().copied());
+    let mean = |at: usize| {
+        let reach = half.min(at).min(values.len() - 1 - at);
+        sums.mean(at - reach, at + reach + 1)
+    };
+    (0..values.len()).map(mean).collect()
+}

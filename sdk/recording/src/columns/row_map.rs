@@ -1,0 +1,154 @@
+//! The column map applied to signals that arrive in blocks, such as those of a card's channels.
+
+use htex_format::Quantity;
+
+use crate::ReadError;
+use crate::columns::find::no_scale;
+use crate::columns::map::{ColumnMap, Role};
+use crate::columns::names;
+use crate::columns::names::{Unit, base_unit, unit_of};
+use crate::columns::select::{Selection, Values, select, select_motion};
+use crate::sheet::Columns;
+
+/// Conversion of channels to the values of roles, in the roles' units, by the rules of files: a map, then the names of channels.
+///
+/// ```
+/// use htex_recording::{ColumnMap, Role, RowMap};
+/// use htex_format::Quantity;
+///
+/// let map: ColumnMap = "lateral=ai0:0.5,normal=-(ai1+ai2)*2".parse()?;
+/// let channels = ["ai0", "ai1", "ai2"].map(|name| (name.to_owned(), "V".to_owned()));
+/// let map = RowMap::new("Dev1", &channels, Some(&map), Quantity::LateralForce)?;
+/// assert_eq!(map.roles(), [Role::Lateral, Role::Normal]);
+/// // Two samples of each channel.
+/// let values = map.values(&[vec![1.0, 2.0], vec![-1.0, 0.0], vec![0.5, -3.0]]);
+/// assert_eq!(values, [[0.5, 1.0], [1.0, 6.0]]);
+/// # Ok::<(), htex_recording::ReadError>(())
+/// ```
+#[derive(Debug)]
+pub struct RowMap {
+    selection: Selection,
+    quantity: Quantity,
+}
+
+impl RowMap {
+    /// Selects from channels, each a name and a unit, which is empty if it is not known. A unit in the name takes precedence.
+    ///
+    /// # Errors
+    /// [`ReadError::Columns`] as for a file with these columns; `source` is its name in messages.
+    pub fn new(
+        source: &str,
+        channels: &[(String, String)],
+        map: Option<&ColumnMap>,
+        quantity: Quantity,
+    ) -> Result<Self, ReadError> {
+        let names = channels.iter().map(|(name, _)| name.clone());
+        let columns = Columns::new(source, names, None);
+        let mut selection = select(&columns, map, quantity)?;
+        let is_unused = |warning: &String| warning.starts_with("Columns not used");
+        selection.warnings.retain(|warning| !is_unused(warning));
+        let mut row_map = Self {
+            selection,
+            quantity,
+        };
+        row_map.take_units(&columns, channels, map)?;
+        Ok(row_map)
+    }
+
+    /// Selects the motion of the finger, as [`Tracker`](crate::Tracker) does: position or speed.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn of_motion(
+        source: &str,
+        channels: &[(String, String)],
+        map: Option<&ColumnMap>,
+    ) -> Result<Self, ReadError> {
+        let names = channels.iter().map(|(name, _)| name.clone());
+        let columns = Columns::new(source, names, None);
+        let mut row_map = Self {
+            selection: select_motion(&columns, map)?,
+            quantity: Quantity::LateralForce,
+        };
+        row_map.take_units(&columns, channels, map)?;
+        Ok(row_map)
+    }
+
+    /// Uses the units of channels whose names have none and for which the map has no scale.
+    fn take_units(
+        &mut self,
+        columns: &Columns,
+        channels: &[(String, String)],
+        map: Option<&ColumnMap>,
+    ) -> Result<(), ReadError> {
+        for chosen in &mut self.selection.chosen {
+            let Values::Column(column) = chosen.values else {
+                continue;
+            };
+            let mut entries = map.iter().flat_map(|map| map.entries());
+            let has_scale = entries.any(|e| e.role == chosen.role && e.scale.is_some());
+            let (name, unit) = &channels[column];
+            let in_name = columns::unit_in(name, chosen.role, self.quantity);
+            if has_scale || unit.is_empty() || in_name != Unit::Unsaid {
+                continue;
+            }
+            match unit_of(chosen.role, &unit.to_lowercase(), self.quantity) {
+                Unit::Scale(scale) => chosen.scale = scale,
+                unit => {
+                    let problem = no_scale(name, chosen.role, &unit, self.quantity);
+                    return Err(crate::columns::find::columns_error(columns, problem));
+                }
+            }
+            let assumed = format!(
+                "Column {:?} ({}) has no unit",
+                columns.name(column),
+                chosen.role
+            );
+            let warnings = &mut self.selection.warnings;
+            warnings.retain(|warning| !warning.starts_with(&assumed));
+        }
+        Ok(())
+    }
+
+    /// Returns the roles in the order of the values.
+    #[must_use]
+    pub fn roles(&self) -> Vec<Role> {
+        self.selection.chosen.iter().map(|c| c.role).collect()
+    }
+
+    /// Returns the unit of a role's values.
+    #[must_use]
+    pub fn unit(&self, role: Role) -> &'static str {
+        base_unit(role, self.quantity)
+    }
+
+    /// Returns the indices of the channels in use, ascending.
+    #[must_use]
+    pub fn channels(&self) -> Vec<usize> {
+        let chosen = self.selection.chosen.iter();
+        let mut used: Vec<usize> = chosen.flat_map(|c| c.columns()).collect();
+        used.sort_unstable();
+        used.dedup();
+        used
+    }
+
+    /// Returns the assumptions that were made, such as units, each a full sentence.
+    #[must_use]
+    pub fn warnings(&self) -> &[String] {
+        &self.selection.warnings
+    }
+
+    /// Returns the values of each role, from the samples of each channel, of equal lengths. A quotient by zero is not finite.
+    #[must_use]
+    pub fn values(&self, channels: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let rows = channels.first().map_or(0, Vec::len);
+        let of = |column: usize| &channels[column][..];
+        let chosen = self.selection.chosen.iter();
+        chosen
+            .map(|chosen| match &chosen.values {
+                Values::Column(column) => of(*column).iter().map(|v| v * chosen.scale).collect(),
+                Values::Formula { formula, .. } => formula.values(rows, chosen.scale, of),
+            })
+            .collect()
+    }
+}

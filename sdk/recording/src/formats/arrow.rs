@@ -1,0 +1,393 @@
+//! Arrow IPC: files (Feather version 2) and streams. Numeric columns; the values of others are passed over.
+//!
+//! Layout: "Arrow Columnar Format", section "Serialization and Interprocess Communication". The metadata are verified flatbuffers of the
+//! crate `arrow-ipc`; its reader is not used, because it takes the sizes in a file as they are.
+
+use std::io::{self, Read};
+
+use arrow_ipc::{CompressionType, RecordBatch, root_as_footer, root_as_message};
+use lz4_flex::frame::FrameDecoder;
+
+use crate::ReadError;
+use crate::formats::arrow_schema::{Column, Schema};
+use crate::formats::shared::Shared;
+use crate::input::Opened;
+use crate::sheet::{Columns, Numbers, Sheet};
+use crate::value_limit::ValueLimit;
+
+/// Longest metadata of a message, and of the footer, bytes.
+const MOST_METADATA: u64 = 16 << 20;
+/// The first bytes of a file, and of a message.
+const FILE: &[u8] = b"ARROW1";
+const MESSAGE: [u8; 4] = [0xff; 4];
+
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum ArrowError {
+    #[error("the file ends or cannot be read here: {0}; copy it again")]
+    Io(#[from] io::Error),
+    #[error("not readable Arrow metadata: {0}; copy the file again, or write it again")]
+    Metadata(String),
+    #[error("{0}")]
+    Layout(&'static str),
+    #[error("this is Feather of version 1; write it as version 2 (in pyarrow: version=2)")]
+    FeatherV1,
+    #[error(
+        "it is compressed by {0}, which is not read; write it with lz4 (in pyarrow: compression='lz4')"
+    )]
+    Compression(String),
+    #[error("its type is {0}, which is not read as numbers; write it as float64")]
+    Type(String),
+}
+
+/// An opened file.
+pub(crate) struct Arrow {
+    columns: Columns,
+    schema: Schema,
+    batches: Vec<Batch>,
+    limit: ValueLimit,
+    source: Shared,
+}
+
+/// Where a batch of rows is, and their number.
+#[derive(Debug, Clone, Copy)]
+struct Batch {
+    message: Message,
+    rows: u64,
+}
+
+/// Where a message is.
+#[derive(Debug, Clone, Copy)]
+struct Message {
+    metadata: u64,
+    metadata_bytes: u64,
+    body: u64,
+    body_bytes: u64,
+}
+
+impl Arrow {
+    /// Reads the schema, and where the batches are.
+    pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, ReadError> {
+        let file = opened.file.clone();
+        let (is_file, is_old) = (
+            opened.front.starts_with(FILE),
+            opened.front.starts_with(b"FEA1"),
+        );
+        let shared = Shared::new(opened.random()?);
+        let source = shared.map_err(|source| ReadError::Io {
+            file: file.clone(),
+            source,
+        })?;
+        let mut arrow = Self {
+            columns: Columns::default(),
+            schema: Schema::default(),
+            batches: Vec::new(),
+            limit,
+            source,
+        };
+        let read = match is_file {
+            _ if is_old => Err((0, ArrowError::FeatherV1)),
+            true => arrow.read_footer(),
+            false => arrow.read_stream(),
+        };
+        read.map_err(|(at, problem)| damaged(&file, format!("byte {at}"), &problem))?;
+        arrow.columns = Columns::new(
+            &file,
+            arrow.schema.columns.iter().map(|c| c.name.clone()),
+            None,
+        );
+        Ok(arrow)
+    }
+
+    /// Reads the footer of a file, which lists its batches.
+    fn read_footer(&mut self) -> Result<(), (u64, ArrowError)> {
+        let length = self.source.length();
+        let tail_at = length.saturating_sub(10);
+        let tail = self
+            .source
+            .read(tail_at, 10)
+            .map_err(|error| (tail_at, error.into()))?;
+        if tail[4..] != *FILE {
+            let problem = "the file does not end with ARROW1; it seems truncated, copy it again";
+            return Err((tail_at, ArrowError::Layout(problem)));
+        }
+        let size = u64::from(u32::from_le_bytes([tail[0], tail[1], tail[2], tail[3]]));
+        let at = tail_at.saturating_sub(size);
+        let read = || {
+            let bytes = metadata(&self.source, at, size)?;
+            let footer =
+                root_as_footer(&bytes).map_err(|error| ArrowError::Metadata(error.to_string()))?;
+            let schema = footer.schema().ok_or(ArrowError::Layout(
+                "the footer has no schema; write the file again",
+            ))?;
+            let blocks: Vec<[i64; 3]> = footer
+                .recordBatches()
+                .into_iter()
+                .flatten()
+                .map(|block| {
+                    [
+                        block.offset(),
+                        block.metaDataLength().into(),
+                        block.bodyLength(),
+                    ]
+                })
+                .collect();
+            Ok((Schema::of(&schema), blocks))
+        };
+        let (schema, blocks) = read().map_err(|error| (at, error))?;
+        self.schema = schema;
+        for [offset, metadata_bytes, body_bytes] in blocks {
+            let size = |value: i64| u64::try_from(value).unwrap_or(u64::MAX);
+            let (offset, metadata_bytes) = (size(offset), size(metadata_bytes));
+            let message = Message {
+                metadata: offset,
+                metadata_bytes,
+                body: offset.saturating_add(metadata_bytes),
+                body_bytes: size(body_bytes),
+            };
+            self.add_batch(message).map_err(|error| (offset, error))?;
+        }
+        Ok(())
+    }
+
+    /// Reads the messages of a stream, one after the other.
+    fn read_stream(&mut self) -> Result<(), (u64, ArrowError)> {
+        let mut at = 0;
+        let mut is_first = true;
+        while at + 8 <= self.source.length() {
+            let next = self
+                .read_message(at, is_first)
+                .map_err(|error| (at, error))?;
+            match next {
+                None => return Ok(()),
+                Some(next) => at = next,
+            }
+            is_first = false;
+        }
+        Ok(())
+    }
+
+    /// Reads the message at a place of a stream and returns the place of the next one; `None` at the end of the stream.
+    fn read_message(&mut self, at: u64, is_first: bool) -> Result<Option<u64>, ArrowError> {
+        let prefix = self.source.read(at, 8)?;
+        if prefix[..4] != MESSAGE {
+            return Err(ArrowError::Layout(
+                "no message begins here; the stream is damaged, write it again",
+            ));
+        }
+        let size = u64::from(u32::from_le_bytes([
+            prefix[4], prefix[5], prefix[6], prefix[7],
+        ]));
+        if size == 0 {
+            return Ok(None);
+        }
+        let bytes = metadata(&self.source, at + 8, size)?;
+        let message =
+            root_as_message(&bytes).map_err(|error| ArrowError::Metadata(error.to_string()))?;
+        let body_bytes = u64::try_from(message.bodyLength()).unwrap_or(u64::MAX);
+        let body = at + 8 + size;
+        match (is_first, message.header_as_schema()) {
+            (true, Some(schema)) => self.schema = Schema::of(&schema),
+            (true, None) => {
+                return Err(ArrowError::Layout(
+                    "the stream does not begin with a schema; write it again",
+                ));
+            }
+            _ => {}
+        }
+        if message.header_as_record_batch().is_some() {
+            self.add_batch(Message {
+                metadata: at,
+                metadata_bytes: size + 8,
+                body,
+                body_bytes,
+            })?;
+        }
+        let left = self.source.length().saturating_sub(body);
+        match body_bytes <= left {
+            true => Ok(Some(body + body_bytes)),
+            false => Err(ArrowError::Layout(
+                "the stream ends inside this message; copy it again",
+            )),
+        }
+    }
+
+    fn add_batch(&mut self, message: Message) -> Result<(), ArrowError> {
+        let rows = self.with_batch(message, |batch| Ok(batch.length()))?;
+        let rows = u64::try_from(rows).map_err(|_| {
+            ArrowError::Layout("a batch has a negative length; write the file again")
+        })?;
+        self.batches.push(Batch { message, rows });
+        Ok(())
+    }
+
+    /// Calls a function with the metadata of a batch.
+    fn with_batch<T>(
+        &self,
+        message: Message,
+        read: impl FnOnce(&RecordBatch<'_>) -> Result<T, ArrowError>,
+    ) -> Result<T, ArrowError> {
+        let bytes = metadata(&self.source, message.metadata, message.metadata_bytes)?;
+        // Files before version 0.15 have no marker before the length.
+        let start = if bytes.starts_with(&MESSAGE) { 8 } else { 4 };
+        let root = root_as_message(bytes.get(start..).unwrap_or_default());
+        let root = root.map_err(|error| ArrowError::Metadata(error.to_string()))?;
+        match root.header_as_record_batch() {
+            Some(batch) => read(&batch),
+            None => Err(ArrowError::Layout(
+                "a block is not a batch of rows; write the file again",
+            )),
+        }
+    }
+
+    /// Appends the values of a column in a batch, with NaN where there is none.
+    fn append(
+        &self,
+        batch: Batch,
+        column: &Column,
+        values: &mut Vec<f64>,
+    ) -> Result<(), ArrowError> {
+        let Some(kind) = column.number else {
+            return Err(ArrowError::Type(column.kind.clone()));
+        };
+        let missing =
+            ArrowError::Layout("the batch has fewer buffers than its schema; write the file again");
+        let size = kind.size() as u64;
+        let wanted = batch.rows.saturating_mul(size);
+        let (validity, numbers) = self.with_batch(batch.message, |metadata| {
+            let codec = metadata
+                .compression()
+                .map(|compression| compression.codec());
+            let nodes = metadata.nodes().filter(|nodes| column.node < nodes.len());
+            let nulls = nodes.map(|nodes| nodes.get(column.node).null_count());
+            let buffer = |index: usize| {
+                let buffers = metadata.buffers().filter(|buffers| index < buffers.len());
+                buffers.map(|buffers| (buffers.get(index).offset(), buffers.get(index).length()))
+            };
+            let (Some(nulls), Some(bits), Some(numbers)) =
+                (nulls, buffer(column.buffer), buffer(column.buffer + 1))
+            else {
+                return Err(missing);
+            };
+            let validity = match nulls {
+                0 => None,
+                _ => Some(self.buffer(batch.message, bits, codec, batch.rows.div_ceil(8))?),
+            };
+            Ok((
+                validity,
+                self.buffer(batch.message, numbers, codec, wanted)?,
+            ))
+        })?;
+        let is_there = |row: usize| {
+            let bits = validity.as_ref().and_then(|bits| bits.get(row / 8));
+            bits.is_none_or(|bits| bits >> (row % 8) & 1 == 1)
+        };
+        values.extend(
+            numbers
+                .chunks_exact(kind.size())
+                .enumerate()
+                .map(|(row, bytes)| match is_there(row) {
+                    true => kind.value(bytes, self.schema.endian),
+                    false => f64::NAN,
+                }),
+        );
+        Ok(())
+    }
+
+    /// Returns the first `wanted` bytes of a buffer, decompressed. The stated length of compressed bytes is not relied on.
+    fn buffer(
+        &self,
+        message: Message,
+        (offset, length): (i64, i64),
+        codec: Option<CompressionType>,
+        wanted: u64,
+    ) -> Result<Vec<u8>, ArrowError> {
+        let outside = || {
+            ArrowError::Layout("a buffer is outside its batch or too short; copy the file again")
+        };
+        let offset = u64::try_from(offset).map_err(|_| outside())?;
+        let length = u64::try_from(length).map_err(|_| outside())?;
+        if offset.saturating_add(length) > message.body_bytes {
+            return Err(outside());
+        }
+        let at = message.body + offset;
+        let Some(codec) = codec else {
+            return if length < wanted {
+                Err(outside())
+            } else {
+                Ok(self.source.read(at, wanted)?)
+            };
+        };
+        if codec != CompressionType::LZ4_FRAME {
+            return Err(ArrowError::Compression(format!("{codec:?}")));
+        }
+        if length == 0 && wanted == 0 {
+            return Ok(Vec::new());
+        }
+        let bytes = self.source.read(at, length)?;
+        let (stated, compressed) = bytes.split_first_chunk().ok_or_else(outside)?;
+        let mut decompressed = Vec::new();
+        // A length of -1 marks bytes that are not compressed.
+        match i64::from_le_bytes(*stated) {
+            -1 => compressed.take(wanted).read_to_end(&mut decompressed)?,
+            _ => FrameDecoder::new(compressed)
+                .take(wanted)
+                .read_to_end(&mut decompressed)?,
+        };
+        match decompressed.len() as u64 == wanted {
+            true => Ok(decompressed),
+            false => Err(outside()),
+        }
+    }
+}
+
+impl Sheet for Arrow {
+    fn columns(&self) -> &Columns {
+        &self.columns
+    }
+
+    fn rate_hz(&self, _: &[usize]) -> Result<Option<f64>, ReadError> {
+        Ok(None)
+    }
+
+    fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, ReadError> {
+        let file = &self.columns.file;
+        let rows = self
+            .batches
+            .iter()
+            .fold(0_u64, |sum, batch| sum.saturating_add(batch.rows));
+        self.limit
+            .check(file, rows.saturating_mul(wanted.len() as u64))?;
+        let mut columns = vec![Vec::new(); wanted.len()];
+        for (values, index) in columns.iter_mut().zip(wanted) {
+            let Some(column) = self.schema.columns.get(*index) else {
+                continue;
+            };
+            for batch in &self.batches {
+                self.append(*batch, column, values)
+                    .map_err(|problem| damaged(file, self.columns.name(*index), &problem))?;
+            }
+        }
+        Ok(Numbers {
+            columns,
+            ..Numbers::default()
+        })
+    }
+}
+
+/// Reads metadata up to their largest size.
+fn metadata(source: &Shared, at: u64, bytes: u64) -> Result<Vec<u8>, ArrowError> {
+    match bytes <= MOST_METADATA {
+        true => Ok(source.read(at, bytes)?),
+        false => Err(ArrowError::Layout(
+            "the metadata are longer than any that are read; copy the file again",
+        )),
+    }
+}
+
+fn damaged(file: &str, place: String, problem: &ArrowError) -> ReadError {
+    ReadError::Damaged {
+        file: file.to_owned(),
+        place,
+        problem: htex_format::plain(&problem.to_string()).into_owned(),
+    }
+}

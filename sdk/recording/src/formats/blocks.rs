@@ -1,0 +1,121 @@
+//! Reading of files in blocks of whole lines: a reused buffer takes less memory and time than one as large as the
+//! file.
+
+use std::io::Read;
+
+use crate::ReadError;
+use crate::formats::text::{Lines, checked, without_mark};
+use crate::value_limit::ValueLimit;
+
+/// Bytes of a block; longer than any valid line.
+const BLOCK: usize = 256 << 10;
+
+/// A reader whose data are split at line ends.
+pub(crate) struct Blocks<'a> {
+    /// File name for messages.
+    pub(crate) file: &'a str,
+    /// Limit on the numbers that are kept.
+    pub(crate) limit: ValueLimit,
+    source: Box<dyn Read + 'a>,
+    buffer: Vec<u8>,
+    /// Bytes of the buffer already returned, and bytes filled.
+    taken: usize,
+    filled: usize,
+    ended: bool,
+}
+
+impl<'a> Blocks<'a> {
+    pub(crate) fn new(file: &'a str, source: impl Read + 'a, limit: ValueLimit) -> Self {
+        Self {
+            file,
+            limit,
+            source: Box::new(source),
+            buffer: vec![0; BLOCK],
+            taken: 0,
+            filled: 0,
+            ended: false,
+        }
+    }
+
+    /// Returns the first remaining bytes, or all of them if they are fewer than a block.
+    pub(crate) fn front(&mut self) -> Result<&[u8], ReadError> {
+        self.buffer.copy_within(self.taken..self.filled, 0);
+        (self.taken, self.filled) = (0, self.filled - self.taken);
+        while !self.ended && self.filled < self.buffer.len() {
+            let read = match self.source.read(&mut self.buffer[self.filled..]) {
+                Err(error) if error.kind() == std::io::ErrorKind::Interrupted => continue,
+                read => read.map_err(|source| self.failed(source))?,
+            };
+            self.filled += read;
+            self.ended = read == 0;
+        }
+        Ok(&self.buffer[..self.filled])
+    }
+
+    /// Returns the next lines, which follow `before` others; `None` at the end. A line longer than a block is returned in
+    /// pieces, the first of which exceeds the limit of a line.
+    pub(crate) fn next(&mut self, before: usize) -> Result<Option<&str>, ReadError> {
+        self.front()?;
+        let filled = &self.buffer[..self.filled];
+        let line_end = filled.iter().rposition(|byte| *byte == b'\n');
+        self.taken = match line_end {
+            _ if self.ended => self.filled,
+            Some(last) => last + 1,
+            None => whole_characters(filled),
+        };
+        let block = checked(self.file, &self.buffer[..self.taken], before)?;
+        Ok((!block.is_empty()).then_some(block))
+    }
+
+    /// Returns the first lines, without a byte order mark: as many as contain two rows, if there are two.
+    pub(crate) fn head(&mut self) -> Result<String, ReadError> {
+        let (mut head, mut rows, mut before) = (String::new(), 0, 0);
+        while rows < 2 {
+            let file = self.file;
+            let Some(block) = self.next(before)? else {
+                break;
+            };
+            let block = if before == 0 {
+                without_mark(block)
+            } else {
+                block
+            };
+            head.push_str(block);
+            let mut lines = Lines::behind(file, block, before, false);
+            // A line that is too long is reported when it is parsed.
+            while rows < 2 && !matches!(lines.next_row(), Ok(None)) {
+                rows += 1;
+            }
+            before = lines.number;
+        }
+        Ok(head)
+    }
+
+    /// Whether another row follows, after `before` lines.
+    pub(crate) fn has_row(&mut self, mut before: usize) -> Result<bool, ReadError> {
+        let file = self.file;
+        while let Some(block) = self.next(before)? {
+            let mut lines = Lines::behind(file, block, before, false);
+            if !matches!(lines.next_row(), Ok(None)) {
+                return Ok(true);
+            }
+            before = lines.number;
+        }
+        Ok(false)
+    }
+
+    fn failed(&self, source: std::io::Error) -> ReadError {
+        ReadError::Io {
+            file: self.file.to_owned(),
+            source,
+        }
+    }
+}
+
+/// Returns the length of the bytes without an incomplete character at the end.
+fn whole_characters(bytes: &[u8]) -> usize {
+    match std::str::from_utf8(bytes) {
+        Err(error) if error.error_len().is_none() && error.valid_up_to() > 0 => error.valid_up_to(),
+        _ => bytes.len(),
+    }
+}

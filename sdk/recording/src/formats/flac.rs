@@ -1,0 +1,143 @@
+//! FLAC: integer samples of up to eight channels, compressed without loss.
+//!
+//! `claxon` reads it; `symphonia` is under the MPL.
+
+use std::io::Read;
+
+use claxon::{Block, FlacReader, FlacReaderOptions};
+
+use crate::ReadError;
+use crate::formats::samples::{Order, Samples, channel_names};
+use crate::input::Opened;
+use crate::value_limit::ValueLimit;
+
+/// Opens a FLAC file, whose blocks are then decoded one by one.
+pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>, ReadError> {
+    let file = opened.file.clone();
+    let options = FlacReaderOptions {
+        metadata_only: false,
+        read_vorbis_comment: false,
+    };
+    let reader = FlacReader::new_ext(opened.stream(), options).map_err(|error| {
+        broken(
+            &file,
+            "header",
+            format!("not a readable FLAC file: {error}"),
+        )
+    })?;
+    let info = reader.streaminfo();
+    if info.sample_rate == 0 || info.channels == 0 {
+        let problem = "it has no channels or no sample rate; export it again".to_owned();
+        return Err(broken(&file, "header", problem));
+    }
+    let width = info.channels as usize;
+    Ok(Samples {
+        columns: channel_names(&file, width),
+        rate_hz: Some(f64::from(info.sample_rate)),
+        are_integers: true,
+        frames: info.samples,
+        limit,
+        order: Order::Interleaved,
+        samples: Box::new(Decoded {
+            full_scale: libm::exp2(f64::from(info.bits_per_sample) - 1.0),
+            expected: info.samples,
+            file,
+            reader,
+            width,
+            block: Block::empty(),
+            next: (0, 0),
+            before: 0,
+            ended: false,
+        }),
+    })
+}
+
+/// The decoded samples, interleaved, as fractions of full scale.
+struct Decoded<R: Read> {
+    file: String,
+    reader: FlacReader<R>,
+    width: usize,
+    full_scale: f64,
+    /// Samples of a channel by the header, if it says.
+    expected: Option<u64>,
+    block: Block,
+    /// Sample and channel of the next value in the block.
+    next: (u32, u32),
+    /// Samples of a channel before the block.
+    before: u64,
+    ended: bool,
+}
+
+impl<R: Read> Decoded<R> {
+    /// Decodes the next block; false at the end.
+    fn advance(&mut self) -> Result<bool, ReadError> {
+        self.before += u64::from(self.block.duration());
+        let buffer = std::mem::replace(&mut self.block, Block::empty()).into_buffer();
+        let place = |at: u64| format!("sample {at} (counted from 0)");
+        let block = self
+            .reader
+            .blocks()
+            .read_next_or_eof(buffer)
+            .map_err(|error| {
+                let problem = format!("the file ends or breaks here: {error}; copy it again");
+                broken(&self.file, &place(self.before), problem)
+            })?;
+        let Some(block) = block else {
+            return match self.expected {
+                Some(expected) if self.before < expected => {
+                    let problem = format!(
+                        "the file ends here, its header says {expected} samples; copy it again"
+                    );
+                    Err(broken(&self.file, &place(self.before), problem))
+                }
+                _ => Ok(false),
+            };
+        };
+        if block.channels() as usize != self.width {
+            let problem = format!(
+                "{} channels follow {}; export it again",
+                block.channels(),
+                self.width
+            );
+            return Err(broken(&self.file, &place(self.before), problem));
+        }
+        self.block = block;
+        self.next = (0, 0);
+        Ok(true)
+    }
+}
+
+impl<R: Read> Iterator for Decoded<R> {
+    type Item = Result<f64, ReadError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        while !self.ended && self.next.0 >= self.block.duration() {
+            match self.advance() {
+                Ok(true) => {}
+                Ok(false) => self.ended = true,
+                Err(error) => {
+                    self.ended = true;
+                    return Some(Err(error));
+                }
+            }
+        }
+        if self.ended {
+            return None;
+        }
+        let (sample, channel) = self.next;
+        let value = self.block.sample(channel, sample);
+        self.next = match channel + 1 == self.block.channels() {
+            true => (sample + 1, 0),
+            false => (sample, channel + 1),
+        };
+        Some(Ok(f64::from(value) / self.full_scale))
+    }
+}
+
+fn broken(file: &str, place: &str, problem: String) -> ReadError {
+    ReadError::Damaged {
+        file: file.to_owned(),
+        place: place.to_owned(),
+        problem,
+    }
+}

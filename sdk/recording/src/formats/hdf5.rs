@@ -1,0 +1,307 @@
+//! HDF5, and MATLAB's version 7.3, which is HDF5: data sets addressed by path.
+//!
+//! `hdf5-reader` bounds chunks, headers and depth, has no C code and follows no links to other files. `hdf5` binds the
+//! C library, and `hdf5-pure` is a writer of 120,000 lines too.
+
+use std::collections::HashSet;
+use std::sync::Arc;
+
+use hdf5_reader::group::Group;
+use hdf5_reader::{
+    Attribute, Dataset, Datatype, H5Type, Hdf5File, OpenOptions, SliceInfo, SliceInfoElem, Storage,
+    StorageBuffer,
+};
+
+use crate::ReadError;
+use crate::formats::matrix::{Arrays, MOST_COLUMNS, Shape, is_rate_name};
+use crate::formats::shared::Shared;
+use crate::input::Opened;
+use crate::sheet::{Columns, Numbers, Sheet};
+use crate::value_limit::ValueLimit;
+
+/// Deepest groups within groups.
+const MOST_DEEP: usize = 16;
+/// Most groups and data sets.
+const MOST_OBJECTS: usize = 65_536;
+/// Values that are read at once.
+const AT_ONCE: u64 = 64 << 10;
+/// Largest chunk, and largest object header, bytes.
+const MOST_CHUNK: usize = 256 << 20;
+const MOST_HEADER: usize = 4 << 20;
+/// Most bytes of numbers for each byte of the file. Deflate, the filter of HDF5 and MATLAB, reaches 1032; parts of a data set that
+/// were never written take no bytes at all.
+const MOST_EXPANSION: u64 = 2048;
+
+/// An opened file.
+pub(crate) struct Hdf5 {
+    columns: Columns,
+    arrays: Arrays<Dataset>,
+    limit: ValueLimit,
+    /// Length of the file.
+    bytes: u64,
+}
+
+struct Source(Shared);
+
+impl Storage for Source {
+    fn len(&self) -> u64 {
+        self.0.length()
+    }
+
+    fn read_range(&self, offset: u64, len: usize) -> hdf5_reader::error::Result<StorageBuffer> {
+        Ok(StorageBuffer::from_vec(self.0.read(offset, len as u64)?))
+    }
+}
+
+impl Hdf5 {
+    /// Reads the names of all data sets. Links to other files are not followed.
+    pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, ReadError> {
+        let file = opened.file.clone();
+        let shared = Shared::new(opened.random()?);
+        let shared = shared.map_err(|source| ReadError::Io {
+            file: file.clone(),
+            source,
+        })?;
+        let bytes = shared.length();
+        let options = OpenOptions::default()
+            .with_max_chunk_bytes(MOST_CHUNK)
+            .with_max_read_bytes(MOST_CHUNK)
+            .with_max_object_header_bytes(MOST_HEADER);
+        let mut scan = Scan {
+            file: file.clone(),
+            arrays: Arrays::new('/'),
+            seen: HashSet::new(),
+            objects: 0,
+        };
+        let hdf5 = Hdf5File::from_storage_with_options(Arc::new(Source(shared)), options);
+        let root = hdf5.and_then(|hdf5| hdf5.root_group());
+        let root = root.map_err(|error| damaged(&file, "/", &error))?;
+        scan.group(&root, "", 0)?;
+        Ok(Self {
+            columns: scan.arrays.columns(&file),
+            arrays: scan.arrays,
+            limit,
+            bytes,
+        })
+    }
+}
+
+impl Sheet for Hdf5 {
+    fn columns(&self) -> &Columns {
+        &self.columns
+    }
+
+    fn rate_hz(&self, wanted: &[usize]) -> Result<Option<f64>, ReadError> {
+        self.arrays.rate_hz(&self.columns, wanted)
+    }
+
+    fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, ReadError> {
+        let file = &self.columns.file;
+        let columns = self
+            .arrays
+            .numbers(file, self.limit, wanted, |dataset, shape, keep| {
+                fits(file, self.bytes, dataset, shape)?;
+                read(dataset, shape, keep).map_err(|error| damaged(file, dataset.name(), &error))
+            })?;
+        Ok(Numbers {
+            columns,
+            ..Numbers::default()
+        })
+    }
+}
+
+/// The data sets found so far.
+struct Scan {
+    file: String,
+    arrays: Arrays<Dataset>,
+    /// Addresses of groups: a group may contain a link to one around it.
+    seen: HashSet<u64>,
+    objects: usize,
+}
+
+impl Scan {
+    fn group(&mut self, group: &Group, path: &str, depth: usize) -> Result<(), ReadError> {
+        if !self.seen.insert(group.address()) {
+            return Ok(());
+        }
+        let failed = |error| damaged(&self.file, &format!("{path}/"), &error);
+        let (groups, datasets) = group.members().map_err(failed)?;
+        self.objects += groups.len() + datasets.len();
+        if depth == MOST_DEEP || self.objects > MOST_OBJECTS {
+            return Err(ReadError::Damaged {
+                file: self.file.clone(),
+                place: htex_format::plain(path).into_owned(),
+                problem: format!(
+                    "more than {MOST_DEEP} groups within each other, or more than {MOST_OBJECTS} objects; copy those of the recording \
+                     to a file of their own"
+                ),
+            });
+        }
+        // Attributes that cannot be read, of kinds without numbers among them, do not state a rate.
+        self.attributes(path, group.attributes().unwrap_or_default());
+        for dataset in datasets {
+            self.dataset(dataset, path)?;
+        }
+        for inner in groups {
+            self.group(&inner, &format!("{path}/{}", inner.name()), depth + 1)?;
+        }
+        Ok(())
+    }
+
+    fn attributes(&mut self, path: &str, attributes: Vec<Attribute>) {
+        for attribute in attributes
+            .iter()
+            .filter(|attribute| is_rate_name(&attribute.name))
+        {
+            if let Ok(value) = attribute.read_as_f64() {
+                self.arrays
+                    .add_scalar(&format!("{path}/{}", &attribute.name), value);
+            }
+        }
+    }
+
+    fn dataset(&mut self, dataset: Dataset, group: &str) -> Result<(), ReadError> {
+        let path = format!("{group}/{}", dataset.name());
+        self.attributes(&path, dataset.attributes());
+        let shape = match *dataset.shape() {
+            [samples] => Shape::of(1, samples),
+            [outer, inner] => Shape::of(outer, inner),
+            _ => None,
+        };
+        let is_number = is_number(dataset.dtype());
+        if let (Some(shape), true) = (shape, is_number) {
+            if !self.arrays.add(&path, shape, dataset) {
+                return Err(ReadError::Damaged {
+                    file: self.file.clone(),
+                    place: htex_format::plain(&path).into_owned(),
+                    problem: format!(
+                        "more than {MOST_COLUMNS} columns; copy those of the recording to a file of their own"
+                    ),
+                });
+            }
+        } else if is_number
+            && is_rate_name(dataset.name())
+            && dataset.shape().iter().all(|size| *size == 1)
+        {
+            let mut value = f64::NAN;
+            let whole = SliceInfo::all(dataset.ndim());
+            slab(&dataset, &whole, &mut |_, read| value = read)
+                .map_err(|error| damaged(&self.file, &path, &error))?;
+            self.arrays.add_scalar(&path, value);
+        }
+        Ok(())
+    }
+}
+
+fn is_number(kind: &Datatype) -> bool {
+    matches!(
+        kind,
+        Datatype::FixedPoint {
+            size: 1 | 2 | 4 | 8,
+            ..
+        } | Datatype::FloatingPoint { size: 4 | 8, .. }
+    )
+}
+
+/// Refuses a data set of more numbers than a file of this length can have.
+fn fits(file: &str, bytes: u64, dataset: &Dataset, shape: Shape) -> Result<(), ReadError> {
+    let size = match dataset.dtype() {
+        Datatype::FixedPoint { size, .. } | Datatype::FloatingPoint { size, .. } => *size,
+        _ => 1,
+    };
+    let numbers = shape.samples.saturating_mul(shape.channels);
+    if numbers.saturating_mul(size.into()) <= bytes.saturating_mul(MOST_EXPANSION) {
+        return Ok(());
+    }
+    Err(ReadError::Damaged {
+        file: file.to_owned(),
+        place: htex_format::plain(dataset.name()).into_owned(),
+        problem: format!(
+            "it states {} samples of {} channels in a file of {bytes} bytes; write the file again without space that has no data",
+            shape.samples, shape.channels
+        ),
+    })
+}
+
+/// Reads a data set, some samples of all its channels at once.
+fn read(
+    dataset: &Dataset,
+    shape: Shape,
+    keep: &mut dyn FnMut(u64, f64),
+) -> hdf5_reader::error::Result<()> {
+    let at_once = (AT_ONCE / shape.channels).max(1);
+    let mut from = 0;
+    while from < shape.samples {
+        let to = (from + at_once).min(shape.samples);
+        let part = |start, end| SliceInfoElem::Slice {
+            start,
+            end,
+            step: 1,
+        };
+        let (time, channels) = (part(from, to), part(0, shape.channels));
+        let selections = match (dataset.ndim(), shape.is_planar) {
+            (1, _) => vec![time],
+            (_, true) => vec![channels, time],
+            (_, false) => vec![time, channels],
+        };
+        let here = to - from;
+        slab(dataset, &SliceInfo { selections }, &mut |index, value| {
+            // From the index in the slab to that in the data set.
+            let index = match shape.is_planar {
+                true => index / here * shape.samples + from + index % here,
+                false => from * shape.channels + index,
+            };
+            keep(index, value);
+        })?;
+        from = to;
+    }
+    Ok(())
+}
+
+/// Reads a part of a data set, and passes each value with its index in the part.
+fn slab(
+    dataset: &Dataset,
+    part: &SliceInfo,
+    keep: &mut dyn FnMut(u64, f64),
+) -> hdf5_reader::error::Result<()> {
+    match dataset.dtype() {
+        Datatype::FloatingPoint { size: 4, .. } => typed(dataset, part, keep, |x: f32| x.into()),
+        Datatype::FloatingPoint { .. } => typed(dataset, part, keep, |x: f64| x),
+        Datatype::FixedPoint { size, signed, .. } => match (size, signed) {
+            (1, true) => typed(dataset, part, keep, |x: i8| x.into()),
+            (1, false) => typed(dataset, part, keep, |x: u8| x.into()),
+            (2, true) => typed(dataset, part, keep, |x: i16| x.into()),
+            (2, false) => typed(dataset, part, keep, |x: u16| x.into()),
+            (4, true) => typed(dataset, part, keep, |x: i32| x.into()),
+            (4, false) => typed(dataset, part, keep, |x: u32| x.into()),
+            (_, true) => typed(dataset, part, keep, |x: i64| x as f64),
+            (_, false) => typed(dataset, part, keep, |x: u64| x as f64),
+        },
+        _ => Ok(()),
+    }
+}
+
+fn typed<T: H5Type + Copy>(
+    dataset: &Dataset,
+    part: &SliceInfo,
+    keep: &mut dyn FnMut(u64, f64),
+    to_f64: impl Fn(T) -> f64,
+) -> hdf5_reader::error::Result<()> {
+    let values = dataset.read_slice::<T>(part)?;
+    (0..)
+        .zip(values.iter())
+        .for_each(|(index, value)| keep(index, to_f64(*value)));
+    Ok(())
+}
+
+fn damaged(file: &str, place: &str, error: &hdf5_reader::error::Error) -> ReadError {
+    let error = error.to_string();
+    ReadError::Damaged {
+        file: file.to_owned(),
+        place: htex_format::plain(place).into_owned(),
+        problem: format!(
+            "not readable HDF5: {}; copy the file again, or write it again by h5py or MATLAB",
+            htex_format::plain(&error)
+        ),
+    }
+}

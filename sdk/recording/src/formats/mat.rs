@@ -1,0 +1,322 @@
+//! MATLAB files of version 5 (`save -v6` and `-v7`): numeric matrices, also in structs.
+//!
+//! Layout: "MAT-File Format", MathWorks; a header of 128 bytes, then elements, each a tag of type and size with its data. Compressed
+//! elements are zlib streams with one element. Nothing is decompressed into memory: the file is read once for the names, and the
+//! variables that are used once more.
+//!
+//! The reader is the project's own: `matfile` has no structs and reads a whole file.
+
+use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom};
+
+use flate2::read::ZlibDecoder;
+
+use crate::ReadError;
+use crate::formats::bytes::{ByteReader, Endian, NumberType};
+use crate::formats::mat_element::{
+    COMPRESSED, INT32, MATRIX, MOST_BYTES, MOST_DEEP, MOST_NAME, MOST_NAMES, MatError, Tag, UINT32,
+    number_type, text, unexpected, up_to_nul, words,
+};
+use crate::formats::matrix::{Arrays, MOST_COLUMNS, Shape};
+use crate::input::{Opened, Random};
+use crate::sheet::{Columns, Numbers, Sheet};
+use crate::value_limit::ValueLimit;
+
+/// Length of the file's header.
+const HEADER: u64 = 128;
+/// An opened file.
+pub(crate) struct Mat {
+    columns: Columns,
+    arrays: Arrays<Data>,
+    limit: ValueLimit,
+    endian: Endian,
+    input: Random,
+}
+
+/// Where the values of a matrix are.
+#[derive(Debug)]
+struct Data {
+    /// The variable, as an element of the file.
+    element: Element,
+    /// Bytes of the element, decompressed, before the values.
+    before: u64,
+    kind: NumberType,
+}
+
+/// An element of the file: the bytes after its tag.
+#[derive(Debug, Clone, Copy)]
+struct Element {
+    at: u64,
+    bytes: u64,
+    is_compressed: bool,
+}
+
+impl Mat {
+    /// Reads the names of all variables.
+    pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, ReadError> {
+        let file = opened.file.clone();
+        let endian = match opened.front.get(126..128) {
+            Some(b"IM") => Endian::Little,
+            Some(b"MI") => Endian::Big,
+            _ => {
+                return Err(ReadError::Damaged {
+                    file,
+                    place: "byte 126".to_owned(),
+                    problem: "the header is not that of a MATLAB 5 file (nor of HDF5, which version 7.3 is); in MATLAB: save('out.mat', '-v7')"
+                        .to_owned(),
+                });
+            }
+        };
+        let input = opened.random()?;
+        let mut scan = Scan {
+            arrays: Arrays::new('.'),
+            element: Element {
+                at: HEADER,
+                bytes: 0,
+                is_compressed: false,
+            },
+            scanned: 0,
+        };
+        let mut mat = Self {
+            columns: Columns::default(),
+            arrays: Arrays::new('.'),
+            limit,
+            endian,
+            input,
+        };
+        let scanned = mat.scan(&mut scan);
+        scanned.map_err(|problem| damaged(&file, scan.element.at, &problem))?;
+        mat.columns = scan.arrays.columns(&file);
+        mat.arrays = scan.arrays;
+        Ok(mat)
+    }
+
+    fn scan(&mut self, scan: &mut Scan) -> Result<(), MatError> {
+        let (length, endian) = (self.input.len()?, self.endian);
+        while scan.element.at + 8 <= length {
+            self.input.seek(SeekFrom::Start(scan.element.at))?;
+            let mut tag = ByteReader::new(&mut self.input, self.endian);
+            let (kind, bytes) = (tag.u32()?, u64::from(tag.u32()?));
+            scan.element = Element {
+                at: scan.element.at + 8,
+                bytes,
+                is_compressed: kind == COMPRESSED,
+            };
+            if scan.element.at + bytes > length {
+                let left = length - scan.element.at;
+                return Err(MatError::Size(format!(
+                    "{bytes} bytes where {left} are left"
+                )));
+            }
+            match kind {
+                COMPRESSED => {
+                    let mut inside = ByteReader::new(self.inside(scan.element)?, endian);
+                    let tag = Tag::read(&mut inside)?;
+                    scan.expect_matrix(&tag)?;
+                    scan.matrix(&mut inside, u64::from(tag.bytes), None, 0)?;
+                }
+                MATRIX => {
+                    let mut inside = ByteReader::new(self.inside(scan.element)?, endian);
+                    scan.matrix(&mut inside, bytes, None, 0)?;
+                }
+                // Other elements at the top are not variables.
+                _ => {}
+            }
+            let padding = if kind == COMPRESSED {
+                0
+            } else {
+                bytes.wrapping_neg() % 8
+            };
+            scan.element.at += bytes + padding;
+        }
+        Ok(())
+    }
+
+    /// Returns the bytes of an element, decompressed.
+    fn inside(&mut self, element: Element) -> io::Result<Box<dyn Read + '_>> {
+        self.input.seek(SeekFrom::Start(element.at))?;
+        let bytes = BufReader::new((&mut self.input).take(element.bytes));
+        Ok(match element.is_compressed {
+            true => Box::new(BufReader::new(ZlibDecoder::new(bytes))),
+            false => Box::new(bytes),
+        })
+    }
+}
+
+impl Sheet for Mat {
+    fn columns(&self) -> &Columns {
+        &self.columns
+    }
+
+    fn rate_hz(&self, wanted: &[usize]) -> Result<Option<f64>, ReadError> {
+        self.arrays.rate_hz(&self.columns, wanted)
+    }
+
+    fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, ReadError> {
+        let arrays = std::mem::replace(&mut self.arrays, Arrays::new('.'));
+        let (file, limit, endian) = (self.columns.file.clone(), self.limit, self.endian);
+        let columns = arrays.numbers(&file, limit, wanted, |data, shape, keep| {
+            let mut read = || {
+                let mut inside = ByteReader::new(self.inside(data.element)?, endian);
+                inside.skip(data.before)?;
+                inside.values(data.kind, shape.samples * shape.channels, |at, value| {
+                    keep(at, value)
+                })
+            };
+            read().map_err(|error| damaged(&file, data.element.at, &error.into()))
+        });
+        self.arrays = arrays;
+        Ok(Numbers {
+            columns: columns?,
+            ..Numbers::default()
+        })
+    }
+}
+
+/// The variables found so far.
+struct Scan {
+    arrays: Arrays<Data>,
+    element: Element,
+    /// Bytes of all variables, decompressed.
+    scanned: u64,
+}
+
+impl Scan {
+    fn expect_matrix(&self, tag: &Tag) -> Result<(), MatError> {
+        match tag.kind {
+            MATRIX => Ok(()),
+            kind => Err(unexpected(kind, "a matrix")),
+        }
+    }
+
+    /// Reads a matrix of `bytes` bytes up to its end; a field of a struct has the name `field`.
+    fn matrix(
+        &mut self,
+        inside: &mut ByteReader<impl Read>,
+        bytes: u64,
+        field: Option<String>,
+        depth: usize,
+    ) -> Result<(), MatError> {
+        let end = inside.at + bytes;
+        self.scanned = self.scanned.saturating_add(bytes);
+        if self.scanned > MOST_BYTES {
+            return Err(MatError::TooLarge);
+        }
+        // A field without a value.
+        if bytes == 0 {
+            return Ok(());
+        }
+        let flags = words(inside, UINT32, 8, "the flags")?;
+        let sizes = words(inside, INT32, 128, "the dimensions")?;
+        let own = text(inside, MOST_NAME, "a name")?;
+        let name = field.unwrap_or_else(|| String::from_utf8_lossy(&own).into_owned());
+        let flags = flags.first().copied().unwrap_or(0);
+        let is_complex = flags & 0x800 != 0;
+        match flags & 0xff {
+            2 => self.fields(inside, &name, &sizes, depth)?,
+            6..=15 if !is_complex => self.numeric(inside, &name, &sizes)?,
+            _ => {}
+        }
+        match end.checked_sub(inside.at) {
+            Some(left) => Ok(inside.skip(left)?),
+            None => Err(MatError::Size(format!(
+                "{} ends inside its values",
+                htex_format::plain(&name)
+            ))),
+        }
+    }
+
+    fn numeric(
+        &mut self,
+        inside: &mut ByteReader<impl Read>,
+        name: &str,
+        sizes: &[u32],
+    ) -> Result<(), MatError> {
+        let tag = Tag::read(inside)?;
+        let Some(kind) = number_type(tag.kind) else {
+            return Err(unexpected(tag.kind, "a type of numbers"));
+        };
+        let (&[rows, columns], size) = (sizes, kind.size() as u64) else {
+            return Ok(());
+        };
+        let (rows, columns) = (u64::from(rows), u64::from(columns));
+        if rows.saturating_mul(columns).saturating_mul(size) != u64::from(tag.bytes) {
+            return Err(MatError::Size(format!(
+                "{} is {rows} by {columns} and has {} bytes of numbers",
+                htex_format::plain(name),
+                tag.bytes
+            )));
+        }
+        if let Some(shape) = Shape::of(columns, rows) {
+            let data = Data {
+                element: self.element,
+                before: inside.at,
+                kind,
+            };
+            if !self.arrays.add(name, shape, data) {
+                return Err(MatError::TooMany);
+            }
+        } else if rows * columns == 1 {
+            let mut scalar = f64::NAN;
+            inside.values(kind, 1, |_, value| scalar = value)?;
+            self.arrays.add_scalar(name, scalar);
+        }
+        Ok(())
+    }
+
+    /// Reads the fields of a struct, `s.fx`, or of an array of structs, `s(2).fx`.
+    fn fields(
+        &mut self,
+        inside: &mut ByteReader<impl Read>,
+        name: &str,
+        sizes: &[u32],
+        depth: usize,
+    ) -> Result<(), MatError> {
+        if depth == MOST_DEEP {
+            return Err(MatError::TooDeep);
+        }
+        let width = words(inside, INT32, 8, "the length of field names")?;
+        let width = width.first().copied().unwrap_or(0) as usize;
+        let names = text(inside, MOST_NAMES, "the field names")?;
+        if width == 0 && !names.is_empty() {
+            return Err(MatError::Size("field names of length 0".to_owned()));
+        }
+        let fields: Vec<String> = names.chunks(width.max(1)).map(up_to_nul).collect();
+        let count = sizes
+            .iter()
+            .try_fold(1_u64, |n, size| n.checked_mul((*size).into()));
+        let count = count.filter(|count| fields.is_empty() || *count <= MOST_COLUMNS as u64);
+        let count = count.ok_or(MatError::TooMany)?;
+        if fields.is_empty() {
+            return Ok(());
+        }
+        for number in 1..=count {
+            for field in &fields {
+                let path = match count {
+                    1 => format!("{name}.{field}"),
+                    _ => format!("{name}({number}).{field}"),
+                };
+                if path.len() > MOST_NAME as usize {
+                    return Err(MatError::Size("a name of more than 1024 bytes".to_owned()));
+                }
+                let tag = Tag::read(inside)?;
+                self.expect_matrix(&tag)?;
+                self.matrix(inside, tag.bytes.into(), Some(path), depth + 1)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn damaged(file: &str, at: u64, problem: &MatError) -> ReadError {
+    let problem = match problem {
+        MatError::Io(error) if error.kind() == ErrorKind::UnexpectedEof => {
+            "the variable that begins here ends too early; copy the file again".to_owned()
+        }
+        other => other.to_string(),
+    };
+    ReadError::Damaged {
+        file: file.to_owned(),
+        place: format!("byte {at}"),
+        problem,
+    }
+}

@@ -1,0 +1,138 @@
+//! The elements of a MATLAB 5 file; and the errors of a file.
+
+use std::io::{self, Read};
+
+use crate::formats::bytes::{ByteReader, NumberType};
+use crate::formats::matrix::MOST_COLUMNS;
+
+/// Deepest structs within structs.
+pub(crate) const MOST_DEEP: usize = 16;
+/// Longest name, and names of all fields of a struct, bytes.
+pub(crate) const MOST_NAME: u32 = 1 << 10;
+pub(crate) const MOST_NAMES: u32 = 1 << 20;
+/// Most bytes of all variables, decompressed.
+pub(crate) const MOST_BYTES: u64 = 4 << 30;
+
+/// Types of elements.
+pub(crate) const INT8: u32 = 1;
+pub(crate) const INT32: u32 = 5;
+pub(crate) const UINT32: u32 = 6;
+pub(crate) const MATRIX: u32 = 14;
+pub(crate) const COMPRESSED: u32 = 15;
+
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum MatError {
+    #[error("the file ends or cannot be decompressed here: {0}; copy it again")]
+    Io(#[from] io::Error),
+    #[error("{found} is not {expected} of a MATLAB 5 file; save it again")]
+    Unexpected {
+        found: String,
+        expected: &'static str,
+    },
+    #[error("a size in the file is wrong ({0}); save it again")]
+    Size(String),
+    #[error("more than {MOST_COLUMNS} variables; save those of the recording alone")]
+    TooMany,
+    #[error(
+        "more than {MOST_BYTES} bytes when decompressed; save the variables of the recording alone"
+    )]
+    TooLarge,
+    #[error(
+        "structs are nested more than {MOST_DEEP} deep; save the variables of the recording alone"
+    )]
+    TooDeep,
+}
+
+/// The tag of an element.
+pub(crate) struct Tag {
+    pub(crate) kind: u32,
+    pub(crate) bytes: u32,
+    /// Bytes after the data up to the next tag.
+    padding: u32,
+}
+
+impl Tag {
+    pub(crate) fn read(inside: &mut ByteReader<impl Read>) -> io::Result<Self> {
+        let word = inside.u32()?;
+        // Up to four bytes of data may share the eight bytes of the tag.
+        let short = word >> 16;
+        if short != 0 {
+            return Ok(Self {
+                kind: word & 0xffff,
+                bytes: short,
+                padding: 4_u32.saturating_sub(short),
+            });
+        }
+        let bytes = inside.u32()?;
+        Ok(Self {
+            kind: word,
+            bytes,
+            padding: bytes.wrapping_neg() % 8,
+        })
+    }
+
+    fn length(&self) -> u64 {
+        u64::from(self.bytes) + u64::from(self.padding)
+    }
+}
+
+/// Reads an element of 32-bit numbers.
+pub(crate) fn words(
+    inside: &mut ByteReader<impl Read>,
+    kind: u32,
+    most: u32,
+    expected: &'static str,
+) -> Result<Vec<u32>, MatError> {
+    let tag = Tag::read(inside)?;
+    if tag.kind != kind || tag.bytes > most || tag.bytes % 4 != 0 {
+        return Err(unexpected(tag.kind, expected));
+    }
+    let words = (0..tag.bytes / 4)
+        .map(|_| inside.u32())
+        .collect::<Result<_, _>>()?;
+    inside.skip(tag.padding.into())?;
+    Ok(words)
+}
+
+/// Reads an element of text.
+pub(crate) fn text(
+    inside: &mut ByteReader<impl Read>,
+    most: u32,
+    expected: &'static str,
+) -> Result<Vec<u8>, MatError> {
+    let tag = Tag::read(inside)?;
+    if tag.kind != INT8 || tag.bytes > most {
+        return Err(unexpected(tag.kind, expected));
+    }
+    let mut text = inside.vec(tag.length())?;
+    text.truncate(tag.bytes as usize);
+    Ok(text)
+}
+
+pub(crate) fn up_to_nul(bytes: &[u8]) -> String {
+    let name = bytes.split(|byte| *byte == 0).next().unwrap_or_default();
+    String::from_utf8_lossy(name).into_owned()
+}
+
+pub(crate) fn number_type(kind: u32) -> Option<NumberType> {
+    Some(match kind {
+        1 => NumberType::I8,
+        2 => NumberType::U8,
+        3 => NumberType::I16,
+        4 => NumberType::U16,
+        5 => NumberType::I32,
+        6 => NumberType::U32,
+        7 => NumberType::F32,
+        9 => NumberType::F64,
+        12 => NumberType::I64,
+        13 => NumberType::U64,
+        _ => return None,
+    })
+}
+
+pub(crate) fn unexpected(kind: u32, expected: &'static str) -> MatError {
+    MatError::Unexpected {
+        found: format!("type {kind}"),
+        expected,
+    }
+}

@@ -1,0 +1,199 @@
+//! Named arrays of one or two dimensions as columns, for MATLAB and HDF5.
+
+use crate::ReadError;
+use crate::sheet::Columns;
+use crate::value_limit::ValueLimit;
+
+/// Most channels of an array: a picture or a table of results has more.
+pub(crate) const MOST_CHANNELS: u64 = 256;
+/// Most columns of a file.
+pub(crate) const MOST_COLUMNS: usize = 65_536;
+/// Names of scalars and attributes that state the sample rate in hertz, in lower case.
+const RATES: [&str; 9] = [
+    "fs",
+    "fs_hz",
+    "rate",
+    "rate_hz",
+    "sample_rate",
+    "sample_rate_hz",
+    "samplerate",
+    "sampling_rate",
+    "sampling_rate_hz",
+];
+
+/// Whether a scalar or an attribute of this name states the sample rate.
+pub(crate) fn is_rate_name(name: &str) -> bool {
+    RATES.contains(&name.to_lowercase().as_str())
+}
+
+/// The shape of an array that is read as columns: its longer side is time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Shape {
+    pub(crate) samples: u64,
+    pub(crate) channels: u64,
+    /// Whether the samples of a channel are next to each other in the file.
+    pub(crate) is_planar: bool,
+}
+
+impl Shape {
+    /// Returns the shape of an array of `outer` blocks of `inner` values that are next to each other in the file; `None` for a
+    /// single value, nothing, and more than [`MOST_CHANNELS`].
+    pub(crate) fn of(outer: u64, inner: u64) -> Option<Self> {
+        let is_planar = inner >= outer;
+        let (channels, samples) = if is_planar {
+            (outer, inner)
+        } else {
+            (inner, outer)
+        };
+        let is_signal = samples > 1 && (1..=MOST_CHANNELS).contains(&channels);
+        is_signal.then_some(Self {
+            samples,
+            channels,
+            is_planar,
+        })
+    }
+
+    /// Returns channel and sample of a value, by its index in the file.
+    pub(crate) fn place(self, index: u64) -> (u64, u64) {
+        match self.is_planar {
+            true => (index / self.samples, index % self.samples),
+            false => (index % self.channels, index / self.channels),
+        }
+    }
+}
+
+/// The arrays of a file, each of one or more columns.
+#[derive(Debug)]
+pub(crate) struct Arrays<T> {
+    arrays: Vec<(Shape, T)>,
+    /// Array and channel of each column.
+    columns: Vec<(usize, u64)>,
+    names: Vec<String>,
+    /// Names and values of scalars that state a rate.
+    rates: Vec<(String, f64)>,
+    separator: char,
+}
+
+impl<T> Arrays<T> {
+    pub(crate) fn new(separator: char) -> Self {
+        Self {
+            arrays: Vec::new(),
+            columns: Vec::new(),
+            names: Vec::new(),
+            rates: Vec::new(),
+            separator,
+        }
+    }
+
+    /// Adds an array. A single channel has its name, several have `name#1` and so on. False when there are too many columns.
+    #[must_use]
+    pub(crate) fn add(&mut self, name: &str, shape: Shape, array: T) -> bool {
+        for channel in 0..shape.channels {
+            self.columns.push((self.arrays.len(), channel));
+            self.names.push(match shape.channels {
+                1 => name.to_owned(),
+                _ => format!("{name}#{}", channel + 1),
+            });
+        }
+        self.arrays.push((shape, array));
+        self.columns.len() <= MOST_COLUMNS
+    }
+
+    /// Adds a scalar, if its name is that of a rate.
+    pub(crate) fn add_scalar(&mut self, name: &str, value: f64) {
+        let last = name.rsplit(self.separator).next().unwrap_or(name);
+        if is_rate_name(last) && value.is_finite() && value > 0.0 && self.rates.len() < MOST_COLUMNS
+        {
+            self.rates.push((name.to_owned(), value));
+        }
+    }
+
+    pub(crate) fn columns(&self, file: &str) -> Columns {
+        Columns::new(file, self.names.iter().cloned(), Some(self.separator))
+    }
+
+    /// Returns the rate that is stated nearest to the wanted columns: in their group or array, or in one around it. Different rates at the
+    /// same distance are an error.
+    pub(crate) fn rate_hz(
+        &self,
+        columns: &Columns,
+        wanted: &[usize],
+    ) -> Result<Option<f64>, ReadError> {
+        let Some(first) = wanted.first() else {
+            return Ok(None);
+        };
+        let mut around = array_name(&columns.name(*first)).to_owned();
+        loop {
+            let group = |name: &str| {
+                name.rfind(self.separator)
+                    .map_or("", |at| &name[..at])
+                    .to_owned()
+            };
+            let mut here = self.rates.iter().filter(|(name, _)| group(name) == around);
+            if let Some((name, rate_hz)) = here.next() {
+                return match here.find(|(_, other)| other != rate_hz) {
+                    None => Ok(Some(*rate_hz)),
+                    Some((other, _)) => Err(ReadError::Damaged {
+                        file: columns.file.clone(),
+                        place: htex_format::plain(other).into_owned(),
+                        problem: format!(
+                            "it states another sample rate than {}; give the rate of the recording",
+                            htex_format::plain(name)
+                        ),
+                    }),
+                };
+            }
+            if around.is_empty() {
+                return Ok(None);
+            }
+            around = group(&around);
+        }
+    }
+
+    /// Reads the wanted columns: `read` reads an array and passes each value with its index in the file. Each array is read once.
+    pub(crate) fn numbers(
+        &self,
+        file: &str,
+        limit: ValueLimit,
+        wanted: &[usize],
+        mut read: impl FnMut(&T, Shape, &mut dyn FnMut(u64, f64)) -> Result<(), ReadError>,
+    ) -> Result<Vec<Vec<f64>>, ReadError> {
+        let of = |column: &usize| self.columns.get(*column).copied().unwrap_or((0, 0));
+        let samples = |column| {
+            self.arrays
+                .get(of(column).0)
+                .map_or(0, |(shape, _)| shape.samples)
+        };
+        limit.check(
+            file,
+            wanted.iter().map(samples).fold(0, u64::saturating_add),
+        )?;
+        let mut numbers = vec![Vec::new(); wanted.len()];
+        for (index, (shape, array)) in self.arrays.iter().enumerate() {
+            let mut slots = vec![None; shape.channels as usize];
+            for (slot, (own, channel)) in wanted.iter().map(of).enumerate() {
+                if own == index {
+                    slots[channel as usize] = Some(slot);
+                }
+            }
+            if slots.iter().all(Option::is_none) {
+                continue;
+            }
+            read(array, *shape, &mut |at, value| {
+                let (channel, _) = shape.place(at);
+                if let Some(slot) = slots[channel as usize] {
+                    numbers[slot].push(value);
+                }
+            })?;
+        }
+        Ok(numbers)
+    }
+}
+
+/// Returns the name of the array of a column: `data` of `data#2`.
+fn array_name(column: &str) -> &str {
+    match column.rsplit_once('#') {
+        Some((name, number)) if number.bytes().all(|byte| byte.is_ascii_digit()) => name,
+        _ => column,
+    }
+}

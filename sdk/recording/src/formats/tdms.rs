@@ -1,0 +1,162 @@
+//! TDMS, the files of LabVIEW: channels in groups, with their rate.
+//!
+//! Layout: "TDMS File Format Internal Structure", National Instruments; segments, each with the objects that it changes, and raw data in
+//! chunks. The directory of all segments is read first, then the channels that are used.
+//!
+//! The reader is the project's own: `tdms` unwraps what a damaged file may lack, and reads files alone.
+
+use std::io::{Seek, SeekFrom};
+
+use crate::ReadError;
+use crate::columns::clock::snap;
+use crate::formats::bytes::{ByteReader, Endian};
+use crate::formats::tdms_directory::{Channel, Directory, Piece};
+use crate::formats::tdms_object::TdmsError;
+use crate::input::{Opened, Random};
+use crate::sheet::{Columns, Numbers, Sheet};
+use crate::value_limit::ValueLimit;
+
+/// An opened file.
+pub(crate) struct Tdms {
+    columns: Columns,
+    channels: Vec<Channel>,
+    warnings: Vec<String>,
+    limit: ValueLimit,
+    input: Random,
+}
+
+impl Tdms {
+    /// Reads the directory.
+    pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, ReadError> {
+        let file = opened.file.clone();
+        let mut input = opened.random()?;
+        let mut directory = Directory::new(limit);
+        directory
+            .read(&mut input)
+            .map_err(|problem| damaged(&file, directory.place(), &problem))?;
+        let channels: Vec<Channel> = directory
+            .channels
+            .into_iter()
+            .filter(|channel| channel.samples > 0 || channel.refused.is_some())
+            .collect();
+        let names = channels
+            .iter()
+            .map(|channel| (channel.name.clone(), channel.part))
+            .collect();
+        Ok(Self {
+            columns: Columns::with_parts(&file, names),
+            channels,
+            warnings: directory.warnings,
+            limit,
+            input,
+        })
+    }
+
+    fn read(&mut self, channel: &Channel) -> Result<Vec<f64>, TdmsError> {
+        if let Some(problem) = &channel.refused {
+            return Err(TdmsError::Refused(problem));
+        }
+        let mut values = Vec::new();
+        for piece in &channel.pieces {
+            for chunk in 0..piece.chunks {
+                self.input
+                    .seek(SeekFrom::Start(piece.start + chunk * piece.chunk_bytes))?;
+                read_chunk(&mut self.input, piece, &mut values)?;
+            }
+        }
+        Ok(values)
+    }
+}
+
+/// Reads the values of a channel in one chunk, which begins with its first value.
+fn read_chunk(input: &mut Random, piece: &Piece, values: &mut Vec<f64>) -> Result<(), TdmsError> {
+    let size = piece.kind.size() as u64;
+    if piece.stride == size {
+        let mut reader = ByteReader::new(input, piece.endian);
+        return Ok(reader.values(piece.kind, piece.values, |_, value| values.push(value))?);
+    }
+    // Whole rows of interleaved channels, some at once.
+    let rows_at_once = (256 << 10) / piece.stride + 1;
+    let mut done = 0;
+    while done < piece.values {
+        let rows = rows_at_once.min(piece.values - done);
+        // The last row ends with the channel's own value.
+        let bytes = (rows - 1) * piece.stride + size;
+        let rows_read = ByteReader::new(&mut *input, Endian::Little).vec(bytes)?;
+        let of_rows = rows_read.chunks(piece.stride as usize);
+        values.extend(of_rows.map(|row| piece.kind.value(row, piece.endian)));
+        done += rows;
+        if done < piece.values {
+            input.seek(SeekFrom::Current((piece.stride - size) as i64))?;
+        }
+    }
+    Ok(())
+}
+
+impl Sheet for Tdms {
+    fn columns(&self) -> &Columns {
+        &self.columns
+    }
+
+    /// Returns the inverse of `wf_increment`, which must be that of all channels.
+    fn rate_hz(&self, wanted: &[usize]) -> Result<Option<f64>, ReadError> {
+        let channels = wanted
+            .iter()
+            .filter_map(|column| self.channels.get(*column));
+        let mut first: Option<(&Channel, f64)> = None;
+        for channel in channels {
+            let Some(step_s) = channel.increment_s else {
+                continue;
+            };
+            match first {
+                None => first = Some((channel, step_s)),
+                Some((_, other)) if other == step_s => {}
+                Some((other, other_s)) => {
+                    return Err(ReadError::Damaged {
+                        file: self.columns.file.clone(),
+                        place: htex_format::plain(&channel.name).into_owned(),
+                        problem: format!(
+                            "its samples are {step_s} s apart, those of {} {other_s} s; map channels of one rate",
+                            htex_format::plain(&other.name)
+                        ),
+                    });
+                }
+            }
+        }
+        Ok(first.map(|(_, step_s)| snap(1.0 / step_s)))
+    }
+
+    fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, ReadError> {
+        let channels = std::mem::take(&mut self.channels);
+        let chosen = || wanted.iter().filter_map(|column| channels.get(*column));
+        let file = self.columns.file.clone();
+        let values = chosen().fold(0_u64, |sum, channel| sum.saturating_add(channel.samples));
+        let read = self.limit.check(&file, values).and_then(|()| {
+            let read = |channel: &Channel| {
+                let read = self.read(channel);
+                read.map_err(|problem| {
+                    damaged(
+                        &file,
+                        htex_format::plain(&channel.name).into_owned(),
+                        &problem,
+                    )
+                })
+            };
+            chosen().map(read).collect()
+        });
+        self.channels = channels;
+        Ok(Numbers {
+            columns: read?,
+            warnings: self.warnings.clone(),
+            ..Numbers::default()
+        })
+    }
+}
+
+fn damaged(file: &str, place: String, problem: &TdmsError) -> ReadError {
+    ReadError::Damaged {
+        file: file.to_owned(),
+        place,
+        problem: problem.to_string(),
+    }
+}

@@ -1,0 +1,357 @@
+//! The directory of a TDMS file: its channels, and where their values are.
+
+use std::collections::HashMap;
+use std::io::{BufReader, Read, Seek};
+
+use crate::formats::bytes::{ByteReader, Endian, NumberType};
+use crate::formats::tdms_object::{
+    Layout, MOST_CHANNELS, TdmsError, attribute, daqmx_index, layout, parts, text,
+};
+use crate::input::Random;
+use crate::value_limit::ValueLimit;
+
+/// Length of the first part of a segment.
+const LEAD_IN: u64 = 28;
+/// Why channels are refused.
+const RAW_DAQMX: &str =
+    "it has raw DAQmx data, which are not read; in LabVIEW or DIAdem, save it with scaled values";
+const UNSCALED: &str = "its values are stored without their scales (NI_Number_Of_Scales), which are not applied; in LabVIEW or \
+                        DIAdem, save it with scaled values";
+
+/// Bits of a segment's table of contents.
+const METADATA: u32 = 1 << 1;
+const NEW_OBJECTS: u32 = 1 << 2;
+const RAW_DATA: u32 = 1 << 3;
+const INTERLEAVED: u32 = 1 << 5;
+const BIG_ENDIAN: u32 = 1 << 6;
+const DAQMX: u32 = 1 << 7;
+/// The length of a segment that was not completed.
+const INCOMPLETE: u64 = u64::MAX;
+
+/// A channel of a file.
+#[derive(Debug)]
+pub(crate) struct Channel {
+    /// `Group/Channel`.
+    pub(crate) name: String,
+    /// Byte at which the channel's own name begins.
+    pub(crate) part: usize,
+    /// Seconds between samples, above 0.
+    pub(crate) increment_s: Option<f64>,
+    pub(crate) samples: u64,
+    pub(crate) pieces: Vec<Piece>,
+    /// Why the channel cannot be read.
+    pub(crate) refused: Option<&'static str>,
+    layout: Option<Layout>,
+    /// The list of objects that the channel was added to last.
+    list: u64,
+}
+
+/// Values of a channel in the chunks of one segment.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Piece {
+    /// Byte of the first value.
+    pub(crate) start: u64,
+    pub(crate) chunks: u64,
+    pub(crate) chunk_bytes: u64,
+    /// Values in a chunk.
+    pub(crate) values: u64,
+    /// Bytes from one value to the next.
+    pub(crate) stride: u64,
+    pub(crate) kind: NumberType,
+    pub(crate) endian: Endian,
+}
+
+/// What has been read of a directory.
+pub(crate) struct Directory {
+    pub(crate) channels: Vec<Channel>,
+    pub(crate) warnings: Vec<String>,
+    by_path: HashMap<String, usize>,
+    /// Channels with values in the current segment, in their order.
+    current: Vec<usize>,
+    /// Number of the list of objects, from 1.
+    list: u64,
+    limit: ValueLimit,
+    pieces: u64,
+    /// Byte of the segment.
+    segment: u64,
+}
+
+struct Segment {
+    contents: u32,
+    endian: Endian,
+    data: u64,
+    end: u64,
+    is_complete: bool,
+}
+
+impl Directory {
+    pub(crate) fn new(limit: ValueLimit) -> Self {
+        Self {
+            channels: Vec::new(),
+            warnings: Vec::new(),
+            by_path: HashMap::new(),
+            current: Vec::new(),
+            list: 1,
+            limit,
+            pieces: 0,
+            segment: 0,
+        }
+    }
+
+    /// Returns the place that was read last.
+    pub(crate) fn place(&self) -> String {
+        format!("segment at byte {}", self.segment)
+    }
+
+    /// Reads all segments.
+    pub(crate) fn read(&mut self, input: &mut Random) -> Result<(), TdmsError> {
+        let length = input.len()?;
+        let mut input = BufReader::new(input);
+        while self.segment < length {
+            let here = input.stream_position()?;
+            input.seek_relative(self.segment.wrapping_sub(here) as i64)?;
+            let mut reader = ByteReader::new(&mut input, Endian::Little);
+            let segment = self.lead_in(&mut reader, length)?;
+            if segment.contents & METADATA != 0 {
+                if segment.contents & NEW_OBJECTS != 0 {
+                    self.current.clear();
+                    self.list += 1;
+                }
+                self.objects(&mut reader)?;
+            }
+            if segment.contents & RAW_DATA != 0 {
+                self.raw_data(&segment)?;
+            }
+            self.segment = segment.end;
+        }
+        Ok(())
+    }
+
+    fn lead_in(
+        &self,
+        reader: &mut ByteReader<impl Read>,
+        length: u64,
+    ) -> Result<Segment, TdmsError> {
+        match &reader.array()? {
+            b"TDSm" => {}
+            b"TDSh" => return Err(TdmsError::Index),
+            other => return Err(TdmsError::Signature(*other)),
+        }
+        let contents = reader.u32()?;
+        if contents & BIG_ENDIAN != 0 {
+            reader.endian = Endian::Big;
+        }
+        let _version = reader.u32()?;
+        let (size, metadata) = (reader.u64()?, reader.u64()?);
+        let start = self.segment + LEAD_IN;
+        let left = length.saturating_sub(start);
+        let is_complete = size != INCOMPLETE;
+        let size = if is_complete { size } else { left };
+        if size > left || metadata > size {
+            return Err(TdmsError::Short {
+                wanted: size.max(metadata),
+                left,
+            });
+        }
+        Ok(Segment {
+            contents,
+            endian: reader.endian,
+            data: start + metadata,
+            end: start + size,
+            is_complete,
+        })
+    }
+
+    /// Reads the objects that a segment adds or changes.
+    fn objects(&mut self, reader: &mut ByteReader<impl Read>) -> Result<(), TdmsError> {
+        for _ in 0..reader.u32()? {
+            let path = text(reader)?;
+            let channel = self.channel(&path)?;
+            let index = reader.u32()?;
+            match (channel, index) {
+                (_, u32::MAX) => {}
+                (Some(channel), 0) => self.add_current(channel),
+                (None, 0) => {}
+                (channel, 0x1269 | 0x1369 | 0x6912_0000 | 0x6913_0000) => {
+                    daqmx_index(reader)?;
+                    if let Some(channel) = channel {
+                        self.refuse(channel, RAW_DAQMX);
+                    }
+                }
+                (channel, _) => {
+                    let layout = layout(reader)?;
+                    if let Some(channel) = channel {
+                        self.set_layout(channel, layout);
+                    }
+                }
+            }
+            self.attributes(reader, channel)?;
+        }
+        Ok(())
+    }
+
+    /// Returns the channel of a path, `None` for the file and groups.
+    fn channel(&mut self, path: &str) -> Result<Option<usize>, TdmsError> {
+        if let Some(channel) = self.by_path.get(path) {
+            return Ok(Some(*channel));
+        }
+        let bad = || TdmsError::Path(htex_format::plain(path).into_owned());
+        let parts = parts(path).ok_or_else(bad)?;
+        let [group, own] = &parts[..] else {
+            return if parts.len() < 2 {
+                Ok(None)
+            } else {
+                Err(bad())
+            };
+        };
+        if self.channels.len() == MOST_CHANNELS {
+            return Err(TdmsError::TooManyChannels);
+        }
+        let index = self.channels.len();
+        self.channels.push(Channel {
+            name: format!("{group}/{own}"),
+            part: group.len() + 1,
+            increment_s: None,
+            samples: 0,
+            pieces: Vec::new(),
+            refused: None,
+            layout: None,
+            list: 0,
+        });
+        self.by_path.insert(path.to_owned(), index);
+        Ok(Some(index))
+    }
+
+    fn add_current(&mut self, channel: usize) {
+        let own = &mut self.channels[channel];
+        if own.list != self.list {
+            own.list = self.list;
+            self.current.push(channel);
+        }
+    }
+
+    fn set_layout(&mut self, channel: usize, layout: Layout) {
+        self.channels[channel].layout = Some(layout);
+        self.add_current(channel);
+    }
+
+    fn refuse(&mut self, channel: usize, problem: &'static str) {
+        self.channels[channel].refused.get_or_insert(problem);
+    }
+
+    /// Reads the attributes of an object; of a channel, its rate and scales are kept.
+    fn attributes(
+        &mut self,
+        reader: &mut ByteReader<impl Read>,
+        channel: Option<usize>,
+    ) -> Result<(), TdmsError> {
+        for _ in 0..reader.u32()? {
+            let name = text(reader)?;
+            let value = attribute(reader)?;
+            let Some(channel) = channel else {
+                continue;
+            };
+            match (&name[..], value) {
+                ("wf_increment", Some(step_s)) if step_s > 0.0 && step_s.is_finite() => {
+                    self.channels[channel].increment_s = Some(step_s);
+                }
+                ("NI_Number_Of_Scales", Some(count)) if count > 0.0 => {
+                    self.refuse(channel, UNSCALED);
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the pieces of a segment to its channels.
+    fn raw_data(&mut self, segment: &Segment) -> Result<(), TdmsError> {
+        if segment.contents & DAQMX != 0 {
+            for channel in self.current.clone() {
+                self.refuse(channel, RAW_DAQMX);
+            }
+            return Ok(());
+        }
+        let bytes = segment.end - segment.data;
+        if self.current.is_empty() || bytes == 0 {
+            return Ok(());
+        }
+        let layouts: Vec<(usize, Layout)> = self
+            .current
+            .iter()
+            .filter_map(|channel| Some((*channel, self.channels[*channel].layout?)))
+            .collect();
+        let chunk_bytes = layouts
+            .iter()
+            .fold(0_u64, |sum, (_, layout)| sum.saturating_add(layout.bytes));
+        if chunk_bytes == 0 {
+            return Err(TdmsError::Layout(
+                "the segment has values, but no channel has any; the file is damaged, copy it again",
+            ));
+        }
+        let chunks = bytes / chunk_bytes;
+        if !bytes.is_multiple_of(chunk_bytes) {
+            if segment.is_complete {
+                return Err(TdmsError::Layout(
+                    "the segment ends inside its values; the file is damaged, copy it again",
+                ));
+            }
+            self.warnings.push(format!(
+                "The file was not completed: the last {} bytes are less than the {chunk_bytes} of a chunk and are left out.",
+                bytes % chunk_bytes
+            ));
+        }
+        let is_interleaved = segment.contents & INTERLEAVED != 0;
+        let rows = layouts.first().map_or(0, |(_, layout)| layout.values);
+        if is_interleaved
+            && layouts
+                .iter()
+                .any(|(_, layout)| layout.values != rows || layout.kind.is_none())
+        {
+            return Err(TdmsError::Layout(
+                "interleaved channels have different lengths; the file is damaged, copy it again",
+            ));
+        }
+        let stride = layouts
+            .iter()
+            .filter_map(|(_, layout)| layout.kind)
+            .map(|kind| kind.size() as u64)
+            .sum();
+        let mut start = segment.data;
+        for (channel, layout) in layouts {
+            let size = layout.kind.map_or(0, |kind| kind.size() as u64);
+            self.add_piece(
+                channel,
+                layout,
+                Piece {
+                    start,
+                    chunks,
+                    chunk_bytes,
+                    values: layout.values,
+                    stride: if is_interleaved { stride } else { size },
+                    kind: layout.kind.unwrap_or(NumberType::U8),
+                    endian: segment.endian,
+                },
+            )?;
+            start += if is_interleaved { size } else { layout.bytes };
+        }
+        Ok(())
+    }
+
+    fn add_piece(&mut self, channel: usize, layout: Layout, piece: Piece) -> Result<(), TdmsError> {
+        if layout.kind.is_none() || piece.values == 0 || piece.chunks == 0 {
+            return Ok(());
+        }
+        // A piece takes the memory of eight numbers.
+        self.pieces += 8;
+        if self.pieces > self.limit.most_values as u64 {
+            return Err(TdmsError::TooManyPieces);
+        }
+        let own = &mut self.channels[channel];
+        own.samples = own
+            .samples
+            .saturating_add(piece.values.saturating_mul(piece.chunks));
+        own.pieces.push(piece);
+        Ok(())
+    }
+}

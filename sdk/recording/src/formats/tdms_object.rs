@@ -1,0 +1,166 @@
+//! The parts of a TDMS object: its path, the layout of its values, its attributes; and the errors of a file.
+
+use std::io::{self, Read};
+
+use crate::formats::bytes::{ByteReader, NumberType};
+
+/// Longest text, bytes.
+const MOST_TEXT: u32 = 64 << 10;
+/// Most channels.
+pub(crate) const MOST_CHANNELS: usize = 65_536;
+
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum TdmsError {
+    #[error("the file ends or cannot be read here: {0}; copy it again")]
+    Io(#[from] io::Error),
+    #[error("a segment begins with {0:02x?} instead of TDSm; the file is damaged, copy it again")]
+    Signature([u8; 4]),
+    #[error("this is only an index (TDSh); give the .tdms file beside it")]
+    Index,
+    #[error(
+        "a segment of {wanted} bytes begins where {left} are left; the file seems truncated, copy it again"
+    )]
+    Short { wanted: u64, left: u64 },
+    #[error("a text of {0} bytes; the file is damaged, copy it again")]
+    LongText(u32),
+    #[error(
+        "the object {0} is neither the file, a group nor a channel; the file is damaged, copy it again"
+    )]
+    Path(String),
+    #[error("more than {MOST_CHANNELS} channels; export those of the recording alone")]
+    TooManyChannels,
+    #[error(
+        "its pieces are more than the limit of numbers; export the recording again as one piece (defragmented)"
+    )]
+    TooManyPieces,
+    #[error("{0}")]
+    Layout(&'static str),
+    #[error("an attribute has the unknown type {0:#x}; export the file again")]
+    Attribute(u32),
+    #[error("{0}")]
+    Refused(&'static str),
+}
+
+/// The values of a channel in a chunk.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Layout {
+    /// `None` for what are not numbers, such as texts and times.
+    pub(crate) kind: Option<NumberType>,
+    pub(crate) values: u64,
+    pub(crate) bytes: u64,
+}
+
+/// Reads type and length of a channel's values in a chunk.
+pub(crate) fn layout(reader: &mut ByteReader<impl Read>) -> Result<Layout, TdmsError> {
+    let (kind, dimension, values) = (reader.u32()?, reader.u32()?, reader.u64()?);
+    if dimension != 1 {
+        return Err(TdmsError::Layout(
+            "a channel has more than one dimension; the file is damaged, copy it again",
+        ));
+    }
+    let number = number_type(kind);
+    let size = match (number, kind) {
+        (Some(number), _) => number.size() as u64,
+        (None, 0x20) => {
+            let bytes = reader.u64()?;
+            return Ok(Layout {
+                kind: None,
+                values,
+                bytes,
+            });
+        }
+        (None, 0) => 0,
+        (None, 0x21) => 1,
+        (None, 0x0008_000c) => 8,
+        (None, 0x44 | 0x0010_000d) => 16,
+        _ => {
+            return Err(TdmsError::Layout(
+                "a channel has extended or fixed-point numbers; save it as DBL",
+            ));
+        }
+    };
+    let bytes = values.checked_mul(size);
+    let bytes = bytes.ok_or(TdmsError::Layout(
+        "a channel has too many values; the file is damaged, copy it again",
+    ))?;
+    Ok(Layout {
+        kind: number,
+        values,
+        bytes,
+    })
+}
+
+/// Reads past the index of raw DAQmx data.
+pub(crate) fn daqmx_index(reader: &mut ByteReader<impl Read>) -> Result<(), TdmsError> {
+    reader.skip(16)?;
+    let scalers = reader.u32()?;
+    reader.skip(20 * u64::from(scalers))?;
+    let widths = reader.u32()?;
+    Ok(reader.skip(4 * u64::from(widths))?)
+}
+
+/// Reads a value; `None` for what is not a number.
+pub(crate) fn attribute(reader: &mut ByteReader<impl Read>) -> Result<Option<f64>, TdmsError> {
+    let kind = reader.u32()?;
+    if let Some(number) = number_type(kind) {
+        let mut value = f64::NAN;
+        reader.values(number, 1, |_, read| value = read)?;
+        return Ok(Some(value));
+    }
+    match kind {
+        0x20 => drop(text(reader)?),
+        0x21 => reader.skip(1)?,
+        0x44 => reader.skip(16)?,
+        other => return Err(TdmsError::Attribute(other)),
+    }
+    Ok(None)
+}
+
+fn number_type(kind: u32) -> Option<NumberType> {
+    Some(match kind {
+        1 => NumberType::I8,
+        2 => NumberType::I16,
+        3 => NumberType::I32,
+        4 => NumberType::I64,
+        5 => NumberType::U8,
+        6 => NumberType::U16,
+        7 => NumberType::U32,
+        8 => NumberType::U64,
+        9 | 0x19 => NumberType::F32,
+        10 | 0x1a => NumberType::F64,
+        _ => return None,
+    })
+}
+
+pub(crate) fn text(reader: &mut ByteReader<impl Read>) -> Result<String, TdmsError> {
+    let length = reader.u32()?;
+    if length > MOST_TEXT {
+        return Err(TdmsError::LongText(length));
+    }
+    let bytes = reader.vec(length.into())?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// Returns the parts of a path: `/'Group'/'Channel'`, in which a quote is doubled.
+pub(crate) fn parts(path: &str) -> Option<Vec<String>> {
+    let mut parts = Vec::new();
+    let mut rest = path;
+    while !rest.is_empty() && rest != "/" {
+        let mut own = String::new();
+        rest = rest.strip_prefix("/'")?;
+        loop {
+            let quote = rest.find('\'')?;
+            own.push_str(&rest[..quote]);
+            rest = &rest[quote + 1..];
+            match rest.strip_prefix('\'') {
+                Some(behind) => {
+                    own.push('\'');
+                    rest = behind;
+                }
+                None => break,
+            }
+        }
+        parts.push(own);
+    }
+    Some(parts)
+}

@@ -1,0 +1,61 @@
+//! WAV: integer or float samples of any number of channels.
+
+use std::io::BufReader;
+
+use hound::{SampleFormat, WavReader};
+
+use crate::ReadError;
+use crate::formats::samples::{Order, Samples, channel_names};
+use crate::input::Opened;
+use crate::value_limit::ValueLimit;
+
+/// Opens a WAV file, whose samples are then read one by one.
+pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>, ReadError> {
+    let file = opened.file.clone();
+    let reader = WavReader::new(BufReader::new(opened.stream()))
+        .map_err(|error| broken(&file, format!("not a readable WAV file: {error}")))?;
+    let spec = reader.spec();
+    let width = usize::from(spec.channels);
+    if width == 0 {
+        return Err(broken(
+            &file,
+            "the header says 0 channels; export it again".into(),
+        ));
+    }
+    let are_integers = spec.sample_format == SampleFormat::Int;
+    let frames = reader.len() / u32::from(spec.channels);
+    let columns = channel_names(&file, width);
+    let placed = move |(position, sample): (usize, hound::Result<f64>)| {
+        sample.map_err(|error| {
+            let frame = position / width;
+            let problem = format!(
+                "the file ends or breaks at sample {frame} (counted from 0): {error}; copy it again"
+            );
+            broken(&file, problem)
+        })
+    };
+    Ok(Samples {
+        columns,
+        rate_hz: Some(f64::from(spec.sample_rate)),
+        are_integers,
+        frames: Some(frames.into()),
+        limit,
+        order: Order::Interleaved,
+        samples: if are_integers {
+            let full_scale = libm::exp2(f64::from(spec.bits_per_sample) - 1.0);
+            let samples = reader.into_samples::<i32>();
+            let fractions = samples.map(move |s| s.map(|s| f64::from(s) / full_scale));
+            Box::new(fractions.enumerate().map(placed))
+        } else {
+            let samples = reader.into_samples::<f32>();
+            Box::new(samples.map(|s| s.map(f64::from)).enumerate().map(placed))
+        },
+    })
+}
+
+fn broken(file: &str, problem: String) -> ReadError {
+    ReadError::Wav {
+        file: file.to_owned(),
+        problem,
+    }
+}

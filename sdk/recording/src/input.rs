@@ -1,0 +1,126 @@
+//! Files and bytes as input.
+
+use std::fs::File;
+use std::io::{self, Cursor, Read, Seek, SeekFrom, Take};
+use std::path::{Path, PathBuf};
+
+use crate::ReadError;
+use crate::formats::text::{self, MAX_BYTES};
+
+/// First bytes that are read to detect the kind of file: an HDF5 signature is at most this far from the start.
+const FRONT: usize = 4096;
+
+/// A file, or bytes.
+pub(crate) enum Input<'a> {
+    File(Take<File>),
+    Bytes(&'a [u8]),
+}
+
+impl Read for Input<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        match self {
+            Self::File(file) => file.read(buffer),
+            Self::Bytes(bytes) => bytes.read(buffer),
+        }
+    }
+}
+
+/// An input whose first bytes have been read.
+pub(crate) struct Opened<'a> {
+    /// Its path, for the extension.
+    pub(crate) path: PathBuf,
+    /// File name for messages.
+    pub(crate) file: String,
+    /// The first bytes.
+    pub(crate) front: Vec<u8>,
+    rest: Input<'a>,
+}
+
+impl Opened<'static> {
+    /// Opens a file with a size limit.
+    pub(crate) fn file(path: &Path) -> Result<Self, ReadError> {
+        Self::new(path, Input::File(text::open(path)?))
+    }
+}
+
+impl<'a> Opened<'a> {
+    /// Reads the first bytes.
+    pub(crate) fn new(path: &Path, mut input: Input<'a>) -> Result<Self, ReadError> {
+        let file = text::file_name(path);
+        let mut front = Vec::new();
+        let read = input.by_ref().take(FRONT as u64).read_to_end(&mut front);
+        read.map_err(|source| ReadError::Io {
+            file: file.clone(),
+            source,
+        })?;
+        Ok(Self {
+            path: path.to_owned(),
+            file,
+            front,
+            rest: input,
+        })
+    }
+
+    /// Returns all bytes, in their order.
+    pub(crate) fn stream(self) -> impl Read + 'a {
+        Cursor::new(self.front).chain(self.rest)
+    }
+
+    /// Returns the input for access in any order. What cannot be read twice, such as a pipe, is read into memory.
+    pub(crate) fn random(self) -> Result<Random, ReadError> {
+        let file = self.file.clone();
+        let mut bytes = self.front;
+        let random = match self.rest {
+            Input::Bytes(rest) => {
+                bytes.extend_from_slice(rest);
+                Ok(Random::Bytes(Cursor::new(bytes)))
+            }
+            Input::File(taken) => from_file(taken, bytes),
+        };
+        random.map_err(|source| ReadError::Io { file, source })
+    }
+}
+
+fn from_file(mut taken: Take<File>, mut front: Vec<u8>) -> io::Result<Random> {
+    if taken.get_ref().metadata()?.is_file() {
+        let mut file = taken.into_inner();
+        file.seek(SeekFrom::Start(0))?;
+        return Ok(Random::File(file));
+    }
+    taken.read_to_end(&mut front)?;
+    Ok(Random::Bytes(Cursor::new(front)))
+}
+
+/// An input for access in any order.
+pub(crate) enum Random {
+    File(File),
+    Bytes(Cursor<Vec<u8>>),
+}
+
+impl Random {
+    /// Returns the number of bytes.
+    pub(crate) fn len(&self) -> io::Result<u64> {
+        match self {
+            Self::File(file) => Ok(file.metadata()?.len().min(MAX_BYTES)),
+            Self::Bytes(bytes) => Ok(bytes.get_ref().len() as u64),
+        }
+    }
+}
+
+impl Read for Random {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        match self {
+            Self::File(file) => file.read(buffer),
+            Self::Bytes(bytes) => bytes.read(buffer),
+        }
+    }
+}
+
+impl Seek for Random {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        match self {
+            Self::File(file) => file.seek(to),
+            Self::Bytes(bytes) => bytes.seek(to),
+        }
+    }
+}

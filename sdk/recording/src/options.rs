@@ -1,0 +1,121 @@
+//! Options of reading recordings.
+
+use htex_format::Quantity;
+
+use crate::columns::map::ColumnMap;
+use crate::recording::{MAX_RATE_HZ, check_rate};
+use crate::tracker::Tracker;
+use crate::value_limit::ValueLimit;
+use crate::{MOST_VALUES, ReadError};
+
+/// Options of reading, for what a file does not state.
+#[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
+pub struct ReadOptions {
+    /// Sample rate, hertz. Required where the file has neither a rate nor times. It takes precedence over both, but must equal the
+    /// rate of a WAV or FLAC.
+    pub rate_hz: Option<f64>,
+    /// Roles of columns; columns that it leaves out are assigned by their names.
+    pub map: Option<ColumnMap>,
+    /// Quantity of the texture's signal.
+    pub quantity: Quantity,
+    /// Value of a full-scale (1.0) sample in WAV, FLAC and NPY without a map, in the quantity's unit; 1 with a warning when absent.
+    pub scale: Option<f64>,
+    /// Start of the part to read, seconds of the file.
+    pub from_s: Option<f64>,
+    /// End of the part to read, seconds of the file.
+    pub to_s: Option<f64>,
+    /// A file with the motion of the finger.
+    pub tracker: Option<Tracker>,
+    /// Limit on the numbers kept in memory of each file; [`MOST_VALUES`] when absent. Unused columns do not count.
+    pub most_values: Option<usize>,
+}
+
+impl ReadOptions {
+    /// Sets the sample rate, hertz.
+    #[must_use]
+    pub fn with_rate_hz(mut self, rate_hz: impl Into<Option<f64>>) -> Self {
+        self.rate_hz = rate_hz.into();
+        self
+    }
+
+    /// Sets the roles of columns.
+    #[must_use]
+    pub fn with_map(mut self, map: impl Into<Option<ColumnMap>>) -> Self {
+        self.map = map.into();
+        self
+    }
+
+    /// Sets the quantity of the texture's signal.
+    #[must_use]
+    pub fn with_quantity(mut self, quantity: Quantity) -> Self {
+        self.quantity = quantity;
+        self
+    }
+
+    /// Sets the value of a full-scale sample in WAV, FLAC and NPY.
+    #[must_use]
+    pub fn with_scale(mut self, scale: impl Into<Option<f64>>) -> Self {
+        self.scale = scale.into();
+        self
+    }
+
+    /// Sets the start of the part to read, seconds of the file.
+    #[must_use]
+    pub fn with_from_s(mut self, from_s: impl Into<Option<f64>>) -> Self {
+        self.from_s = from_s.into();
+        self
+    }
+
+    /// Sets the end of the part to read, seconds of the file.
+    #[must_use]
+    pub fn with_to_s(mut self, to_s: impl Into<Option<f64>>) -> Self {
+        self.to_s = to_s.into();
+        self
+    }
+
+    /// Sets the limit on the numbers kept in memory.
+    #[must_use]
+    pub fn with_most_values(mut self, most_values: impl Into<Option<usize>>) -> Self {
+        self.most_values = most_values.into();
+        self
+    }
+
+    /// Sets the file with the motion of the finger.
+    #[must_use]
+    pub fn with_tracker(mut self, tracker: impl Into<Option<Tracker>>) -> Self {
+        self.tracker = tracker.into();
+        self
+    }
+
+    /// Returns the limit on the numbers kept in memory.
+    pub(crate) fn value_limit(&self) -> ValueLimit {
+        ValueLimit {
+            most_values: self.most_values.unwrap_or(MOST_VALUES),
+        }
+    }
+
+    /// Refuses values that no file can be read with.
+    pub(crate) fn check(&self, file: &str) -> Result<(), ReadError> {
+        let refuse = |option, problem| {
+            Err(ReadError::Option {
+                file: file.to_owned(),
+                option,
+                problem,
+            })
+        };
+        match (self.rate_hz, self.scale) {
+            (Some(rate), _) if check_rate(rate).is_err() => refuse(
+                "rate_hz",
+                format!(
+                    "the given sample rate is {rate}; it must be above 0 and at most {MAX_RATE_HZ} Hz"
+                ),
+            ),
+            (_, Some(scale)) if !scale.is_finite() || scale == 0.0 => refuse(
+                "scale",
+                format!("the given scale is {scale}; it must be finite and not 0"),
+            ),
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! The setup's frequency response: the recording rig's gain of a lateral force.
+
+use std::path::Path;
+use std::{fmt, io};
+
+use htex_dsp::grid::Band;
+
+use crate::ReadError;
+use crate::formats::blocks::Blocks;
+use crate::formats::table::Table;
+use crate::formats::text::{file_name, open};
+use crate::value_limit::ValueLimit;
+
+/// Smallest magnitude above 0; largest magnitude, frequency (hertz) and phase (radians).
+const SMALLEST: f64 = 1e-9;
+const LARGEST: f64 = 1e9;
+/// Gain above which a warning is given, decibels: what it raises was attenuated to a third or less and is mostly
+/// noise.
+const RAISED_DB: f64 = 10.0;
+
+/// A sampled frequency response.
+///
+/// The three vectors have equal lengths of at least 2; the frequencies increase strictly.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SetupResponse {
+    /// Frequencies, hertz, strictly increasing, not negative.
+    pub frequency_hz: Vec<f64>,
+    /// Ratio of output to input at each frequency, without unit, not negative.
+    pub magnitude: Vec<f64>,
+    /// Phase at each frequency, radians, unwrapped.
+    pub phase_rad: Vec<f64>,
+}
+
+impl SetupResponse {
+    /// Returns the real and imaginary part at a frequency in hertz. Magnitude and unwrapped phase are interpolated
+    /// linearly in frequency and constant below the first and above the last.
+    ///
+    /// ```
+    /// # use htex_recording::SetupResponse;
+    /// let response = SetupResponse {
+    ///     frequency_hz: vec![20.0, 1000.0],
+    ///     magnitude: vec![1.0, 2.0],
+    ///     phase_rad: vec![0.0, 0.0],
+    /// };
+    /// assert_eq!(response.at(510.0), (1.5, 0.0));
+    /// assert_eq!(response.at(5000.0), (2.0, 0.0));
+    /// ```
+    #[must_use]
+    pub fn at(&self, frequency_hz: f64) -> (f64, f64) {
+        let above = self.frequency_hz.partition_point(|f| *f <= frequency_hz);
+        let last = self.frequency_hz.len().saturating_sub(1);
+        let (low, high) = (above.saturating_sub(1), above.min(last));
+        let weight = if low == high {
+            0.0
+        } else {
+            let (f0, f1) = (self.frequency_hz[low], self.frequency_hz[high]);
+            (frequency_hz - f0) / (f1 - f0)
+        };
+        let between = |values: &[f64]| values[low] + weight * (values[high] - values[low]);
+        let (magnitude, phase) = (between(&self.magnitude), between(&self.phase_rad));
+        (magnitude * libm::cos(phase), magnitude * libm::sin(phase))
+    }
+
+    /// Returns the largest magnitude in a band, edges included.
+    #[must_use]
+    pub fn largest_in(&self, band: Band) -> f64 {
+        let edges = [band.low_hz, band.high_hz].map(|hz| self.at(hz));
+        let inside = |hz: &f64| band.contains(*hz);
+        let both = self.frequency_hz.iter().zip(&self.magnitude);
+        let sampled = both.filter(|(hz, _)| inside(hz)).map(|(_, m)| *m);
+        let at_edges = edges.into_iter().map(|(re, im)| libm::hypot(re, im));
+        sampled.chain(at_edges).fold(0.0, f64::max)
+    }
+}
+
+impl SetupResponse {
+    /// Writes `frequency_hz,magnitude,phase_rad`, each number in the shortest form that reads back to the same
+    /// bits.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write_csv(&self, out: &mut impl io::Write) -> io::Result<()> {
+        writeln!(out, "frequency_hz,magnitude,phase_rad")?;
+        let numbers = self.magnitude.iter().zip(&self.phase_rad);
+        for (hz, (magnitude, phase_rad)) in self.frequency_hz.iter().zip(numbers) {
+            writeln!(out, "{hz},{magnitude},{phase_rad}")?;
+        }
+        Ok(())
+    }
+}
+
+/// Frequencies at which dividing by a response raises a spectrum by more than 10 dB, with the gains.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Raised {
+    /// Lowest and highest frequency of each stretch, hertz, and its largest gain, decibels.
+    pub stretches: Vec<(f64, f64, f64)>,
+}
+
+/// Returns the stretches of a grid where gains exceed 10 dB; `None` when there is none.
+pub fn raised(frequency_hz: &[f64], gains: impl Iterator<Item = f64>) -> Option<Raised> {
+    let mut stretches: Vec<(f64, f64, f64)> = Vec::new();
+    let mut goes_on = false;
+    for (&hz, gain) in frequency_hz.iter().zip(gains) {
+        let gain_db = 20.0 * libm::log10(gain);
+        let is_raised = gain_db > RAISED_DB;
+        match stretches.last_mut().filter(|_| goes_on) {
+            Some(last) if is_raised => *last = (last.0, hz, last.2.max(gain_db)),
+            None if is_raised => stretches.push((hz, hz, gain_db)),
+            _ => {}
+        }
+        goes_on = is_raised;
+    }
+    (!stretches.is_empty()).then_some(Raised { stretches })
+}
+
+impl fmt::Display for Raised {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, (low_hz, high_hz, most_db)) in self.stretches.iter().enumerate() {
+            let comma = if i > 0 { ", " } else { "" };
+            write!(
+                f,
+                "{comma}{low_hz} to {high_hz} Hz by up to {most_db:.1} dB"
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// Reads a setup response from a CSV with the columns `frequency_hz`, `magnitude` and optionally
+/// `phase_rad` (default zero).
+///
+/// # Errors
+/// Those of [`read_recording`](crate::read_recording) for a CSV; and, with the line, a
+/// frequency that is negative or does not increase, or a negative magnitude.
+pub fn read_response(path: &Path) -> Result<SetupResponse, ReadError> {
+    response(Blocks::new(
+        &file_name(path),
+        open(path)?,
+        ValueLimit::default(),
+    ))
+}
+
+/// Reads a setup response from bytes; `file` is its name.
+///
+/// # Errors
+/// As [`read_response`].
+pub fn response_from_bytes(file: &str, bytes: &[u8]) -> Result<SetupResponse, ReadError> {
+    response(Blocks::new(file, bytes, ValueLimit::default()))
+}
+
+fn response(mut blocks: Blocks<'_>) -> Result<SetupResponse, ReadError> {
+    let head = blocks.head()?;
+    let mut table = Table::new(blocks.file, &head)?;
+    let mut wanted = vec![
+        column(&table, "frequency_hz")?,
+        column(&table, "magnitude")?,
+    ];
+    wanted.extend(column(&table, "phase_rad").ok());
+    let mut columns = table.numbers(&wanted, &mut blocks)?.columns.into_iter();
+    let frequency_hz = columns.next().unwrap_or_default();
+    let magnitude = columns.next().unwrap_or_default();
+    check(&table, &frequency_hz, &magnitude)?;
+    let phase_rad = columns
+        .next()
+        .unwrap_or_else(|| vec![0.0; frequency_hz.len()]);
+    if let Some(row) = phase_rad.iter().position(|phase| phase.abs() > LARGEST) {
+        return Err(ReadError::Response {
+            file: table.file.to_owned(),
+            line: table.line_of_row(row),
+            problem: format!("the phase {} rad is beyond {LARGEST}", phase_rad[row]),
+        });
+    }
+    Ok(SetupResponse {
+        frequency_hz,
+        magnitude,
+        phase_rad: unwrapped(phase_rad),
+    })
+}
+
+fn column(table: &Table<'_>, name: &str) -> Result<usize, ReadError> {
+    let header = table.header.as_deref().unwrap_or_default();
+    header.iter().position(|cell| cell.eq_ignore_ascii_case(name)).ok_or_else(|| ReadError::Columns {
+        file: table.file.to_owned(),
+        problem: format!("a setup response needs a column {name:?}; its header is frequency_hz,magnitude[,phase_rad]"),
+        columns: table.names(),
+    })
+}
+
+fn check(table: &Table<'_>, frequency_hz: &[f64], magnitude: &[f64]) -> Result<(), ReadError> {
+    let refuse = |row: usize, problem: String| {
+        Err(ReadError::Response {
+            file: table.file.to_owned(),
+            line: table.line_of_row(row),
+            problem,
+        })
+    };
+    for (row, (frequency, magnitude)) in frequency_hz.iter().zip(magnitude).enumerate() {
+        if *frequency < 0.0 {
+            return refuse(row, format!("the frequency {frequency} Hz is negative"));
+        }
+        if row > 0 && *frequency <= frequency_hz[row - 1] {
+            return refuse(
+                row,
+                format!(
+                    "the frequency {frequency} Hz follows {} Hz; frequencies must increase on every row",
+                    frequency_hz[row - 1]
+                ),
+            );
+        }
+        if *frequency > LARGEST
+            || !(*magnitude == 0.0 || (SMALLEST..=LARGEST).contains(&magnitude.abs()))
+        {
+            return refuse(
+                row,
+                format!(
+                    "the magnitude {magnitude} at {frequency} Hz is out of range; write 0, or {SMALLEST} to {LARGEST}"
+                ),
+            );
+        }
+        if *magnitude < 0.0 {
+            return refuse(
+                row,
+                format!(
+                    "the magnitude {magnitude} is negative; write the sign as a phase_rad of pi"
+                ),
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Removes jumps of more than half a turn.
+fn unwrapped(mut phase_rad: Vec<f64>) -> Vec<f64> {
+    let turn = 2.0 * std::f64::consts::PI;
+    let mut previous = phase_rad.first().copied().unwrap_or(0.0);
+    for phase in &mut phase_rad {
+        *phase -= turn * libm::round((*phase - previous) / turn);
+        previous = *phase;
+    }
+    phase_rad
+}

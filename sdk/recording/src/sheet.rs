@@ -1,0 +1,201 @@
+//! Files as named columns of numbers, whatever their format.
+
+use std::fmt;
+
+use crate::ReadError;
+
+/// The columns of a file, before their numbers are read.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Columns {
+    /// File name for messages.
+    pub(crate) file: String,
+    /// Names in the order of the file; empty for a column without one.
+    names: Vec<String>,
+    /// Where the last part of each name begins: `fx` of `/run1/fx`.
+    parts: Vec<usize>,
+    /// Whether the file names its columns.
+    pub(crate) are_named: bool,
+}
+
+impl Columns {
+    /// Makes columns from their names; the last part of a name follows the last `separator`, if there is one.
+    pub(crate) fn new(
+        file: &str,
+        names: impl IntoIterator<Item = String>,
+        separator: Option<char>,
+    ) -> Self {
+        let names: Vec<String> = names.into_iter().collect();
+        let part = |name: &String| {
+            let separator = separator.and_then(|c| name.rfind(c));
+            separator.map_or(0, |at| at + 1)
+        };
+        Self {
+            file: file.to_owned(),
+            parts: names.iter().map(part).collect(),
+            names,
+            are_named: true,
+        }
+    }
+
+    /// Makes columns from names and the bytes at which their last parts begin.
+    pub(crate) fn with_parts(file: &str, names: Vec<(String, usize)>) -> Self {
+        let (names, parts) = names.into_iter().unzip();
+        Self {
+            file: file.to_owned(),
+            names,
+            parts,
+            are_named: true,
+        }
+    }
+
+    /// Makes columns that have only numbers.
+    pub(crate) fn unnamed(file: &str, width: usize) -> Self {
+        Self {
+            are_named: false,
+            ..Self::new(file, vec![String::new(); width], None)
+        }
+    }
+
+    /// Returns the number of columns.
+    pub(crate) fn width(&self) -> usize {
+        self.names.len()
+    }
+
+    /// Returns the column's whole name, or `#` and its number when it has none.
+    pub(crate) fn name(&self, column: usize) -> String {
+        match self.names.get(column) {
+            Some(name) if !name.is_empty() => htex_format::plain(name).into_owned(),
+            _ => format!("#{}", column + 1),
+        }
+    }
+
+    /// Returns the last part of the column's name, which says what it holds.
+    pub(crate) fn last_part(&self, column: usize) -> &str {
+        let name = self.names.get(column).map_or("", String::as_str);
+        &name[self.parts.get(column).copied().unwrap_or(0)..]
+    }
+
+    /// Returns the name without its last part: the group of the column.
+    pub(crate) fn group(&self, column: usize) -> &str {
+        let name = self.names.get(column).map_or("", String::as_str);
+        &name[..self.parts.get(column).copied().unwrap_or(0)]
+    }
+
+    /// Returns the columns of this name: those with exactly the name, else in another case, else whose last part it is.
+    pub(crate) fn by_name(&self, name: &str) -> Vec<usize> {
+        let all = 0..self.width();
+        let exact = |column: &usize| self.names[*column] == name;
+        let alike = |column: &usize| self.names[*column].eq_ignore_ascii_case(name);
+        let part = |column: &usize| self.last_part(*column) == name;
+        let tests: [&dyn Fn(&usize) -> bool; 3] = [&exact, &alike, &part];
+        let mut found = tests
+            .map(|test| all.clone().filter(test).collect::<Vec<_>>())
+            .into_iter();
+        found
+            .find(|columns| !columns.is_empty())
+            .unwrap_or_default()
+    }
+
+    /// Returns all names, for messages.
+    pub(crate) fn list(&self) -> String {
+        self.list_of(&(0..self.width()).collect::<Vec<_>>())
+    }
+
+    /// Returns the names of some columns, for messages.
+    pub(crate) fn list_of(&self, columns: &[usize]) -> String {
+        const MANY: usize = 20;
+        let mut names: Vec<_> = columns
+            .iter()
+            .take(MANY)
+            .map(|column| self.name(*column))
+            .collect();
+        if columns.len() > MANY {
+            names.push(format!("and {} more", columns.len() - MANY));
+        }
+        names.join(", ")
+    }
+}
+
+/// A place in a file, for messages.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Place {
+    /// A line of text, from 1.
+    Line(usize),
+    /// A row of numbers, from 1.
+    Row(usize),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Row(row) => write!(f, "row {row}"),
+        }
+    }
+}
+
+/// Numbers of some columns of a file.
+#[derive(Debug, Default)]
+pub(crate) struct Numbers {
+    /// One vector per wanted column.
+    pub(crate) columns: Vec<Vec<f64>>,
+    /// Whether a comment contains "simulated".
+    pub(crate) simulated: bool,
+    /// Observations, each a full sentence.
+    pub(crate) warnings: Vec<String>,
+}
+
+/// A file that has been opened, with its columns.
+pub(crate) trait Sheet {
+    fn columns(&self) -> &Columns;
+
+    /// Returns the sample rate in hertz that the file states for these columns, if it states one.
+    fn rate_hz(&self, wanted: &[usize]) -> Result<Option<f64>, ReadError>;
+
+    /// Reads the wanted columns, each below the width. They may be of different lengths and hold numbers that are not finite.
+    fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, ReadError>;
+
+    /// Returns the place of a row, from 0.
+    fn place(&self, row: usize) -> Place {
+        Place::Row(row + 1)
+    }
+}
+
+/// Reads columns of equal lengths, at least two rows, and refuses numbers that are not finite.
+pub(crate) fn even_numbers(sheet: &mut dyn Sheet, wanted: &[usize]) -> Result<Numbers, ReadError> {
+    let numbers = sheet.numbers(wanted)?;
+    let columns = sheet.columns();
+    let file = || columns.file.clone();
+    let mut lengths = wanted.iter().zip(numbers.columns.iter().map(Vec::len));
+    let Some((first, rows)) = lengths.next() else {
+        return Ok(numbers);
+    };
+    if let Some((other, got)) = lengths.find(|(_, length)| *length != rows) {
+        let (first, other) = (columns.name(*first), columns.name(*other));
+        return Err(ReadError::Lengths {
+            file: file(),
+            first,
+            rows,
+            other,
+            got,
+        });
+    }
+    if rows < 2 {
+        return Err(ReadError::TooFewRows { file: file(), rows });
+    }
+    for (column, values) in wanted.iter().zip(&numbers.columns) {
+        if let Some(row) = values.iter().position(|value| !value.is_finite()) {
+            return Err(ReadError::Cell {
+                file: file(),
+                place: sheet.place(row),
+                column: columns.name(*column),
+                problem: match values[row].is_nan() {
+                    true => "it is not a number, or empty".to_owned(),
+                    false => format!("{} is not finite", values[row]),
+                },
+            });
+        }
+    }
+    Ok(numbers)
+}

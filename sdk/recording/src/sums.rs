@@ -1,0 +1,47 @@
+//! Running sums: the mean of any stretch of a signal with two look-ups.
+
+/// The sum before each sample of a signal, and the total.
+pub struct Sums(Vec<f64>);
+
+impl Sums {
+    pub fn of(values: impl Iterator<Item = f64>) -> Self {
+        let mut sum = 0.0;
+        let mut sums = Vec::with_capacity(values.size_hint().0 + 1);
+        sums.push(sum);
+        sums.extend(values.map(|value| {
+            sum += value;
+            sum
+        }));
+        Self(sums)
+    }
+
+    /// Returns the number of samples of the signal.
+    pub fn samples(&self) -> usize {
+        self.0.len() - 1
+    }
+
+    /// Returns the mean of the samples from `from` to before `to`, 0 if there are none.
+    pub fn mean(&self, from: usize, to: usize) -> f64 {
+        (self.0[to] - self.0[from]) / (to - from).max(1) as f64
+    }
+
+    /// Returns the mean over `2·half + 1` samples around one, fewer at the ends.
+    pub fn mean_around(&self, at: usize, half: usize) -> f64 {
+        self.mean(at.saturating_sub(half), (at + half + 1).min(self.samples()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn means_shrink_at_the_ends() {
+        let sums = Sums::of([1.0, 2.0, 6.0, 7.0].into_iter());
+        let means = |half| [0, 1, 2, 3].map(|at| sums.mean_around(at, half));
+        assert_eq!(means(0), [1.0, 2.0, 6.0, 7.0]);
+        assert_eq!(means(1), [1.5, 3.0, 5.0, 6.5]);
+        assert_eq!(means(9), [4.0; 4]);
+        assert_eq!(Sums::of(std::iter::empty()).mean(0, 0), 0.0);
+    }
+}

@@ -1,0 +1,36 @@
+//! Limit on the numbers of a file that are kept in memory.
+
+use crate::ReadError;
+
+/// Default limit on the numbers kept of a file: 11 minutes of three columns at 20 kHz. With derived data they
+/// take 8 to 40 bytes each, most at low rates.
+pub const MOST_VALUES: usize = 40_000_000;
+
+/// Limit on the numbers kept of one file.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ValueLimit {
+    pub(crate) most_values: usize,
+}
+
+impl ValueLimit {
+    /// Refuses more numbers than the limit.
+    #[inline]
+    pub(crate) fn check(self, file: &str, values: u64) -> Result<(), ReadError> {
+        if values <= self.most_values as u64 {
+            Ok(())
+        } else {
+            Err(ReadError::TooManyValues {
+                file: file.to_owned(),
+                limit: self.most_values,
+            })
+        }
+    }
+}
+
+impl Default for ValueLimit {
+    fn default() -> Self {
+        Self {
+            most_values: MOST_VALUES,
+        }
+    }
+}

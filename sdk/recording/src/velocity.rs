@@ -1,0 +1,76 @@
+//! Velocity of a tracked position.
+
+/// Half the support of the triangle over which the velocity is averaged, seconds. Trackers are slow and
+/// quantised (60 Hz, 0.1 mm): a shorter window would show their steps instead of the motion.
+const REACH_S: f64 = 0.05;
+
+/// Returns the velocity at ascending times, from positions at the times `t_s`, which ascend strictly from 0.
+///
+/// The velocity is the second difference, over 50 ms, of the position's integral: the slope of the position (linear
+/// between rows) averaged with a triangular window of 100 ms. It is exact for a constant velocity with any spacing of the rows,
+/// and insensitive to a tracker of 60 Hz that repeats its last value. Within 50 ms of the ends, and beyond them, it is constant.
+/// Its unit is that of the position per second.
+///
+/// ```
+/// # use htex_recording::velocity;
+/// let (t_s, x_mm) = ([0.0, 0.1, 0.3], [2.0, 10.0, 26.0]);
+/// let v_mm_s = velocity(&t_s, &x_mm, [0.0, 0.17, 0.3]);
+/// assert!(v_mm_s.iter().all(|v| (v - 80.0).abs() < 1e-9));
+/// ```
+#[must_use]
+pub fn velocity(t_s: &[f64], position: &[f64], at_s: impl IntoIterator<Item = f64>) -> Vec<f64> {
+    let at_s = at_s.into_iter();
+    let rows = t_s.len().min(position.len());
+    let (t_s, position) = (&t_s[..rows], &position[..rows]);
+    let end_s = t_s.last().copied().unwrap_or(0.0);
+    let reach_s = REACH_S.min(end_s / 2.0);
+    if rows < 2 || reach_s.is_nan() || reach_s <= 0.0 {
+        return at_s.map(|_| 0.0).collect();
+    }
+    let mut before = Integral::new(t_s, position);
+    let (mut here, mut after) = (before.clone(), before.clone());
+    let at = |t: f64| {
+        let t = t.clamp(reach_s, end_s - reach_s);
+        let outer = before.at(t - reach_s) + after.at(t + reach_s);
+        (outer - 2.0 * here.at(t)) / (reach_s * reach_s)
+    };
+    at_s.map(at).collect()
+}
+
+/// The integral of the position (minus the first one) from the first row on, evaluated at ascending times.
+#[derive(Clone)]
+struct Integral<'a> {
+    t_s: &'a [f64],
+    position: &'a [f64],
+    row: usize,
+    sum: f64,
+}
+
+impl<'a> Integral<'a> {
+    fn new(t_s: &'a [f64], position: &'a [f64]) -> Self {
+        Self {
+            t_s,
+            position,
+            row: 0,
+            sum: 0.0,
+        }
+    }
+
+    /// Time and position of a row.
+    fn point(&self, row: usize) -> (f64, f64) {
+        (self.t_s[row], self.position[row] - self.position[0])
+    }
+
+    fn at(&mut self, t_s: f64) -> f64 {
+        let last = self.t_s.len() - 1;
+        while self.row + 1 < last && self.t_s[self.row + 1] <= t_s {
+            let ((t0, x0), (t1, x1)) = (self.point(self.row), self.point(self.row + 1));
+            self.sum += 0.5 * (x0 + x1) * (t1 - t0);
+            self.row += 1;
+        }
+        let ((t0, x0), (t1, x1)) = (self.point(self.row), self.point(self.row + 1));
+        let ahead = t_s - t0;
+        let slope = (x1 - x0) / (t1 - t0);
+        self.sum + ahead * (x0 + 0.5 * slope * ahead)
+    }
+}

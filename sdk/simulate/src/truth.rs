@@ -1,0 +1,255 @@
+//! The true spectrum of a free motion over a surface, as a function of speed and force, in closed form.
+//!
+//! The relief is a stationary process along the path with a known spectral density over spatial frequency; a speed
+//! converts it to hertz, the force multiplies it, skin and rig filter it. Through the periodic Hann window of 0.2 s the
+//! expected power at a multiple of 5 Hz is the integral of that density times the window's power transfer.
+
+use std::f64::consts::PI;
+use std::io::{self, Write};
+
+use htex_dsp::biquad::Biquad;
+use htex_dsp::grid::{Band, GRID_HZ};
+use serde::Serialize;
+
+use super::contact::{ACROSS, Rig, SKIN, noise_density};
+use super::filters::{OnePole, low_pass};
+use super::relief::{POINTS_PER_MM, contact_kernel, cubic_weights};
+use super::surface::{Grain, Parameters};
+use super::{Motion, SimulationError, SimulationOptions, check_range};
+
+/// Cells per step of the grid, in which densities are constant.
+const CELLS: usize = 32;
+/// Bins on either side of a multiple of 5 Hz from which the window still takes power.
+const WINDOW_BINS: usize = 4;
+/// Largest ratio of neighbouring speeds in a written truth.
+const SPEED_RATIO: f64 = 1.02;
+
+/// The true spectra of one simulated surface and rig.
+///
+/// ```
+/// use htex_simulate::{FreeMotion, SimulationOptions, Surface};
+///
+/// let options = SimulationOptions::new(Surface::Vinyl).with_free_motion(FreeMotion::default());
+/// let truth = options.truth()?;
+/// let (light, firm) = (truth.magnitude(80.0, 0.4)?, truth.magnitude(80.0, 0.8)?);
+/// assert_eq!(light.len(), 197);
+/// // The texture is proportional to the force; the sensor's noise is not.
+/// assert!((firm[4] / light[4] - 2.0).abs() < 0.01);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Truth {
+    options: SimulationOptions,
+    band: Band,
+    cell_hz: f64,
+    /// Squared magnitude of skin and rig in each cell, from 0 Hz.
+    filters: Vec<f64>,
+    noise_power: f64,
+}
+
+impl SimulationOptions {
+    /// Returns the true spectrum of a steady part of a free motion as a function of speed and force.
+    ///
+    /// # Errors
+    /// When an option is out of its range, or the motion is not free: sweeps run over one fixed piece of the material.
+    pub fn truth(&self) -> Result<Truth, SimulationError> {
+        self.check()?;
+        if !matches!(self.motion, Motion::Free(_)) {
+            return Err(SimulationError::NoTruth);
+        }
+        let band = Band {
+            high_hz: Band::TACTILE.high_hz.min(0.5 * self.rate_hz),
+            ..Band::TACTILE
+        };
+        let cell_hz = GRID_HZ / CELLS as f64;
+        let cells = (band.last_bin() + WINDOW_BINS + 1) * CELLS;
+        let rate_hz = self.inner_hz();
+        let mut sections: Vec<Biquad> = Rig::new(rate_hz, self.rate_hz).lateral().to_vec();
+        sections.push(low_pass(SKIN.1, SKIN.0, rate_hz));
+        let gain = |cell: usize| {
+            let hz = (cell as f64 + 0.5) * cell_hz;
+            let magnitudes = sections.iter().map(|s| s.magnitude(hz, rate_hz));
+            magnitudes.product::<f64>().powi(2)
+        };
+        Ok(Truth {
+            filters: (0..cells).map(gain).collect(),
+            noise_power: 3.0 * GRID_HZ * noise_density(self.rate_hz),
+            options: self.clone(),
+            band,
+            cell_hz,
+        })
+    }
+}
+
+impl Truth {
+    /// Returns the multiples of 5 Hz in the band, hertz.
+    #[must_use]
+    pub fn frequency_hz(&self) -> Vec<f64> {
+        self.band.grid_hz()
+    }
+
+    /// Returns the true magnitudes at [`Self::frequency_hz`], newtons: the root of the expected power of a segment of
+    /// 0.2 s, both lateral axes together, with the rig's response and the sensor's noise.
+    ///
+    /// # Errors
+    /// When speed or force are out of the simulator's range.
+    pub fn magnitude(&self, speed_mm_s: f64, force_n: f64) -> Result<Vec<f64>, SimulationError> {
+        check_range("speed_mm_s", speed_mm_s, 1.0, 500.0)?;
+        check_range("force_n", force_n, 0.01, 10.0)?;
+        let per_newton = self.per_newton(speed_mm_s);
+        let magnitude = |one: f64| libm::sqrt((force_n * one).powi(2) + self.noise_power);
+        Ok(per_newton.into_iter().map(magnitude).collect())
+    }
+
+    /// Returns the magnitudes of the texture at a force of 1 N, without the sensor's noise.
+    fn per_newton(&self, speed_mm_s: f64) -> Vec<f64> {
+        let power = self.cell_powers(speed_mm_s);
+        let window = window_powers();
+        let at = |bin: usize| {
+            let middle = bin * CELLS;
+            let taken = window.iter().enumerate().map(|(i, transfer)| {
+                // A cell and its mirror image, half a cell from the frequency on either side.
+                let above = power.get(middle + i).copied().unwrap_or(0.0);
+                let below = (middle > i).then(|| power[middle - 1 - i]);
+                transfer * (above + below.unwrap_or(0.0))
+            });
+            libm::sqrt(2.0 * taken.sum::<f64>())
+        };
+        (self.band.first_bin()..=self.band.last_bin())
+            .map(at)
+            .collect()
+    }
+
+    /// Returns the power of the texture in each cell at a force of 1 N, in newtons squared.
+    fn cell_powers(&self, speed_mm_s: f64) -> Vec<f64> {
+        let parameters = self.options.surface.parameters();
+        let unit = parameters.unit();
+        let width = self.cell_hz / speed_mm_s;
+        let kernel = contact_kernel();
+        let noise: Vec<f64> = parameters.grains.iter().map(Grain::noise_power).collect();
+        let both_axes = 1.0 + ACROSS.0 * ACROSS.0;
+        let power = |(cell, filter): (usize, &f64)| {
+            let per_mm = (cell as f64 + 0.5) * width;
+            if per_mm >= 0.5 * POINTS_PER_MM {
+                return 0.0;
+            }
+            let relief = unit * unit * relief_power(parameters, &noise, per_mm, width);
+            relief * reading(&kernel, per_mm).powi(2) * filter * both_axes
+        };
+        self.filters.iter().enumerate().map(power).collect()
+    }
+
+    /// Writes a JSON object with the true magnitudes: for speeds in steps of at most 2 % over the range of the motion,
+    /// those of the texture at 1 N; the sensor's noise; and the rule to combine them.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write_json(&self, out: impl Write) -> io::Result<()> {
+        let [low, high] = match &self.options.motion {
+            Motion::Free(free) => free.speed_mm_s,
+            Motion::Sweeps => [self.options.speed_mm_s; 2],
+        };
+        let steps = libm::ceil(libm::log(high / low) / libm::log(SPEED_RATIO)).max(1.0);
+        let speed = |step: usize| low * libm::exp(libm::log(high / low) * step as f64 / steps);
+        let speeds: Vec<f64> = (0..=steps as usize).map(speed).collect();
+        let text = TruthText {
+            simulated: true,
+            surface: self.options.surface.name(),
+            rate_hz: self.options.rate_hz,
+            unit: "N",
+            rule: "magnitude = sqrt((force_n * per_newton)^2 + noise^2); per_newton is one list per speed, linear in \
+                   ln(speed_mm_s) between them",
+            noise: libm::sqrt(self.noise_power),
+            frequency_hz: self.frequency_hz(),
+            per_newton: speeds.iter().map(|v| self.per_newton(*v)).collect(),
+            speed_mm_s: speeds,
+        };
+        serde_json::to_writer(out, &text).map_err(io::Error::from)
+    }
+}
+
+#[derive(Serialize)]
+struct TruthText {
+    simulated: bool,
+    surface: &'static str,
+    rate_hz: f64,
+    unit: &'static str,
+    rule: &'static str,
+    noise: f64,
+    frequency_hz: Vec<f64>,
+    speed_mm_s: Vec<f64>,
+    per_newton: Vec<Vec<f64>>,
+}
+
+/// Returns the power of the relief in a cell of spatial frequency, relative to the square of [`Parameters::unit`]; `noise` are
+/// the grains' [`Grain::noise_power`].
+fn relief_power(parameters: &Parameters, noise: &[f64], per_mm: f64, width: f64) -> f64 {
+    let lines = parameters.lines.iter().map(|line| {
+        // A random walk of the phase gives a Lorentzian; its part below 0 is reflected.
+        let half_width = line.wander * line.wander / (4.0 * PI);
+        let below = |x: f64| libm::atan((x - line.per_mm) / half_width) / PI;
+        let within = |from: f64, to: f64| below(to) - below(from);
+        let (from, to) = (per_mm - 0.5 * width, per_mm + 0.5 * width);
+        line.weight * line.weight * (within(from, to) + within(-to, -from))
+    });
+    let grains = parameters.grains.iter().zip(noise).map(|(grain, noise)| {
+        let density = 2.0 / POINTS_PER_MM * grain.gain(per_mm) / noise;
+        grain.weight * grain.weight * density * width
+    });
+    lines.chain(grains).sum()
+}
+
+/// Returns the gain of smoothing by the contact and of reading between points, at a spatial frequency.
+fn reading(kernel: &[f64], per_mm: f64) -> f64 {
+    let turn = 2.0 * PI * per_mm / POINTS_PER_MM;
+    let middle = (kernel.len() / 2) as f64;
+    let smoothing = kernel.iter().enumerate();
+    let smoothing = smoothing.map(|(i, w)| w * libm::cos(turn * (i as f64 - middle)));
+    smoothing.sum::<f64>() * cubic_gain(turn)
+}
+
+/// Returns the gain of the cubic interpolation for `turn` radians per point: its kernel's transform, by Simpson's rule.
+fn cubic_gain(turn: f64) -> f64 {
+    const STEPS: usize = 16;
+    let at = |t: f64| {
+        let terms = cubic_weights(t).into_iter().enumerate();
+        let terms = terms.map(|(i, w)| w * libm::cos(turn * (t + 1.0 - i as f64)));
+        terms.sum::<f64>()
+    };
+    let simpson = |i: usize| {
+        let weight = match i {
+            0 | STEPS => 1.0,
+            i if i % 2 == 1 => 4.0,
+            _ => 2.0,
+        };
+        weight * at(i as f64 / STEPS as f64)
+    };
+    (0..=STEPS).map(simpson).sum::<f64>() / (3.0 * STEPS as f64)
+}
+
+/// Returns the power transfer of the periodic Hann window in the middles of the cells above its frequency.
+fn window_powers() -> Vec<f64> {
+    let power = |cell: usize| {
+        let x = (cell as f64 + 0.5) / CELLS as f64;
+        let sinc = libm::sin(PI * x) / (PI * x);
+        (sinc / (1.0 - x * x)).powi(2)
+    };
+    (0..WINDOW_BINS * CELLS).map(power).collect()
+}
+
+impl Grain {
+    /// Returns the squared gain of the grain's filters at a spatial frequency, periods per millimetre.
+    pub(super) fn gain(&self, per_mm: f64) -> f64 {
+        let high =
+            OnePole::new(self.from_per_mm, POINTS_PER_MM).high_pass_power(per_mm, POINTS_PER_MM);
+        let low = OnePole::new(self.to_per_mm, POINTS_PER_MM).low_pass_power(per_mm, POINTS_PER_MM);
+        high * low * low
+    }
+
+    /// Returns the power of the grain's filtered noise, for white noise of power 1.
+    pub(super) fn noise_power(&self) -> f64 {
+        const CELLS: usize = 4096;
+        let at = |cell: usize| self.gain((cell as f64 + 0.5) / CELLS as f64 * 0.5 * POINTS_PER_MM);
+        (0..CELLS).map(at).sum::<f64>() / CELLS as f64
+    }
+}

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use htex_author::AuthorError;
-use htex_author::recording::ReadError;
+use htex_author::recording::{ReadError, ReadProblem};
 
 /// Flags by the code of a finding in a recording.
 const BY_CODE: &[(&str, &str)] = &[
@@ -67,12 +67,12 @@ fn of_sentence(sentence: &str) -> Option<&'static str> {
 
 /// The flags that help against an error of reading a recording.
 pub(crate) fn of_read_error(error: &ReadError) -> Option<&'static str> {
-    match error {
-        ReadError::TooManyValues { .. } => Some("--most-numbers"),
-        ReadError::Time { .. } | ReadError::NoRate { .. } => Some("--rate"),
-        ReadError::Columns { .. } => Some("--map, --quantity"),
-        ReadError::Lengths { .. } => Some("--map"),
-        ReadError::Option { option, .. } => match *option {
+    match &error.problem {
+        ReadProblem::TooManyValues { .. } => Some("--most-numbers"),
+        ReadProblem::Time { .. } | ReadProblem::NoRate => Some("--rate"),
+        ReadProblem::Columns { .. } => Some("--map, --quantity"),
+        ReadProblem::Lengths { .. } => Some("--map"),
+        ReadProblem::Option { option, .. } => match *option {
             "rate_hz" => Some("--rate"),
             "scale" => Some("--scale"),
             "map" => Some("--map"),

@@ -49,6 +49,14 @@ fn seeds_are_read_and_used() {
     }
 }
 
+#[test]
+fn every_format_of_recordings_is_fuzzed() {
+    for format in htex_author::recording::FORMATS {
+        let named = |target: &htex_fuzzing::Target| target.name == format.extensions[0];
+        assert!(TARGETS.iter().any(named), "{}", format.name);
+    }
+}
+
 /// Only that the files exist is tested: the bytes of some depend on the platform's compiler.
 #[test]
 fn generated_seeds_are_there() {

@@ -1,6 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use htex_author::recording::format_names;
 use htex_author::{Exploration, FeltError, TextureSpectrum, agreement, felt, measure, read_take};
 use htex_dsp::vibrotactile::Listener;
 use htex_format::plain;
@@ -22,7 +23,7 @@ use crate::shown::shown;
 /// condition. `felt` is the part of the difference that is above the detection threshold of a fingertip, in third octaves.
 #[derive(Args)]
 pub(crate) struct Compare {
-    /// The recording: CSV, WAV, FLAC, NPY, MATLAB, TDMS, Parquet, Arrow, HDF5
+    #[arg(help = format!("The recording: {}", format_names()))]
     #[arg(value_parser = located::RECORDING)]
     recording: PathBuf,
 

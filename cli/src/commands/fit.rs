@@ -1,6 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use htex_author::recording::format_names;
 use htex_author::settings::FitSettings;
 use htex_author::{AssetRequest, EmbedError, FittedAsset, Level, embed_plugins, fit_asset};
 use htex_host::Registry;
@@ -26,7 +27,7 @@ use crate::report::{Reported, shares};
 /// condition; others become further conditions of the same texture.
 #[derive(Args)]
 pub(crate) struct Fit {
-    /// Recordings of one texture: CSV, WAV, FLAC, NPY, MATLAB, TDMS, Parquet, Arrow, HDF5
+    #[arg(help = format!("Recordings of one texture: {}", format_names()))]
     #[arg(required = true, value_parser = located::RECORDING)]
     recordings: Vec<PathBuf>,
 

@@ -1,6 +1,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use htex_author::recording::format_names;
 use htex_author::{Reading, Recording, TextureSpectrum, read_take};
 use serde_json::{Value, json};
 
@@ -19,7 +20,7 @@ use crate::recordings::RecordingArgs;
 /// that grid reads A.
 #[derive(Args)]
 pub(crate) struct Process {
-    /// The recording: CSV, WAV, FLAC, NPY, MATLAB, TDMS, Parquet, Arrow, HDF5
+    #[arg(help = format!("The recording: {}", format_names()))]
     #[arg(value_parser = located::RECORDING)]
     recording: PathBuf,
 

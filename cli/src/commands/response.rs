@@ -3,7 +3,9 @@ use std::io::BufWriter;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use htex_author::recording::{ColumnMap, MOST_VALUES, ReadError, ReadOptions, read_recording};
+use htex_author::recording::{
+    ColumnMap, MOST_VALUES, ReadError, ReadOptions, ReadProblem, format_names, read_recording,
+};
 use htex_lab::response::{
     Estimator, Excitation, HitOptions, MeasuredResponse, Piece, Record, ResponseError,
     ResponseOptions, column_map, measure, response_picture,
@@ -23,7 +25,7 @@ use crate::outputs::check_outputs;
 /// --frf of the commands for recordings and the `response` of a scene's device take.
 #[derive(Args)]
 pub(crate) struct Response {
-    /// The recordings, all of one rate: CSV, WAV, FLAC, NPY, MATLAB, TDMS, Parquet, Arrow, HDF5
+    #[arg(help = format!("The recordings, all of one rate: {}", format_names()))]
     #[arg(value_parser = located::RECORDING, required = true)]
     recordings: Vec<PathBuf>,
 
@@ -229,12 +231,12 @@ impl Response {
 
 /// An error of the columns names the flags for them, which differ from those of other commands.
 fn read_failure(error: ReadError) -> Failure {
-    match error {
-        ReadError::Columns { .. } => {
+    match error.problem {
+        ReadProblem::Columns { .. } => {
             let problem = error.to_string();
             ResponseError::Columns { problem }.into()
         }
-        error => error.into(),
+        _ => error.into(),
     }
 }
 

@@ -1,6 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use htex_author::recording::format_names;
 use htex_author::{AuthorError, Exploration, Take};
 use htex_format::ErrorMeasure;
 use htex_host::{LoadedModel, Origin, Registry};
@@ -25,7 +26,7 @@ use crate::shown::shown;
 /// when the same command is given again.
 #[derive(Args)]
 pub(crate) struct Tradeoff {
-    /// Recordings: CSV, WAV, FLAC, NPY, MATLAB, TDMS, Parquet, Arrow, HDF5
+    #[arg(help = format!("Recordings: {}", format_names()))]
     #[arg(required_unless_present = "simulated")]
     recordings: Vec<PathBuf>,
 

@@ -91,16 +91,16 @@ fn npy_raw_and_csv_hold_the_samples() {
     assert_eq!(written(&FileAdapter, &at("a.raw"), &[], &wave), bytes);
 
     let npy = written(&FileAdapter, &at("a.npy"), &[], &wave);
-    assert_eq!(npy[128..], bytes);
-    let read = npyz::NpyFile::new(&npy[..]).unwrap();
-    assert_eq!(read.shape(), [1000]);
-    assert_eq!(read.into_vec::<f32>().unwrap(), wave);
+    let header = |kind| {
+        format!("\u{1}\0v\0{{'descr': '{kind}', 'fortran_order': False, 'shape': (1000, ), }}")
+    };
+    let starts = |npy: &[u8], kind| npy[6..].starts_with(header(kind).as_bytes());
+    assert!(npy.starts_with(b"\x93NUMPY") && starts(&npy, "<f4"));
+    assert_eq!((npy[127], &npy[128..]), (b'\n', &bytes[..]));
     let i16 = written(&FileAdapter, &at("a.npy"), &[("encoding", "i16")], &wave);
-    let read = npyz::NpyFile::new(&i16[..])
-        .unwrap()
-        .into_vec::<i16>()
-        .unwrap();
-    assert_eq!(read[1], (wave[1] * 32_768.0).round_ties_even() as i16);
+    assert!(starts(&i16, "<i2"));
+    let code = (wave[1] * 32_768.0).round_ties_even() as i16;
+    assert_eq!(i16[130..132], code.to_le_bytes());
 
     let i24 = [("encoding", "i24"), ("format", "raw")];
     let i24 = written(&FileAdapter, &at("a.bin"), &i24, &[-0.5, 0.25]);

@@ -11,7 +11,7 @@ use crate::findings::{
 use crate::spectrum::{Trend, spectra_of};
 use crate::take::Take;
 use crate::{AuthorError, Exploration, Recording, SegmentSpectra, SpectrumOptions, Spread};
-use htex_recording::{ReadError, ReadOptions, read_recording};
+use htex_recording::{ReadError, ReadOptions, ReadProblem, read_recording};
 
 /// The result of reading a recording.
 #[derive(Debug, Clone)]
@@ -104,7 +104,14 @@ pub fn validate_recording(
     options: &SpectrumOptions,
 ) -> Result<Report, ReadError> {
     let findings = match read_recording(path, read) {
-        Err(error @ (ReadError::Io { .. } | ReadError::Option { .. })) => return Err(error),
+        Err(error)
+            if matches!(
+                error.problem,
+                ReadProblem::Io(_) | ReadProblem::Option { .. }
+            ) =>
+        {
+            return Err(error);
+        }
         Err(error) => {
             let mut findings = Findings::default();
             findings.add(RECORDING_UNREADABLE, "", error.to_string());

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use htex_author::recording::{ReadError, read_recording};
+use htex_author::recording::{ReadError, ReadProblem, read_recording};
 use htex_author::settings::{FitSettings, Metadata, ReadingSettings};
 use htex_author::{
     AuthorError, Exploration, FeltError, FittedAsset, Take, embed_plugins, fit_asset,
@@ -310,7 +310,10 @@ impl Job {
         let file = &recording.file.path;
         match read_recording(file, &options) {
             Ok(recording) => Ok(Take { recording, given }),
-            Err(ReadError::Io { source, .. }) => Err(Stopped::File(BuildError::read(file, source))),
+            Err(ReadError {
+                problem: ReadProblem::Io(error),
+                ..
+            }) => Err(Stopped::File(BuildError::read(file, error))),
             Err(error) => Err(refused(error)),
         }
     }

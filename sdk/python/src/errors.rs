@@ -6,7 +6,7 @@ use std::path::Path;
 use htex::format::{ReadError, WriteError};
 use htex::host::HostError;
 use htex_author::AuthorError;
-use htex_author::recording::ReadError as RecordingReadError;
+use htex_author::recording::{ReadError as RecordingReadError, ReadProblem};
 use htex_scene::{LoadError, SceneError as PlayError};
 use htex_tradeoff::TradeoffError;
 use pyo3::exceptions::PyOSError;
@@ -104,10 +104,10 @@ impl IntoPyErr for htex::Error {
 
 impl IntoPyErr for RecordingReadError {
     fn into_py_err(self) -> PyErr {
-        match self {
-            Self::Io { file, source } => of_file(Path::new(&file), &source),
-            Self::Option { .. } | Self::NoRate { .. } => option(self.to_string()),
-            other => RecordingError::new_err(other.to_string()),
+        match &self.problem {
+            ReadProblem::Io(error) => of_file(Path::new(&self.file), error),
+            ReadProblem::Option { .. } | ReadProblem::NoRate => option(self.to_string()),
+            _ => RecordingError::new_err(self.to_string()),
         }
     }
 }

@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use htex::Quantity;
-use htex_author::recording::{ReadOptions, read_recording, recording_from_bytes};
+use htex_author::recording::{
+    ReadError, ReadOptions, ReadProblem, read_recording, recording_from_bytes,
+};
 use htex_author::settings::{ReadingSettings, SettingsError};
 use htex_author::{Averaging, Exploration, Recording, SegmentChoice, SpectrumOptions, Take};
 use pyo3::prelude::*;
@@ -140,9 +142,9 @@ fn read(source: &Source, options: &ReadOptions) -> PyResult<Recording> {
 }
 
 /// Makes the exception of a file that cannot be read, with its whole path.
-fn raised(path: &Path, error: htex_author::recording::ReadError) -> PyErr {
-    match error {
-        htex_author::recording::ReadError::Io { source, .. } => of_file(path, &source),
-        other => other.into_py_err(),
+fn raised(path: &Path, error: ReadError) -> PyErr {
+    match &error.problem {
+        ReadProblem::Io(source) => of_file(path, source),
+        _ => error.into_py_err(),
     }
 }

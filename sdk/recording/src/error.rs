@@ -1,33 +1,37 @@
 //! Errors of reading recordings, setup responses and motion traces.
+//!
+//! A reader says what is wrong and where ([`Fault`]); the name of the file is added where it is opened.
 
-use std::io;
+use std::borrow::Cow;
+use std::{fmt, io};
 
 use thiserror::Error;
 
 use crate::recording::RecordingError;
-use crate::sheet::Place;
 
-/// Errors of reading a recording, a setup response or a motion trace.
-///
-/// Lines are counted from 1, as in an editor. `file` is the name without its directory.
+/// An error of reading a recording, a setup response or a motion trace.
+#[derive(Debug, Error)]
+#[error("{file}{}: {problem}", .place.as_ref().map(|place| format!(", {place}")).unwrap_or_default())]
+#[non_exhaustive]
+pub struct ReadError {
+    /// File name without its directory, or `column map`.
+    pub file: String,
+    /// Where in the file, if it is one place.
+    pub place: Option<Place>,
+    /// What is wrong, and what to do.
+    pub problem: ReadProblem,
+}
+
+/// What is wrong with a file.
 #[derive(Debug, Error)]
 #[non_exhaustive]
-pub enum ReadError {
+pub enum ReadProblem {
     /// The file cannot be opened or read.
-    #[error("{file}: cannot be read: {source}")]
-    Io {
-        /// File name.
-        file: String,
-        /// The system's error.
-        source: io::Error,
-    },
+    #[error("cannot be read: {0}")]
+    Io(io::Error),
     /// The file is larger than the limit.
-    #[error(
-        "{file}: {bytes} bytes is more than the limit of {limit}; cut the recording into parts"
-    )]
+    #[error("{bytes} bytes is more than the limit of {limit}; cut the recording into parts")]
     TooLarge {
-        /// File name.
-        file: String,
         /// The file's size.
         bytes: u64,
         /// The limit.
@@ -35,64 +39,41 @@ pub enum ReadError {
     },
     /// The file holds more numbers than the limit.
     #[error(
-        "{file}: it holds more than {limit} numbers, the limit of what is kept in memory; cut the recording into \
+        "it holds more than {limit} numbers, the limit of what is kept in memory; cut the recording into \
          parts, or raise the limit"
     )]
     TooManyValues {
-        /// File name.
-        file: String,
         /// The limit.
         limit: usize,
     },
     /// The file has no rows.
-    #[error("{file}: the file holds no data; expected a header row and at least 2 rows of numbers")]
-    Empty {
-        /// File name.
-        file: String,
-    },
+    #[error("the file holds no data; expected a header row and at least 2 rows of numbers")]
+    Empty,
     /// The file has a header but fewer than two rows.
-    #[error("{file}: {rows} row(s) of numbers; a recording needs at least 2")]
+    #[error("{rows} row(s) of numbers; a recording needs at least 2")]
     TooFewRows {
-        /// File name.
-        file: String,
         /// Rows found.
         rows: usize,
     },
     /// NUL bytes or invalid UTF-8.
     #[error(
-        "{file}, line {line}: {what}, which is not text; give a CSV saved as UTF-8, or a binary file of a known kind"
+        "{what}, which is not text; give a CSV saved as UTF-8, or a binary file of a known kind"
     )]
     NotText {
-        /// File name.
-        file: String,
-        /// Line of the first such byte.
-        line: usize,
         /// The kind of byte.
         what: &'static str,
     },
     /// A line is longer than the limit.
-    #[error(
-        "{file}, line {line}: {bytes} bytes in one line, more than the limit of {limit}; expected one row per line"
-    )]
+    #[error("{bytes} bytes in one line, more than the limit of {limit}; expected one row per line")]
     LongLine {
-        /// File name.
-        file: String,
-        /// The line.
-        line: usize,
         /// Its length in bytes.
         bytes: usize,
         /// The limit.
         limit: usize,
     },
     /// A row has another number of cells than the first.
-    #[error(
-        "{file}, line {line}: {got} cells where the first row has {expected}; every row must have the same columns"
-    )]
+    #[error("{got} cells where the first row has {expected}; every row must have the same columns")]
     Ragged {
-        /// File name.
-        file: String,
-        /// The line.
-        line: usize,
         /// Cells in the first row.
         expected: usize,
         /// Cells in this row.
@@ -100,37 +81,20 @@ pub enum ReadError {
     },
     /// The last line is shorter than the others.
     #[error(
-        "{file}, line {line}: the file seems truncated: its last line has {got} of {expected} cells; copy the file again or delete that line"
+        "the file seems truncated: its last line has {got} of {expected} cells; copy the file again or delete that line"
     )]
     CutOff {
-        /// File name.
-        file: String,
-        /// The line.
-        line: usize,
         /// Cells in the first row.
         expected: usize,
         /// Cells in the last row.
         got: usize,
     },
     /// A cell is not a finite number.
-    #[error(
-        "{file}, {place}, column {column:?}: {problem}; every sample must be a finite number with a decimal point"
-    )]
-    Cell {
-        /// File name.
-        file: String,
-        /// The line or row.
-        place: Place,
-        /// The column's name, or `#` and its number.
-        column: String,
-        /// What is wrong with the cell.
-        problem: String,
-    },
+    #[error("{0}; every sample must be a finite number with a decimal point")]
+    Cell(String),
     /// The columns' roles are not clear.
-    #[error("{file}: {problem}; the columns are: {columns}")]
+    #[error("{problem}; the columns are: {columns}")]
     Columns {
-        /// File name.
-        file: String,
         /// What is missing or ambiguous, and what to give.
         problem: String,
         /// The names of the columns.
@@ -138,11 +102,9 @@ pub enum ReadError {
     },
     /// Columns that are used together have different lengths.
     #[error(
-        "{file}: column {first:?} has {rows} numbers, {other:?} has {got}; map columns of equal lengths, such as those of one run"
+        "column {first:?} has {rows} numbers, {other:?} has {got}; map columns of equal lengths, such as those of one run"
     )]
     Lengths {
-        /// File name.
-        file: String,
         /// A column.
         first: String,
         /// Its numbers.
@@ -152,106 +114,150 @@ pub enum ReadError {
         /// Its numbers.
         got: usize,
     },
-    /// A file is damaged or of an unsupported kind.
-    #[error("{file}, {place}: {problem}")]
-    Damaged {
-        /// File name.
-        file: String,
-        /// A byte, a channel, a data set.
-        place: String,
-        /// What is wrong, and what to do.
-        problem: String,
-    },
-    /// The file is of a kind whose reader was not built.
+    /// The file is damaged or of an unsupported kind, or its numbers are not what they are to be.
+    #[error("{0}")]
+    Invalid(String),
+    /// The file is of a format whose reader was not built.
     #[error(
-        "{file}: this build does not read Parquet, Arrow and HDF5 (MATLAB 7.3); build with the feature lab-files, use the Python package, \
+        "this build does not read {formats}; build with the feature {feature}, use the Python package, \
          or convert the file to CSV"
     )]
     NotBuilt {
-        /// File name.
-        file: String,
+        /// The formats of the feature.
+        formats: String,
+        /// The feature that builds their readers.
+        feature: &'static str,
     },
     /// A column map is malformed.
     #[error(
-        "column map: {problem}; write ROLE=COLUMN[:SCALE] or ROLE=EXPRESSION, comma separated, as in \
+        "{0}; write ROLE=COLUMN[:SCALE] or ROLE=EXPRESSION, comma separated, as in \
          lateral=lateral_V:0.4444,normal=-#3*0.31"
     )]
-    Map {
-        /// What is wrong.
-        problem: String,
-    },
+    Map(String),
     /// A time column does not increase.
     #[error(
-        "{file}, {place}: the time after {before} s is {after} s; it must increase on every row (a column with too few decimals repeats values); repair the column, or give the sample rate, which replaces it"
+        "the time after {before} s is {after} s; it must increase on every row (a column with too few decimals repeats values); repair the column, or give the sample rate, which replaces it"
     )]
     Time {
-        /// File name.
-        file: String,
-        /// The line or row of the later time.
-        place: Place,
         /// Time of the previous row, seconds.
         before: f64,
         /// Time of this row, seconds.
         after: f64,
     },
     /// The sample rate is not known.
-    #[error("{file}: it has no sample rate; give one")]
-    NoRate {
-        /// File name.
-        file: String,
-    },
+    #[error("it has no sample rate; give one")]
+    NoRate,
     /// An option does not apply to this kind of file.
-    #[error("{file}: {problem}")]
+    #[error("{problem}")]
     Option {
-        /// File name.
-        file: String,
         /// The option: a field of [`ReadOptions`](crate::ReadOptions), or `response`.
         option: &'static str,
         /// Its value, and what to do instead.
         problem: String,
     },
-    /// A WAV file is damaged or of an unsupported kind.
-    #[error("{file}: {problem}")]
-    Wav {
-        /// File name.
-        file: String,
-        /// What is wrong, and where.
-        problem: String,
-    },
-    /// An NPY file is damaged or of an unsupported kind.
-    #[error("{file}: {problem}")]
-    Npy {
-        /// File name.
-        file: String,
-        /// What is wrong, and where.
-        problem: String,
-    },
     /// The signals are not a valid recording.
-    #[error("{file}: {source}")]
-    Recording {
-        /// File name.
-        file: String,
-        /// The reason.
-        source: RecordingError,
-    },
-    /// A setup response is invalid.
-    #[error("{file}, line {line}: {problem}")]
-    Response {
-        /// File name.
-        file: String,
-        /// The line.
-        line: usize,
-        /// What is wrong, and what is expected.
-        problem: String,
-    },
-    /// A motion trace is invalid.
-    #[error("{file}, line {line}: {problem}")]
-    Trace {
-        /// File name.
-        file: String,
-        /// The line.
-        line: usize,
-        /// What is wrong, and what is expected.
-        problem: String,
-    },
+    #[error(transparent)]
+    Recording(RecordingError),
+}
+
+/// A place in a file, for messages.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Place {
+    /// A line of text, from 1.
+    Line(usize),
+    /// A row of numbers, from 1.
+    Row(usize),
+    /// A byte, a channel, a data set, a cell.
+    Named(String),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Row(row) => write!(f, "row {row}"),
+            Self::Named(name) => f.write_str(name),
+        }
+    }
+}
+
+impl ReadProblem {
+    /// Names the file, or the source, of a problem of the whole of it.
+    #[must_use]
+    pub fn in_file(self, file: &str) -> ReadError {
+        Fault::from(self).in_file(file)
+    }
+
+    pub(crate) fn at(self, place: impl Into<Place>) -> Fault {
+        Fault {
+            place: Some(place.into()),
+            problem: self,
+        }
+    }
+
+    pub(crate) fn invalid(problem: impl fmt::Display) -> Self {
+        Self::Invalid(problem.to_string())
+    }
+}
+
+/// Returns the fault of a cell that is not a finite number.
+pub(crate) fn cell(row: Place, column: &str, problem: String) -> Fault {
+    ReadProblem::Cell(problem).at(format!("{row}, column {column:?}"))
+}
+
+/// A problem and its place in the file that is being read.
+#[derive(Debug)]
+pub(crate) struct Fault {
+    pub(crate) place: Option<Place>,
+    pub(crate) problem: ReadProblem,
+}
+
+impl Fault {
+    pub(crate) fn in_file(self, file: &str) -> ReadError {
+        ReadError {
+            file: file.to_owned(),
+            place: self.place,
+            problem: self.problem,
+        }
+    }
+}
+
+impl From<ReadProblem> for Fault {
+    fn from(problem: ReadProblem) -> Self {
+        Self {
+            place: None,
+            problem,
+        }
+    }
+}
+
+impl From<io::Error> for Fault {
+    fn from(error: io::Error) -> Self {
+        ReadProblem::Io(error).into()
+    }
+}
+
+impl From<RecordingError> for Fault {
+    fn from(error: RecordingError) -> Self {
+        ReadProblem::Recording(error).into()
+    }
+}
+
+impl From<String> for Place {
+    fn from(name: String) -> Self {
+        Self::Named(name)
+    }
+}
+
+impl From<&str> for Place {
+    fn from(name: &str) -> Self {
+        Self::Named(name.to_owned())
+    }
+}
+
+impl From<Cow<'_, str>> for Place {
+    fn from(name: Cow<'_, str>) -> Self {
+        Self::Named(name.into_owned())
+    }
 }

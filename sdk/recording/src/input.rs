@@ -4,14 +4,16 @@ use std::fs::File;
 use std::io::{self, Cursor, Read, Seek, SeekFrom, Take};
 use std::path::{Path, PathBuf};
 
-use crate::ReadError;
-use crate::formats::text::{self, MAX_BYTES};
+use crate::error::{Fault, ReadProblem};
+
+/// The largest file that is read, bytes. The numbers kept of it are limited by [`crate::MOST_VALUES`].
+const MAX_BYTES: u64 = 4 << 30;
 
 /// First bytes that are read to detect the kind of file: an HDF5 signature is at most this far from the start.
 const FRONT: usize = 4096;
 
 /// A file, or bytes.
-pub(crate) enum Input<'a> {
+enum Input<'a> {
     File(Take<File>),
     Bytes(&'a [u8]),
 }
@@ -29,8 +31,6 @@ impl Read for Input<'_> {
 pub(crate) struct Opened<'a> {
     /// Its path, for the extension.
     pub(crate) path: PathBuf,
-    /// File name for messages.
-    pub(crate) file: String,
     /// The first bytes.
     pub(crate) front: Vec<u8>,
     rest: Input<'a>,
@@ -38,24 +38,30 @@ pub(crate) struct Opened<'a> {
 
 impl Opened<'static> {
     /// Opens a file with a size limit.
-    pub(crate) fn file(path: &Path) -> Result<Self, ReadError> {
-        Self::new(path, Input::File(text::open(path)?))
+    pub(crate) fn file(path: &Path) -> Result<Self, Fault> {
+        let file = File::open(path)?;
+        let bytes = file.metadata()?.len();
+        if bytes > MAX_BYTES {
+            let limit = MAX_BYTES;
+            return Err(ReadProblem::TooLarge { bytes, limit }.into());
+        }
+        // The size of a pipe or a growing file is not known in advance.
+        Self::new(path, Input::File(file.take(MAX_BYTES)))
     }
 }
 
 impl<'a> Opened<'a> {
+    /// Takes bytes in place of a file; `path` is not opened.
+    pub(crate) fn bytes(path: &Path, bytes: &'a [u8]) -> Result<Self, Fault> {
+        Self::new(path, Input::Bytes(bytes))
+    }
+
     /// Reads the first bytes.
-    pub(crate) fn new(path: &Path, mut input: Input<'a>) -> Result<Self, ReadError> {
-        let file = text::file_name(path);
+    fn new(path: &Path, mut input: Input<'a>) -> Result<Self, Fault> {
         let mut front = Vec::new();
-        let read = input.by_ref().take(FRONT as u64).read_to_end(&mut front);
-        read.map_err(|source| ReadError::Io {
-            file: file.clone(),
-            source,
-        })?;
+        input.by_ref().take(FRONT as u64).read_to_end(&mut front)?;
         Ok(Self {
             path: path.to_owned(),
-            file,
             front,
             rest: input,
         })
@@ -67,17 +73,15 @@ impl<'a> Opened<'a> {
     }
 
     /// Returns the input for access in any order. What cannot be read twice, such as a pipe, is read into memory.
-    pub(crate) fn random(self) -> Result<Random, ReadError> {
-        let file = self.file.clone();
+    pub(crate) fn random(self) -> io::Result<Random> {
         let mut bytes = self.front;
-        let random = match self.rest {
+        match self.rest {
             Input::Bytes(rest) => {
                 bytes.extend_from_slice(rest);
                 Ok(Random::Bytes(Cursor::new(bytes)))
             }
             Input::File(taken) => from_file(taken, bytes),
-        };
-        random.map_err(|source| ReadError::Io { file, source })
+        }
     }
 }
 
@@ -123,4 +127,12 @@ impl Seek for Random {
             Self::Bytes(bytes) => bytes.seek(to),
         }
     }
+}
+
+/// Returns the file's name without its directory.
+pub(crate) fn file_name(path: &Path) -> String {
+    path.file_name()
+        .unwrap_or(path.as_os_str())
+        .to_string_lossy()
+        .into_owned()
 }

@@ -1,4 +1,5 @@
-//! Readers of recordings: CSV, WAV, FLAC, NPY, MATLAB, TDMS, and with the feature `lab-files` Parquet, Arrow and HDF5.
+//! Recordings of a finger that slides on a texture, and the readers of their files: CSV, and the other [`FORMATS`] by the
+//! features of this crate.
 //!
 //! ```no_run
 //! # use std::path::Path;
@@ -17,9 +18,20 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
+#![cfg_attr(
+    not(all(
+        feature = "flac",
+        feature = "matlab",
+        feature = "npy",
+        feature = "tdms",
+        feature = "wav"
+    )),
+    allow(dead_code, reason = "readers share what some builds do not need")
+)]
 
 mod columns;
 mod error;
+mod follow;
 mod formats;
 mod hertz;
 mod input;
@@ -38,15 +50,16 @@ use std::path::Path;
 
 pub use columns::channel_table::{ChannelTable, read_channels};
 pub use columns::expression::Expression;
-pub use columns::map::{ColumnMap, ColumnRef, MapEntry, Role};
+pub use columns::map::{ColumnMap, MapEntry, Role};
 pub use columns::motion::speed_mm_s;
 pub use columns::row_map::RowMap;
-pub use error::ReadError;
+pub use columns::token::ColumnRef;
+pub use error::{Place, ReadError, ReadProblem};
+pub use formats::{FORMATS, Format, format_names};
 pub use hertz::hertz;
 pub use options::ReadOptions;
 pub use recording::{MAX_RATE_HZ, Recording, RecordingError};
 pub use response::{Raised, SetupResponse, raised, read_response, response_from_bytes};
-pub use sheet::Place;
 pub use sums::Sums;
 pub use trace::{TraceColumns, read_trace, trace_from_bytes};
 pub use tracker::Tracker;
@@ -54,10 +67,9 @@ pub use value_limit::MOST_VALUES;
 pub use velocity::velocity;
 
 use columns::assemble::assemble;
-use formats::samples;
-use formats::text::file_name;
-use formats::with_sheet;
-use input::{Input, Opened};
+use error::Fault;
+use follow::follow;
+use input::{Opened, file_name};
 
 /// Reads a recording. The kind of file is detected by its first bytes; a file without a signature by its extension.
 ///
@@ -66,8 +78,7 @@ use input::{Input, Opened};
 /// # Errors
 /// See [`ReadError`]: each names the file, and the place where there is one.
 pub fn read_recording(path: &Path, options: &ReadOptions) -> Result<Recording, ReadError> {
-    options.check(&file_name(path))?;
-    read_from(Opened::file(path)?, options)
+    read(path, || Opened::file(path), options)
 }
 
 /// Reads a recording from bytes; `path` is its name and is not opened.
@@ -79,24 +90,29 @@ pub fn recording_from_bytes(
     bytes: &[u8],
     options: &ReadOptions,
 ) -> Result<Recording, ReadError> {
-    options.check(&file_name(path))?;
-    read_from(Opened::new(path, Input::Bytes(bytes))?, options)
+    read(path, || Opened::bytes(path, bytes), options)
 }
 
-fn read_from(opened: Opened<'_>, options: &ReadOptions) -> Result<Recording, ReadError> {
-    let file = opened.file.clone();
-    let assembled = match options.map {
-        None => samples::read(opened, options)?,
-        Some(_) => with_sheet(opened, options, |sheet| assemble(sheet, options))?,
+fn read<'a>(
+    path: &Path,
+    open: impl FnOnce() -> Result<Opened<'a>, Fault>,
+    options: &ReadOptions,
+) -> Result<Recording, ReadError> {
+    let file = file_name(path);
+    let assembled = || {
+        options.check()?;
+        let mut sheet = formats::open(open()?, options)?;
+        assemble(&file, &mut *sheet, options)
     };
+    let assembled = assembled().map_err(|fault: Fault| fault.in_file(&file))?;
     let recording = match &options.tracker {
         None => assembled.recording,
-        Some(tracker) => tracker.follow(assembled, options)?,
+        Some(tracker) => follow(tracker, assembled, options)?,
     };
     match (options.from_s, options.to_s) {
         (None, None) => Ok(recording),
         (from_s, to_s) => recording
             .between(from_s, to_s)
-            .map_err(|source| ReadError::Recording { file, source }),
+            .map_err(|error| ReadProblem::Recording(error).in_file(&file)),
     }
 }

@@ -3,10 +3,10 @@
 use htex_format::Quantity;
 
 use crate::columns::map::ColumnMap;
+use crate::error::ReadProblem;
 use crate::recording::{MAX_RATE_HZ, check_rate};
 use crate::tracker::Tracker;
-use crate::value_limit::ValueLimit;
-use crate::{MOST_VALUES, ReadError};
+use crate::value_limit::{MOST_VALUES, ValueLimit};
 
 /// Options of reading, for what a file does not state.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -96,14 +96,8 @@ impl ReadOptions {
     }
 
     /// Refuses values that no file can be read with.
-    pub(crate) fn check(&self, file: &str) -> Result<(), ReadError> {
-        let refuse = |option, problem| {
-            Err(ReadError::Option {
-                file: file.to_owned(),
-                option,
-                problem,
-            })
-        };
+    pub(crate) fn check(&self) -> Result<(), ReadProblem> {
+        let refuse = |option, problem| Err(ReadProblem::Option { option, problem });
         match (self.rate_hz, self.scale) {
             (Some(rate), _) if check_rate(rate).is_err() => refuse(
                 "rate_hz",

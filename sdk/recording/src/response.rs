@@ -5,10 +5,10 @@ use std::{fmt, io};
 
 use htex_dsp::grid::Band;
 
-use crate::ReadError;
-use crate::formats::blocks::Blocks;
-use crate::formats::table::Table;
-use crate::formats::text::{file_name, open};
+use crate::error::{Fault, ReadError, ReadProblem};
+use crate::formats::csv::Csv;
+use crate::input::{Opened, file_name};
+use crate::sheet::{Columns, Sheet};
 use crate::value_limit::ValueLimit;
 
 /// Smallest magnitude above 0; largest magnitude, frequency (hertz) and phase (radians).
@@ -133,11 +133,8 @@ impl fmt::Display for Raised {
 /// Those of [`read_recording`](crate::read_recording) for a CSV; and, with the line, a
 /// frequency that is negative or does not increase, or a negative magnitude.
 pub fn read_response(path: &Path) -> Result<SetupResponse, ReadError> {
-    response(Blocks::new(
-        &file_name(path),
-        open(path)?,
-        ValueLimit::default(),
-    ))
+    let read = Opened::file(path).and_then(response);
+    read.map_err(|fault| fault.in_file(&file_name(path)))
 }
 
 /// Reads a setup response from bytes; `file` is its name.
@@ -145,30 +142,28 @@ pub fn read_response(path: &Path) -> Result<SetupResponse, ReadError> {
 /// # Errors
 /// As [`read_response`].
 pub fn response_from_bytes(file: &str, bytes: &[u8]) -> Result<SetupResponse, ReadError> {
-    response(Blocks::new(file, bytes, ValueLimit::default()))
+    let read = Opened::bytes(Path::new(file), bytes).and_then(response);
+    read.map_err(|fault| fault.in_file(file))
 }
 
-fn response(mut blocks: Blocks<'_>) -> Result<SetupResponse, ReadError> {
-    let head = blocks.head()?;
-    let mut table = Table::new(blocks.file, &head)?;
+fn response(opened: Opened<'_>) -> Result<SetupResponse, Fault> {
+    let mut csv = Csv::open(opened, ValueLimit::default())?;
+    let columns = csv.columns();
     let mut wanted = vec![
-        column(&table, "frequency_hz")?,
-        column(&table, "magnitude")?,
+        column(columns, "frequency_hz")?,
+        column(columns, "magnitude")?,
     ];
-    wanted.extend(column(&table, "phase_rad").ok());
-    let mut columns = table.numbers(&wanted, &mut blocks)?.columns.into_iter();
+    wanted.extend(column(columns, "phase_rad").ok());
+    let mut columns = csv.numbers(&wanted)?.columns.into_iter();
     let frequency_hz = columns.next().unwrap_or_default();
     let magnitude = columns.next().unwrap_or_default();
-    check(&table, &frequency_hz, &magnitude)?;
+    check(&csv, &frequency_hz, &magnitude)?;
     let phase_rad = columns
         .next()
         .unwrap_or_else(|| vec![0.0; frequency_hz.len()]);
     if let Some(row) = phase_rad.iter().position(|phase| phase.abs() > LARGEST) {
-        return Err(ReadError::Response {
-            file: table.file.to_owned(),
-            line: table.line_of_row(row),
-            problem: format!("the phase {} rad is beyond {LARGEST}", phase_rad[row]),
-        });
+        let problem = format!("the phase {} rad is beyond {LARGEST}", phase_rad[row]);
+        return Err(ReadProblem::Invalid(problem).at(csv.place(row)));
     }
     Ok(SetupResponse {
         frequency_hz,
@@ -177,23 +172,19 @@ fn response(mut blocks: Blocks<'_>) -> Result<SetupResponse, ReadError> {
     })
 }
 
-fn column(table: &Table<'_>, name: &str) -> Result<usize, ReadError> {
-    let header = table.header.as_deref().unwrap_or_default();
-    header.iter().position(|cell| cell.eq_ignore_ascii_case(name)).ok_or_else(|| ReadError::Columns {
-        file: table.file.to_owned(),
-        problem: format!("a setup response needs a column {name:?}; its header is frequency_hz,magnitude[,phase_rad]"),
-        columns: table.names(),
+fn column(columns: &Columns, name: &str) -> Result<usize, ReadProblem> {
+    let is_named = |column: &usize| columns.name(*column).eq_ignore_ascii_case(name);
+    let found = (0..columns.width()).find(is_named);
+    found.ok_or_else(|| {
+        columns.refuse(format!(
+            "a setup response needs a column {name:?}; its header is frequency_hz,magnitude[,phase_rad]"
+        ))
     })
 }
 
-fn check(table: &Table<'_>, frequency_hz: &[f64], magnitude: &[f64]) -> Result<(), ReadError> {
-    let refuse = |row: usize, problem: String| {
-        Err(ReadError::Response {
-            file: table.file.to_owned(),
-            line: table.line_of_row(row),
-            problem,
-        })
-    };
+fn check(csv: &Csv<'_>, frequency_hz: &[f64], magnitude: &[f64]) -> Result<(), Fault> {
+    let refuse =
+        |row: usize, problem: String| Err(ReadProblem::Invalid(problem).at(csv.place(row)));
     for (row, (frequency, magnitude)) in frequency_hz.iter().zip(magnitude).enumerate() {
         if *frequency < 0.0 {
             return refuse(row, format!("the frequency {frequency} Hz is negative"));

@@ -1,14 +1,10 @@
 //! Files as named columns of numbers, whatever their format.
 
-use std::fmt;
-
-use crate::ReadError;
+use crate::error::{Fault, Place, ReadProblem, cell};
 
 /// The columns of a file, before their numbers are read.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Columns {
-    /// File name for messages.
-    pub(crate) file: String,
     /// Names in the order of the file; empty for a column without one.
     names: Vec<String>,
     /// Where the last part of each name begins: `fx` of `/run1/fx`.
@@ -19,18 +15,13 @@ pub(crate) struct Columns {
 
 impl Columns {
     /// Makes columns from their names; the last part of a name follows the last `separator`, if there is one.
-    pub(crate) fn new(
-        file: &str,
-        names: impl IntoIterator<Item = String>,
-        separator: Option<char>,
-    ) -> Self {
+    pub(crate) fn new(names: impl IntoIterator<Item = String>, separator: Option<char>) -> Self {
         let names: Vec<String> = names.into_iter().collect();
         let part = |name: &String| {
             let separator = separator.and_then(|c| name.rfind(c));
             separator.map_or(0, |at| at + 1)
         };
         Self {
-            file: file.to_owned(),
             parts: names.iter().map(part).collect(),
             names,
             are_named: true,
@@ -38,10 +29,9 @@ impl Columns {
     }
 
     /// Makes columns from names and the bytes at which their last parts begin.
-    pub(crate) fn with_parts(file: &str, names: Vec<(String, usize)>) -> Self {
+    pub(crate) fn with_parts(names: Vec<(String, usize)>) -> Self {
         let (names, parts) = names.into_iter().unzip();
         Self {
-            file: file.to_owned(),
             names,
             parts,
             are_named: true,
@@ -49,10 +39,10 @@ impl Columns {
     }
 
     /// Makes columns that have only numbers.
-    pub(crate) fn unnamed(file: &str, width: usize) -> Self {
+    pub(crate) fn unnamed(width: usize) -> Self {
         Self {
             are_named: false,
-            ..Self::new(file, vec![String::new(); width], None)
+            ..Self::new(vec![String::new(); width], None)
         }
     }
 
@@ -96,6 +86,14 @@ impl Columns {
             .unwrap_or_default()
     }
 
+    /// Returns the problem that roles of these columns are not clear.
+    pub(crate) fn refuse(&self, problem: String) -> ReadProblem {
+        ReadProblem::Columns {
+            problem,
+            columns: self.list(),
+        }
+    }
+
     /// Returns all names, for messages.
     pub(crate) fn list(&self) -> String {
         self.list_of(&(0..self.width()).collect::<Vec<_>>())
@@ -116,25 +114,6 @@ impl Columns {
     }
 }
 
-/// A place in a file, for messages.
-#[derive(Debug, Clone, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Place {
-    /// A line of text, from 1.
-    Line(usize),
-    /// A row of numbers, from 1.
-    Row(usize),
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Line(line) => write!(f, "line {line}"),
-            Self::Row(row) => write!(f, "row {row}"),
-        }
-    }
-}
-
 /// Numbers of some columns of a file.
 #[derive(Debug, Default)]
 pub(crate) struct Numbers {
@@ -146,15 +125,32 @@ pub(crate) struct Numbers {
     pub(crate) warnings: Vec<String>,
 }
 
-/// A file that has been opened, with its columns.
+/// What a file's columns are, which decides on the options that apply.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Layout {
+    /// Cells of text.
+    Text,
+    /// Channels without names, in an order; integers are read as fractions of full scale.
+    Channels { are_integers: bool },
+    /// Columns with names.
+    Named,
+}
+
+/// A file that has been opened, with its columns: what a format implements.
 pub(crate) trait Sheet {
     fn columns(&self) -> &Columns;
 
+    fn layout(&self) -> Layout {
+        Layout::Named
+    }
+
     /// Returns the sample rate in hertz that the file states for these columns, if it states one.
-    fn rate_hz(&self, wanted: &[usize]) -> Result<Option<f64>, ReadError>;
+    fn rate_hz(&self, _wanted: &[usize]) -> Result<Option<f64>, Fault> {
+        Ok(None)
+    }
 
     /// Reads the wanted columns, each below the width. They may be of different lengths and hold numbers that are not finite.
-    fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, ReadError>;
+    fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, Fault>;
 
     /// Returns the place of a row, from 0.
     fn place(&self, row: usize) -> Place {
@@ -163,38 +159,33 @@ pub(crate) trait Sheet {
 }
 
 /// Reads columns of equal lengths, at least two rows, and refuses numbers that are not finite.
-pub(crate) fn even_numbers(sheet: &mut dyn Sheet, wanted: &[usize]) -> Result<Numbers, ReadError> {
+pub(crate) fn even_numbers(sheet: &mut dyn Sheet, wanted: &[usize]) -> Result<Numbers, Fault> {
     let numbers = sheet.numbers(wanted)?;
     let columns = sheet.columns();
-    let file = || columns.file.clone();
     let mut lengths = wanted.iter().zip(numbers.columns.iter().map(Vec::len));
     let Some((first, rows)) = lengths.next() else {
         return Ok(numbers);
     };
     if let Some((other, got)) = lengths.find(|(_, length)| *length != rows) {
         let (first, other) = (columns.name(*first), columns.name(*other));
-        return Err(ReadError::Lengths {
-            file: file(),
+        let problem = ReadProblem::Lengths {
             first,
             rows,
             other,
             got,
-        });
+        };
+        return Err(problem.into());
     }
     if rows < 2 {
-        return Err(ReadError::TooFewRows { file: file(), rows });
+        return Err(ReadProblem::TooFewRows { rows }.into());
     }
     for (column, values) in wanted.iter().zip(&numbers.columns) {
         if let Some(row) = values.iter().position(|value| !value.is_finite()) {
-            return Err(ReadError::Cell {
-                file: file(),
-                place: sheet.place(row),
-                column: columns.name(*column),
-                problem: match values[row].is_nan() {
-                    true => "it is not a number, or empty".to_owned(),
-                    false => format!("{} is not finite", values[row]),
-                },
-            });
+            let problem = match values[row].is_nan() {
+                true => "it is not a number, or empty".to_owned(),
+                false => format!("{} is not finite", values[row]),
+            };
+            return Err(cell(sheet.place(row), &columns.name(*column), problem));
         }
     }
     Ok(numbers)

@@ -4,6 +4,8 @@
 pub struct Sums(Vec<f64>);
 
 impl Sums {
+    /// Adds up values.
+    #[must_use]
     pub fn of(values: impl Iterator<Item = f64>) -> Self {
         let mut sum = 0.0;
         let mut sums = Vec::with_capacity(values.size_hint().0 + 1);
@@ -16,16 +18,19 @@ impl Sums {
     }
 
     /// Returns the number of samples of the signal.
+    #[must_use]
     pub fn samples(&self) -> usize {
         self.0.len() - 1
     }
 
     /// Returns the mean of the samples from `from` to before `to`, 0 if there are none.
+    #[must_use]
     pub fn mean(&self, from: usize, to: usize) -> f64 {
         (self.0[to] - self.0[from]) / (to - from).max(1) as f64
     }
 
     /// Returns the mean over `2·half + 1` samples around one, fewer at the ends.
+    #[must_use]
     pub fn mean_around(&self, at: usize, half: usize) -> f64 {
         self.mean(at.saturating_sub(half), (at + half + 1).min(self.samples()))
     }

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use htex_format::Quantity;
 
-use crate::ReadError;
 use crate::columns::map::Role;
 use crate::columns::names::{Unit, base_unit, recognise};
-use crate::formats::blocks::Blocks;
-use crate::formats::table::Table;
-use crate::formats::text::{file_name, open};
+use crate::error::{Fault, ReadError, ReadProblem};
+use crate::formats::csv::Csv;
+use crate::input::{Opened, file_name};
+use crate::sheet::{Columns, Sheet};
 use crate::value_limit::ValueLimit;
 
 /// Shortest time between two rows, seconds.
@@ -41,11 +41,8 @@ pub struct TraceColumns {
 /// Those of [`read_recording`](crate::read_recording) for a CSV; and, with the line, a time that
 /// does not increase by a nanosecond, or a number beyond 1e9.
 pub fn read_trace(path: &Path) -> Result<TraceColumns, ReadError> {
-    trace(Blocks::new(
-        &file_name(path),
-        open(path)?,
-        ValueLimit::default(),
-    ))
+    let read = Opened::file(path).and_then(trace);
+    read.map_err(|fault| fault.in_file(&file_name(path)))
 }
 
 /// Reads a trace from bytes; `file` is its name.
@@ -53,27 +50,27 @@ pub fn read_trace(path: &Path) -> Result<TraceColumns, ReadError> {
 /// # Errors
 /// As [`read_trace`].
 pub fn trace_from_bytes(file: &str, bytes: &[u8]) -> Result<TraceColumns, ReadError> {
-    trace(Blocks::new(file, bytes, ValueLimit::default()))
+    let read = Opened::bytes(Path::new(file), bytes).and_then(trace);
+    read.map_err(|fault| fault.in_file(file))
 }
 
-fn trace(mut blocks: Blocks<'_>) -> Result<TraceColumns, ReadError> {
-    let head = blocks.head()?;
-    let mut table = Table::new(blocks.file, &head)?;
+fn trace(opened: Opened<'_>) -> Result<TraceColumns, Fault> {
+    let mut csv = Csv::open(opened, ValueLimit::default())?;
+    let columns = csv.columns();
     let mut warnings = Vec::new();
     let mut found = Vec::new();
     for role in [Role::Time, Role::X, Role::Y, Role::Normal] {
-        found.push(find(&table, role, &mut warnings)?.ok_or_else(|| missing(&table, role))?);
+        found.push(find(columns, role, &mut warnings)?.ok_or_else(|| missing(columns, role))?);
     }
-    let speed = find(&table, Role::Speed, &mut warnings)?;
+    let speed = find(columns, Role::Speed, &mut warnings)?;
     found.extend(speed);
-    warn_of_unused(&table, &found, &mut warnings);
+    warn_of_unused(columns, &found, &mut warnings);
     let wanted: Vec<usize> = found.iter().map(|(column, _)| *column).collect();
-    let columns = table
-        .numbers(&wanted, &mut blocks)?
-        .columns
+    let numbers = csv.numbers(&wanted)?.columns;
+    let mut columns = numbers
         .into_iter()
-        .zip(&found);
-    let mut columns = columns.map(|(values, (_, scale))| scaled(values, *scale));
+        .zip(&found)
+        .map(|(values, (_, scale))| scaled(values, *scale));
     let mut next = || columns.next().unwrap_or_default();
     let trace = TraceColumns {
         t_s: next(),
@@ -83,35 +80,38 @@ fn trace(mut blocks: Blocks<'_>) -> Result<TraceColumns, ReadError> {
         speed_mm_s: speed.map(|_| next()),
         warnings,
     };
-    check_time(&table, &trace.t_s)?;
+    check_time(&csv, &trace.t_s)?;
     let motion = [&trace.t_s, &trace.x_mm, &trace.y_mm, &trace.force_n];
     for column in motion.into_iter().chain(&trace.speed_mm_s) {
-        check_size(&table, column)?;
+        check_size(&csv, column)?;
     }
     Ok(trace)
 }
 
 /// Returns the column with a role and the factor to its unit.
 fn find(
-    table: &Table<'_>,
+    columns: &Columns,
     role: Role,
     warnings: &mut Vec<String>,
-) -> Result<Option<(usize, f64)>, ReadError> {
-    let named = |column: usize| match recognise(&table.name(column), Quantity::LateralForce) {
+) -> Result<Option<(usize, f64)>, ReadProblem> {
+    let named = |column: usize| match recognise(&columns.name(column), Quantity::LateralForce) {
         Some((known, unit)) if known == role => Some((column, unit)),
         _ => None,
     };
-    let all: Vec<(usize, Unit)> = (0..table.width).filter_map(named).collect();
+    let all: Vec<(usize, Unit)> = (0..columns.width()).filter_map(named).collect();
     let (column, unit) = match &all[..] {
         [] => return Ok(None),
         [one] => one,
         [one, other, ..] => {
-            let (one, other) = (table.name(one.0), table.name(other.0));
+            let (one, other) = (columns.name(one.0), columns.name(other.0));
             let problem = format!("{one:?} and {other:?} both match {role}; keep one of them");
-            return Err(refuse(table, problem));
+            return Err(columns.refuse(problem));
         }
     };
-    let (name, wanted) = (table.name(*column), base_unit(role, Quantity::LateralForce));
+    let (name, wanted) = (
+        columns.name(*column),
+        base_unit(role, Quantity::LateralForce),
+    );
     let scale = match unit {
         Unit::Scale(scale) => *scale,
         Unit::Unsaid => {
@@ -123,35 +123,25 @@ fn find(
         Unit::Volts | Unit::Unknown(_) => {
             let problem =
                 format!("column {name:?} is not in a unit known for {role}; write it in {wanted}");
-            return Err(refuse(table, problem));
+            return Err(columns.refuse(problem));
         }
     };
     Ok(Some((*column, scale)))
 }
 
-fn missing(table: &Table<'_>, role: Role) -> ReadError {
-    let problem = match table.header {
-        None => "there is no header row; write t_s,x_mm,y_mm,force_n".to_owned(),
-        Some(_) => {
-            format!("there is no column for {role}; a trace's header is t_s,x_mm,y_mm,force_n")
-        }
+fn missing(columns: &Columns, role: Role) -> ReadProblem {
+    let problem = match columns.are_named {
+        false => "there is no header row; write t_s,x_mm,y_mm,force_n".to_owned(),
+        true => format!("there is no column for {role}; a trace's header is t_s,x_mm,y_mm,force_n"),
     };
-    refuse(table, problem)
+    columns.refuse(problem)
 }
 
-fn refuse(table: &Table<'_>, problem: String) -> ReadError {
-    ReadError::Columns {
-        file: table.file.to_owned(),
-        problem,
-        columns: table.names(),
-    }
-}
-
-fn warn_of_unused(table: &Table<'_>, found: &[(usize, f64)], warnings: &mut Vec<String>) {
+fn warn_of_unused(columns: &Columns, found: &[(usize, f64)], warnings: &mut Vec<String>) {
     let unused = |column: &usize| found.iter().all(|(used, _)| used != column);
-    let names: Vec<String> = (0..table.width)
+    let names: Vec<String> = (0..columns.width())
         .filter(unused)
-        .map(|column| table.name(column))
+        .map(|column| columns.name(column))
         .collect();
     if !names.is_empty() {
         warnings.push(format!("Columns not used: {}.", names.join(", ")));
@@ -165,18 +155,17 @@ fn scaled(mut values: Vec<f64>, scale: f64) -> Vec<f64> {
     values
 }
 
-fn check_size(table: &Table<'_>, values: &[f64]) -> Result<(), ReadError> {
+fn check_size(csv: &Csv<'_>, values: &[f64]) -> Result<(), Fault> {
     match values.iter().position(|value| value.abs() > LARGEST) {
         None => Ok(()),
-        Some(row) => Err(ReadError::Trace {
-            file: table.file.to_owned(),
-            line: table.line_of_row(row),
-            problem: format!("{} is beyond {LARGEST}; correct its unit", values[row]),
-        }),
+        Some(row) => {
+            let problem = format!("{} is beyond {LARGEST}; correct its unit", values[row]);
+            Err(ReadProblem::Invalid(problem).at(csv.place(row)))
+        }
     }
 }
 
-fn check_time(table: &Table<'_>, t_s: &[f64]) -> Result<(), ReadError> {
+fn check_time(csv: &Csv<'_>, t_s: &[f64]) -> Result<(), Fault> {
     let Some(row) = t_s
         .windows(2)
         .position(|pair| pair[1] - pair[0] < SHORTEST_S)
@@ -184,12 +173,9 @@ fn check_time(table: &Table<'_>, t_s: &[f64]) -> Result<(), ReadError> {
         return Ok(());
     };
     let (before, after) = (t_s[row], t_s[row + 1]);
-    Err(ReadError::Trace {
-        file: table.file.to_owned(),
-        line: table.line_of_row(row + 1),
-        problem: format!(
-            "the time after {before} s is {after} s; it must increase on every row by a nanosecond or more (a column with too \
-             few decimals repeats values)"
-        ),
-    })
+    let problem = format!(
+        "the time after {before} s is {after} s; it must increase on every row by a nanosecond or more (a column with too \
+         few decimals repeats values)"
+    );
+    Err(ReadProblem::Invalid(problem).at(csv.place(row + 1)))
 }

@@ -1,6 +1,6 @@
 //! Limit on the numbers of a file that are kept in memory.
 
-use crate::ReadError;
+use crate::error::ReadProblem;
 
 /// Default limit on the numbers kept of a file: 11 minutes of three columns at 20 kHz. With derived data they
 /// take 8 to 40 bytes each, most at low rates.
@@ -15,12 +15,11 @@ pub(crate) struct ValueLimit {
 impl ValueLimit {
     /// Refuses more numbers than the limit.
     #[inline]
-    pub(crate) fn check(self, file: &str, values: u64) -> Result<(), ReadError> {
+    pub(crate) fn check(self, values: u64) -> Result<(), ReadProblem> {
         if values <= self.most_values as u64 {
             Ok(())
         } else {
-            Err(ReadError::TooManyValues {
-                file: file.to_owned(),
+            Err(ReadProblem::TooManyValues {
                 limit: self.most_values,
             })
         }

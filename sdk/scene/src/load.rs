@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use htex_device::{Devices, Settings};
 use htex_format::{Finding, Findings, Quantity, Report, Rule};
 use htex_play::{Asset, Registry, VoiceOptions};
-use htex_recording::ReadError;
+use htex_recording::{ReadError, ReadProblem};
 
 use crate::check::check;
 use crate::device::{DeviceOverride, check_device, stem};
@@ -429,7 +429,10 @@ fn opened<T>(
     }
     match open(&place) {
         Ok(value) => return Some(value),
-        Err(ReadError::Io { source, .. }) if is_missing(&source) => {
+        Err(ReadError {
+            problem: ReadProblem::Io(error),
+            ..
+        }) if is_missing(&error) => {
             findings.add(gone, pointer, missing(path));
         }
         Err(error) => findings.add(invalid, pointer, error.to_string()),

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use htex_dsp::grid::Band;
 use htex_play::Asset;
-use htex_recording::ReadError;
 use htex_recording::{Raised, raised, read_response};
+use htex_recording::{ReadError, ReadProblem};
 
 pub use htex_recording::SetupResponse as Response;
 
@@ -18,13 +18,13 @@ pub fn open(path: &Path) -> Result<Response, ReadError> {
     let response = read_response(path)?;
     if response.magnitude.iter().all(|m| *m == 0.0) {
         let file = path.file_name().unwrap_or(path.as_os_str());
-        return Err(ReadError::Option {
-            file: file.to_string_lossy().into_owned(),
+        let problem = ReadProblem::Option {
             option: "response",
             problem:
                 "every magnitude is 0, which cannot be compensated; measure the response again"
                     .into(),
-        });
+        };
+        return Err(problem.in_file(&file.to_string_lossy()));
     }
     Ok(response)
 }

@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use htex_author::recording::{ReadError, ReadOptions, recording_from_bytes, trace_from_bytes};
+use htex_author::recording::{
+    ReadError, ReadOptions, ReadProblem, recording_from_bytes, trace_from_bytes,
+};
 use htex_author::{
     Averaging, Exploration, Recording, SegmentChoice, SpectrumOptions, Take, TextureSpectrum,
     read_take, recording_findings,
@@ -50,7 +52,8 @@ pub(crate) fn recording_with(
 ) -> bool {
     let read = |options: &ReadOptions| recording_from_bytes(Path::new(name), input, options);
     let mut result = read(options);
-    if matches!(result, Err(ReadError::NoRate { .. })) {
+    let has_no_rate = |error: &ReadError| matches!(error.problem, ReadProblem::NoRate);
+    if result.as_ref().is_err_and(has_no_rate) {
         result = read(&options.clone().with_rate_hz(rate_hz));
     }
     match result {

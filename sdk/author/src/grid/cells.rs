@@ -1,12 +1,10 @@
 //! The cells of a grid: the steady windows around each crossing of its lines.
 
-use super::lines::Lines;
+use super::lines::{FEWEST, Lines};
 
 /// Windows from which a cell is not widened. In third octaves the power of as many windows of noise scatters by 0.5 dB
 /// (RMS over 17 bands from 20 Hz).
 const ENOUGH: usize = 32;
-/// Fewest windows of a condition, with those of a widened cell.
-pub(super) const FEWEST: usize = 8;
 /// Ratio of speeds up to which a cell may be widened, and factor by which it may be for speeds and forces.
 const WIDENED_RATIO: f64 = 1.19;
 const WIDENED: [f64; 2] = [2.0, 1.5];

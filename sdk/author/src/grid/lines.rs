@@ -1,10 +1,11 @@
 //! The lines of a grid: given, or chosen from the motions of the steady windows.
 
-use super::cells::FEWEST;
 use super::request::Grid;
 use crate::AuthorError;
 use crate::findings::quantile;
 
+/// Fewest windows of a condition, with those of a widened cell.
+pub(super) const FEWEST: usize = 8;
 /// Parts of the windows whose speeds, and forces, a chosen grid covers.
 const COVERED: [f64; 2] = [0.01, 0.99];
 /// Ratios of neighbouring speeds that are tried in turn: a quarter to a twelfth of an octave. Within 5 % a player treats speeds

@@ -97,7 +97,7 @@ pub(crate) fn group_grid(
     if grouped.groups.is_empty() {
         return Err(AuthorError::GridEmpty {
             segments: windows.len(),
-            needed: cells::FEWEST,
+            needed: lines::FEWEST,
             motion: report.motion_text(),
         });
     }

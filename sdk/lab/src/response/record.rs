@@ -1,7 +1,7 @@
 //! Input and output of a setup, recorded together.
 
 use htex_author::Recording;
-use htex_author::recording::{ColumnMap, MapEntry, ReadError, Role};
+use htex_author::recording::{ColumnMap, MapEntry, ReadError, ReadProblem, Role};
 
 use super::error::{Channel, ResponseError};
 
@@ -181,8 +181,8 @@ fn entry(channel: Channel, role: Role, text: &str) -> Result<MapEntry, ResponseE
 
 /// What is wrong with a map, without advice on maps.
 fn problem_of(error: ReadError) -> String {
-    match error {
-        ReadError::Map { problem } => problem,
-        error => error.to_string(),
+    match error.problem {
+        ReadProblem::Map(problem) => problem,
+        _ => error.to_string(),
     }
 }

@@ -2,13 +2,15 @@
 
 use htex_format::Quantity;
 
+use crate::columns::by_order::by_order;
 use crate::columns::clock::{self, Noticed};
 use crate::columns::map::Role;
 use crate::columns::motion;
 use crate::columns::select::{Chosen, Selection, Values, all_axis_roles, select};
+use crate::error::{Fault, cell};
+use crate::options::ReadOptions;
 use crate::recording::{Recording, RecordingError};
-use crate::sheet::{Sheet, even_numbers};
-use crate::{ReadError, ReadOptions};
+use crate::sheet::{Layout, Sheet, even_numbers};
 
 /// A recording, and the time of each sample if the file has times.
 pub(crate) struct Assembled {
@@ -16,11 +18,22 @@ pub(crate) struct Assembled {
     pub(crate) time_s: Option<Vec<f64>>,
 }
 
-/// Reads the columns that the map and their names select.
+/// Reads the columns that the map and their names select, or without a map channels by their order.
 pub(crate) fn assemble(
+    file: &str,
     sheet: &mut dyn Sheet,
     options: &ReadOptions,
-) -> Result<Assembled, ReadError> {
+) -> Result<Assembled, Fault> {
+    match (sheet.layout(), &options.map) {
+        (Layout::Channels { are_integers }, None) => Ok(Assembled {
+            recording: by_order(file, sheet, are_integers, options)?,
+            time_s: None,
+        }),
+        _ => by_name(file, sheet, options),
+    }
+}
+
+fn by_name(file: &str, sheet: &mut dyn Sheet, options: &ReadOptions) -> Result<Assembled, Fault> {
     let mut selection = select(sheet.columns(), options.map.as_ref(), options.quantity)?;
     let mut signals = Signals::read(sheet, &selection)?;
     let mut noticed = Noticed {
@@ -34,12 +47,9 @@ pub(crate) fn assemble(
         None => sheet.rate_hz(signals.wanted())?,
     };
     let given_hz = clock::given(own_hz, options.rate_hz, &mut noticed);
-    let rate_hz = clock::rate(sheet, time_s.as_deref(), given_hz, &mut noticed)?;
-    let file = sheet.columns().file.clone();
+    let rate_hz = clock::rate(file, sheet, time_s.as_deref(), given_hz, &mut noticed)?;
     let simulated = signals.simulated;
-    let mut recording = signals
-        .into_recording(options.quantity, &file, rate_hz)
-        .map_err(|source| ReadError::Recording { file, source })?;
+    let mut recording = signals.into_recording(options.quantity, file, rate_hz)?;
     recording.simulated = simulated;
     recording.clock_findings = noticed.findings.into_list();
     recording.warnings = noticed.warnings;
@@ -58,7 +68,7 @@ pub(crate) struct Signals {
 
 impl Signals {
     /// Reads the selected columns, each once, and computes the values of the roles.
-    pub(crate) fn read(sheet: &mut dyn Sheet, selection: &Selection) -> Result<Self, ReadError> {
+    pub(crate) fn read(sheet: &mut dyn Sheet, selection: &Selection) -> Result<Self, Fault> {
         let mut wanted: Vec<usize> = selection.chosen.iter().flat_map(Chosen::columns).collect();
         wanted.sort_unstable();
         wanted.dedup();
@@ -157,17 +167,15 @@ fn values(
 }
 
 /// Refuses an expression whose values are not finite, such as a quotient by zero.
-fn check_computed(sheet: &dyn Sheet, chosen: &Chosen, values: &[f64]) -> Result<(), ReadError> {
+fn check_computed(sheet: &dyn Sheet, chosen: &Chosen, values: &[f64]) -> Result<(), Fault> {
     let Values::Formula { text, .. } = &chosen.values else {
         return Ok(());
     };
     match values.iter().position(|value| !value.is_finite()) {
         None => Ok(()),
-        Some(row) => Err(ReadError::Cell {
-            file: sheet.columns().file.clone(),
-            place: sheet.place(row),
-            column: htex_format::plain(text).into_owned(),
-            problem: format!("the expression is {} there", values[row]),
-        }),
+        Some(row) => {
+            let problem = format!("the expression is {} there", values[row]);
+            Err(cell(sheet.place(row), &htex_format::plain(text), problem))
+        }
     }
 }

@@ -2,14 +2,16 @@
 
 use std::path::Path;
 
+use htex_format::Quantity;
+
 use crate::columns::clock::{self, Noticed};
 use crate::columns::map::Role;
-use crate::columns::names::recognise;
-use crate::formats::with_sheet;
-use crate::input::Opened;
+use crate::columns::names::{Unit, recognise};
+use crate::error::{Fault, ReadError};
+use crate::formats;
+use crate::input::{Opened, file_name};
+use crate::options::ReadOptions;
 use crate::sheet::{Sheet, even_numbers};
-use crate::{ReadError, ReadOptions};
-use htex_format::Quantity;
 
 /// The channels of a recording as they are in its file, without roles and scales.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,11 +32,16 @@ pub struct ChannelTable {
 /// # Errors
 /// As [`read_recording`](crate::read_recording).
 pub fn read_channels(path: &Path, options: &ReadOptions) -> Result<ChannelTable, ReadError> {
-    options.check(&crate::formats::text::file_name(path))?;
-    with_sheet(Opened::file(path)?, options, |sheet| table(sheet, options))
+    let file = file_name(path);
+    let read = || {
+        options.check()?;
+        let mut sheet = formats::open(Opened::file(path)?, options)?;
+        table(&file, &mut *sheet, options)
+    };
+    read().map_err(|fault: Fault| fault.in_file(&file))
 }
 
-fn table(sheet: &mut dyn Sheet, options: &ReadOptions) -> Result<ChannelTable, ReadError> {
+fn table(file: &str, sheet: &mut dyn Sheet, options: &ReadOptions) -> Result<ChannelTable, Fault> {
     let width = sheet.columns().width();
     let time = time_column(sheet);
     let all: Vec<usize> = (0..width).collect();
@@ -51,13 +58,10 @@ fn table(sheet: &mut dyn Sheet, options: &ReadOptions) -> Result<ChannelTable, R
     };
     let mut noticed = Noticed::default();
     let given_hz = clock::given(own_hz, options.rate_hz, &mut noticed);
-    let rate_hz = clock::rate(sheet, time_s.as_deref(), given_hz, &mut noticed)?;
+    let rate_hz = clock::rate(file, sheet, time_s.as_deref(), given_hz, &mut noticed)?;
     if names.is_empty() {
-        return Err(ReadError::Columns {
-            file: sheet.columns().file.clone(),
-            problem: "there is no channel beside the time".to_owned(),
-            columns: sheet.columns().list(),
-        });
+        let problem = "there is no channel beside the time".to_owned();
+        return Err(sheet.columns().refuse(problem).into());
     }
     Ok(ChannelTable {
         rate_hz,
@@ -72,7 +76,7 @@ fn time_column(sheet: &dyn Sheet) -> Option<(usize, f64)> {
     let columns = sheet.columns();
     (0..columns.width()).find_map(|column| {
         match recognise(columns.last_part(column), Quantity::LateralForce)? {
-            (Role::Time, crate::columns::names::Unit::Scale(scale)) => Some((column, scale)),
+            (Role::Time, Unit::Scale(scale)) => Some((column, scale)),
             (Role::Time, _) => Some((column, 1.0)),
             _ => None,
         }

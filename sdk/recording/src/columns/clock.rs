@@ -2,7 +2,7 @@
 
 use htex_format::Findings;
 
-use crate::ReadError;
+use crate::error::{Fault, ReadProblem};
 use crate::hertz::hertz;
 use crate::recording::check_rate;
 use crate::rules::{RECORDING_CLOCK_GAP, RECORDING_CLOCK_JITTER};
@@ -44,19 +44,16 @@ pub(crate) fn given(own: Option<f64>, given: Option<f64>, noticed: &mut Noticed)
     given.or(own)
 }
 
-/// Returns the rate in hertz; `given` takes precedence over the time column `time_s`.
+/// Returns the rate in hertz of a file; `given` takes precedence over the time column `time_s`.
 pub(crate) fn rate(
+    file: &str,
     sheet: &dyn Sheet,
     time_s: Option<&[f64]>,
     given: Option<f64>,
     noticed: &mut Noticed,
-) -> Result<f64, ReadError> {
+) -> Result<f64, Fault> {
     let measured = match (time_s, given) {
-        (None, None) => {
-            return Err(ReadError::NoRate {
-                file: sheet.columns().file.clone(),
-            });
-        }
+        (None, None) => return Err(ReadProblem::NoRate.into()),
         (None, Some(given)) => return Ok(given),
         (Some(time_s), _) => measure(sheet, time_s, given, noticed),
     };
@@ -72,7 +69,8 @@ pub(crate) fn rate(
             }
             Ok(given)
         }
-        (Err(error), Some(given)) => {
+        (Err(fault), Some(given)) => {
+            let error = fault.in_file(file);
             let sentence = format!("The given rate is used instead of the time column: {error}.");
             noticed.warnings.push(sentence);
             Ok(given)
@@ -86,15 +84,11 @@ fn measure(
     time_s: &[f64],
     given: Option<f64>,
     noticed: &mut Noticed,
-) -> Result<f64, ReadError> {
+) -> Result<f64, Fault> {
     let steps = || time_s.windows(2).map(|pair| pair[1] - pair[0]);
     if let Some(row) = steps().position(|step| step <= 0.0) {
-        return Err(ReadError::Time {
-            file: sheet.columns().file.clone(),
-            place: sheet.place(row + 1),
-            before: time_s[row],
-            after: time_s[row + 1],
-        });
+        let (before, after) = (time_s[row], time_s[row + 1]);
+        return Err(ReadProblem::Time { before, after }.at(sheet.place(row + 1)));
     }
     let longest = longest_step(steps().collect());
     let (mut sum, mut squares, mut count, mut gaps) = (0.0, 0.0, 0.0, 0_usize);
@@ -109,10 +103,7 @@ fn measure(
     }
     let mean: f64 = sum / count;
     let rate_hz = snap(1.0 / mean);
-    check_rate(rate_hz).map_err(|source| ReadError::Recording {
-        file: sheet.columns().file.clone(),
-        source,
-    })?;
+    check_rate(rate_hz)?;
     let findings = &mut noticed.findings;
     if let Some((row, gap)) = steps().enumerate().find(|(_, step)| *step > longest) {
         findings.add(RECORDING_CLOCK_GAP, format!("/time/{}", row + 1), format!(

@@ -16,8 +16,7 @@
 
 use std::fmt;
 
-use crate::columns::map::ColumnRef;
-use crate::columns::token::{Kind, Token};
+use crate::columns::token::{ColumnRef, Kind, Problem, Token};
 
 /// Deepest nesting of parentheses and signs.
 const MOST_DEEP: usize = 32;
@@ -120,29 +119,6 @@ impl Expression {
             text: whole.unwrap_or_default().to_owned(),
             steps: parser.steps,
         })
-    }
-}
-
-/// What is wrong with a text, and the byte at which it is.
-#[derive(Debug)]
-pub(crate) struct Problem {
-    pub(crate) at: Option<usize>,
-    pub(crate) what: String,
-}
-
-impl Problem {
-    pub(crate) fn at(token: &Token, what: impl Into<String>) -> Self {
-        Self {
-            at: Some(token.start),
-            what: what.into(),
-        }
-    }
-
-    fn at_end(what: impl Into<String>) -> Self {
-        Self {
-            at: None,
-            what: what.into(),
-        }
     }
 }
 

@@ -2,17 +2,18 @@
 
 use htex_format::Quantity;
 
-use crate::ReadError;
 use crate::columns::expression::Expression;
-use crate::columns::map::{ColumnRef, Role};
+use crate::columns::map::Role;
 use crate::columns::names::{Unit, base_unit};
+use crate::columns::token::ColumnRef;
+use crate::error::ReadProblem;
 use crate::sheet::Columns;
 
 /// Returns the column that an expression is: the one with its text as name, or the only one in it.
 pub(crate) fn whole_column(
     columns: &Columns,
     values: &Expression,
-) -> Result<Option<usize>, ReadError> {
+) -> Result<Option<usize>, ReadProblem> {
     if let Some(column) = values.column() {
         return find(columns, column).map(Some);
     }
@@ -22,7 +23,7 @@ pub(crate) fn whole_column(
     }
 }
 
-pub(crate) fn find(columns: &Columns, column: &ColumnRef) -> Result<usize, ReadError> {
+pub(crate) fn find(columns: &Columns, column: &ColumnRef) -> Result<usize, ReadProblem> {
     let found: Vec<usize> = match column {
         ColumnRef::Number(number) => (0..columns.width())
             .filter(|column| column + 1 == *number)
@@ -31,22 +32,16 @@ pub(crate) fn find(columns: &Columns, column: &ColumnRef) -> Result<usize, ReadE
     };
     match found.as_slice() {
         [column] => Ok(*column),
-        [] => Err(columns_error(
-            columns,
-            format!("the map's column {column} does not exist"),
-        )),
+        [] => Err(columns.refuse(format!("the map's column {column} does not exist"))),
         [one, other, ..] => {
             let (one, other) = (columns.name(*one), columns.name(*other));
             let advice = match one == other {
                 true => "give the number, as in #2",
                 false => "give the whole name",
             };
-            Err(columns_error(
-                columns,
-                format!(
-                    "several columns have the name {column}, such as {one} and {other}; {advice}"
-                ),
-            ))
+            Err(columns.refuse(format!(
+                "several columns have the name {column}, such as {one} and {other}; {advice}"
+            )))
         }
     }
 }
@@ -63,18 +58,9 @@ pub(crate) fn no_scale(name: &str, role: Role, unit: &Unit, quantity: Quantity) 
     )
 }
 
-pub(crate) fn two_columns(columns: &Columns, role: Role, a: usize, b: usize) -> ReadError {
+pub(crate) fn two_columns(columns: &Columns, role: Role, a: usize, b: usize) -> ReadProblem {
     let (a, b) = (columns.name(a), columns.name(b));
-    columns_error(
-        columns,
-        format!("{a:?} and {b:?} both match {role}; map one of them, as in {role}=COLUMN"),
-    )
-}
-
-pub(crate) fn columns_error(columns: &Columns, problem: String) -> ReadError {
-    ReadError::Columns {
-        file: columns.file.clone(),
-        problem,
-        columns: columns.list(),
-    }
+    columns.refuse(format!(
+        "{a:?} and {b:?} both match {role}; map one of them, as in {role}=COLUMN"
+    ))
 }

@@ -3,9 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::ReadError;
-use crate::columns::expression::{Expression, Problem};
-use crate::columns::token::{Kind, Token, tokens};
+use crate::columns::expression::Expression;
+use crate::columns::token::{Kind, Problem, Token, tokens};
+use crate::error::{ReadError, ReadProblem};
 
 /// Longest map, bytes.
 const MOST_BYTES: usize = 16 << 10;
@@ -82,24 +82,6 @@ impl fmt::Display for Role {
     }
 }
 
-/// A column, by name or by number.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum ColumnRef {
-    /// The name in the header, compared without case.
-    Name(String),
-    /// The number counted from 1, written `#3`.
-    Number(usize),
-}
-
-impl fmt::Display for ColumnRef {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Name(name) => write!(f, "{name:?}"),
-            Self::Number(number) => write!(f, "#{number}"),
-        }
-    }
-}
-
 /// An entry `ROLE=EXPRESSION[:SCALE]` of a column map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapEntry {
@@ -116,7 +98,7 @@ impl MapEntry {
     /// Parses the values of a role, `EXPRESSION[:SCALE]`.
     ///
     /// # Errors
-    /// [`ReadError::Map`] if the text is no expression, with the place in it.
+    /// [`ReadProblem::Map`] if the text is no expression, with the place in it.
     ///
     /// ```
     /// # use htex_recording::{MapEntry, Role};
@@ -126,9 +108,7 @@ impl MapEntry {
     /// ```
     pub fn parse(role: Role, text: &str) -> Result<Self, ReadError> {
         check_length(text)?;
-        let refuse = |problem: Problem| ReadError::Map {
-            problem: problem.in_text(text),
-        };
+        let refuse = |problem: Problem| map_error(problem.in_text(text));
         let tokens = tokens(text).map_err(refuse)?;
         let among = |token: &&Token| matches!(token.kind, Kind::Comma | Kind::Equals);
         if let Some(token) = tokens.iter().find(among) {
@@ -173,14 +153,13 @@ impl ColumnMap {
     /// Creates a map of entries.
     ///
     /// # Errors
-    /// [`ReadError::Map`] if a role or a column is given twice, or a single axis together with several.
+    /// [`ReadProblem::Map`] if a role or a column is given twice, or a single axis together with several.
     pub fn new(entries: impl IntoIterator<Item = MapEntry>) -> Result<Self, ReadError> {
-        let refuse = |problem| ReadError::Map { problem };
         let mut map = Self::default();
         for entry in entries {
-            map.add(entry).map_err(refuse)?;
+            map.add(entry).map_err(map_error)?;
         }
-        map.check_axes().map_err(refuse)?;
+        map.check_axes().map_err(map_error)?;
         Ok(map)
     }
 
@@ -229,9 +208,7 @@ impl FromStr for ColumnMap {
 
     fn from_str(text: &str) -> Result<Self, ReadError> {
         check_length(text)?;
-        let refuse = |problem: Problem| ReadError::Map {
-            problem: problem.in_text(text),
-        };
+        let refuse = |problem: Problem| map_error(problem.in_text(text));
         let tokens = tokens(text).map_err(refuse)?;
         let entries = tokens.split(|token| token.kind == Kind::Comma);
         let entries = entries.map(|tokens| parse_entry(text, tokens).map_err(refuse));
@@ -241,21 +218,14 @@ impl FromStr for ColumnMap {
 
 fn check_length(text: &str) -> Result<(), ReadError> {
     if text.len() > MOST_BYTES {
-        return Err(ReadError::Map {
-            problem: format!("{} bytes, more than the limit of {MOST_BYTES}", text.len()),
-        });
+        let problem = format!("{} bytes, more than the limit of {MOST_BYTES}", text.len());
+        return Err(map_error(problem));
     }
     Ok(())
 }
 
-impl Problem {
-    /// Returns the sentence with the place in the text, in characters from 1.
-    fn in_text(self, text: &str) -> String {
-        match self.at.and_then(|at| text.get(..at)) {
-            Some(before) => format!("character {}: {}", before.chars().count() + 1, self.what),
-            None => self.what,
-        }
-    }
+fn map_error(problem: String) -> ReadError {
+    ReadProblem::Map(problem).in_file("column map")
 }
 
 /// Parses the tokens of `ROLE=EXPRESSION[:SCALE]`.

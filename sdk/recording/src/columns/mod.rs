@@ -1,6 +1,7 @@
 //! Columns of a file: their names, units and roles, and what is computed from them.
 
 pub(crate) mod assemble;
+mod by_order;
 pub(crate) mod channel_table;
 pub(crate) mod clock;
 pub(crate) mod expression;

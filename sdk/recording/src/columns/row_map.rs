@@ -5,9 +5,9 @@ use htex_format::Quantity;
 use crate::ReadError;
 use crate::columns::find::no_scale;
 use crate::columns::map::{ColumnMap, Role};
-use crate::columns::names;
-use crate::columns::names::{Unit, base_unit, unit_of};
+use crate::columns::names::{Unit, base_unit, unit_in, unit_of};
 use crate::columns::select::{Selection, Values, select, select_motion};
+use crate::error::ReadProblem;
 use crate::sheet::Columns;
 
 /// Conversion of channels to the values of roles, in the roles' units, by the rules of files: a map, then the names of channels.
@@ -35,23 +35,19 @@ impl RowMap {
     /// Selects from channels, each a name and a unit, which is empty if it is not known. A unit in the name takes precedence.
     ///
     /// # Errors
-    /// [`ReadError::Columns`] as for a file with these columns; `source` is its name in messages.
+    /// [`ReadProblem::Columns`] as for a file with these columns; `source` is its name in messages.
     pub fn new(
         source: &str,
         channels: &[(String, String)],
         map: Option<&ColumnMap>,
         quantity: Quantity,
     ) -> Result<Self, ReadError> {
-        let names = channels.iter().map(|(name, _)| name.clone());
-        let columns = Columns::new(source, names, None);
-        let mut selection = select(&columns, map, quantity)?;
+        let mut row_map = Self::with(source, channels, map, quantity, |columns| {
+            select(columns, map, quantity)
+        })?;
         let is_unused = |warning: &String| warning.starts_with("Columns not used");
-        selection.warnings.retain(|warning| !is_unused(warning));
-        let mut row_map = Self {
-            selection,
-            quantity,
-        };
-        row_map.take_units(&columns, channels, map)?;
+        let warnings = &mut row_map.selection.warnings;
+        warnings.retain(|warning| !is_unused(warning));
         Ok(row_map)
     }
 
@@ -64,14 +60,29 @@ impl RowMap {
         channels: &[(String, String)],
         map: Option<&ColumnMap>,
     ) -> Result<Self, ReadError> {
+        Self::with(source, channels, map, Quantity::LateralForce, |columns| {
+            select_motion(columns, map)
+        })
+    }
+
+    fn with(
+        source: &str,
+        channels: &[(String, String)],
+        map: Option<&ColumnMap>,
+        quantity: Quantity,
+        select: impl FnOnce(&Columns) -> Result<Selection, ReadProblem>,
+    ) -> Result<Self, ReadError> {
         let names = channels.iter().map(|(name, _)| name.clone());
-        let columns = Columns::new(source, names, None);
-        let mut row_map = Self {
-            selection: select_motion(&columns, map)?,
-            quantity: Quantity::LateralForce,
-        };
-        row_map.take_units(&columns, channels, map)?;
-        Ok(row_map)
+        let columns = Columns::new(names, None);
+        let selected = select(&columns).and_then(|selection| {
+            let mut row_map = Self {
+                selection,
+                quantity,
+            };
+            row_map.take_units(&columns, channels, map)?;
+            Ok(row_map)
+        });
+        selected.map_err(|problem| problem.in_file(source))
     }
 
     /// Uses the units of channels whose names have none and for which the map has no scale.
@@ -80,7 +91,7 @@ impl RowMap {
         columns: &Columns,
         channels: &[(String, String)],
         map: Option<&ColumnMap>,
-    ) -> Result<(), ReadError> {
+    ) -> Result<(), ReadProblem> {
         for chosen in &mut self.selection.chosen {
             let Values::Column(column) = chosen.values else {
                 continue;
@@ -88,7 +99,7 @@ impl RowMap {
             let mut entries = map.iter().flat_map(|map| map.entries());
             let has_scale = entries.any(|e| e.role == chosen.role && e.scale.is_some());
             let (name, unit) = &channels[column];
-            let in_name = columns::unit_in(name, chosen.role, self.quantity);
+            let in_name = unit_in(name, chosen.role, self.quantity);
             if has_scale || unit.is_empty() || in_name != Unit::Unsaid {
                 continue;
             }
@@ -96,7 +107,7 @@ impl RowMap {
                 Unit::Scale(scale) => chosen.scale = scale,
                 unit => {
                     let problem = no_scale(name, chosen.role, &unit, self.quantity);
-                    return Err(crate::columns::find::columns_error(columns, problem));
+                    return Err(columns.refuse(problem));
                 }
             }
             let assumed = format!(

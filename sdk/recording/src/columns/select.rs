@@ -2,11 +2,11 @@
 
 use htex_format::Quantity;
 
-use crate::ReadError;
 use crate::columns::expression::Formula;
-use crate::columns::find::{columns_error, find, no_scale, two_columns, whole_column};
+use crate::columns::find::{find, no_scale, two_columns, whole_column};
 use crate::columns::map::{ColumnMap, MapEntry, Role};
 use crate::columns::names::{Unit, base_unit, recognise, unit_in};
+use crate::error::ReadProblem;
 use crate::sheet::Columns;
 
 /// What a role's values are.
@@ -64,7 +64,7 @@ pub(crate) fn all_axis_roles(quantity: Quantity) -> impl Iterator<Item = Role> {
 pub(crate) fn select_motion(
     columns: &Columns,
     map: Option<&ColumnMap>,
-) -> Result<Selection, ReadError> {
+) -> Result<Selection, ReadProblem> {
     let mut selection = Selection {
         is_motion: true,
         ..Selection::default()
@@ -80,7 +80,7 @@ pub(crate) fn select_motion(
     let problem = refused.into_iter().next().unwrap_or_else(|| {
         "no column of the tracker has a known name of a position or a speed; map them, as in time=COLUMN,x=COLUMN:SCALE".to_owned()
     });
-    Err(columns_error(columns, problem))
+    Err(columns.refuse(problem))
 }
 
 /// The selected columns, and the assumptions made.
@@ -98,7 +98,7 @@ pub(crate) fn select(
     columns: &Columns,
     map: Option<&ColumnMap>,
     quantity: Quantity,
-) -> Result<Selection, ReadError> {
+) -> Result<Selection, ReadProblem> {
     let mut selection = Selection {
         quantity,
         ..Selection::default()
@@ -142,16 +142,13 @@ impl Selection {
     }
 
     /// Returns the role of a map's entry; refuses axes of other quantities.
-    fn mapped_role(&self, columns: &Columns, role: Role) -> Result<Role, ReadError> {
+    fn mapped_role(&self, columns: &Columns, role: Role) -> Result<Role, ReadProblem> {
         if self.is_motion {
             return match role {
                 Role::Time | Role::Speed | Role::X | Role::Y => Ok(role),
-                _ => Err(columns_error(
-                    columns,
-                    format!(
-                        "the map's {role} is not a role of a tracker; its roles are time, x, y, speed"
-                    ),
-                )),
+                _ => Err(columns.refuse(format!(
+                    "the map's {role} is not a role of a tracker; its roles are time, x, y, speed"
+                ))),
             };
         }
         let is_axis = ![Role::Normal, Role::Speed, Role::Time, Role::X, Role::Y].contains(&role);
@@ -159,17 +156,14 @@ impl Selection {
             return Ok(role);
         }
         let own: Vec<&str> = all_axis_roles(self.quantity).map(Role::name).collect();
-        Err(columns_error(
-            columns,
-            format!(
-                "the map's {role} is not an axis of {}; its axes are {}; correct the map or choose the recorded quantity",
-                self.quantity.words(),
-                own.join(", ")
-            ),
-        ))
+        Err(columns.refuse(format!(
+            "the map's {role} is not an axis of {}; its axes are {}; correct the map or choose the recorded quantity",
+            self.quantity.words(),
+            own.join(", ")
+        )))
     }
 
-    fn take_mapped(&mut self, columns: &Columns, entry: &MapEntry) -> Result<(), ReadError> {
+    fn take_mapped(&mut self, columns: &Columns, entry: &MapEntry) -> Result<(), ReadProblem> {
         let role = self.mapped_role(columns, entry.role)?;
         let chosen = match whole_column(columns, &entry.values)? {
             Some(column) => self.mapped_column(columns, role, column, entry)?,
@@ -185,11 +179,11 @@ impl Selection {
         role: Role,
         column: usize,
         entry: &MapEntry,
-    ) -> Result<Chosen, ReadError> {
+    ) -> Result<Chosen, ReadProblem> {
         let is_same = |chosen: &Chosen| chosen.values == Values::Column(column);
         if self.chosen.iter().any(is_same) {
             let problem = format!("the map uses column {} twice", columns.name(column));
-            return Err(columns_error(columns, problem));
+            return Err(columns.refuse(problem));
         }
         let unit = unit_in(columns.last_part(column), role, self.quantity);
         let scale = match (entry.scale, unit) {
@@ -197,7 +191,7 @@ impl Selection {
             (None, Unit::Unsaid) => self.assume_unit(columns, column, role),
             (None, unit) => {
                 let problem = no_scale(&columns.name(column), role, &unit, self.quantity);
-                return Err(columns_error(columns, problem));
+                return Err(columns.refuse(problem));
             }
         };
         Ok(Chosen::new(role, column, scale))
@@ -209,7 +203,7 @@ impl Selection {
         columns: &Columns,
         role: Role,
         entry: &MapEntry,
-    ) -> Result<Chosen, ReadError> {
+    ) -> Result<Chosen, ReadProblem> {
         let formula = entry.values.resolve(|column| find(columns, column))?;
         if entry.scale.is_none() && !entry.values.has_number() {
             let target = base_unit(role, self.quantity);
@@ -237,7 +231,7 @@ impl Selection {
     }
 
     /// Assigns columns by their names; returns why some with a known name cannot be used.
-    fn take_named(&mut self, columns: &Columns) -> Result<Vec<String>, ReadError> {
+    fn take_named(&mut self, columns: &Columns) -> Result<Vec<String>, ReadProblem> {
         let mut refused = Vec::new();
         for role in self.open_roles(columns) {
             let mut found = None;
@@ -339,7 +333,7 @@ impl Selection {
         1.0
     }
 
-    fn insist_on_axis(&self, columns: &Columns, refused: &[String]) -> Result<(), ReadError> {
+    fn insist_on_axis(&self, columns: &Columns, refused: &[String]) -> Result<(), ReadProblem> {
         if self.has_axis() {
             return Ok(());
         }
@@ -361,7 +355,7 @@ impl Selection {
                 self.quantity.unit()
             )
         };
-        Err(columns_error(columns, problem))
+        Err(columns.refuse(problem))
     }
 
     /// Returns another quantity whose names include a column's name.

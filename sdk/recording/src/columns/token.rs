@@ -1,7 +1,24 @@
 //! The tokens of a column map.
 
-use crate::columns::expression::Problem;
-use crate::columns::map::ColumnRef;
+use std::fmt;
+
+/// A column, by name or by number.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ColumnRef {
+    /// The name in the header, compared without case.
+    Name(String),
+    /// The number counted from 1, written `#3`.
+    Number(usize),
+}
+
+impl fmt::Display for ColumnRef {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Name(name) => write!(f, "{name:?}"),
+            Self::Number(number) => write!(f, "#{number}"),
+        }
+    }
+}
 
 /// A token, and the bytes of the text that it takes.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +41,37 @@ pub(crate) enum Kind {
     Comma,
     Colon,
     Equals,
+}
+
+/// What is wrong with a text, and the byte at which it is.
+#[derive(Debug)]
+pub(crate) struct Problem {
+    pub(crate) at: Option<usize>,
+    pub(crate) what: String,
+}
+
+impl Problem {
+    pub(crate) fn at(token: &Token, what: impl Into<String>) -> Self {
+        Self {
+            at: Some(token.start),
+            what: what.into(),
+        }
+    }
+
+    pub(crate) fn at_end(what: impl Into<String>) -> Self {
+        Self {
+            at: None,
+            what: what.into(),
+        }
+    }
+
+    /// Returns the sentence with the place in the text, in characters from 1.
+    pub(crate) fn in_text(self, text: &str) -> String {
+        match self.at.and_then(|at| text.get(..at)) {
+            Some(before) => format!("character {}: {}", before.chars().count() + 1, self.what),
+            None => self.what,
+        }
+    }
 }
 
 /// Splits a column map into tokens.

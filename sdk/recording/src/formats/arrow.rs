@@ -8,7 +8,7 @@ use std::io::{self, Read};
 use arrow_ipc::{CompressionType, RecordBatch, root_as_footer, root_as_message};
 use lz4_flex::frame::FrameDecoder;
 
-use crate::ReadError;
+use crate::error::{Fault, Place, ReadProblem};
 use crate::formats::arrow_schema::{Column, Schema};
 use crate::formats::shared::Shared;
 use crate::input::Opened;
@@ -66,17 +66,12 @@ struct Message {
 
 impl Arrow {
     /// Reads the schema, and where the batches are.
-    pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, ReadError> {
-        let file = opened.file.clone();
+    pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, Fault> {
         let (is_file, is_old) = (
             opened.front.starts_with(FILE),
             opened.front.starts_with(b"FEA1"),
         );
-        let shared = Shared::new(opened.random()?);
-        let source = shared.map_err(|source| ReadError::Io {
-            file: file.clone(),
-            source,
-        })?;
+        let source = Shared::new(opened.random()?)?;
         let mut arrow = Self {
             columns: Columns::default(),
             schema: Schema::default(),
@@ -89,12 +84,8 @@ impl Arrow {
             true => arrow.read_footer(),
             false => arrow.read_stream(),
         };
-        read.map_err(|(at, problem)| damaged(&file, format!("byte {at}"), &problem))?;
-        arrow.columns = Columns::new(
-            &file,
-            arrow.schema.columns.iter().map(|c| c.name.clone()),
-            None,
-        );
+        read.map_err(|(at, problem)| damaged(format!("byte {at}"), &problem))?;
+        arrow.columns = Columns::new(arrow.schema.columns.iter().map(|c| c.name.clone()), None);
         Ok(arrow)
     }
 
@@ -345,18 +336,12 @@ impl Sheet for Arrow {
         &self.columns
     }
 
-    fn rate_hz(&self, _: &[usize]) -> Result<Option<f64>, ReadError> {
-        Ok(None)
-    }
-
-    fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, ReadError> {
-        let file = &self.columns.file;
+    fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, Fault> {
         let rows = self
             .batches
             .iter()
             .fold(0_u64, |sum, batch| sum.saturating_add(batch.rows));
-        self.limit
-            .check(file, rows.saturating_mul(wanted.len() as u64))?;
+        self.limit.check(rows.saturating_mul(wanted.len() as u64))?;
         let mut columns = vec![Vec::new(); wanted.len()];
         for (values, index) in columns.iter_mut().zip(wanted) {
             let Some(column) = self.schema.columns.get(*index) else {
@@ -364,7 +349,7 @@ impl Sheet for Arrow {
             };
             for batch in &self.batches {
                 self.append(*batch, column, values)
-                    .map_err(|problem| damaged(file, self.columns.name(*index), &problem))?;
+                    .map_err(|problem| damaged(self.columns.name(*index), &problem))?;
             }
         }
         Ok(Numbers {
@@ -384,10 +369,6 @@ fn metadata(source: &Shared, at: u64, bytes: u64) -> Result<Vec<u8>, ArrowError>
     }
 }
 
-fn damaged(file: &str, place: String, problem: &ArrowError) -> ReadError {
-    ReadError::Damaged {
-        file: file.to_owned(),
-        place,
-        problem: htex_format::plain(&problem.to_string()).into_owned(),
-    }
+fn damaged(place: impl Into<Place>, problem: &ArrowError) -> Fault {
+    ReadProblem::Invalid(htex_format::plain(&problem.to_string()).into_owned()).at(place)
 }

@@ -3,7 +3,7 @@
 
 use std::io::Read;
 
-use crate::ReadError;
+use crate::error::Fault;
 use crate::formats::text::{Lines, checked, without_mark};
 use crate::value_limit::ValueLimit;
 
@@ -12,8 +12,6 @@ const BLOCK: usize = 256 << 10;
 
 /// A reader whose data are split at line ends.
 pub(crate) struct Blocks<'a> {
-    /// File name for messages.
-    pub(crate) file: &'a str,
     /// Limit on the numbers that are kept.
     pub(crate) limit: ValueLimit,
     source: Box<dyn Read + 'a>,
@@ -25,9 +23,8 @@ pub(crate) struct Blocks<'a> {
 }
 
 impl<'a> Blocks<'a> {
-    pub(crate) fn new(file: &'a str, source: impl Read + 'a, limit: ValueLimit) -> Self {
+    pub(crate) fn new(source: impl Read + 'a, limit: ValueLimit) -> Self {
         Self {
-            file,
             limit,
             source: Box::new(source),
             buffer: vec![0; BLOCK],
@@ -38,13 +35,13 @@ impl<'a> Blocks<'a> {
     }
 
     /// Returns the first remaining bytes, or all of them if they are fewer than a block.
-    pub(crate) fn front(&mut self) -> Result<&[u8], ReadError> {
+    pub(crate) fn front(&mut self) -> Result<&[u8], Fault> {
         self.buffer.copy_within(self.taken..self.filled, 0);
         (self.taken, self.filled) = (0, self.filled - self.taken);
         while !self.ended && self.filled < self.buffer.len() {
             let read = match self.source.read(&mut self.buffer[self.filled..]) {
                 Err(error) if error.kind() == std::io::ErrorKind::Interrupted => continue,
-                read => read.map_err(|source| self.failed(source))?,
+                read => read?,
             };
             self.filled += read;
             self.ended = read == 0;
@@ -54,7 +51,7 @@ impl<'a> Blocks<'a> {
 
     /// Returns the next lines, which follow `before` others; `None` at the end. A line longer than a block is returned in
     /// pieces, the first of which exceeds the limit of a line.
-    pub(crate) fn next(&mut self, before: usize) -> Result<Option<&str>, ReadError> {
+    pub(crate) fn next(&mut self, before: usize) -> Result<Option<&str>, Fault> {
         self.front()?;
         let filled = &self.buffer[..self.filled];
         let line_end = filled.iter().rposition(|byte| *byte == b'\n');
@@ -63,15 +60,14 @@ impl<'a> Blocks<'a> {
             Some(last) => last + 1,
             None => whole_characters(filled),
         };
-        let block = checked(self.file, &self.buffer[..self.taken], before)?;
+        let block = checked(&self.buffer[..self.taken], before)?;
         Ok((!block.is_empty()).then_some(block))
     }
 
     /// Returns the first lines, without a byte order mark: as many as contain two rows, if there are two.
-    pub(crate) fn head(&mut self) -> Result<String, ReadError> {
+    pub(crate) fn head(&mut self) -> Result<String, Fault> {
         let (mut head, mut rows, mut before) = (String::new(), 0, 0);
         while rows < 2 {
-            let file = self.file;
             let Some(block) = self.next(before)? else {
                 break;
             };
@@ -81,7 +77,7 @@ impl<'a> Blocks<'a> {
                 block
             };
             head.push_str(block);
-            let mut lines = Lines::behind(file, block, before, false);
+            let mut lines = Lines::behind(block, before, false);
             // A line that is too long is reported when it is parsed.
             while rows < 2 && !matches!(lines.next_row(), Ok(None)) {
                 rows += 1;
@@ -92,23 +88,15 @@ impl<'a> Blocks<'a> {
     }
 
     /// Whether another row follows, after `before` lines.
-    pub(crate) fn has_row(&mut self, mut before: usize) -> Result<bool, ReadError> {
-        let file = self.file;
+    pub(crate) fn has_row(&mut self, mut before: usize) -> Result<bool, Fault> {
         while let Some(block) = self.next(before)? {
-            let mut lines = Lines::behind(file, block, before, false);
+            let mut lines = Lines::behind(block, before, false);
             if !matches!(lines.next_row(), Ok(None)) {
                 return Ok(true);
             }
             before = lines.number;
         }
         Ok(false)
-    }
-
-    fn failed(&self, source: std::io::Error) -> ReadError {
-        ReadError::Io {
-            file: self.file.to_owned(),
-            source,
-        }
     }
 }
 

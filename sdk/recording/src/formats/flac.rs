@@ -6,33 +6,27 @@ use std::io::Read;
 
 use claxon::{Block, FlacReader, FlacReaderOptions};
 
-use crate::ReadError;
+use crate::error::{Fault, ReadProblem};
 use crate::formats::samples::{Order, Samples, channel_names};
 use crate::input::Opened;
 use crate::value_limit::ValueLimit;
 
 /// Opens a FLAC file, whose blocks are then decoded one by one.
-pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>, ReadError> {
-    let file = opened.file.clone();
+pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>, Fault> {
     let options = FlacReaderOptions {
         metadata_only: false,
         read_vorbis_comment: false,
     };
-    let reader = FlacReader::new_ext(opened.stream(), options).map_err(|error| {
-        broken(
-            &file,
-            "header",
-            format!("not a readable FLAC file: {error}"),
-        )
-    })?;
+    let reader = FlacReader::new_ext(opened.stream(), options)
+        .map_err(|error| broken("header", format!("not a readable FLAC file: {error}")))?;
     let info = reader.streaminfo();
     if info.sample_rate == 0 || info.channels == 0 {
         let problem = "it has no channels or no sample rate; export it again".to_owned();
-        return Err(broken(&file, "header", problem));
+        return Err(broken("header", problem));
     }
     let width = info.channels as usize;
     Ok(Samples {
-        columns: channel_names(&file, width),
+        columns: channel_names(width),
         rate_hz: Some(f64::from(info.sample_rate)),
         are_integers: true,
         frames: info.samples,
@@ -41,7 +35,6 @@ pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>,
         samples: Box::new(Decoded {
             full_scale: libm::exp2(f64::from(info.bits_per_sample) - 1.0),
             expected: info.samples,
-            file,
             reader,
             width,
             block: Block::empty(),
@@ -54,7 +47,6 @@ pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>,
 
 /// The decoded samples, interleaved, as fractions of full scale.
 struct Decoded<R: Read> {
-    file: String,
     reader: FlacReader<R>,
     width: usize,
     full_scale: f64,
@@ -70,7 +62,7 @@ struct Decoded<R: Read> {
 
 impl<R: Read> Decoded<R> {
     /// Decodes the next block; false at the end.
-    fn advance(&mut self) -> Result<bool, ReadError> {
+    fn advance(&mut self) -> Result<bool, Fault> {
         self.before += u64::from(self.block.duration());
         let buffer = std::mem::replace(&mut self.block, Block::empty()).into_buffer();
         let place = |at: u64| format!("sample {at} (counted from 0)");
@@ -80,7 +72,7 @@ impl<R: Read> Decoded<R> {
             .read_next_or_eof(buffer)
             .map_err(|error| {
                 let problem = format!("the file ends or breaks here: {error}; copy it again");
-                broken(&self.file, &place(self.before), problem)
+                broken(&place(self.before), problem)
             })?;
         let Some(block) = block else {
             return match self.expected {
@@ -88,7 +80,7 @@ impl<R: Read> Decoded<R> {
                     let problem = format!(
                         "the file ends here, its header says {expected} samples; copy it again"
                     );
-                    Err(broken(&self.file, &place(self.before), problem))
+                    Err(broken(&place(self.before), problem))
                 }
                 _ => Ok(false),
             };
@@ -99,7 +91,7 @@ impl<R: Read> Decoded<R> {
                 block.channels(),
                 self.width
             );
-            return Err(broken(&self.file, &place(self.before), problem));
+            return Err(broken(&place(self.before), problem));
         }
         self.block = block;
         self.next = (0, 0);
@@ -108,7 +100,7 @@ impl<R: Read> Decoded<R> {
 }
 
 impl<R: Read> Iterator for Decoded<R> {
-    type Item = Result<f64, ReadError>;
+    type Item = Result<f64, Fault>;
 
     fn next(&mut self) -> Option<Self::Item> {
         while !self.ended && self.next.0 >= self.block.duration() {
@@ -134,10 +126,6 @@ impl<R: Read> Iterator for Decoded<R> {
     }
 }
 
-fn broken(file: &str, place: &str, problem: String) -> ReadError {
-    ReadError::Damaged {
-        file: file.to_owned(),
-        place: place.to_owned(),
-        problem,
-    }
+fn broken(place: &str, problem: String) -> Fault {
+    ReadProblem::Invalid(problem).at(place)
 }

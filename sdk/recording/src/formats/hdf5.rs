@@ -12,7 +12,7 @@ use hdf5_reader::{
     StorageBuffer,
 };
 
-use crate::ReadError;
+use crate::error::{Fault, ReadProblem};
 use crate::formats::matrix::{Arrays, MOST_COLUMNS, Shape, is_rate_name};
 use crate::formats::shared::Shared;
 use crate::input::Opened;
@@ -55,30 +55,24 @@ impl Storage for Source {
 
 impl Hdf5 {
     /// Reads the names of all data sets. Links to other files are not followed.
-    pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, ReadError> {
-        let file = opened.file.clone();
-        let shared = Shared::new(opened.random()?);
-        let shared = shared.map_err(|source| ReadError::Io {
-            file: file.clone(),
-            source,
-        })?;
+    pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, Fault> {
+        let shared = Shared::new(opened.random()?)?;
         let bytes = shared.length();
         let options = OpenOptions::default()
             .with_max_chunk_bytes(MOST_CHUNK)
             .with_max_read_bytes(MOST_CHUNK)
             .with_max_object_header_bytes(MOST_HEADER);
         let mut scan = Scan {
-            file: file.clone(),
             arrays: Arrays::new('/'),
             seen: HashSet::new(),
             objects: 0,
         };
         let hdf5 = Hdf5File::from_storage_with_options(Arc::new(Source(shared)), options);
         let root = hdf5.and_then(|hdf5| hdf5.root_group());
-        let root = root.map_err(|error| damaged(&file, "/", &error))?;
+        let root = root.map_err(|error| damaged("/", &error))?;
         scan.group(&root, "", 0)?;
         Ok(Self {
-            columns: scan.arrays.columns(&file),
+            columns: scan.arrays.columns(),
             arrays: scan.arrays,
             limit,
             bytes,
@@ -91,17 +85,16 @@ impl Sheet for Hdf5 {
         &self.columns
     }
 
-    fn rate_hz(&self, wanted: &[usize]) -> Result<Option<f64>, ReadError> {
+    fn rate_hz(&self, wanted: &[usize]) -> Result<Option<f64>, Fault> {
         self.arrays.rate_hz(&self.columns, wanted)
     }
 
-    fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, ReadError> {
-        let file = &self.columns.file;
+    fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, Fault> {
         let columns = self
             .arrays
-            .numbers(file, self.limit, wanted, |dataset, shape, keep| {
-                fits(file, self.bytes, dataset, shape)?;
-                read(dataset, shape, keep).map_err(|error| damaged(file, dataset.name(), &error))
+            .numbers(self.limit, wanted, |dataset, shape, keep| {
+                fits(self.bytes, dataset, shape)?;
+                read(dataset, shape, keep).map_err(|error| damaged(dataset.name(), &error))
             })?;
         Ok(Numbers {
             columns,
@@ -112,7 +105,6 @@ impl Sheet for Hdf5 {
 
 /// The data sets found so far.
 struct Scan {
-    file: String,
     arrays: Arrays<Dataset>,
     /// Addresses of groups: a group may contain a link to one around it.
     seen: HashSet<u64>,
@@ -120,22 +112,19 @@ struct Scan {
 }
 
 impl Scan {
-    fn group(&mut self, group: &Group, path: &str, depth: usize) -> Result<(), ReadError> {
+    fn group(&mut self, group: &Group, path: &str, depth: usize) -> Result<(), Fault> {
         if !self.seen.insert(group.address()) {
             return Ok(());
         }
-        let failed = |error| damaged(&self.file, &format!("{path}/"), &error);
+        let failed = |error| damaged(&format!("{path}/"), &error);
         let (groups, datasets) = group.members().map_err(failed)?;
         self.objects += groups.len() + datasets.len();
         if depth == MOST_DEEP || self.objects > MOST_OBJECTS {
-            return Err(ReadError::Damaged {
-                file: self.file.clone(),
-                place: htex_format::plain(path).into_owned(),
-                problem: format!(
-                    "more than {MOST_DEEP} groups within each other, or more than {MOST_OBJECTS} objects; copy those of the recording \
-                     to a file of their own"
-                ),
-            });
+            let problem = format!(
+                "more than {MOST_DEEP} groups within each other, or more than {MOST_OBJECTS} objects; copy those of the recording \
+                 to a file of their own"
+            );
+            return Err(ReadProblem::Invalid(problem).at(htex_format::plain(path)));
         }
         // Attributes that cannot be read, of kinds without numbers among them, do not state a rate.
         self.attributes(path, group.attributes().unwrap_or_default());
@@ -160,7 +149,7 @@ impl Scan {
         }
     }
 
-    fn dataset(&mut self, dataset: Dataset, group: &str) -> Result<(), ReadError> {
+    fn dataset(&mut self, dataset: Dataset, group: &str) -> Result<(), Fault> {
         let path = format!("{group}/{}", dataset.name());
         self.attributes(&path, dataset.attributes());
         let shape = match *dataset.shape() {
@@ -171,13 +160,10 @@ impl Scan {
         let is_number = is_number(dataset.dtype());
         if let (Some(shape), true) = (shape, is_number) {
             if !self.arrays.add(&path, shape, dataset) {
-                return Err(ReadError::Damaged {
-                    file: self.file.clone(),
-                    place: htex_format::plain(&path).into_owned(),
-                    problem: format!(
-                        "more than {MOST_COLUMNS} columns; copy those of the recording to a file of their own"
-                    ),
-                });
+                let problem = format!(
+                    "more than {MOST_COLUMNS} columns; copy those of the recording to a file of their own"
+                );
+                return Err(ReadProblem::Invalid(problem).at(htex_format::plain(&path)));
             }
         } else if is_number
             && is_rate_name(dataset.name())
@@ -186,7 +172,7 @@ impl Scan {
             let mut value = f64::NAN;
             let whole = SliceInfo::all(dataset.ndim());
             slab(&dataset, &whole, &mut |_, read| value = read)
-                .map_err(|error| damaged(&self.file, &path, &error))?;
+                .map_err(|error| damaged(&path, &error))?;
             self.arrays.add_scalar(&path, value);
         }
         Ok(())
@@ -204,7 +190,7 @@ fn is_number(kind: &Datatype) -> bool {
 }
 
 /// Refuses a data set of more numbers than a file of this length can have.
-fn fits(file: &str, bytes: u64, dataset: &Dataset, shape: Shape) -> Result<(), ReadError> {
+fn fits(bytes: u64, dataset: &Dataset, shape: Shape) -> Result<(), Fault> {
     let size = match dataset.dtype() {
         Datatype::FixedPoint { size, .. } | Datatype::FloatingPoint { size, .. } => *size,
         _ => 1,
@@ -213,14 +199,11 @@ fn fits(file: &str, bytes: u64, dataset: &Dataset, shape: Shape) -> Result<(), R
     if numbers.saturating_mul(size.into()) <= bytes.saturating_mul(MOST_EXPANSION) {
         return Ok(());
     }
-    Err(ReadError::Damaged {
-        file: file.to_owned(),
-        place: htex_format::plain(dataset.name()).into_owned(),
-        problem: format!(
-            "it states {} samples of {} channels in a file of {bytes} bytes; write the file again without space that has no data",
-            shape.samples, shape.channels
-        ),
-    })
+    let problem = format!(
+        "it states {} samples of {} channels in a file of {bytes} bytes; write the file again without space that has no data",
+        shape.samples, shape.channels
+    );
+    Err(ReadProblem::Invalid(problem).at(htex_format::plain(dataset.name())))
 }
 
 /// Reads a data set, some samples of all its channels at once.
@@ -294,14 +277,11 @@ fn typed<T: H5Type + Copy>(
     Ok(())
 }
 
-fn damaged(file: &str, place: &str, error: &hdf5_reader::error::Error) -> ReadError {
+fn damaged(place: &str, error: &hdf5_reader::error::Error) -> Fault {
     let error = error.to_string();
-    ReadError::Damaged {
-        file: file.to_owned(),
-        place: htex_format::plain(place).into_owned(),
-        problem: format!(
-            "not readable HDF5: {}; copy the file again, or write it again by h5py or MATLAB",
-            htex_format::plain(&error)
-        ),
-    }
+    let problem = format!(
+        "not readable HDF5: {}; copy the file again, or write it again by h5py or MATLAB",
+        htex_format::plain(&error)
+    );
+    ReadProblem::Invalid(problem).at(htex_format::plain(place))
 }

@@ -10,7 +10,7 @@ use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom};
 
 use flate2::read::ZlibDecoder;
 
-use crate::ReadError;
+use crate::error::{Fault, ReadProblem};
 use crate::formats::bytes::{ByteReader, Endian, NumberType};
 use crate::formats::mat_element::{
     COMPRESSED, INT32, MATRIX, MOST_BYTES, MOST_DEEP, MOST_NAME, MOST_NAMES, MatError, Tag, UINT32,
@@ -23,6 +23,8 @@ use crate::value_limit::ValueLimit;
 
 /// Length of the file's header.
 const HEADER: u64 = 128;
+const NOT_MATLAB: &str = "the header is not that of a MATLAB 5 file (nor of HDF5, which version 7.3 is); in MATLAB: save('out.mat', '-v7')";
+
 /// An opened file.
 pub(crate) struct Mat {
     columns: Columns,
@@ -52,19 +54,11 @@ struct Element {
 
 impl Mat {
     /// Reads the names of all variables.
-    pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, ReadError> {
-        let file = opened.file.clone();
+    pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, Fault> {
         let endian = match opened.front.get(126..128) {
             Some(b"IM") => Endian::Little,
             Some(b"MI") => Endian::Big,
-            _ => {
-                return Err(ReadError::Damaged {
-                    file,
-                    place: "byte 126".to_owned(),
-                    problem: "the header is not that of a MATLAB 5 file (nor of HDF5, which version 7.3 is); in MATLAB: save('out.mat', '-v7')"
-                        .to_owned(),
-                });
-            }
+            _ => return Err(ReadProblem::Invalid(NOT_MATLAB.to_owned()).at("byte 126")),
         };
         let input = opened.random()?;
         let mut scan = Scan {
@@ -84,8 +78,8 @@ impl Mat {
             input,
         };
         let scanned = mat.scan(&mut scan);
-        scanned.map_err(|problem| damaged(&file, scan.element.at, &problem))?;
-        mat.columns = scan.arrays.columns(&file);
+        scanned.map_err(|problem| damaged(scan.element.at, &problem))?;
+        mat.columns = scan.arrays.columns();
         mat.arrays = scan.arrays;
         Ok(mat)
     }
@@ -147,14 +141,14 @@ impl Sheet for Mat {
         &self.columns
     }
 
-    fn rate_hz(&self, wanted: &[usize]) -> Result<Option<f64>, ReadError> {
+    fn rate_hz(&self, wanted: &[usize]) -> Result<Option<f64>, Fault> {
         self.arrays.rate_hz(&self.columns, wanted)
     }
 
-    fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, ReadError> {
+    fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, Fault> {
         let arrays = std::mem::replace(&mut self.arrays, Arrays::new('.'));
-        let (file, limit, endian) = (self.columns.file.clone(), self.limit, self.endian);
-        let columns = arrays.numbers(&file, limit, wanted, |data, shape, keep| {
+        let (limit, endian) = (self.limit, self.endian);
+        let columns = arrays.numbers(limit, wanted, |data, shape, keep| {
             let mut read = || {
                 let mut inside = ByteReader::new(self.inside(data.element)?, endian);
                 inside.skip(data.before)?;
@@ -162,7 +156,7 @@ impl Sheet for Mat {
                     keep(at, value)
                 })
             };
-            read().map_err(|error| damaged(&file, data.element.at, &error.into()))
+            read().map_err(|error| damaged(data.element.at, &error.into()))
         });
         self.arrays = arrays;
         Ok(Numbers {
@@ -307,16 +301,12 @@ impl Scan {
     }
 }
 
-fn damaged(file: &str, at: u64, problem: &MatError) -> ReadError {
+fn damaged(at: u64, problem: &MatError) -> Fault {
     let problem = match problem {
         MatError::Io(error) if error.kind() == ErrorKind::UnexpectedEof => {
             "the variable that begins here ends too early; copy the file again".to_owned()
         }
         other => other.to_string(),
     };
-    ReadError::Damaged {
-        file: file.to_owned(),
-        place: format!("byte {at}"),
-        problem,
-    }
+    ReadProblem::Invalid(problem).at(format!("byte {at}"))
 }

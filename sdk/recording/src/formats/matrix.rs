@@ -1,6 +1,6 @@
 //! Named arrays of one or two dimensions as columns, for MATLAB and HDF5.
 
-use crate::ReadError;
+use crate::error::{Fault, ReadProblem};
 use crate::sheet::Columns;
 use crate::value_limit::ValueLimit;
 
@@ -108,8 +108,8 @@ impl<T> Arrays<T> {
         }
     }
 
-    pub(crate) fn columns(&self, file: &str) -> Columns {
-        Columns::new(file, self.names.iter().cloned(), Some(self.separator))
+    pub(crate) fn columns(&self) -> Columns {
+        Columns::new(self.names.iter().cloned(), Some(self.separator))
     }
 
     /// Returns the rate that is stated nearest to the wanted columns: in their group or array, or in one around it. Different rates at the
@@ -118,7 +118,7 @@ impl<T> Arrays<T> {
         &self,
         columns: &Columns,
         wanted: &[usize],
-    ) -> Result<Option<f64>, ReadError> {
+    ) -> Result<Option<f64>, Fault> {
         let Some(first) = wanted.first() else {
             return Ok(None);
         };
@@ -133,14 +133,11 @@ impl<T> Arrays<T> {
             if let Some((name, rate_hz)) = here.next() {
                 return match here.find(|(_, other)| other != rate_hz) {
                     None => Ok(Some(*rate_hz)),
-                    Some((other, _)) => Err(ReadError::Damaged {
-                        file: columns.file.clone(),
-                        place: htex_format::plain(other).into_owned(),
-                        problem: format!(
-                            "it states another sample rate than {}; give the rate of the recording",
-                            htex_format::plain(name)
-                        ),
-                    }),
+                    Some((other, _)) => Err(ReadProblem::Invalid(format!(
+                        "it states another sample rate than {}; give the rate of the recording",
+                        htex_format::plain(name)
+                    ))
+                    .at(htex_format::plain(other))),
                 };
             }
             if around.is_empty() {
@@ -153,21 +150,17 @@ impl<T> Arrays<T> {
     /// Reads the wanted columns: `read` reads an array and passes each value with its index in the file. Each array is read once.
     pub(crate) fn numbers(
         &self,
-        file: &str,
         limit: ValueLimit,
         wanted: &[usize],
-        mut read: impl FnMut(&T, Shape, &mut dyn FnMut(u64, f64)) -> Result<(), ReadError>,
-    ) -> Result<Vec<Vec<f64>>, ReadError> {
+        mut read: impl FnMut(&T, Shape, &mut dyn FnMut(u64, f64)) -> Result<(), Fault>,
+    ) -> Result<Vec<Vec<f64>>, Fault> {
         let of = |column: &usize| self.columns.get(*column).copied().unwrap_or((0, 0));
         let samples = |column| {
             self.arrays
                 .get(of(column).0)
                 .map_or(0, |(shape, _)| shape.samples)
         };
-        limit.check(
-            file,
-            wanted.iter().map(samples).fold(0, u64::saturating_add),
-        )?;
+        limit.check(wanted.iter().map(samples).fold(0, u64::saturating_add))?;
         let mut numbers = vec![Vec::new(); wanted.len()];
         for (index, (shape, array)) in self.arrays.iter().enumerate() {
             let mut slots = vec![None; shape.channels as usize];

@@ -1,152 +1,237 @@
-//! The kind of a file, and its reader.
+//! The formats of recordings, in one table, and the readers of their files.
 
 #[cfg(feature = "lab-files")]
 mod arrow;
 #[cfg(feature = "lab-files")]
 mod arrow_schema;
-pub(crate) mod blocks;
+mod blocks;
 mod bytes;
-mod csv;
+mod cells;
+pub(crate) mod csv;
+#[cfg(feature = "flac")]
 mod flac;
 #[cfg(feature = "lab-files")]
 mod hdf5;
+#[cfg(feature = "matlab")]
 mod mat;
+#[cfg(feature = "matlab")]
 mod mat_element;
 mod matrix;
+#[cfg(feature = "npy")]
 mod npy;
+#[cfg(feature = "npy")]
+mod npy_header;
 mod number;
 #[cfg(feature = "lab-files")]
 mod parquet;
-pub(crate) mod samples;
+mod samples;
 #[cfg(feature = "lab-files")]
 mod shared;
-pub(crate) mod table;
+mod table;
+#[cfg(feature = "tdms")]
 mod tdms;
+#[cfg(feature = "tdms")]
 mod tdms_directory;
+#[cfg(feature = "tdms")]
 mod tdms_object;
-pub(crate) mod text;
+mod text;
 #[cfg(feature = "lab-files")]
 mod thrift;
+#[cfg(feature = "wav")]
 mod wav;
 
-use std::path::Path;
-
-use crate::formats::blocks::Blocks;
-use crate::formats::csv::Csv;
-use crate::formats::mat::Mat;
-use crate::formats::samples::Samples;
-use crate::formats::tdms::Tdms;
+use crate::error::{Fault, ReadProblem};
 use crate::input::Opened;
-use crate::sheet::Sheet;
-use crate::{ReadError, ReadOptions};
+use crate::options::ReadOptions;
+use crate::sheet::{Layout, Sheet};
+use crate::value_limit::ValueLimit;
 
-/// A kind of file that is read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
-    Csv,
-    Wav,
-    Flac,
-    Npy,
-    Mat,
-    Tdms,
-    Parquet,
-    Arrow,
-    Hdf5,
+/// A format of recordings.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Format {
+    /// Its name in texts.
+    pub name: &'static str,
+    /// Extensions of its files, in lower case. They count for files without a signature.
+    pub extensions: &'static [&'static str],
+    /// Bytes, and where in a file they are, of which one set makes a file one of this format.
+    pub signatures: &'static [(usize, &'static [u8])],
+    /// The feature of this crate that builds its reader.
+    pub feature: &'static str,
+    open: Option<Open>,
 }
 
-impl Kind {
-    /// Detects the kind of file by its signature, else by its extension; the default is text.
-    pub(crate) fn of(path: &Path, front: &[u8]) -> Self {
-        by_signature(front)
-            .or_else(|| by_extension(path))
-            .unwrap_or(Self::Csv)
-    }
-}
+type Open = for<'a> fn(Opened<'a>, ValueLimit) -> Result<Box<dyn Sheet + 'a>, Fault>;
 
-fn by_signature(front: &[u8]) -> Option<Kind> {
-    // Version 1 and the byte order.
-    if let Some(b"\0\x01IM" | b"\x01\0MI") = front.get(124..128) {
-        return Some(Kind::Mat);
-    }
-    // A block of the user may precede the file, of 512 bytes in those of MATLAB 7.3.
-    let is_hdf5 = |at: &usize| {
-        front
-            .get(*at..)
-            .is_some_and(|bytes| bytes.starts_with(b"\x89HDF\r\n\x1a\n"))
-    };
-    if [0, 512, 1024, 2048].iter().any(is_hdf5) {
-        return Some(Kind::Hdf5);
-    }
-    let kinds: [(&[u8], Kind); 9] = [
-        (b"RIFF", Kind::Wav),
-        (b"fLaC", Kind::Flac),
-        (b"\x93NUMPY", Kind::Npy),
-        (b"TDSm", Kind::Tdms),
-        (b"TDSh", Kind::Tdms),
-        (b"PAR1", Kind::Parquet),
-        (b"ARROW1", Kind::Arrow),
-        (b"FEA1", Kind::Arrow),
-        (b"\xff\xff\xff\xff", Kind::Arrow),
-    ];
-    let found = kinds
-        .iter()
-        .find(|(signature, _)| front.starts_with(signature));
-    found.map(|(_, kind)| *kind)
-}
-
-fn by_extension(path: &Path) -> Option<Kind> {
-    let extension = path.extension()?.to_ascii_lowercase();
-    Some(match extension.to_str()? {
-        "wav" | "wave" => Kind::Wav,
-        "flac" => Kind::Flac,
-        "npy" => Kind::Npy,
-        "mat" => Kind::Mat,
-        "tdms" | "tdms_index" => Kind::Tdms,
-        "parquet" => Kind::Parquet,
-        "arrow" | "arrows" | "feather" | "ipc" => Kind::Arrow,
-        "h5" | "hdf5" => Kind::Hdf5,
-        _ => return None,
-    })
-}
-
-/// Calls a function with the columns of a file.
-pub(crate) fn with_sheet<T>(
-    opened: Opened<'_>,
-    options: &ReadOptions,
-    read: impl FnOnce(&mut dyn Sheet) -> Result<T, ReadError>,
-) -> Result<T, ReadError> {
-    let (file, limit) = (opened.file.clone(), options.value_limit());
-    match Kind::of(&opened.path, &opened.front) {
-        Kind::Csv => {
-            let mut blocks = Blocks::new(&file, opened.stream(), limit);
-            let head = blocks.head()?;
-            read(&mut Csv::new(&file, &head, blocks, options)?)
+/// The reader of a format, if it is built.
+macro_rules! reader {
+    ($feature:literal, $open:path) => {{
+        #[cfg(feature = $feature)]
+        {
+            Some(|opened, limit| Ok(Box::new($open(opened, limit)?)))
         }
-        Kind::Wav => read(&mut sheet(wav::open(opened, limit)?, options)?),
-        Kind::Flac => read(&mut sheet(flac::open(opened, limit)?, options)?),
-        Kind::Mat => read(&mut Mat::open(opened, limit)?),
-        Kind::Tdms => read(&mut Tdms::open(opened, limit)?),
-        #[cfg(feature = "lab-files")]
-        Kind::Parquet => read(&mut crate::formats::parquet::Parquet::open(opened, limit)?),
-        #[cfg(feature = "lab-files")]
-        Kind::Arrow => read(&mut crate::formats::arrow::Arrow::open(opened, limit)?),
-        #[cfg(feature = "lab-files")]
-        Kind::Hdf5 => read(&mut crate::formats::hdf5::Hdf5::open(opened, limit)?),
-        #[cfg(not(feature = "lab-files"))]
-        Kind::Parquet | Kind::Arrow | Kind::Hdf5 => Err(ReadError::NotBuilt { file }),
-        Kind::Npy => read(&mut sheet(npy::open(opened, limit)?, options)?),
+        #[cfg(not(feature = $feature))]
+        {
+            None
+        }
+    }};
+}
+
+/// Text, which is what a file without a signature and a known extension is read as.
+const CSV: Format = Format {
+    name: "CSV",
+    extensions: &["csv", "tsv", "txt"],
+    signatures: &[],
+    feature: "default",
+    open: Some(|opened, limit| Ok(Box::new(csv::Csv::open(opened, limit)?))),
+};
+
+/// Every format that is read, in the order in which signatures are tried.
+pub const FORMATS: &[Format] = &[
+    CSV,
+    Format {
+        name: "WAV",
+        extensions: &["wav", "wave"],
+        signatures: &[(0, b"RIFF")],
+        feature: "wav",
+        open: reader!("wav", wav::open),
+    },
+    Format {
+        name: "FLAC",
+        extensions: &["flac"],
+        signatures: &[(0, b"fLaC")],
+        feature: "flac",
+        open: reader!("flac", flac::open),
+    },
+    Format {
+        name: "NPY",
+        extensions: &["npy"],
+        signatures: &[(0, b"\x93NUMPY")],
+        feature: "npy",
+        open: reader!("npy", npy::open),
+    },
+    Format {
+        name: "MATLAB",
+        extensions: &["mat"],
+        // Version 1 and the byte order.
+        signatures: &[(124, b"\0\x01IM"), (124, b"\x01\0MI")],
+        feature: "matlab",
+        open: reader!("matlab", mat::Mat::open),
+    },
+    Format {
+        name: "TDMS",
+        extensions: &["tdms", "tdms_index"],
+        signatures: &[(0, b"TDSm"), (0, b"TDSh")],
+        feature: "tdms",
+        open: reader!("tdms", tdms::Tdms::open),
+    },
+    Format {
+        name: "Parquet",
+        extensions: &["parquet"],
+        signatures: &[(0, b"PAR1")],
+        feature: "lab-files",
+        open: reader!("lab-files", parquet::Parquet::open),
+    },
+    Format {
+        name: "Arrow",
+        extensions: &["arrow", "arrows", "feather", "ipc"],
+        signatures: &[(0, b"ARROW1"), (0, b"FEA1"), (0, b"\xff\xff\xff\xff")],
+        feature: "lab-files",
+        open: reader!("lab-files", arrow::Arrow::open),
+    },
+    Format {
+        name: "HDF5 (MATLAB 7.3)",
+        extensions: &["hdf5", "h5"],
+        // A block of the user may precede the file, of 512 bytes in those of MATLAB 7.3.
+        signatures: &[
+            (0, HDF5_START),
+            (512, HDF5_START),
+            (1024, HDF5_START),
+            (2048, HDF5_START),
+        ],
+        feature: "lab-files",
+        open: reader!("lab-files", hdf5::Hdf5::open),
+    },
+];
+
+const HDF5_START: &[u8] = b"\x89HDF\r\n\x1a\n";
+
+impl Format {
+    /// Detects the format of a file by its signature, else by its extension; the default is text.
+    fn of(opened: &Opened<'_>) -> &'static Self {
+        let extension = opened.path.extension().map(|e| e.to_ascii_lowercase());
+        let extension = extension.as_ref().and_then(|extension| extension.to_str());
+        let is_signed = |format: &&Self| format.is_signed(&opened.front);
+        let is_named = |format: &&Self| extension.is_some_and(|e| format.extensions.contains(&e));
+        let mut formats = FORMATS.iter();
+        let signed = formats.find(is_signed);
+        signed
+            .or_else(|| FORMATS.iter().find(is_named))
+            .unwrap_or(&CSV)
+    }
+
+    fn is_signed(&self, front: &[u8]) -> bool {
+        let mut signatures = self.signatures.iter();
+        signatures.any(|(at, bytes)| front.get(*at..).is_some_and(|all| all.starts_with(bytes)))
+    }
+
+    /// Whether this build reads it.
+    #[must_use]
+    pub fn is_built(&self) -> bool {
+        self.open.is_some()
     }
 }
 
-/// Returns samples as columns, for a map.
-fn sheet<'a>(samples: Samples<'a>, options: &ReadOptions) -> Result<Samples<'a>, ReadError> {
-    if options.scale.is_some() {
-        return Err(ReadError::Option {
-            file: samples.file().to_owned(),
-            option: "scale",
-            problem: "a column map and a scale are given; put the scale into the map, as in lateral=#1:SCALE".into(),
-        });
+/// Returns the names of all formats, for texts: `CSV, WAV, FLAC`.
+#[must_use]
+pub fn format_names() -> String {
+    let names: Vec<&str> = FORMATS.iter().map(|format| format.name).collect();
+    names.join(", ")
+}
+
+/// Opens a file of any format, and refuses options that do not apply to it.
+pub(crate) fn open<'a>(
+    opened: Opened<'a>,
+    options: &ReadOptions,
+) -> Result<Box<dyn Sheet + 'a>, Fault> {
+    let format = Format::of(&opened);
+    let reader = format.open.ok_or_else(|| not_built(format.feature))?;
+    let sheet = reader(opened, options.value_limit())?;
+    check(&*sheet, options)?;
+    Ok(sheet)
+}
+
+fn not_built(feature: &'static str) -> ReadProblem {
+    let of_feature = FORMATS.iter().filter(|format| format.feature == feature);
+    let names: Vec<&str> = of_feature.map(|format| format.name).collect();
+    let formats = match &names[..] {
+        [before @ .., last] if !before.is_empty() => format!("{} and {last}", before.join(", ")),
+        names => names.concat(),
+    };
+    ReadProblem::NotBuilt { formats, feature }
+}
+
+fn check(sheet: &dyn Sheet, options: &ReadOptions) -> Result<(), Fault> {
+    let refuse = |option, problem| Err(ReadProblem::Option { option, problem }.into());
+    let own_hz = match sheet.layout() {
+        Layout::Text if options.scale.is_some() => {
+            let problem = "a scale is for files of samples; scale a CSV's columns in the column map, as in lateral=COLUMN:SCALE";
+            return refuse("scale", problem.to_owned());
+        }
+        Layout::Channels { .. } if options.scale.is_some() && options.map.is_some() => {
+            let problem = "a column map and a scale are given; put the scale into the map, as in lateral=#1:SCALE";
+            return refuse("scale", problem.to_owned());
+        }
+        Layout::Channels { .. } => sheet.rate_hz(&[])?,
+        Layout::Text | Layout::Named => None,
+    };
+    match (own_hz, options.rate_hz) {
+        (Some(own), Some(given)) if own != given => refuse(
+            "rate_hz",
+            format!(
+                "the file has {own} Hz, the given sample rate is {given} Hz; leave it out or correct the file's header"
+            ),
+        ),
+        _ => Ok(()),
     }
-    samples.check_rate(options.rate_hz)?;
-    Ok(samples)
 }

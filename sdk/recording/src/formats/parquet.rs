@@ -14,7 +14,7 @@ use parquet::file::metadata::ColumnChunkMetaData;
 use parquet::file::reader::{ChunkReader, FileReader, Length, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
-use crate::ReadError;
+use crate::error::{Fault, ReadProblem};
 use crate::formats::shared::Shared;
 use crate::formats::thrift::struct_len;
 use crate::input::Opened;
@@ -85,19 +85,11 @@ impl Read for From {
 
 impl Parquet {
     /// Reads the schema.
-    pub(crate) fn open(
-        opened: Opened<'_>,
-        limit: ValueLimit,
-    ) -> std::result::Result<Self, ReadError> {
-        let file = opened.file.clone();
-        let shared = Shared::new(opened.random()?);
-        let shared = shared.map_err(|source| ReadError::Io {
-            file: file.clone(),
-            source,
-        })?;
-        check_footer(&shared).map_err(|error| damaged(&file, "footer", &error))?;
+    pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> std::result::Result<Self, Fault> {
+        let shared = Shared::new(opened.random()?)?;
+        check_footer(&shared).map_err(|error| damaged("footer", &error))?;
         let reader = SerializedFileReader::new(Source(shared));
-        let reader = reader.map_err(|error| damaged(&file, "footer", &error))?;
+        let reader = reader.map_err(|error| damaged("footer", &error))?;
         let schema = reader.metadata().file_metadata().schema_descr();
         let leaves = schema.columns().iter().enumerate();
         let (names, leaves) = leaves
@@ -105,30 +97,25 @@ impl Parquet {
             .map(|(leaf, column)| (name(column), leaf))
             .unzip();
         Ok(Self {
-            columns: Columns::with_parts(&file, names),
+            columns: Columns::with_parts(names),
             leaves,
             limit,
             reader,
         })
     }
 
-    fn read(&self, column: usize) -> std::result::Result<Vec<f64>, ReadError> {
-        let file = &self.columns.file;
+    fn read(&self, column: usize) -> std::result::Result<Vec<f64>, Fault> {
         let leaf = self.leaves.get(column).copied().unwrap_or(0);
-        let broken = |error| damaged(file, &self.columns.name(column), &error);
+        let broken = |error| damaged(&self.columns.name(column), &error);
         let mut values = Vec::new();
         for group in 0..self.reader.num_row_groups() {
             let group = self.reader.get_row_group(group).map_err(broken)?;
             let chunk = group.metadata().column(leaf);
-            check(chunk).map_err(|problem| ReadError::Damaged {
-                file: file.clone(),
-                place: self.columns.name(column),
-                problem,
-            })?;
+            check(chunk)
+                .map_err(|problem| ReadProblem::Invalid(problem).at(self.columns.name(column)))?;
             let pages = group.get_column_page_reader(leaf).map_err(broken)?;
             let descriptor = chunk.column_descr_ptr();
             let mut append = Append {
-                file,
                 limit: self.limit,
                 levels: descriptor.max_def_level(),
                 values: &mut values,
@@ -257,7 +244,6 @@ impl Iterator for CheckedPages {
 
 /// Values that are appended to a column.
 struct Append<'a> {
-    file: &'a str,
     limit: ValueLimit,
     /// The level of a value that is there.
     levels: i16,
@@ -270,7 +256,7 @@ impl Append<'_> {
         &mut self,
         mut reader: ColumnReaderImpl<T>,
         to_f64: impl Fn(T::T) -> f64,
-    ) -> Result<std::result::Result<(), ReadError>>
+    ) -> Result<std::result::Result<(), ReadProblem>>
     where
         T::T: Copy,
     {
@@ -290,7 +276,7 @@ impl Append<'_> {
                 self.values
                     .push(value.map_or(f64::NAN, |value| to_f64(*value)));
             }
-            if let Err(error) = self.limit.check(self.file, self.values.len() as u64) {
+            if let Err(error) = self.limit.check(self.values.len() as u64) {
                 return Ok(Err(error));
             }
         }
@@ -302,15 +288,11 @@ impl Sheet for Parquet {
         &self.columns
     }
 
-    fn rate_hz(&self, _: &[usize]) -> std::result::Result<Option<f64>, ReadError> {
-        Ok(None)
-    }
-
-    fn numbers(&mut self, wanted: &[usize]) -> std::result::Result<Numbers, ReadError> {
+    fn numbers(&mut self, wanted: &[usize]) -> std::result::Result<Numbers, Fault> {
         let rows = self.reader.metadata().file_metadata().num_rows();
         let rows = u64::try_from(rows).unwrap_or(u64::MAX);
         let values = rows.saturating_mul(wanted.len() as u64);
-        self.limit.check(&self.columns.file, values)?;
+        self.limit.check(values)?;
         let columns = wanted.iter().map(|column| self.read(*column));
         Ok(Numbers {
             columns: columns.collect::<std::result::Result<_, _>>()?,
@@ -347,14 +329,11 @@ fn is_known(compression: Compression) -> bool {
     )
 }
 
-fn damaged(file: &str, place: &str, error: &ParquetError) -> ReadError {
+fn damaged(place: &str, error: &ParquetError) -> Fault {
     let error = error.to_string();
-    ReadError::Damaged {
-        file: file.to_owned(),
-        place: place.to_owned(),
-        problem: format!(
-            "not readable Parquet: {}; copy the file again, or write it again",
-            htex_format::plain(error.trim_end())
-        ),
-    }
+    let problem = format!(
+        "not readable Parquet: {}; copy the file again, or write it again",
+        htex_format::plain(error.trim_end())
+    );
+    ReadProblem::Invalid(problem).at(place)
 }

@@ -7,8 +7,8 @@
 
 use std::io::{Seek, SeekFrom};
 
-use crate::ReadError;
 use crate::columns::clock::snap;
+use crate::error::{Fault, Place, ReadProblem};
 use crate::formats::bytes::{ByteReader, Endian};
 use crate::formats::tdms_directory::{Channel, Directory, Piece};
 use crate::formats::tdms_object::TdmsError;
@@ -27,13 +27,12 @@ pub(crate) struct Tdms {
 
 impl Tdms {
     /// Reads the directory.
-    pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, ReadError> {
-        let file = opened.file.clone();
+    pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Self, Fault> {
         let mut input = opened.random()?;
         let mut directory = Directory::new(limit);
         directory
             .read(&mut input)
-            .map_err(|problem| damaged(&file, directory.place(), &problem))?;
+            .map_err(|problem| damaged(directory.place(), &problem))?;
         let channels: Vec<Channel> = directory
             .channels
             .into_iter()
@@ -44,7 +43,7 @@ impl Tdms {
             .map(|channel| (channel.name.clone(), channel.part))
             .collect();
         Ok(Self {
-            columns: Columns::with_parts(&file, names),
+            columns: Columns::with_parts(names),
             channels,
             warnings: directory.warnings,
             limit,
@@ -99,7 +98,7 @@ impl Sheet for Tdms {
     }
 
     /// Returns the inverse of `wf_increment`, which must be that of all channels.
-    fn rate_hz(&self, wanted: &[usize]) -> Result<Option<f64>, ReadError> {
+    fn rate_hz(&self, wanted: &[usize]) -> Result<Option<f64>, Fault> {
         let channels = wanted
             .iter()
             .filter_map(|column| self.channels.get(*column));
@@ -112,35 +111,26 @@ impl Sheet for Tdms {
                 None => first = Some((channel, step_s)),
                 Some((_, other)) if other == step_s => {}
                 Some((other, other_s)) => {
-                    return Err(ReadError::Damaged {
-                        file: self.columns.file.clone(),
-                        place: htex_format::plain(&channel.name).into_owned(),
-                        problem: format!(
-                            "its samples are {step_s} s apart, those of {} {other_s} s; map channels of one rate",
-                            htex_format::plain(&other.name)
-                        ),
-                    });
+                    let problem = format!(
+                        "its samples are {step_s} s apart, those of {} {other_s} s; map channels of one rate",
+                        htex_format::plain(&other.name)
+                    );
+                    return Err(ReadProblem::Invalid(problem).at(htex_format::plain(&channel.name)));
                 }
             }
         }
         Ok(first.map(|(_, step_s)| snap(1.0 / step_s)))
     }
 
-    fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, ReadError> {
+    fn numbers(&mut self, wanted: &[usize]) -> Result<Numbers, Fault> {
         let channels = std::mem::take(&mut self.channels);
         let chosen = || wanted.iter().filter_map(|column| channels.get(*column));
-        let file = self.columns.file.clone();
         let values = chosen().fold(0_u64, |sum, channel| sum.saturating_add(channel.samples));
-        let read = self.limit.check(&file, values).and_then(|()| {
+        let read = self.limit.check(values).map_err(Fault::from);
+        let read = read.and_then(|()| {
             let read = |channel: &Channel| {
                 let read = self.read(channel);
-                read.map_err(|problem| {
-                    damaged(
-                        &file,
-                        htex_format::plain(&channel.name).into_owned(),
-                        &problem,
-                    )
-                })
+                read.map_err(|problem| damaged(htex_format::plain(&channel.name), &problem))
             };
             chosen().map(read).collect()
         });
@@ -153,10 +143,6 @@ impl Sheet for Tdms {
     }
 }
 
-fn damaged(file: &str, place: String, problem: &TdmsError) -> ReadError {
-    ReadError::Damaged {
-        file: file.to_owned(),
-        place,
-        problem: problem.to_string(),
-    }
+fn damaged(place: impl Into<Place>, problem: &TdmsError) -> Fault {
+    ReadProblem::invalid(problem).at(place)
 }

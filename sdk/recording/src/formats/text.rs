@@ -1,42 +1,9 @@
-//! Opening of files with a size limit, and numbered lines of text.
+//! Numbered lines of text.
 
-use std::fs::File;
-use std::io::{Read, Take};
-use std::path::Path;
+use crate::error::{Fault, Place, ReadProblem};
 
-use crate::ReadError;
-
-/// The largest file that is read, bytes. The numbers kept of it are limited by [`crate::MOST_VALUES`].
-pub(crate) const MAX_BYTES: u64 = 4 << 30;
 /// The longest line, bytes; a row of forces has a few tens.
 const MAX_LINE: usize = 64 << 10;
-
-/// Returns the file's name without its directory.
-pub(crate) fn file_name(path: &Path) -> String {
-    path.file_name()
-        .unwrap_or(path.as_os_str())
-        .to_string_lossy()
-        .into_owned()
-}
-
-/// Opens a file with a size limit.
-pub(crate) fn open(path: &Path) -> Result<Take<File>, ReadError> {
-    let io = |source| ReadError::Io {
-        file: file_name(path),
-        source,
-    };
-    let file = File::open(path).map_err(io)?;
-    let bytes = file.metadata().map_err(io)?.len();
-    if bytes > MAX_BYTES {
-        return Err(ReadError::TooLarge {
-            file: file_name(path),
-            bytes,
-            limit: MAX_BYTES,
-        });
-    }
-    // The size of a pipe or a growing file is not known in advance.
-    Ok(file.take(MAX_BYTES))
-}
 
 /// Removes a byte order mark.
 pub(crate) fn without_mark(text: &str) -> &str {
@@ -44,11 +11,7 @@ pub(crate) fn without_mark(text: &str) -> &str {
 }
 
 /// Returns the bytes, which follow `before` lines, as text; refuses NUL and invalid UTF-8.
-pub(crate) fn checked<'a>(
-    file: &str,
-    bytes: &'a [u8],
-    before: usize,
-) -> Result<&'a str, ReadError> {
+pub(crate) fn checked(bytes: &[u8], before: usize) -> Result<&str, Fault> {
     let refuse = |position: usize, what| {
         let line = before
             + 1
@@ -56,11 +19,7 @@ pub(crate) fn checked<'a>(
                 .iter()
                 .filter(|byte| **byte == b'\n')
                 .count();
-        ReadError::NotText {
-            file: file.to_owned(),
-            line,
-            what,
-        }
+        ReadProblem::NotText { what }.at(Place::Line(line))
     };
     if bytes.contains(&0) {
         let position = bytes.iter().position(|byte| *byte == 0).unwrap_or(0);
@@ -73,8 +32,8 @@ pub(crate) fn checked<'a>(
 /// The lines that hold cells, without blank lines and `#` comments.
 #[derive(Debug, Clone)]
 pub(crate) struct Lines<'a> {
-    file: &'a str,
-    rest: &'a str,
+    /// What follows the last returned or skipped line.
+    pub(crate) rest: &'a str,
     /// Number of the last returned or skipped line, from 1.
     pub(crate) number: usize,
     /// The last skipped comment, without its `#`.
@@ -84,14 +43,13 @@ pub(crate) struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    pub(crate) fn new(file: &'a str, text: &'a str) -> Self {
-        Self::behind(file, text, 0, false)
+    pub(crate) fn new(text: &'a str) -> Self {
+        Self::behind(text, 0, false)
     }
 
     /// Lines of a text that follows others, which may have contained "simulated".
-    pub(crate) fn behind(file: &'a str, text: &'a str, number: usize, simulated: bool) -> Self {
+    pub(crate) fn behind(text: &'a str, number: usize, simulated: bool) -> Self {
         Self {
-            file,
             rest: text,
             number,
             comment: None,
@@ -100,7 +58,7 @@ impl<'a> Lines<'a> {
     }
 
     /// Returns the next line with cells, without its line end; `None` at the end of the file.
-    pub(crate) fn next_row(&mut self) -> Result<Option<&'a str>, ReadError> {
+    pub(crate) fn next_row(&mut self) -> Result<Option<&'a str>, Fault> {
         while !self.rest.is_empty() {
             let line = self.take_line()?;
             if let Some(comment) = line.trim_start().strip_prefix('#') {
@@ -128,17 +86,16 @@ impl<'a> Lines<'a> {
         true
     }
 
-    fn take_line(&mut self) -> Result<&'a str, ReadError> {
+    fn take_line(&mut self) -> Result<&'a str, Fault> {
         let (line, rest) = self.rest.split_once('\n').unwrap_or((self.rest, ""));
         self.rest = rest;
         self.number += 1;
         if line.len() > MAX_LINE {
-            return Err(ReadError::LongLine {
-                file: self.file.to_owned(),
-                line: self.number,
+            let problem = ReadProblem::LongLine {
                 bytes: line.len(),
                 limit: MAX_LINE,
-            });
+            };
+            return Err(problem.at(Place::Line(self.number)));
         }
         Ok(line.strip_suffix('\r').unwrap_or(line))
     }

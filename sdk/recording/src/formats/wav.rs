@@ -4,34 +4,30 @@ use std::io::BufReader;
 
 use hound::{SampleFormat, WavReader};
 
-use crate::ReadError;
+use crate::error::{Fault, ReadProblem};
 use crate::formats::samples::{Order, Samples, channel_names};
 use crate::input::Opened;
 use crate::value_limit::ValueLimit;
 
 /// Opens a WAV file, whose samples are then read one by one.
-pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>, ReadError> {
-    let file = opened.file.clone();
+pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>, Fault> {
     let reader = WavReader::new(BufReader::new(opened.stream()))
-        .map_err(|error| broken(&file, format!("not a readable WAV file: {error}")))?;
+        .map_err(|error| broken(format!("not a readable WAV file: {error}")))?;
     let spec = reader.spec();
     let width = usize::from(spec.channels);
     if width == 0 {
-        return Err(broken(
-            &file,
-            "the header says 0 channels; export it again".into(),
-        ));
+        return Err(broken("the header says 0 channels; export it again".into()));
     }
     let are_integers = spec.sample_format == SampleFormat::Int;
     let frames = reader.len() / u32::from(spec.channels);
-    let columns = channel_names(&file, width);
+    let columns = channel_names(width);
     let placed = move |(position, sample): (usize, hound::Result<f64>)| {
         sample.map_err(|error| {
             let frame = position / width;
             let problem = format!(
                 "the file ends or breaks at sample {frame} (counted from 0): {error}; copy it again"
             );
-            broken(&file, problem)
+            broken(problem)
         })
     };
     Ok(Samples {
@@ -53,9 +49,6 @@ pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> Result<Samples<'_>,
     })
 }
 
-fn broken(file: &str, problem: String) -> ReadError {
-    ReadError::Wav {
-        file: file.to_owned(),
-        problem,
-    }
+fn broken(problem: String) -> Fault {
+    ReadProblem::Invalid(problem).into()
 }

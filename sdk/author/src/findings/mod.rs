@@ -14,8 +14,8 @@ use crate::Recording;
 use levels::Levels;
 
 pub(crate) use htex_recording::rules::{
-    RECORDING_CLOCK_GAP, RECORDING_CLOCK_JITTER, RECORDING_NOTED, RECORDING_OFF_TARGET,
-    RECORDING_UNREADABLE, RECORDING_UNSTEADY, RECORDING_UNUSABLE,
+    RECORDING_NOTED, RECORDING_OFF_TARGET, RECORDING_UNREADABLE, RECORDING_UNSTEADY,
+    RECORDING_UNUSABLE,
 };
 pub use htex_recording::rules::{RULES, explain};
 pub use page::findings_page;

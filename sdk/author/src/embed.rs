@@ -11,24 +11,14 @@ use htex_host::{LoadedModel, Origin, Registry};
 pub enum EmbedError {
     /// The file is no WASM module.
     #[error("{file}: only WASM modules can be embedded")]
-    NoModule {
-        /// The file.
-        file: PathBuf,
-    },
+    NoModule { file: PathBuf },
     /// The module's model is not fitted.
     #[error("{file}: {model} was not fitted; fit it, too")]
-    NotFitted {
-        /// The file.
-        file: PathBuf,
-        /// Id of its model.
-        model: String,
-    },
+    NotFitted { file: PathBuf, model: String },
     /// The file cannot be read.
     #[error("cannot read {file}: {error}")]
     Read {
-        /// The file.
         file: PathBuf,
-        /// The system's error.
         error: std::io::Error,
     },
 }

@@ -25,7 +25,6 @@ use crate::{AuthorError, TextureSpectrum, agreement, rendered_spectrum};
 /// A fitted asset with the results that its file does not hold.
 #[derive(Debug, Clone)]
 pub struct FittedAsset {
-    /// The asset.
     pub asset: Asset,
     /// Time of each representation's fits, milliseconds.
     pub fit_ms: Vec<f64>,

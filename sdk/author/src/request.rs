@@ -12,7 +12,6 @@ use crate::level::Level;
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct ModelRequest {
-    /// The model.
     pub model: LoadedModel,
     /// Its option values ([`LoadedModel::options`]).
     pub options: Vec<f64>,

@@ -105,7 +105,6 @@ pub struct SegmentSpectra {
 pub struct TextureSpectrum {
     /// The recorded quantity; magnitudes and the signal are in its unit.
     pub quantity: Quantity,
-    /// The band.
     pub band: Band,
     /// The band's grid, hertz.
     pub frequency_hz: Vec<f64>,
@@ -211,7 +210,6 @@ pub fn segment_spectra(
 /// What is removed from a segment before it is windowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Trend {
-    /// Its mean.
     Mean,
     /// The straight line of least squares.
     Linear,

@@ -7,7 +7,6 @@ use crate::{Exploration, Recording};
 /// A recording and its condition as far as it is given.
 #[derive(Debug, Clone)]
 pub struct Take {
-    /// The recording.
     pub recording: Recording,
     /// Given speed and force; they take precedence over measured ones.
     pub given: Exploration,

@@ -14,24 +14,17 @@ const LARGEST: f64 = 1e12;
 pub enum RecordingError {
     /// The rate is zero, negative, NaN, or above [`MAX_RATE_HZ`].
     #[error("the sample rate is {rate_hz} Hz; it must be above 0 and at most {MAX_RATE_HZ} Hz")]
-    Rate {
-        /// The given rate.
-        rate_hz: f64,
-    },
+    Rate { rate_hz: f64 },
     /// There are more axes than the quantity has, or none.
     #[error("a recording of a {} has 1 to {} axes, this one has {axes}", .quantity.words(), most_axes(*.quantity))]
     Axes {
         /// The recorded quantity.
         quantity: Quantity,
-        /// Number of axes given.
         axes: usize,
     },
     /// There are fewer than two samples.
     #[error("a recording needs at least 2 samples, this one has {samples}")]
-    TooShort {
-        /// Number of samples given.
-        samples: usize,
-    },
+    TooShort { samples: usize },
     /// A range contains fewer than two samples.
     #[error(
         "from {from_s} to {to_s} s there are fewer than 2 samples; the recording runs from {begins_s:.3} to {ends_s:.3} s"
@@ -51,7 +44,6 @@ pub enum RecordingError {
         "the {signal} has {got} samples, the first axis has {expected}; all signals must be equally long"
     )]
     Lengths {
-        /// The signal.
         signal: &'static str,
         /// Samples of the first axis.
         expected: usize,
@@ -63,11 +55,9 @@ pub enum RecordingError {
         "the {signal} is {value} at sample {sample} (counted from 0), and no recording goes beyond {LARGEST}; correct its unit"
     )]
     TooLarge {
-        /// The signal.
         signal: &'static str,
         /// Index from 0.
         sample: usize,
-        /// The value.
         value: f64,
     },
     /// A sample is NaN or infinite.
@@ -75,11 +65,9 @@ pub enum RecordingError {
         "the {signal} is {value} at sample {sample} (counted from 0); repair or cut the recording there"
     )]
     NotFinite {
-        /// The signal.
         signal: &'static str,
         /// Index from 0.
         sample: usize,
-        /// The value.
         value: f64,
     },
 }

@@ -11,7 +11,6 @@ use crate::columns::map::ColumnMap;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Tracker {
-    /// The file.
     pub path: PathBuf,
     /// Roles of its columns: time, x, y, speed; columns that it leaves out are assigned by their names.
     pub map: Option<ColumnMap>,

@@ -51,7 +51,6 @@ const INNER_HZ: f64 = 20_000.0;
 /// Most samples of a simulation.
 const MAX_SAMPLES: f64 = 2e7;
 
-/// Errors of a simulation.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SimulationError {
@@ -68,7 +67,6 @@ pub enum SimulationError {
     Range {
         /// Name of the option, with its unit.
         option: &'static str,
-        /// The given value.
         value: f64,
         /// Smallest allowed value.
         low: f64,
@@ -131,11 +129,9 @@ impl Default for FreeMotion {
     }
 }
 
-/// Options of a simulation.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct SimulationOptions {
-    /// The surface.
     pub surface: Surface,
     /// Seed: equal seeds and options give equal samples; another seed simulates another piece of the same material and
     /// another motion of the hand.

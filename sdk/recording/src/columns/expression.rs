@@ -16,7 +16,7 @@
 
 use std::fmt;
 
-use crate::columns::token::{ColumnRef, Kind, Problem, Token};
+use crate::columns::token::{ColumnRef, Problem, Token, TokenKind};
 
 /// Deepest nesting of parentheses and signs.
 const MOST_DEEP: usize = 32;
@@ -103,9 +103,9 @@ impl Expression {
         parser.sum()?;
         if let Some(token) = parser.tokens.first() {
             let what = match token.kind {
-                Kind::Close => "')' closes nothing",
-                Kind::Colon => "a second ':'; quote a name that contains one",
-                Kind::Equals => "a second '='; quote a name that contains one",
+                TokenKind::Close => "')' closes nothing",
+                TokenKind::Colon => "a second ':'; quote a name that contains one",
+                TokenKind::Equals => "a second '='; quote a name that contains one",
                 _ => "an operator is missing before this",
             };
             return Err(Problem::at(token, what));
@@ -131,16 +131,16 @@ struct Parser<'a> {
 impl Parser<'_> {
     fn sum(&mut self) -> Result<(), Problem> {
         self.chain(Self::product, |kind| match kind {
-            Kind::Plus => Some(Operator::Add),
-            Kind::Minus => Some(Operator::Subtract),
+            TokenKind::Plus => Some(Operator::Add),
+            TokenKind::Minus => Some(Operator::Subtract),
             _ => None,
         })
     }
 
     fn product(&mut self) -> Result<(), Problem> {
         self.chain(Self::signed, |kind| match kind {
-            Kind::Times => Some(Operator::Multiply),
-            Kind::Over => Some(Operator::Divide),
+            TokenKind::Times => Some(Operator::Multiply),
+            TokenKind::Over => Some(Operator::Divide),
             _ => None,
         })
     }
@@ -149,7 +149,7 @@ impl Parser<'_> {
     fn chain(
         &mut self,
         term: fn(&mut Self) -> Result<(), Problem>,
-        operator: fn(&Kind) -> Option<Operator>,
+        operator: fn(&TokenKind) -> Option<Operator>,
     ) -> Result<(), Problem> {
         term(self)?;
         while let Some(operator) = self.tokens.first().and_then(|token| operator(&token.kind)) {
@@ -172,10 +172,10 @@ impl Parser<'_> {
             return Err(Problem::at(token, what));
         }
         match &token.kind {
-            Kind::Plus | Kind::Minus => {
+            TokenKind::Plus | TokenKind::Minus => {
                 self.tokens = rest;
                 self.signed()?;
-                if token.kind == Kind::Minus {
+                if token.kind == TokenKind::Minus {
                     self.push(Step::Negate)?;
                 }
             }
@@ -193,14 +193,15 @@ impl Parser<'_> {
         };
         self.tokens = rest;
         match &token.kind {
-            Kind::Number(number) => self.push(Step::Number(*number)),
-            Kind::Column(column) => self.push(Step::Column(column.clone())),
-            Kind::Open => {
+            TokenKind::Number(number) => self.push(Step::Number(*number)),
+            TokenKind::Column(column) => self.push(Step::Column(column.clone())),
+            TokenKind::Open => {
                 self.sum()?;
                 match self.tokens.split_first() {
                     Some((
                         Token {
-                            kind: Kind::Close, ..
+                            kind: TokenKind::Close,
+                            ..
                         },
                         rest,
                     )) => self.tokens = rest,

@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use crate::columns::expression::Expression;
-use crate::columns::token::{Kind, Problem, Token, tokens};
+use crate::columns::token::{Problem, Token, TokenKind, tokens};
 use crate::error::{ReadError, ReadProblem};
 
 /// Longest map, bytes.
@@ -110,7 +110,7 @@ impl MapEntry {
         check_length(text)?;
         let refuse = |problem: Problem| map_error(problem.in_text(text));
         let tokens = tokens(text).map_err(refuse)?;
-        let among = |token: &&Token| matches!(token.kind, Kind::Comma | Kind::Equals);
+        let among = |token: &&Token| matches!(token.kind, TokenKind::Comma | TokenKind::Equals);
         if let Some(token) = tokens.iter().find(among) {
             let what = "one column or expression is expected here; quote a name with ',' or '='";
             return Err(refuse(Problem::at(token, what)));
@@ -210,7 +210,7 @@ impl FromStr for ColumnMap {
         check_length(text)?;
         let refuse = |problem: Problem| map_error(problem.in_text(text));
         let tokens = tokens(text).map_err(refuse)?;
-        let entries = tokens.split(|token| token.kind == Kind::Comma);
+        let entries = tokens.split(|token| token.kind == TokenKind::Comma);
         let entries = entries.map(|tokens| parse_entry(text, tokens).map_err(refuse));
         Self::new(entries.collect::<Result<Vec<_>, _>>()?)
     }
@@ -231,7 +231,10 @@ fn map_error(problem: String) -> ReadError {
 /// Parses the tokens of `ROLE=EXPRESSION[:SCALE]`.
 fn parse_entry(text: &str, tokens: &[Token]) -> Result<MapEntry, Problem> {
     let nowhere = |what: String| Problem { at: None, what };
-    let Some(equals) = tokens.iter().position(|token| token.kind == Kind::Equals) else {
+    let Some(equals) = tokens
+        .iter()
+        .position(|token| token.kind == TokenKind::Equals)
+    else {
         return Err(match tokens {
             [] => nowhere("an entry between commas is empty".into()),
             [first, ..] => Problem::at(first, "this entry has no '='"),
@@ -265,20 +268,22 @@ fn parse_role(text: &str) -> Result<Role, String> {
 
 /// Splits at the last colon. A name that contains a colon is quoted, or has a scale after it.
 fn split_scale(tokens: &[Token]) -> Result<(&[Token], Option<f64>), Problem> {
-    let is_colon = |token: &Token| token.kind == Kind::Colon;
+    let is_colon = |token: &Token| token.kind == TokenKind::Colon;
     let Some(colon) = tokens.iter().rposition(is_colon) else {
         return Ok((tokens, None));
     };
     let (sign, number) = match &tokens[colon + 1..] {
         [
             Token {
-                kind: Kind::Minus, ..
+                kind: TokenKind::Minus,
+                ..
             },
             number,
         ] => (-1.0, number),
         [
             Token {
-                kind: Kind::Plus, ..
+                kind: TokenKind::Plus,
+                ..
             },
             number,
         ]
@@ -286,7 +291,7 @@ fn split_scale(tokens: &[Token]) -> Result<(&[Token], Option<f64>), Problem> {
         _ => return Err(not_a_scale(&tokens[colon])),
     };
     match number.kind {
-        Kind::Number(scale) if scale != 0.0 => Ok((&tokens[..colon], Some(sign * scale))),
+        TokenKind::Number(scale) if scale != 0.0 => Ok((&tokens[..colon], Some(sign * scale))),
         _ => Err(not_a_scale(&tokens[colon])),
     }
 }

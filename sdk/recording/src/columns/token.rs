@@ -23,13 +23,13 @@ impl fmt::Display for ColumnRef {
 /// A token, and the bytes of the text that it takes.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Token {
-    pub(crate) kind: Kind,
+    pub(crate) kind: TokenKind,
     pub(crate) start: usize,
     pub(crate) end: usize,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Kind {
+pub(crate) enum TokenKind {
     Number(f64),
     Column(ColumnRef),
     Plus,
@@ -86,7 +86,7 @@ pub(crate) fn tokens(text: &str) -> Result<Vec<Token>, Problem> {
         let before = tokens.last().map(|token| &token.kind);
         let ends_operand = matches!(
             before,
-            Some(Kind::Number(_) | Kind::Column(_) | Kind::Close)
+            Some(TokenKind::Number(_) | TokenKind::Column(_) | TokenKind::Close)
         );
         let (kind, length) = token(&text[at..], next, ends_operand)
             .map_err(|what| Problem { at: Some(at), what })?;
@@ -101,7 +101,7 @@ pub(crate) fn tokens(text: &str) -> Result<Vec<Token>, Problem> {
 }
 
 /// Returns the token at the start of a text, and its length in bytes. `ends_operand` says that an operator may follow.
-fn token(text: &str, first: char, ends_operand: bool) -> Result<(Kind, usize), String> {
+fn token(text: &str, first: char, ends_operand: bool) -> Result<(TokenKind, usize), String> {
     if let Some(operator) = operator(first)
         && (first != '/' || ends_operand || !path_follows(text))
     {
@@ -126,7 +126,7 @@ fn token(text: &str, first: char, ends_operand: bool) -> Result<(Kind, usize), S
             Some((value, _)) if !value.is_finite() => {
                 Err("the number is larger than any that can be computed with".into())
             }
-            Some((value, length)) => Ok((Kind::Number(value), length)),
+            Some((value, length)) => Ok((TokenKind::Number(value), length)),
             None => {
                 let bare = text[..name_length(text)].trim_end();
                 Ok((name(bare), bare.len()))
@@ -135,23 +135,23 @@ fn token(text: &str, first: char, ends_operand: bool) -> Result<(Kind, usize), S
     }
 }
 
-fn operator(c: char) -> Option<Kind> {
+fn operator(c: char) -> Option<TokenKind> {
     Some(match c {
-        '+' => Kind::Plus,
-        '-' => Kind::Minus,
-        '*' => Kind::Times,
-        '/' => Kind::Over,
-        '(' => Kind::Open,
-        ')' => Kind::Close,
-        ',' => Kind::Comma,
-        ':' => Kind::Colon,
-        '=' => Kind::Equals,
+        '+' => TokenKind::Plus,
+        '-' => TokenKind::Minus,
+        '*' => TokenKind::Times,
+        '/' => TokenKind::Over,
+        '(' => TokenKind::Open,
+        ')' => TokenKind::Close,
+        ',' => TokenKind::Comma,
+        ':' => TokenKind::Colon,
+        '=' => TokenKind::Equals,
         _ => return None,
     })
 }
 
-fn name(text: &str) -> Kind {
-    Kind::Column(ColumnRef::Name(text.to_owned()))
+fn name(text: &str) -> TokenKind {
+    TokenKind::Column(ColumnRef::Name(text.to_owned()))
 }
 
 /// Whether the `/` at the start begins a path.
@@ -160,12 +160,12 @@ fn path_follows(text: &str) -> bool {
     next.is_some_and(|c| !c.is_whitespace() && !"+-*():,=/".contains(c))
 }
 
-fn numbered(text: &str) -> Result<(Kind, usize), String> {
+fn numbered(text: &str) -> Result<(TokenKind, usize), String> {
     let length = 1 + text[1..]
         .find(|c: char| !c.is_alphanumeric())
         .unwrap_or(text.len() - 1);
     match text[1..length].parse() {
-        Ok(number) if number > 0 => Ok((Kind::Column(ColumnRef::Number(number)), length)),
+        Ok(number) if number > 0 => Ok((TokenKind::Column(ColumnRef::Number(number)), length)),
         _ => Err(format!(
             "{:?} is not a column number; the first column is #1",
             &text[..length]

@@ -12,7 +12,6 @@ pub(crate) enum Endian {
     Big,
 }
 
-/// A number's type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NumberType {
     I8,

@@ -41,9 +41,9 @@ pub(crate) struct Hdf5 {
     bytes: u64,
 }
 
-struct Source(Shared);
+struct SharedFile(Shared);
 
-impl Storage for Source {
+impl Storage for SharedFile {
     fn len(&self) -> u64 {
         self.0.length()
     }
@@ -67,7 +67,7 @@ impl Hdf5 {
             seen: HashSet::new(),
             objects: 0,
         };
-        let hdf5 = Hdf5File::from_storage_with_options(Arc::new(Source(shared)), options);
+        let hdf5 = Hdf5File::from_storage_with_options(Arc::new(SharedFile(shared)), options);
         let root = hdf5.and_then(|hdf5| hdf5.root_group());
         let root = root.map_err(|error| damaged("/", &error))?;
         scan.group(&root, "", 0)?;

@@ -50,7 +50,6 @@ use crate::value_limit::ValueLimit;
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Format {
-    /// Its name in texts.
     pub name: &'static str,
     /// Extensions of its files, in lower case. They count for files without a signature.
     pub extensions: &'static [&'static str],

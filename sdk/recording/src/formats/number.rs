@@ -1,7 +1,4 @@
 //! Parser of decimal numbers, correctly rounded.
-//!
-//! Rows of CSV are the project's own: only numbers, lines counted as in an editor, twice as fast as the general reader,
-//! so that reading does not dominate the pipeline.
 
 /// Powers of ten that are exact in `f64`, as many as a plain number has digits.
 const POWERS: [f64; 17] = [

@@ -35,18 +35,18 @@ pub(crate) struct Parquet {
     /// Index in the file of each column.
     leaves: Vec<usize>,
     limit: ValueLimit,
-    reader: SerializedFileReader<Source>,
+    reader: SerializedFileReader<SharedFile>,
 }
 
-struct Source(Shared);
+struct SharedFile(Shared);
 
-impl Length for Source {
+impl Length for SharedFile {
     fn len(&self) -> u64 {
         self.0.length()
     }
 }
 
-impl ChunkReader for Source {
+impl ChunkReader for SharedFile {
     type T = BufReader<From>;
 
     /// The library reads the header of a page from `start` on, or the end of the file.
@@ -88,7 +88,7 @@ impl Parquet {
     pub(crate) fn open(opened: Opened<'_>, limit: ValueLimit) -> std::result::Result<Self, Fault> {
         let shared = Shared::new(opened.random()?)?;
         check_footer(&shared).map_err(|error| damaged("footer", &error))?;
-        let reader = SerializedFileReader::new(Source(shared));
+        let reader = SerializedFileReader::new(SharedFile(shared));
         let reader = reader.map_err(|error| damaged("footer", &error))?;
         let schema = reader.metadata().file_metadata().schema_descr();
         let leaves = schema.columns().iter().enumerate();

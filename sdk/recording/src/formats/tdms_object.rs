@@ -6,7 +6,6 @@ use crate::formats::bytes::{ByteReader, NumberType};
 
 /// Longest text, bytes.
 const MOST_TEXT: u32 = 64 << 10;
-/// Most channels.
 pub(crate) const MOST_CHANNELS: usize = 65_536;
 
 #[derive(Debug, thiserror::Error)]

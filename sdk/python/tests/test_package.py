@@ -49,7 +49,8 @@ def test_the_script_is_installed(place: pathlib.Path) -> None:
 
 def test_types_are_strict(tmp_path: pathlib.Path) -> None:
     pytest.importorskip("mypy")
-    for words in [["mypy", "--strict", "-p", "htex"], ["mypy.stubtest", "htex._htex"]]:
+    settings = str(HERE.parent / "pyproject.toml")
+    for words in [["mypy", "--strict", "--config-file", settings, "-p", "htex"], ["mypy.stubtest", "htex._htex"]]:
         words = [sys.executable, "-m", *words]
         run = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=600)
         assert run.returncode == 0, run.stdout + run.stderr

@@ -6,6 +6,9 @@
 
 from __future__ import annotations
 
+import importlib
+from typing import TYPE_CHECKING, Any
+
 from ._author import agreement, fit, process, tradeoff
 from ._build import build
 from ._data import (
@@ -33,6 +36,9 @@ from ._errors import (
 )
 from ._htex import Library, Scene, Texture, Voice, __version__, models, open, pack, unregister_model
 from ._models import Field, register_model
+
+if TYPE_CHECKING:
+    from . import study as study
 
 __all__ = [
     "Agreement",
@@ -71,3 +77,10 @@ __all__ = [
     "tradeoff",
     "unregister_model",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Import what most programs do not use."""
+    if name == "study":
+        return importlib.import_module("htex.study")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

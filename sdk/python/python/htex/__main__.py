@@ -5,14 +5,22 @@ from __future__ import annotations
 import sys
 
 from . import _htex
+from .study import cli
 
 
 def main() -> int:
     """Run the command with the arguments of the program and return its exit status."""
+    words = sys.argv[1:]
+    answered = cli.run(words)
+    if answered is not None:
+        return answered
     # Without -P the current folder would precede the installed packages in processes that the command starts.
     safe = ["-P"] if sys.version_info >= (3, 11) else []
     again = [sys.executable, *safe, "-m", "htex"] if sys.executable else []
-    return _htex.run(["htex", *sys.argv[1:]], again)
+    status = _htex.run(["htex", *words], again)
+    if words == ["explain"]:
+        sys.stdout.write(cli.rules())
+    return status
 
 
 if __name__ == "__main__":

@@ -1,0 +1,79 @@
+"""Why a number is missing: every test says what the data do not allow, and the analysis collects it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+import numpy as np
+
+from .results import Note
+
+T = TypeVar("T")
+
+
+class Undefined(Exception):
+    """A test that the data do not allow, with a code that never changes its meaning."""
+
+    def __init__(self, code: str, message: str) -> None:
+        super().__init__(message)
+        self.code = code
+
+
+@dataclass
+class Notes:
+    """What is not computed or needs care, by the key of its group."""
+
+    all: list[Note] = field(default_factory=list)
+
+    def add(self, group: str, code: str, message: str) -> None:
+        """Add a note."""
+        self.all.append(Note(group=group, code=code, message=message))
+
+    def take(self, group: str, test: Callable[[], T]) -> T | None:
+        """The result of a test, or None and a note that says why."""
+        try:
+            return test()
+        except Undefined as reason:
+            self.add(group, reason.code, str(reason))
+            return None
+
+
+def need_participants(test: str, found: int, needed: int = 2) -> None:
+    """Refuse fewer participants than a test needs."""
+    if found < needed:
+        raise Undefined("TOO_FEW_PARTICIPANTS", f"{found} participants are too few: {test} needs at least {needed}")
+
+
+def need_levels(test: str, found: int, needed: int = 2) -> None:
+    """Refuse fewer conditions than a test compares."""
+    if found < needed:
+        raise Undefined("TOO_FEW_LEVELS", f"{found} conditions are too few: {test} compares at least {needed}")
+
+
+def need_values(test: str, found: int, needed: int) -> None:
+    """Refuse fewer values than a test needs."""
+    if found < needed:
+        raise Undefined("TOO_FEW_VALUES", f"{found} values are too few: {test} needs at least {needed}")
+
+
+def no_error_variance(test: str) -> Undefined:
+    """All participants have the same differences."""
+    same = "every participant has the same differences between the conditions: there is no error variance"
+    return Undefined("NO_ERROR_VARIANCE", f"{same}, so {test} is not defined")
+
+
+def complete(table: np.ndarray) -> np.ndarray:
+    """The rows of a table without a missing value."""
+    return np.asarray(table[~np.isnan(table).any(axis=1)])
+
+
+def negligible(squares: float, largest: float, count: int) -> bool:
+    """Whether a sum of squares is no more than the rounding of ``count`` values up to ``largest``."""
+    return squares <= (largest * 1e-13) ** 2 * count
+
+
+def is_constant(values: np.ndarray) -> bool:
+    """Whether values differ by no more than rounding."""
+    return negligible(float(((values - values.mean()) ** 2).sum()), float(np.abs(values).max()), len(values))

@@ -1,0 +1,133 @@
+"""A study's analysis: tables in, data frames, figures, text, JSON and a page out."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import tempfile
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from htex import __version__
+
+from .analysis import compute
+from .equivalence import BOUND
+from .figures import figures, to_pdf
+from .frames import frames
+from .ratings import Ratings, read_ratings
+from .report import Picture, picture, to_html
+from .results import AnalysisDict
+from .rules import Finding
+from .spectra import Spectra, read_spectra
+from .text import to_text
+
+
+class Analysis:
+    """The analysis of a study. ``str()`` is its text."""
+
+    def __init__(self, ratings: Ratings, spectra: Spectra | None, bound: float) -> None:
+        self.ratings = ratings
+        self.spectra = spectra
+        self.result: AnalysisDict = compute(ratings, spectra, bound, f"htex {__version__}")
+
+    def __str__(self) -> str:
+        """Tables and sentences."""
+        return to_text(self.result)
+
+    @property
+    def findings(self) -> list[Finding]:
+        """What was found in the tables, without errors."""
+        return [*self.ratings.findings, *(self.spectra.findings if self.spectra else [])]
+
+    @cached_property
+    def frames(self) -> dict[str, pd.DataFrame]:
+        """The tables: ``means``, ``pairs``, ``equivalence``, ``effects``, ``bands`` and others."""
+        return frames(self.result)
+
+    @cached_property
+    def figures(self) -> dict[str, Figure]:
+        """The figures, by name."""
+        return figures(self.result)
+
+    @cached_property
+    def _pictures(self) -> dict[str, Picture]:
+        return {name: picture(name, figure) for name, figure in self.figures.items()}
+
+    def to_dict(self) -> AnalysisDict:
+        """The analysis by its JSON Schema, ``htex schema study-analysis``."""
+        return self.result
+
+    def to_json(self, indent: int | None = None) -> str:
+        """The analysis as JSON."""
+        separators = (",", ":") if indent is None else None
+        return json.dumps(self.result, ensure_ascii=False, allow_nan=False, indent=indent, separators=separators)
+
+    def to_html(self, command: str = "") -> str:
+        """The report, a page of one file; ``command`` is what made it."""
+        return to_html(self.result, self._pictures, command)
+
+    def files(self, command: str = "") -> dict[str, bytes]:
+        """The files of :meth:`save`."""
+        texts = {"report.html": self.to_html(command), "analysis.json": self.to_json(indent=2) + "\n"}
+        texts.update(
+            {f"{name}.csv": frame.to_csv(index=False, lineterminator="\n") for name, frame in self.frames.items()}
+        )
+        files = {name: text.encode() for name, text in texts.items()}
+        for name, figure in self.figures.items():
+            stem = f"figures/{_file_name(name)}"
+            while f"{stem}.svg" in files:
+                stem += "_"
+            files[f"{stem}.svg"] = self._pictures[name].svg.encode()
+            files[f"{stem}.pdf"] = to_pdf(figure)
+        return files
+
+    def save(self, folder: str | os.PathLike[str], command: str = "") -> None:
+        """Write report.html, analysis.json, the tables as CSV, and the figures as SVG and PDF."""
+        for name, data in self.files(command).items():
+            path = pathlib.Path(folder, name)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as beside:
+                beside.write(data)
+            os.chmod(beside.name, 0o644)
+            os.replace(beside.name, path)
+
+
+def analyse(
+    ratings: Any,
+    spectra: Any = None,
+    *,
+    scale: tuple[float, float] | None = None,
+    bound: float = BOUND,
+    columns: Mapping[str, str] | None = None,
+    leave_out_incomplete: bool = False,
+) -> Analysis:
+    """Analyse ratings, and felt spectra if there are some: data frames, paths of CSV or .xlsx, or their bytes.
+
+    Ratings have the columns ``participant``, ``texture``, ``model`` and ``rating``, and ``repetition`` if there are several;
+    or a column for each condition (``vinyl/ar``), or for each model. ``columns`` gives the names that columns have, by ours.
+    Spectra have ``participant``, ``texture``, ``model``, and magnitudes at 20, 25, ..., 1000; lines of the model ``recorded``
+    have the spectra of the real textures. Ratings outside of ``scale`` are errors; differences up to ``bound`` do not matter.
+    """
+    if not 0 < bound < float("inf"):
+        raise ValueError(f"the bound is {bound:g}; it is above 0")
+    names = [
+        str(table) if isinstance(table, (str, os.PathLike)) else name
+        for table, name in ((ratings, "ratings"), (spectra, "spectra"))
+    ]
+    rated = read_ratings(ratings, names[0], renamed=columns, scale=scale, leave_out_incomplete=leave_out_incomplete)
+    felt = None
+    if spectra is not None:
+        shared = {own: theirs for own, theirs in (columns or {}).items() if own in ("participant", "texture", "model")}
+        felt = read_spectra(spectra, rated, names[1], renamed=shared)
+    return Analysis(rated, felt, bound)
+
+
+def _file_name(name: str) -> str:
+    """A name of a file on every system; textures may be called anything."""
+    kept = "".join(c if c.isalnum() or c in "-_ ." else "_" for c in name)
+    return kept.strip(" .")[:80] or "_"

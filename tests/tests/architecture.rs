@@ -33,7 +33,6 @@ const ARROWS: &[(&str, &[&str])] = &[
         ],
     ),
     ("htex-report", &[]),
-    ("htex-statistics", &[]),
     (
         "htex-lab",
         &[
@@ -46,7 +45,6 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-report",
             "htex-scene",
             "htex-schema",
-            "htex-statistics",
         ],
     ),
     ("htex-device", &["htex-native", "htex-schema"]),
@@ -139,7 +137,6 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-library",
             "htex-scene",
             "htex-simulate",
-            "htex-statistics",
             "htex-tradeoff",
             "htex-dsp",
             "htex-format",

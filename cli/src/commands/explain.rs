@@ -16,10 +16,10 @@ pub(crate) struct Explain {
 /// The rules for experiments, where this program has them.
 fn lab_rules() -> impl Iterator<Item = &'static Rule> {
     #[cfg(feature = "lab")]
-    let all: [&[Rule]; 2] = [htex_lab::study::RULES, htex_lab::analyse::RULES];
+    let all: &[Rule] = htex_lab::study::RULES;
     #[cfg(not(feature = "lab"))]
-    let all: [&[Rule]; 0] = [];
-    all.into_iter().flatten()
+    let all: &[Rule] = &[];
+    all.iter()
 }
 
 impl Explain {

@@ -27,9 +27,6 @@ enum What {
     /// JSON Schema of `build-report.json`
     #[cfg(feature = "build")]
     BuildReport,
-    /// JSON Schema of the analysis of a study (`htex study analyse --json`)
-    #[cfg(feature = "lab")]
-    StudyAnalysis,
     /// JSON Schema of studies (`htex study`)
     #[cfg(feature = "lab")]
     Study,
@@ -49,8 +46,6 @@ impl Schema {
             What::BuildReport => Ok(htex_build::report_schema()),
             #[cfg(feature = "lab")]
             What::Study => Ok(htex_lab::study::study_schema()),
-            #[cfg(feature = "lab")]
-            What::StudyAnalysis => Ok(htex_lab::analyse::analysis_schema()),
             What::Models => {
                 let registry = Registry::builtin();
                 let all: Vec<_> = registry.models().iter().map(|m| m.descriptor()).collect();

@@ -1,8 +1,7 @@
-//! Experiments with textures: guided recordings, responses of a setup, studies and their analysis.
+//! Experiments with textures: guided recordings, responses of a setup, studies.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![forbid(unsafe_code)]
 
-pub mod analyse;
 pub mod page;
 pub mod record;
 pub mod response;

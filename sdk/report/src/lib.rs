@@ -1,4 +1,4 @@
-//! SVG plots, values by category, heat tables and self-contained HTML reports.
+//! SVG plots, heat tables and self-contained HTML reports.
 //!
 //! The crate converts data to text. It reads no files and no clock and does no signal processing: equal data
 //! gives equal bytes. Pages contain their style, use no script and load nothing.
@@ -12,11 +12,9 @@
 #![forbid(unsafe_code)]
 
 mod axis;
-mod brackets;
 mod chain;
 mod color;
 mod curves;
-mod groups;
 mod legend;
 mod markup;
 mod number;
@@ -29,13 +27,10 @@ mod svg;
 mod table;
 mod textures;
 mod ticks;
-mod violin;
 
 pub use axis::{Axis, Scale};
-pub use brackets::Bracket;
 pub use chain::{Chain, ChainStage};
 pub use color::{RECORDING_COLOR, model_color, series_color};
-pub use groups::{Category, Groups};
 pub use page::{Page, code_block, details, figures, list, paragraph};
 pub use plot::Plot;
 pub use series::{Line, Series};

@@ -50,7 +50,7 @@ pub use recordings::{csv, npy, wav};
 pub use response::response_csv;
 pub use scene::scene;
 pub use signed::signed_plugin;
-pub use studies::{answers, ratings, spectra_table, study};
+pub use studies::{answers, study};
 pub use take::take_part;
 
 /// A fuzz target.
@@ -94,8 +94,6 @@ pub const TARGETS: &[Target] = &[
     target("library", library),
     target("study", study),
     target("answers", answers),
-    target("ratings", ratings),
-    target("spectra_table", spectra_table),
     target("recipe", recipe),
     target("take_part", take_part),
 ];

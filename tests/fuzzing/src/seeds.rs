@@ -10,7 +10,7 @@ use crate::block;
 use crate::container::container;
 use crate::library::{self, Around};
 use crate::module::model;
-use crate::studies::{RATINGS, STUDY, answered};
+use crate::studies::{STUDY, answered};
 
 /// A target, a file name, and the file's content.
 pub type Seed = (&'static str, String, Vec<u8>);
@@ -83,30 +83,12 @@ fn parts() -> Vec<Seed> {
     seeds
 }
 
-/// A study, answers of its first participant, tables of an analysis, and a recipe.
+/// A study, answers of its first participant, and a recipe.
 fn studies() -> Vec<Seed> {
-    let hertz: Vec<String> = (4..=200).map(|bin| (5 * bin).to_string()).collect();
-    let magnitude = |of: f64| -> String {
-        (4..=200)
-            .map(|bin| format!(",{:.3e}", of / f64::from(bin)))
-            .collect()
-    };
-    let mut spectra = format!("participant,texture,model,{}\n", hertz.join(","));
-    spectra += &format!("recorded,vinyl,recorded{}\n", magnitude(0.1));
-    for (i, participant) in ["p1", "p2", "p3"].into_iter().enumerate() {
-        for (model, level) in [("ar", 0.1), ("sbeta", 0.15)] {
-            spectra += &format!(
-                "{participant},vinyl,{model}{}\n",
-                magnitude(level * (1.0 + i as f64))
-            );
-        }
-    }
     let recipe = "[library]\nname = 'vinyls'\n[[textures]]\nrecordings = 'rec/*.csv'\nmodels = ['bands', 'sbeta']\n";
     [
         ("study", "two", STUDY.to_owned()),
         ("answers", "begun", answered()),
-        ("ratings", "three", RATINGS.to_owned()),
-        ("spectra_table", "three", spectra),
         ("recipe", "vinyls", recipe.to_owned()),
     ]
     .map(|(target, name, text)| (target, name.to_owned(), text.into_bytes()))

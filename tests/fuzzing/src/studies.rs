@@ -1,17 +1,14 @@
-//! Studies, files of answers, and the tables of an analysis.
+//! Studies and files of answers.
 
 use std::sync::OnceLock;
 
 use htex_format::{Findings, plain};
-use htex_lab::analyse::{Checked, Incomplete, Invalid, Ratings, Spectra, analyse};
 use htex_lab::study::{
     Line, ParticipantPlan, Participants, Plan, Session, Study, export, read_study,
 };
 
 use crate::promise::{self, sentence};
 
-/// Most ratings of which an analysis is made.
-const MOST_CELLS: usize = 60;
 /// Most trials of a plan that is made.
 const MOST_TRIALS: usize = 100_000;
 
@@ -19,10 +16,6 @@ const MOST_TRIALS: usize = 100_000;
 pub(crate) const STUDY: &str = "htex_study = '1.0'\nname = 'S'\nseed = 5\ntrial_s = 0.05\nparticipants = 2\nrepetitions = 1\n\
     models = ['ar', 'sbeta']\nphases = ['testing']\nmotion = { constant = { speed_mm_s = 80, force_n = 0.4 } }\n\
     device = { adapter = 'file' }\n[[textures]]\nasset = 'vinyl.htex'\n";
-
-/// Ratings of three participants.
-pub(crate) const RATINGS: &str = "participant,texture,model,repetition,rating\n\
-    p1,vinyl,ar,1,3\np1,vinyl,sbeta,1,5\np2,vinyl,ar,1,2\np2,vinyl,sbeta,1,3\np3,vinyl,ar,1,0\np3,vinyl,sbeta,1,6\n";
 
 /// A file `study.toml`, and the order of its participants.
 pub fn study(input: &[u8]) -> bool {
@@ -90,51 +83,6 @@ pub fn answers(input: &[u8]) -> bool {
         Err(error) => sentence(&plain(&error.to_string())),
     }
     exported
-}
-
-/// A table of ratings, and its analysis.
-pub fn ratings(input: &[u8]) -> bool {
-    let checked = Ratings::read(input, Incomplete::Refuse)
-        .or_else(|_| Ratings::read(input, Incomplete::LeaveOut));
-    match checked {
-        Ok(checked) => {
-            analysed(&checked, None);
-            true
-        }
-        Err(invalid) => refused(&invalid),
-    }
-}
-
-/// A table of felt spectra beside sound ratings.
-pub fn spectra_table(input: &[u8]) -> bool {
-    let ratings = Ratings::read(RATINGS.as_bytes(), Incomplete::Refuse).expect("a sound table");
-    match Spectra::read(input, &ratings.table) {
-        Ok(spectra) => {
-            analysed(&ratings, Some(&spectra.table));
-            true
-        }
-        Err(invalid) => refused(&invalid),
-    }
-}
-
-fn analysed(ratings: &Checked<Ratings>, spectra: Option<&Spectra>) {
-    let table = &ratings.table;
-    if table.participants.len() * table.textures.len() * table.models.len() > MOST_CELLS {
-        return;
-    }
-    let analysis = analyse(table, spectra, "fuzzed");
-    let json = serde_json::to_string(&analysis).expect("an analysis is JSON");
-    assert!(!json.contains("NaN"), "{json}");
-    analysis
-        .notes
-        .iter()
-        .for_each(|note| sentence(&plain(&note.message)));
-}
-
-fn refused(invalid: &Invalid) -> bool {
-    assert!(!invalid.findings.is_empty(), "refused without a reason");
-    promise::findings(&invalid.findings, htex_lab::analyse::explain);
-    false
 }
 
 /// Answers of a session that was left after its first rating.

@@ -7,7 +7,7 @@ use crate::places::{target, workspace};
 
 pub(super) fn test(folder: &Path) -> Result<(), String> {
     let folder = std::fs::canonicalize(folder).map_err(|error| error.to_string())?;
-    let python = environment(&folder, "test")?;
+    let python = environment(&folder, "test,lab")?;
     // Outside the sources, so that the installed package is imported; its README's examples are among the tests.
     let tests = package()?.join("tests");
     run(program(python, &folder)

@@ -1,14 +1,13 @@
 //! `htex study`: people rate textures.
 
-mod analyse;
 mod asker;
 mod clock;
+mod elsewhere;
 mod export;
 mod felt;
 #[cfg(unix)]
 mod keys;
 mod plan;
-mod power;
 mod rig;
 mod run;
 mod spectra;
@@ -40,8 +39,10 @@ enum Command {
     Plan(plan::Plan),
     Run(Box<run::Run>),
     Export(export::Export),
-    Analyse(analyse::Analyse),
-    Power(power::Power),
+    /// Analyse the ratings of a study, and what was felt; by the Python package (`pip install htex[lab]`)
+    Analyse(elsewhere::Elsewhere),
+    /// Find out how many participants a study needs; by the Python package (`pip install htex[lab]`)
+    Power(elsewhere::Elsewhere),
 }
 
 impl Study {
@@ -51,8 +52,7 @@ impl Study {
             Command::Plan(args) => args.run(),
             Command::Run(args) => args.run(),
             Command::Export(args) => args.run(),
-            Command::Analyse(args) => args.run(),
-            Command::Power(args) => args.run(),
+            Command::Analyse(args) | Command::Power(args) => args.run(),
         }
     }
 }

@@ -72,7 +72,7 @@ def _analyse(words: list[str]) -> int:
             arguments.spectra,
             scale=arguments.scale,
             bound=arguments.bound,
-            columns=dict(arguments.map),
+            columns={ours: theirs for pairs in arguments.map for ours, theirs in pairs},
             leave_out_incomplete=arguments.leave_out_incomplete,
         )
     except TableError as error:
@@ -126,9 +126,9 @@ def _analyse_parser() -> argparse.ArgumentParser:
         "--map",
         metavar="OURS=THEIRS",
         action="append",
-        type=_pair,
+        type=_pairs,
         default=[],
-        help="the name that a column has, such as rating=Bewertung; may be given several times",
+        help="the name that a column has, such as rating=Bewertung; several are separated by commas",
     )
     add(
         "--scale",
@@ -231,11 +231,11 @@ def _positive(text: str) -> float:
     return value
 
 
-def _pair(text: str) -> tuple[str, str]:
-    ours, equals, theirs = text.partition("=")
-    if not (ours and equals and theirs):
+def _pairs(text: str) -> list[tuple[str, str]]:
+    pairs = [part.partition("=") for part in text.split(",")]
+    if not all(ours.strip() and theirs.strip() for ours, _, theirs in pairs):
         raise argparse.ArgumentTypeError("it looks like rating=Bewertung: our name, and that of the column")
-    return ours.strip(), theirs.strip()
+    return [(ours.strip(), theirs.strip()) for ours, _, theirs in pairs]
 
 
 def _overwritten(folder: pathlib.Path, inputs: list[str]) -> str | None:
@@ -256,7 +256,7 @@ def _again(arguments: argparse.Namespace) -> str:
     """The command that makes the report again."""
     words = ["htex study analyse --ratings", arguments.ratings]
     words += ["--spectra", arguments.spectra] if arguments.spectra else []
-    words += [f"--map {ours}={theirs}" for ours, theirs in arguments.map]
+    words += ["--map " + ",".join(f"{ours}={theirs}" for ours, theirs in pairs) for pairs in arguments.map]
     words += ["--leave-out-incomplete"] if arguments.leave_out_incomplete else []
     words += ["--scale {:g}-{:g}".format(*arguments.scale)] if arguments.scale else []
     words += [f"--bound {arguments.bound:g}", "-o", arguments.output]

@@ -398,6 +398,13 @@ def test_other_commands_are_not_answered_here() -> None:
         assert run(words) is None
 
 
+def test_the_command_says_how_to_have_pandas() -> None:
+    program = "import sys; sys.modules['pandas'] = None; from htex.study.cli import run; sys.exit(run(sys.argv[1:]))"
+    words = ["study", "analyse", "--ratings", "r.csv"]
+    said = subprocess.run([sys.executable, "-c", program, *words], capture_output=True, text=True)
+    assert said.returncode == 1 and said.stderr == "htex: studies need pandas; `pip install htex[lab]` brings it\n"
+
+
 def test_pingouin_is_not_imported_by_the_package() -> None:
     program = "import sys, htex.study, htex.study.study, htex.study.mixed; assert 'pingouin' not in sys.modules"
     subprocess.run([sys.executable, "-c", program], check=True)

@@ -64,7 +64,7 @@ def rules() -> str:
 
 def _analyse(words: list[str]) -> int:
     arguments = _analyse_parser().parse_args(_joined(words))
-    from .study import analyse
+    from . import analyse
 
     try:
         analysis = analyse(
@@ -92,7 +92,7 @@ def _analyse(words: list[str]) -> int:
 
 def _power(words: list[str]) -> int:
     arguments = _power_parser().parse_args(words)
-    from .planning import power
+    from . import power
 
     json_wanted = vars(arguments).pop("json")
     try:

@@ -7,7 +7,7 @@ use htex_device::{Channel, Delivered, DeviceError, Source};
 
 use crate::driver::{Driver, InputTask};
 use crate::fault::Fault;
-use crate::input::Inputs;
+use crate::inputs::Inputs;
 
 /// Time between two looks for samples.
 const LOOK: Duration = Duration::from_millis(2);

@@ -20,6 +20,7 @@ mod driver;
 mod fault;
 mod input;
 mod input_stream;
+mod inputs;
 mod rig;
 mod session;
 mod stream;

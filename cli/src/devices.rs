@@ -4,46 +4,35 @@
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use clap::Args;
 use htex_device::{Adapter, DeviceError, Devices, KnownDevice, Origin, Settings};
+use htex_device_builtin::Optional;
 use htex_device_check::Subject;
 
 use crate::adapters;
 use crate::failure::Failure;
 use crate::output::warn;
 
-/// The adapters linked into this program, in the order in which they are shown.
-fn builtin() -> Vec<Arc<dyn Adapter>> {
-    vec![
-        Arc::new(htex_device_file::FileAdapter),
-        Arc::new(htex_device_daq::Daq::new()),
-        #[cfg(feature = "audio")]
-        Arc::new(htex_device_audio::Audio::new()),
-    ]
+/// How to have a device or source that is left out.
+pub(crate) fn built_with(left_out: &Optional) -> String {
+    let Optional {
+        what,
+        feature,
+        package,
+        ..
+    } = left_out;
+    format!(
+        "`cargo install --path cli --features {feature}` builds one with {what}, which on Linux needs {package}"
+    )
 }
 
-/// How to have sound.
-macro_rules! with_sound {
-    () => {
-        "`cargo install --path cli --features audio` builds one with sound, which on Linux needs libasound2-dev"
-    };
-}
-#[cfg(not(feature = "audio"))]
-pub(crate) use with_sound;
-
-/// The reason why sound is absent from this build; `None` for other devices.
-fn no_sound(name: &str) -> Option<DeviceError> {
-    let instead = "`--device` names another device, and `htex synth` and `htex render` write files";
-    without_sound(name, instead)
-}
-
-/// The reason why a device or source of this name is absent, if it is sound and not in this build; `instead` is a sentence.
-pub(crate) fn without_sound(name: &str, instead: &str) -> Option<DeviceError> {
-    let sound = cfg!(not(feature = "audio")) && matches!(name, "audio" | "org.htex.audio");
-    let why = concat!("this htex is built without sound; ", with_sound!());
-    sound.then(|| DeviceError::Missing(format!("{why}. {instead}")))
+/// The reason why a device or source of this name is absent, if it is left out of this build; `instead` is a sentence.
+pub(crate) fn left_out(name: &str, instead: &str) -> Option<DeviceError> {
+    let left_out = Optional::left_out(name)?;
+    let (what, how) = (left_out.what, built_with(&left_out));
+    let why = format!("this htex is built without {what}; {how}. {instead}");
+    Some(DeviceError::Missing(why))
 }
 
 /// Where devices come from.
@@ -72,18 +61,20 @@ impl DeviceArgs {
     /// As [`Self::devices`], without reports.
     pub(crate) fn devices_quietly(&self) -> Result<Devices, Failure> {
         let search = adapters::search(&self.device_file, &self.device_dir);
-        Ok(Devices::search(builtin(), &search)?)
+        Ok(Devices::search(htex_device_builtin::devices(), &search)?)
     }
 
     /// The reason why a device of this name is absent, if it is a matter of the build.
     pub(crate) fn missing(name: &str) -> Option<DeviceError> {
-        no_sound(name)
+        let instead =
+            "`--device` names another device, and `htex synth` and `htex render` write files";
+        left_out(name, instead)
     }
 
     /// The device in the file of this name if there is one, else that of this short name or id.
     pub(crate) fn named(&self, name: &str) -> Result<KnownDevice, Failure> {
         let found = adapters::named(name, || self.devices());
-        found.map_err(|error| match no_sound(name) {
+        found.map_err(|error| match Self::missing(name) {
             Some(why) if error.is_unknown_name() => why.into(),
             _ => error,
         })

@@ -13,7 +13,6 @@ mod failure;
 mod flags;
 mod gains;
 mod grid;
-mod guardian;
 #[cfg(feature = "lab")]
 mod inputs;
 mod invocation;
@@ -46,6 +45,7 @@ use clap::Parser;
 use commands::Command;
 use exit::Exit;
 use failure::Failure;
+use htex_device_builtin::SOUND;
 
 /// Texture assets for touch: fit, inspect, measure and play them.
 ///
@@ -59,7 +59,7 @@ struct Cli {
 }
 
 fn first_steps() -> String {
-    let play = if cfg!(feature = "audio") {
+    let play = if SOUND.is_built {
         "play it by ear, or on a device"
     } else {
         "play it on a device (--device); by ear only in a build with `--features audio`"

@@ -1,14 +1,16 @@
 //! From a renderer to a device, until the end or an interruption.
 
 use std::path::Path;
+use std::process::Command;
 use std::time::{Duration, Instant};
 
-use htex_device::{Device, SettingKind, StreamFormat};
+use htex_device::{Device, DeviceError, SettingKind, StreamFormat};
+use htex_device_guardian::{Guarded, is_wanted, not_started};
 use htex_scene::file::Motion;
 use htex_scene::{Plan, Renderer};
 
 use crate::failure::Failure;
-use crate::guardian::{self, Guarded};
+use crate::invocation;
 use crate::scenes::Ready;
 
 /// Longest wait for space in a device; one that takes nothing for this long is reported as stuck.
@@ -25,6 +27,13 @@ fn block_frames(ready: &Ready, plan: &Plan) -> u32 {
             .max(1),
         _ => usual,
     }
+}
+
+/// This program, as the one that holds a display's output.
+fn guardian() -> Result<Command, DeviceError> {
+    let mut command = invocation::program().map_err(not_started)?.command();
+    command.arg("guard");
+    Ok(command)
 }
 
 /// An open device and the renderer that feeds it.
@@ -54,8 +63,13 @@ impl Output {
         for file in written.filter(|s| s.kind == SettingKind::Path) {
             ready.check_output(Path::new(settings.text(&file.name)))?;
         }
-        let device: Box<dyn Device> = match guardian::is_wanted(&ready.capabilities) {
-            true => Box::new(Guarded::open(&ready.device, settings, &format)?),
+        let device: Box<dyn Device> = match is_wanted(&ready.capabilities) {
+            true => Box::new(Guarded::open(
+                &ready.device,
+                settings,
+                &format,
+                guardian()?,
+            )?),
             false => ready.device.adapter.open(settings, &format)?,
         };
         let output = Self::new(device, frames as usize, plan.rate_hz);

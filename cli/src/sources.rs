@@ -9,29 +9,25 @@ use std::sync::Arc;
 use clap::Args;
 #[cfg(feature = "lab")]
 use htex_device::Source;
-use htex_device::{DeviceError, KnownSource, Origin, SourceAdapter, Sources};
+use htex_device::{KnownSource, Origin, SourceAdapter, Sources};
 use htex_device_check::source::Subject;
 use serde_json::Value;
 
 use crate::adapters;
-use crate::devices::without_sound;
+use crate::devices::left_out;
 use crate::failure::Failure;
 use crate::output::warn;
 
-/// The adapters linked into this program, in the order in which they are shown.
+/// The sources of this program, in the order in which they are shown: recordings, and those that are built in.
 fn builtin() -> Vec<Arc<dyn SourceAdapter>> {
-    vec![
+    let recordings: Vec<Arc<dyn SourceAdapter>> = vec![
         #[cfg(feature = "lab")]
         Arc::new(htex_lab::record::Replay),
-        Arc::new(htex_device_daq::DaqInput::new()),
-        #[cfg(feature = "audio")]
-        Arc::new(htex_device_audio::AudioInput::new()),
-    ]
-}
-
-/// The reason why sound is absent from this build; `None` for other sources.
-fn no_sound(name: &str) -> Option<DeviceError> {
-    without_sound(name, "`htex device list` shows the sources that it has")
+    ];
+    recordings
+        .into_iter()
+        .chain(htex_device_builtin::sources())
+        .collect()
 }
 
 /// Where sources come from.
@@ -103,7 +99,7 @@ impl SourceArgs {
 
 /// The error, or the reason why a source of this name is not in this build.
 fn sounding(name: &str, error: Failure) -> Failure {
-    match no_sound(name) {
+    match left_out(name, "`htex device list` shows the sources that it has") {
         Some(why) if error.is_unknown_name() => why.into(),
         _ => error,
     }

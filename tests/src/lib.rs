@@ -9,6 +9,11 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
+/// The page's example compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/driving-a-display.md")]
+pub struct DrivingADisplay;
+
 /// The workspace's folder.
 pub fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")

@@ -49,6 +49,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
     ("htex-device", &["htex-native", "htex-schema"]),
     ("adapter", &["htex-device", "htex-files", "htex-native"]),
+    ("htex-device-builtin", &["adapter", "htex-device"]),
+    ("htex-device-guardian", &["htex-device"]),
     ("htex-check-runner", &[]),
     ("htex-device-check", &["htex-check-runner", "htex-device"]),
     ("htex-shaped", &["htex-dsp", "htex-model"]),
@@ -130,9 +132,10 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-build",
             "htex-check",
             "htex-check-runner",
-            "adapter",
             "htex-device",
+            "htex-device-builtin",
             "htex-device-check",
+            "htex-device-guardian",
             "htex-lab",
             "htex-library",
             "htex-scene",
@@ -182,7 +185,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-scene",
         ],
     ),
-    ("htex-capi", &["htex", "adapter"]),
+    ("htex-capi", &["htex", "htex-device-builtin"]),
     ("xtask", &[]),
 ];
 
@@ -197,7 +200,10 @@ fn dependencies_follow_the_arrows() {
     let role = |package: &cargo_metadata::Package| {
         let path = package.manifest_path.as_str();
         match package.name.as_str() {
-            "htex-device" | "htex-device-check" => package.name.to_string(),
+            "htex-device"
+            | "htex-device-builtin"
+            | "htex-device-check"
+            | "htex-device-guardian" => package.name.to_string(),
             _ if path.contains("/plugins/") => "plugin".to_owned(),
             _ if path.contains("/renderer-adapters/") => "adapter".to_owned(),
             name => name.to_owned(),

@@ -1,9 +1,9 @@
 use clap::Args;
+use htex_device_guardian::hold;
 
 use crate::devices::DeviceArgs;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::guardian::hold;
 
 /// Hold a device for the process that started this one (internal; `htex play` starts it).
 #[derive(Args)]

@@ -1,12 +1,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use clap::builder::StyledStr;
 use htex_device::Status;
+use htex_device_builtin::SOUND;
 use htex_scene::file::Motion;
 use htex_scene::{DeviceOverride, Plan, Renderer};
 
-#[cfg(not(feature = "audio"))]
-use crate::devices::with_sound;
+use crate::devices::built_with;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::gains::{FeltArgs, apply_kept};
@@ -21,10 +22,7 @@ use crate::signals::{self, interrupted};
 ///
 /// An asset is played at the speed and force of its first condition, as sound when no device is named.
 #[derive(Args)]
-#[cfg_attr(
-    not(feature = "audio"),
-    command(after_help = concat!("This build has no sound: ", with_sound!(), "."))
-)]
+#[command(after_help = without_sound())]
 pub(crate) struct Play {
     /// The scene or the asset
     #[arg(value_parser = located::ASSET)]
@@ -55,6 +53,11 @@ pub(crate) struct Play {
 
     #[command(flatten)]
     with: SceneArgs,
+}
+
+fn without_sound() -> Option<StyledStr> {
+    let told = || format!("This build has no sound: {}.", built_with(&SOUND));
+    (!SOUND.is_built).then(|| told().into())
 }
 
 impl Play {
@@ -119,7 +122,9 @@ pub(crate) fn open(
     mut device: DeviceOverride,
 ) -> Result<Ready, Failure> {
     if is_asset(file) {
-        device.adapter.get_or_insert_with(|| "audio".to_owned());
+        device
+            .adapter
+            .get_or_insert_with(|| SOUND.short_name().to_owned());
     }
     if let Some(name) = &device.adapter {
         ChoiceArgs::check_built(name)?;

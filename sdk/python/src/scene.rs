@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use htex::host::{Registry, folders};
 use htex_device::{Capabilities, Devices, Search};
@@ -229,11 +228,7 @@ fn devices(installed: bool) -> PyResult<Devices> {
         user_dir: installed,
         ..Search::default()
     };
-    let builtin: Vec<Arc<dyn htex_device::Adapter>> = vec![
-        Arc::new(htex_device_file::FileAdapter),
-        Arc::new(htex_device_daq::Daq::new()),
-    ];
-    Devices::search(builtin, &search).or_raise()
+    Devices::search(htex_device_builtin::devices(), &search).or_raise()
 }
 
 /// Costs that the command measured on this machine, else the built-in ones.

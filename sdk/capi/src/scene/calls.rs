@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::ffi::c_char;
 use std::path::Path;
-use std::sync::Arc;
 
 use htex::AssetData;
 use htex::device::Devices;
@@ -12,7 +11,6 @@ use htex::scene::{
     Costs, DeviceOverride, Finger, Limits, LoadError, LoadedScene, Plan, Renderer, SceneError,
     Surroundings, plan, read_scene,
 };
-use htex_device_file::FileAdapter;
 
 use super::{htex_finger, htex_scene, htex_scene_options};
 use crate::handles::Table;
@@ -74,7 +72,7 @@ pub(super) unsafe fn open(
                 place(out)?,
             )
         };
-        let devices = Devices::new(vec![Arc::new(FileAdapter)]);
+        let devices = Devices::new(htex_device_builtin::devices());
         let around = Surroundings {
             models: &models.registry,
             embedded: models.embedded,

@@ -1,0 +1,71 @@
+//! The devices and sources that programs have without loading a library. One that is added here is in the command, in Python and in C.
+//!
+//! ```
+//! use htex_device::Devices;
+//! let devices = Devices::new(htex_device_builtin::devices());
+//! assert_eq!(devices.find("file")?.descriptor().id, "org.htex.file");
+//! # Ok::<(), htex_device::DeviceError>(())
+//! ```
+#![forbid(unsafe_code)]
+
+use std::sync::Arc;
+
+use htex_device::{Adapter, SourceAdapter};
+
+/// Returns the devices, in the order in which they are shown.
+pub fn devices() -> Vec<Arc<dyn Adapter>> {
+    vec![
+        Arc::new(htex_device_file::FileAdapter),
+        #[cfg(feature = "daq")]
+        Arc::new(htex_device_daq::Daq::new()),
+        #[cfg(feature = "audio")]
+        Arc::new(htex_device_audio::Audio::new()),
+    ]
+}
+
+/// Returns the sources, in the order in which they are shown.
+pub fn sources() -> Vec<Arc<dyn SourceAdapter>> {
+    vec![
+        #[cfg(feature = "daq")]
+        Arc::new(htex_device_daq::DaqInput::new()),
+        #[cfg(feature = "audio")]
+        Arc::new(htex_device_audio::AudioInput::new()),
+    ]
+}
+
+/// A device, and a source of the same name, that a program has only if it is built with a feature.
+#[derive(Debug, Clone, Copy)]
+pub struct Optional {
+    /// Its identifier.
+    pub id: &'static str,
+    /// What it gives, in a word.
+    pub what: &'static str,
+    /// The feature.
+    pub feature: &'static str,
+    /// What it is built against on Linux.
+    pub package: &'static str,
+    /// Whether this program has it.
+    pub is_built: bool,
+}
+
+/// The device that plays a texture by ear.
+pub const SOUND: Optional = Optional {
+    id: "org.htex.audio",
+    what: "sound",
+    feature: "audio",
+    package: "libasound2-dev",
+    is_built: cfg!(feature = "audio"),
+};
+
+impl Optional {
+    /// Returns the one called `name`, by its short name or its id, if this program does not have it.
+    pub fn left_out(name: &str) -> Option<Self> {
+        let named = |one: &Self| [one.id, one.short_name()].contains(&name);
+        [SOUND].into_iter().find(|one| !one.is_built && named(one))
+    }
+
+    /// Returns the last part of the id.
+    pub fn short_name(&self) -> &'static str {
+        self.id.rsplit('.').next().unwrap_or(self.id)
+    }
+}

@@ -1,8 +1,9 @@
 //! The adapters that a program finds: devices, or sources.
 
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+use htex_native::folders::{data, libraries_in, listed};
 
 use crate::{Descriptor, DeviceError, Endpoint};
 
@@ -287,7 +288,7 @@ impl<A: Kind + ?Sized> Registry<A> {
     }
 
     fn add_folder(&mut self, dir: &Path) -> Result<(), DeviceError> {
-        let files = libraries_in(dir).map_err(|error| DeviceError::File {
+        let files = libraries_in(dir, None).map_err(|error| DeviceError::File {
             path: dir.display().to_string(),
             what: error.to_string(),
         })?;
@@ -327,38 +328,8 @@ impl<A: Kind + ?Sized> Registry<A> {
 }
 
 /// The folders of the environment variable and of the user.
-fn unnamed_folders<A: Kind + ?Sized>(search: &Search) -> Vec<PathBuf> {
-    let mut folders = Vec::new();
-    if search.env {
-        let value = std::env::var_os(A::VARIABLE).unwrap_or_default();
-        folders.extend(std::env::split_paths(&value).filter(|dir| !dir.as_os_str().is_empty()));
-    }
-    folders.extend(user_folder(A::FOLDER).filter(|dir| search.user_dir && dir.exists()));
-    folders
-}
-
-/// A folder in the user's data folder, by the XDG base directory specification, which has
-/// relative paths ignored; on Windows in the local application data.
-fn user_folder(folder: &str) -> Option<PathBuf> {
-    let absolute = |variable: &str| {
-        let path = PathBuf::from(std::env::var_os(variable)?);
-        path.is_absolute().then_some(path)
-    };
-    let windows = || absolute("LOCALAPPDATA").filter(|_| cfg!(windows));
-    let home = || absolute("HOME").map(|home| home.join(".local/share"));
-    let base = absolute("XDG_DATA_HOME").or_else(windows).or_else(home)?;
-    Some(base.join(folder))
-}
-
-/// The libraries in a folder, by name.
-fn libraries_in(dir: &Path) -> io::Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(dir)? {
-        let path = entry?.path();
-        if path.extension().and_then(|e| e.to_str()) == Some(std::env::consts::DLL_EXTENSION) {
-            files.push(path);
-        }
-    }
-    files.sort();
-    Ok(files)
+fn unnamed_folders<A: Kind + ?Sized>(search: &Search) -> impl Iterator<Item = PathBuf> {
+    let listed = search.env.then(|| listed(A::VARIABLE));
+    let own = search.user_dir.then(|| data(A::FOLDER)).flatten();
+    listed.into_iter().flatten().chain(own)
 }

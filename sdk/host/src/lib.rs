@@ -21,7 +21,6 @@ mod builtin;
 mod clock;
 mod descriptor;
 mod error;
-pub mod folders;
 mod limits;
 mod marker;
 mod model;
@@ -58,6 +57,7 @@ pub use htex_dsp::grid::{Band, GRID_HZ};
 pub use htex_model::{
     Descriptor, Field, Fit, FitCondition, FitOption, Kind, Motion, Status, Store,
 };
+pub use htex_native::folders;
 pub use limits::{WasmCache, WasmCompiler, WasmLimits, WasmTotal};
 pub use model::{FitRequest, LoadedModel, MOTION_EXTENSION};
 pub use note::Note;

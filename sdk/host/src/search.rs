@@ -1,13 +1,16 @@
 //! The places that are searched for models.
 
-use std::io;
 use std::path::{Path, PathBuf};
 
+use htex_native::folders::{data, libraries_in, listed};
+
 use crate::registry::Rank;
-use crate::{HostError, LoadedModel, Note, Registry, WasmLimits, folders};
+use crate::{HostError, LoadedModel, Note, Registry, WasmLimits};
 
 /// Variable with the plugin folders, separated as in `PATH`.
 const VARIABLE: &str = "HTEX_PLUGIN_PATH";
+/// The user's folder of plugins, in the data folder.
+const FOLDER: &str = "htex/plugins";
 
 /// The places that are searched for models, in order of precedence: `files`, models embedded in an asset, `dirs`,
 /// `HTEX_PLUGIN_PATH`, the user's folder, built-in models.
@@ -112,19 +115,18 @@ impl Search {
             registry.add(Rank::File, model);
         }
         for dir in &self.dirs {
-            let files = plugins_in(dir).map_err(|e| HostError::Load {
+            let files = libraries_in(dir, Some("wasm")).map_err(|e| HostError::Load {
                 path: dir.display().to_string(),
                 what: e.to_string(),
             })?;
             self.add_all(&mut registry, Rank::Folder, files);
         }
         if self.env {
-            let value = std::env::var_os(VARIABLE).unwrap_or_default();
-            for dir in std::env::split_paths(&value).filter(|dir| !dir.as_os_str().is_empty()) {
+            for dir in listed(VARIABLE) {
                 self.add_folder(&mut registry, Rank::Folder, &dir);
             }
         }
-        if let Some(dir) = folders::plugins().filter(|dir| self.user_dir && dir.exists()) {
+        if let Some(dir) = data(FOLDER).filter(|_| self.user_dir) {
             self.add_folder(&mut registry, Rank::User, &dir);
         }
         if self.builtin {
@@ -135,7 +137,7 @@ impl Search {
 
     /// Adds the plugins of a folder that is not one of `dirs`: one that cannot be read is a note.
     fn add_folder(&self, registry: &mut Registry, rank: Rank, dir: &Path) {
-        match plugins_in(dir) {
+        match libraries_in(dir, Some("wasm")) {
             Ok(files) => self.add_all(registry, rank, files),
             Err(error) => registry.note(Note::Folder {
                 path: dir.to_owned(),
@@ -152,18 +154,4 @@ impl Search {
             }
         }
     }
-}
-
-/// Returns the plugins in a folder, sorted by name.
-fn plugins_in(dir: &Path) -> io::Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(dir)? {
-        let path = entry?.path();
-        let extension = path.extension().and_then(|e| e.to_str());
-        if extension == Some("wasm") || extension == Some(std::env::consts::DLL_EXTENSION) {
-            files.push(path);
-        }
-    }
-    files.sort();
-    Ok(files)
 }

@@ -5,6 +5,8 @@
 //! This is the only place that loads one, but for tests. A bare name is a file of the current folder, as every other
 //! argument is; only NI-DAQmx's own names, or a `driver` that is not a file, are given to the system's loader.
 
+pub mod folders;
+
 #[cfg(any(unix, windows))]
 use std::error::Error;
 use std::ffi::OsStr;

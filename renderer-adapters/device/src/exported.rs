@@ -2,9 +2,11 @@
 
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::OnceLock;
 
 use crate::abi::{Code, MAX_TEXT_BYTES};
 use crate::crossing::outgoing;
+use crate::handles::Handles;
 use crate::{Descriptor, DeviceError, Settings};
 
 std::thread_local! {
@@ -100,8 +102,77 @@ pub fn extension(_id: Input<'_, u8>) -> i64 {
     0
 }
 
+/// An adapter of the `kind` (`device`, `source`), and what is open of it.
+pub(crate) struct Exported<A, T: ?Sized> {
+    kind: &'static str,
+    adapter: OnceLock<A>,
+    open: Handles<T>,
+}
+
+impl<A: Default, T: ?Sized> Exported<A, T> {
+    /// No adapter yet, nothing open.
+    pub(crate) const fn new(kind: &'static str) -> Self {
+        Self {
+            kind,
+            adapter: OnceLock::new(),
+            open: Handles::new(),
+        }
+    }
+
+    pub(crate) fn adapter(&self) -> &A {
+        self.adapter.get_or_init(A::default)
+    }
+
+    /// Keeps what was opened; returns its handle.
+    pub(crate) fn insert(&self, opened: Box<T>) -> i64 {
+        self.open.insert(opened)
+    }
+
+    /// Calls what is behind a handle.
+    pub(crate) fn with<R>(
+        &self,
+        handle: i64,
+        call: impl FnOnce(&mut T) -> Result<R, Refusal>,
+    ) -> Result<R, Refusal> {
+        let called = self.open.with(handle, call);
+        called.ok_or_else(|| self.bad_handle())?
+    }
+
+    /// Runs a call; an error or a panic becomes a code and the last-error text.
+    pub(crate) fn answer(&self, call: impl FnOnce() -> Result<i64, Refusal>) -> i64 {
+        answer(self.kind, call)
+    }
+
+    /// As [`Self::answer`]; a panic drops what is behind the handle, which takes an output to zero.
+    pub(crate) fn answer_of(
+        &self,
+        handle: i64,
+        call: impl FnOnce() -> Result<i64, Refusal>,
+    ) -> i64 {
+        let answered = self.answer(call);
+        if answered == Code::Panicked as i64 {
+            // A second panic, in the drop, adds nothing.
+            let _ = catch_unwind(AssertUnwindSafe(|| drop(self.open.remove(handle))));
+        }
+        answered
+    }
+
+    pub(crate) fn close(&self, handle: i64) -> i64 {
+        self.answer(|| {
+            let closed = self.open.remove(handle).map(|_| 0);
+            closed.ok_or_else(|| self.bad_handle())
+        })
+    }
+
+    fn bad_handle(&self) -> Refusal {
+        let kind = self.kind;
+        let text = format!("no such {kind} is open; it may have been closed");
+        Refusal(Code::BadHandle as i64, text)
+    }
+}
+
 /// Runs a call of a device or source, the `kind`; an error or a panic becomes a code and the last-error text.
-pub(crate) fn answer(kind: &str, call: impl FnOnce() -> Result<i64, Refusal>) -> i64 {
+fn answer(kind: &str, call: impl FnOnce() -> Result<i64, Refusal>) -> i64 {
     let result = catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| {
         let text = panic
             .downcast_ref::<&str>()
@@ -121,12 +192,6 @@ pub(crate) fn answer(kind: &str, call: impl FnOnce() -> Result<i64, Refusal>) ->
         });
         code
     })
-}
-
-/// The refusal of a handle of a device or source, the `kind`.
-pub(crate) fn bad_handle(kind: &str) -> Refusal {
-    let text = format!("no such {kind} is open; it may have been closed");
-    Refusal(Code::BadHandle as i64, text)
 }
 
 pub(crate) fn copy_json(

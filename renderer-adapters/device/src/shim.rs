@@ -2,25 +2,16 @@
 //!
 //! Called by the functions that [`export_device!`](crate::export_device) makes; not by hand.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::OnceLock;
 use std::time::Duration;
 
 use crate::abi::{Code, MAX_BLOCK_FRAMES, MAX_RATE_HZ, MIN_RATE_HZ, STATUS_NUMBERS};
-use crate::exported::{self, Refusal, answer, argument, bad_handle, copy_json};
-use crate::handles::Handles;
+use crate::exported::{self, Exported, Refusal, argument, copy_json};
 use crate::{Adapter, Device, DeviceError, Settings, StreamFormat};
 
 pub use crate::exported::{Input, Output, extension, last_error};
 
-/// What messages call it.
-const KIND: &str = "device";
-
 /// The state of an exported adapter: itself and its open devices.
-pub struct State<A> {
-    adapter: OnceLock<A>,
-    devices: Handles<dyn Device>,
-}
+pub struct State<A>(Exported<A, dyn Device>);
 
 impl<A: Adapter + Default> Default for State<A> {
     fn default() -> Self {
@@ -31,14 +22,11 @@ impl<A: Adapter + Default> Default for State<A> {
 impl<A: Adapter + Default> State<A> {
     /// No adapter yet, nothing open.
     pub const fn new() -> Self {
-        Self {
-            adapter: OnceLock::new(),
-            devices: Handles::new(),
-        }
+        Self(Exported::new("device"))
     }
 
     fn adapter(&self) -> &A {
-        self.adapter.get_or_init(A::default)
+        self.0.adapter()
     }
 
     fn settings(&self, lines: Input<'_, u8>) -> Result<Settings, Refusal> {
@@ -50,25 +38,24 @@ impl<A: Adapter + Default> State<A> {
         handle: i64,
         call: impl FnOnce(&mut (dyn Device + 'static)) -> Result<R, DeviceError>,
     ) -> Result<R, Refusal> {
-        Ok(self
-            .devices
-            .with(handle, call)
-            .ok_or_else(|| bad_handle(KIND))??)
+        self.0.with(handle, |device| Ok(call(device)?))
     }
 
     /// See [`crate::abi::DescriptorJson`].
     pub fn descriptor(&self, out: Output<'_, u8>) -> i64 {
-        answer(KIND, || copy_json(self.adapter().descriptor(), out))
+        self.0
+            .answer(|| copy_json(self.adapter().descriptor(), out))
     }
 
     /// See [`crate::abi::EndpointsJson`].
     pub fn endpoints(&self, out: Output<'_, u8>) -> i64 {
-        answer(KIND, || copy_json(&self.adapter().endpoints()?, out))
+        self.0
+            .answer(|| copy_json(&self.adapter().endpoints()?, out))
     }
 
     /// See [`crate::abi::CapabilitiesJson`].
     pub fn capabilities(&self, settings: Input<'_, u8>, out: Output<'_, u8>) -> i64 {
-        answer(KIND, || {
+        self.0.answer(|| {
             let settings = self.settings(settings)?;
             copy_json(&self.adapter().capabilities(&settings)?, out)
         })
@@ -76,7 +63,7 @@ impl<A: Adapter + Default> State<A> {
 
     /// See [`crate::abi::OpenFn`].
     pub fn open(&self, settings: Input<'_, u8>, rate_hz: f64, block_frames: u32) -> i64 {
-        answer(KIND, || {
+        self.0.answer(|| {
             let settings = self.settings(settings)?;
             if !(MIN_RATE_HZ..=MAX_RATE_HZ).contains(&rate_hz) {
                 let range = format!("{MIN_RATE_HZ} to {MAX_RATE_HZ} Hz");
@@ -92,24 +79,23 @@ impl<A: Adapter + Default> State<A> {
                 block_frames,
             };
             let device = self.adapter().open(&settings, &format)?;
-            Ok(self.devices.insert(device))
+            Ok(self.0.insert(device))
         })
     }
 
     /// See [`crate::abi::WriteFn`]. A panic closes the device.
     pub fn write(&self, handle: i64, samples: Input<'_, f32>, timeout_ms: u32) -> i64 {
-        let answered = answer(KIND, || {
+        self.0.answer_of(handle, || {
             let samples = samples.get("samples")?;
             let timeout = Duration::from_millis(u64::from(timeout_ms));
             let taken = self.with(handle, |device| device.write(samples, timeout))?;
             Ok(taken as i64)
-        });
-        self.close_if_panicked(handle, answered)
+        })
     }
 
     /// See [`crate::abi::StatusFn`].
     pub fn status(&self, handle: i64, out: Output<'_, f64>) -> i64 {
-        answer(KIND, || {
+        self.0.answer(|| {
             let out = out.get("out")?;
             let status = self.with(handle, |device| Ok(device.status()))?;
             let numbers: [f64; STATUS_NUMBERS] = status.into();
@@ -122,28 +108,12 @@ impl<A: Adapter + Default> State<A> {
 
     /// See [`crate::abi::FinishFn`]. A panic closes the device.
     pub fn finish(&self, handle: i64) -> i64 {
-        let answered = answer(KIND, || {
-            self.with(handle, |device| device.finish()).map(|()| 0)
-        });
-        self.close_if_panicked(handle, answered)
+        let finish = || self.with(handle, |device| device.finish()).map(|()| 0);
+        self.0.answer_of(handle, finish)
     }
 
     /// See [`crate::abi::CloseFn`].
     pub fn close(&self, handle: i64) -> i64 {
-        answer(KIND, || {
-            self.devices
-                .remove(handle)
-                .map(|_| 0)
-                .ok_or_else(|| bad_handle(KIND))
-        })
-    }
-
-    /// Drops the device, which sets its output to zero, and returns the result with its text.
-    fn close_if_panicked(&self, handle: i64, answered: i64) -> i64 {
-        if answered == Code::Panicked as i64 {
-            // A second panic, in the drop, adds nothing.
-            let _ = catch_unwind(AssertUnwindSafe(|| drop(self.devices.remove(handle))));
-        }
-        answered
+        self.0.close(handle)
     }
 }

@@ -5,11 +5,10 @@ use std::sync::Arc;
 use htex_model::{Descriptor, Model, MotionVoice};
 use semver::{Version, VersionReq};
 
-use crate::builtin;
-use crate::own::OwnModel;
 use crate::runtime::{Described, RuntimeModel};
 use crate::sandbox::Sandbox;
 use crate::{HostError, LoadedModel, Note, Origin, Search, WasmLimits};
+use crate::{builtin, own};
 
 /// Models by id. Of several models with one id, the first in the order of [`Search`] is used; the others are
 /// returned only for requests of their version.
@@ -17,7 +16,7 @@ use crate::{HostError, LoadedModel, Note, Origin, Search, WasmLimits};
 /// ```
 /// use htex_host::Registry;
 /// let registry = Registry::builtin();
-/// assert_eq!(registry.models().len(), 6);
+/// assert_eq!(registry.models().len(), Registry::builtin_names().len());
 /// assert_eq!(registry.find("AR")?.id(), "org.htex.ar");
 /// # Ok::<(), htex_host::HostError>(())
 /// ```
@@ -43,20 +42,18 @@ pub(crate) enum Rank {
     Builtin,
 }
 
-fn own<M: Model>() -> Result<OwnModel<M>, HostError> {
-    OwnModel::new().ok_or_else(|| HostError::Broken {
-        model: M::DESCRIPTOR.id.to_owned(),
-        call: "htex_model_descriptor",
-        what: "the descriptor is longer than 64 KiB; shorten its texts".to_owned(),
-    })
-}
-
 impl Registry {
     /// Returns the models linked into this program.
     pub fn builtin() -> Self {
         let mut registry = Self::empty(&WasmLimits::default());
         registry.add_builtin();
         registry
+    }
+
+    /// Returns the short names of the models linked into this program, in their display order.
+    pub fn builtin_names() -> Vec<&'static str> {
+        let models = builtin::models().iter();
+        models.map(LoadedModel::short_name).collect()
     }
 
     /// Returns the models that a search finds.
@@ -142,10 +139,9 @@ impl Registry {
     /// ```
     ///
     /// # Errors
-    /// When the descriptor is invalid, or longer than 64 KiB.
+    /// When the descriptor is invalid, or longer than 1 MiB in JSON.
     pub fn add_model<M: Model>(&mut self) -> Result<(), HostError> {
-        let model = own::<M>()?;
-        self.add_own(model)
+        self.add_described(Origin::Own, own::model::<M>()?)
     }
 
     /// As [`Self::add_model`], for a model that follows the motion itself (the extension `htex.motion/1`).
@@ -153,13 +149,11 @@ impl Registry {
     /// # Errors
     /// As [`Self::add_model`].
     pub fn add_motion_model<M: Model<Voice: MotionVoice>>(&mut self) -> Result<(), HostError> {
-        let model = own::<M>()?.with_motion();
-        self.add_own(model)
+        self.add_described(Origin::Own, own::motion_model::<M>()?)
     }
 
-    fn add_own<M: Model>(&mut self, model: OwnModel<M>) -> Result<(), HostError> {
-        let model = LoadedModel::new(Origin::Own, Arc::new(model))?;
-        self.add(Rank::File, model);
+    fn add_described(&mut self, origin: Origin, model: Described) -> Result<(), HostError> {
+        self.add(Rank::File, LoadedModel::new(origin, Arc::new(model))?);
         Ok(())
     }
 
@@ -174,10 +168,8 @@ impl Registry {
         descriptor: Descriptor,
         model: Arc<dyn RuntimeModel>,
     ) -> Result<(), HostError> {
-        let raw = Described::new(descriptor, model)?;
         let origin = Origin::Runtime(written_in.to_owned());
-        self.add(Rank::File, LoadedModel::new(origin, Arc::new(raw))?);
-        Ok(())
+        self.add_described(origin, Described::new(descriptor, model)?)
     }
 
     /// Adds the WASM model of a container `name`, such as an asset, after plugins named by their files and before all

@@ -1,22 +1,16 @@
 //! Models that are described while the program runs: objects instead of types, such as models of a scripting language.
 
-use std::cell::RefCell;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
 use htex_model::abi::ABI_MARKER;
-use htex_model::arguments::{band, check_rate, check_recording, check_weights, finite};
+use htex_model::arguments::{band, check_fit, check_fit_input, check_rate, finite, interpolate};
+use htex_model::shim::{copy, guarded, last_error};
 use htex_model::{
-    Band, Descriptor, Error, Fit, FitInput, Motion, Numbers, Status, Values, mix, text,
+    Band, Descriptor, Error, Fit, FitCondition, FitInput, Motion, Numbers, Status, Values, mix,
 };
 
-use crate::HostError;
 use crate::raw::{RawFit, RawModel, RawVoice};
-
-thread_local! {
-    /// The text of this thread's last error.
-    static LAST_ERROR: RefCell<String> = const { RefCell::new(String::new()) };
-}
+use crate::{HostError, MOTION_EXTENSION};
 
 /// A model that is an object. Units and arguments are those of [`htex_model::Model`], and arguments are checked before
 /// each call in the same way; panics become errors.
@@ -59,7 +53,7 @@ thread_local! {
 /// # Ok::<(), htex_host::HostError>(())
 /// ```
 pub trait RuntimeModel: Send + Sync + 'static {
-    /// As [`htex_model::Model::fit`]; the condition is unknown.
+    /// As [`htex_model::Model::fit`]; the condition is known only if the model follows the motion.
     ///
     /// # Errors
     /// When the model cannot describe the spectrum.
@@ -106,6 +100,11 @@ pub trait RuntimeModel: Send + Sync + 'static {
         rate_hz: f64,
         seed: u64,
     ) -> Result<Box<dyn RuntimeVoice>, Error>;
+
+    /// Whether the model follows the motion itself, as with the extension `htex.motion/1`.
+    fn follows_motion(&self) -> bool {
+        false
+    }
 }
 
 /// A voice of a [`RuntimeModel`]: as [`htex_model::Voice`], but rendering may fail.
@@ -121,6 +120,9 @@ pub trait RuntimeVoice: Send {
     /// # Errors
     /// When the voice cannot change to these parameters.
     fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error>;
+
+    /// As [`htex_model::MotionVoice::set_motion`], of models that follow the motion.
+    fn set_motion(&mut self, _motion: Motion) {}
 }
 
 /// A model with its descriptor.
@@ -165,6 +167,11 @@ impl Shared {
     }
 
     fn fit(&self, call: &RawFit<'_>) -> Result<Fit, Error> {
+        let (speed_mm_s, force_n) = call.condition.numbers();
+        let condition = match self.model.follows_motion() {
+            true => FitCondition::from_numbers(speed_mm_s, force_n)?,
+            false => FitCondition::default(),
+        };
         let input = FitInput {
             band: band(call.band.edges())?,
             frequency_hz: call.frequency_hz,
@@ -172,32 +179,19 @@ impl Shared {
             signal: call.signal,
             signal_rate_hz: call.signal_rate_hz,
             options: call.options,
-            condition: Default::default(),
+            condition,
         };
-        check_recording(&input)?;
-        let (got, wanted) = (input.options.len(), self.descriptor.options.len());
-        if got != wanted {
-            let message = text![got, " option values; ", wanted, " are required"];
-            return Err(Error::new(Status::InvalidOption, message));
-        }
+        check_fit_input(&input, &self.descriptor)?;
         let fit = self.model.fit(&input)?;
-        self.values(&fit.parameters)?;
+        check_fit(&fit, &self.descriptor)?;
         Ok(fit)
     }
 
-    fn interpolate(&self, mut flat: &[f64], weights: &[f64], out: &mut [f64]) -> i64 {
-        returned(|| {
-            check_weights(weights)?;
-            let mut sets = Vec::with_capacity(weights.len());
-            for _ in weights {
-                let (set, used) = Values::read_first(&self.descriptor, flat)?;
-                sets.push(set);
-                flat = &flat[used..];
-            }
-            let mut mixed = Numbers::new(out);
-            self.model.interpolate(&sets, weights, &mut mixed)?;
-            Ok(mixed.count() as i64)
-        })
+    fn interpolate(&self, flat: &[f64], weights: &[f64], out: &mut [f64]) -> i64 {
+        let own = |sets: &[Values<'_>], weights: &[f64], mixed: &mut Numbers<'_>| {
+            self.model.interpolate(sets, weights, mixed)
+        };
+        guarded(|| interpolate(&self.descriptor, &own, flat, weights, out))
     }
 }
 
@@ -211,11 +205,11 @@ impl RawModel for Described {
     }
 
     fn last_error(&self, out: &mut [u8]) -> i64 {
-        last_error(out)
+        last_error(out.into())
     }
 
     fn fit(&self, call: &RawFit<'_>, parameters: &mut [f64], level_rms: &mut f64) -> i64 {
-        returned(|| {
+        guarded(|| {
             let fit = self.shared.fit(call)?;
             *level_rms = fit.level_rms;
             Ok(copy(&fit.parameters, parameters))
@@ -229,7 +223,7 @@ impl RawModel for Described {
         frequency_hz: &[f64],
         magnitude: &mut [f64],
     ) -> i64 {
-        returned(|| {
+        guarded(|| {
             finite("frequency_hz", frequency_hz)?;
             let values = self.shared.values(parameters)?;
             let model = &self.shared.model;
@@ -242,17 +236,18 @@ impl RawModel for Described {
         self.shared.interpolate(sets, weights, parameters)
     }
 
-    fn extension(&self, _: &[u8]) -> i64 {
-        0
+    fn extension(&self, id: &[u8]) -> i64 {
+        // `htex.voices/1` is absent: its call needs a table of C functions.
+        i64::from(self.follows_motion() && id == MOTION_EXTENSION.as_bytes())
     }
 
     fn follows_motion(&self) -> bool {
-        false
+        self.shared.model.follows_motion()
     }
 
     fn voice_rate(&self, parameters: &[f64], of: Band, wanted_hz: f64) -> f64 {
         let mut rate_hz = 0.0;
-        let status = returned(|| {
+        let status = guarded(|| {
             check_rate(wanted_hz)?;
             let values = self.shared.values(parameters)?;
             let model = &self.shared.model;
@@ -270,7 +265,7 @@ impl RawModel for Described {
         seed: u64,
     ) -> Result<Box<dyn RawVoice>, i64> {
         let mut voice = None;
-        let status = returned(|| {
+        let status = guarded(|| {
             check_rate(rate_hz)?;
             let values = self.shared.values(parameters)?;
             let model = &self.shared.model;
@@ -299,12 +294,15 @@ impl DescribedVoice {
         with: impl FnOnce(&mut dyn RuntimeVoice, &Shared) -> Result<(), Error>,
     ) -> i64 {
         let Self { shared, voice } = self;
-        returned(|| {
-            let freed = || Error::new(Status::BadHandle, "no such voice; it was freed");
+        guarded(|| {
             let voice = voice.as_deref_mut().ok_or_else(freed)?;
             with(voice, shared).map(|()| 0)
         })
     }
+}
+
+fn freed() -> Error {
+    Error::new(Status::BadHandle, "no such voice; it was freed")
 }
 
 impl RawVoice for DescribedVoice {
@@ -316,8 +314,15 @@ impl RawVoice for DescribedVoice {
         self.call(|voice, shared| voice.retune(&shared.values(parameters)?))
     }
 
-    fn set_motion(&mut self, _: Motion) -> i64 {
-        0
+    fn set_motion(&mut self, motion: Motion) -> i64 {
+        if !self.shared.model.follows_motion() {
+            return 0;
+        }
+        self.call(|voice, _| {
+            motion.check()?;
+            voice.set_motion(motion);
+            Ok(())
+        })
     }
 
     fn interpolate(&mut self, sets: &[f64], weights: &[f64], parameters: &mut [f64]) -> i64 {
@@ -325,33 +330,10 @@ impl RawVoice for DescribedVoice {
     }
 
     fn free(&mut self) -> i64 {
-        let freed = self.call(|_, _| Ok(()));
-        self.voice = None;
-        freed
+        guarded(|| self.voice.take().map(|_| 0).ok_or_else(freed))
     }
 
     fn last_error(&self, out: &mut [u8]) -> i64 {
-        last_error(out)
+        last_error(out.into())
     }
-}
-
-/// Runs a call; an error or a panic becomes a status and the last-error text.
-fn returned(call: impl FnOnce() -> Result<i64, Error>) -> i64 {
-    let panicked = |_| Err(Error::new(Status::Panicked, "the model panicked"));
-    let result = catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(panicked);
-    result.unwrap_or_else(|error| {
-        LAST_ERROR.with(|last| *last.borrow_mut() = error.message);
-        error.status as i64
-    })
-}
-
-fn last_error(out: &mut [u8]) -> i64 {
-    LAST_ERROR.with(|last| copy(last.borrow().as_bytes(), out))
-}
-
-/// Copies as many values as fit; returns the number of all values.
-fn copy<T: Copy>(from: &[T], out: &mut [T]) -> i64 {
-    let fit = from.len().min(out.len());
-    out[..fit].copy_from_slice(&from[..fit]);
-    from.len() as i64
 }

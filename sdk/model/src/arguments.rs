@@ -1,8 +1,13 @@
-//! Checks of arguments, common to all models. A host uses them for models that have no C functions.
+//! Checks of arguments and results, common to all models. A host uses them for models that have no C functions.
+
+use alloc::vec::Vec;
 
 use crate::abi::{MAX_BAND_HZ, MAX_RATE_HZ, MIN_BINS, MIN_RATE_HZ};
 use crate::voices_1::MAX_VOICES;
-use crate::{Band, Error, FitInput, StaticDescriptor, Status, Values, text};
+use crate::{Band, Error, Fields, Fit, FitInput, Numbers, Status, Values, text};
+
+/// Sets that can be mixed without allocating.
+const FEW_SETS: usize = 8;
 
 /// Checks the handles of voices that are rendered together: at most [`MAX_VOICES`], and all different.
 pub(crate) fn check_handles(handles: &[i64]) -> Result<(), Error> {
@@ -71,20 +76,30 @@ pub fn finite(name: &str, numbers: &[f64]) -> Result<(), Error> {
     }
 }
 
-/// Checks the input of a fit, options included.
-pub(crate) fn check_fit_input(
-    input: &FitInput<'_>,
-    descriptor: &StaticDescriptor,
-) -> Result<(), Error> {
+/// Checks the input of a fit.
+///
+/// # Errors
+/// When a number is not finite, the spectrum is too short, does not ascend or is negative, the rate is invalid, or an option
+/// is missing or out of range.
+pub fn check_fit_input(input: &FitInput<'_>, descriptor: &dyn Fields) -> Result<(), Error> {
     check_recording(input)?;
     check_options(input.options, descriptor)
 }
 
-/// Checks the spectrum and the signal that a model is fitted to.
+/// Checks what a model has fitted.
 ///
 /// # Errors
-/// When a number is not finite, the spectrum is too short, does not ascend or is negative, or the rate is invalid.
-pub fn check_recording(input: &FitInput<'_>) -> Result<(), Error> {
+/// When a parameter is out of range, or the level is not a number.
+pub fn check_fit(fit: &Fit, descriptor: &dyn Fields) -> Result<(), Error> {
+    Values::read(descriptor, &fit.parameters)?;
+    match fit.level_rms.is_finite() && fit.level_rms >= 0.0 {
+        true => Ok(()),
+        false => Err(Error::cannot_fit("the fitted level is not a number")),
+    }
+}
+
+/// Checks the spectrum and the signal that a model is fitted to.
+fn check_recording(input: &FitInput<'_>) -> Result<(), Error> {
     finite("frequency_hz", input.frequency_hz)?;
     finite("magnitude", input.magnitude)?;
     finite("signal", input.signal)?;
@@ -104,16 +119,17 @@ pub fn check_recording(input: &FitInput<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-fn check_options(values: &[f64], descriptor: &StaticDescriptor) -> Result<(), Error> {
+fn check_options(values: &[f64], descriptor: &dyn Fields) -> Result<(), Error> {
     let invalid = |message| Err(Error::new(Status::InvalidOption, message));
-    if values.len() != descriptor.options.len() {
-        let (want, got) = (descriptor.options.len(), values.len());
+    if values.len() != descriptor.option_count() {
+        let (want, got) = (descriptor.option_count(), values.len());
         return invalid(text![got, " option values; ", want, " are required"]);
     }
-    for (option, &value) in descriptor.options.iter().zip(values) {
-        let whole = !option.integer || value as i64 as f64 == value;
+    for (i, &value) in values.iter().enumerate() {
+        let (option, integer) = descriptor.option(i);
+        let whole = !integer || value as i64 as f64 == value;
         if !(option.min..=option.max).contains(&value) || !whole {
-            let kind = if option.integer { "whole numbers " } else { "" };
+            let kind = if integer { "whole numbers " } else { "" };
             return invalid(text![
                 "option `",
                 option.name,
@@ -133,11 +149,7 @@ fn check_options(values: &[f64], descriptor: &StaticDescriptor) -> Result<(), Er
     Ok(())
 }
 
-/// Checks the weights of an interpolation.
-///
-/// # Errors
-/// When one lies outside 0 to 1, or they do not sum to 1.
-pub fn check_weights(weights: &[f64]) -> Result<(), Error> {
+fn check_weights(weights: &[f64]) -> Result<(), Error> {
     let sum: f64 = weights.iter().sum();
     let sane = weights.iter().all(|w| (0.0..=1.0).contains(w)) && (sum - 1.0).abs() < 1e-6;
     if sane {
@@ -146,8 +158,38 @@ pub fn check_weights(weights: &[f64]) -> Result<(), Error> {
     Err(Error::argument("weights must lie in 0 to 1 and sum to 1"))
 }
 
-pub(crate) fn read_sets<'a>(
-    descriptor: &StaticDescriptor,
+/// Interpolates with a model's function: reads the sets, and checks the result. Returns the number of numbers of the result.
+///
+/// # Errors
+/// When weights or sets are invalid, the model's own error, or that of an invalid result.
+pub fn interpolate(
+    descriptor: &dyn Fields,
+    own: &dyn Fn(&[Values<'_>], &[f64], &mut Numbers<'_>) -> Result<(), Error>,
+    flat: &[f64],
+    weights: &[f64],
+    parameters: &mut [f64],
+) -> Result<i64, Error> {
+    check_weights(weights)?;
+    // Hosts interpolate two or three sets, possibly while they render, so these are not allocated.
+    let (mut few, mut many) = ([Values::NONE; FEW_SETS], Vec::new());
+    let sets = match few.get_mut(..weights.len()) {
+        Some(few) => few,
+        None => {
+            many.resize(weights.len().min(flat.len()), Values::NONE);
+            &mut many[..]
+        }
+    };
+    read_sets(descriptor, flat, sets)?;
+    let mut mixed = Numbers::new(parameters);
+    own(sets, weights, &mut mixed)?;
+    if mixed.count() == mixed.written().len() {
+        Values::read(descriptor, mixed.written())?;
+    }
+    Ok(mixed.count() as i64)
+}
+
+fn read_sets<'a>(
+    descriptor: &dyn Fields,
     mut flat: &'a [f64],
     sets: &mut [Values<'a>],
 ) -> Result<(), Error> {

@@ -1,26 +1,22 @@
 //! The layer between the C functions and the traits: checks arguments, catches panics.
 //!
-//! Only the functions that [`export_model!`](crate::export_model) generates call it.
+//! The functions that [`export_model!`](crate::export_model) generates call it, and hosts for models that are objects.
 
 use alloc::alloc::Layout;
-use alloc::vec::Vec;
 use core::marker::PhantomData;
 
 use crate::abi::ALLOC_ALIGN;
 use crate::arguments::{
-    band, check_fit_input, check_handles, check_rate, check_weights, finite, read_sets,
+    band, check_fit, check_fit_input, check_handles, check_rate, finite, interpolate,
 };
 use crate::motion_1::MotionTable;
 use crate::platform::{caught, with_last_error};
 use crate::voices::Voices;
 use crate::voices_1::{MAX_VOICES, VoicesTable};
 use crate::{
-    Error, Fit, FitCondition, FitInput, Model, Motion, MotionVoice, Numbers, StaticDescriptor,
-    Status, Values, Voice, text,
+    Error, Fit, FitCondition, FitInput, Model, Motion, MotionVoice, StaticDescriptor, Status,
+    Values, Voice, text,
 };
-
-/// Sets that can be mixed without allocating.
-const FEW_SETS: usize = 8;
 
 /// The state of one exported model: its descriptor as JSON, and its voices.
 pub struct State<M: Model> {
@@ -164,7 +160,11 @@ impl<M: Model> State<M> {
         weights: Input<'_, f64>,
         parameters: Output<'_, f64>,
     ) -> i64 {
-        guarded(|| interpolate(&M::DESCRIPTOR, M::interpolate, sets, weights, parameters))
+        guarded(|| {
+            let (sets, weights) = (sets.get("sets")?, weights.get("weights")?);
+            let parameters = parameters.get("parameters")?;
+            interpolate(&M::DESCRIPTOR, &M::interpolate, sets, weights, parameters)
+        })
     }
 
     /// See [`crate::abi::VoiceRateFn`].
@@ -303,47 +303,12 @@ fn fit(
     };
     check_fit_input(&input, descriptor)?;
     let fit = own(&input)?;
-    Values::read(descriptor, &fit.parameters)?;
-    if !fit.level_rms.is_finite() || fit.level_rms < 0.0 {
-        return Err(Error::cannot_fit("the fitted level is not a number"));
-    }
+    check_fit(&fit, descriptor)?;
     let level = call.level_rms.get("level_rms")?;
     if let Some(level) = level.first_mut() {
         *level = fit.level_rms;
     }
     Ok(copy(&fit.parameters, call.parameters.get("parameters")?))
-}
-
-/// [`Model::interpolate`].
-type Interpolate = fn(&[Values<'_>], &[f64], &mut Numbers<'_>) -> Result<(), Error>;
-
-/// Interpolates with the model's function.
-fn interpolate(
-    descriptor: &StaticDescriptor,
-    own: Interpolate,
-    sets: Input<'_, f64>,
-    weights: Input<'_, f64>,
-    parameters: Output<'_, f64>,
-) -> Result<i64, Error> {
-    let weights = weights.get("weights")?;
-    check_weights(weights)?;
-    let flat = sets.get("sets")?;
-    // Hosts interpolate two or three sets, possibly while they render, so these are not allocated.
-    let (mut few, mut many) = ([Values::NONE; FEW_SETS], Vec::new());
-    let sets = match few.get_mut(..weights.len()) {
-        Some(few) => few,
-        None => {
-            many.resize(weights.len().min(flat.len()), Values::NONE);
-            &mut many[..]
-        }
-    };
-    read_sets(descriptor, flat, sets)?;
-    let mut mixed = Numbers::new(parameters.get("parameters")?);
-    own(sets, weights, &mut mixed)?;
-    if mixed.count() == mixed.written().len() {
-        Values::read(descriptor, mixed.written())?;
-    }
-    Ok(mixed.count() as i64)
 }
 
 /// See [`crate::abi::AllocFn`].
@@ -387,7 +352,7 @@ pub fn extension(id: Input<'_, u8>, motion: bool) -> i64 {
 }
 
 /// Runs a call; an error or a panic becomes a status and the last-error text.
-fn guarded(call: impl FnOnce() -> Result<i64, Error>) -> i64 {
+pub fn guarded(call: impl FnOnce() -> Result<i64, Error>) -> i64 {
     caught(call).unwrap_or_else(failed)
 }
 
@@ -402,7 +367,7 @@ fn bad_handle() -> Error {
 }
 
 /// Copies as many values as fit; returns the number of all values.
-fn copy<T: Copy>(from: &[T], out: &mut [T]) -> i64 {
+pub fn copy<T: Copy>(from: &[T], out: &mut [T]) -> i64 {
     for (out, from) in out.iter_mut().zip(from) {
         *out = *from;
     }

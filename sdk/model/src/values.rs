@@ -9,7 +9,7 @@ use crate::abi::{MAX_FIELDS, MAX_LIST_LEN};
 use crate::text;
 use crate::{Error, Kind, StaticDescriptor};
 
-/// Names and ranges of parameters: of a model's constants, and of a descriptor that a host has read.
+/// Names and ranges of parameters and of fit options: of a model's constants, and of a descriptor that a host has read.
 pub trait Fields {
     /// The model's id.
     fn id(&self) -> &str;
@@ -19,9 +19,15 @@ pub trait Fields {
 
     /// Field `i`, which is below [`Self::count`].
     fn range(&self, i: usize) -> Range<'_>;
+
+    /// The number of fit options.
+    fn option_count(&self) -> usize;
+
+    /// Option `i`, which is below [`Self::option_count`], and whether only whole numbers are allowed.
+    fn option(&self, i: usize) -> (Range<'_>, bool);
 }
 
-/// The properties by which the numbers of a field are checked.
+/// The properties by which the numbers of a field or of an option are checked.
 #[derive(Debug, Clone, Copy)]
 pub struct Range<'a> {
     /// Name, units included.
@@ -56,6 +62,22 @@ macro_rules! fields_of {
                     min: field.min,
                     max: field.max,
                 }
+            }
+
+            fn option_count(&self) -> usize {
+                self.options.len()
+            }
+
+            fn option(&self, i: usize) -> (Range<'_>, bool) {
+                let option = &self.options[i];
+                let range = Range {
+                    name: &option.name,
+                    unit: &option.unit,
+                    kind: Kind::Scalar,
+                    min: option.min,
+                    max: option.max,
+                };
+                (range, option.integer)
             }
         }
     };

@@ -17,7 +17,9 @@ mod calls;
 mod fault;
 #[path = "../wasm/functions.rs"]
 mod functions;
+mod guest;
 mod imports;
+#[path = "../wasm/instance.rs"]
 mod instance;
 #[path = "../wasm/model.rs"]
 mod model;

@@ -19,7 +19,7 @@ impl Instance {
     pub(super) fn descriptor(&mut self, out: &mut [u8]) -> Result<i64, Fault> {
         let at = self.buffer(out.len().max(8))?;
         let len = self.call(Deadline::Call, |f| &f.descriptor, (at, out.len() as u32))?;
-        self.read_bytes(at, out)?;
+        self.read(at, out)?;
         Ok(len)
     }
 
@@ -29,7 +29,7 @@ impl Instance {
         let buffer = (at, LONGEST_ERROR as u32);
         let len = self.call(Deadline::Call, |f| &f.last_error, buffer)?;
         let mut text = vec![0; usize::try_from(len).unwrap_or(0).min(LONGEST_ERROR)];
-        self.read_bytes(at, &mut text)?;
+        self.read(at, &mut text)?;
         Ok(String::from_utf8_lossy(&text).into_owned())
     }
 
@@ -169,7 +169,7 @@ impl Instance {
         let at = self.buffer(4 * BLOCK)?;
         let block = (voice, at, out.len() as u32);
         let returned = self.call(Deadline::Render, |f| &f.voice_render, block)?;
-        self.read_samples(at, out)?;
+        self.read(at, out)?;
         Ok(returned)
     }
 

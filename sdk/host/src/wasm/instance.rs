@@ -1,22 +1,21 @@
-//! One instance of a module: its functions, and a buffer in its memory for arguments and results.
+//! One instance of a module: its functions, and a buffer in its memory for arguments and results. Shared by both engines, whose
+//! part is `guest`.
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
-
-use wasmtime::{Instance as Raw, Memory, Store};
+use std::time::Duration;
 
 use super::allowance::Allowance;
 use super::fault::Fault;
-use super::functions::{Find, Functions, Usize};
+use super::functions::{Functions, Usize};
+use super::guest::{Guest, Number};
 use super::module::WasmModule;
 use super::typed::{Parameters, Returned, TypedFunc};
-use super::usage::Usage;
+use crate::clock::Instant;
 
-/// An instance with a separate store.
+/// An instance with a separate memory.
 pub(super) struct Instance {
     module: Arc<WasmModule>,
-    store: Store<Usage>,
-    memory: Memory,
+    guest: Guest,
     functions: Functions,
     /// The time of a voice; the time of other calls is part of the modules' budget.
     allowance: Option<Allowance>,
@@ -34,30 +33,11 @@ pub(super) enum Deadline {
 impl Instance {
     /// Makes an instance, which runs the module's start function.
     pub(super) fn new(module: &Arc<WasmModule>) -> Result<Self, Fault> {
-        let limits = &module.limits;
-        let usage = Usage::new(limits, &module.budget)?;
-        let mut store = Store::new(&module.engine.engine, usage);
-        store.limiter(|usage| usage);
-        let time = limits.call.min(module.budget.time_left()?);
-        let fault = |e| Fault::of(&e, limits, time.as_millis());
-        arm(&mut store, module, time).map_err(fault)?;
-        let start = Instant::now();
-        let raw = Raw::new(&mut store, &module.module, &[]);
-        module.budget.spend(start.elapsed());
-        let raw = raw.map_err(|error| Fault::Start(Box::new(fault(error))))?;
-        let memory = raw
-            .get_memory(&mut store, "memory")
-            .ok_or(Fault::NoMemory)?;
-        let mut exports = Exports {
-            store: &mut store,
-            raw: &raw,
-        };
-        let functions = Functions::of(&mut exports, module.follows_motion())?;
+        let (guest, functions) = Guest::new(module)?;
         Ok(Self {
             module: Arc::clone(module),
+            guest,
             functions,
-            store,
-            memory,
             allowance: None,
             buffer: (0, 0),
         })
@@ -116,12 +96,13 @@ impl Instance {
             return Err(Fault::NoExtension);
         };
         let start = Instant::now();
-        let result = arm(&mut self.store, &self.module, time)
-            .and_then(|()| function.call(&mut self.store, parameters));
-        self.spend(start.elapsed());
-        result.map_err(|e| match self.time_left() {
+        let result = self.guest.call(&self.module, function, parameters, time);
+        let taken = start.elapsed();
+        self.spend(taken);
+        let returned = self.guest.returned(&self.module, result, taken, time);
+        returned.map_err(|fault| match self.time_left() {
             Err(used_up) => Fault::Stopped(Box::new(used_up)),
-            Ok(_) => Fault::of(&e, &self.module.limits, time.as_millis()),
+            Ok(_) => fault,
         })
     }
 
@@ -132,7 +113,7 @@ impl Instance {
 
     /// Size of the module's memory, bytes.
     pub(super) fn memory_bytes(&self) -> usize {
-        self.memory.data_size(&self.store)
+        self.guest.memory_bytes()
     }
 
     /// Returns the address of a buffer of at least `bytes`, a multiple of 8, in the module's memory. The buffer is
@@ -154,7 +135,7 @@ impl Instance {
             self.call(Deadline::Call, |f| &f.free, old)?;
         }
         let at = self.call(Deadline::Call, |f| &f.alloc, len)?;
-        let inside = u64::from(at) + u64::from(len) <= self.memory.data_size(&self.store) as u64;
+        let inside = u64::from(at) + u64::from(len) <= self.memory_bytes() as u64;
         if at == 0 || at % 8 != 0 || !inside {
             return Err(Fault::Allocation { at, len });
         }
@@ -164,87 +145,17 @@ impl Instance {
 
     /// Writes numbers at an address; returns the address after them.
     pub(super) fn write(&mut self, at: Usize, numbers: &[f64]) -> Result<Usize, Fault> {
-        let bytes = self.bytes_mut(at, numbers.len() * 8)?;
-        for (to, x) in bytes.chunks_exact_mut(8).zip(numbers) {
-            to.copy_from_slice(&x.to_le_bytes());
-        }
+        self.guest.write(at, numbers)?;
         Ok(at + (numbers.len() * 8) as Usize)
     }
 
     /// Writes a text at an address.
     pub(super) fn write_text(&mut self, at: Usize, text: &[u8]) -> Result<(), Fault> {
-        self.bytes_mut(at, text.len())?.copy_from_slice(text);
-        Ok(())
+        self.guest.write(at, text)
     }
 
-    /// Reads numbers at an address.
-    pub(super) fn read(&self, at: Usize, numbers: &mut [f64]) -> Result<(), Fault> {
-        let bytes = self.bytes(at, numbers.len() * 8)?;
-        for (x, from) in numbers.iter_mut().zip(bytes.as_chunks().0) {
-            *x = f64::from_le_bytes(*from);
-        }
-        Ok(())
-    }
-
-    /// Reads samples at an address.
-    pub(super) fn read_samples(&self, at: Usize, samples: &mut [f32]) -> Result<(), Fault> {
-        let bytes = self.bytes(at, samples.len() * 4)?;
-        for (x, from) in samples.iter_mut().zip(bytes.as_chunks().0) {
-            *x = f32::from_le_bytes(*from);
-        }
-        Ok(())
-    }
-
-    /// Reads bytes at an address.
-    pub(super) fn read_bytes(&self, at: Usize, out: &mut [u8]) -> Result<(), Fault> {
-        out.copy_from_slice(self.bytes(at, out.len())?);
-        Ok(())
-    }
-
-    fn bytes(&self, at: Usize, len: usize) -> Result<&[u8], Fault> {
-        let data = self.memory.data(&self.store);
-        data.get(at as usize..)
-            .and_then(|rest| rest.get(..len))
-            .ok_or(Fault::Outside)
-    }
-
-    fn bytes_mut(&mut self, at: Usize, len: usize) -> Result<&mut [u8], Fault> {
-        let data = self.memory.data_mut(&mut self.store);
-        data.get_mut(at as usize..)
-            .and_then(|rest| rest.get_mut(..len))
-            .ok_or(Fault::Outside)
-    }
-}
-
-/// Sets the time and the instructions of the next call.
-fn arm(store: &mut Store<Usage>, module: &WasmModule, time: Duration) -> wasmtime::Result<()> {
-    store.set_epoch_deadline(module.engine.ticks(time));
-    match module.limits.fuel {
-        Some(fuel) => store.set_fuel(fuel),
-        None => Ok(()),
-    }
-}
-
-/// A new instance, and its store.
-struct Exports<'a> {
-    store: &'a mut Store<Usage>,
-    raw: &'a Raw,
-}
-
-impl Find for Exports<'_> {
-    fn find<P: Parameters, R: Returned>(
-        &mut self,
-        name: &'static str,
-    ) -> Result<TypedFunc<P, R>, Fault> {
-        let function = self.raw.get_func(&mut *self.store, name);
-        let function = function.ok_or_else(|| Fault::NoFunction {
-            name: name.to_owned(),
-        })?;
-        function
-            .typed(&*self.store)
-            .map_err(|error| Fault::Signature {
-                name: name.to_owned(),
-                what: format!("{error:#}"),
-            })
+    /// Reads numbers, samples or bytes at an address.
+    pub(super) fn read<T: Number>(&self, at: Usize, out: &mut [T]) -> Result<(), Fault> {
+        self.guest.read(at, out)
     }
 }

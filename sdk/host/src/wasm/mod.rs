@@ -14,6 +14,7 @@ mod engine;
 mod estimate;
 mod fault;
 mod functions;
+mod guest;
 mod instance;
 mod key;
 mod model;

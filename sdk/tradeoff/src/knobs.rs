@@ -1,5 +1,7 @@
 //! Table of knobs: the options that a sweep varies, and their values.
 
+use htex_host::FitOption;
+
 /// A knob and its values in a sweep, besides its default.
 #[derive(Debug, Clone, Copy)]
 pub struct Knob {
@@ -26,7 +28,7 @@ const fn knob(name: &'static str, values: &'static [&'static str]) -> Knob {
     Knob { name, values }
 }
 
-/// Fit options by model. A model that is not listed is measured at its defaults.
+/// Fit options by model, chosen by hand. Those of a model that is not listed come from its descriptor: see [`of_range`].
 pub const MODELS: &[ModelKnobs] = &[
     ModelKnobs {
         model: "ar",
@@ -129,11 +131,41 @@ pub const PLAYING: &[Knob] = &[
     knob("output_rate_hz", &["4000", "8000", "48000", "192000"]),
 ];
 
+/// Values of an option of a model that is not listed.
+const STEPS: i32 = 8;
+
+/// Returns the values of an option in a sweep, from its descriptor: its choices, or numbers over its whole range, in equal
+/// ratios if it is above 0.
+pub(crate) fn of_range(option: &FitOption) -> Vec<String> {
+    if !option.choices.is_empty() {
+        return option.choices.clone();
+    }
+    let (min, max) = (option.min, option.max);
+    let value = |step: i32| {
+        let part = f64::from(step) / f64::from(STEPS);
+        let value = match min > 0.0 {
+            true => min * (max / min).powf(part),
+            false => min + part * (max - min),
+        };
+        match option.integer {
+            true => value.round().to_string(),
+            false => format!("{value:.3e}")
+                .parse::<f64>()
+                .unwrap_or(value)
+                .clamp(min, max)
+                .to_string(),
+        }
+    };
+    let mut values: Vec<String> = (0..=STEPS).map(value).collect();
+    values.dedup();
+    values
+}
+
 /// Returns the ends and the middle of a knob's values, for a quick sweep.
-pub(crate) fn few(values: &'static [&'static str]) -> Vec<&'static str> {
+pub(crate) fn few<T: Clone>(values: &[T]) -> Vec<T> {
     let mut few = vec![0, values.len() / 2, values.len().saturating_sub(1)];
     few.dedup();
     few.into_iter()
-        .filter_map(|i| values.get(i).copied())
+        .filter_map(|i| values.get(i).cloned())
         .collect()
 }

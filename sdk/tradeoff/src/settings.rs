@@ -2,15 +2,13 @@
 
 use htex_host::LoadedModel;
 
-use crate::knobs::{Knob, MODELS, ModelKnobs, PLAYING, few};
+use crate::knobs::{Knob, MODELS, ModelKnobs, PLAYING, few, of_range};
 use crate::{Setting, TradeoffError};
 
 /// Returns the settings of a model's fit options, the defaults first; a quick sweep varies one knob at a time.
 pub(crate) fn fit_settings(model: &LoadedModel, quick: bool) -> Vec<Setting> {
     let mut settings = vec![Setting::default()];
-    let Some(knobs) = MODELS.iter().find(|m| m.model == model.short_name()) else {
-        return settings;
-    };
+    let knobs = MODELS.iter().find(|m| m.model == model.short_name());
     let mut add = |options: Vec<(String, String)>| {
         let options = without_defaults(model, options);
         let setting = Setting {
@@ -24,29 +22,39 @@ pub(crate) fn fit_settings(model: &LoadedModel, quick: bool) -> Vec<Setting> {
             .map(|(n, v)| (&n[..], &v[..]))
             .collect();
         let takes = model.options(&given).is_ok();
-        if takes && !is_idle(model, knobs, &setting) && !settings.contains(&setting) {
+        let idle = knobs.is_some_and(|knobs| is_idle(model, knobs, &setting));
+        if takes && !idle && !settings.contains(&setting) {
             settings.push(setting);
         }
     };
-    if !quick {
+    if let Some(knobs) = knobs.filter(|_| !quick) {
         products(knobs.together).into_iter().for_each(&mut add);
     }
-    let alone = if quick {
-        [knobs.together, knobs.alone].concat()
-    } else {
-        knobs.alone.to_vec()
-    };
-    for knob in alone {
-        let values = if quick {
-            few(knob.values)
-        } else {
-            knob.values.to_vec()
-        };
+    for (name, values) in alone(model, knobs, quick) {
+        let values = if quick { few(&values) } else { values };
         values
             .into_iter()
-            .for_each(|value| add(vec![(knob.name.to_owned(), value.to_owned())]));
+            .for_each(|value| add(vec![(name.clone(), value)]));
     }
     settings
+}
+
+/// Names and values of the knobs that are varied one at a time.
+fn alone(
+    model: &LoadedModel,
+    knobs: Option<&ModelKnobs>,
+    quick: bool,
+) -> Vec<(String, Vec<String>)> {
+    let Some(knobs) = knobs else {
+        let options = model.descriptor().options.iter();
+        return options.map(|o| (o.name.clone(), of_range(o))).collect();
+    };
+    let together = if quick { knobs.together } else { &[] };
+    let owned = |knob: &Knob| {
+        let values = knob.values.iter().map(|&value| value.to_owned());
+        (knob.name.to_owned(), values.collect())
+    };
+    together.iter().chain(knobs.alone).map(owned).collect()
 }
 
 /// Returns the settings of [`PLAYING`].
@@ -141,6 +149,22 @@ mod tests {
             assert!(fit_settings(model, true).len() < settings.len());
         }
         assert_eq!(playing_settings(false).unwrap().len(), 17);
+    }
+
+    #[test]
+    fn the_values_of_a_model_that_is_not_listed_span_its_ranges() {
+        for model in Registry::builtin().models() {
+            for option in &model.descriptor().options {
+                let values = of_range(option);
+                for value in &values {
+                    model.options(&[(&option.name, value)]).unwrap();
+                }
+                let ends = [values.first(), values.last()].map(|end| end.unwrap().parse::<f64>());
+                if let [Ok(first), Ok(last)] = ends {
+                    assert_eq!((first, last), (option.min, option.max), "{}", option.name);
+                }
+            }
+        }
     }
 
     #[test]

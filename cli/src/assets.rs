@@ -439,7 +439,7 @@ pub(crate) fn named_parameters(fields: &[StoredField], mut flat: &[f64]) -> Map<
 }
 
 impl AtSummary {
-    /// The lines of a representation that stores `frequency_hz` and `amplitude`: hertz, newtons.
+    /// The lines of a model that is a sum of sines: hertz, newtons.
     pub(crate) fn lines(&self) -> Vec<(f64, f64)> {
         let list = |name: &str| {
             let values = self.parameters.get(name).and_then(Value::as_array);

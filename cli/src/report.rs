@@ -72,9 +72,10 @@ impl Reported<'_> {
         let motion = known.speed_mm_s.zip(known.force_n);
         let motion = motion.map(|(speed, force)| htex::Motion::new(speed, force));
         let grid = &self.fitted.spectra[condition].frequency_hz;
-        let short_name = short_name(&representation.model).to_owned();
+        let loaded = self.asset.loaded_model(id)?;
+        let descriptor = loaded.descriptor();
         Ok(Some(ModelResult {
-            model: self.asset.loaded_model(id)?.descriptor().name.clone(),
+            model: descriptor.name.clone(),
             magnitude: self.asset.magnitude(id, motion, grid)?,
             spectral_correlation: quality.map_or(f64::NAN, |q| q.spectral_correlation),
             band_error_rms_db: quality.map_or(f64::NAN, |q| q.band_error_rms_db),
@@ -84,8 +85,8 @@ impl Reported<'_> {
             samples_band_error_rms_db: quality.and_then(|q| q.samples_band_error_rms_db),
             band_error_db: quality.map_or(Vec::new(), |q| q.band_error_db.to_vec()),
             payload_bytes: representation.payload_bytes,
-            lines: (short_name == "speak").then(|| at.lines()),
-            short_name,
+            lines: descriptor.is_sum_of_sines().then(|| at.lines()),
+            short_name: short_name(&representation.model).to_owned(),
         }))
     }
 }

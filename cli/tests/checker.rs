@@ -8,8 +8,7 @@ use std::process::Command;
 use std::time::Duration;
 
 use htex_check::{CHECKS, Options, Outcome, Report, Runner, check, run_one};
-
-const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
+use htex_host::Registry;
 
 /// A fault of `tests/bad-plugins/bad.c`, and the check that must fail.
 const FAULTS: &[(&str, &str, Outcome)] = &[
@@ -147,7 +146,7 @@ fn check_some(file: &Path, timeout_s: u64, seed: u64, only: Option<Vec<String>>)
 
 #[test]
 fn sound_models_pass() {
-    for model in MODELS {
+    for model in Registry::builtin_names() {
         let file = library(model);
         checked_by_seeds(&file);
         let report = checked(&file, 120);
@@ -165,7 +164,7 @@ fn sound_modules_pass_too() {
     };
     // Their native twins, which they are compared with, are of the same sources.
     xtask::plugins::native().unwrap();
-    for model in MODELS {
+    for model in Registry::builtin_names() {
         let file = folder.join(format!("htex_{model}.wasm"));
         checked_by_seeds(&file);
         let report = checked(&file, 120);

@@ -41,8 +41,6 @@ fn count(run: impl FnOnce()) -> usize {
     CALLS.with(Cell::get) - before
 }
 
-const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
-
 fn asset() -> Asset {
     Asset::from_bytes(&bytes()).unwrap()
 }
@@ -115,7 +113,7 @@ fn retuning_does_not_allocate() {
 #[test]
 fn rendering_together_does_not_allocate() {
     let asset = asset();
-    for model in MODELS {
+    for model in Registry::builtin_names() {
         let source = |seed| {
             let options = VoiceOptions::default().with_model(model).with_seed(seed);
             asset.source(&options).unwrap()
@@ -163,7 +161,12 @@ fn following_the_finger_does_not_allocate() {
     // Interpolated between two speeds, and scaled from one.
     let one = Asset::from_bytes(&recorded_at(&[80.0])).unwrap();
     let assets = [asset(), one];
-    for (asset, model) in assets.iter().flat_map(|a| MODELS.map(|model| (a, model))) {
+    let of_all = |asset| {
+        Registry::builtin_names()
+            .into_iter()
+            .map(move |model| (asset, model))
+    };
+    for (asset, model) in assets.iter().flat_map(of_all) {
         for rate_hz in [20_000.0, 44_100.0] {
             let options = VoiceOptions::default()
                 .with_model(model)
@@ -181,11 +184,12 @@ fn following_the_finger_does_not_allocate_in_a_sandbox() {
     let Some(modules) = plugins::wasm_if_there() else {
         return;
     };
-    let files = MODELS.map(|model| modules.join(format!("htex_{model}.wasm")));
-    let search = Search::builtin().with_files(files.to_vec());
+    let names = Registry::builtin_names().into_iter();
+    let files = names.map(|model| modules.join(format!("htex_{model}.wasm")));
+    let search = Search::builtin().with_files(files.collect());
     let data = htex_format::Asset::from_bytes(&bytes()).unwrap();
     let asset = Asset::with_registry(data, Registry::search(&search).unwrap());
-    for model in MODELS {
+    for model in Registry::builtin_names() {
         assert!(
             asset
                 .registry()

@@ -7,8 +7,20 @@ use crate::needs;
 use crate::places::{cargo, target, workspace};
 use crate::wasm::{PROFILE, TARGET, Toolchain};
 
-/// The models' short names.
-pub const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
+/// The models' short names, which are those of the folders of `plugins`, in the order of the alphabet.
+///
+/// # Errors
+/// When the folder cannot be read.
+pub fn models() -> Result<Vec<String>, String> {
+    let folder = workspace().join("plugins");
+    let read = std::fs::read_dir(&folder).and_then(|all| {
+        all.map(|one| Ok(one?.file_name().to_string_lossy().into_owned()))
+            .collect::<std::io::Result<Vec<String>>>()
+    });
+    let mut models = read.map_err(|error| format!("{}: {error}", folder.display()))?;
+    models.sort();
+    Ok(models)
+}
 
 /// Builds every model as a native library; returns their folder, `htex-plugins` in the
 /// target folder. A library newer than its sources is not built again.
@@ -18,7 +30,7 @@ pub const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"
 pub fn native() -> Result<PathBuf, String> {
     let target = target();
     let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-    for model in MODELS {
+    for model in &models()? {
         build(Command::new(cargo()), &target, model, &["--release"])?;
         let file = format!("{prefix}htex_{model}{suffix}");
         place(&target.join("release").join(&file), &file)?;
@@ -51,7 +63,7 @@ fn way() -> String {
 /// As [`wasm`], and when the name is unknown.
 pub fn wasm_by(way: &str) -> Result<PathBuf, String> {
     let toolchain = Toolchain::find(way)?;
-    for model in MODELS {
+    for model in &models()? {
         let (cargo, target) = toolchain.cargo(&target());
         let profile = ["--profile", PROFILE];
         build(

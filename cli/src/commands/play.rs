@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use clap::builder::StyledStr;
+use clap::builder::{Resettable, StyledStr};
 use htex_device::Status;
 use htex_device_builtin::SOUND;
 use htex_scene::file::Motion;
@@ -55,9 +55,9 @@ pub(crate) struct Play {
     with: SceneArgs,
 }
 
-fn without_sound() -> Option<StyledStr> {
-    let told = || format!("This build has no sound: {}.", built_with(&SOUND));
-    (!SOUND.is_built).then(|| told().into())
+fn without_sound() -> Resettable<StyledStr> {
+    let told = format!("This build has no sound: {}.", built_with(&SOUND));
+    (!SOUND.is_built).then(|| told.into()).into()
 }
 
 impl Play {

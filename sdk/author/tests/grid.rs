@@ -238,7 +238,7 @@ fn recordings_without_a_free_motion_are_refused_with_what_to_do() {
 #[test]
 #[ignore = "a measurement of minutes: all models over all surfaces"]
 fn errors_inside_the_mesh() {
-    let models = std::env::var("MODELS").unwrap_or("bands,ar,mfcc,sbeta,sslope,speak".to_owned());
+    let models = std::env::var("MODELS").unwrap_or_else(|_| Registry::builtin_names().join(","));
     let models: Vec<&str> = models.split(',').collect();
     let seconds = std::env::var("SECONDS").map_or(120.0, |s| s.parse().unwrap());
     let wanted = std::env::var("SURFACES").unwrap_or_default();

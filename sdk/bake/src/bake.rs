@@ -84,7 +84,7 @@ fn bake_grid(
     }
     let fastest = moments.iter().map(|m| m.ratio).fold(0.0, f64::max);
     let interpolator = Interpolator::new(rate_hz, fastest * texture.band().high_hz)?;
-    let shape = match texture.id() == tones::MODEL {
+    let shape = match texture.model().is_sum_of_sines() {
         true => Shape::tones(texture, &moments)?,
         false => Shape::noise(texture, &moments, &interpolator)?,
     };

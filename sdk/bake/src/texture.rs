@@ -1,15 +1,12 @@
 //! The texture of a representation at any motion, with the effects of a motion as a voice has them.
 
 use htex_dsp::grid::GRID_HZ;
-use htex_host::{Band, LoadedModel};
+use htex_host::{Band, Descriptor, LoadedModel};
 use htex_play::{Asset, Explored, Motion};
 
 use crate::BakeError;
 use crate::filter::hann;
 
-/// Models whose voices read as their magnitude states: sPeak's magnitude is that of sinusoids through the window, and the
-/// voice of Bands compensates the window's blur. Other voices play their magnitude.
-const READ_AS_STATED: [&str; 2] = ["org.htex.speak", "org.htex.bands"];
 /// Points of a bin at which a magnitude is read.
 const IN_BIN: i32 = 8;
 
@@ -54,6 +51,16 @@ impl<'a> Texture<'a> {
         &self.id
     }
 
+    pub(crate) fn model(&self) -> &Descriptor {
+        self.model.descriptor()
+    }
+
+    /// Whether the voice reads as its magnitude states: the magnitude of sinusoids is that through the window, and the voice
+    /// of a model that keeps energies compensates the window's blur. Other voices play their magnitude.
+    fn reads_as_stated(&self) -> bool {
+        self.model().is_sum_of_sines() || self.model().keeps_level
+    }
+
     pub(crate) fn band(&self) -> Band {
         self.asset.band()
     }
@@ -78,7 +85,7 @@ impl<'a> Texture<'a> {
     /// window.
     pub(crate) fn read(&self, moment: &Moment) -> Result<Vec<f64>, BakeError> {
         let grid = self.band().grid_hz();
-        if READ_AS_STATED.contains(&&self.id[..]) {
+        if self.reads_as_stated() {
             return self.magnitude(moment, &grid);
         }
         // Positions in the window's main lobe, in bins, and their weights.

@@ -1,4 +1,4 @@
-//! Sinusoids of sPeak.
+//! The sinusoids of a model that is a sum of sines.
 
 use htex_host::Band;
 use htex_player::layout::MOST_TONES;
@@ -6,8 +6,6 @@ use htex_player::layout::MOST_TONES;
 use crate::BakeError;
 use crate::texture::Moment;
 
-/// The model whose parameters are sinusoids.
-pub(crate) const MODEL: &str = "org.htex.speak";
 /// Frequencies that differ by less are one sinusoid, hertz.
 const SAME_HZ: f64 = 0.01;
 
@@ -40,7 +38,7 @@ pub(crate) fn of_moments(
     }
 }
 
-/// Reads the model's fields: a list of frequencies, a list of amplitudes, the phase.
+/// Reads the model's fields: a list of frequencies, a list of amplitudes, whether phases are random.
 fn read(moment: &Moment, band: Band) -> Option<(Vec<Tone>, bool)> {
     let (&count, rest) = moment.parameters.split_first()?;
     let (frequencies, rest) = rest.split_at_checked(count as usize)?;
@@ -50,7 +48,7 @@ fn read(moment: &Moment, band: Band) -> Option<(Vec<Tone>, bool)> {
         false => (hz * moment.ratio, 0.0),
     };
     let tones = frequencies.iter().zip(amplitudes).map(tone).collect();
-    Some((tones, *rest.first()? >= 0.5))
+    Some((tones, rest.first().is_some_and(|random| *random >= 0.5)))
 }
 
 fn matched(all: &[Vec<Tone>]) -> Vec<Vec<Tone>> {

@@ -9,8 +9,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
-use common::{MODELS, asset, built, has, player, run};
+use common::{asset, built, has, player, run};
 use htex_bake::{Grid, bake};
+use htex_play::Registry;
 use htex_player::{Block, Player};
 use xtask::needs::{ARM_GCC, BARE_TARGET, Need, QEMU_ARM};
 
@@ -53,7 +54,8 @@ fn baked() -> &'static [(&'static str, Vec<u8>)] {
                 .unwrap()
                 .bytes
         };
-        MODELS.map(|model| (model, block(model))).into()
+        let models = Registry::builtin_names().into_iter();
+        models.map(|model| (model, block(model))).collect()
     })
 }
 

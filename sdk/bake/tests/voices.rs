@@ -3,13 +3,13 @@
 
 mod common;
 
-use common::{MODELS, asset};
+use common::asset;
 use htex_author::{
     Averaging, Recording, SegmentChoice, SpectrumOptions, TextureSpectrum, segment_spectra,
 };
 use htex_bake::{Grid, bake};
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db};
-use htex_play::{Asset, Band, Motion, VoiceOptions};
+use htex_play::{Asset, Band, Motion, Registry, VoiceOptions};
 use htex_player::{Block, Player};
 
 const RATE_HZ: f64 = 8_000.0;
@@ -63,7 +63,7 @@ fn a_player_has_the_spectrum_of_the_host() {
     let asset = asset();
     let grid = Grid::new(vec![60.0, 120.0], vec![0.3, 0.6]).unwrap();
     let mut failed = Vec::new();
-    for model in MODELS {
+    for model in Registry::builtin_names() {
         let baked = bake(&asset, Some(model), &grid, RATE_HZ, 0.2).unwrap();
         // A recorded condition, and a motion between all of them.
         for (speed, force) in [(120.0, 0.3), (87.0, 0.43)] {

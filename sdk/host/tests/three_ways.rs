@@ -78,7 +78,7 @@ fn the_same_samples_three_ways() {
     let registry = Registry::builtin();
     let native_folder = plugins::native().unwrap();
     let wasm_folder = plugins::wasm_if_there();
-    for name in plugins::MODELS {
+    for name in Registry::builtin_names() {
         let builtin = registry.find(name).unwrap();
         let mut others = vec![LoadedModel::from_file(&native(&native_folder, name)).unwrap()];
         if let Some(folder) = &wasm_folder {
@@ -122,7 +122,7 @@ fn what_each_way_costs() {
     let native_folder = plugins::native().unwrap();
     let registry = Registry::builtin();
     println!("ns a sample at blocks of 64 / 256, and us a call of 64");
-    for name in plugins::MODELS {
+    for name in Registry::builtin_names() {
         let builtin = registry.find(name).unwrap().clone();
         let parameters = fitted(&builtin);
         let fuel = uncached().with_fuel(u64::MAX / 2);

@@ -142,6 +142,16 @@ impl Descriptor {
     pub fn default_options(&self) -> Vec<f64> {
         self.options.iter().map(|o| o.default).collect()
     }
+
+    /// Whether the parameters are sinusoids: the lists among them are their frequencies, `frequency_hz`, and their
+    /// amplitudes, `amplitude`, and come first.
+    pub fn is_sum_of_sines(&self) -> bool {
+        let is_list = |field: &&Field| matches!(field.kind, Kind::List { .. });
+        let lists = self.fields.iter().take_while(is_list);
+        lists
+            .map(|field| &field.name[..])
+            .eq(["frequency_hz", "amplitude"])
+    }
 }
 
 impl From<&StaticDescriptor> for Descriptor {

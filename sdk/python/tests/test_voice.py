@@ -21,7 +21,7 @@ def played(place: pathlib.Path, *flags: str) -> np.ndarray:
     return wavfile.read(place / "out.wav")[1]
 
 
-@pytest.mark.parametrize("model", ["ar", "bands", "mfcc", "sbeta", "sslope", "speak"])
+@pytest.mark.parametrize("model", [model["id"] for model in htex.models()])
 def test_samples_are_those_of_the_command(texture: htex.Texture, place: pathlib.Path, model: str) -> None:
     expected = played(place, "--model", model, "--seed", "7")
     samples = texture.voice(model=model, rate_hz=20_000, seed=7).render(N)

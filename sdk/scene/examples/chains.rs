@@ -22,7 +22,6 @@ use htex_scene::{Costs, Finger, LoadedScene, Renderer, plan};
 const BLOCK: usize = 64;
 const ROUNDS: usize = 150;
 const STRETCH: usize = 32;
-const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
 
 fn main() {
     let only = std::env::args().nth(1);
@@ -119,7 +118,7 @@ fn live() {
     println!(
         "\nns a sample, blocks of 64 at 20 kHz     constant  live, one condition  live, nine conditions"
     );
-    for model in MODELS {
+    for model in Registry::builtin_names() {
         let named = |asset, motion| {
             let mut scene = scene(asset, motion, 1e4);
             scene.scene.duration_s = None;
@@ -194,7 +193,7 @@ fn voices() {
         "\nns a sample, blocks of 64 at 20 kHz   1 voice  1,000  5,000  10,000  \
          in real time  slowest block of 5,000"
     );
-    for model in MODELS {
+    for model in Registry::builtin_names() {
         row(&format!("{model}, scene"), |seed| {
             let mut renderer = scene_voice(model, seed);
             move |block: &mut [f32]| {
@@ -272,7 +271,7 @@ fn among<V: FnMut(&mut [f32])>(voices: &mut [V]) -> (f64, f64) {
 /// the time and starts at a time of its own.
 fn fingers() {
     println!("\n1,000 live voices over nine conditions, blocks of 64 at 20 kHz: part of one core");
-    for model in MODELS {
+    for model in Registry::builtin_names() {
         let mut many: Vec<_> = (0..1_000).map(|i| live_voice(model, i)).collect();
         for (i, voice) in many.iter_mut().enumerate() {
             (0..i * 61 % FRAME_BLOCKS).for_each(|_| voice(&mut [0.0; BLOCK]));

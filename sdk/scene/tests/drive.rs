@@ -10,6 +10,7 @@ use htex_author::{
 use htex_device::Capabilities;
 use htex_dsp::bands::{energy_matching_gain, rms};
 use htex_dsp::grid::level_rms;
+use htex_play::Registry;
 use htex_scene::file::Levels;
 use htex_scene::{LoadedScene, Renderer, Response};
 
@@ -131,7 +132,7 @@ fn levels_under_one_gain_are_normalised_or_the_representations_own() {
     let alike = model("ar", Levels::Normalised, None);
     // The RMS of 20 s of noise with most of its power in about 30 Hz has an uncertainty of 0.2 dB.
     const SPREAD_DB: f64 = 0.5;
-    for name in ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"] {
+    for name in Registry::builtin_names() {
         let normalised = model(name, Levels::Normalised, None) - alike;
         assert!(normalised.abs() < SPREAD_DB, "{name}: {normalised} dB");
         for reference_rms in [None, Some(1.5 * strongest_rms)] {

@@ -9,6 +9,7 @@ use common::{
     trace, traced,
 };
 use htex_device::Capabilities;
+use htex_play::Registry;
 use htex_scene::file::{Effect, Motion, Region, Switch};
 use htex_scene::{Finger, LoadedScene, Plan, Renderer, Response};
 use proptest::prelude::*;
@@ -46,7 +47,7 @@ fn cases() -> impl Strategy<Value = Case> {
         0u8..4,
         any::<bool>(),
         prop_oneof![Just(0.0), -12.0..12.0],
-        0usize..6,
+        0..Registry::builtin_names().len(),
         any::<u64>(),
         prop::collection::vec(1usize..700, 1..5),
     );
@@ -87,7 +88,7 @@ impl Case {
             self.tile(&mut scene);
         }
         for surface in &mut scene.scene.surfaces {
-            let models = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
+            let models = Registry::builtin_names();
             surface.representation = models[self.model].to_owned();
         }
         scene.scene.seed = self.seed;

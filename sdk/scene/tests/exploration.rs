@@ -5,11 +5,10 @@ mod common;
 
 use common::{constant, file, grid, planned, rendered, scene, single};
 use htex_format::{AtCondition, Condition};
-use htex_play::{Effects, Explored, Reach, Recorded, Voice, VoiceOptions};
+use htex_play::{Effects, Explored, Reach, Recorded, Registry, Voice, VoiceOptions};
 use htex_scene::file::Motion;
 use htex_scene::{Finger, Renderer};
 
-const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
 const RATE_HZ: f64 = 20_000.0;
 const RECORDED: (f64, f64) = (80.0, 0.4);
 /// Frames between two motions, as in a scene at this rate.
@@ -66,7 +65,7 @@ fn bin_power(segment: &[f32], bin: usize) -> f64 {
 
 #[test]
 fn a_constant_motion_plays_as_in_a_scene_from_the_start_or_after_a_change() {
-    for model in MODELS {
+    for model in Registry::builtin_names() {
         for motion in [RECORDED, (160.0, 0.8), (30.0, 0.2), (0.0, 0.4), (80.0, 0.0)] {
             // Eight seconds of the octave from 20 Hz have an uncertainty of 0.35 dB.
             let mut scene = scene(single(), constant(motion.0, motion.1), 8.0);
@@ -127,7 +126,7 @@ fn stroke(block: usize, blocks: usize) -> (f64, f64) {
 #[test]
 fn a_live_motion_plays_as_in_a_scene() {
     let blocks = 4 * RATE_HZ as usize / CONTROL;
-    for model in MODELS {
+    for model in Registry::builtin_names() {
         let mut scene = scene(single(), Motion::Live, 5.0);
         scene.scene.surfaces[0].representation = model.to_owned();
         let mut renderer = Renderer::new(&scene, &planned(&scene, &file())).unwrap();
@@ -185,7 +184,7 @@ fn samples_do_not_depend_on_blocks_or_on_the_recorded_motion() {
         (120.0, 0.4),
         RECORDED,
     ];
-    for model in MODELS {
+    for model in Registry::builtin_names() {
         let follow = |size: usize| {
             let mut voice = voice(model, None, Effects::default());
             let mut all = Vec::new();

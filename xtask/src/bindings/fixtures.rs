@@ -78,7 +78,7 @@ pub(super) fn write(folder: &Path) -> Result<(), String> {
         let motion = ["--speed", SPEED, "--force", FORCE];
         htex(&[&what[..], &length, &motion].concat())
     };
-    for model in plugins::MODELS {
+    for model in &plugins::models()? {
         synth("vinyl.htex", model)?;
     }
     synth("bursts.htex", "bursts")?;

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use super::{files, fixtures, program, run};
 use crate::jobs::at_a_time;
 use crate::places::{cargo, target, workspace};
-use crate::plugins::MODELS;
+use crate::plugins::models;
 
 /// Another architecture that the command is built for.
 const AARCH64: &str = "aarch64-unknown-linux-musl";
@@ -123,7 +123,7 @@ fn written(
             Some(&format!("{surface}.json")),
         )?;
         htex(&["fit", &csv, "-o", &asset, "--keep-reference"], None)?;
-        for model in MODELS {
+        for model in &models()? {
             let out = format!("{surface}-{model}.wav");
             let what = [
                 "synth",

@@ -6,7 +6,6 @@ use std::process::{Command, Output};
 
 use crate::bindings::{program, run};
 use crate::places::{cargo, target, workspace};
-use crate::plugins::MODELS;
 
 /// Command lines, in their order. `{WORD}` stands for each of several words.
 const LINES: &str = include_str!("outputs.txt");
@@ -148,7 +147,7 @@ impl Texts {
             }
         }
         Ok(Self(vec![
-            ("{MODEL}", owned(&MODELS)),
+            ("{MODEL}", firsts(command, folder, "plugin list")?),
             ("{SURFACE}", owned(&SURFACES)),
             ("{RATE}", owned(&["8000", "20000", "48000"])),
             ("{CODE}", firsts(command, folder, "explain")?),

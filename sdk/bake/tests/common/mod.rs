@@ -9,9 +9,6 @@ use htex_author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
 use htex_play::{Asset, AssetData, Registry};
 use htex_simulate::{SimulationOptions, Surface, simulate};
 
-/// The built-in models.
-pub const MODELS: [&str; 6] = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
-
 /// An asset of every built-in model, recorded at two speeds and two forces.
 pub fn asset() -> Asset {
     Asset::new(data())

@@ -1,5 +1,5 @@
 use super::*;
-use crate::Band;
+use crate::{Band, Numbers};
 
 /// A model whose voices count, starting at the finger's position.
 struct Counting;

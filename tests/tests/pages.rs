@@ -1,4 +1,4 @@
-//! Tests, files, functions, options and defaults that the pages in `docs` name exist.
+//! Tests, files, functions, options and defaults that the pages name exist.
 #![allow(clippy::unwrap_used, clippy::panic)] // Helpers of tests are tests.
 
 use std::collections::BTreeSet;
@@ -88,6 +88,37 @@ fn the_paths_and_functions_that_the_page_of_the_paper_names_are_there() {
         paths > 40 && functions > 10,
         "{paths} paths, {functions} functions"
     );
+}
+
+/// The paths of the workspace that a page names, without those that have a pattern.
+fn paths(text: &str) -> impl Iterator<Item = &str> {
+    code(text).filter(|name| {
+        let folder = name.split('/').next().unwrap_or_default();
+        let is_path = name.contains('/') && !name.contains([' ', '*']) && !folder.is_empty();
+        is_path && workspace().join(folder).is_dir()
+    })
+}
+
+#[test]
+fn the_map_is_short_and_what_it_names_is_there() {
+    let (root, text, known) = (workspace(), page("ARCHITECTURE.md"), known_functions());
+    let lines = text.lines().count();
+    assert!(lines <= 150, "ARCHITECTURE.md has {lines} lines");
+    let (_, invariants) = text.split_once("## Invariants").unwrap();
+    let rows = invariants
+        .lines()
+        .filter(|line| line.starts_with("| ") && line.contains('`'));
+    for row in rows {
+        let test = code(row.split(" | ").nth(1).unwrap()).next().unwrap();
+        assert!(known.contains(test), "there is no test {test}");
+    }
+    let decisions = std::fs::read_dir(root.join("docs/decisions")).unwrap();
+    let decisions = decisions.map(|entry| std::fs::read_to_string(entry.unwrap().path()).unwrap());
+    for text in decisions.chain([text]) {
+        for path in paths(&text) {
+            assert!(root.join(path).exists(), "there is no {path}");
+        }
+    }
 }
 
 /// An option's default as a user writes it.

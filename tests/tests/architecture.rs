@@ -259,6 +259,26 @@ fn only_the_command_and_tests_hold_documents_to_schemas() {
     assert_eq!(holders, BTreeSet::from(["htex-cli", "htex-tests"]));
 }
 
+/// An application that plays scenes reads their traces, and links no other reader of recordings.
+#[test]
+fn only_authoring_reads_other_files_than_text() {
+    let metadata = MetadataCommand::new()
+        .manifest_path(workspace().join("Cargo.toml"))
+        .no_deps()
+        .exec()
+        .unwrap();
+    let mut holders = BTreeSet::new();
+    for package in &metadata.packages {
+        for used in &package.dependencies {
+            let has_readers = used.uses_default_features || !used.features.is_empty();
+            if used.name == "htex-recording" && has_readers {
+                holders.insert(package.name.as_str());
+            }
+        }
+    }
+    assert_eq!(holders, BTreeSet::from(["htex-author"]));
+}
+
 /// An application that only opens and plays assets links no network library, and a short build of the command neither.
 #[test]
 fn only_the_default_command_reaches_the_network() {

@@ -26,35 +26,19 @@ pub struct ReadError {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ReadProblem {
-    /// The file cannot be opened or read.
     #[error("cannot be read: {0}")]
     Io(io::Error),
-    /// The file is larger than the limit.
     #[error("{bytes} bytes is more than the limit of {limit}; cut the recording into parts")]
-    TooLarge {
-        /// The file's size.
-        bytes: u64,
-        /// The limit.
-        limit: u64,
-    },
-    /// The file holds more numbers than the limit.
+    TooLarge { bytes: u64, limit: u64 },
     #[error(
         "it holds more than {limit} numbers, the limit of what is kept in memory; cut the recording into \
          parts, or raise the limit"
     )]
-    TooManyValues {
-        /// The limit.
-        limit: usize,
-    },
-    /// The file has no rows.
+    TooManyValues { limit: usize },
     #[error("the file holds no data; expected a header row and at least 2 rows of numbers")]
     Empty,
-    /// The file has a header but fewer than two rows.
     #[error("{rows} row(s) of numbers; a recording needs at least 2")]
-    TooFewRows {
-        /// Rows found.
-        rows: usize,
-    },
+    TooFewRows { rows: usize },
     /// NUL bytes or invalid UTF-8.
     #[error(
         "{what}, which is not text; give a CSV saved as UTF-8, or a binary file of a known kind"
@@ -63,33 +47,18 @@ pub enum ReadProblem {
         /// The kind of byte.
         what: &'static str,
     },
-    /// A line is longer than the limit.
     #[error("{bytes} bytes in one line, more than the limit of {limit}; expected one row per line")]
-    LongLine {
-        /// Its length in bytes.
-        bytes: usize,
-        /// The limit.
-        limit: usize,
-    },
-    /// A row has another number of cells than the first.
+    LongLine { bytes: usize, limit: usize },
     #[error("{got} cells where the first row has {expected}; every row must have the same columns")]
     Ragged {
-        /// Cells in the first row.
+        /// Cells of the first row, and of this one.
         expected: usize,
-        /// Cells in this row.
         got: usize,
     },
-    /// The last line is shorter than the others.
     #[error(
         "the file seems truncated: its last line has {got} of {expected} cells; copy the file again or delete that line"
     )]
-    CutOff {
-        /// Cells in the first row.
-        expected: usize,
-        /// Cells in the last row.
-        got: usize,
-    },
-    /// A cell is not a finite number.
+    CutOff { expected: usize, got: usize },
     #[error("{0}; every sample must be a finite number with a decimal point")]
     Cell(String),
     /// The columns' roles are not clear.
@@ -100,18 +69,13 @@ pub enum ReadProblem {
         /// The names of the columns.
         columns: String,
     },
-    /// Columns that are used together have different lengths.
     #[error(
         "column {first:?} has {rows} numbers, {other:?} has {got}; map columns of equal lengths, such as those of one run"
     )]
     Lengths {
-        /// A column.
         first: String,
-        /// Its numbers.
         rows: usize,
-        /// Another column.
         other: String,
-        /// Its numbers.
         got: usize,
     },
     /// The file is damaged or of an unsupported kind, or its numbers are not what they are to be.
@@ -128,23 +92,19 @@ pub enum ReadProblem {
         /// The feature that builds their readers.
         feature: &'static str,
     },
-    /// A column map is malformed.
     #[error(
         "{0}; write ROLE=COLUMN[:SCALE] or ROLE=EXPRESSION, comma separated, as in \
          lateral=lateral_V:0.4444,normal=-#3*0.31"
     )]
     Map(String),
-    /// A time column does not increase.
     #[error(
         "the time after {before} s is {after} s; it must increase on every row (a column with too few decimals repeats values); repair the column, or give the sample rate, which replaces it"
     )]
     Time {
-        /// Time of the previous row, seconds.
+        /// Seconds, of this row and the one before it.
         before: f64,
-        /// Time of this row, seconds.
         after: f64,
     },
-    /// The sample rate is not known.
     #[error("it has no sample rate; give one")]
     NoRate,
     /// An option does not apply to this kind of file.

@@ -17,11 +17,7 @@ pub enum RecordingError {
     Rate { rate_hz: f64 },
     /// There are more axes than the quantity has, or none.
     #[error("a recording of a {} has 1 to {} axes, this one has {axes}", .quantity.words(), most_axes(*.quantity))]
-    Axes {
-        /// The recorded quantity.
-        quantity: Quantity,
-        axes: usize,
-    },
+    Axes { quantity: Quantity, axes: usize },
     /// There are fewer than two samples.
     #[error("a recording needs at least 2 samples, this one has {samples}")]
     TooShort { samples: usize },
@@ -30,13 +26,9 @@ pub enum RecordingError {
         "from {from_s} to {to_s} s there are fewer than 2 samples; the recording runs from {begins_s:.3} to {ends_s:.3} s"
     )]
     Between {
-        /// Start of the range, seconds.
         from_s: f64,
-        /// End of the range, seconds.
         to_s: f64,
-        /// Start of the recording, seconds.
         begins_s: f64,
-        /// End of the recording, seconds.
         ends_s: f64,
     },
     /// A signal differs in length from the first axis.
@@ -45,9 +37,7 @@ pub enum RecordingError {
     )]
     Lengths {
         signal: &'static str,
-        /// Samples of the first axis.
         expected: usize,
-        /// Samples of this signal.
         got: usize,
     },
     /// A sample exceeds the largest magnitude.

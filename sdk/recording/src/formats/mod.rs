@@ -55,7 +55,7 @@ pub struct Format {
     pub extensions: &'static [&'static str],
     /// Bytes, and where in a file they are, of which one set makes a file one of this format.
     pub signatures: &'static [(usize, &'static [u8])],
-    /// The feature of this crate that builds its reader.
+    /// The feature of this crate that builds its reader, if there is one.
     pub feature: &'static str,
     open: Option<Open>,
 }
@@ -81,7 +81,7 @@ const CSV: Format = Format {
     name: "CSV",
     extensions: &["csv", "tsv", "txt"],
     signatures: &[],
-    feature: "default",
+    feature: "",
     open: Some(|opened, limit| Ok(Box::new(csv::Csv::open(opened, limit)?))),
 };
 

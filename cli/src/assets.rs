@@ -5,11 +5,13 @@ use std::path::Path;
 
 use htex_author::{FeltError, GridReport, LosslessShare};
 use htex_format::{
-    AtCondition, Condition, How, Ingredient, LeftOut, Made, Quality, Quantity, Representation,
-    StoredField, plain,
+    AtCondition, Condition, How, Ingredient, LeftOut, Made, Measure, Quality, Quantity,
+    Representation, StoredField, plain,
 };
 use serde::Serialize;
 use serde_json::{Map, Value};
+
+use crate::columns::{Column, cells, columns, headings};
 
 /// The summary of an asset that `fit` and `info` print.
 #[derive(Serialize)]
@@ -193,10 +195,12 @@ impl AssetSummary {
                 signer.map_or("not signed".to_owned(), |key| format!("signed by {key}"))
             );
         }
-        text += "\n  model    cond.       level   corr.  bands/dB  third-oct/dB  log-sp/dB  played/dB  felt/dB  bytes  parameters\n";
+        let columns = columns(Measure::of_both());
+        let measures = headings(&columns);
+        text += &format!("\n  model    cond.       level{measures}  bytes  parameters\n");
         for r in &self.representations {
             for at in r.all() {
-                text += &row(r, at, self.quantity);
+                text += &row(r, at, self.quantity, &columns);
             }
         }
         text += &self.left_out_text();
@@ -230,30 +234,39 @@ impl AssetSummary {
 impl AssetSummary {
     /// The leave-one-out errors of each model, where they are known: RMS and largest over the conditions.
     fn left_out_text(&self) -> String {
+        let measures = LeftOut::measures().filter(|m| m.row().column.is_some());
         let mut text = String::new();
         for r in &self.representations {
             let all: Vec<LeftOut> = r.at.iter().filter_map(|at| at.left_out).collect();
-            let bands = Spread::of(all.iter().map(|one| one.band_error_rms_db));
-            let octaves = Spread::of(all.iter().filter_map(|one| one.third_octave_error_rms_db));
-            let Some((bands, octaves)) = bands.zip(octaves) else {
+            if all.is_empty() {
                 continue;
-            };
-            if text.is_empty() {
-                text +=
-                    "\n  model    left out  bands/dB: RMS  largest  third-oct/dB: RMS  largest\n";
             }
-            let _ = writeln!(
-                text,
-                "  {:8} {:>8}  {:>13.2}  {:>7.2}  {:>17.2}  {:>7.2}",
-                short_name(&r.model),
-                all.len(),
-                bands.rms,
-                bands.largest,
-                octaves.rms,
-                octaves.largest
-            );
+            if text.is_empty() {
+                let headings: String = measures.clone().map(left_out_heading).collect();
+                text += &format!("\n  model    left out{headings}\n");
+            }
+            let _ = write!(text, "  {:8} {:>8}", short_name(&r.model), all.len());
+            for measure in measures.clone() {
+                let of = all.iter().filter_map(|one| one.0.get(measure));
+                text += &spread_cells(measure, Spread::of(of));
+            }
+            text.push('\n');
         }
         text
+    }
+}
+
+fn left_out_heading(measure: Measure) -> String {
+    let column = measure.row().column.unwrap_or_default();
+    format!("  {column}: RMS  largest")
+}
+
+/// The cells under [`left_out_heading`].
+fn spread_cells(measure: Measure, spread: Option<Spread>) -> String {
+    let width = left_out_heading(measure).len() - "    largest".len();
+    match spread {
+        Some(Spread { rms, largest }) => format!("  {rms:>width$.2}  {largest:>7.2}"),
+        None => format!("  {:>width$}  {:>7}", "-", "-"),
     }
 }
 
@@ -310,25 +323,23 @@ fn plugins(asset: &htex_format::Asset) -> Vec<PluginSummary> {
     .collect()
 }
 
-fn row(r: &RepresentationSummary, at: &AtSummary, quantity: Quantity) -> String {
-    let number = |x: Option<f64>, digits: usize| x.map_or("-".into(), |x| format!("{x:.digits$}"));
-    let quality = at.quality.as_ref();
+fn row(
+    r: &RepresentationSummary,
+    at: &AtSummary,
+    quantity: Quantity,
+    columns: &[Column],
+) -> String {
     let parameters: Vec<String> = at
         .parameters
         .iter()
         .map(|(k, v)| parameter_text(&plain(k), v))
         .collect();
     format!(
-        "  {:8} {:>5}  {:>10}  {:>6}  {:>8}  {:>12}  {:>9}  {:>9}  {:>7}  {:>5}  {}\n",
+        "  {:8} {:>5}  {:>10}{}  {:>5}  {}\n",
         short_name(&r.model),
         at.condition,
         quantity.text(at.level_rms),
-        number(quality.map(|q| q.spectral_correlation), 3),
-        number(quality.map(|q| q.band_error_rms_db), 2),
-        number(quality.and_then(|q| q.third_octave_error_rms_db), 2),
-        number(quality.and_then(|q| q.log_spectral_distance_db), 2),
-        number(quality.and_then(|q| q.samples_band_error_rms_db), 2),
-        number(at.felt.map(|felt| felt.error_rms_db), 2),
+        cells(columns, |column| at.measured(column)),
         r.payload_bytes,
         parameters.join(" ")
     )
@@ -439,6 +450,11 @@ pub(crate) fn named_parameters(fields: &[StoredField], mut flat: &[f64]) -> Map<
 }
 
 impl AtSummary {
+    /// What it has in a column.
+    pub(crate) fn measured(&self, column: Column) -> Option<f64> {
+        column.of(self.quality.as_ref(), self.felt.as_ref())
+    }
+
     /// The lines of a model that is a sum of sines: hertz, newtons.
     pub(crate) fn lines(&self) -> Vec<(f64, f64)> {
         let list = |name: &str| {

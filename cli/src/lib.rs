@@ -6,6 +6,7 @@ mod adapters;
 mod assets;
 mod bounded;
 mod checking;
+mod columns;
 mod commands;
 mod devices;
 mod exit;

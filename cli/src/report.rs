@@ -1,9 +1,11 @@
 //! The parts of a report about a fitted asset.
 
 use htex_author::{FittedAsset, LosslessShare};
-use htex_report::{ModelResult, Share, Texture};
+use htex_format::{By, Judged, Quality};
+use htex_report::{Measure, ModelResult, Share, Texture};
 
 use crate::assets::{AssetSummary, RepresentationSummary, motion_text, short_name};
+use crate::columns::Column;
 
 /// A fitted asset with what its report needs.
 pub(crate) struct Reported<'a> {
@@ -77,18 +79,59 @@ impl Reported<'_> {
         Ok(Some(ModelResult {
             model: descriptor.name.clone(),
             magnitude: self.asset.magnitude(id, motion, grid)?,
-            spectral_correlation: quality.map_or(f64::NAN, |q| q.spectral_correlation),
-            band_error_rms_db: quality.map_or(f64::NAN, |q| q.band_error_rms_db),
-            third_octave_error_rms_db: quality.and_then(|q| q.third_octave_error_rms_db),
-            log_spectral_distance_db: quality.and_then(|q| q.log_spectral_distance_db),
-            felt_error_rms_db: at.felt.map(|felt| felt.error_rms_db),
-            samples_band_error_rms_db: quality.and_then(|q| q.samples_band_error_rms_db),
+            measured: tables().iter().map(|t| at.measured(t.0)).collect(),
+            note: note(quality),
             band_error_db: quality.map_or(Vec::new(), |q| q.band_error_db.to_vec()),
             payload_bytes: representation.payload_bytes,
             lines: descriptor.is_sum_of_sines().then(|| at.lines()),
             short_name: short_name(&representation.model).to_owned(),
         }))
     }
+}
+
+/// The tables of the measures: what each has, and its caption.
+fn tables() -> Vec<(Column, Measure)> {
+    let mut tables = Vec::new();
+    for measure in htex_format::Measure::of_both() {
+        let row = measure.row();
+        let of = [
+            (By::Magnitude, "fitted magnitude", row.caption),
+            (
+                By::Samples,
+                "rendered samples",
+                row.caption.filter(|_| row.played.is_some()),
+            ),
+        ];
+        for (by, what, caption) in of {
+            tables.extend(caption.map(|caption| {
+                let table = Measure {
+                    caption: caption.replace("{}", what),
+                    is_correlation: row.judged == Judged::Correlation,
+                    repeats: measure == htex_format::Measure::NineBand,
+                };
+                (Column::new(measure, by), table)
+            }));
+        }
+    }
+    tables
+}
+
+/// The measures of a texture report, as [`Reported::textures`] has them.
+pub(crate) fn measures() -> Vec<Measure> {
+    tables().into_iter().map(|(_, table)| table).collect()
+}
+
+/// Correlation and nine-band error, below a spectrum.
+fn note(quality: Option<&Quality>) -> String {
+    let of = |measure, decimals| {
+        let value = quality.and_then(|q| q.get(measure));
+        htex_report::fixed(value.unwrap_or(f64::NAN), decimals)
+    };
+    let r = of(htex_format::Measure::SpectralCorrelation, 2);
+    format!(
+        "r = {r}, error {} dB RMS",
+        of(htex_format::Measure::NineBand, 1)
+    )
 }
 
 /// Of the textures at all their conditions, how many each model keeps so that no difference is to be expected to be felt.

@@ -5,7 +5,7 @@
 use htex_author::{
     AssetRequest, Averaging, Exploration, ModelRequest, SpectrumOptions, Take, fit_asset,
 };
-use htex_format::{Asset, Quality};
+use htex_format::{Asset, Measure, Quality};
 use htex_host::Registry;
 use htex_simulate::{SimulationOptions, Surface, simulate};
 
@@ -73,6 +73,14 @@ fn median(mut values: Vec<f64>) -> f64 {
     0.5 * (values[values.len() / 2] + values[(values.len() - 1) / 2])
 }
 
+fn nine_band_db(quality: &Quality) -> f64 {
+    quality.get(Measure::NineBand).unwrap()
+}
+
+fn correlation_of(quality: &Quality) -> f64 {
+    quality.get(Measure::SpectralCorrelation).unwrap()
+}
+
 #[test]
 fn third_octaves_of_unseen_recordings_in_24_and_48_bytes() {
     let takes: Vec<Take> = unseen().iter().map(take).collect();
@@ -81,22 +89,22 @@ fn third_octaves_of_unseen_recordings_in_24_and_48_bytes() {
         let kept: Vec<Kept> = takes.iter().map(|take| keep(take, options)).collect();
         let of =
             |value: fn(&Quality) -> f64| median(kept.iter().map(|k| value(&k.quality)).collect());
-        let third_octave_db = of(|q| q.third_octave_error_rms_db.unwrap());
+        let third_octave_db = of(|q| q.get(Measure::ThirdOctave).unwrap());
         println!(
             "{options:?}: {} bytes at most, {} in the middle; third octaves {third_octave_db:.3} dB, played \
              {:.3} dB; log-spectral {:.2} dB; nine bands {:.3} dB; correlation {:.3}",
             kept.iter().map(|k| k.bytes).max().unwrap(),
             median(kept.iter().map(|k| k.bytes as f64).collect()),
-            of(|q| q.samples_third_octave_error_rms_db.unwrap()),
-            of(|q| q.log_spectral_distance_db.unwrap()),
-            of(|q| q.band_error_rms_db),
-            of(|q| q.spectral_correlation),
+            of(|q| q.samples(Measure::ThirdOctave).unwrap()),
+            of(|q| q.get(Measure::LogSpectral).unwrap()),
+            of(nine_band_db),
+            of(correlation_of),
         );
         assert!(kept.iter().all(|k| k.bytes <= bytes));
         assert!(third_octave_db <= most_db, "{third_octave_db} dB");
         for Kept { quality, .. } in &kept {
             // Twenty seconds of noise scatter by 0.2 dB themselves, and lines play a little wider.
-            let played_db = quality.samples_band_error_rms_db.unwrap();
+            let played_db = quality.samples(Measure::NineBand).unwrap();
             assert!(played_db <= 0.8, "{quality:?}");
             // The file keeps the fitted values.
             assert_eq!(quality.rounding_error_db.unwrap_or(0.0), 0.0);
@@ -109,9 +117,9 @@ fn nine_bands_are_kept_to_half_a_step() {
     for surface in Surface::ALL {
         let take = take(&SimulationOptions::new(surface));
         let kept = keep(&take, &[("bands", "9"), ("step_db", "0.5")]);
-        let played_db = kept.quality.samples_band_error_rms_db.unwrap();
+        let played_db = kept.quality.samples(Measure::NineBand).unwrap();
         assert!(
-            kept.quality.band_error_rms_db <= 0.25,
+            nine_band_db(&kept.quality) <= 0.25,
             "{surface}: {:?}",
             kept.quality
         );
@@ -126,13 +134,13 @@ fn bytes_buy_detail_and_steps_buy_accuracy() {
     let (mut correlation, mut bytes) = (0.0, 0);
     for bands in ["3", "9", "19", "30", "64"] {
         let kept = keep(&take, &[("bands", bands)]);
-        assert!(kept.quality.spectral_correlation > correlation, "{bands}");
+        assert!(correlation_of(&kept.quality) > correlation, "{bands}");
         assert!(kept.bytes > bytes, "{bands}");
-        (correlation, bytes) = (kept.quality.spectral_correlation, kept.bytes);
+        (correlation, bytes) = (correlation_of(&kept.quality), kept.bytes);
     }
     for (step_db, most_db) in [("0.2", 0.12), ("3", 1.55)] {
         let kept = keep(&take, &[("bands", "9"), ("step_db", step_db)]);
         assert_eq!(kept.parameters[10], step_db.parse::<f64>().unwrap());
-        assert!(kept.quality.band_error_rms_db <= most_db, "{step_db}");
+        assert!(nine_band_db(&kept.quality) <= most_db, "{step_db}");
     }
 }

@@ -16,6 +16,7 @@ const TESTS: &[&str] = &[
     "conformance",
     "device_abi",
     "header",
+    "measures",
     "page",
     "playing",
     "recording_conformance",
@@ -66,6 +67,25 @@ pub fn file_with(path: impl AsRef<str>, bytes: &[u8], is_fresh: impl FnOnce(&[u8
     }
     let is_fresh = fs::read(path).is_ok_and(|kept| is_fresh(&kept));
     assert!(is_fresh, "{name} is stale: run `cargo xtask generate`");
+}
+
+/// Compares the part of a document between the lines `<!-- NAME, generated -->` and `<!-- end -->` with this text, or writes it.
+///
+/// # Panics
+/// As [`file()`], and when the document has no such part.
+#[allow(clippy::panic)] // It fails a test.
+pub fn section(path: &str, name: &str, text: &str) {
+    let document = fs::read_to_string(crate::places::workspace().join(path)).unwrap_or_default();
+    let begin = format!("<!-- {name}, generated -->\n");
+    let parts = document.split_once(&begin);
+    let parts = parts.and_then(|(before, rest)| Some((before, rest.split_once("<!-- end -->")?.1)));
+    let Some((before, after)) = parts else {
+        panic!("{path}: there is no part {begin}");
+    };
+    file(
+        path,
+        format!("{before}{begin}{text}<!-- end -->{after}").as_bytes(),
+    );
 }
 
 /// Compares the files of a folder that has nothing else, or writes them and removes all others.

@@ -4,11 +4,12 @@ use clap::Args;
 use htex_author::recording::format_names;
 use htex_author::{Exploration, FeltError, TextureSpectrum, agreement, felt, measure, read_take};
 use htex_dsp::vibrotactile::Listener;
-use htex_format::plain;
+use htex_format::{Measure, Quality, plain};
 use serde::Serialize;
 
 use super::validate::{Kind, kind};
 use crate::assets::short_name;
+use crate::columns::{Column, cells, columns, headings};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
@@ -61,7 +62,7 @@ struct Compared {
     model: String,
     level_rms: f64,
     #[serde(flatten)]
-    quality: htex_format::Quality,
+    quality: Quality,
     felt: FeltDifference,
 }
 
@@ -72,12 +73,8 @@ struct OtherRecording {
     speed_mm_s: Option<f64>,
     force_n: Option<f64>,
     level_rms: f64,
-    spectral_correlation: f64,
-    band_error_db: Vec<f64>,
-    band_error_rms_db: f64,
-    band_error_matched_rms_db: f64,
-    third_octave_error_rms_db: Option<f64>,
-    log_spectral_distance_db: Option<f64>,
+    #[serde(flatten)]
+    quality: Quality,
     felt: FeltDifference,
     repeatability_rms_db: Option<f64>,
 }
@@ -158,19 +155,14 @@ impl Compare {
                 spectrum.band.high_hz,
             )));
         }
-        let agreement = agreement(spectrum.as_ref(), &other.magnitude);
+        let quality = Quality::from(agreement(spectrum.as_ref(), &other.magnitude));
         let compared = OtherRecording {
             recording: self.other.display().to_string(),
             speed_mm_s: found.speed_mm_s,
             force_n: found.force_n,
             level_rms: htex_dsp::grid::level_rms(&other.magnitude),
-            spectral_correlation: agreement.spectral_correlation,
-            band_error_db: agreement.band_error_db,
-            band_error_rms_db: agreement.band_error_rms_db,
-            band_error_matched_rms_db: agreement.band_error_matched_rms_db,
-            third_octave_error_rms_db: agreement.third_octave_error_rms_db,
-            log_spectral_distance_db: agreement.log_spectral_distance_db,
-            felt: FeltDifference::new(spectrum, &other.magnitude, agreement.band_error_rms_db),
+            felt: FeltDifference::new(spectrum, &other.magnitude, &quality),
+            quality,
             repeatability_rms_db: other.repeatability_rms_db,
         };
         Ok((compared, warnings))
@@ -213,7 +205,7 @@ impl Compare {
             compared.push(Compared {
                 model: representation.model.clone(),
                 level_rms,
-                felt: FeltDifference::new(spectrum, &magnitude, quality.band_error_rms_db),
+                felt: FeltDifference::new(spectrum, &magnitude, &quality),
                 quality,
             });
         }
@@ -222,7 +214,7 @@ impl Compare {
 }
 
 impl FeltDifference {
-    fn new(reference: &TextureSpectrum, magnitude: &[f64], band_error_rms_db: f64) -> Self {
+    fn new(reference: &TextureSpectrum, magnitude: &[f64], quality: &Quality) -> Self {
         let felt = felt(
             reference.as_ref(),
             magnitude,
@@ -232,7 +224,7 @@ impl FeltDifference {
         Self {
             centre_hz: felt.centre_hz,
             error_db: felt.error_db,
-            error: FeltError::new(reference, magnitude, band_error_rms_db),
+            error: FeltError::new(reference, magnitude, quality.get(Measure::NineBand)),
         }
     }
 }
@@ -250,39 +242,30 @@ impl Comparison {
     }
 
     fn table(&self) -> String {
-        let mut text = String::from(
-            "  model      corr.  bands/dB  gain-matched/dB  third-oct/dB  log-sp/dB  played/dB  felt/dB\n",
-        );
+        let columns = columns(Measure::ALL);
+        let mut text = format!("  model   {}\n", headings(&columns));
         for r in &self.representations {
-            let q = &r.quality;
-            text += &format!(
-                "  {:8}  {:>6.3}  {:>8.2}  {:>15.2}  {:>12.2}  {:>9.2}  {:>9.2}  {:>7.2}\n",
-                short_name(&r.model),
-                q.spectral_correlation,
-                q.band_error_rms_db,
-                q.band_error_matched_rms_db.unwrap_or(f64::NAN),
-                q.third_octave_error_rms_db.unwrap_or(f64::NAN),
-                q.log_spectral_distance_db.unwrap_or(f64::NAN),
-                q.samples_band_error_rms_db.unwrap_or(f64::NAN),
-                r.felt.error.error_rms_db,
-            );
+            let of = |column: Column| column.of(Some(&r.quality), Some(&r.felt.error));
+            text += &format!("  {:8}{}\n", short_name(&r.model), cells(&columns, of));
         }
         text
     }
 }
 
 impl OtherRecording {
+    /// A measure: `nine bands 1.20 dB`.
+    fn measured(&self, measure: Measure) -> String {
+        let (row, value) = (measure.row(), self.quality.get(measure));
+        let value = value.map_or("-".to_owned(), |x| format!("{x:.*}", row.decimals));
+        format!("{} {value} {}", row.short, row.unit)
+            .trim_end()
+            .to_owned()
+    }
+
     fn to_text(&self) -> String {
-        let optional = |db: Option<f64>| db.map_or("-".to_owned(), |db| format!("{db:.2}"));
-        let mut text = format!(
-            "{}: correlation {:.3}, bands {:.2} dB (gain-matched {:.2} dB), third octaves {} dB, log-spectral distance {} dB\n",
-            plain(&self.recording),
-            self.spectral_correlation,
-            self.band_error_rms_db,
-            self.band_error_matched_rms_db,
-            optional(self.third_octave_error_rms_db),
-            optional(self.log_spectral_distance_db),
-        );
+        let measures: Vec<String> = Measure::stored().map(|m| self.measured(m)).collect();
+        let name = plain(&self.recording);
+        let mut text = format!("{name}: {}\n", measures.join(", "));
         let felt = &self.felt.error;
         text += &format!(
             "felt: {:.2} dB RMS, {:.2} dB at most, {:.2} dB together: {} the difference threshold\n",

@@ -9,6 +9,7 @@ use htex_author::{
     AssetRequest, AuthorError, Exploration, FeltError, SetupResponse, SpectrumOptions, Take,
     fit_asset,
 };
+use htex_format::{By, Keyed, Measure};
 use htex_host::Registry;
 use htex_report::{Share, Texture, TextureReport, spectra_picture, texture_report};
 use htex_simulate::{SimulationError, SimulationOptions, Surface, simulate};
@@ -16,12 +17,13 @@ use serde::Serialize;
 
 use super::simulate::write_response;
 use crate::assets::{AssetSummary, RepresentationSummary, short_name};
+use crate::columns::{cells, columns, headings};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::models::tool;
 use crate::output::{print, print_json, write_file};
 use crate::progress::bar;
-use crate::report::{Reported, shares};
+use crate::report::{Reported, measures, shares};
 use crate::wav::write_wav;
 
 const WAV_RATE_HZ: u32 = 20_000;
@@ -145,6 +147,7 @@ impl Demo {
                  surfaces."
                     .to_owned(),
             ],
+            measures: measures(),
             textures,
             shares,
             pictures: Vec::new(),
@@ -162,12 +165,14 @@ struct DemoTexture {
 struct Row {
     texture: String,
     model: String,
-    spectral_correlation: f64,
-    band_error_rms_db: f64,
-    third_octave_error_rms_db: Option<f64>,
-    log_spectral_distance_db: Option<f64>,
+    #[serde(flatten)]
+    by_magnitude: Keyed,
     felt: Option<FeltError>,
-    samples_band_error_rms_db: Option<f64>,
+    #[serde(flatten)]
+    by_samples: Keyed,
+    /// The measures as cells of the table.
+    #[serde(skip)]
+    cells: String,
     repeatability_rms_db: Option<f64>,
     payload_bytes: usize,
     asset_bytes: u64,
@@ -177,16 +182,16 @@ struct Row {
 impl DemoTexture {
     fn rows(&self) -> Vec<Row> {
         let row = |r: &RepresentationSummary| {
-            let quality = r.first.quality.as_ref();
+            let quality = r.first.quality.clone().unwrap_or_default();
+            let own = shown().filter(|m| m.row().column.is_some());
+            let played = shown().filter(|m| m.row().played.is_some());
             Row {
                 texture: self.texture.name.clone(),
                 model: short_name(&r.model).to_owned(),
-                spectral_correlation: quality.map_or(f64::NAN, |q| q.spectral_correlation),
-                band_error_rms_db: quality.map_or(f64::NAN, |q| q.band_error_rms_db),
-                third_octave_error_rms_db: quality.and_then(|q| q.third_octave_error_rms_db),
-                log_spectral_distance_db: quality.and_then(|q| q.log_spectral_distance_db),
+                by_magnitude: quality.by_magnitude.keyed(By::Magnitude, own),
                 felt: r.first.felt,
-                samples_band_error_rms_db: quality.and_then(|q| q.samples_band_error_rms_db),
+                by_samples: quality.by_samples.keyed(By::Samples, played),
+                cells: cells(&columns(shown()), |column| r.first.measured(column)),
                 repeatability_rms_db: self.summary.repeatability_rms_db,
                 payload_bytes: r.payload_bytes,
                 asset_bytes: self.summary.bytes,
@@ -224,22 +229,23 @@ fn play(asset: &htex::Asset, model: &str, file: &Path, wav: &Path) -> Result<(),
     })
 }
 
+/// The measures of the table.
+fn shown() -> impl Iterator<Item = Measure> {
+    Measure::of_both().filter(|m| m.row().stored)
+}
+
 fn table(rows: &[Row]) -> String {
-    let mut text = String::from(
-        "texture           model   corr.  bands/dB  third-oct/dB  log-sp/dB  played/dB  repeats/dB  parameters/B  asset/B  \
-         recording/B\n",
+    let measures = headings(&columns(shown()));
+    let mut text = format!(
+        "texture           model {measures}  repeats/dB  parameters/B  asset/B  recording/B\n"
     );
     for r in rows {
         let db = |x: Option<f64>| x.map_or("-".to_owned(), |x| format!("{x:.2}"));
         text += &format!(
-            "{:16}  {:6}  {:>5.3}  {:>8.2}  {:>12}  {:>9}  {:>9}  {:>10}  {:>12}  {:>7}  {:>11}\n",
+            "{:16}  {:6}{}  {:>10}  {:>12}  {:>7}  {:>11}\n",
             r.texture,
             r.model,
-            r.spectral_correlation,
-            r.band_error_rms_db,
-            db(r.third_octave_error_rms_db),
-            db(r.log_spectral_distance_db),
-            db(r.samples_band_error_rms_db),
+            r.cells,
             db(r.repeatability_rms_db),
             r.payload_bytes,
             r.asset_bytes,

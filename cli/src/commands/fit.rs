@@ -19,7 +19,7 @@ use crate::output::{note, print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
 use crate::plugins::PluginArgs;
 use crate::recordings::RecordingArgs;
-use crate::report::{Reported, shares};
+use crate::report::{Reported, measures, shares};
 
 /// Fit models to recordings of one texture and write the asset.
 ///
@@ -174,6 +174,7 @@ impl Fit {
         let (grid, name) = (fitted.grid.as_ref(), fitted.asset.manifest.name.clone());
         let page = TextureReport {
             title: format!("{}: recording and models", fitted.asset.manifest.name),
+            measures: measures(),
             textures: textures.map_err(|error| Failure::asset(&self.output, error))?,
             command: command_line(),
             pictures: grid

@@ -1,13 +1,15 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use htex_author::recording::format_names;
 use htex_author::{AuthorError, Exploration, Take};
-use htex_format::ErrorMeasure;
+use htex_format::{By, ErrorMeasure, Measure};
 use htex_host::{LoadedModel, Origin, Registry};
 use htex_simulate::{SimulationOptions, Surface, simulate};
-use htex_tradeoff::{Journal, Model, Point, Request, Subject, csv, page, sweep};
+use htex_tradeoff::{Journal, Model, Point, Request, Subject, csv, errors, others, page, sweep};
 
+use crate::columns::{Column, cells, headings};
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::invocation;
@@ -43,8 +45,8 @@ pub(crate) struct Tradeoff {
     quick: bool,
 
     /// The error that pictures, fronts and knees use
-    #[arg(long, value_enum, default_value = "nine-band")]
-    error: ErrorArg,
+    #[arg(long, value_parser = error_measure(), default_value = "nine-band")]
+    error: ErrorMeasure,
 
     /// The page to write; points go beside it as .csv and .json
     #[arg(short, long, value_name = "HTML")]
@@ -61,21 +63,12 @@ pub(crate) struct Tradeoff {
     json: bool,
 }
 
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum ErrorArg {
-    NineBand,
-    ThirdOctave,
-    LogSpectral,
-}
-
-impl ErrorArg {
-    fn measure(self) -> ErrorMeasure {
-        match self {
-            Self::NineBand => ErrorMeasure::NineBand,
-            Self::ThirdOctave => ErrorMeasure::ThirdOctave,
-            Self::LogSpectral => ErrorMeasure::LogSpectral,
-        }
-    }
+/// The measures by the first words of their names: `third-octave`.
+fn error_measure() -> impl TypedValueParser<Value = ErrorMeasure> {
+    let word = |measure: ErrorMeasure| measure.name().split(' ').next().unwrap_or_default();
+    let named = move |name: String| ErrorMeasure::ALL.into_iter().find(|m| word(*m) == name);
+    PossibleValuesParser::new(ErrorMeasure::ALL.map(word))
+        .map(move |name| named(name).unwrap_or_default())
 }
 
 impl Tradeoff {
@@ -112,8 +105,7 @@ impl Tradeoff {
             bar.set_message(what.to_owned());
         })?;
         bar.finish_and_clear();
-        let tradeoff =
-            htex_tradeoff::Tradeoff::new(&tool(), &subjects, swept, self.error.measure());
+        let tradeoff = htex_tradeoff::Tradeoff::new(&tool(), &subjects, swept, self.error);
         let json = serde_json::to_vec(&tradeoff)
             .map_err(|error| Failure::Other(format!("cannot write JSON: {error}")))?;
         write_file(&csv_file, csv(&tradeoff).as_bytes())?;
@@ -229,23 +221,26 @@ fn command() -> String {
 fn to_text(tradeoff: &htex_tradeoff::Tradeoff, output: &Path) -> String {
     let points = tradeoff.summary();
     let name = points.first().map_or("", |p| &p.recording);
+    let column = |measure| Column::new(measure, By::Magnitude);
+    let has_column = |m: &Measure| m.row().column.is_some();
+    let errors: Vec<Column> = errors().filter(has_column).map(column).collect();
+    let others: Vec<Column> = others().filter(has_column).map(column).collect();
     let mut text = format!(
-        "{name}: the front against bytes, by {}\n  bytes  bands/dB  third-oct/dB  log-sp/dB  felt/dB  lossless   corr.  \
-         ns/sample  setting\n",
-        tradeoff.error
+        "{name}: the front against bytes, by {}\n  bytes{}  lossless{}  ns/sample  setting\n",
+        tradeoff.error,
+        headings(&errors),
+        headings(&others),
     );
     let mut front: Vec<&Point> = points.into_iter().filter(|p| p.on_front).collect();
     front.sort_by_key(|p| p.bytes);
     for p in front {
+        let of = |column: Column| Some(p.get(By::Magnitude, column.measure()));
         text += &format!(
-            "  {:>5}  {:>8.2}  {:>12.2}  {:>9.2}  {:>7.2}  {:>6.0} %  {:>6.3}  {:>9.1}  {}\n",
+            "  {:>5}{}  {:>6.0} %{}  {:>9.1}  {}\n",
             p.bytes,
-            p.band_error_rms_db,
-            p.third_octave_error_rms_db,
-            p.log_spectral_distance_db,
-            p.felt_error_rms_db,
+            cells(&errors, of),
             100.0 * p.share_lossless,
-            p.spectral_correlation,
+            cells(&others, of),
             p.ns_per_sample,
             p.name()
         );

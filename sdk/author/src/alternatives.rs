@@ -1,7 +1,7 @@
 //! Search for other options and models that fit a recording better than a representation with a large band
 //! error.
 
-use htex_format::Quality;
+use htex_format::{Measure, Quality};
 use htex_host::{FitOption, LoadedModel};
 
 use crate::agreement;
@@ -29,7 +29,7 @@ pub(crate) fn warning(
     level: Level,
 ) -> Option<String> {
     let conditions = qualities.iter().zip(groups);
-    let error_db = |quality: &Quality| quality.band_error_rms_db;
+    let error_db = |quality: &Quality| quality.get(Measure::NineBand).unwrap_or(0.0);
     let (quality, group) = conditions.max_by(|a, b| error_db(a.0).total_cmp(&error_db(b.0)))?;
     let nine_band_db = error_db(quality);
     if nine_band_db <= LIMIT_DB {
@@ -105,5 +105,6 @@ fn error_of(model: &LoadedModel, options: &[f64], group: &Group, level: Level) -
     let level_rms = stored_level(model, &fit, &stored, reference, level).ok()?;
     let shape = model.magnitude(&stored, reference.band, reference.frequency_hz);
     let magnitude: Vec<f64> = shape.ok()?.iter().map(|m| m * level_rms).collect();
-    Some(agreement(reference, &magnitude).band_error_rms_db).filter(|error| error.is_finite())
+    let error = agreement(reference, &magnitude).get(Measure::NineBand);
+    error.filter(|error| error.is_finite())
 }

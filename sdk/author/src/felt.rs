@@ -60,8 +60,8 @@ pub struct FeltError {
 }
 
 impl FeltError {
-    /// Measures the difference of magnitudes from a recorded spectrum; their nine-band RMS error, decibels, is given.
-    pub fn new(recorded: &TextureSpectrum, magnitude: &[f64], band_error_rms_db: f64) -> Self {
+    /// Measures the difference of magnitudes from a recorded spectrum; their nine-band error ([`htex_format::Measure::NineBand`]) is given.
+    pub fn new(recorded: &TextureSpectrum, magnitude: &[f64], nine_band_db: Option<f64>) -> Self {
         let by =
             |listener: &Listener| felt(recorded.as_ref(), magnitude, recorded.quantity, listener);
         let felt = by(&Listener::default());
@@ -71,9 +71,9 @@ impl FeltError {
             total_error_db: felt.total_error_db,
             below_difference_threshold: felt.is_below_difference_threshold(),
             below_if_sensitive: by(&Listener::sensitive()).is_below_difference_threshold(),
-            within_repeatability: recorded
-                .repeatability_rms_db
-                .is_some_and(|own| band_error_rms_db <= own),
+            within_repeatability: nine_band_db
+                .zip(recorded.repeatability_rms_db)
+                .is_some_and(|(error, own)| error <= own),
         }
     }
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 use htex_dsp::Band;
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
 use htex_format::{
-    Asset, AtCondition, Condition, FIRST_VERSION, Manifest, Provenance, Quality, Quantity,
+    Asset, AtCondition, Condition, FIRST_VERSION, Manifest, Measure, Provenance, Quality, Quantity,
     Reference, Representation, round_parameters,
 };
 use htex_host::{HostError, LoadedModel, Origin};
@@ -155,11 +155,8 @@ fn fit_model(
         let rounding = rounding_error_db(model, &fit.parameters, &stored, reference)?;
         quality.rounding_error_db = Some(rounding);
         let magnitude = scaled_magnitude(model, &stored, level_rms, reference)?;
-        felt.push(FeltError::new(
-            &group.spectrum,
-            &magnitude,
-            quality.band_error_rms_db,
-        ));
+        let nine_band_db = quality.get(Measure::NineBand);
+        felt.push(FeltError::new(&group.spectrum, &magnitude, nine_band_db));
         at.push(AtCondition {
             condition,
             level_rms,
@@ -226,19 +223,11 @@ pub fn measure(
     let magnitude = scaled_magnitude(model, parameters, level_rms, reference)?;
     let by_magnitude = agreement(reference, &magnitude);
     let rendered = rendered_spectrum(model, parameters, level_rms, reference)?;
-    let by_samples = agreement(reference, &rendered);
+    let by_samples = agreement(reference, &rendered).measures;
+    let of_both = Measure::of_both().filter(|m| m.row().stored);
     Ok(Quality {
-        spectral_correlation: by_magnitude.spectral_correlation,
-        band_error_db: by_magnitude.band_error_db,
-        band_error_rms_db: by_magnitude.band_error_rms_db,
-        band_error_matched_rms_db: Some(by_magnitude.band_error_matched_rms_db),
-        third_octave_error_rms_db: by_magnitude.third_octave_error_rms_db,
-        log_spectral_distance_db: by_magnitude.log_spectral_distance_db,
-        samples_spectral_correlation: Some(by_samples.spectral_correlation),
-        samples_band_error_rms_db: Some(by_samples.band_error_rms_db),
-        samples_third_octave_error_rms_db: by_samples.third_octave_error_rms_db,
-        samples_log_spectral_distance_db: by_samples.log_spectral_distance_db,
-        rounding_error_db: None,
+        by_samples: by_samples.only(of_both),
+        ..Quality::from(by_magnitude)
     })
 }
 

@@ -1,30 +1,42 @@
-//! Measures of agreement between a spectrum and a reference.
+//! Measures of agreement between a spectrum and a reference: the function of each row of [`Measure`].
 
 use htex_dsp::bands::{
     BAND_COUNT, BandBank, band_error_db, energy_matching_gain, pearson_correlation, rms,
 };
 use htex_dsp::fidelity::{log_spectral_distance_db, third_octave_error_rms_db};
+use htex_dsp::grid::level_rms;
+use htex_format::{Measure, Measures, Quality};
 
 use crate::spectrum::SpectrumRef;
 
-/// Agreement of a spectrum with a reference: the paper's spectral correlation; errors in the nine bands of its
-/// regression, in decibels (the paper uses standardised absolute differences); and two measures that no model is fitted to.
+/// Agreement of a spectrum with a reference: every measure that needs no more than magnitudes (all but [`Measure::Felt`]), and the errors
+/// in the nine bands of the paper's regression (which uses standardised absolute differences).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agreement {
-    /// Pearson correlation of the linear magnitudes.
-    pub spectral_correlation: f64,
+    /// The measures.
+    pub measures: Measures,
     /// Energy relative to the reference's in each of the nine bands, decibels.
     pub band_error_db: Vec<f64>,
-    /// RMS of the nine band errors, decibels.
-    pub band_error_rms_db: f64,
     /// The gain that equalises total energy, decibels.
     pub matching_gain_db: f64,
-    /// RMS of the nine band errors after that gain, decibels.
-    pub band_error_matched_rms_db: f64,
-    /// RMS error over third-octave bands, decibels; `None` if the reference has no energy in any of them.
-    pub third_octave_error_rms_db: Option<f64>,
-    /// RMS over the bins of the difference of the magnitudes in decibels; `None` for a silent reference.
-    pub log_spectral_distance_db: Option<f64>,
+}
+
+impl Agreement {
+    /// Returns a measure; `None` where the reference does not allow it.
+    pub fn get(&self, measure: Measure) -> Option<f64> {
+        self.measures.get(measure)
+    }
+}
+
+impl From<Agreement> for Quality {
+    /// Of magnitudes, without rendered samples.
+    fn from(agreement: Agreement) -> Self {
+        Self {
+            by_magnitude: agreement.measures.only(Measure::stored()),
+            band_error_db: agreement.band_error_db,
+            ..Self::default()
+        }
+    }
 }
 
 /// Compares magnitudes on the reference's grid with the reference.
@@ -32,19 +44,28 @@ pub fn agreement(reference: SpectrumRef<'_>, magnitude: &[f64]) -> Agreement {
     let bank = BandBank::new(BAND_COUNT, reference.band, reference.frequency_hz);
     let expected = bank.energies(reference.magnitude);
     let gain = energy_matching_gain(reference.magnitude, magnitude);
-    let matched: Vec<f64> = magnitude.iter().map(|m| m * gain).collect();
-    let error_db = band_error_db(&expected, &bank.energies(magnitude));
+    let errors_db = |magnitude: &[f64]| band_error_db(&expected, &bank.energies(magnitude));
+    let band_error_db = errors_db(magnitude);
+    let measures = Measures::new(|measure| match measure {
+        Measure::SpectralCorrelation => Some(pearson_correlation(reference.magnitude, magnitude)),
+        Measure::NineBand => Some(rms(&band_error_db)),
+        Measure::NineBandMatched => {
+            let matched: Vec<f64> = magnitude.iter().map(|m| m * gain).collect();
+            Some(rms(&errors_db(&matched)))
+        }
+        Measure::ThirdOctave => {
+            third_octave_error_rms_db(reference.frequency_hz, reference.magnitude, magnitude)
+        }
+        Measure::LogSpectral => log_spectral_distance_db(reference.magnitude, magnitude),
+        Measure::Level => {
+            let ratio = level_rms(magnitude) / level_rms(reference.magnitude);
+            Some(20.0 * libm::log10(ratio))
+        }
+        Measure::Felt => None,
+    });
     Agreement {
-        spectral_correlation: pearson_correlation(reference.magnitude, magnitude),
-        band_error_rms_db: rms(&error_db),
-        band_error_db: error_db,
+        measures,
+        band_error_db,
         matching_gain_db: 20.0 * libm::log10(gain),
-        band_error_matched_rms_db: rms(&band_error_db(&expected, &bank.energies(&matched))),
-        third_octave_error_rms_db: third_octave_error_rms_db(
-            reference.frequency_hz,
-            reference.magnitude,
-            magnitude,
-        ),
-        log_spectral_distance_db: log_spectral_distance_db(reference.magnitude, magnitude),
     }
 }

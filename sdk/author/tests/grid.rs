@@ -8,6 +8,7 @@ use htex_author::{
 };
 use htex_dsp::fidelity::third_octave_error_rms_db;
 use htex_dsp::normal::Normal;
+use htex_format::Measure;
 use htex_host::Registry;
 use htex_play::{Asset, Mesh, Motion};
 use htex_simulate::{FreeMotion, SimulationOptions, Surface, simulate};
@@ -114,7 +115,7 @@ fn one_free_recording_gives_the_truth_inside_the_mesh() {
     let at = &fitted.asset.manifest.representations[0].at;
     let left: Vec<f64> = at
         .iter()
-        .filter_map(|at| at.left_out?.third_octave_error_rms_db)
+        .filter_map(|at| at.left_out?.0.get(Measure::ThirdOctave))
         .collect();
     assert!(left.len() * 2 > at.len(), "{} of {}", left.len(), at.len());
     let left_db = (left.iter().map(|x| x * x).sum::<f64>() / left.len() as f64).sqrt();
@@ -270,13 +271,13 @@ fn errors_inside_the_mesh() {
             let left: Vec<f64> = representation
                 .at
                 .iter()
-                .filter_map(|at| at.left_out?.third_octave_error_rms_db)
+                .filter_map(|at| at.left_out?.0.get(Measure::ThirdOctave))
                 .collect();
             let mean = (left.iter().map(|x| x * x).sum::<f64>() / left.len() as f64).sqrt();
             let own: Vec<f64> = representation
                 .at
                 .iter()
-                .filter_map(|at| at.quality.as_ref()?.third_octave_error_rms_db)
+                .filter_map(|at| at.quality.as_ref()?.get(Measure::ThirdOctave))
                 .collect();
             let own = (own.iter().map(|x| x * x).sum::<f64>() / own.len() as f64).sqrt();
             let errors = errors_db(&asset, model, &options, 500);

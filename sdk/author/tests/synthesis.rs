@@ -4,6 +4,7 @@
 use htex_author::{
     SpectrumOptions, TextureSpectrum, agreement, segment_spectra, spectrum_of_samples,
 };
+use htex_format::Measure;
 use htex_host::{FitRequest, LoadedModel, Registry, StillSound, Synthesis};
 use htex_simulate::{SimulationOptions, Surface, simulate};
 
@@ -46,7 +47,9 @@ fn played(model: &LoadedModel, spectrum: &TextureSpectrum, synthesis: &str) -> (
     let mut stated = spectrum.clone();
     stated.magnitude = shape;
     let found = spectrum_of_samples(&samples, RATE_HZ, 1.0, stated.as_ref()).unwrap();
-    let error_db = agreement(stated.as_ref(), &found).band_error_rms_db;
+    let error_db = agreement(stated.as_ref(), &found)
+        .get(Measure::NineBand)
+        .unwrap();
     (error_db, (power / samples.len() as f64).sqrt())
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use htex_author::{FeltError, LosslessShare};
-use htex_format::Asset;
+use htex_format::{Asset, Measure};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -184,7 +184,8 @@ impl AssetReport {
                 .at
                 .iter()
                 .filter_map(|at| at.quality.as_ref());
-            let worst = qualities.map(|q| q.band_error_rms_db).fold(0.0, f64::max);
+            let errors = qualities.filter_map(|q| q.get(Measure::NineBand));
+            let worst = errors.fold(0.0, f64::max);
             (representation.model.clone(), worst)
         });
         Self {

@@ -5,13 +5,13 @@ use std::fmt::Arguments;
 
 use htex_model::is_model_id;
 
-use crate::manifest::{AtCondition, LeftOut, Manifest, Quality, Representation, Steps, StoredAs};
+use crate::manifest::{AtCondition, Manifest, Representation, Steps, StoredAs};
+use crate::measure::Judged;
+use crate::quality_json::{BAND_COUNT, Content, Entries, Entry};
 use crate::quantity::Quantity;
 use crate::report::Findings;
 use crate::rules as rule;
 
-/// Number of bands of `band_error_db`.
-const BANDS: usize = 9;
 /// Smallest ratio of a step to the largest magnitude it is added to; below it, rounding can change the step.
 const FINEST: f64 = 4.0 * f64::EPSILON;
 
@@ -154,90 +154,42 @@ fn check_fit(fitted: &AtCondition, quantity: Quantity, at: Arguments<'_>, findin
         || format!("{level} {unit} is not a valid level; write a value from 0 to {largest}"),
     );
     if let Some(quality) = &fitted.quality {
-        check_quality(quality, format_args!("{at}/quality"), findings);
+        let at = format_args!("{at}/quality");
+        check_entries(quality, "measure again", at, findings);
     }
     if let Some(left_out) = &fitted.left_out {
-        check_left_out(left_out, format_args!("{at}/left_out"), findings);
+        let at = format_args!("{at}/left_out");
+        check_entries(left_out, "fit again", at, findings);
     }
 }
 
-fn check_quality(quality: &Quality, at: Arguments<'_>, findings: &mut Findings) {
-    let errors = &quality.band_error_db;
-    let nine = errors.len() == BANDS && errors.iter().all(|e| e.is_finite());
-    let pointer = format_args!("{at}/band_error_db");
-    findings.require(nine, rule::QUALITY_INVALID, pointer, || {
-        format!(
-            "there are {} band errors; write {BANDS} finite numbers",
-            errors.len()
-        )
-    });
-    let correlations = [
-        ("spectral_correlation", Some(quality.spectral_correlation)),
-        (
-            "samples_spectral_correlation",
-            quality.samples_spectral_correlation,
-        ),
-    ];
-    for (key, number) in correlations {
-        if let Some(number) = number.filter(|x| !(-1.0..=1.0).contains(x)) {
-            let message =
-                format!("{number} is not a valid correlation; write a value from -1 to 1");
-            findings.add(rule::QUALITY_INVALID, format!("{at}/{key}"), message);
-        }
-    }
-    let sizes = [
-        ("band_error_rms_db", Some(quality.band_error_rms_db)),
-        (
-            "band_error_matched_rms_db",
-            quality.band_error_matched_rms_db,
-        ),
-        (
-            "third_octave_error_rms_db",
-            quality.third_octave_error_rms_db,
-        ),
-        ("log_spectral_distance_db", quality.log_spectral_distance_db),
-        (
-            "samples_band_error_rms_db",
-            quality.samples_band_error_rms_db,
-        ),
-        (
-            "samples_third_octave_error_rms_db",
-            quality.samples_third_octave_error_rms_db,
-        ),
-        (
-            "samples_log_spectral_distance_db",
-            quality.samples_log_spectral_distance_db,
-        ),
-        ("rounding_error_db", quality.rounding_error_db),
-    ];
-    check_sizes(sizes, "measure again", at, findings);
-}
-
-fn check_left_out(left_out: &LeftOut, at: Arguments<'_>, findings: &mut Findings) {
-    let sizes = [
-        ("band_error_rms_db", Some(left_out.band_error_rms_db)),
-        (
-            "third_octave_error_rms_db",
-            left_out.third_octave_error_rms_db,
-        ),
-    ];
-    check_sizes(sizes, "fit again", at, findings);
-}
-
-/// Adds a finding for each number that is negative or not finite.
-fn check_sizes<'a>(
-    sizes: impl IntoIterator<Item = (&'a str, Option<f64>)>,
+/// Adds a finding for each number that its measure cannot have.
+fn check_entries(
+    object: &impl Entries,
     what_to_do: &str,
     at: Arguments<'_>,
     findings: &mut Findings,
 ) {
-    for (key, number) in sizes {
-        if let Some(number) = number.filter(|number| !is_size(*number)) {
-            let message =
-                format!("{number} is negative or not finite; {what_to_do} or remove {key}");
-            findings.add(rule::QUALITY_INVALID, format!("{at}/{key}"), message);
-        }
+    for Entry { key, content, .. } in object.entries() {
+        let message = match content {
+            Content::Bands(errors) if !are_bands(errors) => format!(
+                "there are {} band errors; write {BAND_COUNT} finite numbers",
+                errors.len()
+            ),
+            Content::Number(Some(number), judged) if !judged.accepts(number) => match judged {
+                Judged::Correlation => {
+                    format!("{number} is not a valid correlation; write a value from -1 to 1")
+                }
+                _ => format!("{number} is negative or not finite; {what_to_do} or remove {key}"),
+            },
+            _ => continue,
+        };
+        findings.add(rule::QUALITY_INVALID, format!("{at}/{key}"), message);
     }
+}
+
+fn are_bands(errors: &[f64]) -> bool {
+    errors.len() == BAND_COUNT && errors.iter().all(|error| error.is_finite())
 }
 
 /// Whether a number is finite and not negative.

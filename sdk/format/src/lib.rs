@@ -39,6 +39,8 @@ mod page;
 mod plain;
 mod plugin;
 mod pointer;
+mod quality;
+mod quality_json;
 mod quantity;
 mod report;
 mod rounding;
@@ -67,14 +69,15 @@ pub use json_text::{JsonError, parse_json};
 pub use license::{LicenseError, check_license};
 pub use limits::Limits;
 pub use manifest::{
-    AtCondition, Condition, FIRST_VERSION, How, Ingredient, LeftOut, Made, Manifest, Plugin,
-    Provenance, Quality, Reference, Representation, SAME_CONDITION, Signature, Source, Steps,
-    StoredAs, StoredField, VERSION,
+    AtCondition, Condition, FIRST_VERSION, How, Ingredient, Made, Manifest, Plugin, Provenance,
+    Reference, Representation, SAME_CONDITION, Signature, Source, Steps, StoredAs, StoredField,
+    VERSION,
 };
-pub use measure::ErrorMeasure;
+pub use measure::{By, ErrorMeasure, Judged, Measure, MeasureRow};
 pub use page::{manifest_schema, report_schema, rules_page, validation_page};
 pub use plain::plain;
 pub use pointer::escape;
+pub use quality::{Keyed, LeftOut, Measures, Quality};
 pub use quantity::Quantity;
 pub use report::{FileReport, Findings, Report};
 pub use rules::{RULES, Rule, explain};

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::Quantity;
+use crate::quality::{LeftOut, Quality};
 use crate::schema_words::{
     DOI, ENTRY_NAME, MODEL_ID, SEMANTIC_VERSION, open_variants, own_entries, quantities_and_units,
 };
@@ -363,61 +364,6 @@ pub struct AtCondition {
     /// Error of the interpolation between the other conditions at this one, leave-one-out (1.2).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub left_out: Option<LeftOut>,
-}
-
-/// Leave-one-out error: agreement with the recorded spectrum of what a player interpolates at a condition without its own
-/// parameters.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct LeftOut {
-    /// RMS of the nine band errors, decibels.
-    #[schemars(range(min = 0))]
-    pub band_error_rms_db: f64,
-    /// RMS error over third-octave bands, decibels.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0))]
-    pub third_octave_error_rms_db: Option<f64>,
-}
-
-/// Agreement with the recorded spectrum, of the model's magnitudes unless stated otherwise.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Quality {
-    /// Pearson correlation of the linear magnitudes, -1 to 1.
-    #[schemars(range(min = -1, max = 1))]
-    pub spectral_correlation: f64,
-    /// Energy relative to the recording's in nine bands, decibels.
-    #[schemars(length(equal = 9))]
-    pub band_error_db: Vec<f64>,
-    /// RMS of the nine band errors, decibels.
-    #[schemars(range(min = 0))]
-    pub band_error_rms_db: f64,
-    /// RMS of the nine band errors after one gain that equalises the total energy, decibels.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0))]
-    pub band_error_matched_rms_db: Option<f64>,
-    /// RMS error over third-octave bands, decibels.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub third_octave_error_rms_db: Option<f64>,
-    /// RMS over the bins of the difference of the magnitudes in decibels.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub log_spectral_distance_db: Option<f64>,
-    /// Spectral correlation of rendered samples.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = -1, max = 1))]
-    pub samples_spectral_correlation: Option<f64>,
-    /// Nine-band RMS error of rendered samples, decibels.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0))]
-    pub samples_band_error_rms_db: Option<f64>,
-    /// Third-octave error of rendered samples, decibels.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub samples_third_octave_error_rms_db: Option<f64>,
-    /// Log-spectral distance of rendered samples, decibels.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub samples_log_spectral_distance_db: Option<f64>,
-    /// Nine-band RMS difference between the spectra of the fitted and of the stored parameters, decibels.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0))]
-    pub rounding_error_db: Option<f64>,
 }
 
 /// The entry of the recorded spectra.

@@ -1,7 +1,7 @@
 //! Rounding of the manifest's numbers when an asset is written.
 
-use crate::Manifest;
-use crate::manifest::{AtCondition, Quality};
+use crate::manifest::AtCondition;
+use crate::{Manifest, Quality};
 
 impl Manifest {
     /// Returns the manifest as it is read back: agreement and repeatability to four decimals, levels to
@@ -24,38 +24,15 @@ fn round_at(at: &mut AtCondition) {
         round_quality(quality);
     }
     if let Some(left_out) = &mut at.left_out {
-        let third_octave = left_out.third_octave_error_rms_db.iter_mut();
-        four_decimals(third_octave.chain([&mut left_out.band_error_rms_db]));
+        four_decimals(left_out.0.iter_mut());
     }
 }
 
 fn round_quality(quality: &mut Quality) {
-    let Quality {
-        spectral_correlation,
-        band_error_db,
-        band_error_rms_db,
-        band_error_matched_rms_db,
-        third_octave_error_rms_db,
-        log_spectral_distance_db,
-        samples_spectral_correlation,
-        samples_band_error_rms_db,
-        samples_third_octave_error_rms_db,
-        samples_log_spectral_distance_db,
-        rounding_error_db,
-    } = quality;
-    four_decimals([spectral_correlation, band_error_rms_db].into_iter());
-    four_decimals(band_error_db.iter_mut());
-    let optional = [
-        band_error_matched_rms_db,
-        third_octave_error_rms_db,
-        log_spectral_distance_db,
-        samples_spectral_correlation,
-        samples_band_error_rms_db,
-        samples_third_octave_error_rms_db,
-        samples_log_spectral_distance_db,
-        rounding_error_db,
-    ];
-    four_decimals(optional.into_iter().flatten());
+    four_decimals(quality.by_magnitude.iter_mut());
+    four_decimals(quality.by_samples.iter_mut());
+    four_decimals(quality.band_error_db.iter_mut());
+    four_decimals(quality.rounding_error_db.iter_mut());
 }
 
 fn four_decimals<'a>(numbers: impl Iterator<Item = &'a mut f64>) {

@@ -2,7 +2,7 @@
 #![cfg(all(feature = "author", not(feature = "wasm")))]
 
 use htex::author::{AssetRequest, Exploration, ModelRequest, Take, fit_asset};
-use htex::format::Plugin;
+use htex::format::{Measure, Plugin};
 use htex::simulate::{SimulationOptions, Surface, simulate};
 use htex::{Asset, Error, Registry, VoiceOptions};
 
@@ -29,7 +29,8 @@ fn asset() -> htex::AssetData {
     let brought = &mut asset.manifest.representations[0];
     let version = brought.model_version.clone();
     brought.model = ELSEWHERE.to_owned();
-    brought.at[0].quality.as_mut().unwrap().band_error_rms_db = 0.0;
+    let quality = brought.at[0].quality.as_mut().unwrap();
+    *quality.by_magnitude.get_mut(Measure::NineBand) = Some(0.0);
     asset.manifest.plugins.push(Plugin {
         model: ELSEWHERE.to_owned(),
         version,

@@ -6,7 +6,7 @@
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-use htex_format::{Manifest, Quantity, Representation};
+use htex_format::{Manifest, Measure, Quantity, Representation};
 use htex_host::{Band, HostError, LoadedModel, RUNS_WASM, Registry, StillSound, Synthesis};
 
 use crate::exploration::Explored;
@@ -406,7 +406,8 @@ fn is_named(representation: &Representation, name: &str) -> bool {
 fn nearest(all: &[Representation], runnable: impl Fn(&Representation) -> bool) -> Option<usize> {
     let error = |r: &Representation| {
         let quality = r.at.first().and_then(|at| at.quality.as_ref());
-        quality.map_or(f64::INFINITY, |q| q.band_error_rms_db)
+        let error = quality.and_then(|q| q.get(Measure::NineBand));
+        error.unwrap_or(f64::INFINITY)
     };
     let order = |i: usize| (!runnable(&all[i]), error(&all[i]));
     (0..all.len()).min_by(|&a, &b| {

@@ -1,7 +1,9 @@
 //! Recordings to spectra and textures, and the agreement of spectra.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use htex::format::{By, Keyed, Measure};
 use htex::host::{Origin, Registry};
 use htex::{AssetData, Band};
 use htex_author::settings::{FitSettings, Metadata, OptionSetting, SettingsError};
@@ -213,18 +215,14 @@ pub(crate) fn agreement<'py>(
         magnitude: &reference,
     };
     let found = py.detach(|| htex_author::agreement(reference, &magnitude));
-    from_json(
-        py,
-        &json!({
-            "spectral_correlation": found.spectral_correlation,
-            "band_error_db": found.band_error_db,
-            "band_error_rms_db": found.band_error_rms_db,
-            "matching_gain_db": found.matching_gain_db,
-            "band_error_matched_rms_db": found.band_error_matched_rms_db,
-            "third_octave_error_rms_db": found.third_octave_error_rms_db,
-            "log_spectral_distance_db": found.log_spectral_distance_db,
-        }),
-    )
+    let Keyed(measures) = found.measures.keyed(By::Magnitude, Measure::stored());
+    let mut fields: BTreeMap<_, Value> = measures
+        .into_iter()
+        .map(|(key, value)| (key, value.into()))
+        .collect();
+    fields.insert("band_error_db".into(), found.band_error_db.into());
+    fields.insert("matching_gain_db".into(), found.matching_gain_db.into());
+    from_json(py, &fields)
 }
 
 /// Refuses spectra that cannot be compared.

@@ -43,18 +43,10 @@ fn measured(
     request: &Sweep,
     program: PathBuf,
 ) -> PyResult<Tradeoff> {
-    let error = match &request.error[..] {
-        "nine_band" => ErrorMeasure::NineBand,
-        "third_octave" => ErrorMeasure::ThirdOctave,
-        "log_spectral" => ErrorMeasure::LogSpectral,
-        other => {
-            return Err(unknown(
-                "error",
-                other,
-                "nine_band, third_octave, log_spectral",
-            ));
-        }
-    };
+    let error = ErrorMeasure::find(&request.error).ok_or_else(|| {
+        let known = ErrorMeasure::ALL.map(ErrorMeasure::id).join(", ");
+        unknown("error", &request.error, &known)
+    })?;
     let registry = registry(&request.plugins, request.installed)?;
     let models = named_models(&registry, &request.models)
         .or_raise()?

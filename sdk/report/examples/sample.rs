@@ -2,7 +2,7 @@
 //!
 //! `cargo run -p htex-report --example sample -- report.html`
 
-use htex_report::{ModelResult, Texture, TextureReport, texture_report};
+use htex_report::{Measure, ModelResult, Texture, TextureReport, texture_report};
 
 /// Name, frequency of the peak (hertz), width (natural log units), height (newtons).
 const TEXTURES: [(&str, f64, f64, f64); 5] = [
@@ -19,12 +19,45 @@ fn main() -> std::io::Result<()> {
     std::fs::write(path, texture_report(&report()))
 }
 
+/// Caption, and whether it is a correlation; of errors, whether they are compared with the repeatability.
+const MEASURES: [(&str, bool, bool); 4] = [
+    (
+        "Spectral correlation with the recording (1 is the best, dark)",
+        true,
+        false,
+    ),
+    (
+        "Nine-band error of the fitted magnitude, RMS in dB (0 is the best, light)",
+        false,
+        true,
+    ),
+    (
+        "Nine-band error of the rendered samples, RMS in dB (0 is the best, light)",
+        false,
+        true,
+    ),
+    (
+        "Third-octave error of the fitted magnitude, RMS in dB (0 is the best, light)",
+        false,
+        false,
+    ),
+];
+
+fn measure((caption, is_correlation, repeats): (&str, bool, bool)) -> Measure {
+    Measure {
+        caption: caption.to_owned(),
+        is_correlation,
+        repeats,
+    }
+}
+
 fn report() -> TextureReport {
     TextureReport {
         title: "Sample report: five invented textures".to_owned(),
         intro: vec![
             "Every number on this page is invented, to show what a report looks like.".to_owned(),
         ],
+        measures: MEASURES.map(measure).to_vec(),
         textures: (0..TEXTURES.len()).map(texture).collect(),
         shares: Vec::new(),
         pictures: Vec::new(),
@@ -88,13 +121,14 @@ fn model(
         model: name.to_owned(),
         short_name: name.to_ascii_lowercase(),
         magnitude: frequency_hz.iter().map(shape).collect(),
-        spectral_correlation: correlation - 0.03 * index as f64,
+        measured: vec![
+            Some(correlation - 0.03 * index as f64),
+            Some(error_db),
+            Some(error_db + 0.2),
+            Some(1.4 * error_db),
+        ],
+        note: format!("error {error_db:.1} dB RMS"),
         band_error_db: (0..9).map(band_error).collect(),
-        band_error_rms_db: error_db,
-        third_octave_error_rms_db: Some(1.4 * error_db),
-        log_spectral_distance_db: Some(1.9 * error_db),
-        felt_error_rms_db: Some(0.8 * error_db),
-        samples_band_error_rms_db: Some(error_db + 0.2),
         payload_bytes: bytes,
         lines: (name == "sPeak").then(|| strongest(frequency_hz, recorded)),
     }

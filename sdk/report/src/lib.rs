@@ -31,10 +31,13 @@ mod ticks;
 pub use axis::{Axis, Scale};
 pub use chain::{Chain, ChainStage};
 pub use color::{RECORDING_COLOR, model_color, series_color};
+pub use number::fixed;
 pub use page::{Page, code_block, details, figures, list, paragraph};
 pub use plot::Plot;
 pub use series::{Line, Series};
 pub use stack::stacked;
 pub use table::{Cell, HeatScale, Row, Table};
-pub use textures::{ModelResult, Share, Texture, TextureReport, spectra_picture, texture_report};
+pub use textures::{
+    Measure, ModelResult, Share, Texture, TextureReport, spectra_picture, texture_report,
+};
 pub use ticks::{Tick, ticks};

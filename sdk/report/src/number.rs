@@ -4,7 +4,7 @@
 pub(crate) const MISSING: &str = "\u{2013}";
 
 /// Formats `value` with exactly `decimals` decimals and a minus sign (U+2212); an en dash when not finite.
-pub(crate) fn fixed(value: f64, decimals: usize) -> String {
+pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return MISSING.to_owned();
     }

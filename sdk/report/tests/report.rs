@@ -2,7 +2,7 @@
 //! Properties of all pictures and pages, for any data.
 
 use htex_report::{
-    Axis, Cell, HeatScale, Line, ModelResult, Plot, Row, Series, Share, Table, Texture,
+    Axis, Cell, HeatScale, Line, Measure, ModelResult, Plot, Row, Series, Share, Table, Texture,
     TextureReport, texture_report,
 };
 use proptest::prelude::*;
@@ -43,20 +43,26 @@ fn strange_values() -> impl Strategy<Value = Vec<f64>> {
 }
 
 fn hostile_model(values: &[f64], lines: bool) -> ModelResult {
-    let first = values.first().copied().unwrap_or(f64::NAN);
     ModelResult {
         model: HOSTILE.to_owned(),
         short_name: HOSTILE.to_owned(),
         magnitude: values.to_vec(),
-        spectral_correlation: first,
+        measured: values
+            .iter()
+            .map(|v| (v % 2.0 < 1.0).then_some(*v))
+            .collect(),
+        note: HOSTILE.to_owned(),
         band_error_db: values.to_vec(),
-        band_error_rms_db: first,
-        third_octave_error_rms_db: values.last().copied(),
-        log_spectral_distance_db: values.first().copied(),
-        felt_error_rms_db: values.first().copied(),
-        samples_band_error_rms_db: values.last().copied(),
         payload_bytes: values.len(),
         lines: lines.then(|| values.iter().map(|v| (*v, *v)).collect()),
+    }
+}
+
+fn measure(is_correlation: bool, repeats: bool) -> Measure {
+    Measure {
+        caption: HOSTILE.to_owned(),
+        is_correlation,
+        repeats,
     }
 }
 
@@ -76,6 +82,11 @@ fn hostile_report(values: &[f64]) -> TextureReport {
     TextureReport {
         title: HOSTILE.to_owned(),
         intro: vec![HOSTILE.to_owned()],
+        measures: vec![
+            measure(true, false),
+            measure(false, true),
+            measure(false, false),
+        ],
         textures: vec![texture, Texture::default()],
         shares: vec![Share {
             short_name: HOSTILE.to_owned(),

@@ -1,6 +1,6 @@
 //! Costs and error measures that are compared.
 
-use htex_format::ErrorMeasure;
+use htex_format::{By, ErrorMeasure};
 use htex_report::Axis;
 
 use crate::point::Point;
@@ -62,9 +62,10 @@ impl Cost {
 impl Against {
     /// Returns cost and error of a point.
     pub(crate) fn place(self, point: &Point) -> (f64, f64) {
+        let measure = self.error.measure();
         match self.cost {
-            Cost::Bytes => (point.bytes as f64, point.error_db(self.error)),
-            Cost::Time => (point.ns_per_sample, point.samples_error_db(self.error)),
+            Cost::Bytes => (point.bytes as f64, point.get(By::Magnitude, measure)),
+            Cost::Time => (point.ns_per_sample, point.get(By::Samples, measure)),
         }
     }
 }

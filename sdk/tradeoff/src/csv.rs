@@ -1,74 +1,54 @@
 //! The points as CSV.
 
-use std::fmt::Write;
+use std::borrow::Cow;
+
+use htex_format::{By, Measure};
 
 use crate::{Point, Tradeoff};
 
-type Column = (&'static str, fn(&Point) -> String);
-
-const COLUMNS: &[Column] = &[
-    ("recording", |p| text(&p.recording)),
-    ("model", |p| text(&p.model)),
-    ("setting", |p| text(&p.setting)),
-    ("fit_ms", |p| p.fit_ms.to_string()),
-    ("fit_spread", |p| p.fit_spread.to_string()),
-    ("first_sample_us", |p| p.first_sample_us.to_string()),
-    ("first_sample_spread", |p| p.first_sample_spread.to_string()),
-    ("ns_per_sample", |p| p.ns_per_sample.to_string()),
-    ("spread", |p| p.spread.to_string()),
-    ("bytes", |p| p.bytes.to_string()),
-    ("kept_bytes", |p| p.kept_bytes.to_string()),
-    ("spectral_correlation", |p| {
-        p.spectral_correlation.to_string()
-    }),
-    ("band_error_rms_db", |p| p.band_error_rms_db.to_string()),
-    ("third_octave_error_rms_db", |p| {
-        p.third_octave_error_rms_db.to_string()
-    }),
-    ("log_spectral_distance_db", |p| {
-        p.log_spectral_distance_db.to_string()
-    }),
-    ("level_error_db", |p| p.level_error_db.to_string()),
-    ("felt_error_rms_db", |p| p.felt_error_rms_db.to_string()),
-    ("share_below_difference_threshold", |p| {
-        p.share_below_difference_threshold.to_string()
-    }),
-    ("share_lossless", |p| p.share_lossless.to_string()),
-    ("samples_spectral_correlation", |p| {
-        p.samples_spectral_correlation.to_string()
-    }),
-    ("samples_band_error_rms_db", |p| {
-        p.samples_band_error_rms_db.to_string()
-    }),
-    ("samples_band_error_spread_db", |p| {
-        p.samples_band_error_spread_db.to_string()
-    }),
-    ("samples_third_octave_error_rms_db", |p| {
-        p.samples_third_octave_error_rms_db.to_string()
-    }),
-    ("samples_log_spectral_distance_db", |p| {
-        p.samples_log_spectral_distance_db.to_string()
-    }),
-    ("samples_level_error_db", |p| {
-        p.samples_level_error_db.to_string()
-    }),
-    ("samples_felt_error_rms_db", |p| {
-        p.samples_felt_error_rms_db.to_string()
-    }),
-    ("on_front", |p| p.on_front.to_string()),
-    ("on_time_front", |p| p.on_time_front.to_string()),
-];
+/// Returns the cells of a point by column: what [`Point`] has in JSON, without the knobs.
+fn cells(p: &Point) -> Vec<(Cow<'static, str>, String)> {
+    let mut cells: Vec<(Cow<'static, str>, String)> = Vec::new();
+    let mut add = |name: &'static str, cell: String| cells.push((name.into(), cell));
+    add("recording", text(&p.recording));
+    add("model", text(&p.model));
+    add("setting", text(&p.setting));
+    add("fit_ms", p.fit_ms.to_string());
+    add("fit_spread", p.fit_spread.to_string());
+    add("first_sample_us", p.first_sample_us.to_string());
+    add("first_sample_spread", p.first_sample_spread.to_string());
+    add("ns_per_sample", p.ns_per_sample.to_string());
+    add("spread", p.spread.to_string());
+    add("bytes", p.bytes.to_string());
+    add("kept_bytes", p.kept_bytes.to_string());
+    let number = |(name, value): (_, Option<f64>)| (name, value.unwrap_or(f64::NAN).to_string());
+    let shares = [
+        (
+            "share_below_difference_threshold",
+            p.share_below_difference_threshold,
+        ),
+        ("share_lossless", p.share_lossless),
+    ];
+    let shares = shares.map(|(name, share)| (name.into(), Some(share)));
+    let by_magnitude = p.by_magnitude.keyed(By::Magnitude, Measure::of_both());
+    let numbers = by_magnitude.0.into_iter().chain(shares);
+    cells.extend(numbers.chain(p.by_samples.keyed().0).map(number));
+    cells.push(("on_front".into(), p.on_front.to_string()));
+    cells.push(("on_time_front".into(), p.on_time_front.to_string()));
+    cells
+}
 
 /// Writes every setting on every recording, one line each, after a header line.
 pub fn csv(tradeoff: &Tradeoff) -> String {
-    let names: Vec<&str> = COLUMNS.iter().map(|(name, _)| *name).collect();
-    let mut out = names.join(",") + "\n";
+    let mut lines = Vec::new();
     for point in &tradeoff.points {
-        let cells: Vec<String> = COLUMNS.iter().map(|(_, cell)| cell(point)).collect();
-        // Writing to a string cannot fail.
-        let _ = writeln!(out, "{}", cells.join(","));
+        let (names, cells): (Vec<_>, Vec<_>) = cells(point).into_iter().unzip();
+        if lines.is_empty() {
+            lines.push(names.join(","));
+        }
+        lines.push(cells.join(","));
     }
-    out
+    lines.join("\n") + "\n"
 }
 
 /// Formats a cell of text, quoted if necessary. A cell that a spreadsheet would take for a formula gets an apostrophe in

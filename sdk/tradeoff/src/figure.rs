@@ -1,11 +1,12 @@
 //! Plots of error against cost.
 
+use htex_format::{By, Measure};
 use htex_report::{Axis, Line, Plot, RECORDING_COLOR, Series, model_color};
 
 use crate::against::{Against, Cost};
 use crate::front::front;
 use crate::knee::along_front;
-use crate::point::{Point, QUANTISED};
+use crate::point::{Point, QUANTISED, errors, others};
 
 /// Marks the points on the front.
 pub(crate) fn mark_front(points: &mut [Point], against: Against) {
@@ -97,20 +98,33 @@ fn steps(front: &[&Point], against: Against) -> Vec<(f64, f64)> {
 }
 
 fn note(p: &Point) -> String {
+    let all = errors().chain(others());
+    let measures: Vec<String> = all.flat_map(|measure| measured(p, measure)).collect();
     format!(
-        "{}: {} bytes, {:.1} ns a sample (±{:.0} %), first sample {:.0} µs, fit {:.2} ms; nine bands {:.2} dB, \
-         played {:.2} dB, third octaves {:.2} dB, log-spectral {:.2} dB, felt {:.2} dB, correlation {:.3}",
+        "{}: {} bytes, {:.1} ns a sample (±{:.0} %), first sample {:.0} µs, fit {:.2} ms; {}",
         p.name(),
         p.bytes,
         p.ns_per_sample,
         100.0 * p.spread,
         p.first_sample_us,
         p.fit_ms,
-        p.band_error_rms_db,
-        p.samples_band_error_rms_db,
-        p.third_octave_error_rms_db,
-        p.log_spectral_distance_db,
-        p.felt_error_rms_db,
-        p.spectral_correlation
+        measures.join(", ")
     )
+}
+
+/// Returns a measure, `nine bands 1.20 dB`, and that of rendered samples if it has a column.
+fn measured(p: &Point, measure: Measure) -> impl Iterator<Item = String> {
+    let row = measure.row();
+    let words = |name: &str, by| {
+        let text = format!(
+            "{name} {:.*} {}",
+            row.decimals,
+            p.get(by, measure),
+            row.unit
+        );
+        text.trim_end().to_owned()
+    };
+    let own = row.column.map(|_| words(row.short, By::Magnitude));
+    let played = row.played.map(|_| words("played", By::Samples));
+    own.into_iter().chain(played)
 }

@@ -1,6 +1,7 @@
 //! Accuracy of a contender, by its magnitudes and by rendered samples.
 
 use htex_author::spectrum_of_samples;
+use htex_format::Measure;
 use htex_host::HostError;
 use serde::{Deserialize, Serialize};
 
@@ -47,7 +48,7 @@ impl Contender {
         let reference = &subject.spectrum;
         let rendered = self.rendered(subject, &stored, quick)?;
         let errors = rendered.spectra.iter();
-        let errors = errors.map(|m| accuracy(reference, m).band_error_rms_db);
+        let errors = errors.filter_map(|m| accuracy(reference, m).measures.get(Measure::NineBand));
         let ends = (f64::INFINITY, f64::NEG_INFINITY);
         let (low, high) = errors.fold(ends, |(low, high), x| (x.min(low), x.max(high)));
         Ok(Some(Measured {

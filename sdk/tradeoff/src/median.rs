@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::point::Point;
+use htex_format::{By, Measure, Measures};
+
+use crate::point::{Played, Point};
 
 /// Returns a point for each setting that was measured on all of `recordings`, in the order of the first.
 pub(crate) fn medians(points: &[Point], recordings: usize) -> Vec<Point> {
@@ -23,39 +25,32 @@ pub(crate) fn medians(points: &[Point], recordings: usize) -> Vec<Point> {
 }
 
 fn median_of(same: &[&Point], name: &str) -> Point {
-    let of = |value: fn(&Point) -> f64| {
+    let of = |value: &dyn Fn(&Point) -> f64| {
         let mut values: Vec<f64> = same.iter().map(|p| value(p)).collect();
         values.sort_by(f64::total_cmp);
         let half = values.len() / 2;
         0.5 * (values[half] + values[(values.len() - 1) / 2])
     };
+    let measures = |by| Measures::new(|m| Some(of(&|p| p.get(by, m)))).only(Measure::of_both());
     let mean =
         |value: fn(&Point) -> f64| same.iter().map(|p| value(p)).sum::<f64>() / same.len() as f64;
     Point {
         recording: name.to_owned(),
-        fit_ms: of(|p| p.fit_ms),
-        fit_spread: of(|p| p.fit_spread),
-        first_sample_us: of(|p| p.first_sample_us),
-        first_sample_spread: of(|p| p.first_sample_spread),
-        ns_per_sample: of(|p| p.ns_per_sample),
-        spread: of(|p| p.spread),
-        bytes: of(|p| p.bytes as f64) as usize,
-        kept_bytes: of(|p| p.kept_bytes as f64) as usize,
-        spectral_correlation: of(|p| p.spectral_correlation),
-        band_error_rms_db: of(|p| p.band_error_rms_db),
-        third_octave_error_rms_db: of(|p| p.third_octave_error_rms_db),
-        log_spectral_distance_db: of(|p| p.log_spectral_distance_db),
-        level_error_db: of(|p| p.level_error_db),
-        felt_error_rms_db: of(|p| p.felt_error_rms_db),
+        fit_ms: of(&|p| p.fit_ms),
+        fit_spread: of(&|p| p.fit_spread),
+        first_sample_us: of(&|p| p.first_sample_us),
+        first_sample_spread: of(&|p| p.first_sample_spread),
+        ns_per_sample: of(&|p| p.ns_per_sample),
+        spread: of(&|p| p.spread),
+        bytes: of(&|p| p.bytes as f64) as usize,
+        kept_bytes: of(&|p| p.kept_bytes as f64) as usize,
+        by_magnitude: measures(By::Magnitude),
         share_below_difference_threshold: mean(|p| p.share_below_difference_threshold),
         share_lossless: mean(|p| p.share_lossless),
-        samples_spectral_correlation: of(|p| p.samples_spectral_correlation),
-        samples_band_error_rms_db: of(|p| p.samples_band_error_rms_db),
-        samples_band_error_spread_db: of(|p| p.samples_band_error_spread_db),
-        samples_third_octave_error_rms_db: of(|p| p.samples_third_octave_error_rms_db),
-        samples_log_spectral_distance_db: of(|p| p.samples_log_spectral_distance_db),
-        samples_level_error_db: of(|p| p.samples_level_error_db),
-        samples_felt_error_rms_db: of(|p| p.samples_felt_error_rms_db),
+        by_samples: Played {
+            measures: measures(By::Samples),
+            band_error_spread_db: of(&|p| p.by_samples.band_error_spread_db),
+        },
         ..same[0].clone()
     }
 }

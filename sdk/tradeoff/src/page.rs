@@ -1,11 +1,12 @@
 //! The report as an HTML page.
 
-use htex_format::ErrorMeasure;
+use htex_format::{By, ErrorMeasure, Judged, Measure};
 use htex_report::{Cell, HeatScale, Page, Row, Table, figures, list, paragraph};
 
 use crate::against::Cost;
 use crate::figure::figure;
 use crate::knee::{Knee, along_front};
+use crate::point::{errors, others};
 use crate::{Point, QUANTISED, RECORDING, Tradeoff};
 
 /// Returns the report as self-contained HTML: the summary first, then every recording.
@@ -143,46 +144,50 @@ fn section(page: &mut Page, tradeoff: &Tradeoff, name: &str, points: &[&Point]) 
     ));
 }
 
-const COLUMNS: [&str; 12] = [
-    "bytes",
-    "nine bands / dB",
-    "third octaves / dB",
-    "log-spectral / dB",
-    "felt / dB",
-    "lossless / %",
-    "played / dB",
-    "correlation",
-    "level / dB",
-    "ns a sample",
-    "first sample / µs",
-    "fit / ms",
-];
+fn columns() -> Vec<String> {
+    let names = |these: &[&str]| {
+        these
+            .iter()
+            .map(|&name| name.to_owned())
+            .collect::<Vec<_>>()
+    };
+    let mut columns = names(&["bytes"]);
+    columns.extend(errors().map(Measure::heading));
+    columns.extend(names(&["lossless / %", "played / dB"]));
+    columns.extend(others().map(Measure::heading));
+    columns.extend(names(&["ns a sample", "first sample / µs", "fit / ms"]));
+    columns
+}
+
+fn cells(p: &Point) -> Vec<Cell> {
+    let text = |text: String| Cell::Text(text, String::new());
+    let own = |measure| p.get(By::Magnitude, measure);
+    let mut cells = vec![text(p.bytes.to_string())];
+    cells.extend(errors().map(|error| Cell::Plain(own(error))));
+    cells.push(text(format!("{:.0}", 100.0 * p.share_lossless)));
+    cells.push(Cell::Text(
+        format!("{:.2}", p.get(By::Samples, Measure::NineBand)),
+        format!("± {:.2}", p.by_samples.band_error_spread_db),
+    ));
+    cells.extend(others().map(|other| match other.row().judged {
+        Judged::Correlation => text(format!("{:.4}", own(other))),
+        _ => Cell::Plain(own(other)),
+    }));
+    cells.push(timed(p.ns_per_sample, p.spread));
+    cells.push(timed(p.first_sample_us, p.first_sample_spread));
+    cells.push(timed(p.fit_ms, p.fit_spread));
+    cells
+}
 
 fn table(caption: &str, points: &[&Point]) -> Table {
     let row = |p: &&Point| Row {
         header: p.name(),
-        cells: vec![
-            Cell::Text(p.bytes.to_string(), String::new()),
-            Cell::Plain(p.band_error_rms_db),
-            Cell::Plain(p.third_octave_error_rms_db),
-            Cell::Plain(p.log_spectral_distance_db),
-            Cell::Plain(p.felt_error_rms_db),
-            Cell::Text(format!("{:.0}", 100.0 * p.share_lossless), String::new()),
-            Cell::Text(
-                format!("{:.2}", p.samples_band_error_rms_db),
-                format!("± {:.2}", p.samples_band_error_spread_db),
-            ),
-            Cell::Text(format!("{:.4}", p.spectral_correlation), String::new()),
-            Cell::Plain(p.level_error_db),
-            timed(p.ns_per_sample, p.spread),
-            timed(p.first_sample_us, p.first_sample_spread),
-            timed(p.fit_ms, p.fit_spread),
-        ],
+        cells: cells(p),
     };
     Table {
         caption: caption.to_owned(),
         corner: "setting".to_owned(),
-        columns: COLUMNS.map(str::to_owned).to_vec(),
+        columns: columns(),
         rows: points.iter().map(row).collect(),
         scale: HeatScale::None,
         decimals: 2,

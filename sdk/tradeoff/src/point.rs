@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use htex_author::LosslessShare;
-use htex_format::ErrorMeasure;
-use serde::Serialize;
+use htex_format::{By, Judged, Keyed, Measure, Measures};
+use serde::{Serialize, Serializer};
 use serde_json::Value;
 
 use crate::Setting;
@@ -47,42 +47,71 @@ pub struct Point {
     pub bytes: usize,
     /// Bytes of a loop or a filter that are kept while playing.
     pub kept_bytes: usize,
-    /// Spectral correlation of the model's magnitudes.
-    pub spectral_correlation: f64,
-    /// RMS error over the nine bands of the model's magnitudes, dB.
-    pub band_error_rms_db: f64,
-    /// RMS error over third-octave bands of the model's magnitudes, dB.
-    pub third_octave_error_rms_db: f64,
-    /// Log-spectral distance of the model's magnitudes: RMS over the bins of their difference in decibels.
-    pub log_spectral_distance_db: f64,
-    /// Level of the model's magnitudes relative to the recording's, dB.
-    pub level_error_db: f64,
-    /// RMS over third-octave bands of the difference of what is above a fingertip's detection threshold, of the model's magnitudes, dB.
-    pub felt_error_rms_db: f64,
+    /// The measures of the model's magnitudes: [`Measure::of_both`].
+    #[serde(flatten, serialize_with = "of_magnitudes")]
+    pub by_magnitude: Measures,
     /// Share of the recordings whose difference from the model's magnitudes is below the difference threshold in every band; 0 or 1 for one recording.
     pub share_below_difference_threshold: f64,
     /// Share of the recordings for which that holds, or whose nine-band error is at or below the recording's own repeatability.
     pub share_lossless: f64,
-    /// Spectral correlation of rendered samples.
-    pub samples_spectral_correlation: f64,
-    /// RMS error over the nine bands of rendered samples, dB.
-    pub samples_band_error_rms_db: f64,
-    /// Half the range of that error over single renderings, dB.
-    pub samples_band_error_spread_db: f64,
-    /// RMS error over third-octave bands of rendered samples, dB.
-    pub samples_third_octave_error_rms_db: f64,
-    /// Log-spectral distance of rendered samples, dB.
-    pub samples_log_spectral_distance_db: f64,
-    /// Level of rendered samples relative to the recording's, dB.
-    pub samples_level_error_db: f64,
-    /// RMS over third-octave bands of the difference of what is above a fingertip's detection threshold, of rendered samples, dB.
-    pub samples_felt_error_rms_db: f64,
+    /// The measures of rendered samples.
+    #[serde(flatten)]
+    pub by_samples: Played,
     /// Whether it is on the front of bytes and magnitude error, among settings that play
     /// at their defaults.
     pub on_front: bool,
     /// Whether it is on the front of time and sample error, among settings with blocks and output rate at their
     /// defaults.
     pub on_time_front: bool,
+}
+
+/// Returns the errors of points.
+pub fn errors() -> impl Iterator<Item = Measure> {
+    Measure::of_both().filter(|m| m.row().judged == Judged::Error)
+}
+
+/// Returns the measures of points that are not errors.
+pub fn others() -> impl Iterator<Item = Measure> {
+    Measure::of_both().filter(|m| m.row().judged != Judged::Error)
+}
+
+/// Accuracy of rendered samples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Played {
+    /// The measures of several renderings together.
+    pub measures: Measures,
+    /// Half the range of the nine-band error over single renderings, dB.
+    pub band_error_spread_db: f64,
+}
+
+fn of_magnitudes<S: Serializer>(measures: &Measures, serializer: S) -> Result<S::Ok, S::Error> {
+    let keyed = measures.keyed(By::Magnitude, Measure::of_both());
+    keyed.serialize(serializer)
+}
+
+impl Played {
+    /// Returns its numbers by key, the spread after the error that it is of.
+    pub(crate) fn keyed(&self) -> Keyed {
+        let mut keyed = Keyed::default();
+        for measure in Measure::of_both() {
+            keyed
+                .0
+                .extend(self.measures.keyed(By::Samples, [measure]).0);
+            if measure == Measure::NineBand {
+                let spread = Some(self.band_error_spread_db);
+                keyed
+                    .0
+                    .push(("samples_band_error_spread_db".into(), spread));
+            }
+        }
+        keyed
+    }
+}
+
+impl Serialize for Played {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.keyed().serialize(serializer)
+    }
 }
 
 impl Point {
@@ -96,9 +125,8 @@ impl Point {
             ContenderKind::Model(model, _) => Some(model.descriptor()),
             _ => None,
         };
-        let (magnitude, samples) = (measured.by_magnitude, measured.by_samples);
         let mut lossless = LosslessShare::default();
-        lossless.count(&magnitude.felt);
+        lossless.count(&measured.by_magnitude.felt);
         Self {
             recording: recording.to_owned(),
             model: one.model.clone(),
@@ -113,42 +141,25 @@ impl Point {
             spread: timed.ns_per_sample.spread,
             bytes: measured.bytes,
             kept_bytes: measured.kept_bytes,
-            spectral_correlation: magnitude.spectral_correlation,
-            band_error_rms_db: magnitude.band_error_rms_db,
-            third_octave_error_rms_db: magnitude.third_octave_error_rms_db,
-            log_spectral_distance_db: magnitude.log_spectral_distance_db,
-            level_error_db: magnitude.level_error_db,
-            felt_error_rms_db: magnitude.felt.error_rms_db,
+            by_magnitude: measured.by_magnitude.measures,
             share_below_difference_threshold: lossless.below_difference_threshold as f64,
             share_lossless: lossless.either as f64,
-            samples_spectral_correlation: samples.spectral_correlation,
-            samples_band_error_rms_db: samples.band_error_rms_db,
-            samples_band_error_spread_db: measured.samples_spread_db,
-            samples_third_octave_error_rms_db: samples.third_octave_error_rms_db,
-            samples_log_spectral_distance_db: samples.log_spectral_distance_db,
-            samples_level_error_db: samples.level_error_db,
-            samples_felt_error_rms_db: samples.felt.error_rms_db,
+            by_samples: Played {
+                measures: measured.by_samples.measures,
+                band_error_spread_db: measured.samples_spread_db,
+            },
             on_front: false,
             on_time_front: false,
         }
     }
 
-    /// Returns the error of the model's magnitudes, dB.
-    pub fn error_db(&self, measure: ErrorMeasure) -> f64 {
-        match measure {
-            ErrorMeasure::NineBand => self.band_error_rms_db,
-            ErrorMeasure::ThirdOctave => self.third_octave_error_rms_db,
-            ErrorMeasure::LogSpectral => self.log_spectral_distance_db,
-        }
-    }
-
-    /// Returns the error of rendered samples, dB.
-    pub fn samples_error_db(&self, measure: ErrorMeasure) -> f64 {
-        match measure {
-            ErrorMeasure::NineBand => self.samples_band_error_rms_db,
-            ErrorMeasure::ThirdOctave => self.samples_third_octave_error_rms_db,
-            ErrorMeasure::LogSpectral => self.samples_log_spectral_distance_db,
-        }
+    /// Returns the value of a measure.
+    pub fn get(&self, by: By, measure: Measure) -> f64 {
+        let measures = match by {
+            By::Magnitude => &self.by_magnitude,
+            By::Samples => &self.by_samples.measures,
+        };
+        measures.get(measure).unwrap_or(f64::NAN)
     }
 
     /// Returns model and setting.

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use htex_device::SettingKind;
+use htex_format::Measure;
 use htex_lab::study::{
     DeviceUsed, Felt, Played, Rig, Stimulus, Study, StudyError, scene_of, set_gain,
 };
@@ -173,10 +174,7 @@ impl Rig for StudyRig<'_> {
             let id = asset.representation_id(Some(model)).ok()?;
             let mut all = asset.manifest().representations.iter();
             let first = all.find(|r| r.model == id)?.at.first()?;
-            first
-                .quality
-                .as_ref()
-                .map(|quality| quality.band_error_rms_db)
+            first.quality.as_ref()?.get(Measure::NineBand)
         });
         self.errors_db.borrow_mut().insert(key, error_db);
         error_db

@@ -1,6 +1,6 @@
 //! Leave-one-out error: each condition predicted from its neighbours, as a player interpolates.
 
-use htex_format::{Condition, LeftOut};
+use htex_format::{Condition, LeftOut, Measure};
 use htex_host::LoadedModel;
 use htex_play::Mesh;
 
@@ -38,11 +38,8 @@ pub(crate) fn left_out(
         let shape = model.magnitude(&mixed, reference.band, reference.frequency_hz);
         let magnitude: Vec<f64> = shape.ok()?.iter().map(|m| m * level).collect();
         let error = agreement(reference, &magnitude);
-        let finite = error.band_error_rms_db.is_finite();
-        finite.then_some(LeftOut {
-            band_error_rms_db: error.band_error_rms_db,
-            third_octave_error_rms_db: error.third_octave_error_rms_db,
-        })
+        let finite = error.get(Measure::NineBand).is_some_and(f64::is_finite);
+        finite.then(|| LeftOut(error.measures.only(LeftOut::measures())))
     };
     (0..points.len()).map(one).collect()
 }

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Literal, Union
 
 from . import _errors, _htex
 from ._data import Agreement, Condition, Fit, Processed, Quantity, Spectrum, Tradeoff
+from ._measures import ErrorMeasure
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -189,7 +190,7 @@ def tradeoff(
     *,
     models: str | Iterable[str] = "all",
     quick: bool = True,
-    error: Literal["nine_band", "third_octave", "log_spectral"] = "nine_band",
+    error: ErrorMeasure = "nine_band",
     plugins: Sequence[str | os.PathLike[str]] = (),
     installed: bool = False,
     journal: str | os.PathLike[str] | None = None,

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
 from . import _htex
+from ._measures import Agreement as Agreement
 
 if TYPE_CHECKING:
     import numpy as np
@@ -102,26 +103,6 @@ class Coverage:
     """Speed, mm/s."""
     force: Reach
     """Normal force, newtons."""
-
-
-@dataclass(frozen=True)
-class Agreement:
-    """Agreement of magnitudes with a reference."""
-
-    spectral_correlation: float
-    """Pearson correlation of the magnitudes."""
-    band_error_db: list[float]
-    """Energy relative to the reference's in each of nine bands, decibels."""
-    band_error_rms_db: float
-    """RMS of the nine band errors, decibels."""
-    matching_gain_db: float
-    """Gain that makes the total energies equal, decibels."""
-    band_error_matched_rms_db: float
-    """RMS of the nine band errors after that gain, decibels."""
-    third_octave_error_rms_db: float | None
-    """RMS error over third-octave bands, decibels; ``None`` for a reference without energy in them."""
-    log_spectral_distance_db: float | None
-    """RMS over the bins of the difference in decibels; ``None`` for a silent reference."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -7,6 +7,8 @@ pub struct TextureReport {
     pub title: String,
     /// Paragraphs below the title.
     pub intro: Vec<String>,
+    /// The measures of the models, a table each.
+    pub measures: Vec<Measure>,
     /// The textures, in the order of the page.
     pub textures: Vec<Texture>,
     /// Of the textures, how many each model keeps so that no difference is to be expected to be felt; may be empty.
@@ -31,6 +33,17 @@ pub struct Share {
     pub within_repeatability: usize,
     /// Those for which one of both holds.
     pub either: usize,
+}
+
+/// A measure of how close the models come: a table of textures by models.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Measure {
+    /// Caption of the table.
+    pub caption: String,
+    /// Whether it is a correlation, of which 1 is the best, instead of an error in decibels, of which 0 is.
+    pub is_correlation: bool,
+    /// Whether it is compared with the recording's own repeatability.
+    pub repeats: bool,
 }
 
 /// One texture at one exploration condition.
@@ -69,20 +82,12 @@ pub struct ModelResult {
     pub short_name: String,
     /// The model's magnitude at the texture's frequencies, in the texture's unit.
     pub magnitude: Vec<f64>,
-    /// Pearson's correlation with the recording's magnitude.
-    pub spectral_correlation: f64,
+    /// What the measures of the report found, in their order; one that is not known may be left out at the end.
+    pub measured: Vec<Option<f64>>,
+    /// Text below its spectrum.
+    pub note: String,
     /// Energy of the model relative to the recording's in each of the nine bands, decibels.
     pub band_error_db: Vec<f64>,
-    /// Root mean square of the nine, decibels.
-    pub band_error_rms_db: f64,
-    /// RMS error over third-octave bands, decibels.
-    pub third_octave_error_rms_db: Option<f64>,
-    /// RMS over the bins of the difference of the magnitudes in decibels.
-    pub log_spectral_distance_db: Option<f64>,
-    /// RMS over third-octave bands of the difference of what is above a fingertip's detection threshold, decibels.
-    pub felt_error_rms_db: Option<f64>,
-    /// The nine-band error of rendered samples, decibels.
-    pub samples_band_error_rms_db: Option<f64>,
     /// Size of the parameters, bytes.
     pub payload_bytes: usize,
     /// Frequency (hertz) and amplitude (in the texture's unit) of each sinusoid of a model that is a sum of

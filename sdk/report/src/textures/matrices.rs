@@ -1,6 +1,6 @@
 //! Tables of errors: textures by models, and models by bands.
 
-use super::data::{ModelResult, Texture, TextureReport};
+use super::data::{Measure, ModelResult, Texture, TextureReport};
 use crate::markup::Element;
 use crate::number::fixed;
 use crate::page::paragraph;
@@ -11,39 +11,19 @@ const WITHIN: &str = "\u{a0}*";
 
 /// Error of the darkest shade, decibels.
 const DARKEST_DB: f64 = 12.0;
+const CORRELATIONS: HeatScale = HeatScale::Sequential {
+    low: 0.0,
+    high: 1.0,
+};
 
-/// Tables of correlation and nine-band error, and of the other measures if they are known.
+/// A table for each measure that is known of a model.
 pub(super) fn summary(report: &TextureReport) -> String {
-    let mut out = Element::new("div").set("class", "tables");
-    let correlation = correlation(report).to_html();
-    out = out
-        .raw(&correlation)
-        .raw(&error(report, "fitted magnitude", |m| {
-            Some(m.band_error_rms_db)
-        }));
-    let rendered = |m: &ModelResult| m.samples_band_error_rms_db;
-    if measured(report, rendered) {
-        out = out.raw(&error(report, "rendered samples", rendered));
-    }
-    let beside: [(&str, Value); 3] = [
-        (
-            "Third-octave error of the fitted magnitude, RMS in dB",
-            |m| m.third_octave_error_rms_db,
-        ),
-        (
-            "Log-spectral distance of the fitted magnitude, RMS in dB",
-            |m| m.log_spectral_distance_db,
-        ),
-        (
-            "Felt difference of the fitted magnitude: above the detection threshold, in third octaves, RMS in dB",
-            |m| m.felt_error_rms_db,
-        ),
-    ];
-    for (caption, value) in beside {
-        if measured(report, value) {
-            out = out.raw(&independent_error(report, caption, value));
-        }
-    }
+    let measures = report.measures.iter().enumerate();
+    let tables: String = measures
+        .filter(|(at, _)| is_known(report, *at))
+        .map(|(at, measure)| table(report, at, measure).to_html())
+        .collect();
+    let out = Element::new("div").set("class", "tables").raw(&tables);
     let note = paragraph(
         "* at or below the recording's own repeatability: parts of the recording differ from each other \
          by as much, so smaller errors do not distinguish models.",
@@ -51,56 +31,41 @@ pub(super) fn summary(report: &TextureReport) -> String {
     out.render() + "\n" + &note
 }
 
-type Value = fn(&ModelResult) -> Option<f64>;
+fn value(model: &ModelResult, at: usize) -> Option<f64> {
+    model.measured.get(at).copied().flatten()
+}
 
-fn measured(report: &TextureReport, value: impl Fn(&ModelResult) -> Option<f64>) -> bool {
+fn is_known(report: &TextureReport, at: usize) -> bool {
     let mut models = report.textures.iter().flat_map(|t| &t.models);
-    models.any(|m| value(m).is_some())
+    models.any(|model| value(model, at).is_some())
 }
 
-/// Table of an error for which the recording's repeatability is not known.
-fn independent_error(report: &TextureReport, caption: &str, value: Value) -> String {
-    let cell = |_: &Texture, model: &ModelResult| {
-        value(model).map_or(Cell::Missing, |db| Cell::Shaded(db, ""))
+fn table(report: &TextureReport, at: usize, measure: &Measure) -> Table {
+    let cell = |texture: &Texture, model: &ModelResult| {
+        let Some(value) = value(model, at) else {
+            return Cell::Missing;
+        };
+        let own = texture.repeatability_rms_db.filter(|_| measure.repeats);
+        let mark = if own.is_some_and(|own| value <= own) {
+            WITHIN
+        } else {
+            ""
+        };
+        Cell::Shaded(value, mark)
     };
     let mut table = by_model(report, cell);
-    table.caption = format!("{caption} (0 is the best, light)");
-    table.to_html()
-}
-
-fn correlation(report: &TextureReport) -> Table {
-    let cell = |_: &Texture, model: &ModelResult| Cell::Shaded(model.spectral_correlation, "");
-    Table {
-        caption: "Spectral correlation with the recording (no unit; 1 is the best, dark)"
-            .to_owned(),
-        scale: HeatScale::Sequential {
-            low: 0.0,
-            high: 1.0,
-        },
-        decimals: 2,
-        ..by_model(report, cell)
+    table.caption.clone_from(&measure.caption);
+    if measure.is_correlation {
+        (table.scale, table.decimals) = (CORRELATIONS, 2);
     }
-}
-
-fn error(report: &TextureReport, of: &str, value: impl Fn(&ModelResult) -> Option<f64>) -> String {
-    let cell = |texture: &Texture, model: &ModelResult| match value(model) {
-        Some(db) if texture.repeatability_rms_db.is_some_and(|own| db <= own) => {
-            Cell::Shaded(db, WITHIN)
+    if measure.repeats {
+        table.columns.push("recording itself".to_owned());
+        for (row, texture) in table.rows.iter_mut().zip(&report.textures) {
+            let own = texture.repeatability_rms_db;
+            row.cells.push(own.map_or(Cell::Missing, Cell::Plain));
         }
-        Some(db) => Cell::Shaded(db, ""),
-        None => Cell::Missing,
-    };
-    let mut table = by_model(report, cell);
-    table.columns.push("recording itself".to_owned());
-    for (row, texture) in table.rows.iter_mut().zip(&report.textures) {
-        row.cells.push(
-            texture
-                .repeatability_rms_db
-                .map_or(Cell::Missing, Cell::Plain),
-        );
     }
-    table.caption = format!("Nine-band error of the {of}, RMS in dB (0 is the best, light)");
-    table.to_html()
+    table
 }
 
 /// Table of textures by models.

@@ -7,7 +7,7 @@ mod shares;
 mod sizes;
 mod spectra;
 
-pub use data::{ModelResult, Share, Texture, TextureReport};
+pub use data::{Measure, ModelResult, Share, Texture, TextureReport};
 pub use picture::spectra_picture;
 
 use crate::markup::Element;

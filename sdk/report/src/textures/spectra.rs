@@ -128,9 +128,7 @@ pub(super) fn overlay(title: &str, texture: &Texture, model: &ModelResult, top: 
 }
 
 fn model_note(texture: &Texture, model: &ModelResult, top: f64) -> String {
-    let correlation = fixed(model.spectral_correlation, 2);
-    let error = fixed(model.band_error_rms_db, 1);
-    let note = format!("r = {correlation}, error {error} dB RMS");
+    let note = model.note.clone();
     let (scale, unit) = texture.plotted();
     match highest(drawn(model), scale) {
         Some(highest) if highest > top => {

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use htex_device::{
-    Descriptor, Kind, Known, Origin, Profile, Registry, Search, Setting, SettingKind,
+    AdapterKind, Descriptor, Known, Origin, Profile, Registry, Search, Setting, SettingKind,
 };
 use htex_format::plain;
 use serde_json::{Value, json};
@@ -29,7 +29,7 @@ pub(crate) fn again<'a>(pairs: impl Iterator<Item = (&'static str, &'a PathBuf)>
 }
 
 /// The adapter in the file of this name if there is one, else that of this short name or id.
-pub(crate) fn named<A: Kind + ?Sized>(
+pub(crate) fn named<A: AdapterKind + ?Sized>(
     name: &str,
     known: impl FnOnce() -> Result<Registry<A>, Failure>,
 ) -> Result<Known<A>, Failure> {
@@ -44,7 +44,7 @@ pub(crate) fn named<A: Kind + ?Sized>(
 }
 
 /// An adapter and what is connected. A missing driver is reported beside the adapter and is not an error.
-pub(crate) fn listed_json<A: Kind + ?Sized>(known: &Known<A>) -> Value {
+pub(crate) fn listed_json<A: AdapterKind + ?Sized>(known: &Known<A>) -> Value {
     let descriptor = known.descriptor();
     let (endpoints, problem) = match known.endpoints() {
         Ok(endpoints) => (endpoints, None),
@@ -67,7 +67,7 @@ pub(crate) fn listed_json<A: Kind + ?Sized>(known: &Known<A>) -> Value {
 }
 
 /// All adapters of a kind, with their settings, what is connected, and the notes of the search.
-pub(crate) fn listed_text<A: Kind + ?Sized>(all: &Registry<A>) -> String {
+pub(crate) fn listed_text<A: AdapterKind + ?Sized>(all: &Registry<A>) -> String {
     let mut text = format!("{}s\n", A::WORD);
     text.extend(all.all().iter().map(adapter_text));
     for note in all.notes() {
@@ -76,7 +76,7 @@ pub(crate) fn listed_text<A: Kind + ?Sized>(all: &Registry<A>) -> String {
     text
 }
 
-fn adapter_text<A: Kind + ?Sized>(known: &Known<A>) -> String {
+fn adapter_text<A: AdapterKind + ?Sized>(known: &Known<A>) -> String {
     let descriptor = &tamed(known.descriptor());
     let (name, version) = (descriptor.short_name(), &descriptor.version);
     let mut text = format!(

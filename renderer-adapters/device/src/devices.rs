@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::registry::{Kind, Known, Registry};
+use crate::registry::{AdapterKind, Known, Registry};
 use crate::{Adapter, Descriptor, DeviceError, Endpoint, NativeAdapter};
 
 /// Adapters of devices, by id and by short name.
@@ -11,7 +11,7 @@ pub type Devices = Registry<dyn Adapter>;
 /// An adapter of devices that was found.
 pub type KnownDevice = Known<dyn Adapter>;
 
-impl Kind for dyn Adapter {
+impl AdapterKind for dyn Adapter {
     const WORD: &'static str = "device";
     const VARIABLE: &'static str = "HTEX_DEVICE_PATH";
     const FOLDER: &'static str = "htex/devices";

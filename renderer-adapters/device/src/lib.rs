@@ -44,7 +44,7 @@ pub use descriptor::{
 pub use devices::{Devices, KnownDevice};
 pub use error::{AbiFault, DeviceError};
 pub use native::{NativeAdapter, NativeDevice};
-pub use registry::{Kind, Known, Note, Origin, Registry, Search};
+pub use registry::{AdapterKind, Known, Note, Origin, Registry, Search};
 #[cfg(feature = "schemars")]
 pub use schemas::{schemas, source_schemas};
 pub use settings::{Ignored, Settings, Stated};

@@ -54,7 +54,7 @@ impl std::fmt::Display for Origin {
 }
 
 /// A kind of adapter: of devices or of sources.
-pub trait Kind: Send + Sync + 'static {
+pub trait AdapterKind: Send + Sync + 'static {
     /// `device` or `source`.
     const WORD: &'static str;
     /// The environment variable with folders of libraries, separated as in `PATH`.
@@ -89,7 +89,7 @@ pub struct Known<A: ?Sized> {
     pub origin: Origin,
 }
 
-impl<A: Kind + ?Sized> Known<A> {
+impl<A: AdapterKind + ?Sized> Known<A> {
     /// The adapter's descriptor.
     pub fn descriptor(&self) -> &Descriptor {
         self.adapter.about()
@@ -121,7 +121,7 @@ impl<A: ?Sized> Clone for Known<A> {
     }
 }
 
-impl<A: Kind + ?Sized> std::fmt::Debug for Known<A> {
+impl<A: AdapterKind + ?Sized> std::fmt::Debug for Known<A> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut tuple = f.debug_tuple("Known");
         tuple.field(&self.id()).field(&self.origin).finish()
@@ -212,13 +212,13 @@ impl<A: ?Sized> Clone for Registry<A> {
     }
 }
 
-impl<A: Kind + ?Sized> std::fmt::Debug for Registry<A> {
+impl<A: AdapterKind + ?Sized> std::fmt::Debug for Registry<A> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_list().entries(&self.known).finish()
     }
 }
 
-impl<A: Kind + ?Sized> Registry<A> {
+impl<A: AdapterKind + ?Sized> Registry<A> {
     /// Only those linked into a program.
     pub fn new(builtin: Vec<Arc<A>>) -> Self {
         let mut found = Self::default();
@@ -328,7 +328,7 @@ impl<A: Kind + ?Sized> Registry<A> {
 }
 
 /// The folders of the environment variable and of the user.
-fn unnamed_folders<A: Kind + ?Sized>(search: &Search) -> impl Iterator<Item = PathBuf> {
+fn unnamed_folders<A: AdapterKind + ?Sized>(search: &Search) -> impl Iterator<Item = PathBuf> {
     let listed = search.env.then(|| listed(A::VARIABLE));
     let own = search.user_dir.then(|| data(A::FOLDER)).flatten();
     listed.into_iter().flatten().chain(own)

@@ -45,6 +45,6 @@ impl List {
     }
 }
 
-fn texts<A: htex_device::Kind + ?Sized>(all: &Registry<A>) -> impl Iterator<Item = String> {
+fn texts<A: htex_device::AdapterKind + ?Sized>(all: &Registry<A>) -> impl Iterator<Item = String> {
     all.notes().iter().map(Note::to_string)
 }

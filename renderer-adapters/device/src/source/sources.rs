@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::registry::{Kind, Known, Registry};
+use crate::registry::{AdapterKind, Known, Registry};
 use crate::source::{NativeSourceAdapter, Source, SourceAdapter};
 use crate::{Descriptor, DeviceError, Endpoint, Settings};
 
@@ -13,7 +13,7 @@ pub type Sources = Registry<dyn SourceAdapter>;
 /// An adapter of sources that was found.
 pub type KnownSource = Known<dyn SourceAdapter>;
 
-impl Kind for dyn SourceAdapter {
+impl AdapterKind for dyn SourceAdapter {
     const WORD: &'static str = "source";
     const VARIABLE: &'static str = "HTEX_SOURCE_PATH";
     const FOLDER: &'static str = "htex/sources";

@@ -114,12 +114,12 @@ mod tests {
 
     const MODULE: &[u8] = b"\0asm\x01\0\0\0";
 
-    struct Place {
+    struct CacheFolders {
         dir: tempfile::TempDir,
         engine: Engine,
     }
 
-    impl Place {
+    impl CacheFolders {
         fn new() -> Self {
             let (dir, engine) = (tempfile::tempdir().unwrap(), Engine::default());
             Self { dir, engine }
@@ -155,7 +155,7 @@ mod tests {
 
     #[test]
     fn a_module_is_kept_and_what_the_key_has_not_made_is_not_used() {
-        let mut place = Place::new();
+        let mut place = CacheFolders::new();
         assert!(!place.found());
         assert!(place.found());
         let file = place.only_file();
@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn the_folder_does_not_grow_for_ever_and_only_its_own_files_go() {
-        let place = Place::new();
+        let place = CacheFolders::new();
         place.found();
         let first = place.only_file();
         let theirs = ["notes.txt", "model.cwasm", "1.cwasm"].map(|name| place.folder().join(name));
@@ -211,7 +211,7 @@ mod tests {
     #[test]
     fn a_folder_or_a_key_that_others_may_change_or_own_is_not_used() {
         use std::os::unix::fs::PermissionsExt;
-        let place = Place::new();
+        let place = CacheFolders::new();
         place.found();
         let set = |path: &Path, mode| {
             std::fs::set_permissions(path, PermissionsExt::from_mode(mode)).unwrap();

@@ -24,21 +24,21 @@ impl WasmModule {
     }
 
     /// Counts one more voice; `None` at the limit.
-    pub(super) fn place(self: &Arc<Self>) -> Option<Place> {
+    pub(super) fn place(self: &Arc<Self>) -> Option<VoicePlace> {
         let most = self.limits.voices;
         let take = |n: usize| (n < most).then_some(n + 1);
         let taken = self
             .shared
             .voices
             .fetch_update(Ordering::Relaxed, Ordering::Relaxed, take);
-        taken.ok().map(|_| Place(Arc::clone(self)))
+        taken.ok().map(|_| VoicePlace(Arc::clone(self)))
     }
 }
 
 /// The count of one voice, released when it is dropped.
-pub(super) struct Place(Arc<WasmModule>);
+pub(super) struct VoicePlace(Arc<WasmModule>);
 
-impl Drop for Place {
+impl Drop for VoicePlace {
     fn drop(&mut self) {
         self.0.shared.voices.fetch_sub(1, Ordering::Relaxed);
     }

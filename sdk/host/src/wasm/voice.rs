@@ -11,7 +11,7 @@ use super::calls::BLOCK;
 use super::fault::Fault;
 use super::instance::Instance;
 use super::module::WasmModule;
-use super::shared::Place;
+use super::shared::VoicePlace;
 use crate::raw::RawVoice;
 
 /// A voice with its instance.
@@ -22,14 +22,14 @@ pub(super) struct WasmVoice {
     last_error: String,
     /// Whether the instance trapped; it is then not called again.
     faulted: bool,
-    _place: Place,
+    _place: VoicePlace,
 }
 
 impl WasmVoice {
     /// Makes a voice; an error is a status and its text.
     pub(super) fn new(
         module: &Arc<WasmModule>,
-        place: Place,
+        place: VoicePlace,
         (parameters, band): (&[f64], Band),
         rate_hz: f64,
         seed: u64,

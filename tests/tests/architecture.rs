@@ -1,4 +1,5 @@
 //! Allowed dependencies between crates: the table of ARCHITECTURE.md.
+#![allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 
 use std::collections::BTreeSet;
 
@@ -186,6 +187,23 @@ const ARROWS: &[(&str, &[&str])] = &[
         ],
     ),
     ("htex-capi", &["htex", "htex-device-builtin"]),
+    (
+        "htex-python",
+        &[
+            "htex",
+            "htex-author",
+            "htex-build",
+            "htex-cli",
+            "htex-device",
+            "htex-device-builtin",
+            "htex-dsp",
+            "htex-format",
+            "htex-host",
+            "htex-model",
+            "htex-scene",
+            "htex-tradeoff",
+        ],
+    ),
     ("xtask", &[]),
 ];
 
@@ -235,6 +253,36 @@ fn dependencies_follow_the_arrows() {
                 "{name} must not point at {target}"
             );
         }
+    }
+}
+
+/// The packages that a build of these compiles, with their versions and features.
+fn compiled(packages: &[&str]) -> BTreeSet<String> {
+    let mut tree = std::process::Command::new(env!("CARGO"));
+    tree.args(["tree", "--locked", "--edges", "normal,build"]);
+    tree.args(["--prefix", "none", "--format", "{p} {f}"]);
+    tree.args(packages.iter().flat_map(|name| ["--package", name]));
+    let printed = tree.current_dir(workspace()).output().unwrap();
+    assert!(printed.status.success(), "{printed:?}");
+    let printed = String::from_utf8(printed.stdout).unwrap();
+    let lines = printed.lines().filter(|line| !line.is_empty());
+    lines
+        .map(|line| line.trim_end_matches(" (*)").to_owned())
+        .collect()
+}
+
+/// The engine of WASM modules, which takes minutes, is compiled once for all that is installed.
+#[test]
+fn what_the_command_compiles_is_not_compiled_again() {
+    let command = compiled(&["htex-cli"]);
+    // As `cargo xtask dist`, the wheel and `cargo xtask bench` build them.
+    for others in [
+        &["htex-capi", "htex-cli"][..],
+        &["htex-python"],
+        &["htex-bench", "htex-cli"],
+    ] {
+        let again: Vec<_> = command.difference(&compiled(others)).cloned().collect();
+        assert_eq!(again, [""; 0], "{others:?} have other features");
     }
 }
 

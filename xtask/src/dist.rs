@@ -82,12 +82,20 @@ pub fn dist(options: &Dist) -> Result<(), String> {
 
 /// Builds the libraries; returns their folder.
 fn build(small: bool) -> Result<PathBuf, String> {
-    let profile = if small { "small" } else { "release" };
     let mut command = Command::new(cargo());
-    command.args(["build", "--package", "htex-capi", "--profile", profile]);
-    if small {
-        command.arg("--no-default-features");
-    }
+    command.args(["build", "--locked", "--package", "htex-capi"]);
+    let profile = match small {
+        true => {
+            command.args(["--profile", "small", "--no-default-features"]);
+            "small"
+        }
+        // With the command, whose features it then has: what both need is built once. Readers of recordings are built, too, and as
+        // nothing here calls them, not linked.
+        false => {
+            command.args(["--release", "--package", "htex-cli"]);
+            "release"
+        }
+    };
     let status = command.current_dir(workspace()).status();
     match status.map_err(|error| format!("cannot run cargo: {error}"))? {
         status if status.success() => Ok(target().join(profile)),

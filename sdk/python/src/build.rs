@@ -111,7 +111,11 @@ pub(crate) fn unhashed(
     output: PathBuf,
 ) -> PyResult<Vec<OsString>> {
     let files = py.detach(|| htex_build::unhashed(&recipe, &output));
-    Ok(files.map_err(raised)?.into_iter().map(OsString::from).collect())
+    Ok(files
+        .map_err(raised)?
+        .into_iter()
+        .map(OsString::from)
+        .collect())
 }
 
 /// Hashes a file; returns the hash as JSON.

@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use htex::AssetData;
-use htex::library::{Entry, Interval, LibraryError, Located, Query, LibrarySource as Bytes, Writer};
+use htex::library::{
+    Entry, Interval, LibraryError, LibrarySource as Bytes, Located, Query, Writer,
+};
 use htex::storage::{Location, Storage};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;

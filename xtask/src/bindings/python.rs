@@ -27,7 +27,8 @@ pub(super) fn environment(folder: &Path, extra: &str) -> Result<PathBuf, String>
             .args(arguments);
         pip
     };
-    let built = std::path::absolute(target().join("python")).map_err(|error| error.to_string())?;
+    // What the command and libhtex have built is not built again.
+    let built = std::path::absolute(target()).map_err(|error| error.to_string())?;
     run(pip(&["wheel", "--no-deps", "--wheel-dir", "wheel"])
         .arg(package()?)
         .env("CARGO_TARGET_DIR", built))?;

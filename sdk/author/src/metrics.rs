@@ -57,9 +57,6 @@ pub fn agreement(reference: SpectrumRef<'_>, magnitude: &[f64]) -> Agreement {
             third_octave_error_rms_db(reference.frequency_hz, reference.magnitude, magnitude)
         }
         Measure::LogSpectral => log_spectral_distance_db(reference.magnitude, magnitude),
-        Measure::Centroid => {
-            centroid_error_oct(reference.frequency_hz, reference.magnitude, magnitude)
-        }
         Measure::Level => {
             let ratio = level_rms(magnitude) / level_rms(reference.magnitude);
             Some(20.0 * libm::log10(ratio))
@@ -71,15 +68,4 @@ pub fn agreement(reference: SpectrumRef<'_>, magnitude: &[f64]) -> Agreement {
         band_error_db,
         matching_gain_db: 20.0 * libm::log10(gain),
     }
-}
-
-/// Distance between the centres of gravity of two power spectra, octaves; `None` for a spectrum without energy.
-fn centroid_error_oct(frequency_hz: &[f64], reference: &[f64], magnitude: &[f64]) -> Option<f64> {
-    let centre_hz = |magnitude: &[f64]| {
-        let power: f64 = magnitude.iter().map(|m| m * m).sum();
-        let moments = frequency_hz.iter().zip(magnitude).map(|(f, m)| f * m * m);
-        (power > 0.0).then(|| moments.sum::<f64>() / power)
-    };
-    let ratio = centre_hz(magnitude)? / centre_hz(reference)?;
-    Some(libm::log2(ratio).abs())
 }

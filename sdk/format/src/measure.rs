@@ -174,17 +174,6 @@ measures! {
         column: Some("log-sp/dB"),
         caption: Some("Log-spectral distance of the {}, RMS in dB (0 is the best, light)"),
     }
-    /// Distance between the centres of gravity of both power spectra, octaves.
-    Centroid {
-        key: "centroid_error_oct",
-        of_samples: Some("Distance of the centre of gravity of rendered samples, octaves."),
-        lacking: Some("for a spectrum without energy"),
-        name: "centroid error",
-        short: "centroid",
-        unit: "oct",
-        column: Some("centroid/oct"),
-        caption: Some("Centroid error of the {}, in octaves (0 is the best, light)"),
-    }
     /// Level in the band relative to the recording's, decibels.
     Level {
         key: "level_error_db",

@@ -27,5 +27,3 @@ class Agreement:
     """RMS error over third-octave bands, decibels; ``None`` for a reference without energy in them."""
     log_spectral_distance_db: float | None
     """RMS over the bins of the difference of the magnitudes in decibels; ``None`` for a silent reference."""
-    centroid_error_oct: float | None
-    """Distance between the centres of gravity of both power spectra, octaves; ``None`` for a spectrum without energy."""

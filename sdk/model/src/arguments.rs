@@ -158,13 +158,16 @@ fn check_weights(weights: &[f64]) -> Result<(), Error> {
     Err(Error::argument("weights must lie in 0 to 1 and sum to 1"))
 }
 
+/// A model's function that mixes sets of parameters.
+type Interpolation<'a> = dyn Fn(&[Values<'_>], &[f64], &mut Numbers<'_>) -> Result<(), Error> + 'a;
+
 /// Interpolates with a model's function: reads the sets, and checks the result. Returns the number of numbers of the result.
 ///
 /// # Errors
 /// When weights or sets are invalid, the model's own error, or that of an invalid result.
 pub fn interpolate(
     descriptor: &dyn Fields,
-    own: &dyn Fn(&[Values<'_>], &[f64], &mut Numbers<'_>) -> Result<(), Error>,
+    own: &Interpolation<'_>,
     flat: &[f64],
     weights: &[f64],
     parameters: &mut [f64],

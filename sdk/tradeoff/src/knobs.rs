@@ -144,7 +144,7 @@ pub(crate) fn of_range(option: &FitOption) -> Vec<String> {
     let value = |step: i32| {
         let part = f64::from(step) / f64::from(STEPS);
         let value = match min > 0.0 {
-            true => min * (max / min).powf(part),
+            true => min * libm::pow(max / min, part),
             false => min + part * (max - min),
         };
         match option.integer {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::{BufReader, IsTerminal};
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use htex_author::recording::ColumnMap;
 use htex_device::Source;
 use htex_format::Quantity;
@@ -45,14 +45,7 @@ pub(crate) struct InputArgs {
 
     /// Format of the recordings [default: csv; of trials npy, which takes a third of the space]
     #[arg(long, value_enum)]
-    format: Option<FormatArg>,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum FormatArg {
-    Csv,
-    Npy,
-    Wav,
+    pub(crate) format: Option<Format>,
 }
 
 /// Settings of a source; files are replayed without waiting if `is_fast`.
@@ -79,15 +72,6 @@ impl InputArgs {
             || self.quantity.is_some()
             || self.tracker.is_some()
             || self.format.is_some()
-    }
-
-    /// The format that was given.
-    pub(crate) fn format(&self) -> Option<Format> {
-        self.format.map(|format| match format {
-            FormatArg::Csv => Format::Csv,
-            FormatArg::Npy => Format::Npy,
-            FormatArg::Wav => Format::Wav,
-        })
     }
 
     /// Whether a tracker's lines come from standard input.

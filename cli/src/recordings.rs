@@ -2,12 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use htex_author::recording::{MOST_VALUES, read_recording};
 use htex_author::settings::ReadingSettings;
-use htex_author::{
-    Averaging, Exploration, SegmentChoice, SpectrumOptions, Take, validate_recording,
-};
+use htex_author::{Exploration, SpectrumOptions, Take, validate_recording};
 use htex_format::{Quantity, Report};
 #[cfg(feature = "lab")]
 use htex_lab::record::take_settings;
@@ -19,64 +17,13 @@ use crate::shown::shown;
 
 /// Options of reading recordings.
 #[derive(Args)]
-#[command(next_help_heading = "Reading recordings")]
+#[command(
+    next_help_heading = "Reading recordings",
+    mut_arg("response", |arg| arg.value_parser(located::RECORDING))
+)]
 pub(crate) struct RecordingArgs {
-    /// Sampling rate; needed where the file does not say (NPY, CSV without a time column)
-    #[arg(long, value_name = "HZ")]
-    rate: Option<f64>,
-
-    /// Names and scales other people's columns and channels: ROLE=COLUMN, ROLE=COLUMN:SCALE or ROLE=EXPRESSION, e.g.
-    /// lateral=lateral_V:0.4444,normal=-(fz1+fz2)*0.31. Roles: lateral, lateral_x, lateral_y (of other quantities:
-    /// signal, signal_x, signal_y, signal_z), normal, speed, time, x, y; columns by name, number (#3) or path (/run1/fx),
-    /// in quotes if the name has an operator; the values are in N, the quantity's unit, mm/s, s, mm
-    #[arg(long, value_name = "MAP")]
-    map: Option<String>,
-
-    /// The finger's motion from a tracker at its own rate: a file with the columns time and x, y (or speed), in times of the
-    /// recording's clock; a recording without times begins at 0 s. One for each recording, or one for all
-    #[arg(long, value_name = "FILE")]
-    tracker: Vec<PathBuf>,
-
-    /// Names and scales the tracker's columns, as --map does: time=stamp_ms:0.001,x=#2,y=#3
-    #[arg(long, value_name = "MAP", requires = "tracker")]
-    tracker_map: Option<String>,
-
-    /// What the texture's signal is: a force in N, an acceleration in m/s2 (tool tips), a velocity in m/s, a
-    /// displacement in m
-    #[arg(long, value_enum, default_value = "lateral-force")]
-    quantity: QuantityArg,
-
-    /// What a full-scale sample in WAV, FLAC and NPY files is, in the quantity's unit
-    #[arg(long, value_name = "UNITS")]
-    scale: Option<f64>,
-
-    /// Response of the recording setup to divide out: CSV with columns frequency_hz,
-    /// magnitude and, if known, phase_rad
-    #[arg(long, value_name = "CSV", value_parser = located::RECORDING)]
-    frf: Option<PathBuf>,
-
-    /// Reads the recording from this time on, s
-    #[arg(long, value_name = "S")]
-    from: Option<f64>,
-
-    /// Reads the recording up to this time, s
-    #[arg(long, value_name = "S")]
-    to: Option<f64>,
-
-    /// Most numbers of a recording that are kept in memory, where each takes 8 to 40 bytes; columns that are not used
-    /// do not count
-    #[arg(long, value_name = "N", default_value_t = MOST_VALUES)]
-    most_numbers: usize,
-
-    /// Where the texture is read: in the middles of whole sweeps, in evenly spaced windows, or (auto) in sweeps if
-    /// there are any that speak for at least half of the sliding, a sweep for 2 s at most
-    #[arg(long, value_enum, default_value = "auto")]
-    segments: SegmentsArg,
-
-    /// How segments are averaged; `rms` reads noise at its level, `magnitude` is the mean that the paper is
-    /// taken to use and reads noise 1.05 dB lower, `complex` keeps only what is in phase in all segments
-    #[arg(long, value_enum, default_value = "rms")]
-    averaging: AveragingArg,
+    #[command(flatten)]
+    pub(crate) settings: ReadingSettings,
 
     /// Scanning speed, mm/s, where the recording does not say, or instead of what it says
     #[arg(long, value_name = "MM_S")]
@@ -97,76 +44,21 @@ pub(crate) struct RecordingArgs {
     strict: bool,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum QuantityArg {
-    #[value(alias = "lateral_force")]
-    LateralForce,
-    #[value(alias = "normal_force")]
-    NormalForce,
-    Acceleration,
-    Velocity,
-    Displacement,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum SegmentsArg {
-    Auto,
-    Sweeps,
-    Windows,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum AveragingArg {
-    Magnitude,
-    Rms,
-    Complex,
-}
-
 impl RecordingArgs {
     /// The files that are read with the recordings: a response, trackers.
     pub(crate) fn inputs(&self) -> impl Iterator<Item = &Path> {
-        self.frf.iter().chain(&self.tracker).map(PathBuf::as_path)
+        let trackers = self.settings.tracker.iter().flatten();
+        let files = self.settings.response.iter().chain(trackers);
+        files.map(PathBuf::as_path)
     }
 
     pub(crate) fn strict(&self) -> bool {
         self.strict
     }
 
-    /// What was given, as settings.
-    pub(crate) fn settings(&self) -> ReadingSettings {
-        ReadingSettings {
-            rate_hz: self.rate,
-            map: self.map.clone(),
-            trackers: self.tracker.clone(),
-            tracker_map: self.tracker_map.clone(),
-            quantity: Some(match self.quantity {
-                QuantityArg::LateralForce => Quantity::LateralForce,
-                QuantityArg::NormalForce => Quantity::NormalForce,
-                QuantityArg::Acceleration => Quantity::Acceleration,
-                QuantityArg::Velocity => Quantity::Velocity,
-                QuantityArg::Displacement => Quantity::Displacement,
-            }),
-            scale: self.scale,
-            response: self.frf.clone(),
-            from_s: self.from,
-            to_s: self.to,
-            most_values: Some(self.most_numbers),
-            segments: Some(match self.segments {
-                SegmentsArg::Auto => SegmentChoice::Auto,
-                SegmentsArg::Sweeps => SegmentChoice::Sweeps,
-                SegmentsArg::Windows => SegmentChoice::Windows,
-            }),
-            averaging: Some(match self.averaging {
-                AveragingArg::Magnitude => Averaging::Magnitude,
-                AveragingArg::Rms => Averaging::Rms,
-                AveragingArg::Complex => Averaging::Complex,
-            }),
-        }
-    }
-
     /// Reads recordings, each with the condition that was given for it.
     pub(crate) fn read(&self, files: &[PathBuf]) -> Result<Vec<Take>, Failure> {
-        self.read_with(files, &self.settings())
+        self.read_with(files, &self.settings)
     }
 
     fn read_with(
@@ -190,14 +82,14 @@ impl RecordingArgs {
     /// Reads one recording, with its condition. A recording of `htex record` or of a study is read as the JSON beside it says, unless
     /// flags say what its columns are.
     pub(crate) fn read_one(&self, file: &Path) -> Result<Take, Failure> {
-        let own = take_settings(file).filter(|_| !self.says_columns());
+        let own = take_settings(file)?.filter(|_| !self.says_columns());
         self.read_as(file, own)
     }
 
     /// Reads one of several recordings, with its condition. One of `htex record` or of a study is read as the JSON beside it says, also
     /// if flags say what the columns of the others are.
     pub(crate) fn read_among(&self, file: &Path) -> Result<Take, Failure> {
-        let own = take_settings(file);
+        let own = take_settings(file)?;
         if own.is_some() && self.says_columns() {
             note(&[format!(
                 "{}: its columns, rate, quantity and motion are those that the JSON beside it says",
@@ -208,7 +100,7 @@ impl RecordingArgs {
     }
 
     fn read_as(&self, file: &Path, own: Option<ReadingSettings>) -> Result<Take, Failure> {
-        let given = self.settings();
+        let given = self.settings.clone();
         let settings = match own {
             Some(own) => of_take(own, given),
             None => given,
@@ -220,15 +112,16 @@ impl RecordingArgs {
 
     /// Whether a flag says what the columns of recordings are.
     fn says_columns(&self) -> bool {
-        let is_other = !matches!(self.quantity, QuantityArg::LateralForce);
-        let scaled = self.rate.or(self.scale).is_some();
-        scaled || self.map.is_some() || !self.tracker.is_empty() || is_other
+        let given = &self.settings;
+        let scaled = given.rate_hz.or(given.scale).is_some();
+        let is_other = given.quantity.unwrap_or_default() != Quantity::default();
+        scaled || given.map.is_some() || given.tracker.is_some() || is_other
     }
 
     /// The findings in one recording.
     pub(crate) fn validate(&self, file: &Path) -> Result<Report, Failure> {
         let given = self.conditions(1)?.pop().unwrap_or_default();
-        let settings = self.settings();
+        let settings = &self.settings;
         let read = settings.read_options(1)?.pop().unwrap_or_default();
         Ok(validate_recording(
             file,
@@ -241,12 +134,15 @@ impl RecordingArgs {
     /// Whether any option of reading recordings was given.
     pub(crate) fn is_given(&self) -> bool {
         let condition = self.speed.is_some() || self.force.is_some() || !self.at.is_empty();
-        let bounded = self.most_numbers != MOST_VALUES;
-        condition || self.strict || bounded || !self.settings().recorded().is_empty()
+        let bounded = self
+            .settings
+            .most_values
+            .is_some_and(|most| most != MOST_VALUES);
+        condition || self.strict || bounded || !self.settings.recorded().is_empty()
     }
 
     pub(crate) fn spectrum_options(&self) -> Result<SpectrumOptions, Failure> {
-        Ok(self.settings().spectrum_options()?)
+        Ok(self.settings.spectrum_options()?)
     }
 
     /// A condition for each of `count` recordings.
@@ -285,8 +181,8 @@ fn of_take(own: ReadingSettings, given: ReadingSettings) -> ReadingSettings {
 }
 
 #[cfg(not(feature = "lab"))]
-fn take_settings(_: &Path) -> Option<ReadingSettings> {
-    None
+fn take_settings(_: &Path) -> Result<Option<ReadingSettings>, Failure> {
+    Ok(None)
 }
 
 /// Reads `speed=80,force=0.4`; a quantity that is left out stays as it was.

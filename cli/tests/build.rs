@@ -299,6 +299,11 @@ fn wrong_recipes_say_where() {
     let place = place();
     let cases = [
         ("models = [\"bands\"", "modles = [\"bands\"", "modles"),
+        (
+            "[[textures]]",
+            "[defaults]\nlicence = \"CC-BY-4.0\"\n[[textures]]",
+            "library.toml: line 5: there is no key `defaults.licence`; did you mean `license`?",
+        ),
         ("rec/*.csv", "rec/*.tdms", "no file matches rec/*.tdms"),
         (
             "{surface}/{take}",

@@ -2,8 +2,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use htex_author::recording::format_names;
-use htex_author::settings::FitSettings;
-use htex_author::{AssetRequest, EmbedError, FittedAsset, Level, embed_plugins, fit_asset};
+use htex_author::settings::{FitSettings, Metadata};
+use htex_author::{AssetRequest, EmbedError, FittedAsset, embed_plugins, fit_asset};
 use htex_host::Registry;
 use htex_report::{TextureReport, texture_report};
 
@@ -13,7 +13,7 @@ use crate::failure::Failure;
 use crate::grid::{grid_plot, grid_text};
 use crate::invocation;
 use crate::located;
-use crate::metadata::{MetadataArgs, checked};
+use crate::metadata::checked;
 use crate::models::tool;
 use crate::output::{note, print, print_json, warn, write_file};
 use crate::outputs::check_outputs;
@@ -31,57 +31,41 @@ pub(crate) struct Fit {
     #[arg(required = true, value_parser = located::RECORDING)]
     recordings: Vec<PathBuf>,
 
-    /// Models by short name or id, comma-separated, or `all`
-    #[arg(
-        long,
-        default_value = "all",
-        value_delimiter = ',',
-        value_name = "ID,…"
-    )]
-    model: Vec<String>,
+    #[command(flatten)]
+    fit: FitSettings,
 
     /// A fit option of a model, e.g. ar.order=6 or mfcc.inverse=nnls; may be given several times
-    #[arg(long, value_name = "MODEL.NAME=VALUE")]
+    #[arg(long, value_name = "MODEL.NAME=VALUE", display_order = 1)]
     option: Vec<String>,
 
-    /// Level of a representation: the recording's RMS in the band, so that it plays as strong as the
-    /// recording, or that of its own fit. Bands, which keeps energies, always has
-    /// that of its fit
-    #[arg(long, value_enum, default_value = "recording")]
-    level: LevelArg,
-
     /// The asset to write
-    #[arg(short, long, value_name = "HTEX", value_parser = located::OUTPUT)]
+    #[arg(short, long, value_name = "HTEX", value_parser = located::OUTPUT, display_order = 3)]
     output: PathBuf,
-
-    /// Keep the recorded spectrum in the asset (788 bytes a condition, before compression)
-    #[arg(long)]
-    keep_reference: bool,
 
     /// A model's WASM module to fit with and to bring along in the asset, so that any player can
     /// play it; may be given several times
-    #[arg(long, value_name = "WASM")]
+    #[arg(long, value_name = "WASM", display_order = 5)]
     embed_plugin: Vec<PathBuf>,
 
     /// Sign embedded modules with this ed25519 secret key: a file of 32 bytes
-    #[arg(long, value_name = "FILE", requires = "embed_plugin")]
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "embed_plugin",
+        display_order = 6
+    )]
     sign_with: Option<PathBuf>,
 
-    /// Fit a grid of conditions to recordings in which speed and force change freely: `auto`, or lines as
-    /// speed=40,80,160 and force=0.3,0.6, each in a --grid of its own
-    #[arg(long, value_name = "LINES")]
-    grid: Vec<String>,
-
     /// Draw the grid: steady windows over speed and force, mesh, repeatability
-    #[arg(long, value_name = "SVG", requires = "grid")]
+    #[arg(long, value_name = "SVG", requires = "grid", display_order = 8)]
     grid_svg: Option<PathBuf>,
 
     /// Draw the spectra and errors of all models into this HTML page, as `htex demo` does
-    #[arg(long, value_name = "HTML", value_parser = located::OUTPUT)]
+    #[arg(long, value_name = "HTML", value_parser = located::OUTPUT, display_order = 9)]
     report: Option<PathBuf>,
 
     #[command(flatten)]
-    metadata: MetadataArgs,
+    metadata: Metadata,
 
     #[command(flatten)]
     plugins: PluginArgs,
@@ -92,12 +76,6 @@ pub(crate) struct Fit {
     /// Print JSON instead of a table
     #[arg(long)]
     json: bool,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum LevelArg {
-    Fitted,
-    Recording,
 }
 
 impl Fit {
@@ -115,7 +93,7 @@ impl Fit {
             files.chain(self.reading.inputs()),
         )?;
         let registry = self.plugins.registry_with(&self.embed_plugin)?;
-        let metadata = std::mem::take(&mut self.metadata).given();
+        let metadata = std::mem::take(&mut self.metadata);
         checked(&metadata)?;
         let request = self.request(&registry)?;
         let takes = self.reading.read(&self.recordings)?;
@@ -204,21 +182,12 @@ impl Fit {
     }
 
     fn request(&self, registry: &Registry) -> Result<AssetRequest, Failure> {
-        let mut settings = FitSettings {
-            models: Some(self.model.clone()),
-            level: Some(match self.level {
-                LevelArg::Fitted => Level::Fitted,
-                LevelArg::Recording => Level::Recording,
-            }),
-            keep_reference: Some(self.keep_reference),
-            strict: Some(self.reading.strict()),
-            grid: Some(self.grid.clone()).filter(|lines| !lines.is_empty()),
-            ..FitSettings::default()
-        };
+        let mut settings = self.fit.clone();
+        settings.strict = Some(self.reading.strict());
         settings.add_options(&self.option)?;
         let stem = self.output.file_stem();
         let name = stem.map(|s| s.to_string_lossy()).unwrap_or_default();
-        Ok(settings.request(registry, &self.reading.settings(), &name, &tool())?)
+        Ok(settings.request(registry, &self.reading.settings, &name, &tool())?)
     }
 }
 

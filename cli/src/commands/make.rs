@@ -3,13 +3,14 @@ use std::path::PathBuf;
 use clap::Args;
 use htex_author::Exploration;
 use htex_author::by_hand::{ByHand, make};
+use htex_author::settings::Metadata;
 use htex_format::{Condition, Quantity};
 
 use crate::assets::AssetSummary;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
-use crate::metadata::{MetadataArgs, checked};
+use crate::metadata::checked;
 use crate::models::tool;
 use crate::output::{print, print_json, write_file};
 use crate::outputs::check_outputs;
@@ -46,7 +47,7 @@ pub(crate) struct Make {
     output: PathBuf,
 
     #[command(flatten)]
-    metadata: MetadataArgs,
+    metadata: Metadata,
 
     #[command(flatten)]
     plugins: PluginArgs,
@@ -60,7 +61,7 @@ impl Make {
     pub(crate) fn run(mut self) -> Result<Exit, Failure> {
         let files = self.plugins.files().iter().map(PathBuf::as_path);
         check_outputs([self.output.as_path()], files)?;
-        let metadata = std::mem::take(&mut self.metadata).given();
+        let metadata = std::mem::take(&mut self.metadata);
         checked(&metadata)?;
         let registry = self.plugins.registry()?;
         let model = registry.find(&self.model)?;

@@ -2,13 +2,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use htex_author::by_hand::{MixedAsset, mix};
+use htex_author::settings::Metadata;
 
 use super::make::write;
 use crate::bounded::read_asset;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
-use crate::metadata::{MetadataArgs, checked};
+use crate::metadata::checked;
 use crate::models::tool;
 use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
@@ -36,7 +37,7 @@ pub(crate) struct Mix {
     output: PathBuf,
 
     #[command(flatten)]
-    metadata: MetadataArgs,
+    metadata: Metadata,
 
     #[command(flatten)]
     player: PlayerArgs,
@@ -52,7 +53,7 @@ impl Mix {
             [self.output.as_path()],
             [self.a.as_path(), self.b.as_path()],
         )?;
-        let metadata = std::mem::take(&mut self.metadata).given();
+        let metadata = std::mem::take(&mut self.metadata);
         checked(&metadata)?;
         let (a, b) = (self.open(&self.a)?, self.open(&self.b)?);
         let part = |(asset, blake3)| MixedAsset { asset, blake3 };

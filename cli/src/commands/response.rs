@@ -2,13 +2,13 @@ use std::collections::BTreeSet;
 use std::io::BufWriter;
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use htex_author::recording::{
     ColumnMap, MOST_VALUES, ReadError, ReadOptions, ReadProblem, format_names, read_recording,
 };
 use htex_lab::response::{
-    Estimator, Excitation, HitOptions, MeasuredResponse, Piece, Record, ResponseError,
-    ResponseOptions, column_map, measure, response_picture,
+    MeasuredResponse, Piece, Record, ResponseError, ResponseOptions, ResponseSettings, column_map,
+    measure, response_picture,
 };
 use serde_json::{Value, json};
 
@@ -58,56 +58,8 @@ pub(crate) struct Response {
     #[arg(long, value_name = "N", default_value_t = MOST_VALUES)]
     most_numbers: usize,
 
-    /// h1: for noise in the output; h2: for noise in the input; hv: for noise in both (total least squares)
-    #[arg(long, value_enum, default_value = "h1")]
-    estimator: EstimatorArg,
-
-    /// Length of the part of the recording that is transformed, s. The response is on a grid of its inverse; multiples of 0.2
-    /// put the 5 Hz of texture spectra on it
-    #[arg(long, value_name = "S", default_value_t = 1.0)]
-    window: f64,
-
-    /// Lowest frequency, Hz
-    #[arg(long, value_name = "HZ", default_value_t = 20.0)]
-    low: f64,
-
-    /// Highest frequency, Hz; half of the sampling rate if that is lower
-    #[arg(long, value_name = "HZ", default_value_t = 1000.0)]
-    high: f64,
-
-    /// Magnitude of the input at which its sensor or amplifier is overloaded. Without it, four equal samples in a row at the
-    /// highest or lowest value are an overload
-    #[arg(long, value_name = "VALUE")]
-    input_limit: Option<f64>,
-
-    /// The same for the output
-    #[arg(long, value_name = "VALUE")]
-    output_limit: Option<f64>,
-
-    /// The input is a drive without pause (noise, a sweep): windows with half overlap and a Hann window
-    #[arg(long, conflicts_with_all = ["pre_trigger", "trigger", "double", "force_window", "exponential"])]
-    continuous: bool,
-
-    /// Hits: time before the trigger that is part of the window, s; the mean there is removed [default: 0.02]
-    #[arg(long, value_name = "S")]
-    pre_trigger: Option<f64>,
-
-    /// Hits: level that starts one, relative to the largest input of the recording [default: 0.1]
-    #[arg(long, value_name = "PART")]
-    trigger: Option<f64>,
-
-    /// Hits: size of a second contact that makes a double hit, relative to the hit [default: 0.1]
-    #[arg(long, value_name = "PART")]
-    double: Option<f64>,
-
-    /// Hits: time after the trigger at which the input is faded to zero, s; it removes noise between hits
-    #[arg(long, value_name = "S")]
-    force_window: Option<f64>,
-
-    /// Hits: time constant of an exponential window on both channels, s; for responses that outlast the window. It raises
-    /// their damping by its inverse
-    #[arg(long, value_name = "S")]
-    exponential: Option<f64>,
+    #[command(flatten)]
+    settings: ResponseSettings,
 
     /// Where to write the response: CSV with columns frequency_hz,magnitude,phase_rad
     #[arg(short = 'o', long = "csv", value_name = "CSV", value_parser = located::OUTPUT)]
@@ -120,13 +72,6 @@ pub(crate) struct Response {
     /// Print JSON instead of text
     #[arg(long)]
     json: bool,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum EstimatorArg {
-    H1,
-    H2,
-    Hv,
 }
 
 impl Response {
@@ -182,35 +127,7 @@ impl Response {
     }
 
     fn options(&self) -> ResponseOptions {
-        let estimator = match self.estimator {
-            EstimatorArg::H1 => Estimator::H1,
-            EstimatorArg::H2 => Estimator::H2,
-            EstimatorArg::Hv => Estimator::Hv,
-        };
-        let excitation = match self.continuous {
-            true => Excitation::Continuous,
-            false => Excitation::Hits(self.hit_options()),
-        };
-        ResponseOptions::default()
-            .with_excitation(excitation)
-            .with_estimator(estimator)
-            .with_window_s(self.window)
-            .with_band_hz(self.low, self.high)
-            .with_limits(self.input_limit, self.output_limit)
-    }
-
-    fn hit_options(&self) -> HitOptions {
-        let usual = HitOptions::default();
-        let (trigger, double) = (usual.trigger, usual.double);
-        let pre_trigger_s = self.pre_trigger.unwrap_or(usual.pre_trigger_s);
-        usual
-            .with_pre_trigger_s(pre_trigger_s)
-            .with_levels(
-                self.trigger.unwrap_or(trigger),
-                self.double.unwrap_or(double),
-            )
-            .with_force_window_s(self.force_window)
-            .with_exponential_s(self.exponential)
+        (&self.settings).into()
     }
 
     fn title(&self) -> String {

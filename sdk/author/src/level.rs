@@ -26,6 +26,19 @@ pub enum Level {
     Fitted,
 }
 
+impl Level {
+    /// Both, in the order of the command's help.
+    pub const ALL: &[Self] = &[Self::Fitted, Self::Recording];
+
+    /// Returns the name in a recipe and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Recording => "recording",
+            Self::Fitted => "fitted",
+        }
+    }
+}
+
 /// Returns the level of a fit whose parameters are stored as `stored`: RMS in the spectrum's unit.
 ///
 /// # Errors

@@ -36,6 +36,7 @@
 mod alternatives;
 pub mod by_hand;
 mod conditions;
+mod edit;
 mod embed;
 mod error;
 mod exploration;
@@ -55,6 +56,7 @@ mod stored;
 mod take;
 mod warnings;
 
+pub use edit::{EditError, edit};
 pub use embed::{EmbedError, embed_plugins};
 pub use error::AuthorError;
 pub use exploration::{Exploration, Spread};

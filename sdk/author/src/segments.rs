@@ -40,6 +40,9 @@ pub enum SegmentChoice {
 }
 
 impl SegmentChoice {
+    /// All methods, in the order of the command's help.
+    pub const ALL: &[Self] = &[Self::Auto, Self::Sweeps, Self::Windows];
+
     /// Returns the name in a recipe and on the command line.
     pub const fn name(self) -> &'static str {
         match self {

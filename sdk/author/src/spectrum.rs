@@ -40,6 +40,9 @@ pub enum Averaging {
 }
 
 impl Averaging {
+    /// All methods, in the order of the command's help.
+    pub const ALL: &[Self] = &[Self::Magnitude, Self::Rms, Self::Complex];
+
     /// Returns the name in a recipe and on the command line.
     pub const fn name(self) -> &'static str {
         match self {

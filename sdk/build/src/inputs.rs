@@ -10,7 +10,7 @@ use walkdir::WalkDir;
 
 use crate::BuildError;
 use crate::elsewhere::{Elsewhere, folder_of, is_elsewhere, joined};
-use crate::recipe::{OneOrMore, Textures};
+use crate::recipe::Textures;
 use crate::template::Fields;
 
 /// A recording, as a rule finds it.
@@ -35,7 +35,7 @@ pub(crate) fn inputs(
     let pattern = rule.pattern.as_deref().map(Regex::new).transpose();
     let pattern =
         pattern.map_err(|e| BuildError::plan(format!("{place}.pattern"), e.to_string()))?;
-    let found = match (rule.recordings.as_slice(), &rule.table) {
+    let found = match (&rule.recordings[..], &rule.table) {
         ([], Some(table)) => tabulated(&joined(folder, table), place, folder, elsewhere)?,
         ([], None) => {
             let problem = "it names no recordings; give `recordings` (a glob) or `table` (a CSV)";
@@ -56,17 +56,17 @@ pub(crate) fn inputs(
 
 /// Returns the files that match globs, here and elsewhere, sorted by path.
 fn recordings(
-    globs: &OneOrMore,
+    globs: &[String],
     place: &str,
     (folder, output): (&Path, &Path),
     elsewhere: &Elsewhere,
 ) -> Result<Vec<Input>, BuildError> {
-    let globs = globs.as_slice().iter().cloned();
+    let globs = globs.iter().cloned();
     let (away, here): (Vec<_>, Vec<_>) =
         globs.partition(|glob| is_elsewhere(&joined(folder, Path::new(glob))));
     let mut found = Vec::new();
     if !here.is_empty() {
-        found = globbed(&OneOrMore::Several(here), place, folder, output)?;
+        found = globbed(&here, place, folder, output)?;
     }
     let mut listed = BTreeMap::new();
     for glob in &away {
@@ -115,7 +115,7 @@ fn glob_folder(uri: &str) -> (String, String) {
 
 /// Returns the files of this machine that match globs.
 fn globbed(
-    globs: &OneOrMore,
+    globs: &[String],
     place: &str,
     folder: &Path,
     output: &Path,
@@ -143,7 +143,7 @@ fn globbed(
         }
     }
     if files.is_empty() {
-        let globs = globs.as_slice().join(", ");
+        let globs = globs.join(", ");
         let problem = format!("no file matches {globs} in {}", folder.display());
         return Err(BuildError::plan(place, problem));
     }
@@ -152,9 +152,9 @@ fn globbed(
 }
 
 /// Compiles globs; `*` does not cross folders, `**` does.
-pub(crate) fn glob_set(globs: &OneOrMore, place: &str) -> Result<GlobSet, BuildError> {
+pub(crate) fn glob_set(globs: &[String], place: &str) -> Result<GlobSet, BuildError> {
     let mut set = GlobSetBuilder::new();
-    for glob in globs.as_slice() {
+    for glob in globs {
         let compiled = GlobBuilder::new(glob).literal_separator(true).build();
         set.add(compiled.map_err(|error| BuildError::plan(place, error.to_string()))?);
     }

@@ -263,7 +263,7 @@ impl Job {
 
     fn fitted(&self, registry: &Registry) -> Result<(FittedAsset, Vec<u8>, Vec<u8>), Stopped> {
         let reading = ReadingSettings {
-            trackers: self.trackers().map(|file| file.path.clone()).collect(),
+            tracker: Some(self.trackers().map(|file| file.path.clone()).collect()),
             ..self.reading.clone()
         };
         let request = self
@@ -291,11 +291,10 @@ impl Job {
     /// Reads a recording.
     fn take(&self, recording: &JobRecording) -> Result<Take, Stopped> {
         let reading = ReadingSettings {
-            trackers: recording
+            tracker: recording
                 .tracker
-                .iter()
-                .map(|file| file.path.clone())
-                .collect(),
+                .as_ref()
+                .map(|file| vec![file.path.clone()]),
             ..self.reading.clone()
         };
         let options = reading

@@ -38,6 +38,7 @@ mod gates;
 mod hashes;
 mod inputs;
 mod job;
+mod keys;
 mod made;
 mod plan;
 mod publish;
@@ -56,8 +57,7 @@ pub use made::{Made, Outcome, Record};
 pub use plan::{Plan, PlannedRecording, PlannedTexture};
 pub use publish::Destination;
 pub use recipe::{
-    At, BandErrorGate, Gates, LibraryPart, ModelOptions, NumberOrTemplate, OneOrMore, Override,
-    Recipe, Settings, Textures,
+    At, BandErrorGate, Gates, LibraryPart, NumberOrTemplate, Override, Recipe, Settings, Textures,
 };
 pub use report::{
     AssetReport, LibraryReport, Missed, REPORT, RecordingReport, Report, Status, TextureReport,

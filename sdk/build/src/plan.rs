@@ -58,7 +58,7 @@ impl PlannedTexture {
             .flat_map(|r| std::iter::once(&r.file).chain(&r.tracker));
         let settings = &self.settings;
         recordings
-            .chain(&settings.response)
+            .chain(&settings.reading.response)
             .chain(settings.embed_plugins.iter().flatten())
     }
 }
@@ -168,17 +168,14 @@ fn planned(
     let condition = |key: &str, given: Option<NumberOrTemplate>| {
         number(key, given, &fields).map_err(|problem| wrong("at", problem))
     };
-    let tracker = settings.tracker.take().map(|text| fill(&text, &fields));
-    let tracker = tracker.transpose();
+    let tracker = tracker(&mut settings, &fields).map_err(|problem| wrong("tracker", problem))?;
     let recording = PlannedRecording {
         file,
-        tracker: tracker
-            .map_err(|problem| wrong("tracker", problem))?
-            .map(PathBuf::from),
+        tracker,
         speed_mm_s: condition("speed_mm_s", at.speed_mm_s)?,
         force_n: condition("force_n", at.force_n)?,
     };
-    let metadata = filled(settings.metadata(), &fields).map_err(|(key, p)| wrong(key, p))?;
+    let metadata = filled(settings.metadata.clone(), &fields).map_err(|(key, p)| wrong(key, p))?;
     let gates = std::mem::take(&mut settings.gates);
     settings.gates.strict = gates.strict;
     Ok(PlannedTexture {
@@ -188,6 +185,15 @@ fn planned(
         metadata,
         gates,
     })
+}
+
+/// Takes the file of a recording's tracker out of the settings.
+fn tracker(settings: &mut Settings, fields: &Fields) -> Result<Option<PathBuf>, String> {
+    match &settings.reading.tracker.take().unwrap_or_default()[..] {
+        [] => Ok(None),
+        [file] => Ok(Some(fill(&file.to_string_lossy(), fields)?.into())),
+        _ => Err("a recording has one tracker; give a template".to_owned()),
+    }
 }
 
 /// Returns a speed or a force: the given one, else that of the table's column.

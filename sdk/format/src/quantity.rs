@@ -127,3 +127,20 @@ impl fmt::Display for Quantity {
         f.write_str(self.name())
     }
 }
+
+/// On the command line words have hyphens between them; the names in manifests are known, too.
+#[cfg(feature = "clap")]
+impl clap::ValueEnum for Quantity {
+    fn value_variants<'a>() -> &'a [Self] {
+        Self::ALL
+    }
+
+    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
+        let hyphens = match self {
+            Self::LateralForce => "lateral-force",
+            Self::NormalForce => "normal-force",
+            other => return Some(other.name().into()),
+        };
+        Some(clap::builder::PossibleValue::new(hyphens).alias(self.name()))
+    }
+}

@@ -7,7 +7,7 @@ use std::fs;
 
 use htex_author::Exploration;
 use htex_author::recording::{ReadOptions, read_recording};
-use htex_lab::record::{Format, Outcome, RecordError};
+use htex_lab::record::{Format, Outcome, RecordError, take_settings};
 use recording::{RATE_HZ, Settings, record, sweeps};
 
 #[test]
@@ -152,4 +152,31 @@ fn formats_hold_the_same_samples() {
         rounded(&axes[0]) == rounded(&axes[2]),
         "WAV has those of f32"
     );
+}
+
+#[test]
+fn a_take_of_this_version_has_no_other_keys() {
+    let folder = tempfile::tempdir().unwrap();
+    let source = sweeps(folder.path(), &[0.4]);
+    let taken = record(folder.path(), &source, &Settings::default()).unwrap();
+    assert!(take_settings(&taken.file).unwrap().is_some());
+    let beside = taken.file.with_extension("json");
+    let text = fs::read_to_string(&beside).unwrap();
+    for (from, to, expected) in [
+        (
+            "\"tare\"",
+            "\"rate_h\": 1, \"tare\"",
+            "take: there is no key `rate_h`; did you mean `rate_hz`?",
+        ),
+        (
+            "\"htex_take\": 1",
+            "\"htex_take\": 2",
+            "take: its version is 2, and this htex reads 1",
+        ),
+    ] {
+        assert!(text.contains(from), "{text}");
+        fs::write(&beside, text.replace(from, to)).unwrap();
+        let error = take_settings(&taken.file).unwrap_err().to_string();
+        assert_eq!(error, format!("{}: {expected}", beside.display()));
+    }
 }

@@ -196,6 +196,15 @@ fn damaged_lines_are_named_and_kept() {
         "\"rating\":9,",
         &["line 2", "not on the scale"],
     );
+    damaged(
+        "\"rating\":1,",
+        "\"rating\":1,\"ratting\":2,",
+        &[
+            "line 2",
+            "unknown field `ratting`, expected one of",
+            "`rating`",
+        ],
+    );
     damaged("\"kind\":\"rest\"", "\"kind\":\"nap\"", &["line 12"]);
     damaged("{\"kind\":\"header\"", "{\"kind\":\"leader\"", &["line 1"]);
     let header = text.lines().next().unwrap();

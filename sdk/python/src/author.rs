@@ -147,6 +147,7 @@ fn rest(fitted: &FittedAsset) -> Value {
         "fit_ms": fitted.fit_ms,
         "skipped": fitted.skipped,
         "notes": fitted.notes,
+        "felt": fitted.felt,
         "grid": fitted.grid,
     })
 }

@@ -96,7 +96,7 @@ impl Reading {
         Ok(ReadingSettings {
             rate_hz: self.rate_hz,
             map: self.map.clone(),
-            trackers: self.tracker.iter().cloned().collect(),
+            tracker: self.tracker.clone().map(|file| vec![file]),
             tracker_map: self.tracker_map.clone(),
             quantity: Some(quantity),
             scale: self.scale,

@@ -143,6 +143,39 @@ def test_arrays_have_the_channels_of_files(place: pathlib.Path) -> None:
     assert htex.fit(array, rate_hz=rate, models="ar").texture.name == "array"
 
 
+def test_columns_of_frames_are_known_by_their_names(place: pathlib.Path) -> None:
+    import pandas as pd
+
+    # Later columns come first: their names say what they are.
+    frame = pd.read_csv(place / "rec.csv", comment="#").iloc[:, ::-1]
+    expected = htex.process(place / "rec.csv")
+    for recording in [frame, {name: frame[name].to_numpy() for name in frame}]:
+        found = htex.process(recording)
+        assert np.array_equal(found.spectrum.magnitude, expected.spectrum.magnitude)
+        assert (found.rate_hz, found.condition) == (expected.rate_hz, expected.condition)
+    unnamed = pd.DataFrame(frame[["fx_n", "fy_n"]].to_numpy())
+    as_array = htex.process(unnamed.to_numpy(), rate_hz=20_000)
+    assert np.array_equal(htex.process(unnamed, rate_hz=20_000).spectrum.magnitude, as_array.spectrum.magnitude)
+
+
+def test_masked_samples_are_refused() -> None:
+    noise = np.random.default_rng(1).normal(size=10_000)
+    masked = np.ma.masked_greater(noise, 2.0)
+    for recording in [masked, {"lateral_n": masked}]:
+        with pytest.raises(htex.OptionError, match="masked values; leave their rows out, or fill them"):
+            htex.process(recording, rate_hz=1e4)
+    whole = np.ma.masked_array(noise)
+    assert htex.process(whole, rate_hz=1e4).segments == htex.process(noise, rate_hz=1e4).segments
+
+
+def test_a_fit_says_what_is_felt(place: pathlib.Path) -> None:
+    fit = htex.fit(place / "rec.csv", models=["ar", "sbeta"])
+    expected = json.loads(command("fit", "rec.csv", "--model", "ar,sbeta", "-o", "felt.htex", "--json", cwd=place).stdout)
+    assert [at for model in fit.felt for at in model] == [
+        at["felt"] for model in expected["representations"] for at in model["at"]
+    ]
+
+
 def test_unusable_recordings_are_refused(place: pathlib.Path) -> None:
     noise = np.random.default_rng(1).normal(size=10_000)
     for arguments, options, error in [

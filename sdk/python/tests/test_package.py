@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import inspect
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
+import typing
 
 import pytest
 from conftest import command
@@ -54,6 +56,21 @@ def test_types_are_strict(tmp_path: pathlib.Path) -> None:
         words = [sys.executable, "-m", *words]
         run = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=600)
         assert run.returncode == 0, run.stdout + run.stderr
+
+
+def test_types_can_be_asked_for() -> None:
+    import htex.dask
+    import htex.plot
+
+    for module in [htex, htex.dask, htex.plot]:
+        for name in getattr(module, "__all__", vars(module)):
+            value = getattr(module, name)
+            if isinstance(value, type) or inspect.isfunction(value):
+                typing.get_type_hints(value)
+            members = vars(value).values() if isinstance(value, type) else []
+            for member in members:
+                if inspect.isfunction(member):
+                    typing.get_type_hints(member)
 
 
 def test_the_examples_of_the_readme_run(place: pathlib.Path, tmp_path: pathlib.Path) -> None:

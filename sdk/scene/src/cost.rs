@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// Costs of models and stages on one machine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Costs {
     /// Name of the machine, and how the costs were measured.
     pub machine: String,

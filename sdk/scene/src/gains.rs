@@ -11,13 +11,14 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use htex_format::Manifest;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Size limit of a gains file, bytes.
 const MAX_BYTES: u64 = 16 << 20;
 
 /// Key of a gain: person, texture and device.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct GainKey {
     /// Name of the person.
     pub person: String,
@@ -31,7 +32,8 @@ pub struct GainKey {
 }
 
 /// An adjusted gain.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Gain {
     /// Person, texture and device.
     #[serde(flatten)]
@@ -53,7 +55,8 @@ pub struct Gain {
 }
 
 /// The contents of a gains file.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Gains {
     /// All gains; keys are unique.
     pub gains: Vec<Gain>,
@@ -104,7 +107,7 @@ impl Gains {
     /// Reads a gains file; a missing file gives no gains.
     ///
     /// # Errors
-    /// If it cannot be read, is too large, or is not a gains file.
+    /// If it cannot be read, is too large, or is not a gains file; also if it has keys that would be lost when it is written again.
     pub fn load(path: &Path) -> io::Result<Self> {
         let bytes = match fs::metadata(path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Self::default()),
@@ -114,7 +117,9 @@ impl Gains {
             }
             Ok(_) => fs::read(path)?,
         };
-        Ok(serde_json::from_slice(&bytes)?)
+        let document = serde_json::from_slice(&bytes)?;
+        htex_schema::check_keys::<Self>(&document).map_err(io::Error::other)?;
+        Ok(serde_json::from_value(document)?)
     }
 
     /// Reads the file, applies `change`, and replaces the file atomically; concurrent programs wait for each

@@ -34,3 +34,17 @@ fn concurrent_updates_lose_no_gain() {
     assert_eq!(kept.len(), 8);
     assert!(kept.iter().all(|gain| gain.drive_v == 70.0));
 }
+
+/// A key that is not known would be lost when the next gain is kept.
+#[test]
+fn a_file_with_unknown_keys_is_refused_and_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("gains.json");
+    let text = r#"{"gains": [{"person": "A", "texture": "cloth", "device": "org.htex.daq", "profile": "", "file": "cloth.htex",
+        "drive_v": 60.0, "referece_rms": 0.1}]}"#;
+    std::fs::write(&path, text).unwrap();
+    let error = Gains::update(&path, |_| {}).unwrap_err().to_string();
+    let expected = "there is no key `gains[0].referece_rms`; did you mean `reference_rms`?";
+    assert_eq!(error, expected);
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
+}

@@ -22,9 +22,11 @@
 
 #[cfg(feature = "check")]
 mod check;
+mod keys;
 
 #[cfg(feature = "check")]
 pub use check::{Schema, SchemaError, Violation};
+pub use keys::{UnknownKey, check_keys, unknown_keys};
 
 use schemars::transform::transform_subschemas;
 use schemars::{JsonSchema, Schema as Made, SchemaGenerator};

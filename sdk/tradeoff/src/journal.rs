@@ -16,6 +16,7 @@ const HEAD: &str = "htex tradeoff ";
 
 /// Result of measuring a contender on a recording.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(crate) enum Outcome {
     Measured(Measured),
     Failed { reason: String },
@@ -23,6 +24,7 @@ pub(crate) enum Outcome {
 
 /// A finished step. A contender is named by its id within its recording.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(crate) enum Entry {
     /// The result of measuring a contender on a recording.
     Measured {
@@ -171,5 +173,15 @@ mod tests {
         assert!(journal.entries.is_empty());
         journal.discard().unwrap();
         assert!(!path.exists());
+    }
+
+    #[test]
+    fn an_entry_with_other_keys_is_not_read() {
+        let entry = |keys: &str| {
+            let text = format!(r#"{{"Timed": {{"recording": 0, "times": []{keys}}}}}"#);
+            serde_json::from_str::<Entry>(&text)
+        };
+        assert!(entry("").is_ok());
+        assert!(entry(r#", "tims": []"#).is_err());
     }
 }

@@ -168,7 +168,7 @@ impl Record {
             },
             tolerance: self.tolerance,
             attempts: self.attempts,
-            format: self.input.format().unwrap_or_default(),
+            format: self.input.format.unwrap_or_default(),
             tool: tool(),
             source: self.source.clone(),
             map: self.input.map.clone(),

@@ -76,7 +76,7 @@ impl FeltArgs {
             map: self.input.map.clone(),
             quantity: self.input.quantity(),
             target: target(study),
-            format: self.input.format().unwrap_or(Format::Npy),
+            format: self.input.format.unwrap_or(Format::Npy),
             tool: tool(),
             is_fast,
         };

@@ -4,47 +4,86 @@ use std::collections::BTreeMap;
 
 use htex_host::{HostError, LoadedModel, Origin, Registry};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
-use super::{ReadingSettings, SettingsError};
+use super::setting::settings;
+use super::{OneOrMore, ReadingSettings, SettingsError, one_or_more};
 use crate::{AssetRequest, Grid, Level, ModelRequest};
 
-/// Settings of fitting models; an absent one has its default.
-///
-/// ```
-/// use htex_author::settings::{FitSettings, OptionSetting};
-/// use htex_host::Registry;
-///
-/// let settings = FitSettings {
-///     models: Some(vec!["ar".to_owned()]),
-///     options: [("ar.order".to_owned(), OptionSetting::Number(6.0))].into(),
-///     ..Default::default()
-/// };
-/// assert_eq!(settings.models(&Registry::builtin())?.len(), 1);
-/// # Ok::<(), htex_author::settings::SettingsError>(())
-/// ```
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct FitSettings {
-    /// Models by short name or id, in the order of the representations; all when absent or when one is `all`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub models: Option<Vec<String>>,
-    /// Fit options, `MODEL.NAME`.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub options: BTreeMap<String, OptionSetting>,
-    /// Level of the representations.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub level: Option<Level>,
-    /// Whether to keep the recorded spectra in the asset.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub keep_reference: Option<bool>,
-    /// Grid of conditions that is fitted to recordings in which speed and force change freely: `auto`, or lines such as
-    /// `speed=40,80,160` and `force=0.3,0.6` ([`Grid`]).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub grid: Option<Vec<String>>,
-    /// Whether to refuse recordings with findings that are errors or warnings.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub strict: Option<bool>,
+settings! {
+    /// Settings of fitting models; an absent one has its default.
+    ///
+    /// ```
+    /// use htex_author::settings::{FitSettings, OptionSetting};
+    /// use htex_host::Registry;
+    ///
+    /// let settings = FitSettings {
+    ///     models: Some(vec!["ar".to_owned()]),
+    ///     options: [("ar.order".to_owned(), OptionSetting::Number(6.0))].into(),
+    ///     ..Default::default()
+    /// };
+    /// assert_eq!(settings.models(&Registry::builtin())?.len(), 1);
+    /// # Ok::<(), htex_author::settings::SettingsError>(())
+    /// ```
+    pub struct FitSettings {
+        /// Models by short name or id, in the order of the representations; all when absent.
+        #[cfg_attr(feature = "clap", arg(
+            long = "model",
+            default_value = "all",
+            value_delimiter = ',',
+            value_name = "ID,…",
+            help = "Models by short name or id, comma-separated, or `all`"
+        ))]
+        pub models: Option<Vec<String>>,
+
+        /// Fit options by `MODEL.NAME`; read of tables, too.
+        #[serde(deserialize_with = "options")]
+        #[schemars(
+            with = "BTreeMap<String, BTreeMap<String, OptionSetting>>",
+            description = "Fit options: `options.ar.order = 6`.",
+            extend("default" = {})
+        )]
+        #[cfg_attr(feature = "clap", arg(skip))]
+        pub options: BTreeMap<String, OptionSetting>,
+
+        /// Level of the representations.
+        #[cfg_attr(feature = "clap", arg(
+            value_enum,
+            default_value = "recording",
+            display_order = 2,
+            help = "Level of a representation: the recording's RMS in the band, so that it plays as strong as the \
+                    recording, or that of its own fit. Bands, which keeps energies, always has \
+                    that of its fit"
+        ))]
+        pub level: Option<Level> = "level",
+
+        /// Whether to keep the recorded spectra in the asset.
+        #[cfg_attr(feature = "clap", arg(
+            long = "keep-reference",
+            action = clap::ArgAction::SetTrue,
+            display_order = 4,
+            help = "Keep the recorded spectrum in the asset (788 bytes a condition, before compression)"
+        ))]
+        pub keep_reference: Option<bool>,
+
+        /// Grid of conditions for recordings in which speed and force change freely: `auto`, or lines such as `speed=40,80,160` and
+        /// `force=0.3,0.6`.
+        #[serde(deserialize_with = "one_or_more")]
+        #[schemars(with = "OneOrMore")]
+        #[cfg_attr(feature = "clap", arg(
+            value_name = "LINES",
+            display_order = 7,
+            help = "Fit a grid of conditions to recordings in which speed and force change freely: `auto`, or lines as \
+                    speed=40,80,160 and force=0.3,0.6, each in a --grid of its own"
+        ))]
+        pub grid: Option<Vec<String>> = "grid",
+
+        /// Whether to refuse recordings with findings that are errors or warnings: in a recipe one of the gates, in the command a flag of
+        /// reading recordings.
+        #[schemars(skip)]
+        #[cfg_attr(feature = "clap", arg(skip))]
+        pub strict: Option<bool>,
+    }
 }
 
 /// The value of a model's option: a number, or the name of a choice.
@@ -57,6 +96,29 @@ pub enum OptionSetting {
     Text(String),
 }
 
+/// Reads options by `MODEL.NAME`, and tables of a model's options by name.
+fn options<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<BTreeMap<String, OptionSetting>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Options {
+        One(OptionSetting),
+        OfModel(BTreeMap<String, OptionSetting>),
+    }
+    let mut options = BTreeMap::new();
+    for (name, own) in BTreeMap::<String, Options>::deserialize(deserializer)? {
+        match own {
+            Options::One(value) => options.extend([(name, value)]),
+            Options::OfModel(own) => {
+                let named = own.into_iter();
+                options.extend(named.map(|(option, value)| (format!("{name}.{option}"), value)));
+            }
+        }
+    }
+    Ok(options)
+}
+
 impl std::fmt::Display for OptionSetting {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -67,20 +129,6 @@ impl std::fmt::Display for OptionSetting {
 }
 
 impl FitSettings {
-    /// Returns these settings, and where they are absent those of `under`; options are laid over each other one by one.
-    #[must_use]
-    pub fn over(self, mut under: Self) -> Self {
-        under.options.extend(self.options);
-        Self {
-            models: self.models.or(under.models),
-            options: under.options,
-            level: self.level.or(under.level),
-            keep_reference: self.keep_reference.or(under.keep_reference),
-            grid: self.grid.or(under.grid),
-            strict: self.strict.or(under.strict),
-        }
-    }
-
     /// Adds options of the form `MODEL.NAME=VALUE`; a model may be named by its dotted id.
     ///
     /// # Errors
@@ -141,22 +189,16 @@ impl FitSettings {
         let mut recorded = reading.recorded();
         let options = self.options.iter();
         recorded.extend(options.map(|(name, value)| (name.clone(), value.to_string())));
-        let level = self.level.unwrap_or_default();
-        if level == Level::Fitted {
-            recorded.insert("level".to_owned(), "fitted".to_owned());
-        }
+        recorded.extend(self.recorded());
         let lines = self.grid.as_deref().unwrap_or_default();
         let grid = (!lines.is_empty()).then(|| Grid::parse(lines.iter().map(String::as_str)));
-        if !lines.is_empty() {
-            recorded.insert("grid".to_owned(), lines.join(" "));
-        }
         // The models that come with this program: a plugin runs only where it is asked for.
         let builtin = registry.models().iter();
         let builtin = builtin.filter(|model| *model.origin() == Origin::Builtin);
         Ok(AssetRequest::new(name)
             .with_models(self.models(registry)?)
             .with_spectrum(reading.spectrum_options()?)
-            .with_level(level)
+            .with_level(self.level.unwrap_or_default())
             .with_alternatives(builtin.cloned().collect())
             .with_grid(
                 grid.transpose()

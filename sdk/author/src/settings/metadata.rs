@@ -1,61 +1,78 @@
 //! A texture's metadata.
 
-use htex_format::{Manifest, Severity, check_doi, check_license};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
 use super::SettingsError;
+use super::setting::settings;
+use htex_format::{Manifest, Severity, check_doi, check_license};
 
-/// What a texture is, who made it, and how it was recorded. An absent entry leaves what is there; an empty text removes it.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Metadata {
-    /// Name of the texture.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub name: Option<String>,
-    /// Who made it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub author: Option<String>,
-    /// SPDX licence expression.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub license: Option<String>,
-    /// What the surface is.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub description: Option<String>,
-    /// Search terms.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub tags: Option<Vec<String>>,
-    /// Where the recordings come from.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub source: Option<String>,
-    /// DOI of the recordings or of the paper that describes them.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub doi: Option<String>,
-    /// What measured the signal.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub sensor: Option<String>,
-    /// What slid over the surface.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub finger: Option<String>,
+settings! {
+    /// What a texture is, who made it, and how it was recorded. An absent entry leaves what is there; an empty text removes it.
+    #[cfg_attr(feature = "clap", command(next_help_heading = "Metadata"))]
+    pub struct Metadata {
+        /// Name of the texture. A recipe says it beside the recordings.
+        #[schemars(skip)]
+        #[cfg_attr(feature = "clap", arg(long, help = "Name of the texture"))]
+        pub name: Option<String>,
+
+        /// Who made it.
+        #[cfg_attr(feature = "clap", arg(long, help = "Who made it"))]
+        pub author: Option<String>,
+
+        /// SPDX licence expression.
+        #[cfg_attr(feature = "clap", arg(
+            long,
+            value_name = "SPDX",
+            help = "Licence of the asset, as an SPDX expression, e.g. CC-BY-4.0"
+        ))]
+        pub license: Option<String>,
+
+        /// What the surface is.
+        #[cfg_attr(feature = "clap", arg(long, value_name = "TEXT", help = "What the surface is, in words"))]
+        pub description: Option<String>,
+
+        /// Search terms.
+        #[cfg_attr(feature = "clap", arg(
+            long = "tag",
+            visible_alias = "tags",
+            value_delimiter = ',',
+            value_name = "WORD,…",
+            help = "Tags, comma-separated; may be given several times"
+        ))]
+        pub tags: Option<Vec<String>>,
+
+        /// Where the recordings come from.
+        #[cfg_attr(feature = "clap", arg(
+            long,
+            value_name = "TEXT",
+            help = "Where the recordings come from: a dataset, a laboratory, an address"
+        ))]
+        pub source: Option<String>,
+
+        /// DOI of the recordings or of the paper that describes them.
+        #[cfg_attr(feature = "clap", arg(
+            long,
+            help = "DOI of the recordings or of the paper that describes them, e.g. 10.5281/zenodo.1234567"
+        ))]
+        pub doi: Option<String>,
+
+        /// What measured the signal.
+        #[cfg_attr(feature = "clap", arg(
+            long,
+            value_name = "TEXT",
+            help = "What measured the signal, e.g. \"six-axis force sensor, ATI Nano17\""
+        ))]
+        pub sensor: Option<String>,
+
+        /// What slid over the surface.
+        #[cfg_attr(feature = "clap", arg(
+            long,
+            value_name = "TEXT",
+            help = "What slid over the surface, e.g. \"bare index finger\""
+        ))]
+        pub finger: Option<String>,
+    }
 }
 
 impl Metadata {
-    /// Returns these entries, and where they are absent those of `under`.
-    #[must_use]
-    pub fn over(self, under: Self) -> Self {
-        Self {
-            name: self.name.or(under.name),
-            author: self.author.or(under.author),
-            license: self.license.or(under.license),
-            description: self.description.or(under.description),
-            tags: self.tags.or(under.tags),
-            source: self.source.or(under.source),
-            doi: self.doi.or(under.doi),
-            sensor: self.sensor.or(under.sensor),
-            finger: self.finger.or(under.finger),
-        }
-    }
-
     /// Whether no entry is given.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()

@@ -1,90 +1,128 @@
 //! Settings of reading recordings.
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use htex_format::Quantity;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
-use super::SettingsError;
+use super::setting::settings;
+use super::{SettingsError, one_or_more};
 use crate::{Averaging, SegmentChoice, SpectrumOptions};
 use htex_recording::read_response;
 use htex_recording::{ColumnMap, ReadOptions, Tracker};
 
-/// Settings of reading recordings; an absent one has its default.
-///
-/// ```
-/// use htex_author::settings::ReadingSettings;
-/// let settings = ReadingSettings { rate_hz: Some(20_000.0), ..Default::default() };
-/// assert_eq!(settings.read_options(1)?[0].rate_hz, Some(20_000.0));
-/// assert_eq!(settings.recorded()["rate"], "20000");
-/// # Ok::<(), htex_author::settings::SettingsError>(())
-/// ```
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct ReadingSettings {
-    /// Sampling rate, hertz, where the file does not say.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub rate_hz: Option<f64>,
-    /// Names and scales of columns: [`ColumnMap`].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub map: Option<String>,
-    /// Files of trackers with the finger's motion, one for each recording, or one for all.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub trackers: Vec<PathBuf>,
-    /// Names and scales of the trackers' columns: [`ColumnMap`].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub tracker_map: Option<String>,
-    /// Quantity of the texture's signal.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub quantity: Option<Quantity>,
-    /// Value of a full-scale sample, in the quantity's unit.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub scale: Option<f64>,
-    /// File of the setup's response, which spectra are divided by.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub response: Option<PathBuf>,
-    /// Start of the part to read, seconds of the file.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub from_s: Option<f64>,
-    /// End of the part to read, seconds of the file.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub to_s: Option<f64>,
-    /// Limit on the numbers kept in memory.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub most_values: Option<usize>,
-    /// Method of choosing segments.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub segments: Option<SegmentChoice>,
-    /// Method of averaging segments.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub averaging: Option<Averaging>,
+settings! {
+    /// Settings of reading recordings; an absent one has its default.
+    ///
+    /// ```
+    /// use htex_author::settings::ReadingSettings;
+    /// let settings = ReadingSettings { rate_hz: Some(20_000.0), ..Default::default() };
+    /// assert_eq!(settings.read_options(1)?[0].rate_hz, Some(20_000.0));
+    /// assert_eq!(settings.recorded()["rate"], "20000");
+    /// # Ok::<(), htex_author::settings::SettingsError>(())
+    /// ```
+    pub struct ReadingSettings {
+        /// Sampling rate of the recordings, hertz, where the files do not say.
+        #[cfg_attr(feature = "clap", arg(
+            value_name = "HZ",
+            help = "Sampling rate; needed where the file does not say (NPY, CSV without a time column)"
+        ))]
+        pub rate_hz: Option<f64> = "rate",
+
+        /// Names and scales of the recordings' columns, as the command's `--map`.
+        #[cfg_attr(feature = "clap", arg(
+            value_name = "MAP",
+            help = "Names and scales other people's columns and channels: ROLE=COLUMN, ROLE=COLUMN:SCALE or ROLE=EXPRESSION, e.g. \
+                    lateral=lateral_V:0.4444,normal=-(fz1+fz2)*0.31. Roles: lateral, lateral_x, lateral_y (of other quantities: \
+                    signal, signal_x, signal_y, signal_z), normal, speed, time, x, y; columns by name, number (#3) or path (/run1/fx), \
+                    in quotes if the name has an operator; the values are in N, the quantity's unit, mm/s, s, mm"
+        ))]
+        pub map: Option<String> = "map",
+
+        /// Files of trackers with the finger's motion, one for each recording, or one for all.
+        #[serde(deserialize_with = "one_or_more")]
+        #[schemars(
+            with = "Option<String>",
+            description = "File of a tracker with the finger's motion for each recording, a template, relative to the recipe."
+        )]
+        #[cfg_attr(feature = "clap", arg(
+            value_name = "FILE",
+            help = "The finger's motion from a tracker at its own rate: a file with the columns time and x, y (or speed), in times of the \
+                    recording's clock; a recording without times begins at 0 s. One for each recording, or one for all"
+        ))]
+        pub tracker: Option<Vec<PathBuf>> = "tracker",
+
+        /// Names and scales of the trackers' columns, as the command's `--tracker-map`.
+        #[cfg_attr(feature = "clap", arg(
+            value_name = "MAP",
+            requires = "tracker",
+            help = "Names and scales the tracker's columns, as --map does: time=stamp_ms:0.001,x=#2,y=#3"
+        ))]
+        pub tracker_map: Option<String> = "tracker-map",
+
+        /// Quantity of the texture's signal.
+        #[cfg_attr(feature = "clap", arg(
+            value_enum,
+            default_value = "lateral-force",
+            help = "What the texture's signal is: a force in N, an acceleration in m/s2 (tool tips), a velocity in m/s, a \
+                    displacement in m"
+        ))]
+        pub quantity: Option<Quantity> = "quantity",
+
+        /// Value of a full-scale sample, in the quantity's unit.
+        #[cfg_attr(feature = "clap", arg(
+            value_name = "UNITS",
+            help = "What a full-scale sample in WAV, FLAC and NPY files is, in the quantity's unit"
+        ))]
+        pub scale: Option<f64> = "scale",
+
+        /// File of the setup's response, which spectra are divided by.
+        #[schemars(description = "File of the setup's response, relative to the recipe.")]
+        #[cfg_attr(feature = "clap", arg(
+            value_name = "CSV",
+            help = "Response of the recording setup to divide out: CSV with columns frequency_hz, magnitude and, if known, phase_rad"
+        ))]
+        pub response: Option<PathBuf> = "frf",
+
+        /// Start of the part to read, seconds.
+        #[cfg_attr(feature = "clap", arg(value_name = "S", help = "Reads the recording from this time on, s"))]
+        pub from_s: Option<f64> = "from",
+
+        /// End of the part to read, seconds.
+        #[cfg_attr(feature = "clap", arg(value_name = "S", help = "Reads the recording up to this time, s"))]
+        pub to_s: Option<f64> = "to",
+
+        /// Limit on the numbers kept in memory.
+        #[schemars(skip)]
+        #[cfg_attr(feature = "clap", arg(
+            long = "most-numbers",
+            value_name = "N",
+            default_value = "40000000",
+            help = "Most numbers of a recording that are kept in memory, where each takes 8 to 40 bytes; columns that are not used \
+                    do not count"
+        ))]
+        pub most_values: Option<usize>,
+
+        /// Method of choosing segments.
+        #[cfg_attr(feature = "clap", arg(
+            value_enum,
+            default_value = "auto",
+            help = "Where the texture is read: in the middles of whole sweeps, in evenly spaced windows, or (auto) in sweeps if \
+                    there are any that speak for at least half of the sliding, a sweep for 2 s at most"
+        ))]
+        pub segments: Option<SegmentChoice> = "segments",
+
+        /// Method of averaging segments.
+        #[cfg_attr(feature = "clap", arg(
+            value_enum,
+            default_value = "rms",
+            help = "How segments are averaged; `rms` reads noise at its level, `magnitude` is the mean that the paper is \
+                    taken to use and reads noise 1.05 dB lower, `complex` keeps only what is in phase in all segments"
+        ))]
+        pub averaging: Option<Averaging> = "averaging",
+    }
 }
 
 impl ReadingSettings {
-    /// Returns these settings, and where they are absent those of `under`.
-    #[must_use]
-    pub fn over(self, under: Self) -> Self {
-        Self {
-            rate_hz: self.rate_hz.or(under.rate_hz),
-            map: self.map.or(under.map),
-            trackers: match self.trackers.is_empty() {
-                true => under.trackers,
-                false => self.trackers,
-            },
-            tracker_map: self.tracker_map.or(under.tracker_map),
-            quantity: self.quantity.or(under.quantity),
-            scale: self.scale.or(under.scale),
-            response: self.response.or(under.response),
-            from_s: self.from_s.or(under.from_s),
-            to_s: self.to_s.or(under.to_s),
-            most_values: self.most_values.or(under.most_values),
-            segments: self.segments.or(under.segments),
-            averaging: self.averaging.or(under.averaging),
-        }
-    }
-
     /// Returns the options of reading each of `count` recordings.
     ///
     /// # Errors
@@ -103,7 +141,7 @@ impl ReadingSettings {
             let tracker = Tracker::new(file).with_map(map.clone());
             options.clone().with_tracker(tracker)
         };
-        match &self.trackers[..] {
+        match self.tracker.as_deref().unwrap_or_default() {
             [] => Ok(vec![options; count]),
             [one] => Ok(vec![tracked(one); count]),
             all if all.len() == count => Ok(all.iter().map(tracked).collect()),
@@ -129,45 +167,6 @@ impl ReadingSettings {
                     .map_err(|error| SettingsError::Response(Box::new(error)))?,
             ))
     }
-
-    /// Returns the settings that differ from their defaults, for an asset's provenance, under the names of the command's
-    /// flags.
-    pub fn recorded(&self) -> BTreeMap<String, String> {
-        let number = |value: Option<f64>| value.map(|x| x.to_string());
-        let name = |file: &PathBuf| {
-            let name = file.file_name();
-            name.map(|name| name.to_string_lossy().into_owned())
-        };
-        let trackers: Vec<String> = self.trackers.iter().filter_map(name).collect();
-        let entries = [
-            ("rate", number(self.rate_hz)),
-            ("map", self.map.clone()),
-            (
-                "tracker",
-                (!trackers.is_empty()).then(|| trackers.join(", ")),
-            ),
-            ("tracker-map", self.tracker_map.clone()),
-            (
-                "quantity",
-                unless_default(self.quantity, |q| q.name().replace('_', "-")),
-            ),
-            ("scale", number(self.scale)),
-            ("from", number(self.from_s)),
-            ("to", number(self.to_s)),
-            ("frf", self.response.as_ref().and_then(name)),
-            (
-                "segments",
-                unless_default(self.segments, |s| s.name().to_owned()),
-            ),
-            (
-                "averaging",
-                unless_default(self.averaging, |a| a.name().to_owned()),
-            ),
-        ];
-        let said = entries.into_iter();
-        said.filter_map(|(key, value)| Some((key.to_owned(), value?)))
-            .collect()
-    }
 }
 
 /// Reads a map of columns.
@@ -181,15 +180,4 @@ fn parsed(keyword: &'static str, text: Option<&str>) -> Result<Option<ColumnMap>
         })
     });
     map.transpose()
-}
-
-/// Returns the name of a choice if it is not the default.
-fn unless_default<T: Default + PartialEq>(
-    value: Option<T>,
-    name: impl Fn(&T) -> String,
-) -> Option<String> {
-    value
-        .filter(|value| *value != T::default())
-        .as_ref()
-        .map(name)
 }

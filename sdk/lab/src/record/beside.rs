@@ -8,6 +8,7 @@ use htex_author::settings::ReadingSettings;
 use serde_json::Value;
 
 use crate::record::data::TakeHeader;
+use crate::record::error::RecordError;
 use crate::record::write::reading;
 
 /// Longest JSON that is read, bytes; that of a take has a few thousand.
@@ -16,26 +17,43 @@ const MOST_BYTES: u64 = 1 << 20;
 /// Settings that read a recording of `htex record` or of a study, from the JSON beside it: columns, rate, quantity and the tracker's
 /// file. `None` if there is no such JSON, or if it is of a recording in another format.
 ///
+/// # Errors
+/// [`RecordError::Beside`] if the JSON is of a take and has another version or unknown keys.
+///
 /// ```
 /// // Not a take: nothing is known but the file itself.
-/// assert_eq!(htex_lab::record::take_settings("other.npy".as_ref()), None);
+/// assert_eq!(htex_lab::record::take_settings("other.npy".as_ref())?, None);
+/// # Ok::<(), htex_lab::record::RecordError>(())
 /// ```
-#[must_use]
-pub fn take_settings(recording: &Path) -> Option<ReadingSettings> {
-    let header = header(&recording.with_extension("json")).ok()??;
-    let extension = recording.extension()?;
+pub fn take_settings(recording: &Path) -> Result<Option<ReadingSettings>, RecordError> {
+    let beside = recording.with_extension("json");
+    let header = match header(&beside) {
+        Ok(Some(header)) => header,
+        Err(error) if error.kind() == io::ErrorKind::InvalidData => {
+            return Err(RecordError::Beside {
+                file: beside,
+                error,
+            });
+        }
+        _ => return Ok(None),
+    };
+    let extension = recording.extension().unwrap_or_default();
     let is_its = extension.eq_ignore_ascii_case(header.format.extension());
-    is_its.then(|| settings(recording, &header))
+    Ok(is_its.then(|| settings(recording, &header)))
 }
 
-/// The header of a take in the JSON beside its recording; `None` if the file is not of a take.
+/// The header of a take in the JSON beside its recording; `None` if the file is not of a take. What is not of this version is
+/// [`io::ErrorKind::InvalidData`].
 pub(crate) fn header(beside: &Path) -> io::Result<Option<TakeHeader>> {
     let mut bytes = Vec::new();
     File::open(beside)?
         .take(MOST_BYTES)
         .read_to_end(&mut bytes)?;
-    let json = serde_json::from_slice::<Value>(&bytes).ok();
-    Ok(json.and_then(|mut json| serde_json::from_value(json.get_mut("take")?.take()).ok()))
+    let mut json = serde_json::from_slice::<Value>(&bytes).unwrap_or_default();
+    let take = json.get_mut("take").map(Value::take);
+    let take = take.filter(|take| take.get("htex_take").is_some());
+    let header = take.map(TakeHeader::of_json).transpose();
+    header.map_err(|problem| io::Error::new(io::ErrorKind::InvalidData, format!("take: {problem}")))
 }
 
 /// Settings that read the recording of a take.
@@ -45,7 +63,7 @@ pub(crate) fn settings(recording: &Path, header: &TakeHeader) -> ReadingSettings
         map,
         rate_hz,
         quantity: Some(header.quantity),
-        trackers: tracker(recording).into_iter().collect(),
+        tracker: tracker(recording).map(|file| vec![file]),
         ..ReadingSettings::default()
     }
 }

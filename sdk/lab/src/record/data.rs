@@ -3,7 +3,9 @@
 use htex_author::recording::MAX_RATE_HZ;
 use htex_author::recording::Role;
 use htex_format::Quantity;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use crate::record::names;
 use crate::record::setup::LONGEST_S;
@@ -21,7 +23,8 @@ const AXES: [&str; 7] = [
 ];
 
 /// What a take was recorded with; the first line of a part file, and a part of the JSON beside a recording.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct TakeHeader {
     /// Version of this structure: 1.
     pub htex_take: u32,
@@ -119,6 +122,19 @@ impl TakeData {
 }
 
 impl TakeHeader {
+    /// Reads a header of this version.
+    ///
+    /// # Errors
+    /// What is wrong, if it has another version, other keys or other values.
+    pub(crate) fn of_json(json: Value) -> Result<Self, String> {
+        let version = &json["htex_take"];
+        if *version != 1 {
+            return Err(format!("its version is {version}, and this htex reads 1"));
+        }
+        htex_schema::check_keys::<Self>(&json)?;
+        serde_json::from_value(json).map_err(|error| error.to_string())
+    }
+
     /// Frames of a complete take.
     #[must_use]
     pub fn frames(&self) -> usize {

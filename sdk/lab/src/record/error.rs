@@ -92,6 +92,15 @@ pub enum RecordError {
         /// What is wrong, and what to do.
         problem: String,
     },
+    /// The JSON beside a recording does not say how it is read.
+    #[error("{}: {error}", .file.display())]
+    Beside {
+        /// The JSON.
+        file: PathBuf,
+        /// What is wrong with it.
+        #[source]
+        error: std::io::Error,
+    },
     /// Another program is recording a take.
     #[error("{}: another htex is recording into it; wait for it to end", .file.display())]
     Busy { file: PathBuf },

@@ -130,8 +130,8 @@ pub fn read_part(path: &Path) -> Result<Option<TakeData>, RecordError> {
     let Some(end) = bytes.iter().take(MOST_HEADER).position(|b| *b == b'\n') else {
         return Ok(None);
     };
-    let header: TakeHeader = serde_json::from_slice(&bytes[..end]).map_err(|error| {
-        let error = error.to_string();
+    let header = serde_json::from_slice(&bytes[..end]).map_err(|error| error.to_string());
+    let header = header.and_then(TakeHeader::of_json).map_err(|error| {
         refuse(format!(
             "it is not the part of a take that this htex records ({}); move it elsewhere",
             htex_format::plain(&error)

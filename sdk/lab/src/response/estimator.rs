@@ -5,11 +5,11 @@
 use std::fmt;
 
 use num_complex::Complex;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// An estimator of a frequency response from the auto spectra `Gxx` and `Gyy` and the cross spectrum `Gxy` of input and
 /// output. All three have the phase of `Gxy`, and `|H1| <= |Hv| <= |H2|`; without noise they are equal.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Estimator {

@@ -39,6 +39,7 @@ mod peak;
 mod picture;
 mod pieces;
 mod record;
+mod settings;
 mod spectra;
 
 pub use error::{Channel, ResponseError};
@@ -49,3 +50,4 @@ pub use peak::Peak;
 pub use picture::response_picture;
 pub use pieces::{Piece, Reason};
 pub use record::{Record, column_map};
+pub use settings::ResponseSettings;

@@ -12,7 +12,7 @@ use crate::study::gain::GainKey;
 pub(crate) const VERSION: &str = "1.0";
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case")]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Line {
     /// The first line.
     Header(Header),
@@ -36,6 +36,7 @@ pub enum Line {
 
 /// The first line: what the answers belong to.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Header {
     /// Version of this format.
     pub htex_answers: String,
@@ -59,6 +60,7 @@ pub struct Header {
 
 /// A simulated participant.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Simulated {
     /// Seed of its ratings.
     pub seed: u64,
@@ -68,6 +70,7 @@ pub struct Simulated {
 
 /// The device of a session.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct DeviceUsed {
     pub adapter: String,
     /// Its profile; empty if there is none.
@@ -76,6 +79,7 @@ pub struct DeviceUsed {
 
 /// The source of a session's felt forces, and how they are recorded.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct SourceUsed {
     /// The source, as it was named: `daq:Dev1/ai0:5`.
     pub name: String,
@@ -103,6 +107,7 @@ pub struct SourceUsed {
 
 /// A recording of what was felt in a trial.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct FeltFile {
     /// The recording in the folder of answers, with `/` between folders: `P07/felt/trial-0017-vinyl-ar.npy`.
     pub file: String,
@@ -112,6 +117,7 @@ pub struct FeltFile {
 
 /// A rating.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Answer {
     /// Number of the trial within its phase, from 1.
     pub number: u32,
@@ -143,6 +149,7 @@ pub struct Answer {
 
 /// A key press of the gain matching.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Matched {
     /// Name of the texture.
     pub texture: String,

@@ -9,17 +9,16 @@ from __future__ import annotations
 import io
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, BinaryIO, Literal, Union
+from typing import Any, BinaryIO, Literal, Union
+
+import numpy as np
+import numpy.typing as npt
 
 from . import _errors, _htex
 from ._data import Agreement, Condition, Fit, Processed, Quantity, Spectrum, Tradeoff
 from ._measures import ErrorMeasure
 
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
-    Recording = Union[str, os.PathLike[str], bytes, BinaryIO, npt.ArrayLike]
-
+Recording = Union[str, os.PathLike[str], bytes, BinaryIO, npt.ArrayLike]
 Segments = Literal["auto", "sweeps", "windows"]
 Averaging = Literal["rms", "magnitude", "complex"]
 
@@ -47,6 +46,7 @@ def process(
 
     ``recording`` is a file (CSV, WAV, FLAC, NPY, MATLAB, HDF5, TDMS, Parquet, Arrow), the bytes of one, or an array: one row per sample; one column is the
     lateral force, two are its axes, three are its axes and the normal force. An array needs ``rate_hz``.
+    Columns of a data frame or of a mapping are known by their names, as those of a CSV file.
 
     ``map`` names and scales the columns of a file: ``lateral=lateral_V:0.4444,normal=-(fz1+fz2)*0.31``. ``tracker`` is a file
     with the finger's motion at its own rate, whose columns ``tracker_map`` names. ``scale`` is the value of a full-scale sample. ``response`` is a CSV file with the response of the setup. ``strict`` refuses
@@ -264,8 +264,6 @@ def agreement(
 
     Frequencies and band are those of the reference if it is a ``Spectrum``, else 20 to 1000 Hz in steps of 5 Hz.
     """
-    import numpy as np
-
     if isinstance(reference, Spectrum):
         frequency_hz = reference.frequency_hz if frequency_hz is None else frequency_hz
         band_hz = reference.band_hz if band_hz is None else band_hz
@@ -320,9 +318,10 @@ def _source(recording: Any) -> Any:
             raise TypeError("expected a file opened in binary mode; open it with mode 'rb'")
         name = getattr(recording, "name", "recording")
         return (os.path.basename(name) if isinstance(name, str) else "recording", content)
-    import numpy as np
-
-    array = np.asarray(recording)
+    named = _columns(recording)
+    if named is not None:
+        return ("frame", _csv(named))
+    array = _unmasked("the array", recording)
     if array.dtype.kind not in "iuf":
         raise TypeError(f"expected a path, bytes, a binary file or an array of numbers, got {array.dtype}")
     if array.dtype not in (np.float32, np.float64, np.int16, np.int32):
@@ -330,6 +329,35 @@ def _source(recording: Any) -> Any:
     file = io.BytesIO()
     np.save(file, array, allow_pickle=False)
     return ("array", file.getvalue())
+
+
+def _columns(recording: Any) -> dict[str, Any] | None:
+    """Return the columns of a data frame or a mapping by their names; ``None`` for what has no names."""
+    if not (isinstance(recording, Mapping) or hasattr(recording, "columns")):
+        return None
+    names = list(getattr(recording, "columns", recording))
+    if not names or not all(isinstance(name, str) for name in names):
+        return None
+    return {name: _unmasked(f"column {name!r}", recording[name]) for name in names}
+
+
+def _unmasked(what: str, values: Any) -> Any:
+    """Return values as an array; numpy would read what is under a mask as samples."""
+    if np.ma.is_masked(values):
+        raise _errors.OptionError(f"{what} has masked values; leave their rows out, or fill them with filled()")
+    return np.asarray(values)
+
+
+def _csv(columns: Mapping[str, Any]) -> bytes:
+    """Return columns as a CSV file of all digits, whose reader knows their names."""
+    for name, values in columns.items():
+        if values.ndim != 1 or values.dtype.kind not in "biuf":
+            raise TypeError(f"column {name!r} is of {values.dtype} in {values.ndim} dimensions; give numbers, one for each sample")
+        if any(c in name for c in ',"\r\n'):
+            raise _errors.OptionError(f"column {name!r}: a name has no comma, quote or line end; rename it")
+    rows = zip(*(values.astype(np.float64).tolist() for values in columns.values()), strict=True)
+    lines = [",".join(columns), *(",".join(map(repr, row)) for row in rows)]
+    return ("\n".join(lines) + "\n").encode()
 
 
 def _stem(source: Any) -> str:
@@ -345,8 +373,6 @@ def _pair(condition: Any) -> tuple[float | None, float | None]:
 
 
 def _spectrum(fields: dict[str, Any]) -> Spectrum:
-    import numpy as np
-
     return Spectrum(
         frequency_hz=np.array(fields["frequency_hz"], dtype=np.float64),
         magnitude=np.array(fields["magnitude"], dtype=np.float64),

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal, get_type_hints
+
+import numpy as np
+import numpy.typing as npt
 
 from . import _htex
 from ._measures import Agreement as Agreement
-
-if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
 
 Quantity = Literal["lateral_force", "normal_force", "acceleration", "velocity", "displacement"]
 """A physical quantity, as a manifest names it."""
@@ -152,6 +151,8 @@ class Fit:
     """Models that could not be fitted, with reasons."""
     notes: list[str]
     """Notes about the recordings, as sentences."""
+    felt: list[list[dict[str, Any]]] = field(default_factory=list)
+    """What is felt of the difference from the recordings, of each model at each of its conditions."""
     grid: dict[str, Any] | None = None
     """The grid of the conditions, if one was requested: its lines, its cells with their segments, repeatability and status,
     and the triangles between conditions."""
@@ -217,4 +218,6 @@ def _reopen(
 
 
 for _class in (Condition, Spectrum, Reach, Coverage, Agreement, Processed, Fit, Tradeoff):
+    # Evaluated here: `typing.get_type_hints` would look for the names in the module that is stated below.
+    _class.__annotations__ = get_type_hints(_class)
     _class.__module__ = "htex"

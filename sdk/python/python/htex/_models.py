@@ -6,15 +6,14 @@ import inspect
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import Any, Protocol, TypeVar
+
+import numpy as np
+import numpy.typing as npt
 
 from . import _htex
 
-if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
-    Numbers = npt.NDArray[np.float64]
+Numbers = npt.NDArray[np.float64]
 
 Parameters = Mapping[str, Any]
 """Parameters by name: a number for a scalar field, a list of numbers for a list."""
@@ -116,8 +115,6 @@ class _Adapter:
         return self._flat(self.model.fit(frequency_hz, magnitude))
 
     def magnitude(self, flat: Numbers, frequency_hz: Numbers) -> Numbers:
-        import numpy as np
-
         returned = self.model.magnitude(self._named(flat), frequency_hz.copy())
         found = np.asarray(returned, dtype=np.float64)
         if found.shape != frequency_hz.shape:
@@ -171,8 +168,6 @@ class _Voice:
         self.voice = voice
 
     def render(self, n: int) -> npt.NDArray[np.float32]:
-        import numpy as np
-
         returned = self.voice.render(n)
         with np.errstate(over="ignore"):
             samples = np.ascontiguousarray(returned, dtype=np.float32)

@@ -26,6 +26,11 @@ from ._errors import BuildError
 
 if TYPE_CHECKING:
     from distributed import Client
+else:
+    try:
+        from distributed import Client
+    except ImportError:
+        Client = Any
 
 __all__ = ["build"]
 

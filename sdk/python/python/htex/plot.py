@@ -10,6 +10,11 @@ from ._htex import Texture
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+else:
+    try:
+        from matplotlib.axes import Axes
+    except ImportError:
+        Axes = Any
 
 
 def spectrum(spectrum: Spectrum | Processed, *, ax: Axes | None = None, label: str | None = None) -> Axes:

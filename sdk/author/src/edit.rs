@@ -1,0 +1,81 @@
+//! Other metadata for an asset, without a new fit.
+
+use htex_format::{Asset, Limits, ReadError};
+use serde_json::Value;
+
+use crate::settings::Metadata;
+
+/// Why an asset cannot be edited.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum EditError {
+    /// It is not a valid asset.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// Writing it again would lose entries that its manifest does not name, or keys inside it that this program does not know.
+    #[error("an edit would not keep all of it: {}; edit it with the program that wrote it", .lost.join("; "))]
+    Lost {
+        /// What would be lost.
+        lost: Vec<String>,
+    },
+}
+
+/// Reads an asset and changes its metadata. Parameters, recorded spectra and embedded models, with their signatures, are kept.
+///
+/// # Errors
+/// When the bytes are not a valid asset, or it would lose data.
+pub fn edit(bytes: &[u8], metadata: &Metadata) -> Result<Asset, EditError> {
+    let mut asset = Asset::from_bytes(bytes)?;
+    let lost = lost(bytes, &asset);
+    if !lost.is_empty() {
+        return Err(EditError::Lost { lost });
+    }
+    metadata.apply(&mut asset.manifest);
+    Ok(asset)
+}
+
+/// What would be lost if the asset were written again.
+fn lost(bytes: &[u8], asset: &Asset) -> Vec<String> {
+    let limits = Limits::default();
+    let report = htex_format::validate(bytes, &limits);
+    let unnamed = report.findings.iter();
+    let unnamed = unnamed.filter(|finding| finding.code == "ENTRY_UNREFERENCED");
+    let mut lost: Vec<String> = unnamed.map(|finding| finding.message.clone()).collect();
+    let written = serde_json::to_value(&asset.manifest).unwrap_or_default();
+    if let Some(read) = htex_format::manifest_json(bytes, &limits) {
+        lost_keys(&read, &written, "", &mut lost);
+    }
+    lost
+}
+
+/// Adds the pointers of keys that were read and are not written. Empty values and defaults are left out on purpose.
+fn lost_keys(read: &Value, written: &Value, pointer: &str, lost: &mut Vec<String>) {
+    match (read, written) {
+        (Value::Object(read), Value::Object(written)) => {
+            for (key, value) in read {
+                let at = format!("{pointer}/{key}");
+                match written.get(key) {
+                    Some(kept) => lost_keys(value, kept, &at, lost),
+                    None if is_left_out(value) => {}
+                    None => lost.push(format!("the key {at}")),
+                }
+            }
+        }
+        (Value::Array(read), Value::Array(written)) => {
+            for (i, (value, kept)) in read.iter().zip(written).enumerate() {
+                lost_keys(value, kept, &format!("{pointer}/{i}"), lost);
+            }
+        }
+        _ => {}
+    }
+}
+
+fn is_left_out(value: &Value) -> bool {
+    match value {
+        Value::Object(map) => map.values().all(is_left_out),
+        Value::Array(list) => list.is_empty(),
+        Value::String(text) => text.is_empty() || text == "f64",
+        Value::Bool(is) => !is,
+        _ => false,
+    }
+}

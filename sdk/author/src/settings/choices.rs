@@ -1,0 +1,22 @@
+//! Choices as values of the command's flags, by their names in recipes.
+
+use clap::ValueEnum;
+use clap::builder::PossibleValue;
+
+use crate::{Averaging, Level, SegmentChoice};
+
+macro_rules! choices {
+    ($($choice:ty),*) => {$(
+        impl ValueEnum for $choice {
+            fn value_variants<'a>() -> &'a [Self] {
+                Self::ALL
+            }
+
+            fn to_possible_value(&self) -> Option<PossibleValue> {
+                Some(PossibleValue::new(self.name()))
+            }
+        }
+    )*};
+}
+
+choices!(Averaging, Level, SegmentChoice);

@@ -1,0 +1,31 @@
+//! Settings that are one value or a list.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Deserializer};
+
+/// A text, or several.
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[schemars(rename = "OneOrMore")]
+pub enum OneOrMore<T = String> {
+    /// One.
+    One(T),
+    /// Several.
+    Several(Vec<T>),
+}
+
+/// Reads one value, or a list.
+///
+/// # Errors
+/// When it is neither.
+pub fn one_or_more<'de, T, L, D>(deserializer: D) -> Result<L, D::Error>
+where
+    T: Deserialize<'de>,
+    L: From<Vec<T>>,
+    D: Deserializer<'de>,
+{
+    Ok(L::from(match OneOrMore::deserialize(deserializer)? {
+        OneOrMore::One(value) => vec![value],
+        OneOrMore::Several(values) => values,
+    }))
+}

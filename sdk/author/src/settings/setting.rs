@@ -1,0 +1,144 @@
+//! What all settings have in common: they may be absent, they are laid over each other, and an asset's provenance keeps some.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use htex_format::Quantity;
+
+use super::OptionSetting;
+use crate::{Averaging, Level, SegmentChoice};
+
+/// A setting, which may be absent.
+pub(super) trait Setting {
+    /// Returns this setting, or where it is absent that of `under`.
+    fn over(self, under: Self) -> Self;
+
+    fn is_absent(&self) -> bool;
+
+    /// Returns the text that provenance keeps; `None` for a default, from which nothing differs.
+    fn recorded(&self) -> Option<String>;
+}
+
+/// The value of a setting that provenance keeps.
+pub(super) trait Recorded {
+    fn recorded(&self) -> Option<String>;
+}
+
+impl<T: Recorded> Setting for Option<T> {
+    fn over(self, under: Self) -> Self {
+        self.or(under)
+    }
+
+    fn is_absent(&self) -> bool {
+        self.is_none()
+    }
+
+    fn recorded(&self) -> Option<String> {
+        self.as_ref().and_then(T::recorded)
+    }
+}
+
+/// Options of models, laid over each other one by one.
+impl Setting for BTreeMap<String, OptionSetting> {
+    fn over(self, mut under: Self) -> Self {
+        under.extend(self);
+        under
+    }
+
+    fn is_absent(&self) -> bool {
+        self.is_empty()
+    }
+
+    fn recorded(&self) -> Option<String> {
+        None
+    }
+}
+
+impl Recorded for Vec<String> {
+    fn recorded(&self) -> Option<String> {
+        (!self.is_empty()).then(|| self.join(" "))
+    }
+}
+
+/// A file is recorded by its name: folders differ from machine to machine.
+impl Recorded for PathBuf {
+    fn recorded(&self) -> Option<String> {
+        Some(self.file_name()?.to_string_lossy().into_owned())
+    }
+}
+
+impl Recorded for Vec<PathBuf> {
+    fn recorded(&self) -> Option<String> {
+        let names: Vec<String> = self.iter().filter_map(Recorded::recorded).collect();
+        (!names.is_empty()).then(|| names.join(", "))
+    }
+}
+
+/// Values that are recorded by a text, unless they are the default.
+macro_rules! recorded {
+    ($($type:ty: |$value:ident| $text:expr;)*) => {$(
+        impl Recorded for $type {
+            fn recorded(&self) -> Option<String> {
+                let $value = self;
+                $text
+            }
+        }
+    )*};
+}
+
+recorded! {
+    f64: |number| Some(number.to_string());
+    usize: |number| Some(number.to_string());
+    bool: |is| is.then(|| is.to_string());
+    String: |text| Some(text.clone());
+    Quantity: |quantity| unless_default(quantity, &quantity.name().replace('_', "-"));
+    SegmentChoice: |choice| unless_default(choice, choice.name());
+    Averaging: |averaging| unless_default(averaging, averaging.name());
+    Level: |level| unless_default(level, level.name());
+}
+
+fn unless_default<T: Default + PartialEq>(value: &T, text: &str) -> Option<String> {
+    (*value != T::default()).then(|| text.to_owned())
+}
+
+/// Defines a struct of settings: what is read of recipes and of keywords (serde), of the command's flags (clap), and what provenance keeps.
+///
+/// `= "NAME"` after a setting is its flag, under which provenance keeps it; a flag of another kind is among its attributes.
+macro_rules! settings {
+    (
+        $(#[$meta:meta])*
+        pub struct $name:ident {
+            $($(#[$attribute:meta])* pub $field:ident: $type:ty $(= $flag:tt)?,)*
+        }
+    ) => {
+        #[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+        #[cfg_attr(feature = "clap", derive(clap::Args))]
+        #[serde(default, deny_unknown_fields)]
+        $(#[$meta])*
+        pub struct $name {$(
+            $(#[$attribute])*
+            $(#[cfg_attr(feature = "clap", arg(long = $flag))])?
+            #[serde(skip_serializing_if = "crate::settings::setting::Setting::is_absent")]
+            pub $field: $type,
+        )*}
+
+        impl $name {
+            /// Returns these settings, and where they are absent those of `under`.
+            #[must_use]
+            pub fn over(self, under: Self) -> Self {
+                use crate::settings::setting::Setting;
+                Self { $($field: self.$field.over(under.$field),)* }
+            }
+
+            /// Returns the settings that differ from their defaults, for an asset's provenance, under the names of the command's flags.
+            pub fn recorded(&self) -> std::collections::BTreeMap<String, String> {
+                #[allow(unused_imports)]
+                use crate::settings::setting::Setting;
+                let entries: &[(&str, Option<String>)] = &[$($(($flag, self.$field.recorded()),)?)*];
+                let said = entries.iter();
+                said.filter_map(|(flag, text)| Some(((*flag).to_owned(), text.clone()?))).collect()
+            }
+        }
+    };
+}
+pub(super) use settings;

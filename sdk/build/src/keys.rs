@@ -1,0 +1,124 @@
+//! Keys that a recipe has and its schema has not: a misspelt one would change nothing, in silence.
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::{BuildError, recipe_schema};
+
+/// Refuses keys that recipes do not have, each with its line and the known key that is most like it.
+pub(crate) fn check_keys(text: &str, recipe: &toml::Table) -> Result<(), BuildError> {
+    let document = serde_json::to_value(recipe).unwrap_or_default();
+    let unknown = htex_schema::unknown_keys(&recipe_schema(), &document);
+    let sentence = |key: &htex_schema::UnknownKey| match line(text, &key.path) {
+        Some(line) => format!("line {line}: {key}"),
+        None => key.to_string(),
+    };
+    let sentences: Vec<String> = unknown.iter().map(sentence).collect();
+    match sentences.is_empty() {
+        true => Ok(()),
+        false => Err(BuildError::Recipe {
+            problem: sentences.join("\n"),
+        }),
+    }
+}
+
+/// Returns the line of a key, from 1.
+fn line(text: &str, path: &[String]) -> Option<usize> {
+    let table = DeTable::parse(text).ok()?;
+    let (key, folders) = path.split_last()?;
+    let mut inside: &DeTable<'_> = table.get_ref();
+    let mut items: &[Spanned<DeValue<'_>>] = &[];
+    for folder in folders {
+        let value = match folder.parse::<usize>() {
+            Ok(index) if index < items.len() => items.get(index),
+            _ => inside.get(&folder[..]),
+        };
+        match value?.get_ref() {
+            DeValue::Table(table) => (inside, items) = (table, &[]),
+            DeValue::Array(array) => items = array,
+            _ => return None,
+        }
+    }
+    let (key, _) = inside.get_key_value(&key[..])?;
+    Some(text.get(..key.span().start)?.matches('\n').count() + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Recipe;
+
+    /// A misspelt key in each table of a recipe has its line and the key that was meant.
+    #[test]
+    fn unknown_keys_are_refused() {
+        let texts = [
+            (
+                "[defaults]\nlicence = 'CC-BY-4.0'",
+                "line 5: there is no key `defaults.licence`; did you mean `license`?",
+            ),
+            (
+                "[defaults]\nstrict = true",
+                "line 5: there is no key `defaults.strict`; correct it, or leave it out",
+            ),
+            (
+                "[defaults]\nname = 'a'",
+                "line 5: there is no key `defaults.name`; correct it, or leave it out",
+            ),
+            (
+                "[defaults]\nmost_values = 9",
+                "line 5: there is no key `defaults.most_values`; correct it, or leave it out",
+            ),
+            (
+                "[defaults.gates]\nmin_segmens = 9",
+                "line 5: there is no key `defaults.gates.min_segmens`; did you mean `min_segments`?",
+            ),
+            (
+                "[[textures]]\n\n'licence' = 'MIT'",
+                "line 6: there is no key `textures[1].licence`; did you mean `license`?",
+            ),
+            (
+                "[[textures]]\nat = { speed = 80 }",
+                "line 5: there is no key `textures[1].at.speed`; did you mean `speed_mm_s`?",
+            ),
+            (
+                "[[overrides]]\ntextures = ['a']\nlicence = 'MIT'",
+                "line 6: there is no key `overrides[0].licence`; did you mean `license`?",
+            ),
+            (
+                "[librarie]",
+                "line 4: there is no key `librarie`; did you mean `library`?",
+            ),
+        ];
+        for (added, expected) in texts {
+            let text = format!("library.name = 'a'\n[[textures]]\nrecordings = '*.csv'\n{added}");
+            let refused = Recipe::parse(&text).map_err(|error| error.to_string());
+            assert_eq!(refused, Err(expected.to_owned()), "{added}");
+        }
+    }
+
+    #[test]
+    fn options_and_lists_are_read_as_they_were() {
+        let text = "library.name = 'a'\n[[textures]]\nrecordings = ['a', 'b']\nname = '{stem}'\ngrid = 'auto'\n\
+                    tracker = '{stem}.trk'\noptions.ar.order = 6\noptions.'org.htex.mfcc'.inverse = 'nnls'";
+        let recipe = Recipe::parse(text)
+            .map_err(|error| error.to_string())
+            .unwrap_or_else(|e| panic!("{e}"));
+        let textures = &recipe.textures[0];
+        assert_eq!(
+            (&textures.recordings[..], textures.name.as_deref()),
+            (&["a".to_owned(), "b".to_owned()][..], Some("{stem}"))
+        );
+        assert_eq!(textures.settings.metadata.name, None);
+        let fit = textures.settings.fit();
+        assert_eq!(fit.grid, Some(vec!["auto".to_owned()]));
+        let options: Vec<String> = fit
+            .options
+            .iter()
+            .map(|(name, value)| format!("{name}={value}"))
+            .collect();
+        assert_eq!(options, ["ar.order=6", "org.htex.mfcc.inverse=nnls"]);
+        assert_eq!(
+            textures.settings.reading.tracker,
+            Some(vec!["{stem}.trk".into()])
+        );
+    }
+}

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use htex_device::{
     AdapterKind, Descriptor, Known, Origin, Profile, Registry, Search, Setting, SettingKind,
 };
-use htex_format::plain;
+use htex_finding::plain;
 use serde_json::{Value, json};
 
 use crate::failure::Failure;

@@ -4,9 +4,10 @@ use std::fmt::Write;
 use std::path::Path;
 
 use htex_author::{FeltError, GridReport, LosslessShare};
+use htex_finding::plain;
 use htex_format::{
     AtCondition, Condition, How, Ingredient, LeftOut, Made, Measure, Quality, Quantity,
-    Representation, StoredField, plain,
+    Representation, StoredField,
 };
 use serde::Serialize;
 use serde_json::{Map, Value};

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use htex_files::AtFile;
 use htex_format::Limits;
 
 use crate::failure::Failure;
@@ -14,6 +15,6 @@ pub(crate) fn read_asset(path: &Path) -> Result<Vec<u8>, Failure> {
     let most = Limits::default().file_bytes.saturating_add(1);
     File::open(path)
         .and_then(|file| file.take(most).read_to_end(&mut bytes))
-        .map_err(|error| Failure::read(path, error))?;
+        .reading(path)?;
     Ok(bytes)
 }

@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use htex_author::AuthorError;
-use htex_format::plain;
+use htex_files::FileError;
+use htex_finding::{Finding, Hint, listed, plain};
 #[cfg(feature = "lab")]
 use htex_lab::record::RecordError;
 
 use crate::exit::Exit;
-use crate::flags::{of_author_error, of_read_error, with, with_flags};
+use crate::hints::{flags_of, with_flags, with_hint};
 use crate::located::named;
 use crate::shown::shown;
 
@@ -42,7 +43,7 @@ pub(crate) enum Failure {
         file: String,
         /// What cannot be done for them.
         cannot: &'static str,
-        findings: Vec<htex_format::Finding>,
+        findings: Vec<Finding>,
     },
     #[error("{file}: {error}")]
     Scene {
@@ -61,10 +62,8 @@ pub(crate) enum Failure {
     #[cfg(feature = "lab")]
     #[error(transparent)]
     Record(#[from] htex_lab::record::RecordError),
-    #[error("cannot read {file}: {error}")]
-    Read { file: String, error: std::io::Error },
-    #[error("cannot write {file}: {error}")]
-    Write { file: String, error: std::io::Error },
+    #[error(transparent)]
+    File(#[from] FileError),
     /// The command line is invalid.
     #[error("{0}")]
     Usage(String),
@@ -95,7 +94,10 @@ impl Failure {
     pub(crate) fn exit_code(&self) -> Exit {
         use htex_device::DeviceError::{Rate, Setting, Unknown, UnknownSource};
         use htex_host::HostError::{Option, UnknownModel};
-        use htex_storage::StorageError::{NoCloud, ReadOnly};
+        use htex_storage::{
+            StorageError,
+            StorageProblem::{NoCloud, ReadOnly},
+        };
         #[cfg(feature = "lab")]
         if self.is_wrong_use_of_lab() {
             return Exit::USAGE;
@@ -108,7 +110,10 @@ impl Failure {
             Self::Usage(_)
             | Self::Model(Option { .. } | UnknownModel { .. })
             | Self::Device(Setting { .. } | Rate { .. } | Unknown { .. } | UnknownSource { .. })
-            | Self::Storage(NoCloud { .. } | ReadOnly { .. })
+            | Self::Storage(StorageError {
+                problem: NoCloud | ReadOnly,
+                ..
+            })
             | Self::Asset {
                 error: htex::Error::Model(UnknownModel { .. }) | htex::Error::EmbeddedOff { .. },
                 ..
@@ -128,8 +133,8 @@ impl Failure {
     pub(crate) fn library(file: &Path, error: htex_library::LibraryError) -> Self {
         use htex_library::LibraryError::{Open, Write};
         match error {
-            Open { path, error } => Self::read(&path, error),
-            Write { path, error } => Self::write(&path, error),
+            Open { path, error } => FileError::reading(path, error).into(),
+            Write { path, error } => FileError::writing(path, error).into(),
             error => Self::Library {
                 file: shown(file),
                 error,
@@ -140,7 +145,7 @@ impl Failure {
     /// A scene that could not be loaded.
     pub(crate) fn load(file: &Path, error: htex_scene::LoadError) -> Self {
         match error {
-            htex_scene::LoadError::Io { path, error } => Self::read(&path, error),
+            htex_scene::LoadError::Io { path, error } => FileError::reading(path, error).into(),
             htex_scene::LoadError::Invalid { findings } => Self::Findings {
                 file: shown(file),
                 cannot: "this scene cannot be played",
@@ -163,27 +168,13 @@ impl Failure {
     pub(crate) fn build(recipe: &Path, error: htex_build::BuildError) -> Self {
         use htex_build::BuildError;
         match error {
-            BuildError::Read { file, error } => Self::read(&file, error),
-            BuildError::Write { file, error } => Self::write(&file, error),
+            BuildError::Read { file, error } => FileError::reading(file, error).into(),
+            BuildError::Write { file, error } => FileError::writing(file, error).into(),
             BuildError::Storage(error) => error.into(),
             error => Self::Build {
                 recipe: shown(recipe),
                 error,
             },
-        }
-    }
-
-    pub(crate) fn read(file: &Path, error: std::io::Error) -> Self {
-        Self::Read {
-            file: shown(file),
-            error,
-        }
-    }
-
-    pub(crate) fn write(file: &Path, error: std::io::Error) -> Self {
-        Self::Write {
-            file: shown(file),
-            error,
         }
     }
 }
@@ -192,29 +183,47 @@ impl Failure {
     /// The message, line by line. It may quote files and their names: control characters are escaped, and lines
     /// end only where this program ends them.
     pub(crate) fn to_lines(&self) -> Vec<String> {
-        let text = named(&self.to_string());
-        let (first, findings) = match self {
-            // One line for each finding, with control characters escaped.
-            Self::Findings { .. } | Self::Author(AuthorError::Strict { .. }) => {
-                text.split_once('\n').unwrap_or((&text, ""))
-            }
-            _ => (&text[..], ""),
+        let text = self.to_string();
+        let findings = self.findings();
+        let first = match text.split_once('\n') {
+            Some((first, _)) if !findings.is_empty() => first,
+            _ => &text,
         };
-        let first = with(first, self.flags());
-        let lines = std::iter::once(first).chain(findings.lines().map(with_flags));
-        lines.map(|line| plain(&line).into_owned()).collect()
+        let first = with_flags(first, self.flags());
+        let of_finding = findings.iter().map(|finding| {
+            let line = format!("  {} {finding}", finding.severity);
+            with_hint(&line, finding.hint).into_owned()
+        });
+        let lines = std::iter::once(first.into_owned()).chain(of_finding);
+        lines
+            .map(|line| plain(&named(&line)).into_owned())
+            .collect()
+    }
+
+    /// The findings that end the message, each in a line of its own.
+    fn findings(&self) -> &[Finding] {
+        match self {
+            Self::Findings { findings, .. }
+            | Self::Author(AuthorError::Strict { findings, .. }) => findings,
+            _ => &[],
+        }
     }
 
     /// The flags that help against the error.
-    fn flags(&self) -> Option<&'static str> {
-        match self {
-            Self::Author(error) | Self::Tradeoff(htex_tradeoff::TradeoffError::Author(error)) => {
-                of_author_error(error)
-            }
-            Self::Recording(error) => of_read_error(error),
+    fn flags(&self) -> Option<String> {
+        let flags = flags_of(match self {
+            Self::Author(error) => error.hint(),
+            Self::Tradeoff(error) => error.hint(),
+            Self::Recording(error) => error.hint(),
             #[cfg(feature = "lab")]
-            Self::Response(error) => crate::flags::of_response_error(error),
-            _ => None,
+            Self::Response(error) => error.hint(),
+            _ => Hint::NONE,
+        });
+        match self {
+            Self::Author(AuthorError::Strict { .. }) => {
+                flags.map(|flags| flags + "; `htex explain CODE` describes each")
+            }
+            _ => flags,
         }
     }
 }
@@ -225,10 +234,4 @@ fn flag_of(error: &htex::Error) -> &'static str {
         htex::Error::EmbeddedOff { .. } => " (by --no-embedded-plugins)",
         _ => "",
     }
-}
-
-/// Findings, each after a line end.
-fn listed(findings: &[htex_format::Finding]) -> String {
-    let line = |f: &htex_format::Finding| format!("\n  {} {}", f.severity, plain(&f.to_string()));
-    findings.iter().map(line).collect()
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use htex_files::AtFile;
 use htex_format::Manifest;
 use htex_scene::file::Levels;
 use htex_scene::{Gain, GainKey, Gains, recordings_of, texture_id, texture_name};
@@ -59,7 +60,7 @@ pub(crate) fn gains_file() -> Result<PathBuf, Failure> {
 /// The kept gains, and their file.
 pub(crate) fn gains() -> Result<(Gains, PathBuf), Failure> {
     let file = gains_file()?;
-    let gains = Gains::load(&file).map_err(|error| Failure::read(&file, error))?;
+    let gains = Gains::load(&file).reading(&file)?;
     Ok((gains, file))
 }
 
@@ -76,7 +77,9 @@ pub(crate) fn key(person: &str, texture: Option<&str>, ready: &Ready) -> GainKey
 
 /// The hash that identified a texture in earlier versions.
 pub(crate) fn hash(ready: &Ready) -> Result<String, Failure> {
-    Gains::hash_of(&ready.file).map_err(|error| Failure::read(&ready.file, error))
+    Gains::hash_of(&ready.file)
+        .reading(&ready.file)
+        .map_err(Failure::from)
 }
 
 /// Names of the files that the textures were recorded in.

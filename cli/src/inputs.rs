@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use clap::Args;
 use htex_author::recording::ColumnMap;
 use htex_device::Source;
+use htex_files::AtFile;
 use htex_format::Quantity;
 use htex_lab::record::{Calibration, Format, LineTracker, Signals, TableTracker, TrackerRows};
 
@@ -110,7 +111,7 @@ impl InputArgs {
             }
             Some(("lines", path)) => {
                 let file = std::fs::File::open(path);
-                let file = file.map_err(|error| Failure::read(path.as_ref(), error))?;
+                let file = file.reading(path)?;
                 Box::new(LineTracker::new(path, BufReader::new(file)))
             }
             _ => {

@@ -11,9 +11,9 @@ mod commands;
 mod devices;
 mod exit;
 mod failure;
-mod flags;
 mod gains;
 mod grid;
+mod hints;
 #[cfg(feature = "lab")]
 mod inputs;
 mod invocation;
@@ -31,11 +31,14 @@ mod progress;
 mod recording_plot;
 mod recordings;
 mod report;
+mod rules;
 mod scenes;
 mod schemas;
 mod shown;
 mod signals;
 mod sources;
+mod transfer;
+mod validation;
 mod wasm_limits;
 mod wav;
 
@@ -126,10 +129,10 @@ fn parse_and_run(arguments: Vec<OsString>) -> u8 {
 /// Runs a command between the downloads of its inputs and the uploads of its outputs.
 fn run_command(command: Command) -> Result<Exit, Failure> {
     signals::handle()?;
-    located::fetch()?;
+    transfer::fetch()?;
     let exit = command.run()?;
     // A command may have asked for signals, and from here on nothing looks at them.
     signals::handle()?;
-    located::put()?;
+    transfer::put()?;
     Ok(exit)
 }

@@ -4,20 +4,14 @@
 //! printed names the URI again ([`named`]).
 
 use std::ffi::{OsStr, OsString};
-use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::error::ErrorKind;
-use htex_format::{Limits, plain};
-use htex_storage::{Location, Storage, StorageError};
+use htex_finding::plain;
+use htex_storage::Location;
 use tempfile::TempDir;
-
-use crate::failure::Failure;
-
-/// Most bytes of a recording that is downloaded. Those of its numbers that are kept are bounded by `--most-numbers`.
-const MOST_RECORDING_BYTES: u64 = 16 << 30;
 
 /// An argument that is an asset, at most as large as one may be.
 pub(crate) const ASSET: Argument = Argument(Role::Asset);
@@ -47,7 +41,7 @@ struct Copied {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Role {
+pub(crate) enum Role {
     Asset,
     Recording,
     Output,
@@ -147,43 +141,8 @@ pub(crate) fn remove_copies() {
     }
 }
 
-/// Downloads what is read, and checks that what will be written can be, as far as that is known without a request.
-pub(crate) fn fetch() -> Result<(), Failure> {
-    let files = taken(|_| true);
-    if files.is_empty() {
-        return Ok(());
-    }
-    let storage = Storage::from_environment()?;
-    for (location, _, _) in files.iter().filter(|(_, _, role)| *role == Role::Output) {
-        storage.check_writable(location)?;
-    }
-    for (location, local, role) in files {
-        let most_bytes = match role {
-            Role::Output => continue,
-            Role::Asset => Limits::default().file_bytes,
-            Role::Recording => MOST_RECORDING_BYTES,
-        };
-        let file = File::create(&local).map_err(|error| Failure::write(&local, error))?;
-        storage.download(&location, file, most_bytes)?;
-    }
-    Ok(())
-}
-
-/// Writes the outputs of a command that has succeeded. What cannot be written stays in its local copy.
-pub(crate) fn put() -> Result<(), Failure> {
-    let outputs = taken(|role| role == Role::Output);
-    if outputs.is_empty() {
-        return Ok(());
-    }
-    let storage = Storage::from_environment()?;
-    for (location, local, _) in outputs {
-        let written = storage.write_file(&location, &local);
-        written.map_err(|error| keep(&local, error))?;
-    }
-    Ok(())
-}
-
-fn taken(is_wanted: impl Fn(Role) -> bool) -> Vec<(Location, PathBuf, Role)> {
+/// The files elsewhere whose role is wanted.
+pub(crate) fn taken(is_wanted: impl Fn(Role) -> bool) -> Vec<(Location, PathBuf, Role)> {
     let elsewhere = local();
     let wanted = elsewhere.files.iter().filter(|file| is_wanted(file.role));
     wanted
@@ -191,16 +150,15 @@ fn taken(is_wanted: impl Fn(Role) -> bool) -> Vec<(Location, PathBuf, Role)> {
         .collect()
 }
 
-/// The error of an output, whose local copy outlives the command.
-fn keep(copy: &Path, error: StorageError) -> Failure {
+/// Keeps the local copies beyond the command.
+pub(crate) fn keep() {
     let mut elsewhere = local();
-    // From now on the copy is named as such.
+    // From now on a copy is named as such.
     elsewhere.files.clear();
     FOLDER.lock().unwrap_or_else(PoisonError::into_inner).take();
     if let Some(folder) = elsewhere.folder.take() {
         let _ = folder.keep();
     }
-    Failure::Other(format!("{error}; the result is kept in {}", copy.display()))
 }
 
 /// Whether a path is a copy of a file elsewhere.

@@ -3,13 +3,14 @@
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-use htex_format::plain;
+use htex_files::{AtFile, FileError};
+use htex_finding::{Notice, plain};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use crate::failure::Failure;
-use crate::flags::with_flags;
+use crate::hints::with_hint;
 use crate::located::named;
 
 /// Prints a line on standard error; unlike `eprintln!` it does not panic when that is closed.
@@ -44,7 +45,7 @@ pub(crate) fn write_bytes(bytes: &[u8]) -> Result<(), Failure> {
     let mut output = std::io::stdout().lock();
     match output.write_all(bytes).and_then(|()| output.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::write(Path::new("standard output"), error))
+            Err(FileError::writing("standard output", error).into())
         }
         _ => Ok(()),
     }
@@ -81,21 +82,26 @@ fn tame(value: &mut Value) {
     }
 }
 
-/// Prints a warning.
-pub(crate) fn warn(warnings: &[String]) {
-    for warning in warnings {
-        tell!("warning: {}", plain(&named(&with_flags(warning))));
-    }
+/// Prints warnings.
+pub(crate) fn warn<N: Clone + Into<Notice>>(warnings: &[N]) {
+    tell_all("warning", warnings);
 }
 
-/// Prints a note.
-pub(crate) fn note(notes: &[String]) {
-    for note in notes {
-        tell!("note: {}", plain(&named(&with_flags(note))));
+/// Prints notes.
+pub(crate) fn note<N: Clone + Into<Notice>>(notes: &[N]) {
+    tell_all("note", notes);
+}
+
+fn tell_all<N: Clone + Into<Notice>>(kind: &str, notices: &[N]) {
+    for notice in notices {
+        let Notice { text, hint } = notice.clone().into();
+        tell!("{kind}: {}", plain(&named(&with_hint(&text, hint))));
     }
 }
 
 /// Writes a file under a temporary name beside it and renames it.
 pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    htex_format::write_file(path, bytes).map_err(|error| Failure::write(path, error))
+    htex_format::write_file(path, bytes)
+        .writing(path)
+        .map_err(Failure::from)
 }

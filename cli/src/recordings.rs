@@ -6,7 +6,8 @@ use clap::Args;
 use htex_author::recording::{MOST_VALUES, read_recording};
 use htex_author::settings::ReadingSettings;
 use htex_author::{Exploration, SpectrumOptions, Take, validate_recording};
-use htex_format::{Quantity, Report};
+use htex_finding::Report;
+use htex_format::Quantity;
 #[cfg(feature = "lab")]
 use htex_lab::record::take_settings;
 

@@ -153,7 +153,7 @@ impl SceneArgs {
     }
 
     /// Validates a scene file.
-    pub(crate) fn validate(file: &Path) -> Result<htex_format::Report, Failure> {
+    pub(crate) fn validate(file: &Path) -> Result<htex_finding::Report, Failure> {
         let registry = PluginArgs::installed()?;
         let around = Surroundings {
             models: &registry,

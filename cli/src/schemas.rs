@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use htex_device::SettingKind;
-use htex_format::{Finding, Findings, Report, Severity, explain};
+use htex_files::AtFile;
+use htex_finding::{FINDINGS_TRUNCATED, Finding, Report, Rule, Severity};
+use htex_format::{EXTENSION_SCHEMA_BROKEN, SCHEMA_BROKEN};
 #[cfg(feature = "schemas")]
 use htex_schema::{Schema, Violation};
 use serde_json::{Map, Value, json};
@@ -65,7 +67,7 @@ impl Named {
             };
             match report.findings.iter_mut().find(same) {
                 Some(finding) => drop(finding.schema_rule.get_or_insert(rule)),
-                None => add(report, "SCHEMA_BROKEN", violation, rule, ""),
+                None => add(report, SCHEMA_BROKEN, violation, rule, ""),
             }
         }
     }
@@ -81,35 +83,21 @@ fn covers(finding: &str, violation: &str) -> bool {
 }
 
 /// Adds a violation, while there are not a hundred findings yet.
-fn add(report: &mut Report, code: &str, violation: Violation, rule: String, at: &str) {
+fn add(report: &mut Report, broken: &Rule, violation: Violation, rule: String, at: &str) {
     report.valid = false;
     let shown = report.findings.len();
     if shown < KEPT {
         let message = format!("{}; correct it", violation.message);
         let pointer = format!("{at}{}", violation.pointer);
-        push(report, code, pointer, message, Some(rule));
+        report.findings.push(Finding {
+            schema_rule: Some(rule),
+            ..Finding::new(broken, pointer, &message)
+        });
     } else if shown == KEPT {
-        let message = "more findings are not shown".to_owned();
-        push(report, "FINDINGS_TRUNCATED", String::new(), message, None);
+        let message = "more findings are not shown";
+        let finding = Finding::new(FINDINGS_TRUNCATED, "", message);
+        report.findings.push(finding);
     }
-}
-
-fn push(
-    report: &mut Report,
-    code: &str,
-    pointer: String,
-    message: String,
-    schema_rule: Option<String>,
-) {
-    let mut findings = Findings::default();
-    if let Some(rule) = explain(code) {
-        findings.add(rule, pointer, message);
-    }
-    let found = findings.into_list().into_iter();
-    report.findings.extend(found.map(|finding| Finding {
-        schema_rule: schema_rule.clone(),
-        ..finding
-    }));
 }
 
 /// The schema of an extension's author: `com.vendor.NAME/REVISION=FILE`.
@@ -131,7 +119,7 @@ impl ExtensionSchema {
             return Err(form());
         }
         let file = PathBuf::from(file);
-        let bytes = std::fs::read(&file).map_err(|error| Failure::read(&file, error))?;
+        let bytes = std::fs::read(&file).reading(&file)?;
         let schema = htex_format::parse_json(&bytes).map_err(|error| wrong(error.to_string()))?;
         let schema = Schema::new(&schema).map_err(|error| wrong(error.to_string()))?;
         let name = name.to_owned();
@@ -146,10 +134,10 @@ impl ExtensionSchema {
         else {
             return;
         };
-        let at = format!("/extensions/{}", htex_format::escape(&self.name));
+        let at = format!("/extensions/{}", htex_finding::escape(&self.name));
         for violation in self.schema.violations(extension) {
             let rule = format!("{}#{}", file_name(&self.file), violation.rule);
-            add(report, "EXTENSION_SCHEMA_BROKEN", violation, rule, &at);
+            add(report, EXTENSION_SCHEMA_BROKEN, violation, rule, &at);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use htex_format::plain;
+use htex_finding::plain;
 
 /// A path with control characters escaped.
 pub(crate) fn shown(path: &Path) -> String {

@@ -8,6 +8,7 @@ use hound::{SampleFormat, WavSpec, WavWriter};
 
 use crate::failure::Failure;
 use crate::shown::shown;
+use htex_files::FileError;
 
 /// Most bytes of samples a WAV file can hold.
 const MAX_FRAMES: u64 = (u32::MAX as u64 - 64) / 4;
@@ -52,7 +53,7 @@ pub(crate) fn write_wav(
     });
     match (failed, written) {
         (Some(failure), _) => Err(failure),
-        (None, Err(error)) => Err(Failure::write(path, error)),
+        (None, Err(error)) => Err(FileError::writing(path, error).into()),
         (None, Ok(())) => Ok(()),
     }
 }

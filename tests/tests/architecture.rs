@@ -13,13 +13,17 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("htex-model", &["htex-dsp", "htex-schema"]),
     ("htex-schema", &[]),
     ("htex-files", &[]),
+    ("htex-finding", &[]),
     ("htex-native", &[]),
     ("htex-storage", &["htex-files"]),
     ("htex-object-server", &[]),
-    ("htex-format", &["htex-files", "htex-model", "htex-schema"]),
+    (
+        "htex-format",
+        &["htex-files", "htex-finding", "htex-model", "htex-schema"],
+    ),
     (
         "htex-library",
-        &["htex-files", "htex-format", "htex-storage"],
+        &["htex-files", "htex-finding", "htex-format", "htex-storage"],
     ),
     (
         "htex-build",
@@ -41,6 +45,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-device",
             "htex-dsp",
             "htex-files",
+            "htex-finding",
             "htex-format",
             "htex-play",
             "htex-report",
@@ -64,13 +69,17 @@ const ARROWS: &[(&str, &[&str])] = &[
         "htex-author",
         &[
             "htex-dsp",
+            "htex-finding",
             "htex-format",
             "htex-host",
             "htex-play",
             "htex-recording",
         ],
     ),
-    ("htex-recording", &["htex-dsp", "htex-format"]),
+    (
+        "htex-recording",
+        &["htex-dsp", "htex-finding", "htex-format"],
+    ),
     (
         "htex-simulate",
         &["htex-dsp", "htex-format", "htex-recording"],
@@ -81,7 +90,13 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
     (
         "htex-play",
-        &["htex-dsp", "htex-format", "htex-host", "htex-library"],
+        &[
+            "htex-dsp",
+            "htex-finding",
+            "htex-format",
+            "htex-host",
+            "htex-library",
+        ],
     ),
     ("htex-player", &[]),
     (
@@ -107,6 +122,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         &[
             "htex-device",
             "htex-dsp",
+            "htex-finding",
             "htex-format",
             "htex-host",
             "htex-play",
@@ -119,6 +135,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         &[
             "htex-author",
             "htex-dsp",
+            "htex-finding",
             "htex-format",
             "htex-host",
             "htex-report",
@@ -143,6 +160,8 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-simulate",
             "htex-tradeoff",
             "htex-dsp",
+            "htex-files",
+            "htex-finding",
             "htex-format",
             "htex-host",
             "htex-model",
@@ -177,6 +196,7 @@ const ARROWS: &[(&str, &[&str])] = &[
             "htex-capi",
             "adapter",
             "htex-device",
+            "htex-finding",
             "htex-format",
             "htex-host",
             "htex-lab",

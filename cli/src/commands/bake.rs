@@ -12,6 +12,7 @@ use crate::outputs::check_outputs;
 use crate::plugins::PlayerArgs;
 use crate::scenes::USUAL;
 use crate::shown::shown;
+use htex_files::AtFile;
 
 /// Write a texture as a block of bytes for the player on microcontrollers (docs/microcontroller.md).
 ///
@@ -76,8 +77,7 @@ impl Bake {
             Format::C => htex_bake::c_header(&stem, &baked.bytes).into_bytes(),
             Format::Rust => htex_bake::rust_source(&stem, &baked.bytes).into_bytes(),
         };
-        htex_format::write_file(&self.output, &written)
-            .map_err(|error| Failure::write(&self.output, error))?;
+        htex_format::write_file(&self.output, &written).writing(&self.output)?;
         let error_db = baked.at_conditions_db.max(baked.between_db);
         if error_db > self.within {
             warn(&[format!(

@@ -7,7 +7,7 @@ use std::time::Instant;
 use clap::Args;
 use htex_author::LosslessShare;
 use htex_build::{Build as Recipe, BuildOptions, Built, Destination, Job, Status, TextureReport};
-use htex_format::plain;
+use htex_finding::plain;
 use htex_storage::Location;
 use serde::Serialize;
 

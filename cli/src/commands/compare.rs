@@ -4,7 +4,8 @@ use clap::Args;
 use htex_author::recording::format_names;
 use htex_author::{Exploration, FeltError, TextureSpectrum, agreement, felt, measure, read_take};
 use htex_dsp::vibrotactile::Listener;
-use htex_format::{Measure, Quality, plain};
+use htex_finding::{Notice, plain};
+use htex_format::{Measure, Quality};
 use serde::Serialize;
 
 use super::validate::{Kind, kind};
@@ -54,7 +55,7 @@ struct Comparison {
     force_n: Option<f64>,
     representations: Vec<Compared>,
     repeatability_rms_db: Option<f64>,
-    warnings: Vec<String>,
+    warnings: Vec<Notice>,
 }
 
 #[derive(Serialize)]
@@ -140,7 +141,7 @@ impl Compare {
     fn other_recording(
         &self,
         spectrum: &TextureSpectrum,
-    ) -> Result<(OtherRecording, Vec<String>), Failure> {
+    ) -> Result<(OtherRecording, Vec<Notice>), Failure> {
         let (other, found, warnings) = self.spectrum(&self.other)?;
         if (other.quantity, other.band) != (spectrum.quantity, spectrum.band) {
             return Err(Failure::Other(format!(
@@ -171,7 +172,7 @@ impl Compare {
     fn spectrum(
         &self,
         recording: &Path,
-    ) -> Result<(TextureSpectrum, Exploration, Vec<String>), Failure> {
+    ) -> Result<(TextureSpectrum, Exploration, Vec<Notice>), Failure> {
         let take = self.reading.read_among(recording)?;
         let options = self.reading.spectrum_options()?;
         let reading = read_take(&take, &options, self.reading.strict())?;

@@ -9,6 +9,7 @@ use htex_author::{
     AssetRequest, AuthorError, Exploration, FeltError, SetupResponse, SpectrumOptions, Take,
     fit_asset,
 };
+use htex_files::AtFile;
 use htex_format::{By, Keyed, Measure};
 use htex_host::Registry;
 use htex_report::{Share, Texture, TextureReport, spectra_picture, texture_report};
@@ -59,7 +60,7 @@ pub(crate) struct Demo {
 
 impl Demo {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
-        std::fs::create_dir_all(&self.dir).map_err(|error| Failure::write(&self.dir, error))?;
+        std::fs::create_dir_all(&self.dir).writing(&self.dir)?;
         let rig = SimulationOptions::new(Surface::Sandpaper)
             .setup_response()
             .map_err(simulation_failure)?;
@@ -135,7 +136,9 @@ impl Demo {
         let simulation = simulate(&options).map_err(simulation_failure)?;
         let write =
             |file: &mut std::fs::File| simulation.write_csv(&mut std::io::BufWriter::new(file));
-        htex_format::replace_file(csv, write).map_err(|error| Failure::write(csv, error))
+        htex_format::replace_file(csv, write)
+            .writing(csv)
+            .map_err(Failure::from)
     }
 
     fn page(&self, textures: Vec<Texture>, shares: Vec<Share>) -> TextureReport {

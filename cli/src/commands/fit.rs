@@ -4,6 +4,7 @@ use clap::Args;
 use htex_author::recording::format_names;
 use htex_author::settings::{FitSettings, Metadata};
 use htex_author::{AssetRequest, EmbedError, FittedAsset, embed_plugins, fit_asset};
+use htex_files::{AtFile, FileError};
 use htex_host::Registry;
 use htex_report::{TextureReport, texture_report};
 
@@ -118,11 +119,13 @@ impl Fit {
             self.write_report(file, &fitted, &summary, registry)?;
         }
         if self.json {
-            summary.notes.extend(fitted.notes);
+            summary
+                .notes
+                .extend(fitted.notes.iter().map(ToString::to_string));
             summary.grid = fitted.grid;
             print_json(&summary)?;
         } else {
-            warn(&summary.warnings);
+            warn(&fitted.warnings);
             note(&fitted.notes);
             summary.warnings.clear();
             print(&summary.to_text())?;
@@ -170,7 +173,7 @@ impl Fit {
         let secret_key = self.sign_with.as_deref().map(secret_key).transpose()?;
         let embedded = embed_plugins(asset, registry, &self.embed_plugin, secret_key.as_ref());
         embedded.map_err(|error| match error {
-            EmbedError::Read { file, error } => Failure::read(&file, error),
+            EmbedError::Read { file, error } => FileError::reading(file, error).into(),
             EmbedError::NotFitted { file, model } => {
                 let file = file.display();
                 Failure::Usage(format!(
@@ -205,7 +208,7 @@ fn command_line() -> String {
 
 /// Reads an ed25519 secret key.
 fn secret_key(file: &Path) -> Result<[u8; 32], Failure> {
-    let bytes = std::fs::read(file).map_err(|error| Failure::read(file, error))?;
+    let bytes = std::fs::read(file).reading(file)?;
     let len = bytes.len();
     bytes.try_into().map_err(|_| {
         let file = file.display();

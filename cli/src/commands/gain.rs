@@ -3,6 +3,7 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use clap::Args;
 use htex_device::Quantity;
+use htex_files::AtFile;
 use htex_scene::{Gain as Kept, Gains, Renderer};
 
 use crate::commands::play;
@@ -106,8 +107,7 @@ impl Gain {
             blake3: None,
         };
         let hash = hash(&ready)?;
-        Gains::update(&file, |gains| gains.put(kept, &hash))
-            .map_err(|error| Failure::write(&file, error))?;
+        Gains::update(&file, |gains| gains.put(kept, &hash)).writing(&file)?;
         print(&text)?;
         Ok(Exit::SUCCESS)
     }

@@ -2,6 +2,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
+use htex_files::AtFile;
 use htex_report::{Chain, ChainStage};
 use htex_scene::{Costs, Plan as Planned};
 
@@ -69,7 +70,7 @@ impl Plan {
         let machine = format!("{} {}", std::env::consts::ARCH, std::env::consts::OS);
         let costs = Costs::measure(&self.with.models()?, &machine)?;
         match costs_file() {
-            Some(file) => costs.save(&file).map_err(|e| Failure::write(&file, e))?,
+            Some(file) => costs.save(&file).writing(&file)?,
             None => warn(&["no cache folder was found to keep the costs in".to_owned()]),
         }
         Ok(costs)

@@ -6,6 +6,8 @@ use clap::Args;
 use htex_author::recording::{
     ColumnMap, MOST_VALUES, ReadError, ReadOptions, ReadProblem, format_names, read_recording,
 };
+use htex_files::AtFile;
+use htex_finding::Notice;
 use htex_lab::response::{
     MeasuredResponse, Piece, Record, ResponseError, ResponseOptions, ResponseSettings, column_map,
     measure, response_picture,
@@ -84,7 +86,7 @@ impl Response {
         if let Some(csv) = &self.csv {
             let response = measured.setup_response();
             let write = |file: &mut std::fs::File| response.write_csv(&mut BufWriter::new(file));
-            htex_format::replace_file(csv, write).map_err(|error| Failure::write(csv, error))?;
+            htex_format::replace_file(csv, write).writing(csv)?;
         }
         if let Some(svg) = &self.svg {
             let picture = response_picture(&measured, &self.title());
@@ -101,7 +103,7 @@ impl Response {
     }
 
     /// The records, and what was noticed while reading them, each once.
-    fn read(&self) -> Result<(Vec<Record>, Vec<String>), Failure> {
+    fn read(&self) -> Result<(Vec<Record>, Vec<Notice>), Failure> {
         let others = self
             .map
             .as_deref()
@@ -120,7 +122,9 @@ impl Response {
             let recording = read_recording(file, &options).map_err(read_failure)?;
             remarks.extend(recording.warnings.iter().cloned());
             let findings = recording.clock_findings.iter();
-            remarks.extend(findings.map(|finding| format!("{}: {finding}", recording.source)));
+            remarks.extend(findings.map(|finding| {
+                Notice::new(format!("{}: {finding}", recording.source), finding.hint)
+            }));
             records.push(Record::from_recording(recording)?);
         }
         Ok((records, remarks.into_iter().collect()))
@@ -135,7 +139,7 @@ impl Response {
     }
 
     /// The response, with the settings that it was measured by.
-    fn summary(&self, measured: &MeasuredResponse, remarks: &[String]) -> Result<Value, Failure> {
+    fn summary(&self, measured: &MeasuredResponse, remarks: &[Notice]) -> Result<Value, Failure> {
         let failed = |error| Failure::Other(format!("cannot write JSON: {error}"));
         let mut summary = serde_json::to_value(measured).map_err(failed)?;
         summary["input"] = json!(self.input);

@@ -10,6 +10,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
 use crate::outputs::check_outputs;
+use htex_files::AtFile;
 
 /// Write a simulated recording of a finger sliding over a surface.
 ///
@@ -93,12 +94,11 @@ impl Simulate {
         let usage = |error: SimulationError| Failure::Usage(error.to_string());
         let simulation = simulate(&options).map_err(usage)?;
         let write = |file: &mut std::fs::File| simulation.write_csv(&mut BufWriter::new(file));
-        htex_format::replace_file(&self.output, write)
-            .map_err(|error| Failure::write(&self.output, error))?;
+        htex_format::replace_file(&self.output, write).writing(&self.output)?;
         if let Some(file) = &self.truth {
             let truth = options.truth().map_err(usage)?;
             let write = |file: &mut std::fs::File| truth.write_json(&mut BufWriter::new(file));
-            htex_format::replace_file(file, write).map_err(|error| Failure::write(file, error))?;
+            htex_format::replace_file(file, write).writing(file)?;
         }
         if let Some(frf) = &self.frf {
             write_response(&options.setup_response().map_err(usage)?, frf)?;
@@ -142,5 +142,7 @@ impl Simulate {
 /// Writes a setup response for `--frf`.
 pub(super) fn write_response(response: &SetupResponse, path: &Path) -> Result<(), Failure> {
     let write = |file: &mut std::fs::File| response.write_csv(&mut BufWriter::new(file));
-    htex_format::replace_file(path, write).map_err(|error| Failure::write(path, error))
+    htex_format::replace_file(path, write)
+        .writing(path)
+        .map_err(Failure::from)
 }

@@ -1,12 +1,10 @@
-use std::borrow::Cow;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_format::{
-    Finding, Findings, Limits, Report, Representation, Severity, explain, validate_with,
-};
+use htex_finding::{Findings, Report, Severity};
+use htex_format::{DESCRIPTOR_INVALID, Limits, PLUGIN_UNUSABLE, Representation, validate_with};
 use htex_host::{Registry, Search, WasmLimits};
 use htex_library::{EXTENSION, MAGIC};
 use serde_json::Value;
@@ -15,13 +13,12 @@ use super::lib::check;
 use crate::bounded::read_asset;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::flags::{of_code, with, with_flags};
 use crate::located;
-use crate::output::{print, print_json, warn};
+use crate::output::warn;
 use crate::recordings::RecordingArgs;
 use crate::scenes::SceneArgs;
 use crate::schemas::{ABSENT, ExtensionSchema, Named};
-use crate::shown::shown;
+use crate::validation::report;
 use crate::wasm_limits::WasmLimit;
 
 /// Check assets, libraries, scenes (*.json), descriptors of models and devices (*.json) and recordings against
@@ -100,31 +97,6 @@ impl Validate {
     }
 }
 
-/// Prints reports as they come, or all of them as JSON; exit status 1 if one is not valid.
-pub(crate) fn report<'a>(
-    reports: impl Iterator<Item = Result<(&'a Path, Report), Failure>>,
-    is_json: bool,
-) -> Result<Exit, Failure> {
-    let (mut all_valid, mut printed) = (true, Vec::new());
-    for report in reports {
-        let (path, report) = report?;
-        all_valid &= report.valid;
-        if is_json {
-            printed.push(report.of_file(&path.display().to_string()));
-        } else {
-            print(&text(path, &report))?;
-        }
-    }
-    if is_json {
-        print_json(&printed)?;
-    }
-    Ok(if all_valid {
-        Exit::SUCCESS
-    } else {
-        Exit::FAILURE
-    })
-}
-
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Kind {
     Asset,
@@ -186,11 +158,8 @@ fn hold_plugins(path: &Path, limits: &WasmLimits, report: &mut Report) -> Result
     let asset = htex::Asset::with_registry(data, registry).with_embedded();
     let mut findings = Findings::default();
     for (i, plugin) in asset.manifest().plugins.iter().enumerate() {
-        if let (Err(error), Some(rule)) = (
-            asset.load_embedded(&plugin.model),
-            explain("PLUGIN_UNUSABLE"),
-        ) {
-            findings.add(rule, format!("/plugins/{i}"), error.to_string());
+        if let Err(error) = asset.load_embedded(&plugin.model) {
+            findings.add(PLUGIN_UNUSABLE, format!("/plugins/{i}"), error.to_string());
         }
     }
     report.valid &= !findings.has_errors();
@@ -238,48 +207,10 @@ fn validate_json(path: &Path) -> Result<Report, Failure> {
 
 fn descriptor(document: &Value, problem: Option<String>, schema: Named) -> Result<Report, Failure> {
     let mut findings = Findings::default();
-    if let (Some(problem), Some(rule)) = (problem, explain("DESCRIPTOR_INVALID")) {
-        findings.add(rule, "", format!("{problem}; correct it"));
+    if let Some(problem) = problem {
+        findings.add(DESCRIPTOR_INVALID, "", format!("{problem}; correct it"));
     }
-    let mut report = Report {
-        valid: !findings.has_errors(),
-        findings: findings.into_list(),
-    };
+    let mut report = findings.into_report();
     schema.hold(document, &mut report);
     Ok(report)
-}
-
-fn text(path: &Path, report: &Report) -> String {
-    let verdict = if report.valid { "valid" } else { "NOT VALID" };
-    let mut text = format!("{}: {verdict}\n", shown(path));
-    for finding in &report.findings {
-        let severity = match finding.severity {
-            Severity::Error => "error",
-            Severity::Warning => "warning",
-            Severity::Info => "info",
-        };
-        let place = if finding.pointer.is_empty() {
-            ""
-        } else {
-            " at "
-        };
-        text += &format!(
-            "  {severity} {}{place}{}: {}\n",
-            finding.code,
-            htex_format::plain(&finding.pointer),
-            message(finding)
-        );
-        if let Some(rule) = &finding.schema_rule {
-            text += &format!("    schema: {}\n", htex_format::plain(rule));
-        }
-    }
-    text
-}
-
-/// A finding's message with the flags that help.
-fn message(finding: &Finding) -> Cow<'_, str> {
-    match of_code(&finding.code) {
-        None => with_flags(&finding.message),
-        flags => with(&finding.message, flags),
-    }
 }

@@ -1,5 +1,6 @@
 //! Grouping of recordings by exploration condition.
 
+use htex_finding::Notice;
 use htex_format::{Condition, Source};
 use htex_host::FitCondition;
 
@@ -21,8 +22,8 @@ pub(crate) struct Grouped {
     pub(crate) groups: Vec<Group>,
     pub(crate) conditions: Vec<Condition>,
     pub(crate) sources: Vec<Source>,
-    pub(crate) warnings: Vec<String>,
-    pub(crate) notes: Vec<String>,
+    pub(crate) warnings: Vec<Notice>,
+    pub(crate) notes: Vec<Notice>,
 }
 
 struct Gathering {
@@ -88,8 +89,8 @@ pub(crate) fn group_takes(
         groups,
         conditions,
         sources,
-        warnings: warnings.into_sentences(),
-        notes: notes.into_sentences(),
+        warnings: warnings.into_notices(),
+        notes: notes.into_notices(),
     })
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use htex_finding::{Finding, Hint, listed};
 use htex_host::HostError;
 
 use htex_recording::hertz;
@@ -79,12 +80,12 @@ pub enum AuthorError {
         comparison: String,
     },
     /// The recording has findings that are errors or warnings, and these were to be refused.
-    #[error("{source_name}: refused because of findings that are errors or warnings:{}", lines(.findings))]
+    #[error("{source_name}: refused because of findings that are errors or warnings:{}", listed(.findings))]
     Strict {
         /// The recording.
         source_name: String,
         /// Errors and warnings.
-        findings: Vec<htex_format::Finding>,
+        findings: Vec<Finding>,
     },
     /// A speed or a force is out of range.
     #[error("{what} is {value}; {allowed}")]
@@ -204,10 +205,19 @@ pub enum AuthorError {
     },
 }
 
-/// Formats findings, one per line.
-fn lines(findings: &[htex_format::Finding]) -> String {
-    let line = |f: &htex_format::Finding| {
-        format!("\n  {} {}", f.severity, htex_format::plain(&f.to_string()))
-    };
-    findings.iter().map(line).collect()
+impl AuthorError {
+    /// The settings that help.
+    pub fn hint(&self) -> Hint {
+        Hint::new(match self {
+            Self::NoSegments { .. } => &["segments windows"],
+            Self::OffTarget { .. } => &["speed", "force", "at", "map"],
+            Self::NoMotion { .. } => &["map", "speed", "force", "grid"],
+            Self::NothingSteady { .. } => &["map", "grid"],
+            Self::GridConstant { .. } | Self::GridFew { .. } | Self::GridEmpty { .. } => &["grid"],
+            Self::UnknownConditions { .. } => &["at speed=80,force=0.4"],
+            Self::Strict { .. } => &["strict"],
+            Self::Read(error) => return error.hint(),
+            _ => &[],
+        })
+    }
 }

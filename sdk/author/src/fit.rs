@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use htex_dsp::Band;
 use htex_dsp::bands::{BAND_COUNT, BandBank, band_error_db, rms};
+use htex_finding::Notice;
 use htex_format::{
     Asset, AtCondition, Condition, FIRST_VERSION, Manifest, Measure, Provenance, Quality, Quantity,
     Reference, Representation, round_parameters,
@@ -34,8 +35,10 @@ pub struct FittedAsset {
     pub spectra: Vec<TextureSpectrum>,
     /// What is felt of the difference from them, of each representation at each of its conditions.
     pub felt: Vec<Vec<FeltError>>,
+    /// The warnings that the asset's provenance has, with what helps.
+    pub warnings: Vec<Notice>,
     /// Findings of the recordings below a warning: what was left out, and why.
-    pub notes: Vec<String>,
+    pub notes: Vec<Notice>,
     /// The grid of the conditions, if one was requested.
     pub grid: Option<GridReport>,
 }
@@ -64,8 +67,9 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
                 if grid.is_some() {
                     one.leave_out(&choice.model, &grouped);
                 }
-                warnings.extend(band_error_warning(choice, &one, &grouped.groups, request));
-                warnings.extend(origin_warning(&choice.model));
+                let of_bands = band_error_warning(choice, &one, &grouped.groups, request);
+                let told = of_bands.into_iter().chain(origin_warning(&choice.model));
+                warnings.extend(told.map(Notice::from));
                 fitted.push(one);
             }
             Err(AuthorError::Model(HostError::Call { call, message, .. })) => {
@@ -73,7 +77,7 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
                     "fit" => message,
                     other => format!("{other}: {message}"),
                 };
-                warnings.push(format!("{} left out: {message}", choice.model.id()));
+                warnings.push(format!("{} left out: {message}", choice.model.id()).into());
                 skipped.push((choice.model.id().to_owned(), message));
             }
             Err(other) => return Err(other),
@@ -92,7 +96,7 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
         recordings: grouped.sources,
         made: None,
         options: request.recorded_options.clone(),
-        warnings,
+        warnings: warnings.iter().map(Notice::to_string).collect(),
     };
     let fit_ms = fitted.iter().map(|f| f.fit_ms).collect();
     let felt = fitted.iter_mut().map(|f| std::mem::take(&mut f.felt));
@@ -104,6 +108,7 @@ pub fn fit_asset(takes: &[Take], request: &AssetRequest) -> Result<FittedAsset, 
         skipped,
         spectra,
         felt,
+        warnings,
         notes,
         grid,
     })

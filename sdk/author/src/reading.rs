@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use htex_format::{Finding, Findings, Report, Severity};
+use htex_finding::{Finding, Findings, Notice, Report, Severity};
 
 use crate::exploration::{exploration, keep_on_target};
 use crate::findings::{
@@ -25,9 +25,9 @@ pub struct Reading {
     /// All findings, in the order of `spec/recording-findings.md`.
     pub findings: Vec<Finding>,
     /// The reader's warnings, and the findings that are errors or warnings, as sentences.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Notice>,
     /// The findings of severity info, as sentences.
-    pub notes: Vec<String>,
+    pub notes: Vec<Notice>,
 }
 
 /// Reads the texture of a recording: checks its signals, chooses its segments, removes those that
@@ -53,7 +53,8 @@ pub fn read_take(
     if strict {
         refuse(recording, &findings)?;
     }
-    let noticed = recording.warnings.iter().chain(&part.warnings).cloned();
+    let of_part = part.warnings.iter().cloned().map(Notice::from);
+    let noticed = recording.warnings.iter().cloned().chain(of_part);
     Ok(Reading {
         warnings: noticed
             .chain(sentences(recording, &findings, false))
@@ -71,11 +72,14 @@ pub(crate) fn sentences(
     recording: &Recording,
     findings: &[Finding],
     info: bool,
-) -> impl Iterator<Item = String> {
+) -> impl Iterator<Item = Notice> {
     let chosen = findings
         .iter()
         .filter(move |f| (f.severity == Severity::Info) == info);
-    chosen.map(|f| format!("{}: {}: {}", recording.source, f.code, f.message))
+    chosen.map(|f| {
+        let text = format!("{}: {}: {}", recording.source, f.code, f.message);
+        Notice::new(text, f.hint)
+    })
 }
 
 /// Returns an error if a finding is an error or a warning.
@@ -119,10 +123,7 @@ pub fn validate_recording(
         }
         Ok(recording) => all_findings(Take { recording, given }, options),
     };
-    Ok(Report {
-        valid: findings.iter().all(|f| f.severity != Severity::Error),
-        findings,
-    })
+    Ok(Report::new(findings))
 }
 
 /// Returns the findings and the reader's warnings of a readable recording.
@@ -131,7 +132,7 @@ fn all_findings(take: Take, options: &SpectrumOptions) -> Vec<Finding> {
     let mut noticed = take.recording.warnings.clone();
     let mut findings = match read_take(&take, options, false) {
         Ok(reading) => {
-            noticed.extend(reading.part.warnings);
+            noticed.extend(reading.part.warnings.into_iter().map(Notice::from));
             reading.findings
         }
         Err(error) => {

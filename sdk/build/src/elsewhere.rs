@@ -9,7 +9,7 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
-use htex_storage::{Location, Storage, StorageError};
+use htex_storage::{Location, Storage, StorageError, StorageProblem};
 use tempfile::TempDir;
 
 use crate::BuildError;
@@ -118,9 +118,7 @@ impl Elsewhere {
             return Ok(*stamp);
         }
         let stat = self.storage()?.stat(location)?;
-        let stat = stat.ok_or_else(|| StorageError::Missing {
-            uri: location.to_string(),
-        })?;
+        let stat = stat.ok_or_else(|| StorageProblem::Missing.at(location))?;
         let stamp = Stamp::elsewhere(stat.bytes, stat.etag.as_deref(), stat.modified);
         self.listed().insert(path.to_owned(), stamp);
         Ok(stamp)

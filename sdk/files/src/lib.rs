@@ -14,6 +14,8 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod error;
+
 use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions, Permissions};
 use std::io::{self, Write};
@@ -21,6 +23,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use tempfile::NamedTempFile;
+
+pub use error::{AtFile, FileError};
 
 /// Files that this process is writing.
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());

@@ -1,6 +1,7 @@
 //! An asset in memory.
 
-use crate::{Finding, Manifest};
+use crate::Manifest;
+use htex_finding::Finding;
 
 /// One texture: its manifest, parameters, reference spectra and embedded modules.
 ///

@@ -9,9 +9,9 @@ use crate::license::check_license;
 use htex_model::Band;
 
 use crate::manifest::{Condition, Manifest};
-use crate::pointer::escape;
-use crate::report::Findings;
 use crate::rules as rule;
+use htex_finding::Findings;
+use htex_finding::escape;
 
 /// Highest upper edge of a band, hertz.
 const HIGHEST_HZ: f64 = 20_000.0;

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use htex_model::is_model_id;
 
-use crate::report::Findings;
 use crate::rules as rule;
 use crate::{Manifest, Plugin};
+use htex_finding::Findings;
 
 /// Adds a finding for each rule that the manifest's plugins break by themselves.
 pub(crate) fn check_plugins(manifest: &Manifest, findings: &mut Findings) {

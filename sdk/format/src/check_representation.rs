@@ -9,8 +9,8 @@ use crate::manifest::{AtCondition, Manifest, Representation, Steps, StoredAs};
 use crate::measure::Judged;
 use crate::quality_json::{BAND_COUNT, Content, Entries, Entry};
 use crate::quantity::Quantity;
-use crate::report::Findings;
 use crate::rules as rule;
+use htex_finding::Findings;
 
 /// Smallest ratio of a step to the largest magnitude it is added to; below it, rounding can change the step.
 const FINEST: f64 = 4.0 * f64::EPSILON;

@@ -6,10 +6,10 @@ use std::path::Path;
 
 use crate::archive::too_large;
 use crate::limits::Limits;
-use crate::report::Findings;
 use crate::rules::FILE_TOO_LARGE;
 use crate::validate::inspect;
 use crate::{Asset, ReadError, block};
+use htex_finding::Findings;
 
 impl Asset {
     /// Reads an asset from bytes, within the default [`Limits`].

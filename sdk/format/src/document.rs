@@ -3,10 +3,10 @@
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use crate::Rule;
 use crate::json_text::{self, JsonError};
-use crate::report::Findings;
 use crate::typed::typed;
+use htex_finding::Findings;
+use htex_finding::Rule;
 
 /// A kind of document: its names in messages, its version and the rules it must follow.
 #[derive(Debug, Clone, Copy)]

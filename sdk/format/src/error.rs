@@ -3,10 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
-use crate::{Finding, Severity};
-
-/// Number of findings in the text of an error.
-const SHOWN: usize = 3;
+use htex_finding::{Finding, summary};
 
 /// Error of reading an asset.
 ///
@@ -96,15 +93,4 @@ pub enum WriteError {
         /// The encoder's message.
         problem: String,
     },
-}
-
-/// Formats the first errors of a list as one line.
-pub fn summary(findings: &[Finding]) -> String {
-    let errors = || findings.iter().filter(|f| f.severity == Severity::Error);
-    let mut text: Vec<String> = errors().take(SHOWN).map(ToString::to_string).collect();
-    let rest = errors().count().saturating_sub(SHOWN);
-    if rest > 0 {
-        text.push(format!("and {rest} more"));
-    }
-    text.join("; ")
 }

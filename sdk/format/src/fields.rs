@@ -7,9 +7,10 @@ use htex_model::{Descriptor, Kind};
 use semver::Version;
 
 use crate::block::split;
-use crate::report::Findings;
 use crate::rules as rule;
-use crate::{Manifest, Representation, Rule, StoredField, WriteError};
+use crate::{Manifest, Representation, StoredField, WriteError};
+use htex_finding::Findings;
+use htex_finding::Rule;
 
 /// A difference between the stored fields and the model's fields.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

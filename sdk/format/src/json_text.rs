@@ -7,7 +7,7 @@ use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visi
 use serde_json::map::Entry;
 use serde_json::{Map, Number, Value};
 
-use crate::pointer::Place;
+use htex_finding::Place;
 
 /// Parses a JSON text that nests at most 128 deep, the parser's own limit.
 ///

@@ -2,8 +2,8 @@
 
 use spdx::{Expression, ParseMode};
 
-use crate::Rule;
 use crate::rules as rule;
+use htex_finding::Rule;
 
 /// The standard's grammar and list; deprecated ids are still licences.
 const LISTED: ParseMode = ParseMode {

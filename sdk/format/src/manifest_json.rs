@@ -4,10 +4,10 @@ use serde_json::Value;
 
 use crate::document::{Document, DocumentRules};
 use crate::limits::Limits;
-use crate::pointer::escape;
-use crate::report::Findings;
 use crate::rules as rule;
 use crate::{Manifest, Quantity, VERSION};
+use htex_finding::Findings;
+use htex_finding::escape;
 
 const DOCUMENT: Document = Document {
     text: "manifest",

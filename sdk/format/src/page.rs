@@ -1,10 +1,9 @@
 //! Generator of `spec/validation.md` and `spec/schemas/manifest-1.json`.
 
-use std::fmt::Write;
-
+use htex_finding::{FileReport, rules_page};
 use serde_json::Value;
 
-use crate::{FileReport, Manifest, RULES, Rule, STAGES};
+use crate::{Manifest, RULES, STAGES, rules_of};
 
 const HEAD: &str = "\
 # Findings of validation
@@ -28,49 +27,13 @@ pub fn validation_page() -> String {
     let mut head = format!("{HEAD}| stage | findings | errors end the reading |\n|---|---|---|\n");
     for stage in STAGES {
         let ends = if stage.ends { "yes" } else { "no" };
-        let codes: Vec<String> = stage.codes.iter().map(|code| format!("`{code}`")).collect();
-        let (of, codes) = (stage.of, codes.join(", "));
-        push(&mut head, format_args!("| {of} | {codes} | {ends} |\n"));
+        let codes: Vec<String> = rules_of(*stage)
+            .map(|rule| format!("`{}`", rule.code))
+            .collect();
+        head += &format!("| {} | {} | {ends} |\n", stage.of, codes.join(", "));
     }
     head += "\n## Codes\n";
     rules_page(&head, RULES)
-}
-
-/// Generates a page of rules: `head`, a table of all codes, then each rule.
-pub fn rules_page(head: &str, rules: &[Rule]) -> String {
-    let mut page = format!("{head}\n| code | severity | what was found |\n|---|---|---|\n");
-    for rule in rules {
-        let anchor = rule.code.to_ascii_lowercase();
-        let Rule {
-            code,
-            severity,
-            summary,
-            ..
-        } = rule;
-        push(
-            &mut page,
-            format_args!("| [{code}](#{anchor}) | {severity} | {summary} |\n"),
-        );
-    }
-    for rule in rules {
-        push(
-            &mut page,
-            format_args!(
-                "\n## {}\n\n{}: {}\n\n",
-                rule.code, rule.severity, rule.summary
-            ),
-        );
-        push(
-            &mut page,
-            format_args!("{}\n\n**What to do:** {}\n", rule.explanation, rule.fix),
-        );
-    }
-    page
-}
-
-fn push(page: &mut String, text: std::fmt::Arguments<'_>) {
-    // Writing to a string cannot fail.
-    let _ = page.write_fmt(text);
 }
 
 /// Generates the JSON Schema of `manifest.json`: `spec/schemas/manifest-1.json`.

@@ -15,7 +15,7 @@ use serde::de::{
 use serde::forward_to_deserialize_any;
 use serde_json::{Map, Value};
 
-use crate::pointer::Place;
+use htex_finding::Place;
 
 /// Largest integer up to which every integer is exact in binary64.
 const EXACT: f64 = 9_007_199_254_740_992.0;

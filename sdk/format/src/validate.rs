@@ -14,10 +14,10 @@ use crate::json_text;
 use crate::limits::Limits;
 use crate::manifest_json::parse;
 use crate::plugin::WASM_MAGIC;
-use crate::report::{Findings, Report};
 use crate::rules as rule;
 use crate::unpack::STORED;
-use crate::{Asset, Finding, Manifest, Plugin, Representation, Severity};
+use crate::{Asset, Manifest, Plugin, Representation};
+use htex_finding::{Finding, Findings, Report, Severity};
 
 /// Validates the bytes of a `.htex` file and reports every broken rule that can be detected
 /// independently of earlier ones. Never panics, and reads no more than `limits` allow.

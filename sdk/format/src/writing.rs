@@ -10,9 +10,9 @@ use crate::check_manifest::check_manifest;
 use crate::check_manifest::grid_points;
 use crate::entries::{MANIFEST, MEDIA_TYPE, MIMETYPE};
 use crate::limits::Limits;
-use crate::report::Findings;
 use crate::validate::inspect;
 use crate::{Asset, WriteError, block, write_file};
+use htex_finding::Findings;
 
 /// zlib-rs chooses the same matches on every processor, so the bytes are the same everywhere.
 /// Zopfli takes 100 ms for an asset and saves five bytes.

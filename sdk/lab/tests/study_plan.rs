@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use htex_format::Findings;
+use htex_finding::Findings;
 use htex_lab::study::{Plan, Study, Trial, read_study};
 use proptest::prelude::*;
 

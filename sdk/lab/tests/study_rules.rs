@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use htex_format::Findings;
+use htex_finding::Findings;
 use htex_lab::study::{RULES, findings_page, read_study, study_schema};
 
 const STUDY: &str = "htex_study = '1.0'\nmotion = 'live'\ndevice = { adapter = 'file' }\n";

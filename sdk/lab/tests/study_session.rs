@@ -5,7 +5,7 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use htex_format::Findings;
+use htex_finding::Findings;
 use htex_lab::study::{
     DeviceUsed, GainKey, Header, Phase, Plan, Session, SimulatedParticipant, Step, Study,
     StudyError, export, read_study,

@@ -3,7 +3,8 @@
 use std::io;
 use std::path::PathBuf;
 
-use htex_format::{Finding, ReadError, plain, summary};
+use htex_finding::{Finding, plain, summary};
+use htex_format::ReadError;
 
 use crate::name::InvalidName;
 

@@ -1,6 +1,6 @@
 //! A broken rule of the format, on its way to an error or a finding.
 
-use htex_format::{Findings, Rule};
+use htex_finding::{Findings, Rule};
 
 use crate::error::LibraryError;
 use crate::rules as rule;

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use htex_format::{Finding, Findings};
+use htex_finding::{Finding, Findings};
 
 use crate::entry::Entry;
 use crate::error::LibraryError;

@@ -74,7 +74,7 @@ pub use located::Located;
 pub use name::{InvalidName, check_name};
 pub use opening::{FIRST_READ, Opening, Progress};
 pub use query::Query;
-pub use rules::{RULES, explain, findings_page};
+pub use rules::{RULES, findings_page};
 pub use source::{LibrarySource, LocalFile};
 pub use validate::{validate, validate_source};
 #[cfg(feature = "write")]

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use htex_format::Finding;
+use htex_finding::Finding;
 
 use crate::entry::Entry;
 use crate::error::LibraryError;

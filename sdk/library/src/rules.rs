@@ -1,6 +1,6 @@
 //! The rules of validation of libraries, in one table.
 
-use htex_format::{Rule, rule_table, rules_page};
+use htex_finding::{rule_table, rules_page};
 
 rule_table! {
     LIBRARY_UNRECOGNISED Error:
@@ -115,19 +115,6 @@ A finding has a code, a severity, a place and a message. The place is `/header`,
 from 0, and empty for the file as a whole. A library is valid when no finding is an error. The meaning of a code never changes.
 [htexlib-1.md](htexlib-1.md) is the format.
 ";
-
-/// Returns the rule with a code such as `LIBRARY_TRUNCATED`, or with one of the format (`FINDINGS_TRUNCATED`); `None` when
-/// there is none.
-///
-/// ```
-/// assert!(htex_library::explain("LIBRARY_TRUNCATED").is_some());
-/// ```
-pub fn explain(code: &str) -> Option<&'static Rule> {
-    RULES
-        .iter()
-        .find(|rule| rule.code == code)
-        .or_else(|| htex_format::explain(code))
-}
 
 /// Generates the page of all rules: `spec/library-findings.md`.
 pub fn findings_page() -> String {

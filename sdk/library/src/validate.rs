@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use htex_format::{Asset, Findings, Report, Severity};
+use htex_finding::{Findings, Report};
+use htex_format::Asset;
 
 use crate::entry::Entry;
 use crate::error::LibraryError;
@@ -35,10 +36,7 @@ pub fn validate_source(
     let library = match Library::open_source_with(source, *limits) {
         Ok(library) => library,
         Err(LibraryError::Invalid { findings }) => {
-            return Ok(Report {
-                valid: false,
-                findings,
-            });
+            return Ok(Report::new(findings));
         }
         Err(error) => return Err(error),
     };
@@ -46,10 +44,7 @@ pub fn validate_source(
     validation.run()?;
     let mut findings = library.notes();
     findings.extend(validation.findings.into_list());
-    Ok(Report {
-        valid: !findings.iter().any(|f| f.severity == Severity::Error),
-        findings,
-    })
+    Ok(Report::new(findings))
 }
 
 /// A validation that is running.

@@ -33,11 +33,11 @@ mod voice;
 pub use asset::Asset;
 pub use error::Error;
 pub use exploration::{Coverage, Effects, Explored, Reach, Recorded};
+pub use htex_finding::{Finding, Severity};
 /// An asset's data, the argument of [`Asset::new`].
 pub use htex_format::Asset as AssetData;
 pub use htex_format::{
-    AtCondition, Condition, Finding, Limits, Manifest, Quantity, ReadError, Representation,
-    Severity,
+    AtCondition, Condition, Limits, Manifest, Quantity, ReadError, Representation,
 };
 pub use htex_format::{FieldOrder, SAME_CONDITION};
 /// The motion that models receive: with a signed speed and a known position.

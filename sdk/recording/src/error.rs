@@ -5,6 +5,7 @@
 use std::borrow::Cow;
 use std::{fmt, io};
 
+use htex_finding::Hint;
 use thiserror::Error;
 
 use crate::recording::RecordingError;
@@ -139,6 +140,26 @@ impl fmt::Display for Place {
             Self::Row(row) => write!(f, "row {row}"),
             Self::Named(name) => f.write_str(name),
         }
+    }
+}
+
+impl ReadError {
+    /// The settings that help.
+    pub fn hint(&self) -> Hint {
+        Hint::new(match &self.problem {
+            ReadProblem::TooManyValues { .. } => &["most_numbers"],
+            ReadProblem::Time { .. } | ReadProblem::NoRate => &["rate"],
+            ReadProblem::Columns { .. } => &["map", "quantity"],
+            ReadProblem::Lengths { .. } => &["map"],
+            ReadProblem::Option { option, .. } => match *option {
+                "rate_hz" => &["rate"],
+                "scale" => &["scale"],
+                "map" => &["map"],
+                "tracker" => &["tracker", "tracker_map"],
+                _ => &[],
+            },
+            _ => &[],
+        })
     }
 }
 

@@ -1,5 +1,7 @@
 //! The motion of the finger from a tracker at its own rate, in a second file.
 
+use htex_finding::Notice;
+
 use crate::columns::assemble::{Assembled, Signals};
 use crate::columns::map::Role;
 use crate::columns::select::select_motion;
@@ -45,11 +47,11 @@ pub(crate) fn follow(
             motion.last_s(),
             second(0),
             second(samples - 1)
-        ));
+        ).into());
     }
     if recording.speed_mm_s.is_some() {
         let warning = "The speed is that of the tracker instead of the recording's own.";
-        recording.warnings.push(warning.to_owned());
+        recording.warnings.push(warning.into());
     }
     recording.warnings.extend(motion.warnings);
     recording.keep(from, to);
@@ -79,8 +81,8 @@ fn read(file: &str, tracker: &Tracker, options: &ReadOptions) -> Result<Motion, 
     check_time(&*sheet, &time_s)?;
     let mut warnings = selection.warnings;
     warnings.append(&mut signals.warnings());
-    warnings.extend(gap(&time_s));
-    let of_file = |text| format!("{file}: {text}");
+    warnings.extend(gap(&time_s).map(Notice::from));
+    let of_file = |told: Notice| Notice::new(format!("{file}: {told}"), told.hint);
     Ok(Motion {
         warnings: warnings.into_iter().map(of_file).collect(),
         time_s,
@@ -115,7 +117,7 @@ struct Motion {
     /// Seconds, strictly ascending, at least two.
     time_s: Vec<f64>,
     path: Path,
-    warnings: Vec<String>,
+    warnings: Vec<Notice>,
 }
 
 enum Path {

@@ -1,6 +1,7 @@
 //! A recording of a finger sliding on a surface, in physical units.
 
-use htex_format::{Finding, Quantity};
+use htex_finding::{Finding, Notice};
+use htex_format::Quantity;
 use thiserror::Error;
 
 /// Highest sample rate, hertz: above that of any force sensor, and low enough that sample counts are exact.
@@ -88,7 +89,7 @@ pub struct Recording {
     /// Findings of the time column: gaps, jitter.
     pub clock_findings: Vec<Finding>,
     /// Assumptions and observations of the reader, each a full sentence.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Notice>,
 }
 
 impl Recording {

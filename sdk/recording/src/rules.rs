@@ -1,30 +1,19 @@
 //! The rules for recordings, in one table.
 
-use htex_format::Rule;
-
-/// Returns the rule with a code such as `RECORDING_CLIPPED`, or with one of the format (`FINDINGS_TRUNCATED`); `None` when
-/// there is none.
-pub fn explain(code: &str) -> Option<&'static Rule> {
-    RULES
-        .iter()
-        .find(|rule| rule.code == code)
-        .or_else(|| htex_format::explain(code))
-}
-
-htex_format::rule_table! {
-    RECORDING_UNREADABLE Error:
+htex_finding::rule_table! {
+    RECORDING_UNREADABLE Error ("map", "rate", "quantity"):
         "The file cannot be read as a recording.",
         "It is neither a table of numbers with a lateral force, nor a WAV or NPY file of one to three channels.",
         "Correct it at the line in the message, or describe the columns by a column map and the sample rate.";
-    RECORDING_UNUSABLE Error:
+    RECORDING_UNUSABLE Error ("segments", "from", "to"):
         "No texture spectrum can be computed from the recording.",
         "It is shorter than a segment of 0.2 s, sampled below 60 Hz, or has no complete sweep.",
         "Record for 10 s at 2 kHz or more, or choose other segments or another part of the recording.";
-    RECORDING_CLOCK_GAP Warning:
+    RECORDING_CLOCK_GAP Warning ("from", "to"):
         "Samples are missing: the time column has gaps.",
         "The samples on both sides of a gap are treated as neighbours, which causes a step in the signal.",
         "Cut the recording at the gap, or record without losing samples.";
-    RECORDING_CLOCK_JITTER Warning:
+    RECORDING_CLOCK_JITTER Warning ("rate"):
         "The time column is uneven.",
         "The rate is the number of steps over the total time. If the samples were really taken at \
          these times, and not only stamped with them, lines in the spectrum are smeared.",
@@ -38,33 +27,33 @@ htex_format::rule_table! {
         "Beyond the range of the sensor or converter the texture is not recorded, and the corners of the signal \
          add frequencies that the texture does not have.",
         "Record again with a larger range or a lower gain.";
-    RECORDING_STUCK Error:
+    RECORDING_STUCK Error ("from", "to"):
         "A sensor holds one value while the finger slides.",
         "The force of a sliding finger is never constant: the sensor, its cable or the logger failed.",
         "Leave the stretch out, or record again.";
-    RECORDING_SILENT Warning:
+    RECORDING_SILENT Warning ("from", "to", "map"):
         "The lateral force stays at one value near zero for a second or more.",
         "The finger was lifted, or the sensor had no signal. Windows over such a stretch lower the spectrum.",
         "Leave the stretch out, or remove a dead axis from the column map.";
-    RECORDING_SPIKE Warning:
+    RECORDING_SPIKE Warning ("from", "to"):
         "Single samples of the lateral force are outliers.",
         "A spike of interference or a bit error has energy at all frequencies and can exceed the texture in \
          its segment.",
         "Leave it out, repair the samples, or record again.";
-    RECORDING_FORCE_OUTLIER Warning:
+    RECORDING_FORCE_OUTLIER Warning ("force"):
         "Single samples of the normal force are outliers.",
         "A finger cannot press so hard for so short a time. The condition is the median, which outliers do not change; \
          a mean would change.",
         "Repair the samples, or give the normal force.";
-    RECORDING_FRICTION_IMPLAUSIBLE Error:
+    RECORDING_FRICTION_IMPLAUSIBLE Error ("map"):
         "The lateral force is more than ten times the normal force.",
         "Fingers do not reach this coefficient of friction; one of the two columns has another unit or quantity.",
         "Correct the scale of the column in the column map.";
-    RECORDING_SPEED_ZERO Error:
+    RECORDING_SPEED_ZERO Error ("speed"):
         "According to its speed or position, the finger never moves.",
         "A texture is recorded while sliding, and the condition would have a speed of 0.",
         "Remove the column, give the scanning speed, or repair the tracker.";
-    RECORDING_SPEED_IMPLAUSIBLE Warning:
+    RECORDING_SPEED_IMPLAUSIBLE Warning ("map"):
         "The speed is outside the range of a hand.",
         "Hands explore at 1 to 2000 mm/s. A speed column in m/s that is read as mm/s is 1000 times too low.",
         "Give the factor to mm/s in the column map, as in speed=COLUMN:1000, or name the unit in the column (`speed_m_s`).";
@@ -73,21 +62,21 @@ htex_format::rule_table! {
         "The start or end of such a sweep is unknown, and so is its middle. The middle of the recorded part may be \
          where the finger starts or stops.",
         "No action is needed; or start and end the recording between two sweeps.";
-    RECORDING_READ_IN_WINDOWS Info:
+    RECORDING_READ_IN_WINDOWS Info ("segments sweeps"):
         "The recording is read in windows, because the middles of its sweeps would cover too little of it.",
         "One segment of 0.2 s in the middle of a sweep represents at most 2 s of sliding. Where this leaves more \
          than half of the sliding unused, windows over the whole recording average more of it.",
         "No action is needed; the choice of sweeps as segments reads only their middles, and a range leaves parts out.";
-    RECORDING_OFF_TARGET Warning:
+    RECORDING_OFF_TARGET Warning ("speed", "force", "at"):
         "Segments are left out because their speed or force differs from the target.",
         "With a target given and the motion known, a segment is used if the motion stays within 10 % of the \
          target over the segment. The paper discarded and repeated such recordings.",
         "Record again closer to the target, or give the speed and force that were recorded.";
-    RECORDING_UNSTEADY Warning:
+    RECORDING_UNSTEADY Warning ("from", "to", "at"):
         "Speed or force differs from its own median by more than 10 %.",
         "The spectrum then mixes several conditions. Without a target no segment is left out.",
         "Record more steadily, choose a steady part, or give a target.";
-    RECORDING_UNEVEN Warning:
+    RECORDING_UNEVEN Warning ("from", "to"):
         "A few segments are much louder than the others.",
         "They are 12 dB or more above the median of all segments and dominate the average. Causes are knocks, spikes, \
          and windows over a recording that is mostly rest.",

@@ -54,7 +54,7 @@ impl Columns {
     /// Returns the column's whole name, or `#` and its number when it has none.
     pub(crate) fn name(&self, column: usize) -> String {
         match self.names.get(column) {
-            Some(name) if !name.is_empty() => htex_format::plain(name).into_owned(),
+            Some(name) if !name.is_empty() => htex_finding::plain(name).into_owned(),
             _ => format!("#{}", column + 1),
         }
     }

@@ -51,11 +51,13 @@ pub fn paragraph(text: &str) -> String {
 }
 
 /// Returns `items` as a list, or nothing when there are none.
-pub fn list(items: &[String]) -> String {
+pub fn list(items: &[impl ToString]) -> String {
     if items.is_empty() {
         return String::new();
     }
-    let items = items.iter().map(|item| Element::new("li").text(item));
+    let items = items
+        .iter()
+        .map(|item| Element::new("li").text(&item.to_string()));
     Element::new("ul").children(items).render()
 }
 

@@ -1,6 +1,6 @@
 //! Check whether a scene's motion is within the speeds and forces its textures were recorded at.
 
-use htex_format::Findings;
+use htex_finding::Findings;
 use htex_play::{Asset, Coverage, Effects, Motions};
 
 use crate::file::{Effect, Motion, Scene, Surface, Switch};

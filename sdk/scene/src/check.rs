@@ -1,6 +1,6 @@
 //! Rules for the contents of a scene without its files and its device.
 
-use htex_format::{Findings, Rule};
+use htex_finding::{Findings, Rule};
 
 use crate::file::{Budget, Constant, DeviceChoice, Motion, Region, Scene, Surface};
 use crate::limits::Limits;

@@ -9,7 +9,8 @@ use htex_device::{
     Capabilities, Descriptor, DeviceError, Devices, FromScene, Ignored, Quantity, Setting,
     SettingKind, Settings, Stated,
 };
-use htex_format::{Findings, Quantity as Held, escape};
+use htex_finding::{Findings, escape};
+use htex_format::Quantity as Held;
 use serde_json::Value;
 
 use crate::file::{DeviceChoice, Levels};

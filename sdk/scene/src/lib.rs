@@ -54,7 +54,7 @@ pub use page::{findings_page, scene_schema};
 pub use plan::{Chosen, LeftOut, Plan, PlannedStage, plan};
 pub use render::Renderer;
 pub use response::Response;
-pub use rules::{RULES, explain};
+pub use rules::RULES;
 pub use stages::StageRun;
 pub use trace::{Trace, TracePoint};
 pub use validate::read_scene;

@@ -6,7 +6,8 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use htex_device::{Devices, Settings};
-use htex_format::{Finding, Findings, Quantity, Report, Rule};
+use htex_finding::{Finding, Findings, Report, Rule};
+use htex_format::Quantity;
 use htex_play::{Asset, Registry, VoiceOptions};
 use htex_recording::{ReadError, ReadProblem};
 
@@ -61,7 +62,7 @@ pub enum LoadError {
         error: io::Error,
     },
     /// The scene is invalid.
-    #[error("invalid scene: {}", htex_format::summary(.findings))]
+    #[error("invalid scene: {}", htex_finding::summary(.findings))]
     Invalid {
         /// All findings, errors and others.
         findings: Vec<Finding>,

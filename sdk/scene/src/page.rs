@@ -1,6 +1,6 @@
 //! Generation of `spec/scene-findings.md` and `spec/schemas/scene-1.json` from the code.
 
-use htex_format::rules_page;
+use htex_finding::rules_page;
 use serde_json::Value;
 
 use crate::{RULES, Scene};

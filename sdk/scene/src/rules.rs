@@ -3,18 +3,7 @@
 //! A scene is refused where an asset would get a warning: a misspelt key has no effect in an asset, but changes what is
 //! felt in a scene. A scene may come from anyone, so it names neither a file to write outside its folder nor a driver.
 
-use htex_format::Rule;
-
-/// The rule of a code, such as `REGION_OVERLAP`, or of a code of the format (`FINDINGS_TRUNCATED`); `None` if no rule has
-/// this code.
-pub fn explain(code: &str) -> Option<&'static Rule> {
-    RULES
-        .iter()
-        .find(|rule| rule.code == code)
-        .or_else(|| htex_format::explain(code))
-}
-
-htex_format::rule_table! {
+htex_finding::rule_table! {
     SCENE_FILE_TOO_LARGE Error:
         "The scene file is larger than the limit.",
         "A reader limits the size of untrusted files before it reads them.",

@@ -1,6 +1,7 @@
 //! Parsing and validation of a scene file, without the files it names.
 
-use htex_format::{Document, DocumentRules, Findings, escape};
+use htex_finding::{Findings, escape};
+use htex_format::{Document, DocumentRules};
 use serde_json::Value;
 
 use crate::check::check;

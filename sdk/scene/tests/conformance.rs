@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 
 use cases::{cases, files, plain};
-use htex_format::Findings;
+use htex_finding::Findings;
 use htex_scene::{Limits, RULES, findings_page, read_scene, scene_schema};
 use serde_json::Value;
 use xtask::generated::{file, file_with, folder};
@@ -77,17 +77,6 @@ fn generated_page_and_schema_are_fresh() {
     file_with("spec/schemas/scene-1.json", schema.as_bytes(), |kept| {
         serde_json::from_slice::<Value>(kept).unwrap() == scene_schema()
     });
-}
-
-#[test]
-fn codes_of_scenes_are_not_codes_of_assets() {
-    for rule in RULES {
-        assert!(
-            htex_format::explain(rule.code).is_none(),
-            "{} is a code of assets too",
-            rule.code
-        );
-    }
 }
 
 #[test]

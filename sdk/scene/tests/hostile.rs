@@ -5,7 +5,7 @@
 #[allow(dead_code)]
 mod cases;
 
-use htex_format::Findings;
+use htex_finding::Findings;
 use htex_scene::{Limits, read_scene};
 use proptest::prelude::*;
 

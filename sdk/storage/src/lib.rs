@@ -42,7 +42,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::SystemTime;
 
-pub use error::StorageError;
+pub use error::{StorageError, StorageProblem};
 pub use listing::Entry;
 pub use location::Location;
 pub use remote::{Remote, Usage};
@@ -145,9 +145,7 @@ impl Storage {
     pub fn size(&self, location: &Location) -> Result<u64, StorageError> {
         let stat = self.stat(location)?;
         stat.map(|stat| stat.bytes)
-            .ok_or_else(|| StorageError::Missing {
-                uri: location.to_string(),
-            })
+            .ok_or_else(|| StorageProblem::Missing.at(location))
     }
 
     /// Reads a range of bytes. To read several of one file, [`Self::open`] it.
@@ -197,8 +195,7 @@ impl Storage {
         let mut found = match folder.place() {
             LocalOrRemote::Local(path) => listing::of_folder(path, &pattern)?,
             LocalOrRemote::Remote(uri) if uri.scheme.is_read_only() => {
-                let uri = folder.to_string();
-                return Err(StorageError::NoList { uri });
+                return Err(StorageProblem::NoList.at(folder));
             }
             LocalOrRemote::Remote(uri) => {
                 let uri = uri.without_last_slash();
@@ -256,9 +253,7 @@ impl Storage {
 
     fn writable(&self, location: &Location, uri: &location::Uri) -> Result<Store, StorageError> {
         match uri.scheme.is_read_only() {
-            true => Err(StorageError::ReadOnly {
-                uri: location.to_string(),
-            }),
+            true => Err(StorageProblem::ReadOnly.at(location)),
             false => self.store(location, uri),
         }
     }

@@ -5,7 +5,7 @@ use std::time::SystemTime;
 
 use glob::{MatchOptions, Pattern};
 
-use crate::{Location, StorageError};
+use crate::{Location, StorageError, StorageProblem};
 
 /// Most files of a list.
 pub(crate) const MOST_ENTRIES: usize = 1_000_000;
@@ -27,9 +27,9 @@ pub struct Entry {
 
 /// Parses a pattern: `*` and `?` stay within one folder, `**` goes through all.
 pub(crate) fn pattern(location: &Location, text: &str) -> Result<Pattern, StorageError> {
-    Pattern::new(text).map_err(|error| StorageError::Uri {
-        uri: location.to_string(),
-        problem: format!("the pattern {text}: {error}"),
+    Pattern::new(text).map_err(|error| {
+        let problem = format!("the pattern {text}: {error}");
+        StorageProblem::Uri { problem }.at(location)
     })
 }
 
@@ -42,12 +42,9 @@ pub(crate) fn matches(pattern: &Pattern, relative: &str) -> bool {
 }
 
 pub(crate) fn too_many(location: &Location) -> StorageError {
-    StorageError::Uri {
-        uri: location.to_string(),
-        problem: format!(
-            "more than {MOST_ENTRIES} files match; name a folder or pattern with fewer"
-        ),
-    }
+    let problem =
+        format!("more than {MOST_ENTRIES} files match; name a folder or pattern with fewer");
+    StorageProblem::Uri { problem }.at(location)
 }
 
 /// The files below a local folder whose names relative to it match. Links to folders are not followed.

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-use crate::{Stat, StorageError};
+use crate::{Stat, StorageError, StorageProblem};
 
 pub(crate) fn read(path: &Path, most_bytes: u64) -> Result<Vec<u8>, StorageError> {
     let mut bytes = Vec::new();
@@ -62,9 +62,6 @@ pub(crate) fn opened(path: &Path) -> Result<File, StorageError> {
 fn check(path: &Path, bytes: u64, most_bytes: u64) -> Result<(), StorageError> {
     match bytes <= most_bytes {
         true => Ok(()),
-        false => Err(StorageError::TooLarge {
-            uri: path.display().to_string(),
-            most_bytes,
-        }),
+        false => Err(StorageProblem::TooLarge { most_bytes }.at(path.display())),
     }
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use percent_encoding::percent_decode_str;
 
-use crate::StorageError;
+use crate::{StorageError, StorageProblem};
 
 /// The known schemes, for messages.
 const KNOWN: &str = "s3://, gs://, az://, https://, http:// and file://";
@@ -69,9 +69,9 @@ impl Location {
         let Some((scheme, rest)) = split_scheme(&lossy) else {
             return Ok(Self(LocalOrRemote::Local(argument.into())));
         };
-        let wrong = |problem: &str| StorageError::Uri {
-            uri: without_secrets(&lossy),
-            problem: problem.to_owned(),
+        let wrong = |problem: &str| {
+            let problem = problem.to_owned();
+            StorageProblem::Uri { problem }.at(without_secrets(&lossy))
         };
         if argument.to_str().is_none() {
             return Err(wrong(

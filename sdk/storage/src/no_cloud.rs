@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use crate::location::Uri;
-use crate::{Entry, Location, Settings, Stat, StorageError, Variables};
+use crate::{Entry, Location, Settings, Stat, StorageError, StorageProblem, Variables};
 
 #[derive(Debug, Default)]
 pub(crate) struct Clients;
@@ -31,9 +31,7 @@ impl Store {
         _: &Uri,
         _: (&Settings, &Variables, &Clients),
     ) -> Result<Self, StorageError> {
-        Err(StorageError::NoCloud {
-            uri: location.to_string(),
-        })
+        Err(StorageProblem::NoCloud.at(location))
     }
 
     pub(crate) fn usage(&self) -> (u64, u64) {

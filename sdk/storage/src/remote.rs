@@ -9,7 +9,7 @@ use std::sync::PoisonError;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::cloud::{Store, Version};
-use crate::{Location, StorageError, local};
+use crate::{Location, StorageError, StorageProblem, local};
 
 /// What reading has cost so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -20,7 +20,7 @@ pub struct Usage {
     pub bytes: u64,
 }
 
-/// One version of a file, read by ranges. When the file is replaced, reads fail with [`StorageError::Changed`] instead of mixing two
+/// One version of a file, read by ranges. When the file is replaced, reads fail with [`StorageProblem::Changed`] instead of mixing two
 /// versions.
 ///
 /// ```
@@ -183,9 +183,7 @@ impl Remote {
         };
         match found.len() as u64 == wanted {
             true => Ok(found),
-            false => Err(StorageError::Changed {
-                uri: self.location.to_string(),
-            }),
+            false => Err(StorageProblem::Changed.at(&self.location)),
         }
     }
 
@@ -198,12 +196,8 @@ impl Remote {
     }
 
     pub(crate) fn out_of_range(&self, range: Range<u64>) -> StorageError {
-        StorageError::Range {
-            uri: self.location.to_string(),
-            offset: range.start,
-            end: range.end,
-            len: self.len,
-        }
+        let (offset, end, len) = (range.start, range.end, self.len);
+        StorageProblem::Range { offset, end, len }.at(&self.location)
     }
 }
 

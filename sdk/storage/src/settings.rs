@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Duration;
 
-use crate::StorageError;
+use crate::{StorageError, StorageProblem};
 
 /// Name of the variable for [`Settings::total`], seconds.
 const TIMEOUT: &str = "HTEX_STORAGE_TIMEOUT_S";
@@ -46,10 +46,8 @@ impl Settings {
         if let Some(text) = variables.get(TIMEOUT) {
             let seconds = text.trim().parse::<f64>().unwrap_or(f64::NAN);
             if !(0.1..=86_400.0).contains(&seconds) {
-                return Err(StorageError::Settings {
-                    uri: TIMEOUT.to_owned(),
-                    problem: "not a number of seconds from 0.1 to 86400".to_owned(),
-                });
+                let problem = "not a number of seconds from 0.1 to 86400".to_owned();
+                return Err(StorageProblem::Settings { problem }.at(TIMEOUT));
             }
             settings.total = Duration::from_secs_f64(seconds);
         }

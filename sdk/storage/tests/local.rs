@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use htex_storage::{Location, Storage, StorageError};
+use htex_storage::{Location, Storage, StorageProblem};
 use tempfile::TempDir;
 
 fn at(folder: &TempDir, name: &str) -> Location {
@@ -22,12 +22,15 @@ fn files_here_are_whole_or_not_there() {
     assert_eq!(storage.size(&file).unwrap(), 10);
     let error = storage.read(&file, 9).unwrap_err();
     assert!(
-        matches!(error, StorageError::TooLarge { most_bytes: 9, .. }),
+        matches!(
+            error.problem,
+            StorageProblem::TooLarge { most_bytes: 9, .. }
+        ),
         "{error}"
     );
     let error = storage.read_range(&file, 5..11).unwrap_err();
     assert!(
-        matches!(error, StorageError::Range { len: 10, .. }),
+        matches!(error.problem, StorageProblem::Range { len: 10, .. }),
         "{error}"
     );
     storage
@@ -78,6 +81,6 @@ fn a_file_elsewhere_is_an_error_without_the_feature() {
         storage.list(&location, "*").unwrap_err(),
         storage.check_writable(&location).unwrap_err(),
     ] {
-        assert!(matches!(error, StorageError::NoCloud { .. }), "{error}");
+        assert!(matches!(error.problem, StorageProblem::NoCloud), "{error}");
     }
 }

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use common::{MOST, at, bytes, said, settings, storage, storage_with};
 use htex_object_server::{Fault, Server};
-use htex_storage::{Storage, StorageError};
+use htex_storage::{Storage, StorageError, StorageProblem};
 
 const NAME: &str = "surfaces/cloth.csv";
 const URI: &str = "s3://surfaces/cloth.csv";
@@ -205,7 +205,13 @@ fn the_total_time_is_bounded() {
         let begun = Instant::now();
         let error = storage.read(&at(URI), MOST);
         assert!(
-            matches!(error, Err(StorageError::TooSlow { .. })),
+            matches!(
+                error,
+                Err(StorageError {
+                    problem: StorageProblem::TooSlow { .. },
+                    ..
+                })
+            ),
             "{error:?}"
         );
         assert!(said(error).contains("HTEX_STORAGE_TIMEOUT_S"));

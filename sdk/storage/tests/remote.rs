@@ -6,7 +6,7 @@ mod common;
 
 use common::{MOST, at, bytes, said, storage};
 use htex_object_server::{Fault, Server};
-use htex_storage::{Location, Remote, StorageError, Usage};
+use htex_storage::{Location, Remote, StorageError, StorageProblem, Usage};
 
 const NAME: &str = "surfaces/all.htexlib";
 const URI: &str = "s3://surfaces/all.htexlib";
@@ -64,7 +64,13 @@ fn the_end_of_a_file_is_kept() {
     assert!(read(&empty, 0, 1).is_err());
     let error = storage(&server).open(&at("s3://surfaces/none"), 16);
     assert!(
-        matches!(error, Err(StorageError::Missing { .. })),
+        matches!(
+            error,
+            Err(StorageError {
+                problem: StorageProblem::Missing,
+                ..
+            })
+        ),
         "{error:?}"
     );
 }
@@ -107,7 +113,13 @@ fn a_replaced_file_is_an_error_and_never_a_mixture() {
         server.put(NAME, vec![7; 1_000_000]);
         let error = read(&remote, 500_000, 10);
         assert!(
-            matches!(error, Err(StorageError::Changed { .. })),
+            matches!(
+                error,
+                Err(StorageError {
+                    problem: StorageProblem::Changed,
+                    ..
+                })
+            ),
             "{error:?}"
         );
         assert!(said(error).contains("was replaced while it was read"));
@@ -128,7 +140,13 @@ fn a_file_that_is_replaced_in_the_middle_is_an_error() {
     });
     let error = storage(&server).read(&at(URI), MOST);
     assert!(
-        matches!(error, Err(StorageError::Changed { .. })),
+        matches!(
+            error,
+            Err(StorageError {
+                problem: StorageProblem::Changed,
+                ..
+            })
+        ),
         "{error:?}"
     );
     assert_eq!(server.requests().len(), 2);

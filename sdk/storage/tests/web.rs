@@ -6,7 +6,7 @@ mod common;
 
 use common::{MOST, at, bytes, said, storage};
 use htex_object_server::{Fault, Server};
-use htex_storage::StorageError;
+use htex_storage::{StorageError, StorageProblem};
 
 fn server() -> (Server, Vec<u8>) {
     let (server, bytes) = (Server::start(), bytes(200_000));
@@ -98,7 +98,13 @@ fn a_redirect_leads_to_no_inner_address() {
         server.fail(move |_, _| Fault::Redirect(target.clone()));
         let error = storage(&server).read(&uri, MOST);
         assert!(
-            matches!(error, Err(StorageError::Refused { .. })),
+            matches!(
+                error,
+                Err(StorageError {
+                    problem: StorageProblem::Refused { .. },
+                    ..
+                })
+            ),
             "{to}: {error:?}"
         );
         assert!(

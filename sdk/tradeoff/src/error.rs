@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use htex_finding::Hint;
+
 /// An error that ended a sweep; finished points are in its journal.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -31,4 +33,14 @@ pub enum TradeoffError {
         /// The given value.
         value: String,
     },
+}
+
+impl TradeoffError {
+    /// The settings that help.
+    pub fn hint(&self) -> Hint {
+        match self {
+            Self::Author(error) => error.hint(),
+            _ => Hint::NONE,
+        }
+    }
 }

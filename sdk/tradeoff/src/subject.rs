@@ -1,6 +1,7 @@
 //! Recordings as the subjects of a sweep.
 
 use htex_author::{AuthorError, SegmentSpectra, SpectrumOptions, Take, TextureSpectrum, read_take};
+use htex_finding::Notice;
 
 use crate::accuracy::{Accuracy, accuracy};
 
@@ -14,7 +15,7 @@ pub struct Subject {
     /// The spectrum that models are fitted to.
     pub spectrum: TextureSpectrum,
     /// Warnings, as sentences.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Notice>,
     /// Difference between odd and even strokes; `None` for a single stroke.
     pub(crate) repeats: Option<Accuracy>,
     /// The first lateral axis.

@@ -1,5 +1,6 @@
 //! Evaluation of a sweep: fronts, knees, warnings.
 
+use htex_finding::Notice;
 use htex_format::ErrorMeasure;
 use serde::Serialize;
 
@@ -86,7 +87,7 @@ pub struct Tradeoff {
     /// Settings that could not be measured.
     pub left_out: Vec<LeftOut>,
     /// Warnings, as sentences.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Notice>,
 }
 
 impl Tradeoff {
@@ -174,20 +175,23 @@ impl Tradeoff {
         all
     }
 
-    fn find_warnings(&self, subjects: &[Subject]) -> Vec<String> {
-        let mut warnings: Vec<String> = subjects
+    fn find_warnings(&self, subjects: &[Subject]) -> Vec<Notice> {
+        let mut warnings: Vec<Notice> = subjects
             .iter()
             .flat_map(|subject| subject.warnings.clone())
             .collect();
         for recording in &self.recordings {
-            warnings.extend(self.close_steps(&recording.name));
+            warnings.extend(self.close_steps(&recording.name).map(Notice::from));
         }
         if !self.left_out.is_empty() {
-            warnings.push(format!(
-                "{} settings could not be measured; `left_out` in the JSON lists \
+            warnings.push(
+                format!(
+                    "{} settings could not be measured; `left_out` in the JSON lists \
                  them with the reasons",
-                self.left_out.len()
-            ));
+                    self.left_out.len()
+                )
+                .into(),
+            );
         }
         warnings
     }

@@ -26,7 +26,7 @@ pub fn open_asset(input: &[u8]) -> bool {
 /// Validates, opens, plays, writes. Embedded models are left to other targets.
 pub(crate) fn open(bytes: &[u8]) -> bool {
     let report = validate(bytes, &LIMITS);
-    promise::findings(&report.findings, htex_format::explain);
+    promise::findings(&report.findings);
     match Asset::from_bytes_with(bytes, &LIMITS) {
         Ok(asset) => {
             assert!(report.valid, "opens, and is not valid: {report:?}");

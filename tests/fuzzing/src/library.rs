@@ -1,9 +1,7 @@
 //! A library, as a whole file and built around fuzzed pages.
 
-use htex_format::Report;
-use htex_library::{
-    Library, LibraryError, Limits, MAGIC, Writer, check_name, explain, validate_source,
-};
+use htex_finding::Report;
+use htex_library::{Library, LibraryError, Limits, MAGIC, Writer, check_name, validate_source};
 
 use crate::container::crc32;
 use crate::promise;
@@ -93,7 +91,7 @@ pub fn library(input: &[u8]) -> bool {
         return false;
     };
     let report = validate_source(file.as_slice(), &LIMITS).expect("memory can be read");
-    promise::findings(&report.findings, explain);
+    promise::findings(&report.findings);
     match Library::open_source_with(file.as_slice(), LIMITS) {
         Ok(library) => read(&library, &report),
         Err(error) => {

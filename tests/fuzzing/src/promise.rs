@@ -3,7 +3,7 @@
 use std::fmt::Display;
 
 use htex::Asset;
-use htex_format::{Finding, Rule};
+use htex_finding::{Finding, Rule};
 use htex_host::{HostError, Status};
 
 /// Longest error text; what it quotes of the input is bounded.
@@ -20,10 +20,22 @@ pub(crate) fn sentence(error: &impl Display) {
     assert!(control.is_none(), "{control:?} in the error {text:?}");
 }
 
-/// Findings have a code that their crate explains, and a sentence.
-pub(crate) fn findings(findings: &[Finding], explain: fn(&str) -> Option<&'static Rule>) {
+const RULES: [&[Rule]; 4] = [
+    htex_format::RULES,
+    htex_library::RULES,
+    htex_scene::RULES,
+    htex_lab::study::RULES,
+];
+
+/// Findings have a code that is explained, and a sentence.
+pub(crate) fn findings(findings: &[Finding]) {
     for finding in findings {
-        assert!(explain(&finding.code).is_some(), "{}", finding.code);
+        let mut rules = RULES.iter().copied().flatten();
+        assert!(
+            rules.any(|rule| rule.code == finding.code),
+            "{}",
+            finding.code
+        );
         sentence(finding);
     }
 }

@@ -6,10 +6,10 @@ use std::sync::{Arc, OnceLock};
 use htex::Registry;
 use htex_device::{Capabilities, Devices, Quantity, Rates};
 use htex_device_file::FileAdapter;
-use htex_format::Findings;
+use htex_finding::Findings;
 use htex_scene::{
     Costs, DeviceOverride, Finger, Limits, LoadError, LoadedScene, Renderer, SceneError,
-    Surroundings, explain, plan, read_scene,
+    Surroundings, plan, read_scene,
 };
 
 use crate::promise::{findings, finite, refusal, sentence};
@@ -23,14 +23,14 @@ pub fn scene(input: &[u8]) -> bool {
     let place = folder().join("fuzzed.scene.json");
     match LoadedScene::from_bytes(&place, input, &around(), &DeviceOverride::default()) {
         Ok(scene) => {
-            findings(&scene.notes, explain);
+            findings(&scene.notes);
             devices_of(&scene)
                 .iter()
                 .for_each(|device| play(&scene, device));
             true
         }
         Err(LoadError::Invalid { findings: found }) => {
-            findings(&found, explain);
+            findings(&found);
             false
         }
         Err(error) => panic!("nothing was to be read here: {error}"),

@@ -49,7 +49,7 @@ pub fn signed_plugin(input: &[u8]) -> bool {
             return false;
         }
     };
-    findings(&data.notes, htex_format::explain);
+    findings(&data.notes);
     assert!(stored == data.plugins[0], "another module than was stored");
     assert_eq!(
         blake3::hash(&stored).to_hex().as_str(),

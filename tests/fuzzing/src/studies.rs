@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use htex_format::{Findings, plain};
+use htex_finding::{Findings, plain};
 use htex_lab::study::{
     Line, ParticipantPlan, Participants, Plan, Session, Study, export, read_study,
 };
@@ -23,7 +23,7 @@ pub fn study(input: &[u8]) -> bool {
     let study = read_study(input, &mut findings);
     let errors = findings.has_errors();
     assert_ne!(study.is_some(), errors, "a study, or a reason");
-    promise::findings(&findings.into_list(), htex_lab::study::explain);
+    promise::findings(&findings.into_list());
     let Some(study) = study else {
         return false;
     };

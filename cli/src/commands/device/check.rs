@@ -5,7 +5,7 @@ use crate::checking::CheckArgs;
 use crate::devices::{DeviceArgs, SettingArgs};
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::flags::with_flags;
+use crate::hints::with_quoted;
 use crate::output::print_json;
 
 /// Check that a device keeps every promise of the device ABI; exit status 1 if it does not.
@@ -57,7 +57,7 @@ impl Check {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         if let Some(name) = &self.checking.reproduce {
             let finding = self.which.run_one(name)?;
-            return self.checking.print_one(name, &finding, with_flags);
+            return self.checking.print_one(name, &finding, with_quoted);
         }
         // A wrong name is reported once, not by each check.
         self.which.devices.subject(&self.which.device)?;
@@ -65,7 +65,7 @@ impl Check {
         let device = &self.which.device;
         let report = check(device, &self.runner()?);
         let again = |name: &str| format!("htex device check {device} --reproduce {name}");
-        self.checking.print_report(&report, with_flags, again)
+        self.checking.print_report(&report, with_quoted, again)
     }
 
     fn runner(&self) -> Result<Runner, Failure> {

@@ -1,6 +1,6 @@
 //! Lists of entries: lines of a table, or a JSON array, written while the index is read.
 
-use htex_format::plain;
+use htex_finding::plain;
 use htex_library::{Entry, Interval};
 
 use crate::assets::short_name;

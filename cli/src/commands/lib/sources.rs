@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use htex_files::AtFile;
+
 use crate::failure::Failure;
 use crate::shown::shown;
 
@@ -36,11 +38,10 @@ fn search(
     inside: &Path,
     found: &mut BTreeMap<String, PathBuf>,
 ) -> Result<(), Failure> {
-    let failed = |error| Failure::read(folder, error);
-    for entry in std::fs::read_dir(folder).map_err(failed)? {
-        let entry = entry.map_err(failed)?;
+    for entry in std::fs::read_dir(folder).reading(folder)? {
+        let entry = entry.reading(folder)?;
         let (path, inside) = (entry.path(), inside.join(entry.file_name()));
-        if entry.file_type().map_err(failed)?.is_dir() {
+        if entry.file_type().reading(folder)?.is_dir() {
             search(&path, &inside, found)?;
         } else if is_called_texture(&path) && path.is_file() {
             add(found, &inside, path)?;

@@ -1,6 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use htex_files::AtFile;
 use htex_library::{Entry, LibraryError};
 
 use super::given::Given;
@@ -71,7 +72,7 @@ impl Unpack {
             )));
         }
         let folder = path.parent().unwrap_or(Path::new("."));
-        std::fs::create_dir_all(folder).map_err(|error| Failure::write(folder, error))?;
+        std::fs::create_dir_all(folder).writing(folder)?;
         write_file(&path, bytes)
     }
 }

@@ -1,12 +1,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_format::Report;
+use htex_finding::Report;
 
-use crate::commands::validate;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::located;
+use crate::validation::report;
 
 /// Check every page and every texture of libraries; exit status 1 if one is not valid.
 ///
@@ -28,7 +28,7 @@ impl Verify {
             .libraries
             .iter()
             .map(|path| Ok((path.as_path(), check(path)?)));
-        validate::report(reports, self.json)
+        report(reports, self.json)
     }
 }
 

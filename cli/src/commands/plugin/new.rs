@@ -6,6 +6,7 @@ use htex_check::templates;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::{print, write_file};
+use htex_files::AtFile;
 
 /// The folder `sdk` of the sources this program was built from.
 const SDK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../sdk");
@@ -125,16 +126,16 @@ fn sdk_from(dir: &Path, sdk: Option<PathBuf>) -> Result<String, Failure> {
     let Some(sdk) = sdk else {
         return Ok(String::new());
     };
-    let dir = dir
-        .canonicalize()
-        .map_err(|error| Failure::read(dir, error))?;
+    let dir = dir.canonicalize().reading(dir)?;
     let path = pathdiff::diff_paths(&sdk, dir).unwrap_or(sdk);
     // Cargo takes slashes on every system; a backslash would begin an escape.
     Ok(path.display().to_string().replace('\\', "/"))
 }
 
 fn make_folder(folder: &Path) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(|error| Failure::write(folder, error))
+    std::fs::create_dir_all(folder)
+        .writing(folder)
+        .map_err(Failure::from)
 }
 
 fn write(file: &Path, text: &str) -> Result<(), Failure> {

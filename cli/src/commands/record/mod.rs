@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use htex_author::Exploration;
 use htex_device::Source;
-use htex_format::plain;
+use htex_finding::plain;
 use htex_lab::record::{
     Moment, Next, Outcome, RecordError, Recorded, Session, Setup, Tare, recover,
 };

@@ -6,7 +6,7 @@ use crate::checking::CheckArgs;
 use crate::devices::SettingArgs;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::flags::with_flags;
+use crate::hints::with_quoted;
 use crate::output::print_json;
 use crate::sources::SourceArgs;
 
@@ -57,7 +57,7 @@ impl Check {
     pub(crate) fn run(self) -> Result<Exit, Failure> {
         if let Some(name) = &self.checking.reproduce {
             let finding = self.which.run_one(name)?;
-            return self.checking.print_one(name, &finding, with_flags);
+            return self.checking.print_one(name, &finding, with_quoted);
         }
         // A wrong name is reported once, not by each check.
         self.which.sources.subject(&self.which.source)?;
@@ -65,7 +65,7 @@ impl Check {
         let source = &self.which.source;
         let report = check(source, &self.runner()?);
         let again = |name: &str| format!("htex source check {source} --reproduce {name}");
-        self.checking.print_report(&report, with_flags, again)
+        self.checking.print_report(&report, with_quoted, again)
     }
 
     fn runner(&self) -> Result<Runner, Failure> {

@@ -17,7 +17,8 @@ mod validate;
 use std::path::Path;
 
 use clap::{Args, Subcommand};
-use htex_format::Findings;
+use htex_files::AtFile;
+use htex_finding::Findings;
 use htex_lab::study::{Study as File, read_study};
 
 use crate::exit::Exit;
@@ -62,7 +63,7 @@ const CANNOT_RUN: &str = "this study cannot be run";
 
 /// Reads a study that must be valid, without the files that it names.
 fn open(file: &Path) -> Result<File, Failure> {
-    let bytes = std::fs::read(file).map_err(|error| Failure::read(file, error))?;
+    let bytes = std::fs::read(file).reading(file)?;
     let mut findings = Findings::default();
     read_study(&bytes, &mut findings).ok_or_else(|| Failure::Findings {
         cannot: CANNOT_RUN,

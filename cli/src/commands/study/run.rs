@@ -1,7 +1,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_format::Severity;
+use htex_files::AtFile;
+use htex_finding::Severity;
 use htex_lab::study::{
     Clock, Ended, Felt, Header, Plan, Session, SimulatedParticipant, Study, StudyError,
     check_files, run,
@@ -188,8 +189,7 @@ impl Run {
             felt: None,
         };
         if rig.plays_to_files()? {
-            std::fs::create_dir_all(&rig.folder)
-                .map_err(|error| Failure::write(&rig.folder, error))?;
+            std::fs::create_dir_all(&rig.folder).writing(&rig.folder)?;
         }
         Ok(rig)
     }

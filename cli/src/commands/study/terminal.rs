@@ -36,7 +36,7 @@ impl Terminal {
 
     fn words(&self, view: &View) -> String {
         let is_line = matches!(self.input, Input::Lines { .. });
-        htex_format::plain(&text(view, is_line)).into_owned()
+        htex_finding::plain(&text(view, is_line)).into_owned()
     }
 
     fn refuse(&self, typed: &str) {

@@ -1,13 +1,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use htex_format::{Findings, Report, Severity};
+use htex_files::AtFile;
+use htex_finding::{Findings, Report};
 use htex_lab::study::{check_files, read_study};
 
-use crate::commands::validate::report;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::scenes::{ChoiceArgs, SceneArgs};
+use crate::validation::report;
 
 /// Check a study, the assets that it names, and its device; exit status 1 if it cannot be run.
 ///
@@ -38,7 +39,7 @@ impl Validate {
     }
 
     fn check(&self, path: &Path) -> Result<Report, Failure> {
-        let bytes = std::fs::read(path).map_err(|error| Failure::read(path, error))?;
+        let bytes = std::fs::read(path).reading(path)?;
         let mut findings = Findings::default();
         let study = read_study(&bytes, &mut findings);
         let mut findings = findings.into_list();
@@ -47,7 +48,6 @@ impl Validate {
             let loader = self.with.loader()?;
             check_files(&study, path, &loader.around(), &rehearsal, &mut findings);
         }
-        let valid = findings.iter().all(|f| f.severity != Severity::Error);
-        Ok(Report { valid, findings })
+        Ok(Report::new(findings))
     }
 }

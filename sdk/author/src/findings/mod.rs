@@ -8,16 +8,17 @@ mod segments;
 mod spikes;
 mod stuck;
 
-use htex_format::{Finding, Findings, Quantity};
+use htex_finding::{Finding, Findings};
+use htex_format::Quantity;
 
 use crate::Recording;
 use levels::Levels;
 
+pub use htex_recording::rules::RULES;
 pub(crate) use htex_recording::rules::{
     RECORDING_NOTED, RECORDING_OFF_TARGET, RECORDING_UNREADABLE, RECORDING_UNSTEADY,
     RECORDING_UNUSABLE,
 };
-pub use htex_recording::rules::{RULES, explain};
 pub use page::findings_page;
 pub(crate) use quantile::quantile;
 pub(crate) use segments::judge_segments;

@@ -1,6 +1,6 @@
 //! Findings of the chosen segments and of the sweeps that are left out.
 
-use htex_format::Findings;
+use htex_finding::Findings;
 
 use super::quantile::median;
 use crate::{Recording, SegmentSpectra};

@@ -1,6 +1,7 @@
 //! Detection of single outliers.
 
-use htex_format::{Findings, Quantity};
+use htex_finding::Findings;
+use htex_format::Quantity;
 
 use super::quantile::{median, quantile};
 use super::{axis_words, pointer};

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use htex_format::{Findings, Quantity};
+use htex_finding::Findings;
+use htex_format::Quantity;
 
 use super::{axis_words, pointer};
 use crate::Recording;

@@ -73,8 +73,8 @@ pub(crate) fn group_grid(
         groups: Vec::new(),
         conditions: Vec::new(),
         sources,
-        warnings: warnings.into_sentences(),
-        notes: notes.into_sentences(),
+        warnings: warnings.into_notices(),
+        notes: notes.into_notices(),
     };
     for (cell, spectrum) in gathered.cells.iter().zip(gathered.spectra) {
         let Some(spectrum) = spectrum else {

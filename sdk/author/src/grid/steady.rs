@@ -1,7 +1,8 @@
 //! The steady windows of a recording.
 
 use htex_dsp::Band;
-use htex_format::{Finding, Quantity};
+use htex_finding::{Finding, Notice};
+use htex_format::Quantity;
 
 use super::paths::Window;
 use crate::exploration::{Known, known};
@@ -23,8 +24,8 @@ pub(super) struct Steady {
     pub(super) windows: Vec<Window>,
     /// Number of windows in the recording.
     pub(super) looked_at: usize,
-    pub(super) warnings: Vec<String>,
-    pub(super) notes: Vec<String>,
+    pub(super) warnings: Vec<Notice>,
+    pub(super) notes: Vec<Notice>,
 }
 
 /// Finds the half-overlapping windows of 0.2 s in which speed and force stay within 10 % of their means, and checks the
@@ -66,7 +67,8 @@ pub(super) fn read_steady(
     if strict {
         refuse(recording, &findings)?;
     }
-    let noticed = recording.warnings.iter().chain(&part.warnings).cloned();
+    let of_part = part.warnings.iter().cloned().map(Notice::from);
+    let noticed = recording.warnings.iter().cloned().chain(of_part);
     let of = |info: bool| sentences(recording, &findings, info);
     Ok(Steady {
         quantity: part.quantity,

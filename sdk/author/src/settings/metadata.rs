@@ -2,7 +2,8 @@
 
 use super::SettingsError;
 use super::setting::settings;
-use htex_format::{Manifest, Severity, check_doi, check_license};
+use htex_finding::Severity;
+use htex_format::{Manifest, check_doi, check_license};
 
 settings! {
     /// What a texture is, who made it, and how it was recorded. An absent entry leaves what is there; an empty text removes it.

@@ -6,7 +6,6 @@ use std::path::Path;
 
 use htex::AssetData;
 use htex::device::Devices;
-use htex::format::Findings;
 use htex::scene::{
     Costs, DeviceOverride, Finger, Limits, LoadError, LoadedScene, Plan, Renderer, SceneError,
     Surroundings, plan, read_scene,
@@ -107,7 +106,7 @@ pub(super) unsafe fn open(
 fn settings(path: &Path, rate_hz: f64) -> BTreeMap<String, String> {
     let quantity = || {
         let bytes = std::fs::read(path).ok()?;
-        let scene = read_scene(&bytes, &Limits::default(), &mut Findings::default())?;
+        let scene = read_scene(&bytes, &Limits::default(), &mut Default::default())?;
         let asset = path.parent()?.join(&scene.surfaces.first()?.asset);
         Some(AssetData::open(&asset).ok()?.manifest.quantity)
     };

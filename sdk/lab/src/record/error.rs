@@ -107,22 +107,9 @@ pub enum RecordError {
     /// The page cannot be served.
     #[error(transparent)]
     Page(#[from] crate::page::PageError),
-    /// A file cannot be written.
-    #[error("cannot write {}: {error}", .file.display())]
-    Write {
-        file: PathBuf,
-        #[source]
-        error: std::io::Error,
-    },
-}
-
-impl RecordError {
-    pub(crate) fn write(file: &std::path::Path, error: std::io::Error) -> Self {
-        Self::Write {
-            file: file.to_owned(),
-            error,
-        }
-    }
+    /// A file could not be written.
+    #[error(transparent)]
+    File(#[from] htex_files::FileError),
 }
 
 fn with_place(file: &Option<PathBuf>) -> String {

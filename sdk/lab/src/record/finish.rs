@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use htex_files::AtFile;
 use serde::Serialize;
 
 use crate::record::error::RecordError;
@@ -67,7 +68,7 @@ pub(crate) fn finish(folder: &Path, path: &Path) -> Result<Option<Recorded>, Rec
             })
         }
     };
-    std::fs::remove_file(path).map_err(|error| RecordError::write(path, error))?;
+    std::fs::remove_file(path).writing(path)?;
     Ok(recorded)
 }
 

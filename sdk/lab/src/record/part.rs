@@ -8,6 +8,8 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use htex_files::AtFile;
+
 use crate::record::data::{TakeData, TakeHeader};
 use crate::record::error::RecordError;
 use crate::record::names;
@@ -37,7 +39,7 @@ impl PartFile {
     /// Begins a part file, which must not exist.
     ///
     /// # Errors
-    /// [`RecordError::Write`].
+    /// [`RecordError::File`].
     pub fn create(path: &Path, header: &TakeHeader) -> Result<Self, RecordError> {
         let begun = || -> std::io::Result<File> {
             let mut file = OpenOptions::new().create_new(true).write(true).open(path)?;
@@ -46,7 +48,7 @@ impl PartFile {
             file.sync_all()?;
             Ok(file)
         };
-        let file = begun().map_err(|error| RecordError::write(path, error))?;
+        let file = begun().writing(path)?;
         Ok(Self {
             path: path.to_owned(),
             file,
@@ -65,7 +67,7 @@ impl PartFile {
     /// Takes interleaved frames; writes and flushes to disk each time that a second of them is there.
     ///
     /// # Errors
-    /// [`RecordError::Write`].
+    /// [`RecordError::File`].
     pub fn push(&mut self, frames: &[f64]) -> Result<(), RecordError> {
         self.frames.extend_from_slice(frames);
         self.waiting += frames.len();
@@ -83,14 +85,14 @@ impl PartFile {
     /// Writes what is waiting and flushes it to disk.
     ///
     /// # Errors
-    /// [`RecordError::Write`].
+    /// [`RecordError::File`].
     pub fn flush(&mut self) -> Result<(), RecordError> {
         let mut bytes = Vec::new();
         append(&mut bytes, FRAMES, &self.frames);
         append(&mut bytes, TRACKER, &self.rows);
         let written = self.file.write_all(&bytes);
         let synced = written.and_then(|()| self.file.sync_data());
-        synced.map_err(|error| RecordError::write(&self.path, error))?;
+        synced.writing(&self.path)?;
         self.frames.clear();
         self.rows.clear();
         self.waiting = 0;
@@ -134,7 +136,7 @@ pub fn read_part(path: &Path) -> Result<Option<TakeData>, RecordError> {
     let header = header.and_then(TakeHeader::of_json).map_err(|error| {
         refuse(format!(
             "it is not the part of a take that this htex records ({}); move it elsewhere",
-            htex_format::plain(&error)
+            htex_finding::plain(&error)
         ))
     })?;
     if let Some(problem) = header.problem() {

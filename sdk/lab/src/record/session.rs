@@ -3,6 +3,8 @@
 use htex_author::recording::Role;
 use htex_device::Source;
 
+use htex_files::AtFile;
+
 use crate::record::data::TakeHeader;
 use crate::record::error::RecordError;
 use crate::record::finish::{Recorded, finish, with_kept};
@@ -57,8 +59,7 @@ impl Session {
                 advice: "map the channel of the normal force, as in normal=ai2:0.31",
             });
         }
-        std::fs::create_dir_all(&setup.folder)
-            .map_err(|error| RecordError::write(&setup.folder, error))?;
+        std::fs::create_dir_all(&setup.folder).writing(&setup.folder)?;
         let inputs = Inputs { signals, tracker };
         let reader = Reader::new(source, inputs, setup.seconds);
         Ok(Self {
@@ -130,7 +131,7 @@ impl Session {
     ) -> Result<Recorded, RecordError> {
         let folder = self.setup.folder.clone();
         let number = names::next_number(&folder, &self.setup.name);
-        let number = number.map_err(|error| RecordError::write(&folder, error))?;
+        let number = number.writing(&folder)?;
         let countdown = Span::new(Phase::Countdown, number, self.setup.countdown_s);
         self.phases.run(countdown, watch, &mut |_| Ok(()))?;
         let header = self.header(number);

@@ -2,6 +2,7 @@
 
 use htex_author::recording::{ColumnMap, Role, RowMap};
 use htex_device::Channel;
+use htex_finding::Notice;
 use htex_format::Quantity;
 
 use crate::record::calibration::{AXES, Calibration};
@@ -71,7 +72,7 @@ impl Signals {
 
     /// Assumptions about units, each a full sentence.
     #[must_use]
-    pub fn warnings(&self) -> &[String] {
+    pub fn warnings(&self) -> &[Notice] {
         self.map.warnings()
     }
 

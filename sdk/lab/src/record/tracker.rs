@@ -132,7 +132,7 @@ impl TrackerRows for LineTracker {
                 return Err(RecordError::TrackerLine {
                     name: self.name.clone(),
                     line,
-                    text: htex_format::plain(&text).into_owned(),
+                    text: htex_finding::plain(&text).into_owned(),
                 });
             };
             let at_s = now_s - now.saturating_duration_since(arrived).as_secs_f64();

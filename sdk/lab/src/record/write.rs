@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use htex_files::AtFile;
 use htex_format::Quantity;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -98,7 +99,7 @@ pub(crate) struct Written {
 /// Writes a take, each file beside its name and then renamed.
 ///
 /// # Errors
-/// [`RecordError::Write`].
+/// [`RecordError::File`].
 pub(crate) fn write_take(
     folder: &Path,
     data: &TakeData,
@@ -122,7 +123,7 @@ pub(crate) fn write_take(
 /// `htex fit` that read the recording.
 ///
 /// # Errors
-/// [`RecordError::Write`].
+/// [`RecordError::File`].
 pub(crate) fn write_signals(
     folder: &Path,
     stem: &str,
@@ -131,11 +132,9 @@ pub(crate) fn write_signals(
 ) -> Result<Written, RecordError> {
     let header = &data.header;
     let recording = folder.join(format!("{stem}.{}", header.format.extension()));
-    let make = |folder: &Path| {
-        std::fs::create_dir_all(folder).map_err(|error| RecordError::write(folder, error))
-    };
+    let make = |folder: &Path| std::fs::create_dir_all(folder).writing(folder);
     let put = |path: &Path, write: &dyn Fn(&mut File) -> io::Result<()>| {
-        htex_files::replace_file(path, write).map_err(|error| RecordError::write(path, error))
+        htex_files::replace_file(path, write).writing(path)
     };
     make(folder)?;
     let mut fit = vec![recording.display().to_string()];

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use htex_finding::Hint;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -108,6 +109,8 @@ pub enum ResponseError {
     #[error("{option} is {value}; {problem}")]
     Option {
         option: &'static str,
+        /// The setting that it is.
+        hint: Hint,
         value: f64,
         problem: String,
     },
@@ -144,6 +147,19 @@ pub enum ResponseError {
         /// The magnitude, output over input.
         magnitude: f64,
     },
+}
+
+impl ResponseError {
+    /// The settings that help.
+    pub fn hint(&self) -> Hint {
+        Hint::new(match self {
+            Self::Columns { .. } | Self::Constant { .. } => &["input", "output"],
+            Self::NoHits { .. } => &["input", "continuous"],
+            Self::Short { .. } => &["window"],
+            Self::Option { hint, .. } => return *hint,
+            _ => &[],
+        })
+    }
 }
 
 /// Most reasons in a message.

@@ -1,6 +1,7 @@
 //! A measured response.
 
 use htex_author::recording::SetupResponse;
+use htex_finding::Hint;
 use serde::Serialize;
 
 use super::average::{average, count_used, cut, scale_of};
@@ -166,6 +167,7 @@ fn band(
     if range.len() < 2 {
         return Err(ResponseError::Option {
             option: "the highest frequency (Hz)",
+            hint: Hint::new(&["high"]),
             value: options.high_hz,
             problem: format!(
                 "there must be two points of the grid of {resolution_hz} Hz from {} Hz to it; widen the band or lengthen the window",

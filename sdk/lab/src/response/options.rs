@@ -1,5 +1,6 @@
 //! Options of measuring a response.
 
+use htex_finding::Hint;
 use serde::Serialize;
 
 use super::error::ResponseError;
@@ -161,27 +162,33 @@ impl ResponseOptions {
         let samples = (self.window_s * rate_hz).round();
         let enough = format!("a window needs {FEWEST_SAMPLES} samples or more, at {rate_hz} Hz");
         require(
-            "the window (s)",
+            ("the window (s)", Hint::new(&["window"])),
             self.window_s,
             (FEWEST_SAMPLES..1e15).contains(&samples),
             &enough,
         )?;
         let low = self.low_hz >= 0.0 && self.low_hz < rate_hz / 2.0;
         require(
-            "the lowest frequency (Hz)",
+            ("the lowest frequency (Hz)", Hint::new(&["low"])),
             self.low_hz,
             low,
             "it must be 0 or more, and below half of the sample rate",
         )?;
         let high = self.high_hz > self.low_hz && self.high_hz.is_finite();
         require(
-            "the highest frequency (Hz)",
+            ("the highest frequency (Hz)", Hint::new(&["high"])),
             self.high_hz,
             high,
             "it must be finite and above the lowest",
         )?;
-        positive("the limit of the input", self.input_limit)?;
-        positive("the limit of the output", self.output_limit)?;
+        positive(
+            ("the limit of the input", Hint::new(&["input_limit"])),
+            self.input_limit,
+        )?;
+        positive(
+            ("the limit of the output", Hint::new(&["output_limit"])),
+            self.output_limit,
+        )?;
         if let Excitation::Hits(hits) = &self.excitation {
             hits.check(self.window_s)?;
         }
@@ -194,14 +201,20 @@ impl HitOptions {
         let inside = (0.0..0.5 * window_s).contains(&self.pre_trigger_s);
         let half = "it must be 0 or more, and below half of the window";
         require(
-            "the time before the trigger (s)",
+            (
+                "the time before the trigger (s)",
+                Hint::new(&["pre_trigger"]),
+            ),
             self.pre_trigger_s,
             inside,
             half,
         )?;
         for (option, level) in [
-            ("the trigger", self.trigger),
-            ("the level of a double hit", self.double),
+            (("the trigger", Hint::new(&["trigger"])), self.trigger),
+            (
+                ("the level of a double hit", Hint::new(&["double"])),
+                self.double,
+            ),
         ] {
             require(
                 option,
@@ -210,12 +223,18 @@ impl HitOptions {
                 "it is relative and must be between 0 and 1",
             )?;
         }
-        positive("the force window (s)", self.force_window_s)?;
-        positive("the exponential window (s)", self.exponential_s)
+        positive(
+            ("the force window (s)", Hint::new(&["force_window"])),
+            self.force_window_s,
+        )?;
+        positive(
+            ("the exponential window (s)", Hint::new(&["exponential"])),
+            self.exponential_s,
+        )
     }
 }
 
-fn positive(option: &'static str, value: Option<f64>) -> Result<(), ResponseError> {
+fn positive(option: (&'static str, Hint), value: Option<f64>) -> Result<(), ResponseError> {
     let value = value.unwrap_or(1.0);
     require(
         option,
@@ -226,7 +245,7 @@ fn positive(option: &'static str, value: Option<f64>) -> Result<(), ResponseErro
 }
 
 fn require(
-    option: &'static str,
+    (option, hint): (&'static str, Hint),
     value: f64,
     holds: bool,
     problem: &str,
@@ -237,6 +256,7 @@ fn require(
     let problem = problem.to_owned();
     Err(ResponseError::Option {
         option,
+        hint,
         value,
         problem,
     })

@@ -11,20 +11,9 @@ pub enum StudyError {
     /// The study has no such participant.
     #[error("the study has no participant {name:?}; it has {known}")]
     NoParticipant { name: String, known: String },
-    /// A file cannot be read.
-    #[error("cannot read {}: {error}", .file.display())]
-    Read {
-        file: PathBuf,
-        #[source]
-        error: std::io::Error,
-    },
-    /// A file cannot be written.
-    #[error("cannot write {}: {error}", .file.display())]
-    Write {
-        file: PathBuf,
-        #[source]
-        error: std::io::Error,
-    },
+    /// A file could not be read or written.
+    #[error(transparent)]
+    File(#[from] htex_files::FileError),
     /// Another program records answers of the same participant.
     #[error("{}: another htex is running this participant; wait for it to end", .file.display())]
     Busy {

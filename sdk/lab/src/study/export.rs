@@ -3,6 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use htex_files::AtFile;
+
 use crate::study::error::StudyError;
 use crate::study::lines::{Answer, Header, Line};
 use crate::study::log;
@@ -73,13 +75,9 @@ pub(crate) fn sessions_of(folder: &Path) -> Result<Vec<Answers>, StudyError> {
 }
 
 fn files(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
-    let error = |error| StudyError::Read {
-        file: folder.to_owned(),
-        error,
-    };
     let mut files = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(error)? {
-        let path = entry.map_err(error)?.path();
+    for entry in std::fs::read_dir(folder).reading(folder)? {
+        let path = entry.reading(folder)?.path();
         if path.extension().is_some_and(|e| e == "jsonl") {
             files.push(path);
         }
@@ -133,11 +131,7 @@ fn chosen(all: &BTreeSet<String>, wanted: Option<&str>) -> Result<String, StudyE
 
 fn table(sessions: &[Answers], attribute: &str, folder: &Path) -> Result<Export, StudyError> {
     let mut csv = csv::WriterBuilder::new().from_writer(Vec::new());
-    let write_error = |error: csv::Error| StudyError::Write {
-        file: folder.to_owned(),
-        error: std::io::Error::other(error),
-    };
-    csv.write_record(COLUMNS).map_err(write_error)?;
+    csv.write_record(COLUMNS).writing(folder)?;
     let (mut ratings, mut warnings) = (0, Vec::new());
     for Answers {
         header, answers, ..
@@ -152,7 +146,7 @@ fn table(sessions: &[Answers], attribute: &str, folder: &Path) -> Result<Export,
             ));
         }
         for answer in answers.iter().filter(|a| a.attribute == attribute) {
-            csv.write_record(row(header, answer)).map_err(write_error)?;
+            csv.write_record(row(header, answer)).writing(folder)?;
             ratings += 1;
         }
     }

@@ -13,6 +13,7 @@ use std::thread::JoinHandle;
 use htex_author::Exploration;
 use htex_author::recording::Role;
 use htex_device::{DeviceError, Source};
+use htex_files::AtFile;
 use htex_format::Quantity;
 use serde_json::json;
 
@@ -86,7 +87,7 @@ impl Felt {
     /// the source, whose rate is `rate_hz`.
     ///
     /// # Errors
-    /// [`RecordError::Write`], and [`RecordError::Setup`] if the format cannot have this rate.
+    /// [`RecordError::File`], and [`RecordError::Setup`] if the format cannot have this rate.
     pub fn new(
         setup: FeltSetup,
         open: OpenSource,
@@ -96,7 +97,7 @@ impl Felt {
     ) -> Result<Self, RecordError> {
         setup.format.check(rate_hz)?;
         let folder = setup.folder.join(&setup.participant).join(FOLDER);
-        remove_unfinished(&folder).map_err(|error| RecordError::write(&folder, error))?;
+        remove_unfinished(&folder).writing(&folder)?;
         let inputs = Some(Inputs { signals, tracker });
         Ok(Self {
             setup,
@@ -212,7 +213,7 @@ impl Felt {
     /// recorded.
     ///
     /// # Errors
-    /// Those of the source, and [`RecordError::Write`].
+    /// Those of the source, and [`RecordError::File`].
     pub fn finish(
         &mut self,
         stimulus: &Stimulus,
@@ -280,10 +281,7 @@ fn within(folder: &Path, text: &str) -> String {
 
 /// The BLAKE3 hash of a recording, hexadecimal.
 pub(crate) fn hash(file: &Path) -> Result<String, StudyError> {
-    let bytes = std::fs::read(file).map_err(|error| StudyError::Read {
-        file: file.to_owned(),
-        error,
-    })?;
+    let bytes = std::fs::read(file).reading(file)?;
     Ok(blake3::hash(&bytes).to_hex().to_string())
 }
 

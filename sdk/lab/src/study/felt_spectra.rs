@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use htex_author::recording::read_recording;
 use htex_author::{Exploration, SegmentSpectra, SpectrumOptions, Take, TextureSpectrum, read_take};
 use htex_dsp::Band;
+use htex_files::AtFile;
 use htex_format::{Asset, Condition, Quantity};
 
 use crate::record::{TakeHeader, header_beside, settings_of};
@@ -191,10 +192,7 @@ fn part(
         return Err(other("its hash is another one"));
     }
     let beside = file.with_extension("json");
-    let header = header_beside(&beside).map_err(|error| StudyError::Read {
-        file: beside.clone(),
-        error,
-    })?;
+    let header = header_beside(&beside).reading(&beside)?;
     let header =
         header.ok_or_else(|| refused(&beside, "it does not describe a recording".to_owned()))?;
     let take = take(&file, &header).map_err(|problem| refused(&file, problem))?;
@@ -235,10 +233,7 @@ fn table(folder: &Path, rows: &[Vec<String>]) -> Result<String, StudyError> {
     let head = names.into_iter().chain(grid.iter().map(|f| format!("{f}")));
     let head: Vec<String> = head.collect();
     for row in std::iter::once(&head).chain(rows) {
-        csv.write_record(row).map_err(|error| StudyError::Write {
-            file: folder.to_owned(),
-            error: std::io::Error::other(error),
-        })?;
+        csv.write_record(row).writing(folder)?;
     }
     let bytes = csv.into_inner().unwrap_or_default();
     Ok(String::from_utf8_lossy(&bytes).into_owned())

@@ -13,7 +13,7 @@ pub const VERSION: &str = "1.0";
 /// A study: who feels which textures in which order, and what they are asked.
 ///
 /// ```
-/// use htex_format::Findings;
+/// use htex_finding::Findings;
 /// use htex_lab::study::{Plan, read_study};
 /// let text = r#"
 ///     htex_study = "1.0"

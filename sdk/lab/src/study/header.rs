@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use htex_files::AtFile;
+
 use crate::study::Study;
 use crate::study::error::StudyError;
 use crate::study::lines::{DeviceUsed, Header, Simulated, SourceUsed, VERSION};
@@ -13,7 +15,7 @@ impl Header {
     /// The header of a participant's session; `path` is the study's file, whose contents and whose files' contents are hashed.
     ///
     /// # Errors
-    /// [`StudyError::Read`] if one of the files cannot be read.
+    /// [`StudyError::File`] if one of the files cannot be read.
     pub fn new(
         study: &Study,
         path: &Path,
@@ -56,9 +58,6 @@ impl Header {
 }
 
 fn hash(file: &Path) -> Result<String, StudyError> {
-    let bytes = std::fs::read(file).map_err(|error| StudyError::Read {
-        file: file.to_owned(),
-        error,
-    })?;
+    let bytes = std::fs::read(file).reading(file)?;
     Ok(blake3::hash(&bytes).to_hex().to_string())
 }

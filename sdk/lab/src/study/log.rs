@@ -4,6 +4,8 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use htex_files::{AtFile, FileError};
+
 use crate::study::error::StudyError;
 use crate::study::lines::{Header, Line, SourceUsed};
 
@@ -34,18 +36,18 @@ impl Log {
             .read(true)
             .append(true)
             .open(path)
-            .map_err(|error| read_error(path, error))?;
+            .reading(path)?;
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
                 let file = path.to_owned();
                 return Err(StudyError::Busy { file });
             }
-            Err(TryLockError::Error(error)) => return Err(read_error(path, error)),
+            Err(TryLockError::Error(error)) => return Err(FileError::reading(path, error).into()),
         }
         let mut bytes = Vec::new();
         let read = file.read_to_end(&mut bytes);
-        read.map_err(|error| read_error(path, error))?;
+        read.reading(path)?;
         let whole = bytes
             .iter()
             .rposition(|b| *b == b'\n')
@@ -53,7 +55,7 @@ impl Log {
         if whole < bytes.len() {
             let cut = file.set_len(whole as u64).and_then(|()| file.sync_all());
             let at_end = cut.and_then(|()| file.seek(SeekFrom::End(0)).map(|_| ()));
-            at_end.map_err(|error| write_error(path, error))?;
+            at_end.writing(path)?;
         }
         let (begun, lines) = parse(path, &bytes[..whole])?;
         same_version(path, &begun, header)?;
@@ -64,12 +66,12 @@ impl Log {
     /// Appends a line, and returns when it is on disk.
     ///
     /// # Errors
-    /// [`StudyError::Write`]; the line may then be incomplete, and is removed when the file is opened again.
+    /// [`StudyError::File`]; the line may then be incomplete, and is removed when the file is opened again.
     pub fn append(&mut self, line: &Line) -> Result<(), StudyError> {
-        let text = text(line).map_err(|error| write_error(&self.path, error))?;
+        let text = text(line).writing(&self.path)?;
         let written = self.file.write_all(text.as_bytes());
         let synced = written.and_then(|()| self.file.sync_data());
-        synced.map_err(|error| write_error(&self.path, error))
+        Ok(synced.writing(&self.path)?)
     }
 
     pub fn path(&self) -> &Path {
@@ -79,7 +81,7 @@ impl Log {
 
 /// Reads a file of answers: its header and its lines. An incomplete last line, of a session that is running or was killed, is left out.
 pub(crate) fn read(path: &Path) -> Result<(Header, Vec<Line>), StudyError> {
-    let bytes = std::fs::read(path).map_err(|error| read_error(path, error))?;
+    let bytes = std::fs::read(path).reading(path)?;
     let whole = bytes
         .iter()
         .rposition(|b| *b == b'\n')
@@ -98,7 +100,7 @@ fn begin(path: &Path, header: &Header) -> Result<(), StudyError> {
         .and_then(|()| text(&Line::Header(header.clone())))
         .and_then(|text| htex_files::write_file(path, text.as_bytes()))
         .and_then(|()| File::open(path)?.sync_all());
-    begun.map_err(|error| write_error(path, error))?;
+    begun.writing(path)?;
     // The name is on disk, too, where folders can be synced.
     if let Ok(folder) = File::open(folder) {
         let _ = folder.sync_all();
@@ -178,18 +180,4 @@ pub(crate) fn other_file<'a>(begun: &'a Header, now: &'a Header) -> Option<&'a s
     let mut names = begun.files.keys().chain(now.files.keys());
     let differs = |name: &&String| begun.files.get(*name) != now.files.get(*name);
     names.find(differs).map(String::as_str)
-}
-
-fn read_error(path: &Path, error: std::io::Error) -> StudyError {
-    StudyError::Read {
-        file: path.to_owned(),
-        error,
-    }
-}
-
-fn write_error(path: &Path, error: std::io::Error) -> StudyError {
-    StudyError::Write {
-        file: path.to_owned(),
-        error,
-    }
 }

@@ -56,7 +56,7 @@ pub use log::{Log, participant_file};
 pub use page::{Page, PageOptions, Touched};
 pub use plan::{ParticipantPlan, Plan, Trial};
 pub use read::{check_files, files_of, read_study, study_schema};
-pub use rules::{RULES, explain, findings_page};
+pub use rules::{RULES, findings_page};
 pub use run::{Ended, run};
 pub use session::{Session, Step};
 pub use simulated::SimulatedParticipant;

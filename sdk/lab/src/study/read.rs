@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use htex_format::{Document, DocumentRules, Finding, Findings};
+use htex_finding::{Finding, Findings};
+use htex_format::{Document, DocumentRules};
 use htex_scene::file::Motion;
 use htex_scene::{DeviceOverride, LoadError, LoadedScene, Surroundings};
 use serde_json::Value;

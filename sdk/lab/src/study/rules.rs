@@ -1,6 +1,6 @@
 //! All rules for studies, in one table.
 
-use htex_format::{Rule, rules_page};
+use htex_finding::rules_page;
 
 const HEAD: &str = "\
 # Findings in studies
@@ -13,21 +13,12 @@ message. A study can be run when no finding is an error. Motions, devices and as
 their codes. Codes never change their meaning.
 ";
 
-/// The rule of a code, such as `STUDY_SCALE_INVALID`, or of a code of scenes or the format (`FINDINGS_TRUNCATED`); `None` if
-/// no rule has this code.
-pub fn explain(code: &str) -> Option<&'static Rule> {
-    RULES
-        .iter()
-        .find(|rule| rule.code == code)
-        .or_else(|| htex_scene::explain(code))
-}
-
 /// The page with all rules: `spec/study-findings.md`.
 pub fn findings_page() -> String {
     rules_page(HEAD, RULES)
 }
 
-htex_format::rule_table! {
+htex_finding::rule_table! {
     STUDY_FILE_TOO_LARGE Error:
         "The study file is larger than 1 MiB.",
         "A study names its assets and holds none of them; so large a file is probably another one.",

@@ -152,7 +152,7 @@ impl<'a> Session<'a> {
     /// Records a rating of the present step, and the recording of what was felt before it.
     ///
     /// # Errors
-    /// [`StudyError::Write`], and [`StudyError::Line`] if the present step takes no such rating.
+    /// [`StudyError::File`], and [`StudyError::Line`] if the present step takes no such rating.
     pub fn rate(
         &mut self,
         rating: u8,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use htex_format::{FileReport, Report};
+use htex_finding::{FileReport, Report};
 use htex_library::{Limits, validate_source};
 use serde_json::json;
 

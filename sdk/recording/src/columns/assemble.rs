@@ -1,5 +1,6 @@
 //! Recordings from the columns of a file.
 
+use htex_finding::Notice;
 use htex_format::Quantity;
 
 use crate::columns::by_order::by_order;
@@ -40,7 +41,7 @@ fn by_name(file: &str, sheet: &mut dyn Sheet, options: &ReadOptions) -> Result<A
         warnings: std::mem::take(&mut selection.warnings),
         ..Noticed::default()
     };
-    noticed.warnings.append(&mut signals.warnings());
+    noticed.warnings.extend(signals.warnings());
     let time_s = signals.take(Role::Time);
     let own_hz = match &time_s {
         Some(_) => None,
@@ -63,7 +64,7 @@ pub(crate) struct Signals {
     /// Each is removed once.
     roles: Vec<(Role, Vec<f64>)>,
     simulated: bool,
-    warnings: Vec<String>,
+    warnings: Vec<Notice>,
 }
 
 impl Signals {
@@ -85,7 +86,7 @@ impl Signals {
             wanted,
             roles,
             simulated: numbers.simulated,
-            warnings: numbers.warnings,
+            warnings: numbers.warnings.into_iter().map(Notice::from).collect(),
         })
     }
 
@@ -95,7 +96,7 @@ impl Signals {
     }
 
     /// Takes the observations made while reading.
-    pub(crate) fn warnings(&mut self) -> Vec<String> {
+    pub(crate) fn warnings(&mut self) -> Vec<Notice> {
         std::mem::take(&mut self.warnings)
     }
 
@@ -175,7 +176,7 @@ fn check_computed(sheet: &dyn Sheet, chosen: &Chosen, values: &[f64]) -> Result<
         None => Ok(()),
         Some(row) => {
             let problem = format!("the expression is {} there", values[row]);
-            Err(cell(sheet.place(row), &htex_format::plain(text), problem))
+            Err(cell(sheet.place(row), &htex_finding::plain(text), problem))
         }
     }
 }

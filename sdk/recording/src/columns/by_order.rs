@@ -1,5 +1,6 @@
 //! Recordings of channels without names, by their order.
 
+use htex_finding::{Hint, Notice};
 use htex_format::Quantity;
 
 use crate::error::{Fault, ReadProblem};
@@ -42,7 +43,8 @@ pub(crate) fn by_order(
         recording = recording.with_normal(normal)?;
     }
     if options.scale.is_none() {
-        let warning = assumption(are_integers, options.quantity);
+        let told = assumption(are_integers, options.quantity);
+        let warning = Notice::new(told, Hint::new(&["scale"]));
         recording.warnings.push(warning);
     }
     Ok(recording)

@@ -1,6 +1,6 @@
 //! The sample rate of a table, from its time column or from the options.
 
-use htex_format::Findings;
+use htex_finding::{Findings, Notice};
 
 use crate::error::{Fault, ReadProblem};
 use crate::hertz::hertz;
@@ -26,7 +26,7 @@ const WHOLE: f64 = 1e-5;
 /// Warnings of a reader, and findings of the time column.
 #[derive(Default)]
 pub(crate) struct Noticed {
-    pub(crate) warnings: Vec<String>,
+    pub(crate) warnings: Vec<Notice>,
     pub(crate) findings: Findings,
 }
 
@@ -35,11 +35,14 @@ pub(crate) fn given(own: Option<f64>, given: Option<f64>, noticed: &mut Noticed)
     if let (Some(own), Some(given)) = (own, given)
         && (own / given - 1.0).abs() > DISAGREE
     {
-        noticed.warnings.push(format!(
-            "The file has a rate of {}, the given rate is {}; the given rate is used.",
-            hertz(own),
-            hertz(given)
-        ));
+        noticed.warnings.push(
+            format!(
+                "The file has a rate of {}, the given rate is {}; the given rate is used.",
+                hertz(own),
+                hertz(given)
+            )
+            .into(),
+        );
     }
     given.or(own)
 }
@@ -65,14 +68,14 @@ pub(crate) fn rate(
                     "The time column has a rate of {}, the given rate is {}; the given rate is used.",
                     hertz(measured),
                     hertz(given)
-                ));
+                ).into());
             }
             Ok(given)
         }
         (Err(fault), Some(given)) => {
             let error = fault.in_file(file);
             let sentence = format!("The given rate is used instead of the time column: {error}.");
-            noticed.warnings.push(sentence);
+            noticed.warnings.push(sentence.into());
             Ok(given)
         }
     }

@@ -1,5 +1,6 @@
 //! The column map applied to signals that arrive in blocks, such as those of a card's channels.
 
+use htex_finding::Notice;
 use htex_format::Quantity;
 
 use crate::ReadError;
@@ -45,7 +46,7 @@ impl RowMap {
         let mut row_map = Self::with(source, channels, map, quantity, |columns| {
             select(columns, map, quantity)
         })?;
-        let is_unused = |warning: &String| warning.starts_with("Columns not used");
+        let is_unused = |warning: &Notice| warning.starts_with("Columns not used");
         let warnings = &mut row_map.selection.warnings;
         warnings.retain(|warning| !is_unused(warning));
         Ok(row_map)
@@ -116,7 +117,7 @@ impl RowMap {
                 chosen.role
             );
             let warnings = &mut self.selection.warnings;
-            warnings.retain(|warning| !warning.starts_with(&assumed));
+            warnings.retain(|warning| !warning.text.starts_with(&assumed));
         }
         Ok(())
     }
@@ -145,7 +146,7 @@ impl RowMap {
 
     /// Returns the assumptions that were made, such as units, each a full sentence.
     #[must_use]
-    pub fn warnings(&self) -> &[String] {
+    pub fn warnings(&self) -> &[Notice] {
         &self.selection.warnings
     }
 

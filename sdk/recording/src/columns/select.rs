@@ -1,5 +1,6 @@
 //! Selection of a file's columns, with their roles and units.
 
+use htex_finding::{Hint, Notice};
 use htex_format::Quantity;
 
 use crate::columns::expression::Formula;
@@ -90,7 +91,7 @@ pub(crate) struct Selection {
     /// Whether only the motion of the finger is selected.
     is_motion: bool,
     pub(crate) chosen: Vec<Chosen>,
-    pub(crate) warnings: Vec<String>,
+    pub(crate) warnings: Vec<Notice>,
 }
 
 /// Assigns columns by the map, then by their names, and requires an axis of the quantity.
@@ -113,11 +114,8 @@ pub(crate) fn select(
         Vec::new()
     };
     selection.insist_on_axis(columns, &refused)?;
-    selection.warnings.extend(
-        refused
-            .into_iter()
-            .map(|refused| format!("{refused}; it is not used.")),
-    );
+    let unused = |refused| Notice::new(format!("{refused}; it is not used."), Hint::new(&["map"]));
+    selection.warnings.extend(refused.into_iter().map(unused));
     selection.warn_of_unused(columns);
     Ok(selection)
 }
@@ -217,7 +215,7 @@ impl Selection {
                      factor.",
                     entry.values,
                     columns.name(column)
-                ));
+                ).into());
             }
         }
         Ok(Chosen {
@@ -327,9 +325,8 @@ impl Selection {
 
     fn assume_unit(&mut self, columns: &Columns, column: usize, role: Role) -> f64 {
         let (name, unit) = (columns.name(column), base_unit(role, self.quantity));
-        self.warnings.push(format!(
-            "Column {name:?} ({role}) has no unit; {unit} is assumed."
-        ));
+        self.warnings
+            .push(format!("Column {name:?} ({role}) has no unit; {unit} is assumed.").into());
         1.0
     }
 
@@ -376,7 +373,7 @@ impl Selection {
             .collect();
         if !unused.is_empty() {
             self.warnings
-                .push(format!("Columns not used: {}.", columns.list_of(&unused)));
+                .push(format!("Columns not used: {}.", columns.list_of(&unused)).into());
         }
     }
 }

@@ -124,7 +124,7 @@ impl Scan {
                 "more than {MOST_DEEP} groups within each other, or more than {MOST_OBJECTS} objects; copy those of the recording \
                  to a file of their own"
             );
-            return Err(ReadProblem::Invalid(problem).at(htex_format::plain(path)));
+            return Err(ReadProblem::Invalid(problem).at(htex_finding::plain(path)));
         }
         // Attributes that cannot be read, of kinds without numbers among them, do not state a rate.
         self.attributes(path, group.attributes().unwrap_or_default());
@@ -163,7 +163,7 @@ impl Scan {
                 let problem = format!(
                     "more than {MOST_COLUMNS} columns; copy those of the recording to a file of their own"
                 );
-                return Err(ReadProblem::Invalid(problem).at(htex_format::plain(&path)));
+                return Err(ReadProblem::Invalid(problem).at(htex_finding::plain(&path)));
             }
         } else if is_number
             && is_rate_name(dataset.name())
@@ -203,7 +203,7 @@ fn fits(bytes: u64, dataset: &Dataset, shape: Shape) -> Result<(), Fault> {
         "it states {} samples of {} channels in a file of {bytes} bytes; write the file again without space that has no data",
         shape.samples, shape.channels
     );
-    Err(ReadProblem::Invalid(problem).at(htex_format::plain(dataset.name())))
+    Err(ReadProblem::Invalid(problem).at(htex_finding::plain(dataset.name())))
 }
 
 /// Reads a data set, some samples of all its channels at once.
@@ -281,7 +281,7 @@ fn damaged(place: &str, error: &hdf5_reader::error::Error) -> Fault {
     let error = error.to_string();
     let problem = format!(
         "not readable HDF5: {}; copy the file again, or write it again by h5py or MATLAB",
-        htex_format::plain(&error)
+        htex_finding::plain(&error)
     );
-    ReadProblem::Invalid(problem).at(htex_format::plain(place))
+    ReadProblem::Invalid(problem).at(htex_finding::plain(place))
 }

@@ -135,9 +135,9 @@ impl<T> Arrays<T> {
                     None => Ok(Some(*rate_hz)),
                     Some((other, _)) => Err(ReadProblem::Invalid(format!(
                         "it states another sample rate than {}; give the rate of the recording",
-                        htex_format::plain(name)
+                        htex_finding::plain(name)
                     ))
-                    .at(htex_format::plain(other))),
+                    .at(htex_finding::plain(other))),
                 };
             }
             if around.is_empty() {

@@ -333,7 +333,7 @@ fn damaged(place: &str, error: &ParquetError) -> Fault {
     let error = error.to_string();
     let problem = format!(
         "not readable Parquet: {}; copy the file again, or write it again",
-        htex_format::plain(error.trim_end())
+        htex_finding::plain(error.trim_end())
     );
     ReadProblem::Invalid(problem).at(place)
 }

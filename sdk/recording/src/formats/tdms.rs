@@ -113,9 +113,11 @@ impl Sheet for Tdms {
                 Some((other, other_s)) => {
                     let problem = format!(
                         "its samples are {step_s} s apart, those of {} {other_s} s; map channels of one rate",
-                        htex_format::plain(&other.name)
+                        htex_finding::plain(&other.name)
                     );
-                    return Err(ReadProblem::Invalid(problem).at(htex_format::plain(&channel.name)));
+                    return Err(
+                        ReadProblem::Invalid(problem).at(htex_finding::plain(&channel.name))
+                    );
                 }
             }
         }
@@ -130,7 +132,7 @@ impl Sheet for Tdms {
         let read = read.and_then(|()| {
             let read = |channel: &Channel| {
                 let read = self.read(channel);
-                read.map_err(|problem| damaged(htex_format::plain(&channel.name), &problem))
+                read.map_err(|problem| damaged(htex_finding::plain(&channel.name), &problem))
             };
             chosen().map(read).collect()
         });

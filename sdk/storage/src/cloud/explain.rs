@@ -7,8 +7,8 @@ use std::time::Instant;
 
 use super::Store;
 use super::log::Last;
-use crate::StorageError;
 use crate::location::{LocalOrRemote, Scheme};
+use crate::{StorageError, StorageProblem};
 
 /// The failure of an operation.
 pub(super) enum Fail {
@@ -35,23 +35,24 @@ impl Store {
     /// The error of a failure. Texts of the library and of the server are not quoted: they may hold signatures and keys.
     pub(super) fn explain(&self, fail: Fail, begun: Instant) -> StorageError {
         use object_store::Error;
-        let uri = self.location.to_string();
         let seconds = begun.elapsed().as_secs_f64();
         let last = self.log.last();
-        match fail {
-            Fail::Own(error) => error,
-            Fail::Local(error) => StorageError::io(format_args!("the local copy of {uri}"), error),
-            Fail::Slow => StorageError::TooSlow {
-                uri,
+        let problem = match fail {
+            Fail::Own(error) => return error,
+            Fail::Local(error) => {
+                let copy = format_args!("the local copy of {}", self.location);
+                return StorageError::io(copy, error);
+            }
+            Fail::Slow => StorageProblem::TooSlow {
                 limit_s: self.settings.total.as_secs_f64(),
                 what: format!("{} bytes came in, {}", self.log.bytes(), words(&last)),
             },
             Fail::Ended => self.unavailable("the transfer ended unexpectedly".to_owned(), seconds),
             Fail::Request(error) if matches!(*error, Error::NotFound { .. }) => {
-                StorageError::Missing { uri }
+                StorageProblem::Missing
             }
             Fail::Request(error) if matches!(*error, Error::NotSupported { .. }) => {
-                StorageError::NoRanges { uri }
+                StorageProblem::NoRanges
             }
             // After a body that broke off, a good response is one of another version of the file.
             Fail::Body
@@ -63,63 +64,59 @@ impl Store {
                     }
                 ) =>
             {
-                StorageError::Changed { uri }
+                StorageProblem::Changed
             }
             Fail::Request(_) | Fail::Body => self.by_last(last, seconds),
-        }
+        };
+        problem.at(&self.location)
     }
 
-    fn by_last(&self, last: Last, seconds: f64) -> StorageError {
-        let (uri, what) = (self.location.to_string(), words(&last));
+    fn by_last(&self, last: Last, seconds: f64) -> StorageProblem {
+        let what = words(&last);
         let (status, code) = match last {
             Last::Status { status, code } => (status, code),
-            Last::NotFollowed(_) => return StorageError::Refused { uri, what },
+            Last::NotFollowed(_) => return StorageProblem::Refused { what },
             Last::Nothing | Last::Cut(_) => return self.unavailable(what, seconds),
         };
         match status {
-            404 => StorageError::Missing { uri },
-            412 => StorageError::Changed { uri },
+            404 => StorageProblem::Missing,
+            412 => StorageProblem::Changed,
             401 | 403 => self.denied(what, code.as_deref()),
             400 if code.as_deref().is_some_and(is_of_credentials) => {
                 self.denied(what, code.as_deref())
             }
-            300..=399 => StorageError::Refused {
-                uri,
+            300..=399 => StorageProblem::Refused {
                 what: format!(
                     "{what}: it is elsewhere; set AWS_REGION to the region of the bucket"
                 ),
             },
-            416 => StorageError::Refused {
-                uri,
+            416 => StorageProblem::Refused {
                 what: format!("{what}: the range begins after the end of the file"),
             },
             408 | 429 | 500.. => self.unavailable(what, seconds),
-            200..=299 => StorageError::Refused {
-                uri,
+            200..=299 => StorageProblem::Refused {
                 what: format!(
                     "{what}, without the size of the file or with a header that is not valid"
                 ),
             },
-            _ => StorageError::Refused { uri, what },
+            _ => StorageProblem::Refused { what },
         }
     }
 
-    fn unavailable(&self, what: String, seconds: f64) -> StorageError {
-        StorageError::Unavailable {
-            uri: self.location.to_string(),
+    fn unavailable(&self, what: String, seconds: f64) -> StorageProblem {
+        StorageProblem::Unavailable {
             what,
             requests: self.log.requests(),
             seconds,
         }
     }
 
-    fn denied(&self, what: String, code: Option<&str>) -> StorageError {
+    fn denied(&self, what: String, code: Option<&str>) -> StorageProblem {
         let scheme = match self.location.place() {
             LocalOrRemote::Remote(uri) => uri.scheme,
             LocalOrRemote::Local(_) => Scheme::Https,
         };
-        StorageError::Denied {
-            uri: self.location.to_string(),
+        StorageProblem::Denied {
             what,
             advice: self.advice(scheme, code),
         }

@@ -20,7 +20,7 @@ pub(crate) use read::Version;
 
 use crate::listing::{self, Entry, MOST_ENTRIES};
 use crate::location::Uri;
-use crate::{Location, Settings, Stat, StorageError, Variables};
+use crate::{Location, Settings, Stat, StorageError, StorageProblem, Variables};
 use explain::Fail;
 use log::{Connector, Log};
 use stores::Parts;
@@ -46,10 +46,7 @@ impl Store {
         uri: &Uri,
         (settings, variables, clients): (&Settings, &Variables, &Clients),
     ) -> Result<Self, StorageError> {
-        let problem = |problem| StorageError::Settings {
-            uri: location.to_string(),
-            problem,
-        };
+        let problem = |problem| StorageProblem::Settings { problem }.at(location);
         let client = match uri.scheme.is_read_only() {
             true => clients.web(settings),
             false => clients.stores(settings),
@@ -92,7 +89,7 @@ impl Store {
                 modified: modified(&meta),
                 etag: meta.e_tag,
             })),
-            Err(StorageError::Missing { .. }) => Ok(None),
+            Err(error) if matches!(error.problem, StorageProblem::Missing) => Ok(None),
             Err(error) => Err(error),
         }
     }
@@ -103,7 +100,7 @@ impl Store {
         let here = self.clone();
         let removed = self.run(async move { Ok(here.store.delete(&here.key).await?) });
         match removed {
-            Err(StorageError::Missing { .. }) => Ok(()),
+            Err(error) if matches!(error.problem, StorageProblem::Missing) => Ok(()),
             other => other,
         }
     }
@@ -175,9 +172,9 @@ fn runtime(location: &Location) -> Result<&'static Runtime, StorageError> {
             .build()
             .map_err(|error| error.to_string())
     });
-    runtime.as_ref().map_err(|error| StorageError::Settings {
-        uri: location.to_string(),
-        problem: format!("no threads for the network: {error}"),
+    runtime.as_ref().map_err(|error| {
+        let problem = format!("no threads for the network: {error}");
+        StorageProblem::Settings { problem }.at(location)
     })
 }
 

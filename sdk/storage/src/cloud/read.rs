@@ -10,7 +10,7 @@ use object_store::{GetOptions, GetRange, GetResult, ObjectMeta};
 use super::Store;
 use super::explain::Fail;
 use super::log::Last;
-use crate::StorageError;
+use crate::{StorageError, StorageProblem};
 
 /// One version of a file, as far as the server tells versions apart.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -145,8 +145,7 @@ impl Store {
         };
         let is = Version::of(&found.meta);
         if version.is_some_and(|version| version != is) {
-            let uri = self.location.to_string();
-            return Err(Fail::Own(StorageError::Changed { uri }));
+            return Err(Fail::Own(StorageProblem::Changed.at(&self.location)));
         }
         let mut bytes = Vec::new();
         let len = found.range.end - found.range.start;
@@ -162,10 +161,9 @@ impl Store {
     fn check_size(&self, bytes: u64, most_bytes: u64) -> Result<(), Fail> {
         match bytes <= most_bytes {
             true => Ok(()),
-            false => Err(Fail::Own(StorageError::TooLarge {
-                uri: self.location.to_string(),
-                most_bytes,
-            })),
+            false => Err(Fail::Own(
+                StorageProblem::TooLarge { most_bytes }.at(&self.location),
+            )),
         }
     }
 }

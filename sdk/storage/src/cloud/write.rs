@@ -10,7 +10,7 @@ use tokio::task::JoinSet;
 
 use super::Store;
 use super::explain::Fail;
-use crate::StorageError;
+use crate::{StorageError, StorageProblem};
 
 /// Files up to this size are one request.
 const MOST_SINGLE_BYTES: u64 = 16 << 20;
@@ -40,10 +40,8 @@ impl Store {
         let mut file = File::open(path).map_err(read)?;
         let len = file.metadata().map_err(read)?.len();
         if len > MOST_BYTES {
-            return Err(StorageError::TooLarge {
-                uri: path.display().to_string(),
-                most_bytes: MOST_BYTES,
-            });
+            let most_bytes = MOST_BYTES;
+            return Err(StorageProblem::TooLarge { most_bytes }.at(path.display()));
         }
         if len <= MOST_SINGLE_BYTES {
             let mut bytes = Vec::new();

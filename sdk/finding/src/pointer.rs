@@ -1,7 +1,14 @@
 //! JSON pointers (RFC 6901).
 
 /// A place in a document, as a chain up to its root. It is formatted only when needed.
-pub(crate) enum Place<'p> {
+///
+/// ```
+/// use htex_finding::Place;
+///
+/// let fields = Place::Key(&Place::Root, "fields");
+/// assert_eq!(Place::Index(&fields, 2).pointer(), "/fields/2");
+/// ```
+pub enum Place<'p> {
     /// The whole document.
     Root,
     /// A key of an object.
@@ -12,7 +19,7 @@ pub(crate) enum Place<'p> {
 
 impl Place<'_> {
     /// Returns the JSON pointer of the place; empty for the root.
-    pub(crate) fn pointer(&self) -> String {
+    pub fn pointer(&self) -> String {
         match self {
             Self::Root => String::new(),
             Self::Key(parent, key) => format!("{}/{}", parent.pointer(), escape(key)),

@@ -5,9 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::plain;
-use crate::rules::{FINDINGS_TRUNCATED, Rule};
-use crate::{Finding, Severity};
+use crate::{FINDINGS_TRUNCATED, Finding, Notice, Rule, Severity};
 
 /// Maximum number of findings in a report; a hostile file could cause millions.
 const KEPT: usize = 100;
@@ -37,6 +35,15 @@ pub struct FileReport {
 }
 
 impl Report {
+    /// A report of these findings; it is valid when none is an error.
+    pub fn new(findings: Vec<Finding>) -> Self {
+        let is_error = |finding: &Finding| finding.severity == Severity::Error;
+        Self {
+            valid: !findings.iter().any(is_error),
+            findings,
+        }
+    }
+
     /// Adds the name of the file.
     pub fn of_file(self, file: &str) -> FileReport {
         FileReport {
@@ -51,11 +58,10 @@ impl Report {
 /// A collector of findings that keeps the first hundred.
 ///
 /// ```
-/// use htex_format::{Findings, explain};
+/// use htex_finding::{FINDINGS_TRUNCATED, Findings};
 ///
 /// let mut findings = Findings::default();
-/// let rule = explain("LICENSE_MISSING").expect("the rule exists");
-/// findings.add(rule, "", "there is no license; add an SPDX expression".to_owned());
+/// findings.add(FINDINGS_TRUNCATED, "", "2 more findings are not shown".to_owned());
 /// assert!(!findings.has_errors());
 /// assert_eq!(findings.into_list().len(), 1);
 /// ```
@@ -69,10 +75,15 @@ pub struct Findings {
 impl Findings {
     /// Adds a finding: the broken rule, a JSON pointer (empty for the whole document), and a message that says
     /// what is wrong, where, and what to do.
-    pub fn add(&mut self, rule: &Rule, pointer: impl Into<String>, message: String) {
+    pub fn add(&mut self, rule: &Rule, pointer: impl Into<String>, message: impl Into<Notice>) {
         self.errors |= rule.severity == Severity::Error;
         if self.kept.len() < KEPT {
-            self.kept.push(finding(rule, pointer.into(), message));
+            let Notice { text, hint } = message.into();
+            let finding = Finding::new(rule, pointer, &text);
+            self.kept.push(Finding {
+                hint: finding.hint.or(hint),
+                ..finding
+            });
         } else {
             self.dropped += 1;
         }
@@ -101,18 +112,12 @@ impl Findings {
         if self.dropped > 0 {
             let message = format!("{} more findings are not shown", self.dropped);
             self.kept
-                .push(finding(FINDINGS_TRUNCATED, String::new(), message));
+                .push(Finding::new(FINDINGS_TRUNCATED, "", &message));
         }
         self.kept
     }
-}
-
-fn finding(rule: &Rule, pointer: String, message: String) -> Finding {
-    Finding {
-        code: rule.code.to_owned(),
-        severity: rule.severity,
-        pointer,
-        message: plain(&message).into_owned(),
-        schema_rule: None,
+    /// Returns the findings as a report.
+    pub fn into_report(self) -> Report {
+        Report::new(self.into_list())
     }
 }

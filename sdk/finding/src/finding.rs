@@ -5,10 +5,12 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::{Hint, Rule, plain};
+
 /// Severity of a finding.
 ///
 /// ```
-/// use htex_format::Severity;
+/// use htex_finding::Severity;
 /// assert!(Severity::Error < Severity::Info);
 /// assert_eq!(Severity::Warning.to_string(), "warning");
 /// ```
@@ -28,12 +30,9 @@ pub enum Severity {
 /// A finding of validation.
 ///
 /// ```
-/// use htex_format::{Limits, validate};
-/// let report = validate(b"not an asset", &Limits::default());
-/// for finding in &report.findings {
-///     println!("{} {finding}", finding.severity);
-/// }
-/// assert!(!report.valid);
+/// use htex_finding::{FINDINGS_TRUNCATED, Finding};
+/// let finding = Finding::new(FINDINGS_TRUNCATED, "", "2 more findings are not shown");
+/// assert_eq!(finding.to_string(), "FINDINGS_TRUNCATED: 2 more findings are not shown");
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Finding {
@@ -52,6 +51,23 @@ pub struct Finding {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = "#"))]
     pub schema_rule: Option<String>,
+    /// The settings that help; a finding that is read has none.
+    #[serde(skip)]
+    pub hint: Hint,
+}
+
+impl Finding {
+    /// A finding of a rule; control characters in the message are escaped.
+    pub fn new(rule: &Rule, pointer: impl Into<String>, message: &str) -> Self {
+        Self {
+            code: rule.code.to_owned(),
+            severity: rule.severity,
+            pointer: pointer.into(),
+            message: plain(message).into_owned(),
+            schema_rule: None,
+            hint: rule.hint,
+        }
+    }
 }
 
 impl fmt::Display for Severity {
@@ -69,9 +85,29 @@ impl fmt::Display for Finding {
         match self.pointer.as_str() {
             "" => write!(f, "{}: {}", self.code, self.message),
             pointer => {
-                let pointer = crate::plain(pointer);
+                let pointer = plain(pointer);
                 write!(f, "{} at {pointer}: {}", self.code, self.message)
             }
         }
     }
+}
+
+/// Number of findings in the text of an error.
+const SHOWN: usize = 3;
+
+/// Formats the first errors of a list as one line.
+pub fn summary(findings: &[Finding]) -> String {
+    let errors = || findings.iter().filter(|f| f.severity == Severity::Error);
+    let mut text: Vec<String> = errors().take(SHOWN).map(ToString::to_string).collect();
+    let rest = errors().count().saturating_sub(SHOWN);
+    if rest > 0 {
+        text.push(format!("and {rest} more"));
+    }
+    text.join("; ")
+}
+
+/// Formats findings for the end of a message, each in a line of its own.
+pub fn listed(findings: &[Finding]) -> String {
+    let line = |f: &Finding| format!("\n  {} {}", f.severity, plain(&f.to_string()));
+    findings.iter().map(line).collect()
 }

@@ -7,7 +7,7 @@ use std::borrow::Cow;
 /// the file.
 ///
 /// ```
-/// assert_eq!(htex_format::plain("a\tb\x1b[2J"), r"a\tb\u{1b}[2J");
+/// assert_eq!(htex_finding::plain("a\tb\x1b[2J"), r"a\tb\u{1b}[2J");
 /// ```
 pub fn plain(text: &str) -> Cow<'_, str> {
     if !text.contains(steers) {

@@ -1,0 +1,31 @@
+//! The rules of all files, in one list.
+
+use htex_finding::Rule;
+
+/// All rules of this program, by what they are about.
+const TABLES: &[&[Rule]] = &[
+    htex_format::RULES,
+    htex_library::RULES,
+    htex_scene::RULES,
+    htex_author::findings::RULES,
+    #[cfg(feature = "lab")]
+    htex_lab::study::RULES,
+];
+
+/// All rules.
+pub(crate) fn rules() -> impl Iterator<Item = &'static Rule> {
+    TABLES.iter().copied().flatten()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn every_code_is_that_of_one_rule() {
+        let codes: BTreeSet<&str> = rules().map(|rule| rule.code).collect();
+        assert_eq!(codes.len(), rules().count());
+    }
+}

@@ -1,0 +1,85 @@
+//! Errors of files, with the names of the files.
+
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// A file that could not be read or written.
+///
+/// ```
+/// use htex_files::{AtFile, FileError};
+///
+/// fn read(file: &std::path::Path) -> Result<String, FileError> {
+///     std::fs::read_to_string(file).reading(file)
+/// }
+/// let error = read("absent.csv".as_ref()).unwrap_err();
+/// assert!(error.to_string().starts_with("cannot read absent.csv: "));
+/// ```
+#[derive(Debug)]
+pub struct FileError {
+    /// The file or folder.
+    pub file: PathBuf,
+    /// Whether it was to be written.
+    pub is_output: bool,
+    /// The system's error.
+    pub error: io::Error,
+}
+
+impl FileError {
+    /// A file that could not be read.
+    pub fn reading(file: impl AsRef<Path>, error: impl Into<io::Error>) -> Self {
+        Self::new(file.as_ref(), false, error.into())
+    }
+
+    /// A file that could not be written.
+    pub fn writing(file: impl AsRef<Path>, error: impl Into<io::Error>) -> Self {
+        Self::new(file.as_ref(), true, error.into())
+    }
+
+    fn new(file: &Path, is_output: bool, error: io::Error) -> Self {
+        let file = file.to_owned();
+        Self {
+            file,
+            is_output,
+            error,
+        }
+    }
+}
+
+impl fmt::Display for FileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let verb = if self.is_output { "write" } else { "read" };
+        write!(f, "cannot {verb} {}: {}", self.file.display(), self.error)
+    }
+}
+
+impl std::error::Error for FileError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        Some(&self.error)
+    }
+}
+
+/// Adds the name of the file to an error of the system.
+pub trait AtFile<T> {
+    /// The file was read.
+    ///
+    /// # Errors
+    /// Those of the result.
+    fn reading(self, file: impl AsRef<Path>) -> Result<T, FileError>;
+
+    /// The file was written.
+    ///
+    /// # Errors
+    /// Those of the result.
+    fn writing(self, file: impl AsRef<Path>) -> Result<T, FileError>;
+}
+
+impl<T, E: Into<io::Error>> AtFile<T> for Result<T, E> {
+    fn reading(self, file: impl AsRef<Path>) -> Result<T, FileError> {
+        self.map_err(|error| FileError::reading(file, error))
+    }
+
+    fn writing(self, file: impl AsRef<Path>) -> Result<T, FileError> {
+        self.map_err(|error| FileError::writing(file, error))
+    }
+}

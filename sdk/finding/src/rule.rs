@@ -1,0 +1,87 @@
+//! Rules, and the macro of their tables.
+
+use crate::{Hint, Severity};
+
+/// A rule that validation applies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rule {
+    /// Stable code; its meaning never changes.
+    pub code: &'static str,
+    /// Severity of a finding of this rule.
+    pub severity: Severity,
+    /// The stages of reading in which it is applied, where the reading of a file has stages.
+    pub stages: &'static [Stage],
+    /// The settings that help.
+    pub hint: Hint,
+    /// The setting without which the rule is not applied.
+    pub checked_by: Hint,
+    /// What was found, in one line.
+    pub summary: &'static str,
+    /// Why it matters.
+    pub explanation: &'static str,
+    /// How to correct it.
+    pub fix: &'static str,
+}
+
+/// A stage of reading a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stage {
+    /// What the stage checks.
+    pub of: &'static str,
+    /// Whether reading ends after the stage if it found an error.
+    pub ends: bool,
+}
+
+/// The stage of counting what is beyond the first hundred findings.
+pub const COUNT: Stage = Stage {
+    of: "the count of findings beyond the first hundred",
+    ends: false,
+};
+
+/// The rule that every report of more than a hundred findings ends with.
+pub const FINDINGS_TRUNCATED: &Rule = &Rule {
+    code: "FINDINGS_TRUNCATED",
+    severity: Severity::Info,
+    stages: &[COUNT],
+    hint: Hint::NONE,
+    checked_by: Hint::NONE,
+    summary: "There are more findings than are shown.",
+    explanation: "Only the first hundred are reported.",
+    fix: "Correct those and validate again.",
+};
+
+/// Defines a table of rules: a constant for each, and `RULES` with all of them in order. After the severity stand, where there
+/// are any, the stages in `[]`, the settings that help in `()`, and the setting that turns the rule on after `by`. A last line
+/// `+ RULE;` adds a rule that is defined elsewhere.
+///
+/// ```
+/// htex_finding::rule_table! {
+///     CLOTH_TORN Error ("needle"): "The cloth is torn.", "Torn cloth snags.", "Mend it.";
+/// }
+/// assert_eq!(RULES[0].code, "CLOTH_TORN");
+/// assert_eq!(*CLOTH_TORN, RULES[0]);
+/// ```
+#[macro_export]
+macro_rules! rule_table {
+    ($(
+        $name:ident $severity:ident $([$($stage:ident),*])? $(($($setting:literal),*))? $(by $check:literal)?:
+        $summary:literal, $explanation:literal, $fix:literal;
+    )* $(+ $other:path;)?) => {
+        $(
+            #[doc = $summary]
+            pub const $name: &$crate::Rule = &$crate::Rule {
+                code: stringify!($name),
+                severity: $crate::Severity::$severity,
+                stages: &[$($($stage),*)?],
+                hint: $crate::Hint::new(&[$($($setting),*)?]),
+                checked_by: $crate::Hint::new(&[$($check)?]),
+                summary: $summary,
+                explanation: $explanation,
+                fix: $fix,
+            };
+        )*
+
+        /// All rules, in the order of validation.
+        pub const RULES: &[$crate::Rule] = &[$(*$name,)* $(*$other)?];
+    };
+}

@@ -11,10 +11,20 @@ pub(crate) struct Instant {
 }
 
 #[cfg(target_family = "wasm")]
+#[allow(unsafe_code)]
+mod imported {
+    #[link(wasm_import_module = "htex")]
+    unsafe extern "C" {
+        /// Milliseconds since any moment; JavaScript provides it (`sdk/web/src/guests.js`).
+        pub(super) safe fn now_ms() -> f64;
+    }
+}
+
+#[cfg(target_family = "wasm")]
 impl Instant {
     pub(crate) fn now() -> Self {
         Self {
-            ms: crate::wasm::now_ms(),
+            ms: imported::now_ms(),
         }
     }
 

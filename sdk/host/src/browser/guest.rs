@@ -38,7 +38,7 @@ impl Guest {
         let mut usage = Usage::new(&module.budget)?;
         module.budget.time_left()?;
         let mut names = Names::default();
-        let functions = Functions::of(&mut names, module.follows_motion())?;
+        let functions = Functions::of(&mut names, module.shared.follows_motion())?;
         let start = Instant::now();
         let raw = module.guest.instance(&names.0.join(","));
         module.budget.spend(start.elapsed());

@@ -1,11 +1,9 @@
-//! The functions that JavaScript provides (`sdk/web/src/guests.js`): the clock, and the modules of models as *guests*.
+//! The functions that JavaScript provides (`sdk/web/src/guests.js`) for the modules of models as *guests*.
 #![allow(unsafe_code)]
 
 mod raw {
     #[link(wasm_import_module = "htex")]
     unsafe extern "C" {
-        /// Milliseconds since any moment.
-        pub(super) fn now_ms() -> f64;
         /// Compiles a module; 0 if that fails.
         pub(super) fn module_new(bytes: *const u8, len: usize) -> u32;
         pub(super) fn module_free(module: u32);
@@ -31,12 +29,6 @@ mod raw {
         /// Copies the text of the last failure; returns its length.
         pub(super) fn failure_text(to: *mut u8, capacity: usize) -> usize;
     }
-}
-
-/// Milliseconds since any moment.
-pub(crate) fn now_ms() -> f64 {
-    // SAFETY: reads a clock.
-    unsafe { raw::now_ms() }
 }
 
 /// Text of the last failure.

@@ -33,7 +33,6 @@ mod voice;
 
 use std::sync::Arc;
 
-pub(crate) use imports::now_ms;
 pub(crate) use model::WasmModel;
 use module::WasmModule;
 

@@ -27,7 +27,7 @@ pub(super) struct WasmModule {
     pub(super) guest: Guest,
     pub(super) limits: WasmLimits,
     pub(super) budget: Arc<Budget>,
-    pub(super) shared: Shared,
+    pub(super) shared: Arc<Shared>,
 }
 
 impl WasmModule {
@@ -48,7 +48,7 @@ impl WasmModule {
             guest: guest.map_err(|what| CompileError::Invalid { what })?,
             limits: limits.clone(),
             budget: Arc::clone(&sandbox.budget),
-            shared: Shared::default(),
+            shared: Arc::default(),
         })
     }
 }

@@ -38,7 +38,7 @@ impl Guest {
             store: &mut store,
             raw: &raw,
         };
-        let functions = Functions::of(&mut exports, module.follows_motion())?;
+        let functions = Functions::of(&mut exports, module.shared.follows_motion())?;
         Ok((Self { store, memory }, functions))
     }
 

@@ -45,7 +45,7 @@ impl WasmModel {
         // A module that fails here does not have the extension, and a failed instance is not used again.
         let shared = match instance.extension(MotionTable::ID.as_bytes()) {
             Ok(1) => {
-                module.require_motion();
+                module.shared.require_motion();
                 Some(Instance::new(&module).map_err(load)?)
             }
             Ok(_) => Some(instance),
@@ -129,7 +129,7 @@ impl RawModel for WasmModel {
     }
 
     fn follows_motion(&self) -> bool {
-        self.module.follows_motion()
+        self.module.shared.follows_motion()
     }
 
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64 {
@@ -147,7 +147,7 @@ impl RawModel for WasmModel {
         rate_hz: f64,
         seed: u64,
     ) -> Result<Box<dyn RawVoice>, i64> {
-        let Some(place) = self.module.place() else {
+        let Some(place) = self.module.shared.place(self.module.limits.voices) else {
             let most = self.module.limits.voices;
             remember(format!(
                 "a WASM model may have {most} voices at a time; free some"

@@ -17,7 +17,7 @@ pub(super) struct WasmModule {
     pub(super) module: Module,
     pub(super) limits: WasmLimits,
     pub(super) budget: Arc<Budget>,
-    pub(super) shared: Shared,
+    pub(super) shared: Arc<Shared>,
 }
 
 impl WasmModule {
@@ -37,7 +37,7 @@ impl WasmModule {
             module,
             limits: limits.clone(),
             budget: Arc::clone(&sandbox.budget),
-            shared: Shared::default(),
+            shared: Arc::default(),
         })
     }
 }

@@ -3,8 +3,6 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use super::module::WasmModule;
-
 /// The voices of a module, and whether it has the extension `htex.motion/1`.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
@@ -12,23 +10,21 @@ pub(super) struct Shared {
     follows_motion: AtomicBool,
 }
 
-impl WasmModule {
+impl Shared {
     /// Returns whether instances must have the functions of `htex.motion/1`.
     pub(super) fn follows_motion(&self) -> bool {
-        self.shared.follows_motion.load(Ordering::Relaxed)
+        self.follows_motion.load(Ordering::Relaxed)
     }
 
     /// Requires the functions of `htex.motion/1` of all later instances.
     pub(super) fn require_motion(&self) {
-        self.shared.follows_motion.store(true, Ordering::Relaxed);
+        self.follows_motion.store(true, Ordering::Relaxed);
     }
 
-    /// Counts one more voice; `None` at the limit.
-    pub(super) fn place(self: &Arc<Self>) -> Option<VoicePlace> {
-        let most = self.limits.voices;
+    /// Counts one more voice; `None` when there are `most`.
+    pub(super) fn place(self: &Arc<Self>, most: usize) -> Option<VoicePlace> {
         let take = |n: usize| (n < most).then_some(n + 1);
         let taken = self
-            .shared
             .voices
             .fetch_update(Ordering::Relaxed, Ordering::Relaxed, take);
         taken.ok().map(|_| VoicePlace(Arc::clone(self)))
@@ -36,10 +32,10 @@ impl WasmModule {
 }
 
 /// The count of one voice, released when it is dropped.
-pub(super) struct VoicePlace(Arc<WasmModule>);
+pub(super) struct VoicePlace(Arc<Shared>);
 
 impl Drop for VoicePlace {
     fn drop(&mut self) {
-        self.0.shared.voices.fetch_sub(1, Ordering::Relaxed);
+        self.0.voices.fetch_sub(1, Ordering::Relaxed);
     }
 }

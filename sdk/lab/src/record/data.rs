@@ -7,9 +7,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::record::format::Format;
 use crate::record::names;
 use crate::record::setup::LONGEST_S;
-use crate::record::write::Format;
 
 /// Roles of the axes of the texture's signal.
 const AXES: [&str; 7] = [

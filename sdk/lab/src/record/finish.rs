@@ -6,10 +6,11 @@ use htex_files::AtFile;
 use serde::Serialize;
 
 use crate::record::error::RecordError;
+use crate::record::format::Outcome;
 use crate::record::judge::{Verdict, judge};
 use crate::record::names;
 use crate::record::part::read_part;
-use crate::record::write::{Outcome, write_take};
+use crate::record::write::write_take;
 
 /// A take that is complete, or that was recovered.
 #[derive(Debug, Clone, PartialEq, Serialize)]

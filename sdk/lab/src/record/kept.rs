@@ -9,9 +9,9 @@ use serde::Deserialize;
 
 use crate::record::beside::settings as settings_of;
 use crate::record::data::TakeHeader;
+use crate::record::format::Outcome;
 use crate::record::live::LiveSpectrum;
 use crate::record::names;
-use crate::record::write::Outcome;
 
 /// What is needed of the JSON beside a recording.
 #[derive(Deserialize)]

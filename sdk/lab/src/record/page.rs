@@ -11,12 +11,12 @@ use serde_json::{Value, json};
 use crate::page::{Content, LocalPage};
 use crate::record::error::RecordError;
 use crate::record::finish::Recorded;
+use crate::record::format::Outcome;
 use crate::record::guide::{Force, Guidance, Moment, Phase};
 use crate::record::judge::Measured;
 use crate::record::kept::kept_spectrum;
 use crate::record::live::{LiveSignal, LiveSpectrum};
 use crate::record::setup::{Setup, Tare};
-use crate::record::write::Outcome;
 
 /// Longest time by which a moment is continued until the next one is there, seconds.
 const CONTINUED_S: f64 = 0.1;

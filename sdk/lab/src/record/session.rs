@@ -8,6 +8,7 @@ use htex_files::AtFile;
 use crate::record::data::TakeHeader;
 use crate::record::error::RecordError;
 use crate::record::finish::{Recorded, finish, with_kept};
+use crate::record::format::Outcome;
 use crate::record::guide::{Moment, Phase};
 use crate::record::names;
 use crate::record::part::PartFile;
@@ -16,7 +17,6 @@ use crate::record::reader::{Inputs, Reader};
 use crate::record::setup::{Setup, Tare, check};
 use crate::record::signals::Signals;
 use crate::record::tracker::TrackerRows;
-use crate::record::write::Outcome;
 
 /// Length of the tare, seconds.
 const TARE_S: f64 = 1.0;

@@ -6,8 +6,8 @@ use htex_author::Exploration;
 use htex_format::Quantity;
 
 use crate::record::error::RecordError;
+use crate::record::format::Format;
 use crate::record::names;
-use crate::record::write::Format;
 
 /// Longest take, seconds.
 pub(crate) const LONGEST_S: f64 = 3600.0;

@@ -6,87 +6,13 @@ use std::path::{Path, PathBuf};
 
 use htex_files::AtFile;
 use htex_format::Quantity;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::record::data::{TakeData, TakeHeader};
 use crate::record::error::RecordError;
+use crate::record::format::{Format, Outcome};
 use crate::record::judge::Verdict;
 use crate::record::names;
-
-/// Format of a recording.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Format {
-    /// Text with names and units, of all digits; read without further settings.
-    #[default]
-    Csv,
-    /// A NumPy array (frames, signals) of f8.
-    Npy,
-    /// 32-bit floats: a value of 1 is one newton, or the signal's unit.
-    Wav,
-}
-
-#[cfg(feature = "clap")]
-impl clap::ValueEnum for Format {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[Self::Csv, Self::Npy, Self::Wav]
-    }
-
-    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
-        Some(self.extension().into())
-    }
-}
-
-/// What became of a take.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Outcome {
-    /// It kept to its target.
-    Kept,
-    /// It left its target; it is in the folder `rejected`.
-    Rejected,
-    /// It was cut short; it is in the folder `incomplete`.
-    Incomplete,
-}
-
-impl Format {
-    /// Refuses a rate that files of this format cannot have.
-    ///
-    /// # Errors
-    /// [`RecordError::Setup`].
-    pub(crate) fn check(self, rate_hz: f64) -> Result<(), RecordError> {
-        let is_whole = rate_hz.fract() == 0.0 && rate_hz <= f64::from(u32::MAX);
-        match self == Self::Wav && !is_whole {
-            true => Err(RecordError::Setup {
-                what: "the sample rate",
-                value: rate_hz.to_string(),
-                allowed: "a WAV has a whole number of hertz; record CSV or NPY",
-            }),
-            false => Ok(()),
-        }
-    }
-
-    pub(crate) fn extension(self) -> &'static str {
-        match self {
-            Self::Csv => "csv",
-            Self::Npy => "npy",
-            Self::Wav => "wav",
-        }
-    }
-}
-
-impl Outcome {
-    /// The folder of such takes.
-    pub(crate) fn folder(self, folder: &Path) -> PathBuf {
-        match self {
-            Self::Kept => folder.to_owned(),
-            Self::Rejected => folder.join(names::REJECTED),
-            Self::Incomplete => folder.join(names::INCOMPLETE),
-        }
-    }
-}
 
 /// The files of a take that was written.
 #[derive(Debug, Clone, PartialEq, Eq)]

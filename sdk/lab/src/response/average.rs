@@ -2,13 +2,27 @@
 
 use super::baseline::Baseline;
 use super::error::{Channel, ResponseError};
-use super::frames::{Weights, windows};
+use super::frames::{Weights, farthest, spread, windows};
 use super::hits::hits;
-use super::notices::outlasts;
 use super::options::{Excitation, ResponseOptions};
 use super::pieces::{Cut, Piece};
 use super::record::Record;
 use super::spectra::Spectra;
+
+/// The end of a window, as a part of it, that must be quiet.
+const END: f64 = 0.05;
+/// RMS of a quiet end relative to the largest output, and to the noise before the trigger.
+const QUIET: f64 = 0.01;
+const OVER_NOISE: f64 = 3.0;
+
+/// Whether a hit's output, after its windows, still sounds at the end: more than 1 % of its largest value (RMS), and
+/// more than three times the noise of the `before` samples before the trigger.
+fn outlasts(output: &[f64], before: usize) -> bool {
+    let end = ((END * output.len() as f64) as usize).max(1);
+    let tail = spread(&output[output.len() - end.min(output.len())..]);
+    let noise = spread(&output[..before.min(output.len())]);
+    tail > QUIET * farthest(output).abs() && tail > OVER_NOISE * noise
+}
 
 /// Cuts a record into hits or windows of `len` samples.
 pub(crate) fn cut(

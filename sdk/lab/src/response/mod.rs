@@ -31,6 +31,7 @@ mod error;
 mod estimator;
 mod frames;
 mod hits;
+mod measure;
 mod measured;
 mod notices;
 mod options;
@@ -44,7 +45,8 @@ mod spectra;
 
 pub use error::{Channel, ResponseError};
 pub use estimator::Estimator;
-pub use measured::{MeasuredResponse, measure};
+pub use measure::measure;
+pub use measured::MeasuredResponse;
 pub use options::{Excitation, HitOptions, ResponseOptions};
 pub use peak::Peak;
 pub use picture::response_picture;

@@ -1,6 +1,5 @@
 //! What limits a measured response, in sentences.
 
-use super::frames::{farthest, spread};
 use super::measured::MeasuredResponse;
 use super::options::{Excitation, ResponseOptions};
 use super::pieces::Cut;
@@ -12,20 +11,6 @@ const FEW: usize = 5;
 const COHERENT: f64 = 0.9;
 /// Distance of stretches of low coherence, relative to their frequency, up to which they are one.
 const NEAR: f64 = 0.1;
-/// The end of a window, as a part of it, that must be quiet.
-const END: f64 = 0.05;
-/// RMS of a quiet end relative to the largest output, and to the noise before the trigger.
-const QUIET: f64 = 0.01;
-const OVER_NOISE: f64 = 3.0;
-
-/// Whether a hit's output, after its windows, still sounds at the end: more than 1 % of its largest value (RMS), and
-/// more than three times the noise of the `before` samples before the trigger.
-pub(crate) fn outlasts(output: &[f64], before: usize) -> bool {
-    let end = ((END * output.len() as f64) as usize).max(1);
-    let tail = spread(&output[output.len() - end.min(output.len())..]);
-    let noise = spread(&output[..before.min(output.len())]);
-    tail > QUIET * farthest(output).abs() && tail > OVER_NOISE * noise
-}
 
 /// Returns the warnings about a measured response. `outlasting` is the number of hits whose response has not died out.
 pub(crate) fn notices(

@@ -55,9 +55,10 @@ pub use lines::{Answer, DeviceUsed, FeltFile, Header, Line, Matched, Simulated, 
 pub use log::{Log, participant_file};
 pub use page::{Page, PageOptions, Touched};
 pub use plan::{ParticipantPlan, Plan, Trial};
+pub use progress::Step;
 pub use read::{check_files, files_of, read_study, study_schema};
 pub use rules::{RULES, findings_page};
 pub use run::{Ended, run};
-pub use session::{Session, Step};
+pub use session::Session;
 pub use simulated::SimulatedParticipant;
 pub use stimulus::{Stimulus, scene_of, set_gain};

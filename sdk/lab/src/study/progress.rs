@@ -3,11 +3,31 @@
 //! Neither the plan nor the progress is stored: a session that was killed cannot disagree with its file.
 
 use crate::study::Study;
-use crate::study::file::Phase;
+use crate::study::file::{Attribute, Phase};
 use crate::study::gain::Match;
 use crate::study::lines::{Answer, Line, Matched};
 use crate::study::plan::{ParticipantPlan, Trial};
-use crate::study::session::Step;
+
+/// What comes next in a session.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Step {
+    /// A trial is played, unless it just was, and rated by an attribute.
+    Rate(Phase, Trial, Attribute),
+    /// The gain of a texture is matched.
+    Match {
+        /// Name of the texture.
+        texture: String,
+        /// The matching so far.
+        matching: Match,
+    },
+    Rest {
+        /// Trials before it.
+        after: u32,
+        /// Shortest length, seconds.
+        seconds: f64,
+    },
+    Done,
+}
 
 /// A session's progress. Lines that were read and lines that are recorded are applied by the same function.
 #[derive(Debug)]

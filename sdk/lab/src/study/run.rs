@@ -8,7 +8,8 @@ use crate::study::file::{Attribute, Phase};
 use crate::study::gain::{GainKey, Match};
 use crate::study::lines::FeltFile;
 use crate::study::plan::Trial;
-use crate::study::session::{Session, Step};
+use crate::study::progress::Step;
+use crate::study::session::Session;
 use crate::study::simulated::SimulatedParticipant;
 use crate::study::stimulus::Stimulus;
 

@@ -4,34 +4,13 @@ use std::path::Path;
 
 use crate::study::Study;
 use crate::study::error::StudyError;
-use crate::study::file::{Attribute, Phase};
+use crate::study::file::Phase;
 use crate::study::gain::{GainKey, Match};
 use crate::study::lines::{Answer, FeltFile, Header, Line, Matched};
 use crate::study::log::{Log, participant_file};
 use crate::study::plan::{ParticipantPlan, Trial};
-use crate::study::progress::Progress;
+use crate::study::progress::{Progress, Step};
 use crate::study::stimulus::Stimulus;
-
-/// What comes next in a session.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Step {
-    /// A trial is played, unless it just was, and rated by an attribute.
-    Rate(Phase, Trial, Attribute),
-    /// The gain of a texture is matched.
-    Match {
-        /// Name of the texture.
-        texture: String,
-        /// The matching so far.
-        matching: Match,
-    },
-    Rest {
-        /// Trials before it.
-        after: u32,
-        /// Shortest length, seconds.
-        seconds: f64,
-    },
-    Done,
-}
 
 /// A participant's session, and the open file of its answers. What it records is on disk when a method returns.
 #[derive(Debug)]

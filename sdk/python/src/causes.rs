@@ -4,6 +4,7 @@
 use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 
+use htex_model::{Error, Status};
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 
@@ -16,7 +17,7 @@ const LONGEST: usize = 500;
 static RAISED: Mutex<VecDeque<(String, PyErr)>> = Mutex::new(VecDeque::new());
 
 /// Keeps an exception; returns its text, in one line.
-pub(crate) fn keep(py: Python<'_>, error: PyErr) -> String {
+fn keep(py: Python<'_>, error: PyErr) -> String {
     let text = error.to_string();
     let one_line = |c: char| if c.is_control() { ' ' } else { c };
     let text: String = text.chars().take(LONGEST).map(one_line).collect();
@@ -28,6 +29,11 @@ pub(crate) fn keep(py: Python<'_>, error: PyErr) -> String {
     });
     drop(old);
     text
+}
+
+/// Keeps the exception of a call, and makes the model's error of it.
+pub(crate) fn failed(py: Python<'_>, error: PyErr) -> Error {
+    Error::new(Status::Failed, keep(py, error))
 }
 
 /// Sets the kept exception whose text is part of this one's as its cause. An interrupt is returned itself.

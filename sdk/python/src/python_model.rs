@@ -9,13 +9,13 @@ use htex::host::{Descriptor, Registry, RuntimeModel, RuntimeVoice, read_descript
 use htex_dsp::Band;
 use htex_dsp::grid::level_rms;
 use htex_dsp::shaped_noise::{ShapedNoise, economical_rate_hz};
-use htex_model::{Error, Fit, FitInput, Status, Values};
+use htex_model::{Error, Fit, FitInput, Values};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::causes;
+use crate::causes::failed;
 use crate::errors::{OrRaise, option};
-use crate::python_voice::{PlayedVoice, ShapedVoice};
+use crate::python_voice::PlayedVoice;
 
 /// The origin of these models in messages and assets.
 const ORIGIN: &str = "Python, this process only";
@@ -82,11 +82,6 @@ pub(crate) struct PythonModel {
     adapter: Py<PyAny>,
     /// Whether the class makes its own voices; else noise is shaped by its magnitudes.
     plays: bool,
-}
-
-/// Keeps the exception of a call, and makes the model's error of it.
-pub(crate) fn failed(py: Python<'_>, error: PyErr) -> Error {
-    Error::new(Status::Failed, causes::keep(py, error))
 }
 
 fn array<'py>(py: Python<'py>, numbers: &[f64]) -> Bound<'py, PyArray1<f64>> {
@@ -202,6 +197,27 @@ impl RuntimeModel for PythonModel {
         let mut noise = ShapedNoise::new(rate_hz, band, seed);
         let curve = model.curve(parameters.flat(), band, noise.component_hz())?;
         noise.start(|i, _| curve[i]);
-        Ok(Box::new(ShapedVoice::new(model, band, noise)))
+        Ok(Box::new(ShapedVoice { model, band, noise }))
+    }
+}
+
+/// Noise with the magnitudes of a model. Rendering does not call Python; changing the parameters does.
+struct ShapedVoice {
+    model: PythonModel,
+    band: Band,
+    noise: ShapedNoise,
+}
+
+impl RuntimeVoice for ShapedVoice {
+    fn render(&mut self, out: &mut [f32]) -> Result<(), Error> {
+        self.noise.render(out);
+        Ok(())
+    }
+
+    fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
+        let hz = self.noise.component_hz();
+        let curve = self.model.curve(parameters.flat(), self.band, hz)?;
+        self.noise.retune(|i, _| curve[i]);
+        Ok(())
     }
 }

@@ -1,42 +1,12 @@
-//! Voices of models that are written in Python: shaped noise, and objects with a method `render`.
+//! Voices that are written in Python: objects with a method `render`.
 
 use htex::host::RuntimeVoice;
-use htex_dsp::Band;
-use htex_dsp::shaped_noise::ShapedNoise;
 use htex_model::{Error, Values};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 
+use crate::causes::failed;
 use crate::errors::option;
-use crate::python_model::{PythonModel, failed};
-
-/// Noise with the magnitudes of a model. Rendering does not call Python; changing the parameters does.
-pub(crate) struct ShapedVoice {
-    model: PythonModel,
-    band: Band,
-    noise: ShapedNoise,
-}
-
-impl ShapedVoice {
-    /// Makes a voice of noise that was started with the model's magnitudes.
-    pub(crate) fn new(model: PythonModel, band: Band, noise: ShapedNoise) -> Self {
-        Self { model, band, noise }
-    }
-}
-
-impl RuntimeVoice for ShapedVoice {
-    fn render(&mut self, out: &mut [f32]) -> Result<(), Error> {
-        self.noise.render(out);
-        Ok(())
-    }
-
-    fn retune(&mut self, parameters: &Values<'_>) -> Result<(), Error> {
-        let hz = self.noise.component_hz();
-        let curve = self.model.curve(parameters.flat(), self.band, hz)?;
-        self.noise.retune(|i, _| curve[i]);
-        Ok(())
-    }
-}
 
 /// An object of the package that calls the voice of the author's class.
 pub(crate) struct PlayedVoice {

@@ -18,7 +18,7 @@ const HEAD: &str = "htex tradeoff ";
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) enum Outcome {
-    Measured(Measured),
+    Measured(Box<Measured>),
     Failed { reason: String },
 }
 

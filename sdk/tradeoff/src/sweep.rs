@@ -150,7 +150,7 @@ fn measure_all(
     let work = || {
         while let Some(one) = open.get(next.fetch_add(1, Ordering::Relaxed)) {
             let outcome = match one.measure(subject, quick) {
-                Ok(Some(measured)) => Outcome::Measured(measured),
+                Ok(Some(measured)) => Outcome::Measured(Box::new(measured)),
                 Ok(None) => Outcome::Failed {
                     reason: "the repeatability of a single stroke is not known".to_owned(),
                 },

@@ -302,7 +302,7 @@ fn wrong_recipes_say_where() {
         (
             "[[textures]]",
             "[defaults]\nlicence = \"CC-BY-4.0\"\n[[textures]]",
-            "library.toml: line 5: there is no key `defaults.licence`; did you mean `license`?",
+            "library.toml: line 6: there is no key `defaults.licence`; did you mean `license`?",
         ),
         ("rec/*.csv", "rec/*.tdms", "no file matches rec/*.tdms"),
         (

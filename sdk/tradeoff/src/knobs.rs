@@ -28,7 +28,7 @@ const fn knob(name: &'static str, values: &'static [&'static str]) -> Knob {
     Knob { name, values }
 }
 
-/// Fit options by model, chosen by hand. Those of a model that is not listed come from its descriptor: see [`of_range`].
+/// Fit options by model, chosen by hand. Those of a model that is not listed come from its descriptor.
 pub const MODELS: &[ModelKnobs] = &[
     ModelKnobs {
         model: "ar",

@@ -7,12 +7,12 @@ use xtask::plugins;
 /// Most deflated bytes of each model's module: the measured size and about 2 % for other compilers. A change that raises
 /// one states the reason in `docs/modules.md`.
 const BOUNDS: &[(&str, usize)] = &[
-    ("ar", 40_700),
-    ("bands", 27_600),
-    ("mfcc", 30_700),
-    ("sbeta", 29_500),
-    ("speak", 18_000),
-    ("sslope", 23_900),
+    ("ar", 41_700),
+    ("bands", 28_600),
+    ("mfcc", 31_500),
+    ("sbeta", 30_100),
+    ("speak", 18_500),
+    ("sslope", 24_600),
 ];
 
 #[test]

@@ -7,18 +7,27 @@ use std::path::Path;
 use htex_host::{LoadedModel, Registry};
 use htex_tests::workspace;
 
-/// Names of all functions in the workspace's Rust sources.
+/// Names of all functions in the workspace's sources in Rust and Python.
 fn functions(folder: &Path, names: &mut BTreeSet<String>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_str().unwrap();
         if path.is_dir() && name != "target" && !name.starts_with('.') {
             functions(&path, names);
-        } else if name.ends_with(".rs") {
+        } else if let Some(keyword) = keyword_of(name) {
             let text = std::fs::read_to_string(&path).unwrap();
-            let after = text.split("fn ").skip(1);
+            let after = text.split(keyword).skip(1);
             names.extend(after.filter_map(|rest| rest.split(['(', '<']).next().map(str::to_owned)));
         }
+    }
+}
+
+/// What a function begins with in a source of this name.
+fn keyword_of(name: &str) -> Option<&'static str> {
+    match Path::new(name).extension()?.to_str()? {
+        "rs" => Some("fn "),
+        "py" => Some("def "),
+        _ => None,
     }
 }
 

@@ -36,11 +36,9 @@ pub fn sources() -> Vec<Arc<dyn SourceAdapter>> {
 /// A device, and a source of the same name, that a program has only if it is built with a feature.
 #[derive(Debug, Clone, Copy)]
 pub struct Optional {
-    /// Its identifier.
     pub id: &'static str,
     /// What it gives, in a word.
     pub what: &'static str,
-    /// The feature.
     pub feature: &'static str,
     /// What it is built against on Linux.
     pub package: &'static str,

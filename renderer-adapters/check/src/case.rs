@@ -24,7 +24,6 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// The device under test, or the source.
 #[derive(Clone)]
 pub enum Subject<A: ?Sized = dyn Adapter> {
-    /// A library.
     Library(PathBuf),
     /// An adapter of this program.
     Builtin(Arc<A>),

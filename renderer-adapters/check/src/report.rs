@@ -4,7 +4,6 @@ use std::fmt::{self, Display};
 
 use serde::Serialize;
 
-/// All checks of one device.
 pub type Report = htex_check_runner::Report<DeviceName>;
 
 /// The device that was checked.

@@ -15,7 +15,6 @@ pub struct DaqInput {
 }
 
 impl DaqInput {
-    /// The adapter.
     pub fn new() -> Self {
         Self {
             descriptor: descriptor(),

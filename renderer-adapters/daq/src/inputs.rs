@@ -41,7 +41,6 @@ impl Inputs {
         })
     }
 
-    /// Frames of the buffer.
     pub(crate) fn buffer_frames(&self) -> u32 {
         (self.buffer_s * self.rate_hz)
             .ceil()

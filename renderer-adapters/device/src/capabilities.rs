@@ -32,6 +32,7 @@ pub struct Capabilities {
 }
 
 /// Error: capabilities are out of range or do not agree with each other.
+#[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CapabilitiesError {
@@ -40,19 +41,13 @@ pub enum CapabilitiesError {
     Rates,
     /// The default rate is not one of the rates.
     #[error("the default rate of {rate_hz} Hz is not one of its rates")]
-    DefaultRate {
-        /// The default rate, hertz.
-        rate_hz: f64,
-    },
+    DefaultRate { rate_hz: f64 },
     /// A voltage at a display has no limit.
     #[error("a voltage without a limit")]
     NoLimit,
     /// A number is not finite or not positive.
     #[error("`{name}` must be finite and greater than 0")]
-    Number {
-        /// Its name.
-        name: &'static str,
-    },
+    Number { name: &'static str },
     /// The preferred block is empty or too long.
     #[error("`block_frames` must be 1 to {MAX_BLOCK_FRAMES}")]
     BlockFrames,

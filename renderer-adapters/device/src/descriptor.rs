@@ -118,21 +118,16 @@ pub struct Endpoint {
 }
 
 /// Error: the descriptor of a device or source is invalid.
+#[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DescriptorError {
     /// The id is not in reverse-DNS form.
     #[error("`{id}` is not a reverse-DNS id")]
-    Id {
-        /// The id.
-        id: String,
-    },
+    Id { id: String },
     /// The version is not a semantic version.
     #[error("`{version}` is not a semantic version")]
-    Version {
-        /// The version.
-        version: String,
-    },
+    Version { version: String },
     /// The name or the summary is empty.
     #[error("`name` and `summary` must not be empty")]
     Empty,
@@ -144,37 +139,24 @@ pub enum DescriptorError {
     Twice {
         /// `settings` or `profiles`.
         kind: &'static str,
-        /// The name.
         name: String,
     },
     /// A setting is invalid.
     #[error("setting `{name}`{fault}")]
-    Setting {
-        /// The setting.
-        name: String,
-        /// Its fault.
-        fault: SettingFault,
-    },
+    Setting { name: String, fault: SettingFault },
     /// A default is not a value of its setting.
     #[error("the default: {0}")]
     Default(DeviceError),
     /// The target of a source is not one of its settings.
     #[error("the target `{target}` is not one of the settings")]
-    Target {
-        /// The target.
-        target: String,
-    },
+    Target { target: String },
     /// A profile has a setting that is unknown, or a value that is not allowed.
     #[error("profile `{profile}`: {error}")]
-    Profile {
-        /// The profile.
-        profile: String,
-        /// The error of its setting.
-        error: DeviceError,
-    },
+    Profile { profile: String, error: DeviceError },
 }
 
 /// Fault of a setting in a descriptor.
+#[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SettingFault {
@@ -183,12 +165,7 @@ pub enum SettingFault {
     Name,
     /// The range is empty or not finite.
     #[error(" has the range {min} to {max}")]
-    Range {
-        /// Smallest value.
-        min: f64,
-        /// Largest value.
-        max: f64,
-    },
+    Range { min: f64, max: f64 },
     /// There is nothing to choose from.
     #[error(" has nothing to choose from")]
     NoChoice,

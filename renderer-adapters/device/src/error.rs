@@ -1,13 +1,13 @@
 //! Errors of devices and sources.
 
 /// An error of an adapter or an open device.
+#[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DeviceError {
     /// A setting is not known, missing, or not usable.
     #[error("setting `{name}`: {what}")]
     Setting {
-        /// The setting.
         name: String,
         /// The fault, and the allowed values.
         what: String,
@@ -15,11 +15,8 @@ pub enum DeviceError {
     /// The device does not run at this rate.
     #[error("{device} does not run at {rate_hz} Hz; it runs at {rates}")]
     Rate {
-        /// The device.
         device: String,
-        /// The requested rate.
         rate_hz: f64,
-        /// Its rates.
         rates: String,
     },
     /// A driver is not installed, or no such device is connected.
@@ -35,9 +32,7 @@ pub enum DeviceError {
     OverLimit {
         /// Index of the sample since the device was opened.
         frame: u64,
-        /// The sample.
         value: f64,
-        /// The limit.
         limit: f64,
         /// Symbol of the unit.
         unit: &'static str,
@@ -45,21 +40,17 @@ pub enum DeviceError {
     /// The device ran dry: samples came too late. The output is at zero.
     #[error("{device} ran dry after {frames} frames; {advice}")]
     Underflow {
-        /// The device.
         device: String,
         /// Frames that came out before.
         frames: u64,
-        /// Advice.
         advice: String,
     },
     /// Frames of a source were lost: they were read too late. It delivers nothing more.
     #[error("{source_name} lost samples after {frames} frames, which were read too late; {advice}")]
     Overrun {
-        /// The source.
         source_name: String,
         /// Frames that were delivered before.
         frames: u64,
-        /// Advice.
         advice: String,
     },
     /// The whole message of another process, which holds the device, or of a library.
@@ -68,7 +59,6 @@ pub enum DeviceError {
     /// The device was removed, or its driver failed.
     #[error("{device} failed: {what}")]
     Failed {
-        /// The device.
         device: String,
         /// The driver's message.
         what: String,
@@ -78,39 +68,20 @@ pub enum DeviceError {
     Closed(String),
     /// A file could not be written or read.
     #[error("{path}: {what}")]
-    File {
-        /// The file.
-        path: String,
-        /// The system's message.
-        what: String,
-    },
+    File { path: String, what: String },
     /// No device of this name is known.
     #[error("no device `{wanted}`; there are {known}")]
-    Unknown {
-        /// The requested name.
-        wanted: String,
-        /// The known names.
-        known: String,
-    },
+    Unknown { wanted: String, known: String },
     /// No source of this name is known.
     #[error("no source `{wanted}`; there are {known}")]
-    UnknownSource {
-        /// The requested name.
-        wanted: String,
-        /// The known names.
-        known: String,
-    },
+    UnknownSource { wanted: String, known: String },
     /// A library is not a device or source of this ABI, or breaks it.
     #[error("{library}: {fault}")]
-    Abi {
-        /// The library.
-        library: String,
-        /// The fault.
-        fault: AbiFault,
-    },
+    Abi { library: String, fault: AbiFault },
 }
 
 /// Fault of a library that is not a device or source of this ABI, or does not follow it.
+#[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AbiFault {
@@ -120,7 +91,6 @@ pub enum AbiFault {
     /// The marker is of another major version of the ABI, or of another ABI.
     #[error("the marker {marker:#x} is not of {kind} ABI {major}.x, which this host loads")]
     Marker {
-        /// The marker.
         marker: u32,
         /// `device` or `source`.
         kind: &'static str,
@@ -130,7 +100,6 @@ pub enum AbiFault {
     /// A function of the ABI is missing.
     #[error("the library has no `{symbol}`; it is not an htex {kind}")]
     Symbol {
-        /// The function.
         symbol: &'static str,
         /// `device` or `source`.
         kind: &'static str,

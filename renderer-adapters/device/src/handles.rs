@@ -44,7 +44,6 @@ impl<T: ?Sized> Handles<T> {
         Some(call(&mut **one))
     }
 
-    /// Removes what is behind a handle.
     pub(crate) fn remove(&self, handle: i64) -> Option<Shared<T>> {
         let mut open = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         open.shared.remove(&handle)

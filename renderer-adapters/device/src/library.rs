@@ -54,7 +54,6 @@ pub(crate) struct Common {
     pub(crate) extension: ExtensionFn,
 }
 
-/// The symbols of a library.
 pub(crate) struct Symbols<'a> {
     library: htex_native::Library,
     name: &'a str,
@@ -252,7 +251,6 @@ impl<T: Table> Library<T> {
         self.error(AbiFault::Call(what.into()))
     }
 
-    /// The error of a fault of this library.
     fn error(&self, fault: AbiFault) -> DeviceError {
         DeviceError::Abi {
             library: self.name.clone(),

@@ -62,7 +62,7 @@ pub trait AdapterKind: Send + Sync + 'static {
     /// The user's folder of libraries, in the data folder.
     const FOLDER: &'static str;
 
-    /// The adapter's descriptor.
+    /// Name, version, settings and profiles.
     fn about(&self) -> &Descriptor;
 
     /// What is connected now.
@@ -90,7 +90,7 @@ pub struct Known<A: ?Sized> {
 }
 
 impl<A: AdapterKind + ?Sized> Known<A> {
-    /// The adapter's descriptor.
+    /// Name, version, settings and profiles.
     pub fn descriptor(&self) -> &Descriptor {
         self.adapter.about()
     }
@@ -129,25 +129,20 @@ impl<A: AdapterKind + ?Sized> std::fmt::Debug for Known<A> {
 }
 
 /// Something found during the search that is not an error. `kind` is `device` or `source`.
+#[allow(missing_docs)] // The variants say what a field is.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Note {
     /// Two adapters have the same id; the one found first is used.
     Shadowed {
-        /// The kind of adapter.
         kind: &'static str,
-        /// The id.
         id: String,
-        /// The one that is used.
         used: Origin,
-        /// The one that is not.
         shadowed: Origin,
     },
     /// Two adapters of different ids have the same short name, which means the one found first.
     SameName {
-        /// The kind of adapter.
         kind: &'static str,
-        /// The short name.
         name: String,
         /// The id it means.
         means: String,
@@ -156,9 +151,7 @@ pub enum Note {
     },
     /// A file or folder that was not named could not be loaded or read.
     LeftOut {
-        /// The kind of adapter.
         kind: &'static str,
-        /// The reason.
         error: DeviceError,
     },
 }

@@ -26,7 +26,7 @@ pub struct Stated<'a> {
 /// A setting that a scene asks for and does not get.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Ignored {
-    /// The setting.
+    /// Name of a setting of the descriptor.
     pub name: String,
     /// Why, as a sentence.
     pub what: String,

@@ -23,7 +23,6 @@ pub use table::CHECKS;
 /// The source under test.
 pub type Subject = crate::Subject<dyn SourceAdapter>;
 
-/// All checks of one source.
 pub type Report = htex_check_runner::Report<SourceName>;
 
 /// The source that was checked.

@@ -104,7 +104,6 @@ impl Card {
         Daq::new().open(&self.settings(given), &format)
     }
 
-    /// Opens analog inputs.
     pub fn open_input(&self, given: &[(&str, &str)]) -> Result<Box<dyn Source>, DeviceError> {
         let driver = ("driver", self.library.to_str().unwrap());
         let given = [&[driver], given].concat();

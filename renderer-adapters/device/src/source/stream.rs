@@ -45,35 +45,24 @@ pub struct SourceStream {
 }
 
 /// Error: a source's rate or channels are invalid.
+#[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SourceStreamError {
     /// The rate is not a number within the limits.
     #[error("a rate of {rate_hz} Hz; {MIN_RATE_HZ} to {MAX_RATE_HZ} Hz are allowed")]
-    Rate {
-        /// The rate.
-        rate_hz: f64,
-    },
+    Rate { rate_hz: f64 },
     /// There are too few or too many channels.
     #[error("{count} channels; 1 to {MAX_CHANNELS} are allowed")]
-    Count {
-        /// Their number.
-        count: usize,
-    },
+    Count { count: usize },
     /// The name or unit of a channel is too long or has control characters, or the name is empty.
     #[error(
         "channel {index}: a name has 1 to {MAX_NAME_BYTES} bytes, a unit as many or none, without control characters"
     )]
-    Name {
-        /// Its index.
-        index: usize,
-    },
+    Name { index: usize },
     /// Two channels have the same name.
     #[error("two channels are named `{name}`")]
-    Twice {
-        /// The name.
-        name: String,
-    },
+    Twice { name: String },
 }
 
 impl SourceStream {

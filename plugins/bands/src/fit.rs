@@ -168,7 +168,6 @@ fn mean_levels(wanted: &[Option<f64>], weight: &[f64]) -> Vec<f64> {
     levels.into_iter().map(or_last).collect()
 }
 
-/// Energy of each band.
 fn energies(points: &[Point], power: &[f64], bands: usize) -> Vec<f64> {
     let mut energies = vec![0.0; bands];
     for (point, power) in points.iter().zip(power) {

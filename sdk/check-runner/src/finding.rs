@@ -54,7 +54,6 @@ impl Outcome {
 /// An outcome, a sentence, and measured numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
-    /// How the check ended.
     pub outcome: Outcome,
     pub message: String,
     /// Measured numbers, by name; names end in the unit.

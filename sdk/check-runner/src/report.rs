@@ -9,7 +9,6 @@ use crate::{Finding, Outcome};
 /// One check and its finding.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CheckReport {
-    /// The check's name.
     pub check: &'static str,
     #[serde(flatten)]
     pub finding: Finding,
@@ -28,7 +27,6 @@ pub struct Report<Subject> {
 }
 
 impl<Subject> Report<Subject> {
-    /// Makes a report of these checks.
     pub fn new(subject: Subject, checks: Vec<CheckReport>) -> Self {
         let ok = !checks.iter().any(|check| check.finding.outcome.is_bad());
         Self {

@@ -14,7 +14,6 @@ pub struct Check<Case> {
     pub method: &'static str,
     /// Checks that must not fail for this one to be meaningful.
     pub needs: &'static [&'static str],
-    /// Runs the check.
     pub run: fn(&Case) -> Found,
 }
 
@@ -22,7 +21,6 @@ pub struct Check<Case> {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("there is no check `{name}`; there are {}", known.join(", "))]
 pub struct UnknownCheck {
-    /// The requested name.
     pub name: String,
     /// The names in the table.
     pub known: Vec<&'static str>,
@@ -44,7 +42,6 @@ macro_rules! checks {
     };
 }
 
-/// Returns the check of a name.
 pub(crate) fn find<'a, Case>(
     checks: &'a [Check<Case>],
     name: &str,

@@ -29,7 +29,6 @@ pub(crate) struct Fitted {
 pub(crate) type Pair = (Vec<f64>, Vec<f64>);
 
 impl Case {
-    /// Loads the model.
     pub(crate) fn load(file: &Path, seed: u64, against: Option<&Path>) -> Result<Self, HostError> {
         Ok(Self {
             file: file.to_owned(),

@@ -4,13 +4,11 @@ use std::fmt::{self, Display};
 
 use serde::Serialize;
 
-/// All checks of one model.
 pub type Report = htex_check_runner::Report<ModelFile>;
 
 /// The model that was checked, and the seed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelFile {
-    /// The model file.
     pub file: String,
     /// Seed of the voices.
     pub seed: u64,

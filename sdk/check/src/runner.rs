@@ -9,7 +9,6 @@ use crate::checks::abi::owner;
 use crate::report::{ModelFile, Report};
 use crate::table::CHECKS;
 
-/// Options of checking a model.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// A program that calls [`run_one`]. After its own arguments it receives the file, the check's name and the options

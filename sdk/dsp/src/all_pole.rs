@@ -86,7 +86,6 @@ impl AllPole {
         }
     }
 
-    /// Order of the filter.
     pub fn order(&self) -> usize {
         self.lattice.order()
     }

@@ -22,7 +22,6 @@ pub struct LogAxis {
 }
 
 impl LogAxis {
-    /// Returns the axis of a band.
     pub fn new(band: Band) -> Self {
         Self {
             low_hz: band.low_hz,
@@ -72,7 +71,6 @@ impl BetaDensity {
         }
     }
 
-    /// The density at `u`.
     pub fn at(&self, u: f64) -> f64 {
         if self.log_scale.is_nan() || u.is_nan() {
             return f64::NAN;

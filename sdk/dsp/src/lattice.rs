@@ -47,7 +47,6 @@ impl AllPoleLattice {
         self.delayed.reserve_exact(more);
     }
 
-    /// Order of the filter.
     pub fn order(&self) -> usize {
         self.reflection.len()
     }

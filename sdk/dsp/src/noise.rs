@@ -32,7 +32,6 @@ pub struct GaussianNoise {
 }
 
 impl GaussianNoise {
-    /// A generator with this seed.
     pub fn new(seed: u64) -> Self {
         Self {
             random: RandomLanes::new(seed),

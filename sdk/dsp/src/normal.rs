@@ -20,7 +20,6 @@ pub struct Normal {
 }
 
 impl Normal {
-    /// A generator with this seed.
     pub fn new(seed: u64) -> Self {
         Self {
             uniform: Uniform::new(seed),

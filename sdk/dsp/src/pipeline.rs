@@ -191,7 +191,6 @@ impl<const N: usize> Row<Quad, N> {
 }
 
 impl<const N: usize> State<Quad, N> {
-    /// The state of one voice.
     #[inline(always)]
     fn part(&self, voice: usize) -> State<f64, N> {
         State {

@@ -1,6 +1,5 @@
 //! Square roots by the machine's instruction, which rounds correctly and so gives the same bits everywhere.
 
-/// The square root.
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 #[inline]
 pub fn sqrt(x: f64) -> f64 {
@@ -8,14 +7,12 @@ pub fn sqrt(x: f64) -> f64 {
     f64x2_extract_lane::<0>(f64x2_sqrt(f64x2_splat(x)))
 }
 
-/// The square root.
 #[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
 #[inline]
 pub fn sqrt(x: f64) -> f64 {
     libm::sqrt(x)
 }
 
-/// The square root in single precision.
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 #[inline(always)]
 pub fn sqrt_f32(x: f32) -> f32 {
@@ -23,7 +20,6 @@ pub fn sqrt_f32(x: f32) -> f32 {
     f32x4_extract_lane::<0>(f32x4_sqrt(f32x4_splat(x)))
 }
 
-/// The square root in single precision.
 #[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
 #[inline(always)]
 pub fn sqrt_f32(x: f32) -> f32 {

@@ -20,7 +20,6 @@ struct Tables<K, V: ?Sized> {
 
 #[cfg(feature = "std")]
 impl<K: PartialEq, V: ?Sized> Shared<K, V> {
-    /// An empty cache.
     #[allow(clippy::new_without_default)] // It is a static.
     pub const fn new() -> Self {
         Self(std::sync::Mutex::new(Tables {
@@ -62,7 +61,6 @@ pub struct Shared<K, V: ?Sized>(core::marker::PhantomData<(fn(K), fn() -> Arc<V>
 
 #[cfg(not(feature = "std"))]
 impl<K, V: ?Sized> Shared<K, V> {
-    /// An empty cache.
     #[allow(clippy::new_without_default)] // It is a static.
     pub const fn new() -> Self {
         Self(core::marker::PhantomData)

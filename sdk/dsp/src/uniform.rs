@@ -20,7 +20,6 @@ const DIRECTIONS: usize = 4;
 pub struct Uniform(Xoshiro256PlusPlus);
 
 impl Uniform {
-    /// A generator with this seed.
     pub fn new(seed: u64) -> Self {
         Self(Xoshiro256PlusPlus::seed_from_u64(seed))
     }

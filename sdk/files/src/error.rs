@@ -21,7 +21,6 @@ pub struct FileError {
     pub file: PathBuf,
     /// Whether it was to be written.
     pub is_output: bool,
-    /// The system's error.
     pub error: io::Error,
 }
 

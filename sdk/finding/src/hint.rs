@@ -14,7 +14,6 @@ impl Hint {
     /// No setting helps.
     pub const NONE: Self = Self(&[]);
 
-    /// These settings help.
     pub const fn new(settings: &'static [&'static str]) -> Self {
         Self(settings)
     }
@@ -45,7 +44,6 @@ impl Hint {
 pub struct Notice {
     /// The sentence.
     pub text: String,
-    /// The settings that help.
     pub hint: Hint,
 }
 

@@ -102,7 +102,6 @@ impl Findings {
         }
     }
 
-    /// Whether a finding is an error.
     pub fn has_errors(&self) -> bool {
         self.errors
     }
@@ -116,7 +115,6 @@ impl Findings {
         }
         self.kept
     }
-    /// Returns the findings as a report.
     pub fn into_report(self) -> Report {
         Report::new(self.into_list())
     }

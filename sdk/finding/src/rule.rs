@@ -11,7 +11,6 @@ pub struct Rule {
     pub severity: Severity,
     /// The stages of reading in which it is applied, where the reading of a file has stages.
     pub stages: &'static [Stage],
-    /// The settings that help.
     pub hint: Hint,
     /// The setting without which the rule is not applied.
     pub checked_by: Hint,

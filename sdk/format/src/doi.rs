@@ -1,10 +1,10 @@
 //! Syntax of digital object identifiers (ISO 26324): `10.`, the registrant, a slash, a name.
 
 /// Error: a text is not a DOI.
+#[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{doi:?} is not a DOI; write one like 10.5281/zenodo.1234567, without https://doi.org/")]
 pub struct InvalidDoi {
-    /// The text.
     pub doi: String,
 }
 

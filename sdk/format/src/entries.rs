@@ -4,5 +4,4 @@
 pub(crate) const MIMETYPE: &str = "mimetype";
 /// Contents of that entry.
 pub(crate) const MEDIA_TYPE: &str = "application/vnd.htex+zip";
-/// Name of the manifest's entry.
 pub(crate) const MANIFEST: &str = "manifest.json";

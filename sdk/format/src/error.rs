@@ -12,15 +12,14 @@ use htex_finding::{Finding, summary};
 /// let error = Asset::from_bytes(b"not an asset").unwrap_err();
 /// assert!(matches!(&error, ReadError::Invalid { findings } if !findings.is_empty()));
 /// ```
+#[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadError {
     /// The file could not be read.
     #[error("cannot read {}: {error}", .path.display())]
     Io {
-        /// The file.
         path: PathBuf,
-        /// The system's error.
         #[source]
         error: io::Error,
     },
@@ -33,15 +32,14 @@ pub enum ReadError {
 }
 
 /// Error of writing an asset.
+#[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteError {
     /// The file could not be written; an existing file is unchanged.
     #[error("cannot write {}: {error}; the file is unchanged", .path.display())]
     Io {
-        /// The file.
         path: PathBuf,
-        /// The system's error.
         #[source]
         error: io::Error,
     },
@@ -57,11 +55,9 @@ pub enum WriteError {
          bring the value into that range or choose another store"
     )]
     OutOfRange {
-        /// Name of the field.
         field: String,
         /// Index in the field; 0 for a scalar.
         index: usize,
-        /// The value.
         value: f64,
         /// Least value the store holds.
         low: f64,
@@ -80,11 +76,9 @@ pub enum WriteError {
     /// An array beside the manifest has the wrong length.
     #[error("{what}: {got} given and the manifest has {expected}; make them agree")]
     Count {
-        /// The array.
         what: String,
         /// Entries that the manifest asks for.
         expected: usize,
-        /// Entries that were given.
         got: usize,
     },
     /// The archive or the manifest could not be encoded.

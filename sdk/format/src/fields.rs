@@ -13,6 +13,7 @@ use htex_finding::Findings;
 use htex_finding::Rule;
 
 /// A difference between the stored fields and the model's fields.
+#[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FieldMismatch {
     /// The model has no field of this name.
@@ -20,9 +21,7 @@ pub enum FieldMismatch {
     Unknown {
         /// Index among the stored fields.
         index: usize,
-        /// The stored name.
         name: String,
-        /// The names of the model's fields.
         there: String,
     },
     /// A list is stored where the model has a scalar, or the reverse.
@@ -30,7 +29,6 @@ pub enum FieldMismatch {
     Kind {
         /// Index among the stored fields.
         index: usize,
-        /// Its name.
         name: String,
         /// What is stored.
         stored: &'static str,
@@ -42,7 +40,6 @@ pub enum FieldMismatch {
     Unit {
         /// Index among the stored fields.
         index: usize,
-        /// Its name.
         name: String,
         /// The stored unit; empty for a pure number.
         stored: String,
@@ -51,10 +48,7 @@ pub enum FieldMismatch {
     },
     /// A field that the model has, without a default, is not stored.
     #[error("the model's field {name:?} is not stored")]
-    Missing {
-        /// Its name.
-        name: String,
-    },
+    Missing { name: String },
 }
 
 impl FieldMismatch {

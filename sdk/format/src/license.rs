@@ -12,6 +12,7 @@ const LISTED: ParseMode = ParseMode {
 };
 
 /// Error: a text is not an SPDX expression of listed licences.
+#[allow(missing_docs)] // The message says what a field is.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LicenseError {
@@ -19,18 +20,10 @@ pub enum LicenseError {
     #[error(
         "{id:?} is not in the SPDX list; correct it, or write LicenseRef-NAME for a licence of your own"
     )]
-    Unlisted {
-        /// The id.
-        id: String,
-    },
+    Unlisted { id: String },
     /// The grammar is wrong.
     #[error("{license:?} is not an SPDX expression ({reason}); write one like CC-BY-4.0")]
-    Syntax {
-        /// The text.
-        license: String,
-        /// What the parser reports.
-        reason: String,
-    },
+    Syntax { license: String, reason: String },
 }
 
 impl LicenseError {

@@ -134,7 +134,6 @@ fn archive_error(error: impl std::fmt::Display) -> WriteError {
     }
 }
 
-/// Writer of an archive.
 struct Writer(ZipWriter<Cursor<Vec<u8>>>);
 
 impl Writer {

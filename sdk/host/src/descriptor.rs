@@ -23,16 +23,10 @@ pub enum DescriptorError {
     },
     /// The id does not have the form of model ids.
     #[error("`{id}` is not a reverse-DNS id: three or more parts of a-z, 0-9, `-` and `_`")]
-    Id {
-        /// The id.
-        id: String,
-    },
+    Id { id: String },
     /// The version is not a semantic version.
     #[error("`{version}` is not a semantic version")]
-    Version {
-        /// The version.
-        version: String,
-    },
+    Version { version: String },
     /// There are no parameter fields, or too many.
     #[error("there are {count} parameter fields; 1 to {MAX_FIELDS} are allowed")]
     FieldCount {
@@ -41,30 +35,16 @@ pub enum DescriptorError {
     },
     /// The range of a field or fit option is empty or not finite.
     #[error("`{name}` has the invalid range {range}")]
-    Range {
-        /// The field or option.
-        name: String,
-        /// The range.
-        range: String,
-    },
+    Range { name: String, range: String },
     /// A field has a default outside its range, or is a list with a default.
     #[error("`{name}` has a default outside its range, or is a list")]
-    Default {
-        /// The field.
-        name: String,
-    },
+    Default { name: String },
     /// A name, unit or choice contains control characters.
     #[error("`{text}` has control characters")]
-    ControlCharacters {
-        /// The text.
-        text: String,
-    },
+    ControlCharacters { text: String },
     /// Two fields have the same name.
     #[error("two fields are named `{name}`")]
-    SameName {
-        /// The name.
-        name: String,
-    },
+    SameName { name: String },
 }
 
 /// Reads and checks a descriptor in JSON, as every loader does.

@@ -54,18 +54,11 @@ pub enum HostError {
     },
     /// A file cannot be loaded as a model.
     #[error("cannot load {path}: {what}")]
-    Load {
-        /// The file.
-        path: String,
-        /// The reason.
-        what: String,
-    },
+    Load { path: String, what: String },
     /// The model returned an error status.
     #[error("model {model}: {call}: {message}")]
     Call {
-        /// The model's id.
         model: String,
-        /// The function that was called.
         call: &'static str,
         /// The status it returned.
         status: Status,
@@ -77,15 +70,12 @@ pub enum HostError {
     Broken {
         /// The model's id, or its origin while the id is unknown.
         model: String,
-        /// The function that was called.
         call: &'static str,
-        /// The violation.
         what: String,
     },
     /// An unknown fit option, or an invalid value of one.
     #[error("model {model}: option {error}")]
     Option {
-        /// The model's id.
         model: String,
         /// The option, and its allowed values.
         error: Box<OptionError>,
@@ -95,10 +85,7 @@ pub enum HostError {
         "synthesis `{text}`: it takes streamed, loop:SECONDS (0.1 to 60, at most 67 million samples) \
          or filter:TAPS (15 to 4095)"
     )]
-    Synthesis {
-        /// The requested synthesis.
-        text: String,
-    },
+    Synthesis { text: String },
     /// The model's rate cannot be converted to the requested rate.
     #[error("{what}")]
     Rates {
@@ -131,7 +118,6 @@ pub enum OptionError {
     /// The model has no option of this name.
     #[error("`{name}` is unknown; there are {known}")]
     Unknown {
-        /// The requested name.
         name: String,
         /// The names of the model's options.
         known: String,
@@ -139,19 +125,14 @@ pub enum OptionError {
     /// The value is none of the option's choices.
     #[error("`{name}` is `{text}`; it takes one of {choices}")]
     Choice {
-        /// The option.
         name: String,
-        /// The value.
         text: String,
-        /// The choices.
         choices: String,
     },
     /// The value is not a number in the option's range.
     #[error("`{name}` is `{text}`; it takes {range}")]
     Number {
-        /// The option.
         name: String,
-        /// The value.
         text: String,
         /// The kind of number, the range and the unit.
         range: String,

@@ -85,7 +85,6 @@ impl WasmTotal {
         }
     }
 
-    /// Sets the time.
     #[must_use]
     pub const fn with_time(self, time: Duration) -> Self {
         Self { time, ..self }
@@ -220,7 +219,6 @@ impl WasmLimits {
         self
     }
 
-    /// Sets the compiler of modules.
     #[must_use]
     pub fn with_compiler(mut self, compiler: WasmCompiler) -> Self {
         self.compiler = compiler;
@@ -241,7 +239,6 @@ impl WasmLimits {
         self
     }
 
-    /// Sets the cache of compiled modules.
     #[must_use]
     pub fn with_cache(mut self, cache: WasmCache) -> Self {
         self.cache = cache;

@@ -40,7 +40,6 @@ const USUAL_PARAMETERS: usize = 256;
 /// # Ok::<(), htex_host::HostError>(())
 /// ```
 #[derive(Debug, Clone, Copy)]
-#[allow(missing_docs)]
 pub struct FitRequest<'a> {
     pub band: Band,
     pub frequency_hz: &'a [f64],
@@ -181,7 +180,6 @@ impl LoadedModel {
         &self.origin
     }
 
-    /// Returns the model's descriptor.
     pub fn descriptor(&self) -> &Descriptor {
         &self.descriptor
     }

@@ -22,7 +22,6 @@ use crate::{HostError, Origin};
 pub enum Note {
     /// Two models have the same id; the one found first is used.
     Shadowed {
-        /// The id.
         id: String,
         /// Version and origin of the model that is used.
         used: (String, Origin),
@@ -39,19 +38,9 @@ pub enum Note {
         other: String,
     },
     /// A file in a plugin folder could not be loaded.
-    Broken {
-        /// The file.
-        path: PathBuf,
-        /// The reason.
-        error: HostError,
-    },
+    Broken { path: PathBuf, error: HostError },
     /// A folder of `HTEX_PLUGIN_PATH`, or the user's, could not be read.
-    Folder {
-        /// The folder.
-        path: PathBuf,
-        /// The reason.
-        what: String,
-    },
+    Folder { path: PathBuf, what: String },
 }
 
 impl std::fmt::Display for Note {

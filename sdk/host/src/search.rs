@@ -37,7 +37,6 @@ pub struct Search {
     pub user_dir: bool,
     /// Whether to include the models linked into this program.
     pub builtin: bool,
-    /// Limits of WASM models.
     pub limits: WasmLimits,
 }
 
@@ -100,7 +99,6 @@ impl Search {
         self
     }
 
-    /// Sets the limits of WASM models.
     #[must_use]
     pub fn with_limits(mut self, limits: WasmLimits) -> Self {
         self.limits = limits;

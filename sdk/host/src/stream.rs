@@ -40,12 +40,10 @@ impl<S> Stream<S> {
         })
     }
 
-    /// Returns the source.
     pub fn source(&self) -> &S {
         &self.source
     }
 
-    /// Returns the source, to change it.
     pub fn source_mut(&mut self) -> &mut S {
         &mut self.source
     }

@@ -47,9 +47,7 @@ pub struct Conditions {
 /// A closed interval of numbers that are finite and not negative.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Interval {
-    /// Least value.
     pub min: f64,
-    /// Greatest value.
     pub max: f64,
 }
 

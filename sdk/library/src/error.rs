@@ -64,7 +64,6 @@ pub enum LibraryError {
     /// A texture to be added is not a valid asset.
     #[error("{}: {error}", plain(.name))]
     Asset {
-        /// Name of the texture.
         name: String,
         #[source]
         error: Box<ReadError>,

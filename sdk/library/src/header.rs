@@ -33,7 +33,6 @@ pub(crate) struct Header {
     pub shared: Range<u64>,
     /// The textures' own bytes.
     pub payload: Range<u64>,
-    /// Number of textures.
     pub entries: u64,
     /// Number of leaf pages.
     pub leaf_count: u32,
@@ -135,7 +134,6 @@ impl Header {
         Ok(())
     }
 
-    /// Encodes the header.
     #[cfg(feature = "write")]
     pub(crate) fn to_bytes(&self) -> [u8; HEADER_BYTES] {
         let mut bytes = [0; HEADER_BYTES];

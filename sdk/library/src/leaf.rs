@@ -24,7 +24,6 @@ pub(crate) const FORCE: u8 = 2;
 pub(crate) const ONE_SPEED: u8 = 4;
 pub(crate) const ONE_FORCE: u8 = 8;
 
-/// A leaf to be read.
 pub(crate) struct LeafReader<'a> {
     pub leaf: usize,
     pub root: &'a Root,

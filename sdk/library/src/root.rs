@@ -14,7 +14,6 @@ use crate::wire::Cursor;
 /// Place of the root page in findings.
 pub(crate) const PLACE: &str = "/root";
 
-/// The root page.
 #[derive(Debug, Clone)]
 pub(crate) struct Root {
     /// Name of the library.

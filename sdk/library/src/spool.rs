@@ -113,7 +113,6 @@ impl Spool {
         Ok(())
     }
 
-    /// Ends the writing.
     pub(crate) fn finish(mut self) -> io::Result<(SpoolReader, Vec<Module>)> {
         self.flush()?;
         self.scratch.file().rewind()?;

@@ -11,7 +11,7 @@ use crate::{Error, Kind, StaticDescriptor};
 
 /// Names and ranges of parameters and of fit options: of a model's constants, and of a descriptor that a host has read.
 pub trait Fields {
-    /// The model's id.
+    /// Reverse-DNS id of the model.
     fn id(&self) -> &str;
 
     /// The number of fields.

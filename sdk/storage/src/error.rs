@@ -9,7 +9,6 @@ use std::io;
 pub struct StorageError {
     /// The URI without secrets, a path, or the variable that is set wrongly.
     pub place: String,
-    /// What is wrong there.
     pub problem: StorageProblem,
 }
 

@@ -54,7 +54,6 @@ use location::LocalOrRemote;
 /// Size and version of a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Stat {
-    /// Its size.
     pub bytes: u64,
     /// Its entity tag, where the store has one. It changes with the content.
     pub etag: Option<String>,

@@ -15,9 +15,7 @@ const MOST_DEPTH: usize = 64;
 /// A file of a list.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Entry {
-    /// Where it is.
     pub location: Location,
-    /// Its size.
     pub bytes: u64,
     /// Its entity tag, where the store has one.
     pub etag: Option<String>,

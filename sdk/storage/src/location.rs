@@ -215,7 +215,6 @@ impl Scheme {
         }
     }
 
-    /// Whether files are only read.
     pub(crate) fn is_read_only(self) -> bool {
         matches!(self, Self::Http | Self::Https)
     }

@@ -113,7 +113,6 @@ impl Remote {
         self.len
     }
 
-    /// Whether the file is empty.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }

@@ -75,7 +75,6 @@ fn the_end_of_a_file_is_kept() {
     );
 }
 
-/// A local file is read alike.
 #[test]
 fn a_local_file_is_read_alike() {
     let file = tempfile::NamedTempFile::new().unwrap();

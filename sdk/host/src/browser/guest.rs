@@ -75,17 +75,14 @@ impl Guest {
         Ok(returned)
     }
 
-    /// Size of the memory, bytes.
     pub(super) fn memory_bytes(&self) -> usize {
         self.raw.memory_bytes()
     }
 
-    /// Reads at an address.
     pub(super) fn read<T: Number>(&self, at: Usize, out: &mut [T]) -> Result<(), Fault> {
         Ok(self.raw.read(at, out)?)
     }
 
-    /// Writes at an address.
     pub(super) fn write<T: Number>(&mut self, at: Usize, numbers: &[T]) -> Result<(), Fault> {
         Ok(self.raw.write(at, numbers)?)
     }

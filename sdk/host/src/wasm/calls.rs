@@ -23,7 +23,6 @@ impl Instance {
         Ok(len)
     }
 
-    /// The text of the last error.
     pub(super) fn last_error(&mut self) -> Result<String, Fault> {
         let at = self.buffer(LONGEST_ERROR)?;
         let buffer = (at, LONGEST_ERROR as u32);

@@ -65,12 +65,10 @@ impl Guest {
         result.map_err(|error| Fault::of(&error, &module.limits, most.as_millis()))
     }
 
-    /// Size of the memory, bytes.
     pub(super) fn memory_bytes(&self) -> usize {
         self.memory.data_size(&self.store)
     }
 
-    /// Reads at an address.
     pub(super) fn read<T: Number>(&self, at: Usize, out: &mut [T]) -> Result<(), Fault> {
         let data = self.memory.data(&self.store);
         let bytes = data.get(at as usize..);
@@ -79,7 +77,6 @@ impl Guest {
         Ok(())
     }
 
-    /// Writes at an address.
     pub(super) fn write<T: Number>(&mut self, at: Usize, numbers: &[T]) -> Result<(), Fault> {
         let data = self.memory.data_mut(&mut self.store);
         let bytes = data.get_mut(at as usize..);

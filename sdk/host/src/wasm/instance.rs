@@ -111,7 +111,6 @@ impl Instance {
         self.functions.motion.is_some()
     }
 
-    /// Size of the module's memory, bytes.
     pub(super) fn memory_bytes(&self) -> usize {
         self.guest.memory_bytes()
     }
@@ -149,7 +148,6 @@ impl Instance {
         Ok(at + (numbers.len() * 8) as Usize)
     }
 
-    /// Writes a text at an address.
     pub(super) fn write_text(&mut self, at: Usize, text: &[u8]) -> Result<(), Fault> {
         self.guest.write(at, text)
     }

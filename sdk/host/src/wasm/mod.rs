@@ -49,7 +49,6 @@ pub(crate) fn load(origin: &str, bytes: &[u8], sandbox: &Sandbox) -> Result<Wasm
     WasmModel::new(origin, Arc::new(module))
 }
 
-/// Loads a model from a file.
 pub(crate) fn load_file(path: &Path, sandbox: &Sandbox) -> Result<WasmModel, HostError> {
     let origin = path.display().to_string();
     let bytes = read(path, sandbox.limits.module_bytes).map_err(|error| HostError::Load {

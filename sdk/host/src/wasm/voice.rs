@@ -18,7 +18,6 @@ use crate::raw::RawVoice;
 pub(super) struct WasmVoice {
     instance: Instance,
     handle: i64,
-    /// The text of the last error.
     last_error: String,
     /// Whether the instance trapped; it is then not called again.
     faulted: bool,

@@ -14,10 +14,7 @@ pub enum EditError {
     Read(#[from] ReadError),
     /// Writing it again would lose entries that its manifest does not name, or keys inside it that this program does not know.
     #[error("an edit would not keep all of it: {}; edit it with the program that wrote it", .lost.join("; "))]
-    Lost {
-        /// What would be lost.
-        lost: Vec<String>,
-    },
+    Lost { lost: Vec<String> },
 }
 
 /// Reads an asset and changes its metadata. Parameters, recorded spectra and embedded models, with their signatures, are kept.

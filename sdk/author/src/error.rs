@@ -19,7 +19,6 @@ pub enum AuthorError {
         hertz(*rate_hz), hertz(*nyquist_hz)
     )]
     RateTooLow {
-        /// The recording.
         source_name: String,
         /// Its sample rate, hertz.
         rate_hz: f64,
@@ -31,9 +30,7 @@ pub enum AuthorError {
         "{source_name}: {samples} samples are less than one segment of 0.2 s ({needed} samples)"
     )]
     TooShort {
-        /// The recording.
         source_name: String,
-        /// Its samples.
         samples: usize,
         /// Samples of a segment.
         needed: usize,
@@ -43,10 +40,7 @@ pub enum AuthorError {
         "{source_name}: no complete sweep of 0.2 s or more (a sweep cut off by the beginning or the end does not count); \
          choose windows for a recording without back-and-forth sweeps"
     )]
-    NoSegments {
-        /// The recording.
-        source_name: String,
-    },
+    NoSegments { source_name: String },
     /// The setup response is zero or not finite, so nothing can be divided by it.
     #[error(
         "setup response: its largest magnitude in the band is {largest:e}; a finite value above 0 is \
@@ -72,9 +66,7 @@ pub enum AuthorError {
          was recorded, correct the scale of a column, or record again"
     )]
     OffTarget {
-        /// The recording.
         source_name: String,
-        /// Number of segments.
         segments: usize,
         /// The measured and the requested values.
         comparison: String,
@@ -82,7 +74,6 @@ pub enum AuthorError {
     /// The recording has findings that are errors or warnings, and these were to be refused.
     #[error("{source_name}: refused because of findings that are errors or warnings:{}", listed(.findings))]
     Strict {
-        /// The recording.
         source_name: String,
         /// Errors and warnings.
         findings: Vec<Finding>,
@@ -92,9 +83,7 @@ pub enum AuthorError {
     Condition {
         /// Speed or force.
         what: &'static str,
-        /// The value.
         value: f64,
-        /// The allowed range.
         allowed: &'static str,
     },
     /// The text of a grid is not valid.
@@ -104,7 +93,6 @@ pub enum AuthorError {
     GridText {
         /// The text, at most 80 characters.
         text: String,
-        /// What is wrong.
         problem: String,
     },
     /// The recording does not say how the finger moves, which a grid of conditions needs.
@@ -113,7 +101,6 @@ pub enum AuthorError {
          {columns}, or give one {what} for the whole recording, or fit without a grid"
     )]
     NoMotion {
-        /// The recording.
         source_name: String,
         /// Speed or force.
         what: &'static str,
@@ -126,7 +113,6 @@ pub enum AuthorError {
          finger slides; stroke more evenly, or correct the columns of position, speed and normal force"
     )]
     NothingSteady {
-        /// The recording.
         source_name: String,
         /// Number of windows.
         windows: usize,
@@ -198,15 +184,12 @@ pub enum AuthorError {
     /// A file could not be written.
     #[error("cannot write {path}: {error}")]
     Write {
-        /// The file.
         path: PathBuf,
-        /// The system's error.
         error: std::io::Error,
     },
 }
 
 impl AuthorError {
-    /// The settings that help.
     pub fn hint(&self) -> Hint {
         Hint::new(match self {
             Self::NoSegments { .. } => &["segments windows"],

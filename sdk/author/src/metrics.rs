@@ -13,7 +13,6 @@ use crate::spectrum::SpectrumRef;
 /// in the nine bands of the paper's regression (which uses standardised absolute differences).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agreement {
-    /// The measures.
     pub measures: Measures,
     /// Energy relative to the reference's in each of the nine bands, decibels.
     pub band_error_db: Vec<f64>,

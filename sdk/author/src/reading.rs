@@ -16,7 +16,6 @@ use htex_recording::{ReadError, ReadOptions, ReadProblem, read_recording};
 /// The result of reading a recording.
 #[derive(Debug, Clone)]
 pub struct Reading {
-    /// The spectra of its segments.
     pub part: SegmentSpectra,
     /// Speed and force: the given values, else the medians of the measured ones over the segments.
     pub condition: Exploration,

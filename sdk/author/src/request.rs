@@ -27,7 +27,6 @@ impl ModelRequest {
         }
     }
 
-    /// Sets the option values ([`LoadedModel::options`]).
     #[must_use]
     pub fn with_options(mut self, options: Vec<f64>) -> Self {
         self.options = options;
@@ -50,19 +49,15 @@ impl ModelRequest {
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct AssetRequest {
-    /// Name of the texture.
     pub name: String,
     /// SPDX licence expression.
     pub license: Option<String>,
-    /// Author of the asset.
     pub author: Option<String>,
     /// Search terms.
     pub tags: Vec<String>,
     /// Models, in the order of the representations.
     pub models: Vec<ModelRequest>,
-    /// Options of the spectra.
     pub spectrum: SpectrumOptions,
-    /// Level of the representations.
     pub level: Level,
     /// Models to try at their default options when a representation has a large band error; those in `models` are
     /// always tried.
@@ -89,21 +84,18 @@ impl AssetRequest {
         }
     }
 
-    /// Sets the SPDX licence expression.
     #[must_use]
     pub fn with_license(mut self, license: impl Into<Option<String>>) -> Self {
         self.license = license.into();
         self
     }
 
-    /// Sets the author of the asset.
     #[must_use]
     pub fn with_author(mut self, author: impl Into<Option<String>>) -> Self {
         self.author = author.into();
         self
     }
 
-    /// Sets the search terms.
     #[must_use]
     pub fn with_tags(mut self, tags: Vec<String>) -> Self {
         self.tags = tags;
@@ -117,14 +109,12 @@ impl AssetRequest {
         self
     }
 
-    /// Sets the options of the spectra.
     #[must_use]
     pub fn with_spectrum(mut self, spectrum: SpectrumOptions) -> Self {
         self.spectrum = spectrum;
         self
     }
 
-    /// Sets the level of the representations.
     #[must_use]
     pub fn with_level(mut self, level: Level) -> Self {
         self.level = level;

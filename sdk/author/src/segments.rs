@@ -71,7 +71,6 @@ pub struct Unread {
     pub sliding_s: f64,
 }
 
-/// The segments of a recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Segments {
     /// Samples of each segment.

@@ -53,27 +53,22 @@ impl Averaging {
     }
 }
 
-/// Options of computing a texture spectrum.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct SpectrumOptions {
-    /// Method of choosing segments.
     pub segments: SegmentChoice,
-    /// Method of averaging segments.
     pub averaging: Averaging,
     /// Response of the recording setup, which spectra are divided by.
     pub response: Option<SetupResponse>,
 }
 
 impl SpectrumOptions {
-    /// Sets the method of choosing segments.
     #[must_use]
     pub fn with_segments(mut self, segments: SegmentChoice) -> Self {
         self.segments = segments;
         self
     }
 
-    /// Sets the method of averaging segments.
     #[must_use]
     pub fn with_averaging(mut self, averaging: Averaging) -> Self {
         self.averaging = averaging;
@@ -91,13 +86,11 @@ impl SpectrumOptions {
 /// The compensated spectra of a recording's segments, folded into one axis, in the band.
 #[derive(Debug, Clone)]
 pub struct SegmentSpectra {
-    /// The recorded quantity.
     pub quantity: Quantity,
     /// The band: 20 to 1000 Hz, or up to half the rate.
     pub band: Band,
     /// One spectrum per segment on the band's grid; a sinusoid of amplitude A on the grid has magnitude A.
     pub spectra: Vec<Vec<Complex<f64>>>,
-    /// Positions of the segments.
     pub segments: Segments,
     /// Warnings, as sentences.
     pub warnings: Vec<String>,
@@ -126,7 +119,6 @@ pub struct TextureSpectrum {
 
 /// Band and magnitudes of a spectrum, for fits and measures.
 #[derive(Debug, Clone, Copy)]
-#[allow(missing_docs)]
 pub struct SpectrumRef<'a> {
     pub band: Band,
     pub frequency_hz: &'a [f64],

@@ -16,7 +16,6 @@ struct Warning {
 }
 
 impl Warnings {
-    /// Adds the warnings of a recording.
     pub(crate) fn add(&mut self, recording: &str, notices: Vec<Notice>) {
         let name = format!("{recording}: ");
         for notice in notices {

@@ -20,7 +20,6 @@ const MOST_CONDITIONS: usize = 64;
 /// Lengths of one side of the filter that are tried.
 const HALVES: [usize; 7] = [32, 64, 96, 128, 192, 256, MOST_HALF];
 
-/// A baked texture.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Baked {

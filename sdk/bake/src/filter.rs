@@ -40,7 +40,6 @@ impl Design {
         }
     }
 
-    /// Returns the frequencies, hertz.
     pub(crate) fn frequencies_hz(&self) -> Vec<f64> {
         (0..=self.steps).map(|i| self.hz(i)).collect()
     }
@@ -122,7 +121,6 @@ pub(crate) struct Wanted {
 
 /// The bins of a spectrum whose frequencies are multiplied by a ratio, as a Hann window reads them.
 pub(crate) struct Bins {
-    /// Frequencies, hertz.
     hz: Vec<f64>,
     spacing_hz: f64,
 }

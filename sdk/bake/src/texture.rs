@@ -14,7 +14,6 @@ const IN_BIN: i32 = 8;
 pub(crate) struct Texture<'a> {
     asset: &'a Asset,
     model: LoadedModel,
-    /// The representation's id.
     id: String,
     explored: Explored,
 }
@@ -65,7 +64,6 @@ impl<'a> Texture<'a> {
         self.asset.band()
     }
 
-    /// Returns the texture at a motion.
     pub(crate) fn at(&self, motion: Motion) -> Result<Moment, BakeError> {
         let (parameters, level_rms) = self.asset.parameters(Some(&self.id), Some(motion))?;
         Ok(Moment {

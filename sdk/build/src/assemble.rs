@@ -21,7 +21,6 @@ use crate::made::Made;
 use crate::plan::{Plan, PlannedTexture};
 use crate::report::{LibraryReport, REPORT, Report, Status, TextureReport, lossless};
 
-/// The report's file.
 const REPORT_FILE: &str = "build-report.json";
 
 /// The file of what is known of the library that was written last.

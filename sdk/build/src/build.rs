@@ -30,7 +30,6 @@ const COPIES: &str = "elsewhere";
 /// The file of hashes, in that folder.
 const HASHES: &str = "files.json";
 
-/// Options of a build.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct BuildOptions {
@@ -38,7 +37,6 @@ pub struct BuildOptions {
     pub jobs: usize,
     /// Whether to go on after a texture that cannot be made, and to leave it out.
     pub keep_going: bool,
-    /// Limits of WASM models.
     pub limits: WasmLimits,
     /// Program and version, for the assets' provenance. A texture that another one fitted is fitted again.
     pub program: String,
@@ -72,7 +70,6 @@ impl BuildOptions {
         self
     }
 
-    /// Sets the limits of WASM models.
     #[must_use]
     pub fn with_limits(mut self, limits: WasmLimits) -> Self {
         self.limits = limits;

@@ -27,7 +27,6 @@ impl Dist {
         }
     }
 
-    /// Returns the file of a texture.
     pub(crate) fn texture(&self, name: &str) -> PathBuf {
         self.folder.join("textures").join(format!("{name}.htex"))
     }
@@ -37,7 +36,6 @@ impl Dist {
         self.folder.join("sounds").join(format!("{name}.wav"))
     }
 
-    /// Returns a file of the folder.
     pub(crate) fn file(&self, name: &str) -> PathBuf {
         self.folder.join(name)
     }

@@ -23,17 +23,13 @@ pub enum BuildError {
     /// A file cannot be read.
     #[error("cannot read {file}: {error}")]
     Read {
-        /// The file.
         file: PathBuf,
-        /// The system's error.
         error: std::io::Error,
     },
     /// A file cannot be written.
     #[error("cannot write {file}: {error}")]
     Write {
-        /// The file.
         file: PathBuf,
-        /// The system's error.
         error: std::io::Error,
     },
     /// A file elsewhere cannot be read or written.
@@ -41,14 +37,10 @@ pub enum BuildError {
     Storage(#[from] htex_storage::StorageError),
     /// Another build uses the folder.
     #[error("{folder}: another build is writing to it; wait for it to end, or give another folder")]
-    Locked {
-        /// The folder.
-        folder: PathBuf,
-    },
+    Locked { folder: PathBuf },
     /// A texture cannot be made.
     #[error("{texture}: {problem}")]
     Texture {
-        /// The texture.
         texture: String,
         /// What is wrong, and what to do.
         problem: String,
@@ -56,9 +48,7 @@ pub enum BuildError {
     /// The library cannot be written.
     #[error("{file}: {error}")]
     Library {
-        /// Its file.
         file: PathBuf,
-        /// What is wrong.
         error: htex_library::LibraryError,
     },
     /// The result of a job is damaged.

@@ -19,7 +19,6 @@ const RACY: Duration = Duration::from_secs(2);
 /// Size and times of a file, by which a change is noticed without reading it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stamp {
-    /// Size, bytes.
     pub bytes: u64,
     /// Time of the last change of the contents, nanoseconds since 1970; 0 of a file elsewhere that has a version.
     modified_ns: u64,

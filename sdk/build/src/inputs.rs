@@ -235,7 +235,6 @@ fn input_elsewhere(uri: PathBuf, inside: &Path) -> Input {
     }
 }
 
-/// The fields of a path.
 fn fields(file: &Path) -> Fields {
     let text = |part: Option<&std::ffi::OsStr>| {
         part.map(|p| p.to_string_lossy().into_owned())

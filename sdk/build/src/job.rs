@@ -42,30 +42,22 @@ fn felt(fitted: &FittedAsset) -> BTreeMap<String, FeltError> {
 pub struct Job {
     /// Kind and version of the job, and the program that fits.
     pub program: String,
-    /// Name of the texture.
     pub texture: String,
-    /// The recordings.
     pub recordings: Vec<JobRecording>,
     /// How they are read; files are in `files`.
     pub reading: ReadingSettings,
-    /// How they are fitted.
     pub fit: FitSettings,
-    /// The texture's metadata.
     pub metadata: Metadata,
     /// The setup's response.
     pub response: Option<JobFile>,
-    /// Plugins of models.
     pub plugins: Vec<JobFile>,
     /// How many of them, the last ones, travel in the asset.
     pub embedded: usize,
 }
 
-/// A recording of a job.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JobRecording {
-    /// Its file.
     pub file: JobFile,
-    /// The file of its tracker.
     pub tracker: Option<JobFile>,
     /// Speed, mm/s, if it is given.
     pub speed_mm_s: Option<f64>,
@@ -78,7 +70,6 @@ pub struct JobRecording {
 pub struct JobFile {
     /// Where it is: a path, or a URI.
     pub path: PathBuf,
-    /// Its contents.
     #[serde(flatten)]
     pub hashed: Hashed,
 }
@@ -355,7 +346,6 @@ impl Job {
 
 /// Why there is no asset.
 enum Stopped {
-    /// A result.
     Outcome(Outcome),
     /// A file cannot be read now; it may be later.
     File(BuildError),

@@ -25,7 +25,6 @@ pub struct Made {
 /// What is known of a fit and not in its asset.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// How it ended.
     pub outcome: Outcome,
     /// Segments of each condition.
     pub segments: Vec<usize>,

@@ -15,7 +15,6 @@ use crate::template::{Fields, fill};
 /// The textures of a recipe.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// Name of the library.
     pub library: String,
     /// The textures, sorted by name.
     pub textures: Vec<PlannedTexture>,

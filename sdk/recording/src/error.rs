@@ -144,7 +144,6 @@ impl fmt::Display for Place {
 }
 
 impl ReadError {
-    /// The settings that help.
     pub fn hint(&self) -> Hint {
         Hint::new(match &self.problem {
             ReadProblem::TooManyValues { .. } => &["most_numbers"],

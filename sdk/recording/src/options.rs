@@ -32,7 +32,6 @@ pub struct ReadOptions {
 }
 
 impl ReadOptions {
-    /// Sets the sample rate, hertz.
     #[must_use]
     pub fn with_rate_hz(mut self, rate_hz: impl Into<Option<f64>>) -> Self {
         self.rate_hz = rate_hz.into();

@@ -31,10 +31,8 @@ pub struct Chain {
     pub left_out: Vec<(String, String)>,
 }
 
-/// One stage of a chain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChainStage {
-    /// Name of the stage.
     pub name: String,
     /// Why the stage runs.
     pub reason: String,

@@ -30,7 +30,6 @@ pub(crate) struct Element {
 }
 
 impl Element {
-    /// Creates an empty element.
     pub(crate) fn new(name: &'static str) -> Self {
         Self {
             name,

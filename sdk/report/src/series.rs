@@ -9,7 +9,6 @@ pub enum Line {
     None,
     /// A line through the points in order, interrupted at points that cannot be shown.
     Solid,
-    /// A dashed line.
     Dashed,
     /// A vertical line from zero to each point.
     Stems,
@@ -72,7 +71,6 @@ impl Series {
         }
     }
 
-    /// Sets the CSS colour.
     #[must_use]
     pub fn colored(mut self, color: &str) -> Self {
         self.color = color.to_owned();

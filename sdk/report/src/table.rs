@@ -50,7 +50,6 @@ pub enum Cell {
 /// A row of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// The row's header.
     pub header: String,
     /// One cell per column.
     pub cells: Vec<Cell>,

@@ -68,9 +68,7 @@ pub enum SimulationError {
         /// Name of the option, with its unit.
         option: &'static str,
         value: f64,
-        /// Smallest allowed value.
         low: f64,
-        /// Largest allowed value.
         high: f64,
     },
     /// The true spectrum of sweeps is not known.
@@ -163,21 +161,18 @@ impl SimulationOptions {
         }
     }
 
-    /// Sets the seed.
     #[must_use]
     pub fn with_seed(mut self, seed: u64) -> Self {
         self.seed = seed;
         self
     }
 
-    /// Sets the sample rate, hertz.
     #[must_use]
     pub fn with_rate_hz(mut self, rate_hz: f64) -> Self {
         self.rate_hz = rate_hz;
         self
     }
 
-    /// Sets the length, seconds.
     #[must_use]
     pub fn with_duration_s(mut self, duration_s: f64) -> Self {
         self.duration_s = duration_s;
@@ -191,7 +186,6 @@ impl SimulationOptions {
         self
     }
 
-    /// Sets the normal force, newtons.
     #[must_use]
     pub fn with_force_n(mut self, force_n: f64) -> Self {
         self.force_n = force_n;
@@ -335,7 +329,6 @@ fn check_range(
 /// A simulated recording; all signals have the same length.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simulation {
-    /// The options of the simulation.
     pub options: SimulationOptions,
     /// Time, seconds, from 0.
     pub t_s: Vec<f64>,

@@ -21,7 +21,6 @@ pub enum Surface {
 }
 
 impl Surface {
-    /// All surfaces.
     pub const ALL: [Self; 5] = [
         Self::Sandpaper,
         Self::FineFabric,
@@ -94,7 +93,6 @@ pub(super) struct Grain {
     pub(super) weight: f64,
 }
 
-/// Parameters of a surface.
 #[derive(Debug)]
 pub(super) struct Parameters {
     /// Label of the random stream, so that surfaces of the same seed differ.

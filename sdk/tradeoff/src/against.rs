@@ -18,9 +18,7 @@ pub enum Cost {
 /// A pair of cost and error measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Against {
-    /// The cost.
     pub cost: Cost,
-    /// The error measure.
     pub error: ErrorMeasure,
 }
 

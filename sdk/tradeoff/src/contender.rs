@@ -23,7 +23,6 @@ pub(crate) enum ContenderKind {
     Model(LoadedModel, Vec<f64>),
     /// The spectrum, one byte per bin.
     Quantised,
-    /// The recording.
     Recording,
 }
 

@@ -20,23 +20,15 @@ pub enum TradeoffError {
     /// The journal could not be written.
     #[error("cannot keep finished points in {path}: {error}")]
     Journal {
-        /// The file.
         path: PathBuf,
-        /// The system's error.
         error: std::io::Error,
     },
     /// A knob does not have this value.
     #[error("knob {name}: `{value}` is not one of its values")]
-    Knob {
-        /// The knob.
-        name: String,
-        /// The given value.
-        value: String,
-    },
+    Knob { name: String, value: String },
 }
 
 impl TradeoffError {
-    /// The settings that help.
     pub fn hint(&self) -> Hint {
         match self {
             Self::Author(error) => error.hint(),

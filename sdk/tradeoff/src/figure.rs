@@ -8,7 +8,6 @@ use crate::front::front;
 use crate::knee::along_front;
 use crate::point::{Point, QUANTISED, errors, others};
 
-/// Marks the points on the front.
 pub(crate) fn mark_front(points: &mut [Point], against: Against) {
     let compared: Vec<usize> = (0..points.len())
         .filter(|&i| against.cost.compares(&points[i]))

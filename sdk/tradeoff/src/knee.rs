@@ -23,7 +23,6 @@ pub struct Knee {
     pub at: String,
     /// Its cost, bytes or ns per sample.
     pub cost: f64,
-    /// The error measure.
     pub error: ErrorMeasure,
     /// Its error, decibels.
     pub error_db: f64,

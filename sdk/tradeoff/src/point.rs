@@ -20,7 +20,6 @@ pub const RECORDING: &str = "recording";
 /// Cost and accuracy of one setting on one recording.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Point {
-    /// The recording.
     pub recording: String,
     /// Short name of the model, [`QUANTISED`] or [`RECORDING`].
     pub model: String,
@@ -28,7 +27,6 @@ pub struct Point {
     pub knobs: BTreeMap<String, Value>,
     /// The knobs that are not at their defaults, as text.
     pub setting: String,
-    /// The setting.
     #[serde(skip)]
     pub how: Setting,
     /// Median time of a fit, ms.
@@ -167,7 +165,6 @@ impl Point {
         format!("{} {}", self.model, self.setting)
     }
 
-    /// Whether it is a baseline.
     pub fn is_baseline(&self) -> bool {
         self.model == QUANTISED || self.model == RECORDING
     }

@@ -15,7 +15,6 @@ pub struct Model {
 /// Options of a sweep.
 #[derive(Debug, Clone)]
 pub struct Request {
-    /// The models.
     pub models: Vec<Model>,
     /// Whether to vary one knob at a time with three values each, and to time fewer runs.
     pub quick: bool,

@@ -23,7 +23,6 @@ pub enum Keep {
 pub struct Setting {
     /// Fit options by name that are not at their defaults.
     pub options: Vec<(String, String)>,
-    /// How samples are generated.
     pub synthesis: Synthesis,
     /// How parameters are stored.
     pub store: Keep,

@@ -17,15 +17,12 @@ use crate::{Point, Subject, TradeoffError};
 /// A setting that could not be measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LeftOut {
-    /// The recording.
     pub recording: String,
     /// Model and setting.
     pub setting: String,
-    /// The reason.
     pub reason: String,
 }
 
-/// The result of a sweep.
 #[derive(Debug, Clone, Default)]
 pub struct Swept {
     /// The points by recording, in the order of the table.

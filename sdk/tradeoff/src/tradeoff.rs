@@ -28,7 +28,6 @@ const SHOWN_STEPS: usize = 3;
 /// The machine on which a sweep ran.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Machine {
-    /// The processor's name.
     pub processor: String,
     /// Number of cores that a program may use.
     pub cores: usize,
@@ -55,7 +54,6 @@ impl Machine {
 /// A recording of the report.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Recorded {
-    /// Its name.
     pub name: String,
     /// Whether it was computed instead of recorded.
     pub simulated: bool,
@@ -68,13 +66,11 @@ pub struct Recorded {
 pub struct Tradeoff {
     /// Program and version.
     pub tool: String,
-    /// The machine on which it ran.
     pub machine: Machine,
     /// The error measure of fronts and knees.
     pub error: ErrorMeasure,
     /// Description of the numbers.
     pub method: &'static str,
-    /// The recordings.
     pub recordings: Vec<Recorded>,
     /// Short names of the models, in their order.
     pub models: Vec<String>,
@@ -133,7 +129,6 @@ impl Tradeoff {
         tradeoff
     }
 
-    /// Returns the points of a recording.
     pub fn of(&self, recording: &str) -> Vec<&Point> {
         self.points
             .iter()

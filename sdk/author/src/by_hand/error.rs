@@ -9,9 +9,7 @@ pub enum ByHandError {
     /// The model has no such field.
     #[error("{model} has no parameter {name:?}; it has {there}")]
     Unknown {
-        /// The model.
         model: String,
-        /// The name.
         name: String,
         /// Its fields, with units and ranges.
         there: String,
@@ -19,7 +17,6 @@ pub enum ByHandError {
     /// A field has no value.
     #[error("{model} needs a value for {missing}")]
     Missing {
-        /// The model.
         model: String,
         /// The fields, with units and ranges.
         missing: String,
@@ -27,9 +24,7 @@ pub enum ByHandError {
     /// A value is out of its field's range, or there are too many.
     #[error("{name} = {value}: {problem}")]
     Value {
-        /// The field.
         name: String,
-        /// The values.
         value: String,
         /// What is allowed.
         problem: String,
@@ -39,7 +34,6 @@ pub enum ByHandError {
     Level {
         /// The level, in the quantity's unit.
         level_rms: f64,
-        /// The unit.
         unit: &'static str,
         /// The largest level of the quantity.
         most: f64,
@@ -47,9 +41,7 @@ pub enum ByHandError {
     /// The textures cannot be mixed.
     #[error("{a} and {b} cannot be mixed: {problem}")]
     Different {
-        /// A texture.
         a: String,
-        /// The other one.
         b: String,
         /// What differs.
         problem: String,
@@ -58,10 +50,7 @@ pub enum ByHandError {
     #[error(
         "a weight of {weight}: it is from 0, all of the first texture, to 1, all of the second"
     )]
-    Weight {
-        /// The weight.
-        weight: f64,
-    },
+    Weight { weight: f64 },
     /// A representation cannot be read.
     #[error(transparent)]
     Play(#[from] htex_play::Error),

@@ -14,7 +14,6 @@ use crate::stored::stored_fields;
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct ByHand {
-    /// Name of the texture.
     pub name: String,
     /// Values by name of the field; of a list, all of them.
     pub values: BTreeMap<String, Vec<f64>>,
@@ -22,9 +21,7 @@ pub struct ByHand {
     pub level_rms: f64,
     /// Speed and force at which it is this one.
     pub condition: Condition,
-    /// The quantity of its samples.
     pub quantity: Quantity,
-    /// The band of its spectrum.
     pub band: Band,
     /// Program and version, for the provenance.
     pub tool: String,
@@ -58,7 +55,6 @@ impl ByHand {
         self
     }
 
-    /// Sets the quantity of the samples.
     #[must_use]
     pub fn with_quantity(mut self, quantity: Quantity) -> Self {
         self.quantity = quantity;

@@ -37,7 +37,6 @@ pub struct GridCell {
     pub averaged: usize,
     /// Nine-band RMS difference between the odd and the even windows, decibels.
     pub repeatability_rms_db: Option<f64>,
-    /// Whether it became a condition.
     pub status: CellStatus,
     /// Index of its condition in the asset.
     pub condition: Option<usize>,

@@ -14,7 +14,6 @@ pub enum SettingsError {
     Map {
         /// Its name: `map` or `tracker_map`.
         keyword: &'static str,
-        /// The map.
         text: String,
         /// What is wrong with it.
         error: Box<ReadError>,
@@ -24,7 +23,6 @@ pub enum SettingsError {
     Trackers {
         /// Trackers that are given.
         trackers: usize,
-        /// Recordings.
         recordings: usize,
     },
     /// The response of the recording setup cannot be read.
@@ -38,24 +36,19 @@ pub enum SettingsError {
     ModelNotFitted {
         /// The model that the option names.
         model: String,
-        /// The option.
         name: String,
         /// Short names of the models that are fitted.
         fitted: Vec<String>,
     },
     /// An option is not of the form `MODEL.NAME=VALUE`.
     #[error("option {text}: it looks like MODEL.NAME=VALUE, e.g. ar.order=6")]
-    OptionForm {
-        /// The text.
-        text: String,
-    },
+    OptionForm { text: String },
     /// The grid cannot be read.
     #[error(transparent)]
     Grid(Box<AuthorError>),
     /// Metadata that the asset's validation would refuse.
     #[error("{field}: {problem}")]
     Metadata {
-        /// The field.
         field: &'static str,
         /// What is wrong with it, and what to do.
         problem: String,

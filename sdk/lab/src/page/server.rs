@@ -70,7 +70,6 @@ impl LocalPage {
         })
     }
 
-    /// The address of the page.
     pub(crate) fn url(&self) -> &str {
         &self.url
     }

@@ -92,7 +92,6 @@ impl TakeData {
         self.signals.first().map_or(0, Vec::len)
     }
 
-    /// Seconds that were recorded.
     #[must_use]
     pub fn recorded_s(&self) -> f64 {
         self.frames() as f64 / self.header.rate_hz

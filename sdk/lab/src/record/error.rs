@@ -97,7 +97,6 @@ pub enum RecordError {
     Beside {
         /// The JSON.
         file: PathBuf,
-        /// What is wrong with it.
         #[source]
         error: std::io::Error,
     },

@@ -16,13 +16,10 @@ use crate::record::write::write_take;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Recorded {
     pub file: PathBuf,
-    /// What became of it.
     pub outcome: Outcome,
     /// Number of the take.
     pub number: u32,
-    /// Seconds that were recorded.
     pub recorded_s: f64,
-    /// The judgement.
     pub verdict: Verdict,
     /// Arguments of `htex fit` that read it.
     pub fit: Vec<String>,

@@ -168,7 +168,6 @@ impl GuidePage {
         Ok(Self { shown, served })
     }
 
-    /// The address of the page.
     #[must_use]
     pub fn url(&self) -> &str {
         self.served.url()

@@ -33,7 +33,6 @@ pub struct Setup {
     pub tolerance: f64,
     /// Most takes that are tried.
     pub attempts: u32,
-    /// Format of the recordings.
     pub format: Format,
     /// Program and version, for the JSON beside a recording.
     pub tool: String,

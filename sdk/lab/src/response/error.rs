@@ -150,7 +150,6 @@ pub enum ResponseError {
 }
 
 impl ResponseError {
-    /// The settings that help.
     pub fn hint(&self) -> Hint {
         Hint::new(match self {
             Self::Columns { .. } | Self::Constant { .. } => &["input", "output"],

@@ -9,11 +9,9 @@ use super::estimator::Estimator;
 /// Fewest samples of a window.
 const FEWEST_SAMPLES: f64 = 16.0;
 
-/// Options of measuring a response.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct ResponseOptions {
-    /// How the setup was excited.
     pub excitation: Excitation,
     pub estimator: Estimator,
     /// Length of a window, seconds; the response is on a grid of the inverse, hertz. A multiple of 0.2 s puts all
@@ -118,14 +116,12 @@ impl Default for ResponseOptions {
 }
 
 impl ResponseOptions {
-    /// Sets how the setup was excited.
     #[must_use]
     pub fn with_excitation(mut self, excitation: Excitation) -> Self {
         self.excitation = excitation;
         self
     }
 
-    /// Sets the estimator.
     #[must_use]
     pub fn with_estimator(mut self, estimator: Estimator) -> Self {
         self.estimator = estimator;

@@ -77,13 +77,11 @@ impl Record {
         }
     }
 
-    /// Returns the name of the file.
     #[must_use]
     pub fn file(&self) -> &str {
         &self.file
     }
 
-    /// Returns the sample rate, hertz.
     #[must_use]
     pub fn rate_hz(&self) -> f64 {
         self.rate_hz
@@ -101,7 +99,6 @@ impl Record {
         self.start_s + sample as f64 / self.rate_hz
     }
 
-    /// Returns the samples of a channel.
     #[must_use]
     pub fn channel(&self, channel: Channel) -> &[f64] {
         match channel {

@@ -18,23 +18,18 @@ pub enum View {
     Ready {
         /// What begins.
         phase: Phase,
-        /// Name of the texture.
         texture: String,
     },
     /// A trial plays.
     Playing {
-        /// Name of the texture.
         texture: String,
     },
     Question {
-        /// What is asked.
         attribute: Attribute,
-        /// The scale of the answer.
         scale: Scale,
     },
     /// The texture plays, and its gain is matched.
     Matching {
-        /// Name of the texture.
         texture: String,
         /// The method, which says which keys there are.
         method: GainMethod,

@@ -46,11 +46,7 @@ pub enum StudyError {
     #[error(
         "{texture}: the asset has no measured nine-band error for {model}, by which simulated participants rate; fit it again with `htex fit`"
     )]
-    NoBandError {
-        /// Name of the texture.
-        texture: String,
-        model: String,
-    },
+    NoBandError { texture: String, model: String },
     /// What was felt could not be recorded.
     #[error(
         "recording what is felt: {0}; the trial is repeated when the same command is run again"

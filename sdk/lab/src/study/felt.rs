@@ -49,7 +49,6 @@ pub struct FeltSetup {
     pub quantity: Quantity,
     /// Speed and normal force of the study's motion, where it has only one.
     pub target: Exploration,
-    /// Format of the recordings.
     pub format: Format,
     /// Program and version.
     pub tool: String,

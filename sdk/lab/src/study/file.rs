@@ -282,7 +282,6 @@ impl<'de> Visitor<'de> for CountOrNames {
 }
 
 impl Participants {
-    /// Number of participants.
     pub fn count(&self) -> usize {
         match self {
             Self::Count(count) => *count as usize,
@@ -290,7 +289,6 @@ impl Participants {
         }
     }
 
-    /// Names of all participants.
     pub fn names(&self) -> Vec<String> {
         match self {
             Self::Names(names) => names.clone(),

@@ -26,7 +26,6 @@ pub enum Line {
         after: u32,
         /// Time, milliseconds.
         at_ms: u64,
-        /// Whether the participant is simulated.
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         simulated: bool,
     },
@@ -40,7 +39,6 @@ pub enum Line {
 pub struct Header {
     /// Version of this format.
     pub htex_answers: String,
-    /// Name of the study.
     pub study: String,
     pub participant: String,
     /// BLAKE3 hashes, hexadecimal, of the study's file and of all files that it names.
@@ -101,7 +99,6 @@ pub struct SourceUsed {
     /// Signals of the tracker, without the time: role and unit.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tracker: Vec<(String, String)>,
-    /// Format of the recordings.
     pub format: Format,
 }
 
@@ -121,7 +118,6 @@ pub struct FeltFile {
 pub struct Answer {
     /// Number of the trial within its phase, from 1.
     pub number: u32,
-    /// Name of the texture.
     pub texture: String,
     pub model: String,
     /// Repetition, from 1.
@@ -142,7 +138,6 @@ pub struct Answer {
     /// The recording of what was felt; absent without a source.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub felt: Option<FeltFile>,
-    /// Whether the participant is simulated.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub simulated: bool,
 }
@@ -151,7 +146,6 @@ pub struct Answer {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Matched {
-    /// Name of the texture.
     pub texture: String,
     pub key: GainKey,
     /// The gain after it, decibels relative to the maximum.
@@ -166,7 +160,6 @@ pub struct Matched {
     pub reference_rms: f64,
     /// Time, milliseconds, as in ratings.
     pub at_ms: u64,
-    /// Whether the participant is simulated.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub simulated: bool,
 }

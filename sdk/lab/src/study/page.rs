@@ -92,7 +92,6 @@ impl Page {
         })
     }
 
-    /// The address of the page.
     pub fn url(&self) -> &str {
         self.served.url()
     }

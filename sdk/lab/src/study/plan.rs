@@ -21,7 +21,6 @@ pub struct Plan {
 /// The order of one participant.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ParticipantPlan {
-    /// Name.
     pub participant: String,
     /// Trials for practice; empty without that phase.
     pub training: Vec<Trial>,
@@ -35,7 +34,6 @@ pub struct ParticipantPlan {
 pub struct Trial {
     /// Number within its phase, from 1.
     pub number: u32,
-    /// Name of the texture.
     pub texture: String,
     pub model: String,
     /// Repetition of this texture with this model, from 1.

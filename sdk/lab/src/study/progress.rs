@@ -15,7 +15,6 @@ pub enum Step {
     Rate(Phase, Trial, Attribute),
     /// The gain of a texture is matched.
     Match {
-        /// Name of the texture.
         texture: String,
         /// The matching so far.
         matching: Match,

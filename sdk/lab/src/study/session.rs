@@ -73,7 +73,6 @@ impl<'a> Session<'a> {
         self.log.path()
     }
 
-    /// Whether the participant is simulated.
     pub fn is_simulated(&self) -> bool {
         self.is_simulated
     }

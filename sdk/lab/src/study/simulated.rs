@@ -26,7 +26,6 @@ pub struct SimulatedParticipant {
 }
 
 impl SimulatedParticipant {
-    /// The participant of a name.
     pub fn new(seed: u64, name: &str) -> Self {
         let name = name.to_owned();
         Self { seed, name }

@@ -14,7 +14,6 @@ const SOUND_DBFS: f64 = -18.0;
 /// A texture in a model, and how it is played.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stimulus {
-    /// Name of the texture.
     pub texture: String,
     pub model: String,
     /// Length, seconds; `None`: until it is stopped.

@@ -60,7 +60,6 @@ pub fn sweeps(folder: &Path, forces_n: &[f64]) -> PathBuf {
     path
 }
 
-/// Records from a file.
 pub fn record(folder: &Path, source: &Path, settings: &Settings) -> Result<Recorded, RecordError> {
     record_with(folder, source, settings, None)
 }

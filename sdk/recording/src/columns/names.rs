@@ -13,7 +13,6 @@ pub(crate) enum Unit {
     Unsaid,
     /// Volts, whose factor depends on the sensor.
     Volts,
-    /// An unknown unit.
     Unknown(String),
 }
 

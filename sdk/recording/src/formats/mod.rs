@@ -46,7 +46,6 @@ use crate::options::ReadOptions;
 use crate::sheet::{Layout, Sheet};
 use crate::value_limit::ValueLimit;
 
-/// A format of recordings.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Format {

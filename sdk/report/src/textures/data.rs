@@ -1,9 +1,7 @@
 //! The data of a texture report.
 
-/// The data of a texture report.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TextureReport {
-    /// The page's title.
     pub title: String,
     /// Paragraphs below the title.
     pub intro: Vec<String>,
@@ -49,7 +47,6 @@ pub struct Measure {
 /// One texture at one exploration condition.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Texture {
-    /// The texture's name.
     pub name: String,
     /// Whether it was computed instead of recorded; the page states this wherever it names the texture.
     pub simulated: bool,

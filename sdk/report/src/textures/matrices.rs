@@ -68,7 +68,6 @@ fn table(report: &TextureReport, at: usize, measure: &Measure) -> Table {
     table
 }
 
-/// Table of textures by models.
 fn by_model(report: &TextureReport, cell: impl Fn(&Texture, &ModelResult) -> Cell) -> Table {
     let models = report.models();
     let row = |texture: &Texture| {

@@ -7,7 +7,6 @@ use crate::table::{Cell, HeatScale, Row, Table};
 const CAPTION: &str = "Bytes (1 kB = 1000 B); for a model, those of its parameters. \
                        Below each, the ratio of the recording file's size to it";
 
-/// Returns the table of sizes.
 pub(super) fn table(report: &TextureReport) -> String {
     let models = report.models();
     let files = ["recording file", "asset file"].map(str::to_owned);

@@ -96,7 +96,6 @@ pub(crate) struct AtSummary {
 }
 
 impl AssetSummary {
-    /// The summary of the asset in `file`, of `bytes` bytes.
     pub(crate) fn new(file: &Path, bytes: u64, asset: &htex_format::Asset) -> Self {
         let manifest = &asset.manifest;
         let representations = manifest
@@ -304,7 +303,6 @@ impl RepresentationSummary {
         felt.for_each(|felt| share.count(felt));
     }
 
-    /// The summary at one condition.
     pub(crate) fn at(&self, condition: usize) -> Option<&AtSummary> {
         let all = self.at.iter().chain([&self.first]);
         all.into_iter().find(|at| at.condition == condition)

@@ -114,7 +114,6 @@ pub(crate) struct SettingArgs {
 }
 
 impl SettingArgs {
-    /// The profile's name.
     pub(crate) fn profile(&self) -> Option<&str> {
         self.profile.as_deref()
     }

@@ -57,7 +57,6 @@ pub(crate) fn gains_file() -> Result<PathBuf, Failure> {
     })
 }
 
-/// The kept gains, and their file.
 pub(crate) fn gains() -> Result<(Gains, PathBuf), Failure> {
     let file = gains_file()?;
     let gains = Gains::load(&file).reading(&file)?;

@@ -82,12 +82,10 @@ fn tame(value: &mut Value) {
     }
 }
 
-/// Prints warnings.
 pub(crate) fn warn<N: Clone + Into<Notice>>(warnings: &[N]) {
     tell_all("warning", warnings);
 }
 
-/// Prints notes.
 pub(crate) fn note<N: Clone + Into<Notice>>(notes: &[N]) {
     tell_all("note", notes);
 }

@@ -63,7 +63,6 @@ impl PluginArgs {
         )?)
     }
 
-    /// The limits of WASM models.
     pub(crate) fn limits(&self) -> WasmLimits {
         WasmLimit::all(&self.wasm_limit)
     }
@@ -100,7 +99,6 @@ impl PlayerArgs {
         !self.no_embedded_plugins
     }
 
-    /// Opens an asset.
     pub(crate) fn open(&self, path: &Path) -> Result<htex::Asset, Failure> {
         let registry = self.plugins.registry()?;
         let data = htex_format::Asset::open(path).map_err(|error| Failure::asset(path, error))?;

@@ -37,7 +37,6 @@ impl Reported<'_> {
         Ok(textures)
     }
 
-    /// The texture at one condition.
     pub(crate) fn texture(&self, condition: usize) -> Result<Texture, htex::Error> {
         let (manifest, spectrum) = (self.asset.manifest(), &self.fitted.spectra[condition]);
         let mut models = Vec::new();

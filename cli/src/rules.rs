@@ -12,7 +12,6 @@ const TABLES: &[&[Rule]] = &[
     htex_lab::study::RULES,
 ];
 
-/// All rules.
 pub(crate) fn rules() -> impl Iterator<Item = &'static Rule> {
     TABLES.iter().copied().flatten()
 }

@@ -111,7 +111,6 @@ impl SceneArgs {
         self.player.registry()
     }
 
-    /// Loads a scene file.
     pub(crate) fn open(&self, file: &Path, device: &DeviceOverride) -> Result<Ready, Failure> {
         if located::is_copy(file) {
             return Err(Failure::Usage(format!(
@@ -152,7 +151,6 @@ impl SceneArgs {
         })
     }
 
-    /// Validates a scene file.
     pub(crate) fn validate(file: &Path) -> Result<htex_finding::Report, Failure> {
         let registry = PluginArgs::installed()?;
         let around = Surroundings {
@@ -213,7 +211,6 @@ impl Loader {
 }
 
 impl Ready {
-    /// Plans the scene for its device.
     pub(crate) fn plan(&self, costs: &Costs) -> Result<Plan, Failure> {
         htex_scene::plan(&self.scene, &self.capabilities, costs)
             .map_err(|error| Failure::scene(&self.file, error))
@@ -226,7 +223,6 @@ impl Ready {
         check_outputs([output], inputs.iter().map(PathBuf::as_path))
     }
 
-    /// The device's settings.
     pub(crate) fn settings(&self) -> &Settings {
         &self.scene.settings
     }

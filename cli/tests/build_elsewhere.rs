@@ -14,7 +14,7 @@ use serde_json::Value;
 
 /// The part of a recipe before its recordings.
 const LIBRARY: &str = "[library]\nname = \"surfaces\"\n[[textures]]\n";
-/// And after them.
+/// The part after the recordings.
 const SETTINGS: &str = r#"
 pattern = '(?<surface>[a-z]+)_(?<take>\d)'
 name = "{surface}/{take}"
@@ -92,7 +92,6 @@ impl Bench {
         serde_json::from_slice(&output.stdout).unwrap()
     }
 
-    /// The requests of a run.
     fn requests(&self, arguments: &[&str]) -> Vec<String> {
         let before = self.server.requests().len();
         self.json(arguments);

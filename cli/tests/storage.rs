@@ -290,7 +290,6 @@ fn a_result_that_cannot_be_written_is_kept() {
     assert_eq!(bench.run(&["info", kept]).code(), 0);
 }
 
-/// No request is sent.
 #[test]
 fn wrong_usage_is_refused_before_any_request() {
     let bench = Bench::new();

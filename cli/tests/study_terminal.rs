@@ -38,7 +38,6 @@ asset = 'vinyl.htex'
 /// Longer than a key counts as held.
 const APART: Duration = Duration::from_millis(800);
 
-/// A session at a terminal.
 struct Session {
     child: Child,
     keyboard: File,

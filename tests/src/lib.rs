@@ -55,7 +55,6 @@ impl Golden {
             .collect()
     }
 
-    /// The case's name.
     pub fn name(&self) -> &str {
         self.0["name"].as_str().unwrap()
     }

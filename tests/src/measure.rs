@@ -51,7 +51,6 @@ pub fn distance_db(measured: &[f64], reference: &[f64]) -> f64 {
     (sum / n).sqrt()
 }
 
-/// RMS of samples.
 pub fn rms(samples: &[f32]) -> f64 {
     let power: f64 = samples.iter().map(|&x| f64::from(x).powi(2)).sum();
     (power / samples.len() as f64).sqrt()

@@ -149,7 +149,6 @@ fn named(output: &Path) -> Result<(String, Format), Failure> {
     Ok((stem, format))
 }
 
-/// The grid of the asset's first condition.
 fn first_condition(asset: &Asset) -> Result<Grid, htex_bake::BakeError> {
     let first = asset.manifest().conditions.first();
     let speed = first.and_then(|c| c.speed_mm_s).unwrap_or(USUAL.0);

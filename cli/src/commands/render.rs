@@ -127,7 +127,6 @@ impl Render {
         Err(Failure::Other(format!("{file}: {sentence}")))
     }
 
-    /// Opens the file.
     fn open(&self, ready: &Ready, rate_hz: f64) -> Result<Opened, Failure> {
         let known = ready.devices.find("org.htex.file")?;
         let is_file = ready.device.descriptor().id == known.descriptor().id;

@@ -11,7 +11,7 @@ use crate::simulated;
 
 pub const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/scenes");
 pub const PAPER: &str = "pcie-6321_tabor-9200a_sct3250";
-/// Of the paper's amplifier.
+/// Gain of the paper's amplifier.
 pub const GAIN: f64 = 50.0;
 pub const RATE_HZ: f64 = 20_000.0;
 pub const SCENE: &str = "s.scene.json";

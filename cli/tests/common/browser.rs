@@ -21,7 +21,6 @@ pub fn installed() -> Option<&'static str> {
     })
 }
 
-/// A running browser.
 pub struct Browser {
     child: Child,
     to: File,
@@ -29,7 +28,6 @@ pub struct Browser {
     calls: u64,
 }
 
-/// An open tab.
 #[derive(Clone)]
 pub struct Tab {
     target: String,
@@ -130,7 +128,6 @@ impl Browser {
         self.call(Some(tab), "Page.reload", json!({}));
     }
 
-    /// The value of an expression in a tab.
     pub fn value(&mut self, tab: &Tab, expression: &str) -> Value {
         let params = json!({ "expression": expression, "returnByValue": true });
         self.call(Some(tab), "Runtime.evaluate", params)["result"]["value"].clone()

@@ -15,7 +15,6 @@ use tempfile::TempDir;
 /// A folder to work in.
 pub struct Place(TempDir);
 
-/// The output of a run.
 pub struct Run(Output);
 
 impl Place {

@@ -47,9 +47,7 @@ pub enum Error {
     )]
     ModelVersion {
         model: String,
-        /// The version in the asset.
         asset: String,
-        /// The version of the model.
         installed: String,
     },
     /// The stored fields differ from those of the model.

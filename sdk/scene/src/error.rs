@@ -95,7 +95,6 @@ pub enum SceneError {
     /// The scene switches off an effect that is required.
     #[error("`{effect}` is off, but the scene cannot be played without it: {reason}")]
     Needed {
-        /// Name of the effect.
         effect: String,
         /// Reason why it is required.
         reason: String,

@@ -23,11 +23,9 @@ use crate::validate::read_scene;
 /// Models and devices with which a scene is loaded.
 #[derive(Clone, Copy)]
 pub struct Surroundings<'a> {
-    /// The available models.
     pub models: &'a Registry,
     /// Whether models embedded in assets may run (in their sandbox).
     pub embedded: bool,
-    /// The available devices.
     pub devices: &'a Devices,
 }
 

@@ -53,7 +53,6 @@ pub struct Plan {
 /// A stage of a plan.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PlannedStage {
-    /// Name of the stage.
     pub name: &'static str,
     /// Its surface; `None`: all surfaces.
     #[serde(skip_serializing_if = "Option::is_none")]

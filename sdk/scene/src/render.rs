@@ -103,7 +103,6 @@ impl Renderer {
         self
     }
 
-    /// Rate of the samples, hertz.
     pub fn rate_hz(&self) -> f64 {
         self.timing.rate_hz
     }

@@ -73,7 +73,6 @@ impl Inverse {
         raised(&grid, grid.iter().map(|&hz| self.at(hz)))
     }
 
-    /// The band, hertz.
     pub(crate) fn band(&self) -> Band {
         self.band
     }

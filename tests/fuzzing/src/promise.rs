@@ -58,7 +58,6 @@ pub(crate) fn host_refusal(error: &HostError) {
     }
 }
 
-/// All numbers are finite.
 pub(crate) fn finite(what: &str, numbers: impl IntoIterator<Item = f64>) {
     for (i, number) in numbers.into_iter().enumerate() {
         assert!(number.is_finite(), "{what}[{i}] is {number}");

@@ -18,7 +18,6 @@ impl Given {
         OsStringValueParser::new().try_map(|text| Location::parse(&text).map(Self))
     }
 
-    /// Opens the library.
     pub(crate) fn open(&self) -> Result<Library<Located>, Failure> {
         let opened = Library::open_located(&storage()?, &self.0);
         opened.map_err(|error| self.failure(error))
@@ -34,7 +33,6 @@ impl Given {
         PathBuf::from(self.0.to_string())
     }
 
-    /// An error of this library.
     pub(crate) fn failure(&self, error: LibraryError) -> Failure {
         match error {
             LibraryError::Storage(error) => error.into(),

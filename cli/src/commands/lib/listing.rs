@@ -26,7 +26,6 @@ impl Listing {
         }
     }
 
-    /// Adds an entry.
     pub(super) fn add(&mut self, entry: &Entry) -> Result<(), Failure> {
         if self.is_json {
             let json = serde_json::to_string(entry);

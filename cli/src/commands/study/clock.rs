@@ -4,7 +4,6 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use htex_lab::study::Clock;
 
-/// The machine's clock.
 pub(super) struct WallClock;
 
 impl Clock for WallClock {

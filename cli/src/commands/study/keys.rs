@@ -157,7 +157,6 @@ fn presses_of(bytes: &[u8]) -> Vec<Press> {
     presses
 }
 
-/// The meaning of a key.
 pub(super) fn meaning(press: Press, view: &View) -> Option<Key> {
     let is_matching = matches!(view, View::Matching { .. });
     Some(match press {

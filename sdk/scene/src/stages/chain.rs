@@ -21,7 +21,6 @@ pub(crate) struct Slot {
 /// Statistics of a stage.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StageRun {
-    /// Name of the stage.
     pub name: &'static str,
     /// Its surface; `None`: all surfaces.
     #[serde(skip_serializing_if = "Option::is_none")]

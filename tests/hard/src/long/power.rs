@@ -21,7 +21,6 @@ impl Power {
         }
     }
 
-    /// Adds samples.
     pub fn add(&mut self, mut samples: &[f32]) {
         while !samples.is_empty() {
             let left = (self.part - self.count).min(samples.len() as u64) as usize;

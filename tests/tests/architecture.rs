@@ -306,6 +306,42 @@ fn what_the_command_compiles_is_not_compiled_again() {
     }
 }
 
+/// The README's first command takes no default features, and Cargo unites those of all default members for it: none of them turns on what
+/// takes minutes to build.
+#[test]
+fn the_short_build_stays_short() {
+    let metadata = MetadataCommand::new()
+        .manifest_path(workspace().join("Cargo.toml"))
+        .no_deps()
+        .exec()
+        .unwrap();
+    let large = [
+        "wasm",
+        "cloud",
+        "lab",
+        "lab-files",
+        "schemas",
+        "check",
+        "build",
+    ];
+    let mut found = Vec::new();
+    for package in metadata.workspace_default_packages() {
+        let always = |used: &&cargo_metadata::Dependency| {
+            used.kind != DependencyKind::Development && !used.optional
+        };
+        for used in package.dependencies.iter().filter(always) {
+            let turned_on = used.features.iter().any(|f| large.contains(&&f[..]));
+            if turned_on || used.name == "htex-cli" {
+                found.push(format!(
+                    "{} turns on {:?} of {}",
+                    package.name, used.features, used.name
+                ));
+            }
+        }
+    }
+    assert_eq!(found, [""; 0]);
+}
+
 /// An application that only opens and plays assets links no validator of JSON Schemas.
 #[test]
 fn only_the_command_and_tests_hold_documents_to_schemas() {

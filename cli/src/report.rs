@@ -2,7 +2,8 @@
 
 use htex_author::{FittedAsset, LosslessShare};
 use htex_format::{By, Judged, Quality};
-use htex_report::{Measure, ModelResult, Share, Texture};
+use htex_host::Registry;
+use htex_report::{Measure, ModelResult, Share, Texture, model_color};
 
 use crate::assets::{AssetSummary, RepresentationSummary, motion_text, short_name};
 use crate::columns::Column;
@@ -74,6 +75,7 @@ impl Reported<'_> {
         let motion = motion.map(|(speed, force)| htex::Motion::new(speed, force));
         let grid = &self.fitted.spectra[condition].frequency_hz;
         let loaded = self.asset.loaded_model(id)?;
+        let name = short_name(&representation.model);
         let descriptor = loaded.descriptor();
         Ok(Some(ModelResult {
             model: descriptor.name.clone(),
@@ -83,7 +85,8 @@ impl Reported<'_> {
             band_error_db: quality.map_or(Vec::new(), |q| q.band_error_db.to_vec()),
             payload_bytes: representation.payload_bytes,
             lines: descriptor.is_sum_of_sines().then(|| at.lines()),
-            short_name: short_name(&representation.model).to_owned(),
+            color: model_color(name, &Registry::builtin_names()).to_owned(),
+            short_name: name.to_owned(),
         }))
     }
 }

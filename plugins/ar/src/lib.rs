@@ -7,6 +7,7 @@
 extern crate alloc;
 
 mod fit;
+mod knobs;
 mod lines;
 mod together;
 mod voice;
@@ -21,6 +22,7 @@ use htex_model::{
     Values, mix,
 };
 
+pub use knobs::KNOBS;
 use lines::write_lines;
 pub use voice::AutoregressionVoice;
 

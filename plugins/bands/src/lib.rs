@@ -21,6 +21,7 @@ extern crate std;
 
 mod axis;
 mod fit;
+mod knobs;
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -36,6 +37,7 @@ use htex_shaped::{Curve, Places, ShapedVoice};
 
 use axis::{Axis, Layout, Point};
 use fit::{Fitter, below_highest_db, total_energy};
+pub use knobs::KNOBS;
 
 const BELOW: usize = 0;
 const STEP: usize = 1;

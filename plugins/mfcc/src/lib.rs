@@ -7,6 +7,7 @@
 extern crate alloc;
 
 mod inverse;
+mod knobs;
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -23,6 +24,7 @@ use htex_model::{
 use htex_shaped::{Curve, Places, ShapedVoice};
 
 use inverse::Inverse;
+pub use knobs::KNOBS;
 
 const CEPSTRUM: usize = 0;
 const BANDS: usize = 1;

@@ -7,6 +7,7 @@
 extern crate alloc;
 
 mod fit;
+mod knobs;
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -20,6 +21,8 @@ use htex_model::{
     text,
 };
 use htex_shaped::{Curve, ShapedVoice};
+
+pub use knobs::KNOBS;
 
 const ALPHA: usize = 0;
 const BETA: usize = 1;

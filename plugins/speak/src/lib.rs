@@ -5,6 +5,8 @@
 
 extern crate alloc;
 
+mod knobs;
+
 use alloc::vec::Vec;
 
 use htex_dsp::grid::GRID_HZ;
@@ -15,6 +17,8 @@ use htex_model::{
     Band, Error, Fit, FitInput, Model, Numbers, StaticDescriptor, StaticField, StaticOption, Store,
     Values, Voice, mix, text,
 };
+
+pub use knobs::KNOBS;
 
 const FREQUENCY: usize = 0;
 const AMPLITUDE: usize = 1;

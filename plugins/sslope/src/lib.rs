@@ -11,6 +11,7 @@
 extern crate alloc;
 
 mod fit;
+mod knobs;
 
 use alloc::sync::Arc;
 
@@ -24,6 +25,8 @@ use htex_model::{
     Values, mix, text,
 };
 use htex_shaped::{Curve, ShapedVoice};
+
+pub use knobs::KNOBS;
 
 const PEAK: usize = 0;
 const HIGH_PASS: usize = 1;

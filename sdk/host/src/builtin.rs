@@ -29,17 +29,24 @@ macro_rules! model {
         };
         TableModel::new(TABLE, Some(&$model::VOICES))
     }};
+    ($model:ident, knobs) => {{
+        let model = model!($model);
+        #[cfg(feature = "fit")]
+        let model = model.with_knobs(&$model::KNOBS);
+        model
+    }};
 }
 
-/// The models. One that is added here is in every program that links this crate.
+/// The models. One that is added here is in every program that links this crate. Without `knobs` a sweep spans the ranges of its
+/// options.
 fn tables() -> Vec<TableModel> {
     vec![
-        model!(htex_ar),
-        model!(htex_mfcc),
-        model!(htex_speak),
-        model!(htex_sbeta),
-        model!(htex_sslope),
-        model!(htex_bands),
+        model!(htex_ar, knobs),
+        model!(htex_mfcc, knobs),
+        model!(htex_speak, knobs),
+        model!(htex_sbeta, knobs),
+        model!(htex_sslope, knobs),
+        model!(htex_bands, knobs),
     ]
 }
 

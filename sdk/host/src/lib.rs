@@ -55,7 +55,7 @@ pub use descriptor::{DescriptorError, read_descriptor};
 pub use error::{HostError, OptionError};
 pub use htex_dsp::grid::{Band, GRID_HZ};
 pub use htex_model::{
-    Descriptor, Field, Fit, FitCondition, FitOption, Kind, Motion, Status, Store,
+    Descriptor, Field, Fit, FitCondition, FitOption, Kind, Knob, Knobs, Motion, Status, Store,
 };
 pub use htex_native::folders;
 pub use limits::{WasmCache, WasmCompiler, WasmLimits, WasmTotal};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use htex_dsp::grid::Band;
 use htex_model::abi::{MAX_PARAMETERS, MAX_RATE_HZ, MAX_TEXT_BYTES, MIN_RATE_HZ};
-use htex_model::{Descriptor, Fit, FitCondition, Kind, Status, Values};
+use htex_model::{Descriptor, Fit, FitCondition, Kind, Knobs, Status, Values};
 
 use crate::descriptor::read_descriptor;
 use crate::error::plain;
@@ -193,6 +193,12 @@ impl LoadedModel {
     pub fn short_name(&self) -> &str {
         let id = self.id();
         id.rsplit('.').next().unwrap_or(id)
+    }
+
+    /// Returns the values of the fit options in a sweep; `None` for a model that is not built in or chooses none, and without the
+    /// feature `fit`.
+    pub fn knobs(&self) -> Option<&'static Knobs> {
+        self.raw.knobs()
     }
 
     /// Fits the model to a spectrum. Needs the feature `fit`.

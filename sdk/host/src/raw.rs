@@ -5,7 +5,7 @@
 
 use htex_model::abi::ModelTable;
 use htex_model::voices_1::VoicesRenderFn;
-use htex_model::{Band, FitCondition, Motion};
+use htex_model::{Band, FitCondition, Knobs, Motion};
 
 /// Arguments of a fit, as passed through the ABI.
 pub(crate) struct RawFit<'a> {
@@ -37,6 +37,9 @@ pub(crate) trait RawModel: Send + Sync {
     fn extension(&self, id: &[u8]) -> i64;
     /// Returns whether the model has the extension `htex.motion/1`.
     fn follows_motion(&self) -> bool;
+    fn knobs(&self) -> Option<&'static Knobs> {
+        None
+    }
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64;
     /// Makes a voice; an error is a status.
     fn voice_new(

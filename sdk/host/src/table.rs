@@ -3,7 +3,7 @@
 use htex_model::abi::ModelTable;
 use htex_model::motion_1::MotionTable;
 use htex_model::voices_1::VoicesTable;
-use htex_model::{Band, Motion};
+use htex_model::{Band, Knobs, Motion};
 
 use crate::raw::{RawFit, RawModel, RawVoice, Together};
 
@@ -15,6 +15,7 @@ pub(crate) struct TableModel {
     voices: Option<&'static VoicesTable>,
     /// If the model has the extension `htex.motion/1`.
     motion: Option<&'static MotionTable>,
+    knobs: Option<&'static Knobs>,
 }
 
 impl TableModel {
@@ -23,6 +24,7 @@ impl TableModel {
             table,
             voices,
             motion: None,
+            knobs: None,
         }
     }
 
@@ -30,6 +32,14 @@ impl TableModel {
     pub(crate) fn with_motion(self, motion: &'static MotionTable) -> Self {
         Self {
             motion: Some(motion),
+            ..self
+        }
+    }
+
+    #[cfg(feature = "fit")]
+    pub(crate) fn with_knobs(self, knobs: &'static Knobs) -> Self {
+        Self {
+            knobs: Some(knobs),
             ..self
         }
     }
@@ -139,6 +149,10 @@ impl RawModel for TableModel {
 
     fn follows_motion(&self) -> bool {
         self.motion.is_some()
+    }
+
+    fn knobs(&self) -> Option<&'static Knobs> {
+        self.knobs
     }
 
     fn voice_rate(&self, parameters: &[f64], band: Band, wanted_hz: f64) -> f64 {

@@ -32,6 +32,7 @@ mod exact;
 mod export;
 mod id;
 pub mod json;
+mod knobs;
 pub mod mix;
 #[cfg(all(target_family = "wasm", not(feature = "std")))]
 mod module;
@@ -60,6 +61,7 @@ pub use descriptor::{Descriptor, Field, FitOption};
 pub use error::{Error, Status};
 pub use htex_dsp::Band;
 pub use id::is_model_id;
+pub use knobs::{Knob, Knobs};
 pub use motion::{FitCondition, Motion, MotionVoice};
 pub use numbers::Numbers;
 #[cfg(any(feature = "std", target_family = "wasm"))]

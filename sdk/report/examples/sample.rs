@@ -2,7 +2,7 @@
 //!
 //! `cargo run -p htex-report --example sample -- report.html`
 
-use htex_report::{Measure, ModelResult, Texture, TextureReport, texture_report};
+use htex_report::{Measure, ModelResult, Texture, TextureReport, model_color, texture_report};
 
 /// Name, frequency of the peak (hertz), width (natural log units), height (newtons).
 const TEXTURES: [(&str, f64, f64, f64); 5] = [
@@ -119,6 +119,7 @@ fn model(
     let band_error = |band: i32| error_db * (f64::from(band) * 1.7 + index as f64).sin() * 1.4;
     ModelResult {
         model: name.to_owned(),
+        color: model_color(name, &SPECS.map(|spec| spec.0)).to_owned(),
         short_name: name.to_ascii_lowercase(),
         magnitude: frequency_hz.iter().map(shape).collect(),
         measured: vec![

@@ -1,4 +1,4 @@
-//! Colours: a fixed one for each model, and the scales of the heat tables.
+//! Colours: a palette for models and series, and the scales of the heat tables.
 //!
 //! The hues are based on Okabe and Ito's set. Light ones are replaced by darker ones, so that every
 //! line has a contrast of at least 3 : 1 on white, and any two models differ in normal, protan, deutan
@@ -7,30 +7,29 @@
 /// Colour of the recording: dark grey, distinct from the models' colours.
 pub const RECORDING_COLOR: &str = "#4d4d4d";
 
-const MODELS: [(&str, &str); 6] = [
-    ("ar", "#0072b2"),
-    ("mfcc", "#009e73"),
-    ("speak", "#d55e00"),
-    ("sbeta", "#7d1f6b"),
-    ("sslope", "#5b2c00"),
-    ("bands", "#006b7a"),
+/// Colours of the models, in the order of their registry, and of series.
+const PALETTE: [&str; 6] = [
+    "#0072b2", "#009e73", "#d55e00", "#7d1f6b", "#5b2c00", "#006b7a",
 ];
 
-/// Colours of models that are not in the table.
+/// Colours of models beyond the palette, and of those that the registry does not have.
 const OTHERS: [&str; 4] = ["#5b4fc4", "#8a8000", "#2a7f8e", "#5f7a1f"];
 
-/// Returns the colour of the model called `short_name` (`"sbeta"`), the same in every picture. A model
-/// that is not in the table gets one of four further colours, chosen by its name.
-pub fn model_color(short_name: &str) -> &'static str {
+/// Returns the colour of the model called `short_name` (`"sbeta"`) by its place among the short names of the built-in models, the
+/// same in every picture. Any other model gets one of four further colours, chosen by its name.
+pub fn model_color(short_name: &str, builtin: &[&str]) -> &'static str {
     let name = short_name.to_ascii_lowercase();
-    let known = MODELS.iter().find(|(model, _)| *model == name);
+    let place = builtin
+        .iter()
+        .position(|known| known.eq_ignore_ascii_case(&name));
     let sum = name.bytes().map(usize::from).sum::<usize>();
-    known.map_or(OTHERS[sum % OTHERS.len()], |(_, color)| color)
+    let color = place.and_then(|place| PALETTE.get(place));
+    color.unwrap_or(&OTHERS[sum % OTHERS.len()])
 }
 
 /// Returns the colour of the `index`-th of some series that are not models.
 pub fn series_color(index: usize) -> &'static str {
-    MODELS[index % MODELS.len()].1
+    PALETTE[index % PALETTE.len()]
 }
 
 /// A colour: red, green and blue, each 0 to 255.
@@ -106,15 +105,23 @@ mod tests {
 
     #[test]
     fn every_line_stands_out_from_white_and_no_two_models_share_a_colour() {
-        let mut all: Vec<&str> = MODELS.iter().map(|m| m.1).chain(OTHERS).collect();
+        let mut all: Vec<&str> = PALETTE.into_iter().chain(OTHERS).collect();
         all.push(RECORDING_COLOR);
         for color in &all {
             assert!(parse(color).contrast(WHITE) >= 3.0, "{color}");
         }
         all.sort_unstable();
         all.dedup();
-        assert_eq!(all.len(), MODELS.len() + OTHERS.len() + 1);
-        assert_eq!(model_color("sBeta"), model_color("sbeta"));
+        assert_eq!(all.len(), PALETTE.len() + OTHERS.len() + 1);
+    }
+
+    #[test]
+    fn a_model_has_the_colour_of_its_place_whatever_its_case() {
+        let builtin = ["ar", "sbeta", "", "", "", "", "texel"];
+        assert_eq!(model_color("sBeta", &builtin), PALETTE[1]);
+        for beyond in ["texel", "mine"] {
+            assert!(OTHERS.contains(&model_color(beyond, &builtin)));
+        }
     }
 
     #[test]

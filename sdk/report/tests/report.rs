@@ -46,6 +46,7 @@ fn hostile_model(values: &[f64], lines: bool) -> ModelResult {
     ModelResult {
         model: HOSTILE.to_owned(),
         short_name: HOSTILE.to_owned(),
+        color: HOSTILE.to_owned(),
         magnitude: values.to_vec(),
         measured: values
             .iter()

@@ -1,6 +1,7 @@
 //! Plots of error against cost.
 
 use htex_format::{By, Measure};
+use htex_host::Registry;
 use htex_report::{Axis, Line, Plot, RECORDING_COLOR, Series, model_color};
 
 use crate::against::{Against, Cost};
@@ -44,7 +45,9 @@ pub fn figure(title: &str, points: &[&Point], models: &[String], against: Agains
     line.line_width_px = 2.0;
     line.hover = false;
     plot.series.push(line.colored("#b8b8b8"));
+    let builtin = Registry::builtin_names();
     for model in models {
+        let color = model_color(model, &builtin);
         let own: Vec<&Point> = shown
             .iter()
             .copied()
@@ -52,13 +55,11 @@ pub fn figure(title: &str, points: &[&Point], models: &[String], against: Agains
             .collect();
         let places =
             |points: &[&Point]| points.iter().map(|p| against.place(p)).collect::<Vec<_>>();
-        let mut dots = Series::scatter("", places(&own))
-            .colored(model_color(model))
-            .behind();
+        let mut dots = Series::scatter("", places(&own)).colored(color).behind();
         dots.marker_radius_px = Some(1.0);
         plot.series.push(dots);
         let best = along_front(&own, against);
-        let mut best_dots = Series::scatter(model, places(&best)).colored(model_color(model));
+        let mut best_dots = Series::scatter(model, places(&best)).colored(color);
         best_dots.notes = best.iter().map(|p| note(p)).collect();
         plot.series.push(best_dots);
     }

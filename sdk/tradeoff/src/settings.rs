@@ -1,14 +1,14 @@
-//! The settings of a sweep, from the table of knobs.
+//! The settings of a sweep, from the knobs of models and of playing.
 
-use htex_host::LoadedModel;
+use htex_host::{Knob, Knobs, LoadedModel, Registry};
 
-use crate::knobs::{Knob, MODELS, ModelKnobs, PLAYING, few, of_range};
+use crate::knobs::{PLAYING, few, of_range};
 use crate::{Setting, TradeoffError};
 
 /// Returns the settings of a model's fit options, the defaults first; a quick sweep varies one knob at a time.
 pub(crate) fn fit_settings(model: &LoadedModel, quick: bool) -> Vec<Setting> {
     let mut settings = vec![Setting::default()];
-    let knobs = MODELS.iter().find(|m| m.model == model.short_name());
+    let knobs = knobs(model);
     let mut add = |options: Vec<(String, String)>| {
         let options = without_defaults(model, options);
         let setting = Setting {
@@ -39,12 +39,13 @@ pub(crate) fn fit_settings(model: &LoadedModel, quick: bool) -> Vec<Setting> {
     settings
 }
 
+/// The knobs of the built-in model of this name: a model that is loaded in another way, or replaces it, is swept alike.
+fn knobs(model: &LoadedModel) -> Option<&'static Knobs> {
+    Registry::builtin().find(model.short_name()).ok()?.knobs()
+}
+
 /// Names and values of the knobs that are varied one at a time.
-fn alone(
-    model: &LoadedModel,
-    knobs: Option<&ModelKnobs>,
-    quick: bool,
-) -> Vec<(String, Vec<String>)> {
+fn alone(model: &LoadedModel, knobs: Option<&Knobs>, quick: bool) -> Vec<(String, Vec<String>)> {
     let Some(knobs) = knobs else {
         let options = model.descriptor().options.iter();
         return options.map(|o| (o.name.clone(), of_range(o))).collect();
@@ -109,7 +110,7 @@ fn without_defaults(
 }
 
 /// Whether a knob has no effect because it is above the value of another.
-fn is_idle(model: &LoadedModel, knobs: &ModelKnobs, setting: &Setting) -> bool {
+fn is_idle(model: &LoadedModel, knobs: &Knobs, setting: &Setting) -> bool {
     let value = |name: &str| {
         let given = setting.options.iter().find(|(n, _)| n == name);
         let default = || {
@@ -129,21 +130,32 @@ fn is_idle(model: &LoadedModel, knobs: &ModelKnobs, setting: &Setting) -> bool {
 #[allow(clippy::unwrap_used)] // A failed unwrap is a failed test.
 mod tests {
     use super::*;
-    use htex_host::Registry;
 
     #[test]
-    fn every_knob_of_the_table_turns_something() {
+    fn every_knob_of_a_model_turns_something() {
         let registry = Registry::builtin();
-        for knobs in MODELS {
-            let model = registry.find(knobs.model).unwrap();
+        for model in registry.models() {
+            let Some(knobs) = model.knobs() else {
+                continue;
+            };
             let settings = fit_settings(model, false);
             for knob in knobs.together.iter().chain(knobs.alone) {
                 for value in knob.values {
                     let values = model.options(&[(knob.name, value)]);
-                    assert!(values.is_ok(), "{} {}={value}", knobs.model, knob.name);
+                    assert!(
+                        values.is_ok(),
+                        "{} {}={value}",
+                        model.short_name(),
+                        knob.name
+                    );
                 }
                 let turned = |s: &Setting| s.options.iter().any(|(name, _)| name == knob.name);
-                assert!(settings.iter().any(turned), "{} {}", knobs.model, knob.name);
+                assert!(
+                    settings.iter().any(turned),
+                    "{} {}",
+                    model.short_name(),
+                    knob.name
+                );
             }
             assert_eq!(settings[0], Setting::default());
             assert!(fit_settings(model, true).len() < settings.len());
@@ -152,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn the_values_of_a_model_that_is_not_listed_span_its_ranges() {
+    fn the_values_of_a_model_without_knobs_span_its_ranges() {
         for model in Registry::builtin().models() {
             for option in &model.descriptor().options {
                 let values = of_range(option);

@@ -75,8 +75,10 @@ pub struct Texture {
 pub struct ModelResult {
     /// The model's display name: `"sBeta"`.
     pub model: String,
-    /// The model's short name, which determines colour and column: `"sbeta"`.
+    /// The model's short name, which determines its column: `"sbeta"`.
     pub short_name: String,
+    /// A CSS colour: [`model_color`](crate::model_color).
+    pub color: String,
     /// The model's magnitude at the texture's frequencies, in the texture's unit.
     pub magnitude: Vec<f64>,
     /// What the measures of the report found, in their order; one that is not known may be left out at the end.
@@ -93,15 +95,12 @@ pub struct ModelResult {
 }
 
 impl TextureReport {
-    /// Returns short name and name of each model, in the order of their first occurrence.
-    pub(crate) fn models(&self) -> Vec<(&str, &str)> {
-        let mut found: Vec<(&str, &str)> = Vec::new();
+    /// Returns the first result of each model, in the order of their first occurrence.
+    pub(crate) fn models(&self) -> Vec<&ModelResult> {
+        let mut found: Vec<&ModelResult> = Vec::new();
         for model in self.textures.iter().flat_map(|texture| &texture.models) {
-            if found
-                .iter()
-                .all(|(short_name, _)| *short_name != model.short_name)
-            {
-                found.push((&model.short_name, &model.model));
+            if found.iter().all(|m| m.short_name != model.short_name) {
+                found.push(model);
             }
         }
         found

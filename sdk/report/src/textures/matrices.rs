@@ -71,9 +71,7 @@ fn table(report: &TextureReport, at: usize, measure: &Measure) -> Table {
 fn by_model(report: &TextureReport, cell: impl Fn(&Texture, &ModelResult) -> Cell) -> Table {
     let models = report.models();
     let row = |texture: &Texture| {
-        let found = models
-            .iter()
-            .map(|(short_name, _)| texture.model(short_name));
+        let found = models.iter().map(|model| texture.model(&model.short_name));
         let cells = found.map(|model| model.map_or(Cell::Missing, |m| cell(texture, m)));
         Row {
             header: texture.header(),
@@ -83,7 +81,7 @@ fn by_model(report: &TextureReport, cell: impl Fn(&Texture, &ModelResult) -> Cel
     Table {
         caption: String::new(),
         corner: "texture".to_owned(),
-        columns: models.iter().map(|(_, name)| (*name).to_owned()).collect(),
+        columns: models.iter().map(|model| model.model.clone()).collect(),
         rows: report.textures.iter().map(row).collect(),
         scale: HeatScale::Sequential {
             low: 0.0,

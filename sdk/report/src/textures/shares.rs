@@ -40,7 +40,7 @@ fn row(report: &TextureReport, share: &Share) -> Row {
     let models = report.models();
     let known = models
         .iter()
-        .find(|(short_name, _)| *short_name == share.short_name);
+        .find(|model| model.short_name == share.short_name);
     let counts = [
         share.below_difference_threshold,
         share.below_if_sensitive,
@@ -50,7 +50,7 @@ fn row(report: &TextureReport, share: &Share) -> Row {
     let cell = |count: usize| Cell::Text(format!("{count} of {}", share.textures), String::new());
     Row {
         header: known
-            .map_or(&share.short_name[..], |(_, name)| name)
+            .map_or(&share.short_name, |model| &model.model)
             .to_owned(),
         cells: counts.map(cell).to_vec(),
     }

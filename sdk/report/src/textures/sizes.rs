@@ -1,6 +1,6 @@
 //! Table of sizes in bytes: recording, asset, and each model's parameters.
 
-use super::data::{Texture, TextureReport};
+use super::data::{ModelResult, Texture, TextureReport};
 use crate::number::{bytes, ratio};
 use crate::table::{Cell, HeatScale, Row, Table};
 
@@ -10,7 +10,7 @@ const CAPTION: &str = "Bytes (1 kB = 1000 B); for a model, those of its paramete
 pub(super) fn table(report: &TextureReport) -> String {
     let models = report.models();
     let files = ["recording file", "asset file"].map(str::to_owned);
-    let names = models.iter().map(|(_, name)| (*name).to_owned());
+    let names = models.iter().map(|model| model.model.clone());
     let rows = report.textures.iter().map(|texture| row(texture, &models));
     let table = Table {
         caption: CAPTION.to_owned(),
@@ -23,7 +23,7 @@ pub(super) fn table(report: &TextureReport) -> String {
     table.to_html()
 }
 
-fn row(texture: &Texture, models: &[(&str, &str)]) -> Row {
+fn row(texture: &Texture, models: &[&ModelResult]) -> Row {
     let recording = Cell::Text(bytes(texture.recording_bytes), String::new());
     let asset = size(texture, texture.asset_bytes);
     let payload = |short_name: &str| {
@@ -31,7 +31,7 @@ fn row(texture: &Texture, models: &[(&str, &str)]) -> Row {
             .model(short_name)
             .map(|model| model.payload_bytes as u64)
     };
-    let sizes = models.iter().map(|(short_name, _)| payload(short_name));
+    let sizes = models.iter().map(|model| payload(&model.short_name));
     let sizes = sizes.map(|found| found.map_or(Cell::Missing, |count| size(texture, count)));
     Row {
         header: texture.header(),

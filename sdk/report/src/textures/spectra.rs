@@ -2,7 +2,7 @@
 
 use super::data::{ModelResult, Texture, TextureReport};
 use crate::axis::Axis;
-use crate::color::{RECORDING_COLOR, model_color};
+use crate::color::RECORDING_COLOR;
 use crate::markup::Element;
 use crate::number::{brief, fixed, px};
 use crate::plot::Plot;
@@ -27,10 +27,8 @@ pub(super) fn section(report: &TextureReport) -> String {
 }
 
 fn key(report: &TextureReport) -> Element {
-    let models = report.models();
-    let models = models
-        .iter()
-        .map(|(short_name, name)| key_entry(model_color(short_name), name));
+    let models = report.models().into_iter();
+    let models = models.map(|model| key_entry(&model.color, &model.model));
     let recording = key_entry(RECORDING_COLOR, "recording");
     let behind = key_entry(BACKDROP, "recording, behind a model");
     let list = Element::new("ul").set("class", "key");
@@ -118,7 +116,7 @@ pub(super) fn overlay(title: &str, texture: &Texture, model: &ModelResult, top: 
         ),
         None => Series::line(&model.model, curve(texture, &model.magnitude)),
     };
-    let front = front.colored(model_color(&model.short_name));
+    let front = front.colored(&model.color);
     plot(
         texture,
         title,

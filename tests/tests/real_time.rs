@@ -220,7 +220,7 @@ fn a_scene_is_rendered_without_allocating() {
         paced: true,
         block_frames: 64,
     };
-    for model in ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"] {
+    for model in Registry::builtin_names() {
         let scene = live_scene(&asset, model);
         let plan = plan(&scene, &device, &Costs::embedded()).unwrap();
         let mut renderer = Renderer::new(&scene, &plan).unwrap();

@@ -6,9 +6,10 @@ import path from "node:path";
 /** The package under test, and the fixtures. */
 export const { HTEX_PACKAGE, HTEX_FIXTURES } = process.env;
 
-export const MODELS = ["ar", "mfcc", "speak", "sbeta", "sslope", "bands"];
-
 export const bytes = (name) => readFile(path.join(HTEX_FIXTURES, name));
+
+/** The short names of the built-in models, all of which `vinyl.htex` has. */
+export const MODELS = JSON.parse(await bytes("info.json")).representations.map(({ model }) => model.split(".").pop());
 
 /** The samples of a WAV file of 32-bit floats. */
 export async function samples(name) {

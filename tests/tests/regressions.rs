@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use htex_fuzzing::{TARGETS, run, seeds};
+use htex_fuzzing::{TARGETS, container, run, seeds, with_checksums};
 use htex_tests::workspace;
 
 /// All files of a target's folder; none when the folder does not exist.
@@ -24,6 +24,17 @@ fn takes(target: &str, file: &Path) -> bool {
 fn names(folder: &Path) -> BTreeSet<String> {
     let name = |file: PathBuf| file.file_stem().unwrap().to_str().unwrap().to_owned();
     files(folder).into_iter().map(name).collect()
+}
+
+#[test]
+fn checksums_are_mended_and_nothing_else() {
+    let whole = container(b"{}", [("x", &b"abc"[..])]);
+    assert_eq!(with_checksums(&whole), whole);
+    let at = whole.windows(3).position(|three| three == b"abc").unwrap();
+    let mut changed = whole.clone();
+    changed[at] = b'X';
+    let expected = container(b"{}", [("x", &b"Xbc"[..])]);
+    assert_eq!(with_checksums(&changed), expected);
 }
 
 #[test]

@@ -38,6 +38,7 @@ pub use baked::baked_block;
 pub use block::parameter_block;
 pub use capi::c_calls;
 pub use compile::compile_limits;
+pub use container::{container, with_checksums};
 pub use descriptor::descriptor;
 pub use lab::{arrow, column_map, flac, hdf5, mat, parquet, tdms};
 pub use library::library;

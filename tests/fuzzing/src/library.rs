@@ -3,7 +3,6 @@
 use htex_finding::Report;
 use htex_library::{Library, LibraryError, Limits, MAGIC, Writer, check_name, validate_source};
 
-use crate::container::crc32;
 use crate::promise;
 
 /// Smaller than the defaults, so that short inputs find slow paths.
@@ -180,7 +179,7 @@ pub(crate) fn page(contents: &[u8]) -> Vec<u8> {
         page.extend((!length).to_le_bytes());
         page.extend(block);
     }
-    [&crc32(&page).to_le_bytes(), &page[..]].concat()
+    [&crc32fast::hash(&page).to_le_bytes(), &page[..]].concat()
 }
 
 /// A file of these parts with a valid header; `counts` are entries and leaves.
@@ -205,7 +204,7 @@ fn file(root: &[u8], leaves: &[u8], shared: &[u8], payload: &[u8], counts: (u64,
 fn with_checksum(file: &[u8]) -> Vec<u8> {
     let mut file = file.to_vec();
     if let Some((header, _)) = file.split_first_chunk_mut::<HEADER_BYTES>() {
-        let crc = crc32(&header[..HEADER_BYTES - 4]);
+        let crc = crc32fast::hash(&header[..HEADER_BYTES - 4]);
         header[HEADER_BYTES - 4..].copy_from_slice(&crc.to_le_bytes());
     }
     file

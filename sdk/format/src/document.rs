@@ -3,7 +3,7 @@
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use crate::json_text::{self, JsonError};
+use crate::json_text::{JsonError, parse_json};
 use crate::typed::typed;
 use htex_finding::Findings;
 use htex_finding::Rule;
@@ -75,7 +75,7 @@ impl Document {
 
     fn value(&self, bytes: &[u8], findings: &mut Findings) -> Option<Value> {
         let rules = &self.rules;
-        match json_text::parse(bytes) {
+        match parse_json(bytes) {
             Ok(value) => Some(value),
             Err(JsonError::Syntax(error)) => {
                 let message = format!("{} is not valid JSON: {error}; correct it", self.file);
@@ -135,8 +135,7 @@ impl Document {
             Ok(typed) => Some(typed),
             Err(error) => {
                 let message = format!("{error}; correct the value or add the key");
-                let pointer = error.pointer.unwrap_or_default();
-                findings.add(self.rules.wrong_type, pointer, message);
+                findings.add(self.rules.wrong_type, error.pointer, message);
                 None
             }
         }

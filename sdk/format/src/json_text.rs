@@ -9,7 +9,8 @@ use serde_json::{Map, Number, Value};
 
 use htex_finding::Place;
 
-/// Parses a JSON text that nests at most 128 deep, the parser's own limit.
+/// Parses a JSON text that nests at most 128 deep, the parser's own limit. Programs differ in which of two equal keys they
+/// use, so duplicates are refused.
 ///
 /// # Errors
 /// When the text is not JSON or a key appears twice in an object.
@@ -19,23 +20,6 @@ use htex_finding::Place;
 /// assert!(htex_format::parse_json(br#"{ "a": 1, "a": 1 }"#).is_err());
 /// ```
 pub fn parse_json(bytes: &[u8]) -> Result<Value, JsonError> {
-    parse(bytes)
-}
-
-/// Error of parsing a JSON text.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum JsonError {
-    /// The text is not JSON.
-    #[error("it is not JSON: {0}")]
-    Syntax(#[source] serde_json::Error),
-    /// The key at this pointer appears twice in its object.
-    #[error("the key {0} appears twice")]
-    Twice(String),
-}
-
-/// Parses a text. Programs differ in which of two equal keys they use, so duplicates are refused.
-pub(crate) fn parse(bytes: &[u8]) -> Result<Value, JsonError> {
     let twice = RefCell::new(None);
     let mut json = serde_json::Deserializer::from_slice(bytes);
     let strict = Strict {
@@ -48,6 +32,18 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Value, JsonError> {
         Some(pointer) => JsonError::Twice(pointer),
         None => JsonError::Syntax(error),
     })
+}
+
+/// Error of parsing a JSON text.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum JsonError {
+    /// The text is not JSON.
+    #[error("it is not JSON: {0}")]
+    Syntax(#[source] serde_json::Error),
+    /// The key at this pointer appears twice in its object.
+    #[error("the key {0} appears twice")]
+    Twice(String),
 }
 
 /// A value at a place. A duplicate key is recorded before the parser stops.

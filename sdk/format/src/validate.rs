@@ -10,7 +10,7 @@ use crate::block::{self, BlockError};
 use crate::check_manifest::{check_manifest, grid_points};
 use crate::entries::{MANIFEST, MEDIA_TYPE, MIMETYPE};
 use crate::fields::{KnownModel, check_fields};
-use crate::json_text;
+use crate::json_text::parse_json;
 use crate::limits::Limits;
 use crate::manifest_json::parse;
 use crate::plugin::WASM_MAGIC;
@@ -39,7 +39,7 @@ pub fn manifest_json(bytes: &[u8], limits: &Limits) -> Option<Value> {
     let mut findings = Findings::default();
     let archive = Archive::open(bytes, limits, &mut findings)?;
     let entry = &archive.entries[archive.index(MANIFEST)?];
-    json_text::parse(&entry.bytes).ok()
+    parse_json(&entry.bytes).ok()
 }
 
 /// Reads an asset; `None` when a finding is an error.

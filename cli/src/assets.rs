@@ -15,6 +15,9 @@ use serde_json::{Map, Value};
 use crate::columns::{Column, cells, columns, headings};
 
 /// The summary of an asset that `fit` and `info` print.
+///
+/// The manifest is not flattened into it, because its JSON differs: `name` precedes `htex`, empty `tags` and a false
+/// `simulated` are written, the band is a list, and plugins and representations have their sizes and their numbers.
 #[derive(Serialize)]
 pub(crate) struct AssetSummary {
     pub(crate) asset: String,

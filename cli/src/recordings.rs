@@ -7,9 +7,8 @@ use htex_author::recording::{MOST_VALUES, read_recording};
 use htex_author::settings::ReadingSettings;
 use htex_author::{Exploration, SpectrumOptions, Take, validate_recording};
 use htex_finding::Report;
-use htex_format::Quantity;
 #[cfg(feature = "lab")]
-use htex_lab::record::take_settings;
+use htex_lab::record::KnownTake;
 
 use crate::failure::Failure;
 use crate::located;
@@ -83,15 +82,15 @@ impl RecordingArgs {
     /// Reads one recording, with its condition. A recording of `htex record` or of a study is read as the JSON beside it says, unless
     /// flags say what its columns are.
     pub(crate) fn read_one(&self, file: &Path) -> Result<Take, Failure> {
-        let own = take_settings(file)?.filter(|_| !self.says_columns());
+        let own = known_take(file)?.filter(|_| !self.settings.says_columns());
         self.read_as(file, own)
     }
 
     /// Reads one of several recordings, with its condition. One of `htex record` or of a study is read as the JSON beside it says, also
     /// if flags say what the columns of the others are.
     pub(crate) fn read_among(&self, file: &Path) -> Result<Take, Failure> {
-        let own = take_settings(file)?;
-        if own.is_some() && self.says_columns() {
+        let own = known_take(file)?;
+        if own.is_some() && self.settings.says_columns() {
             note(&[format!(
                 "{}: its columns, rate, quantity and motion are those that the JSON beside it says",
                 shown(file)
@@ -100,23 +99,16 @@ impl RecordingArgs {
         self.read_as(file, own)
     }
 
-    fn read_as(&self, file: &Path, own: Option<ReadingSettings>) -> Result<Take, Failure> {
-        let given = self.settings.clone();
-        let settings = match own {
-            Some(own) => of_take(own, given),
-            None => given,
+    fn read_as(&self, file: &Path, own: Option<KnownTake>) -> Result<Take, Failure> {
+        let takes = match own {
+            Some(own) => {
+                let file = own.recording.clone();
+                self.read_with(&[file], &own.with_given(&self.settings))
+            }
+            None => self.read(&[file.to_owned()]),
         };
-        self.read_with(&[file.to_owned()], &settings)?
-            .pop()
-            .ok_or_else(|| Failure::Usage("a recording is missing".to_owned()))
-    }
-
-    /// Whether a flag says what the columns of recordings are.
-    fn says_columns(&self) -> bool {
-        let given = &self.settings;
-        let scaled = given.rate_hz.or(given.scale).is_some();
-        let is_other = given.quantity.unwrap_or_default() != Quantity::default();
-        scaled || given.map.is_some() || given.tracker.is_some() || is_other
+        let missing = || Failure::Usage("a recording is missing".to_owned());
+        takes?.pop().ok_or_else(missing)
     }
 
     /// The findings in one recording.
@@ -168,21 +160,26 @@ impl RecordingArgs {
     }
 }
 
-/// The settings of a take, and of those that were given what is not about its columns.
-fn of_take(own: ReadingSettings, given: ReadingSettings) -> ReadingSettings {
-    ReadingSettings {
-        response: given.response,
-        from_s: given.from_s,
-        to_s: given.to_s,
-        most_values: given.most_values,
-        segments: given.segments,
-        averaging: given.averaging,
-        ..own
+#[cfg(feature = "lab")]
+fn known_take(file: &Path) -> Result<Option<KnownTake>, Failure> {
+    Ok(KnownTake::find(file)?)
+}
+
+/// The settings of recordings of experiments are not built in.
+#[cfg(not(feature = "lab"))]
+struct KnownTake {
+    recording: PathBuf,
+}
+
+#[cfg(not(feature = "lab"))]
+impl KnownTake {
+    fn with_given(self, given: &ReadingSettings) -> ReadingSettings {
+        given.clone()
     }
 }
 
 #[cfg(not(feature = "lab"))]
-fn take_settings(_: &Path) -> Result<Option<ReadingSettings>, Failure> {
+fn known_take(_: &Path) -> Result<Option<KnownTake>, Failure> {
     Ok(None)
 }
 

@@ -19,6 +19,7 @@ const TESTS: &[&str] = &[
     "measures",
     "page",
     "playing",
+    "python_settings",
     "recording_conformance",
     "regressions",
     "schemas",

@@ -2,10 +2,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use htex_author::recording::format_names;
-use htex_author::{Exploration, FeltError, TextureSpectrum, agreement, felt, measure, read_take};
-use htex_dsp::vibrotactile::Listener;
+use htex_author::{
+    CompareError, ComparedModel, Difference, Exploration, TextureSpectrum, compare, read_take,
+};
 use htex_finding::{Notice, plain};
-use htex_format::{Measure, Quality};
+use htex_format::Measure;
 use serde::Serialize;
 
 use super::validate::{Kind, kind};
@@ -53,18 +54,9 @@ struct Comparison {
     other: Option<OtherRecording>,
     speed_mm_s: Option<f64>,
     force_n: Option<f64>,
-    representations: Vec<Compared>,
+    representations: Vec<ComparedModel>,
     repeatability_rms_db: Option<f64>,
     warnings: Vec<Notice>,
-}
-
-#[derive(Serialize)]
-struct Compared {
-    model: String,
-    level_rms: f64,
-    #[serde(flatten)]
-    quality: Quality,
-    felt: FeltDifference,
 }
 
 /// A recording that is compared with the first.
@@ -73,20 +65,9 @@ struct OtherRecording {
     recording: String,
     speed_mm_s: Option<f64>,
     force_n: Option<f64>,
-    level_rms: f64,
     #[serde(flatten)]
-    quality: Quality,
-    felt: FeltDifference,
+    difference: Difference,
     repeatability_rms_db: Option<f64>,
-}
-
-/// What is felt of a difference.
-#[derive(Serialize)]
-struct FeltDifference {
-    centre_hz: Vec<f64>,
-    error_db: Vec<f64>,
-    #[serde(flatten)]
-    error: FeltError,
 }
 
 impl Compare {
@@ -126,15 +107,17 @@ impl Compare {
         &self,
         spectrum: &TextureSpectrum,
         found: Exploration,
-    ) -> Result<Vec<Compared>, Failure> {
+    ) -> Result<Vec<ComparedModel>, Failure> {
         let asset = self.player.open(&self.other)?;
-        let (held, recorded) = (asset.quantity(), spectrum.quantity);
-        if held != recorded {
-            return Err(Failure::Usage(format!(
-                "the asset holds {held}, the recording is read as {recorded}; give --quantity {held}"
-            )));
-        }
-        self.compare(&asset, spectrum, found)
+        compare(&asset, spectrum, found).map_err(|error| match error {
+            CompareError::Quantities { held, .. } => {
+                Failure::Usage(format!("{error}; give --quantity {held}"))
+            }
+            CompareError::Play(error) => Failure::asset(&self.other, error),
+            CompareError::Model(error) => error.into(),
+            CompareError::Measure(error) => error.into(),
+            error => Failure::Other(error.to_string()),
+        })
     }
 
     /// Compares another recording, which is read as the first.
@@ -143,8 +126,8 @@ impl Compare {
         spectrum: &TextureSpectrum,
     ) -> Result<(OtherRecording, Vec<Notice>), Failure> {
         let (other, found, warnings) = self.spectrum(&self.other)?;
-        if (other.quantity, other.band) != (spectrum.quantity, spectrum.band) {
-            return Err(Failure::Other(format!(
+        let difference = Difference::between(spectrum, &other).ok_or_else(|| {
+            Failure::Other(format!(
                 "{}: {} at {} to {} Hz, and {} is {} at {} to {} Hz; compare recordings of one quantity and rate",
                 shown(&self.other),
                 other.quantity,
@@ -154,16 +137,13 @@ impl Compare {
                 spectrum.quantity,
                 spectrum.band.low_hz,
                 spectrum.band.high_hz,
-            )));
-        }
-        let quality = Quality::from(agreement(spectrum.as_ref(), &other.magnitude));
+            ))
+        })?;
         let compared = OtherRecording {
             recording: self.other.display().to_string(),
             speed_mm_s: found.speed_mm_s,
             force_n: found.force_n,
-            level_rms: htex_dsp::grid::level_rms(&other.magnitude),
-            felt: FeltDifference::new(spectrum, &other.magnitude, &quality),
-            quality,
+            difference,
             repeatability_rms_db: other.repeatability_rms_db,
         };
         Ok((compared, warnings))
@@ -183,51 +163,6 @@ impl Compare {
             reading.warnings,
         ))
     }
-
-    fn compare(
-        &self,
-        asset: &htex::Asset,
-        spectrum: &TextureSpectrum,
-        found: Exploration,
-    ) -> Result<Vec<Compared>, Failure> {
-        let motion = found.speed_mm_s.zip(found.force_n);
-        let motion = motion.map(|(speed, force)| htex::Motion::new(speed, force));
-        let mut compared = Vec::new();
-        for representation in &asset.manifest().representations {
-            let (parameters, level_rms) = asset
-                .parameters(Some(&representation.model), motion)
-                .map_err(|error| Failure::asset(&self.other, error))?;
-            let model = asset
-                .loaded_model(Some(&representation.model))
-                .map_err(|error| Failure::asset(&self.other, error))?;
-            let shape = model.magnitude(&parameters, spectrum.band, &spectrum.frequency_hz)?;
-            let magnitude: Vec<f64> = shape.iter().map(|m| m * level_rms).collect();
-            let quality = measure(&model, &parameters, level_rms, spectrum.as_ref())?;
-            compared.push(Compared {
-                model: representation.model.clone(),
-                level_rms,
-                felt: FeltDifference::new(spectrum, &magnitude, &quality),
-                quality,
-            });
-        }
-        Ok(compared)
-    }
-}
-
-impl FeltDifference {
-    fn new(reference: &TextureSpectrum, magnitude: &[f64], quality: &Quality) -> Self {
-        let felt = felt(
-            reference.as_ref(),
-            magnitude,
-            reference.quantity,
-            &Listener::default(),
-        );
-        Self {
-            centre_hz: felt.centre_hz,
-            error_db: felt.error_db,
-            error: FeltError::new(reference, magnitude, quality.get(Measure::NineBand)),
-        }
-    }
 }
 
 impl Comparison {
@@ -246,7 +181,9 @@ impl Comparison {
         let columns = columns(Measure::ALL);
         let mut text = format!("  model   {}\n", headings(&columns));
         for r in &self.representations {
-            let of = |column: Column| column.of(Some(&r.quality), Some(&r.felt.error));
+            let of = |column: Column| {
+                column.of(Some(&r.difference.quality), Some(&r.difference.felt.error))
+            };
             text += &format!("  {:8}{}\n", short_name(&r.model), cells(&columns, of));
         }
         text
@@ -256,7 +193,7 @@ impl Comparison {
 impl OtherRecording {
     /// A measure: `nine bands 1.20 dB`.
     fn measured(&self, measure: Measure) -> String {
-        let (row, value) = (measure.row(), self.quality.get(measure));
+        let (row, value) = (measure.row(), self.difference.quality.get(measure));
         let value = value.map_or("-".to_owned(), |x| format!("{x:.*}", row.decimals));
         format!("{} {value} {}", row.short, row.unit)
             .trim_end()
@@ -267,7 +204,7 @@ impl OtherRecording {
         let measures: Vec<String> = Measure::stored().map(|m| self.measured(m)).collect();
         let name = plain(&self.recording);
         let mut text = format!("{name}: {}\n", measures.join(", "));
-        let felt = &self.felt.error;
+        let felt = &self.difference.felt.error;
         text += &format!(
             "felt: {:.2} dB RMS, {:.2} dB at most, {:.2} dB together: {} the difference threshold\n",
             felt.error_rms_db,

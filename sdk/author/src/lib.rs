@@ -35,6 +35,7 @@
 
 mod alternatives;
 pub mod by_hand;
+mod compare;
 mod conditions;
 mod edit;
 mod embed;
@@ -56,6 +57,7 @@ mod stored;
 mod take;
 mod warnings;
 
+pub use compare::{CompareError, ComparedModel, Difference, FeltDifference, compare};
 pub use edit::{EditError, edit};
 pub use embed::{EmbedError, embed_plugins};
 pub use error::AuthorError;

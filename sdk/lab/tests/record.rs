@@ -7,7 +7,7 @@ use std::fs;
 
 use htex_author::Exploration;
 use htex_author::recording::{ReadOptions, read_recording};
-use htex_lab::record::{Format, Outcome, RecordError, take_settings};
+use htex_lab::record::{Format, KnownTake, Outcome, RecordError};
 use recording::{RATE_HZ, Settings, record, sweeps};
 
 #[test]
@@ -159,8 +159,10 @@ fn a_take_of_this_version_has_no_other_keys() {
     let folder = tempfile::tempdir().unwrap();
     let source = sweeps(folder.path(), &[0.4]);
     let taken = record(folder.path(), &source, &Settings::default()).unwrap();
-    assert!(take_settings(&taken.file).unwrap().is_some());
+    let known = KnownTake::find(&taken.file).unwrap().unwrap();
     let beside = taken.file.with_extension("json");
+    assert_eq!(known.recording, taken.file);
+    assert_eq!(KnownTake::find(&beside).unwrap(), Some(known));
     let text = fs::read_to_string(&beside).unwrap();
     for (from, to, expected) in [
         (
@@ -176,7 +178,7 @@ fn a_take_of_this_version_has_no_other_keys() {
     ] {
         assert!(text.contains(from), "{text}");
         fs::write(&beside, text.replace(from, to)).unwrap();
-        let error = take_settings(&taken.file).unwrap_err().to_string();
+        let error = KnownTake::find(&taken.file).unwrap_err().to_string();
         assert_eq!(error, format!("{}: {expected}", beside.display()));
     }
 }

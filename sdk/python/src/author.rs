@@ -3,21 +3,22 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use htex::Band;
 use htex::format::{By, Keyed, Measure};
 use htex::host::{Origin, Registry};
-use htex::{AssetData, Band};
-use htex_author::settings::{FitSettings, Metadata, OptionSetting, SettingsError};
+use htex_author::settings::{FitSettings, Metadata, SettingsError};
 use htex_author::{
-    AssetRequest, FittedAsset, Level, SpectrumRef, TextureSpectrum, fit_asset, read_take,
+    AssetRequest, Exploration, FittedAsset, SpectrumRef, TextureSpectrum, fit_asset,
 };
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedStr;
 use serde_json::{Value, json};
 
 use crate::causes;
 use crate::errors::{ModelError, OrRaise, option};
 use crate::models::registry;
-use crate::python::from_json;
-use crate::reading::{Pair, Reading, Source, unknown};
+use crate::python::{from_json, parsed};
+use crate::reading::{Pair, Reading, ReadingText, Source, unknown};
 use crate::texture::Texture;
 
 /// Program and version, for an asset's provenance: those of the command.
@@ -28,20 +29,15 @@ pub(crate) const TOOL: &str = concat!("htex ", env!("CARGO_PKG_VERSION"));
 pub(crate) fn process(
     py: Python<'_>,
     source: Source,
-    reading: Reading,
+    reading: ReadingText,
 ) -> PyResult<Bound<'_, PyAny>> {
+    let reading = Reading::new(&reading)?;
     let value = py.detach(|| processed(source, &reading))?;
     from_json(py, &value)
 }
 
 fn processed(source: Source, reading: &Reading) -> PyResult<Value> {
-    let options = reading.spectrum_options()?;
-    let takes = reading.takes(&[source], &[])?;
-    let take = takes.first().ok_or_else(|| option("no recording"))?;
-    let read = read_take(take, &options, reading.strict).or_raise()?;
-    let part = std::slice::from_ref(&read.part);
-    let spectrum = TextureSpectrum::average(part, options.averaging).or_raise()?;
-    let recording = &take.recording;
+    let (recording, read, spectrum) = reading.spectrum(source)?;
     let stretches = read.part.segments.stretches().into_iter();
     let read_s = stretches.map(|part| [part.start, part.end].map(|at| recording.second(at)));
     Ok(json!({
@@ -50,11 +46,7 @@ fn processed(source: Source, reading: &Reading) -> PyResult<Value> {
         "segments": spectrum.segments,
         "from_sweeps": read.part.segments.from_sweeps,
         "read_s": read_s.collect::<Vec<_>>(),
-        "condition": {
-            "speed_mm_s": read.condition.speed_mm_s,
-            "force_n": read.condition.force_n,
-            "repeatability_rms_db": spectrum.repeatability_rms_db,
-        },
+        "condition": condition(read.condition, &spectrum),
         "speed_spread_mm_s": read.spread.speed_mm_s,
         "force_spread_n": read.spread.force_n,
         "simulated": recording.simulated,
@@ -62,6 +54,15 @@ fn processed(source: Source, reading: &Reading) -> PyResult<Value> {
         "warnings": read.warnings,
         "notes": read.notes,
     }))
+}
+
+/// The fields of a `Condition`.
+pub(crate) fn condition(found: Exploration, spectrum: &TextureSpectrum) -> Value {
+    json!({
+        "speed_mm_s": found.speed_mm_s,
+        "force_n": found.force_n,
+        "repeatability_rms_db": spectrum.repeatability_rms_db,
+    })
 }
 
 /// The fields of a `Spectrum`.
@@ -75,29 +76,16 @@ fn described(spectrum: &TextureSpectrum) -> Value {
     })
 }
 
-/// Options of a fit: the keywords of the package's function.
+/// What is fitted, and how: the keywords of the package's function.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Fit {
-    models: Vec<String>,
-    /// Model, option, value.
-    options: Vec<(String, String, String)>,
+    /// As JSON, as `metadata`.
+    settings: PyBackedStr,
+    metadata: PyBackedStr,
     conditions: Vec<Pair>,
-    level: String,
-    keep_reference: bool,
-    /// Lines of a grid; empty without one.
-    grid: Vec<String>,
     plugins: Vec<PathBuf>,
     installed: bool,
-    name: String,
-    author: Option<String>,
-    license: Option<String>,
-    tags: Vec<String>,
-    description: Option<String>,
-    origin: Option<String>,
-    doi: Option<String>,
-    sensor: Option<String>,
-    finger: Option<String>,
 }
 
 /// Fits models to recordings; returns the texture, and what its file does not hold.
@@ -105,28 +93,25 @@ pub(crate) struct Fit {
 pub(crate) fn fit<'py>(
     py: Python<'py>,
     sources: Vec<Source>,
-    reading: Reading,
+    reading: ReadingText,
     request: Fit,
 ) -> PyResult<(Texture, Bound<'py, PyAny>)> {
+    let reading = Reading::new(&reading)?;
     let (texture, rest) = py.detach(|| fitted(&sources, &reading, request))?;
     Ok((texture, from_json(py, &rest)?))
 }
 
 fn fitted(sources: &[Source], reading: &Reading, fit: Fit) -> PyResult<(Texture, Value)> {
     let registry = registry(&fit.plugins, fit.installed)?;
-    let request = fit.request(&registry, reading)?;
+    let metadata: Metadata = parsed(&fit.metadata)?;
+    let request = fit.request(&registry, reading, &metadata)?;
     let takes = reading.takes(sources, &fit.conditions)?;
     let mut fitted = fit_asset(&takes, &request).or_raise()?;
     raise_of_python(&registry, &fitted.skipped)?;
-    fit.metadata().apply(&mut fitted.asset.manifest);
+    metadata.apply(&mut fitted.asset.manifest);
     let rest = rest(&fitted);
-    // The texture is what its file holds: levels and errors have fewer digits there.
-    let bytes = fitted.asset.to_bytes().or_raise()?;
-    let stored = AssetData::from_bytes(&bytes).or_raise()?;
-    Ok((
-        Texture::new(stored, fit.plugins, true, fit.installed)?,
-        rest,
-    ))
+    let texture = Texture::of(&fitted.asset, fit.plugins, fit.installed)?;
+    Ok((texture, rest))
 }
 
 /// Raises the error of a model that is written in Python: others that cannot be fitted are left out.
@@ -153,46 +138,24 @@ fn rest(fitted: &FittedAsset) -> Value {
 }
 
 impl Fit {
-    fn request(&self, registry: &Registry, reading: &Reading) -> PyResult<AssetRequest> {
-        let level = match &self.level[..] {
-            "recording" => Level::Recording,
-            "fitted" => Level::Fitted,
-            other => return Err(unknown("level", other, "recording, fitted")),
-        };
-        let option = |(model, name, value): &(String, String, String)| {
-            let value = OptionSetting::Text(value.clone());
-            (format!("{model}.{name}"), value)
-        };
+    fn request(
+        &self,
+        registry: &Registry,
+        reading: &Reading,
+        metadata: &Metadata,
+    ) -> PyResult<AssetRequest> {
         let settings = FitSettings {
-            models: Some(self.models.clone()),
-            options: self.options.iter().map(option).collect(),
-            level: Some(level),
-            keep_reference: Some(self.keep_reference),
-            strict: Some(reading.strict),
-            grid: Some(self.grid.clone()).filter(|lines| !lines.is_empty()),
+            strict: Some(reading.strict()),
+            ..parsed(&self.settings)?
         };
-        let request = settings.request(registry, &reading.settings()?, &self.name, TOOL);
+        let name = metadata.name.as_deref().unwrap_or("texture");
+        let request = settings.request(registry, reading.settings(), name, TOOL);
         request.map_err(|error| match error {
             SettingsError::ModelNotFitted { model, fitted, .. } => {
                 unknown("a model in options", &model, &fitted.join(", "))
             }
             other => reading.raised(other),
         })
-    }
-
-    /// Returns the texture's metadata.
-    fn metadata(&self) -> Metadata {
-        Metadata {
-            name: None,
-            author: self.author.clone(),
-            license: self.license.clone(),
-            description: self.description.clone(),
-            tags: Some(self.tags.clone()),
-            source: self.origin.clone(),
-            doi: self.doi.clone(),
-            sensor: self.sensor.clone(),
-            finger: self.finger.clone(),
-        }
     }
 }
 

@@ -4,8 +4,10 @@
 
 mod author;
 mod build;
+mod by_hand;
 mod causes;
 mod command;
+mod compare;
 mod errors;
 mod library;
 mod models;
@@ -14,7 +16,9 @@ mod python;
 mod python_model;
 mod python_voice;
 mod reading;
+mod response;
 mod scene;
+mod simulate;
 mod texture;
 mod tradeoff;
 mod voice;
@@ -31,7 +35,11 @@ mod _htex {
     #[pymodule_export]
     use crate::build::{Build, hash_file, remember, run_job, unhashed, work_folder};
     #[pymodule_export]
+    use crate::by_hand::{edit, make, mix};
+    #[pymodule_export]
     use crate::command::run;
+    #[pymodule_export]
+    use crate::compare::compare;
     #[pymodule_export]
     use crate::library::{Library, pack};
     #[pymodule_export]
@@ -39,9 +47,13 @@ mod _htex {
     #[pymodule_export]
     use crate::python_model::{register_model, unregister_model};
     #[pymodule_export]
+    use crate::response::{response, response_csv};
+    #[pymodule_export]
     use crate::scene::Scene;
     #[pymodule_export]
-    use crate::texture::{Texture, open};
+    use crate::simulate::simulate;
+    #[pymodule_export]
+    use crate::texture::{Texture, open, write_content};
     #[pymodule_export]
     use crate::tradeoff::tradeoff;
     #[pymodule_export]

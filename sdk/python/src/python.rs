@@ -5,6 +5,8 @@ use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
 
 use crate::errors::option;
 
@@ -15,6 +17,18 @@ pub(crate) fn from_json<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let text = serde_json::to_string(value).map_err(|error| option(error.to_string()))?;
     py.import("json")?.call_method1("loads", (text,))
+}
+
+/// Reads a value that the package passes as JSON, such as the settings of a function.
+pub(crate) fn parsed<T: DeserializeOwned>(json: &str) -> PyResult<T> {
+    let value: Value = serde_json::from_str(json).map_err(|error| option(error.to_string()))?;
+    serde_path_to_error::deserialize(value).map_err(|error| {
+        let (path, problem) = (error.path().to_string(), error.into_inner());
+        option(match &path[..] {
+            "." => problem.to_string(),
+            path => format!("{path}: {problem}"),
+        })
+    })
 }
 
 /// Makes an instance of a data class of the package.

@@ -2,16 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
-use htex::Quantity;
 use htex_author::recording::{
     ReadError, ReadOptions, ReadProblem, read_recording, recording_from_bytes,
 };
 use htex_author::settings::{ReadingSettings, SettingsError};
-use htex_author::{Averaging, Exploration, Recording, SegmentChoice, SpectrumOptions, Take};
+use htex_author::{
+    Exploration, Reading as ReadTake, Recording, SpectrumOptions, Take, TextureSpectrum, read_take,
+};
+use htex_lab::record::KnownTake;
 use pyo3::prelude::*;
-use pyo3::pybacked::PyBackedBytes;
+use pyo3::pybacked::{PyBackedBytes, PyBackedStr};
+use serde::Deserialize;
 
 use crate::errors::{IntoPyErr, OrRaise, of_file, option};
+use crate::python::parsed;
 
 /// A recording: a file, or a name and the bytes of a file.
 #[derive(FromPyObject)]
@@ -23,34 +27,48 @@ pub(crate) enum Source {
     File(PathBuf),
 }
 
-/// Options of reading recordings: the keywords of the package's functions.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
+/// How recordings are read.
 pub(crate) struct Reading {
-    rate_hz: Option<f64>,
-    map: Option<String>,
-    tracker: Option<PathBuf>,
-    tracker_map: Option<String>,
-    quantity: String,
-    scale: Option<f64>,
-    response: Option<PathBuf>,
-    from_s: Option<f64>,
-    to_s: Option<f64>,
-    most_values: Option<usize>,
-    segments: String,
-    averaging: String,
+    /// What the command's flags say, too.
+    settings: ReadingSettings,
+    besides: Besides,
+}
+
+/// How recordings are read, as the package says it: settings, and what is said besides, as JSON.
+pub(crate) type ReadingText = (PyBackedStr, PyBackedStr);
+
+/// Keywords of reading beside the settings.
+#[derive(Deserialize, Default)]
+#[serde(default, deny_unknown_fields)]
+struct Besides {
     speed_mm_s: Option<f64>,
     force_n: Option<f64>,
-    pub(crate) strict: bool,
+    strict: Option<bool>,
 }
 
 /// A speed and a force, mm/s and newtons.
 pub(crate) type Pair = (Option<f64>, Option<f64>);
 
 impl Reading {
+    pub(crate) fn new((settings, besides): &ReadingText) -> PyResult<Self> {
+        Ok(Self {
+            settings: parsed(settings)?,
+            besides: parsed(besides)?,
+        })
+    }
+
+    /// Whether recordings with findings that are errors or warnings are refused.
+    pub(crate) fn strict(&self) -> bool {
+        self.besides.strict.unwrap_or_default()
+    }
+
+    pub(crate) fn settings(&self) -> &ReadingSettings {
+        &self.settings
+    }
+
     /// Reads recordings. `conditions` has one entry for each of them, or one for all, or none.
     pub(crate) fn takes(&self, sources: &[Source], conditions: &[Pair]) -> PyResult<Vec<Take>> {
-        let options = self.settings()?.read_options(sources.len());
+        let options = self.settings().read_options(sources.len());
         let options = options.map_err(|error| self.raised(error))?;
         if conditions.len() > 1 && conditions.len() != sources.len() {
             let (given, wanted) = (conditions.len(), sources.len());
@@ -62,62 +80,62 @@ impl Reading {
             let own = conditions.get(i).or(conditions.first());
             let (speed_mm_s, force_n) = own.copied().unwrap_or_default();
             Exploration {
-                speed_mm_s: speed_mm_s.or(self.speed_mm_s),
-                force_n: force_n.or(self.force_n),
+                speed_mm_s: speed_mm_s.or(self.besides.speed_mm_s),
+                force_n: force_n.or(self.besides.force_n),
             }
         };
         let take = |(i, (source, options))| {
             Ok(Take {
-                recording: read(source, options)?,
+                recording: self.read(source, options)?,
                 given: given(i),
             })
         };
         sources.iter().zip(&options).enumerate().map(take).collect()
     }
 
-    /// Returns the keywords as settings.
-    pub(crate) fn settings(&self) -> PyResult<ReadingSettings> {
-        let segments = match &self.segments[..] {
-            "auto" => SegmentChoice::Auto,
-            "sweeps" => SegmentChoice::Sweeps,
-            "windows" => SegmentChoice::Windows,
-            other => return Err(unknown("segments", other, "auto, sweeps, windows")),
+    /// Reads one recording; returns it with the segments that were read, and their texture spectrum.
+    pub(crate) fn spectrum(
+        &self,
+        source: Source,
+    ) -> PyResult<(Recording, ReadTake, TextureSpectrum)> {
+        let options = self.spectrum_options()?;
+        let take = self.takes(&[source], &[])?.pop();
+        let take = take.ok_or_else(|| option("no recording"))?;
+        let read = read_take(&take, &options, self.strict()).or_raise()?;
+        let part = std::slice::from_ref(&read.part);
+        let spectrum = TextureSpectrum::average(part, options.averaging).or_raise()?;
+        Ok((take.recording, read, spectrum))
+    }
+
+    /// Reads a recording. One of `htex record` or of a study is read as the JSON beside it says, unless a setting says what the columns are.
+    fn read(&self, source: &Source, options: &ReadOptions) -> PyResult<Recording> {
+        let path = match source {
+            Source::Bytes(name, bytes) => {
+                return recording_from_bytes(Path::new(name), bytes, options).or_raise();
+            }
+            Source::File(path) => path,
         };
-        let averaging = match &self.averaging[..] {
-            "rms" => Averaging::Rms,
-            "magnitude" => Averaging::Magnitude,
-            "complex" => Averaging::Complex,
-            other => return Err(unknown("averaging", other, "rms, magnitude, complex")),
+        let known = KnownTake::find(path).or_raise()?;
+        let Some(known) = known.filter(|_| !self.settings().says_columns()) else {
+            return read_recording(path, options).map_err(|error| raised(path, error));
         };
-        let quantity = Quantity::from_name(&self.quantity).ok_or_else(|| {
-            let known: Vec<&str> = Quantity::ALL.iter().map(|q| q.name()).collect();
-            unknown("quantity", &self.quantity, &known.join(", "))
-        })?;
-        Ok(ReadingSettings {
-            rate_hz: self.rate_hz,
-            map: self.map.clone(),
-            tracker: self.tracker.clone().map(|file| vec![file]),
-            tracker_map: self.tracker_map.clone(),
-            quantity: Some(quantity),
-            scale: self.scale,
-            response: self.response.clone(),
-            from_s: self.from_s,
-            to_s: self.to_s,
-            most_values: self.most_values,
-            segments: Some(segments),
-            averaging: Some(averaging),
-        })
+        let file = known.recording.clone();
+        let settings = known.with_given(self.settings());
+        let options = settings.read_options(1);
+        let options = options.map_err(|error| self.raised(error))?.pop();
+        let read = read_recording(&file, &options.unwrap_or_default());
+        read.map_err(|error| raised(&file, error))
     }
 
     /// Returns the options of computing spectra.
     pub(crate) fn spectrum_options(&self) -> PyResult<SpectrumOptions> {
-        let options = self.settings()?.spectrum_options();
+        let options = self.settings().spectrum_options();
         options.map_err(|error| self.raised(error))
     }
 
     /// Makes the exception of a setting.
     pub(crate) fn raised(&self, error: SettingsError) -> PyErr {
-        match (error, &self.response) {
+        match (error, &self.settings().response) {
             (SettingsError::Response(error), Some(file)) => raised(file, *error),
             (SettingsError::Response(error), None) => (*error).into_py_err(),
             (SettingsError::Model(error), _) => error.into_py_err(),
@@ -130,15 +148,6 @@ impl Reading {
 /// Makes the exception of a text that is not one of some names.
 pub(crate) fn unknown(what: &str, got: &str, known: &str) -> PyErr {
     option(format!("{what} is {got:?}; known are {known}"))
-}
-
-fn read(source: &Source, options: &ReadOptions) -> PyResult<Recording> {
-    match source {
-        Source::Bytes(name, bytes) => {
-            recording_from_bytes(Path::new(name), bytes, options).or_raise()
-        }
-        Source::File(path) => read_recording(path, options).map_err(|error| raised(path, error)),
-    }
 }
 
 /// Makes the exception of a file that cannot be read, with its whole path.

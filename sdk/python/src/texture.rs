@@ -108,6 +108,30 @@ impl Texture {
         })
     }
 
+    /// Makes a texture of what the file of a made asset holds: levels and errors have fewer digits there.
+    pub(crate) fn of(
+        made: &htex::format::Asset,
+        plugins: Vec<PathBuf>,
+        installed: bool,
+    ) -> PyResult<Self> {
+        Self::new(stored(made)?, plugins, true, installed)
+    }
+
+    /// Makes a texture of an asset that was made of this one, and of `others`: models that one of them does not run, it does not run either.
+    pub(crate) fn made_of(&self, made: &htex::format::Asset, others: &[&Self]) -> PyResult<Self> {
+        let embedded = self.embedded && others.iter().all(|other| other.embedded);
+        Self::new(
+            stored(made)?,
+            self.plugins.clone(),
+            embedded,
+            self.installed,
+        )
+    }
+
+    pub(crate) fn asset(&self) -> &Asset {
+        &self.asset
+    }
+
     /// Returns the motion at a condition; a missing value is that of the first condition.
     fn motion(&self, at: Option<At>) -> Option<Motion> {
         let At {
@@ -126,7 +150,7 @@ impl Texture {
         ))
     }
 
-    fn bytes(&self) -> PyResult<Vec<u8>> {
+    pub(crate) fn bytes(&self) -> PyResult<Vec<u8>> {
         self.asset.data().to_bytes().or_raise()
     }
 }
@@ -348,9 +372,20 @@ impl Texture {
     }
 }
 
+/// What the file of a made asset holds.
+fn stored(made: &htex::format::Asset) -> PyResult<AssetData> {
+    AssetData::from_bytes(&made.to_bytes().or_raise()?).or_raise()
+}
+
 /// Returns the last part of a model's id.
 pub(crate) fn short(id: &str) -> &str {
     id.rsplit('.').next().unwrap_or(id)
+}
+
+/// Writes a file, which appears complete or not at all.
+#[pyfunction(name = "write_file")]
+pub(crate) fn write_content(py: Python<'_>, path: PathBuf, content: &[u8]) -> PyResult<()> {
+    py.detach(|| write(&path, content))
 }
 
 fn write(path: &Path, bytes: &[u8]) -> PyResult<()> {

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use crate::errors::{OrRaise, of_file};
 use crate::models::registry;
 use crate::python::from_json;
-use crate::reading::{Reading, Source, unknown};
+use crate::reading::{Reading, ReadingText, Source, unknown};
 
 /// Options of a sweep: the keywords of the package's function.
 #[derive(FromPyObject)]
@@ -29,9 +29,10 @@ pub(crate) struct Sweep {
 pub(crate) fn tradeoff(
     py: Python<'_>,
     sources: Vec<Source>,
-    reading: Reading,
+    reading: ReadingText,
     request: Sweep,
 ) -> PyResult<Bound<'_, PyAny>> {
+    let reading = Reading::new(&reading)?;
     let program: PathBuf = py.import("htex._htex")?.getattr("__file__")?.extract()?;
     let tradeoff = py.detach(|| measured(&sources, &reading, &request, program))?;
     from_json(py, &tradeoff)
@@ -63,7 +64,7 @@ fn measured(
     let takes = reading.takes(sources, &[])?;
     let mut subjects: Vec<Subject> = Vec::new();
     for (i, take) in takes.iter().enumerate() {
-        let mut subject = Subject::new(take, &options, reading.strict).or_raise()?;
+        let mut subject = Subject::new(take, &options, reading.strict()).or_raise()?;
         if subjects.iter().any(|other| other.name == subject.name) {
             subject.name += &format!(" #{}", i + 1);
         }

@@ -152,6 +152,14 @@ impl ReadingSettings {
         }
     }
 
+    /// Returns whether a setting says what the columns of recordings are.
+    #[must_use]
+    pub fn says_columns(&self) -> bool {
+        let scaled = self.rate_hz.or(self.scale).is_some();
+        let is_other = self.quantity.unwrap_or_default() != Quantity::default();
+        scaled || self.map.is_some() || self.tracker.is_some() || is_other
+    }
+
     /// Returns the options of computing spectra; reads the response.
     ///
     /// # Errors

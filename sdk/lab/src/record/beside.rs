@@ -14,32 +14,66 @@ use crate::record::write::reading;
 /// Longest JSON that is read, bytes; that of a take has a few thousand.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// Settings that read a recording of `htex record` or of a study, from the JSON beside it: columns, rate, quantity and the tracker's
-/// file. `None` if there is no such JSON, or if it is of a recording in another format.
-///
-/// # Errors
-/// [`RecordError::Beside`] if the JSON is of a take and has another version or unknown keys.
-///
-/// ```
-/// // Not a take: nothing is known but the file itself.
-/// assert_eq!(htex_lab::record::take_settings("other.npy".as_ref())?, None);
-/// # Ok::<(), htex_lab::record::RecordError>(())
-/// ```
-pub fn take_settings(recording: &Path) -> Result<Option<ReadingSettings>, RecordError> {
-    let beside = recording.with_extension("json");
-    let header = match header(&beside) {
-        Ok(Some(header)) => header,
-        Err(error) if error.kind() == io::ErrorKind::InvalidData => {
-            return Err(RecordError::Beside {
-                file: beside,
-                error,
-            });
+/// A recording of `htex record` or of a study, with the settings that read it: columns, rate, quantity and the tracker's file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KnownTake {
+    pub recording: PathBuf,
+    pub settings: ReadingSettings,
+}
+
+impl KnownTake {
+    /// Finds a take by its recording, or by the JSON beside it. `None` if there is no such JSON, or if it is of a recording in another
+    /// format.
+    ///
+    /// # Errors
+    /// [`RecordError::Beside`] if the JSON is of a take and has another version or unknown keys.
+    ///
+    /// ```
+    /// // Not a take: nothing is known but the file itself.
+    /// assert_eq!(htex_lab::record::KnownTake::find("other.npy".as_ref())?, None);
+    /// # Ok::<(), htex_lab::record::RecordError>(())
+    /// ```
+    pub fn find(file: &Path) -> Result<Option<Self>, RecordError> {
+        let beside = file.with_extension("json");
+        let header = match header(&beside) {
+            Ok(Some(header)) => header,
+            Err(error) if error.kind() == io::ErrorKind::InvalidData => {
+                return Err(RecordError::Beside {
+                    file: beside,
+                    error,
+                });
+            }
+            _ => return Ok(None),
+        };
+        let recording = file.with_extension(header.format.extension());
+        let extension = file.extension().unwrap_or_default();
+        let is_its = extension.eq_ignore_ascii_case(header.format.extension());
+        let recording = match is_its {
+            true => file.to_owned(),
+            false if beside == file => recording,
+            false => return Ok(None),
+        };
+        let settings = settings(&recording, &header);
+        Ok(Some(Self {
+            recording,
+            settings,
+        }))
+    }
+
+    /// Returns the take's settings, and of those that were given what is not about its columns.
+    #[must_use]
+    pub fn with_given(self, given: &ReadingSettings) -> ReadingSettings {
+        let given = given.clone();
+        ReadingSettings {
+            response: given.response,
+            from_s: given.from_s,
+            to_s: given.to_s,
+            most_values: given.most_values,
+            segments: given.segments,
+            averaging: given.averaging,
+            ..self.settings
         }
-        _ => return Ok(None),
-    };
-    let extension = recording.extension().unwrap_or_default();
-    let is_its = extension.eq_ignore_ascii_case(header.format.extension());
-    Ok(is_its.then(|| settings(recording, &header)))
+    }
 }
 
 /// The header of a take in the JSON beside its recording; `None` if the file is not of a take. What is not of this version is

@@ -40,7 +40,7 @@ mod signals;
 mod tracker;
 mod write;
 
-pub use beside::take_settings;
+pub use beside::KnownTake;
 pub(crate) use beside::{header as header_beside, settings as settings_of};
 pub use calibration::{AXES, Calibration};
 pub use data::{TakeData, TakeHeader};

@@ -9,16 +9,20 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from ._author import agreement, fit, process, tradeoff
+from ._author import agreement, compare, fit, process, tradeoff
 from ._build import build
+from ._by_hand import edit, make, mix
 from ._data import (
     Agreement,
+    Comparison,
     Condition,
     Coverage,
     Fit,
     LibraryEntry,
     Processed,
     Reach,
+    Response,
+    Simulation,
     Spectrum,
     Tradeoff,
     quality_table,
@@ -36,6 +40,7 @@ from ._errors import (
 )
 from ._htex import Library, Scene, Texture, Voice, __version__, models, open, pack, unregister_model
 from ._models import Field, register_model
+from ._rig import response, simulate
 
 if TYPE_CHECKING:
     from . import study as study
@@ -44,6 +49,7 @@ __all__ = [
     "Agreement",
     "AssetError",
     "BuildError",
+    "Comparison",
     "Condition",
     "Coverage",
     "Error",
@@ -58,8 +64,10 @@ __all__ = [
     "Processed",
     "Reach",
     "RecordingError",
+    "Response",
     "Scene",
     "SceneError",
+    "Simulation",
     "Spectrum",
     "Texture",
     "Tradeoff",
@@ -67,13 +75,19 @@ __all__ = [
     "__version__",
     "agreement",
     "build",
+    "compare",
+    "edit",
     "fit",
+    "make",
+    "mix",
     "models",
     "open",
     "pack",
     "process",
     "quality_table",
     "register_model",
+    "response",
+    "simulate",
     "tradeoff",
     "unregister_model",
 ]

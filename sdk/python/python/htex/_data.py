@@ -191,6 +191,93 @@ class Tradeoff:
         return f"<htex.Tradeoff of {rows} points>"
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison:
+    """A recording against a texture, or against another recording."""
+
+    condition: Condition
+    """Speed and force of the recording, and how far it repeats."""
+    representations: list[dict[str, Any]]
+    """Of a texture: the model, the level and the measures of each representation, with what is felt."""
+    other: dict[str, Any] | None
+    """Of another recording: the same measures."""
+    other_condition: Condition | None
+    """Speed and force of the other recording, and how far it repeats."""
+    warnings: list[str]
+    """Warnings about the recordings, as sentences."""
+
+    def table(self) -> dict[str, list[Any]]:
+        """Return the measures as columns that pandas and polars take."""
+        rows = [self.other] if self.other else self.representations
+        names = list(dict.fromkeys(name for row in rows for name in row if name not in ("felt", "band_error_db")))
+        columns = {name: [row.get(name) for row in rows] for name in names}
+        columns["felt_error_rms_db"] = [row["felt"]["error_rms_db"] for row in rows]
+        return columns
+
+    def __repr__(self) -> str:
+        return f"<htex.Comparison with {'a recording' if self.other else f'{len(self.representations)} representation(s)'}>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Response:
+    """The frequency response of a recording rig or a finger display. The arrays have one entry for each frequency."""
+
+    frequency_hz: npt.NDArray[np.float64]
+    """Frequencies, hertz."""
+    magnitude: npt.NDArray[np.float64]
+    """Magnitude, in the output's unit over the input's."""
+    phase_rad: npt.NDArray[np.float64]
+    """Phase of output against input, radians."""
+    coherence: npt.NDArray[np.float64] | None = None
+    """Coherence, 0 to 1, where it was measured."""
+    relative_error: npt.NDArray[np.float64] | None = None
+    """Standard deviation of the magnitude relative to it, where it was measured."""
+    about: dict[str, Any] = field(default_factory=dict)
+    """Settings, hits or windows with the reasons why some were thrown out, peak and warnings."""
+
+    def to_csv(self) -> bytes:
+        """Return the CSV file that ``process``, ``fit`` and scenes take as a response."""
+        return _htex.response_csv(self.frequency_hz.tolist(), self.magnitude.tolist(), self.phase_rad.tolist())
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the CSV file, which appears complete or not at all."""
+        _htex.write_file(path, self.to_csv())
+
+    def __repr__(self) -> str:
+        low, high = self.frequency_hz[[0, -1]]
+        return f"<htex.Response of {len(self.frequency_hz)} frequencies, {low:g} to {high:g} Hz>"
+
+
+class Simulation(dict[str, npt.NDArray[np.float64]]):
+    """A simulated recording: its columns by name. ``process`` and ``fit`` take it, and pandas makes a data frame of it."""
+
+    csv: bytes
+    """The CSV file of it, which says that it is simulated."""
+    rate_hz: float
+    """Sample rate, hertz."""
+    response: Response
+    """Response of the simulated rig, by which ``process(..., response=...)`` divides."""
+
+    def __init__(self, columns: Any, *, csv: bytes, rate_hz: float, response: Response) -> None:
+        super().__init__(columns)
+        self.csv, self.rate_hz, self.response = csv, rate_hz, response
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the CSV file, which appears complete or not at all."""
+        _htex.write_file(path, self.csv)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_simulation, (dict(self), self.csv, self.rate_hz, self.response))
+
+    def __repr__(self) -> str:
+        return f"<htex.Simulation of {len(self['t_s'])} samples at {self.rate_hz:g} Hz>"
+
+
+def _simulation(columns: Any, csv: bytes, rate_hz: float, response: Response) -> Simulation:
+    """Make a simulation that was pickled."""
+    return Simulation(columns, csv=csv, rate_hz=rate_hz, response=response)
+
+
 def quality_table(texture: _htex.Texture) -> dict[str, list[Any]]:
     """Return the stored error of each model at each condition, as columns."""
     rows: list[dict[str, Any]] = []
@@ -217,7 +304,7 @@ def _reopen(
     return _htex.open(data, plugins=plugins, embedded=embedded, installed=installed)
 
 
-for _class in (Condition, Spectrum, Reach, Coverage, Agreement, Processed, Fit, Tradeoff):
+for _class in (Condition, Spectrum, Reach, Coverage, Agreement, Processed, Fit, Tradeoff, Comparison, Response, Simulation):
     # Evaluated here: `typing.get_type_hints` would look for the names in the module that is stated below.
     _class.__annotations__ = get_type_hints(_class)
     _class.__module__ = "htex"

@@ -17,20 +17,28 @@ __all__ = [
     "Voice",
     "__version__",
     "agreement",
+    "compare",
+    "edit",
     "fit",
     "hash_file",
+    "make",
+    "mix",
     "models",
     "open",
     "pack",
     "process",
     "register_model",
     "remember",
+    "response",
+    "response_csv",
     "run",
     "run_job",
+    "simulate",
     "tradeoff",
     "unhashed",
     "unregister_model",
     "work_folder",
+    "write_file",
 ]
 
 _Path = str | os.PathLike[str]
@@ -203,9 +211,25 @@ def pack(
 def models(*, plugins: Sequence[_Path] = ..., installed: bool = False) -> list[dict[str, Any]]: ...
 def register_model(descriptor: str, adapter: Any, plays: bool) -> None: ...
 def unregister_model(id: str) -> bool: ...
-def process(source: Any, reading: Mapping[str, Any]) -> dict[str, Any]: ...
-def fit(sources: Sequence[Any], reading: Mapping[str, Any], request: Mapping[str, Any]) -> tuple[Texture, dict[str, Any]]: ...
-def tradeoff(sources: Sequence[Any], reading: Mapping[str, Any], request: Mapping[str, Any]) -> dict[str, Any]: ...
+def process(source: Any, reading: tuple[str, str]) -> dict[str, Any]: ...
+def fit(sources: Sequence[Any], reading: tuple[str, str], request: Mapping[str, Any]) -> tuple[Texture, dict[str, Any]]: ...
+def tradeoff(sources: Sequence[Any], reading: tuple[str, str], request: Mapping[str, Any]) -> dict[str, Any]: ...
+def compare(source: Any, other: Any, reading: tuple[str, str]) -> dict[str, Any]: ...
+def make(made: Mapping[str, Any]) -> Texture: ...
+def mix(a: Texture, b: Texture, weight: float, metadata: str) -> Texture: ...
+def edit(texture: Texture, metadata: str) -> Texture: ...
+def simulate(
+    surface: str,
+    seed: int,
+    seconds: float,
+    rate_hz: float,
+    free: bool,
+    speed_mm_s: float | tuple[float, float] | None,
+    force_n: float | tuple[float, float] | None,
+) -> tuple[list[tuple[str, npt.NDArray[np.float64]]], bytes, tuple[list[float], list[float], list[float]]]: ...
+def response(records: Sequence[tuple[list[float], list[float]]], rate_hz: float, settings: str) -> dict[str, Any]: ...
+def response_csv(frequency_hz: list[float], magnitude: list[float], phase_rad: list[float]) -> bytes: ...
+def write_file(path: _Path, content: bytes) -> None: ...
 def agreement(
     frequency_hz: npt.NDArray[np.float64],
     band_hz: tuple[float, float],

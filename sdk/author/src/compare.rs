@@ -1,0 +1,131 @@
+//! How spectra differ from that of a recording: those of an asset's representations, and that of another recording.
+
+use htex_dsp::vibrotactile::Listener;
+use htex_format::{Measure, Quality, Quantity};
+use htex_host::HostError;
+use serde::Serialize;
+
+use crate::{AuthorError, Exploration, FeltError, TextureSpectrum, agreement, felt, measure};
+
+/// How a spectrum differs from that of a recording.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Difference {
+    /// RMS of the compared spectrum in the band, in the quantity's unit.
+    pub level_rms: f64,
+    /// The measures of agreement; those of samples for representations alone.
+    #[serde(flatten)]
+    pub quality: Quality,
+    /// What is felt of the difference.
+    pub felt: FeltDifference,
+}
+
+/// What is felt of a difference.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FeltDifference {
+    /// Centre frequencies of third-octave bands, hertz.
+    pub centre_hz: Vec<f64>,
+    /// Difference of what is above the detection threshold in each band, decibels.
+    pub error_db: Vec<f64>,
+    /// The same in a few numbers.
+    #[serde(flatten)]
+    pub error: FeltError,
+}
+
+/// How a representation differs from a recording.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ComparedModel {
+    /// Id of the model.
+    pub model: String,
+    #[serde(flatten)]
+    pub difference: Difference,
+}
+
+/// Why an asset cannot be compared with a recording.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CompareError {
+    /// They hold different quantities.
+    #[error("the asset holds {held}, the recording is read as {recorded}")]
+    Quantities {
+        /// The asset's.
+        held: Quantity,
+        /// The recording's.
+        recorded: Quantity,
+    },
+    /// A representation cannot be read.
+    #[error(transparent)]
+    Play(#[from] htex_play::Error),
+    /// A model refuses the parameters.
+    #[error(transparent)]
+    Model(#[from] HostError),
+    /// The samples of a model cannot be measured.
+    #[error(transparent)]
+    Measure(#[from] AuthorError),
+}
+
+impl Difference {
+    fn new(
+        reference: &TextureSpectrum,
+        level_rms: f64,
+        magnitude: &[f64],
+        quality: Quality,
+    ) -> Self {
+        let of = reference.as_ref();
+        let felt = felt(of, magnitude, reference.quantity, &Listener::default());
+        Self {
+            level_rms,
+            felt: FeltDifference {
+                centre_hz: felt.centre_hz,
+                error_db: felt.error_db,
+                error: FeltError::new(reference, magnitude, quality.get(Measure::NineBand)),
+            },
+            quality,
+        }
+    }
+
+    /// Compares the spectra of two recordings; `None` if their quantities or bands differ.
+    #[must_use]
+    pub fn between(reference: &TextureSpectrum, other: &TextureSpectrum) -> Option<Self> {
+        if (other.quantity, other.band) != (reference.quantity, reference.band) {
+            return None;
+        }
+        let quality = Quality::from(agreement(reference.as_ref(), &other.magnitude));
+        let level_rms = htex_dsp::grid::level_rms(&other.magnitude);
+        Some(Self::new(reference, level_rms, &other.magnitude, quality))
+    }
+}
+
+/// Compares each representation of an asset with a recording: at the recording's speed and force where both are known, else at the asset's
+/// first condition.
+///
+/// # Errors
+/// When the quantities differ, a representation cannot be read, or a model refuses its parameters.
+pub fn compare(
+    asset: &htex_play::Asset,
+    reference: &TextureSpectrum,
+    found: Exploration,
+) -> Result<Vec<ComparedModel>, CompareError> {
+    let (held, recorded) = (asset.quantity(), reference.quantity);
+    if held != recorded {
+        return Err(CompareError::Quantities { held, recorded });
+    }
+    let motion = found.speed_mm_s.zip(found.force_n);
+    let motion = motion.map(|(speed, force)| htex_play::Motion::new(speed, force));
+    let compared = asset
+        .manifest()
+        .representations
+        .iter()
+        .map(|representation| {
+            let id = Some(&representation.model[..]);
+            let (parameters, level_rms) = asset.parameters(id, motion)?;
+            let model = asset.loaded_model(id)?;
+            let shape = model.magnitude(&parameters, reference.band, &reference.frequency_hz)?;
+            let magnitude: Vec<f64> = shape.iter().map(|m| m * level_rms).collect();
+            let quality = measure(&model, &parameters, level_rms, reference.as_ref())?;
+            Ok(ComparedModel {
+                model: representation.model.clone(),
+                difference: Difference::new(reference, level_rms, &magnitude, quality),
+            })
+        });
+    compared.collect()
+}

@@ -1,0 +1,74 @@
+"""Textures without recordings: of parameters, between two others, with other metadata."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+
+from . import _htex
+from ._author import pair
+from ._data import Condition, Quantity
+from ._keywords import Unpack, as_json, keywords, split
+from ._settings import Metadata
+
+
+@keywords(Metadata)
+def make(
+    model: str,
+    parameters: Mapping[str, float | Sequence[float]],
+    level_rms: float,
+    *,
+    at: Condition | tuple[float | None, float | None] = (None, None),
+    quantity: Quantity = "lateral_force",
+    plugins: Sequence[str | os.PathLike[str]] = (),
+    installed: bool = False,
+    **metadata: Unpack[Metadata],
+) -> _htex.Texture:
+    """Make a texture of a model's parameters, as ``htex make`` does; it states that it was made by hand.
+
+    ``parameters`` are those of the model by name (``htex.models()`` lists them with units and ranges); a list has all its values.
+    ``level_rms`` is the RMS of the texture in the unit of ``quantity`` (newtons). ``at`` is the speed (mm/s) and the force (N) at which it
+    is this texture.
+    """
+    (given,) = split("make", metadata, Metadata)
+    values = {name: _values(value) for name, value in parameters.items()}
+    return _htex.make(
+        {
+            "model": model,
+            "parameters": values,
+            "level_rms": level_rms,
+            "at": pair(at),
+            "quantity": quantity,
+            "metadata": as_json(given),
+            "plugins": list(plugins),
+            "installed": installed,
+        }
+    )
+
+
+@keywords(Metadata)
+def mix(a: _htex.Texture, b: _htex.Texture, weight: float, **metadata: Unpack[Metadata]) -> _htex.Texture:
+    """Make a texture between two others, as ``htex mix`` does; ``weight`` is the part of ``b``, 0 to 1.
+
+    Each model that describes both interpolates between their parameters, as between the conditions of one texture. The result states what
+    it was mixed of.
+    """
+    (given,) = split("mix", metadata, Metadata)
+    return _htex.mix(a, b, weight, as_json(given))
+
+
+@keywords(Metadata)
+def edit(texture: _htex.Texture, **metadata: Unpack[Metadata]) -> _htex.Texture:
+    """Return a texture with other metadata, without a new fit, as ``htex edit`` does.
+
+    What is not given is kept; an empty text removes an entry, and ``tags`` replaces all tags.
+    """
+    (given,) = split("edit", metadata, Metadata)
+    return _htex.edit(texture, as_json(given))
+
+
+def _values(value: float | Sequence[float]) -> list[float]:
+    try:
+        return [float(value)]  # type: ignore[arg-type]
+    except TypeError:
+        return [float(one) for one in value]  # type: ignore[union-attr]

@@ -1,0 +1,90 @@
+"""Recordings as files: an array is what an NPY file of it would be, a data frame what a CSV file of it would be.
+
+Channels, scale and limits are then those of the readers.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Mapping
+from typing import Any, BinaryIO, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _errors
+from ._data import Simulation
+
+Recording = Union[str, os.PathLike[str], bytes, BinaryIO, npt.ArrayLike]
+
+
+def sources(recordings: Any) -> list[Any]:
+    """Return the sources of recordings; a list of numbers is one recording."""
+    several = isinstance(recordings, (list, tuple))
+    if several and not recordings:
+        raise _errors.OptionError("no recordings; give at least one")
+    if not several or isinstance(recordings[0], (int, float)):
+        return [source(recordings)]
+    return [source(recording) for recording in recordings]
+
+
+def source(recording: Any) -> Any:
+    """Return a path, or a name and the bytes of a file; an array is what an NPY file of it would be."""
+    if isinstance(recording, (str, os.PathLike)):
+        return recording
+    if isinstance(recording, Simulation):
+        return ("simulated", recording.csv)
+    if isinstance(recording, (bytes, bytearray, memoryview)):
+        return ("recording", bytes(recording))
+    if hasattr(recording, "read"):
+        content = recording.read()
+        if not isinstance(content, bytes):
+            raise TypeError("expected a file opened in binary mode; open it with mode 'rb'")
+        name = getattr(recording, "name", "recording")
+        return (os.path.basename(name) if isinstance(name, str) else "recording", content)
+    named = _columns(recording)
+    if named is not None:
+        return ("frame", _csv(named))
+    array = _unmasked("the array", recording)
+    if array.dtype.kind not in "iuf":
+        raise TypeError(f"expected a path, bytes, a binary file or an array of numbers, got {array.dtype}")
+    if array.dtype not in (np.float32, np.float64, np.int16, np.int32):
+        array = array.astype(np.float64)
+    file = io.BytesIO()
+    np.save(file, array, allow_pickle=False)
+    return ("array", file.getvalue())
+
+
+def _columns(recording: Any) -> dict[str, Any] | None:
+    """Return the columns of a data frame or a mapping by their names; ``None`` for what has no names."""
+    if not (isinstance(recording, Mapping) or hasattr(recording, "columns")):
+        return None
+    names = list(getattr(recording, "columns", recording))
+    if not names or not all(isinstance(name, str) for name in names):
+        return None
+    return {name: _unmasked(f"column {name!r}", recording[name]) for name in names}
+
+
+def _unmasked(what: str, values: Any) -> Any:
+    """Return values as an array; numpy would read what is under a mask as samples."""
+    if np.ma.is_masked(values):
+        raise _errors.OptionError(f"{what} has masked values; leave their rows out, or fill them with filled()")
+    return np.asarray(values)
+
+
+def _csv(columns: Mapping[str, Any]) -> bytes:
+    """Return columns as a CSV file of all digits, whose reader knows their names."""
+    for name, values in columns.items():
+        if values.ndim != 1 or values.dtype.kind not in "biuf":
+            raise TypeError(f"column {name!r} is of {values.dtype} in {values.ndim} dimensions; give numbers, one for each sample")
+        if any(c in name for c in ',"\r\n'):
+            raise _errors.OptionError(f"column {name!r}: a name has no comma, quote or line end; rename it")
+    rows = zip(*(values.astype(np.float64).tolist() for values in columns.values()), strict=True)
+    lines = [",".join(columns), *(",".join(map(repr, row)) for row in rows)]
+    return ("\n".join(lines) + "\n").encode()
+
+
+def stem(source: Any) -> str:
+    name = source[0] if isinstance(source, tuple) else os.path.basename(os.fspath(source))
+    return os.path.splitext(name)[0] or "texture"

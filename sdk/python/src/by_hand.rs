@@ -1,0 +1,150 @@
+//! Textures without recordings: of parameters, between two others, with other metadata.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use htex::Quantity;
+use htex_author::by_hand::{self, ByHand, ByHandError, MixedAsset};
+use htex_author::settings::Metadata;
+use htex_author::{EditError, edit as edited};
+use htex_format::Condition;
+use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedStr;
+
+use crate::author::TOOL;
+use crate::errors::{IntoPyErr, OrRaise, option};
+use crate::models::registry;
+use crate::python::parsed;
+use crate::reading::{Pair, unknown};
+use crate::texture::Texture;
+
+/// What is made of parameters: the keywords of the package's function.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Made {
+    model: String,
+    /// Values by name of the parameter.
+    parameters: BTreeMap<String, Vec<f64>>,
+    level_rms: f64,
+    at: Pair,
+    quantity: String,
+    /// As JSON.
+    metadata: PyBackedStr,
+    plugins: Vec<PathBuf>,
+    installed: bool,
+}
+
+/// Makes a texture of parameters.
+#[pyfunction]
+pub(crate) fn make(py: Python<'_>, made: Made) -> PyResult<Texture> {
+    py.detach(|| made.texture())
+}
+
+/// Makes a texture between two others; `weight` is the part of the second.
+#[pyfunction]
+pub(crate) fn mix(
+    py: Python<'_>,
+    a: PyRef<'_, Texture>,
+    b: PyRef<'_, Texture>,
+    weight: f64,
+    metadata: &str,
+) -> PyResult<Texture> {
+    let (a, b) = (&*a, &*b);
+    py.detach(|| {
+        let metadata = checked(metadata)?;
+        let hashes = [hash(a)?, hash(b)?];
+        let mixed = by_hand::mix(
+            MixedAsset {
+                asset: a.asset(),
+                blake3: &hashes[0],
+            },
+            MixedAsset {
+                asset: b.asset(),
+                blake3: &hashes[1],
+            },
+            weight,
+            metadata.name.as_deref().unwrap_or("mix"),
+            TOOL,
+        );
+        let mut asset = mixed.or_raise()?;
+        metadata.apply(&mut asset.manifest);
+        a.made_of(&asset, &[b])
+    })
+}
+
+/// Returns a texture with other metadata.
+#[pyfunction]
+pub(crate) fn edit(
+    py: Python<'_>,
+    texture: PyRef<'_, Texture>,
+    metadata: &str,
+) -> PyResult<Texture> {
+    let texture = &*texture;
+    py.detach(|| {
+        let metadata = checked(metadata)?;
+        if metadata.is_empty() {
+            return Err(option(
+                "nothing to change: give at least one of the metadata, such as author",
+            ));
+        }
+        let asset = edited(&texture.bytes()?, &metadata).or_raise()?;
+        texture.made_of(&asset, &[])
+    })
+}
+
+impl Made {
+    fn texture(self) -> PyResult<Texture> {
+        let metadata = checked(&self.metadata)?;
+        let registry = registry(&self.plugins, self.installed)?;
+        let model = registry.find(&self.model).or_raise()?;
+        let quantity = Quantity::from_name(&self.quantity).ok_or_else(|| {
+            let known: Vec<&str> = Quantity::ALL.iter().map(|q| q.name()).collect();
+            unknown("quantity", &self.quantity, &known.join(", "))
+        })?;
+        let name = metadata.name.as_deref().unwrap_or("texture");
+        let (speed_mm_s, force_n) = self.at;
+        let mut texture = ByHand::new(name, self.level_rms, TOOL)
+            .at(Condition {
+                speed_mm_s,
+                force_n,
+                ..Condition::default()
+            })
+            .with_quantity(quantity);
+        texture.values = self.parameters;
+        let mut asset = by_hand::make(model, &texture).or_raise()?;
+        metadata.apply(&mut asset.manifest);
+        Texture::of(&asset, self.plugins, self.installed)
+    }
+}
+
+/// Reads metadata; refuses what would make the asset invalid.
+fn checked(metadata: &str) -> PyResult<Metadata> {
+    let metadata: Metadata = parsed(metadata)?;
+    let checked = metadata.check();
+    checked.map_err(|error| option(error.to_string()))?;
+    Ok(metadata)
+}
+
+fn hash(texture: &Texture) -> PyResult<String> {
+    Ok(blake3::hash(&texture.bytes()?).to_hex().to_string())
+}
+
+impl IntoPyErr for ByHandError {
+    fn into_py_err(self) -> PyErr {
+        match self {
+            Self::Play(error) => error.into_py_err(),
+            Self::Model(error) => error.into_py_err(),
+            Self::Write(error) => error.into_py_err(),
+            other => option(other.to_string()),
+        }
+    }
+}
+
+impl IntoPyErr for EditError {
+    fn into_py_err(self) -> PyErr {
+        match self {
+            Self::Read(error) => error.into_py_err(),
+            lost => crate::errors::AssetError::new_err(lost.to_string()),
+        }
+    }
+}

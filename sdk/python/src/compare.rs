@@ -1,0 +1,87 @@
+//! Recordings against textures and other recordings.
+
+use htex_author::{CompareError, Difference, compare as compared};
+use pyo3::prelude::*;
+use serde_json::{Value, json};
+
+use crate::author::condition;
+use crate::errors::{IntoPyErr, OrRaise, RecordingError, option};
+use crate::python::from_json;
+use crate::reading::{Reading, ReadingText, Source};
+use crate::texture::Texture;
+
+/// What a recording is compared with.
+#[derive(FromPyObject)]
+pub(crate) enum Other<'py> {
+    Texture(PyRef<'py, Texture>),
+    Recording(Source),
+}
+
+/// Measures each representation of a texture, or another recording, against a recording.
+#[pyfunction]
+pub(crate) fn compare<'py>(
+    py: Python<'py>,
+    source: Source,
+    other: Other<'py>,
+    reading: ReadingText,
+) -> PyResult<Bound<'py, PyAny>> {
+    let reading = Reading::new(&reading)?;
+    let found = match other {
+        Other::Texture(texture) => {
+            let texture = &*texture;
+            py.detach(|| with_texture(source, texture, &reading))
+        }
+        Other::Recording(other) => py.detach(|| with_recording(source, other, &reading)),
+    };
+    from_json(py, &found?)
+}
+
+fn with_texture(source: Source, texture: &Texture, reading: &Reading) -> PyResult<Value> {
+    let (_, read, spectrum) = reading.spectrum(source)?;
+    let models = compared(texture.asset(), &spectrum, read.condition).or_raise()?;
+    Ok(json!({
+        "condition": condition(read.condition, &spectrum),
+        "representations": models,
+        "other": null,
+        "other_condition": null,
+        "warnings": read.warnings,
+    }))
+}
+
+fn with_recording(source: Source, other: Source, reading: &Reading) -> PyResult<Value> {
+    let (_, read, spectrum) = reading.spectrum(source)?;
+    let (_, other_read, other) = reading.spectrum(other)?;
+    let difference = Difference::between(&spectrum, &other).ok_or_else(|| {
+        RecordingError::new_err(format!(
+            "{} at {} to {} Hz cannot be compared with {} at {} to {} Hz; compare recordings of one quantity and rate",
+            other.quantity,
+            other.band.low_hz,
+            other.band.high_hz,
+            spectrum.quantity,
+            spectrum.band.low_hz,
+            spectrum.band.high_hz,
+        ))
+    })?;
+    let warnings = [read.warnings, other_read.warnings].concat();
+    Ok(json!({
+        "condition": condition(read.condition, &spectrum),
+        "representations": [],
+        "other": difference,
+        "other_condition": condition(other_read.condition, &other),
+        "warnings": warnings,
+    }))
+}
+
+impl IntoPyErr for CompareError {
+    fn into_py_err(self) -> PyErr {
+        match self {
+            Self::Play(error) => error.into_py_err(),
+            Self::Model(error) => error.into_py_err(),
+            Self::Measure(error) => error.into_py_err(),
+            Self::Quantities { held, .. } => {
+                option(format!("{self}; give quantity=\"{}\"", held.name()))
+            }
+            other => option(other.to_string()),
+        }
+    }
+}

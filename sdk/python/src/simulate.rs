@@ -1,0 +1,103 @@
+//! Simulated recordings.
+
+use htex_simulate::{FreeMotion, Simulation, SimulationError, SimulationOptions, Surface};
+use numpy::{IntoPyArray, PyArray1};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+use crate::errors::{IntoPyErr, OrRaise, option};
+
+/// A column of a recording: its name, and its values.
+type Column<'py> = (&'static str, Bound<'py, PyArray1<f64>>);
+
+/// Frequencies (hertz), magnitudes and phases (radians) of a response.
+type Response = [Vec<f64>; 3];
+
+/// Lowest and highest values of a motion.
+#[derive(FromPyObject)]
+pub(crate) enum Range {
+    Between(f64, f64),
+    #[pyo3(transparent)]
+    One(f64),
+}
+
+/// Simulates a recording; returns its columns, the CSV file of them, and the response of the simulated setup.
+#[pyfunction]
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn simulate<'py>(
+    py: Python<'py>,
+    surface: &str,
+    seed: u64,
+    seconds: f64,
+    rate_hz: f64,
+    free: bool,
+    speed_mm_s: Option<Range>,
+    force_n: Option<Range>,
+) -> PyResult<(Vec<Column<'py>>, Bound<'py, PyBytes>, Response)> {
+    let surface = surface.parse::<Surface>().or_raise()?;
+    let options = SimulationOptions::new(surface)
+        .with_seed(seed)
+        .with_rate_hz(rate_hz)
+        .with_duration_s(seconds);
+    let options = moved(options, free, speed_mm_s, force_n)?;
+    let (simulation, csv) = py.detach(|| written(&options))?;
+    let response = options.setup_response().or_raise()?;
+    let columns = [
+        ("t_s", simulation.t_s),
+        ("fx_n", simulation.fx_n),
+        ("fy_n", simulation.fy_n),
+        ("fz_n", simulation.fz_n),
+        ("x_mm", simulation.x_mm),
+        ("y_mm", simulation.y_mm),
+    ];
+    let columns = columns.map(|(name, values)| (name, values.into_pyarray(py)));
+    let response = [
+        response.frequency_hz,
+        response.magnitude,
+        response.phase_rad,
+    ];
+    Ok((columns.into(), PyBytes::new(py, &csv), response))
+}
+
+fn moved(
+    options: SimulationOptions,
+    free: bool,
+    speed_mm_s: Option<Range>,
+    force_n: Option<Range>,
+) -> PyResult<SimulationOptions> {
+    if free {
+        let usual = FreeMotion::default();
+        let both = |range: Option<Range>, usual| match range {
+            None => usual,
+            Some(Range::One(value)) => [value, value],
+            Some(Range::Between(low, high)) => [low, high],
+        };
+        let free = usual
+            .with_speed_mm_s(both(speed_mm_s, usual.speed_mm_s))
+            .with_force_n(both(force_n, usual.force_n));
+        return Ok(options.with_free_motion(free));
+    }
+    let one = |range: Option<Range>, name: &str, usual| match range {
+        None => Ok(usual),
+        Some(Range::One(value)) => Ok(value),
+        Some(Range::Between(..)) => Err(option(format!(
+            "{name}: sweeps have one value; a range needs motion=\"free\""
+        ))),
+    };
+    let speed = one(speed_mm_s, "speed_mm_s", options.speed_mm_s)?;
+    let force = one(force_n, "force_n", options.force_n)?;
+    Ok(options.with_speed_mm_s(speed).with_force_n(force))
+}
+
+fn written(options: &SimulationOptions) -> PyResult<(Simulation, Vec<u8>)> {
+    let simulation = htex_simulate::simulate(options).or_raise()?;
+    let mut csv = Vec::new();
+    simulation.write_csv(&mut csv)?;
+    Ok((simulation, csv))
+}
+
+impl IntoPyErr for SimulationError {
+    fn into_py_err(self) -> PyErr {
+        option(self.to_string())
+    }
+}

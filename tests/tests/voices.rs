@@ -186,6 +186,7 @@ fn voices_together_are_voices_alone() {
     let orders = [
         6, 6, 2, 6, 9, 6, 6, 6, 6, 3, 6, 6, 20, 6, 6, 6, 6, 1, 6, 6, 6,
     ];
+    let first = sets.len();
     for (i, order) in orders.into_iter().enumerate() {
         let mut set = vec![f64::from(order)];
         set.extend((0..order).map(|k| 0.25 * (-0.7f64).powi(k)));
@@ -207,7 +208,7 @@ fn voices_together_are_voices_alone() {
         .enumerate()
     {
         if round == 4 {
-            for i in [6, 13] {
+            for i in [first, first + 7] {
                 let mut set = sets[i].1.clone();
                 set[1] *= 0.8;
                 alone[i].retune(&set).unwrap();

@@ -245,20 +245,3 @@ fn ar_of_the_spectrum_of_a_known_filter_is_that_filter() {
         fit.parameters
     );
 }
-
-#[test]
-fn tilt_of_a_power_of_the_frequency_is_its_exponent() {
-    let tilt = model("tilt");
-    for slope in [-2.0f64, 0.0, 0.5] {
-        let grid = Band::TACTILE.grid_hz();
-        let spectrum: Vec<f64> = grid
-            .iter()
-            .map(|f| 1e-3 * (f / 100.0).powf(slope))
-            .collect();
-        let fit = fit(&tilt, &spectrum, &[]);
-        assert!((fit.parameters[0] - slope).abs() < 1e-7, "{slope}");
-        for (got, expected) in fitted_magnitude(&tilt, &fit).iter().zip(&spectrum) {
-            assert!((got / expected - 1.0).abs() < 1e-6, "{slope}");
-        }
-    }
-}

@@ -13,7 +13,6 @@ const BOUNDS: &[(&str, usize)] = &[
     ("sbeta", 30_100),
     ("speak", 18_500),
     ("sslope", 24_600),
-    ("tilt", 24_600),
 ];
 
 #[test]

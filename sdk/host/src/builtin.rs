@@ -47,7 +47,6 @@ fn tables() -> Vec<TableModel> {
         model!(htex_sbeta, knobs),
         model!(htex_sslope, knobs),
         model!(htex_bands, knobs),
-        model!(htex_tilt),
     ]
 }
 

@@ -20,7 +20,6 @@ pub fn parameters(model: &str, asset: usize, condition: usize) -> Vec<f64> {
             draw.within(0.3, 4.0),
         ],
         "bands" => bands(&mut draw, asset),
-        "tilt" => vec![draw.within(-3.0, 3.0)],
         other => panic!("no parameters for {other}"),
     }
 }

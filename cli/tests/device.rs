@@ -95,8 +95,6 @@ fn sound_devices_pass() {
     let file = checked(&place, &["file", "--set", "encoding=i16"]);
     assert_eq!(complaints(&file), []);
     assert_eq!(count(&file, "passed"), CHECKS.len() - 5, "{file:#}");
-    let null = checked(&place, &["null"]);
-    assert_eq!(complaints(&null), []);
     let drive = [
         "quantity=display_voltage",
         "limit_v=100",

@@ -16,7 +16,6 @@ use htex_device::{Adapter, SourceAdapter};
 pub fn devices() -> Vec<Arc<dyn Adapter>> {
     vec![
         Arc::new(htex_device_file::FileAdapter),
-        Arc::new(htex_device_null::NullAdapter),
         #[cfg(feature = "daq")]
         Arc::new(htex_device_daq::Daq::new()),
         #[cfg(feature = "audio")]

@@ -37,7 +37,6 @@ mod tdms_object;
 mod text;
 #[cfg(feature = "lab-files")]
 mod thrift;
-mod w64;
 #[cfg(feature = "wav")]
 mod wav;
 
@@ -94,13 +93,6 @@ pub const FORMATS: &[Format] = &[
         signatures: &[(0, b"RIFF")],
         feature: "wav",
         open: reader!("wav", wav::open),
-    },
-    Format {
-        name: "WAV (Wave64)",
-        extensions: &["w64"],
-        signatures: &[(0, w64::RIFF)],
-        feature: "",
-        open: Some(|opened, limit| Ok(Box::new(w64::open(opened, limit)?))),
     },
     Format {
         name: "FLAC",

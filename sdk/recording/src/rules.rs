@@ -49,10 +49,6 @@ htex_finding::rule_table! {
         "The lateral force is more than ten times the normal force.",
         "Fingers do not reach this coefficient of friction; one of the two columns has another unit or quantity.",
         "Correct the scale of the column in the column map.";
-    RECORDING_FORCE_IMPLAUSIBLE Warning ("map", "force"):
-        "The normal force is larger than that of an exploring finger.",
-        "Fingers explore a surface with 0.1 to 5 N. A force column in mN or g that is read as N is far too high.",
-        "Give the factor to newtons in the column map, as in normal=COLUMN:0.001, or name the unit in the column (`fz_mN`).";
     RECORDING_SPEED_ZERO Error ("speed"):
         "According to its speed or position, the finger never moves.",
         "A texture is recorded while sliding, and the condition would have a speed of 0.",

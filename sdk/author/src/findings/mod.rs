@@ -48,7 +48,6 @@ pub fn recording_findings(recording: &Recording) -> Vec<Finding> {
     if recording.quantity == Quantity::LateralForce {
         plausible::judge_friction(recording, &mut findings);
     }
-    plausible::judge_force(recording, &mut findings);
     plausible::judge_speed(recording, &mut findings);
     let found = findings.into_list();
     recording

@@ -5,15 +5,12 @@ use htex_finding::Findings;
 use super::quantile::{median, quantile};
 use crate::Recording;
 use htex_recording::rules::{
-    RECORDING_FORCE_IMPLAUSIBLE, RECORDING_FRICTION_IMPLAUSIBLE, RECORDING_SPEED_IMPLAUSIBLE,
-    RECORDING_SPEED_ZERO,
+    RECORDING_FRICTION_IMPLAUSIBLE, RECORDING_SPEED_IMPLAUSIBLE, RECORDING_SPEED_ZERO,
 };
 
 /// Largest ratio of lateral to normal force. Fingers on smooth, wet glass reach 3 to 5 at light touch, where
 /// adhesion dominates; twice that allows for offsets of the sensors.
 const LARGEST_FRICTION: f64 = 10.0;
-/// Largest normal force of an exploring finger, newtons: pressing as hard as a hand can reaches 50.
-const LARGEST_FORCE_N: f64 = 20.0;
 /// Speed below which the finger stands still, mm/s: at this speed it takes a quarter of an hour to stretch the skin by
 /// the millimetre that it yields.
 const STILL_MM_S: f64 = 1e-3;
@@ -34,19 +31,6 @@ pub(super) fn judge_friction(recording: &Recording, findings: &mut Findings) {
         findings.add(RECORDING_FRICTION_IMPLAUSIBLE, "/normal", format!(
             "the lateral force is {lateral:.4} N (median) at a normal force of {normal:.4} N; correct the scale of one of \
              them"
-        ));
-    }
-}
-
-/// Checks the median of the normal force.
-pub(super) fn judge_force(recording: &Recording, findings: &mut Findings) {
-    let Some(normal) = recording.normal_n.as_deref().and_then(median) else {
-        return;
-    };
-    if normal > LARGEST_FORCE_N {
-        findings.add(RECORDING_FORCE_IMPLAUSIBLE, "/normal", format!(
-            "the normal force is {normal:.4} N (median), and fingers explore with at most {LARGEST_FORCE_N} N; correct its \
-             scale"
         ));
     }
 }

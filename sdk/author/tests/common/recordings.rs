@@ -165,7 +165,6 @@ pub fn cases() -> Vec<Case> {
             "recording_friction_implausible",
             short().map_lateral(|_, f| 120.0 * f).with_normal(),
         ),
-        case("recording_force_implausible", heavy()),
         case("recording_speed_zero", speed(|_| 0.0)),
         case("recording_speed_implausible", speed(|v| 1e-3 * v)),
         case("recording_sweeps_cut_off", Columns::new(3.2).lateral()),
@@ -192,13 +191,6 @@ fn clock_gap() -> String {
     let kept = text.lines().enumerate();
     let kept = kept.filter(|(at, _)| !lost.contains(at));
     kept.map(|(_, line)| format!("{line}\n")).collect()
-}
-
-/// A force in grams whose column does not say so.
-fn heavy() -> String {
-    let mut columns = Columns::new(3.0);
-    columns.normal_n.iter_mut().for_each(|force| *force *= 102.0);
-    columns.with_normal()
 }
 
 /// Timestamps of a busy computer.
